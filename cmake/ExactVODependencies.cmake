@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Every library the project uses; a missing one stops the configuration with the package to install.
+function(exactvo_require package debian_package)
+  find_package(${package} QUIET ${ARGN})
+  if(NOT ${package}_FOUND)
+    message(FATAL_ERROR
+      "${package} was not found.\n"
+      "  Debian, Ubuntu: apt-get install ${debian_package}\n"
+      "  or run scripts/install-dependencies.sh, which installs everything the project needs.")
+  endif()
+endfunction()
+
+# find_package must run in this scope for its imported targets to be seen by the whole project.
+macro(exactvo_find package debian_package)
+  exactvo_require(${package} ${debian_package} ${ARGN})
+  find_package(${package} QUIET ${ARGN})
+endmacro()
+
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+exactvo_find(CGAL libcgal-dev)
+exactvo_find(Eigen3 libeigen3-dev CONFIG)
+exactvo_find(Boost libboost-dev)
+exactvo_find(TBB libtbb-dev CONFIG)
+exactvo_find(HWY libhwy-dev CONFIG)
+exactvo_find(nlohmann_json nlohmann-json3-dev CONFIG)
+exactvo_find(fmt libfmt-dev CONFIG)
+find_path(EXACTVO_VALIJSON_INCLUDE valijson/validator.hpp)
+if(NOT EXACTVO_VALIJSON_INCLUDE)
+  message(FATAL_ERROR "valijson was not found.\n  Debian, Ubuntu: apt-get install libvalijson-dev")
+endif()
+if(EXACTVO_WITH_GDAL)
+  exactvo_find(GDAL libgdal-dev)
+endif()
+if(EXACTVO_WITH_MPI)
+  exactvo_find(MPI libopenmpi-dev COMPONENTS CXX)
+endif()
+if(EXACTVO_TOOLS)
+  exactvo_find(CLI11 libcli11-dev CONFIG)
+endif()
+if(EXACTVO_TESTS)
+  exactvo_find(GTest libgtest-dev)
+  exactvo_find(rapidcheck librapidcheck-dev CONFIG)
+endif()
+if(EXACTVO_BENCH)
+  exactvo_find(benchmark libbenchmark-dev CONFIG)
+endif()

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What can be switched, and the flags that every target of the project shares.
+option(EXACTVO_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(EXACTVO_BENCH "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
+option(EXACTVO_EXAMPLES "Build the examples" ${PROJECT_IS_TOP_LEVEL})
+option(EXACTVO_TOOLS "Build the command line program `exactvo`" ${PROJECT_IS_TOP_LEVEL})
+option(EXACTVO_WERROR "Treat warnings as errors" OFF)
+option(EXACTVO_WITH_GDAL "Read vector files through GDAL (plain WKT works without)" ON)
+option(EXACTVO_WITH_MPI "Spread a batch over MPI ranks" OFF)
+set(EXACTVO_SANITIZE "" CACHE STRING "Sanitizers for every target, e.g. address,undefined or thread")
+
+if(PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+  endif()
+  find_program(EXACTVO_CCACHE ccache)
+  if(EXACTVO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${EXACTVO_CCACHE}")
+  endif()
+endif()
+
+add_library(exactvo_build_flags INTERFACE)
+target_compile_features(exactvo_build_flags INTERFACE cxx_std_17)
+target_compile_options(exactvo_build_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  $<$<BOOL:${EXACTVO_WERROR}>:-Werror>
+  # The error bounds of the floating-point filters are derived for one rounding an operation.
+  -ffp-contract=off)
+if(EXACTVO_SANITIZE)
+  target_compile_options(exactvo_build_flags INTERFACE
+    -fsanitize=${EXACTVO_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(exactvo_build_flags INTERFACE -fsanitize=${EXACTVO_SANITIZE})
+endif()

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One way to declare a module, a test, a benchmark and an example.
+include(GNUInstallDirs)
+include(GoogleTest)
+
+# exactvo_add_module(<name> SOURCES ... [CGAL_SOURCES ...] [PUBLIC targets...] [PRIVATE targets...])
+# The library exactvo::<name>, headers under <name>/include. CGAL_SOURCES are compiled with CGAL's own flags
+# (-frounding-math), which the plain and vectorised sources must not get.
+function(exactvo_add_module name)
+  cmake_parse_arguments(arg "" "" "SOURCES;CGAL_SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target exactvo_${name})
+  add_library(${target} ${arg_SOURCES} ${arg_CGAL_SOURCES})
+  add_library(exactvo::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target}
+    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:exactvo_build_flags>)
+  if(arg_CGAL_SOURCES)
+    set_source_files_properties(${arg_CGAL_SOURCES} PROPERTIES COMPILE_OPTIONS "-frounding-math;-Wno-conversion;-Wno-shadow")
+  endif()
+  set_property(GLOBAL APPEND PROPERTY EXACTVO_MODULES ${target})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+# exactvo_add_test(<name> SOURCES ... [LIBS ...] [LABELS ...] [TIMEOUT s])
+function(exactvo_add_test name)
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 120)
+  endif()
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} exactvo_test_support GTest::gtest GTest::gmock GTest::gtest_main exactvo_build_flags)
+  target_compile_definitions(${name} PRIVATE EXACTVO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
+endfunction()
+
+# exactvo_add_bench(<name> SOURCES ... [LIBS ...])
+function(exactvo_add_bench name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} benchmark::benchmark exactvo_build_flags)
+endfunction()

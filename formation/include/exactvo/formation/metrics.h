@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Figures of a run, from its recording alone. SI units. Nothing where a value does not apply.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/recording.h"
+
+namespace exactvo::formation {
+
+struct RobotMetrics {
+  std::string id;
+  bool arrived = false;
+  std::optional<double> arrival_time;            ///< s
+  double path_length = 0.0;                      ///< m
+  std::optional<double> min_obstacle_clearance;  ///< m, swept: to the robot's rim, negative is penetration
+};
+
+struct Metrics {
+  bool all_arrived = false;
+  std::optional<double> last_arrival_time;           ///< s
+  std::optional<double> min_obstacle_clearance;      ///< m, swept
+  std::optional<double> min_robot_clearance;         ///< m, swept
+  std::optional<double> formation_position_error;    ///< m, at the end: max over robots of |x_i - x_L - Delta_i|
+  std::optional<double> formation_velocity_error;    ///< m/s, at the end
+  std::optional<double> leader_arrival_time;         ///< s
+  double jitter = 0.0;                  ///< m/s^2: sum over steps and robots of |a_{k+1} - a_k|
+  std::size_t heading_reversals = 0;    ///< turns whose sign changes from one step to the next, beyond 1e-3 rad
+  std::size_t active_set_switches = 0;  ///< steps whose active constraints differ from the step before
+  std::size_t relaxed_steps = 0;        ///< decisions in which soft half-planes had to give
+  std::size_t uncertified_half_planes = 0;
+  std::size_t steps = 0;
+  double wall_time = 0.0;  ///< s
+  std::vector<RobotMetrics> robots;
+};
+
+Metrics measure(const Scenario& scenario, const Recording& recording);
+
+/// One series a robot or pair, sampled at the recording's rows: for figures.
+std::vector<double> obstacle_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot);
+std::vector<double> robot_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot_a,
+                                          std::size_t robot_b);
+std::vector<double> formation_error_series(const Scenario& scenario, const Recording& recording, std::size_t robot);
+
+}  // namespace exactvo::formation

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What happened in a run: a row a step, with each robot's state, its decision and the half-planes behind it.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/half_plane.h"
+#include "exactvo/vo/lp/solution.h"
+
+namespace exactvo::formation {
+
+/// Where a half-plane comes from.
+enum class ConstraintSource { enclosure, obstacle_edge, robot };
+
+/// One half-plane of a decision, with enough beside it to prove it again: the convex shape (grown by `radius`, seen from
+/// `position`, horizon `tau`) whose velocity obstacle it excludes.
+struct RecordedConstraint {
+  geometry::HalfPlane half_plane;
+  ConstraintSource source = ConstraintSource::enclosure;
+  std::size_t index = 0;  ///< of the enclosure, obstacle edge or other robot
+  bool certified = false;
+  bool hard = true;
+  bool active = false;  ///< binds the chosen velocity
+  geometry::ConvexShape shape;
+  Vec2 position;
+  double radius = 0.0;   ///< m
+  double tau = 0.0;      ///< s
+  Vec2 shape_velocity;   ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
+};
+
+/// How the preferred velocity was formed.
+enum class Mode {
+  direct,     ///< straight for the goal or slot
+  boost,      ///< turned onto the tangent of a certified trap-free enclosure
+  following,  ///< along a boundary after a stall
+  pushing_out,  ///< in contact: leaving an obstacle
+  arrived
+};
+
+struct RobotStep {
+  Vec2 position;   ///< m, at the step's start
+  Vec2 velocity;   ///< m/s, at the step's start
+  Vec2 preferred;  ///< m/s
+  Vec2 chosen;     ///< m/s: the LP's optimum; what a kinematic robot does, what a second-order one tracks
+  lp::Status status = lp::Status::optimal;
+  double violation = 0.0;  ///< m/s, of the soft half-planes
+  Mode mode = Mode::direct;
+  int side = 0;  ///< +1 left, -1 right, 0 none: the side kept while blocked
+  std::string note;  ///< why a mode began or ended, empty otherwise
+  std::vector<RecordedConstraint> constraints;  ///< the active ones; all of them where asked for
+  std::size_t uncertified = 0;  ///< half-planes of this decision that could not be certified
+};
+
+struct Step {
+  double time = 0.0;  ///< s
+  std::vector<RobotStep> robots;
+  Vec2 leader_position;
+  Vec2 leader_velocity;
+};
+
+/// How a robot moved between two rows; decides what "swept" means.
+enum class MotionLaw {
+  straight,     ///< x + t v (kinematic robots, explicit Euler)
+  exponential,  ///< v' = -k3 (v - w) solved exactly
+  hermite       ///< the cubic through both end states (the general integrators)
+};
+
+struct Recording {
+  std::vector<Step> steps;  ///< the last row is the final state: its decisions are empty
+  MotionLaw motion = MotionLaw::straight;
+  double time_step = 0.0;   ///< s
+  double tracking_gain = 0.0;  ///< k3, 1/s, where motion is exponential
+  bool diverged = false;    ///< stopped early because the state left every bound
+  std::string outcome;      ///< in words, for people
+  double wall_time = 0.0;   ///< s
+};
+
+}  // namespace exactvo::formation

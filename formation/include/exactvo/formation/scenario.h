@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A scenario as plain data: robots, obstacles, and, for a formation, who hears whom and whom they follow.
+/// Defaults are those of the paper's Section V with the corrections of docs/guide/errata.md. SI units throughout.
+///
+/// Neighbours: simulation.h runs one; datasets/scenario_file.h reads one from JSON.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::formation {
+
+using geometry::Vec2;
+
+struct Robot {
+  std::string id;
+  Vec2 position;            ///< m, at t = 0
+  Vec2 velocity;            ///< m/s, at t = 0
+  double radius = 0.5;      ///< m, > 0
+  double max_speed = 3.0;   ///< m/s, > 0
+  std::vector<Vec2> goals;  ///< m, visited in order; empty for a robot of a formation
+};
+
+struct SceneObstacle {
+  std::string id;
+  geometry::Obstacle shape;
+};
+
+/// The set V of allowed velocities: the paper's "[3, 3]^T" can be read either way.
+enum class SpeedBoundKind {
+  disc,  ///< |v| <= max_speed
+  box    ///< |v_x| <= max_speed and |v_y| <= max_speed
+};
+
+/// tau of the velocity obstacles, s. IVO: tau = clamp(dist / max(|v|, speed_floor max_speed), least, most); ORCA uses `orca`.
+struct Horizons {
+  double least = 0.3;        ///< s, >= 2 dt
+  double most = 3.0;         ///< s
+  double speed_floor = 0.5;  ///< fraction of max_speed
+  double orca = 2.0;         ///< s, for the baseline, agents and obstacles both
+  double robots = 2.0;       ///< s, robot against robot in the IVO methods
+};
+
+struct Margins {
+  double obstacle = 0.08;  ///< m, a facade's depth inside its enclosure
+  double robot = 0.04;     ///< m, added to the radius sum of a pair
+};
+
+/// The virtual leader: along the polyline `path` at `speed`, then at rest at its end.
+struct Leader {
+  std::vector<Vec2> path;  ///< m, at least one point
+  double speed = 0.0;      ///< m/s, >= 0
+};
+
+/// Gains of equations (14), (15) and (17).
+struct Gains {
+  double k1 = 0.25;    ///< position consensus
+  double k2 = 0.45;    ///< velocity consensus
+  double k3 = 37.5;    ///< velocity tracking, 1/s
+  double kappa = 1.5;  ///< 1/s, slope of the saturated preference
+};
+
+/// Consensus topology (paper, Section II.B): weights a_ij = a_ji >= 0, pinning b_i >= 0.
+struct Topology {
+  std::vector<std::vector<double>> adjacency;
+  std::vector<double> pinning;
+};
+
+struct FormationSpec {
+  Topology topology;
+  std::vector<Vec2> offsets;  ///< Delta_i, m
+  bool recentre = true;       ///< subtract mean(Delta), as equation (4) needs
+  Leader leader;
+  Gains gains;
+  double catch_up_speed = 3.0;  ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
+};
+
+struct Scenario {
+  std::string name;
+  std::string description;
+  std::vector<Robot> robots;
+  std::vector<SceneObstacle> obstacles;
+  std::optional<FormationSpec> formation;  ///< none: kinematic robots with goals (Section V.A)
+  SpeedBoundKind speed_bound = SpeedBoundKind::disc;
+  Horizons horizons;
+  Margins margins;
+  double time_step = 0.05;         ///< s, > 0
+  double time_limit = 120.0;       ///< s, > 0
+  double arrival_tolerance = 0.1;  ///< m: within this of the last goal a robot has arrived
+  double neighbour_distance = 15.0;  ///< m: robots farther apart ignore each other
+};
+
+}  // namespace exactvo::formation

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Runs a scenario (paper, Sections III-V). Deterministic: the same scenario and options give the same recording, bit
+/// for bit, on every machine with IEEE doubles.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/recording.h"
+#include "exactvo/formation/scenario.h"
+
+namespace exactvo::formation {
+
+enum class Method {
+  orca,         ///< van den Berg et al. 2011: the baseline
+  ivo_edge,     ///< the paper: an ellipse a facade
+  ivo_cluster,  ///< enclosures merged where they overlap and fitted trap-free; pure equation (12)
+  ivo           ///< ivo_cluster, boost where certified, following after a stall
+};
+
+enum class Controller {
+  paper_literal,  ///< equations (14)-(17) as printed
+  paper_signs,    ///< the sign errors of (15) and (17) mended, nothing else
+  standard        ///< the default: saturated preference, filter last, brake point, side commitment
+};
+
+enum class Integrator { exact, euler, rk4, dopri5, rosenbrock4 };
+
+/// "ivo-edge" and so on, as on the command line; `parse_*` gives nothing for an unknown name.
+const char* name(Method m);
+const char* name(Controller c);  ///< "paper-literal", "paper-signs", "default"
+const char* name(Integrator i);
+const char* name(Mode m);
+std::vector<std::string> method_names();
+std::vector<std::string> controller_names();
+std::vector<std::string> integrator_names();
+bool parse(const std::string& text, Method& out);
+bool parse(const std::string& text, Controller& out);
+bool parse(const std::string& text, Integrator& out);
+
+struct SimulationOptions {
+  Method method = Method::ivo;
+  Controller controller = Controller::standard;  ///< used by formations only
+  Integrator integrator = Integrator::exact;     ///< used by formations only
+  double facade_minor_to_major = 0.5;  ///< ivo_edge: b = this * a
+  double facade_fixed_minor = 0.0;     ///< m, ivo_edge: > 0 fixes b
+  bool record_all = false;             ///< keep every half-plane, not only the active ones
+  double stop_at = -1.0;               ///< s; >= 0: stop at this time, keeping every half-plane of the last decision
+  /// Called about ten times a second of wall time with the simulated time; returning false stops the run.
+  std::function<bool(double)> progress;
+};
+
+/// REQUIRES: a valid scenario (`validate`).
+Recording simulate(const Scenario& scenario, const SimulationOptions& options = {});
+
+/// What is wrong with a scenario, in words, one a line; empty when it can be run. Each names the JSON pointer of the field.
+struct ScenarioProblem {
+  std::string pointer;   ///< "/robots/0/radius"
+  std::string found;
+  std::string expected;
+};
+std::vector<ScenarioProblem> validate(const Scenario& scenario);
+
+/// The enclosures that the IVO methods see for one robot and goal, for drawing and for `explain`.
+std::vector<geometry::ConvexShape> enclosures_for(const Scenario& scenario, const SimulationOptions& options,
+                                                  std::size_t robot);
+
+}  // namespace exactvo::formation

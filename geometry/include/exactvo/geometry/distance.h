@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Distances in metres. Rounded (a few ulps of the coordinates); certified lower bounds are named so.
+
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::geometry {
+
+/// The point of the segment nearest to x.
+Vec2 nearest_point(const Segment& s, Vec2 x);
+double distance(const Segment& s, Vec2 x);
+/// 0 where the segments meet.
+double distance(const Segment& s, const Segment& t);
+
+/// From x to the obstacle's edges; negative (minus the depth) inside a polygon.
+double signed_distance(const Obstacle& obstacle, Vec2 x);
+
+/// The least signed distance from the points of the motion `path` (a straight step) to the obstacle: swept, not sampled.
+/// Inside a polygon at either end it is the smaller of the ends' signed distances; a step across an edge gives <= 0.
+double swept_distance(const Obstacle& obstacle, const Segment& path);
+
+/// The least distance between two points that move straight and uniformly over the same time.
+double swept_distance(const Segment& path_a, const Segment& path_b);
+
+/// Even-odd by exact orientation tests; the boundary counts as inside. Exact.
+bool contains(const Polygon& polygon, Vec2 x);
+
+}  // namespace exactvo::geometry

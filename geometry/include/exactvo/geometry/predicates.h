@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Exact predicates on shapes of doubles taken as the rationals they are. Each is decided by a floating-point filter
+/// (round to nearest, error bound derived in the .cpp) and, where that is undecided, in exact arithmetic. No answer
+/// depends on rounding; NaN and infinity are a caller's mistake.
+///
+/// Properties (tests quote the numbers):
+///  (1) side_of_support(s, n, k) == -side_of_support-like monotone: growing `radius` never lowers the sign;
+///  (2) scaling n and k by a power of two changes nothing;
+///  (3) contains(s, q) agrees with side_of_support for every n: if q is in S then h_S(n) >= n.q for all n.
+
+#include <cstdint>
+
+#include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/support.h"
+
+namespace exactvo::geometry {
+
+enum class Sign : int { negative = -1, zero = 0, positive = 1 };
+
+/// The sign of h_S(n) - tau * c. Exact. (Predicate A: a half-plane { n.v >= c } excludes the velocity obstacle of S with
+/// horizon tau iff this is not positive, and neither is it with c = 0.)
+Sign sign_of_support(const GrownShape& s, Vec2 n, double tau, double c);
+
+/// Whether { v : normal . v >= offset } is disjoint from the interior of the truncated velocity obstacle
+/// { v : t v in S, 0 < t <= tau }: h_S(n) <= 0 and h_S(n) <= tau * offset. Exact. REQUIRES tau > 0.
+bool half_plane_is_safe(const GrownShape& s, double tau, const HalfPlane& h);
+
+enum class Place : int { inside = -1, boundary = 0, outside = 1 };
+
+/// Where q lies with respect to S (predicate B1). Exact. Lengths should lie in [2^-60, 2^60] m; outside, the exact stage
+/// answers.
+Place locate(const GrownShape& s, Vec2 q);
+
+/// Whether x lies in the closed ellipse (predicate E). Exact.
+bool contains(const Ellipse& ellipse, Vec2 x);
+
+/// The sign of the turn a -> b -> c: positive is counter-clockwise. Exact.
+Sign orientation(Vec2 a, Vec2 b, Vec2 c);
+
+/// Whether the goal lies strictly outside the evolute of the ellipse, so that no stable trap exists on the boundary of
+/// the ellipse grown by any disc (predicate F; docs/guide/trap-test.md). Exact: the cube roots are cleared.
+/// (a|gx|)^(2/3) + (b|gy|)^(2/3) > (a^2 - b^2)^(2/3) in the ellipse's frame.
+bool goal_outside_evolute(const Ellipse& ellipse, Vec2 goal);
+
+/// Which stage answered, counted over all threads since the start or the last reset.
+struct StageCounts {
+  std::uint64_t filter = 0;  ///< decided in floating point
+  std::uint64_t exact = 0;   ///< needed exact arithmetic
+};
+StageCounts stage_counts();
+void reset_stage_counts();
+
+}  // namespace exactvo::geometry

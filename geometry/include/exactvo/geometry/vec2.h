@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The vector of the plane: two doubles, in whatever unit the caller says (positions m, velocities m/s).
+/// x forward, y left, counter-clockwise positive (REP-103). A finite double *is* a rational number: predicates over
+/// these types (predicates.h) are exact for the numbers given; the operations here are plain rounded arithmetic.
+
+#include <cmath>
+
+namespace exactvo::geometry {
+
+struct Vec2 {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
+constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
+constexpr Vec2 operator-(Vec2 a) { return {-a.x, -a.y}; }
+constexpr Vec2 operator*(double s, Vec2 a) { return {s * a.x, s * a.y}; }
+constexpr Vec2 operator*(Vec2 a, double s) { return {s * a.x, s * a.y}; }
+constexpr Vec2 operator/(Vec2 a, double s) { return {a.x / s, a.y / s}; }
+constexpr Vec2& operator+=(Vec2& a, Vec2 b) { return a = a + b; }
+constexpr Vec2& operator-=(Vec2& a, Vec2 b) { return a = a - b; }
+constexpr bool operator==(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
+constexpr bool operator!=(Vec2 a, Vec2 b) { return !(a == b); }
+
+constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
+/// The z component of a x b: positive where b lies counter-clockwise of a.
+constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+constexpr double squared_norm(Vec2 a) { return dot(a, a); }
+inline double norm(Vec2 a) { return std::sqrt(squared_norm(a)); }
+/// `a` turned by +90 degrees.
+constexpr Vec2 perp(Vec2 a) { return {-a.y, a.x}; }
+/// `a` turned by `angle` radians, counter-clockwise.
+inline Vec2 rotated(Vec2 a, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * a.x - s * a.y, s * a.x + c * a.y};
+}
+/// `a` scaled to length 1 up to rounding; (0, 0) stays (0, 0).
+inline Vec2 normalized(Vec2 a) {
+  const double length = std::hypot(a.x, a.y);
+  return length > 0.0 ? a / length : Vec2{};
+}
+inline bool is_finite(Vec2 a) { return std::isfinite(a.x) && std::isfinite(a.y); }
+
+}  // namespace exactvo::geometry
