@@ -1,0 +1,23 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs what is missing, builds the program, runs the paper's experiments and the office crossing, prints what came
+# out and names the figures. Results go to out/ beside the sources. Run again, it builds only what changed.
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+cd "$root"
+
+say "Packages"
+scripts/install-dependencies.sh
+
+say "Building build/release/bin/exactvo, $(compile_jobs) job(s)"
+cmake --preset release
+cmake --build --preset release --target exactvo --parallel "$(compile_jobs)"
+exactvo=build/release/bin/exactvo
+
+say "The paper's experiments (Section V)"
+"$exactvo" paper --out out/paper
+
+say "Six robots cross an office floor"
+"$exactvo" simulate datasets/data/office/crossing.json --method ivo --out out/office
+
+say "Figures"
+find out/paper out/office -name '*.png' | LC_ALL=C sort

@@ -1,0 +1,49 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs what the project needs and is missing, on Debian and its relatives; elsewhere prints what is needed and stops.
+# Nothing missing: says so and changes nothing.
+set -euo pipefail
+export PATH="${PATH:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin}"
+
+packages=(
+  g++ cmake ninja-build ccache git ca-certificates                  # to build
+  libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev                  # exact geometry, linear algebra
+  libboost-dev libboost-graph-dev libtbb-dev libhwy-dev             # ODE, graphs, threads, SIMD
+  libcli11-dev nlohmann-json3-dev libvalijson-dev libfmt-dev        # command line, JSON, text
+  libgdal-dev libyaml-cpp-dev libpugixml-dev                        # files in
+  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev      # tests, benchmarks
+  gnuplot-nox fonts-dejavu-core                                     # figures
+)
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  {
+    echo "install-dependencies: this system has no apt. Install these (named as in Debian 12), then run the build by hand:"
+    printf '  %s\n' "${packages[@]}"
+  } >&2
+  exit 1
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || status=absent
+  [[ $status == installed ]] || missing+=("$package")
+done
+
+if ((${#missing[@]} == 0)); then
+  echo "install-dependencies: all ${#packages[@]} packages are installed"
+  exit 0
+fi
+
+if ((EUID == 0)); then
+  as_root=(env)
+elif command -v sudo >/dev/null; then
+  as_root=(sudo env)
+else
+  echo "install-dependencies: neither root nor sudo; as root, run:" >&2
+  echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
+  exit 1
+fi
+
+echo "install-dependencies: installing ${missing[*]}"
+"${as_root[@]}" apt-get update
+"${as_root[@]}" DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "${missing[@]}"
