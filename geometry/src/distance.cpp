@@ -1,1 +1,149 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/geometry/distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/require.h"
+
+namespace exactvo::geometry {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double length(Vec2 d) {
+  return std::hypot(d.x, d.y);
+}
+
+bool between(double low_or_high, double high_or_low, double x) {
+  return std::min(low_or_high, high_or_low) <= x && x <= std::max(low_or_high, high_or_low);
+}
+
+bool in_bounding_box(const Segment& s, Vec2 x) {
+  return between(s.a.x, s.b.x, x.x) && between(s.a.y, s.b.y, x.y);
+}
+
+bool boxes_are_apart(const Segment& s, const Segment& t) {
+  return std::max(s.a.x, s.b.x) < std::min(t.a.x, t.b.x) || std::max(t.a.x, t.b.x) < std::min(s.a.x, s.b.x) ||
+         std::max(s.a.y, s.b.y) < std::min(t.a.y, t.b.y) || std::max(t.a.y, t.b.y) < std::min(s.a.y, s.b.y);
+}
+
+// Whether the line of s has the ends of t on both sides or touches one. For collinear segments whose boxes meet, true.
+bool line_separates(const Segment& s, const Segment& t) {
+  return static_cast<int>(orientation(s.a, s.b, t.a)) * static_cast<int>(orientation(s.a, s.b, t.b)) <= 0;
+}
+
+// Calls `visit` with every edge, without building a list: these functions run in every step of a simulation.
+template <class Visit>
+void for_each_edge(const Ring& ring, const Visit& visit) {
+  for (std::size_t i = 0, last = ring.size() - 1; i < ring.size(); last = i++) visit(Segment{ring[last], ring[i]});
+}
+
+template <class Visit>
+void for_each_edge(const Polygon& polygon, const Visit& visit) {
+  for_each_edge(polygon.outer, visit);
+  for (const Ring& hole : polygon.holes) for_each_edge(hole, visit);
+}
+
+template <class Visit>
+void for_each_edge(const Polyline& polyline, const Visit& visit) {
+  const auto& points = polyline.points;
+  if (points.size() == 1) visit(Segment{points[0], points[0]});
+  for (std::size_t i = 1; i < points.size(); ++i) visit(Segment{points[i - 1], points[i]});
+}
+
+template <class Shape, class Query>
+double least_edge_distance(const Shape& shape, const Query& query) {
+  double least = kInfinity;
+  for_each_edge(shape, [&](const Segment& edge) { least = std::min(least, distance(edge, query)); });
+  return least;
+}
+
+template <class Query>
+double edge_distance(const Obstacle& obstacle, const Query& query) {
+  return std::visit([&](const auto& shape) { return least_edge_distance(shape, query); }, obstacle);
+}
+
+bool is_inside(const Obstacle& obstacle, Vec2 x) {
+  const auto* polygon = std::get_if<Polygon>(&obstacle);
+  return polygon != nullptr && contains(*polygon, x);
+}
+
+double signed_distance(const Obstacle& obstacle, Vec2 x, bool inside) {
+  const double d = edge_distance(obstacle, x);
+  return inside ? -d : d;
+}
+
+enum class Crossing { none, right, on_edge };
+
+// Whether the ray from x towards +x crosses the edge; the upper end does not count, so a vertex counts once.
+Crossing crossing(const Segment& edge, Vec2 x) {
+  const bool upward = edge.a.y <= x.y && x.y < edge.b.y;
+  const bool downward = edge.b.y <= x.y && x.y < edge.a.y;
+  const bool near = in_bounding_box(edge, x);
+  if (!upward && !downward && !near) return Crossing::none;
+  const Sign turn = orientation(edge.a, edge.b, x);
+  if (turn == Sign::zero && near) return Crossing::on_edge;
+  const bool right = (upward && turn == Sign::positive) || (downward && turn == Sign::negative);
+  return right ? Crossing::right : Crossing::none;
+}
+
+}  // namespace
+
+// Differences are scaled by the longer side, so neither a tiny nor a huge segment loses its squares.
+Vec2 nearest_point(const Segment& s, Vec2 x) {
+  const Vec2 along = s.b - s.a;
+  const double scale = std::max(std::fabs(along.x), std::fabs(along.y));
+  if (!(scale > 0.0)) return s.a;
+  const Vec2 e = along / scale;
+  const double t = dot((x - s.a) / scale, e) / dot(e, e);
+  if (!(t > 0.0)) return s.a;
+  if (!(t < 1.0)) return s.b;
+  return t <= 0.5 ? s.a + t * along : s.b - (1.0 - t) * along;
+}
+
+double distance(const Segment& s, Vec2 x) {
+  return length(x - nearest_point(s, x));
+}
+
+bool intersect(const Segment& s, const Segment& t) {
+  return !boxes_are_apart(s, t) && line_separates(s, t) && line_separates(t, s);
+}
+
+double distance(const Segment& s, const Segment& t) {
+  if (intersect(s, t)) return 0.0;
+  return std::min({distance(s, t.a), distance(s, t.b), distance(t, s.a), distance(t, s.b)});
+}
+
+double signed_distance(const Obstacle& obstacle, Vec2 x) {
+  EXACTVO_REQUIRE(is_finite(x), hex_text(x.x) + " " + hex_text(x.y));
+  return signed_distance(obstacle, x, is_inside(obstacle, x));
+}
+
+double swept_distance(const Obstacle& obstacle, const Segment& path) {
+  EXACTVO_REQUIRE(is_valid(path), to_string(path));
+  const bool starts_inside = is_inside(obstacle, path.a);
+  const bool ends_inside = is_inside(obstacle, path.b);
+  if (!starts_inside && !ends_inside) return edge_distance(obstacle, path);
+  return std::min(signed_distance(obstacle, path.a, starts_inside), signed_distance(obstacle, path.b, ends_inside));
+}
+
+double swept_distance(const Segment& path_a, const Segment& path_b) {
+  return distance(Segment{path_a.a - path_b.a, path_a.b - path_b.b}, Vec2{});
+}
+
+bool contains(const Polygon& polygon, Vec2 x) {
+  EXACTVO_REQUIRE(is_finite(x), hex_text(x.x) + " " + hex_text(x.y));
+  bool odd = false;
+  bool on_edge = false;
+  for_each_edge(polygon, [&](const Segment& edge) {
+    const Crossing c = crossing(edge, x);
+    on_edge = on_edge || c == Crossing::on_edge;
+    odd = odd != (c == Crossing::right);
+  });
+  return odd || on_edge;
+}
+
+}  // namespace exactvo::geometry

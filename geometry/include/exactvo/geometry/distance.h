@@ -11,7 +11,11 @@ namespace exactvo::geometry {
 /// The point of the segment nearest to x.
 Vec2 nearest_point(const Segment& s, Vec2 x);
 double distance(const Segment& s, Vec2 x);
-/// 0 where the segments meet.
+
+/// Whether the closed segments have a point in common. Exact.
+bool intersect(const Segment& s, const Segment& t);
+
+/// 0 where the segments meet (decided exactly).
 double distance(const Segment& s, const Segment& t);
 
 /// From x to the obstacle's edges; negative (minus the depth) inside a polygon.

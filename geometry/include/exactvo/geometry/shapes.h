@@ -90,7 +90,14 @@ std::vector<Vec2> vertices_of(const Obstacle& obstacle);
 /// Whether the obstacle has an inside (a polygon) or is a bare wall.
 inline bool has_interior(const Obstacle& obstacle) { return std::holds_alternative<Polygon>(obstacle); }
 
-/// The shape in one line for messages, hex floats: reads back losslessly.
+/// The number as a hex float ("%a"): reads back losslessly.
+std::string hex_text(double value);
+
+/// "n x1 y1 ... xn yn", hex floats: reads back losslessly.
+std::string to_string(const std::vector<Vec2>& points);
+
+/// The shape in one line for messages, hex floats: reads back losslessly. `disc cx cy r`, `segment ax ay bx by`,
+/// `convex_polygon n x1 y1 ...`, `ellipse cx cy l11 l21 l22`.
 std::string to_string(const ConvexShape& shape);
 
 }  // namespace exactvo::geometry
