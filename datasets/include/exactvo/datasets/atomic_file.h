@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Files that are there whole or not at all: written beside their place under another name, synced, then renamed. A
+/// reader never sees half a file, and a crash leaves the old one.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "exactvo/datasets/data_error.h"
+
+namespace exactvo::datasets {
+
+/// A file in the making. Nothing stands at `path` until `commit`; without it the temporary file goes with the object.
+class AtomicFile {
+ public:
+  /// Creates missing directories. Throws DataError (E_FILE_UNWRITABLE), as the others do.
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Buffered.
+  void write(std::string_view bytes);
+  /// Flushes, syncs, renames, syncs the directory.
+  void commit();
+
+ private:
+  void flush();
+
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  int descriptor_ = -1;
+  std::string buffer_;
+};
+
+/// The whole content at once.
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Obstacles from files. Whatever the format, what comes out is in metres, outer rings counter-clockwise, holes
+/// clockwise, first point not repeated, every ring simple (geometry/validity.h, `normalize`). What has one right answer
+/// is put right and noted; what has not is refused with a code, the feature, the ring, the vertex and its coordinates.
+///
+/// Coordinates. A file in a projected reference system is scaled to metres and otherwise left where it is. One in
+/// degrees (a geographic reference system; GeoJSON unless told otherwise, RFC 7946) is brought to local metres by the
+/// azimuthal equidistant projection on its ellipsoid round the middle of its bounding box; that centre is recorded. A
+/// GeoJSON file says that it is in metres by a top-level member `"units": "m"`; a caller says so by
+/// `ReadOptions::units`. A GeoJSON file that says nothing and has a coordinate that is no longitude or latitude is
+/// taken as metres, with a note.
+///
+/// Heights (Z, M) are dropped. Points are no obstacles: passed over, with a note.
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/formation/scenario.h"
+
+namespace exactvo::datasets {
+
+enum class Units {
+  automatic,  ///< as the file says (above)
+  metres,
+  degrees  ///< longitude, latitude on WGS 84
+};
+
+struct ReadOptions {
+  std::string format;              ///< a name of `readable_formats()`; empty: chosen by content, then by extension
+  Units units = Units::automatic;  ///< what the numbers mean
+  /// False: the first obstacle that can't be used throws. True: it is put into `rejected` and reading goes on.
+  bool keep_going = false;
+};
+
+/// Something that a reader should know and that did not stop the reading: a repair, or something passed over.
+struct DataNote {
+  std::optional<DataCode> code;  ///< of a repair; none where something was merely passed over
+  std::string place;             ///< "feature 3, ring 0, vertex 17"
+  std::string text;              ///< "ring closed", "point passed over"
+};
+
+/// Longitude and latitude that became (0, 0), degrees.
+struct ProjectionOrigin {
+  double longitude = 0.0;
+  double latitude = 0.0;
+};
+
+/// An input counts as `read`; each ends as an obstacle (`done` or `repaired`), passed over or in `rejected`.
+struct ReadCounts {
+  std::size_t read = 0;         ///< geometries met: polygons and polylines, one each, and points
+  std::size_t done = 0;         ///< obstacles as they stood
+  std::size_t repaired = 0;     ///< obstacles after a repair
+  std::size_t passed_over = 0;  ///< points, empty geometries
+  std::size_t rejected = 0;
+};
+
+struct ObstacleFile {
+  std::string file;
+  std::string format;  ///< the one that was used
+  std::vector<formation::SceneObstacle> obstacles;
+  std::vector<DataNote> notes;
+  std::vector<DataError> rejected;         ///< only with `keep_going`
+  std::optional<ProjectionOrigin> origin;  ///< where degrees were projected
+  ReadCounts counts;
+};
+
+/// Reads a whole file. Throws DataError: for the file, and (unless `keep_going`) for its first bad obstacle.
+ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Plain WKT from text: one geometry a line or one spread over many; nested collections, EMPTY, Z and M. Needs no GDAL.
+ObstacleFile parse_wkt(const std::string& text, const std::string& file_name, const ReadOptions& options = {});
+
+/// The names that `ReadOptions::format` takes in this build.
+std::vector<std::string> readable_formats();
+
+/// Whether vector files other than plain WKT can be read.
+bool built_with_gdal();
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What was run, in words: the head of every result file.
+
+#include <optional>
+#include <string>
+
+#include "exactvo/datasets/provenance.h"
+
+namespace exactvo::datasets {
+
+struct RunInfo {
+  std::string scenario;                   ///< its name
+  std::string method;                     ///< "ivo" and so on
+  std::optional<std::string> controller;  ///< none without a formation
+  std::optional<std::string> integrator;  ///< none without a formation
+  Provenance provenance;
+};
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Scenarios as JSON. The published schema is datasets/schema/scenario.schema.json (draft-07, a unit at every number);
+/// it is compiled into the library, so that a scenario is judged the same wherever it is read.
+///
+/// Properties (tests quote the numbers):
+///  (1) parse_scenario(write_scenario(s)) == s, bit for bit in every number;
+///  (2) a refused text yields a DataError whose place is the JSON pointer of the offending value (line and column where
+///  the
+///      text is not JSON at all), and nothing else happens;
+///  (3) a key that the schema does not know is refused, with the nearest known key suggested;
+///  (4) what is returned passes formation::validate.
+
+#include <filesystem>
+#include <string>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/formation/scenario.h"
+
+namespace exactvo::datasets {
+
+/// Reads a scenario; obstacle files it names are looked up beside it. Throws DataError.
+formation::Scenario load_scenario(const std::filesystem::path& path);
+
+/// The same from text. `file_name` is used in messages, `base_dir` to find obstacle files. Throws DataError.
+formation::Scenario parse_scenario(const std::string& text, const std::string& file_name,
+                                   const std::filesystem::path& base_dir);
+
+/// Canonical JSON: every field written, keys in the schema's order, obstacles inline, shortest numbers that read back
+/// to the same doubles.
+std::string write_scenario(const formation::Scenario& scenario);
+
+/// The JSON Schema that scenarios are held against.
+const std::string& scenario_schema();
+
+}  // namespace exactvo::datasets
