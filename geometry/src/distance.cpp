@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
@@ -134,7 +133,7 @@ double swept_distance(const Segment& path_a, const Segment& path_b) {
   return distance(Segment{path_a.a - path_b.a, path_a.b - path_b.b}, Vec2{});
 }
 
-bool contains(const Polygon& polygon, Vec2 x) {
+Place locate(const Polygon& polygon, Vec2 x) {
   EXACTVO_REQUIRE(is_finite(x), hex_text(x.x) + " " + hex_text(x.y));
   bool odd = false;
   bool on_edge = false;
@@ -143,7 +142,12 @@ bool contains(const Polygon& polygon, Vec2 x) {
     on_edge = on_edge || c == Crossing::on_edge;
     odd = odd != (c == Crossing::right);
   });
-  return odd || on_edge;
+  if (on_edge) return Place::boundary;
+  return odd ? Place::inside : Place::outside;
+}
+
+bool contains(const Polygon& polygon, Vec2 x) {
+  return locate(polygon, x) != Place::outside;
 }
 
 }  // namespace exactvo::geometry

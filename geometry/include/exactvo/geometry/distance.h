@@ -4,6 +4,7 @@
 /// \file
 /// Distances in metres. Rounded (a few ulps of the coordinates); certified lower bounds are named so.
 
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::geometry {
@@ -28,7 +29,10 @@ double swept_distance(const Obstacle& obstacle, const Segment& path);
 /// The least distance between two points that move straight and uniformly over the same time.
 double swept_distance(const Segment& path_a, const Segment& path_b);
 
-/// Even-odd by exact orientation tests; the boundary counts as inside. Exact.
+/// Where x lies by the even-odd rule over all rings. Exact.
+Place locate(const Polygon& polygon, Vec2 x);
+
+/// Whether x lies in the polygon; the boundary counts as inside. Exact.
 bool contains(const Polygon& polygon, Vec2 x);
 
 }  // namespace exactvo::geometry

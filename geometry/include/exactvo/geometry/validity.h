@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::geometry {
@@ -20,7 +21,7 @@ enum class RingProblemCode {
   clockwise,          ///< an outer ring is clockwise or a hole counter-clockwise (mended)
   zero_area,          ///< all vertices are collinear
   self_intersection,  ///< two edges that are not neighbours meet, or neighbours overlap (a spike)
-  hole_outside        ///< a hole is not inside its outer ring, or crosses another ring
+  hole_outside        ///< a hole is not inside its outer ring, lies in another hole, or crosses another ring
 };
 
 /// "E_SELF_INTERSECTION" and so on.
@@ -30,7 +31,7 @@ struct RingProblem {
   RingProblemCode code;
   std::size_t ring = 0;    ///< 0 is the outer ring, then the holes
   std::size_t vertex = 0;  ///< index into the ring as given
-  Vec2 where;
+  Vec2 where;              ///< m; a crossing of two edges is rounded
   bool mended = false;  ///< `normalize` put it right
 };
 
@@ -40,8 +41,33 @@ struct NormalizedPolygon {
   bool ok() const;                    ///< every problem was mended
 };
 
-/// Puts right what has one right answer (winding, closure, consecutive duplicates) and reports the rest. Exact.
-/// `rings[0]` is the outer ring; each may or may not repeat its first point. O(n log n) for the crossing test (CGAL).
+/// Puts right what has one right answer (winding, closure, consecutive duplicates) and reports the rest. Exact: no
+/// tolerance, only comparisons and orientation tests. O(n log n) while rings keep apart; rings that touch cost a search
+/// over pairs of edges whose boxes meet.
+///
+/// `rings[0]` is the outer ring; each may or may not repeat its first point. Holes may touch each other or the outer
+/// ring in single points, as in OGC simple features; that the interior stays connected is not checked. A ring's own
+/// vertices and edges may not touch. One self-intersection and one misplacement at most is reported a ring.
+///
+/// Properties: (1) a valid polygon comes back unchanged; (2) the result of an ok() answer is valid: normalising it again
+/// mends nothing but closure; (3) reversing rings or rotating their start changes neither ok() nor the point set.
 NormalizedPolygon normalize(const std::vector<Ring>& rings);
+
+struct NormalizedPolyline {
+  Polyline polyline;                  ///< valid iff `ok()`
+  std::vector<RingProblem> problems;  ///< in order of vertex
+  bool ok() const;                    ///< every problem was mended
+};
+
+/// The same for an open chain: drops consecutive duplicates, reports `not_finite` and `too_few_points`. A wall may cross
+/// itself.
+NormalizedPolyline normalize_polyline(const std::vector<Vec2>& points);
+
+/// Whether the closed ring is simple: at least three vertices, consecutive ones distinct, and edges meeting only where
+/// neighbours share their vertex. Exact, O(n log n). REQUIRES: all finite.
+bool is_simple(const Ring& ring);
+
+/// The sign of the area of a simple ring: positive is counter-clockwise. Exact. REQUIRES: simple.
+Sign winding(const Ring& ring);
 
 }  // namespace exactvo::geometry

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Where chains of edges meet. Exact: orientation tests and comparisons of coordinates only.
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::geometry::detail {
+
+/// A closed or open chain of distinct consecutive vertices. Edge i runs from vertex i to vertex i + 1 (cyclically).
+struct Chain {
+  const std::vector<Vec2>* points = nullptr;
+  bool closed = true;
+
+  std::size_t edge_count() const { return closed ? points->size() : points->size() - 1; }
+  Segment edge(std::size_t i) const { return {(*points)[i], (*points)[(i + 1) % points->size()]}; }
+};
+
+/// Edge `edge` of chain number `chain`.
+struct EdgeId {
+  std::size_t chain = 0;
+  std::size_t edge = 0;
+};
+
+/// Two edges that have a point in common which is not the vertex that they share as neighbours.
+struct Contact {
+  EdgeId first;
+  EdgeId second;
+  Vec2 where;  ///< see `common_point`
+};
+
+/// Some contact of the chains with themselves or each other, or nothing if there is none. O(n log n): a sweep after
+/// Shamos and Hoey (Geometric intersection problems, 1976) in lexicographic order, so verticals need no special case.
+/// REQUIRES: no two consecutive vertices equal; closed chains have at least three.
+std::optional<Contact> find_contact(const std::vector<Chain>& chains);
+
+/// Every contact between edges of different chains, ordered. O(n log^2 n + candidates), by the edges' boxes (CGAL).
+std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains);
+
+/// A common point of two segments that meet: an end that lies on the other, else the crossing, rounded.
+Vec2 common_point(const Segment& s, const Segment& t);
+
+/// Whether x lies on the closed segment. Exact.
+bool lies_on(const Segment& s, Vec2 x);
+
+/// Comparison by x, then by y.
+inline bool lexicographically_less(Vec2 a, Vec2 b) {
+  return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+}  // namespace exactvo::geometry::detail
