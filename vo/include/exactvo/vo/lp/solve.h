@@ -11,7 +11,11 @@ namespace exactvo::lp {
 
 /// The velocity nearest `problem.preferred` that satisfies every constraint; if none does, the one that satisfies the
 /// hard constraints and violates the soft ones least (smallest largest violation), and among those the nearest.
-/// REQUIRES: finite numbers, normals not zero, a speed bound that is not empty (std::logic_error otherwise).
+///
+/// Rounded inward: the constraints are solved with a slack of 16 u V (u = 2^-53, V the largest speed in play), so that
+/// the velocity returned satisfies them exactly wherever the region is wider than that. The verdict is heuristic where
+/// the region is thinner: a feasible problem may come back `relaxed` with a violation of a few u V.
+/// REQUIRES: see `require_well_formed`.
 Solution solve(const Problem& problem);
 
 }  // namespace exactvo::lp

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "exactvo/vo/lp/solve.h"
+
+namespace exactvo::lp {
+namespace {
+
+/// Answers are rounded inward by at most 16 u V times the sharpness of the vertex, which is below 10 in these cases.
+constexpr double kRounding = 1e-13;
+
+Problem in_disc(double disc, Vec2 preferred) {
+  Problem problem;
+  problem.bound.disc = disc;
+  problem.preferred = preferred;
+  return problem;
+}
+
+void add(Problem& problem, Vec2 normal, double offset, Priority priority = Priority::hard) {
+  problem.constraints.push_back({{normal, offset}, priority, -1});
+}
+
+void expect_at(const Solution& solution, Status status, Vec2 v) {
+  EXPECT_STREQ(name(solution.status), name(status));
+  EXPECT_NEAR(solution.velocity.x, v.x, kRounding);
+  EXPECT_NEAR(solution.velocity.y, v.y, kRounding);
+}
+
+TEST(Incremental, WithoutConstraintsReturnsThePreferredVelocityItself) {
+  const Solution s = solve(in_disc(2.0, {2.0, 0.0}));
+  EXPECT_EQ(s.velocity.x, 2.0);
+  EXPECT_EQ(s.active_count, 0u);
+}
+
+TEST(Incremental, ProjectsOntoTheDisc) {
+  const Solution s = solve(in_disc(2.0, {3.0, 4.0}));
+  expect_at(s, Status::optimal, {1.2, 1.6});
+  EXPECT_EQ(s.active[0], kSpeedBound);
+}
+
+TEST(Incremental, ProjectsOntoALine) {
+  Problem p = in_disc(2.0, {1.0, 1.0});
+  add(p, {-1.0, 0.0}, -0.5);
+  const Solution s = solve(p);
+  expect_at(s, Status::optimal, {0.5, 1.0});
+  EXPECT_EQ(s.active_count, 1u);
+  EXPECT_LE(s.velocity.x, 0.5);
+}
+
+TEST(Incremental, StopsAtTheVertexOfTwoLines) {
+  Problem p = in_disc(2.0, {1.0, 1.0});
+  add(p, {-1.0, 0.0}, -0.5);
+  add(p, {0.0, -1.0}, -0.25);
+  expect_at(solve(p), Status::optimal, {0.5, 0.25});
+}
+
+TEST(Incremental, StopsWhereLineAndDiscMeet) {
+  Problem p = in_disc(1.0, {0.0, 5.0});
+  add(p, {1.0, 0.0}, 0.6);
+  expect_at(solve(p), Status::optimal, {0.6, 0.8});
+}
+
+TEST(Incremental, KeepsTheBoxExactly) {
+  Problem p;
+  p.bound.box_x = 1.0 / 3.0;
+  p.bound.box_y = 0.1;
+  p.preferred = {5.0, -7.0};
+  const Solution s = solve(p);
+  EXPECT_EQ(s.velocity.x, 1.0 / 3.0);
+  EXPECT_EQ(s.velocity.y, -0.1);
+}
+
+TEST(Incremental, KeepsDiscAndBoxAtOnce) {
+  Problem p = in_disc(1.0, {5.0, 4.0});
+  p.bound.box_x = 0.6;
+  expect_at(solve(p), Status::optimal, {0.6, 0.8});
+}
+
+TEST(Incremental, MaximisesALinearObjective) {
+  Problem p = in_disc(1.0, {0.0, 3.0});
+  p.objective = Objective::farthest;
+  expect_at(solve(p), Status::optimal, {0.0, 1.0});
+  add(p, {0.0, -1.0}, -0.5);
+  expect_at(solve(p), Status::optimal, {0.0, 0.5});
+}
+
+TEST(Incremental, RelaxesSoftConstraintsEvenly) {
+  Problem p = in_disc(2.0, {0.0, 1.0});
+  add(p, {1.0, 0.0}, 0.5, Priority::soft);
+  add(p, {-1.0, 0.0}, 0.1, Priority::soft);
+  const Solution s = solve(p);
+  expect_at(s, Status::relaxed, {0.2, 1.0});  // the whole line x = 0.2 is equally bad; (0.2, 1) is nearest
+  EXPECT_NEAR(s.violation, 0.3, kRounding);
+}
+
+TEST(Incremental, RelaxesThreeSoftConstraintsToTheirMiddle) {
+  Problem p = in_disc(2.0, {1.0, 1.0});
+  add(p, {0.0, 1.0}, 1.0, Priority::soft);
+  add(p, {0.8, -0.6}, 1.0, Priority::soft);
+  add(p, {-0.8, -0.6}, 1.0, Priority::soft);
+  const Solution s = solve(p);
+  expect_at(s, Status::relaxed, {0.0, 0.0});
+  EXPECT_NEAR(s.violation, 1.0, kRounding);
+  EXPECT_EQ(s.active_count, 3u);
+}
+
+TEST(Incremental, HardConstraintsHoldWhereSoftOnesGive) {
+  Problem p = in_disc(2.0, {0.0, 0.0});
+  add(p, {1.0, 0.0}, 1.0, Priority::soft);
+  add(p, {-1.0, 0.0}, 0.5, Priority::hard);
+  const Solution s = solve(p);
+  expect_at(s, Status::relaxed, {-0.5, 0.0});
+  EXPECT_LE(s.velocity.x, -0.5);
+  EXPECT_NEAR(s.violation, 1.5, kRounding);
+}
+
+TEST(Incremental, SoftConstraintBeyondTheDiscGoesAsNearAsItCan) {
+  Problem p = in_disc(1.0, {0.0, -1.0});
+  add(p, {0.6, 0.8}, 3.0, Priority::soft);
+  const Solution s = solve(p);
+  expect_at(s, Status::relaxed, {0.6, 0.8});
+  EXPECT_NEAR(s.violation, 2.0, kRounding);
+}
+
+TEST(Incremental, ContradictingHardConstraintsAreInfeasible) {
+  Problem p = in_disc(2.0, {0.0, 0.0});
+  add(p, {1.0, 0.0}, 1.0);
+  add(p, {-1.0, 0.0}, 0.5);
+  add(p, {0.0, 1.0}, 5.0, Priority::soft);
+  const Solution s = solve(p);
+  expect_at(s, Status::infeasible, {0.25, 0.0});
+  EXPECT_NEAR(s.violation, 0.75, kRounding);
+}
+
+TEST(Incremental, HardConstraintBeyondTheBoxIsInfeasible) {
+  Problem p;
+  p.bound.box_x = p.bound.box_y = 1.0;
+  add(p, {1.0, 0.0}, 2.0);
+  const Solution s = solve(p);
+  expect_at(s, Status::infeasible, {1.0, 0.0});
+  EXPECT_LE(s.velocity.x, 1.0);
+}
+
+TEST(Incremental, NamesTheCallersMistakes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Problem p = in_disc(2.0, {nan, 0.0});
+  EXPECT_THROW(solve(p), std::logic_error);
+  p = in_disc(-1.0, {0.0, 0.0});
+  EXPECT_THROW(solve(p), std::logic_error);
+  p = in_disc(nan, {0.0, 0.0});
+  EXPECT_THROW(solve(p), std::logic_error);
+  p = in_disc(2.0, {0.0, 0.0});
+  add(p, {0.0, 0.0}, 1.0);
+  EXPECT_THROW(solve(p), std::logic_error);
+  p.constraints[0].half_plane = {{1.0, 0.0}, std::numeric_limits<double>::infinity()};
+  EXPECT_THROW(solve(p), std::logic_error);
+  Problem unbounded;
+  unbounded.preferred = {1.0, 0.0};
+  unbounded.objective = Objective::farthest;
+  EXPECT_THROW(solve(unbounded), std::logic_error);
+}
+
+}  // namespace
+}  // namespace exactvo::lp

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Exact signs for doubles taken as the rationals they are: a round-to-nearest filter, then integers of any length.
+
+#include "exactvo/vo/lp/problem.h"
+
+namespace exactvo::lp {
+
+/// The sign of offset - normal . v: positive where v lies outside the half-plane. Exact.
+int sign_of_violation(const HalfPlane& h, Vec2 v);
+
+/// The sign of |v| - radius, radius >= 0 and maybe infinite. Exact.
+int sign_of_excess_speed(Vec2 v, double radius);
+
+/// Whether v keeps the disc and the box. Exact.
+bool within(const SpeedBound& bound, Vec2 v);
+
+}  // namespace exactvo::lp

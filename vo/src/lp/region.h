@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The region of a problem as the double-precision solvers see it: lines with the inward slack already in them, the
+/// sides of the box among them, and a disc.
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "exactvo/vo/lp/problem.h"
+#include "exactvo/vo/lp/solution.h"
+
+namespace exactvo::lp {
+
+/// u, the unit roundoff of double.
+inline constexpr double kUnitRoundoff = 0x1p-53;
+
+/// A vertex computed in double misses its lines by up to 2.1 u V where measured; with a bound of (1 + 2) u for the dot
+/// product on either side and the division of the intersection, 16 u V covers every well-conditioned vertex.
+inline constexpr double kInwardSlack = 16.0 * kUnitRoundoff;
+
+/// A violation below this share of V is rounding left over from the step before: half the inward slack, so that what
+/// is let pass still satisfies the constraint that was given.
+inline constexpr double kNoise = 8.0 * kUnitRoundoff;
+
+/// normal . v >= offset (tightened).
+struct Line {
+  Vec2 normal;
+  double offset = 0.0;
+  double squared_length = 1.0;  ///< |normal|^2
+  double slack = 0.0;           ///< by how much `offset` exceeds the one given
+  std::size_t index = 0;        ///< of the constraint, or a side of the box
+  bool soft = false;
+};
+
+struct Region {
+  std::vector<Line> lines;
+  double disc = std::numeric_limits<double>::infinity();  ///< m/s, already rounded inward
+  double speed = 1.0;                                     ///< V: the largest speed in play, m/s
+};
+
+/// The lines of `problem` with `slack_units` times the inward slack. `with_soft` leaves the soft ones out where false.
+Region region_of(const Problem& problem, double slack_units = 1.0);
+
+/// The line's own violation at v (tightened), > 0 outside.
+inline double excess(const Line& line, Vec2 v) {
+  return line.offset - dot(line.normal, v);
+}
+
+/// What a point is the optimum of: up to three lines (positions in the region) or kSpeedBound.
+struct Basis {
+  std::array<std::size_t, 3> member{};
+  std::size_t size = 0;
+  void add(std::size_t m) { member[size++] = m; }
+  bool has(std::size_t m) const {
+    for (std::size_t k = 0; k < size; ++k)
+      if (member[k] == m) return true;
+    return false;
+  }
+};
+
+}  // namespace exactvo::lp
