@@ -1,1 +1,123 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/provenance.h"
+
+#include <gmp.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <memory>
+#include <utility>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo_commit.h"
+#include "gdal_facts.h"
+#include "json_text.h"
+#include "sha256.h"
+#include "system_error.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// The clock, or SOURCE_DATE_EPOCH where a reproducible output is wanted.
+std::time_t time_of_writing() {
+  const char* fixed = std::getenv("SOURCE_DATE_EPOCH");
+  return fixed != nullptr && *fixed != '\0' ? static_cast<std::time_t>(std::strtoll(fixed, nullptr, 10))
+                                            : std::time(nullptr);
+}
+
+std::string utc(std::time_t time) {
+  std::tm parts{};
+  ::gmtime_r(&time, &parts);
+  char text[32];
+  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return {text, length};
+}
+
+std::string gmp_release() {
+  return std::to_string(__GNU_MP_VERSION) + "." + std::to_string(__GNU_MP_VERSION_MINOR) + "." +
+         std::to_string(__GNU_MP_VERSION_PATCHLEVEL);
+}
+
+}  // namespace
+
+std::string sha256_of(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.digest();
+}
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+  struct Close {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+  if (!file) throw cannot_read(path, errno);
+  Sha256 hash;
+  char block[1 << 16];
+  for (std::size_t got = 0; (got = std::fread(block, 1, sizeof block, file.get())) > 0;) hash.add({block, got});
+  if (std::ferror(file.get())) throw cannot_read(path, errno);
+  return hash.digest();
+}
+
+Provenance make_provenance(std::vector<std::string> command_line, std::uint64_t seed,
+                           const std::vector<std::filesystem::path>& inputs) {
+  Provenance facts;
+  facts.version = EXACTVO_VERSION;
+  facts.commit = EXACTVO_COMMIT;
+  facts.compiler = EXACTVO_COMPILER;
+  facts.build_type = EXACTVO_BUILD_TYPE;
+  facts.cgal = EXACTVO_CGAL_VERSION;
+  facts.gmp = gmp_release();
+  facts.gdal = gdal_release();
+  facts.seed = seed;
+  facts.command_line = std::move(command_line);
+  for (const std::filesystem::path& input : inputs) facts.inputs.push_back({input.string(), sha256_of_file(input)});
+  facts.written_at = utc(time_of_writing());
+  return facts;
+}
+
+std::string to_json(const Provenance& provenance) {
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_object();
+  json.member("version", provenance.version).member("commit", provenance.commit);
+  json.member("compiler", provenance.compiler).member("build_type", provenance.build_type);
+  json.member("cgal", provenance.cgal).member("gmp", provenance.gmp).member("gdal", provenance.gdal);
+  json.member("seed", provenance.seed);
+  json.key("command_line").begin_array();
+  for (const std::string& word : provenance.command_line) json.value(word);
+  json.end_array();
+  json.key("inputs").begin_array();
+  for (const InputFile& input : provenance.inputs) {
+    json.begin_object().member("path", input.path).member("sha256", input.sha256).end_object();
+  }
+  json.end_array();
+  json.member("written_at", provenance.written_at);
+  return json.end_object().take();
+}
+
+Provenance parse_provenance(const std::string& json, const std::string& file_name) {
+  const Json tree = parse_json(json, file_name);
+  try {
+    Provenance facts;
+    tree.at("version").get_to(facts.version);
+    tree.at("commit").get_to(facts.commit);
+    tree.at("compiler").get_to(facts.compiler);
+    tree.at("build_type").get_to(facts.build_type);
+    tree.at("cgal").get_to(facts.cgal);
+    tree.at("gmp").get_to(facts.gmp);
+    tree.at("gdal").get_to(facts.gdal);
+    tree.at("seed").get_to(facts.seed);
+    tree.at("command_line").get_to(facts.command_line);
+    for (const Json& input : tree.at("inputs")) {
+      facts.inputs.push_back({input.at("path").get<std::string>(), input.at("sha256").get<std::string>()});
+    }
+    tree.at("written_at").get_to(facts.written_at);
+    return facts;
+  } catch (const nlohmann::detail::exception& error) {
+    throw DataError(DataCode::wrong_type, file_name, "/provenance", error.what(), "provenance as ExactVO writes it");
+  }
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <utility>
+
+#include "exactvo/geometry/require.h"
+#include "system_error.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// Bytes kept back before a write call.
+constexpr std::size_t kBufferSize = std::size_t{1} << 18;
+
+void make_directories(const std::filesystem::path& directory) {
+  if (directory.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw cannot_write(directory, error.value());
+}
+
+void write_fully(const std::filesystem::path& path, int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw cannot_write(path, errno);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+/// A rename is durable only once its directory is. Some file systems refuse to sync a directory; the rename stands.
+void sync_directory(const std::filesystem::path& directory) {
+  const int descriptor = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
+  make_directories(path_.parent_path());
+  // The process id keeps two programs that write the same file apart; the later rename wins, whole.
+  temporary_ = path_;
+  temporary_ += ".part." + std::to_string(::getpid());
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) throw cannot_write(path_, errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::flush() {
+  write_fully(path_, descriptor_, buffer_);
+  buffer_.clear();
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  EXACTVO_REQUIRE(descriptor_ >= 0, "a write after commit to " + path_.string());
+  buffer_ += bytes;
+  if (buffer_.size() >= kBufferSize) flush();
+}
+
+void AtomicFile::commit() {
+  EXACTVO_REQUIRE(descriptor_ >= 0, "a second commit of " + path_.string());
+  flush();
+  if (::fsync(descriptor_) != 0) throw cannot_write(path_, errno);
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) throw cannot_write(path_, errno);
+  ::close(std::exchange(descriptor_, -1));
+  sync_directory(path_.parent_path());
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+}  // namespace exactvo::datasets

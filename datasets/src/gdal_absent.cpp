@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gdal_facts.h"
+#include "readers.h"
+
+namespace exactvo::datasets {
+
+std::string gdal_release() {
+  return "none";
+}
+
+bool built_with_gdal() {
+  return false;
+}
+
+bool looks_like_vector_file(const Glimpse&) {
+  return false;
+}
+
+void read_vector_file(const std::filesystem::path& path, Collector&) {
+  throw DataError(DataCode::format_unavailable, path.string(), "", "a file that needs GDAL",
+                  "a build with EXACTVO_WITH_GDAL=ON, or plain WKT");
+}
+
+}  // namespace exactvo::datasets

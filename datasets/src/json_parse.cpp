@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <set>
+
+#include "json_text.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// Walks the text and lets the parser's callback know how far it has come, since nlohmann does not say.
+class CountingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  CountingIterator(const char* at, const char* begin, std::size_t* position)
+      : at_(at), begin_(begin), position_(position) {}
+  const char& operator*() const { return *at_; }
+  CountingIterator& operator++() {
+    ++at_;
+    *position_ = static_cast<std::size_t>(at_ - begin_);
+    return *this;
+  }
+  CountingIterator operator++(int) {
+    CountingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const CountingIterator& other) const { return at_ == other.at_; }
+  bool operator!=(const CountingIterator& other) const { return at_ != other.at_; }
+
+ private:
+  const char* at_;
+  const char* begin_;
+  std::size_t* position_;
+};
+
+/// Refuses what the parser would take: duplicate keys and bottomless nesting.
+class Guard {
+ public:
+  Guard(std::string_view text, const std::string& file, const std::size_t& position)
+      : text_(text), file_(file), position_(position) {}
+
+  bool operator()(int depth, nlohmann::detail::parse_event_t event, const Json& value) {
+    using Event = nlohmann::detail::parse_event_t;
+    if (event == Event::object_start || event == Event::array_start) descend(depth);
+    if (event == Event::object_start) keys_.emplace_back();
+    if (event == Event::object_end) keys_.pop_back();
+    if (event == Event::key) note_key(value.get_ref<const std::string&>());
+    return true;
+  }
+
+ private:
+  void descend(int depth) const {
+    if (depth < kDeepestJson) return;
+    throw DataError(DataCode::nesting, file_, line_and_column(text_, position_), "more than 100 levels of nesting",
+                    "a file that nests less deeply");
+  }
+
+  void note_key(const std::string& key) {
+    if (keys_.back().insert(key).second) return;
+    throw DataError(DataCode::json_duplicate_key, file_, line_and_column(text_, position_),
+                    "the key \"" + key + "\" a second time", "each key once in an object");
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  const std::size_t& position_;
+  std::vector<std::set<std::string>> keys_;
+};
+
+/// The part of nlohmann's message after its own position: "unexpected '}'; expected ...".
+std::string reason_of(const std::string& message) {
+  for (const char* before : {" - ", "] "}) {
+    const std::size_t at = message.find(before);
+    if (at != std::string::npos) return message.substr(at + std::string_view(before).size());
+  }
+  return message;
+}
+
+}  // namespace
+
+Json parse_json(std::string_view text, const std::string& file_name) {
+  std::size_t position = 0;
+  const char* begin = text.data();
+  const CountingIterator first(begin, begin, &position);
+  const CountingIterator last(begin + text.size(), begin, &position);
+  try {
+    return Json::parse(first, last, Guard(text, file_name, position));
+  } catch (const nlohmann::detail::parse_error& error) {
+    const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
+    throw DataError(DataCode::json_syntax, file_name, line_and_column(text, byte), excerpt(text, byte),
+                    "JSON: " + reason_of(error.what()));
+  } catch (const nlohmann::detail::out_of_range& error) {
+    throw DataError(DataCode::number, file_name, line_and_column(text, position), reason_of(error.what()),
+                    "a number that a finite double can hold");
+  }
+}
+
+std::string described(const Json& value) {
+  if (value.is_object()) return "an object";
+  if (value.is_array()) return "a list of " + std::to_string(value.size());
+  constexpr std::size_t kLongest = 60;
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+std::string pointer_token(std::string_view key) {
+  std::string token;
+  for (const char c : key) {
+    if (c == '~') {
+      token += "~0";
+    } else if (c == '/') {
+      token += "~1";
+    } else {
+      token += c;
+    }
+  }
+  return token;
+}
+
+}  // namespace exactvo::datasets

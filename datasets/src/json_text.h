@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// JSON in and out, for this room. Out: a writer that needs no tree and prints the shortest digits that read back to
+/// the same double. In: nlohmann's parser, with line and column for what is wrong, duplicate keys refused, depth
+/// bounded.
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/vec2.h"
+
+namespace exactvo::datasets {
+
+/// Keys keep the order of the text, so that messages and outputs do.
+using Json = nlohmann::ordered_json;
+
+/// No file of ours nests deeper than ten; the parser is iterative, but what walks the tree is not.
+inline constexpr int kDeepestJson = 100;
+
+/// Throws DataError (E_JSON_SYNTAX, E_JSON_DUPLICATE_KEY, E_NESTING, E_NUMBER) with line and column.
+Json parse_json(std::string_view text, const std::string& file_name);
+
+/// "a number", "text", ... with the value where it is short: what messages say was found.
+std::string described(const Json& value);
+
+/// `key` as a JSON pointer's token: ~ and / escaped (RFC 6901).
+std::string pointer_token(std::string_view key);
+
+/// Appends JSON to a string.
+class JsonWriter {
+ public:
+  enum class Layout {
+    compact,  ///< everything on one line
+    indented  ///< two spaces a level
+  };
+  explicit JsonWriter(Layout layout) : layout_(layout) {}
+
+  JsonWriter& begin_object() { return open('{', layout_); }
+  JsonWriter& end_object() { return close('}'); }
+  JsonWriter& begin_array() { return open('[', layout_); }
+  JsonWriter& end_array() { return close(']'); }
+  /// Containers that stand on one line, with all that is in them, even in an indented text.
+  JsonWriter& begin_inline_object() { return open('{', Layout::compact); }
+  JsonWriter& begin_inline_array() { return open('[', Layout::compact); }
+
+  JsonWriter& key(std::string_view name);
+  /// Non-finite numbers become the strings "nan", "inf" and "-inf".
+  JsonWriter& value(double number);
+  JsonWriter& value(bool truth);
+  JsonWriter& value(std::uint64_t number);
+  JsonWriter& value(int number);
+  JsonWriter& value(std::string_view text);
+  JsonWriter& value(const char* text) { return value(std::string_view(text)); }
+  JsonWriter& value(geometry::Vec2 point);  ///< [x, y]
+  JsonWriter& null();
+  /// Text that already is JSON.
+  JsonWriter& raw(std::string_view json);
+
+  template <class T>
+  JsonWriter& member(std::string_view name, const T& v) {
+    return key(name).value(v);
+  }
+  template <class T>
+  JsonWriter& member(std::string_view name, const std::optional<T>& v) {
+    key(name);
+    return v ? value(*v) : null();
+  }
+
+  const std::string& text() const { return text_; }
+  std::string take() { return std::move(text_); }
+  void clear() { text_.clear(); }
+
+ private:
+  struct Level {
+    Layout layout;
+    bool empty;
+  };
+  JsonWriter& open(char bracket, Layout layout);
+  JsonWriter& close(char bracket);
+  void separate();
+  void new_line(std::size_t depth);
+
+  Layout layout_;
+  std::string text_;
+  std::vector<Level> levels_;
+  bool after_key_ = false;
+};
+
+/// The shortest text that reads back to the same finite double ("-0.0" keeps its sign).
+void append_number(std::string& text, double number);
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/metrics_file.h"
+
+#include "json_text.h"
+
+namespace exactvo::datasets {
+namespace {
+
+void append_robot(JsonWriter& json, const formation::RobotMetrics& robot) {
+  json.begin_inline_object();
+  json.member("id", robot.id).member("arrived", robot.arrived).member("arrival_time", robot.arrival_time);
+  json.member("path_length", robot.path_length).member("min_obstacle_clearance", robot.min_obstacle_clearance);
+  json.end_object();
+}
+
+/// Every line but the first moved right, for an object inside a list.
+std::string indented(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (i + 1 == text.size() && text[i] == '\n') break;
+    result += text[i];
+    if (text[i] == '\n') result += "  ";
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
+  JsonWriter json(JsonWriter::Layout::indented);
+  json.begin_object();
+  json.member("scenario", info.scenario).member("method", info.method).member("controller", info.controller);
+  json.member("all_arrived", m.all_arrived).member("last_arrival_time", m.last_arrival_time);
+  json.member("min_obstacle_clearance", m.min_obstacle_clearance).member("min_robot_clearance", m.min_robot_clearance);
+  json.member("formation_position_error", m.formation_position_error);
+  json.member("formation_velocity_error", m.formation_velocity_error);
+  json.member("leader_arrival_time", m.leader_arrival_time).member("jitter", m.jitter);
+  json.member("heading_reversals", m.heading_reversals).member("active_set_switches", m.active_set_switches);
+  json.member("relaxed_steps", m.relaxed_steps).member("uncertified_half_planes", m.uncertified_half_planes);
+  json.member("steps", m.steps).member("wall_time", m.wall_time);
+  json.key("robots").begin_array();
+  for (const formation::RobotMetrics& robot : m.robots) append_robot(json, robot);
+  json.end_array();
+  json.key("provenance").raw(to_json(info.provenance));
+  return json.end_object().take() + "\n";
+}
+
+std::string summary_json(const std::vector<std::string>& metrics_objects) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < metrics_objects.size(); ++i) {
+    text += (i > 0 ? ",\n  " : "\n  ") + indented(metrics_objects[i]);
+  }
+  return text + "\n]\n";
+}
+
+}  // namespace exactvo::datasets

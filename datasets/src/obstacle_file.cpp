@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/obstacle_file.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "readers.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+Glimpse glimpse_of(const std::filesystem::path& path) {
+  Glimpse glimpse;
+  glimpse.path = path;
+  glimpse.extension = path.extension().string();
+  for (char& c : glimpse.extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  glimpse.beginning = read_beginning(path, kGlimpseLength);
+  return glimpse;
+}
+
+std::string all_names() {
+  std::string names;
+  for (const Reader& reader : readers()) names += (names.empty() ? "" : ", ") + std::string(reader.name);
+  return names;
+}
+
+const Reader& reader_named(const std::string& name, const std::filesystem::path& path) {
+  for (const Reader& reader : readers()) {
+    if (name == reader.name) return reader;
+  }
+  throw DataError(DataCode::not_an_option, path.string(), "format", "\"" + name + "\"", "one of " + all_names());
+}
+
+const Reader& reader_for(const std::filesystem::path& path) {
+  const Glimpse glimpse = glimpse_of(path);
+  for (const Reader& reader : readers()) {
+    if (reader.recognises(glimpse)) return reader;
+  }
+  throw DataError(DataCode::format_unknown, path.string(), "", excerpt(glimpse.beginning, 0),
+                  "a file of obstacles (" + all_names() + "); --format names one");
+}
+
+}  // namespace
+
+const std::vector<Reader>& readers() {
+  static const std::vector<Reader> kReaders{
+      {"wkt", looks_like_wkt, read_wkt},
+      {"gdal", looks_like_vector_file, read_vector_file},
+  };
+  return kReaders;
+}
+
+ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options) {
+  read_beginning(path, 1);  // missing and unreadable files are named before any reader is asked
+  const Reader& reader = options.format.empty() ? reader_for(path) : reader_named(options.format, path);
+  Collector out(path.string(), reader.name, options);
+  reader.read(path, out);
+  return out.take();
+}
+
+std::vector<std::string> readable_formats() {
+  std::vector<std::string> names;
+  for (const Reader& reader : readers()) names.emplace_back(reader.name);
+  return names;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What a reader hands on: rings as they stand in the file, not yet judged; and the collector that judges them.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/obstacle_file.h"
+
+namespace exactvo::datasets {
+
+enum class RawKind { polyline, polygon };
+
+/// One geometry of a file. A polyline has one ring.
+struct RawGeometry {
+  RawKind kind = RawKind::polygon;
+  std::string id;                          ///< becomes the obstacle's
+  std::string place;                       ///< "feature 3", "line 12", "/obstacles/4"
+  std::vector<geometry::Ring> rings;       ///< closed or not, any winding
+  std::vector<std::string> ring_pointers;  ///< JSON pointers of the rings; empty for other formats
+};
+
+/// "feature 3, ring 0, vertex 17" or "/obstacles/4/polygon/17".
+std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex);
+
+/// The shape, in order, with what was mended appended to `notes`. Throws DataError for what can't be mended.
+geometry::Obstacle judged(const RawGeometry& raw, const std::string& file, std::vector<DataNote>& notes);
+
+/// Gathers a file's geometries into an ObstacleFile and keeps the books.
+class Collector {
+ public:
+  Collector(std::string file, std::string format, const ReadOptions& options);
+
+  void add(const RawGeometry& raw);
+  void pass_over(std::string place, std::string text);
+  void note(std::string place, std::string text);
+  /// Counts it, and throws it unless reading goes on.
+  void reject(DataError error);
+  void set_origin(ProjectionOrigin origin) { result_.origin = origin; }
+
+  const std::string& file() const { return result_.file; }
+  const ReadOptions& options() const { return options_; }
+  ObstacleFile take() { return std::move(result_); }
+
+ private:
+  ObstacleFile result_;
+  ReadOptions options_;
+};
+
+}  // namespace exactvo::datasets

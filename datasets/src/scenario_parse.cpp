@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <set>
+#include <utility>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/simulation.h"
+#include "json_text.h"
+#include "raw_geometry.h"
+#include "schema_check.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using formation::Scenario;
+using geometry::Vec2;
+
+const Json& parsed_schema() {
+  static const Json schema = parse_json(scenario_schema(), "scenario.schema.json");
+  return schema;
+}
+
+// The schema has been held against the text: types and required keys are as they should be from here on.
+
+void take(const Json& object, const char* key, double& field) {
+  if (object.contains(key)) field = object.at(key).get<double>();
+}
+
+Vec2 to_point(const Json& pair) {
+  return {pair[0].get<double>(), pair[1].get<double>()};
+}
+
+std::vector<Vec2> to_points(const Json& list) {
+  std::vector<Vec2> points;
+  points.reserve(list.size());
+  for (const Json& pair : list) points.push_back(to_point(pair));
+  return points;
+}
+
+formation::Robot to_robot(const Json& object) {
+  formation::Robot robot;
+  robot.id = object.at("id").get<std::string>();
+  robot.position = to_point(object.at("position"));
+  if (object.contains("velocity")) robot.velocity = to_point(object.at("velocity"));
+  take(object, "radius", robot.radius);
+  take(object, "max_speed", robot.max_speed);
+  if (object.contains("goal")) robot.goals = {to_point(object.at("goal"))};
+  if (object.contains("goals")) robot.goals = to_points(object.at("goals"));
+  return robot;
+}
+
+formation::FormationSpec to_formation(const Json& object) {
+  formation::FormationSpec spec;
+  object.at("topology").at("adjacency").get_to(spec.topology.adjacency);
+  object.at("topology").at("pinning").get_to(spec.topology.pinning);
+  spec.offsets = to_points(object.at("offsets"));
+  spec.recentre = object.value("recentre", spec.recentre);
+  spec.leader = {to_points(object.at("leader").at("path")), object.at("leader").at("speed").get<double>()};
+  const Json gains = object.value("gains", Json::object());
+  take(gains, "k1", spec.gains.k1);
+  take(gains, "k2", spec.gains.k2);
+  take(gains, "k3", spec.gains.k3);
+  take(gains, "kappa", spec.gains.kappa);
+  take(object, "catch_up_speed", spec.catch_up_speed);
+  return spec;
+}
+
+RawGeometry to_raw(const Json& object, const std::string& id, const std::string& pointer) {
+  RawGeometry raw;
+  raw.id = id;
+  raw.place = pointer;
+  raw.kind = object.contains("polyline") ? RawKind::polyline : RawKind::polygon;
+  const char* key = object.contains("polyline") ? "polyline" : "polygon";
+  raw.rings.push_back(to_points(object.at(key)));
+  raw.ring_pointers.push_back(pointer + "/" + key);
+  const Json holes = object.value("holes", Json::array());
+  for (std::size_t h = 0; h < holes.size(); ++h) {
+    raw.rings.push_back(to_points(holes[h]));
+    raw.ring_pointers.push_back(pointer + "/holes/" + std::to_string(h));
+  }
+  return raw;
+}
+
+Units to_units(const std::string& word) {
+  if (word == "metres") return Units::metres;
+  return word == "degrees" ? Units::degrees : Units::automatic;
+}
+
+/// Reads one scenario; a class only so that the file's name and folder need not be handed round.
+class Reader {
+ public:
+  Reader(std::string file_name, std::filesystem::path base_dir)
+      : file_(std::move(file_name)), base_dir_(std::move(base_dir)) {}
+
+  Scenario read(const Json& tree) {
+    check_against_schema(tree, parsed_schema(), file_);
+    Scenario scenario;
+    scenario.name = tree.at("name").get<std::string>();
+    scenario.description = tree.value("description", std::string());
+    for (const Json& robot : tree.at("robots")) scenario.robots.push_back(to_robot(robot));
+    read_obstacle_list(tree.value("obstacles", Json::array()), scenario);
+    if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"));
+    if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
+    read_figures(tree, scenario);
+    refuse_repeated_ids(scenario);
+    refuse_what_cannot_run(scenario);
+    return scenario;
+  }
+
+ private:
+  void read_obstacle_list(const Json& list, Scenario& scenario) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::string pointer = "/obstacles/" + std::to_string(k);
+      if (list[k].contains("file")) {
+        read_obstacle_file(list[k], pointer, scenario);
+      } else {
+        const std::string id = list[k].value("id", "O" + std::to_string(k + 1));
+        std::vector<DataNote> repairs;
+        scenario.obstacles.push_back({id, judged(to_raw(list[k], id, pointer), file_, repairs)});
+      }
+      origin_of_.resize(scenario.obstacles.size(), pointer);
+    }
+  }
+
+  void read_obstacle_file(const Json& object, const std::string& pointer, Scenario& scenario) {
+    const std::filesystem::path named = object.at("file").get<std::string>();
+    ReadOptions options;
+    options.format = object.value("format", std::string());
+    options.units = to_units(object.value("units", std::string("automatic")));
+    const std::string prefix = object.value("id", named.stem().string());
+    const std::filesystem::path path = base_dir_ / named;
+    if (!std::filesystem::exists(path)) {
+      throw DataError(DataCode::file_missing, file_, pointer + "/file", path.string(), "a file beside the scenario");
+    }
+    for (formation::SceneObstacle& obstacle : read_obstacles(path, options).obstacles) {
+      scenario.obstacles.push_back({prefix + "/" + obstacle.id, std::move(obstacle.shape)});
+    }
+  }
+
+  static void read_figures(const Json& tree, Scenario& scenario) {
+    const Json horizons = tree.value("horizons", Json::object());
+    take(horizons, "least", scenario.horizons.least);
+    take(horizons, "most", scenario.horizons.most);
+    take(horizons, "speed_floor", scenario.horizons.speed_floor);
+    take(horizons, "orca", scenario.horizons.orca);
+    take(horizons, "robots", scenario.horizons.robots);
+    const Json margins = tree.value("margins", Json::object());
+    take(margins, "obstacle", scenario.margins.obstacle);
+    take(margins, "robot", scenario.margins.robot);
+    take(tree, "time_step", scenario.time_step);
+    take(tree, "time_limit", scenario.time_limit);
+    take(tree, "arrival_tolerance", scenario.arrival_tolerance);
+    take(tree, "neighbour_distance", scenario.neighbour_distance);
+  }
+
+  void refuse_repeated_ids(const Scenario& scenario) const {
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+      const std::string& id = scenario.robots[i].id;
+      if (!seen.insert(id).second) refuse("/robots/" + std::to_string(i) + "/id", "\"" + id + "\" a second time");
+    }
+    seen.clear();
+    for (std::size_t k = 0; k < scenario.obstacles.size(); ++k) {
+      const std::string& id = scenario.obstacles[k].id;
+      if (!seen.insert(id).second) refuse(origin_of_[k] + "/id", "\"" + id + "\" a second time");
+    }
+  }
+
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& found) const {
+    throw DataError(DataCode::scenario, file_, pointer, found, "an id of its own");
+  }
+
+  /// What no schema can say: robots that overlap, lists whose lengths must agree, ...
+  void refuse_what_cannot_run(const Scenario& scenario) const {
+    const std::vector<formation::ScenarioProblem> problems = formation::validate(scenario);
+    if (problems.empty()) return;
+    const formation::ScenarioProblem& first = problems.front();
+    throw DataError(DataCode::scenario, file_, in_the_text(first.pointer), first.found, first.expected);
+  }
+
+  /// Problems name obstacles by their place in the scenario; in the text one entry may stand for a file of many.
+  std::string in_the_text(const std::string& pointer) const {
+    const std::string prefix = "/obstacles/";
+    if (pointer.compare(0, prefix.size(), prefix) != 0) return pointer;
+    const std::size_t end = pointer.find('/', prefix.size());
+    const std::size_t k = std::stoul(pointer.substr(prefix.size(), end - prefix.size()));
+    return origin_of_.at(k) + (end == std::string::npos ? "" : pointer.substr(end));
+  }
+
+  std::string file_;
+  std::filesystem::path base_dir_;
+  std::vector<std::string> origin_of_;  ///< per obstacle of the scenario: its entry in the text
+};
+
+}  // namespace
+
+Scenario parse_scenario(const std::string& text, const std::string& file_name, const std::filesystem::path& base_dir) {
+  return Reader(file_name, base_dir).read(parse_json(text, file_name));
+}
+
+Scenario load_scenario(const std::filesystem::path& path) {
+  return parse_scenario(read_text_file(path), path.string(), path.parent_path());
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+
+#include "readers.h"
+#include "text_file.h"
+#include "wkt_scanner.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// Collections within collections: each level is a call.
+constexpr int kDeepestCollection = 64;
+
+constexpr std::array<const char*, 9> kGeometryWords{"POINT",           "LINESTRING",   "LINEARRING",
+                                                    "POLYGON",         "MULTIPOINT",   "TRIANGLE",
+                                                    "MULTILINESTRING", "MULTIPOLYGON", "GEOMETRYCOLLECTION"};
+
+/// "POLYGONZ" and "POLYGON Z" are the same; what follows the keyword is taken off it.
+std::string without_dimension(std::string word) {
+  const auto known = [&](const std::string& w) {
+    return std::find(kGeometryWords.begin(), kGeometryWords.end(), w) != kGeometryWords.end();
+  };
+  for (const std::string suffix : {"ZM", "Z", "M"}) {
+    if (known(word) || word.size() <= suffix.size()) break;
+    const std::string shorter = word.substr(0, word.size() - suffix.size());
+    if (word.compare(shorter.size(), suffix.size(), suffix) == 0 && known(shorter)) return shorter;
+  }
+  return word;
+}
+
+class WktReader {
+ public:
+  WktReader(std::string_view text, Collector& out) : scan_(text, out.file()), out_(out) {}
+
+  void read_all() {
+    for (scan_.skip_between_geometries(); !scan_.at_end(); scan_.skip_between_geometries()) read_one();
+  }
+
+ private:
+  void read_one() {
+    part_ = 0;
+    ++geometry_;
+    const std::size_t start = scan_.position();
+    try {
+      where_ = scan_.place();
+      skip_reference_system();
+      geometry(0);
+    } catch (const DataError& error) {
+      // Collector::add throws for a bad ring as well; only what breaks the text itself is met again here.
+      if (error.code() != DataCode::format_syntax && error.code() != DataCode::number &&
+          error.code() != DataCode::nesting) {
+        throw;
+      }
+      out_.reject(error);
+      scan_.skip_to_next_geometry(start);
+    }
+  }
+
+  /// "SRID=28992;" as PostGIS prints it. Units are the caller's to tell.
+  void skip_reference_system() {
+    if (scan_.peek_word() != "SRID") return;
+    scan_.word();
+    scan_.need_sign('=');
+    scan_.number();
+    scan_.need_sign(';');
+  }
+
+  void geometry(int depth) {
+    const std::string kind = keyword();
+    if (try_empty()) return out_.pass_over(where_, "an empty " + kind + " passed over");
+    if (kind == "POINT" || kind == "MULTIPOINT") return points(kind);
+    if (kind == "LINESTRING" || kind == "LINEARRING") return line();
+    if (kind == "POLYGON" || kind == "TRIANGLE") return polygon();
+    if (kind == "MULTILINESTRING") return list([this] { line(); });
+    if (kind == "MULTIPOLYGON") return list([this] { polygon(); });
+    collection(depth);
+  }
+
+  std::string keyword() {
+    const std::string kind = without_dimension(scan_.peek_word());
+    if (std::find(kGeometryWords.begin(), kGeometryWords.end(), kind) == kGeometryWords.end()) {
+      scan_.refuse("a geometry: POLYGON, LINESTRING, POINT, MULTI..., GEOMETRYCOLLECTION");
+    }
+    scan_.word();
+    const std::string dimension = scan_.peek_word();
+    if (dimension == "Z" || dimension == "M" || dimension == "ZM") scan_.word();
+    return kind;
+  }
+
+  bool try_empty() {
+    if (scan_.peek_word() != "EMPTY") return false;
+    scan_.word();
+    return true;
+  }
+
+  template <class Item>
+  void list(Item item) {
+    scan_.need_sign('(');
+    do {
+      if (try_empty()) {
+        out_.pass_over(where_, "an empty part passed over");
+      } else {
+        item();
+      }
+    } while (scan_.try_sign(','));
+    scan_.need_sign(')');
+  }
+
+  void collection(int depth) {
+    if (depth >= kDeepestCollection) {
+      scan_.refuse("collections at most " + std::to_string(kDeepestCollection) + " deep", DataCode::nesting);
+    }
+    list([this, depth] { geometry(depth + 1); });
+  }
+
+  void points(const std::string& kind) {
+    list([this] {
+      const bool wrapped = scan_.try_sign('(');
+      coordinate();
+      if (wrapped) scan_.need_sign(')');
+    });
+    out_.pass_over(where_, "a " + kind + " passed over: points are no obstacles");
+  }
+
+  void line() { hand_on(RawKind::polyline, {ring()}); }
+
+  void polygon() {
+    std::vector<geometry::Ring> rings;
+    list([&] { rings.push_back(ring()); });
+    hand_on(RawKind::polygon, std::move(rings));
+  }
+
+  geometry::Ring ring() {
+    geometry::Ring points;
+    list([&] { points.push_back(coordinate()); });
+    return points;
+  }
+
+  /// x y, and at most two more that are dropped.
+  geometry::Vec2 coordinate() {
+    geometry::Vec2 p;
+    p.x = scan_.number();
+    p.y = scan_.number();
+    for (int extra = 0; extra < 2 && scan_.number_ahead(); ++extra) scan_.number();
+    return p;
+  }
+
+  void hand_on(RawKind kind, std::vector<geometry::Ring> rings) {
+    RawGeometry raw;
+    raw.kind = kind;
+    raw.id = std::to_string(geometry_) + (part_ > 0 ? "." + std::to_string(part_ + 1) : "");
+    raw.place = where_ + (part_ > 0 ? ", part " + std::to_string(part_ + 1) : "");
+    raw.rings = std::move(rings);
+    ++part_;
+    if (raw.rings.empty()) return out_.pass_over(raw.place, "an empty polygon passed over");
+    out_.add(raw);
+  }
+
+  WktScanner scan_;
+  Collector& out_;
+  std::string where_;         ///< the geometry's first character
+  std::size_t geometry_ = 0;  ///< from 1
+  std::size_t part_ = 0;      ///< obstacles of this geometry so far
+};
+
+void refuse_degrees(const Collector& out) {
+  if (out.options().units != Units::degrees) return;
+  throw DataError(DataCode::projection, out.file(), "", "plain WKT said to be in degrees",
+                  "metres, or a format with a reference system");
+}
+
+}  // namespace
+
+bool looks_like_wkt(const Glimpse& glimpse) {
+  const std::string name = "";
+  WktScanner scan(glimpse.beginning, name);
+  scan.skip_between_geometries();
+  const std::string word = without_dimension(scan.peek_word());
+  return word == "SRID" || std::find(kGeometryWords.begin(), kGeometryWords.end(), word) != kGeometryWords.end();
+}
+
+void read_wkt(const std::filesystem::path& path, Collector& out) {
+  refuse_degrees(out);
+  WktReader(read_text_file(path), out).read_all();
+}
+
+ObstacleFile parse_wkt(const std::string& text, const std::string& file_name, const ReadOptions& options) {
+  Collector out(file_name, "wkt", options);
+  refuse_degrees(out);
+  WktReader(text, out).read_all();
+  return out.take();
+}
+
+}  // namespace exactvo::datasets
