@@ -23,11 +23,25 @@ enum class PartitionMethod { automatic, greene, approximate, optimal };
 /// all collinear.
 std::vector<ConvexPolygon> convex_pieces(const Ring& ring, PartitionMethod method = PartitionMethod::automatic);
 
-/// The smallest enclosing circle, radius rounded up until every point is certified inside.
+/// The smallest enclosing circle: the centre by CGAL's Min_sphere_of_spheres_d, rounded; the radius grown until every
+/// point is certified inside. One point gives radius 0. REQUIRES: at least one point, all finite and below 2^1000.
 Disc smallest_circle(const std::vector<Vec2>& points);
 
-/// The smallest-area enclosing ellipse by CGAL's exact Min_ellipse_2, centred first, rounded to doubles and inflated until every
-/// point is certified inside. Collinear points give a segment-like ellipse (l22 = 0 rotated as needed, or tiny b).
+/// The ellipse of least area. CGAL's exact Min_ellipse_2 (Welzl 1991; Gaertner and Schoenherr 1998) finds the points that
+/// determine it; it is then computed from those in doubles and inflated until every point is certified inside. The area
+/// is within a relative 1e-10 of the least, unless rounding the coordinates of the centre costs more.
+/// One point gives L = 0; collinear points give the segment itself (l22 = 0) or, where doubles can't say it, a
+/// sliver a few ulps wide. REQUIRES: as `smallest_circle`.
 Ellipse smallest_ellipse(const std::vector<Vec2>& points);
+
+/// A certified ellipse and what it could at best be improved to.
+struct FastEllipse {
+  Ellipse ellipse;
+  double least_area = 0.0;  ///< m^2; no ellipse round the points is smaller: a dual value, rounded
+};
+
+/// The same by Newton's method on the dual, hundreds of times faster. Containment certified; `least_area` shows how near
+/// the smallest it came.
+FastEllipse fast_smallest_ellipse(const std::vector<Vec2>& points);
 
 }  // namespace exactvo::geometry

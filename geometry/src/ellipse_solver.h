@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The smallest-area ellipse round points, numerically, and its certification.
+///
+/// The points are sheared and scaled so that they fill a unit box (needles and far-away clouds become ordinary). There
+/// the dual is solved: maximise log det of M(w) = sum w_i q_i q_i^T, q_i = (x_i, y_i, 1), over weights w >= 0 that add
+/// up to 1; optimal iff q_i^T M^-1 q_i <= 3 for all i, with equality where w_i > 0 (John 1948; Khachiyan, Rounding of
+/// polytopes in the real number model of computation, 1996). Newton's method on at most a handful of points with
+/// positive weight, and the worst outsider joins until there is none.
+
+#include <cstddef>
+#include <vector>
+
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::geometry::detail {
+
+/// What the enclosing shapes take: at least one point, all finite and below 2^1000, so that differences do not
+/// overflow. Throws std::logic_error otherwise.
+void require_places(const std::vector<Vec2>& points);
+
+/// An affine map x -> K^-1 (x - center) with K = [k11 0; k21 k22], on (y, x) instead of (x, y) where `swapped`.
+struct Frame {
+  Vec2 center;
+  double k11 = 0.0;
+  double k21 = 0.0;
+  double k22 = 0.0;
+  bool swapped = false;
+};
+
+/// The image of the unit disc under the frame's inverse: { center + K w : |w| <= 1 }. Rounded.
+Ellipse ellipse_of(const Frame& frame);
+
+/// A numerical optimum, not certified.
+struct EllipseCandidate {
+  Frame frame;
+  double least_area = 0.0;  ///< m^2; no enclosing ellipse is smaller: the dual value, rounded
+};
+
+/// REQUIRES: at least two distinct points, all finite. For points that are collinear up to rounding, k22 is a few ulps.
+EllipseCandidate solve_smallest_ellipse(const std::vector<Vec2>& points);
+
+/// The candidate scaled to fit, then grown in steps until every point lies in it by predicate E.
+Ellipse certified_ellipse(const Frame& candidate, const std::vector<Vec2>& points);
+
+}  // namespace exactvo::geometry::detail
