@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "explain/explanation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactvo/formation/simulation.h"
+
+namespace exactvo::tools {
+
+using formation::RecordedConstraint;
+
+namespace {
+
+/// m/s: a difference that two decimals do not show.
+constexpr double kNotSeen = 0.005;
+/// Of the greatest speed: slower than this while wanting more, a robot is being held.
+constexpr double kHeld = 0.05;
+/// m/s: what the balance may leave over before it explains nothing; solvers keep far below it.
+constexpr double kBalanced = 1e-3;
+
+/// Two decimals, and no "-0.00".
+std::string number(double x) {
+  return fmt::format("{:.2f}", std::abs(x) < kNotSeen ? 0.0 : x);
+}
+
+std::string vector(Vec2 v) {
+  return fmt::format("({}, {})", number(v.x), number(v.y));
+}
+
+std::string velocity(Vec2 v) {
+  return fmt::format("{} m/s, speed {}", vector(v), number(norm(v)));
+}
+
+std::string status_words(const Decision& d) {
+  switch (d.step.status) {
+    case lp::Status::optimal:
+      return "every constraint holds";
+    case lp::Status::relaxed:
+      return fmt::format("the constraints contradict each other; those of robots give by {} m/s, the least possible",
+                         number(d.step.violation));
+    case lp::Status::infeasible:
+      return fmt::format("the constraints of obstacles contradict each other or the speed bound by {} m/s",
+                         number(d.step.violation));
+    case lp::Status::pinched:
+      return "what must hold leaves no room for rounding";
+  }
+  return "";
+}
+
+std::string mode_words(const Decision& d) {
+  const std::string side = d.step.side > 0 ? ", keeping left" : d.step.side < 0 ? ", keeping right" : "";
+  const std::string note = d.step.note.empty() ? "" : " (" + d.step.note + ")";
+  return name(d.step.mode) + side + note;
+}
+
+std::string head(const Decision& d) {
+  const double shift = norm(d.step.chosen - d.step.preferred);
+  return fmt::format(
+      "{} of {} at t = {} s, {}\n"
+      "  position   {} m, moving at {}\n"
+      "  mode       {}\n"
+      "  preferred  {}\n"
+      "  chosen     {}: {}\n"
+      "  status     {}\n",
+      d.who().id, d.scenario.name, number(d.time), d.method, vector(d.step.position), velocity(d.step.velocity),
+      mode_words(d), velocity(d.step.preferred), velocity(d.step.chosen),
+      shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", status_words(d));
+}
+
+std::string contact_words(const RecordedConstraint& c, Vec2 preferred) {
+  const geometry::GrownShape s = grown_shape(c);
+  const double distance = distance_to(s);
+  if (distance < 0.0) return fmt::format("the robot is {} m inside it: no cone exists", number(-distance));
+  const std::optional<double> contact = time_to_contact(s, preferred - c.shape_velocity);
+  const std::string away = fmt::format("{} m from the robot's rim", number(distance));
+  if (!contact) return away + ", missed at the preferred velocity";
+  return fmt::format("{}, reached in {} s at the preferred velocity, horizon {} s", away, number(*contact),
+                     number(c.tau));
+}
+
+std::string line_words(const RecordedConstraint& c) {
+  return fmt::format("{:+.3f} v_x {:+.3f} v_y >= {:+.3f} m/s; {}, {}", c.half_plane.normal.x, c.half_plane.normal.y,
+                     c.half_plane.offset, c.hard ? "hard" : "soft",
+                     c.certified ? "proven to exclude the velocity obstacle" : "not certified");
+}
+
+std::string constraint_words(const Decision& d, std::size_t i) {
+  const RecordedConstraint& c = d.step.constraints[i];
+  return fmt::format("  [{}] {} {}: {}\n      {}\n", i + 1, c.active ? "binds " : "slack ", name_of(c, d.scenario),
+                     contact_words(c, d.step.preferred), line_words(c));
+}
+
+std::string constraints_words(const Decision& d) {
+  const auto& all = d.step.constraints;
+  const auto active = std::count_if(all.begin(), all.end(), [](const RecordedConstraint& c) { return c.active; });
+  std::string text = fmt::format("{} half-plane{}, of which {} bind{}\n", all.size(), all.size() == 1 ? "" : "s",
+                                 active, active == 1 ? "s" : "");
+  for (std::size_t i = 0; i < all.size(); ++i) text += constraint_words(d, i);
+  return text;
+}
+
+std::string force_name(const Balance::Force& force) {
+  return force.constraint ? fmt::format("n[{}]", *force.constraint + 1) : "n[speed bound]";
+}
+
+std::string balance_words(const Balance& b) {
+  std::string sum;
+  for (const auto& force : b.forces) {
+    sum += fmt::format("{}{} {}", sum.empty() ? "" : " + ", number(force.factor), force_name(force));
+  }
+  return "Why: chosen - preferred = " + sum +
+         ", with the n the constraints' normals and no factor negative,\n"
+         "     so no allowed velocity lies nearer to the preferred one (Karush-Kuhn-Tucker).\n";
+}
+
+bool is_held(const Decision& d) {
+  const double visible = kHeld * d.who().max_speed;
+  return norm(d.step.chosen) < visible && norm(d.step.preferred) > visible;
+}
+
+std::string held_words(const Decision& d, const Balance& b) {
+  std::string by;
+  for (const auto& force : b.forces) {
+    if (!force.constraint) continue;
+    by += (by.empty() ? "" : " and ") + name_of(d.step.constraints[*force.constraint], d.scenario);
+  }
+  if (by.empty()) return "";
+  return fmt::format(
+      "The robot is held by {}: every allowed velocity that leads away from here also leads away from "
+      "the preferred one.\n",
+      by);
+}
+
+std::string why(const Decision& d) {
+  if (d.step.status != lp::Status::optimal) return "";
+  if (norm(d.step.chosen - d.step.preferred) < kNotSeen) return "Why: nothing stands in the way.\n";
+  const Balance b = balance(d);
+  if (b.remainder > kBalanced) return "";
+  return balance_words(b) + (is_held(d) ? held_words(d, b) : "");
+}
+
+}  // namespace
+
+std::string explanation(const Decision& decision) {
+  return head(decision) + constraints_words(decision) + why(decision);
+}
+
+}  // namespace exactvo::tools

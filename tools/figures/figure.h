@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A figure is a data file, the gnuplot script that draws it, and what gnuplot made of the two: NAME.dat, NAME.gp,
+/// NAME.svg and NAME.png in one folder. The first two are meant to be read and edited: `gnuplot NAME.gp` in that folder
+/// draws the pictures again.
+///
+/// Neighbours: gnuplot.h runs the scripts; style.h has the colours; run_figures.h and velocity_space.h make figures.
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+namespace exactvo::tools {
+
+struct Figure {
+  std::string name;    ///< the stem of every file
+  std::string data;    ///< text of NAME.dat
+  std::string script;  ///< text of NAME.gp
+};
+
+/// Writes NAME.dat and NAME.gp into `folder`, which must exist, and returns the path of the script.
+/// Throws datasets::DataError where it cannot.
+std::filesystem::path write_sources(const Figure& figure, const std::filesystem::path& folder);
+
+/// The text of a gnuplot data file: numbered data sets, each with a title and its columns in a comment.
+class DataFile {
+ public:
+  /// Starts a data set and returns the number that `index` takes in a script.
+  int begin(const std::string& title, const std::string& columns);
+  /// One line of the current data set, nine significant digits a number.
+  void row(std::initializer_list<double> values);
+  void row(const std::vector<double>& values);
+  /// One line of numbers and a closing word, for labels.
+  void labelled_row(std::initializer_list<double> values, const std::string& label);
+  /// Lifts the pen: the next row starts a new curve or polygon of the same data set.
+  void gap();
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  int count_ = 0;
+};
+
+/// Items of one `plot` command.
+class PlotCommand {
+ public:
+  /// `what` as gnuplot has it after the data file's name: "index 3 using 1:2 with lines ...".
+  /// An empty title keeps the item out of the legend.
+  void data(int index, const std::string& what, const std::string& title = "");
+  /// An item that is no data set: a function or a key entry, complete but for its title.
+  void item(const std::string& what, const std::string& title = "");
+  bool empty() const { return items_.empty(); }
+  std::string text() const;
+
+ private:
+  std::vector<std::string> items_;
+};
+
+/// `text` as a gnuplot string: in single quotes, none left open.
+std::string quoted(const std::string& text);
+
+struct Canvas {
+  int width = 960;   ///< px of the SVG; the PNG has half as many again
+  int height = 600;  ///< px
+};
+
+/// The whole script: a comment that says what the figure shows, then `body` (settings and plot commands, which name
+/// the data file as `data`) drawn once for each format.
+std::string script_text(const std::string& name, const std::string& shows, Canvas canvas, const std::string& body);
+
+}  // namespace exactvo::tools

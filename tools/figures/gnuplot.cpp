@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "figures/gnuplot.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+#include "figures/figure.h"
+
+extern char** environ;
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using TemporaryFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+TemporaryFile temporary_file() {
+  TemporaryFile file(std::tmpfile(), &std::fclose);
+  if (!file) throw std::system_error(errno, std::generic_category(), "creating a temporary file");
+  return file;
+}
+
+std::string driver_text(const std::vector<fs::path>& scripts) {
+  std::string text;
+  for (const fs::path& script : scripts) {
+    text += "reset session\ncd " + quoted(fs::absolute(script).parent_path().string()) + "\nload " +
+            quoted(script.filename().string()) + "\n";
+  }
+  return text;
+}
+
+std::string contents(std::FILE* file) {
+  std::string text;
+  std::rewind(file);
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), file)) text.append(buffer.data(), count);
+  return text;
+}
+
+/// The error code of the attempt to start, 0 where `pid` runs.
+int spawn_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, fileno(input), 0);
+  posix_spawn_file_actions_adddup2(&actions, fileno(messages), 1);
+  posix_spawn_file_actions_adddup2(&actions, fileno(messages), 2);
+  char program[] = "gnuplot";
+  char* arguments[] = {program, nullptr};
+  const int error = posix_spawnp(&pid, program, &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  return error;
+}
+
+bool succeeded(pid_t pid) {
+  int status = 0;
+  while (::waitpid(pid, &status, 0) < 0) {
+    if (errno != EINTR) return false;
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
+RenderResult render(const std::vector<fs::path>& scripts) {
+  if (scripts.empty()) return {};
+  const TemporaryFile driver = temporary_file();
+  const TemporaryFile messages = temporary_file();
+  const std::string text = driver_text(scripts);
+  std::fwrite(text.data(), 1, text.size(), driver.get());
+  std::rewind(driver.get());
+
+  pid_t pid = 0;
+  const int error = spawn_gnuplot(driver.get(), messages.get(), pid);
+  if (error == ENOENT) return {Rendering::no_gnuplot, ""};
+  if (error != 0) return {Rendering::failed, std::generic_category().message(error)};
+  if (!succeeded(pid)) return {Rendering::failed, contents(messages.get())};
+  return {};
+}
+
+}  // namespace exactvo::tools

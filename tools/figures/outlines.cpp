@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "figures/outlines.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace exactvo::tools {
+
+using geometry::GrownShape;
+using geometry::HalfPlane;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// A chord of a circle of 500 px radius drawn with so many corners strays 0.04 px from the arc.
+constexpr int kDirections = 256;
+
+Vec2 direction(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+Vec2 direction(int i) {
+  return direction(2.0 * kPi * i / kDirections);
+}
+
+void add_unless_repeated(Points& ring, Vec2 p) {
+  if (ring.empty() || ring.back() != p) ring.push_back(p);
+}
+
+Points support_ring(const GrownShape& s) {
+  Points ring;
+  for (int i = 0; i < kDirections; ++i) add_unless_repeated(ring, support_point(s, direction(i)));
+  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  return ring;
+}
+
+double h(const GrownShape& s, double angle) {
+  return support(s, direction(angle)).h;
+}
+
+/// The deepest direction: where h_S is least. Convexity of S makes h's negative stretch one arc round it.
+std::optional<double> deepest_angle(const GrownShape& s) {
+  double best = 0.0;
+  for (int i = 1; i < kDirections; ++i) {
+    const double angle = 2.0 * kPi * i / kDirections;
+    if (h(s, angle) < h(s, best)) best = angle;
+  }
+  if (h(s, best) < 0.0) return best;
+  return std::nullopt;
+}
+
+/// Between `inside` (h < 0) and `outside` (h >= 0) the sign changes once: halved down to the doubles.
+double sign_change(const GrownShape& s, double inside, double outside) {
+  const int halvings = 60;  // more than the 53 bits of an angle
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (h(s, middle) < 0.0 ? inside : outside) = middle;
+  }
+  return inside;
+}
+
+struct Arc {
+  double first;
+  double last;
+};
+
+/// The angles at which h_S < 0; the normals of the legs are its ends. h is positive at right angles beyond the nearest
+/// point's normal, so the ends lie within half a turn of the deepest direction.
+std::optional<Arc> negative_arc(const GrownShape& s) {
+  const std::optional<double> deepest = deepest_angle(s);
+  if (!deepest) return std::nullopt;
+  return Arc{sign_change(s, *deepest, *deepest - kPi), sign_change(s, *deepest, *deepest + kPi)};
+}
+
+}  // namespace
+
+Points outline(const geometry::ConvexShape& shape) {
+  if (const auto* polygon = std::get_if<geometry::ConvexPolygon>(&shape)) return polygon->vertices;
+  if (const auto* segment = std::get_if<geometry::Segment>(&shape)) return {segment->a, segment->b};
+  return support_ring({shape, {0.0, 0.0}, 0.0});
+}
+
+Points scaled_outline(const GrownShape& s, double tau) {
+  Points ring = support_ring(s);
+  for (Vec2& p : ring) p = p / tau;
+  return ring;
+}
+
+Points corners(const Box& box) {
+  return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
+}
+
+Points clipped(const Points& ring, const HalfPlane& keep) {
+  Points result;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 a = ring[i];
+    const Vec2 b = ring[(i + 1) % ring.size()];
+    const double outside_a = violation(keep, a);
+    const double outside_b = violation(keep, b);
+    if (outside_a <= 0.0) add_unless_repeated(result, a);
+    if ((outside_a < 0.0 && outside_b > 0.0) || (outside_a > 0.0 && outside_b < 0.0)) {
+      add_unless_repeated(result, a + (outside_a / (outside_a - outside_b)) * (b - a));
+    }
+  }
+  return result;
+}
+
+std::optional<LegNormals> leg_normals(const GrownShape& s) {
+  const std::optional<Arc> arc = negative_arc(s);
+  if (!arc) return std::nullopt;
+  // The leg along t has the outward normal perp(t) on its left side, -perp(t) on its right.
+  return LegNormals{direction(arc->first), direction(arc->last)};
+}
+
+Points velocity_obstacle_in(const Box& box, const GrownShape& s, double tau, Vec2 shift) {
+  const std::optional<Arc> arc = negative_arc(s);
+  if (!arc) return {};
+  Points ring = corners(box);
+  for (int i = 0; i <= kDirections && !ring.empty(); ++i) {
+    const Vec2 n = direction(arc->first + (arc->last - arc->first) * i / kDirections);
+    const double reach = support(s, n).h / tau;
+    ring = clipped(ring, {-n, -(reach + dot(n, shift))});
+  }
+  return ring;
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Shapes as rings of points, for drawing only: sampled finely enough for the eye, certified for nothing.
+
+#include <optional>
+#include <vector>
+
+#include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/shapes.h"
+#include "exactvo/geometry/support.h"
+#include "figures/style.h"
+
+namespace exactvo::tools {
+
+using Points = std::vector<Vec2>;
+
+/// The boundary of a convex shape, counter-clockwise, first point not repeated.
+Points outline(const geometry::ConvexShape& shape);
+
+/// Of S scaled by 1/tau: the points of the velocity plane that reach S at exactly time tau.
+Points scaled_outline(const geometry::GrownShape& s, double tau);
+
+/// The corners of the box, counter-clockwise.
+Points corners(const Box& box);
+
+/// What of a convex ring lies in the half-plane (Sutherland and Hodgman); empty where nothing does.
+Points clipped(const Points& convex_ring, const geometry::HalfPlane& keep);
+
+/// The two directions at which the support of S changes sign: outward normals of the legs, of length 1.
+/// [0] is that of the left leg seen from the origin. Nothing where the origin lies in S, so that there is no cone.
+struct LegNormals {
+  Vec2 left;
+  Vec2 right;
+};
+std::optional<LegNormals> leg_normals(const geometry::GrownShape& s);
+
+/// The truncated velocity obstacle { v : t (v - shift) in S, 0 < t <= tau } within a box: the box cut by
+/// n.(v - shift) <= h_S(n)/tau for many n with h_S(n) <= 0. Empty where the origin lies in S or nothing is in view.
+Points velocity_obstacle_in(const Box& box, const geometry::GrownShape& s, double tau, Vec2 shift);
+
+}  // namespace exactvo::tools

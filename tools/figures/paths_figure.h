@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The plane: obstacles, enclosures, the robots' ways and where they were when.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/recording_file.h"
+#include "figures/figure.h"
+#include "figures/style.h"
+
+namespace exactvo::tools {
+
+/// "A2, ivo" or "B3, ivo, default controller".
+std::string run_title(const datasets::RecordingFile& run);
+
+/// `paths`: one run, with a legend, enclosures dashed in their robot's colour and each robot drawn to scale at a few
+/// times.
+Figure paths_figure(const datasets::RecordingFile& run);
+
+/// Many runs side by side on one sheet, a panel each, without legends: for comparing.
+Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<datasets::RecordingFile>& runs,
+                   int columns);
+
+/// What a paths figure shows of the plane: every start, goal, leader and obstacle, and the ways as far as they stay
+/// within a few times that (a run that diverges must not shrink the rest to a dot). Obstacles more than four times as
+/// wide as the robots' own business are shown in part.
+Box view_of(const datasets::RecordingFile& run);
+
+}  // namespace exactvo::tools

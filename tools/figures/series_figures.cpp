@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "figures/series_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/metrics.h"
+#include "figures/paths_figure.h"
+#include "figures/style.h"
+
+namespace exactvo::tools {
+
+using datasets::RecordingFile;
+using formation::Step;
+
+namespace {
+
+constexpr Canvas kCanvas{960, 480};
+constexpr Canvas kTallCanvas{960, 700};
+/// With more robots than this, a curve a pair would be a thicket.
+constexpr std::size_t kMostRobotsInPairs = 4;
+
+struct Series {
+  std::string label;
+  std::vector<double> values;  ///< one a row of the recording
+};
+
+std::string line_style(std::size_t i) {
+  return fmt::format("with lines lw 2 lc rgb '{}'", series_colour(i));
+}
+
+void add_series(const RecordingFile& run, const std::vector<Series>& all, DataFile& data, PlotCommand& plot) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const int index = data.begin(all[i].label, "t [s], value");
+    const std::size_t rows = std::min(all[i].values.size(), run.recording.steps.size());
+    for (std::size_t k = 0; k < rows; ++k) data.row({run.recording.steps[k].time, all[i].values[k]});
+    plot.data(index, "using 1:2 " + line_style(i), all[i].label);
+  }
+}
+
+std::string axes(const std::string& title, const std::string& y_label) {
+  return fmt::format(
+      "  set title {}\n"
+      "  set xlabel 'time [s]'\n"
+      "  set ylabel {}\n"
+      "  set grid lc rgb '#dcdcdc'\n"
+      "  set key outside right top reverse Left\n",
+      quoted(title), quoted(y_label));
+}
+
+/// Distances: from zero up where nothing touches, and a line at contact.
+Figure distance_figure(const RecordingFile& run, const std::string& name, const std::string& what,
+                       const std::vector<Series>& all) {
+  DataFile data;
+  PlotCommand plot;
+  add_series(run, all, data, plot);
+  plot.item("0 with lines lw 1.5 dt (5,4) lc rgb 'black'", "contact");
+  const std::string title = run_title(run) + ": " + what;
+  const std::string body =
+      axes(title, "distance [m]") + "  set yrange [*<-0.2:*]\n  set offsets graph 0, 0, graph 0.05, 0\n" + plot.text();
+  return {name, data.text(), script_text(name, title + ". Below zero they overlap.", kCanvas, body)};
+}
+
+std::vector<Series> pair_distances(const RecordingFile& run) {
+  std::vector<Series> all;
+  const auto& robots = run.scenario.robots;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    for (std::size_t j = i + 1; j < robots.size(); ++j) {
+      all.push_back({robots[i].id + " and " + robots[j].id, robot_distance_series(run.scenario, run.recording, i, j)});
+    }
+  }
+  return all;
+}
+
+void lower(std::vector<double>& values, const std::vector<double>& to) {
+  if (values.empty()) values = to;
+  for (std::size_t k = 0; k < std::min(values.size(), to.size()); ++k) values[k] = std::min(values[k], to[k]);
+}
+
+std::vector<Series> nearest_distances(const RecordingFile& run) {
+  const auto& robots = run.scenario.robots;
+  std::vector<Series> all;
+  for (const auto& robot : robots) all.push_back({robot.id, {}});
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    for (std::size_t j = i + 1; j < robots.size(); ++j) {
+      const std::vector<double> values = robot_distance_series(run.scenario, run.recording, i, j);
+      lower(all[i].values, values);
+      lower(all[j].values, values);
+    }
+  }
+  return all;
+}
+
+std::vector<Series> velocity_components(const RecordingFile& run, const std::function<double(Vec2)>& component) {
+  std::vector<Series> all;
+  for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) {
+    Series series{run.scenario.robots[i].id, {}};
+    for (const Step& step : run.recording.steps) series.values.push_back(component(step.robots[i].velocity));
+    all.push_back(series);
+  }
+  return all;
+}
+
+void add_leader(const RecordingFile& run, const std::function<double(Vec2)>& component, DataFile& data,
+                PlotCommand& plot) {
+  if (!run.scenario.formation) return;
+  const int index = data.begin("virtual leader", "t [s], value");
+  for (const Step& step : run.recording.steps) data.row({step.time, component(step.leader_velocity)});
+  plot.data(index, "using 1:2 with lines lw 1.5 dt (2,4) lc rgb 'black'", "virtual leader");
+}
+
+std::string velocity_panel(const RecordingFile& run, const std::string& title, const std::string& y_label,
+                           const std::function<double(Vec2)>& component, DataFile& data) {
+  PlotCommand plot;
+  add_series(run, velocity_components(run, component), data, plot);
+  add_leader(run, component, data, plot);
+  return axes(title, y_label) + "  set offsets graph 0, 0, graph 0.05, graph 0.05\n" + plot.text();
+}
+
+}  // namespace
+
+Figure obstacle_distance_figure(const RecordingFile& run) {
+  std::vector<Series> all;
+  for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) {
+    all.push_back({run.scenario.robots[i].id, obstacle_distance_series(run.scenario, run.recording, i)});
+  }
+  return distance_figure(run, "obstacle_distance", "distance from the robot's rim to the nearest obstacle", all);
+}
+
+Figure robot_distance_figure(const RecordingFile& run) {
+  const bool pairs = run.scenario.robots.size() <= kMostRobotsInPairs;
+  return distance_figure(run, "robot_distance",
+                         pairs ? "distance between the robots' rims" : "distance from each robot's rim to the nearest",
+                         pairs ? pair_distances(run) : nearest_distances(run));
+}
+
+Figure velocity_figure(const RecordingFile& run) {
+  DataFile data;
+  const std::string body = "  set multiplot layout 2,1\n  set lmargin 9\n" +
+                           velocity_panel(
+                               run, run_title(run) + ": velocity", "v_x [m/s]", [](Vec2 v) { return v.x; }, data) +
+                           velocity_panel(
+                               run, "", "v_y [m/s]", [](Vec2 v) { return v.y; }, data) +
+                           "  unset multiplot\n";
+  return {
+      "velocity", data.text(),
+      script_text("velocity", "Components of the robots' velocities in " + run_title(run) + ".", kTallCanvas, body)};
+}
+
+Figure formation_error_figure(const RecordingFile& run) {
+  DataFile data;
+  PlotCommand plot;
+  std::vector<Series> all;
+  for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) {
+    all.push_back({run.scenario.robots[i].id, formation_error_series(run.scenario, run.recording, i)});
+  }
+  add_series(run, all, data, plot);
+  const std::string title = run_title(run) + ": distance of each robot from its slot";
+  const std::string body =
+      axes(title, "|x_i - x_L - Δ_i| [m]") + "  set logscale y\n  set format y '%.0e'\n" + plot.text();
+  return {"formation_error", data.text(), script_text("formation_error", title + ", logarithmic.", kCanvas, body)};
+}
+
+}  // namespace exactvo::tools

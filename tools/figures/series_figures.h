@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What changes over a run, drawn over time.
+
+#include "exactvo/datasets/recording_file.h"
+#include "figures/figure.h"
+
+namespace exactvo::tools {
+
+/// `obstacle_distance`: from each robot's rim to the nearest obstacle (paper, Figs. 5(b), 6(b)). REQUIRES obstacles.
+Figure obstacle_distance_figure(const datasets::RecordingFile& run);
+
+/// `robot_distance`: between the rims of each pair of up to four robots; of more, from each to its nearest (paper,
+/// Figs. 6(c), 8(d)). REQUIRES two robots.
+Figure robot_distance_figure(const datasets::RecordingFile& run);
+
+/// `velocity`: both components of each robot and of the leader (paper, Fig. 8(c)).
+Figure velocity_figure(const datasets::RecordingFile& run);
+
+/// `formation_error`: |x_i - x_L - Delta_i|, logarithmic. REQUIRES a formation.
+Figure formation_error_figure(const datasets::RecordingFile& run);
+
+}  // namespace exactvo::tools

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program `exactvo`: finds the verb, runs it, and turns what went wrong into a message and an exit status.
+#include <fmt/format.h>
+
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <map>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/provenance.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+std::vector<std::string> words;
+
+constexpr const char* kExitCodes =
+    "Exit status:\n"
+    "  0    done\n"
+    "  1    done, and the answer is no (of verbs that judge)\n"
+    "  2    a file, an option or a place to write to is wrong; nothing was written\n"
+    "  3    a defect of the program\n"
+    "  130  interrupted; nothing was written\n"
+    "\n"
+    "Results go to stdout, messages to stderr. SI units: metres, seconds, radians.";
+
+std::string version_text() {
+  const datasets::Provenance p = datasets::make_provenance({}, 0);
+  return fmt::format("exactvo {}\ncommit {}\nbuilt by {}, {}\nCGAL {}, GMP {}, GDAL {}\nlicence GPL-3.0-or-later",
+                     p.version, p.commit, p.compiler, p.build_type, p.cgal, p.gmp, p.gdal);
+}
+
+std::string all_examples() {
+  std::string text = "Examples:\n";
+  for (const Verb& verb : verbs()) text += verb.examples;
+  return text;
+}
+
+std::vector<std::string> verb_names() {
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs()) names.push_back(verb.name);
+  return names;
+}
+
+/// Refuses an unknown verb before the parser does, to suggest a known one.
+void check_verb() {
+  const std::vector<std::string> names = verb_names();
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i].rfind('-', 0) == 0) continue;
+    if (std::find(names.begin(), names.end(), words[i]) != names.end()) return;
+    throw UsageError("verb", words[i], fmt::format("one of {}{}", fmt::join(names, " "), suggestion(words[i], names)));
+  }
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// The parser's words, and the nearest option where one was mistyped.
+std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) {
+  std::vector<std::string> known = option_names(app);
+  for (const CLI::App* verb : app.get_subcommands()) {
+    for (const std::string& name : option_names(*verb)) known.push_back(name);
+  }
+  for (const std::string& word : words) {
+    const std::string option = word.substr(0, word.find('='));
+    const bool unknown = option.rfind("--", 0) == 0 && std::find(known.begin(), known.end(), option) == known.end();
+    if (unknown) return std::string(error.what()) + suggestion(option, known);
+  }
+  return error.what();
+}
+
+ExitCode parse_and_run(int argc, char** argv) {
+  CLI::App app("Velocity obstacles with exact geometry; formations among polyhedral obstacles.", "exactvo");
+  bool quiet = false;
+  app.add_flag("--quiet,-q", quiet, "Only errors on stderr");
+  app.set_version_flag("--version", version_text, "Version and how it was built");
+  app.footer(all_examples() + "\n" + kExitCodes);
+  app.require_subcommand(1);
+
+  std::map<const CLI::App*, Action> actions;
+  for (const Verb& verb : verbs()) {
+    CLI::App* sub = app.add_subcommand(verb.name, verb.summary);
+    sub->fallthrough();
+    sub->footer("Examples:\n" + verb.examples + "\n" + kExitCodes);
+    actions[sub] = verb.declare(*sub);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return static_cast<ExitCode>(app.exit(help_or_version));
+  } catch (const CLI::ParseError& error) {
+    error_message(parse_error_text(app, error) + " (exactvo --help)");
+    return ExitCode::bad_input;
+  }
+  set_quiet(quiet);
+  return actions.at(app.get_subcommands().front())();
+}
+
+ExitCode guarded(int argc, char** argv) {
+  try {
+    check_verb();
+    return parse_and_run(argc, argv);
+  } catch (const UsageError& error) {
+    error_message(error.what());
+    return ExitCode::bad_input;
+  } catch (const datasets::DataError& error) {
+    error_message(error.what());
+    return ExitCode::bad_input;
+  } catch (const Interrupted&) {
+    error_message("interrupted; nothing was written");
+    return ExitCode::interrupted;
+  } catch (const std::exception& error) {
+    error_message(std::string("internal: ") + error.what());
+    return ExitCode::internal_error;
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& command_line() {
+  return words;
+}
+
+}  // namespace exactvo::tools
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // A reader that leaves early must not kill the run that writes files.
+  exactvo::tools::words.assign(argv, argv + argc);
+  exactvo::tools::note_interrupts();
+  return static_cast<int>(exactvo::tools::guarded(argc, argv));
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/files.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const fs::path& path, const std::string& why) {
+  throw datasets::DataError(datasets::DataCode::file_unwritable, path.string(), "", why, "a place to write to");
+}
+
+/// "out/" and "out" are the same folder; its name and parent are wanted.
+fs::path without_trailing_slash(fs::path path) {
+  path = fs::absolute(path).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+std::vector<fs::path> files_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_directory()) files.push_back(entry.path().lexically_relative(folder));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+void write_text(const fs::path& path, const std::string& text) {
+  errno = 0;
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+  file.close();
+  if (!file) fail(path, std::generic_category().message(errno != 0 ? errno : EIO));
+}
+
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) fail(path, error.message());
+}
+
+StagedFolder::StagedFolder(fs::path target) : target_(without_trailing_slash(std::move(target))) {
+  staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
+  std::error_code error;
+  if (fs::exists(target_, error) && !fs::is_directory(target_)) fail(target_, "a file of that name");
+  make_folder(staging_);
+}
+
+StagedFolder::~StagedFolder() {
+  std::error_code ignored;  // A destructor must not throw, and there is nobody left to tell.
+  fs::remove_all(staging_, ignored);
+}
+
+void StagedFolder::publish(const std::string& last) {
+  try {
+    if (fs::exists(target_)) {
+      merge_into_target(last);
+    } else {
+      fs::rename(staging_, target_);
+    }
+  } catch (const fs::filesystem_error& error) {
+    fail(error.path2().empty() ? error.path1() : error.path2(), error.code().message());
+  }
+}
+
+void StagedFolder::merge_into_target(const std::string& last) {
+  std::vector<fs::path> files = files_below(staging_);
+  std::stable_partition(files.begin(), files.end(), [&](const fs::path& file) { return file != last; });
+  for (const fs::path& file : files) {
+    fs::create_directories((target_ / file).parent_path());
+    fs::rename(staging_ / file, target_ / file);
+  }
+}
+
+}  // namespace exactvo::tools

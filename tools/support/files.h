@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Folders that appear whole or not at all.
+///
+/// Neighbours: datasets/atomic_file.h does the same for one file.
+
+#include <filesystem>
+#include <string>
+
+namespace exactvo::tools {
+
+/// Writes `text` to `path`, in place. Throws datasets::DataError (E_FILE_UNWRITABLE), as the others do.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+/// Creates a folder and its parents.
+void make_folder(const std::filesystem::path& path);
+
+/// A folder in the making: a hidden sibling of `target` to write into. `publish` puts it in place; without it the
+/// destructor leaves no trace, so a run that fails or is interrupted never leaves half an output.
+class StagedFolder {
+ public:
+  /// Creates the hidden folder (and the target's parents).
+  explicit StagedFolder(std::filesystem::path target);
+  ~StagedFolder();
+  StagedFolder(const StagedFolder&) = delete;
+  StagedFolder& operator=(const StagedFolder&) = delete;
+
+  const std::filesystem::path& path() const { return staging_; }
+
+  /// Moves everything into place. A target that does not exist appears in one step. In one that does, each file
+  /// replaces its namesake in one step, in order of their names with `last` at the end; other files there stay.
+  void publish(const std::string& last = "");
+
+ private:
+  void merge_into_target(const std::string& last);
+
+  std::filesystem::path target_;
+  std::filesystem::path staging_;
+};
+
+}  // namespace exactvo::tools

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// One run from a scenario to files: what `simulate` does once and `paper` many times.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/datasets/recording_file.h"
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/simulation.h"
+
+namespace exactvo::tools {
+
+struct FinishedRun {
+  datasets::RecordingFile file;
+  formation::Metrics metrics;
+  std::string metrics_json() const;
+};
+
+/// Runs the scenario and measures it. Throws Interrupted where the user stopped it.
+FinishedRun run(const formation::Scenario& scenario, formation::SimulationOptions options,
+                const datasets::Provenance& provenance, const std::function<void(double)>& progress = {});
+
+/// recording.jsonl, trajectory.csv and metrics.json in `folder`, which must exist.
+void write_results(const FinishedRun& run, const std::filesystem::path& folder);
+
+/// The figures' data and scripts in `folder`, which is created. Returns the scripts, for `draw`.
+std::vector<std::filesystem::path> write_figures(const FinishedRun& run, const std::filesystem::path& folder);
+
+/// Runs gnuplot on the scripts; a message where it is absent. Throws std::runtime_error where it fails.
+void draw(const std::vector<std::filesystem::path>& scripts);
+
+/// A scenario from a file, or from stdin where `path` is "-".
+formation::Scenario read_scenario(const std::string& path);
+
+/// What read_scenario reads, for provenance; none where that is stdin.
+std::vector<std::filesystem::path> input_files(const std::string& path);
+
+}  // namespace exactvo::tools

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <utility>
+
+namespace exactvo::tools {
+
+namespace {
+
+bool quiet = false;
+volatile std::sig_atomic_t interrupt_seen = 0;
+
+extern "C" void on_interrupt(int) {
+  interrupt_seen = 1;
+}
+
+void put(const std::string& text) {
+  std::fflush(stdout);
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+void set_quiet(bool value) {
+  quiet = value;
+}
+
+void message(const std::string& text) {
+  if (!quiet) put("exactvo: " + text + "\n");
+}
+
+void error_message(const std::string& text) {
+  put("exactvo: error: " + text + "\n");
+}
+
+void note_interrupts() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+bool interrupted() {
+  return interrupt_seen != 0;
+}
+
+ProgressLine::ProgressLine(double total, std::string unit)
+    : enabled_(!quiet && ::isatty(STDERR_FILENO) != 0),
+      total_(total),
+      unit_(std::move(unit)),
+      start_(std::chrono::steady_clock::now()) {}
+
+void ProgressLine::show(double done, const std::string& doing) {
+  if (!enabled_) return;
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  std::string pace;
+  if (done > 0.0 && elapsed > 0.0) {
+    const double rate = done / elapsed;
+    pace = fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate);
+  }
+  put(fmt::format("\r\033[K{:.4g} of {:.4g} {}: {}{}", done, total_, unit_, doing, pace));
+  shown_ = true;
+}
+
+void ProgressLine::clear() {
+  if (shown_) put("\r\033[K");
+  shown_ = false;
+}
+
+}  // namespace exactvo::tools

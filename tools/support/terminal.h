@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Words for people, on stderr: messages, and a line that says how far a long run has come. Results go to stdout.
+
+#include <chrono>
+#include <stdexcept>
+#include <string>
+
+namespace exactvo::tools {
+
+/// Silences `message` and `ProgressLine`; errors are still said.
+void set_quiet(bool quiet);
+
+/// "exactvo: TEXT" on stderr, unless quiet.
+void message(const std::string& text);
+void error_message(const std::string& text);
+
+/// After this, an interrupt (Ctrl-C) or a request to terminate is noted instead of ending the program at once.
+void note_interrupts();
+bool interrupted();
+
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
+/// How far a long run has come, with its rate and the time left, on one line of a terminal that is written over and
+/// over; nothing where stderr is no terminal.
+class ProgressLine {
+ public:
+  /// `unit`: what is counted, "runs" or "s simulated".
+  ProgressLine(double total, std::string unit);
+  ~ProgressLine() { clear(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(double done, const std::string& doing);
+  /// Takes the line away, to print something else.
+  void clear();
+
+ private:
+  bool enabled_;
+  bool shown_ = false;
+  double total_;
+  std::string unit_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace exactvo::tools

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Words on the command line that mean nothing: said with what was expected and the nearest that means something.
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace exactvo::tools {
+
+/// Ends the program with status 2 and its message on stderr.
+class UsageError : public std::runtime_error {
+ public:
+  /// "WHERE: found 'FOUND', expected EXPECTED".
+  UsageError(const std::string& where, const std::string& found, const std::string& expected);
+};
+
+/// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b` (optimal string alignment).
+std::size_t edit_distance(const std::string& a, const std::string& b);
+
+/// The known word nearest to `word`, empty where none is near enough to be meant (a third of its letters may differ,
+/// and two always).
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
+
+/// "; did you mean 'simulate'?" or nothing.
+std::string suggestion(const std::string& word, const std::vector<std::string>& known);
+
+/// The value that `text` names, by one of the `parse` functions of formation/simulation.h. Throws UsageError.
+template <class Value>
+Value parse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& names) {
+  Value value{};
+  if (parse(text, value)) return value;
+  std::string expected = "one of";
+  for (const std::string& name : names) expected += " " + name;
+  throw UsageError(option, text, expected + suggestion(text, names));
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verb.h"
+
+namespace exactvo::tools {
+
+// One line a verb, in the order of --help.
+Verb simulate_verb();
+Verb explain_verb();
+Verb paper_verb();
+
+const std::vector<Verb>& verbs() {
+  static const std::vector<Verb> kVerbs = {simulate_verb(), explain_verb(), paper_verb()};
+  return kVerbs;
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo explain: one robot's velocity space at one moment, drawn and in words.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "explain/explanation.h"
+#include "figures/velocity_space.h"
+#include "support/files.h"
+#include "support/run.h"
+#include "support/simulation_flags.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+using formation::Scenario;
+
+namespace {
+
+struct Flags {
+  std::string scenario;
+  SimulationFlags simulation;
+  double time = 0.0;
+  std::string robot;
+  std::string out;
+};
+
+std::vector<std::string> robot_ids(const Scenario& scenario) {
+  std::vector<std::string> ids;
+  for (const auto& robot : scenario.robots) ids.push_back(robot.id);
+  return ids;
+}
+
+/// By id, or by number counted from 0 where no robot has that id.
+std::size_t find_robot(const Scenario& scenario, const std::string& text) {
+  const std::vector<std::string> ids = robot_ids(scenario);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (ids[i] == text || (std::to_string(i) == text && std::find(ids.begin(), ids.end(), text) == ids.end())) return i;
+  }
+  throw UsageError(
+      "--robot", text,
+      fmt::format("a number from 0 to {} or one of {}{}", ids.size() - 1, fmt::join(ids, " "), suggestion(text, ids)));
+}
+
+/// The last row in which a decision was taken: the final row of a recording has none.
+const formation::Step& last_decision(const formation::Recording& recording, double time) {
+  if (recording.steps.size() < 2)
+    throw UsageError("--time", fmt::format("{}", time), "a time at which the run goes on");
+  const formation::Step& step = recording.steps[recording.steps.size() - 2];
+  const double end = recording.steps.back().time;
+  if (time > end + 0.5 * recording.time_step) {
+    throw UsageError("--time", fmt::format("{}", time), fmt::format("at most {:.6g} s, when the run ends", end));
+  }
+  return step;
+}
+
+std::string method_words(const Scenario& scenario, const SimulationFlags& flags) {
+  return "method " + flags.method + (scenario.formation ? ", controller " + flags.controller : "");
+}
+
+Decision decide(const Flags& flags, const Scenario& scenario) {
+  formation::SimulationOptions options = simulation_options(flags.simulation);
+  options.stop_at = flags.time;
+  options.progress = [](double) { return !interrupted(); };
+  const std::size_t robot = find_robot(scenario, flags.robot);
+  const formation::Recording recording = formation::simulate(scenario, options);
+  if (interrupted()) throw Interrupted();
+  const formation::Step& step = last_decision(recording, flags.time);
+  return {scenario, method_words(scenario, flags.simulation), robot, step.time, step.robots.at(robot)};
+}
+
+/// The four files appear beside FILE.svg together, after gnuplot is done with them.
+void write_figure(const Decision& decision, const fs::path& out) {
+  const fs::path parent = fs::absolute(out).parent_path();
+  make_folder(parent);
+  StagedFolder folder(parent / ("." + out.stem().string() + ".figure"));
+  draw({write_sources(velocity_space_figure(decision, out.stem().string()), folder.path())});
+  for (const char* extension : {".dat", ".gp", ".png", ".svg"}) {
+    const std::string file = out.stem().string() + extension;
+    if (fs::exists(folder.path() / file)) fs::rename(folder.path() / file, parent / file);
+  }
+  message("wrote " + out.string());
+}
+
+void check(const Flags& flags) {
+  if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time from 0 s on");
+  if (!flags.out.empty() && fs::path(flags.out).extension() != ".svg") {
+    throw UsageError("--out", flags.out, "a name that ends in .svg");
+  }
+}
+
+ExitCode explain(const Flags& flags) {
+  check(flags);
+  const Decision decision = decide(flags, read_scenario(flags.scenario));
+  if (!flags.out.empty()) write_figure(decision, flags.out);
+  const std::string text = explanation(decision);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return ExitCode::success;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
+  app.add_option("--time,-t", flags->time, "Of the decision, s")->required();
+  app.add_option("--robot,-r", flags->robot, "Its id, or its number counted from 0")->required();
+  app.add_option("--out,-o", flags->out, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
+  declare_simulation_flags(app, flags->simulation);
+  return [flags] { return explain(*flags); };
+}
+
+}  // namespace
+
+Verb explain_verb() {
+  return {"explain", "Draw one robot's velocity space at one moment, and say which constraints bind and why",
+          "  exactvo explain datasets/data/paper/A1.json --method orca --time 10 --robot R1 --out out/stuck.svg\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo paper: Section V of the paper from one command: every scenario, every method, a table and the figures.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "exactvo/datasets/metrics_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "figures/paths_figure.h"
+#include "support/data_folder.h"
+#include "support/files.h"
+#include "support/run.h"
+#include "support/terminal.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+using formation::Controller;
+using formation::Method;
+
+namespace {
+
+constexpr Method kMethods[] = {Method::orca, Method::ivo_edge, Method::ivo_cluster, Method::ivo};
+constexpr Controller kControllers[] = {Controller::paper_literal, Controller::paper_signs, Controller::standard};
+constexpr int kAvoidanceScenarios = 15;  // A1-A15
+constexpr int kFormationScenarios = 4;   // B0-B3
+constexpr int kRuns = kAvoidanceScenarios * 4 + kFormationScenarios * 3;
+/// The scenario whose runs stand for Figs. 5 and 6, and the one for Fig. 8: two walls and two robots that must also
+/// pass each other; a passage between three obstacles.
+constexpr const char* kAvoidanceExample = "A2";
+constexpr const char* kFormationExample = "B3";
+
+struct Flags {
+  std::string out;
+  std::string data;
+  std::uint64_t seed = 0;
+  bool json = false;
+  bool no_figures = false;
+};
+
+/// The whole of Section V, as it goes.
+class Experiments {
+ public:
+  Experiments(const Flags& flags, fs::path scenarios, const fs::path& out)
+      : flags_(flags), scenarios_(std::move(scenarios)), out_(out), line_(kRuns, "runs") {}
+
+  void run_all() {
+    print(avoidance_head());
+    for (int i = 1; i <= kAvoidanceScenarios; ++i) run_avoidance("A" + std::to_string(i));
+    print(formation_head());
+    for (int i = 0; i < kFormationScenarios; ++i) run_formation("B" + std::to_string(i));
+    line_.clear();
+    print_footnotes();
+  }
+
+  std::string summary() const { return datasets::summary_json(metrics_); }
+
+  /// All figures in one run of gnuplot.
+  void draw_figures() {
+    add_sheets();
+    draw(scripts_);
+  }
+
+ private:
+  void print(const std::string& text) {
+    line_.clear();
+    if (!flags_.json) std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+  }
+
+  static std::string avoidance_head() {
+    std::string text = fmt::format("Section V.A: last arrival [s], X where a robot never arrives\n{:<5}", "");
+    for (const Method m : kMethods) text += fmt::format("{:>13}", name(m));
+    return text + "   least clearance of ivo [m]: obstacles, robots\n";
+  }
+
+  static std::string formation_head() {
+    return fmt::format(
+        "\nSection V.B: three robots and a virtual leader, method ivo\n"
+        "{:<5}{:<15}{:>21}{:>20}{:>12}{:>12}{:>11}\n",
+        "", "controller", "position error [m]", "velocity error [m/s]", "obstacles", "robots", "jitter");
+  }
+
+  void print_footnotes() {
+    print(
+        "\n!  touched an obstacle or another robot on the way. Errors are those at the end, clearances the least "
+        "[m].\n");
+  }
+
+  FinishedRun run_one(const std::string& scenario_name, Method method, Controller controller) {
+    const fs::path file = scenarios_ / (scenario_name + ".json");
+    formation::SimulationOptions options;
+    options.method = method;
+    options.controller = controller;
+    const auto provenance = datasets::make_provenance(command_line(), flags_.seed, {file});
+    line_.show(static_cast<double>(metrics_.size()), scenario_name + " " + name(method));
+    FinishedRun finished = run(datasets::load_scenario(file), options, provenance);
+    metrics_.push_back(finished.metrics_json());
+    return finished;
+  }
+
+  static bool touched(const formation::Metrics& m) {
+    return m.min_obstacle_clearance.value_or(1.0) < 0.0 || m.min_robot_clearance.value_or(1.0) < 0.0;
+  }
+
+  static std::string number_or_dash(const std::optional<double>& value, const char* format) {
+    return value ? fmt::format(fmt::runtime(format), *value) : "-";
+  }
+
+  static std::string arrival_cell(const formation::Metrics& m) {
+    const std::string text = m.all_arrived ? number_or_dash(m.last_arrival_time, "{:.1f}") : "X";
+    return fmt::format("{:>12}{}", text, touched(m) ? '!' : ' ');
+  }
+
+  void run_avoidance(const std::string& scenario) {
+    std::string row = fmt::format("{:<5}", scenario);
+    std::string clearances;
+    for (const Method method : kMethods) {
+      FinishedRun finished = run_one(scenario, method, Controller::standard);
+      row += arrival_cell(finished.metrics);
+      clearances = fmt::format("   {}, {}", number_or_dash(finished.metrics.min_obstacle_clearance, "{:.3f}"),
+                               number_or_dash(finished.metrics.min_robot_clearance, "{:.3f}"));
+      keep_avoidance(std::move(finished), method);
+    }
+    print(row + clearances + "\n");
+  }
+
+  void run_formation(const std::string& scenario) {
+    for (const Controller controller : kControllers) {
+      FinishedRun finished = run_one(scenario, Method::ivo, controller);
+      const formation::Metrics& m = finished.metrics;
+      const bool diverged = finished.file.recording.diverged;
+      print(fmt::format(
+          "{:<5}{:<15}{:>21}{:>20}{:>12}{:>12}{:>11.0f}{} {}\n", scenario, name(controller),
+          number_or_dash(m.formation_position_error, "{:.2g}"), number_or_dash(m.formation_velocity_error, "{:.2g}"),
+          number_or_dash(m.min_obstacle_clearance, "{:.3f}"), number_or_dash(m.min_robot_clearance, "{:.3f}"), m.jitter,
+          touched(m) ? '!' : ' ', diverged ? "diverged" : ""));
+      keep_formation(std::move(finished), controller);
+    }
+  }
+
+  void keep_avoidance(FinishedRun finished, Method method) {
+    if (flags_.no_figures) return;
+    const std::string& scenario = finished.file.info.scenario;
+    if (scenario == kAvoidanceExample && method == Method::orca) add_example(finished, "fig5-orca");
+    if (scenario == kAvoidanceExample && method == Method::ivo) add_example(finished, "fig6-ivo");
+    sheets_[static_cast<std::size_t>(method)].push_back(std::move(finished.file));
+  }
+
+  void keep_formation(FinishedRun finished, Controller controller) {
+    if (flags_.no_figures) return;
+    const bool example = finished.file.info.scenario == kFormationExample;
+    if (example && controller == Controller::standard) add_example(finished, "fig8-formation");
+    formation_sheet_.push_back(std::move(finished.file));
+  }
+
+  void add_example(const FinishedRun& finished, const std::string& folder) {
+    const fs::path target = out_ / "figures" / folder;
+    const std::vector<fs::path> scripts = write_figures(finished, target);
+    write_results(finished, target);
+    scripts_.insert(scripts_.end(), scripts.begin(), scripts.end());
+  }
+
+  void add_sheets() {
+    const fs::path folder = out_ / "figures" / "all";
+    make_folder(folder);
+    for (const Method method : kMethods) {
+      const std::string title = std::string("Section V.A, method ") + name(method);
+      add_sheet(folder, name(method), title, sheets_[static_cast<std::size_t>(method)], 4);
+    }
+    add_sheet(folder, "formation", "Section V.B, method ivo: a column a controller", formation_sheet_, 3);
+  }
+
+  void add_sheet(const fs::path& folder, const std::string& stem, const std::string& title,
+                 const std::vector<datasets::RecordingFile>& runs, int columns) {
+    scripts_.push_back(write_sources(paths_sheet(stem, title, runs, columns), folder));
+  }
+
+  const Flags& flags_;
+  fs::path scenarios_;
+  fs::path out_;
+  ProgressLine line_;
+  std::vector<std::string> metrics_;
+  std::vector<datasets::RecordingFile> sheets_[4];  ///< by method
+  std::vector<datasets::RecordingFile> formation_sheet_;
+  std::vector<fs::path> scripts_;
+};
+
+ExitCode paper(const Flags& flags) {
+  StagedFolder folder(flags.out);
+  Experiments experiments(flags, data_folder(flags.data, "paper"), folder.path());
+  experiments.run_all();
+  const std::string summary = experiments.summary();
+  write_text(folder.path() / "summary.json", summary);
+  if (!flags.no_figures) experiments.draw_figures();
+  if (interrupted()) throw Interrupted();
+  folder.publish("summary.json");
+  if (flags.json) std::fwrite(summary.data(), 1, summary.size(), stdout);
+  message("wrote " + flags.out + "/summary.json" + (flags.no_figures ? "" : " and " + flags.out + "/figures/"));
+  return ExitCode::success;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("--out,-o", flags->out, "Folder for summary.json and figures/; whole or not at all")->required();
+  app.add_option("--data", flags->data, "Folder that holds paper/A1.json and so on; the program's own by default");
+  app.add_option("--seed", flags->seed, "Noted in the provenance; these runs draw no random numbers")
+      ->capture_default_str();
+  app.add_flag("--json", flags->json, "Print summary.json instead of the tables");
+  app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");
+  return [flags] { return paper(*flags); };
+}
+
+}  // namespace
+
+Verb paper_verb() {
+  return {"paper", "Run the paper's experiments (Section V) and draw its figures", "  exactvo paper --out out/paper\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

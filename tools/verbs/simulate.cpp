@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo simulate: one scenario, one method, its metrics, recording and figures.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "support/files.h"
+#include "support/run.h"
+#include "support/simulation_flags.h"
+#include "support/terminal.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+struct Flags {
+  std::string scenario;
+  SimulationFlags simulation;
+  std::string out;
+  bool json = false;
+  bool no_figures = false;
+};
+
+std::string or_dash(const std::optional<double>& value, const char* unit) {
+  return value ? fmt::format("{:.4g} {}", *value, unit) : "-";
+}
+
+std::string robot_line(const formation::RobotMetrics& robot) {
+  const std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") : "did not arrive";
+  return fmt::format("  {:<12} {}, way {:.4g} m, least clearance to obstacles {}\n", robot.id, arrival,
+                     robot.path_length, or_dash(robot.min_obstacle_clearance, "m"));
+}
+
+std::string formation_lines(const formation::Metrics& m) {
+  return fmt::format("  formation    position error {}, velocity error {} at the end; leader arrived at {}\n",
+                     or_dash(m.formation_position_error, "m"), or_dash(m.formation_velocity_error, "m/s"),
+                     or_dash(m.leader_arrival_time, "s"));
+}
+
+std::string summary(const FinishedRun& run) {
+  const formation::Metrics& m = run.metrics;
+  std::string text = fmt::format("{}, method {}", run.file.info.scenario, run.file.info.method);
+  if (run.file.info.controller) text += fmt::format(", controller {}", *run.file.info.controller);
+  text += ": " + run.file.recording.outcome + "\n";
+  if (!run.file.scenario.formation) {
+    for (const auto& robot : m.robots) text += robot_line(robot);
+  } else {
+    text += formation_lines(m);
+  }
+  return text + fmt::format(
+                    "  clearance    to obstacles {}, between robots {}\n"
+                    "  jitter       {:.4g} m/s^2, {} heading reversals, {} active-set switches\n"
+                    "  half-planes  {} not certified, relaxed in {} decisions\n"
+                    "  steps        {} in {:.3g} s of wall time\n",
+                    or_dash(m.min_obstacle_clearance, "m"), or_dash(m.min_robot_clearance, "m"), m.jitter,
+                    m.heading_reversals, m.active_set_switches, m.uncertified_half_planes, m.relaxed_steps, m.steps,
+                    m.wall_time);
+}
+
+FinishedRun run_with_progress(const Flags& flags, const formation::Scenario& scenario,
+                              const formation::SimulationOptions& options) {
+  const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, input_files(flags.scenario));
+  ProgressLine line(scenario.time_limit, "s simulated");
+  return run(scenario, options, provenance, [&](double time) { line.show(time, scenario.name); });
+}
+
+void write_everything(const Flags& flags, const FinishedRun& finished) {
+  StagedFolder folder(flags.out);
+  write_results(finished, folder.path());
+  if (!flags.no_figures) draw(write_figures(finished, folder.path() / "figures"));
+  if (interrupted()) throw Interrupted();
+  folder.publish("metrics.json");
+  message("wrote " + flags.out);
+}
+
+ExitCode simulate(const Flags& flags) {
+  const formation::SimulationOptions options = simulation_options(flags.simulation);
+  const formation::Scenario scenario = read_scenario(flags.scenario);
+  const FinishedRun finished = run_with_progress(flags, scenario, options);
+  if (!flags.out.empty()) write_everything(flags, finished);
+  const std::string text = flags.json ? finished.metrics_json() : summary(finished);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return ExitCode::success;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
+  declare_simulation_flags(app, flags->simulation);
+  app.add_option("--out,-o", flags->out,
+                 "Folder for recording.jsonl, trajectory.csv, metrics.json and figures/; whole or not at all");
+  app.add_flag("--json", flags->json, "Print the metrics as JSON");
+  app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");
+  return [flags] { return simulate(*flags); };
+}
+
+}  // namespace
+
+Verb simulate_verb() {
+  return {"simulate", "Run one scenario",
+          "  exactvo simulate datasets/data/paper/A2.json --method ivo --out out/A2\n"
+          "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n",
+          declare};
+}
+
+}  // namespace exactvo::tools
