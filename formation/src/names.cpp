@@ -1,1 +1,88 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <utility>
+
+#include "exactvo/formation/simulation.h"
+
+namespace exactvo::formation {
+namespace {
+
+template <typename Enum, std::size_t N>
+using Names = std::array<std::pair<Enum, const char*>, N>;
+
+constexpr Names<Method, 4> kMethods{{{Method::orca, "orca"},
+                                     {Method::ivo_edge, "ivo-edge"},
+                                     {Method::ivo_cluster, "ivo-cluster"},
+                                     {Method::ivo, "ivo"}}};
+constexpr Names<Controller, 3> kControllers{{{Controller::paper_literal, "paper-literal"},
+                                             {Controller::paper_signs, "paper-signs"},
+                                             {Controller::standard, "default"}}};
+constexpr Names<Integrator, 5> kIntegrators{{{Integrator::exact, "exact"},
+                                             {Integrator::euler, "euler"},
+                                             {Integrator::rk4, "rk4"},
+                                             {Integrator::dopri5, "dopri5"},
+                                             {Integrator::rosenbrock4, "rosenbrock4"}}};
+constexpr Names<Mode, 5> kModes{{{Mode::direct, "direct"},
+                                 {Mode::boost, "boost"},
+                                 {Mode::following, "following"},
+                                 {Mode::pushing_out, "pushing-out"},
+                                 {Mode::arrived, "arrived"}}};
+
+template <typename Enum, std::size_t N>
+const char* name_in(const Names<Enum, N>& names, Enum value) {
+  for (const auto& [e, text] : names)
+    if (e == value) return text;
+  return "";
+}
+
+template <typename Enum, std::size_t N>
+bool parse_in(const Names<Enum, N>& names, const std::string& text, Enum& out) {
+  for (const auto& [e, known] : names) {
+    if (text != known) continue;
+    out = e;
+    return true;
+  }
+  return false;
+}
+
+template <typename Enum, std::size_t N>
+std::vector<std::string> all_of(const Names<Enum, N>& names) {
+  std::vector<std::string> out;
+  for (const auto& entry : names) out.emplace_back(entry.second);
+  return out;
+}
+
+}  // namespace
+
+const char* name(Method m) {
+  return name_in(kMethods, m);
+}
+const char* name(Controller c) {
+  return name_in(kControllers, c);
+}
+const char* name(Integrator i) {
+  return name_in(kIntegrators, i);
+}
+const char* name(Mode m) {
+  return name_in(kModes, m);
+}
+std::vector<std::string> method_names() {
+  return all_of(kMethods);
+}
+std::vector<std::string> controller_names() {
+  return all_of(kControllers);
+}
+std::vector<std::string> integrator_names() {
+  return all_of(kIntegrators);
+}
+bool parse(const std::string& text, Method& out) {
+  return parse_in(kMethods, text, out);
+}
+bool parse(const std::string& text, Controller& out) {
+  return parse_in(kControllers, text, out);
+}
+bool parse(const std::string& text, Integrator& out) {
+  return parse_in(kIntegrators, text, out);
+}
+
+}  // namespace exactvo::formation

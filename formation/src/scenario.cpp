@@ -1,1 +1,154 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/scenario.h"
+
+#include <cmath>
+#include <string>
+
+#include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/distance.h"
+
+namespace exactvo::formation {
+namespace {
+
+using Problems = std::vector<ScenarioProblem>;
+
+std::string show(double x) {
+  std::string text = std::to_string(x);
+  while (text.find('.') != std::string::npos && (text.back() == '0' || text.back() == '.')) {
+    const bool point = text.back() == '.';
+    text.pop_back();
+    if (point) break;
+  }
+  return text;
+}
+std::string show(Vec2 v) {
+  return "[" + show(v.x) + ", " + show(v.y) + "]";
+}
+
+struct Checker {
+  Problems problems;
+
+  void require(bool ok, const std::string& pointer, const std::string& found, const std::string& expected) {
+    if (!ok) problems.push_back({pointer, found, expected});
+  }
+  void positive(double x, const std::string& pointer, const char* unit) {
+    require(std::isfinite(x) && x > 0.0, pointer, show(x), std::string("a finite number above 0 (") + unit + ")");
+  }
+  void not_negative(double x, const std::string& pointer, const char* unit) {
+    require(std::isfinite(x) && x >= 0.0, pointer, show(x), std::string("a finite number, 0 or more (") + unit + ")");
+  }
+  void finite(Vec2 v, const std::string& pointer) {
+    require(geometry::is_finite(v), pointer, show(v), "two finite numbers (m or m/s)");
+  }
+};
+
+void check_robots(const Scenario& s, Checker& c) {
+  c.require(!s.robots.empty(), "/robots", "no robots", "at least one robot");
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    const Robot& r = s.robots[i];
+    const std::string at = "/robots/" + std::to_string(i);
+    c.positive(r.radius, at + "/radius", "m");
+    c.positive(r.max_speed, at + "/max_speed", "m/s");
+    c.finite(r.position, at + "/position");
+    c.finite(r.velocity, at + "/velocity");
+    c.require(s.formation || !r.goals.empty(), at + "/goal", "no goal", "a goal, since the scenario has no formation");
+    for (Vec2 g : r.goals) c.finite(g, at + "/goal");
+    for (std::size_t j = 0; j < i; ++j) {
+      const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
+      c.require(!(gap < 0.0), at + "/position", show(r.position) + ", overlapping robot " + std::to_string(j),
+                "robots that do not overlap at the start");
+    }
+  }
+}
+
+void check_obstacles(const Scenario& s, Checker& c) {
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    for (const SceneObstacle& o : s.obstacles) {
+      const double gap = geometry::signed_distance(o.shape, s.robots[i].position) - s.robots[i].radius;
+      c.require(!(gap < 0.0), "/robots/" + std::to_string(i) + "/position",
+                show(s.robots[i].position) + ", " + show(-gap) + " m inside obstacle '" + o.id + "'",
+                "a start that is clear of every obstacle");
+    }
+  }
+}
+
+void check_times(const Scenario& s, Checker& c) {
+  c.positive(s.time_step, "/time_step", "s");
+  c.positive(s.time_limit, "/time_limit", "s");
+  c.positive(s.arrival_tolerance, "/arrival_tolerance", "m");
+  c.positive(s.neighbour_distance, "/neighbour_distance", "m");
+  c.positive(s.horizons.least, "/horizons/least", "s");
+  c.require(s.horizons.most >= s.horizons.least, "/horizons/most", show(s.horizons.most),
+            "at least /horizons/least, " + show(s.horizons.least));
+  c.require(s.horizons.least >= 2.0 * s.time_step, "/horizons/least", show(s.horizons.least),
+            "at least twice /time_step, " + show(2.0 * s.time_step) + " (s)");
+  c.positive(s.horizons.speed_floor, "/horizons/speed_floor", "share of max_speed");
+  c.positive(s.horizons.orca, "/horizons/orca", "s");
+  c.positive(s.horizons.robots, "/horizons/robots", "s");
+  c.not_negative(s.margins.obstacle, "/margins/obstacle", "m");
+  c.not_negative(s.margins.robot, "/margins/robot", "m");
+}
+
+/// Every robot must hear, over edges of positive weight, somebody who hears the leader.
+bool reaches_leader(const Topology& t) {
+  const std::size_t n = t.pinning.size();
+  std::vector<bool> heard(n);
+  for (std::size_t i = 0; i < n; ++i) heard[i] = t.pinning[i] > 0.0;
+  for (std::size_t round = 0; round < n; ++round)
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        if (t.adjacency[i][j] > 0.0 && heard[j]) heard[i] = true;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!heard[i]) return false;
+  return true;
+}
+
+void check_topology(const Topology& t, std::size_t n, Checker& c) {
+  const std::string at = "/formation/topology";
+  bool shaped = t.adjacency.size() == n && t.pinning.size() == n;
+  for (const auto& row : t.adjacency) shaped = shaped && row.size() == n;
+  c.require(shaped, at,
+            "adjacency with " + std::to_string(t.adjacency.size()) + " rows, pinning with " +
+                std::to_string(t.pinning.size()) + " entries",
+            "an n x n adjacency and n pinning gains, n = " + std::to_string(n) + " robots");
+  if (!shaped) return;
+  for (std::size_t i = 0; i < n; ++i) {
+    c.not_negative(t.pinning[i], at + "/pinning/" + std::to_string(i), "gain");
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::string entry = at + "/adjacency/" + std::to_string(i) + "/" + std::to_string(j);
+      c.not_negative(t.adjacency[i][j], entry, "weight");
+      c.require(t.adjacency[i][j] == t.adjacency[j][i], entry, show(t.adjacency[i][j]),
+                "a symmetric matrix: the same as its mirror entry, " + show(t.adjacency[j][i]));
+    }
+  }
+  c.require(reaches_leader(t), at, "a robot that hears the leader neither directly nor through others",
+            "every robot connected to one with pinning > 0");
+}
+
+void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
+  check_topology(f.topology, n, c);
+  c.require(f.offsets.size() == n, "/formation/offsets", std::to_string(f.offsets.size()) + " offsets",
+            "one a robot: " + std::to_string(n));
+  for (std::size_t i = 0; i < f.offsets.size(); ++i) c.finite(f.offsets[i], "/formation/offsets/" + std::to_string(i));
+  c.require(!f.leader.path.empty(), "/formation/leader/path", "no points", "at least one point");
+  for (Vec2 p : f.leader.path) c.finite(p, "/formation/leader/path");
+  c.not_negative(f.leader.speed, "/formation/leader/speed", "m/s");
+  c.positive(f.gains.k1, "/formation/gains/k1", "gain");
+  c.positive(f.gains.k2, "/formation/gains/k2", "gain");
+  c.positive(f.gains.k3, "/formation/gains/k3", "1/s");
+  c.positive(f.gains.kappa, "/formation/gains/kappa", "1/s");
+  c.positive(f.catch_up_speed, "/formation/catch_up_speed", "m/s");
+}
+
+}  // namespace
+
+std::vector<ScenarioProblem> validate(const Scenario& scenario) {
+  Checker c;
+  check_robots(scenario, c);
+  check_times(scenario, c);
+  if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
+  if (c.problems.empty()) check_obstacles(scenario, c);
+  return std::move(c.problems);
+}
+
+}  // namespace exactvo::formation

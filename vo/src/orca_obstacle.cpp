@@ -1,1 +1,214 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/vo/orca_obstacle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <string>
+
+#include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/require.h"
+#include "exactvo/geometry/support.h"
+#include "exactvo/vo/velocity_obstacle.h"
+
+namespace exactvo::vo {
+namespace {
+
+using geometry::cross;
+using geometry::dot;
+using geometry::norm;
+using geometry::normalized;
+using geometry::perp;
+using geometry::Segment;
+using geometry::squared_norm;
+
+OrcaChain with_turns(std::vector<Vec2> vertices) {
+  OrcaChain chain{std::move(vertices), {}};
+  const std::size_t n = chain.vertices.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const geometry::Sign turn =
+        geometry::orientation(chain.vertices[(i + n - 1) % n], chain.vertices[i], chain.vertices[(i + 1) % n]);
+    chain.convex.push_back(turn != geometry::Sign::negative);
+  }
+  return chain;
+}
+
+/// One edge seen from the robot, with what the rule needs of its neighbours.
+struct Edge {
+  Vec2 left, right;  ///< ends relative to the robot: from `left` to `right` the free side is on the right
+  Vec2 direction;    ///< unit, left to right
+  bool left_convex, right_convex;
+  Vec2 previous_direction, next_direction;
+};
+
+/// The two rays that bound the edge's velocity obstacle. A foreign one runs along the neighbouring edge.
+struct Ray {
+  Vec2 apex;  ///< the vertex it starts beside, relative to the robot
+  Vec2 direction;
+  bool foreign = false;
+};
+
+/// The unit direction of the tangent from the robot to the disc of `radius` round `c`: side +1 passes it on the left.
+Vec2 tangent(Vec2 c, double radius, double side) {
+  const double d2 = squared_norm(c);
+  const double along = std::sqrt(std::max(d2 - radius * radius, 0.0));
+  return (along * c + (side * radius) * perp(c)) / d2;
+}
+
+struct EdgeCone {
+  Ray left, right;
+  Vec2 cut_left, cut_right;  ///< the ends of the cut-off before division by the horizon
+};
+
+/// The cone of an edge; nothing where the neighbours already stand for it.
+std::optional<EdgeCone> cone_of(const Edge& e, double radius) {
+  const double s = dot(-e.left, e.direction) / norm(e.right - e.left);
+  const double to_line = std::fabs(cross(e.direction, -e.left));
+  const bool before_left = s < 0.0 && to_line <= radius;
+  const bool beyond_right = s > 1.0 && to_line <= radius;
+  if ((before_left && !e.left_convex) || (beyond_right && !e.right_convex)) return std::nullopt;
+  EdgeCone cone;
+  cone.cut_left = beyond_right ? e.right : e.left;
+  cone.cut_right = before_left ? e.left : e.right;
+  const bool left_is_vertex = before_left || beyond_right || e.left_convex;
+  const bool right_is_vertex = before_left || beyond_right || e.right_convex;
+  cone.left = {cone.cut_left, left_is_vertex ? tangent(cone.cut_left, radius, 1.0) : -e.direction};
+  cone.right = {cone.cut_right, right_is_vertex ? tangent(cone.cut_right, radius, -1.0) : e.direction};
+  return cone;
+}
+
+void replace_foreign_legs(const Edge& e, EdgeCone& cone) {
+  const bool left_vertex_convex = cone.cut_left == e.left ? e.left_convex : e.right_convex;
+  const Vec2 before = cone.cut_left == e.left ? e.previous_direction : e.direction;
+  if (left_vertex_convex && cross(cone.left.direction, -before) >= 0.0) {
+    cone.left.direction = -before;
+    cone.left.foreign = true;
+  }
+  const bool right_vertex_convex = cone.cut_right == e.right ? e.right_convex : e.left_convex;
+  const Vec2 after = cone.cut_right == e.right ? e.next_direction : e.direction;
+  if (right_vertex_convex && cross(cone.right.direction, after) <= 0.0) {
+    cone.right.direction = after;
+    cone.right.foreign = true;
+  }
+}
+
+/// The outward normal at the point of the cone's boundary nearest to v; nothing where that lies on a foreign leg.
+std::optional<Vec2> nearest_normal(const EdgeCone& cone, Vec2 v, double tau) {
+  const Vec2 a = cone.cut_left / tau;
+  const Vec2 b = cone.cut_right / tau;
+  const Vec2 cut = b - a;
+  const bool point_like = cut == Vec2{};
+  const double t = point_like ? 0.5 : dot(v - a, cut) / squared_norm(cut);
+  const double along_left = dot(v - a, cone.left.direction);
+  const double along_right = dot(v - b, cone.right.direction);
+  if ((t < 0.0 || point_like) && along_left < 0.0 && (!point_like || along_right < 0.0)) return normalized(v - a);
+  if (t > 1.0 && along_right < 0.0) return normalized(v - b);
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const double to_cut = t < 0.0 || t > 1.0 || point_like ? kNever : squared_norm(v - (a + t * cut));
+  const double to_left = along_left < 0.0 ? kNever : squared_norm(v - (a + along_left * cone.left.direction));
+  const double to_right = along_right < 0.0 ? kNever : squared_norm(v - (b + along_right * cone.right.direction));
+  if (to_cut <= to_left && to_cut <= to_right) return -perp(normalized(cut));
+  if (to_left <= to_right) return cone.left.foreign ? std::nullopt : std::optional(perp(cone.left.direction));
+  return cone.right.foreign ? std::nullopt : std::optional(-perp(cone.right.direction));
+}
+
+/// The certified half-plane with outward normal close to n: its offset from the support function, tilted where h_S
+/// would be positive.
+OrcaHalfPlane certified_half_plane(const VelocityObstacle& obstacle, Vec2 n, double tau) {
+  const VelocityObstacle::Nearest n0 = obstacle.nearest();
+  const geometry::SupportValue at_n = geometry::support(obstacle.grown(), n);
+  const double bound = geometry::kSupportError * at_n.magnitude + geometry::kSupportUnderflow;
+  // Beyond rounding on the wrong side: the direction does not separate, so the nearest point's normal stands in.
+  double kappa = n0.distance > 0.0 ? (std::max(at_n.h, 0.0) + 2.0 * bound) / n0.distance : 2.0;
+  Vec2 normal = n;
+  for (; at_n.h + bound > 0.0 && kappa < 1.0; kappa *= 2.0) {
+    normal = n + kappa * n0.normal;
+    if (geometry::support_upper_bound(obstacle.grown(), normal) <= 0.0) break;
+  }
+  const double h_up = geometry::support_upper_bound(obstacle.grown(), normal);
+  if (h_up <= 0.0) {
+    const double c = h_up / tau;
+    return {{normal, std::min(0.0, c + 4.0 * geometry::kUnitRoundoff * std::fabs(c))}, 0, true};
+  }
+  const auto contact = obstacle.contact_half_plane();
+  return contact ? OrcaHalfPlane{*contact, 0, true} : OrcaHalfPlane{{n0.normal, 0.0}, 0, false};
+}
+
+/// Whether a half-plane found before already keeps the robot from both ends of this edge.
+bool covered(const std::vector<OrcaHalfPlane>& found, Vec2 left, Vec2 right, double radius, double tau) {
+  return std::any_of(found.begin(), found.end(), [&](const OrcaHalfPlane& f) {
+    const HalfPlane& h = f.half_plane;
+    const double reach = h.offset - radius / tau;
+    constexpr double kCoincident = 1e-9;  // m/s: vertices shared by two edges are found covered by either
+    return dot(h.normal, left) / tau <= reach + kCoincident && dot(h.normal, right) / tau <= reach + kCoincident;
+  });
+}
+
+Edge edge_at(const OrcaChain& chain, std::size_t i, Vec2 position) {
+  const std::size_t n = chain.vertices.size();
+  const auto vertex = [&](std::size_t k) { return chain.vertices[k % n]; };
+  const auto direction = [&](std::size_t k) { return normalized(vertex(k + 1) - vertex(k)); };
+  return {vertex(i) - position,      vertex(i + 1) - position, direction(i),    chain.convex[i],
+          chain.convex[(i + 1) % n], direction(i + n - 1),     direction(i + 1)};
+}
+
+std::vector<std::size_t> nearest_first(const OrcaChain& chain, Vec2 position) {
+  const std::size_t n = chain.vertices.size();
+  std::vector<double> distance(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 a = chain.vertices[i];
+    const Vec2 e = chain.vertices[(i + 1) % n] - a;
+    const double t = std::clamp(dot(position - a, e) / squared_norm(e), 0.0, 1.0);
+    distance[i] = norm(position - (a + t * e));
+  }
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return distance[i] < distance[j]; });
+  return order;
+}
+
+}  // namespace
+
+std::vector<OrcaChain> orca_chains(const geometry::Obstacle& obstacle) {
+  std::vector<OrcaChain> chains;
+  if (const auto* wall = std::get_if<geometry::Polyline>(&obstacle)) {
+    std::vector<Vec2> there_and_back = wall->points;
+    for (std::size_t i = wall->points.size() - 1; i-- > 1;) there_and_back.push_back(wall->points[i]);
+    chains.push_back(with_turns(std::move(there_and_back)));
+    return chains;
+  }
+  const auto& polygon = std::get<geometry::Polygon>(obstacle);
+  chains.push_back(with_turns(polygon.outer));
+  for (const geometry::Ring& hole : polygon.holes) chains.push_back(with_turns(hole));
+  return chains;
+}
+
+std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, Vec2 position, Vec2 velocity, double radius,
+                                            double time_horizon) {
+  EXACTVO_REQUIRE(radius >= 0.0 && time_horizon > 0.0, std::to_string(radius) + ", " + std::to_string(time_horizon));
+  std::vector<OrcaHalfPlane> found;
+  for (std::size_t i : nearest_first(chain, position)) {
+    const Edge edge = edge_at(chain, i, position);
+    // The free side is on the right: from the left of an edge another edge is in front of it.
+    if (cross(edge.direction, -edge.left) > 0.0) continue;
+    if (covered(found, edge.left, edge.right, radius, time_horizon)) continue;
+    const VelocityObstacle obstacle(Segment{edge.left + position, edge.right + position}, position, radius,
+                                    time_horizon);
+    std::optional<Vec2> normal;
+    if (obstacle.overlaps()) {
+      normal = obstacle.nearest().normal;
+    } else if (std::optional<EdgeCone> cone = cone_of(edge, radius)) {
+      replace_foreign_legs(edge, *cone);
+      normal = nearest_normal(*cone, velocity, time_horizon);
+    }
+    if (!normal) continue;
+    OrcaHalfPlane h = certified_half_plane(obstacle, *normal, time_horizon);
+    h.edge = i;
+    found.push_back(h);
+  }
+  return found;
+}
+
+}  // namespace exactvo::vo

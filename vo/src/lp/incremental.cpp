@@ -3,14 +3,12 @@
 #include <cmath>
 
 #include "active_set.h"
-#include "exact_sign.h"
+
 #include "exactvo/vo/lp/solve.h"
+#include "inward.h"
 
 namespace exactvo::lp {
 namespace {
-
-/// Slacks tried in turn, in units of kInwardSlack: sharp vertices need more of it.
-constexpr double kSlacks[] = {1.0, 8.0, 64.0, 512.0};
 
 bool has_priority(const Problem& problem, Priority priority) {
   return std::any_of(problem.constraints.begin(), problem.constraints.end(),
@@ -35,24 +33,6 @@ Region lowered(Region region, double level) {
   for (Line& line : region.lines)
     if (line.soft) line.offset -= level + kNoise * region.speed;
   return region;
-}
-
-Vec2 into_box(Vec2 v, const SpeedBound& b) {
-  return {std::clamp(v.x, -b.box_x, b.box_x), std::clamp(v.y, -b.box_y, b.box_y)};
-}
-
-bool holds_all(const Problem& problem, Vec2 v, bool soft_too) {
-  if (!within(problem.bound, v)) return false;
-  for (const Constraint& c : problem.constraints)
-    if ((soft_too || c.priority == Priority::hard) && sign_of_violation(c.half_plane, v) > 0) return false;
-  return true;
-}
-
-double largest_violation(const Problem& problem, Vec2 v, Priority priority) {
-  double most = 0.0;
-  for (const Constraint& c : problem.constraints)
-    if (c.priority == priority) most = std::max(most, geometry::violation(c.half_plane, v));
-  return most;
 }
 
 Solution solution_of(const Problem& problem, const Region& region, const Found& found, Status status) {
@@ -96,9 +76,9 @@ Found least_violation_nearest(const Problem& problem, const Region& region) {
 
 Solution relaxed(const Problem& problem, const Region& region) {
   Solution s = solution_of(problem, region, least_violation_nearest(problem, region), Status::relaxed);
-  s.violation = largest_violation(problem, s.velocity, Priority::soft);
-  if (!holds_all(problem, s.velocity, false)) s.status = Status::pinched;
-  if (s.status == Status::relaxed && s.violation == 0.0 && holds_all(problem, s.velocity, true))
+  s.violation = violation_that_counts(problem, Status::relaxed, s.velocity);
+  if (!holds(problem, Status::relaxed, s.velocity)) s.status = Status::pinched;
+  if (s.status == Status::relaxed && s.violation == 0.0 && holds(problem, Status::optimal, s.velocity))
     s.status = Status::optimal;
   return s;
 }
@@ -106,10 +86,10 @@ Solution relaxed(const Problem& problem, const Region& region) {
 Solution infeasible(const Problem& problem, const Region& hard) {
   const Region soft = softened(hard);
   Solution s = solution_of(problem, soft, least_violation_nearest(problem, soft), Status::infeasible);
-  s.violation = largest_violation(problem, s.velocity, Priority::hard);
-  if (holds_all(problem, s.velocity, false)) {
-    s.status = holds_all(problem, s.velocity, true) ? Status::optimal : Status::relaxed;
-    s.violation = largest_violation(problem, s.velocity, Priority::soft);
+  s.violation = violation_that_counts(problem, Status::infeasible, s.velocity);
+  if (holds(problem, Status::relaxed, s.velocity)) {
+    s.status = holds(problem, Status::optimal, s.velocity) ? Status::optimal : Status::relaxed;
+    s.violation = violation_that_counts(problem, Status::relaxed, s.velocity);
   }
   return s;
 }
@@ -119,10 +99,9 @@ Solution solve_with_slack(const Problem& problem, double slack) {
   const Found best = best_velocity(region, problem.objective, problem.preferred);
   if (best.feasible) {
     Solution s = solution_of(problem, region, best, Status::optimal);
-    if (holds_all(problem, s.velocity, true)) return s;
+    if (holds(problem, Status::optimal, s.velocity)) return s;
     s.status = Status::pinched;
-    s.violation = std::max(largest_violation(problem, s.velocity, Priority::hard),
-                           largest_violation(problem, s.velocity, Priority::soft));
+    s.violation = violation_that_counts(problem, Status::pinched, s.velocity);
     return s;
   }
   const Region hard = hard_only(region);
@@ -132,7 +111,7 @@ Solution solve_with_slack(const Problem& problem, double slack) {
 }
 
 bool preferred_is_allowed(const Problem& problem) {
-  return problem.objective == Objective::nearest && holds_all(problem, problem.preferred, true);
+  return problem.objective == Objective::nearest && holds(problem, Status::optimal, problem.preferred);
 }
 
 }  // namespace

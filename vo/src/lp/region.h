@@ -22,6 +22,9 @@ inline constexpr double kUnitRoundoff = 0x1p-53;
 /// product on either side and the division of the intersection, 16 u V covers every well-conditioned vertex.
 inline constexpr double kInwardSlack = 16.0 * kUnitRoundoff;
 
+/// Slacks tried in turn, in units of kInwardSlack: sharp vertices need more of it.
+inline constexpr double kSlacks[] = {1.0, 8.0, 64.0, 512.0};
+
 /// A violation below this share of V is rounding left over from the step before: half the inward slack, so that what
 /// is let pass still satisfies the constraint that was given.
 inline constexpr double kNoise = 8.0 * kUnitRoundoff;

@@ -23,13 +23,13 @@ struct RobotMetrics {
 
 struct Metrics {
   bool all_arrived = false;
-  std::optional<double> last_arrival_time;           ///< s
-  std::optional<double> min_obstacle_clearance;      ///< m, swept
-  std::optional<double> min_robot_clearance;         ///< m, swept
-  std::optional<double> formation_position_error;    ///< m, at the end: max over robots of |x_i - x_L - Delta_i|
-  std::optional<double> formation_velocity_error;    ///< m/s, at the end
-  std::optional<double> leader_arrival_time;         ///< s
-  double jitter = 0.0;                  ///< m/s^2: sum over steps and robots of |a_{k+1} - a_k|
+  std::optional<double> last_arrival_time;         ///< s
+  std::optional<double> min_obstacle_clearance;    ///< m, swept
+  std::optional<double> min_robot_clearance;       ///< m, swept
+  std::optional<double> formation_position_error;  ///< m, at the end: max over robots of |x_i - x_L - Delta_i|
+  std::optional<double> formation_velocity_error;  ///< m/s, at the end
+  std::optional<double> leader_arrival_time;       ///< s
+  double jitter = 0.0;                             ///< m/s^2: sum over steps and robots of |a_{k+1} - a_k|
   std::size_t heading_reversals = 0;    ///< turns whose sign changes from one step to the next, beyond 1e-3 rad
   std::size_t active_set_switches = 0;  ///< steps whose active constraints differ from the step before
   std::size_t relaxed_steps = 0;        ///< decisions in which soft half-planes had to give

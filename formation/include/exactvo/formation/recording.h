@@ -16,8 +16,8 @@ namespace exactvo::formation {
 /// Where a half-plane comes from.
 enum class ConstraintSource { enclosure, obstacle_edge, robot };
 
-/// One half-plane of a decision, with enough beside it to prove it again: the convex shape (grown by `radius`, seen from
-/// `position`, horizon `tau`) whose velocity obstacle it excludes.
+/// One half-plane of a decision, with enough beside it to prove it again: the convex shape (grown by `radius`, seen
+/// from `position`, horizon `tau`) whose velocity obstacle it excludes.
 struct RecordedConstraint {
   geometry::HalfPlane half_plane;
   ConstraintSource source = ConstraintSource::enclosure;
@@ -27,16 +27,16 @@ struct RecordedConstraint {
   bool active = false;  ///< binds the chosen velocity
   geometry::ConvexShape shape;
   Vec2 position;
-  double radius = 0.0;   ///< m
-  double tau = 0.0;      ///< s
-  Vec2 shape_velocity;   ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
+  double radius = 0.0;  ///< m
+  double tau = 0.0;     ///< s
+  Vec2 shape_velocity;  ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
 };
 
 /// How the preferred velocity was formed.
 enum class Mode {
-  direct,     ///< straight for the goal or slot
-  boost,      ///< turned onto the tangent of a certified trap-free enclosure
-  following,  ///< along a boundary after a stall
+  direct,       ///< straight for the goal or slot
+  boost,        ///< turned onto the tangent of a certified trap-free enclosure
+  following,    ///< along a boundary after a stall
   pushing_out,  ///< in contact: leaving an obstacle
   arrived
 };
@@ -49,10 +49,10 @@ struct RobotStep {
   lp::Status status = lp::Status::optimal;
   double violation = 0.0;  ///< m/s, of the soft half-planes
   Mode mode = Mode::direct;
-  int side = 0;  ///< +1 left, -1 right, 0 none: the side kept while blocked
-  std::string note;  ///< why a mode began or ended, empty otherwise
+  int side = 0;                                 ///< +1 left, -1 right, 0 none: the side kept while blocked
+  std::string note;                             ///< why a mode began or ended, empty otherwise
   std::vector<RecordedConstraint> constraints;  ///< the active ones; all of them where asked for
-  std::size_t uncertified = 0;  ///< half-planes of this decision that could not be certified
+  std::size_t uncertified = 0;                  ///< half-planes of this decision that could not be certified
 };
 
 struct Step {
@@ -72,11 +72,12 @@ enum class MotionLaw {
 struct Recording {
   std::vector<Step> steps;  ///< the last row is the final state: its decisions are empty
   MotionLaw motion = MotionLaw::straight;
-  double time_step = 0.0;   ///< s
+  double time_step = 0.0;      ///< s
   double tracking_gain = 0.0;  ///< k3, 1/s, where motion is exponential
-  bool diverged = false;    ///< stopped early because the state left every bound
-  std::string outcome;      ///< in words, for people
-  double wall_time = 0.0;   ///< s
+  std::vector<Vec2> offsets;   ///< m, Delta_i as the controller used them (recentred or not); empty without a formation
+  bool diverged = false;       ///< the formation's error grew to the end, or the state left every bound
+  std::string outcome;         ///< in words, for people
+  double wall_time = 0.0;      ///< s
 };
 
 }  // namespace exactvo::formation

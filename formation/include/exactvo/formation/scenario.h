@@ -38,7 +38,8 @@ enum class SpeedBoundKind {
   box    ///< |v_x| <= max_speed and |v_y| <= max_speed
 };
 
-/// tau of the velocity obstacles, s. IVO: tau = clamp(dist / max(|v|, speed_floor max_speed), least, most); ORCA uses `orca`.
+/// tau of the velocity obstacles, s. IVO: tau = clamp(dist / max(|v|, speed_floor max_speed), least, most); ORCA uses
+/// `orca`.
 struct Horizons {
   double least = 0.3;        ///< s, >= 2 dt
   double most = 3.0;         ///< s
@@ -90,9 +91,9 @@ struct Scenario {
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;
   Horizons horizons;
   Margins margins;
-  double time_step = 0.05;         ///< s, > 0
-  double time_limit = 120.0;       ///< s, > 0
-  double arrival_tolerance = 0.1;  ///< m: within this of the last goal a robot has arrived
+  double time_step = 0.05;           ///< s, > 0
+  double time_limit = 120.0;         ///< s, > 0
+  double arrival_tolerance = 0.1;    ///< m: within this of the last goal a robot has arrived
   double neighbour_distance = 15.0;  ///< m: robots farther apart ignore each other
 };
 

@@ -45,10 +45,10 @@ struct SimulationOptions {
   Method method = Method::ivo;
   Controller controller = Controller::standard;  ///< used by formations only
   Integrator integrator = Integrator::exact;     ///< used by formations only
-  double facade_minor_to_major = 0.5;  ///< ivo_edge: b = this * a
-  double facade_fixed_minor = 0.0;     ///< m, ivo_edge: > 0 fixes b
-  bool record_all = false;             ///< keep every half-plane, not only the active ones
-  double stop_at = -1.0;               ///< s; >= 0: stop at this time, keeping every half-plane of the last decision
+  double facade_minor_to_major = 0.5;            ///< ivo_edge: b = this * a
+  double facade_fixed_minor = 0.0;               ///< m, ivo_edge: > 0 fixes b
+  bool record_all = false;                       ///< keep every half-plane, not only the active ones
+  double stop_at = -1.0;  ///< s; >= 0: stop at this time, keeping every half-plane of the last decision
   /// Called about ten times a second of wall time with the simulated time; returning false stops the run.
   std::function<bool(double)> progress;
 };
@@ -56,9 +56,10 @@ struct SimulationOptions {
 /// REQUIRES: a valid scenario (`validate`).
 Recording simulate(const Scenario& scenario, const SimulationOptions& options = {});
 
-/// What is wrong with a scenario, in words, one a line; empty when it can be run. Each names the JSON pointer of the field.
+/// What is wrong with a scenario, in words, one a line; empty when it can be run. Each names the JSON pointer of the
+/// field.
 struct ScenarioProblem {
-  std::string pointer;   ///< "/robots/0/radius"
+  std::string pointer;  ///< "/robots/0/radius"
   std::string found;
   std::string expected;
 };

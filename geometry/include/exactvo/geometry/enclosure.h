@@ -35,39 +35,53 @@ enum class EnclosureGrade {
   trap_free,       ///< goal outside the evolute with the asked slack and margin
   trap_free_thin,  ///< the same with the least slack and margin
   containing,      ///< encloses, start and goal outside, but a stall is possible: no certificate
-  tight            ///< the facade itself, no ellipse: start or goal lies too near
+  tight            ///< a convex piece or a facade itself, no ellipse: start or goal lies too near
 };
 
+/// "trap-free", "trap-free-thin", "containing", "tight".
+const char* name(EnclosureGrade grade);
+
+struct EnclosureOptions {
+  double margin = 0.08;         ///< m; points lie in the ellipse of semi-axes a - margin, b - margin
+  double slack = 0.5;           ///< sigma: the evolute condition holds with (1 + slack) on its right side
+  double least_margin = 0.02;   ///< m; second rung
+  double least_slack = 0.02;    ///< second rung
+  double clear_of_ends = 0.02;  ///< m; start and goal must be this far outside the grown enclosure
+};
+
+struct FittedEllipse {
+  Ellipse ellipse;
+  EnclosureGrade grade = EnclosureGrade::containing;
+};
+
+/// The smallest trap-free ellipse that the search finds round `points`, for a robot of `robot_radius` going from
+/// `start` to `goal`; nothing if even `containing` can't hold (start or goal within the grown ellipse). `grade` says
+/// which rung held. Containment, start and goal outside, and the evolute condition are checked exactly on what is
+/// returned. REQUIRES: at least one point, all finite.
+std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
+                                           const EnclosureOptions& options = {});
+
+/// An obstacle in parts: the facades that enclosures are built on, and convex shapes that cover it where none fits.
+struct ObstacleParts {
+  std::vector<Segment> facades;
+  std::vector<ConvexShape> pieces;  ///< convex pieces of a polygon without holes, else its facades
+};
+
+/// Facades (facades.h) and convex pieces (hull.h) of one obstacle.
+ObstacleParts parts_of(const Obstacle& obstacle);
+
 struct Enclosure {
-  ConvexShape shape;                 ///< an Ellipse, or a Segment where grade is tight
-  std::vector<std::size_t> facades;  ///< indices of what it encloses
+  ConvexShape shape;                   ///< an Ellipse; where grade is tight, a piece
+  std::vector<std::size_t> obstacles;  ///< indices of the obstacles that it stands for, ascending
   EnclosureGrade grade = EnclosureGrade::tight;
   /// Whether predicate F certified that a robot heading for the goal can't stall at this enclosure alone.
   bool trap_free() const { return grade == EnclosureGrade::trap_free || grade == EnclosureGrade::trap_free_thin; }
 };
 
-struct EnclosureOptions {
-  double margin = 0.08;        ///< m; points are kept this far inside
-  double slack = 0.5;          ///< sigma: the evolute condition holds with (1 + slack) on its right side
-  double least_margin = 0.02;  ///< m; second rung
-  double least_slack = 0.02;   ///< second rung
-  double clear_of_start = 0.02;  ///< m; start and goal must be this far outside the grown enclosure
-};
-
-/// The smallest trap-free ellipse that the search finds round `points`, for a robot of `robot_radius` going from `start`
-/// to `goal`; nothing if even `containing` can't hold (start or goal within the grown ellipse).
-/// The grade returned says which rung held.
-struct FittedEllipse {
-  Ellipse ellipse;
-  EnclosureGrade grade = EnclosureGrade::containing;
-};
-std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
-                                           const EnclosureOptions& options = {});
-
-/// Encloses all facades for one robot and goal: fits each, merges whatever overlaps (grown enclosures that meet can trap at their
-/// concave vertex) and fits again until nothing overlaps; a cluster that can't be enclosed falls back to its facades,
-/// tight. Deterministic.
-std::vector<Enclosure> enclose(const std::vector<Segment>& facades, double robot_radius, Vec2 start, Vec2 goal,
+/// Encloses all obstacles for one robot and goal: fits each, merges whatever overlaps once grown by the robot (two such
+/// can trap at their concave vertex) and fits again until nothing overlaps; an obstacle of a cluster that can't be
+/// enclosed stands as its pieces, tight. Deterministic; heuristic but for what `fit_trap_free` checks.
+std::vector<Enclosure> enclose(const std::vector<ObstacleParts>& obstacles, double robot_radius, Vec2 start, Vec2 goal,
                                const EnclosureOptions& options = {});
 
 }  // namespace exactvo::geometry

@@ -7,9 +7,11 @@
 /// depends on rounding; NaN and infinity are a caller's mistake.
 ///
 /// Properties (tests quote the numbers):
-///  (1) side_of_support(s, n, k) == -side_of_support-like monotone: growing `radius` never lowers the sign;
-///  (2) scaling n and k by a power of two changes nothing;
-///  (3) contains(s, q) agrees with side_of_support for every n: if q is in S then h_S(n) >= n.q for all n.
+///  (1) growing `radius` never lowers `sign_of_support`;
+///  (2) scaling n and c by the same power of two does not change it;
+///  (3) if q is in S, then h_S(n) >= n.q for every n;
+///  (4) orientation(b, c, a) == orientation(a, b, c) and orientation(c, b, a) == -orientation(a, b, c);
+///  (5) segment_meets grows with t_max, and holds if `locate` puts either end in S.
 
 #include <cstdint>
 
@@ -34,6 +36,9 @@ enum class Place : int { inside = -1, boundary = 0, outside = 1 };
 /// answers.
 Place locate(const GrownShape& s, Vec2 q);
 
+/// Whether t * direction lies in S for some 0 <= t <= t_max (predicate B2). Exact. REQUIRES t_max >= 0, finite.
+bool segment_meets(const GrownShape& s, Vec2 direction, double t_max);
+
 /// Whether x lies in the closed ellipse (predicate E). Exact.
 bool contains(const Ellipse& ellipse, Vec2 x);
 
@@ -42,8 +47,9 @@ Sign orientation(Vec2 a, Vec2 b, Vec2 c);
 
 /// Whether the goal lies strictly outside the evolute of the ellipse, so that no stable trap exists on the boundary of
 /// the ellipse grown by any disc (predicate F; docs/guide/trap-test.md). Exact: the cube roots are cleared.
-/// (a|gx|)^(2/3) + (b|gy|)^(2/3) > (a^2 - b^2)^(2/3) in the ellipse's frame.
-bool goal_outside_evolute(const Ellipse& ellipse, Vec2 goal);
+/// (a|gx|)^(2/3) + (b|gy|)^(2/3) > (1 + slack) (a^2 - b^2)^(2/3) in the ellipse's frame. The cube of 1 + slack is
+/// rounded once, before the test; slack = 0 is the condition itself. REQUIRES slack >= 0.
+bool goal_outside_evolute(const Ellipse& ellipse, Vec2 goal, double slack = 0.0);
 
 /// Which stage answered, counted over all threads since the start or the last reset.
 struct StageCounts {

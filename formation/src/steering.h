@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Turning a preferred velocity so that static obstacles don't stop the robot: boost, side commitment, following after
+/// a stall. None of it touches safety: whatever comes out goes through the half-planes.
+///
+/// Heuristic: may follow the longer side. Deterministic: ties go left.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "static_field.h"
+
+namespace exactvo::formation::detail {
+
+/// The first direction at `start` or beyond, turning towards `side` (+1 left, -1 right), in which a velocity of `speed`
+/// satisfies every static half-plane.
+struct Sweep {
+  Vec2 velocity;             ///< m/s
+  double rotation = 0.0;     ///< rad, >= 0
+  std::size_t last = kNone;  ///< the constraint that stopped the turn last
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+};
+std::optional<Sweep> sweep(const std::vector<StaticConstraint>& lines, Vec2 start, double side, double speed);
+
+/// Whether v violates a static half-plane.
+bool blocked(const std::vector<StaticConstraint>& lines, Vec2 v);
+
+/// Boost: v turned at its own speed onto the tangent of the static half-plane it violates most, where that one's
+/// enclosure is certified trap-free; nothing otherwise.
+std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v);
+
+/// Follows a boundary after a stall: state of one robot.
+class Follower {
+ public:
+  struct Answer {
+    Vec2 preferred;
+    Mode mode = Mode::direct;
+    int side = 0;
+    std::string note;
+  };
+
+  /// `goal_distance` in m; `preferred` heads straight for the goal.
+  Answer steer(double time, Vec2 position, Vec2 goal, double max_speed, Vec2 preferred,
+               const std::vector<StaticConstraint>& lines);
+
+  /// A new goal: whatever was followed is forgotten.
+  void reset();
+
+ private:
+  bool stalled(double time, double goal_distance, double max_speed);
+  Answer begin(double time, Vec2 position, double goal_distance, Vec2 preferred, double max_speed,
+               const std::vector<StaticConstraint>& lines);
+  Answer follow(Vec2 position, double max_speed, Vec2 preferred, const std::vector<StaticConstraint>& lines);
+
+  bool following_ = false;
+  int side_ = 0;
+  double hit_distance_ = 0.0;  ///< m, to the goal, where following began
+  Vec2 hit_;                   ///< m
+  double walked_ = 0.0;        ///< m since then
+  Vec2 last_position_;
+  bool circled_ = false;
+  std::optional<RecordedConstraint> followed_;  ///< the shape whose boundary is followed
+  double best_distance_ = -1.0;                 ///< m, least to the goal so far
+  double best_time_ = 0.0;                      ///< s, when that was first reached with a margin
+};
+
+/// Chooses a side when blocked and keeps it while blocked (formations).
+class SideCommitment {
+ public:
+  struct Answer {
+    Vec2 preferred;
+    int side = 0;
+  };
+  Answer steer(Vec2 preferred, double speed, const std::vector<StaticConstraint>& lines);
+
+ private:
+  int side_ = 0;
+};
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Why an answer is right, as numbers that a reader can multiply out: multipliers for an optimum, a contradiction of at
+/// most three constraints where they cannot all hold. `check` verifies in rationals, in O(m), and knows no solver.
+///
+/// With w = sum of lambda_i n_i, C = sum of lambda_i c_i, all lambda_i >= 0, and sigma(w) = max of w.v within the speed
+/// bound (disc: |w| disc; box: box_x |w_x| + box_y |w_y|; either serves), every v within the bound and inside the
+/// half-planes named has C <= w.v <= sigma(w). Hence
+///  (1) C > sigma(w) contradicts: no v keeps all of them;
+///  (2) least violation: where v keeps the hard ones and violates soft ones by at most t, C - sigma(w) <= t (sum of
+///      lambda over the soft ones);
+///  (3) farthest along d: d.v <= sigma(d + w) - C;
+///  (4) nearest p: with nu >= 0 for the disc, |v - p|^2 >= |p|^2 + 2C - |p + w|^2/(1 + nu) - nu disc^2 (weak duality).
+/// The second objective of a relaxed answer (nearest among the least violating) is not part of the proof.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/vo/lp/problem.h"
+#include "exactvo/vo/lp/solution.h"
+
+namespace exactvo::lp {
+
+/// A constraint, a side of the box or the disc, and its multiplier: the exact sum of `multiplier`, mostly one double.
+struct Term {
+  std::size_t constraint = 0;
+  std::vector<double> multiplier;  ///< dimensionless
+};
+
+struct Certificate {
+  Status status = Status::optimal;
+  geometry::Vec2 velocity;          ///< m/s, what the claim is about
+  double violation = 0.0;           ///< m/s, no constraint that may give is violated by more
+  std::vector<Term> contradiction;  ///< relaxed, infeasible: at most three terms, by (1)
+  std::vector<Term> bound;          ///< why no velocity is better than by `gap`; at most three terms
+  /// By how much a better one could exist at most: m^2/s^2 of |v - preferred|^2 where optimal, m/s of the violation
+  /// where relaxed or infeasible, of preferred.v for Objective::farthest. A rounding error; 0 or more.
+  double gap = 0.0;
+  /// pinched: at most two constraints or sides of the box; the point of their boundaries that is nearest 0 keeps
+  /// everything (the hard ones only, where there is a contradiction), exactly.
+  std::vector<std::size_t> vertex;
+};
+
+enum class Flaw {
+  none,           ///< the certificate proves its claim
+  malformed,      ///< indices, counts, signs or numbers out of range
+  velocity,       ///< the velocity does not keep what the status says
+  contradiction,  ///< (1) fails
+  bound,          ///< (2), (3) or (4) fails for the gap stated
+  vertex          ///< the vertex does not keep what it should
+};
+
+/// "none", "malformed", "velocity", "contradiction", "bound", "vertex".
+const char* name(Flaw flaw);
+
+/// Exact: rational arithmetic throughout, O(m). Any certificate is fine as input, also a broken one.
+/// REQUIRES: a well-formed problem.
+Flaw check(const Problem& problem, const Certificate& certificate);
+
+/// A certificate that `check` accepts for this solution, or nothing where the solution is not right, or is right and
+/// its active set does not show why. REQUIRES: a well-formed problem.
+std::optional<Certificate> certify(const Problem& problem, const Solution& solution);
+
+/// The gap up to which a double answer passes: this share of V^2 (optimal) or V (relaxed), V the speed bound or, where
+/// there is none, the largest speed of the data. The tables ask for violations of at most 1e-12; 2^-40 is 9e-13.
+inline constexpr double kWidestGap = 0x1p-40;
+
+struct Proven {
+  Solution solution;
+  /// Absent only where multipliers leave the range of double (numbers in the problem beyond 2^+-300).
+  std::optional<Certificate> certificate;
+  bool exact_stage = false;  ///< the double answer could not be certified
+};
+
+/// The double answer with its certificate, or where it has none, the exact one with its. Never wrong.
+/// REQUIRES: a well-formed problem.
+Proven solve_certified(const Problem& problem);
+
+}  // namespace exactvo::lp

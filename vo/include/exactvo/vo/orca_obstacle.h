@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The baseline's half-planes of a static polygon or wall (van den Berg et al. 2011, Section 5 and the usual practice):
+/// one an edge, built on the truncated velocity obstacle of the edge grown by the robot, with the foreign-leg rule: a
+/// leg that would point into the neighbouring edge is replaced by that edge, and gives no half-plane of its own.
+///
+/// It makes a robot stop before a wall, not go round it: that is what the paper improves upon.
+/// Certified: each half-plane is disjoint from the velocity obstacle of its own edge.
+
+#include <cstddef>
+#include <vector>
+
+#include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::vo {
+
+using geometry::HalfPlane;
+using geometry::Vec2;
+
+/// A closed chain of vertices with free space on the right of every edge: a polygon's outer ring counter-clockwise, a
+/// hole clockwise, a wall walked there and back.
+struct OrcaChain {
+  std::vector<Vec2> vertices;
+  std::vector<bool> convex;  ///< whether the chain turns left (or straight back) at the vertex
+};
+
+/// The chains of an obstacle.
+std::vector<OrcaChain> orca_chains(const geometry::Obstacle& obstacle);
+
+struct OrcaHalfPlane {
+  HalfPlane half_plane;
+  std::size_t edge = 0;    ///< from vertex `edge` to the next
+  bool certified = false;  ///< false only where the robot overlaps the edge
+};
+
+/// REQUIRES: radius >= 0, time_horizon > 0, finite numbers.
+std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, Vec2 position, Vec2 velocity, double radius,
+                                            double time_horizon);
+
+}  // namespace exactvo::vo

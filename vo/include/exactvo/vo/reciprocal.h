@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Robot against robot: the two halves of the reciprocal half-plane (van den Berg et al. 2011; paper, equations (10)
+/// and (13) with alpha = 1/2).
+///
+/// Certified as a pair: both robots use bitwise the same normal (one negated), and both offsets are rounded up, so that
+/// two velocities that each satisfy their half do not collide within the horizon.
+///
+/// Properties (tests quote the numbers):
+///  (1) normal_b == -normal_a, bit for bit;
+///  (2) offset_a + offset_b >= h_S(normal_a) / tau in the rationals (or >= 0 on a leg);
+///  (3) exchanging the robots exchanges the halves, bit for bit.
+
+#include "exactvo/geometry/half_plane.h"
+
+namespace exactvo::vo {
+
+using geometry::HalfPlane;
+using geometry::Vec2;
+
+struct MovingDisc {
+  Vec2 position;        ///< m
+  Vec2 velocity;        ///< m/s
+  double radius = 0.0;  ///< m, >= 0
+};
+
+struct ReciprocalOptions {
+  double time_horizon = 2.0;  ///< s, > 0
+  double contact_time = 0.1;  ///< s, > 0: discs that overlap are asked to part within this time
+  double share_of_a = 0.5;    ///< in [0, 1]: how much of the change a takes; b takes the rest
+};
+
+struct ReciprocalHalfPlanes {
+  HalfPlane a;             ///< for the new velocity of a
+  HalfPlane b;             ///< for the new velocity of b
+  bool certified = false;  ///< false where the discs overlap: nothing can be promised then
+};
+
+/// REQUIRES: finite numbers, horizons > 0, share in [0, 1].
+ReciprocalHalfPlanes reciprocal_half_planes(const MovingDisc& a, const MovingDisc& b,
+                                            const ReciprocalOptions& options = {});
+
+}  // namespace exactvo::vo

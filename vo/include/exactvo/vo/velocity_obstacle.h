@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The truncated velocity obstacle of a convex shape for a disc-shaped robot (paper, equations (7) and (9), corrected:
+/// 0 < t <= tau), one construction for every shape, through the support function.
+///
+/// With S = (O - p) (+) D(0, r) seen from the robot and 0 not in S,
+///
+///     VO = { v : t v in S for some 0 < t <= tau }  is convex, and  h_VO(n) = h_S(n) / tau where h_S(n) <= 0,
+///     infinite elsewhere.
+///
+///              \     leg: h_S = 0    /
+///               \                   /            Every n with h_S(n) <= 0 gives a half-plane
+///                \    V O          /             { v : n.v >= h_S(n) / tau } disjoint from the interior of VO:
+///                 \               /              a poor n is conservative, never unsafe.
+///                  `--cut-off----'  S / tau
+///                        |
+///                        o  v = 0
+///
+/// Exact: `overlaps`, `contains`. Certified: `half_plane`, `legs` (bracket). Rounded: `nearest_boundary`, `support`.
+/// Neighbours: reciprocal.h (robot against robot), orca_obstacle.h (the baseline's polygon rule), lp/ (which velocity).
+///
+/// Properties (tests quote the numbers):
+///  (1) `half_plane` of a static obstacle admits v = 0;
+///  (2) a half-plane safe for this VO is safe for every VO inside it: a smaller radius, a shorter horizon;
+///  (3) the cone grows with the robot's radius and with the horizon;
+///  (4) mirroring or turning the scene by 90 degrees mirrors or turns the answers exactly;
+///  (5) a velocity that satisfies `half_plane` is not inside the velocity obstacle.
+
+#include <optional>
+
+#include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/support.h"
+
+namespace exactvo::vo {
+
+using geometry::HalfPlane;
+using geometry::Vec2;
+
+/// One side of the cone.
+struct Leg {
+  Vec2 normal;          ///< outward; certified: h_S(normal) <= 0, so { v : normal.v >= 0 } is safe
+  Vec2 normal_outside;  ///< certified: h_S(normal_outside) > 0; the true leg's normal lies between the two
+  Vec2 direction;       ///< of the ray along the leg, away from the robot; rounded, |direction| = 1
+  Vec2 touch;           ///< m, the tangent point on S, rounded
+};
+
+struct Legs {
+  Leg left;  ///< seen from the robot
+  Leg right;
+};
+
+enum class BoundaryPart { left_leg, right_leg, cut_off };
+
+/// The boundary point of VO nearest to a velocity. Rounded.
+struct NearestBoundary {
+  Vec2 normal;                   ///< outward at that point, |normal| = 1 up to rounding
+  double signed_distance = 0.0;  ///< m/s from v to the boundary: negative inside VO
+  Vec2 u;                        ///< m/s, the least change of velocity that reaches the boundary (equation (10))
+  BoundaryPart part = BoundaryPart::cut_off;
+};
+
+class VelocityObstacle {
+ public:
+  /// `obstacle` and `robot_position` in metres, `robot_radius` >= 0 m, `time_horizon` > 0 s.
+  /// REQUIRES: all finite, the shape valid (geometry::is_valid).
+  VelocityObstacle(geometry::ConvexShape obstacle, Vec2 robot_position, double robot_radius, double time_horizon);
+
+  /// S with its parts.
+  const geometry::GrownShape& grown() const { return grown_; }
+  double time_horizon() const { return tau_; }
+
+  /// Whether the robot touches or overlaps the obstacle: 0 in S. Then no cone exists. Exact.
+  bool overlaps() const;
+
+  /// Whether v collides within the horizon: the closed VO. Exact. REQUIRES: !overlaps().
+  bool contains(Vec2 v) const;
+
+  /// The outward normal of S at the point nearest the robot and the distance between the two (negative: the depth
+  /// of an overlap), m. Rounded.
+  struct Nearest {
+    Vec2 normal;
+    double distance = 0.0;
+  };
+  Nearest nearest() const;
+
+  /// Both sides of the cone; nothing where the robot overlaps or is so near (a few ulps) that no bracket certifies.
+  std::optional<Legs> legs() const;
+
+  /// REQUIRES: !overlaps().
+  NearestBoundary nearest_boundary(Vec2 v) const;
+
+  /// Equation (10): { v' : n.v' >= n.(v + alpha u) }. alpha = 1 is the full responsibility for a static obstacle and is
+  /// certified disjoint from the interior of VO; alpha < 1 leaves the rest of u to somebody else and is certified only
+  /// together with that half (reciprocal.h). Nothing where no half-plane could be certified: overlap, or a few ulps
+  /// from it. REQUIRES: 0 < alpha <= 1, v finite.
+  std::optional<HalfPlane> half_plane(Vec2 v, double alpha = 1.0) const;
+
+  /// The half-plane { v' : n0.v' >= 0 } away from the nearest point: for a robot in bare contact. Certified; nothing
+  /// where the robot overlaps beyond proof.
+  std::optional<HalfPlane> contact_half_plane() const;
+
+ private:
+  geometry::GrownShape grown_;
+  double tau_;
+};
+
+}  // namespace exactvo::vo

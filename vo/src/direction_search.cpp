@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "direction_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace exactvo::vo::detail {
+namespace {
+
+using geometry::ConvexPolygon;
+using geometry::cross;
+using geometry::Disc;
+using geometry::dot;
+using geometry::Ellipse;
+using geometry::norm;
+using geometry::normalized;
+using geometry::perp;
+using geometry::Segment;
+using geometry::squared_norm;
+
+constexpr Vec2 kAnyDirection{1.0, 0.0};  // where every direction is as good: the same on every machine
+
+Vec2 unit_or(Vec2 v, Vec2 fallback) {
+  return v == Vec2{} ? fallback : normalized(v);
+}
+
+Vec2 nearest_on(Vec2 a, Vec2 b, Vec2 x) {
+  const Vec2 e = b - a;
+  const double length2 = squared_norm(e);
+  if (!(length2 > 0.0)) return a;
+  return a + std::clamp(dot(x - a, e) / length2, 0.0, 1.0) * e;
+}
+
+Normals of_segment(Vec2 a, Vec2 b, Vec2 y) {
+  Normals out;
+  const Vec2 away = y - nearest_on(a, b, y);
+  if (away != Vec2{}) out.add(normalized(away));
+  const Vec2 side = unit_or(perp(b - a), kAnyDirection);
+  out.add(side);
+  out.add(-side);
+  return out;
+}
+
+/// The least of something over the edges, and the normal that attains it.
+struct Least {
+  double value = std::numeric_limits<double>::infinity();
+  Vec2 normal{};
+  void offer(double v, Vec2 n) {
+    if (v < value) *this = {v, n};
+  }
+};
+
+/// Outside: away from the nearest edge point. Inside: the normal of the nearest edge's line. Always: the shallowest
+/// edge that faces the robot, since a y behind a thin obstacle is nearest to the front.
+Normals of_polygon(const std::vector<Vec2>& v, Vec2 origin, double radius, Vec2 y) {
+  if (v.size() <= 2) return of_segment(v.front() - origin, v.back() - origin, y);
+  Least away, shallowest, facing;
+  bool inside = true;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const Vec2 a = v[i] - origin;
+    const Vec2 b = v[(i + 1) % v.size()] - origin;
+    if (a == b) continue;
+    const Vec2 outward = normalized(-perp(b - a));
+    const double beyond = dot(outward, y - a);
+    inside = inside && beyond <= 0.0;
+    shallowest.offer(-beyond, outward);
+    if (dot(outward, a) + radius <= 0.0) facing.offer(-beyond, outward);
+    const Vec2 from_edge = y - nearest_on(a, b, y);
+    away.offer(squared_norm(from_edge), from_edge);
+  }
+  Normals out;
+  out.add(inside || away.normal == Vec2{} ? shallowest.normal : normalized(away.normal));
+  if (std::isfinite(facing.value)) out.add(facing.normal);
+  return out;
+}
+
+// --- Ellipse
+// -------------------------------------------------------------------------------------------------------------
+
+/// The axis-aligned frame of an ellipse: L = R diag(a, b) V, columns of R the axes.
+struct EllipseFrame {
+  double a, b;
+  Vec2 major, minor;
+};
+
+EllipseFrame frame_of(const Ellipse& e) {
+  const double s11 = e.l11 * e.l11;
+  const double s12 = e.l11 * e.l21;
+  const double s22 = e.l21 * e.l21 + e.l22 * e.l22;
+  const double half_gap = 0.5 * (s11 - s22);
+  const double root = std::hypot(half_gap, s12);
+  const double a2 = 0.5 * (s11 + s22) + root;
+  const double a = std::sqrt(a2);
+  const double b = a > 0.0 ? std::fabs(e.l11 * e.l22) / a : 0.0;
+  // The eigenvector of a2, from the larger of its two forms.
+  const Vec2 v = half_gap >= 0.0 ? Vec2{half_gap + root, s12} : Vec2{s12, root - half_gap};
+  const Vec2 major = unit_or(v, kAnyDirection);
+  return {a, b, major, perp(major)};
+}
+
+/// Robust bisection for the foot of q (first quadrant, axes a >= b > 0): the s with
+/// F(s) = (n0 / (s + r0 - 1))^2 + (z1 / s)^2 - 1 = 0 between `low` and `high`.
+double bisect_foot(double n0, double z1, double r0, double low, double high, bool decreasing) {
+  for (int i = 0; i < 120; ++i) {  // until the bracket is one ulp; at most the bits of two exponents and a mantissa
+    const double s = 0.5 * (low + high);
+    if (s <= low || s >= high) break;
+    const double fx = n0 / (s + r0 - 1.0);
+    const double fy = z1 / s;
+    const bool above = fx * fx + fy * fy > 1.0;
+    (above == decreasing ? low : high) = s;
+  }
+  return 0.5 * (low + high);
+}
+
+/// The unit normal at the foot for parameter s, in the folded frame: proportional to (qx / (s + r0 - 1), qy / s),
+/// scaled by a, b.
+Vec2 normal_for(double n0, double z1, double r0, double s, double a, double b) {
+  // Foot x = (a n0' , b z1'), with n0' = n0/(s+r0-1), z1' = z1/s on the unit circle; its normal is (n0'/a, z1'/b).
+  const double cx = n0 / (s + r0 - 1.0);
+  const double cy = z1 / s;
+  return normalized({cx * b, cy * a});
+}
+
+Vec2 unfold(Vec2 n, double sign_x, double sign_y, const EllipseFrame& f) {
+  return (n.x * sign_x) * f.major + (n.y * sign_y) * f.minor;
+}
+
+Normals of_ellipse(const Ellipse& e, Vec2 centre, Vec2 y) {
+  const EllipseFrame f = frame_of(e);
+  constexpr double kFlat = 0x1p-40;  // thinner than this share of a, the ellipse is taken as its segment
+  if (!(f.b > kFlat * f.a)) return of_segment(centre - f.a * f.major, centre + f.a * f.major, y);
+  const Vec2 q = y - centre;
+  const double qx = std::fabs(dot(q, f.major));
+  const double qy = std::fabs(dot(q, f.minor));
+  const double sign_x = dot(q, f.major) < 0.0 ? -1.0 : 1.0;
+  const double sign_y = dot(q, f.minor) < 0.0 ? -1.0 : 1.0;
+  const double r0 = (f.a / f.b) * (f.a / f.b);
+  const double z1 = qy / f.b;
+  const double n0 = f.a * qx / (f.b * f.b);
+  Normals out;
+  if (z1 > 0.0) {
+    const double s = bisect_foot(n0, z1, r0, z1, std::max(1.0, std::hypot(n0, z1)), /*decreasing=*/true);
+    out.add(unfold(normal_for(n0, z1, r0, s, f.a, f.b), sign_x, sign_y, f));
+  } else if (n0 < r0 - 1.0) {
+    // On the major axis inside the evolute: the feet lie to both sides, at cos = n0 / (r0 - 1).
+    const double cx = n0 / (r0 - 1.0);
+    const Vec2 n = normalized({cx * f.b, std::sqrt(1.0 - cx * cx) * f.a});
+    out.add(unfold(n, sign_x, 1.0, f));
+    out.add(unfold(n, sign_x, -1.0, f));
+  } else {
+    out.add(unfold({1.0, 0.0}, sign_x, 1.0, f));
+  }
+  if (out.count == 1 && z1 > 0.0) {
+    // The second minimum, across the major axis: s in [s_m, -z1), where F has its least value at s_m.
+    const double k = std::cbrt((n0 / z1) * (n0 / z1));
+    const double s_m = 1.0 - (r0 + k) / (1.0 + k);
+    const double fx = n0 / (s_m + r0 - 1.0);
+    const double fy = z1 / s_m;
+    if (s_m < -z1 && s_m + r0 - 1.0 > 0.0 && fx * fx + fy * fy < 1.0) {
+      const double s = bisect_foot(n0, z1, r0, s_m, -z1, /*decreasing=*/false);
+      out.add(unfold(normal_for(n0, z1, r0, s, f.a, f.b), sign_x, sign_y, f));
+    }
+  }
+  return out;
+}
+
+struct NormalsOf {
+  const GrownShape& s;
+  Vec2 y;
+  Normals operator()(const Disc& d) const {
+    Normals out;
+    out.add(unit_or(y - (d.center - s.origin), kAnyDirection));
+    return out;
+  }
+  Normals operator()(const Segment& g) const { return of_segment(g.a - s.origin, g.b - s.origin, y); }
+  Normals operator()(const ConvexPolygon& p) const { return of_polygon(p.vertices, s.origin, s.radius, y); }
+  Normals operator()(const Ellipse& e) const { return of_ellipse(e, e.center - s.origin, y); }
+};
+
+}  // namespace
+
+Normals nearest_normals(const GrownShape& s, Vec2 y) {
+  return std::visit(NormalsOf{s, y}, s.shape);
+}
+
+}  // namespace exactvo::vo::detail

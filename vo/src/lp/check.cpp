@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "duality.h"
+
+namespace exactvo::lp {
+namespace {
+
+constexpr std::size_t kMostTerms = 3;
+
+Exact violation_at(const HalfPlane& h, Vec2 v) {
+  const ExactLine line = exact(h);
+  return line.offset - dot(line.normal, exact(v));
+}
+
+bool keeps_bound(const SpeedBound& bound, Vec2 v) {
+  if (std::abs(v.x) > bound.box_x || std::abs(v.y) > bound.box_y) return false;
+  if (std::isinf(bound.disc)) return true;
+  const ExactVector e = exact(v);
+  return sign_of(dot(e, e) - Exact(bound.disc) * Exact(bound.disc)) <= 0;
+}
+
+/// What a velocity must keep: violated by at most 0, by at most the certificate's violation, or left alone.
+bool keeps(const Problem& problem, const Certificate& c, Scope scope) {
+  if (!keeps_bound(problem.bound, c.velocity)) return false;
+  for (const Constraint& constraint : problem.constraints) {
+    const bool soft = constraint.priority == Priority::soft;
+    if (soft && scope == Scope::hard_may_give) continue;
+    const bool gives = scope == Scope::hard_may_give || (scope == Scope::soft_may_give && soft);
+    const Exact most = gives ? Exact(c.violation) : Exact(0);
+    if (sign_of(violation_at(constraint.half_plane, c.velocity) - most) > 0) return false;
+  }
+  return true;
+}
+
+bool has_finite_numbers(const Certificate& c) {
+  return is_finite(c.velocity) && std::isfinite(c.violation) && c.violation >= 0.0 && std::isfinite(c.gap) &&
+         c.gap >= 0.0;
+}
+
+/// The point nearest 0 on the boundaries named (homogeneous): 0 itself, the foot on one, the crossing of two.
+bool vertex_point(const Problem& problem, const std::vector<std::size_t>& vertex, ExactPoint& point) {
+  for (const std::size_t index : vertex) {
+    if (index == kSpeedBound || (!is_speed_bound(index) && index >= problem.constraints.size())) return false;
+    if (!std::isfinite(half_plane_at(problem, index).offset)) return false;
+  }
+  if (vertex.empty()) {
+    point = {0, 0, 0, 0, 1, 0};
+    return true;
+  }
+  const ExactLine a = exact(half_plane_at(problem, vertex[0]));
+  if (vertex.size() == 1) {
+    point = {a.normal.x * a.offset, 0, a.normal.y * a.offset, 0, dot(a.normal, a.normal), 0};
+    return true;
+  }
+  const ExactLine b = exact(half_plane_at(problem, vertex[1]));
+  const Exact w = cross(a.normal, b.normal);
+  const Exact sign(sign_of(w));
+  point = {sign * (a.offset * b.normal.y - b.offset * a.normal.y),
+           0,
+           sign * (a.normal.x * b.offset - b.normal.x * a.offset),
+           0,
+           sign * w,
+           0};
+  return sign_of(w) != 0;
+}
+
+bool within_bound(const Problem& problem, const ExactPoint& point) {
+  for (const std::size_t side : {kBoxRight, kBoxLeft, kBoxTop, kBoxBottom}) {
+    const HalfPlane h = half_plane_at(problem, side);
+    if (std::isfinite(h.offset) && sign_of_violation(exact(h), point) > 0) return false;
+  }
+  if (std::isinf(problem.bound.disc)) return true;
+  const Exact reach = Exact(problem.bound.disc) * point.w;
+  return sign_of(point.x0 * point.x0 + point.y0 * point.y0 - reach * reach) <= 0;
+}
+
+Flaw check_pinched(const Problem& problem, const Certificate& c) {
+  ExactPoint point;
+  if (c.vertex.size() > 2 || !vertex_point(problem, c.vertex, point)) return Flaw::malformed;
+  const bool hard_only = !c.contradiction.empty();
+  if (hard_only) {
+    const Combination sum = combine(problem, c.contradiction, Scope::soft_may_give);
+    if (!sum.well_formed || c.contradiction.size() > kMostTerms) return Flaw::malformed;
+    if (!contradicts(problem, sum)) return Flaw::contradiction;
+  }
+  if (!within_bound(problem, point)) return Flaw::vertex;
+  for (const Constraint& constraint : problem.constraints) {
+    if (hard_only && constraint.priority == Priority::soft) continue;
+    if (sign_of_violation(exact(constraint.half_plane), point) > 0) return Flaw::vertex;
+  }
+  return Flaw::none;
+}
+
+Flaw check_giving(const Problem& problem, const Certificate& c, Scope scope) {
+  if (c.contradiction.size() > kMostTerms || c.bound.size() > kMostTerms) return Flaw::malformed;
+  const Combination against = combine(problem, c.contradiction, scope);
+  const Combination least = combine(problem, c.bound, scope);
+  if (!against.well_formed || !least.well_formed) return Flaw::malformed;
+  if (!keeps(problem, c, scope)) return Flaw::velocity;
+  if (!contradicts(problem, against)) return Flaw::contradiction;
+  return bounds_violation(problem, least, c.violation, c.gap) ? Flaw::none : Flaw::bound;
+}
+
+Flaw check_optimal(const Problem& problem, const Certificate& c) {
+  const Combination sum = combine(problem, c.bound, Scope::all_must_hold);
+  if (c.bound.size() > kMostTerms || !sum.well_formed) return Flaw::malformed;
+  if (!keeps(problem, c, Scope::all_must_hold)) return Flaw::velocity;
+  return bounds_objective(problem, sum, c.velocity, c.gap) ? Flaw::none : Flaw::bound;
+}
+
+}  // namespace
+
+const char* name(Flaw flaw) {
+  constexpr const char* kNames[] = {"none", "malformed", "velocity", "contradiction", "bound", "vertex"};
+  return kNames[static_cast<int>(flaw)];
+}
+
+Flaw check(const Problem& problem, const Certificate& c) {
+  require_well_formed(problem);
+  if (!has_finite_numbers(c)) return Flaw::malformed;
+  switch (c.status) {
+    case Status::optimal:
+      return check_optimal(problem, c);
+    case Status::relaxed:
+      return check_giving(problem, c, Scope::soft_may_give);
+    case Status::infeasible:
+      return check_giving(problem, c, Scope::hard_may_give);
+    case Status::pinched:
+      return check_pinched(problem, c);
+  }
+  return Flaw::malformed;
+}
+
+}  // namespace exactvo::lp

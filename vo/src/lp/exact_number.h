@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The numbers of the exact stage: dyadic rationals of any length, and alpha + beta sqrt(D) over them. No divisions:
+/// points are homogeneous. Internal; CGAL's number type goes no further than the units that include this.
+
+#include <CGAL/Mpzf.h>
+
+#include "exactvo/vo/lp/problem.h"
+
+namespace exactvo::lp {
+
+using Exact = CGAL::Mpzf;
+
+inline int sign_of(const Exact& x) {
+  return static_cast<int>(CGAL::sign(x));
+}
+
+/// The sign of alpha + beta sqrt(d), d >= 0.
+inline int sign_of_root(const Exact& alpha, const Exact& beta, const Exact& d) {
+  const int a = sign_of(alpha);
+  const int b = sign_of(d) == 0 ? 0 : sign_of(beta);
+  if (a == b || b == 0) return a;
+  if (a == 0) return b;
+  return a * sign_of(alpha * alpha - beta * beta * d);
+}
+
+struct ExactVector {
+  Exact x, y;
+};
+
+inline ExactVector exact(Vec2 v) {
+  return {Exact(v.x), Exact(v.y)};
+}
+inline Exact dot(const ExactVector& a, const ExactVector& b) {
+  return a.x * b.x + a.y * b.y;
+}
+inline Exact cross(const ExactVector& a, const ExactVector& b) {
+  return a.x * b.y - a.y * b.x;
+}
+inline ExactVector perp(const ExactVector& a) {
+  return {-a.y, a.x};
+}
+
+/// normal . v >= offset.
+struct ExactLine {
+  ExactVector normal;
+  Exact offset;
+};
+
+inline ExactLine exact(const HalfPlane& h) {
+  return {exact(h.normal), Exact(h.offset)};
+}
+
+/// ((x0 + x1 sqrt(d)) / w, (y0 + y1 sqrt(d)) / w), w > 0.
+struct ExactPoint {
+  Exact x0, x1, y0, y1, w, d;
+};
+
+/// The sign of offset - normal . v: positive outside.
+inline int sign_of_violation(const ExactLine& line, const ExactPoint& v) {
+  const Exact alpha = line.offset * v.w - line.normal.x * v.x0 - line.normal.y * v.y0;
+  const Exact beta = -(line.normal.x * v.x1 + line.normal.y * v.y1);
+  return sign_of_root(alpha, beta, v.d);
+}
+
+}  // namespace exactvo::lp

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Doubles inside the region of a problem. Exact in what is inside; heuristic in which double is found.
+
+#include <optional>
+
+#include "exactvo/vo/lp/problem.h"
+#include "exactvo/vo/lp/solution.h"
+
+namespace exactvo::lp {
+
+/// Whether v keeps the speed bound and what an answer of that status must hold: every constraint (optimal), the hard
+/// ones (relaxed), none (infeasible). Exact.
+bool holds(const Problem& problem, Status status, Vec2 v);
+
+/// The largest violation of the constraints that may give: soft (relaxed), hard (infeasible), all (pinched). Rounded.
+double violation_that_counts(const Problem& problem, Status status, Vec2 v);
+
+/// A double that `holds`, as near `target` as was found: itself, a neighbour, or the optimum with slack.
+std::optional<Vec2> nearest_double_inside(const Problem& problem, Status status, Vec2 target);
+
+/// v with its coordinates cut off at the sides of the box.
+Vec2 into_box(Vec2 v, const SpeedBound& bound);
+
+}  // namespace exactvo::lp
