@@ -76,6 +76,20 @@ void solve_in_place(std::array<Row, kMostActive>& h, Row& d, std::size_t n) {
   }
 }
 
+// In the maximum norm: any long extent will do for a shear, and this one can't overflow.
+Vec2 farthest_from(Vec2 from, const std::vector<Vec2>& points) {
+  Vec2 farthest = from;
+  double reach = 0.0;
+  for (const Vec2 p : points) {
+    const double distance = std::max(std::fabs(p.x - from.x), std::fabs(p.y - from.y));
+    if (distance > reach) {
+      reach = distance;
+      farthest = p;
+    }
+  }
+  return farthest;
+}
+
 // The dual on points that fill a unit box.
 class Dual {
  public:
@@ -100,13 +114,18 @@ class Dual {
   }
 
  private:
-  // The extreme points in x and y: three of them at least are not collinear.
+  // A triangle of about the largest area, so that M is far from singular, and the extremes in x.
   void start() {
     const auto by_x = [](Vec2 a, Vec2 b) { return a.x < b.x; };
-    const auto by_y = [](Vec2 a, Vec2 b) { return a.y < b.y; };
-    const auto [x_low, x_high] = std::minmax_element(points_.begin(), points_.end(), by_x);
-    const auto [y_low, y_high] = std::minmax_element(points_.begin(), points_.end(), by_y);
-    for (const Vec2 p : {*x_low, *x_high, *y_low, *y_high}) {
+    const auto by_height = [](Vec2 a, Vec2 b) { return std::fabs(a.y) < std::fabs(b.y); };
+    const Vec2 top = *std::max_element(points_.begin(), points_.end(), by_height);
+    const Vec2 far = farthest_from(top, points_);
+    const auto by_area = [&](Vec2 a, Vec2 b) {
+      return std::fabs(cross(far - top, a - top)) < std::fabs(cross(far - top, b - top));
+    };
+    const Vec2 apex = *std::max_element(points_.begin(), points_.end(), by_area);
+    const auto [left, right] = std::minmax_element(points_.begin(), points_.end(), by_x);
+    for (const Vec2 p : {top, far, apex, *left, *right}) {
       if (std::find(active_.begin(), active_.begin() + count_, p) == active_.begin() + count_) active_[count_++] = p;
     }
     weight_.fill(1.0 / static_cast<double>(count_));
@@ -219,20 +238,6 @@ std::vector<Vec2> into(const Frame& f, const std::vector<Vec2>& points) {
   return out;
 }
 
-// In the maximum norm: any long extent will do for a shear, and this one can't overflow.
-Vec2 farthest_from(Vec2 from, const std::vector<Vec2>& points) {
-  Vec2 farthest = from;
-  double reach = 0.0;
-  for (const Vec2 p : points) {
-    const double distance = std::max(std::fabs(p.x - from.x), std::fabs(p.y - from.y));
-    if (distance > reach) {
-      reach = distance;
-      farthest = p;
-    }
-  }
-  return farthest;
-}
-
 double largest_coordinate(const std::vector<Vec2>& points) {
   double largest = 0.0;
   for (const Vec2 p : points) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
@@ -286,12 +291,12 @@ bool all_in_box(const std::vector<Vec2>& points, double half_height) {
   return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return std::fabs(p.y) <= half_height; });
 }
 
-// The dual needs three points that are not collinear; those that are get the flattest box that a frame can have.
+// The dual needs three points that are not collinear; those that are keep their box.
 Frame smallest_in_box(const std::vector<Vec2>& in_box, double& least_area) {
   constexpr double kFlat = 0x1p-26;  // squares of it still count beside 1
   if (all_in_box(in_box, kFlat)) {
     least_area = 0.0;
-    return {{}, 1.0, 0.0, kFlat, false};
+    return {{}, 1.0, 0.0, 1.0, false};
   }
   const Frame inner = frame_of_moments(Dual(in_box).moments());
   least_area = kPi * inner.k11 * inner.k22;
@@ -328,8 +333,21 @@ Frame fitted_round_center(Vec2 center, const std::vector<Vec2>& points) {
   return frame;
 }
 
+/// The rounding of the norm, of the two triangular solves and of ellipse_of, and room for the predicate's filter.
+constexpr double kRoom = 64.0 * kUnitRoundoff;
+
 bool contains_all(const Ellipse& e, const std::vector<Vec2>& points) {
   return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(e, p); });
+}
+
+Ellipse grown_until_certified(Frame frame, const std::vector<Vec2>& points) {
+  const double ulp = kUnitRoundoff * std::max(frame.k11, std::fabs(frame.k21));
+  for (double growth = 1.0;; growth *= 2.0) {
+    const Ellipse ellipse = ellipse_of(frame);
+    if (contains_all(ellipse, points)) return ellipse;
+    frame = scaled(frame, 1.0 + growth * kRoom);
+    frame.k22 += growth * ulp;
+  }
 }
 
 }  // namespace
@@ -360,23 +378,26 @@ EllipseCandidate solve_smallest_ellipse(const std::vector<Vec2>& points) {
 Ellipse certified_ellipse(const Frame& candidate, const std::vector<Vec2>& points) {
   // Beyond this the rounded centre, not the shape, decides the size.
   constexpr double kCenterMatters = 1.0 + 1e-9;
-  // 64 u: the rounding of the norm, of the two triangular solves and of ellipse_of, and room for the predicate's
-  // filter.
-  constexpr double kRoom = 64.0 * kUnitRoundoff;
   double reach = largest_norm(candidate, points);
   Frame frame = candidate;
   if (reach > kCenterMatters) {
     frame = fitted_round_center(candidate.center, points);
     reach = largest_norm(frame, points);
   }
-  frame = scaled(frame, reach * (1.0 + kRoom));
-  const double ulp = kUnitRoundoff * std::max(frame.k11, std::fabs(frame.k21));
-  for (double growth = 1.0;; growth *= 2.0) {
-    const Ellipse ellipse = ellipse_of(frame);
-    if (contains_all(ellipse, points)) return ellipse;
-    frame = scaled(frame, 1.0 + growth * kRoom);
-    frame.k22 += growth * ulp;
-  }
+  return grown_until_certified(scaled(frame, reach * (1.0 + kRoom)), points);
+}
+
+Ellipse ellipse_of_segment(Vec2 a, Vec2 b) {
+  // Half-width in ulps of the coordinates. Rounding the middle moves the ends off the axis by one at most, which then
+  // costs 2^-33 of the length.
+  constexpr double kSliver = 0x1p16;
+  const Vec2 half = 0.5 * b - 0.5 * a;
+  const Vec2 middle = 0.5 * a + 0.5 * b;
+  const Ellipse bare = half.x < 0.0 ? Ellipse{middle, -half.x, -half.y, 0.0} : Ellipse{middle, half.x, half.y, 0.0};
+  if (contains_all(bare, {a, b})) return bare;
+  Frame frame = unit_box_frame({a, b});
+  frame.k22 = kSliver * kUnitRoundoff * largest_coordinate({a, b});
+  return grown_until_certified(scaled(frame, 1.0 + 0x1p-30), {a, b});
 }
 
 }  // namespace exactvo::geometry::detail

@@ -45,4 +45,8 @@ EllipseCandidate solve_smallest_ellipse(const std::vector<Vec2>& points);
 /// The candidate scaled to fit, then grown in steps until every point lies in it by predicate E.
 Ellipse certified_ellipse(const Frame& candidate, const std::vector<Vec2>& points);
 
+/// The segment itself (l22 = 0) where doubles can say it, else a certified sliver 2^-36 of the coordinates wide.
+/// REQUIRES: a != b.
+Ellipse ellipse_of_segment(Vec2 a, Vec2 b);
+
 }  // namespace exactvo::geometry::detail

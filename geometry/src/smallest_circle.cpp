@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <CGAL/Min_sphere_of_points_d_traits_2.h>
-#include <CGAL/Min_sphere_of_spheres_d.h>
-#include <CGAL/Simple_cartesian.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "cgal_guard.h"
 #include "ellipse_solver.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/predicates.h"
@@ -15,26 +11,76 @@
 namespace exactvo::geometry {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Traits = CGAL::Min_sphere_of_points_d_traits_2<Kernel, double>;
-using MinCircle = CGAL::Min_sphere_of_spheres_d<Traits>;
-
 double reach(Vec2 center, const std::vector<Vec2>& points) {
   double farthest = 0.0;
   for (const Vec2 p : points) farthest = std::max(farthest, std::hypot(p.x - center.x, p.y - center.y));
   return farthest;
 }
 
+Vec2 farthest_from(Vec2 center, const std::vector<Vec2>& points) {
+  const auto nearer = [&](Vec2 a, Vec2 b) { return squared_norm(a - center) < squared_norm(b - center); };
+  return *std::max_element(points.begin(), points.end(), nearer);
+}
+
+Vec2 circumcenter(Vec2 a, Vec2 b, Vec2 c) {
+  const Vec2 u = b - a;
+  const Vec2 v = c - a;
+  const Vec2 w = squared_norm(u) * v - squared_norm(v) * u;
+  return a - perp(w) / (2.0 * cross(u, v));
+}
+
+// A circle and the two or three points that hold it.
+struct HeldCircle {
+  Vec2 center;
+  double radius = std::numeric_limits<double>::infinity();
+  std::vector<Vec2> holders;
+};
+
+void take_if_smaller(Vec2 center, const std::vector<Vec2>& points, std::vector<Vec2> holders, HeldCircle& best) {
+  const double radius = reach(center, points);
+  if (radius < best.radius) best = {center, radius, std::move(holders)};  // false for the NaN of a flat triangle
+}
+
+// Of at most four points: the smallest circle is centred between two of them or at a circumcentre.
+HeldCircle smallest_of_few(const std::vector<Vec2>& points) {
+  HeldCircle best;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      take_if_smaller(0.5 * (points[i] + points[j]), points, {points[i], points[j]}, best);
+      for (std::size_t k = 0; k < j; ++k) {
+        const Vec2 center = circumcenter(points[i], points[j], points[k]);
+        take_if_smaller(center, points, {points[i], points[j], points[k]}, best);
+      }
+    }
+  }
+  return best;
+}
+
+// The farthest outsider joins the holders until there is none. The radius grows in every round, so no set of holders
+// comes back.
+Vec2 center_in_unit_scale(const std::vector<Vec2>& points) {
+  constexpr double kRoundingOfARadius = 8.0 * kUnitRoundoff;
+  const Vec2 first = farthest_from(points.front(), points);
+  HeldCircle circle = smallest_of_few({first, farthest_from(first, points)});
+  for (;;) {
+    const Vec2 outsider = farthest_from(circle.center, points);
+    if (norm(outsider - circle.center) <= circle.radius * (1.0 + kRoundingOfARadius)) return circle.center;
+    std::vector<Vec2> few = circle.holders;
+    few.push_back(outsider);
+    HeldCircle next = smallest_of_few(few);
+    if (!(next.radius > circle.radius)) return circle.center;
+    circle = std::move(next);
+  }
+}
+
 // Seen from one of the points and scaled to unit size, so that squares neither overflow nor drown in an offset.
 Vec2 center_of_smallest_circle(const std::vector<Vec2>& points) {
   const Vec2 origin = points.front();
   const double scale = reach(origin, points);
-  std::vector<Kernel::Point_2> input;
-  input.reserve(points.size());
-  for (const Vec2 p : points) input.emplace_back((p.x - origin.x) / scale, (p.y - origin.y) / scale);
-  MinCircle circle(input.begin(), input.end());
-  const auto center = circle.center_cartesian_begin();
-  return {origin.x + scale * center[0], origin.y + scale * center[1]};
+  std::vector<Vec2> unit;
+  unit.reserve(points.size());
+  for (const Vec2 p : points) unit.push_back((p - origin) / scale);
+  return origin + scale * center_in_unit_scale(unit);
 }
 
 bool contains_all(const Disc& disc, const std::vector<Vec2>& points) {
@@ -55,11 +101,9 @@ Disc certified_circle(Vec2 center, const std::vector<Vec2>& points) {
 
 Disc smallest_circle(const std::vector<Vec2>& points) {
   detail::require_places(points);
-  const bool one = std::all_of(points.begin(), points.end(), [&](Vec2 p) { return p == points.front(); });
-  if (one) return {points.front(), 0.0};
-  return detail::without_cgal_failures(
-      "smallest_circle", [&] { return to_string(points); },
-      [&] { return certified_circle(center_of_smallest_circle(points), points); });
+  const std::vector<Vec2> hull = convex_hull(points).vertices;
+  if (hull.size() == 1) return {hull.front(), 0.0};
+  return certified_circle(center_of_smallest_circle(hull), hull);
 }
 
 }  // namespace exactvo::geometry

@@ -59,26 +59,13 @@ std::vector<Vec2> support_of_smallest_ellipse(const std::vector<Vec2>& points) {
   return support;
 }
 
-bool contains_both(const Ellipse& e, Vec2 a, Vec2 b) {
-  return contains(e, a) && contains(e, b);
-}
-
-// The segment itself where doubles can say it, else a sliver a few ulps wide.
-Ellipse ellipse_of_segment(Vec2 a, Vec2 b) {
-  const Vec2 half = 0.5 * b - 0.5 * a;
-  const Vec2 middle = 0.5 * a + 0.5 * b;
-  const Ellipse bare = half.x < 0.0 ? Ellipse{middle, -half.x, -half.y, 0.0} : Ellipse{middle, half.x, half.y, 0.0};
-  if (contains_both(bare, a, b)) return bare;
-  return detail::certified_ellipse(detail::solve_smallest_ellipse({a, b}).frame, {a, b});
-}
-
 }  // namespace
 
 Ellipse smallest_ellipse(const std::vector<Vec2>& points) {
   detail::require_places(points);
   const std::vector<Vec2> hull = convex_hull(points).vertices;
   if (hull.size() == 1) return {hull[0], 0.0, 0.0, 0.0};
-  if (hull.size() == 2) return ellipse_of_segment(hull[0], hull[1]);
+  if (hull.size() == 2) return detail::ellipse_of_segment(hull[0], hull[1]);
   const auto values = [&] { return to_string(hull); };
   const std::vector<Vec2> support =
       detail::without_cgal_failures("smallest_ellipse", values, [&] { return support_of_smallest_ellipse(hull); });

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/geometry/distance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "geometry/random_shapes.h"
+#include "geometry/rational_oracle.h"
+
+namespace exactvo::geometry {
+namespace {
+
+using test::SeededRandom;
+
+/// "A few ulps of the coordinates": the foot point is off by at most 10 u M, the norm by a few u of the distance.
+constexpr double kFewUlps = 32 * 0x1p-53;
+
+double scale_of(const Segment& s, Vec2 x) {
+  return std::max(
+      {std::fabs(s.a.x), std::fabs(s.a.y), std::fabs(s.b.x), std::fabs(s.b.y), std::fabs(x.x), std::fabs(x.y)});
+}
+
+double oracle(const Segment& s, Vec2 x) {
+  return std::sqrt(CGAL::to_double(test::squared_distance(s, x)));
+}
+
+Segment random_segment(SeededRandom& random) {
+  const double scale = std::exp2(random.uniform(-20, 20));
+  const Vec2 offset = random.in_box(random.integer(0, 1) == 0 ? 0.0 : 1e5);
+  const Vec2 a = scale * random.in_box(1.0) + offset;
+  return {a, random.integer(0, 9) == 0 ? a : scale * random.in_box(1.0) + offset};
+}
+
+TEST(Distance, AgreesWithRationals) {
+  SeededRandom random(test::seed_of_run(21));
+  for (int i = 0; i < 100000; ++i) {
+    const Segment s = random_segment(random);
+    const Vec2 x = random.integer(0, 1) == 0 ? random_segment(random).a : s.a + random.uniform(-1, 2) * (s.b - s.a);
+    ASSERT_NEAR(distance(s, x), oracle(s, x), kFewUlps * scale_of(s, x))
+        << to_string(s) << " to " << hex_text(x.x) << " " << hex_text(x.y);
+  }
+}
+
+TEST(Distance, NeitherOverflowsNorUnderflows) {
+  const Segment tiny = {{0x1p-600, 0}, {0x1p-599, 0}};
+  EXPECT_DOUBLE_EQ(distance(tiny, Vec2{0x1p-600, 0x1p-600}), 0x1p-600);
+  const Segment huge = {{-0x1p600, 0}, {0x1p600, 0}};
+  EXPECT_DOUBLE_EQ(distance(huge, Vec2{0, 0x1p590}), 0x1p590);
+  EXPECT_EQ(nearest_point({{3, 4}, {3, 4}}, {0, 0}), (Vec2{3, 4}));
+}
+
+TEST(Distance, IntersectIsExactOnAGrid) {
+  SeededRandom random(test::seed_of_run(22));
+  for (int i = 0; i < 100000; ++i) {
+    const auto p = test::grid_points(random, 4, 4);
+    const Segment s = {p[0], p[1]};
+    const Segment t = {p[2], p[3]};
+    ASSERT_EQ(intersect(s, t), test::segments_meet(s, t)) << to_string(s) << " and " << to_string(t);
+    ASSERT_EQ(intersect(s, t), intersect(t, s));
+    if (intersect(s, t)) {
+      ASSERT_EQ(distance(s, t), 0.0);
+    }
+  }
+}
+
+TEST(Distance, IntersectIsExactWhereOrientationIsHard) {
+  SeededRandom random(test::seed_of_run(23));
+  for (int i = 0; i < 20000; ++i) {
+    // An end within an ulp or so of the other segment.
+    const Segment s = random_segment(random);
+    const Vec2 near = s.a + random.uniform(0, 1) * (s.b - s.a);
+    const Segment t = {near, random_segment(random).a};
+    ASSERT_EQ(intersect(s, t), test::segments_meet(s, t)) << to_string(s) << " and " << to_string(t);
+  }
+}
+
+// An independent crossing count: the ray runs downwards instead of to the right.
+Place oracle_place(const Polygon& polygon, Vec2 x) {
+  bool odd = false;
+  for (const Segment& e : edges_of(polygon)) {
+    if (test::on_segment(e, x)) return Place::boundary;
+    const Vec2 left = e.a.x < e.b.x ? e.a : e.b;
+    const Vec2 right = e.a.x < e.b.x ? e.b : e.a;
+    if (left.x <= x.x && x.x < right.x && test::turn(left, right, x) > 0) odd = !odd;
+  }
+  return odd ? Place::inside : Place::outside;
+}
+
+TEST(Distance, LocateIsExactOnDegenerateRings) {
+  SeededRandom random(test::seed_of_run(24));
+  for (int i = 0; i < 50000; ++i) {
+    Polygon polygon = {test::grid_points(random, random.integer(2, 7), 4), {}};
+    if (random.integer(0, 1) == 1) polygon.holes.push_back(test::grid_points(random, 3, 4));
+    const Vec2 x = test::grid_points(random, 1, 4)[0];
+    ASSERT_EQ(locate(polygon, x), oracle_place(polygon, x))
+        << to_string(polygon.outer) << " at " << hex_text(x.x) << " " << hex_text(x.y);
+    ASSERT_EQ(contains(polygon, x), oracle_place(polygon, x) != Place::outside);
+  }
+}
+
+const Polygon kSquareWithHole = {{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{{1, 1}, {1, 3}, {3, 3}, {3, 1}}}};
+
+TEST(SignedDistance, SignAndDepth) {
+  EXPECT_DOUBLE_EQ(signed_distance(kSquareWithHole, {5, 2}), 1.0);
+  EXPECT_DOUBLE_EQ(signed_distance(kSquareWithHole, {0.25, 2}), -0.25);
+  EXPECT_DOUBLE_EQ(signed_distance(kSquareWithHole, {2, 2}), 1.0);  // in the hole: free
+  EXPECT_EQ(signed_distance(kSquareWithHole, {4, 1}), 0.0);
+  EXPECT_DOUBLE_EQ(signed_distance(Polyline{{{0, 0}, {0, 4}}}, {-3, 8}), 5.0);
+  EXPECT_THROW(signed_distance(kSquareWithHole, {std::nan(""), 0}), std::logic_error);
+}
+
+TEST(SweptDistance, AStepAcrossAThinWallDoesNotSlipThrough) {
+  const Polyline wall = {{{1, -1}, {1, 1}}};
+  EXPECT_EQ(swept_distance(wall, Segment{{0, 0}, {100, 0}}), 0.0);
+  EXPECT_EQ(swept_distance(wall, Segment{{0, 0}, {1, 0}}), 0.0);
+  EXPECT_DOUBLE_EQ(swept_distance(wall, Segment{{0, 2}, {2, 2}}), 1.0);
+  const Polygon sliver = {{{1, -1}, {1 + 0x1p-52, -1}, {1 + 0x1p-52, 1}, {1, 1}}, {}};
+  EXPECT_EQ(swept_distance(sliver, Segment{{0, 0.1}, {2, 0.2}}), 0.0);
+}
+
+TEST(SweptDistance, InsideAtEitherEndIsNegative) {
+  EXPECT_LT(swept_distance(kSquareWithHole, Segment{{-2, 2}, {0.5, 2}}), 0.0);
+  EXPECT_LT(swept_distance(kSquareWithHole, Segment{{0.5, 2}, {-2, 2}}), 0.0);
+  EXPECT_DOUBLE_EQ(swept_distance(kSquareWithHole, Segment{{0.5, 2}, {0.25, 2}}), -0.5);
+  EXPECT_EQ(swept_distance(kSquareWithHole, Segment{{-1, 2}, {5, 2}}), 0.0);
+}
+
+TEST(SweptDistance, NeverAboveAnySample) {
+  SeededRandom random(test::seed_of_run(25));
+  for (int i = 0; i < 3000; ++i) {
+    const Polygon polygon = {test::star_ring(random, random.integer(3, 12)), {}};
+    const Segment path = {random.in_box(2.0), random.in_box(2.0)};
+    const double swept = swept_distance(polygon, path);
+    for (int k = 0; k <= 16; ++k) {
+      const double at = signed_distance(polygon, path.a + (k / 16.0) * (path.b - path.a));
+      // Between the ends only the fact of being inside is reported, not the depth.
+      ASSERT_LE(swept, std::max(at, 0.0) + 1e-14) << to_string(polygon.outer) << " path " << to_string(path);
+    }
+  }
+}
+
+TEST(SweptDistance, TwoMovingPointsNeverNearerThanSaid) {
+  SeededRandom random(test::seed_of_run(26));
+  for (int i = 0; i < 10000; ++i) {
+    const Segment a = {random.in_box(2.0), random.in_box(2.0)};
+    const Segment b = {random.in_box(2.0), random.in_box(2.0)};
+    double least = 1e9;
+    for (int k = 0; k <= 256; ++k) {
+      const double t = k / 256.0;
+      least = std::min(least, norm(a.a + t * (a.b - a.a) - b.a - t * (b.b - b.a)));
+    }
+    const double swept = swept_distance(a, b);
+    ASSERT_LE(swept, least + 1e-14) << to_string(a) << " and " << to_string(b);
+    ASSERT_GE(swept, least - 12.0 / 256.0);  // they close in at most at 12 m a step's unit time
+  }
+  EXPECT_EQ(swept_distance(Segment{{0, 0}, {2, 0}}, Segment{{2, 0}, {0, 0}}), 0.0);
+}
+
+}  // namespace
+}  // namespace exactvo::geometry
