@@ -45,13 +45,12 @@ std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scen
   const bool baseline = options.method == Method::orca;
   pair_options.time_horizon = baseline ? scenario.horizons.orca : scenario.horizons.robots;
   pair_options.contact_time = std::max(scenario.time_step, 0.1);
-  // Half of the pair's margin on each radius.
-  const double extra = baseline ? 0.0 : 0.5 * scenario.margins.robot;
+  pair_options.margin = baseline ? 0.0 : scenario.margins.robot;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       if (norm(positions[i] - positions[j]) > scenario.neighbour_distance) continue;
-      const vo::MovingDisc a{positions[i], velocities[i], scenario.robots[i].radius + extra};
-      const vo::MovingDisc b{positions[j], velocities[j], scenario.robots[j].radius + extra};
+      const vo::MovingDisc a{positions[i], velocities[i], scenario.robots[i].radius};
+      const vo::MovingDisc b{positions[j], velocities[j], scenario.robots[j].radius};
       const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a, b, pair_options);
       out[i].push_back(record(pair.a, pair.certified, j, a, b, pair_options.time_horizon));
       out[j].push_back(record(pair.b, pair.certified, i, b, a, pair_options.time_horizon));

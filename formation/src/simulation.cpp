@@ -47,8 +47,7 @@ bool is_last_wanted(const SimulationOptions& options, double time, double dt) {
   return options.stop_at >= 0.0 && time + dt > options.stop_at;
 }
 
-// --- Kinematic robots (Section V.A)
-// ----------------------------------------------------------------------------------------
+// --- Kinematic robots (Section V.A) ---
 
 struct KinematicRobot {
   Vec2 position;
@@ -161,16 +160,20 @@ class KinematicRun {
       return preferred;
     }
     if (!statics.empty() && statics.front().distance < 0.0) step.mode = Mode::pushing_out;
-    if (options_.method != Method::ivo) return preferred;
-    const double max_speed = scenario_.robots[i].max_speed;
+    if (options_.method == Method::orca) return preferred;
+    if (options_.method != Method::ivo) return with_tie_broken(statics, preferred);
+    const Robot& spec = scenario_.robots[i];
+    const Viewpoint here{robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
     const Follower::Answer answer =
-        robots_[i].follower.steer(time, robots_[i].position, goal_of(i), max_speed, preferred, statics);
+        robots_[i].follower.steer({time, scenario_.time_step, here, goal_of(i),
+                                   spec.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field},
+                                  statics);
     step.mode = answer.mode;
     step.side = answer.side;
     step.note = answer.note;
     if (answer.mode == Mode::following) return answer.preferred;
     const std::optional<Vec2> boost = boosted(statics, preferred);
-    if (!boost) return preferred;
+    if (!boost) return with_tie_broken(statics, preferred);
     step.mode = Mode::boost;
     return *boost;
   }
@@ -209,8 +212,7 @@ class KinematicRun {
   std::vector<KinematicRobot> robots_;
 };
 
-// --- Formations (Sections IV and V.B)
-// --------------------------------------------------------------------------------------
+// --- Formations (Sections IV and V.B) ---
 
 struct FormationRobot {
   BodyState body;
@@ -315,7 +317,7 @@ class FormationRun {
     }
     const Vec2 input = consensus_input(spec_, relative, i, -1.0);
     const Vec2 wanted = saturated_preference(spec_, relative.position[i], leader.velocity) + input / spec_.gains.k3;
-    const SideCommitment::Answer answer = robots_[i].side.steer(wanted, max_speed, statics);
+    const SideCommitment::Answer answer = robots_[i].side.steer(wanted, std::min(norm(wanted), max_speed), statics);
     step.side = answer.side;
     if (answer.side != 0) step.mode = Mode::following;
     return answer.preferred;

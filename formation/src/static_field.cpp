@@ -12,6 +12,7 @@ namespace {
 
 using geometry::ConvexShape;
 using geometry::Enclosure;
+using geometry::EnclosureGrade;
 using geometry::GrownShape;
 using vo::VelocityObstacle;
 
@@ -33,7 +34,7 @@ std::vector<Enclosure> facade_enclosures(const std::vector<geometry::ObstaclePar
   const geometry::FacadeEllipseOptions ellipse{options.facade_minor_to_major, options.facade_fixed_minor, margin};
   for (std::size_t i = 0; i < parts.size(); ++i)
     for (const geometry::Segment& facade : parts[i].facades)
-      out.push_back({geometry::facade_ellipse(facade, ellipse), {i}, geometry::EnclosureGrade::containing});
+      out.push_back({geometry::facade_ellipse(facade, ellipse), {i}, EnclosureGrade::containing});
   return out;
 }
 
@@ -81,14 +82,15 @@ std::vector<StaticConstraint> StaticField::constraints(const Viewpoint& from) co
 void StaticField::add_enclosure(const Enclosure& e, std::size_t index, const Viewpoint& from,
                                 std::vector<StaticConstraint>& out) const {
   const VelocityObstacle grown(e.shape, from.position, from.radius, scenario_->horizons.most);
-  const bool inside = e.grade != geometry::EnclosureGrade::tight && grown.overlaps();
-  if (!inside) return add_shape(e.shape, index, e.trap_free(), from, out);
+  const bool inside = e.grade != EnclosureGrade::tight && grown.overlaps();
+  if (!inside) return add_shape(e.shape, index, e.grade, from, out);
   // The enclosure gives way to what it encloses.
   for (std::size_t obstacle : e.obstacles)
-    for (const ConvexShape& piece : library_->parts()[obstacle].pieces) add_shape(piece, index, false, from, out);
+    for (const ConvexShape& piece : library_->parts()[obstacle].pieces)
+      add_shape(piece, index, EnclosureGrade::tight, from, out);
 }
 
-void StaticField::add_shape(const ConvexShape& shape, std::size_t index, bool trap_free, const Viewpoint& from,
+void StaticField::add_shape(const ConvexShape& shape, std::size_t index, EnclosureGrade grade, const Viewpoint& from,
                             std::vector<StaticConstraint>& out) const {
   const VelocityObstacle probe(shape, from.position, from.radius, scenario_->horizons.most);
   const VelocityObstacle::Nearest nearest = probe.nearest();
@@ -98,7 +100,7 @@ void StaticField::add_shape(const ConvexShape& shape, std::size_t index, bool tr
   StaticConstraint c;
   c.distance = nearest.distance;
   c.away = nearest.normal;
-  c.trap_free = trap_free;
+  c.trap_free = grade == EnclosureGrade::trap_free || grade == EnclosureGrade::trap_free_thin;
   RecordedConstraint& r = c.recorded;
   r.source = ConstraintSource::enclosure;
   r.index = index;
@@ -107,7 +109,9 @@ void StaticField::add_shape(const ConvexShape& shape, std::size_t index, bool tr
   r.radius = from.radius;
   r.tau = tau;
   std::optional<geometry::HalfPlane> h;
-  const VelocityObstacle with_skin(shape, from.position, from.radius + kContactSkin, tau);
+  // An ellipse has its margin inside; a bare piece gets it here.
+  const double skin = grade == EnclosureGrade::tight ? scenario_->margins.obstacle + kContactSkin : kContactSkin;
+  const VelocityObstacle with_skin(shape, from.position, from.radius + skin, tau);
   if (!with_skin.overlaps()) h = with_skin.half_plane(from.velocity);
   if (!h && !probe.overlaps()) h = probe.contact_half_plane();
   r.certified = h.has_value();

@@ -60,8 +60,8 @@ class StaticField {
   double horizon(double distance, const Viewpoint& from) const;
   void add_enclosure(const geometry::Enclosure& e, std::size_t index, const Viewpoint& from,
                      std::vector<StaticConstraint>& out) const;
-  void add_shape(const geometry::ConvexShape& shape, std::size_t index, bool trap_free, const Viewpoint& from,
-                 std::vector<StaticConstraint>& out) const;
+  void add_shape(const geometry::ConvexShape& shape, std::size_t index, geometry::EnclosureGrade grade,
+                 const Viewpoint& from, std::vector<StaticConstraint>& out) const;
   void add_orca(const Viewpoint& from, std::vector<StaticConstraint>& out) const;
 
   const ObstacleLibrary* library_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace exactvo::formation::detail {
 namespace {
@@ -71,7 +72,9 @@ std::optional<Sweep> sweep(const std::vector<StaticConstraint>& lines, Vec2 star
   return std::nullopt;
 }
 
-std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v) {
+namespace {
+
+const StaticConstraint* most_violated(const std::vector<StaticConstraint>& lines, Vec2 v) {
   const StaticConstraint* worst = nullptr;
   double most = 0.0;
   for (const StaticConstraint& c : lines) {
@@ -80,6 +83,13 @@ std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v) 
     most = by;
     worst = &c;
   }
+  return worst;
+}
+
+}  // namespace
+
+std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v) {
+  const StaticConstraint* worst = most_violated(lines, v);
   if (!worst || !worst->trap_free) return std::nullopt;
   const geometry::HalfPlane& h = worst->recorded.half_plane;
   const double speed = norm(v);
@@ -90,8 +100,15 @@ std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v) 
   return at_angle(angle_of(h.normal) - side * half, speed);
 }
 
-// --- Following
-// -------------------------------------------------------------------------------------------------------------
+Vec2 with_tie_broken(const std::vector<StaticConstraint>& lines, Vec2 v) {
+  const StaticConstraint* worst = most_violated(lines, v);
+  if (!worst) return v;
+  const Vec2 n = worst->recorded.half_plane.normal;
+  const bool head_on = std::fabs(geometry::cross(-n, v)) < kTieAngle * norm(n) * norm(v);
+  return head_on ? geometry::rotated(v, kTieAngle) : v;
+}
+
+// --- Following ---
 
 namespace {
 
@@ -103,6 +120,8 @@ constexpr double kStallProgress = 0.1;  // of max_speed * kStallTime
 constexpr double kLeaveGain = 0.05;  // m
 /// Walked at least this far and back within reach of where it began: a full circle.
 constexpr double kCircleReach = 0.5;  // m
+/// Where no direction is free at full speed, slower ones are tried, halving, down to this share.
+constexpr double kLeastFollowing = 0.05;
 
 }  // namespace
 
@@ -110,79 +129,108 @@ void Follower::reset() {
   *this = Follower{};
 }
 
-bool Follower::stalled(double time, double goal_distance, double max_speed) {
-  const double step = kStallProgress * kStallTime * max_speed;
+bool Follower::stalled(const Situation& s) {
+  const double goal_distance = norm(s.goal - s.robot.position);
+  const double step = kStallProgress * kStallTime * s.robot.max_speed;
   if (best_distance_ < 0.0 || goal_distance < best_distance_ - step) {
     best_distance_ = goal_distance;
-    best_time_ = time;
+    best_time_ = s.time;
   }
-  return time - best_time_ > kStallTime;
+  return s.time - best_time_ > kStallTime;
 }
 
-Follower::Answer Follower::steer(double time, Vec2 position, Vec2 goal, double max_speed, Vec2 preferred,
-                                 const std::vector<StaticConstraint>& lines) {
-  const double goal_distance = norm(goal - position);
-  const bool direct_blocked = blocked(lines, preferred);
-  if (following_) {
-    walked_ += norm(position - last_position_);
-    last_position_ = position;
-    if (!direct_blocked && goal_distance < hit_distance_ - kLeaveGain) {
-      reset();
-      stalled(time, goal_distance, max_speed);
-      return {preferred, Mode::direct, 0, "left the boundary: nearer to the goal than where it was met, and unblocked"};
-    }
-    return follow(position, max_speed, preferred, lines);
-  }
-  if (!stalled(time, goal_distance, max_speed) || !direct_blocked) return {preferred, Mode::direct, 0, ""};
-  return begin(time, position, goal_distance, preferred, max_speed, lines);
+namespace {
+
+/// A far shape's half-plane grazes every fast velocity towards it (tau = dist / |v|); only near ones block.
+std::vector<StaticConstraint> within(const std::vector<StaticConstraint>& lines, double reach) {
+  std::vector<StaticConstraint> near;
+  for (const StaticConstraint& c : lines)
+    if (c.distance <= reach) near.push_back(c);
+  return near;
 }
 
-Follower::Answer Follower::begin(double, Vec2 position, double goal_distance, Vec2 preferred, double max_speed,
-                                 const std::vector<StaticConstraint>& lines) {
-  const std::optional<Sweep> left = sweep(lines, preferred, 1.0, max_speed);
-  const std::optional<Sweep> right = sweep(lines, preferred, -1.0, max_speed);
-  if (!left && !right) return {preferred, Mode::direct, 0, ""};
-  constexpr double kTie = 1e-6;  // rad: symmetric scenes differ by rounding only
-  const bool go_left = left && (!right || left->rotation <= right->rotation + kTie);
-  const Sweep& chosen = go_left ? *left : *right;
+}  // namespace
+
+bool Follower::may_leave(const Situation& s, const std::vector<StaticConstraint>& near) const {
+  return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !blocked(near, s.preferred);
+}
+
+Follower::Answer Follower::steer(const Situation& s, const std::vector<StaticConstraint>& lines) {
+  const std::vector<StaticConstraint> near = within(lines, s.reach);
+  if (!following_) {
+    if (!stalled(s) || !blocked(near, s.preferred)) return {s.preferred, Mode::direct, 0, ""};
+    return begin(s, near);
+  }
+  if (!may_leave(s, near)) return follow(s, near);
+  reset();
+  stalled(s);  // progress counts from here
+  return {s.preferred, Mode::direct, 0, "left the boundary: nearer to the goal than where it was met, and unblocked"};
+}
+
+void Follower::commit(const Situation& s, int side, const RecordedConstraint& followed) {
   following_ = true;
-  side_ = go_left ? 1 : -1;
-  hit_distance_ = goal_distance;
-  hit_ = position;
-  last_position_ = position;
+  side_ = side;
+  hit_distance_ = norm(s.goal - s.robot.position);
+  hit_ = last_position_ = s.robot.position;
   walked_ = 0.0;
   circled_ = false;
-  followed_ = lines[chosen.last].recorded;
-  return {chosen.velocity, Mode::following, side_,
+  followed_ = followed;
+}
+
+/// The time, s, until the boundary can be left on this side plus the straight way from there, in the static scene
+/// alone.
+double Follower::rehearse(Situation s) const {
+  constexpr double kHorizon = 60.0;  // s: a boundary longer than that ranks by how far the goal is then
+  Follower actor = *this;
+  const double start = s.time;
+  for (; s.time - start < kHorizon; s.time += s.time_step) {
+    const Vec2 to_goal = s.goal - s.robot.position;
+    s.preferred = s.robot.max_speed * geometry::normalized(to_goal);
+    const std::vector<StaticConstraint> near = within(s.field->constraints(s.robot), s.reach);
+    if (actor.may_leave(s, near)) break;
+    s.robot.velocity = actor.follow(s, near).preferred;
+    if (actor.circled_) return std::numeric_limits<double>::infinity();
+    s.robot.position += s.time_step * s.robot.velocity;
+  }
+  return s.time - start + norm(s.goal - s.robot.position) / s.robot.max_speed;
+}
+
+Follower::Answer Follower::begin(const Situation& s, const std::vector<StaticConstraint>& near) {
+  const std::optional<Sweep> left = sweep(near, s.preferred, 1.0, s.robot.max_speed);
+  const std::optional<Sweep> right = sweep(near, s.preferred, -1.0, s.robot.max_speed);
+  if (!left || !right) return {s.preferred, Mode::direct, 0, ""};  // one exists iff the other does
+  Follower to_left, to_right;
+  to_left.commit(s, 1, near[left->last].recorded);
+  to_right.commit(s, -1, near[right->last].recorded);
+  const bool go_left = to_left.rehearse(s) <= to_right.rehearse(s) + s.time_step;
+  *this = go_left ? to_left : to_right;
+  return {(go_left ? left : right)->velocity, Mode::following, side_,
           std::string("stalled: follows the boundary, turning ") + (go_left ? "left" : "right")};
 }
 
-Follower::Answer Follower::follow(Vec2 position, double max_speed, Vec2 preferred,
-                                  const std::vector<StaticConstraint>& lines) {
-  Answer answer{preferred, Mode::following, side_, ""};
+Follower::Answer Follower::follow(const Situation& s, const std::vector<StaticConstraint>& near) {
+  walked_ += norm(s.robot.position - last_position_);
+  last_position_ = s.robot.position;
+  Answer answer{s.preferred, Mode::following, side_, ""};
   // Start the turn at the followed shape itself, so that the boundary is hugged round its corners.
-  Vec2 start = preferred;
-  for (const StaticConstraint& c : lines) {
-    if (!followed_ || c.recorded.index != followed_->index) continue;
-    start = -c.away;
-    break;
-  }
-  for (double speed = max_speed; speed > 0.05 * max_speed; speed *= 0.5) {
-    const std::optional<Sweep> found = sweep(lines, start, side_, speed);
+  const auto same = [&](const StaticConstraint& c) { return c.recorded.index == followed_->index; };
+  const auto followed = std::find_if(near.begin(), near.end(), same);
+  const Vec2 start = followed == near.end() ? s.preferred : -followed->away;
+  for (double speed = s.robot.max_speed; speed > kLeastFollowing * s.robot.max_speed; speed *= 0.5) {
+    const std::optional<Sweep> found = sweep(near, start, side_, speed);
     if (!found) continue;
     answer.preferred = found->velocity;
-    if (found->last != Sweep::kNone) followed_ = lines[found->last].recorded;
+    if (found->last != Sweep::kNone) followed_ = near[found->last].recorded;
     break;
   }
-  if (!circled_ && walked_ > 4.0 * kCircleReach && norm(position - hit_) < kCircleReach) {
+  if (!circled_ && walked_ > 4.0 * kCircleReach && norm(s.robot.position - hit_) < kCircleReach) {
     circled_ = true;
     answer.note = "came full circle: no way to the goal along this boundary";
   }
   return answer;
 }
 
-// --- Side commitment
-// -------------------------------------------------------------------------------------------------------
+// --- Side commitment ---
 
 SideCommitment::Answer SideCommitment::steer(Vec2 preferred, double speed, const std::vector<StaticConstraint>& lines) {
   if (!blocked(lines, preferred)) {

@@ -32,7 +32,15 @@ bool blocked(const std::vector<StaticConstraint>& lines, Vec2 v);
 /// enclosure is certified trap-free; nothing otherwise.
 std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v);
 
-/// Follows a boundary after a stall: state of one robot.
+/// rad: a preference that meets its most violated half-plane this nearly head-on is a tie between the sides.
+inline constexpr double kTieAngle = 1e-3;
+
+/// Ties go left: v turned left by `kTieAngle` where it meets the static half-plane it violates most within that angle
+/// of head-on; v itself otherwise. Without it a robot in exact symmetry balances on an unstable point for ever.
+Vec2 with_tie_broken(const std::vector<StaticConstraint>& lines, Vec2 v);
+
+/// Follows a boundary after a stall: state of one robot. The side is the one on which a rehearsal of the static scene
+/// leaves the boundary with the shorter way to go; ties go left.
 class Follower {
  public:
   struct Answer {
@@ -42,18 +50,27 @@ class Follower {
     std::string note;
   };
 
-  /// `goal_distance` in m; `preferred` heads straight for the goal.
-  Answer steer(double time, Vec2 position, Vec2 goal, double max_speed, Vec2 preferred,
-               const std::vector<StaticConstraint>& lines);
+  struct Situation {
+    double time = 0.0;                   ///< s
+    double time_step = 0.0;              ///< s
+    Viewpoint robot;                     ///< where it is
+    Vec2 goal;                           ///< m
+    double reach = 0.0;                  ///< m: shapes farther than this neither stop the robot nor are followed
+    Vec2 preferred;                      ///< m/s, straight for the goal
+    const StaticField* field = nullptr;  ///< for the rehearsal
+  };
+  Answer steer(const Situation& s, const std::vector<StaticConstraint>& lines);
 
   /// A new goal: whatever was followed is forgotten.
   void reset();
 
  private:
-  bool stalled(double time, double goal_distance, double max_speed);
-  Answer begin(double time, Vec2 position, double goal_distance, Vec2 preferred, double max_speed,
-               const std::vector<StaticConstraint>& lines);
-  Answer follow(Vec2 position, double max_speed, Vec2 preferred, const std::vector<StaticConstraint>& lines);
+  bool stalled(const Situation& s);
+  Answer begin(const Situation& s, const std::vector<StaticConstraint>& near);
+  Answer follow(const Situation& s, const std::vector<StaticConstraint>& near);
+  void commit(const Situation& s, int side, const RecordedConstraint& followed);
+  double rehearse(Situation s) const;
+  bool may_leave(const Situation& s, const std::vector<StaticConstraint>& near) const;
 
   bool following_ = false;
   int side_ = 0;

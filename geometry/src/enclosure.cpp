@@ -16,8 +16,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// --- One facade (equation 8)
-// -------------------------------------------------------------------------------------------
+// --- One facade (equation 8) ---
 
 /// Inflates until predicate E holds for every point: the ellipse was rounded, the answer may not be.
 Ellipse inflate_to_contain(Ellipse e, const std::vector<Vec2>& points) {
@@ -31,7 +30,7 @@ Ellipse inflate_to_contain(Ellipse e, const std::vector<Vec2>& points) {
   return e;
 }
 
-// --- The trap-free fit -----------------------------------------------------------------------------------------------
+// --- The trap-free fit ---
 
 struct FitGoal {
   double robot_radius;
@@ -215,8 +214,7 @@ double size_of(const std::vector<Vec2>& points) {
   return std::max(size, kLeastSize);
 }
 
-// --- Clusters
-// ----------------------------------------------------------------------------------------------------------
+// --- Clusters ---
 
 /// Whether the two shapes, each grown by `radius`, may meet: no sampled direction separates them. Errs towards yes.
 bool may_meet(const ConvexShape& a, const ConvexShape& b, double radius) {

@@ -79,7 +79,7 @@ T squared(const T& a) {
   return a * a;
 }
 
-// --- Predicate A -----------------------------------------------------------------------------------------------
+// --- Predicate A ---
 
 /// Sign of k + sqrt(b) + sqrt(d), b, d >= 0, by repeated squaring.
 Sign sign_with_two_roots(const Exact& k, const Exact& b, const Exact& d) {
@@ -133,7 +133,7 @@ struct PartsOf {
   }
 };
 
-// --- Distances of points, segments and polygons (rational) -------------------------------------------------------
+// --- Distances of points, segments and polygons (rational) ---
 
 /// The sign of |q - nearest point of [a, b]|^2 - r^2, for q given as a vector of T.
 template <typename T>
@@ -192,7 +192,7 @@ Place locate_grown_polygon(const std::vector<Vector<Exact>>& v, const Vector<Exa
   return place_of(best);
 }
 
-// --- Predicate B1: a point against ellipse (+) disc ------------------------------------------------------------------
+// --- Predicate B1: a point against ellipse (+) disc ---
 
 /// The coefficients of g(x) = x^3 + b x^2 + c x + d (Wang, Wang and Kim 2001), u = centre - point.
 template <typename T>
@@ -310,7 +310,7 @@ Place locate_on_ray(const GrownShape& s, Vec2 direction, double t) {
   return std::visit(Locator{s, direction, t}, s.shape);
 }
 
-// --- Predicate B2: the segment [0, t_max direction] against S --------------------------------------------------------
+// --- Predicate B2: the segment [0, t_max direction] against S ---
 
 /// Sign of A + B sqrt(f), f >= 0.
 Sign sign_with_root(const Exact& a, const Exact& b, const Exact& f) {
@@ -406,7 +406,7 @@ struct SegmentMeets {
   bool operator()(const Ellipse& e) const { return segment_meets_ellipse(e, s, v, t_max); }
 };
 
-// --- Predicate F -----------------------------------------------------------------------------------------------------
+// --- Predicate F ---
 
 /// (A + B - C')^3 + 27 A B C' with A = a^2 gx^2, B = b^2 gy^2, C' = factor (a^2 - b^2)^2. Its sign is that of
 /// A^(1/3) + B^(1/3) - C'^(1/3), since x + 3 cbrt(y) and x^3 + 27 y agree in sign. In terms of Sigma = L L^T and u =

@@ -76,8 +76,7 @@ Normals of_polygon(const std::vector<Vec2>& v, Vec2 origin, double radius, Vec2 
   return out;
 }
 
-// --- Ellipse
-// -------------------------------------------------------------------------------------------------------------
+// --- Ellipse ---
 
 /// The axis-aligned frame of an ellipse: L = R diag(a, b) V, columns of R the axes.
 struct EllipseFrame {

@@ -5,6 +5,7 @@
 #include <string>
 #include <tuple>
 
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/support.h"
 #include "exactvo/vo/velocity_obstacle.h"
@@ -15,21 +16,26 @@ namespace {
 using geometry::dot;
 using geometry::kUnitRoundoff;
 
-/// n.v_A' - n.v_B' >= c, halved: c_A = share (n.v_A - ... ), each rounded up by the sum of its terms' errors.
+/// n.(v_A' - v_B') >= offset.
 struct Joint {
   Vec2 normal;
-  double offset;  ///< c
+  double offset;
   bool certified;
 };
 
 /// The half-plane of the relative velocity, by the static construction around b seen from a.
 Joint relative_half_plane(const MovingDisc& a, const MovingDisc& b, const ReciprocalOptions& options) {
-  const VelocityObstacle obstacle(geometry::Disc{b.position, b.radius}, a.position, a.radius, options.time_horizon);
-  if (!obstacle.overlaps()) {
-    if (const auto h = obstacle.half_plane(a.velocity - b.velocity)) return {h->normal, h->offset, true};
+  const geometry::Disc other{b.position, b.radius};
+  const VelocityObstacle kept_apart(other, a.position, a.radius + options.margin, options.time_horizon);
+  if (!kept_apart.overlaps()) {
+    if (const auto h = kept_apart.half_plane(a.velocity - b.velocity)) return {h->normal, h->offset, true};
   }
-  const VelocityObstacle::Nearest n0 = obstacle.nearest();
-  return {n0.normal, std::fmax(-n0.distance, 0.0) / options.contact_time, false};
+  // Within the margin: part at the pace that restores it. An offset >= 0 is safe wherever the normal is.
+  const VelocityObstacle::Nearest n0 = kept_apart.nearest();
+  const Joint parting{n0.normal, std::fmax(-n0.distance, 0.0) / options.contact_time, false};
+  const geometry::GrownShape bare{other, a.position, a.radius};
+  const bool safe = half_plane_is_safe(bare, options.time_horizon, {parting.normal, parting.offset});
+  return {parting.normal, parting.offset, safe};
 }
 
 /// share (c - n.(v_A - v_B)) + n.v, rounded up past the error of its terms: two products a dot, four sums.
@@ -60,6 +66,7 @@ ReciprocalHalfPlanes ordered(const MovingDisc& a, const MovingDisc& b, const Rec
 ReciprocalHalfPlanes reciprocal_half_planes(const MovingDisc& a, const MovingDisc& b,
                                             const ReciprocalOptions& options) {
   EXACTVO_REQUIRE(geometry::is_finite(a.velocity) && geometry::is_finite(b.velocity), "a velocity that is not finite");
+  EXACTVO_REQUIRE(options.margin >= 0.0 && std::isfinite(options.margin), std::to_string(options.margin));
   EXACTVO_REQUIRE(options.contact_time > 0.0, std::to_string(options.contact_time));
   EXACTVO_REQUIRE(options.share_of_a >= 0.0 && options.share_of_a <= 1.0, std::to_string(options.share_of_a));
   if (!comes_first(b, a)) return ordered(a, b, options);

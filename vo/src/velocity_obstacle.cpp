@@ -47,8 +47,7 @@ VelocityObstacle::Nearest nearest_to(const GrownShape& s, Vec2 y) {
   return best;
 }
 
-// --- Legs
-// ------------------------------------------------------------------------------------------------------------------
+// --- Legs ---
 
 /// n0 turned by `angle` towards `side` (+1: counter-clockwise).
 Vec2 turned(Vec2 n0, double angle, double side) {
@@ -109,8 +108,7 @@ std::optional<Leg> leg_of(const GrownShape& s, const VelocityObstacle::Nearest& 
              support_point(s, n)};
 }
 
-// --- Half-planes
-// -----------------------------------------------------------------------------------------------------------
+// --- Half-planes ---
 
 /// Smallest double that is safely above h_up / tau: the division rounds once and is nudged past it.
 double offset_above(double h_up, double tau) {

@@ -79,7 +79,7 @@ struct FormationSpec {
   bool recentre = true;       ///< subtract mean(Delta), as equation (4) needs
   Leader leader;
   Gains gains;
-  double catch_up_speed = 3.0;  ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
+  double catch_up_speed = 1.5;  ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
 };
 
 struct Scenario {

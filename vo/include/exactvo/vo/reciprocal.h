@@ -28,14 +28,15 @@ struct MovingDisc {
 
 struct ReciprocalOptions {
   double time_horizon = 2.0;  ///< s, > 0
-  double contact_time = 0.1;  ///< s, > 0: discs that overlap are asked to part within this time
+  double margin = 0.0;        ///< m, >= 0, kept between the rims; where it is already used up, discs only have to part
+  double contact_time = 0.1;  ///< s, > 0: discs nearer than the margin are asked to restore it within this time
   double share_of_a = 0.5;    ///< in [0, 1]: how much of the change a takes; b takes the rest
 };
 
 struct ReciprocalHalfPlanes {
   HalfPlane a;             ///< for the new velocity of a
   HalfPlane b;             ///< for the new velocity of b
-  bool certified = false;  ///< false where the discs overlap: nothing can be promised then
+  bool certified = false;  ///< for the discs without the margin; false where they overlap: nothing can be promised
 };
 
 /// REQUIRES: finite numbers, horizons > 0, share in [0, 1].
