@@ -16,10 +16,18 @@ const char* const kDrivers[] = {
     "GeoJSON", "GeoJSONSeq", "TopoJSON", "ESRI Shapefile", "GPKG",   "FlatGeobuf", "CSV", "OSM", "DXF",
     "KML",     "GML",        "GPX",      "MapInfo File",   "SQLite", nullptr};
 
-/// NATIVE_DATA keeps the members of a GeoJSON collection that GDAL has no place for, `units` among them; the names are
-/// what people call a column of WKT.
-const char* const kOpenOptions[] = {"NATIVE_DATA=YES", "GEOM_POSSIBLE_NAMES=WKT,wkt,geometry,geom,the_geom,wkt_geom",
-                                    "KEEP_GEOM_COLUMNS=NO", nullptr};
+/// NATIVE_DATA keeps the members of a GeoJSON collection that GDAL has no place for, `units` among them.
+const char* const kGeoJsonOptions[] = {"NATIVE_DATA=YES", nullptr};
+/// What people call a column of WKT.
+const char* const kCsvOptions[] = {"GEOM_POSSIBLE_NAMES=WKT,wkt,geometry,geom,the_geom,wkt_geom", nullptr};
+const char* const kNoOptions[] = {nullptr};
+
+/// A driver warns of options that it does not know.
+const char* const* options_for(GDALDriverH driver) {
+  const std::string name = driver == nullptr ? "" : GDALGetDriverShortName(driver);
+  if (name == "CSV") return kCsvOptions;
+  return name == "GeoJSON" ? kGeoJsonOptions : kNoOptions;
+}
 
 void register_drivers_once() {
   static std::once_flag done;
@@ -60,9 +68,9 @@ std::vector<std::string> GdalComplaints::take_warnings() {
 
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path) {
   register_drivers_once();
-  // Options that one driver does not know are no reason for a warning.
+  const GDALDriverH driver = GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, kDrivers, nullptr);
   return std::unique_ptr<GDALDataset>(
-      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, kOpenOptions, nullptr));
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, options_for(driver), nullptr));
 }
 
 }  // namespace exactvo::datasets

@@ -69,47 +69,18 @@ bool is_worth_a_note(const RawGeometry& raw, DataCode code) {
   return code != DataCode::unclosed || raw.ring_pointers.empty();
 }
 
-DataError refusal(const RawGeometry& raw, const std::string& file, DataCode code, std::size_t ring, std::size_t vertex,
-                  geometry::Vec2 where) {
-  return {code, file, place_of_vertex(raw, ring, vertex), std::string(words_for(code)) + " at " + coordinates(where),
-          expectation(code)};
-}
-
-void refuse_non_finite(const RawGeometry& raw, const std::string& file) {
-  for (std::size_t r = 0; r < raw.rings.size(); ++r) {
-    for (std::size_t v = 0; v < raw.rings[r].size(); ++v) {
-      const geometry::Vec2 p = raw.rings[r][v];
-      if (!geometry::is_finite(p)) throw refusal(raw, file, DataCode::not_finite, r, v, p);
-    }
-  }
-}
-
-geometry::Obstacle judged_polyline(const RawGeometry& raw, const std::string& file, std::vector<DataNote>& notes) {
-  geometry::Polyline line;
-  const geometry::Ring& points = raw.rings.front();
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    if (line.points.empty() || line.points.back() != points[v]) {
-      line.points.push_back(points[v]);
-    } else {
-      notes.push_back(
-          {DataCode::repeated_vertex, place_of_vertex(raw, 0, v), words_for_mending(DataCode::repeated_vertex)});
-    }
-  }
-  if (line.points.size() < 2) {
-    throw refusal(raw, file, DataCode::too_few_points, 0, 0, points.empty() ? geometry::Vec2{} : points.front());
-  }
-  return line;
-}
-
-geometry::Obstacle judged_polygon(const RawGeometry& raw, const std::string& file, std::vector<DataNote>& notes) {
-  geometry::NormalizedPolygon normal = geometry::normalize(raw.rings);
-  for (const geometry::RingProblem& problem : normal.problems) {
+/// Notes what was mended; throws for the first problem that was not.
+void settle(const std::vector<geometry::RingProblem>& problems, const RawGeometry& raw, const std::string& file,
+            std::vector<DataNote>& notes) {
+  for (const geometry::RingProblem& problem : problems) {
     const DataCode code = data_code(problem.code);
-    if (!problem.mended) throw refusal(raw, file, code, problem.ring, problem.vertex, problem.where);
-    if (!is_worth_a_note(raw, code)) continue;
-    notes.push_back({code, place_of_vertex(raw, problem.ring, problem.vertex), words_for_mending(code)});
+    const std::string place = place_of_vertex(raw, problem.ring, problem.vertex);
+    if (!problem.mended) {
+      throw DataError(code, file, place, std::string(words_for(code)) + " at " + coordinates(problem.where),
+                      expectation(code));
+    }
+    if (is_worth_a_note(raw, code)) notes.push_back({code, place, words_for_mending(code)});
   }
-  return std::move(normal.polygon);
 }
 
 }  // namespace
@@ -120,8 +91,14 @@ std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_
 }
 
 geometry::Obstacle judged(const RawGeometry& raw, const std::string& file, std::vector<DataNote>& notes) {
-  refuse_non_finite(raw, file);
-  return raw.kind == RawKind::polyline ? judged_polyline(raw, file, notes) : judged_polygon(raw, file, notes);
+  if (raw.kind == RawKind::polyline) {
+    geometry::NormalizedPolyline normal = geometry::normalize_polyline(raw.rings.at(0));
+    settle(normal.problems, raw, file, notes);
+    return std::move(normal.polyline);
+  }
+  geometry::NormalizedPolygon normal = geometry::normalize(raw.rings);
+  settle(normal.problems, raw, file, notes);
+  return std::move(normal.polygon);
 }
 
 Collector::Collector(std::string file, std::string format, const ReadOptions& options) : options_(options) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/atomic_file.h"
+
+#include "refusal.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+using AtomicFileTest = TemporaryFolder;
+
+std::size_t files_in(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST_F(AtomicFileTest, NothingStandsAtThePlaceBeforeCommit) {
+  AtomicFile file(folder_ / "a.txt");
+  file.write(std::string(std::size_t{1} << 20, 'x'));  // more than the buffer holds
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.txt"));
+  file.commit();
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "a.txt"), std::size_t{1} << 20);
+  EXPECT_EQ(files_in(folder_), 1u);
+}
+
+TEST_F(AtomicFileTest, AnAbandonedFileLeavesTheOldOneAndNoTrace) {
+  put("a.txt", "old");
+  { AtomicFile(folder_ / "a.txt").write("new"); }
+  EXPECT_EQ(content_of(folder_ / "a.txt"), "old");
+  EXPECT_EQ(files_in(folder_), 1u);
+}
+
+TEST_F(AtomicFileTest, ReplacesWholeAndMakesMissingFolders) {
+  write_file_atomically(folder_ / "b" / "c" / "a.txt", "one");
+  write_file_atomically(folder_ / "b" / "c" / "a.txt", "two");
+  EXPECT_EQ(content_of(folder_ / "b" / "c" / "a.txt"), "two");
+}
+
+TEST_F(AtomicFileTest, AFolderThatCannotBeMadeIsNamed) {
+  put("file", "");
+  const DataError error = refusal_of([&] { write_file_atomically(folder_ / "file" / "a.txt", "x"); });
+  EXPECT_EQ(error.code(), DataCode::file_unwritable);
+  EXPECT_NE(std::string(error.what()).find("E_FILE_UNWRITABLE"), std::string::npos);
+}
+
+TEST_F(AtomicFileTest, AFullDiskLeavesTheOldFile) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  // A link at the temporary name's place sends the bytes to a device that is always full.
+  const std::filesystem::path place = put("a.txt", "old");
+  std::filesystem::create_symlink("/dev/full", place.string() + ".part." + std::to_string(::getpid()));
+  const DataError error = refusal_of([&] { write_file_atomically(place, "new"); });
+  EXPECT_EQ(error.code(), DataCode::file_unwritable);
+  EXPECT_EQ(content_of(place), "old");
+}
+
+TEST_F(AtomicFileTest, WritingAfterCommitIsTheCallersMistake) {
+  AtomicFile file(folder_ / "a.txt");
+  file.commit();
+  EXPECT_THROW(file.write("x"), std::logic_error);
+  EXPECT_THROW(file.commit(), std::logic_error);
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/metrics_file.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace exactvo::datasets::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> keys_of(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.push_back(key);
+  return keys;
+}
+
+RunInfo info() {
+  return {"A1", "ivo", std::nullopt, std::nullopt, make_provenance({"exactvo"}, 0)};
+}
+
+formation::Metrics metrics() {
+  formation::Metrics m;
+  m.all_arrived = true;
+  m.last_arrival_time = 13.45;
+  m.jitter = 1.5;
+  m.heading_reversals = 3;
+  m.steps = 269;
+  m.robots = {{"R1", true, 13.45, 30.25, 0.08}, {"R2", false, std::nullopt, 12.0, std::nullopt}};
+  return m;
+}
+
+TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
+  const Json tree = Json::parse(metrics_json(info(), metrics()));
+  EXPECT_EQ(keys_of(tree),
+            (std::vector<std::string>{"scenario", "method", "controller", "all_arrived", "last_arrival_time",
+                                      "min_obstacle_clearance", "min_robot_clearance", "formation_position_error",
+                                      "formation_velocity_error", "leader_arrival_time", "jitter", "heading_reversals",
+                                      "active_set_switches", "relaxed_steps", "uncertified_half_planes", "steps",
+                                      "wall_time", "robots", "provenance"}));
+  EXPECT_EQ(keys_of(tree["robots"][0]),
+            (std::vector<std::string>{"id", "arrived", "arrival_time", "path_length", "min_obstacle_clearance"}));
+}
+
+TEST(MetricsFile, WhatDoesNotApplyIsNull) {
+  const Json tree = Json::parse(metrics_json(info(), metrics()));
+  for (const char* key : {"controller", "min_obstacle_clearance", "min_robot_clearance", "formation_position_error",
+                          "formation_velocity_error", "leader_arrival_time"}) {
+    EXPECT_TRUE(tree[key].is_null()) << key;
+  }
+  EXPECT_TRUE(tree["robots"][1]["arrival_time"].is_null());
+  EXPECT_EQ(tree["last_arrival_time"], 13.45);
+  EXPECT_EQ(tree["heading_reversals"], 3);
+}
+
+TEST(MetricsFile, ASummaryIsAnArrayOfThem) {
+  const std::string one = metrics_json(info(), metrics());
+  const Json tree = Json::parse(summary_json({one, one}));
+  ASSERT_EQ(tree.size(), 2u);
+  EXPECT_EQ(tree[0], Json::parse(one));
+  EXPECT_EQ(Json::parse(summary_json({})).size(), 0u);
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "refusal.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+using geometry::Polygon;
+using geometry::Vec2;
+
+class VectorFile : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    if (!built_with_gdal()) GTEST_SKIP() << "built without GDAL";
+    TemporaryFolder::SetUp();
+  }
+  void TearDown() override {
+    if (!folder_.empty()) TemporaryFolder::TearDown();
+  }
+
+  ObstacleFile read(const std::string& name, const std::string& content, const ReadOptions& options = {}) const {
+    return read_obstacles(put(name, content), options);
+  }
+};
+
+std::string collection(const std::string& members, const std::string& geometry) {
+  return "{\"type\": \"FeatureCollection\", " + members +
+         "\"features\": [{\"type\": \"Feature\", \"properties\": {}, " + "\"geometry\": " + geometry + "}]}";
+}
+
+const char* const kSquare =
+    R"({"type": "Polygon", "coordinates": [[[13, 52], [13.002, 52], [13.002, 52.002], [13, 52.002], [13, 52]]]})";
+
+TEST_F(VectorFile, GeoJsonSaysThatItIsInMetres) {
+  const ObstacleFile file = read("a.geojson", collection("\"units\": \"m\", ", kSquare));
+  EXPECT_FALSE(file.origin.has_value());
+  EXPECT_EQ(std::get<Polygon>(file.obstacles.at(0).shape).outer.front(), (Vec2{13, 52}));
+}
+
+TEST_F(VectorFile, GeoJsonIsInDegreesOtherwise) {
+  const ObstacleFile file = read("a.geojson", collection("", kSquare));
+  ASSERT_TRUE(file.origin.has_value());
+  EXPECT_NEAR(file.origin->longitude, 13.001, 1e-9);
+  EXPECT_NEAR(file.origin->latitude, 52.001, 1e-9);
+  // A thousandth of a degree at 52.001 north on WGS 84: N cos(phi) and M times pi/180000.
+  const Vec2 corner = std::get<Polygon>(file.obstacles.at(0).shape).outer.front();
+  EXPECT_NEAR(corner.x, -68.68, 0.01);
+  EXPECT_NEAR(corner.y, -111.26, 0.01);
+}
+
+TEST_F(VectorFile, TheCallerMayKnowBetter) {
+  ReadOptions options;
+  options.units = Units::metres;
+  EXPECT_FALSE(read("a.geojson", collection("", kSquare), options).origin.has_value());
+  options.units = Units::degrees;
+  EXPECT_TRUE(read("b.geojson", collection("\"units\": \"m\", ", kSquare), options).origin.has_value());
+}
+
+TEST_F(VectorFile, ImpossibleDegreesAreMetresWithANote) {
+  const std::string far = R"({"type": "LineString", "coordinates": [[0, 0], [300, 500]]})";
+  const ObstacleFile file = read("a.geojson", collection("", far));
+  EXPECT_FALSE(file.origin.has_value());
+  ASSERT_EQ(file.notes.size(), 1u);
+  ReadOptions options;
+  options.units = Units::degrees;
+  EXPECT_EQ(refusal_of([&] { read("b.geojson", collection("", far), options); }).code(), DataCode::projection);
+}
+
+TEST_F(VectorFile, UnitsThatMeanNothingAreRefused) {
+  const DataError error = refusal_of([&] { read("a.geojson", collection("\"units\": \"feet\", ", kSquare)); });
+  expect_refusal(error, DataCode::not_an_option, "/units");
+}
+
+TEST_F(VectorFile, ProjectedSystemsAreScaledToMetres) {
+  // EPSG:2263 counts in US survey feet, 1200/3937 m each.
+  const std::string crs = R"("crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::2263"}}, )";
+  const std::string line = R"({"type": "LineString", "coordinates": [[3937, 0], [7874, 3937]]})";
+  const ObstacleFile file = read("a.geojson", collection(crs, line));
+  EXPECT_NEAR(std::get<geometry::Polyline>(file.obstacles.at(0).shape).points[0].x, 1200.0, 1e-6);
+}
+
+TEST_F(VectorFile, RingsArePutRightAndNoted) {
+  const std::string clockwise = R"({"type": "Polygon", "coordinates": [[[0, 0], [0, 1], [1, 1], [1, 0], [0, 0]]]})";
+  const ObstacleFile file = read("a.geojson", collection("\"units\": \"m\", ", clockwise));
+  EXPECT_EQ(file.counts.repaired, 1u);
+  ASSERT_EQ(file.notes.size(), 1u);
+  EXPECT_EQ(file.notes[0].code, DataCode::clockwise);
+  EXPECT_EQ(file.notes[0].place.substr(0, 17), "feature 0, ring 0");
+}
+
+TEST_F(VectorFile, SelfCrossingRingsAreRefusedWithTheirPlace) {
+  const std::string bowtie = R"({"type": "Polygon", "coordinates": [[[0, 0], [2, 2], [2, 0], [0, 2], [0, 0]]]})";
+  const DataError error = refusal_of([&] { read("a.geojson", collection("\"units\": \"m\", ", bowtie)); });
+  expect_refusal(error, DataCode::self_intersection, "feature 0, ring 0, vertex 0");
+  EXPECT_NE(error.found().find("(1, 1)"), std::string::npos) << error.what();
+}
+
+TEST_F(VectorFile, BrokenGeoJsonIsALibrarysWord) {
+  EXPECT_EQ(refusal_of([&] { read("a.geojson", "{\"type\": \"FeatureCollection\", \"features\": [{"); }).code(),
+            DataCode::library);
+}
+
+TEST_F(VectorFile, CsvWithAColumnOfWkt) {
+  const ObstacleFile file =
+      read("a.csv", "id,WKT\n1,\"POLYGON ((0 0,1 0,1 1,0 0))\"\n2,\"LINESTRING (0 0,5 5)\"\n3,POINT (1 1)\n");
+  EXPECT_EQ(file.obstacles.size(), 2u);
+  EXPECT_EQ(file.counts.passed_over, 1u);
+}
+
+TEST_F(VectorFile, ContentGoesBeforeTheName) {
+  EXPECT_EQ(read("a.csv", "POLYGON ((0 0, 1 0, 1 1, 0 0))").format, "wkt");
+  EXPECT_EQ(read("a.txt", "LINESTRING (0 0, 1 0)").format, "wkt");
+  EXPECT_EQ(refusal_of([&] { read("a.xyz", "hello"); }).code(), DataCode::format_unknown);
+  ReadOptions options;
+  options.format = "nonsense";
+  EXPECT_EQ(refusal_of([&] { read("b.wkt", "POINT EMPTY", options); }).code(), DataCode::not_an_option);
+}
+
+TEST(ObstacleFiles, AMissingFileIsNamed) {
+  const DataError error = refusal_of([] { read_obstacles("/nowhere/a.wkt"); });
+  EXPECT_EQ(error.code(), DataCode::file_missing);
+  EXPECT_EQ(error.file(), "/nowhere/a.wkt");
+}
+
+TEST_F(VectorFile, TheOfficeIsInMetresAndSixRobotsCrossIt) {
+  const formation::Scenario office =
+      load_scenario(std::filesystem::path(EXACTVO_SOURCE_DIR) / "datasets/data/office/office.json");
+  EXPECT_EQ(office.robots.size(), 6u);
+  EXPECT_EQ(office.obstacles.size(), 46u);
+  for (const formation::SceneObstacle& obstacle : office.obstacles) {
+    for (const Vec2 p : geometry::vertices_of(obstacle.shape)) {
+      EXPECT_TRUE(p.x >= 0.0 && p.x <= 30.0 && p.y >= 0.0 && p.y <= 20.0) << obstacle.id;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test
