@@ -38,6 +38,7 @@ struct FitGoal {
   double margin;
   std::optional<double> slack;  ///< none: the evolute condition is dropped
   double clear;
+  double most_area = 0.0;  ///< m^2 / pi: a larger ellipse shuts more ways than it opens
 };
 
 /// A candidate in a frame turned by `angle`: the centre lies `offset` across the middle of the points, `minor` is b -
@@ -134,7 +135,7 @@ Scored score(const std::vector<Vec2>& points, const Candidate& c, const FitGoal&
   const Vec2 centre = rotated({fit->centre, centre_y}, c.angle);
   const bool upright = a >= b;
   out.ellipse = ellipse_from_axes(centre, {std::max(a, b), std::min(a, b), upright ? c.angle : c.angle + 0.5 * kPi});
-  if (admissible(out.ellipse, want)) out.area = a * b;
+  if (a * b <= want.most_area && admissible(out.ellipse, want)) out.area = a * b;
   return out;
 }
 
@@ -207,6 +208,19 @@ std::optional<Ellipse> fit(const std::vector<Vec2>& hull, const FitGoal& want, d
   return e;
 }
 
+/// The area of hull (+) D(0, r): A + P r + pi r^2.
+double grown_area(const std::vector<Vec2>& hull, double r) {
+  double twice_area = 0.0;
+  double perimeter = 0.0;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vec2 a = hull[i];
+    const Vec2 b = hull[(i + 1) % hull.size()];
+    twice_area += cross(a - hull[0], b - hull[0]);
+    perimeter += norm(b - a);
+  }
+  return 0.5 * twice_area + perimeter * r + kPi * r * r;
+}
+
 double size_of(const std::vector<Vec2>& points) {
   double size = 0.0;
   for (Vec2 p : points) size = std::max(size, norm(p - points.front()));
@@ -251,44 +265,100 @@ std::vector<std::size_t> merged(const std::vector<std::size_t>& a, const std::ve
   return out;
 }
 
-/// Merges the first pair that meets and whose union can be enclosed; false when there is none left.
-struct Merger {
-  const std::vector<ObstacleParts>& obstacles;
-  double robot_radius;
-  Vec2 start, goal;
-  const EnclosureOptions& options;
-  std::vector<std::pair<std::vector<std::size_t>, bool>> refused{};  ///< unions that can't be enclosed
+/// Clusters of obstacles that lie in the way, merged where their enclosures meet.
+class Clustering {
+ public:
+  Clustering(const std::vector<ObstacleParts>& obstacles, double robot_radius, Vec2 start, Vec2 goal,
+             const EnclosureOptions& options)
+      : obstacles_(obstacles), robot_radius_(robot_radius), start_(start), goal_(goal), options_(options) {}
 
+  /// Encloses what the straight way meets, then what the detours round those enclosures meet, until nothing new does.
+  void run() {
+    for (std::vector<std::size_t> met = newly_met(); !met.empty(); met = newly_met()) {
+      for (std::size_t i : met) clusters_.push_back(cluster({i}));
+      while (merge_one()) {
+      }
+    }
+  }
+
+  const std::vector<Cluster>& clusters() const { return clusters_; }
+  bool in_the_way(std::size_t obstacle) const {
+    return std::any_of(clusters_.begin(), clusters_.end(), [obstacle](const Cluster& c) {
+      return std::binary_search(c.obstacles.begin(), c.obstacles.end(), obstacle);
+    });
+  }
+
+ private:
   Cluster cluster(std::vector<std::size_t> which) const {
     Cluster c{std::move(which), {}};
-    c.fitted = fit_trap_free(points_of(obstacles, c.obstacles), robot_radius, start, goal, options);
+    c.fitted = fit_trap_free(points_of(obstacles_, c.obstacles), robot_radius_, start_, goal_, options_);
     return c;
   }
 
-  bool was_refused(const std::vector<std::size_t>& which) const {
-    return std::any_of(refused.begin(), refused.end(), [&](const auto& r) { return r.first == which; });
+  /// The hull of start, goal and every enclosure grown by the robot: where the robot may pass.
+  ConvexPolygon passage() const {
+    constexpr int kSamples = 32;
+    std::vector<Vec2> points{start_, goal_};
+    for (const Cluster& c : clusters_) {
+      if (!c.fitted) continue;
+      for (int i = 0; i < kSamples; ++i) {
+        const double angle = 2.0 * kPi * i / kSamples;
+        points.push_back(support_point({c.fitted->ellipse, {}, robot_radius_}, {std::cos(angle), std::sin(angle)}));
+      }
+    }
+    return convex_hull(points);
   }
 
-  bool merge_one(std::vector<Cluster>& clusters) {
-    for (std::size_t i = 0; i < clusters.size(); ++i) {
-      for (std::size_t j = i + 1; j < clusters.size(); ++j) {
-        if (!clusters[i].fitted || !clusters[j].fitted) continue;
-        if (!may_meet(clusters[i].fitted->ellipse, clusters[j].fitted->ellipse, robot_radius)) continue;
-        std::vector<std::size_t> which = merged(clusters[i].obstacles, clusters[j].obstacles);
+  std::vector<std::size_t> newly_met() const {
+    const ConvexPolygon way = passage();
+    // Each side of `may_meet` is grown by half of what the robot keeps clear of the obstacle itself.
+    const double clearance = 0.5 * (robot_radius_ + options_.margin);
+    std::vector<std::size_t> met;
+    for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+      if (in_the_way(i)) continue;
+      const std::vector<ConvexShape>& pieces = obstacles_[i].pieces;
+      if (std::any_of(pieces.begin(), pieces.end(), [&](const auto& piece) { return may_meet(piece, way, clearance); }))
+        met.push_back(i);
+    }
+    return met;
+  }
+
+  bool was_refused(const std::vector<std::size_t>& which) const {
+    return std::find(refused_.begin(), refused_.end(), which) != refused_.end();
+  }
+
+  /// Merges the first pair that meets and whose union can be enclosed; false when there is none left.
+  bool merge_one() {
+    for (std::size_t i = 0; i < clusters_.size(); ++i) {
+      for (std::size_t j = i + 1; j < clusters_.size(); ++j) {
+        if (!clusters_[i].fitted || !clusters_[j].fitted) continue;
+        if (!may_meet(clusters_[i].fitted->ellipse, clusters_[j].fitted->ellipse, robot_radius_)) continue;
+        std::vector<std::size_t> which = merged(clusters_[i].obstacles, clusters_[j].obstacles);
         if (was_refused(which)) continue;
         Cluster both = cluster(which);
         if (!both.fitted) {
-          refused.emplace_back(std::move(which), true);
+          refused_.push_back(std::move(which));
           continue;
         }
-        clusters[i] = std::move(both);
-        clusters.erase(clusters.begin() + static_cast<std::ptrdiff_t>(j));
+        clusters_[i] = std::move(both);
+        clusters_.erase(clusters_.begin() + static_cast<std::ptrdiff_t>(j));
         return true;
       }
     }
     return false;
   }
+
+  const std::vector<ObstacleParts>& obstacles_;
+  double robot_radius_;
+  Vec2 start_, goal_;
+  const EnclosureOptions& options_;
+  std::vector<Cluster> clusters_;
+  std::vector<std::vector<std::size_t>> refused_;  ///< unions that can't be enclosed
 };
+
+void add_tight(const std::vector<ObstacleParts>& obstacles, std::size_t i, std::vector<Enclosure>& out) {
+  for (const ConvexShape& piece : obstacles[i].pieces) out.push_back({piece, {i}, EnclosureGrade::tight});
+}
 
 }  // namespace
 
@@ -330,9 +400,11 @@ std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, doub
   EXACTVO_REQUIRE(!points.empty(), "no points");
   const std::vector<Vec2> hull = convex_hull(points).vertices;
   const double size = size_of(hull);
-  const FitGoal full{robot_radius, start, goal, options.margin, options.slack, options.clear_of_ends};
-  const FitGoal thin{robot_radius, start, goal, options.least_margin, options.least_slack, options.clear_of_ends};
-  const FitGoal bare{robot_radius, start, goal, options.least_margin, std::nullopt, options.clear_of_ends};
+  const double most = options.most_inflation * grown_area(hull, robot_radius + options.margin) / kPi;
+  const double clear = options.clear_of_ends;
+  const FitGoal full{robot_radius, start, goal, options.margin, options.slack, clear, most};
+  const FitGoal thin{robot_radius, start, goal, options.least_margin, options.least_slack, clear, most};
+  const FitGoal bare{robot_radius, start, goal, options.least_margin, std::nullopt, clear, most};
   if (auto e = fit(hull, full, size)) return FittedEllipse{*e, EnclosureGrade::trap_free};
   if (auto e = fit(hull, thin, size)) return FittedEllipse{*e, EnclosureGrade::trap_free_thin};
   if (auto e = fit(hull, bare, size)) return FittedEllipse{*e, EnclosureGrade::containing};
@@ -353,20 +425,18 @@ ObstacleParts parts_of(const Obstacle& obstacle) {
 
 std::vector<Enclosure> enclose(const std::vector<ObstacleParts>& obstacles, double robot_radius, Vec2 start, Vec2 goal,
                                const EnclosureOptions& options) {
-  Merger merger{obstacles, robot_radius, start, goal, options};
-  std::vector<Cluster> clusters;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) clusters.push_back(merger.cluster({i}));
-  while (merger.merge_one(clusters)) {
-  }
+  Clustering clustering(obstacles, robot_radius, start, goal, options);
+  clustering.run();
   std::vector<Enclosure> out;
-  for (const Cluster& c : clusters) {
+  for (const Cluster& c : clustering.clusters()) {
     if (c.fitted) {
       out.push_back({c.fitted->ellipse, c.obstacles, c.fitted->grade});
-      continue;
+    } else {
+      for (std::size_t i : c.obstacles) add_tight(obstacles, i, out);
     }
-    for (std::size_t i : c.obstacles)
-      for (const ConvexShape& piece : obstacles[i].pieces) out.push_back({piece, {i}, EnclosureGrade::tight});
   }
+  for (std::size_t i = 0; i < obstacles.size(); ++i)
+    if (!clustering.in_the_way(i)) add_tight(obstacles, i, out);
   return out;
 }
 

@@ -47,6 +47,8 @@ struct EnclosureOptions {
   double least_margin = 0.02;   ///< m; second rung
   double least_slack = 0.02;    ///< second rung
   double clear_of_ends = 0.02;  ///< m; start and goal must be this far outside the grown enclosure
+  double most_inflation =
+      8.0;  ///< an ellipse may have this many times the area of the obstacle's hull grown by the robot
 };
 
 struct FittedEllipse {
@@ -78,9 +80,11 @@ struct Enclosure {
   bool trap_free() const { return grade == EnclosureGrade::trap_free || grade == EnclosureGrade::trap_free_thin; }
 };
 
-/// Encloses all obstacles for one robot and goal: fits each, merges whatever overlaps once grown by the robot (two such
-/// can trap at their concave vertex) and fits again until nothing overlaps; an obstacle of a cluster that can't be
-/// enclosed stands as its pieces, tight. Deterministic; heuristic but for what `fit_trap_free` checks.
+/// Encloses the obstacles in the way of one robot and goal: what the straight way meets, then what the detours round
+/// those enclosures meet, and so on. Whatever overlaps once grown by the robot (two such can trap at their concave
+/// vertex) is merged and fitted again, until nothing overlaps. What is not in the way, or can't be enclosed, stands as
+/// its pieces, tight: an ellipse there could only shut a passage. Every obstacle is covered by what is returned.
+/// Deterministic; heuristic but for what `fit_trap_free` checks.
 std::vector<Enclosure> enclose(const std::vector<ObstacleParts>& obstacles, double robot_radius, Vec2 start, Vec2 goal,
                                const EnclosureOptions& options = {});
 
