@@ -17,7 +17,7 @@ say "The paper's experiments (Section V)"
 "$exactvo" paper --out out/paper
 
 say "Six robots cross an office floor"
-"$exactvo" simulate datasets/data/office/crossing.json --method ivo --out out/office
+"$exactvo" simulate datasets/data/office/office.json --method ivo --out out/office
 
 say "Figures"
 find out/paper out/office -name '*.png' | LC_ALL=C sort

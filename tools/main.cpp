@@ -94,6 +94,10 @@ ExitCode parse_and_run(int argc, char** argv) {
     sub->footer("Examples:\n" + verb.examples + "\n" + kExitCodes);
     actions[sub] = verb.declare(*sub);
   }
+  if (argc == 1) {
+    std::fputs(app.help().c_str(), stderr);
+    return ExitCode::bad_input;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {

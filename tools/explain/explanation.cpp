@@ -128,10 +128,7 @@ std::string held_words(const Decision& d, const Balance& b) {
     by += (by.empty() ? "" : " and ") + name_of(d.step.constraints[*force.constraint], d.scenario);
   }
   if (by.empty()) return "";
-  return fmt::format(
-      "The robot is held by {}: every allowed velocity that leads away from here also leads away from "
-      "the preferred one.\n",
-      by);
+  return fmt::format("The robot is held by {}: no allowed velocity has a component towards the preferred one.\n", by);
 }
 
 std::string why(const Decision& d) {

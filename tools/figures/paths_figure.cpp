@@ -46,17 +46,6 @@ bool is_drawable(Vec2 p) {
   return is_finite(p) && std::abs(p.x) < kFarAway && std::abs(p.y) < kFarAway;
 }
 
-/// When the last robot came to rest for good; the whole run where one never did.
-double end_of_motion(const RecordingFile& run) {
-  const auto& steps = run.recording.steps;
-  for (std::size_t k = steps.size(); k-- > 0;) {
-    for (const auto& robot : steps[k].robots) {
-      if (norm(robot.velocity) > kVisibleSpeed) return steps[k].time;
-    }
-  }
-  return 0.0;
-}
-
 std::vector<const Step*> time_marks(const RecordingFile& run) {
   std::vector<const Step*> marks;
   const double end = end_of_motion(run);
@@ -170,21 +159,42 @@ class PathsPanel {
     add_places(i);
   }
 
-  /// The robot to scale: at every time mark where there is room, else at its start and its end.
+  /// The robot to scale: at every time mark that it has moved to, else (without details) at its start and its end.
   void add_places(std::size_t i) {
     const Robot& robot = run_.scenario.robots[i];
     const int index = data_.begin("places of " + robot.id, "x [m], y [m], radius [m], t");
-    std::vector<const Step*> marks = time_marks(run_);
-    if (!detailed_ && marks.size() > 2) marks = {marks.front(), marks.back()};
-    for (const Step* step : marks) {
+    for (const Step* step : places_of(i)) {
       const Vec2 p = step->robots[i].position;
-      if (is_drawable(p)) data_.labelled_row({p.x, p.y, robot.radius}, fmt::format("{:.3g} s", step->time));
+      data_.labelled_row({p.x, p.y, robot.radius}, label(p, step->time));
     }
     plot_.data(index, fmt::format("using 1:2:3 with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
                                   series_colour(i)));
     if (detailed_ && robot_count() <= 3) {
       plot_.data(index, "using 1:2:4 with labels font ',10' textcolor rgb '#222222' offset 0,1.1");
     }
+  }
+
+  std::vector<const Step*> places_of(std::size_t i) const {
+    std::vector<const Step*> places;
+    std::vector<const Step*> marks = time_marks(run_);
+    if (!detailed_ && marks.size() > 2) marks = {marks.front(), marks.back()};
+    for (const Step* step : marks) {
+      const Vec2 p = step->robots[i].position;
+      const bool moved = places.empty() || norm(p - places.back()->robots[i].position) > run_.scenario.robots[i].radius;
+      if (is_drawable(p) && moved) places.push_back(step);
+    }
+    return places;
+  }
+
+  /// The time, or nothing where another one would be written over.
+  std::string label(Vec2 p, double time) {
+    const Box view = view_of(run_);
+    for (const Vec2 other : labels_) {
+      const bool beside = std::abs(p.x - other.x) < 0.055 * view.width();
+      if (beside && std::abs(p.y - other.y) < 0.03 * view.height()) return "";
+    }
+    labels_.push_back(p);
+    return fmt::format("{:.3g} s", time);
   }
 
   void add_goals() {
@@ -205,6 +215,7 @@ class PathsPanel {
   DataFile& data_;
   bool detailed_;
   PlotCommand plot_;
+  std::vector<Vec2> labels_;  ///< where times are written, m
 };
 
 /// A box at least a third as wide as high and the other way round, so that no plot becomes a sliver.
@@ -234,6 +245,16 @@ std::size_t longest_key(const RecordingFile& run) {
 }
 
 }  // namespace
+
+double end_of_motion(const RecordingFile& run) {
+  const auto& steps = run.recording.steps;
+  for (std::size_t k = steps.size(); k-- > 0;) {
+    for (const auto& robot : steps[k].robots) {
+      if (norm(robot.velocity) > kVisibleSpeed) return steps[k].time;
+    }
+  }
+  return 0.0;
+}
 
 std::string run_title(const RecordingFile& run) {
   std::string title = run.info.scenario + ", " + run.info.method;
@@ -274,27 +295,25 @@ Figure paths_figure(const RecordingFile& run) {
   return {"paths", data.text(), script_text("paths", shows, canvas_for(view, longest_key(run)), body)};
 }
 
-Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<RecordingFile>& runs,
-                   int columns) {
+Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns) {
   DataFile data;
-  const int rows = (static_cast<int>(runs.size()) + columns - 1) / columns;
-  std::string body = fmt::format("  set multiplot layout {},{} title {}\n", rows, columns, quoted(title));
+  const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+  std::string body =
+      fmt::format("  set multiplot layout {},{} title {}\n", rows, columns, quoted(title + " (axes in metres)"));
   body +=
-      "  set size ratio -1\n  unset key\n  set tics font ',8' offset 0,0.3\n"
-      "  set lmargin 5\n  set rmargin 1\n  set tmargin 2\n  set bmargin 1.5\n";
+      "  set size ratio -1\n  unset key\n  set tics font ',8'\n  set xtics offset 0,0.3\n"
+      "  set lmargin 5\n  set rmargin 1\n  set tmargin 2.5\n  set bmargin 1.5\n";
   double tallest = 0.0;
-  for (const RecordingFile& run : runs) {
-    const PathsPanel panel(run, data, false);
-    const Box view = view_of(run);
+  for (const Panel& panel : panels) {
+    const PathsPanel paths(*panel.run, data, false);
+    const Box view = view_of(*panel.run);
     tallest = std::max(tallest, view.height() / view.width());
-    body += "  set title " + quoted(run.info.scenario + ": " + run.recording.outcome) + " font ',9' offset 0,-0.6\n" +
-            ranges(view) + panel.plot();
+    body += "  set title " + quoted(panel.title) + " font ',9' offset 0,-0.6\n" + ranges(view) + paths.plot();
   }
   body += "  unset multiplot\n";
   const int panel_width = 300;
-  const int panel_height = static_cast<int>(250.0 * std::min(tallest, 1.2)) + 50;
-  return {name, data.text(),
-          script_text(name, title + ". Axes in metres.", {panel_width * columns, panel_height * rows + 40}, body)};
+  const int panel_height = static_cast<int>(250.0 * std::min(tallest, 1.2)) + 55;
+  return {name, data.text(), script_text(name, title + ".", {panel_width * columns, panel_height * rows + 40}, body)};
 }
 
 }  // namespace exactvo::tools

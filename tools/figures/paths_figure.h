@@ -20,9 +20,16 @@ std::string run_title(const datasets::RecordingFile& run);
 /// times.
 Figure paths_figure(const datasets::RecordingFile& run);
 
+struct Panel {
+  std::string title;
+  const datasets::RecordingFile* run = nullptr;
+};
+
 /// Many runs side by side on one sheet, a panel each, without legends: for comparing.
-Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<datasets::RecordingFile>& runs,
-                   int columns);
+Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns);
+
+/// When the last robot came to rest for good, s; the end of the run where one never did.
+double end_of_motion(const datasets::RecordingFile& run);
 
 /// What a paths figure shows of the plane: every start, goal, leader and obstacle, and the ways as far as they stay
 /// within a few times that (a run that diverges must not shrink the rest to a dot). Obstacles more than four times as

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -43,14 +44,36 @@ void add_series(const RecordingFile& run, const std::vector<Series>& all, DataFi
   }
 }
 
-std::string axes(const std::string& title, const std::string& y_label) {
+/// The time axis: to the end, but where robots got stuck not far beyond their last move.
+double shown_time(const RecordingFile& run) {
+  const double end = run.recording.steps.empty() ? 1.0 : run.recording.steps.back().time;
+  return run.scenario.formation ? end : std::min(end, 1.5 * end_of_motion(run) + 1.0);
+}
+
+std::string axes(const RecordingFile& run, const std::string& title, const std::string& y_label) {
   return fmt::format(
       "  set title {}\n"
       "  set xlabel 'time [s]'\n"
+      "  set xrange [0:{:.6g}]\n"
       "  set ylabel {}\n"
       "  set grid lc rgb '#dcdcdc'\n"
       "  set key outside right top reverse Left\n",
-      quoted(title), quoted(y_label));
+      quoted(title), shown_time(run), quoted(y_label));
+}
+
+/// From a little below the lesser of zero and the values to a little above them.
+std::string distance_range(const std::vector<Series>& all) {
+  double low = 0.0;
+  double high = 0.0;
+  for (const Series& series : all) {
+    for (const double value : series.values) {
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  const double room = 0.05 * std::max(high - low, 1e-3);
+  return fmt::format("  set yrange [{:.6g}:{:.6g}]\n", low - room, high + room);
 }
 
 /// Distances: from zero up where nothing touches, and a line at contact.
@@ -61,8 +84,7 @@ Figure distance_figure(const RecordingFile& run, const std::string& name, const 
   add_series(run, all, data, plot);
   plot.item("0 with lines lw 1.5 dt (5,4) lc rgb 'black'", "contact");
   const std::string title = run_title(run) + ": " + what;
-  const std::string body =
-      axes(title, "distance [m]") + "  set yrange [*<-0.2:*]\n  set offsets graph 0, 0, graph 0.05, 0\n" + plot.text();
+  const std::string body = axes(run, title, "distance [m]") + distance_range(all) + plot.text();
   return {name, data.text(), script_text(name, title + ". Below zero they overlap.", kCanvas, body)};
 }
 
@@ -119,7 +141,7 @@ std::string velocity_panel(const RecordingFile& run, const std::string& title, c
   PlotCommand plot;
   add_series(run, velocity_components(run, component), data, plot);
   add_leader(run, component, data, plot);
-  return axes(title, y_label) + "  set offsets graph 0, 0, graph 0.05, graph 0.05\n" + plot.text();
+  return axes(run, title, y_label) + "  set offsets graph 0, 0, graph 0.05, graph 0.05\n" + plot.text();
 }
 
 }  // namespace
@@ -162,7 +184,7 @@ Figure formation_error_figure(const RecordingFile& run) {
   add_series(run, all, data, plot);
   const std::string title = run_title(run) + ": distance of each robot from its slot";
   const std::string body =
-      axes(title, "|x_i - x_L - Δ_i| [m]") + "  set logscale y\n  set format y '%.0e'\n" + plot.text();
+      axes(run, title, "|x_i - x_L - Δ_i| [m]") + "  set logscale y\n  set format y '%.0e'\n" + plot.text();
   return {"formation_error", data.text(), script_text("formation_error", title + ", logarithmic.", kCanvas, body)};
 }
 

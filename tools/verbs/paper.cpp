@@ -28,10 +28,8 @@ constexpr Controller kControllers[] = {Controller::paper_literal, Controller::pa
 constexpr int kAvoidanceScenarios = 15;  // A1-A15
 constexpr int kFormationScenarios = 4;   // B0-B3
 constexpr int kRuns = kAvoidanceScenarios * 4 + kFormationScenarios * 3;
-/// The scenario whose runs stand for Figs. 5 and 6, and the one for Fig. 8: two walls and two robots that must also
-/// pass each other; a passage between three obstacles.
-constexpr const char* kAvoidanceExample = "A2";
-constexpr const char* kFormationExample = "B3";
+/// The scenario that shows the difference best: two walls, and two robots that must also pass each other.
+constexpr const char* kComparison = "A2";
 
 struct Flags {
   std::string out;
@@ -80,7 +78,7 @@ class Experiments {
   static std::string formation_head() {
     return fmt::format(
         "\nSection V.B: three robots and a virtual leader, method ivo\n"
-        "{:<5}{:<15}{:>21}{:>20}{:>12}{:>12}{:>11}\n",
+        "{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11}\n",
         "", "controller", "position error [m]", "velocity error [m/s]", "obstacles", "robots", "jitter");
   }
 
@@ -134,7 +132,7 @@ class Experiments {
       const formation::Metrics& m = finished.metrics;
       const bool diverged = finished.file.recording.diverged;
       print(fmt::format(
-          "{:<5}{:<15}{:>21}{:>20}{:>12}{:>12}{:>11.0f}{} {}\n", scenario, name(controller),
+          "{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11.0f}{} {}\n", scenario, name(controller),
           number_or_dash(m.formation_position_error, "{:.2g}"), number_or_dash(m.formation_velocity_error, "{:.2g}"),
           number_or_dash(m.min_obstacle_clearance, "{:.3f}"), number_or_dash(m.min_robot_clearance, "{:.3f}"), m.jitter,
           touched(m) ? '!' : ' ', diverged ? "diverged" : ""));
@@ -142,41 +140,55 @@ class Experiments {
     }
   }
 
+  /// Fig. 5 has the usual method, Fig. 6 the improved one.
   void keep_avoidance(FinishedRun finished, Method method) {
     if (flags_.no_figures) return;
-    const std::string& scenario = finished.file.info.scenario;
-    if (scenario == kAvoidanceExample && method == Method::orca) add_example(finished, "fig5-orca");
-    if (scenario == kAvoidanceExample && method == Method::ivo) add_example(finished, "fig6-ivo");
-    sheets_[static_cast<std::size_t>(method)].push_back(std::move(finished.file));
+    if (method == Method::orca) add_figures(finished, "fig5-orca");
+    if (method == Method::ivo) add_figures(finished, "fig6-ivo");
+    avoidance_[static_cast<std::size_t>(method)].push_back(std::move(finished.file));
   }
 
   void keep_formation(FinishedRun finished, Controller controller) {
     if (flags_.no_figures) return;
-    const bool example = finished.file.info.scenario == kFormationExample;
-    if (example && controller == Controller::standard) add_example(finished, "fig8-formation");
-    formation_sheet_.push_back(std::move(finished.file));
+    if (controller == Controller::standard) add_figures(finished, "fig8-formation");
+    formation_.push_back(std::move(finished.file));
   }
 
-  void add_example(const FinishedRun& finished, const std::string& folder) {
-    const fs::path target = out_ / "figures" / folder;
+  void add_figures(const FinishedRun& finished, const std::string& folder) {
+    const fs::path target = out_ / "figures" / folder / finished.file.info.scenario;
     const std::vector<fs::path> scripts = write_figures(finished, target);
-    write_results(finished, target);
     scripts_.insert(scripts_.end(), scripts.begin(), scripts.end());
   }
 
-  void add_sheets() {
-    const fs::path folder = out_ / "figures" / "all";
-    make_folder(folder);
-    for (const Method method : kMethods) {
-      const std::string title = std::string("Section V.A, method ") + name(method);
-      add_sheet(folder, name(method), title, sheets_[static_cast<std::size_t>(method)], 4);
-    }
-    add_sheet(folder, "formation", "Section V.B, method ivo: a column a controller", formation_sheet_, 3);
+  static std::string panel_title(const datasets::RecordingFile& run) {
+    if (!run.scenario.formation) return run.info.scenario + ": " + run.recording.outcome;
+    return run.info.scenario + ", " + *run.info.controller + (run.recording.diverged ? ": diverged" : "");
   }
 
-  void add_sheet(const fs::path& folder, const std::string& stem, const std::string& title,
-                 const std::vector<datasets::RecordingFile>& runs, int columns) {
-    scripts_.push_back(write_sources(paths_sheet(stem, title, runs, columns), folder));
+  void add_sheets() {
+    for (const Method method : kMethods) {
+      std::vector<Panel> panels;
+      for (const auto& run : avoidance_[static_cast<std::size_t>(method)]) panels.push_back({panel_title(run), &run});
+      add_sheet(std::string("all-") + name(method), std::string("Section V.A, method ") + name(method), panels, 4);
+    }
+    std::vector<Panel> panels;
+    for (const auto& run : formation_) panels.push_back({panel_title(run), &run});
+    add_sheet("all-formation", "Section V.B, method ivo: a column a controller", panels, 3);
+    add_comparison();
+  }
+
+  void add_comparison() {
+    std::vector<Panel> panels;
+    for (const Method method : {Method::orca, Method::ivo}) {
+      for (const auto& run : avoidance_[static_cast<std::size_t>(method)]) {
+        if (run.info.scenario == kComparison) panels.push_back({std::string("method ") + name(method), &run});
+      }
+    }
+    add_sheet("two-walls", "Two robots and two walls", panels, 2);
+  }
+
+  void add_sheet(const std::string& stem, const std::string& title, const std::vector<Panel>& panels, int columns) {
+    scripts_.push_back(write_sources(paths_sheet(stem, title, panels, columns), out_ / "figures"));
   }
 
   const Flags& flags_;
@@ -184,8 +196,8 @@ class Experiments {
   fs::path out_;
   ProgressLine line_;
   std::vector<std::string> metrics_;
-  std::vector<datasets::RecordingFile> sheets_[4];  ///< by method
-  std::vector<datasets::RecordingFile> formation_sheet_;
+  std::vector<datasets::RecordingFile> avoidance_[4];  ///< by method
+  std::vector<datasets::RecordingFile> formation_;
   std::vector<fs::path> scripts_;
 };
 

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "explain/decision.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "explain/explanation.h"
+#include "figures/velocity_space.h"
+
+namespace exactvo::tools {
+namespace {
+
+using formation::ConstraintSource;
+using formation::RecordedConstraint;
+using testing::HasSubstr;
+
+/// kDirections of decision.cpp on shapes of a few metres.
+constexpr double kSampled = 1e-5;
+
+Decision with_two_walls() {
+  Decision d;
+  d.scenario.name = "corner";
+  d.scenario.robots = {{"R1", {0.0, 0.0}, {0.0, 0.0}, 0.5, 3.0, {{5.0, 5.0}}}};
+  d.scenario.obstacles = {{"east", geometry::Polyline{{{1.5, -2.0}, {1.5, 2.0}}}},
+                          {"north", geometry::Polyline{{{-2.0, 1.5}, {2.0, 1.5}}}}};
+  d.method = "method orca";
+  d.step.preferred = {2.0, 1.0};
+  d.step.chosen = {0.5, 0.5};
+  const auto wall = [](geometry::Segment s, std::size_t index, geometry::HalfPlane h) {
+    RecordedConstraint c;
+    c.shape = s;
+    c.index = index;
+    c.source = ConstraintSource::obstacle_edge;
+    c.half_plane = h;
+    c.radius = 0.5;
+    c.tau = 2.0;
+    c.active = true;
+    return c;
+  };
+  d.step.constraints = {wall({{1.5, -2.0}, {1.5, 2.0}}, 0, {{-1.0, 0.0}, -0.5}),
+                        wall({{-2.0, 1.5}, {2.0, 1.5}}, 1, {{0.0, -1.0}, -0.5})};
+  return d;
+}
+
+TEST(Decision, BalanceIsTheSumOfPushesOfWhatBinds) {
+  const Balance b = balance(with_two_walls());
+  ASSERT_EQ(b.forces.size(), 2u);
+  EXPECT_EQ(b.forces[0].constraint, 0u);
+  EXPECT_DOUBLE_EQ(b.forces[0].factor, 1.5);
+  EXPECT_EQ(b.forces[1].constraint, 1u);
+  EXPECT_DOUBLE_EQ(b.forces[1].factor, 0.5);
+  EXPECT_NEAR(b.remainder, 0.0, 1e-15);
+}
+
+TEST(Decision, BalanceFindsTheSpeedBound) {
+  Decision d = with_two_walls();
+  d.step.constraints.clear();
+  d.step.preferred = {0.0, 5.0};
+  d.step.chosen = {0.0, 3.0};
+  const Balance b = balance(d);
+  ASSERT_EQ(b.forces.size(), 1u);
+  EXPECT_FALSE(b.forces[0].constraint.has_value());
+  EXPECT_DOUBLE_EQ(b.forces[0].factor, 2.0);
+}
+
+TEST(Decision, BalanceOwnsUpWhereNothingExplainsTheChoice) {
+  Decision d = with_two_walls();
+  for (auto& c : d.step.constraints) c.active = false;
+  EXPECT_GT(balance(d).remainder, 1.0);
+}
+
+TEST(Decision, DistanceAndTimeToContact) {
+  const geometry::GrownShape disc{geometry::Disc{{5.0, 0.0}, 1.0}, {0.0, 0.0}, 0.5};
+  EXPECT_NEAR(distance_to(disc), 3.5, kSampled);
+  ASSERT_TRUE(time_to_contact(disc, {2.0, 0.0}).has_value());
+  EXPECT_NEAR(*time_to_contact(disc, {2.0, 0.0}), 1.75, kSampled);
+  EXPECT_FALSE(time_to_contact(disc, {-2.0, 0.0}).has_value());
+  EXPECT_FALSE(time_to_contact(disc, {1.0, 1.0}).has_value());
+  EXPECT_FALSE(time_to_contact(disc, {0.0, 0.0}).has_value());
+}
+
+TEST(Decision, NamesWhatAConstraintStandsFor) {
+  const Decision d = with_two_walls();
+  EXPECT_EQ(name_of(d.step.constraints[0], d.scenario), "the edge (1.5, -2)-(1.5, 2) of east");
+  RecordedConstraint enclosure = d.step.constraints[0];
+  enclosure.source = ConstraintSource::enclosure;
+  enclosure.shape = geometry::ellipse_from_axes({0.0, 1.5}, {2.5, 0.2, 0.0});
+  EXPECT_EQ(name_of(enclosure, d.scenario), "enclosure 0 of north");
+  RecordedConstraint robot = d.step.constraints[0];
+  robot.source = ConstraintSource::robot;
+  EXPECT_EQ(name_of(robot, d.scenario), "robot R1");
+}
+
+TEST(Explanation, NamesBindingConstraintsAndTheirPush) {
+  const std::string words = explanation(with_two_walls());
+  EXPECT_THAT(words, HasSubstr("2 half-planes, of which 2 bind"));
+  EXPECT_THAT(words, HasSubstr("1.50 n[1] + 0.50 n[2]"));
+  EXPECT_THAT(words, HasSubstr("1.00 m from the robot's rim, reached in 0.50 s"));
+}
+
+TEST(VelocitySpace, DrawsEveryLayerOnce) {
+  const Figure figure = velocity_space_figure(with_two_walls(), "space");
+  for (const char* layer : {"allowed velocities", "velocity obstacle of an obstacle", "its legs", "its cut-off",
+                            "half-plane, binding", "speed bound", "preferred velocity", "chosen velocity"}) {
+    EXPECT_THAT(figure.script, HasSubstr(std::string("title '") + (layer[0] == 'i' ? "  " : "") + layer)) << layer;
+  }
+  EXPECT_THAT(figure.script, HasSubstr("set size ratio -1"));
+  EXPECT_THAT(figure.data, testing::Not(HasSubstr("nan")));
+}
+
+}  // namespace
+}  // namespace exactvo::tools

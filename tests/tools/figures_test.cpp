@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "figures/figure.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "figures/paths_figure.h"
+#include "figures/run_figures.h"
+
+namespace exactvo::tools {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two robots that walk straight for ten steps past a polygon with a hole, and stand for ten more.
+datasets::RecordingFile short_run() {
+  datasets::RecordingFile run;
+  run.info.scenario = "short";
+  run.info.method = "ivo";
+  run.scenario.robots = {{"R'1", {0.0, 0.0}, {}, 0.5, 1.0, {{1.0, 0.0}}},
+                         {"R2", {0.0, 3.0}, {}, 0.5, 1.0, {{1.0, 3.0}}}};
+  run.scenario.obstacles = {
+      {"block", geometry::Polygon{{{3, 0}, {6, 0}, {6, 3}, {3, 3}}, {{{4, 1}, {4, 2}, {5, 2}, {5, 1}}}}}};
+  for (int k = 0; k <= 20; ++k) {
+    const double way = 0.1 * std::min(k, 10);
+    const geometry::Vec2 v{k < 10 ? 1.0 : 0.0, 0.0};
+    formation::Step step;
+    step.time = 0.1 * k;
+    step.robots.resize(2);
+    step.robots[0].position = {way, 0.0};
+    step.robots[1].position = {way, 3.0};
+    step.robots[0].velocity = step.robots[1].velocity = v;
+    run.recording.steps.push_back(step);
+  }
+  run.recording.time_step = 0.1;
+  return run;
+}
+
+std::vector<std::string> names_of(const std::vector<Figure>& figures) {
+  std::vector<std::string> names;
+  for (const Figure& figure : figures) names.push_back(figure.name);
+  return names;
+}
+
+TEST(DataFile, NumbersItsDataSetsAsGnuplotDoes) {
+  DataFile data;
+  EXPECT_EQ(data.begin("first", "x"), 0);
+  data.row({1.0, 0.1});
+  data.gap();
+  data.row({2.0});
+  EXPECT_EQ(data.begin("second", "x"), 1);
+  data.labelled_row({3.0}, "here");
+  EXPECT_EQ(data.text(), "# 0: first\n# x\n1 0.1\n\n2\n\n\n# 1: second\n# x\n3 \"here\"\n");
+}
+
+TEST(Quoted, LeavesNoQuoteOpen) {
+  EXPECT_EQ(quoted("plain"), "'plain'");
+  EXPECT_EQ(quoted("R'1"), "'R''1'");
+}
+
+TEST(RunFigures, AreThoseThatApply) {
+  datasets::RecordingFile run = short_run();
+  EXPECT_THAT(names_of(run_figures(run)), ElementsAre("paths", "obstacle_distance", "robot_distance", "velocity"));
+  run.scenario.obstacles.clear();
+  EXPECT_THAT(names_of(run_figures(run)), ElementsAre("paths", "robot_distance", "velocity"));
+  run.scenario.robots.pop_back();
+  for (auto& step : run.recording.steps) step.robots.pop_back();
+  EXPECT_THAT(names_of(run_figures(run)), ElementsAre("paths", "velocity"));
+}
+
+TEST(RunFigures, HaveUnitsAndLegendsAndNameTheirOwnFiles) {
+  for (const Figure& figure : run_figures(short_run())) {
+    EXPECT_THAT(figure.script, HasSubstr("data = '" + figure.name + ".dat'"));
+    EXPECT_THAT(figure.script, HasSubstr("set output '" + figure.name + ".' . format"));
+    EXPECT_THAT(figure.script, HasSubstr("set key outside"));
+    EXPECT_THAT(figure.script, HasSubstr("[m"));
+    EXPECT_THAT(figure.data, Not(HasSubstr("nan")));
+  }
+}
+
+TEST(PathsFigure, HasEqualAxesObstaclesHolesAndQuotedNames) {
+  const Figure figure = paths_figure(short_run());
+  EXPECT_THAT(figure.script, HasSubstr("set size ratio -1"));
+  EXPECT_THAT(figure.script, HasSubstr("title 'R''1'"));
+  EXPECT_THAT(figure.data, HasSubstr("obstacles with an inside"));
+  EXPECT_THAT(figure.data, HasSubstr("holes in them"));
+}
+
+TEST(PathsFigure, EndOfMotionIsWhenTheLastRobotStops) {
+  EXPECT_DOUBLE_EQ(end_of_motion(short_run()), 0.9);
+}
+
+TEST(PathsFigure, ViewHoldsEverythingButARunaway) {
+  datasets::RecordingFile run = short_run();
+  const Box calm = view_of(run);
+  for (const Vec2 p : {Vec2{-0.5, -0.5}, Vec2{6.0, 3.0}, Vec2{1.5, 3.5}}) EXPECT_TRUE(calm.contains(p));
+  run.recording.steps.back().robots[0].position = {1e9, 0.0};
+  const Box still = view_of(run);
+  EXPECT_EQ(still.high.x, calm.high.x);
+  run.recording.steps.back().robots[0].position = {std::nan(""), 0.0};
+  EXPECT_EQ(view_of(run).high.x, calm.high.x);
+}
+
+}  // namespace
+}  // namespace exactvo::tools

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo paper: everything is there, and twice the same.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using nlohmann::json;
+
+TEST(Paper, EveryRunIsInTheSummaryAndEveryFigureIsDrawnTwiceTheSame) {
+  const Workplace first;
+  const Workplace second;
+  std::string table;
+  for (const Workplace* here : {&first, &second}) {
+    const Outcome outcome = here->run("paper --out out");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(table.empty() || table == outcome.out);
+    table = outcome.out;
+  }
+  const auto a = first.files("out");
+  const auto b = second.files("out");
+  ASSERT_EQ(a.size(), b.size());
+  for (const auto& [name, text] : a) {
+    ASSERT_EQ(b.count(name), 1u) << name;
+    EXPECT_TRUE(without_times(text) == without_times(b.at(name))) << name << " differs";
+  }
+
+  std::set<std::string> runs;
+  for (const json& run : json::parse(a.at("summary.json"))) {
+    runs.insert(run["scenario"].get<std::string>() + " " + run["method"].get<std::string>() + " " +
+                (run["controller"].is_null() ? "" : run["controller"].get<std::string>()));
+  }
+  EXPECT_EQ(runs.size(), 15u * 4u + 4u * 3u);
+  for (const char* run : {"A1 orca ", "A15 ivo ", "A7 ivo-edge ", "A14 ivo-cluster ", "B0 ivo paper-literal",
+                          "B3 ivo default", "B1 ivo paper-signs"}) {
+    EXPECT_EQ(runs.count(run), 1u) << run;
+  }
+  for (const char* picture : {"fig5-orca/A1/paths", "fig5-orca/A15/obstacle_distance", "fig6-ivo/A1/robot_distance",
+                              "fig8-formation/B3/velocity", "fig8-formation/B0/formation_error", "all-ivo"}) {
+    EXPECT_EQ(a.count(std::string("figures/") + picture + ".svg"), 1u) << picture;
+    EXPECT_EQ(a.count(std::string("figures/") + picture + ".png"), 1u) << picture;
+  }
+}
+
+TEST(Paper, AFolderWithoutScenariosIsRefused) {
+  const Workplace here;
+  const Outcome outcome = here.run("paper --out out --data .");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("--data"));
+  EXPECT_FALSE(here.has("out"));
+}
+
+}  // namespace
+}  // namespace exactvo::test

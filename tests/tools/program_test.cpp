@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program as a user meets it: what it prints, what it writes, and how it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr const char* kOneRobot = R"({
+  "name": "one", "time_limit": 20,
+  "robots": [{ "id": "R1", "position": [0, 0], "goal": [8, 0] }],
+  "obstacles": [{ "id": "wall", "polyline": [[4, -1], [4, 1]] }]
+})";
+
+std::string with(const std::string& from, const std::string& to) {
+  std::string text = kOneRobot;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Program, NothingAskedPrintsHelpAndFails) {
+  const Workplace here;
+  const Outcome outcome = here.run("");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("simulate"), HasSubstr("explain"), HasSubstr("paper")));
+  EXPECT_THAT(outcome.out, IsEmpty());
+}
+
+TEST(Program, HelpHasExamplesAndExitStatuses) {
+  const Workplace here;
+  for (const char* arguments : {"--help", "simulate --help", "explain --help", "paper --help"}) {
+    const Outcome outcome = here.run(arguments);
+    EXPECT_EQ(outcome.status, 0) << arguments;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("Examples:"), HasSubstr("Exit status:"))) << arguments;
+  }
+}
+
+TEST(Program, VersionHasBuildFacts) {
+  const Workplace here;
+  const Outcome outcome = here.run("--version");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("exactvo "), HasSubstr("commit "), HasSubstr("CGAL "), HasSubstr("GMP ")));
+}
+
+TEST(Program, MistypedWordsAreAnsweredWithTheNearest) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const std::pair<const char*, const char*> cases[] = {{"simulat s.json", "'simulate'"},
+                                                       {"simulate s.json --method ivo-clster", "'ivo-cluster'"},
+                                                       {"simulate s.json --controller defualt", "'default'"},
+                                                       {"simulate s.json --integrator rk5", "'rk4'"},
+                                                       {"simulate s.json --methd ivo", "'--method'"},
+                                                       {"explain s.json --time 1 --robot R2", "'R1'"}};
+  for (const auto& [arguments, nearest] : cases) {
+    const Outcome outcome = here.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("did you mean ") + nearest)) << arguments;
+    EXPECT_THAT(outcome.out, IsEmpty()) << arguments;
+  }
+}
+
+TEST(Simulate, AnUnknownMethodNamesTheKnownOnes) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("simulate s.json --method magic --out out");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--method"), HasSubstr("found 'magic'"), HasSubstr("orca"),
+                                 HasSubstr("ivo-edge"), HasSubstr("ivo-cluster")));
+  EXPECT_FALSE(here.has("out"));
+}
+
+struct BadScenario {
+  const char* name;
+  const char* from;
+  const char* to;
+  const char* pointer;
+  const char* code;
+};
+
+class RefusedScenario : public testing::TestWithParam<BadScenario> {};
+
+TEST_P(RefusedScenario, SaysFilePointerFoundAndExpectedAndWritesNothing) {
+  const BadScenario& bad = GetParam();
+  const Workplace here;
+  here.write("bad.json", with(bad.from, bad.to));
+  const Outcome outcome = here.run("simulate bad.json --out out");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("bad.json"), HasSubstr(bad.pointer), HasSubstr("found"),
+                                 HasSubstr("expected"), HasSubstr(bad.code)));
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_FALSE(here.has("out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenarios, RefusedScenario,
+    testing::Values(
+        BadScenario{"WrongType", "[0, 0]", "[0, \"a\"]", "/robots/0/position/1", "E_TYPE"},
+        BadScenario{"OutOfRange", "\"time_limit\": 20", "\"time_limit\": -1", "/time_limit", "E_RANGE"},
+        BadScenario{"UnknownKey", "\"goal\"", "\"gaol\"", "/robots/0", "E_KEY_UNKNOWN"},
+        BadScenario{"NoRobots", R"([{ "id": "R1", "position": [0, 0], "goal": [8, 0] }])", "[]", "/robots", "E_COUNT"},
+        BadScenario{"SelfCrossing", R"("polyline": [[4, -1], [4, 1]])",
+                    R"("polygon": [[0, 3], [2, 5], [2, 3], [0, 5]])", "/obstacles/0", "E_SELF_INTERSECTION"},
+        BadScenario{"MissingFile", R"("polyline": [[4, -1], [4, 1]])", R"("file": "nowhere.geojson")",
+                    "nowhere.geojson", "E_FILE_MISSING"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Simulate, ABrokenTextIsRefusedWithItsLine) {
+  const Workplace here;
+  here.write("broken.json", "{\n  \"name\": \"x\",\n  \"robots\": [\n");
+  const Outcome outcome = here.run("simulate broken.json --out out");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("broken.json"), HasSubstr("line"), HasSubstr("E_JSON_SYNTAX")));
+  EXPECT_FALSE(here.has("out"));
+}
+
+TEST(Simulate, JsonHasEveryKey) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("simulate s.json --json --seed 7");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json metrics = json::parse(outcome.out);
+  for (const char* key :
+       {"scenario", "method", "controller", "all_arrived", "last_arrival_time", "min_obstacle_clearance",
+        "min_robot_clearance", "formation_position_error", "formation_velocity_error", "leader_arrival_time", "jitter",
+        "heading_reversals", "active_set_switches", "relaxed_steps", "uncertified_half_planes", "steps", "wall_time",
+        "robots", "provenance"}) {
+    EXPECT_TRUE(metrics.contains(key)) << key;
+  }
+  for (const char* key : {"id", "arrived", "arrival_time", "path_length", "min_obstacle_clearance"}) {
+    EXPECT_TRUE(metrics["robots"][0].contains(key)) << key;
+  }
+  EXPECT_EQ(metrics["scenario"], "one");
+  EXPECT_EQ(metrics["method"], "ivo");
+  EXPECT_EQ(metrics["all_arrived"], true);
+  EXPECT_EQ(metrics["provenance"]["seed"], 7);
+  for (const char* key : {"controller", "min_robot_clearance", "formation_position_error", "leader_arrival_time"}) {
+    EXPECT_TRUE(metrics[key].is_null()) << key << " does not apply to one robot with a goal";
+  }
+}
+
+TEST(Simulate, ARobotThatGetsStuckIsAnAnswerNotAnError) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("simulate s.json --method orca --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json metrics = json::parse(outcome.out);
+  EXPECT_EQ(metrics["all_arrived"], false);
+  EXPECT_TRUE(metrics["last_arrival_time"].is_null());
+}
+
+TEST(Simulate, ReadsStandardInput) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("simulate - --json <s.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out)["scenario"], "one");
+}
+
+TEST(Simulate, OutputIsComplete) {
+  const Workplace here;
+  const Outcome outcome = here.run("simulate " + data_file("paper/B1.json") + " --out out --quiet");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  const auto files = here.files("out");
+  for (const char* name : {"recording.jsonl", "metrics.json", "trajectory.csv"})
+    EXPECT_EQ(files.count(name), 1u) << name;
+  for (const char* figure : {"paths", "obstacle_distance", "robot_distance", "velocity", "formation_error"}) {
+    for (const char* extension : {".dat", ".gp", ".svg", ".png"}) {
+      const std::string name = std::string("figures/") + figure + extension;
+      ASSERT_EQ(files.count(name), 1u) << name;
+      EXPECT_GT(files.at(name).size(), 100u) << name;
+    }
+    EXPECT_THAT(files.at(std::string("figures/") + figure + ".svg"), HasSubstr("</svg>"));
+  }
+  EXPECT_TRUE(json::accept(files.at("metrics.json")));
+  EXPECT_EQ(files.size(), 3u + 5u * 4u) << "nothing else";
+}
+
+TEST(Simulate, TwoRunsGiveTheSameBytesButForTimes) {
+  const Workplace first;
+  const Workplace second;
+  for (const Workplace* here : {&first, &second}) {
+    const Outcome outcome = here->run("simulate " + data_file("paper/A2.json") + " --out out");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  const auto a = first.files("out");
+  const auto b = second.files("out");
+  ASSERT_EQ(a.size(), b.size());
+  for (const auto& [name, text] : a) {
+    ASSERT_EQ(b.count(name), 1u) << name;
+    EXPECT_TRUE(without_times(text) == without_times(b.at(name))) << name << " differs";
+  }
+}
+
+TEST(Simulate, AnExistingFolderKeepsWhatIsNotOurs) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  std::filesystem::create_directory(here.path() / "out");
+  here.write("out/notes.txt", "mine");
+  here.write("out/metrics.json", "old");
+  ASSERT_EQ(here.run("simulate s.json --out out --no-figures").status, 0);
+  EXPECT_EQ(here.read("out/notes.txt"), "mine");
+  EXPECT_TRUE(json::accept(here.read("out/metrics.json")));
+}
+
+TEST(Simulate, AFolderThatCannotBeWrittenIsRefused) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  here.write("taken", "a file");
+  const Outcome outcome = here.run("simulate s.json --out taken");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("taken"), HasSubstr("E_FILE_UNWRITABLE")));
+  EXPECT_EQ(here.read("taken"), "a file");
+}
+
+TEST(Simulate, WithoutGnuplotTheDataAndScriptsStand) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("simulate s.json --out out", "PATH=/nowhere");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("gnuplot is not installed"));
+  EXPECT_TRUE(here.has("out/figures/paths.dat"));
+  EXPECT_TRUE(here.has("out/figures/paths.gp"));
+  EXPECT_FALSE(here.has("out/figures/paths.png"));
+  EXPECT_TRUE(here.has("out/metrics.json"));
+}
+
+TEST(Explain, SaysWhatHoldsARobotAndDrawsIt) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("explain s.json --method orca --time 10 --robot R1 --out stuck.svg");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("R1 of one at t = 10.00 s"), HasSubstr("[1] binds"), HasSubstr("of wall"),
+                                 HasSubstr("The robot is held by"), HasSubstr("Karush")));
+  for (const char* name : {"stuck.svg", "stuck.png", "stuck.dat", "stuck.gp"}) EXPECT_TRUE(here.has(name)) << name;
+}
+
+TEST(Explain, ARobotGoesByNumberToo) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  EXPECT_EQ(here.run("explain s.json --time 1 --robot 0").out, here.run("explain s.json --time 1 --robot R1").out);
+  EXPECT_EQ(here.run("explain s.json --time 1 --robot 1").status, 2);
+}
+
+TEST(Explain, ATimeAfterTheEndIsRefused) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("explain s.json --time 1000 --robot R1 --out x.svg");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--time"), HasSubstr("found '1000'"), HasSubstr("when the run ends")));
+  EXPECT_FALSE(here.has("x.svg"));
+  EXPECT_EQ(here.run("explain s.json --time 1 --robot R1 --out x.pdf").status, 2);
+}
+
+}  // namespace
+}  // namespace exactvo::test
