@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A polygon grown by a disc, unrounded: segments that may lie on irrational lines, and circular arcs. CGAL's conic
+/// arcs over algebraic numbers carry it (offset_polygon_2 with Arr_conic_traits_2), behind an immutable handle.
+///
+/// It is the exact object to study and the oracle in tests, not a part of any loop: 0.5 ms for a square, seconds for a
+/// star of a hundred corners. Certified polygons round it and inside it are `offset_polygon` in minkowski.h.
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::geometry {
+
+/// A piece of the boundary as doubles can show it: each coordinate rounded.
+struct OffsetCurve {
+  Vec2 from;
+  Vec2 to;
+  bool is_arc = false;
+  Vec2 center;  ///< of an arc, m
+};
+
+class ExactOffset {
+ public:
+  /// polygon (+) D(0, radius). REQUIRES: polygon valid (see `normalize`), radius > 0, finite.
+  ExactOffset(const Polygon& polygon, double radius);
+
+  /// Where x lies. Exact: the side of the conic arcs, in algebraic numbers.
+  Place locate(Vec2 x) const;
+
+  /// The boundary's pieces in order: the outer ring counter-clockwise, then what is left of holes. Arcs are split where
+  /// they turn back in x.
+  const std::vector<std::vector<OffsetCurve>>& boundary() const;
+
+  double area() const;  ///< m^2; rounded
+
+ private:
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
+};
+
+}  // namespace exactvo::geometry
