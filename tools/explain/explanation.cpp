@@ -81,10 +81,15 @@ std::string contact_words(const RecordedConstraint& c, Vec2 preferred) {
                      number(c.tau));
 }
 
+std::string proof_words(const RecordedConstraint& c) {
+  if (!c.certified) return "not certified";
+  return c.source == formation::ConstraintSource::robot ? "proven safe together with the other robot's half"
+                                                        : "proven to exclude the velocity obstacle";
+}
+
 std::string line_words(const RecordedConstraint& c) {
   return fmt::format("{:+.3f} v_x {:+.3f} v_y >= {:+.3f} m/s; {}, {}", c.half_plane.normal.x, c.half_plane.normal.y,
-                     c.half_plane.offset, c.hard ? "hard" : "soft",
-                     c.certified ? "proven to exclude the velocity obstacle" : "not certified");
+                     c.half_plane.offset, c.hard ? "hard" : "soft", proof_words(c));
 }
 
 std::string constraint_words(const Decision& d, std::size_t i) {

@@ -127,16 +127,23 @@ class PathsPanel {
                key(in_legend ? "obstacle" : "wall"));
   }
 
+  /// Ellipses only: a facade that stands for itself would be drawn over the obstacle.
   void add_enclosures() {
-    bool first = true;
-    for (std::size_t i = 0; i < run_.enclosures.size(); ++i) {
-      if (run_.enclosures[i].empty()) continue;
-      const int index = data_.begin("enclosures seen by " + run_.scenario.robots[i].id, "x [m], y [m]");
-      for (const auto& shape : run_.enclosures[i]) add_ring(outline(shape));
-      plot_.data(index, fmt::format("using 1:2 with lines lw 1.2 dt (6,5) lc rgb '{}'", series_colour(i)));
-      if (first) plot_.item("keyentry with lines lw 1.2 dt (6,5) lc rgb '#222222'", "enclosures");
-      first = false;
+    bool any = false;
+    for (std::size_t i = 0; i < run_.enclosures.size(); ++i) any |= add_enclosures_of(i);
+    if (any) plot_.item("keyentry with lines lw 1.2 dt (6,5) lc rgb '#222222'", "enclosures");
+  }
+
+  bool add_enclosures_of(std::size_t i) {
+    std::vector<Points> rings;
+    for (const auto& shape : run_.enclosures[i]) {
+      if (std::holds_alternative<geometry::Ellipse>(shape)) rings.push_back(outline(shape));
     }
+    if (rings.empty()) return false;
+    const int index = data_.begin("enclosures seen by " + run_.scenario.robots[i].id, "x [m], y [m]");
+    for (const Points& ring : rings) add_ring(ring);
+    plot_.data(index, fmt::format("using 1:2 with lines lw 1.2 dt (6,5) lc rgb '{}'", series_colour(i)));
+    return true;
   }
 
   void add_leader() {
@@ -170,7 +177,7 @@ class PathsPanel {
     plot_.data(index, fmt::format("using 1:2:3 with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
                                   series_colour(i)));
     if (detailed_ && robot_count() <= 3) {
-      plot_.data(index, "using 1:2:4 with labels font ',10' textcolor rgb '#222222' offset 0,1.1");
+      plot_.data(index, "using 1:($2+$3):4 with labels font ',10' textcolor rgb '#222222' offset 0,0.6");
     }
   }
 
