@@ -108,6 +108,7 @@ class Search {
       least_gap_ = kUnitRoundoff * speed;
     else
       least_gap_ = kUnitRoundoff * (problem.objective == Objective::nearest ? (speed + p) * (speed + p) : speed * p);
+    least_gap_ = std::max(least_gap_, std::numeric_limits<double>::min());
   }
 
   /// Tries every choice of at most three candidates.
@@ -148,7 +149,7 @@ class Search {
     const Combination sum = combine(problem_, terms, scope_);
     if (!sum.well_formed) return;
     const double limit = found_ ? 0.5 * best_gap_ : widest_;
-    for (double gap = bounds(sum, 0.0) ? 0.0 : least_gap_; gap <= limit; gap *= 4.0) {
+    for (double gap = bounds(sum, 0.0) ? 0.0 : least_gap_; gap <= limit && std::isfinite(gap); gap *= 4.0) {
       if (bounds(sum, gap)) {
         found_ = true;
         best_gap_ = gap;

@@ -93,7 +93,7 @@ inline ExactPoint point_at(const Carrier& c, const Abscissa& s) {
           c.line.normal.y * scaled + s.rational * c.direction.y,
           root * c.direction.y,
           c.squared_length * s.den,
-          c.discriminant};
+          s.root == 0 ? Exact(0) : c.discriminant};
 }
 
 /// The height of a soft line over an abscissa, (rational + root sqrt(D)) / den: its violation there.

@@ -303,6 +303,14 @@ ExactRegion bounded_by(ExactRegion region, const Exact& radius) {
   return region;
 }
 
+/// A radius that contains the box. REQUIRES: all four sides among the lines.
+Exact around_box(const ExactRegion& region) {
+  Exact radius = 0;
+  for (const auto& member : region.lines)
+    if (is_speed_bound(member.index)) radius = radius - Exact(member.half_plane.offset);
+  return radius;
+}
+
 /// The disc that was put there for want of a bound must not be what stops the search.
 ExactOptimum without_disc(ExactOptimum o) {
   o.on_disc = false;
@@ -313,7 +321,7 @@ ExactOptimum without_disc(ExactOptimum o) {
 
 ExactOptimum exact_best(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& guess) {
   if (region.has_disc || aim.directions.empty()) return walk_twice(region, aim, start_of(region, aim), false, guess);
-  const ExactRegion bounded = bounded_by(region, far_away(true));
+  const ExactRegion bounded = bounded_by(region, around_box(region) + Exact(1));
   return without_disc(walk_twice(bounded, aim, start_of(bounded, aim), false, guess));
 }
 

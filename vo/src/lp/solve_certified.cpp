@@ -14,4 +14,9 @@ Proven solve_certified(const Problem& problem) {
   return solve_exactly(problem, {s.active.begin(), s.active.begin() + s.active_count});
 }
 
+Proven solve_exact(const Problem& problem) {
+  require_well_formed(problem);
+  return solve_exactly(problem, {});
+}
+
 }  // namespace exactvo::lp

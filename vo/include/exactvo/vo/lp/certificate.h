@@ -81,4 +81,8 @@ struct Proven {
 /// REQUIRES: a well-formed problem.
 Proven solve_certified(const Problem& problem);
 
+/// The exact answer: every branch decided in exact arithmetic, the optimum an algebraic point, rounded inward.
+/// REQUIRES: a well-formed problem.
+Proven solve_exact(const Problem& problem);
+
 }  // namespace exactvo::lp

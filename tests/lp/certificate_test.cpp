@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `check` accepts what is right and rejects what was tampered with.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/instances.h"
+#include "exactvo/vo/lp/solve.h"
+#include "problem_text.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::lp {
+namespace {
+
+std::vector<Problem> problems() {
+  std::vector<Problem> all = generate("RF10", 2500, 11);
+  const std::vector<Problem> infeasible = generate("RI10", 2500, 12);
+  all.insert(all.end(), infeasible.begin(), infeasible.end());
+  for (std::size_t k = 1; k < all.size(); k += 2)
+    for (Constraint& c : all[k].constraints) c.priority = Priority::hard;
+  return all;
+}
+
+/// Corruptions that must void any certificate they apply to; false where one does not apply.
+using Corruption = bool (*)(const Problem&, Certificate&);
+
+bool velocity_beyond_the_disc(const Problem& problem, Certificate& c) {
+  c.velocity = c.velocity + Vec2{3.0 * problem.bound.disc, 0.0};
+  return true;
+}
+
+bool velocity_worse_than_claimed(const Problem& problem, Certificate& c) {
+  const Vec2 centre = {0.01, -0.02};
+  if (norm(c.velocity - centre) < 1e-3 || (c.status == Status::optimal && c.bound.empty())) return false;
+  c.velocity = c.velocity + 1e-3 * perp(c.velocity - problem.preferred);
+  return c.status == Status::optimal && norm(c.velocity - problem.preferred) > 1e-3;
+}
+
+bool violation_understated(const Problem&, Certificate& c) {
+  c.violation *= 0.5;
+  return c.violation > 1e-9;
+}
+
+bool violation_overstated(const Problem&, Certificate& c) {
+  c.violation += 1e-3;
+  return c.status == Status::relaxed || c.status == Status::infeasible;
+}
+
+bool multiplier_negative(const Problem&, Certificate& c) {
+  if (c.bound.empty()) return false;
+  for (double& part : c.bound.front().multiplier) part = -part;
+  return true;
+}
+
+bool multiplier_enlarged(const Problem&, Certificate& c) {
+  if (c.bound.size() < 2) return false;
+  for (double& part : c.bound.front().multiplier) part *= 4.0;
+  return true;
+}
+
+bool multiplier_not_a_number(const Problem&, Certificate& c) {
+  if (c.bound.empty()) return false;
+  c.bound.front().multiplier = {std::nan("")};
+  return true;
+}
+
+bool constraint_out_of_range(const Problem& problem, Certificate& c) {
+  if (c.bound.empty()) return false;
+  c.bound.front().constraint = problem.constraints.size();
+  return true;
+}
+
+bool bound_forgotten(const Problem&, Certificate& c) {
+  if (c.bound.empty()) return false;
+  c.bound.clear();
+  return true;
+}
+
+bool contradiction_forgotten(const Problem&, Certificate& c) {
+  if (c.contradiction.empty()) return false;
+  c.contradiction.clear();
+  return true;
+}
+
+bool status_embellished(const Problem&, Certificate& c) {
+  if (c.status == Status::optimal) return false;
+  c.status = Status::optimal;
+  return true;
+}
+
+bool status_blackened(const Problem&, Certificate& c) {
+  if (c.status != Status::optimal) return false;
+  c.status = Status::relaxed;
+  return true;
+}
+
+bool gap_negative(const Problem&, Certificate& c) {
+  c.gap = -1e-3;
+  return true;
+}
+
+constexpr std::array<Corruption, 13> kCorruptions = {velocity_beyond_the_disc,
+                                                     velocity_worse_than_claimed,
+                                                     violation_understated,
+                                                     violation_overstated,
+                                                     multiplier_negative,
+                                                     multiplier_enlarged,
+                                                     multiplier_not_a_number,
+                                                     constraint_out_of_range,
+                                                     bound_forgotten,
+                                                     contradiction_forgotten,
+                                                     status_embellished,
+                                                     status_blackened,
+                                                     gap_negative};
+
+TEST(Certificate, EveryAnswerOfEverySolverIsAccepted) {
+  for (const Problem& problem : problems()) {
+    for (const Proven& proven : {solve_certified(problem), solve_exact(problem)}) {
+      ASSERT_TRUE(proven.certificate.has_value()) << text_of(problem);
+      EXPECT_EQ(check(problem, *proven.certificate), Flaw::none) << text_of(problem);
+      EXPECT_EQ(proven.certificate->status, proven.solution.status);
+    }
+  }
+}
+
+TEST(Certificate, EveryCorruptedOneIsRejected) {
+  int corrupted = 0;
+  for (const Problem& problem : problems()) {
+    const Certificate sound = *solve_certified(problem).certificate;
+    for (std::size_t k = 0; k < kCorruptions.size(); ++k) {
+      Certificate c = sound;
+      if (!kCorruptions[k](problem, c)) continue;
+      ++corrupted;
+      EXPECT_NE(check(problem, c), Flaw::none) << "corruption " << k << '\n' << text_of(problem);
+    }
+  }
+  EXPECT_GE(corrupted, 10000);
+}
+
+TEST(Certificate, AWrongVerdictCannotBeCertified) {
+  for (const Problem& problem : generate("RI10", 200, 13)) {
+    Solution lie = solve(problem);
+    lie.status = Status::optimal;
+    EXPECT_FALSE(certify(problem, lie).has_value());
+    lie.status = Status::infeasible;  // there are no hard ones
+    EXPECT_FALSE(certify(problem, lie).has_value());
+  }
+}
+
+TEST(Certificate, APinchedRegionIsProvenByItsVertex) {
+  // x >= 1/3 and x <= 1/3 as 3x >= 1 and -3x >= -1: no double lies between, yet (1/3, 0) does.
+  Problem problem;
+  problem.bound.disc = 2.0;
+  problem.preferred = {1.0, 0.0};
+  problem.constraints = {{{{3.0, 0.0}, 1.0}, Priority::hard, 0}, {{{-3.0, 0.0}, -1.0}, Priority::hard, 1}};
+  const Proven proven = solve_certified(problem);
+  EXPECT_STREQ(name(proven.solution.status), "pinched");
+  EXPECT_TRUE(proven.exact_stage);
+  EXPECT_NEAR(proven.solution.velocity.x, 1.0 / 3.0, 1e-15);
+  ASSERT_TRUE(proven.certificate.has_value());
+  EXPECT_EQ(check(problem, *proven.certificate), Flaw::none);
+  Certificate moved = *proven.certificate;
+  moved.vertex = {};
+  EXPECT_EQ(check(problem, moved), Flaw::vertex);
+}
+
+TEST(Certificate, FlawsHaveNames) {
+  EXPECT_STREQ(name(Flaw::contradiction), "contradiction");
+}
+
+}  // namespace
+}  // namespace exactvo::lp
