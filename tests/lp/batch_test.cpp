@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/vo/lp/batch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/instances.h"
+#include "problem_text.h"
+
+namespace exactvo::lp {
+namespace {
+
+constexpr std::size_t kBlock = 16;
+
+/// Problems as arrays; a block is kBlock problems, or all of them where `plain`.
+template <class T>
+class Batch {
+ public:
+  explicit Batch(std::vector<Problem> problems, bool plain = false) : problems_(std::move(problems)) {
+    count_ = problems_.size();
+    stride_ = (count_ + kBlock - 1) / kBlock * kBlock;
+    block_ = plain ? stride_ : kBlock;
+    for (Problem& p : problems_) {
+      std::stable_sort(p.constraints.begin(), p.constraints.end(), [](const Constraint& a, const Constraint& b) {
+        return a.priority == Priority::hard && b.priority == Priority::soft;
+      });
+      lines_ = std::max(lines_, p.constraints.size());
+    }
+    fill();
+  }
+
+  BatchProblems<T> in() const {
+    return {count_,    lines_,     block_,     nx_.data(),   ny_.data(),
+            c_.data(), px_.data(), py_.data(), disc_.data(), hard_.data()};
+  }
+  BatchAnswers<T> out() { return {vx.data(), vy.data(), violation.data(), status.data(), active.data(), stride_}; }
+  const std::vector<Problem>& problems() const { return problems_; }
+
+  Solution solution(std::size_t i) const {
+    Solution s;
+    s.velocity = {static_cast<double>(vx[i]), static_cast<double>(vy[i])};
+    s.status = static_cast<Status>(status[i]);
+    s.violation = static_cast<double>(violation[i]);
+    for (std::size_t slot = 0; slot < 3; ++slot)
+      if (active[slot * stride_ + i] != kNoLine)
+        s.active[s.active_count++] = static_cast<std::size_t>(active[slot * stride_ + i]);
+    if (s.active_count < 3) s.active[s.active_count++] = kSpeedBound;
+    return s;
+  }
+
+  std::vector<T> vx, vy, violation;
+  std::vector<std::uint8_t> status;
+  std::vector<std::int32_t> active;
+
+ private:
+  void fill() {
+    const std::size_t all = lines_ * stride_;
+    nx_.assign(all, T(1));
+    ny_.assign(all, T(0));
+    c_.assign(all, T(-1e30));
+    for (auto* array : {&px_, &py_, &disc_, &vx, &vy, &violation}) array->assign(stride_, T(1));
+    hard_.assign(stride_, 0);
+    status.assign(stride_, 0);
+    active.assign(3 * stride_, 0);
+    for (std::size_t i = 0; i < count_; ++i) fill(i, problems_[i]);
+  }
+
+  void fill(std::size_t i, const Problem& p) {
+    px_[i] = static_cast<T>(p.preferred.x);
+    py_[i] = static_cast<T>(p.preferred.y);
+    disc_[i] = static_cast<T>(p.bound.disc);
+    for (std::size_t k = 0; k < p.constraints.size(); ++k) {
+      const std::size_t at = i / block_ * block_ * lines_ + k * block_ + i % block_;
+      nx_[at] = static_cast<T>(p.constraints[k].half_plane.normal.x);
+      ny_[at] = static_cast<T>(p.constraints[k].half_plane.normal.y);
+      c_[at] = static_cast<T>(p.constraints[k].half_plane.offset);
+      hard_[i] += p.constraints[k].priority == Priority::hard;
+    }
+  }
+
+  std::vector<Problem> problems_;
+  std::size_t count_ = 0, lines_ = 0, stride_ = 0, block_ = 0;
+  std::vector<T> nx_, ny_, c_, px_, py_, disc_;
+  std::vector<std::int32_t> hard_;
+};
+
+std::vector<Problem> mixture(bool hard) {
+  std::vector<Problem> problems;
+  for (const char* set : {"RF10", "RI10", "RF3", "RI20"}) {
+    const auto more = generate(set, 1003, 21);
+    problems.insert(problems.end(), more.begin(), more.end());
+  }
+  for (std::size_t k = 0; hard && k < problems.size(); k += 2)
+    for (std::size_t j = 0; j < problems[k].constraints.size(); j += 3)
+      problems[k].constraints[j].priority = Priority::hard;
+  return problems;
+}
+
+class Kinds : public testing::TestWithParam<bool> {};
+
+TEST_P(Kinds, VerdictsAndCertificatesAreThoseOfTheCertifiedSolver) {
+  Batch<double> batch(mixture(GetParam()));
+  solve_batch(batch.in(), batch.out(), 0, batch.problems().size());
+  for (std::size_t i = 0; i < batch.problems().size(); ++i) {
+    const Problem& problem = batch.problems()[i];
+    const Solution s = batch.solution(i);
+    ASSERT_STREQ(name(s.status), name(solve_certified(problem).solution.status)) << text_of(problem);
+    const auto certificate = certify(problem, s);
+    ASSERT_TRUE(certificate.has_value()) << i << ' ' << name(s.status) << " active " << s.active[0] << ' '
+                                         << s.active[1] << ' ' << s.active[2] << '\n'
+                                         << text_of(problem);
+    ASSERT_EQ(check(problem, *certificate), Flaw::none);
+  }
+}
+
+TEST_P(Kinds, EveryTargetLayoutAndThreadCountGivesTheSameBits) {
+  Batch<double> widest(mixture(GetParam()));
+  solve_batch(widest.in(), widest.out(), 0, widest.problems().size());
+  const auto expect_equal = [&](const Batch<double>& other) {
+    EXPECT_EQ(widest.vx, other.vx);
+    EXPECT_EQ(widest.vy, other.vy);
+    EXPECT_EQ(widest.violation, other.violation);
+    EXPECT_EQ(widest.status, other.status);
+    EXPECT_EQ(widest.active, other.active);
+  };
+  for (const char* target : {"AVX2", "SSE4", "SSSE3"}) {
+    if (!limit_batch_target(target)) continue;
+    Batch<double> narrow(mixture(GetParam()));
+    solve_batch(narrow.in(), narrow.out(), 0, narrow.problems().size());
+    expect_equal(narrow);
+  }
+  ASSERT_TRUE(limit_batch_target(""));
+  Batch<double> threads(mixture(GetParam()));
+  solve_batch_parallel(threads.in(), threads.out());
+  expect_equal(threads);
+  Batch<double> singly(mixture(GetParam()), true);
+  for (std::size_t i = 0; i < singly.problems().size(); ++i) solve_batch(singly.in(), singly.out(), i, i + 1);
+  expect_equal(singly);
+}
+
+TEST_P(Kinds, FloatVerdictsAreNearlyAlwaysRight) {
+  Batch<float> batch(mixture(GetParam()));
+  solve_batch(batch.in(), batch.out(), 0, batch.problems().size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < batch.problems().size(); ++i)
+    wrong += batch.solution(i).status != solve_certified(batch.problems()[i]).solution.status;
+  EXPECT_LE(wrong, batch.problems().size() / 500);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lines, Kinds, testing::Values(false, true),
+                         [](const auto& kind) { return kind.param ? "SomeHard" : "AllSoft"; });
+
+TEST(Batch, NamesTheCallersMistakes) {
+  Batch<double> batch(generate("RF10", 4, 1));
+  EXPECT_THROW(solve_batch(batch.in(), batch.out(), 0, 5), std::logic_error);
+  BatchProblems<double> in = batch.in();
+  in.normal_x = nullptr;
+  EXPECT_THROW(solve_batch(in, batch.out(), 0, 4), std::logic_error);
+  EXPECT_FALSE(limit_batch_target("no such target"));
+  ASSERT_TRUE(limit_batch_target(""));
+}
+
+TEST(Batch, NothingToDoIsDone) {
+  Batch<double> batch(generate("RF0", 5, 1));
+  EXPECT_EQ(solve_batch(batch.in(), batch.out(), 0, 5).scalar, 0u);
+  EXPECT_EQ(batch.vx[3], batch.problems()[3].preferred.x);
+  EXPECT_EQ(solve_batch(batch.in(), batch.out(), 2, 2).scalar, 0u);
+}
+
+}  // namespace
+}  // namespace exactvo::lp

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Many problems at once, one a SIMD lane (Highway picks the widest target at run time: SSE4, AVX2, AVX-512, NEON).
+///
+/// The same walk as the scalar solver: the most violated line enters, the optimum of the few lines in hand follows.
+/// Lanes never mix and no operation is fused, so in double every target and every number of threads gives the same
+/// bits. Rounded inward like `solve`; a verdict is heuristic in the last digits. Lanes that the lockstep walk cannot
+/// settle (a hard line entering the fallback, too many rounds, contradicting hard lines) go to the scalar solver.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "exactvo/vo/lp/solution.h"
+
+namespace exactvo::lp {
+
+/// Structure of arrays in blocks of `block` problems: line k of problem i stands at
+///   [(i / block) * block * lines + k * block + i % block],
+/// so that neighbours share a register. Blocks of 16 or 32 keep a problem's lines in few pages and are fastest; one
+/// block for all (block >= count) is the plain structure of arrays, whose lines should not lie a power of two apart.
+/// Nothing is copied. Problems with fewer lines are padded with lines that always hold: normal (1, 0), offset -1e30.
+template <class T>
+struct BatchProblems {
+  std::size_t count = 0;  ///< problems
+  std::size_t lines = 0;  ///< lines each, padding included
+  std::size_t block = 0;  ///< a multiple of 16, or at least `count`
+  const T* normal_x = nullptr;
+  const T* normal_y = nullptr;  ///< | |normal| - 1 | <= 2^-10: the slack is reckoned for that
+  const T* offset = nullptr;    ///< m/s
+  const T* preferred_x = nullptr;
+  const T* preferred_y = nullptr;      ///< m/s, [i]
+  const T* disc = nullptr;             ///< m/s, [i], finite, > 0
+  const std::int32_t* hard = nullptr;  ///< [i]: the first so many lines are hard; null: none
+};
+
+/// Index of nothing in `active`.
+inline constexpr std::int32_t kNoLine = -1;
+
+template <class T>
+struct BatchAnswers {
+  T* velocity_x = nullptr;  ///< m/s, [i]
+  T* velocity_y = nullptr;
+  T* violation = nullptr;          ///< m/s, [i], as Solution::violation
+  std::uint8_t* status = nullptr;  ///< [i], a Status
+  std::int32_t* active = nullptr;  ///< [3 * stride], line indices or kNoLine; may be null
+  std::size_t stride = 0;
+};
+
+struct BatchCounts {
+  std::size_t scalar = 0;  ///< problems that the lockstep walk handed to the scalar solver
+};
+
+/// Solves problems first .. last - 1 on the caller's thread. REQUIRES: finite numbers as described.
+BatchCounts solve_batch(const BatchProblems<double>& problems, const BatchAnswers<double>& answers, std::size_t first,
+                        std::size_t last);
+BatchCounts solve_batch(const BatchProblems<float>& problems, const BatchAnswers<float>& answers, std::size_t first,
+                        std::size_t last);
+
+/// All problems, on oneTBB's threads. The same bits as on one.
+BatchCounts solve_batch_parallel(const BatchProblems<double>& problems, const BatchAnswers<double>& answers);
+BatchCounts solve_batch_parallel(const BatchProblems<float>& problems, const BatchAnswers<float>& answers);
+
+/// The name of the target that runs ("AVX3", "AVX2", "SSE4", ...).
+const char* batch_target();
+
+/// Runs on targets no wider than `name` from now on ("AVX2", "SSE4", "" for the best again). Not thread-safe: for
+/// benches and tests. False where no such target is compiled in and supported.
+bool limit_batch_target(const char* name);
+
+}  // namespace exactvo::lp

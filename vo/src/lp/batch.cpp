@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/vo/lp/batch.h"
+
+#include <cmath>
+
+#include "batch_layout.h"
+#include "exactvo/geometry/require.h"
+#include "exactvo/vo/lp/solve.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lp/batch.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "batch_pack.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace exactvo::lp::HWY_NAMESPACE {
+
+/// Called for problem i that the walk could not settle.
+template <class T>
+using Leftover = void (*)(const BatchProblems<T>&, const BatchAnswers<T>&, std::size_t);
+
+template <class D, class T>
+HWY_INLINE std::size_t run_pack(D d, const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t at,
+                                Leftover<T> leftover) {
+  std::uint64_t lanes = Walk<D>(d, in, at).run(out);
+  std::size_t count = 0;
+  for (std::size_t lane = 0; lanes != 0; ++lane, lanes >>= 1) {
+    if ((lanes & 1U) == 0) continue;
+    leftover(in, out, at + lane);
+    ++count;
+  }
+  return count;
+}
+
+template <class T>
+std::size_t run_range(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t first, std::size_t last,
+                      Leftover<T> leftover) {
+  const hn::ScalableTag<T> wide;
+  const hn::CappedTag<T, 1> single;
+  std::size_t left_over = 0;
+  std::size_t at = first;
+  for (; at < last && at % hn::Lanes(wide) != 0; ++at) left_over += run_pack(single, in, out, at, leftover);
+  for (; at + hn::Lanes(wide) <= last; at += hn::Lanes(wide)) left_over += run_pack(wide, in, out, at, leftover);
+  for (; at < last; ++at) left_over += run_pack(single, in, out, at, leftover);
+  return left_over;
+}
+
+std::size_t run_double(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,
+                       std::size_t last, Leftover<double> leftover) {
+  return run_range<double>(in, out, first, last, leftover);
+}
+
+std::size_t run_float(const BatchProblems<float>& in, const BatchAnswers<float>& out, std::size_t first,
+                      std::size_t last, Leftover<float> leftover) {
+  return run_range<float>(in, out, first, last, leftover);
+}
+
+}  // namespace exactvo::lp::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cstring>
+#include <functional>
+
+namespace exactvo::lp {
+
+HWY_EXPORT(run_double);
+HWY_EXPORT(run_float);
+
+namespace {
+
+/// Problems a task: some microseconds of work, a multiple of every lane count.
+constexpr std::size_t kGrain = 1024;
+
+template <class T>
+Problem problem_at(const BatchProblems<T>& in, std::size_t i) {
+  Problem problem;
+  problem.bound.disc = static_cast<double>(in.disc[i]);
+  problem.preferred = {static_cast<double>(in.preferred_x[i]), static_cast<double>(in.preferred_y[i])};
+  const std::size_t hard = in.hard ? static_cast<std::size_t>(in.hard[i]) : 0;
+  problem.constraints.reserve(in.lines);
+  for (std::size_t k = 0; k < in.lines; ++k) {
+    const std::size_t at = first_line_of(in, i) + k * in.block;
+    const HalfPlane h = {{static_cast<double>(in.normal_x[at]), static_cast<double>(in.normal_y[at])},
+                         static_cast<double>(in.offset[at])};
+    problem.constraints.push_back({h, k < hard ? Priority::hard : Priority::soft, -1});
+  }
+  return problem;
+}
+
+template <class T>
+void put(const Solution& s, const BatchAnswers<T>& out, std::size_t i) {
+  out.velocity_x[i] = static_cast<T>(s.velocity.x);
+  out.velocity_y[i] = static_cast<T>(s.velocity.y);
+  out.violation[i] = static_cast<T>(s.violation);
+  out.status[i] = static_cast<std::uint8_t>(s.status);
+  for (std::size_t slot = 0; out.active && slot < 3; ++slot) {
+    const bool line = slot < s.active_count && !is_speed_bound(s.active[slot]);
+    out.active[slot * out.stride + i] = line ? static_cast<std::int32_t>(s.active[slot]) : kNoLine;
+  }
+}
+
+template <class T>
+void solve_alone(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t i) {
+  put(solve(problem_at(in, i)), out, i);
+}
+
+template <class T>
+void require_arrays(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t first, std::size_t last) {
+  EXACTVO_REQUIRE(
+      first <= last && last <= in.count && (in.block >= in.count || in.block % kMostLanes == 0) && in.block > 0 &&
+          in.count <= out.stride,
+      "problems " + std::to_string(first) + " to " + std::to_string(last) + " of " + std::to_string(in.count));
+  EXACTVO_REQUIRE(in.disc && in.preferred_x && in.preferred_y && out.velocity_x && out.velocity_y && out.violation &&
+                      out.status && (in.lines == 0 || (in.normal_x && in.normal_y && in.offset)),
+                  "an array that is null");
+}
+
+template <class T, class Range>
+BatchCounts in_parallel(const BatchProblems<T>& in, Range solve_range) {
+  const auto add = [&](const tbb::blocked_range<std::size_t>& range, std::size_t scalar) {
+    return scalar + solve_range(range.begin() * kGrain, std::min(in.count, range.end() * kGrain)).scalar;
+  };
+  const std::size_t tasks = (in.count + kGrain - 1) / kGrain;
+  return {tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, tasks), std::size_t{0}, add, std::plus<>())};
+}
+
+}  // namespace
+
+BatchCounts solve_batch(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,
+                        std::size_t last) {
+  require_arrays(in, out, first, last);
+  return {HWY_DYNAMIC_DISPATCH(run_double)(in, out, first, last, &solve_alone<double>)};
+}
+
+BatchCounts solve_batch(const BatchProblems<float>& in, const BatchAnswers<float>& out, std::size_t first,
+                        std::size_t last) {
+  require_arrays(in, out, first, last);
+  return {HWY_DYNAMIC_DISPATCH(run_float)(in, out, first, last, &solve_alone<float>)};
+}
+
+BatchCounts solve_batch_parallel(const BatchProblems<double>& in, const BatchAnswers<double>& out) {
+  return in_parallel(in, [&](std::size_t first, std::size_t last) { return solve_batch(in, out, first, last); });
+}
+
+BatchCounts solve_batch_parallel(const BatchProblems<float>& in, const BatchAnswers<float>& out) {
+  return in_parallel(in, [&](std::size_t first, std::size_t last) { return solve_batch(in, out, first, last); });
+}
+
+const char* batch_target() {
+  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(supported & -supported);  // the lowest bit is the best target
+}
+
+bool limit_batch_target(const char* name) {
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+  if (std::strlen(name) == 0) return true;
+  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  for (std::int64_t bit = 1; bit != 0 && bit <= supported; bit <<= 1) {
+    if ((supported & bit) == 0 || std::strcmp(hwy::TargetName(bit), name) != 0) continue;
+    hwy::SetSupportedTargetsForTest(supported & ~(bit - 1));
+    hwy::GetChosenTarget().DeInit();
+    return true;
+  }
+  return false;
+}
+
+}  // namespace exactvo::lp
+#endif  // HWY_ONCE

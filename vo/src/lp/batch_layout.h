@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Where the lines of a problem stand in the arrays of a batch.
+
+#include <cstddef>
+
+#include "exactvo/vo/lp/batch.h"
+
+namespace exactvo::lp {
+
+/// The widest register holds so many numbers (float, 512 bits); blocks are multiples of it, so no pack crosses one.
+inline constexpr std::size_t kMostLanes = 16;
+
+template <class T>
+std::size_t first_line_of(const BatchProblems<T>& in, std::size_t i) {
+  return i / in.block * in.block * in.lines + i % in.block;
+}
+
+}  // namespace exactvo::lp
