@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "chain_fit.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 
@@ -236,12 +237,6 @@ std::vector<Vec2> into(const Frame& f, const std::vector<Vec2>& points) {
   out.reserve(points.size());
   for (const Vec2 p : points) out.push_back(into(f, p));
   return out;
-}
-
-double largest_coordinate(const std::vector<Vec2>& points) {
-  double largest = 0.0;
-  for (const Vec2 p : points) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
-  return largest;
 }
 
 // A frame in which the points fill a box of about unit size: sheared along their longest extent p -> q.

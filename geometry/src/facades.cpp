@@ -5,7 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "exactvo/geometry/distance.h"
+#include "chain_fit.h"
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/support.h"
 #include "ring_contacts.h"
@@ -83,46 +84,8 @@ void drop_unkept(Course& course) {
 
 double largest_coordinate(const std::vector<Course>& courses) {
   double largest = 0.0;
-  for (const Course& course : courses) {
-    for (const Vec2 p : course.points) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
-  }
+  for (const Course& course : courses) largest = std::max(largest, detail::largest_coordinate(course.points));
   return largest;
-}
-
-// distance(s, x) measures to a computed foot point. That is within 10 u M of the segment: u sqrt(2) M for rounding the
-// sum, 3 u |b - a| <= 6 sqrt(2) u M for the product and the difference; 16 leaves room for the second order. The
-// difference and the hypot add a relative 4 u; 8 is used.
-double distance_upper_bound(const Segment& s, Vec2 x, double largest) {
-  return distance(s, x) * (1.0 + 8.0 * kUnitRoundoff) + 16.0 * kUnitRoundoff * largest;
-}
-
-// The certified distance of the farthest vertex strictly between i and j from the edge that would replace them.
-std::pair<double, std::size_t> farthest_between(const Course& course, std::size_t i, std::size_t j, double largest) {
-  const Segment edge = {course.points[i], course.points[j % course.points.size()]};
-  std::pair<double, std::size_t> farthest = {0.0, i};
-  for (std::size_t k = i + 1; k < j; ++k) {
-    farthest = std::max(farthest, {distance_upper_bound(edge, course.points[k], largest), k});
-  }
-  return farthest;
-}
-
-// Douglas and Peucker (1973) on one gap: brings back vertices until all others are certified within the tolerance.
-double refine_gap(Course& course, std::size_t i, std::size_t j, double tolerance, double largest) {
-  double deviation = 0.0;
-  std::vector<std::pair<std::size_t, std::size_t>> gaps = {{i, j}};
-  while (!gaps.empty()) {
-    const auto [from, to] = gaps.back();
-    gaps.pop_back();
-    const auto [far, at] = farthest_between(course, from, to, largest);
-    if (far <= tolerance) {
-      deviation = std::max(deviation, far);
-      continue;
-    }
-    course.kept[at] = true;
-    gaps.emplace_back(from, at);
-    gaps.emplace_back(at, to);
-  }
-  return deviation;
 }
 
 double refine(Course& course, double tolerance, double largest) {
@@ -132,7 +95,7 @@ double refine(Course& course, double tolerance, double largest) {
   for (std::size_t i = 0; i < end;) {
     std::size_t j = i + 1;
     while (j < end && !course.kept[j]) ++j;
-    deviation = std::max(deviation, refine_gap(course, i, j, tolerance, largest));
+    deviation = std::max(deviation, detail::refine_gap(course.points, course.kept, i, j, tolerance, largest));
     i = j;
   }
   return deviation;
