@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Section V.B: three robots and a virtual leader, a row a test.
+#include <gtest/gtest.h>
+
+#include "paper_scenes.h"
+
+namespace exactvo::test {
+namespace {
+
+using formation::Controller;
+using formation::Integrator;
+using formation::Metrics;
+
+constexpr double kFormed = 1e-9;          // m and m/s
+constexpr double kKeptClear = 0.02;       // m
+constexpr double kLeaderArrival = 8.333;  // s: 25 sqrt 2 m at 3 sqrt 2 m/s
+
+class FormationTable : public testing::TestWithParam<const char*> {};
+
+TEST_P(FormationTable, DefaultFormsAndKeepsClear) {
+  const FinishedRun r = run(paper_scene(GetParam()), with_controller(Controller::standard));
+  const Metrics& m = r.metrics;
+  EXPECT_FALSE(r.recording.diverged);
+  EXPECT_TRUE(m.all_arrived);
+  EXPECT_LT(m.formation_position_error.value(), kFormed);
+  EXPECT_LT(m.formation_velocity_error.value(), kFormed);
+  EXPECT_GT(m.min_robot_clearance.value(), kKeptClear);
+  constexpr double kNothingNear = 1e9;  // m: B0 has no obstacles
+  EXPECT_GT(m.min_obstacle_clearance.value_or(kNothingNear), kKeptClear);
+  EXPECT_EQ(m.uncertified_half_planes, 0u);
+  EXPECT_NEAR(m.leader_arrival_time.value(), kLeaderArrival, 1e-3);
+}
+
+TEST_P(FormationTable, LiteralDivergesAndSaysSo) {
+  const FinishedRun r = run(paper_scene(GetParam()), with_controller(Controller::paper_literal));
+  EXPECT_TRUE(r.recording.diverged);
+  EXPECT_NE(r.recording.outcome.find("diverged"), std::string::npos) << r.recording.outcome;
+  EXPECT_FALSE(r.metrics.all_arrived);
+  EXPECT_GT(r.metrics.formation_position_error.value(), 100.0);
+}
+
+TEST_P(FormationTable, IntegratorsAgreeOnTheEnd) {
+  for (const Integrator integrator : {Integrator::dopri5, Integrator::rosenbrock4}) {
+    formation::SimulationOptions options;
+    options.integrator = integrator;
+    const Metrics m = run(paper_scene(GetParam()), options).metrics;
+    EXPECT_LT(m.formation_position_error.value(), kFormed) << formation::name(integrator);
+    EXPECT_LT(m.formation_velocity_error.value(), kFormed) << formation::name(integrator);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, FormationTable, testing::Values("B0", "B1", "B2", "B3"),
+                         [](const auto& row) { return std::string(row.param); });
+
+class PaperSigns : public testing::TestWithParam<const char*> {};
+
+TEST_P(PaperSigns, CollidesWhereTheWayIsBlocked) {
+  const Metrics m = run(paper_scene(GetParam()), with_controller(Controller::paper_signs)).metrics;
+  EXPECT_LT(m.min_obstacle_clearance.value(), 0.0);
+}
+
+TEST_P(PaperSigns, JittersAHundredTimesTheDefault) {
+  const double printed = run(paper_scene(GetParam()), with_controller(Controller::paper_signs)).metrics.jitter;
+  const double ours = run(paper_scene(GetParam()), with_controller(Controller::standard)).metrics.jitter;
+  EXPECT_LE(100.0 * ours, printed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, PaperSigns, testing::Values("B1", "B3"),
+                         [](const auto& row) { return std::string(row.param); });
+
+}  // namespace
+}  // namespace exactvo::test
