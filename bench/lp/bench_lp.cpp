@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The arena: every solver on every set. First each answer is compared with the certified one, then all are timed,
+// interleaved, in thread CPU time; the table gives ns a solve and the ratio to `usual`.
+#include <hwy/highway.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "circle.h"
+#include "competitor.h"
+#include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/instances.h"
+#include "exactvo_commit.h"
+
+namespace exactvo::bench {
+namespace {
+
+constexpr std::size_t kInstances = 32768;  // a branch predictor learns a small set
+constexpr int kRounds = 11;
+/// Velocities further apart than this are counted as different: float carries 2^-24 of 2 m/s, a sharp vertex 100 times.
+constexpr double kApart = 1e-4;
+
+struct Flags {
+  std::string sets = "C10,C10f,C10i,C50,RF10,RF20,RI10,RI20,RI50";
+  std::string instances;  ///< file; replaces `sets` by itself, its feasible and its infeasible part
+  std::string json;       ///< file for Google Benchmark's compare.py
+  std::uint64_t seed = 1;
+  int rounds = kRounds;
+};
+
+double thread_nanoseconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+}
+
+struct Truth {
+  std::vector<lp::Solution> solutions;
+  std::size_t exact_stage = 0;
+};
+
+Truth certified(const std::vector<lp::Problem>& problems) {
+  Truth truth;
+  for (const lp::Problem& p : problems) {
+    const lp::Proven proven = lp::solve_certified(p);
+    truth.exact_stage += proven.exact_stage;
+    truth.solutions.push_back(proven.solution);
+  }
+  return truth;
+}
+
+bool is_feasible(const lp::Solution& s) {
+  return s.status == lp::Status::optimal || s.status == lp::Status::pinched;
+}
+
+/// "C10f": the feasible part of "C10"; nothing to do for other names.
+char part_of(std::string& name) {
+  const char last = name.empty() ? ' ' : name.back();
+  if (name.rfind("C", 0) != 0 || (last != 'f' && last != 'i')) return ' ';
+  name.pop_back();
+  return last;
+}
+
+std::vector<lp::Problem> only(const std::vector<lp::Problem>& problems, bool feasible) {
+  std::vector<lp::Problem> kept;
+  const Truth truth = certified(problems);
+  for (std::size_t k = 0; k < problems.size(); ++k)
+    if (is_feasible(truth.solutions[k]) == feasible) kept.push_back(problems[k]);
+  return kept;
+}
+
+/// Recorded sets are asked for whole and in parts: each is recorded once.
+const std::vector<lp::Problem>& circle(int m) {
+  static std::map<int, std::vector<lp::Problem>> recorded;
+  if (recorded.count(m) == 0) recorded[m] = record_circle(m, kInstances);
+  return recorded[m];
+}
+
+Set set_named(std::string name, const Flags& flags) {
+  const std::string whole_name = name;
+  const char part = part_of(name);
+  const bool recorded = name.rfind("C", 0) == 0;
+  std::vector<lp::Problem> problems =
+      recorded ? circle(std::stoi(name.substr(1))) : lp::generate(name, kInstances, flags.seed);
+  if (part != ' ') problems = only(problems, part == 'f');
+  for (lp::Problem& p : problems) sort_hard_first(p);
+  return {whole_name, problems};
+}
+
+std::vector<Set> sets_of(const Flags& flags) {
+  if (!flags.instances.empty()) {
+    std::ifstream in(flags.instances, std::ios::binary);
+    if (!in) throw std::runtime_error("cannot read " + flags.instances);
+    const std::vector<lp::Problem> all = lp::read_instances(in);
+    return {{"file", all}, {"file-f", only(all, true)}, {"file-i", only(all, false)}};
+  }
+  std::vector<Set> sets;
+  std::stringstream names(flags.sets);
+  for (std::string name; std::getline(names, name, ',');) sets.push_back(set_named(name, flags));
+  return sets;
+}
+
+/// One competitor on one set.
+struct Run {
+  Entry entry;
+  std::unique_ptr<Competitor> competitor;
+  std::vector<double> times;  ///< ns a solve, one a round
+  std::size_t wrong = 0;      ///< verdicts
+  double least_speed_excess = 0.0;
+  double worst_violation = 0.0;
+  std::size_t apart = 0;
+};
+
+void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& run) {
+  lp::limit_batch_target(run.entry.target.c_str());
+  run.competitor->run();
+  for (std::size_t i = 0; i < run.competitor->count(); ++i) {
+    const Answer answer = run.competitor->answer(i);
+    const bool feasible = is_feasible(truth.solutions[i]);
+    run.wrong += answer.feasible != feasible;
+    if (!feasible || !answer.feasible || run.entry.feasible_only) continue;
+    run.apart += norm(answer.velocity - truth.solutions[i].velocity) > kApart;
+    for (const lp::Constraint& c : problems[i].constraints)
+      run.worst_violation = std::max(run.worst_violation, geometry::violation(c.half_plane, answer.velocity));
+  }
+}
+
+void time_once(Run& run) {
+  lp::limit_batch_target(run.entry.target.c_str());
+  const double before = thread_nanoseconds();
+  run.competitor->run();
+  run.times.push_back((thread_nanoseconds() - before) / static_cast<double>(run.competitor->count()));
+}
+
+double quantile(std::vector<double> values, double q) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+std::vector<Run> enter(const Set& set, const Truth& truth) {
+  std::vector<Run> runs;
+  const bool all_feasible =
+      std::all_of(truth.solutions.begin(), truth.solutions.end(), [](const auto& s) { return is_feasible(s); });
+  for (Entry& entry : entries()) {
+    if ((entry.feasible_only && !all_feasible) || !lp::limit_batch_target(entry.target.c_str())) continue;
+    std::vector<lp::Problem> given = set.problems;
+    if (given.size() > entry.most) given.resize(entry.most);
+    Run run{entry, entry.build(given), {}, 0, 0.0, 0.0, 0};
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+void print(const Set& set, const Truth& truth, const std::vector<Run>& runs) {
+  const auto feasible = std::count_if(truth.solutions.begin(), truth.solutions.end(), is_feasible);
+  std::printf("\n%s: %zu problems, %td feasible, %zu by the exact stage\n", set.name.c_str(), set.problems.size(),
+              feasible, truth.exact_stage);
+  std::printf("  %-20s %10s %16s %9s %7s %7s %11s\n", "solver", "ns/solve", "p10-p90", "x usual", "wrong", "apart",
+              "violation");
+  const double usual = quantile(runs.front().times, 0.5);
+  for (const Run& run : runs) {
+    const double median = quantile(run.times, 0.5);
+    std::printf("  %-20s %10.1f %7.1f-%8.1f %9.2f %7zu %7zu %11.2g\n", run.entry.name.c_str(), median,
+                quantile(run.times, 0.1), quantile(run.times, 0.9), usual / median, run.wrong, run.apart,
+                run.worst_violation);
+  }
+  std::fflush(stdout);
+}
+
+void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out) {
+  const double usual = quantile(runs.front().times, 0.5);
+  for (const Run& run : runs) {
+    const double median = quantile(run.times, 0.5);
+    out["benchmarks"].push_back({{"name", set.name + "/" + run.entry.name},
+                                 {"run_name", set.name + "/" + run.entry.name},
+                                 {"run_type", "iteration"},
+                                 {"repetitions", 1},
+                                 {"repetition_index", 0},
+                                 {"threads", 1},
+                                 {"iterations", run.times.size() * run.competitor->count()},
+                                 {"real_time", median},
+                                 {"cpu_time", median},
+                                 {"time_unit", "ns"},
+                                 {"p10", quantile(run.times, 0.1)},
+                                 {"p90", quantile(run.times, 0.9)},
+                                 {"ratio_to_usual", usual / median},
+                                 {"wrong_verdicts", run.wrong},
+                                 {"worst_violation", run.worst_violation}});
+  }
+}
+
+nlohmann::json context(const Flags& flags) {
+  lp::limit_batch_target("");
+  return {{"executable", "bench_lp"}, {"library_build_type", "release"},
+          {"compiler", __VERSION__},  {"simd_target", lp::batch_target()},
+          {"commit", EXACTVO_COMMIT}, {"seed", flags.seed},
+          {"rounds", flags.rounds},   {"clock", "thread CPU time, median of the rounds, solvers interleaved"}};
+}
+
+bool disagrees(const std::vector<Run>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const Run& r) { return r.entry.exact && r.wrong > 0; });
+}
+
+int arena(const Flags& flags) {
+  nlohmann::json out = {{"context", context(flags)}, {"benchmarks", nlohmann::json::array()}};
+  std::printf("%s\n", out["context"].dump().c_str());
+  bool sound = true;
+  for (const Set& set : sets_of(flags)) {
+    const Truth truth = certified(set.problems);
+    std::vector<Run> runs = enter(set, truth);
+    for (Run& run : runs) compare(set.problems, truth, run);
+    for (int round = 0; round < flags.rounds; ++round)
+      for (Run& run : runs) time_once(run);
+    print(set, truth, runs);
+    add_json(set, runs, out);
+    sound = sound && !disagrees(runs);
+  }
+  if (!flags.json.empty()) std::ofstream(flags.json) << out.dump(2) << '\n';
+  return sound ? 0 : 1;
+}
+
+Flags read_flags(int argc, char** argv) {
+  Flags flags;
+  const std::map<std::string, std::string*> texts = {
+      {"--sets", &flags.sets}, {"--instances", &flags.instances}, {"--json", &flags.json}};
+  for (int k = 1; k + 1 < argc; k += 2) {
+    const std::string option = argv[k];
+    if (texts.count(option) != 0)
+      *texts.at(option) = argv[k + 1];
+    else if (option == "--seed")
+      flags.seed = std::stoull(argv[k + 1]);
+    else if (option == "--rounds")
+      flags.rounds = std::max(1, std::stoi(argv[k + 1]));
+    else
+      throw std::runtime_error("unknown option " + option);
+  }
+  if (argc % 2 == 0) throw std::runtime_error("every option takes a value");
+  return flags;
+}
+
+}  // namespace
+}  // namespace exactvo::bench
+
+int main(int argc, char** argv) try {
+  return exactvo::bench::arena(exactvo::bench::read_flags(argc, argv));
+} catch (const std::exception& e) {
+  std::cerr << "bench_lp: " << e.what()
+            << "\nusage: bench_lp [--instances FILE] [--sets C10f,RF10,...] [--json FILE] [--seed N] [--rounds N]\n";
+  return 2;
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "competitor.h"
+
+#include <utility>
+
+#include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/solve.h"
+
+namespace exactvo::bench {
+namespace {
+
+class Usual : public Competitor {
+ public:
+  explicit Usual(const std::vector<lp::Problem>& problems) : set_(problems), answers_(problems.size()) {}
+  std::size_t count() const override { return answers_.size(); }
+  Answer answer(std::size_t i) const override {
+    return {{static_cast<double>(answers_[i].x), static_cast<double>(answers_[i].y)}, answers_[i].feasible};
+  }
+  void run() override {
+    for (std::size_t i = 0; i < answers_.size(); ++i)
+      answers_[i] = solve_usual(set_.lines.data() + set_.first[i], static_cast<int>(set_.first[i + 1] - set_.first[i]),
+                                set_.hard[i], set_.speed[i], set_.preferred_x[i], set_.preferred_y[i]);
+  }
+
+ private:
+  UsualSet set_;
+  std::vector<UsualVelocity> answers_;
+};
+
+template <class T>
+class Batch : public Competitor {
+ public:
+  explicit Batch(const std::vector<lp::Problem>& problems) : arrays_(problems) {}
+  std::size_t count() const override { return arrays_.count; }
+  Answer answer(std::size_t i) const override {
+    return {{static_cast<double>(arrays_.velocity_x[i]), static_cast<double>(arrays_.velocity_y[i])},
+            arrays_.status[i] == static_cast<std::uint8_t>(lp::Status::optimal)};
+  }
+  void run() override { lp::solve_batch(arrays_.problems(), arrays_.answers(), 0, arrays_.count); }
+
+ private:
+  Arrays<T> arrays_;
+};
+
+bool feasible(const lp::Solution& s) {
+  return s.status == lp::Status::optimal || s.status == lp::Status::pinched;
+}
+
+/// The solvers that take a Problem; `Solve` gives a Solution.
+template <class Solve>
+class OneByOne : public Competitor {
+ public:
+  OneByOne(const std::vector<lp::Problem>& problems, Solve solve)
+      : problems_(problems), answers_(problems.size()), solve_(solve) {}
+  std::size_t count() const override { return answers_.size(); }
+  Answer answer(std::size_t i) const override { return {answers_[i].velocity, feasible(answers_[i])}; }
+  void run() override {
+    for (std::size_t i = 0; i < problems_.size(); ++i) answers_[i] = solve_(problems_[i]);
+  }
+
+ private:
+  std::vector<lp::Problem> problems_;
+  std::vector<lp::Solution> answers_;
+  Solve solve_;
+};
+
+template <class Solve>
+std::unique_ptr<Competitor> one_by_one(const std::vector<lp::Problem>& problems, Solve solve) {
+  return std::make_unique<OneByOne<Solve>>(problems, solve);
+}
+
+constexpr std::size_t kAll = static_cast<std::size_t>(-1);
+constexpr std::size_t kSome = 4096;
+constexpr std::size_t kFew = 256;
+
+template <class T>
+Entry batch_entry(std::string name, std::string target) {
+  return {std::move(name), false, false, kAll, std::move(target), [](const std::vector<lp::Problem>& p) {
+            return std::make_unique<Batch<T>>(p);
+          }};
+}
+
+}  // namespace
+
+std::vector<Entry> entries() {
+  std::vector<Entry> all;
+  all.push_back({"usual", false, false, kAll, "", [](const auto& p) { return std::make_unique<Usual>(p); }});
+  all.push_back(batch_entry<double>("batch-double", ""));
+  all.push_back(batch_entry<float>("batch-float", ""));
+  all.push_back(batch_entry<double>("batch-double-AVX2", "AVX2"));
+  all.push_back(batch_entry<float>("batch-float-AVX2", "AVX2"));
+  all.push_back({"incremental", false, false, kAll, "",
+                 [](const auto& p) { return one_by_one(p, [](const lp::Problem& q) { return lp::solve(q); }); }});
+  all.push_back({"certified", false, true, kSome, "", [](const auto& p) {
+                   return one_by_one(p, [](const lp::Problem& q) { return lp::solve_certified(q).solution; });
+                 }});
+  all.push_back({"exact", false, true, kSome, "", [](const auto& p) {
+                   return one_by_one(p, [](const lp::Problem& q) { return lp::solve_exact(q).solution; });
+                 }});
+  all.push_back({"cgal-qp-Gmpzf", true, false, kFew, "", make_cgal_qp});
+#ifdef EXACTVO_HAVE_GLPK
+  all.push_back({"glpk", true, false, kSome, "", make_glpk});
+#endif
+  return all;
+}
+
+}  // namespace exactvo::bench

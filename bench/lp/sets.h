@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Instance sets in the layouts that the solvers want.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/vo/lp/batch.h"
+#include "exactvo/vo/lp/problem.h"
+#include "usual.h"
+
+namespace exactvo::bench {
+
+/// Problems with unit normals, and whether each is feasible by the certified answer.
+struct Set {
+  std::string name;
+  std::vector<lp::Problem> problems;
+};
+
+/// Problems of a set as arrays of T, padded to the longest.
+template <class T>
+struct Arrays {
+  explicit Arrays(const std::vector<lp::Problem>& problems);
+  lp::BatchProblems<T> problems() const;
+  lp::BatchAnswers<T> answers();
+
+  std::size_t count, lines, stride;  ///< stride: count rounded up to whole blocks
+  std::vector<T> normal_x, normal_y, offset, preferred_x, preferred_y, disc;
+  std::vector<std::int32_t> hard;
+  bool any_hard = false;
+  std::vector<T> velocity_x, velocity_y, violation;
+  std::vector<std::uint8_t> status;
+};
+
+/// A set as the usual solver wants it: hard lines first.
+struct UsualSet {
+  explicit UsualSet(const std::vector<lp::Problem>& problems);
+  std::vector<UsualLine> lines;
+  std::vector<std::size_t> first;  ///< of problem i; count + 1 entries
+  std::vector<int> hard;
+  std::vector<float> speed, preferred_x, preferred_y;
+};
+
+/// Hard constraints first, otherwise in order: what arrays and files want.
+void sort_hard_first(lp::Problem& problem);
+
+}  // namespace exactvo::bench
