@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "exact_number.h"
 #include "exactvo/geometry/hull.h"
@@ -22,44 +23,53 @@ Sign exact_turn(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   return detail::sign_of(p - (Exact(b.y) - Exact(a.y)) * (Exact(d.x) - Exact(c.x)));
 }
 
-// Whether x = fl(b - a) is exactly b - a (Knuth's two-sum gives what was rounded off).
-bool is_exact_difference(double a, double b, double x) {
+// Whether b - a is a double (Knuth's two-sum gives what was rounded off).
+bool is_exact_difference(double a, double b) {
+  const double x = b - a;
   const double a_seen = b - x;
   const double b_seen = x + a_seen;
   return (b - b_seen) + (a_seen - a) == 0.0;
 }
 
-// Of an edge a -> b: its rounded direction and whether rounding did nothing.
 struct Edge {
   Vec2 from;
   Vec2 to;
-  Vec2 along;
-  bool exact = false;
+  Vec2 along;  // fl(to - from)
 };
 
-Edge edge_of(Vec2 a, Vec2 b) {
-  const Vec2 d = b - a;
-  return {a, b, d, is_exact_difference(a.x, b.x, d.x) && is_exact_difference(a.y, b.y, d.y)};
+bool is_exact(const Edge& e) {
+  return is_exact_difference(e.from.x, e.to.x) && is_exact_difference(e.from.y, e.to.y);
+}
+
+// Of exact directions: rounding keeps the order of the products p and q, and equal ones are told apart by what was
+// rounded off. Nothing where a product may have underflowed.
+std::optional<Sign> turn_of_exact(const Edge& s, const Edge& t, double p, double q) {
+  const bool p_vanishes = s.along.x == 0.0 || t.along.y == 0.0;
+  const bool q_vanishes = s.along.y == 0.0 || t.along.x == 0.0;
+  if (p_vanishes && q_vanishes) return Sign::zero;
+  if (std::fabs(p) < kSafeProduct || std::fabs(q) < kSafeProduct) return std::nullopt;
+  if (p != q) return p > q ? Sign::positive : Sign::negative;
+  const double rest_p = std::fma(s.along.x, t.along.y, -p);
+  const double rest_q = std::fma(s.along.y, t.along.x, -q);
+  return rest_p > rest_q ? Sign::positive : rest_p < rest_q ? Sign::negative : Sign::zero;
+}
+
+Sign turn_in_doubt(const Edge& s, const Edge& t, double p, double q) {
+  if (is_exact(s) && is_exact(t)) {
+    if (const auto sign = turn_of_exact(s, t, p, q)) return *sign;
+  }
+  return exact_turn(s.from, s.to, t.from, t.to);
 }
 
 // The sign of the turn from edge s to edge t. Exact.
-Sign turn(const Edge& s, const Edge& t) {
+inline Sign turn(const Edge& s, const Edge& t) {
   const double p = s.along.x * t.along.y;
   const double q = s.along.y * t.along.x;
-  if (std::fabs(p - q) > kTurnError * (std::fabs(p) + std::fabs(q)) + kSafeProduct) {
-    return p > q ? Sign::positive : Sign::negative;
-  }
-  // Exact directions: rounding keeps the order of the products, and equal ones are told apart by what was rounded off.
-  if (s.exact && t.exact && std::fabs(p) > kSafeProduct && std::fabs(q) > kSafeProduct) {
-    if (p != q) return p > q ? Sign::positive : Sign::negative;
-    const double rest_p = std::fma(s.along.x, t.along.y, -p);
-    const double rest_q = std::fma(s.along.y, t.along.x, -q);
-    return rest_p > rest_q ? Sign::positive : rest_p < rest_q ? Sign::negative : Sign::zero;
-  }
-  const bool p_vanishes = s.exact && t.exact && (s.along.x == 0.0 || t.along.y == 0.0);
-  const bool q_vanishes = s.exact && t.exact && (s.along.y == 0.0 || t.along.x == 0.0);
-  if (p_vanishes && q_vanishes) return Sign::zero;
-  return exact_turn(s.from, s.to, t.from, t.to);
+  const double difference = p - q;
+  const double bound = kTurnError * (std::fabs(p) + std::fabs(q)) + kSafeProduct;
+  if (difference > bound) return Sign::positive;
+  if (difference < -bound) return Sign::negative;
+  return turn_in_doubt(s, t, p, q);
 }
 
 bool is_lower(Vec2 a, Vec2 b) {
@@ -71,39 +81,57 @@ bool points_up(const Edge& e) {
   return e.to.y > e.from.y || (e.to.y == e.from.y && e.to.x > e.from.x);
 }
 
-// A convex polygon's edges from its lowest vertex on: their directions grow from 0 to 2 pi.
+// A convex polygon's edges from its lowest vertex on: their directions grow from 0 to 2 pi. Looks at the vertices,
+// which must outlive it. Edges of length 0 are passed over.
 class Fan {
  public:
-  explicit Fan(const std::vector<Vec2>& vertices) {
-    const std::size_t n = vertices.size();
+  explicit Fan(const std::vector<Vec2>& vertices) : vertices_(vertices) {
     const auto lowest = std::min_element(vertices.begin(), vertices.end(), is_lower);
-    const auto first = static_cast<std::size_t>(lowest - vertices.begin());
-    start_ = vertices[first];
-    edges_.reserve(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t i = first + k < n ? first + k : first + k - n;
-      const Vec2 next = vertices[i + 1 < n ? i + 1 : 0];
-      if (vertices[i] != next) edges_.push_back(edge_of(vertices[i], next));
-    }
+    first_ = static_cast<std::size_t>(lowest - vertices.begin());
+    restart();
   }
 
-  bool turns_once_to_the_left() const {
-    for (std::size_t i = 1; i < edges_.size(); ++i) {
-      const bool was_up = points_up(edges_[i - 1]);
-      const bool is_up = points_up(edges_[i]);
-      if (is_up && !was_up) return false;
-      if (is_up == was_up && turn(edges_[i - 1], edges_[i]) == Sign::negative) return false;
+  bool turns_once_to_the_left() {
+    bool left = true;
+    for (Edge before = edge_; left && !at_end(); before = edge_) {
+      advance();
+      if (at_end()) break;
+      const bool was_up = points_up(before);
+      const bool is_up = points_up(edge_);
+      left = is_up == was_up ? turn(before, edge_) != Sign::negative : was_up;
     }
-    return true;
+    restart();
+    return left;
   }
 
-  Vec2 start() const { return start_; }
-  std::size_t size() const { return edges_.size(); }
-  const Edge& operator[](std::size_t i) const { return edges_[i]; }
+  bool at_end() const { return passed_ > vertices_.size(); }
+  const Edge& edge() const { return edge_; }
+  Vec2 at() const { return edge_.from; }
+
+  void advance() {
+    const Vec2 from = edge_.to;
+    while (++passed_ <= vertices_.size()) {
+      if (++next_ == vertices_.size()) next_ = 0;
+      const Vec2 to = vertices_[next_];
+      edge_ = {from, to, to - from};
+      if (from != to) return;
+    }
+    edge_ = {from, from, {}};
+  }
 
  private:
-  Vec2 start_;
-  std::vector<Edge> edges_;
+  void restart() {
+    passed_ = 0;
+    next_ = first_;
+    edge_.to = vertices_[first_];
+    advance();
+  }
+
+  const std::vector<Vec2>& vertices_;
+  std::size_t first_ = 0;
+  std::size_t next_ = 0;    // the vertex that the edge leads to
+  std::size_t passed_ = 0;  // steps taken; past the number of vertices there is no edge left
+  Edge edge_;
 };
 
 bool is_place(Vec2 p) {
@@ -138,19 +166,15 @@ Sign order(const Edge& s, const Edge& t) {
   return points_up(s) ? Sign::positive : Sign::negative;
 }
 
-ConvexSum merged(const Fan& a, const Fan& b) {
+ConvexSum merged(Fan a, Fan b, std::size_t most) {
   ConvexSum out;
-  out.polygon.vertices.reserve(a.size() + b.size() + 1);
-  Vec2 at_a = a.start();
-  Vec2 at_b = b.start();
-  append_sum(at_a, at_b, out);
-  std::size_t i = 0;
-  std::size_t j = 0;
-  while (i < a.size() || j < b.size()) {
-    const Sign next = i == a.size() ? Sign::negative : j == b.size() ? Sign::positive : order(a[i], b[j]);
-    if (next != Sign::negative) at_a = a[i++].to;
-    if (next != Sign::positive) at_b = b[j++].to;
-    append_sum(at_a, at_b, out);
+  out.polygon.vertices.reserve(most);
+  append_sum(a.at(), b.at(), out);
+  while (!a.at_end() || !b.at_end()) {
+    const Sign next = a.at_end() ? Sign::negative : b.at_end() ? Sign::positive : order(a.edge(), b.edge());
+    if (next != Sign::negative) a.advance();
+    if (next != Sign::positive) b.advance();
+    append_sum(a.at(), b.at(), out);
   }
   if (out.polygon.vertices.size() > 1) out.polygon.vertices.pop_back();  // the start again
   return out;
@@ -159,7 +183,7 @@ ConvexSum merged(const Fan& a, const Fan& b) {
 }  // namespace
 
 ConvexSum minkowski_sum(const ConvexPolygon& a, const ConvexPolygon& b) {
-  ConvexSum sum = merged(fan_of(a), fan_of(b));
+  ConvexSum sum = merged(fan_of(a), fan_of(b), a.vertices.size() + b.vertices.size() + 1);
   if (sum.error == 0.0) return sum;
   sum.error *= 1.0 + 4.0 * kUnitRoundoff;  // |ex| + |ey| is at least the length, but was itself rounded
   // Rounding can push a vertex across its neighbours' edge; the hull moves no point farther than the vertices moved.
