@@ -7,10 +7,11 @@ namespace exactvo::tools {
 Verb simulate_verb();
 Verb explain_verb();
 Verb paper_verb();
+Verb lp_verb();
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> kVerbs = {simulate_verb(), explain_verb(), paper_verb()};
-  return kVerbs;
+  static const std::vector<Verb> all = {simulate_verb(), explain_verb(), paper_verb(), lp_verb()};
+  return all;
 }
 
 }  // namespace exactvo::tools

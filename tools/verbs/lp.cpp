@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo lp: solves small linear programs from a file or stdin, a line of JSON each, and proves the answers.
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/vo/lp/solvers.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/lp_lines.h"
+
+namespace exactvo::tools {
+namespace {
+
+struct Flags {
+  std::string file;
+  std::string solver = "certified";
+  bool certify = false;
+  bool json = false;
+};
+
+std::string read_all(const std::string& file) {
+  if (file == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw datasets::DataError(datasets::DataCode::file_missing, file, "the file", "nothing", "a file to read");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+double thread_nanoseconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+}
+
+struct Summary {
+  std::size_t problems = 0;
+  std::array<std::size_t, 4> by_status{};
+  std::size_t certified = 0;
+  std::size_t exact_fallbacks = 0;
+  double worst_violation = 0.0;  ///< m/s, of what the status says must hold
+  double ns_per_solve = 0.0;
+};
+
+/// By how much an answer violates what its status says must hold. A certificate proves that to be 0; what a double
+/// would compute for it is rounding.
+double broken_by(const lp::Problem& problem, const lp::Proven& answer) {
+  const lp::Solution& s = answer.solution;
+  double most = 0.0;
+  if (answer.certificate && s.status != lp::Status::pinched) return most;
+  for (const lp::Constraint& c : problem.constraints) {
+    const bool must_hold = s.status == lp::Status::optimal || s.status == lp::Status::pinched ||
+                           (s.status == lp::Status::relaxed && c.priority == lp::Priority::hard);
+    if (must_hold) most = std::max(most, geometry::violation(c.half_plane, s.velocity));
+  }
+  return most;
+}
+
+Summary summarise(const std::vector<lp::Problem>& problems, const std::vector<lp::Proven>& answers) {
+  Summary summary;
+  summary.problems = problems.size();
+  for (std::size_t k = 0; k < problems.size(); ++k) {
+    const lp::Proven& answer = answers[k];
+    ++summary.by_status[static_cast<std::size_t>(answer.solution.status)];
+    summary.certified += answer.certificate && check(problems[k], *answer.certificate) == lp::Flaw::none;
+    summary.exact_fallbacks += answer.exact_stage;
+    summary.worst_violation = std::max(summary.worst_violation, broken_by(problems[k], answer));
+  }
+  return summary;
+}
+
+nlohmann::ordered_json summary_json(const Summary& s) {
+  nlohmann::ordered_json fields = {{"problems", s.problems}};
+  for (std::size_t k = 0; k < s.by_status.size(); ++k) fields[name(static_cast<lp::Status>(k))] = s.by_status[k];
+  fields["certified"] = s.certified;
+  fields["exact_fallbacks"] = s.exact_fallbacks;
+  fields["worst_violation"] = s.worst_violation;
+  fields["ns_per_solve"] = s.ns_per_solve;
+  return {{"summary", fields}};
+}
+
+void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    const lp::Solution& a = answers[k].solution;
+    fmt::print("{:>8} {:<11}{:>22.17g}{:>24.17g}{:>12.4g}  {}\n", k, name(a.status), a.velocity.x, a.velocity.y,
+               a.violation, answers[k].certificate ? "proven" : "");
+  }
+  fmt::print("{} problems: {} optimal, {} relaxed, {} infeasible, {} pinched; {} proven, {} by the exact stage\n",
+             s.problems, s.by_status[0], s.by_status[1], s.by_status[2], s.by_status[3], s.certified,
+             s.exact_fallbacks);
+}
+
+void print_lines(const std::vector<lp::Proven>& answers, const Summary& summary) {
+  for (std::size_t k = 0; k < answers.size(); ++k) std::cout << result_line(k, answers[k]).dump() << '\n';
+  std::cout << summary_json(summary).dump() << '\n';
+}
+
+ExitCode run(const Flags& flags) {
+  const auto solver = parse_choice<lp::Solver>("--solver", flags.solver, lp::solver_names());
+  const std::vector<lp::Problem> problems = read_problems(read_all(flags.file), flags.file);
+  const double before = thread_nanoseconds();
+  std::vector<lp::Proven> answers = lp::solve_all(solver, problems);
+  const double spent = thread_nanoseconds() - before;
+  if (flags.certify)
+    for (std::size_t k = 0; k < problems.size(); ++k) prove(problems[k], answers[k]);
+  Summary summary = summarise(problems, answers);
+  summary.ns_per_solve = problems.empty() ? 0.0 : spent / static_cast<double>(problems.size());
+  if (flags.json)
+    print_lines(answers, summary);
+  else
+    print_table(answers, summary);
+  return ExitCode::success;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("file", flags->file, "Problems: lines of JSON or a binary instance file, - for stdin")->required();
+  app.add_option("--solver", flags->solver, "incremental, batch, certified or exact")->capture_default_str();
+  app.add_flag("--certify", flags->certify, "Prove every answer; what can't be proven is solved exactly");
+  app.add_flag("--json", flags->json, "A result a line, then a summary");
+  return [flags] { return run(*flags); };
+}
+
+}  // namespace
+
+Verb lp_verb() {
+  return {
+      "lp", "Solve the small linear programs that turn half-planes into a velocity, with proofs",
+      "  echo '{\"bound\": {\"disc\": 2}, \"preferred\": [2, 0], \"constraints\": [{\"normal\": [-1, 0], \"offset\": "
+      "-0.5}]}' | exactvo lp - --json\n",
+      declare};
+}
+
+}  // namespace exactvo::tools
