@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gdal_facts.h"
+#include "grey_image.h"
 #include "readers.h"
 
 namespace exactvo::datasets {
@@ -19,6 +20,11 @@ bool looks_like_vector_file(const Glimpse&) {
 void read_vector_file(const std::filesystem::path& path, Collector&) {
   throw DataError(DataCode::format_unavailable, path.string(), "", "a file that needs GDAL",
                   "a build with EXACTVO_WITH_GDAL=ON, or plain WKT");
+}
+
+GreyImage read_gdal_image(const std::filesystem::path& path) {
+  throw DataError(DataCode::format_unavailable, path.string(), "", "a picture that needs GDAL",
+                  "a build with EXACTVO_WITH_GDAL=ON, or PGM");
 }
 
 }  // namespace exactvo::datasets

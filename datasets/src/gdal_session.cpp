@@ -29,12 +29,12 @@ const char* const* options_for(GDALDriverH driver) {
   return name == "GeoJSON" ? kGeoJsonOptions : kNoOptions;
 }
 
-void register_drivers_once() {
+}  // namespace
+
+void register_gdal_once() {
   static std::once_flag done;
   std::call_once(done, [] { GDALAllRegister(); });
 }
-
-}  // namespace
 
 std::string gdal_release() {
   return GDALVersionInfo("RELEASE_NAME");
@@ -67,7 +67,7 @@ std::vector<std::string> GdalComplaints::take_warnings() {
 }
 
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path) {
-  register_drivers_once();
+  register_gdal_once();
   const GDALDriverH driver = GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, kDrivers, nullptr);
   return std::unique_ptr<GDALDataset>(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, options_for(driver), nullptr));

@@ -32,6 +32,8 @@ class GdalComplaints {
   std::vector<std::string> warnings_;
 };
 
+void register_gdal_once();
+
 /// Only drivers that read a local file of vectors: none that follow links to other files or to the network.
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path);
 

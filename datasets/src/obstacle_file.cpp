@@ -46,6 +46,18 @@ const Reader& reader_for(const std::filesystem::path& path) {
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> kReaders{
       {"wkt", looks_like_wkt, read_wkt},
+      {"jupedsim-wkt", only_by_name, read_jupedsim_wkt},
+      {"movingai-map", looks_like_moving_ai_map, read_moving_ai_map},
+      {"movingai-scen", looks_like_moving_ai_scen, read_moving_ai_scen},
+      {"ros-map", looks_like_ros_map, read_ros_map},
+      {"csm-log", looks_like_csm_log, read_csm_log},
+      {"carmen-log", looks_like_carmen_log, read_carmen_log},
+      {"menge-xml", looks_like_menge_xml, read_menge_xml},
+      {"sumo-poly", looks_like_sumo_poly, read_sumo_poly},
+      {"jupedsim-xml", looks_like_jupedsim_xml, read_jupedsim_xml},
+      {"barn-world", looks_like_barn_world, read_barn_world},
+      {"rings-json", looks_like_rings_json, read_rings_json},
+      {"points-csv", looks_like_points_csv, read_points_csv},
       {"gdal", looks_like_vector_file, read_vector_file},
   };
   return kReaders;

@@ -69,18 +69,15 @@ bool is_worth_a_note(const RawGeometry& raw, DataCode code) {
   return code != DataCode::unclosed || raw.ring_pointers.empty();
 }
 
-/// Notes what was mended; throws for the first problem that was not.
-void settle(const std::vector<geometry::RingProblem>& problems, const RawGeometry& raw, const std::string& file,
-            std::vector<DataNote>& notes) {
+std::vector<RingFinding> findings_of(const std::vector<geometry::RingProblem>& problems, const RawGeometry& raw) {
+  std::vector<RingFinding> findings;
   for (const geometry::RingProblem& problem : problems) {
     const DataCode code = data_code(problem.code);
+    if (problem.mended && !is_worth_a_note(raw, code)) continue;
     const std::string place = place_of_vertex(raw, problem.ring, problem.vertex);
-    if (!problem.mended) {
-      throw DataError(code, file, place, std::string(words_for(code)) + " at " + coordinates(problem.where),
-                      expectation(code));
-    }
-    if (is_worth_a_note(raw, code)) notes.push_back({code, place, words_for_mending(code)});
+    findings.push_back({code, place, problem.where, problem.ring, problem.vertex, problem.mended});
   }
+  return findings;
 }
 
 }  // namespace
@@ -90,15 +87,22 @@ std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_
   return raw.place + ", ring " + std::to_string(ring) + ", vertex " + std::to_string(vertex);
 }
 
-geometry::Obstacle judged(const RawGeometry& raw, const std::string& file, std::vector<DataNote>& notes) {
+Judgement judge(const RawGeometry& raw) {
   if (raw.kind == RawKind::polyline) {
     geometry::NormalizedPolyline normal = geometry::normalize_polyline(raw.rings.at(0));
-    settle(normal.problems, raw, file, notes);
-    return std::move(normal.polyline);
+    return {std::move(normal.polyline), findings_of(normal.problems, raw)};
   }
   geometry::NormalizedPolygon normal = geometry::normalize(raw.rings);
-  settle(normal.problems, raw, file, notes);
-  return std::move(normal.polygon);
+  return {std::move(normal.polygon), findings_of(normal.problems, raw)};
+}
+
+void refuse_unmended(const Judgement& judgement, const std::string& file) {
+  for (const RingFinding& finding : judgement.findings) {
+    if (finding.mended) continue;
+    throw DataError(finding.code, file, finding.place,
+                    std::string(words_for(finding.code)) + " at " + coordinates(finding.where),
+                    expectation(finding.code));
+  }
 }
 
 Collector::Collector(std::string file, std::string format, const ReadOptions& options) : options_(options) {
@@ -108,17 +112,22 @@ Collector::Collector(std::string file, std::string format, const ReadOptions& op
 
 void Collector::add(const RawGeometry& raw) {
   ++result_.counts.read;
-  std::vector<DataNote> notes;
+  Judgement judgement = judge(raw);
+  const std::vector<RingFinding>& findings = judgement.findings;
+  result_.findings.insert(result_.findings.end(), findings.begin(), findings.end());
   try {
-    result_.obstacles.push_back({raw.id, judged(raw, result_.file, notes)});
+    refuse_unmended(judgement, result_.file);
   } catch (const DataError& error) {
     ++result_.counts.rejected;
     if (!options_.keep_going) throw;
     result_.rejected.push_back(error);
     return;
   }
-  ++(notes.empty() ? result_.counts.done : result_.counts.repaired);
-  std::move(notes.begin(), notes.end(), std::back_inserter(result_.notes));
+  ++(findings.empty() ? result_.counts.done : result_.counts.repaired);
+  for (const RingFinding& mended : findings) {
+    result_.notes.push_back({mended.code, mended.place, words_for_mending(mended.code)});
+  }
+  result_.obstacles.push_back({raw.id, std::move(judgement.shape)});
 }
 
 void Collector::pass_over(std::string place, std::string text) {

@@ -25,8 +25,15 @@ struct RawGeometry {
 /// "feature 3, ring 0, vertex 17" or "/obstacles/4/polygon/17".
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex);
 
-/// The shape, in order, with what was mended appended to `notes`. Throws DataError for what can't be mended.
-geometry::Obstacle judged(const RawGeometry& raw, const std::string& file, std::vector<DataNote>& notes);
+/// The shape put in order, and what was found in it; to be used only if all of that was mended.
+struct Judgement {
+  geometry::Obstacle shape;
+  std::vector<RingFinding> findings;
+};
+Judgement judge(const RawGeometry& raw);
+
+/// Throws DataError for the first finding that was not mended.
+void refuse_unmended(const Judgement& judgement, const std::string& file);
 
 /// Gathers a file's geometries into an ObstacleFile and keeps the books.
 class Collector {
@@ -39,6 +46,7 @@ class Collector {
   /// Counts it, and throws it unless reading goes on.
   void reject(DataError error);
   void set_origin(ProjectionOrigin origin) { result_.origin = origin; }
+  void set_coverage(Coverage coverage) { result_.coverage = coverage; }
 
   const std::string& file() const { return result_.file; }
   const ReadOptions& options() const { return options_; }

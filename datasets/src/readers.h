@@ -32,6 +32,42 @@ const std::vector<Reader>& readers();
 // wkt_reader.cpp
 bool looks_like_wkt(const Glimpse& glimpse);
 void read_wkt(const std::filesystem::path& path, Collector& out);
+/// The polygon is the walkable area: its shell is a wall, its holes are solid. Nothing in the text tells it from plain
+/// WKT.
+void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out);
+bool only_by_name(const Glimpse& glimpse);
+
+// moving_ai_map.cpp, moving_ai_scen.cpp
+bool looks_like_moving_ai_map(const Glimpse& glimpse);
+void read_moving_ai_map(const std::filesystem::path& path, Collector& out);
+bool looks_like_moving_ai_scen(const Glimpse& glimpse);
+void read_moving_ai_scen(const std::filesystem::path& path, Collector& out);
+
+// ros_map.cpp
+bool looks_like_ros_map(const Glimpse& glimpse);
+void read_ros_map(const std::filesystem::path& path, Collector& out);
+
+// carmen_log.cpp, csm_log.cpp, points_csv.cpp: hits become the cells that hold them (hits.h)
+bool looks_like_carmen_log(const Glimpse& glimpse);
+void read_carmen_log(const std::filesystem::path& path, Collector& out);
+bool looks_like_csm_log(const Glimpse& glimpse);
+void read_csm_log(const std::filesystem::path& path, Collector& out);
+bool looks_like_points_csv(const Glimpse& glimpse);
+void read_points_csv(const std::filesystem::path& path, Collector& out);
+
+// rings_json.cpp, in the style of the earcut test files: [shell, hole, ...]
+bool looks_like_rings_json(const Glimpse& glimpse);
+void read_rings_json(const std::filesystem::path& path, Collector& out);
+
+// menge_xml.cpp, sumo_poly.cpp, jupedsim_xml.cpp, barn_world.cpp
+bool looks_like_menge_xml(const Glimpse& glimpse);
+void read_menge_xml(const std::filesystem::path& path, Collector& out);
+bool looks_like_sumo_poly(const Glimpse& glimpse);
+void read_sumo_poly(const std::filesystem::path& path, Collector& out);
+bool looks_like_jupedsim_xml(const Glimpse& glimpse);
+void read_jupedsim_xml(const std::filesystem::path& path, Collector& out);
+bool looks_like_barn_world(const Glimpse& glimpse);
+void read_barn_world(const std::filesystem::path& path, Collector& out);
 
 // gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL
 bool looks_like_vector_file(const Glimpse& glimpse);

@@ -116,8 +116,9 @@ class Reader {
         read_obstacle_file(list[k], pointer, scenario);
       } else {
         const std::string id = list[k].value("id", "O" + std::to_string(k + 1));
-        std::vector<DataNote> repairs;
-        scenario.obstacles.push_back({id, judged(to_raw(list[k], id, pointer), file_, repairs)});
+        Judgement judgement = judge(to_raw(list[k], id, pointer));
+        refuse_unmended(judgement, file_);
+        scenario.obstacles.push_back({id, std::move(judgement.shape)});
       }
       origin_of_.resize(scenario.obstacles.size(), pointer);
     }

@@ -31,7 +31,11 @@ std::string without_dimension(std::string word) {
 
 class WktReader {
  public:
-  WktReader(std::string_view text, Collector& out) : scan_(text, out.file()), out_(out) {}
+  /// What a polygon's inside is.
+  enum class Inside { solid, walkable };
+
+  WktReader(std::string_view text, Inside inside, Collector& out)
+      : scan_(text, out.file()), inside_(inside), out_(out) {}
 
   void read_all() {
     for (scan_.skip_between_geometries(); !scan_.at_end(); scan_.skip_between_geometries()) read_one();
@@ -128,7 +132,19 @@ class WktReader {
   void polygon() {
     std::vector<geometry::Ring> rings;
     list([&] { rings.push_back(ring()); });
-    hand_on(RawKind::polygon, std::move(rings));
+    if (inside_ == Inside::solid || rings.empty()) return hand_on(RawKind::polygon, std::move(rings));
+    hand_on(RawKind::polyline, {rings.front()});
+    for (std::size_t k = 1; k < rings.size(); ++k) hand_on(RawKind::polygon, {counter_clockwise(rings[k])});
+  }
+
+  /// A walkable area's holes are solid. Rounding may misjudge a sliver, which then counts as repaired.
+  static geometry::Ring counter_clockwise(geometry::Ring ring) {
+    double doubled_area = 0.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      doubled_area += cross(ring[i] - ring[0], ring[(i + 1) % ring.size()] - ring[0]);
+    }
+    if (doubled_area < 0.0) std::reverse(ring.begin(), ring.end());
+    return ring;
   }
 
   geometry::Ring ring() {
@@ -158,6 +174,7 @@ class WktReader {
   }
 
   WktScanner scan_;
+  Inside inside_;
   Collector& out_;
   std::string where_;         ///< the geometry's first character
   std::size_t geometry_ = 0;  ///< from 1
@@ -182,13 +199,22 @@ bool looks_like_wkt(const Glimpse& glimpse) {
 
 void read_wkt(const std::filesystem::path& path, Collector& out) {
   refuse_degrees(out);
-  WktReader(read_text_file(path), out).read_all();
+  WktReader(read_text_file(path), WktReader::Inside::solid, out).read_all();
+}
+
+void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out) {
+  refuse_degrees(out);
+  WktReader(read_text_file(path), WktReader::Inside::walkable, out).read_all();
+}
+
+bool only_by_name(const Glimpse&) {
+  return false;
 }
 
 ObstacleFile parse_wkt(const std::string& text, const std::string& file_name, const ReadOptions& options) {
   Collector out(file_name, "wkt", options);
   refuse_degrees(out);
-  WktReader(text, out).read_all();
+  WktReader(text, WktReader::Inside::solid, out).read_all();
   return out.take();
 }
 

@@ -71,8 +71,8 @@ TEST(SharedVectors, RefusalsNameFeatureRingAndVertex) {
 TEST(SharedVectors, DegreesComeOutAsMetresRoundTheirCentre) {
   EXACTVO_NEEDS_SHARED_DATA();
   if (!built_with_gdal()) GTEST_SKIP() << "built without GDAL";
-  // The same buildings are there in metres, projected by others: equirectangular, with 110.54 km a degree of latitude where
-  // the ellipsoid has 111.27 here, 0.7 % apart; coordinates rounded to 1 mm.
+  // The same buildings are there in metres, projected by others: equirectangular, with 110.54 km a degree of latitude
+  // where the ellipsoid has 111.27 here, 0.7 % apart; coordinates rounded to 1 mm.
   constexpr double kOthersError = 0.007;
   constexpr double kOthersRounding = 0.002;
   const ObstacleFile degrees = read_all({"geojson-osm/neukolln_buildings.geojson", "", ""});
@@ -84,7 +84,8 @@ TEST(SharedVectors, DegreesComeOutAsMetresRoundTheirCentre) {
     return norm(edge.b - edge.a);
   };
   for (std::size_t k = 0; k < degrees.obstacles.size(); ++k) {
-    EXPECT_NEAR(first_edge(degrees, k), first_edge(metres, k), kOthersRounding + kOthersError * first_edge(metres, k)) << k;
+    EXPECT_NEAR(first_edge(degrees, k), first_edge(metres, k), kOthersRounding + kOthersError * first_edge(metres, k))
+        << k;
   }
 }
 

@@ -36,6 +36,8 @@ enum class Units {
 struct ReadOptions {
   std::string format;              ///< a name of `readable_formats()`; empty: chosen by content, then by extension
   Units units = Units::automatic;  ///< what the numbers mean
+  double cell_size =
+      0.0;  ///< m, >= 0: side of a grid's or scan's cell; 0: 1 m for grids without a scale, 0.05 m for scans
   /// False: the first obstacle that can't be used throws. True: it is put into `rejected` and reading goes on.
   bool keep_going = false;
 };
@@ -45,6 +47,16 @@ struct DataNote {
   std::optional<DataCode> code;  ///< of a repair; none where something was merely passed over
   std::string place;             ///< "feature 3, ring 0, vertex 17"
   std::string text;              ///< "ring closed", "point passed over"
+};
+
+/// One problem of one ring, mended or not. Every one that was found, also of obstacles that were refused.
+struct RingFinding {
+  DataCode code = DataCode::self_intersection;
+  std::string place;       ///< "feature 3, ring 0, vertex 17"
+  geometry::Vec2 where;    ///< m
+  std::size_t ring = 0;    ///< 0 is the outer one
+  std::size_t vertex = 0;  ///< as the file lists them
+  bool mended = false;
 };
 
 /// Longitude and latitude that became (0, 0), degrees.
@@ -62,13 +74,23 @@ struct ReadCounts {
   std::size_t rejected = 0;
 };
 
+/// Of a grid or a scan: its polygons are the union of the occupied cells, each of which they contain whole. For a grid
+/// nothing is gained in area; for a scan, whose hits are points, all of the area is.
+struct Coverage {
+  std::size_t cells = 0;     ///< of the whole grid
+  std::size_t occupied = 0;  ///< of them
+  double cell_area = 0.0;    ///< m^2; times `occupied` is the polygons' area
+};
+
 struct ObstacleFile {
   std::string file;
   std::string format;  ///< the one that was used
   std::vector<formation::SceneObstacle> obstacles;
   std::vector<DataNote> notes;
+  std::vector<RingFinding> findings;       ///< in the order of the file
   std::vector<DataError> rejected;         ///< only with `keep_going`
   std::optional<ProjectionOrigin> origin;  ///< where degrees were projected
+  std::optional<Coverage> coverage;        ///< of grids and scans
   ReadCounts counts;
 };
 

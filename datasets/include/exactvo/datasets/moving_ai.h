@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Path-finding tasks of the Moving AI benchmarks (Sturtevant, "Benchmarks for Grid-Based Pathfinding", 2012): `.scen`
+/// files. Their maps, `.map`, are read by `read_obstacles`.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/vec2.h"
+
+namespace exactvo::datasets {
+
+/// Column from the left, row from the top, as the format counts.
+struct GridCell {
+  std::int64_t column = 0;
+  std::int64_t row = 0;
+};
+
+struct PathTask {
+  std::int64_t bucket = 0;
+  std::string map;         ///< as written: may carry a path
+  std::int64_t width = 0;  ///< cells, of the map that the task was made for; not always that of the map at hand
+  std::int64_t height = 0;
+  GridCell start;
+  GridCell goal;
+  double optimal_length = 0.0;  ///< cells
+};
+
+/// Throws DataError with the line.
+std::vector<PathTask> read_tasks(const std::filesystem::path& path);
+
+/// Whether start and goal lie inside the size that the task itself states.
+bool is_inside_its_map(const PathTask& task);
+
+/// The middle of a cell in metres, as `read_obstacles` lays a map of `height` rows out: row 0 on top, y upward.
+geometry::Vec2 middle_of(GridCell cell, std::int64_t height, double cell_size = 1.0);
+
+}  // namespace exactvo::datasets

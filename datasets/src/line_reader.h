@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A text a line at a time, and the fields of a line as numbers, with the line's number in every refusal.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+
+namespace exactvo::datasets {
+
+class LineReader {
+ public:
+  LineReader(std::string_view text, const std::string& file) : rest_(text), file_(file) {}
+
+  /// Moves to the next line, its end (\n or \r\n) taken off; false at the end.
+  bool next();
+  std::string_view line() const { return line_; }
+  std::size_t number() const { return number_; }  ///< from 1
+  std::string place() const { return "line " + std::to_string(number_); }
+  /// Bytes not yet read.
+  std::size_t left() const { return rest_.size(); }
+
+  double to_number(std::string_view field) const;
+  std::int64_t to_integer(std::string_view field) const;
+  [[noreturn]] void refuse(DataCode code, const std::string& found, const std::string& expected) const;
+
+ private:
+  std::string_view rest_;
+  const std::string& file_;
+  std::string_view line_;
+  std::size_t number_ = 0;
+};
+
+/// Split at every run of blanks and tabs.
+std::vector<std::string_view> words_of(std::string_view line);
+/// Split at every `separator`; blanks round a field are taken off.
+std::vector<std::string_view> fields_of(std::string_view line, char separator);
+std::string_view trimmed(std::string_view text);
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/obstacle_write.h"
+
+#include <algorithm>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "refusal.h"
+#include "same_scenario.h"
+#include "support/seeded_random.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+using ObstacleWrite = TemporaryFolder;
+
+std::vector<formation::SceneObstacle> some_obstacles() {
+  exactvo::test::SeededRandom random(exactvo::test::seed_of_run(29));
+  std::vector<formation::SceneObstacle> obstacles;
+  for (int k = 0; k < 40; ++k) {
+    const geometry::Vec2 at{30.0 * k, -1e-300};
+    const auto near = [&](double x, double y) { return at + geometry::Vec2{x, y} + random.in_box(0.3); };
+    if (k % 2 == 0) {
+      obstacles.push_back({"w" + std::to_string(k), geometry::Polyline{{near(0, 0), near(5, 0), near(5, 5)}}});
+    } else {
+      obstacles.push_back({"s" + std::to_string(k), geometry::Polygon{{near(0, 0), near(9, 0), near(9, 9), near(0, 9)},
+                                                                      {{near(2, 2), near(2, 4), near(4, 4)}}}});
+    }
+  }
+  return obstacles;
+}
+
+TEST_F(ObstacleWrite, Property1_WktReadsBackBitForBit) {
+  const auto obstacles = some_obstacles();
+  write_obstacles(folder_ / "a.wkt", obstacles);
+  const ObstacleFile file = read_obstacles(folder_ / "a.wkt");
+  ASSERT_EQ(file.obstacles.size(), obstacles.size());
+  EXPECT_EQ(file.counts.done, obstacles.size());
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    EXPECT_TRUE(same_bits(file.obstacles[k].shape, obstacles[k].shape)) << k;
+}
+
+TEST_F(ObstacleWrite, Property1_GeoJsonReadsBackBitForBit) {
+  if (!built_with_gdal()) GTEST_SKIP() << "built without GDAL";
+  const auto obstacles = some_obstacles();
+  write_obstacles(folder_ / "a.geojson", obstacles);
+  const ObstacleFile file = read_obstacles(folder_ / "a.geojson");
+  ASSERT_EQ(file.obstacles.size(), obstacles.size());
+  EXPECT_FALSE(file.origin.has_value());
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    EXPECT_TRUE(same_bits(file.obstacles[k].shape, obstacles[k].shape)) << k;
+}
+
+TEST_F(ObstacleWrite, OtherExtensionsAreRefused) {
+  EXPECT_EQ(refusal_of([&] { write_obstacles(folder_ / "a.dwg", {}); }).code(), DataCode::format_unknown);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST(Findings, EveryProblemIsListedAlsoOfRefusedObstacles) {
+  ReadOptions options;
+  options.keep_going = true;
+  // Unclosed, clockwise and with a repeated vertex; then a bow tie whose other problems are mended in vain.
+  const ObstacleFile file =
+      parse_wkt("POLYGON ((0 0, 0 1, 0 1, 1 1, 1 0))\nPOLYGON ((0 0, 2 2, 2 2, 2 0, 0 2))", "t.wkt", options);
+  EXPECT_EQ(file.counts.repaired, 1u);
+  EXPECT_EQ(file.counts.rejected, 1u);
+  const auto count = [&](DataCode code, bool mended) {
+    return std::count_if(file.findings.begin(), file.findings.end(),
+                         [&](const RingFinding& f) { return f.code == code && f.mended == mended; });
+  };
+  EXPECT_EQ(count(DataCode::clockwise, true), 1);
+  EXPECT_EQ(count(DataCode::unclosed, true), 2);
+  EXPECT_EQ(count(DataCode::repeated_vertex, true), 2);
+  EXPECT_EQ(count(DataCode::self_intersection, false), 1);
+  for (const RingFinding& finding : file.findings) {
+    if (finding.code == DataCode::self_intersection) {
+      EXPECT_EQ(finding.where, (geometry::Vec2{1, 1}));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test
