@@ -89,7 +89,7 @@ EllipseFrame frame_of(const Ellipse& e) {
   const double s12 = e.l11 * e.l21;
   const double s22 = e.l21 * e.l21 + e.l22 * e.l22;
   const double half_gap = 0.5 * (s11 - s22);
-  const double root = std::hypot(half_gap, s12);
+  const double root = std::sqrt(half_gap * half_gap + s12 * s12);
   const double a2 = 0.5 * (s11 + s22) + root;
   const double a = std::sqrt(a2);
   const double b = a > 0.0 ? std::fabs(e.l11 * e.l22) / a : 0.0;
@@ -111,6 +111,24 @@ double bisect_foot(double n0, double z1, double r0, double low, double high, boo
     (above == decreasing ? low : high) = s;
   }
   return 0.5 * (low + high);
+}
+
+/// The same root for q outside or inside, by Newton's method: F falls and is convex right of its poles, so from the
+/// left of the root every step stays left of it and the error is soon squared. Falls back on bisection.
+double foot(double n0, double z1, double r0) {
+  constexpr int kSteps = 24;
+  constexpr double kSettled = 0x1p-50;  // relative step: another one would only round
+  double s = std::max(z1, n0 - (r0 - 1.0));
+  for (int i = 0; i < kSteps; ++i) {
+    const double ix = 1.0 / (s + r0 - 1.0);
+    const double iy = 1.0 / s;
+    const double fx = n0 * ix;
+    const double fy = z1 * iy;
+    const double step = (fx * fx + fy * fy - 1.0) / (2.0 * (fx * fx * ix + fy * fy * iy));
+    s += step;
+    if (!(step > kSettled * s)) return s;
+  }
+  return bisect_foot(n0, z1, r0, z1, std::max(1.0, std::hypot(n0, z1)), /*decreasing=*/true);
 }
 
 /// The unit normal at the foot for parameter s, in the folded frame: proportional to (qx / (s + r0 - 1), qy / s),
@@ -140,7 +158,7 @@ Normals of_ellipse(const Ellipse& e, Vec2 centre, Vec2 y) {
   const double n0 = f.a * qx / (f.b * f.b);
   Normals out;
   if (z1 > 0.0) {
-    const double s = bisect_foot(n0, z1, r0, z1, std::max(1.0, std::hypot(n0, z1)), /*decreasing=*/true);
+    const double s = foot(n0, z1, r0);
     out.add(unfold(normal_for(n0, z1, r0, s, f.a, f.b), sign_x, sign_y, f));
   } else if (n0 < r0 - 1.0) {
     // On the major axis inside the evolute: the feet lie to both sides, at cos = n0 / (r0 - 1).

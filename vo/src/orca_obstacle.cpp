@@ -121,7 +121,8 @@ OrcaHalfPlane certified_half_plane(const VelocityObstacle& obstacle, Vec2 n, dou
   const geometry::SupportValue at_n = geometry::support(obstacle.grown(), n);
   const double bound = geometry::kSupportError * at_n.magnitude + geometry::kSupportUnderflow;
   // Beyond rounding on the wrong side: the direction does not separate, so the nearest point's normal stands in.
-  double kappa = n0.distance > 0.0 ? (std::max(at_n.h, 0.0) + 2.0 * bound) / n0.distance : 2.0;
+  constexpr double kLeastTilt = 0x1p-60;  // less would not change n; an underflow must not be doubled for ever
+  double kappa = n0.distance > 0.0 ? std::max((std::max(at_n.h, 0.0) + 2.0 * bound) / n0.distance, kLeastTilt) : 2.0;
   Vec2 normal = n;
   for (; at_n.h + bound > 0.0 && kappa < 1.0; kappa *= 2.0) {
     normal = n + kappa * n0.normal;
@@ -188,6 +189,7 @@ std::vector<OrcaChain> orca_chains(const geometry::Obstacle& obstacle) {
 std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, Vec2 position, Vec2 velocity, double radius,
                                             double time_horizon) {
   EXACTVO_REQUIRE(radius >= 0.0 && time_horizon > 0.0, std::to_string(radius) + ", " + std::to_string(time_horizon));
+  EXACTVO_REQUIRE(geometry::is_finite(position) && geometry::is_finite(velocity), "a vector that is not finite");
   std::vector<OrcaHalfPlane> found;
   for (std::size_t i : nearest_first(chain, position)) {
     const Edge edge = edge_at(chain, i, position);

@@ -25,7 +25,8 @@
 ///  (1) `half_plane` of a static obstacle admits v = 0;
 ///  (2) a half-plane safe for this VO is safe for every VO inside it: a smaller radius, a shorter horizon;
 ///  (3) the cone grows with the robot's radius and with the horizon;
-///  (4) mirroring or turning the scene by 90 degrees mirrors or turns the answers exactly;
+///  (4) turning a scene of discs, segments and polygons by 90 degrees turns the half-plane bit for bit, and so does
+///      mirroring one of discs and segments (polygons change the order of their vertices, ellipses their L);
 ///  (5) a velocity that satisfies `half_plane` is not inside the velocity obstacle.
 
 #include <optional>
@@ -105,5 +106,9 @@ class VelocityObstacle {
   geometry::GrownShape grown_;
   double tau_;
 };
+
+/// `VelocityObstacle::half_plane` with alpha = 1, for a shape that stands somewhere already: nothing is copied.
+/// REQUIRES: `s` valid and finite, its radius >= 0, time_horizon > 0, v finite. Only the last two are checked.
+std::optional<HalfPlane> half_plane(const geometry::GrownShape& s, double time_horizon, Vec2 v);
 
 }  // namespace exactvo::vo

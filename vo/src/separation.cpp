@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "separation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "direction_search.h"
+#include "exactvo/geometry/predicates.h"
+
+namespace exactvo::vo::detail {
+namespace {
+
+using geometry::ConvexPolygon;
+using geometry::cross;
+using geometry::Disc;
+using geometry::dot;
+using geometry::Ellipse;
+using geometry::kSupportError;
+using geometry::kSupportUnderflow;
+using geometry::kUnitRoundoff;
+using geometry::perp;
+using geometry::Segment;
+using geometry::squared_norm;
+using geometry::support;
+using geometry::support_upper_bound;
+using geometry::SupportValue;
+
+double error_of(const SupportValue& v) {
+  return kSupportError * v.magnitude + kSupportUnderflow;
+}
+
+/// At least h_up / tau for h_up <= 0: the division and the product round once each.
+double offset_above(double h_up, double tau) {
+  return (h_up / tau) * (1.0 - 4.0 * kUnitRoundoff);
+}
+
+// --- Discs, in closed form ---
+
+/// Nothing where the closed form's bounds do not hold: near contact, or at the ends of the doubles' range.
+///
+/// Cut-off: n = w / |w| is of length 1 within 4 u, so h = n.p + R errs by less than 16 u (|nx px| + |ny py| + R).
+/// Leg: with a = sqrt(|p|^2 - R^2), n = (side a perp(p) - R p) / |p|^2 has n.p = -R and length 1. What rounding does to
+/// it moves h by at most 30 u (|px| + |py| + R) (an error of a moves it by R times its square's, so cancellation in a^2
+/// does no harm), and n - kappa p has h lower by kappa a^2: kappa = 64 u (|px| + |py| + R) / a^2.
+std::optional<HalfPlane> disc_half_plane(Vec2 p, double R, double tau, Vec2 y) {
+  constexpr double kLeast = 0x1p-900, kMost = 0x1p900;  // squares that neither underflow nor overflow
+  constexpr double kNear = 0x1p-20;                     // a^2 / |p|^2: nearer, kappa is no longer small
+  const double d2 = squared_norm(p);
+  const double a2 = d2 - R * R;
+  if (!(a2 > kNear * d2 && d2 > kLeast && d2 < kMost)) return std::nullopt;
+  const Vec2 w = y - p;
+  const double wp = dot(w, p);
+  const double w2 = squared_norm(w);
+  if (wp < 0.0 && wp * wp > R * R * w2 && w2 < kMost) {
+    const Vec2 n = w / std::sqrt(w2);
+    const double nx = n.x * p.x, ny = n.y * p.y;
+    const double h_up = (nx + ny) + R + kSupportError * (std::fabs(nx) + std::fabs(ny) + R);
+    if (h_up <= 0.0) return HalfPlane{n, offset_above(h_up, tau)};
+  }
+  const double side = cross(p, w) >= 0.0 ? 1.0 : -1.0;
+  const double a = side * std::sqrt(a2);
+  const double kappa = 64.0 * kUnitRoundoff * (std::fabs(p.x) + std::fabs(p.y) + R) / a2;
+  const double across = a / d2;
+  const double back = R / d2 + kappa;
+  return HalfPlane{{-across * p.y - back * p.x, across * p.x - back * p.y}, 0.0};
+}
+
+// --- The search for the best direction ---
+
+struct Best {
+  Direction direction{{}, std::numeric_limits<double>::infinity(), 0.0, 0.0, BoundaryPart::cut_off};
+  void offer(Vec2 n, double f, const SupportValue& v, BoundaryPart part) {
+    if (f < direction.f) direction = {n, f, v.h, v.magnitude, part};
+  }
+};
+
+// --- Tilting ---
+
+/// A point well inside S.
+struct Middle {
+  Vec2 operator()(const Disc& d) const { return d.center; }
+  Vec2 operator()(const Segment& g) const { return 0.5 * (g.a + g.b); }
+  Vec2 operator()(const Ellipse& e) const { return e.center; }
+  Vec2 operator()(const ConvexPolygon& p) const {
+    const Vec2 a = p.vertices[0];
+    const Vec2 b = p.vertices[p.vertices.size() / 3];
+    const Vec2 c = p.vertices[2 * p.vertices.size() / 3];
+    return a + ((b - a) + (c - a)) / 3.0;
+  }
+};
+
+/// A direction m with h_S(m) = -depth < 0: away from the middle of S where that separates, else from its nearest point.
+struct Inward {
+  Vec2 m;
+  double depth;
+};
+std::optional<Inward> inward(const GrownShape& s) {
+  const Vec2 away = s.origin - std::visit(Middle{}, s.shape);
+  const double length = std::sqrt(squared_norm(away));
+  if (length > 0.0) {
+    const Vec2 m = away / length;
+    const SupportValue v = support(s, m);
+    constexpr double kDeep = 0x1p-10;  // of H: shallower ones are left to the nearest normal, which is the deepest
+    if (v.h < -kDeep * v.magnitude) return Inward{m, -v.h};
+  }
+  const VelocityObstacle::Nearest nearest = nearest_to(s, {});
+  if (!(nearest.distance > 0.0)) return std::nullopt;
+  return Inward{nearest.normal, nearest.distance};
+}
+
+/// The tilt that outdoes h > 0 and the errors of both supports twice over.
+double first_tilt(double h, const SupportValue& v, double depth) {
+  constexpr double kLeast = 0x1p-60;  // less would not change n; it also keeps an underflow from doubling 0 for ever
+  return std::max((std::max(h, 0.0) + 4.0 * error_of(v)) / depth, kLeast);
+}
+
+/// Half-planes through 0: the legs. Nudging an offset would not do, since the cone is unbounded.
+std::optional<HalfPlane> leg_half_plane(const GrownShape& s, Vec2 n) {
+  const std::optional<Vec2> tilted = certified_inside(s, n);
+  if (!tilted) return std::nullopt;
+  return HalfPlane{*tilted, 0.0};
+}
+
+/// For a robot so near that nothing else could be certified.
+std::optional<HalfPlane> contact(const GrownShape& s, double tau) {
+  const Vec2 n = nearest_to(s, {}).normal;
+  if (sign_of_support(s, n, tau, 0.0) == geometry::Sign::positive) return std::nullopt;
+  return HalfPlane{n, 0.0};
+}
+
+}  // namespace
+
+VelocityObstacle::Nearest nearest_to(const GrownShape& s, Vec2 y) {
+  const Normals candidates = nearest_normals(s, y);
+  const auto distance = [&](Vec2 n) { return dot(n, y) - support(s, n).h; };
+  VelocityObstacle::Nearest best{candidates.n[0], distance(candidates.n[0])};
+  for (std::size_t i = 1; i < candidates.count; ++i) {
+    const double at = distance(candidates.n[i]);
+    if (at > best.distance) best = {candidates.n[i], at};
+  }
+  return best;
+}
+
+std::optional<Direction> best_direction(const GrownShape& s, Vec2 y) {
+  Best best;
+  const Normals inner = nearest_normals(s, y);
+  for (std::size_t i = 0; i < inner.count; ++i) {
+    const SupportValue v = support(s, inner.n[i]);
+    if (v.h > 0.0) continue;
+    best.offer(inner.n[i], v.h - dot(inner.n[i], y), v, BoundaryPart::cut_off);
+    // y outside S, and its nearest point's normal separates: VO is convex, so that point is the nearest of VO too.
+    if (i == 0 && best.direction.f < 0.0) return best.direction;
+  }
+  if (const std::optional<Tangents> legs = tangents(s)) {
+    best.offer(legs->left.normal, -dot(legs->left.normal, y), {}, BoundaryPart::left_leg);
+    best.offer(legs->right.normal, -dot(legs->right.normal, y), {}, BoundaryPart::right_leg);
+  }
+  if (!std::isfinite(best.direction.f)) return std::nullopt;
+  return best.direction;
+}
+
+std::optional<Vec2> certified_inside(const GrownShape& s, Vec2 n) {
+  const std::optional<Inward> in = inward(s);
+  if (!in) return std::nullopt;
+  const SupportValue v = support(s, n);
+  for (double kappa = first_tilt(v.h, v, in->depth); kappa < 1.0; kappa *= 2.0) {
+    const Vec2 tilted = n + kappa * in->m;
+    if (support_upper_bound(s, tilted) <= 0.0) return tilted;
+  }
+  return std::nullopt;
+}
+
+std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n) {
+  const std::optional<Inward> in = inward(s);
+  if (!in) return std::nullopt;
+  const SupportValue v = support(s, n);
+  for (double kappa = first_tilt(-v.h, v, in->depth); kappa < 1.0; kappa *= 2.0) {
+    const Vec2 tilted = n - kappa * in->m;
+    const SupportValue at = support(s, tilted);
+    if (at.h > error_of(at)) return tilted;
+  }
+  const SupportValue behind = support(s, -in->m);
+  if (behind.h > error_of(behind)) return -in->m;
+  return std::nullopt;
+}
+
+std::optional<HalfPlane> separating_half_plane(const GrownShape& s, double tau, Vec2 v) {
+  const Vec2 y = tau * v;
+  if (const Disc* disc = std::get_if<Disc>(&s.shape)) {
+    const auto h = disc_half_plane(disc->center - s.origin, disc->radius + s.radius, tau, y);
+    if (h) return h;
+  }
+  const std::optional<Direction> best = best_direction(s, y);
+  if (!best) return contact(s, tau);
+  if (best->part == BoundaryPart::cut_off) {
+    const double h_up = best->h + error_of({best->h, best->magnitude});
+    if (h_up <= 0.0) return HalfPlane{best->normal, offset_above(h_up, tau)};
+  }
+  const std::optional<HalfPlane> leg = leg_half_plane(s, best->normal);
+  return leg ? leg : contact(s, tau);
+}
+
+}  // namespace exactvo::vo::detail

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// From a velocity to a half-plane that separates it from the velocity obstacle: first the best direction in plain
+/// doubles, then one certification of that direction alone.
+
+#include <optional>
+
+#include "exactvo/vo/velocity_obstacle.h"
+#include "tangents.h"
+
+namespace exactvo::vo::detail {
+
+/// The minimum of f(n) = h_S(n) - n.y over h_S(n) <= 0. Rounded.
+struct Direction {
+  Vec2 normal;
+  double f = 0.0;
+  double h = 0.0;          ///< fl(h_S(normal)) on the cut-off
+  double magnitude = 0.0;  ///< of h, for its error bound
+  BoundaryPart part = BoundaryPart::cut_off;
+};
+
+/// Nothing where the robot lies in S or so near that neither a leg nor an inner minimum was found.
+std::optional<Direction> best_direction(const GrownShape& s, Vec2 y);
+
+/// n tilted as little as needed for a certified h_S <= 0: n + kappa m for an m with h_S(m) < 0 (h_S is sublinear).
+/// Nothing where no such m is found: overlap, or a few ulps from it.
+std::optional<Vec2> certified_inside(const GrownShape& s, Vec2 n);
+/// The other way: certified h_S > 0.
+std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n);
+
+/// The certified half-plane of VO nearest to v (alpha = 1). Nothing where none could be certified.
+std::optional<HalfPlane> separating_half_plane(const GrownShape& s, double tau, Vec2 v);
+
+/// The outward normal of S at the point nearest to y, and how far y lies outside (negative: the depth).
+VelocityObstacle::Nearest nearest_to(const GrownShape& s, Vec2 y);
+
+}  // namespace exactvo::vo::detail
