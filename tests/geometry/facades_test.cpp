@@ -164,8 +164,8 @@ TEST(Facades, AToleranceThinsALongRing) {
     circle.push_back(10.0 * Vec2{std::cos(2e-4 * 3.14159265 * i), std::sin(2e-4 * 3.14159265 * i)});
   }
   const auto set = divide_into_facades(Polygon{circle, {}}, {0.05});
-  // A chord whose ends lie on radius 10 and that sags by 0.05 spans 2 acos(1 - 0.05 / 10) = 0.2 rad, so at least 31.4 of
-  // them go round; greedy decimation needs up to twice as many.
+  // A chord whose ends lie on radius 10 and that sags by 0.05 spans 2 acos(1 - 0.05 / 10) = 0.2 rad, so at least 31.4
+  // of them go round; greedy decimation needs up to twice as many.
   EXPECT_GE(set.facades.size(), 32U);
   EXPECT_LE(set.facades.size(), 64U);
 }

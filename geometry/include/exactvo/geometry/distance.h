@@ -22,8 +22,9 @@ double distance(const Segment& s, const Segment& t);
 /// From x to the obstacle's edges; negative (minus the depth) inside a polygon.
 double signed_distance(const Obstacle& obstacle, Vec2 x);
 
-/// The least signed distance from the points of the motion `path` (a straight step) to the obstacle: swept, not sampled.
-/// Inside a polygon at either end it is the smaller of the ends' signed distances; a step across an edge gives <= 0.
+/// The least signed distance from the points of the motion `path` (a straight step) to the obstacle: swept, not
+/// sampled. Inside a polygon at either end it is the smaller of the ends' signed distances; a step across an edge gives
+/// <= 0.
 double swept_distance(const Obstacle& obstacle, const Segment& path);
 
 /// The least distance between two points that move straight and uniformly over the same time.

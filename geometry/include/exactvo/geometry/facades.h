@@ -26,9 +26,9 @@ struct FacadeSet {
 
 /// Splits an obstacle at its corners. With tolerance 0 this is exact: the facades' union is the obstacle's boundary.
 ///
-/// With a tolerance, CGAL's Polyline_simplification_2 chooses which corners go, so that facades of rings that kept apart
-/// do not cross each other; every choice is then certified, and a corner comes back where the bound does not hold. A wall that
-/// crosses itself and rings that touch are thinned by Douglas and Peucker's rule instead.
+/// With a tolerance, CGAL's Polyline_simplification_2 chooses which corners go, so that facades of rings that kept
+/// apart do not cross each other; every choice is then certified, and a corner comes back where the bound does not
+/// hold. A wall that crosses itself and rings that touch are thinned by Douglas and Peucker's rule instead.
 ///
 /// A ring's facades follow each other from its lexicographically least corner, an open chain's from its first point.
 /// Deterministic. REQUIRES: every ring and chain has a point, all finite; tolerance finite and >= 0.

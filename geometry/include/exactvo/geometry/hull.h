@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Convex hull, convex pieces, smallest circle and smallest ellipse: CGAL's algorithms behind plain types.
+/// Convex hull, convex pieces, smallest circle and smallest ellipses, behind plain types.
 
 #include <string>
 #include <vector>
@@ -23,16 +23,17 @@ enum class PartitionMethod { automatic, greene, approximate, optimal };
 /// all collinear.
 std::vector<ConvexPolygon> convex_pieces(const Ring& ring, PartitionMethod method = PartitionMethod::automatic);
 
-/// The smallest enclosing circle: the centre rounded, the radius grown until every point is certified inside; it is within
-/// a relative 1e-12 of the least, unless rounding the centre's coordinates costs more. One point gives radius 0.
-/// (CGAL's Min_sphere_of_spheres_d in doubles stopped short of the smallest circle in 0.5 % of small lattice clouds.) REQUIRES: at least one point, all finite and below 2^1000.
+/// The smallest enclosing circle: the centre rounded, the radius grown until every point is certified inside; it is
+/// within a relative 1e-12 of the least, unless rounding the centre's coordinates costs more. One point gives radius 0.
+/// (CGAL's Min_sphere_of_spheres_d in doubles stopped short of the smallest circle in 0.5 % of small lattice clouds.)
+/// REQUIRES: at least one point, all finite and below 2^1000.
 Disc smallest_circle(const std::vector<Vec2>& points);
 
-/// The ellipse of least area. CGAL's exact Min_ellipse_2 (Welzl 1991; Gaertner and Schoenherr 1998) finds the points that
-/// determine it; it is then computed from those in doubles and inflated until every point is certified inside. The area
-/// is within a relative 1e-10 of the least, unless rounding the coordinates of the centre costs more.
-/// One point gives L = 0; collinear points give the segment itself (l22 = 0) or, where doubles can't say it, a
-/// sliver of width 2^-36 of the coordinates. REQUIRES: as `smallest_circle`.
+/// The ellipse of least area. CGAL's exact Min_ellipse_2 (Welzl 1991; Gaertner and Schoenherr 1998) finds the points
+/// that determine it; it is then computed from those in doubles and inflated until every point is certified inside. The
+/// area is within a relative 1e-10 of the least, unless rounding the coordinates of the centre costs more. One point
+/// gives L = 0; collinear points give the segment itself (l22 = 0) or, where doubles can't say it, a sliver of width
+/// 2^-36 of the coordinates. REQUIRES: as `smallest_circle`.
 Ellipse smallest_ellipse(const std::vector<Vec2>& points);
 
 /// A certified ellipse and what it could at best be improved to.
@@ -41,8 +42,8 @@ struct FastEllipse {
   double least_area = 0.0;  ///< m^2; no ellipse round the points is smaller: a dual value, rounded
 };
 
-/// The same by Newton's method on the dual, hundreds of times faster. Containment certified; `least_area` shows how near
-/// the smallest it came.
+/// The same by Newton's method on the dual, hundreds of times faster. Containment certified; `least_area` shows how
+/// near the smallest it came.
 FastEllipse fast_smallest_ellipse(const std::vector<Vec2>& points);
 
 }  // namespace exactvo::geometry

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// The shapes of the project: plain values of doubles in metres. All are closed sets. `is_valid` functions say whether a
-/// value is one that the other headers accept; nothing here rounds.
+/// The shapes of the project: plain values of doubles in metres. All are closed sets. `is_valid` functions say whether
+/// a value is one that the other headers accept; nothing here rounds.
 ///
 /// Neighbours: support.h (support functions), predicates.h (exact questions), enclosure.h (ellipses round facades).
 
@@ -88,7 +88,9 @@ std::vector<Segment> edges_of(const Obstacle& obstacle);
 std::vector<Vec2> vertices_of(const Obstacle& obstacle);
 
 /// Whether the obstacle has an inside (a polygon) or is a bare wall.
-inline bool has_interior(const Obstacle& obstacle) { return std::holds_alternative<Polygon>(obstacle); }
+inline bool has_interior(const Obstacle& obstacle) {
+  return std::holds_alternative<Polygon>(obstacle);
+}
 
 /// The number as a hex float ("%a"): reads back losslessly.
 std::string hex_text(double value);

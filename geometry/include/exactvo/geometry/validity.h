@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// Is this ring of points an obstacle? Every problem found has a code that the documentation lists (docs/guide/codes.md).
+/// Is this ring of points an obstacle? Every problem found has a code that the documentation lists
+/// (docs/guide/codes.md).
 
 #include <cstddef>
 #include <string>
@@ -32,7 +33,7 @@ struct RingProblem {
   std::size_t ring = 0;    ///< 0 is the outer ring, then the holes
   std::size_t vertex = 0;  ///< index into the ring as given
   Vec2 where;              ///< m; a crossing of two edges is rounded
-  bool mended = false;  ///< `normalize` put it right
+  bool mended = false;     ///< `normalize` put it right
 };
 
 struct NormalizedPolygon {
@@ -49,8 +50,8 @@ struct NormalizedPolygon {
 /// ring in single points, as in OGC simple features; that the interior stays connected is not checked. A ring's own
 /// vertices and edges may not touch. One self-intersection and one misplacement at most is reported a ring.
 ///
-/// Properties: (1) a valid polygon comes back unchanged; (2) the result of an ok() answer is valid: normalising it again
-/// mends nothing but closure; (3) reversing rings or rotating their start changes neither ok() nor the point set.
+/// Properties: (1) a valid polygon comes back unchanged; (2) the result of an ok() answer is valid: normalising it
+/// again mends nothing but closure; (3) reversing rings or rotating their start changes neither ok() nor the point set.
 NormalizedPolygon normalize(const std::vector<Ring>& rings);
 
 struct NormalizedPolyline {
@@ -59,8 +60,8 @@ struct NormalizedPolyline {
   bool ok() const;                    ///< every problem was mended
 };
 
-/// The same for an open chain: drops consecutive duplicates, reports `not_finite` and `too_few_points`. A wall may cross
-/// itself.
+/// The same for an open chain: drops consecutive duplicates, reports `not_finite` and `too_few_points`. A wall may
+/// cross itself.
 NormalizedPolyline normalize_polyline(const std::vector<Vec2>& points);
 
 /// Whether the closed ring is simple: at least three vertices, consecutive ones distinct, and edges meeting only where
