@@ -20,4 +20,7 @@ say "Six robots cross an office floor"
 "$exactvo" simulate datasets/data/office/office.json --method ivo --out out/office
 
 say "Figures"
-find out/paper out/office -name '*.png' | LC_ALL=C sort
+echo "Every figure is .png and .svg, with its data (.dat) and gnuplot script (.gp) beside it."
+ls out/paper/figures/*.png
+echo "out/paper/figures/{fig5-orca,fig6-ivo}/A1..A15/ and fig8-formation/B0..B3/: paths, distances, velocities, errors"
+ls out/office/figures/*.png

@@ -9,7 +9,7 @@ namespace exactvo::tools {
 
 std::filesystem::path write_sources(const Figure& figure, const std::filesystem::path& folder) {
   write_text(folder / (figure.name + ".dat"), figure.data);
-  const std::filesystem::path script = folder / (figure.name + ".gp");
+  std::filesystem::path script = folder / (figure.name + ".gp");
   write_text(script, figure.script);
   return script;
 }

@@ -12,8 +12,6 @@
 
 #include "figures/figure.h"
 
-extern char** environ;
-
 namespace exactvo::tools {
 
 namespace fs = std::filesystem;

@@ -13,7 +13,6 @@ namespace exactvo::tools {
 
 using formation::ConstraintSource;
 using formation::RecordedConstraint;
-using geometry::GrownShape;
 using geometry::HalfPlane;
 
 namespace {
@@ -187,7 +186,11 @@ class VelocitySpace {
     const Vec2 along = normalized(line[1] - line[0]);
     const Vec2 stroke = -0.9 * gap * normalized(normal) + 0.6 * gap * along;
     const double length = norm(line[1] - line[0]);
-    for (double s = 0.5 * gap; s < length; s += gap) add_points({line[0] + s * along, line[0] + s * along + stroke});
+    const int count = static_cast<int>(length / gap);
+    for (int i = 0; i < count; ++i) {
+      const Vec2 foot = line[0] + (i + 0.5) * gap * along;
+      add_points({foot, foot + stroke});
+    }
   }
 
   void add_half_planes(bool active, const char* colour, double width, const std::string& title) {
