@@ -111,9 +111,14 @@ std::filesystem::path image_path(const std::filesystem::path& map, const std::st
   const std::filesystem::path folder = std::filesystem::weakly_canonical(map).parent_path();
   const std::filesystem::path picture = std::filesystem::weakly_canonical(folder / image);
   const auto [end, at] = std::mismatch(folder.begin(), folder.end(), picture.begin(), picture.end());
-  if (end == folder.end()) return picture;
-  throw DataError(DataCode::path_escape, map.string(), "key image", "\"" + image + "\"",
-                  "a picture in the map's folder");
+  if (end != folder.end()) {
+    throw DataError(DataCode::path_escape, map.string(), "key image", "\"" + image + "\"",
+                    "a picture in the map's folder");
+  }
+  if (!std::filesystem::is_regular_file(picture)) {
+    throw DataError(DataCode::image, map.string(), "key image", "\"" + image + "\", which is not there", "a picture");
+  }
+  return picture;
 }
 
 enum class Occupancy { free, occupied, unknown };
