@@ -30,16 +30,17 @@ class Usual : public Competitor {
 template <class T>
 class Batch : public Competitor {
  public:
-  explicit Batch(const std::vector<lp::Problem>& problems) : arrays_(problems) {}
+  Batch(const std::vector<lp::Problem>& problems, bool prove) : arrays_(problems), prove_(prove) {}
   std::size_t count() const override { return arrays_.count; }
   Answer answer(std::size_t i) const override {
     return {{static_cast<double>(arrays_.velocity_x[i]), static_cast<double>(arrays_.velocity_y[i])},
             arrays_.status[i] == static_cast<std::uint8_t>(lp::Status::optimal)};
   }
-  void run() override { lp::solve_batch(arrays_.problems(), arrays_.answers(), 0, arrays_.count); }
+  void run() override { lp::solve_batch(arrays_.problems(), arrays_.answers(prove_), 0, arrays_.count); }
 
  private:
   Arrays<T> arrays_;
+  bool prove_;
 };
 
 bool feasible(const lp::Solution& s) {
@@ -74,9 +75,9 @@ constexpr std::size_t kSome = 4096;
 constexpr std::size_t kFew = 256;
 
 template <class T>
-Entry batch_entry(std::string name, std::string target) {
-  return {std::move(name), false, false, kAll, std::move(target), [](const std::vector<lp::Problem>& p) {
-            return std::make_unique<Batch<T>>(p);
+Entry batch_entry(std::string name, std::string target, bool prove = false) {
+  return {std::move(name), false, prove, kAll, std::move(target), [prove](const std::vector<lp::Problem>& p) {
+            return std::make_unique<Batch<T>>(p, prove);
           }};
 }
 
@@ -86,6 +87,7 @@ std::vector<Entry> entries() {
   std::vector<Entry> all;
   all.push_back({"usual", false, false, kAll, "", [](const auto& p) { return std::make_unique<Usual>(p); }});
   all.push_back(batch_entry<double>("batch-double", ""));
+  all.push_back(batch_entry<double>("batch-certified", "", true));
   all.push_back(batch_entry<float>("batch-float", ""));
   all.push_back(batch_entry<double>("batch-double-AVX2", "AVX2"));
   all.push_back(batch_entry<float>("batch-float-AVX2", "AVX2"));

@@ -50,7 +50,8 @@ Arrays<T>::Arrays(const std::vector<lp::Problem>& source)
       velocity_x(stride),
       velocity_y(stride),
       violation(stride),
-      status(stride) {
+      status(stride),
+      proven(stride) {
   for (std::size_t i = 0; i < count; ++i) {
     const lp::Problem& p = source[i];
     preferred_x[i] = static_cast<T>(p.preferred.x);
@@ -83,8 +84,14 @@ lp::BatchProblems<T> Arrays<T>::problems() const {
 }
 
 template <class T>
-lp::BatchAnswers<T> Arrays<T>::answers() {
-  return {velocity_x.data(), velocity_y.data(), violation.data(), status.data(), nullptr, stride};
+lp::BatchAnswers<T> Arrays<T>::answers(bool prove) {
+  return {velocity_x.data(),
+          velocity_y.data(),
+          violation.data(),
+          status.data(),
+          nullptr,
+          stride,
+          prove ? proven.data() : nullptr};
 }
 
 template struct Arrays<float>;

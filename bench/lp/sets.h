@@ -24,14 +24,14 @@ template <class T>
 struct Arrays {
   explicit Arrays(const std::vector<lp::Problem>& problems);
   lp::BatchProblems<T> problems() const;
-  lp::BatchAnswers<T> answers();
+  lp::BatchAnswers<T> answers(bool prove = false);
 
   std::size_t count, lines, stride;  ///< stride: count rounded up to whole blocks
   std::vector<T> normal_x, normal_y, offset, preferred_x, preferred_y, disc;
   std::vector<std::int32_t> hard;
   bool any_hard = false;
   std::vector<T> velocity_x, velocity_y, violation;
-  std::vector<std::uint8_t> status;
+  std::vector<std::uint8_t> status, proven;
 };
 
 /// A set as the usual solver wants it: hard lines first.

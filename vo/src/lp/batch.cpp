@@ -5,6 +5,7 @@
 
 #include "batch_layout.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -17,42 +18,43 @@
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
 
-/// Called for problem i that the walk could not settle.
+/// Called for problem i that the walk could not settle or prove; true where exact arithmetic was needed.
 template <class T>
-using Leftover = void (*)(const BatchProblems<T>&, const BatchAnswers<T>&, std::size_t);
+using Leftover = bool (*)(const BatchProblems<T>&, const BatchAnswers<T>&, std::size_t);
 
 template <class D, class T>
-HWY_INLINE std::size_t run_pack(D d, const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t at,
+HWY_INLINE BatchCounts run_pack(D d, const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t at,
                                 Leftover<T> leftover) {
   std::uint64_t lanes = Walk<D>(d, in, at).run(out);
-  std::size_t count = 0;
+  BatchCounts count;
   for (std::size_t lane = 0; lanes != 0; ++lane, lanes >>= 1) {
     if ((lanes & 1U) == 0) continue;
-    leftover(in, out, at + lane);
-    ++count;
+    count.exact += leftover(in, out, at + lane);
+    ++count.scalar;
   }
   return count;
 }
 
 template <class T>
-std::size_t run_range(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t first, std::size_t last,
+BatchCounts run_range(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t first, std::size_t last,
                       Leftover<T> leftover) {
   const hn::ScalableTag<T> wide;
   const hn::CappedTag<T, 1> single;
-  std::size_t left_over = 0;
+  BatchCounts left_over;
+  const auto add = [&](BatchCounts more) { left_over.scalar += more.scalar, left_over.exact += more.exact; };
   std::size_t at = first;
-  for (; at < last && at % hn::Lanes(wide) != 0; ++at) left_over += run_pack(single, in, out, at, leftover);
-  for (; at + hn::Lanes(wide) <= last; at += hn::Lanes(wide)) left_over += run_pack(wide, in, out, at, leftover);
-  for (; at < last; ++at) left_over += run_pack(single, in, out, at, leftover);
+  for (; at < last && at % hn::Lanes(wide) != 0; ++at) add(run_pack(single, in, out, at, leftover));
+  for (; at + hn::Lanes(wide) <= last; at += hn::Lanes(wide)) add(run_pack(wide, in, out, at, leftover));
+  for (; at < last; ++at) add(run_pack(single, in, out, at, leftover));
   return left_over;
 }
 
-std::size_t run_double(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,
+BatchCounts run_double(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,
                        std::size_t last, Leftover<double> leftover) {
   return run_range<double>(in, out, first, last, leftover);
 }
 
-std::size_t run_float(const BatchProblems<float>& in, const BatchAnswers<float>& out, std::size_t first,
+BatchCounts run_float(const BatchProblems<float>& in, const BatchAnswers<float>& out, std::size_t first,
                       std::size_t last, Leftover<float> leftover) {
   return run_range<float>(in, out, first, last, leftover);
 }
@@ -65,7 +67,6 @@ HWY_AFTER_NAMESPACE();
 #include <tbb/parallel_reduce.h>
 
 #include <cstring>
-#include <functional>
 
 namespace exactvo::lp {
 
@@ -106,8 +107,16 @@ void put(const Solution& s, const BatchAnswers<T>& out, std::size_t i) {
 }
 
 template <class T>
-void solve_alone(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t i) {
-  put(solve(problem_at(in, i)), out, i);
+bool solve_alone(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t i) {
+  const Problem problem = problem_at(in, i);
+  if (!out.proven) {
+    put(solve(problem), out, i);
+    return false;
+  }
+  const Proven answer = solve_certified(problem);
+  put(answer.solution, out, i);
+  out.proven[i] = answer.certificate.has_value();
+  return answer.exact_stage;
 }
 
 template <class T>
@@ -123,11 +132,12 @@ void require_arrays(const BatchProblems<T>& in, const BatchAnswers<T>& out, std:
 
 template <class T, class Range>
 BatchCounts in_parallel(const BatchProblems<T>& in, Range solve_range) {
-  const auto add = [&](const tbb::blocked_range<std::size_t>& range, std::size_t scalar) {
-    return scalar + solve_range(range.begin() * kGrain, std::min(in.count, range.end() * kGrain)).scalar;
+  const auto plus = [](BatchCounts a, BatchCounts b) { return BatchCounts{a.scalar + b.scalar, a.exact + b.exact}; };
+  const auto add = [&](const tbb::blocked_range<std::size_t>& range, BatchCounts counts) {
+    return plus(counts, solve_range(range.begin() * kGrain, std::min(in.count, range.end() * kGrain)));
   };
   const std::size_t tasks = (in.count + kGrain - 1) / kGrain;
-  return {tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, tasks), std::size_t{0}, add, std::plus<>())};
+  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, tasks), BatchCounts{}, add, plus);
 }
 
 }  // namespace
@@ -135,13 +145,14 @@ BatchCounts in_parallel(const BatchProblems<T>& in, Range solve_range) {
 BatchCounts solve_batch(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,
                         std::size_t last) {
   require_arrays(in, out, first, last);
-  return {HWY_DYNAMIC_DISPATCH(run_double)(in, out, first, last, &solve_alone<double>)};
+  return HWY_DYNAMIC_DISPATCH(run_double)(in, out, first, last, &solve_alone<double>);
 }
 
 BatchCounts solve_batch(const BatchProblems<float>& in, const BatchAnswers<float>& out, std::size_t first,
                         std::size_t last) {
   require_arrays(in, out, first, last);
-  return {HWY_DYNAMIC_DISPATCH(run_float)(in, out, first, last, &solve_alone<float>)};
+  EXACTVO_REQUIRE(!out.proven, "a proof asked of float");
+  return HWY_DYNAMIC_DISPATCH(run_float)(in, out, first, last, &solve_alone<float>);
 }
 
 BatchCounts solve_batch_parallel(const BatchProblems<double>& in, const BatchAnswers<double>& out) {

@@ -18,6 +18,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Rounds after which a lane is left to the scalar solver; recorded problems need at most a dozen.
 inline constexpr int kMostLockstepRounds = 40;
 
+/// Roundings of a proof: at most 30 operations deep on terms of at most the scale it is multiplied with, doubled.
+inline constexpr double kProofError = 64.0;
+
 template <class D>
 struct Walk {
   using T = hn::TFromD<D>;
@@ -71,7 +74,7 @@ struct Walk {
     first = second = third = entering = nothing();
     worst = hn::Zero(d);
     const V squared = hn::Add(hn::Mul(px, px), hn::Mul(py, py));
-    const V limit = hn::Mul(speed, speed);
+    const V limit = hn::Mul(hn::Mul(speed, speed), hn::Set(d, T(1) - T(8) * u));
     const V shrink = hn::Div(disc, hn::Sqrt(hn::Max(squared, limit)));
     const M inside = hn::Le(squared, limit);
     vx = hn::IfThenElse(inside, px, hn::Mul(px, shrink));
@@ -295,6 +298,87 @@ struct Walk {
   V violation;
   HWY_INLINE void settle_violation(M done) { violation = pick(done, largest_violation, violation); }
 
+  HWY_INLINE V positive(V x) const { return hn::Max(x, hn::Zero(d)); }
+  HWY_INLINE M names(const LineV& line) const { return hn::Ge(line.index, hn::Zero(d)); }
+  HWY_INLINE V given_offset(const LineV& line, M slackened) const {
+    return pick(slackened, hn::Sub(line.c, slack), line.c);
+  }
+
+  /// Inequality (4) of certificate.h in rounded arithmetic. Its error stays below kProofError u times the terms.
+  HWY_INLINE M optimum_is_proven(V speed) const {
+    const V one = hn::Set(d, T(1)), zero = hn::Zero(d);
+    const V pull_x = hn::Sub(vx, px), pull_y = hn::Sub(vy, py);
+    const V squared = product(vx, vy, vx, vy);
+    const V limit = hn::Mul(speed, speed);
+    const M at_disc = hn::AndNot(names(second), hn::Gt(squared, hn::Mul(limit, hn::Set(d, T(1) - T(0x1p-40)))));
+    const M line = names(first), single = hn::AndNot(hn::Or(names(second), at_disc), line);
+    const V yx = pick(at_disc, hn::Neg(vx), second.x), yy = pick(at_disc, hn::Neg(vy), second.y);
+    const V turn = hn::Sub(hn::Mul(first.x, yy), hn::Mul(first.y, yx));
+    V alpha = hn::Div(hn::Sub(hn::Mul(pull_x, yy), hn::Mul(pull_y, yx)), turn);
+    V beta = hn::Div(hn::Sub(hn::Mul(first.x, pull_y), hn::Mul(first.y, pull_x)), turn);
+    alpha = pick(single, product(pull_x, pull_y, first.x, first.y), alpha);
+    beta = hn::IfThenZeroElse(single, beta);
+    beta = pick(hn::AndNot(line, at_disc), hn::Div(hn::Neg(product(pull_x, pull_y, vx, vy)), squared), beta);
+    alpha = positive(hn::IfThenElseZero(line, alpha));
+    beta = positive(hn::IfThenElseZero(hn::Or(line, at_disc), beta));
+    const V nu = hn::IfThenElseZero(at_disc, beta);
+    const V second_share = hn::IfThenZeroElse(at_disc, beta);
+    const V gx = hn::Add(px, hn::Add(hn::Mul(alpha, first.x), hn::Mul(second_share, second.x)));
+    const V gy = hn::Add(py, hn::Add(hn::Mul(alpha, first.y), hn::Mul(second_share, second.y)));
+    const V offsets = hn::Add(hn::Mul(alpha, hn::Sub(first.c, slack)), hn::Mul(second_share, hn::Sub(second.c, slack)));
+    const V pulled = hn::Div(product(gx, gy, gx, gy), hn::Add(one, nu));
+    const V own = product(px, py, px, py);
+    const V lower = hn::Sub(hn::Sub(hn::Add(own, hn::Add(offsets, offsets)), hn::Mul(nu, limit)), pulled);
+    const V gap = hn::Sub(product(pull_x, pull_y, pull_x, pull_y), lower);
+    const V terms = hn::Add(hn::Add(own, pulled), hn::Add(hn::Mul(nu, limit), hn::Add(limit, hn::Abs(offsets))));
+    const V widest = hn::Mul(hn::Set(d, T(kWidestGap)), hn::Add(limit, own));
+    const V error = hn::Mul(hn::Set(d, T(kProofError * 0x1p-53)), terms);
+    return hn::And(hn::Le(hn::Add(gap, error), widest), hn::Ge(squared, zero));
+  }
+
+  /// Inequalities (1) and (2) of certificate.h in rounded arithmetic.
+  HWY_INLINE M relaxation_is_proven(V speed) const {
+    const V zero = hn::Zero(d), one = hn::Set(d, T(1));
+    const M two = names(second), three = names(third);
+    const auto turn = [&](V ax, V ay, V bx, V by) { return hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx)); };
+    const V zx = pick(three, third.x, hn::Neg(vx)), zy = pick(three, third.y, hn::Neg(vy));
+    V wa = turn(second.x, second.y, zx, zy);
+    V wb = turn(zx, zy, first.x, first.y);
+    V wc = hn::IfThenElseZero(three, turn(first.x, first.y, second.x, second.y));
+    const M flip = hn::Lt(hn::Add(hn::Add(wa, wb), wc), zero);
+    wa = positive(pick(flip, hn::Neg(wa), wa));
+    wb = positive(pick(flip, hn::Neg(wb), wb));
+    wc = positive(pick(flip, hn::Neg(wc), wc));
+    wa = pick(two, wa, one);
+    wb = hn::IfThenElseZero(two, wb);
+    const V gx = hn::Add(hn::Mul(wa, first.x), hn::Add(hn::Mul(wb, second.x), hn::Mul(wc, third.x)));
+    const V gy = hn::Add(hn::Mul(wa, first.y), hn::Add(hn::Mul(wb, second.y), hn::Mul(wc, third.y)));
+    const M hard_a = hn::AndNot(first.soft, names(first)), hard_b = hn::AndNot(second.soft, two),
+            hard_c = hn::AndNot(third.soft, three);
+    const V offsets =
+        hn::Add(hn::Mul(wa, given_offset(first, hard_a)),
+                hn::Add(hn::Mul(wb, given_offset(second, hard_b)), hn::Mul(wc, given_offset(third, hard_c))));
+    const V giving = hn::Add(hn::IfThenZeroElse(hard_a, wa),
+                             hn::Add(hn::IfThenZeroElse(hard_b, wb), hn::IfThenZeroElse(hard_c, wc)));
+    const V all = hn::Add(wa, hn::Add(wb, wc));
+    const V surplus = hn::Sub(offsets, hn::Mul(speed, hn::Sqrt(product(gx, gy, gx, gy))));
+    const V scale = hn::Add(speed, violation);
+    const V error = hn::Mul(hn::Mul(hn::Set(d, T(kProofError * 0x1p-53)), all), scale);
+    const V most = hn::Add(violation, hn::Mul(hn::Set(d, T(8 * 0x1p-53)), scale));
+    const V missing = hn::Sub(hn::Mul(most, giving), hn::Sub(surplus, error));
+    const V widest = hn::Mul(hn::Mul(hn::Set(d, T(kWidestGap)), speed), giving);
+    return hn::And(hn::Gt(surplus, error), hn::Le(missing, widest));
+  }
+
+  /// Lanes whose answer is certain. What must hold was priced with slack in the last round; the disc is looked at here.
+  HWY_INLINE M proven() const {
+    const V speed = hn::LoadU(d, in.disc + at);
+    const V inside = hn::Mul(hn::Mul(speed, speed), hn::Set(d, T(1) - T(4 * 0x1p-53)));
+    const M kept = hn::Le(product(vx, vy, vx, vy), inside);
+    const M right = pick(contradiction, relaxation_is_proven(speed), optimum_is_proven(speed));
+    return hn::And(kept, right);
+  }
+
   HWY_INLINE void store(const BatchAnswers<T>& out) const {
     hn::StoreU(vx, d, out.velocity_x + at);
     hn::StoreU(vy, d, out.velocity_y + at);
@@ -319,6 +403,11 @@ struct Walk {
     nearest();
     if (!hn::AllFalse(d, contradiction)) relax();
     store(out);
+    if (out.proven) {
+      const M certain = hn::AndNot(unsettled, proven());
+      unsettled = hn::Not(certain);
+      for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) out.proven[at + lane] = 1;
+    }
     if (hn::AllFalse(d, unsettled)) return 0;
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, unsettled, bits);

@@ -34,7 +34,7 @@ class Batch {
   void solve_into(std::vector<Proven>& answers) {
     const BatchProblems<double> in = {place_.size(), lines_,     kMostLanes, nx_.data(),   ny_.data(),
                                       c_.data(),     px_.data(), py_.data(), disc_.data(), hard_.data()};
-    solve_batch(in, {vx_.data(), vy_.data(), violation_.data(), status_.data(), active_.data(), stride_}, 0,
+    solve_batch(in, {vx_.data(), vy_.data(), violation_.data(), status_.data(), active_.data(), stride_, nullptr}, 0,
                 place_.size());
     for (std::size_t slot = 0; slot < place_.size(); ++slot) answers[place_[slot]].solution = solution(slot);
   }

@@ -46,10 +46,14 @@ struct BatchAnswers {
   std::uint8_t* status = nullptr;  ///< [i], a Status
   std::int32_t* active = nullptr;  ///< [3 * stride], line indices or kNoLine; may be null
   std::size_t stride = 0;
+  /// [i], double only, may be null. Where given, every lane is proven in the same pass (inequalities (1), (2) and (4)
+  /// of certificate.h, rounding errors included); what is not goes to `solve_certified`. 1: proven, 0: see Proven.
+  std::uint8_t* proven = nullptr;
 };
 
 struct BatchCounts {
   std::size_t scalar = 0;  ///< problems that the lockstep walk handed to the scalar solver
+  std::size_t exact = 0;   ///< those among them that needed exact arithmetic; only with `proven`
 };
 
 /// Solves problems first .. last - 1 on the caller's thread. REQUIRES: finite numbers as described.
