@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Any bytes as a problem: each solver against the exact one, and every certificate against `check`.
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "exactvo/vo/lp/solvers.h"
+#include "problem_text.h"
+
+namespace exactvo::lp {
+namespace {
+
+constexpr std::size_t kMostConstraints = 12;
+
+/// Numbers from the fuzzer's bytes: small integers (ties and degeneracies) or raw doubles within 2^+-60.
+class Bytes {
+ public:
+  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
+  bool empty() const { return left_ == 0; }
+
+  std::uint8_t byte() {
+    if (left_ == 0) return 0;
+    --left_;
+    return *data_++;
+  }
+
+  double number() {
+    const std::uint8_t kind = byte();
+    if (kind < 160) return static_cast<double>(static_cast<std::int8_t>(byte())) / (kind % 2 == 0 ? 8.0 : 3.0);
+    std::uint64_t bits = 0;
+    for (int k = 0; k < 8; ++k) bits = bits << 8 | byte();
+    double x = 0.0;
+    std::memcpy(&x, &bits, sizeof x);
+    return std::isfinite(x) && (x == 0.0 || (std::abs(x) > 0x1p-60 && std::abs(x) < 0x1p60)) ? x : 1.0;
+  }
+
+ private:
+  const std::uint8_t* data_;
+  std::size_t left_;
+};
+
+Problem problem_from(Bytes bytes) {
+  Problem p;
+  const std::uint8_t kind = bytes.byte();
+  if ((kind & 1U) != 0) p.bound.disc = std::abs(bytes.number());
+  if ((kind & 2U) != 0) p.bound.box_x = std::abs(bytes.number());
+  if ((kind & 4U) != 0) p.bound.box_y = std::abs(bytes.number());
+  p.preferred = {bytes.number(), bytes.number()};
+  const bool bounded = (kind & 1U) != 0 || (kind & 6U) == 6;
+  if ((kind & 8U) != 0 && bounded && p.preferred != Vec2{}) p.objective = Objective::farthest;
+  while (!bytes.empty() && p.constraints.size() < kMostConstraints) {
+    const auto priority = bytes.byte() % 2 == 0 ? Priority::hard : Priority::soft;
+    const Vec2 n = {bytes.number(), bytes.number()};
+    const double offset = bytes.number();
+    if (n != Vec2{}) p.constraints.push_back({{n, offset}, priority, -1});
+  }
+  return p;
+}
+
+[[noreturn]] void fail(const char* what, const Problem& problem) {
+  std::fprintf(stderr, "%s\n%s", what, text_of(problem).c_str());
+  std::abort();
+}
+
+/// pinched with a contradiction: the hard ones can be held; without: all can.
+Status verdict(const Proven& p) {
+  if (p.solution.status != Status::pinched) return p.solution.status;
+  return p.certificate && !p.certificate->contradiction.empty() ? Status::relaxed : Status::optimal;
+}
+
+void examine(const Problem& problem) {
+  const Proven exact = solve_exact(problem);
+  for (const Solver solver : {Solver::incremental, Solver::batch, Solver::certified, Solver::exact}) {
+    Proven answer = solve_all(solver, {problem}).front();
+    prove(problem, answer);
+    if (!answer.certificate) fail("no certificate", problem);
+    if (check(problem, *answer.certificate) != Flaw::none) fail("a certificate that does not hold", problem);
+    if (verdict(answer) != verdict(exact)) fail("a wrong verdict", problem);
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::lp
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  exactvo::lp::examine(exactvo::lp::problem_from({data, size}));
+  return 0;
+}
