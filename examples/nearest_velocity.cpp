@@ -20,8 +20,8 @@ int main() {
   lp::Problem problem;
   problem.preferred = {3.0, 0.0};
   problem.bound.disc = 3.0;
-  problem.constraints = {{{{-1.0, 0.0}, -1.0}, lp::Priority::hard, 0},   // v_x <= 1: a wall ahead
-                         {{{0.0, 1.0}, 0.5}, lp::Priority::soft, 1}};    // v_y >= 0.5: a robot on the right
+  problem.constraints = {{{{-1.0, 0.0}, -1.0}, lp::Priority::hard, 0},  // v_x <= 1: a wall ahead
+                         {{{0.0, 1.0}, 0.5}, lp::Priority::soft, 1}};   // v_y >= 0.5: a robot on the right
   const lp::Solution both = lp::solve(problem);
   print("wall and robot", both);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "run_program.h"
 
@@ -85,6 +86,11 @@ struct BadScenario {
   const char* pointer;
   const char* code;
 };
+
+/// What ctest lists; without it the bytes of the pointers.
+void PrintTo(const BadScenario& bad, std::ostream* out) {
+  *out << bad.pointer << " " << bad.code;
+}
 
 class RefusedScenario : public testing::TestWithParam<BadScenario> {};
 
