@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Certificates of half-planes: issued, written, read, and corrupted in every number.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "exactvo/vo/certificate.h"
+#include "vo/half_plane_audit.h"
+
+namespace exactvo::test {
+namespace {
+
+using geometry::Vec2;
+using vo::Certificate;
+using vo::HalfPlaneClaim;
+using vo::Verdict;
+
+HalfPlaneClaim random_claim(SeededRandom& random, Kind kind) {
+  for (;;) {
+    const RandomScene scene = random_scene(random, kind);
+    const double tau = random.uniform(0.1, 5.0);
+    const auto h = vo::half_plane(scene.s, tau, random_velocity(random, scene.s, tau));
+    if (h && !velocity_obstacle(scene.s, tau).overlaps())
+      return {scene.s.shape, scene.s.origin, scene.s.radius, tau, {}, *h};
+  }
+}
+
+/// Every number of a certificate.
+std::vector<double*> numbers_of(Certificate& c) {
+  std::vector<double*> all;
+  const auto add = [&](Vec2& v) {
+    all.push_back(&v.x);
+    all.push_back(&v.y);
+  };
+  HalfPlaneClaim& claim = c.claim;
+  if (auto* d = std::get_if<geometry::Disc>(&claim.shape)) {
+    add(d->center);
+    all.push_back(&d->radius);
+  } else if (auto* s = std::get_if<geometry::Segment>(&claim.shape)) {
+    add(s->a);
+    add(s->b);
+  } else if (auto* p = std::get_if<geometry::ConvexPolygon>(&claim.shape)) {
+    for (Vec2& v : p->vertices) add(v);
+  } else {
+    auto& e = std::get<geometry::Ellipse>(claim.shape);
+    add(e.center);
+    all.insert(all.end(), {&e.l11, &e.l21, &e.l22});
+  }
+  add(claim.position);
+  add(claim.shape_velocity);
+  add(claim.half_plane.normal);
+  all.insert(all.end(), {&claim.radius, &claim.time_horizon, &claim.half_plane.offset, &c.margin});
+  return all;
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Certificate, Property1And2_IssuedReadAndValid) {
+  SeededRandom random(seed_of_run(61));
+  for (int i = 0; i < 2000; ++i) {
+    const HalfPlaneClaim claim = random_claim(random, kKinds[i % 4]);
+    const auto c = certify(claim);
+    ASSERT_TRUE(c);
+    ASSERT_EQ(check(*c), Verdict::valid);
+    const std::string text = write_certificate(*c);
+    const auto read = vo::read_certificate(text);
+    ASSERT_TRUE(read) << text;
+    ASSERT_EQ(write_certificate(*read), text);
+    ASSERT_EQ(check(*read), Verdict::valid);
+    const geometry::GrownShape s{claim.shape, claim.position, claim.radius};
+    ASSERT_TRUE(is_safe(s, claim.time_horizon, claim.half_plane)) << "the oracle agrees";
+  }
+}
+
+TEST(Certificate, Property3_AnyNumberAnUlpOffIsRejected) {
+  SeededRandom random(seed_of_run(62));
+  int corrupted = 0, caught_by_margin = 0;
+  while (corrupted < 20000) {
+    Certificate good = *certify(random_claim(random, kKinds[corrupted % 4]));
+    for (std::size_t k = 0; k < numbers_of(good).size(); ++k) {
+      for (const double towards : {-kInfinity, kInfinity}) {
+        Certificate bad = good;
+        double& x = *numbers_of(bad)[k];
+        x = std::nextafter(x, towards);
+        const Verdict verdict = check(bad);
+        ASSERT_NE(verdict, Verdict::valid) << write_certificate(good) << " number " << k;
+        caught_by_margin += verdict == Verdict::wrong_margin;
+        ++corrupted;
+      }
+    }
+  }
+  EXPECT_GT(caught_by_margin, corrupted / 4) << "without the digest's help";
+}
+
+TEST(Certificate, AHalfPlaneMovedInwardFailsByItsMarginAlone) {
+  SeededRandom random(seed_of_run(63));
+  for (int i = 0; i < 5000; ++i) {
+    Certificate c = *certify(random_claim(random, kKinds[i % 4]));
+    if (c.claim.half_plane.offset == 0.0) continue;  // a leg: its margin is that of h_S <= 0
+    c.claim.half_plane.offset = std::nextafter(c.claim.half_plane.offset, -kInfinity);
+    ASSERT_EQ(check(c), Verdict::wrong_margin);
+  }
+}
+
+TEST(Certificate, CorruptedTextIsRejected) {
+  SeededRandom random(seed_of_run(64));
+  int different = 0;
+  for (int i = 0; i < 12000; ++i) {
+    static std::string text;
+    if (i % 100 == 0) text = write_certificate(*certify(random_claim(random, kKinds[(i / 100) % 4])));
+    std::string bad = text;
+    const auto at = static_cast<std::size_t>(random.integer(0, static_cast<int>(bad.size()) - 1));
+    const int what = random.integer(0, 2);
+    if (what == 0) bad[at] = "0123456789abcdef .-px"[random.integer(0, 20)];
+    if (what == 1) bad.erase(at, 1);
+    if (what == 2) bad.insert(at, 1, "0123456789abcdef "[random.integer(0, 16)]);
+    if (bad == text) continue;
+    ++different;
+    const auto read = vo::read_certificate(bad);
+    ASSERT_TRUE(!read || check(*read) != Verdict::valid) << bad;
+  }
+  EXPECT_GT(different, 10000);
+}
+
+TEST(Certificate, UnsafeClaimsGetNone) {
+  const geometry::Disc disc{{5, 0}, 1};
+  HalfPlaneClaim claim{disc, {}, 1.0, 2.0, {}, {{-1, 0}, -1.5}};
+  EXPECT_TRUE(is_true(claim));
+  EXPECT_EQ(certify(claim)->margin, 0.0);
+  claim.half_plane.offset = std::nextafter(-1.5, -2.0);
+  EXPECT_FALSE(is_true(claim));
+  EXPECT_FALSE(certify(claim));
+  claim.half_plane = {{0, 1}, 100.0};
+  EXPECT_FALSE(is_true(claim)) << "h > 0: no offset helps";
+}
+
+TEST(Certificate, MovingObstaclesShiftTheClaim) {
+  const geometry::Disc disc{{5, 0}, 1};
+  HalfPlaneClaim claim{disc, {}, 1.0, 2.0, {-1.0, 0.5}, {{-1, 0}, -0.5}};
+  EXPECT_TRUE(is_true(claim));
+  claim.half_plane.offset = std::nextafter(-0.5, -1.0);
+  EXPECT_FALSE(is_true(claim));
+}
+
+TEST(Certificate, NumbersThatAreNoneAreMalformed) {
+  const HalfPlaneClaim claim{geometry::Disc{{5, 0}, 1}, {}, 1.0, 2.0, {}, {{-1, 0}, -1.0}};
+  const Certificate good = *certify(claim);
+  Certificate bad = good;
+  const std::size_t count = numbers_of(bad).size();
+  for (std::size_t k = 0; k < count; ++k) {
+    for (const double value : {std::nan(""), kInfinity}) {
+      bad = good;
+      *numbers_of(bad)[k] = value;
+      EXPECT_EQ(check(bad), Verdict::malformed);
+      EXPECT_EQ(is_true(bad.claim), k + 1 == count) << "the last is the margin, no part of the claim";
+    }
+  }
+  bad.claim.radius = -1.0;
+  EXPECT_EQ(check(bad), Verdict::malformed);
+  bad = good;
+  bad.claim.time_horizon = 0.0;
+  EXPECT_EQ(check(bad), Verdict::malformed);
+  bad = good;
+  bad.claim.shape = geometry::ConvexPolygon{};
+  EXPECT_EQ(check(bad), Verdict::malformed);
+}
+
+}  // namespace
+}  // namespace exactvo::test

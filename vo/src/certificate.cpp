@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/vo/certificate.h"
+
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+namespace exactvo::vo {
+namespace {
+
+using geometry::ConvexPolygon;
+using geometry::Disc;
+using geometry::Ellipse;
+using geometry::Segment;
+using geometry::Vec2;
+using Rational = mpq_class;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool is_well_formed(const HalfPlaneClaim& c) {
+  return geometry::is_valid(c.shape) && is_finite(c.position) && c.radius >= 0.0 && std::isfinite(c.radius) &&
+         c.time_horizon > 0.0 && std::isfinite(c.time_horizon) && is_finite(c.shape_velocity) &&
+         is_finite(c.half_plane.normal) && c.half_plane.normal != Vec2{} && std::isfinite(c.half_plane.offset);
+}
+
+// --- The support function, as k + sqrt(b) + sqrt(d) in rationals ---
+
+struct RootSum {
+  Rational k, b, d;
+};
+
+Rational square(const Rational& x) {
+  return x * x;
+}
+
+struct SupportOf {
+  const HalfPlaneClaim& claim;
+
+  RootSum operator()(const Disc& disc) const {
+    return {at(disc.center), 0, square(Rational(disc.radius) + Rational(claim.radius)) * length2()};
+  }
+  RootSum operator()(const Segment& s) const { return {std::max(at(s.a), at(s.b)), 0, grown()}; }
+  RootSum operator()(const ConvexPolygon& p) const {
+    Rational most = at(p.vertices.front());
+    for (const Vec2 v : p.vertices) most = std::max(most, at(v));
+    return {most, 0, grown()};
+  }
+  RootSum operator()(const Ellipse& e) const {
+    const Rational x = Rational(e.l11) * nx() + Rational(e.l21) * ny();
+    const Rational y = Rational(e.l22) * ny();
+    return {at(e.center), square(x) + square(y), grown()};
+  }
+
+ private:
+  Rational nx() const { return Rational(claim.half_plane.normal.x); }
+  Rational ny() const { return Rational(claim.half_plane.normal.y); }
+  Rational length2() const { return square(nx()) + square(ny()); }
+  Rational grown() const { return square(Rational(claim.radius)) * length2(); }
+  Rational at(Vec2 x) const {
+    return nx() * (Rational(x.x) - Rational(claim.position.x)) + ny() * (Rational(x.y) - Rational(claim.position.y));
+  }
+};
+
+/// h_S(normal) - min(0, tau (offset - normal.u)): minus the margin.
+RootSum excess(const HalfPlaneClaim& c) {
+  RootSum h = std::visit(SupportOf{c}, c.shape);
+  const Vec2 n = c.half_plane.normal;
+  const Rational moved = Rational(n.x) * Rational(c.shape_velocity.x) + Rational(n.y) * Rational(c.shape_velocity.y);
+  const Rational bound = Rational(c.time_horizon) * (Rational(c.half_plane.offset) - moved);
+  if (sgn(bound) < 0) h.k -= bound;
+  return h;
+}
+
+/// Sign of k + sqrt(b) + sqrt(d): for k < 0, |k| is compared with the sum of the roots by squaring twice.
+int sign(const RootSum& s) {
+  if (sgn(s.k) >= 0) return sgn(s.k) > 0 || sgn(s.b) > 0 || sgn(s.d) > 0 ? 1 : 0;
+  const Rational rest = square(s.k) - s.b - s.d;  // against 2 sqrt(b d)
+  if (sgn(rest) < 0) return 1;
+  return cmp(4 * s.b * s.d, square(rest));
+}
+
+/// Whether margin <= the exact margin.
+bool margin_holds(const RootSum& excess, double margin) {
+  return sign({excess.k + Rational(margin), excess.b, excess.d}) <= 0;
+}
+
+double rounded_root(const Rational& x) {
+  return std::sqrt(x.get_d());
+}
+
+/// A double near the exact margin: exact but for the roots, which are refined once in rationals (Newton's step squares
+/// the relative error of 2^-52).
+double approximate_margin(const RootSum& excess) {
+  const auto refined = [](const Rational& x) {
+    const Rational r(rounded_root(x));
+    return sgn(r) > 0 ? Rational((r + x / r) / 2) : Rational(0);
+  };
+  const Rational sum = -(excess.k + refined(excess.b) + refined(excess.d));
+  return sum.get_d();
+}
+
+/// The largest double <= the exact margin. Steps away from a guess by ever more ulps, then halves the way back.
+double exact_margin(const RootSum& excess) {
+  double m = std::max(approximate_margin(excess), 0.0);
+  if (!margin_holds(excess, m)) {
+    double step = std::max(m * 0x1p-52, std::numeric_limits<double>::denorm_min());
+    while (m > 0.0 && !margin_holds(excess, m)) {
+      m = std::max(m - step, 0.0);
+      step *= 2.0;
+    }
+  }
+  while (std::isfinite(m) && margin_holds(excess, std::nextafter(m, kInfinity))) m = std::nextafter(m, kInfinity);
+  return m;
+}
+
+// --- The digest ---
+
+class Fnv {
+ public:
+  void add(double x) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &x, sizeof bits);
+    add(bits);
+  }
+  void add(Vec2 v) {
+    add(v.x);
+    add(v.y);
+  }
+  void add(std::uint64_t word) {
+    for (int i = 0; i < 8; ++i) {
+      hash_ ^= (word >> (8 * i)) & 0xFF;
+      hash_ *= 0x100000001B3ULL;
+    }
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
+};
+
+struct AddTo {
+  Fnv& hash;
+  void operator()(const Disc& d) const {
+    hash.add(d.center);
+    hash.add(d.radius);
+  }
+  void operator()(const Segment& s) const {
+    hash.add(s.a);
+    hash.add(s.b);
+  }
+  void operator()(const ConvexPolygon& p) const {
+    hash.add(static_cast<std::uint64_t>(p.vertices.size()));
+    for (const Vec2 v : p.vertices) hash.add(v);
+  }
+  void operator()(const Ellipse& e) const {
+    hash.add(e.center);
+    hash.add(e.l11);
+    hash.add(e.l21);
+    hash.add(e.l22);
+  }
+};
+
+std::uint64_t digest_of(const HalfPlaneClaim& c, double margin) {
+  Fnv hash;
+  hash.add(static_cast<std::uint64_t>(c.shape.index()));
+  std::visit(AddTo{hash}, c.shape);
+  hash.add(c.position);
+  hash.add(c.radius);
+  hash.add(c.time_horizon);
+  hash.add(c.shape_velocity);
+  hash.add(c.half_plane.normal);
+  hash.add(c.half_plane.offset);
+  hash.add(margin);
+  return hash.value();
+}
+
+}  // namespace
+
+bool is_true(const HalfPlaneClaim& claim) {
+  return is_well_formed(claim) && sign(excess(claim)) <= 0;
+}
+
+std::optional<Certificate> certify(const HalfPlaneClaim& claim) {
+  if (!is_well_formed(claim)) return std::nullopt;
+  const RootSum e = excess(claim);
+  if (sign(e) > 0) return std::nullopt;
+  const double margin = exact_margin(e);
+  return Certificate{claim, margin, digest_of(claim, margin)};
+}
+
+Verdict check(const Certificate& c) {
+  if (!is_well_formed(c.claim) || !std::isfinite(c.margin)) return Verdict::malformed;
+  const RootSum e = excess(c.claim);
+  const bool holds = c.margin >= 0.0 && margin_holds(e, c.margin);
+  if (!holds || margin_holds(e, std::nextafter(c.margin, kInfinity))) return Verdict::wrong_margin;
+  return digest_of(c.claim, c.margin) == c.digest ? Verdict::valid : Verdict::altered;
+}
+
+const char* name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::valid:
+      return "valid";
+    case Verdict::malformed:
+      return "malformed";
+    case Verdict::altered:
+      return "altered";
+    case Verdict::wrong_margin:
+      break;
+  }
+  return "wrong margin";
+}
+
+}  // namespace exactvo::vo
