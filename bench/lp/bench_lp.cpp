@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The arena: every solver on every set. First each answer is compared with the certified one, then all are timed,
 // interleaved, in thread CPU time; the table gives ns a solve and the ratio to `usual`.
-#include <hwy/highway.h>
 #include <time.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -114,7 +112,6 @@ struct Run {
   std::unique_ptr<Competitor> competitor;
   std::vector<double> times;  ///< ns a solve, one a round
   std::size_t wrong = 0;      ///< verdicts
-  double least_speed_excess = 0.0;
   double worst_violation = 0.0;
   std::size_t apart = 0;
 };
@@ -153,7 +150,7 @@ std::vector<Run> enter(const Set& set, const Truth& truth) {
     if ((entry.feasible_only && !all_feasible) || !lp::limit_batch_target(entry.target.c_str())) continue;
     std::vector<lp::Problem> given = set.problems;
     if (given.size() > entry.most) given.resize(entry.most);
-    Run run{entry, entry.build(given), {}, 0, 0.0, 0.0, 0};
+    Run run{entry, entry.build(given), {}, 0, 0.0, 0};
     runs.push_back(std::move(run));
   }
   return runs;

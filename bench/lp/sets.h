@@ -13,7 +13,7 @@
 
 namespace exactvo::bench {
 
-/// Problems with unit normals, and whether each is feasible by the certified answer.
+/// Problems with unit normals and a disc, hard lines first.
 struct Set {
   std::string name;
   std::vector<lp::Problem> problems;
