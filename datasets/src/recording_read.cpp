@@ -112,6 +112,10 @@ std::size_t read_header(const JsonCursor& at, const std::string& name, Recording
   recording.time_step = at.at("time_step").number();
   recording.motion = enumerator<formation::MotionLaw>(at.at("motion"));
   recording.tracking_gain = at.at("tracking_gain").number();
+  recording.offsets = at.at("offsets").points();
+  const std::size_t slots = file.scenario.formation ? file.scenario.robots.size() : 0;
+  if (recording.offsets.size() != slots)
+    at.at("offsets").refuse(std::to_string(slots) + " offsets, one a robot of a formation", DataCode::wrong_count);
   recording.diverged = at.at("diverged").truth();
   recording.outcome = at.at("outcome").text();
   recording.wall_time = at.at("wall_time").number();

@@ -94,6 +94,8 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.member("integrator", file.info.integrator);
   json.member("time_step", recording.time_step).member("motion", word_for(recording.motion));
   json.member("tracking_gain", recording.tracking_gain).member("diverged", recording.diverged);
+  json.key("offsets");
+  append_points(json, recording.offsets);
   json.member("outcome", recording.outcome).member("rows", recording.steps.size());
   json.member("wall_time", recording.wall_time);
   json.key("provenance").raw(to_json(file.info.provenance));

@@ -204,4 +204,12 @@ Scenario load_scenario(const std::filesystem::path& path) {
   return parse_scenario(read_text_file(path), path.string(), path.parent_path());
 }
 
+std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files{path};
+  const Json tree = parse_json(read_text_file(path), path.string());
+  for (const Json& obstacle : tree.value("obstacles", Json::array()))
+    if (obstacle.contains("file")) files.push_back(path.parent_path() / obstacle.at("file").get<std::string>());
+  return files;
+}
+
 }  // namespace exactvo::datasets

@@ -83,6 +83,7 @@ RecordingFile sample(bool with_formation) {
     spec.offsets = {{1, 1}, {-1, 1}, {1, -1}};
     spec.leader = {{{0, 0}, {25, 25}}, 4.0};
     file.scenario.formation = spec;
+    file.recording.offsets = {random.in_box(2), random.in_box(2), random.in_box(2)};
     for (formation::Robot& robot : file.scenario.robots) robot.goals.clear();
   }
   file.enclosures = {{shape_number(0, random), shape_number(3, random)}, {}, {shape_number(2, random)}};
@@ -150,6 +151,7 @@ TEST_F(RecordingFileTest, Property1_EveryBitComesBack) {
     EXPECT_EQ(a.recording.diverged, b.recording.diverged);
     EXPECT_EQ(a.recording.time_step, b.recording.time_step);
     EXPECT_EQ(a.recording.tracking_gain, b.recording.tracking_gain);
+    EXPECT_TRUE(same_bits(a.recording.offsets, b.recording.offsets));
     ASSERT_EQ(a.recording.steps.size(), b.recording.steps.size());
     for (std::size_t k = 0; k < a.recording.steps.size(); ++k) {
       EXPECT_TRUE(same_bits(a.recording.steps[k].time, b.recording.steps[k].time));

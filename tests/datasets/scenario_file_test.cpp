@@ -165,5 +165,12 @@ TEST(PaperScenarios, LeaderOfTheFormationMovesAtThreeByThree) {
   EXPECT_EQ(b0.formation->leader.path.back(), (Vec2{25, 25}));
 }
 
+TEST(FilesOfScenario, NamesTheScenarioAndWhatItRefersTo) {
+  const auto files = files_of_scenario(kData / "office" / "office.json");
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[1].filename(), "floor.geojson");
+  EXPECT_EQ(files_of_scenario(kData / "paper" / "A2.json").size(), 1u);
+}
+
 }  // namespace
 }  // namespace exactvo::datasets::test

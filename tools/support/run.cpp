@@ -80,6 +80,8 @@ void draw(const std::vector<fs::path>& scripts) {
       message("gnuplot is not installed (Debian: gnuplot-nox): the figures' data and scripts are written, no pictures");
       return;
     case Rendering::failed:
+      // Ctrl-C reaches gnuplot too.
+      if (interrupted()) throw Interrupted();
       throw std::runtime_error("gnuplot failed: " + result.message);
   }
 }
@@ -92,7 +94,7 @@ Scenario read_scenario(const std::string& path) {
 
 std::vector<fs::path> input_files(const std::string& path) {
   if (path == "-") return {};
-  return {path};
+  return datasets::files_of_scenario(path);
 }
 
 }  // namespace exactvo::tools

@@ -15,6 +15,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/formation/scenario.h"
@@ -27,6 +28,9 @@ formation::Scenario load_scenario(const std::filesystem::path& path);
 /// The same from text. `file_name` is used in messages, `base_dir` to find obstacle files. Throws DataError.
 formation::Scenario parse_scenario(const std::string& text, const std::string& file_name,
                                    const std::filesystem::path& base_dir);
+
+/// The scenario file itself, then every obstacle file it names: what a run depends on. Throws DataError.
+std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path);
 
 /// Canonical JSON: every field written, keys in the schema's order, obstacles inline, shortest numbers that read back
 /// to the same doubles.
