@@ -2,7 +2,9 @@
 // The program `exactvo`: finds the verb, runs it, and turns what went wrong into a message and an exit status.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <map>

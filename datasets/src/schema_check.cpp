@@ -122,7 +122,7 @@ class Checker {
     std::string all;
     for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
     refuse(DataCode::key_unknown, at + "/" + pointer_token(key), "an unknown key \"" + key + "\"",
-           nearest.empty() ? "one of " + all : "did you mean \"" + nearest + "\"?");
+           nearest.empty() ? "one of " + all : "a known key; did you mean \"" + nearest + "\"?");
   }
 
   void items(const Json& rule, const Json& value, const Json&, const std::string& at) const {

@@ -96,9 +96,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& each) { return std::string(each.param.what); });
 
 TEST(ScenarioRefusals, Property3_TheNearestKeyIsSuggested) {
-  EXPECT_EQ(refused(with_robot(R"("radios": 1)")).expected(), "did you mean \"radius\"?");
-  EXPECT_EQ(refused(with(R"("obstacle": [])")).expected(), "did you mean \"obstacles\"?");
-  EXPECT_EQ(refused(R"({"name": "n", "robot": []})").expected(), "did you mean \"robots\"?");
+  EXPECT_EQ(refused(with_robot(R"("radios": 1)")).expected(), "a known key; did you mean \"radius\"?");
+  EXPECT_EQ(refused(with(R"("obstacle": [])")).expected(), "a known key; did you mean \"obstacles\"?");
+  EXPECT_EQ(refused(R"({"name": "n", "robot": []})").expected(), "a known key; did you mean \"robots\"?");
   EXPECT_NE(refused(with(R"("xyzzyx": 1)")).expected().find("one of"), std::string::npos);
 }
 

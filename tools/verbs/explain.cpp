@@ -2,6 +2,7 @@
 // exactvo explain: one robot's velocity space at one moment, drawn and in words.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -75,13 +76,24 @@ Decision decide(const Flags& flags, const Scenario& scenario) {
   return {scenario, method_words(scenario, flags.simulation), robot, step.time, step.robots.at(robot)};
 }
 
+constexpr const char* kFigureFiles[] = {".dat", ".gp", ".png", ".svg"};
+
+/// Found before anything is drawn, so that none of the four files appears without the others.
+void refuse_folders_in_the_way(const fs::path& out) {
+  for (const char* extension : kFigureFiles) {
+    const fs::path file = fs::path(out).replace_extension(extension);
+    if (fs::is_directory(file)) throw UsageError("--out", file.string() + ", a folder", "names that are free or files");
+  }
+}
+
 /// The four files appear beside FILE.svg together, after gnuplot is done with them.
 void write_figure(const Decision& decision, const fs::path& out) {
+  refuse_folders_in_the_way(out);
   const fs::path parent = fs::absolute(out).parent_path();
   make_folder(parent);
   StagedFolder folder(parent / ("." + out.stem().string() + ".figure"));
   draw({write_sources(velocity_space_figure(decision, out.stem().string()), folder.path())});
-  for (const char* extension : {".dat", ".gp", ".png", ".svg"}) {
+  for (const char* extension : kFigureFiles) {
     const std::string file = out.stem().string() + extension;
     if (fs::exists(folder.path() / file)) fs::rename(folder.path() / file, parent / file);
   }
