@@ -32,6 +32,7 @@ class Batch {
   }
 
   void solve_into(std::vector<Proven>& answers) {
+    if (place_.empty()) return;
     const BatchProblems<double> in = {place_.size(), lines_,     kMostLanes, nx_.data(),   ny_.data(),
                                       c_.data(),     px_.data(), py_.data(), disc_.data(), hard_.data()};
     solve_batch(in, {vx_.data(), vy_.data(), violation_.data(), status_.data(), active_.data(), stride_, nullptr}, 0,
