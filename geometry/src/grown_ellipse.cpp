@@ -188,8 +188,9 @@ bool line_meets(const Ellipse& e, const GrownShape& s, Vec2 v) {
 
 // --- The same in doubles ---
 
-/// Caps on every size, so that an underflowed root (2^-537 at most) and underflowed products stay below kUnderflowTime.
-constexpr double kLargest = 0x1p100;
+/// A cap on every size, so that an underflowed root (2^-537 at most) and underflowed products (2^-1075), multiplied by
+/// at most five sizes, stay below kUnderflowTime.
+constexpr double kLargest = 0x1p40;
 constexpr double kUnderflowTime = 0x1p-300;
 /// N.p errs by 3 u, |L^T N| by 6 u, r |N| by 4 u of their magnitudes: as predicate A.
 constexpr double kErrorLine = 16.0 * kUnit;
@@ -201,14 +202,15 @@ constexpr double kErrorTime = 48.0 * kUnit;
 bool segment_meets_rounded(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max, bool& meets) {
   const Vec2 p = e.center - s.origin;
   const double np = cross(v, p);
-  const double size_np = std::fabs(v.x * p.y) + std::fabs(v.y * p.x);
   const Vec2 ln{e.l21 * v.x - e.l11 * v.y, e.l22 * v.x};
-  const Vec2 size_ln{std::fabs(e.l21 * v.x) + std::fabs(e.l11 * v.y), std::fabs(ln.y)};
   const double speed2 = squared_norm(v);
   const double root = std::sqrt(squared_norm(ln));
   const double reach = s.radius * std::sqrt(speed2);
-  const double size_root = size_ln.x + size_ln.y;
-  const double error_line = kErrorLine * (size_np + size_root + reach) + kSupportUnderflow;
+  // Sums of absolute values bound every product's terms.
+  const double size_p = std::fabs(p.x) + std::fabs(p.y);
+  const double size_v = std::fabs(v.x) + std::fabs(v.y);
+  const double size_l = std::fabs(e.l11) + std::fabs(e.l21) + std::fabs(e.l22);
+  const double error_line = kErrorLine * size_v * (size_p + size_l + s.radius) + kSupportUnderflow;
   const double gap = std::fabs(np) - root - reach;
   if (gap > error_line) {
     meets = false;
@@ -217,18 +219,15 @@ bool segment_meets_rounded(const Ellipse& e, const GrownShape& s, Vec2 v, double
   if (!(gap < -error_line)) return false;
   // Where on the line: the sign of A (b + sqrt f) - tilt at t = 0 and t = t_max.
   const Vec2 ld{e.l11 * v.x + e.l21 * v.y, e.l22 * v.y};
-  const double pv = dot(p, v);
-  const double width = root * root + root * reach;
-  const double tilt = np * dot(ld, ln);
+  const double width = root * (root + reach);
   const double beyond = t_max * speed2;
-  const double size_pv = std::fabs(p.x * v.x) + std::fabs(p.y * v.y) + beyond;
-  const double size_width = size_root * size_root + size_root * reach;
-  const double size_tilt =
-      size_np * ((std::fabs(e.l11 * v.x) + std::fabs(e.l21 * v.y)) * size_ln.x + std::fabs(ld.y) * size_ln.y);
-  if (!(size_pv + size_width + size_tilt + size_np <= kLargest) || e.l11 == 0.0 || e.l22 == 0.0) return false;
-  const double error = kErrorTime * (size_pv * size_width + size_tilt) + kUnderflowTime;
-  const double at_start = pv * width - tilt;
+  const double at_start = dot(p, v) * width - np * dot(ld, ln);
   const double at_end = at_start - beyond * width;
+  if (!(size_p + size_v + size_l + s.radius + beyond <= kLargest) || e.l11 == 0.0 || e.l22 == 0.0) return false;
+  const double size_root = size_l * size_v;
+  const double error =
+      kErrorTime * size_root * ((size_p * size_v + beyond) * (size_root + reach) + size_p * size_v * size_root) +
+      kUnderflowTime;
   if (at_start > error && at_end < -error) {
     meets = true;
     return true;

@@ -127,11 +127,12 @@ Place GrownPolygon::place_of(const Seen& q) const {
   return static_cast<Place>(static_cast<int>(best));
 }
 
-/// Whether S certainly lies to one side of the segment's line, behind the robot or beyond the segment's end: the
-/// vertices' extents across and along the direction against r |direction|.
-bool GrownPolygon::slab_misses(Vec2 direction, double t_max) const {
+/// The vertices' extents across and along the direction. S misses the segment where it lies to one side of its line,
+/// behind the robot or beyond the end. Where all vertices lie ahead and before the end and the line passes between them
+/// or within r of one, it is met there.
+GrownPolygon::Slab GrownPolygon::slab(Vec2 direction, double t_max) const {
   const double infinity = std::numeric_limits<double>::infinity();
-  double left = -infinity, right = infinity, ahead = -infinity, behind = infinity, size = 0.0, all = 0.0;
+  double left = -infinity, right = infinity, ahead = -infinity, behind = infinity, size = 0.0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Vec2 p = vertices_[i] - origin_;
     const double across = cross(direction, p);
@@ -140,24 +141,28 @@ bool GrownPolygon::slab_misses(Vec2 direction, double t_max) const {
     right = std::min(right, across);
     ahead = std::max(ahead, forward);
     behind = std::min(behind, forward);
-    size = std::max(size, size_of(p));
-    all += size_of(p);  // unlike the maxima it keeps a NaN
+    size += size_of(p);  // the largest would do, but a sum keeps a NaN
   }
   const double speed2 = squared_norm(direction);
   const double reach = radius_ * std::sqrt(speed2);
   const double beyond = t_max * speed2;
   const double size_v = size_of(direction);
-  if (!(all + size_v + t_max + radius_ <= kLargest)) return false;
+  if (!(size + size_v + t_max + radius_ <= kLargest)) return {};
   const double error = kProduct * (size_v * (size + radius_) + beyond) + kUnderflow;
-  return right > reach + error || left < -(reach + error) || ahead < -(reach + error) ||
-         behind > beyond + reach + error;
+  const double far = reach + error;
+  if (right > far || left < -far || ahead < -far || behind > beyond + far) return {Slab::misses};
+  const double near = reach - error;
+  if (right < near && left > -near && behind > error && ahead < beyond - error) return {Slab::meets};
+  return {Slab::unknown, behind > far, ahead < beyond - far};
 }
 
 bool GrownPolygon::meets(Vec2 direction, double t_max) const {
-  if (slab_misses(direction, t_max)) return false;
+  const Slab quick = slab(direction, t_max);
+  if (quick.verdict != Slab::unknown) return quick.verdict == Slab::meets;
   const Seen start = along(direction, 0.0);
   const Seen end = along(direction, t_max);
-  if (place_of(start) != Place::outside || place_of(end) != Place::outside) return true;
+  if (!quick.start_is_clear && place_of(start) != Place::outside) return true;
+  if (!quick.end_is_clear && place_of(end) != Place::outside) return true;
   if (!(t_max > 0.0)) return false;
   for (std::size_t i = 0; i < count_; ++i) {
     const Seen a = vertex(i);

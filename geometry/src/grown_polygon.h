@@ -29,7 +29,7 @@ class GrownPolygon {
 
   Place place_of(const Seen& q) const;
 
-  /// Whether the segment from the robot to t_max * direction meets it. REQUIRES: direction is not zero.
+  /// Whether the segment from the robot to t_max * direction meets it.
   bool meets(Vec2 direction, double t_max) const;
 
   /// Whether any sign needed the exact stage since construction.
@@ -40,7 +40,12 @@ class GrownPolygon {
   Sign turn(const Seen& a, const Seen& b, const Seen& c) const;
   Sign distance_to_segment(const Seen& q, const Seen& a, const Seen& b) const;
   bool strictly_inside(const Seen& q) const;
-  bool slab_misses(Vec2 direction, double t_max) const;
+  struct Slab {
+    enum { misses, meets, unknown } verdict = unknown;
+    bool start_is_clear = false;  ///< the robot lies before all of S
+    bool end_is_clear = false;    ///< the segment's end lies beyond all of S
+  };
+  Slab slab(Vec2 direction, double t_max) const;
 
   const Vec2* vertices_;
   std::size_t count_;

@@ -118,12 +118,21 @@ struct Locator {
       count_filter();
       return place;
     }
+    return ellipse_exactly(e);
+  }
+
+ private:
+  [[gnu::noinline, gnu::cold]] Place ellipse_exactly(const Ellipse& e) const {
     count_exact();
     require_valid(s);
     return detail::locate_exactly(e, s, q, 1.0);
   }
-
- private:
+  [[gnu::noinline, gnu::cold]] Sign disc_exactly(const Disc& disc) const {
+    count_exact();
+    require_valid(s);
+    const Vector<Exact> u = detail::minus(difference<Exact>(disc.center, s.origin), make<Exact>(q));
+    return sign_of(dot_of(u, u) - squared(Exact(disc.radius) + Exact(s.radius)));
+  }
   /// Sign of |centre - origin - q|^2 - (sum of the radii)^2.
   Sign disc_sign(const Disc& disc) const {
     // u errs by 2 u of its size, the squares by 6 u, the radii's by 4 u, the difference by 2 u more; kUnderflow is more
@@ -138,10 +147,7 @@ struct Locator {
       count_filter();
       return sign_of_double(value);
     }
-    count_exact();
-    require_valid(s);
-    const Vector<Exact> u = detail::minus(difference<Exact>(disc.center, s.origin), make<Exact>(q));
-    return sign_of(dot_of(u, u) - squared(Exact(disc.radius) + Exact(s.radius)));
+    return disc_exactly(disc);
   }
 
   Place polygon(const Vec2* vertices, std::size_t count) const {
@@ -166,16 +172,7 @@ struct SegmentMeets {
       count_filter();
       return meets;
     }
-    count_exact();
-    require_valid(s);
-    const Vector<Exact> p = difference<Exact>(d.center, s.origin);
-    const Vector<Exact> w = make<Exact>(v);
-    const Exact r2 = squared(Exact(d.radius) + Exact(s.radius));
-    const Exact pv = dot_of(p, w), speed2 = dot_of(w, w), t(t_max);
-    if (sign_of(pv) != Sign::positive) return sign_of(dot_of(p, p) - r2) != Sign::positive;
-    const Vector<Exact> u{p.x - t * w.x, p.y - t * w.y};
-    if (!(pv < t * speed2)) return sign_of(dot_of(u, u) - r2) != Sign::positive;
-    return sign_of(squared(cross_of(w, p)) - r2 * speed2) != Sign::positive;
+    return disc_exactly(d);
   }
   bool operator()(const Segment& g) const {
     const Vec2 ends[2] = {g.a, g.b};
@@ -188,12 +185,31 @@ struct SegmentMeets {
       count_filter();
       return meets;
     }
+    return ellipse_exactly(e);
+  }
+
+ private:
+  // Kept out of the filters' way: their frames would cost as much as a filter.
+  [[gnu::noinline, gnu::cold]] bool disc_exactly(const Disc& d) const {
+    count_exact();
+    require_valid(s);
+    // A robot at rest: w = 0 takes the first branch.
+    const Vector<Exact> p = difference<Exact>(d.center, s.origin);
+    const Vector<Exact> w = make<Exact>(v);
+    const Exact r2 = squared(Exact(d.radius) + Exact(s.radius));
+    const Exact pv = dot_of(p, w), speed2 = dot_of(w, w), t(t_max);
+    if (sign_of(pv) != Sign::positive) return sign_of(dot_of(p, p) - r2) != Sign::positive;
+    const Vector<Exact> u{p.x - t * w.x, p.y - t * w.y};
+    if (!(pv < t * speed2)) return sign_of(dot_of(u, u) - r2) != Sign::positive;
+    return sign_of(squared(cross_of(w, p)) - r2 * speed2) != Sign::positive;
+  }
+  [[gnu::noinline, gnu::cold]] bool ellipse_exactly(const Ellipse& e) const {
+    if (v == Vec2{}) return Locator{s, v}(e) != Place::outside;
     count_exact();
     require_valid(s);
     return detail::segment_meets_exactly(e, s, v, t_max);
   }
 
- private:
   /// False where a sign is in doubt. p errs by u, p.v and v x p by 4 u of their magnitudes, (v x p)^2 by 10 u, r^2
   /// |v|^2 by 6 u; 32 u is more than all of it. Under the cap, underflow (2^-1075 a product) stays below kUnderflow.
   bool disc_rounded(const Disc& d, bool& meets) const {
@@ -204,15 +220,16 @@ struct SegmentMeets {
     const double reach = d.radius + s.radius;
     const double r2 = reach * reach;
     const double speed2 = squared_norm(v);
-    const double pv = dot(p, v);
-    const double size_pv = std::fabs(p.x * v.x) + std::fabs(p.y * v.y);
     const double c = cross(v, p);
     const double size_c = std::fabs(v.x * p.y) + std::fabs(v.y * p.x);
     const double line = c * c - r2 * speed2;
     const double error_line = kError * (size_c * size_c + r2 * speed2) + kUnderflow;
-    if (!(size_c + size_pv + speed2 * t_max + r2 <= kLargest)) return false;
+    if (!(size_c + speed2 + r2 <= kLargest)) return false;
     if (line > error_line) return true;  // meets stays false
+    const double pv = dot(p, v);
+    const double size_pv = std::fabs(p.x * v.x) + std::fabs(p.y * v.y);
     const double beyond = t_max * speed2;
+    if (!(size_pv + beyond + t_max <= kLargest)) return false;
     const double error_pv = kError * (size_pv + beyond) + kUnderflow;
     if (pv > error_pv && pv < beyond - error_pv) {
       meets = true;
@@ -257,6 +274,17 @@ T evolute_polynomial(const Ellipse& e, Vec2 goal, double factor) {
   return x * x * x + T(27) * f * det * squared(cross_of(u, su));
 }
 
+[[gnu::noinline, gnu::cold]] Sign sign_of_support_exactly(const GrownShape& s, Vec2 n, double tau, double c) {
+  count_exact();
+  require_valid(s);
+  const SupportParts parts = std::visit(PartsOf{s, n}, s.shape);
+  return sign_with_two_roots(parts.k - Exact(tau) * Exact(c), parts.b, parts.d);
+}
+
+[[gnu::noinline, gnu::cold]] void require_segment(const GrownShape& s, Vec2 direction, double t_max) {
+  EXACTVO_REQUIRE(is_finite(direction) && t_max >= 0.0 && std::isfinite(t_max) && s.radius >= 0.0, show(direction));
+}
+
 }  // namespace
 
 Sign sign_of_support(const GrownShape& s, Vec2 n, double tau, double c) {
@@ -269,14 +297,12 @@ Sign sign_of_support(const GrownShape& s, Vec2 n, double tau, double c) {
     count_filter();
     return sign_of_double(value);
   }
-  count_exact();
-  require_valid(s);
-  const SupportParts parts = std::visit(PartsOf{s, n}, s.shape);
-  return sign_with_two_roots(parts.k - Exact(tau) * Exact(c), parts.b, parts.d);
+  return sign_of_support_exactly(s, n, tau, c);
 }
 
 bool half_plane_is_safe(const GrownShape& s, double tau, const HalfPlane& h) {
   EXACTVO_REQUIRE(tau > 0.0, std::to_string(tau));
+  if (h.normal == Vec2{}) return h.offset > 0.0;  // no velocity, or every one
   return sign_of_support(s, h.normal, tau, 0.0) != Sign::positive &&
          sign_of_support(s, h.normal, tau, h.offset) != Sign::positive;
 }
@@ -287,8 +313,10 @@ Place locate(const GrownShape& s, Vec2 q) {
 }
 
 bool segment_meets(const GrownShape& s, Vec2 direction, double t_max) {
-  EXACTVO_REQUIRE(is_finite(direction) && t_max >= 0.0 && std::isfinite(t_max) && s.radius >= 0.0, show(direction));
-  if (direction == Vec2{}) return locate(s, {}) != Place::outside;
+  constexpr double kFarFromOverflow = 0x1p1000;
+  const double all =
+      std::fabs(direction.x) + std::fabs(direction.y) + t_max;  // one comparison catches NaN and infinity
+  if (!(all < kFarFromOverflow && t_max >= 0.0 && s.radius >= 0.0)) require_segment(s, direction, t_max);
   return std::visit(SegmentMeets{s, direction, t_max}, s.shape);
 }
 

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages.h"
 
-#include <atomic>
+#include <algorithm>
 #include <mutex>
+#include <vector>
 
 #include "exactvo/geometry/predicates.h"
 
 namespace exactvo::geometry {
 namespace {
 
-struct Counter;
+using detail::StageCounter;
 
 /// The counters of the living threads, and the sums of those that ended.
 struct Registry {
   std::mutex mutex;
-  Counter* first = nullptr;
+  std::vector<const StageCounter*> living;
   StageCounts ended;
   StageCounts at_reset;
 };
@@ -24,59 +25,43 @@ Registry& registry() {
   return *kRegistry;
 }
 
-/// Written by its own thread only, so an increment is a load and a store; atomic for the readers.
-struct Counter {
-  std::atomic<std::uint64_t> filter{0};
-  std::atomic<std::uint64_t> exact{0};
-  Counter* next = nullptr;
-
-  Counter() {
-    Registry& all = registry();
-    const std::lock_guard<std::mutex> lock(all.mutex);
-    next = all.first;
-    all.first = this;
-  }
-  ~Counter() {
-    Registry& all = registry();
-    const std::lock_guard<std::mutex> lock(all.mutex);
-    all.ended.filter += filter.load(std::memory_order_relaxed);
-    all.ended.exact += exact.load(std::memory_order_relaxed);
-    Counter** link = &all.first;
-    while (*link != this) link = &(*link)->next;
-    *link = next;
-  }
-  Counter(const Counter&) = delete;
-  Counter& operator=(const Counter&) = delete;
-};
-
-thread_local Counter t_counter;
-
-void increment(std::atomic<std::uint64_t>& counter) {
-  counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+void add(StageCounts& sum, const StageCounter& counter) {
+  sum.filter += counter.filter.load(std::memory_order_relaxed);
+  sum.exact += counter.exact.load(std::memory_order_relaxed);
 }
+
+/// In the registry from construction to the end of its thread.
+struct Membership {
+  const StageCounter* counter = &detail::t_stage_counter;
+
+  Membership() {
+    Registry& all = registry();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    all.living.push_back(counter);
+  }
+  ~Membership() {
+    Registry& all = registry();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    add(all.ended, *counter);
+    all.living.erase(std::find(all.living.begin(), all.living.end(), counter));
+  }
+  Membership(const Membership&) = delete;
+  Membership& operator=(const Membership&) = delete;
+};
 
 /// REQUIRES: the registry's mutex is held.
 StageCounts total(const Registry& all) {
   StageCounts sum = all.ended;
-  for (const Counter* c = all.first; c != nullptr; c = c->next) {
-    sum.filter += c->filter.load(std::memory_order_relaxed);
-    sum.exact += c->exact.load(std::memory_order_relaxed);
-  }
+  for (const StageCounter* counter : all.living) add(sum, *counter);
   return sum;
 }
 
 }  // namespace
 
-namespace detail {
-
-void count_filter() {
-  increment(t_counter.filter);
+void detail::register_stage_counter() {
+  thread_local const Membership kMembership;
+  t_stage_counter.known = kMembership.counter != nullptr;
 }
-void count_exact() {
-  increment(t_counter.exact);
-}
-
-}  // namespace detail
 
 StageCounts stage_counts() {
   Registry& all = registry();

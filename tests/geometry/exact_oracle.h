@@ -98,6 +98,7 @@ inline int sign_of_support_minus(const geometry::GrownShape& s, const QPoint& n,
 /// Whether { v : normal.v >= offset } is disjoint from the interior of the velocity obstacle with horizon tau.
 inline bool is_safe(const geometry::GrownShape& s, double tau, const geometry::HalfPlane& h) {
   const QPoint n = exactly(h.normal);
+  if (h.normal == geometry::Vec2{}) return h.offset > 0.0;
   return sign_of_support_minus(s, n, Q(0)) <= 0 && sign_of_support_minus(s, n, Q(tau) * Q(h.offset)) <= 0;
 }
 

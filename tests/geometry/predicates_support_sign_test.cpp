@@ -148,6 +148,8 @@ TEST(SignOfSupport, HalfPlaneIsSafeNeedsBothConditions) {
   const GrownShape s{Disc{{10, 0}, 1}, {}, 1};
   EXPECT_TRUE(half_plane_is_safe(s, 2.0, {{-1, 0}, -4.0}));
   EXPECT_FALSE(half_plane_is_safe(s, 2.0, {{-1, 0}, std::nextafter(-4.0, -5.0)}));
+  EXPECT_FALSE(half_plane_is_safe(s, 2.0, {{0, 0}, 0.0})) << "every velocity";
+  EXPECT_TRUE(half_plane_is_safe(s, 2.0, {{0, 0}, 1.0})) << "no velocity";
   EXPECT_FALSE(half_plane_is_safe(s, 2.0, {{0, 1}, 100.0})) << "h > 0: the cone is unbounded that way";
 }
 

@@ -27,7 +27,8 @@ enum class Sign : int { negative = -1, zero = 0, positive = 1 };
 Sign sign_of_support(const GrownShape& s, Vec2 n, double tau, double c);
 
 /// Whether { v : normal . v >= offset } is disjoint from the interior of the truncated velocity obstacle
-/// { v : t v in S, 0 < t <= tau }: h_S(n) <= 0 and h_S(n) <= tau * offset. Exact. REQUIRES tau > 0.
+/// { v : t v in S, 0 < t <= tau }: h_S(n) <= 0 and h_S(n) <= tau * offset; for the
+/// zero normal, offset > 0. Exact. REQUIRES tau > 0.
 bool half_plane_is_safe(const GrownShape& s, double tau, const HalfPlane& h);
 
 enum class Place : int { inside = -1, boundary = 0, outside = 1 };
