@@ -106,25 +106,26 @@ Sign GrownPolygon::distance_to_segment(const Seen& q, const Seen& a, const Seen&
   return exact_distance(exactly(q), exactly(a), exactly(b), Exact(radius_));
 }
 
-bool GrownPolygon::strictly_inside(const Seen& q) const {
-  if (count_ < 3) return false;
-  bool any_area = false;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Seen a = vertex(i);
-    const Seen b = vertex(i + 1);
-    if (a.base == b.base) continue;
-    if (turn(a, b, q) != Sign::positive) return false;
-    any_area = true;
-  }
-  return any_area;
-}
-
+/// The nearest point of a convex polygon lies on an edge that q is not strictly left of; where there is none, q is
+/// inside. Edges of length 0 count only where there are no others.
 Place GrownPolygon::place_of(const Seen& q) const {
-  if (strictly_inside(q)) return Place::inside;
+  bool any_edge = false;
+  bool inside = true;
   Sign best = Sign::positive;
-  for (std::size_t i = 0; i < count_ && best != Sign::negative; ++i)
-    best = std::min(best, distance_to_segment(q, vertex(i), vertex(i + 1)));
-  return static_cast<Place>(static_cast<int>(best));
+  Seen a = vertex(0);
+  for (std::size_t i = 0; i < count_ && best != Sign::negative; ++i) {
+    const Seen b = vertex(i + 1);
+    if (a.base != b.base) {
+      any_edge = true;
+      if (turn(a, b, q) != Sign::positive) {
+        inside = false;
+        best = std::min(best, distance_to_segment(q, a, b));
+      }
+    }
+    a = b;
+  }
+  if (!any_edge) best = distance_to_segment(q, a, a);
+  return any_edge && inside ? Place::inside : static_cast<Place>(static_cast<int>(best));
 }
 
 /// The vertices' extents across and along the direction. S misses the segment where it lies to one side of its line,

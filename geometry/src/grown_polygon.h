@@ -39,7 +39,6 @@ class GrownPolygon {
   Seen vertex(std::size_t i) const { return seen(vertices_[i < count_ ? i : i - count_], origin_); }
   Sign turn(const Seen& a, const Seen& b, const Seen& c) const;
   Sign distance_to_segment(const Seen& q, const Seen& a, const Seen& b) const;
-  bool strictly_inside(const Seen& q) const;
   struct Slab {
     enum { misses, meets, unknown } verdict = unknown;
     bool start_is_clear = false;  ///< the robot lies before all of S

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/predicates.h"
 #include "support/seeded_random.h"
 
@@ -16,7 +17,7 @@ namespace exactvo::test {
 enum class Kind { disc, segment, polygon, ellipse };
 inline constexpr Kind kKinds[] = {Kind::disc, Kind::segment, Kind::polygon, Kind::ellipse};
 
-/// Counter-clockwise vertices on an ellipse: convex up to rounding of the directions.
+/// Vertices on an ellipse; tiny ones far away are rounded to a grid, so the hull is taken.
 inline geometry::ConvexPolygon random_convex_polygon(SeededRandom& random, geometry::Vec2 centre, double size,
                                                      int count) {
   geometry::ConvexPolygon polygon;
@@ -27,7 +28,7 @@ inline geometry::ConvexPolygon random_convex_polygon(SeededRandom& random, geome
     polygon.vertices.push_back(centre +
                                geometry::rotated({size * std::cos(angle), aspect * size * std::sin(angle)}, turn));
   }
-  return polygon;
+  return geometry::convex_hull(polygon.vertices);
 }
 
 inline geometry::ConvexShape random_shape(SeededRandom& random, Kind kind, geometry::Vec2 centre, double size) {

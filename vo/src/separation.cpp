@@ -30,40 +30,49 @@ double error_of(const SupportValue& v) {
   return kSupportError * v.magnitude + kSupportUnderflow;
 }
 
-/// At least h_up / tau for h_up <= 0: the division and the product round once each.
+/// At least h_up / tau for h_up <= 0: the division and the product round once each. Where they underflow, 0 is above.
 double offset_above(double h_up, double tau) {
-  return (h_up / tau) * (1.0 - 4.0 * kUnitRoundoff);
+  constexpr double kUnderflow = 0x1p-1000;
+  const double c = h_up / tau;
+  return c > -kUnderflow ? 0.0 : c * (1.0 - 4.0 * kUnitRoundoff);
 }
 
 // --- Discs, in closed form ---
 
-/// Nothing where the closed form's bounds do not hold: near contact, or at the ends of the doubles' range.
+/// False where the closed form's bounds do not hold: near contact, or at the ends of the doubles' range.
 ///
-/// Cut-off: n = w / |w| is of length 1 within 4 u, so h = n.p + R errs by less than 16 u (|nx px| + |ny py| + R).
-/// Leg: with a = sqrt(|p|^2 - R^2), n = (side a perp(p) - R p) / |p|^2 has n.p = -R and length 1. What rounding does to
-/// it moves h by at most 30 u (|px| + |py| + R) (an error of a moves it by R times its square's, so cancellation in a^2
-/// does no harm), and n - kappa p has h lower by kappa a^2: kappa = 64 u (|px| + |py| + R) / a^2.
-std::optional<HalfPlane> disc_half_plane(Vec2 p, double R, double tau, Vec2 y) {
-  constexpr double kLeast = 0x1p-900, kMost = 0x1p900;  // squares that neither underflow nor overflow
+/// With H = |px| + |py| + R. Cut-off: n = w / |w| is of length 1 within 4 u, so h = n.p + R errs by less than 16 u H;
+/// the division by tau errs by u H more, unless it underflows; 20 u H stands for both. Leg: with a = sqrt(|p|^2 - R^2),
+/// n = (side a perp(p) - R p) / |p|^2 has n.p = -R and length 1. What rounding does to it moves h by at most 40 u H (an
+/// error of a moves it by R times its square's, so cancellation in a^2 does no harm), and n - kappa p has h lower by
+/// kappa a^2: kappa = 64 u H / a^2.
+inline bool disc_half_plane(Vec2 p, double R, double tau, Vec2 y, HalfPlane& out) {
+  constexpr double kLeast = 0x1p-400, kMost = 0x1p400;  // of squares: |p|^4 and its inverse are far from either end
   constexpr double kNear = 0x1p-20;                     // a^2 / |p|^2: nearer, kappa is no longer small
+  constexpr double kNormal = 0x1p-900;                  // m/s: a quotient that did not underflow
   const double d2 = squared_norm(p);
   const double a2 = d2 - R * R;
-  if (!(a2 > kNear * d2 && d2 > kLeast && d2 < kMost)) return std::nullopt;
+  if (!(a2 > kNear * d2 + kLeast && d2 < kMost)) return false;
+  const double size = std::fabs(p.x) + std::fabs(p.y) + R;
   const Vec2 w = y - p;
   const double wp = dot(w, p);
   const double w2 = squared_norm(w);
-  if (wp < 0.0 && wp * wp > R * R * w2 && w2 < kMost) {
+  if (wp < 0.0 && wp * wp > R * R * w2) {
     const Vec2 n = w / std::sqrt(w2);
-    const double nx = n.x * p.x, ny = n.y * p.y;
-    const double h_up = (nx + ny) + R + kSupportError * (std::fabs(nx) + std::fabs(ny) + R);
-    if (h_up <= 0.0) return HalfPlane{n, offset_above(h_up, tau)};
+    const double offset = (dot(n, p) + R + 20.0 * kUnitRoundoff * size) / tau;
+    if (offset < -kNormal && w2 > kLeast) {
+      out = {n, offset};
+      return true;
+    }
   }
-  const double side = cross(p, w) >= 0.0 ? 1.0 : -1.0;
-  const double a = side * std::sqrt(a2);
-  const double kappa = 64.0 * kUnitRoundoff * (std::fabs(p.x) + std::fabs(p.y) + R) / a2;
-  const double across = a / d2;
-  const double back = R / d2 + kappa;
-  return HalfPlane{{-across * p.y - back * p.x, across * p.x - back * p.y}, 0.0};
+  const double a = cross(p, w) >= 0.0 ? std::sqrt(a2) : -std::sqrt(a2);
+  const double inverse = 1.0 / (a2 * d2);  // one division for both
+  const double per_d2 = inverse * a2;
+  const double kappa = 64.0 * kUnitRoundoff * size * (inverse * d2);
+  const double across = a * per_d2;
+  const double back = R * per_d2 + kappa;
+  out = {{-across * p.y - back * p.x, across * p.x - back * p.y}, 0.0};
+  return true;
 }
 
 // --- The search for the best direction ---
@@ -122,10 +131,16 @@ std::optional<HalfPlane> leg_half_plane(const GrownShape& s, Vec2 n) {
   return HalfPlane{*tilted, 0.0};
 }
 
+/// At the ends of the doubles' range a normalisation may give 0 or worse.
+bool is_about_unit(Vec2 n) {
+  const double length2 = squared_norm(n);
+  return length2 > 0.5 && length2 < 2.0;
+}
+
 /// For a robot so near that nothing else could be certified.
 std::optional<HalfPlane> contact(const GrownShape& s, double tau) {
   const Vec2 n = nearest_to(s, {}).normal;
-  if (sign_of_support(s, n, tau, 0.0) == geometry::Sign::positive) return std::nullopt;
+  if (!is_about_unit(n) || sign_of_support(s, n, tau, 0.0) == geometry::Sign::positive) return std::nullopt;
   return HalfPlane{n, 0.0};
 }
 
@@ -188,11 +203,11 @@ std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n) {
 std::optional<HalfPlane> separating_half_plane(const GrownShape& s, double tau, Vec2 v) {
   const Vec2 y = tau * v;
   if (const Disc* disc = std::get_if<Disc>(&s.shape)) {
-    const auto h = disc_half_plane(disc->center - s.origin, disc->radius + s.radius, tau, y);
-    if (h) return h;
+    HalfPlane h;
+    if (disc_half_plane(disc->center - s.origin, disc->radius + s.radius, tau, y, h)) return h;
   }
   const std::optional<Direction> best = best_direction(s, y);
-  if (!best) return contact(s, tau);
+  if (!best || !is_about_unit(best->normal)) return contact(s, tau);
   if (best->part == BoundaryPart::cut_off) {
     const double h_up = best->h + error_of({best->h, best->magnitude});
     if (h_up <= 0.0) return HalfPlane{best->normal, offset_above(h_up, tau)};

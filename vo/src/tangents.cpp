@@ -19,7 +19,7 @@ using geometry::squared_norm;
 std::optional<Tangent> disc_tangent(Vec2 p, double r, double side) {
   const double d2 = squared_norm(p);
   const double a2 = d2 - r * r;
-  if (!(a2 > 0.0)) return std::nullopt;
+  if (!(a2 > 0.0 && std::isfinite(d2 * d2))) return std::nullopt;
   const double a = std::sqrt(a2);
   // |a p + r perp(p)| = d2 up to rounding, and a division by d2 would keep the error of a.
   const Vec2 direction = a * p + (side * r) * perp(p);
@@ -94,7 +94,8 @@ std::optional<Tangents> ellipse_tangents(const Ellipse& e, Vec2 p, double r) {
   }
   const double length_left = std::sqrt(squared_norm(left));
   const double length_right = std::sqrt(squared_norm(right));
-  if (!(length_left > 0.0 && length_right > 0.0)) return std::nullopt;
+  if (!(length_left > 0.0 && length_right > 0.0 && std::isfinite(length_left) && std::isfinite(length_right)))
+    return std::nullopt;
   return Tangents{{perp(left) / length_left, left}, {-perp(right) / length_right, right}};
 }
 

@@ -82,7 +82,8 @@ std::optional<HalfPlane> VelocityObstacle::half_plane(Vec2 v, double alpha) cons
 
 std::optional<HalfPlane> VelocityObstacle::contact_half_plane() const {
   const Nearest n0 = nearest();
-  if (sign_of_support(grown_, n0.normal, tau_, 0.0) == geometry::Sign::positive) return std::nullopt;
+  if (n0.normal == Vec2{} || sign_of_support(grown_, n0.normal, tau_, 0.0) == geometry::Sign::positive)
+    return std::nullopt;
   return HalfPlane{n0.normal, 0.0};
 }
 
