@@ -3,6 +3,7 @@
 #include "exactvo/datasets/recording_file.h"
 #include "recording_names.h"
 #include "scenario_json.h"
+#include "sha256.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -87,7 +88,7 @@ void append_enclosures(JsonWriter& json, const std::vector<std::vector<geometry:
   json.end_array();
 }
 
-void append_header(JsonWriter& json, const RecordingFile& file) {
+void append_header(JsonWriter& json, const RecordingFile& file, const std::string& rows_digest) {
   const formation::Recording& recording = file.recording;
   json.begin_object().member("kind", "exactvo-recording").member("format_version", 1);
   json.member("method", file.info.method).member("controller", file.info.controller);
@@ -97,6 +98,7 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.key("offsets");
   append_points(json, recording.offsets);
   json.member("outcome", recording.outcome).member("rows", recording.steps.size());
+  json.member("rows_sha256", rows_digest);
   json.member("wall_time", recording.wall_time);
   json.key("provenance").raw(to_json(file.info.provenance));
   json.key("scenario");
@@ -105,23 +107,27 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.end_object();
 }
 
-void write_line(AtomicFile& out, JsonWriter& json) {
-  out.write(json.text());
-  out.write("\n");
-  json.clear();
+/// Every row with its newline, one after the other: a run of any length needs no more than a row of memory.
+template <class Take>
+void for_each_row(const RecordingFile& file, const Take& take) {
+  JsonWriter json(JsonWriter::Layout::compact);
+  for (const Step& step : file.recording.steps) {
+    append_step(json, step, file.scenario.formation.has_value());
+    take(json.text() + "\n");
+    json.clear();
+  }
 }
 
 }  // namespace
 
 void write_recording(const std::filesystem::path& path, const RecordingFile& file) {
+  Sha256 rows;
+  for_each_row(file, [&](const std::string& row) { rows.add(row); });
   AtomicFile out(path);
   JsonWriter json(JsonWriter::Layout::compact);
-  append_header(json, file);
-  write_line(out, json);
-  for (const Step& step : file.recording.steps) {
-    append_step(json, step, file.scenario.formation.has_value());
-    write_line(out, json);
-  }
+  append_header(json, file, rows.digest());
+  out.write(json.text() + "\n");
+  for_each_row(file, [&](const std::string& row) { out.write(row); });
   out.commit();
 }
 

@@ -6,6 +6,8 @@
 /// step. Enough stands in a row to prove its half-planes again without the program that wrote it: beside each
 /// half-plane its convex shape, the robot's position and radius, the horizon and the shape's velocity.
 ///
+/// The header's `rows_sha256` is the digest of all that follows it: audit.h finds by it what was altered since.
+///
 /// Property (1): read_recording gives back every double bit for bit. Numbers are the shortest that do so; the
 /// non-finite ones, which JSON has no word for, are the strings "nan", "inf" and "-inf".
 
