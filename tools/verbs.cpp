@@ -8,9 +8,12 @@ Verb simulate_verb();
 Verb explain_verb();
 Verb paper_verb();
 Verb lp_verb();
+Verb vo_verb();
+Verb audit_verb();
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {simulate_verb(), explain_verb(), paper_verb(), lp_verb()};
+  static const std::vector<Verb> all = {simulate_verb(), explain_verb(), paper_verb(),
+                                        lp_verb(),       vo_verb(),      audit_verb()};
   return all;
 }
 
