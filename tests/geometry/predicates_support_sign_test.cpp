@@ -30,7 +30,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(SignOfSupport, AgreesWithBracketedRoots) {
   SeededRandom random(seed_of_run(11));
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < 100000; ++i) {
     const RandomScene scene = random_scene(random, kKinds[i % 4]);
     const Vec2 n = std::ldexp(1.0, random.integer(-20, 20)) * random.direction();
     const double tau = random.uniform(0.1, 10.0);
