@@ -87,7 +87,7 @@ struct ExactOffset::Parts {
 ExactOffset::ExactOffset(const Polygon& polygon, double radius) {
   EXACTVO_REQUIRE(std::isfinite(radius) && radius > 0.0, hex_text(radius));
   const Polygon checked = detail::checked_polygon(polygon);
-  const auto values = [&] { return to_string(polygon.outer) + " (+) disc of radius " + hex_text(radius); };
+  const auto values = [&] { return excerpt(polygon.outer) + " (+) disc of radius " + hex_text(radius); };
   parts_ = detail::without_cgal_failures("ExactOffset", values, [&] {
     const Conics traits;
     const auto exact = detail::to_cgal<RationalKernel>(checked);

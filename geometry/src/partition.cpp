@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define CGAL_DEBUG 1  // assertions on whatever the build: see proved_pieces_by_cgal
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Partition_traits_2.h>
 #include <CGAL/partition_2.h>
@@ -6,12 +7,17 @@
 #include <algorithm>
 #include <iterator>
 #include <list>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "cgal_guard.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/validity.h"
+#include "partition_certificate.h"
+#include "triangulation.h"
 
 namespace exactvo::geometry {
 namespace {
@@ -23,12 +29,7 @@ using Pieces = std::list<Traits::Polygon_2>;
 /// Up to here the optimal partition takes under 2 ms; it grows with the fourth power of the size.
 constexpr std::size_t kMostForOptimal = 32;
 
-PartitionMethod chosen(PartitionMethod method, std::size_t size) {
-  if (method != PartitionMethod::automatic) return method;
-  return size <= kMostForOptimal ? PartitionMethod::optimal : PartitionMethod::greene;
-}
-
-Pieces partition(const std::vector<Kernel::Point_2>& points, PartitionMethod method) {
+Pieces partition_by_cgal(const std::vector<Kernel::Point_2>& points, PartitionMethod method) {
   Pieces pieces;
   const Traits traits;
   const auto first = points.begin();
@@ -41,9 +42,11 @@ Pieces partition(const std::vector<Kernel::Point_2>& points, PartitionMethod met
       CGAL::approx_convex_partition_2(first, last, std::back_inserter(pieces), traits);
       break;
     case PartitionMethod::greene:
-    case PartitionMethod::automatic:
       CGAL::greene_approx_convex_partition_2(first, last, std::back_inserter(pieces), traits);
       break;
+    case PartitionMethod::triangles:
+    case PartitionMethod::automatic:
+      EXACTVO_REQUIRE(false, std::string("a method that is not CGAL's"));
   }
   return pieces;
 }
@@ -54,22 +57,48 @@ ConvexPolygon from_cgal(const Traits::Polygon_2& piece) {
   return out;
 }
 
-std::vector<ConvexPolygon> pieces_of(const Ring& ring, PartitionMethod method) {
+std::vector<ConvexPolygon> pieces_by_cgal(const Ring& ring, PartitionMethod method) {
   std::vector<Kernel::Point_2> points;
   points.reserve(ring.size());
   for (const Vec2 p : ring) points.emplace_back(p.x, p.y);
   std::vector<ConvexPolygon> out;
-  for (const Traits::Polygon_2& piece : partition(points, method)) out.push_back(from_cgal(piece));
+  for (const Traits::Polygon_2& piece : partition_by_cgal(points, method)) out.push_back(from_cgal(piece));
   return out;
+}
+
+/// CGAL's answer if it gives one and the answer is proved. Its partitions assert on some simple rings (Greene's on the
+/// outline of Africa), and what asserts is undefined where assertions are compiled out: hence CGAL_DEBUG for this file.
+std::optional<std::vector<ConvexPolygon>> proved_pieces_by_cgal(const Ring& ring, PartitionMethod method) {
+  try {
+    std::vector<ConvexPolygon> pieces = pieces_by_cgal(ring, method);
+    if (detail::is_convex_partition(ring, pieces)) return pieces;
+  } catch (const CGAL::Failure_exception&) {
+    // The triangles answer instead.
+  }
+  return std::nullopt;
+}
+
+PartitionMethod chosen(PartitionMethod method, std::size_t size) {
+  if (method != PartitionMethod::automatic) return method;
+  return size <= kMostForOptimal ? PartitionMethod::optimal : PartitionMethod::triangles;
+}
+
+std::vector<ConvexPolygon> proved_pieces(const Ring& ring, PartitionMethod method) {
+  if (method != PartitionMethod::triangles) {
+    if (auto pieces = proved_pieces_by_cgal(ring, method)) return *std::move(pieces);
+  }
+  std::vector<ConvexPolygon> pieces = detail::merged_triangles(ring);
+  EXACTVO_REQUIRE(detail::is_convex_partition(ring, pieces), excerpt(ring));
+  return pieces;
 }
 
 }  // namespace
 
 std::vector<ConvexPolygon> convex_pieces(const Ring& ring, PartitionMethod method) {
-  EXACTVO_REQUIRE(std::all_of(ring.begin(), ring.end(), is_finite), to_string(ring));
-  EXACTVO_REQUIRE(is_simple(ring) && winding(ring) == Sign::positive, to_string(ring));
+  EXACTVO_REQUIRE(std::all_of(ring.begin(), ring.end(), is_finite), excerpt(ring));
+  EXACTVO_REQUIRE(is_simple(ring) && winding(ring) == Sign::positive, excerpt(ring));
   return detail::without_cgal_failures(
-      "convex_pieces", [&] { return to_string(ring); }, [&] { return pieces_of(ring, chosen(method, ring.size())); });
+      "convex_pieces", [&] { return excerpt(ring); }, [&] { return proved_pieces(ring, chosen(method, ring.size())); });
 }
 
 }  // namespace exactvo::geometry

@@ -57,7 +57,7 @@ PolygonSum rounded(const ExactPolygon& polygon) {
 }  // namespace
 
 PolygonSum minkowski_sum(const Polygon& a, const Polygon& b, SumMethod method) {
-  const auto values = [&] { return to_string(a.outer) + " (+) " + to_string(b.outer); };
+  const auto values = [&] { return excerpt(a.outer) + " (+) " + excerpt(b.outer); };
   return detail::without_cgal_failures("minkowski_sum", values, [&] {
     const auto exact_a = detail::to_cgal<Kernel>(detail::checked_polygon(a));
     const auto exact_b = detail::to_cgal<Kernel>(detail::checked_polygon(b));

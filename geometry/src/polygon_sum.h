@@ -17,7 +17,7 @@ inline Polygon checked_polygon(const Polygon& polygon) {
   rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
   NormalizedPolygon normalized = normalize(rings);
   EXACTVO_REQUIRE(normalized.ok(),
-                  "outer ring " + to_string(polygon.outer) + " and " + std::to_string(polygon.holes.size()) + " holes");
+                  "outer ring " + excerpt(polygon.outer) + " and " + std::to_string(polygon.holes.size()) + " holes");
   return std::move(normalized.polygon);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "convexity.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
@@ -22,8 +23,18 @@ bool valid(const Disc& d) {
 bool valid(const Segment& s) {
   return is_finite(s.a) && is_finite(s.b);
 }
+
+// One point, a segment, or once round; a vertex may be listed twice running, which only the slow path looks into.
+bool bounds_a_convex_set(const std::vector<Vec2>& vertices) {
+  if (detail::runs_once_round_to_the_left(vertices) || detail::on_one_line(vertices)) return true;
+  std::vector<Vec2> distinct = vertices;
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  if (distinct.front() == distinct.back()) distinct.pop_back();
+  return detail::runs_once_round_to_the_left(distinct);
+}
+
 bool valid(const ConvexPolygon& p) {
-  return !p.vertices.empty() && all_finite(p.vertices);
+  return !p.vertices.empty() && all_finite(p.vertices) && bounds_a_convex_set(p.vertices);
 }
 bool valid(const Ellipse& e) {
   return is_finite(e.center) && std::isfinite(e.l11) && std::isfinite(e.l21) && std::isfinite(e.l22);
@@ -128,6 +139,13 @@ std::string to_string(const std::vector<Vec2>& points) {
   std::string out = std::to_string(points.size());
   for (const Vec2 p : points) out += " " + text(p);
   return out;
+}
+
+std::string excerpt(const std::vector<Vec2>& points) {
+  if (points.size() <= kVerticesShown) return to_string(points);
+  std::string out = std::to_string(points.size()) + " points, first";
+  for (std::size_t i = 0; i < kVerticesShown; ++i) out += " " + text(points[i]);
+  return out + " ...";
 }
 
 std::string to_string(const ConvexShape& shape) {

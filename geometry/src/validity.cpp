@@ -183,7 +183,7 @@ NormalizedPolyline normalize_polyline(const std::vector<Vec2>& points) {
 }
 
 bool is_simple(const Ring& ring) {
-  EXACTVO_REQUIRE(std::all_of(ring.begin(), ring.end(), is_finite), to_string(ring));
+  EXACTVO_REQUIRE(std::all_of(ring.begin(), ring.end(), is_finite), excerpt(ring));
   if (ring.size() < 3) return false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     if (ring[i] == ring[(i + 1) % ring.size()]) return false;
@@ -193,7 +193,7 @@ bool is_simple(const Ring& ring) {
 
 // At the lexicographically least vertex of a simple ring the turn is the ring's, and it is never straight.
 Sign winding(const Ring& ring) {
-  EXACTVO_REQUIRE(ring.size() >= 3, to_string(ring));
+  EXACTVO_REQUIRE(ring.size() >= 3, excerpt(ring));
   const std::size_t n = ring.size();
   const std::size_t i = lowest_vertex(ring);
   return orientation(ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]);

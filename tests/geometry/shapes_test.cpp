@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "support/seeded_random.h"
 
@@ -64,8 +65,39 @@ TEST(Shapes, ValidityNamesEveryBadNumber) {
   EXPECT_FALSE(is_valid(Segment{{1, 1}, {kInfinity, 1}}));
   EXPECT_FALSE(is_valid(ConvexPolygon{}));
   EXPECT_TRUE(is_valid(ConvexPolygon{{{0, 0}}}));
+  EXPECT_TRUE(is_valid(ConvexPolygon{{{0, 0}, {1, 1}}}));
   EXPECT_FALSE(is_valid(ConvexPolygon{{{0, 0}, {0, -kInfinity}}}));
   EXPECT_FALSE(is_valid(Ellipse{{0, 0}, 1.0, std::nan(""), 1.0}));
+}
+
+TEST(IsValid, ConvexPolygonsRunOnceRoundCounterClockwise) {
+  const auto valid = [](std::vector<Vec2> vertices) { return is_valid(ConvexPolygon{std::move(vertices)}); };
+  EXPECT_TRUE(valid({{0, 0}, {2, 0}, {2, 2}, {0, 2}}));
+  EXPECT_TRUE(valid({{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}, {0, 1}}));
+  EXPECT_TRUE(valid({{0, 0}, {2, 0}, {2, 0}, {2, 2}, {0, 0}})) << "repeated vertices are tolerated";
+  EXPECT_TRUE(valid({{0, 0}, {2, 2}, {1, 1}})) << "and so is a line";
+  EXPECT_TRUE(valid({{1, 1}, {1, 1}, {1, 1}}));
+  EXPECT_FALSE(valid({{0, 0}, {0, 2}, {2, 2}, {2, 0}})) << "clockwise";
+  EXPECT_FALSE(valid({{0, 0}, {2, 0}, {1, 0.5}, {2, 2}, {0, 2}})) << "a turn to the right";
+  EXPECT_FALSE(valid({{0, 0}, {3, 0}, {2, 0}, {2, 2}, {0, 2}})) << "back along an edge";
+  EXPECT_FALSE(valid({{0, 0}, {2, 0}, {2, 2}, {0, 2}, {0, 0}, {2, 0}, {2, 2}, {0, 2}})) << "twice round";
+  const std::vector<Vec2> pentagram = {{0, 3}, {-2, -3}, {3, 1}, {-3, 1}, {2, -3}};
+  EXPECT_FALSE(valid(pentagram)) << "only left turns, but twice round";
+}
+
+// An ulp decides: the third vertex is on the line of the others, or to its right.
+TEST(IsValid, ConvexPolygonsAreJudgedExactly) {
+  const double low = std::nextafter(0.1, 0.0);
+  EXPECT_TRUE(is_valid(ConvexPolygon{{{0, 0}, {0.1, 0.1}, {0.3, 0.3}, {0, 1}}}));
+  EXPECT_TRUE(is_valid(ConvexPolygon{{{0, 0}, {0.1, low}, {0.3, 0.3}, {0, 1}}}));
+  EXPECT_FALSE(is_valid(ConvexPolygon{{{0, 0}, {low, 0.1}, {0.3, 0.3}, {0, 1}}}));
+}
+
+TEST(Text, ExcerptsShowAFewPoints) {
+  const std::vector<Vec2> few(kVerticesShown, Vec2{1, 2});
+  EXPECT_EQ(excerpt(few), to_string(few));
+  const std::vector<Vec2> many(kVerticesShown + 1, Vec2{1, 2});
+  EXPECT_EQ(excerpt(many), "5 points, first 0x1p+0 0x1p+1 0x1p+0 0x1p+1 0x1p+0 0x1p+1 0x1p+0 0x1p+1 ...");
 }
 
 TEST(Shapes, EdgesOfAPolygonCloseEveryRing) {

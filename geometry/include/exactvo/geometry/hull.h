@@ -15,12 +15,15 @@ namespace exactvo::geometry {
 /// One point gives one vertex, collinear points two. REQUIRES: at least one point, all finite.
 ConvexPolygon convex_hull(const std::vector<Vec2>& points);
 
-/// Which CGAL partition to use; `automatic` takes the optimal one for n <= 32 and Greene's above.
-enum class PartitionMethod { automatic, greene, approximate, optimal };
+/// How to split. CGAL's three: `optimal` gives the least number of pieces, O(n^4); `greene` and `approximate` at most
+/// four times as many. `triangles`: a constrained Delaunay triangulation merged after Hertel and Mehlhorn (1983), at
+/// most four times as many. `automatic` takes `optimal` for n <= 32 and `triangles` above.
+enum class PartitionMethod { automatic, greene, approximate, optimal, triangles };
 
 /// Splits a simple polygon without holes into convex pieces whose union is the polygon and whose interiors are
-/// disjoint. Exact (it only selects vertices). REQUIRES: simple, counter-clockwise, at least three vertices, not
-/// all collinear.
+/// disjoint. Exact (it only selects vertices), and every answer is proved so before it is given. Never fails on a
+/// simple polygon: where CGAL's partition does (Greene's does on some coastlines) or its pieces meet in T-junctions,
+/// `triangles` answers instead. REQUIRES: simple, counter-clockwise, at least three vertices, not all collinear.
 std::vector<ConvexPolygon> convex_pieces(const Ring& ring, PartitionMethod method = PartitionMethod::automatic);
 
 /// The smallest enclosing circle: the centre rounded, the radius grown until every point is certified inside; it is

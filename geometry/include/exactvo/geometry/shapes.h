@@ -7,6 +7,7 @@
 ///
 /// Neighbours: support.h (support functions), predicates.h (exact questions), enclosure.h (ellipses round facades).
 
+#include <cstddef>
 #include <string>
 #include <variant>
 #include <vector>
@@ -78,7 +79,9 @@ EllipseAxes axes_of(const Ellipse& ellipse);
 /// Area pi |det L|, rounded.
 double area(const Ellipse& ellipse);
 
-/// Whether every number is finite and every length non-negative, and there is at least one vertex.
+/// Whether every number is finite, a disc's radius non-negative, and a convex polygon has at least one vertex and runs
+/// once round, counter-clockwise and nowhere turning right, or lies on one line. Repeated and collinear vertices are
+/// tolerated. Exact; O(n) orientation tests for a polygon.
 bool is_valid(const ConvexShape& shape);
 
 /// Every edge of the obstacle: a polyline's segments; a polygon's outer ring, then its holes.
@@ -97,6 +100,10 @@ std::string hex_text(double value);
 
 /// "n x1 y1 ... xn yn", hex floats: reads back losslessly.
 std::string to_string(const std::vector<Vec2>& points);
+
+/// The same for error messages: at most `kVerticesShown` points, then "...".
+std::string excerpt(const std::vector<Vec2>& points);
+inline constexpr std::size_t kVerticesShown = 4;
 
 /// The shape in one line for messages, hex floats: reads back losslessly. `disc cx cy r`, `segment ax ay bx by`,
 /// `convex_polygon n x1 y1 ...`, `ellipse cx cy l11 l21 l22`.

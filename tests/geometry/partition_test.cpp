@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Convex pieces of rings that are hard to split, judged in plain rationals; and the corpus that they come from.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/validity.h"
+#include "geometry/random_shapes.h"
+#include "geometry/rational_oracle.h"
+#include "support/corpus.h"
+
+namespace exactvo::geometry {
+namespace {
+
+using test::SeededRandom;
+
+constexpr PartitionMethod kEveryMethod[] = {PartitionMethod::automatic, PartitionMethod::greene,
+                                            PartitionMethod::approximate, PartitionMethod::triangles};
+
+bool is_convex(const std::vector<Vec2>& v) {
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    if (test::turn(v[k], v[(k + 1) % v.size()], v[(k + 2) % v.size()]) < 0) return false;
+  }
+  return v.size() >= 3;
+}
+
+// Every piece is convex and counter-clockwise, and the areas add up to the ring's, exactly.
+void expect_partition(const Ring& ring, PartitionMethod method) {
+  SCOPED_TRACE("method " + std::to_string(static_cast<int>(method)) + "\n" + test::corpus_line(ring));
+  test::Rational sum = 0;
+  for (const ConvexPolygon& piece : convex_pieces(ring, method)) {
+    ASSERT_TRUE(is_convex(piece.vertices)) << to_string(ConvexShape{piece});
+    ASSERT_TRUE(is_valid(piece));
+    sum += test::doubled_area(piece.vertices);
+  }
+  ASSERT_TRUE(sum == test::doubled_area(ring));
+}
+
+TEST(ConvexPieces, EveryRingOfTheCorpus) {
+  const std::vector<test::CorpusCase> cases = test::read_corpus("geometry/convex_pieces.txt");
+  ASSERT_FALSE(cases.empty());
+  for (const test::CorpusCase& one : cases) {
+    for (const PartitionMethod method : kEveryMethod) expect_partition(test::ring_of(one), method);
+  }
+}
+
+TEST(ConvexPieces, LargeStarsByEveryMethod) {
+  SeededRandom random(test::seed_of_run(35));
+  for (int i = 0; i < 60; ++i) {
+    const Ring ring = test::star_ring(random, random.integer(33, 300), 0.05);
+    ASSERT_TRUE(is_simple(ring)) << test::corpus_line(ring);
+    for (const PartitionMethod method : kEveryMethod) expect_partition(ring, method);
+  }
+}
+
+// A staircase down one side of a comb: collinear vertices, cocircular corners, every angle a right one.
+Ring staircase(int steps) {
+  Ring ring{{0, 0}};
+  for (int i = 0; i < steps; ++i) {
+    ring.push_back({i + 1.0, static_cast<double>(i)});
+    ring.push_back({i + 1.0, i + 1.0});
+  }
+  ring.push_back({0, static_cast<double>(steps)});
+  for (int i = steps - 1; i > 0; --i) ring.push_back({0, static_cast<double>(i)});
+  return ring;
+}
+
+TEST(ConvexPieces, StaircasesByEveryMethod) {
+  for (const int steps : {2, 20, 100}) {
+    const Ring ring = staircase(steps);
+    ASSERT_TRUE(is_simple(ring) && winding(ring) == Sign::positive);
+    for (const PartitionMethod method : kEveryMethod) expect_partition(ring, method);
+  }
+}
+
+// Hertel and Mehlhorn: at most four times the least number; a convex ring stays whole.
+TEST(ConvexPieces, TrianglesAreMerged) {
+  SeededRandom random(test::seed_of_run(36));
+  for (int i = 0; i < 100; ++i) {
+    const Ring ring = test::star_ring(random, random.integer(4, 24));
+    const std::size_t least = convex_pieces(ring, PartitionMethod::optimal).size();
+    ASSERT_LE(convex_pieces(ring, PartitionMethod::triangles).size(), 4 * least) << test::corpus_line(ring);
+    const Ring hull = convex_hull(ring).vertices;
+    ASSERT_EQ(convex_pieces(hull, PartitionMethod::triangles).size(), 1U) << test::corpus_line(hull);
+  }
+}
+
+TEST(ConvexPieces, MessagesShowAFewVertices) {
+  Ring ring;
+  for (int i = 0; i < 1000; ++i) ring.push_back({static_cast<double>(i), i % 2 == 0 ? 1.0 : -1.0});
+  try {
+    convex_pieces(ring);
+    FAIL() << "a zigzag is no simple ring";
+  } catch (const std::logic_error& error) {
+    EXPECT_LT(std::string(error.what()).size(), 400U) << error.what();
+    EXPECT_NE(std::string(error.what()).find("1000 points"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Corpus, ALineReadsBackBitForBit) {
+  const Ring ring = {{0.1, -0.0}, {1e-310, 1.0 / 3.0}, {-1e300, 2.0}};
+  const auto cases = test::parse_corpus("# why\n\n" + test::corpus_line(ring) + "\n", "text");
+  ASSERT_EQ(cases.size(), 1U);
+  const Ring back = test::ring_of(cases.front());
+  EXPECT_EQ(back, ring);
+  EXPECT_TRUE(std::signbit(back[0].y));
+}
+
+TEST(Corpus, RefusesWhatItCannotRead) {
+  EXPECT_THROW(test::parse_corpus("ring 1 0x1p+0 two\n", "text"), std::runtime_error);
+  EXPECT_THROW(test::ring_of({"ring", {3, 0, 0}}), std::runtime_error);
+  EXPECT_THROW(test::ring_of({"disc", {1, 0, 0}}), std::runtime_error);
+  EXPECT_THROW(test::read_corpus("geometry/no_such_file.txt"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace exactvo::geometry
