@@ -159,5 +159,69 @@ TEST(SweptDistance, TwoMovingPointsNeverNearerThanSaid) {
   EXPECT_EQ(swept_distance(Segment{{0, 0}, {2, 0}}, Segment{{2, 0}, {0, 0}}), 0.0);
 }
 
+// Whether `computed` is within `bound` of the root of `squared`, in rationals.
+bool is_within(double computed, const test::Rational& squared, double bound) {
+  const test::Rational low = test::Rational(computed) - test::Rational(bound);
+  const test::Rational high = test::Rational(computed) + test::Rational(bound);
+  return (low <= 0 || low * low <= squared) && high * high >= squared;
+}
+
+test::Rational squared_distance(const Segment& s, const Segment& t) {
+  if (test::segments_meet(s, t)) return 0;
+  return std::min({test::squared_distance(s, t.a), test::squared_distance(s, t.b), test::squared_distance(t, s.a),
+                   test::squared_distance(t, s.b)});
+}
+
+Segment hard_segment(SeededRandom& random, Vec2 offset) {
+  const Vec2 a = offset + random.in_box(1.0);
+  return {a, a + std::exp2(random.uniform(-40, 2)) * random.direction()};
+}
+
+double largest_coordinate(const Segment& s, const Segment& t) {
+  double largest = 0.0;
+  for (const Vec2 p : {s.a, s.b, t.a, t.b}) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
+  return largest;
+}
+
+TEST(RoundingOfDistance, BoundsSegmentsNearAndFar) {
+  SeededRandom random(test::seed_of_run(27));
+  for (int i = 0; i < 40000; ++i) {
+    const Vec2 offset = std::pow(10.0, random.integer(-3, 7)) * random.direction();
+    const Segment s = hard_segment(random, offset), t = hard_segment(random, offset);
+    const double bound = rounding_of_distance(largest_coordinate(s, t));
+    ASSERT_TRUE(is_within(distance(s, t), squared_distance(s, t), bound)) << to_string(s) << " and " << to_string(t);
+  }
+}
+
+test::Rational squared_swept(const Segment& a, const Segment& b) {
+  const auto difference = [](Vec2 p, Vec2 q) {
+    return test::RationalPoint{test::Rational(p.x) - test::Rational(q.x), test::Rational(p.y) - test::Rational(q.y)};
+  };
+  const test::RationalPoint from = difference(a.a, b.a), to = difference(a.b, b.b);
+  const test::Rational dx = to.x - from.x, dy = to.y - from.y, length2 = dx * dx + dy * dy;
+  test::Rational t = 0;
+  if (length2 > 0) t = -(from.x * dx + from.y * dy) / length2;
+  t = std::max(test::Rational(0), std::min(test::Rational(1), t));
+  const test::Rational x = from.x + t * dx, y = from.y + t * dy;
+  return x * x + y * y;
+}
+
+TEST(RoundingOfDistance, BoundsPathsNearAndFar) {
+  SeededRandom random(test::seed_of_run(28));
+  for (int i = 0; i < 40000; ++i) {
+    const Vec2 offset = std::pow(10.0, random.integer(-3, 7)) * random.direction();
+    const Segment a = hard_segment(random, offset), b = hard_segment(random, offset);
+    const double bound = rounding_of_distance(largest_coordinate(a, b));
+    ASSERT_TRUE(is_within(swept_distance(a, b), squared_swept(a, b), bound)) << to_string(a) << " and " << to_string(b);
+  }
+}
+
+TEST(RoundingOfDistance, IsSmallAndRefusesNonsense) {
+  EXPECT_LT(rounding_of_distance(1e4), 1e-9);
+  EXPECT_GT(rounding_of_distance(0.0), 0.0);
+  EXPECT_THROW(rounding_of_distance(-1.0), std::logic_error);
+  EXPECT_THROW(rounding_of_distance(std::nan("")), std::logic_error);
+}
+
 }  // namespace
 }  // namespace exactvo::geometry
