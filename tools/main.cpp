@@ -103,13 +103,17 @@ ExitCode parse_and_run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {
-    return static_cast<ExitCode>(app.exit(help_or_version));
+    const auto code = static_cast<ExitCode>(app.exit(help_or_version));
+    check_stdout();
+    return code;
   } catch (const CLI::ParseError& error) {
     error_message(parse_error_text(app, error) + " (exactvo --help)");
     return ExitCode::bad_input;
   }
   set_quiet(quiet);
-  return actions.at(app.get_subcommands().front())();
+  const ExitCode code = actions.at(app.get_subcommands().front())();
+  check_stdout();
+  return code;
 }
 
 ExitCode guarded(int argc, char** argv) {

@@ -36,8 +36,8 @@ TEST(Paper, EveryRunIsInTheSummaryAndEveryFigureIsDrawnTwiceTheSame) {
     runs.insert(run["scenario"].get<std::string>() + " " + run["method"].get<std::string>() + " " +
                 (run["controller"].is_null() ? "" : run["controller"].get<std::string>()));
   }
-  EXPECT_EQ(runs.size(), 15u * 4u + 4u * 3u);
-  for (const char* run : {"A1 orca ", "A15 ivo ", "A7 ivo-edge ", "A14 ivo-cluster ", "B0 ivo paper-literal",
+  EXPECT_EQ(runs.size(), 16u * 4u + 4u * 3u);
+  for (const char* run : {"A0 ivo ", "A1 orca ", "A15 ivo ", "A7 ivo-edge ", "A14 ivo-cluster ", "B0 ivo paper-literal",
                           "B3 ivo default", "B1 ivo paper-signs"}) {
     EXPECT_EQ(runs.count(run), 1u) << run;
   }

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "support/escape.h"
 #include "support/files.h"
 
 namespace exactvo::tools {
@@ -16,7 +19,7 @@ std::filesystem::path write_sources(const Figure& figure, const std::filesystem:
 
 int DataFile::begin(const std::string& title, const std::string& columns) {
   if (count_ > 0) text_ += "\n\n";
-  text_ += fmt::format("# {}: {}\n# {}\n", count_, title, columns);
+  text_ += fmt::format("# {}: {}\n# {}\n", count_, commented(title), columns);
   return count_++;
 }
 
@@ -36,7 +39,11 @@ void DataFile::row(const std::vector<double>& values) {
 void DataFile::labelled_row(std::initializer_list<double> values, const std::string& label) {
   row(values);
   text_.pop_back();
-  text_ += fmt::format(" \"{}\"\n", label);
+  // A data file has no way to write a double quote or a backslash within double quotes.
+  std::string word = shown(label);
+  std::replace(word.begin(), word.end(), '"', '\'');
+  std::replace(word.begin(), word.end(), '\\', '/');
+  text_ += fmt::format(" \"{}\"\n", word);
 }
 
 void DataFile::gap() {
@@ -57,8 +64,37 @@ std::string PlotCommand::text() const {
 
 std::string quoted(const std::string& text) {
   std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  for (const char c : shown(text)) result += c == '\'' ? std::string("''") : std::string(1, c);
   return result + "'";
+}
+
+std::string commented(const std::string& text) {
+  std::string result = shown(text);
+  std::replace(result.begin(), result.end(), '`', '\'');        // what stands between two of them would be run
+  if (!result.empty() && result.back() == '\\') result += ' ';  // else the comment would go on
+  return result;
+}
+
+std::string shortened(const std::string& text, std::size_t most) {
+  std::vector<std::string> characters;
+  for (const char c : text) {
+    const bool continues = (static_cast<unsigned char>(c) & 0xC0u) == 0x80u;
+    if (continues && !characters.empty()) {
+      characters.back() += c;
+    } else {
+      characters.emplace_back(1, c);
+    }
+  }
+  if (characters.size() <= most) return text;
+  const auto head = static_cast<std::ptrdiff_t>(most / 2);
+  const auto tail = static_cast<std::ptrdiff_t>(most) - head - 1;
+  return fmt::format("{}…{}", fmt::join(characters.begin(), characters.begin() + head, ""),
+                     fmt::join(characters.end() - tail, characters.end(), ""));
+}
+
+std::size_t characters_in(double pixels) {
+  const double widest = 8.4;  // px: the mean of DejaVu Sans at 13 px is 7.8
+  return static_cast<std::size_t>(std::max(pixels / widest, 8.0));
 }
 
 std::string script_text(const std::string& name, const std::string& shows, Canvas canvas, const std::string& body) {
@@ -67,7 +103,7 @@ std::string script_text(const std::string& name, const std::string& shows, Canva
       "# {shows}\n"
       "# Draw again with: gnuplot {name}.gp\n"
       "set encoding utf8\n"
-      "data = '{name}.dat'\n"
+      "data = {dat}\n"
       "do for [format in 'svg png'] {{\n"
       "  if (format eq 'svg') {{\n"
       "    set terminal svg size {w},{h} noenhanced font 'DejaVu Sans,13' background rgb 'white'\n"
@@ -75,11 +111,12 @@ std::string script_text(const std::string& name, const std::string& shows, Canva
       "    set terminal pngcairo size {pw:.0f},{ph:.0f} noenhanced font 'DejaVu Sans,13' fontscale 0.75 * {s} \\\n"
       "      linewidth {s} pointscale {s}\n"
       "  }}\n"
-      "  set output '{name}.' . format\n"
+      "  set output {stem} . format\n"
       "{body}"
       "  set output\n"
       "}}\n",
-      fmt::arg("shows", shows), fmt::arg("name", name), fmt::arg("w", canvas.width), fmt::arg("h", canvas.height),
+      fmt::arg("shows", commented(shows)), fmt::arg("name", commented(name)), fmt::arg("dat", quoted(name + ".dat")),
+      fmt::arg("stem", quoted(name + ".")), fmt::arg("w", canvas.width), fmt::arg("h", canvas.height),
       fmt::arg("pw", png_scale * canvas.width), fmt::arg("ph", png_scale * canvas.height), fmt::arg("s", png_scale),
       fmt::arg("body", body));
 }

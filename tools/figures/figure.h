@@ -8,6 +8,7 @@
 ///
 /// Neighbours: gnuplot.h runs the scripts; style.h has the colours; run_figures.h and velocity_space.h make figures.
 
+#include <cstddef>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
@@ -59,8 +60,19 @@ class PlotCommand {
   std::vector<std::string> items_;
 };
 
-/// `text` as a gnuplot string: in single quotes, none left open.
+/// `text` as a gnuplot string: in single quotes, none left open, control characters shown (support/escape.h). Every
+/// word from outside enters a script through here; the scripts' terminals are `noenhanced`, so that @ { } ^ _ are
+/// letters.
 std::string quoted(const std::string& text);
+
+/// `text` as a gnuplot comment or the rest of one: one line, which neither continues nor runs anything.
+std::string commented(const std::string& text);
+
+/// `text` in at most `most` characters (UTF-8), with an ellipsis in the middle where it was longer; `most` >= 3.
+std::string shortened(const std::string& text, std::size_t most);
+
+/// How many characters of a title go into so many pixels of the SVG.
+std::size_t characters_in(double pixels);
 
 struct Canvas {
   int width = 960;   ///< px of the SVG; the PNG has half as many again

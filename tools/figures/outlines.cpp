@@ -105,6 +105,13 @@ Points clipped(const Points& ring, const HalfPlane& keep) {
   return result;
 }
 
+Points clipped_to(const Points& ring, const Box& keep) {
+  Points kept = clipped(ring, HalfPlane{{1.0, 0.0}, keep.low.x});
+  kept = clipped(kept, HalfPlane{{-1.0, 0.0}, -keep.high.x});
+  kept = clipped(kept, HalfPlane{{0.0, 1.0}, keep.low.y});
+  return clipped(kept, HalfPlane{{0.0, -1.0}, -keep.high.y});
+}
+
 std::optional<LegNormals> leg_normals(const GrownShape& s) {
   const std::optional<Arc> arc = negative_arc(s);
   if (!arc) return std::nullopt;

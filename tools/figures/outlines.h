@@ -28,6 +28,10 @@ Points corners(const Box& box);
 /// What of a convex ring lies in the half-plane (Sutherland and Hodgman); empty where nothing does.
 Points clipped(const Points& convex_ring, const geometry::HalfPlane& keep);
 
+/// What of any ring lies in the box. The pieces of a ring that is not convex stay joined by stretches along the box's
+/// sides: right for filling, wrong for an outline.
+Points clipped_to(const Points& ring, const Box& keep);
+
 /// The two directions at which the support of S changes sign: outward normals of the legs, of length 1.
 /// [0] is that of the left leg seen from the origin. Nothing where the origin lies in S, so that there is no cone.
 struct LegNormals {

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
+#include "exactvo/formation/metrics.h"
 #include "figures/outlines.h"
 
 namespace exactvo::tools {
@@ -17,6 +20,10 @@ using formation::Step;
 namespace {
 
 constexpr int kTimeMarks = 6;
+/// With more robots than this, only the middle time and the last are written, and smaller.
+constexpr int kFewRobots = 3;
+/// Characters of a name in a legend or before a title.
+constexpr std::size_t kNameLength = 32;
 /// m/s: slower than this nobody sees a robot move.
 constexpr double kVisibleSpeed = 0.01;
 /// m: a step that long leaves the picture anyway; larger numbers would only upset gnuplot.
@@ -59,12 +66,14 @@ std::vector<const Step*> time_marks(const RecordingFile& run) {
 /// The layers of one panel: data sets and the plot items that draw them.
 class PathsPanel {
  public:
-  PathsPanel(const RecordingFile& run, DataFile& data, bool detailed) : run_(run), data_(data), detailed_(detailed) {
+  PathsPanel(const RecordingFile& run, DataFile& data, bool detailed)
+      : run_(run), data_(data), detailed_(detailed), view_(view_of(run)) {
     add_obstacles();
     if (detailed_) add_enclosures();
     add_leader();
     for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) add_way(i);
     add_goals();
+    add_collisions();
   }
   std::string plot() const { return plot_.text(); }
 
@@ -73,6 +82,7 @@ class PathsPanel {
   int robot_count() const { return static_cast<int>(run_.scenario.robots.size()); }
 
   void add_ring(const Points& ring) {
+    if (ring.empty()) return;
     for (const Vec2 p : ring) data_.row({p.x, p.y});
     data_.row({ring.front().x, ring.front().y});
     data_.gap();
@@ -93,27 +103,35 @@ class PathsPanel {
     if (walls) add_walls(!polygons);
   }
 
-  void add_polygons() {
-    const int index = data_.begin("obstacles with an inside", "x [m], y [m]");
-    for (const auto& obstacle : run_.scenario.obstacles) {
-      if (const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape)) add_ring(polygon->outer);
-    }
-    plot_.data(index,
-               fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs solid border lc rgb '{}'", kObstacleFill,
-                           kObstacleLine),
-               key("obstacle"));
-  }
-
-  void add_holes() {
-    const int index = data_.begin("holes in them", "x [m], y [m]");
+  std::vector<Points> rings_of_polygons(bool holes) const {
+    std::vector<Points> rings;
     for (const auto& obstacle : run_.scenario.obstacles) {
       const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape);
       if (polygon == nullptr) continue;
-      for (const geometry::Ring& hole : polygon->holes) add_ring(hole);
+      if (!holes) rings.push_back(polygon->outer);
+      if (holes) rings.insert(rings.end(), polygon->holes.begin(), polygon->holes.end());
     }
-    plot_.data(index, fmt::format("using 1:2 with filledcurves closed fc rgb 'white' fs solid border lc rgb '{}'",
-                                  kObstacleLine));
+    return rings;
   }
+
+  /// gnuplot cuts lines at the axes but lets fillings run over the labels: those are cut here.
+  void add_filled(const std::string& what, const std::vector<Points>& rings, const char* fill,
+                  const std::string& title) {
+    const int inside = data_.begin(what + ", as far as in view", "x [m], y [m]");
+    for (const Points& ring : rings) add_ring(clipped_to(ring, view_));
+    const int border = data_.begin(what + ": outlines", "x [m], y [m]");
+    for (const Points& ring : rings) add_ring(ring);
+    const bool in_view =
+        std::any_of(rings.begin(), rings.end(), [&](const Points& r) { return !clipped_to(r, view_).empty(); });
+    if (!in_view) return;
+    plot_.data(inside, fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs solid noborder", fill), title);
+    plot_.data(border, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", kObstacleLine));
+  }
+
+  void add_polygons() {
+    add_filled("obstacles with an inside", rings_of_polygons(false), kObstacleFill, key("obstacle"));
+  }
+  void add_holes() { add_filled("holes in them", rings_of_polygons(true), "white", ""); }
 
   void add_walls(bool in_legend) {
     const int index = data_.begin("walls", "x [m], y [m]");
@@ -161,47 +179,101 @@ class PathsPanel {
       if (!is_drawable(p)) break;
       data_.row({p.x, p.y, step.time});
     }
-    plot_.data(way, fmt::format("using 1:2 with lines lw {} lc rgb '{}'", detailed_ ? 2.5 : 1.5, series_colour(i)),
-               key(robot.id));
+    plot_.data(way,
+               fmt::format("using 1:2 with lines lw {}{} lc rgb '{}'", detailed_ ? 2.5 : 1.5, series_dash(i),
+                           series_colour(i)),
+               key(shortened(robot.id, kNameLength)));
     add_places(i);
   }
 
-  /// The robot to scale: at every time mark that it has moved to, else (without details) at its start and its end.
+  /// The robot to scale: at every time mark that it has moved to (without details at its start only) and at its end.
   void add_places(std::size_t i) {
     const Robot& robot = run_.scenario.robots[i];
     const int index = data_.begin("places of " + robot.id, "x [m], y [m], radius [m], t");
-    for (const Step* step : places_of(i)) {
-      const Vec2 p = step->robots[i].position;
-      data_.labelled_row({p.x, p.y, robot.radius}, label(p, step->time));
+    const std::vector<const Step*> places = places_of(i);
+    // The last one first: its label is always there, and the others give way.
+    for (std::size_t k = places.size(); k-- > 0;) {
+      const Vec2 p = places[k]->robots[i].position;
+      data_.labelled_row({p.x, p.y, robot.radius}, label(p, places[k]->time, k, places.size()));
     }
     plot_.data(index, fmt::format("using 1:2:3 with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
                                   series_colour(i)));
-    if (detailed_ && robot_count() <= 3) {
-      plot_.data(index, "using 1:($2+$3):4 with labels font ',10' textcolor rgb '#222222' offset 0,0.6");
+    if (!detailed_) return;
+    plot_.data(index, fmt::format("using 1:($2+$3):4 with labels font ',{}' textcolor rgb '{}' offset 0,0.6",
+                                  robot_count() <= kFewRobots ? 10 : 8,
+                                  robot_count() <= kFewRobots ? "#222222" : series_colour(i)));
+  }
+
+  /// The row at which the robot came to rest, or the last one that can be drawn.
+  const Step* last_place(std::size_t i) const {
+    const double end = end_of_motion(run_, i);
+    const Step* last = nullptr;
+    for (const Step& step : run_.recording.steps) {
+      if (!is_drawable(step.robots[i].position)) break;
+      last = &step;
+      if (step.time >= end) break;
     }
+    return last;
   }
 
   std::vector<const Step*> places_of(std::size_t i) const {
     std::vector<const Step*> places;
     std::vector<const Step*> marks = time_marks(run_);
-    if (!detailed_ && marks.size() > 2) marks = {marks.front(), marks.back()};
+    const Step* last = last_place(i);
+    if (last == nullptr) return {};
+    if (!detailed_ && marks.size() > 1) marks.resize(1);
+    const double apart = run_.scenario.robots[i].radius;
+    const auto moved = [&](const Step* from, const Step* to) {
+      return norm(to->robots[i].position - from->robots[i].position) > apart;
+    };
     for (const Step* step : marks) {
-      const Vec2 p = step->robots[i].position;
-      const bool moved = places.empty() || norm(p - places.back()->robots[i].position) > run_.scenario.robots[i].radius;
-      if (is_drawable(p) && moved) places.push_back(step);
+      if (step->time < last->time && moved(step, last) && (places.empty() || moved(places.back(), step)))
+        places.push_back(step);
     }
+    places.push_back(last);
     return places;
   }
 
-  /// The time, or nothing where another one would be written over.
-  std::string label(Vec2 p, double time) {
-    const Box view = view_of(run_);
+  /// The time; nothing where another one would be written over, unless it is the robot's last.
+  std::string label(Vec2 p, double time, std::size_t k, std::size_t count) {
+    const bool last = k + 1 == count;
+    const bool middle = k == count / 2;
+    if (robot_count() > kFewRobots && !last && !middle) return "";
     for (const Vec2 other : labels_) {
-      const bool beside = std::abs(p.x - other.x) < 0.055 * view.width();
-      if (beside && std::abs(p.y - other.y) < 0.03 * view.height()) return "";
+      const bool beside = std::abs(p.x - other.x) < 0.055 * view_.width();
+      if (!last && beside && std::abs(p.y - other.y) < 0.03 * view_.height()) return "";
     }
     labels_.push_back(p);
     return fmt::format("{:.3g} s", time);
+  }
+
+  /// The row at which the series is least, where that is below zero.
+  std::optional<std::size_t> deepest(const std::vector<double>& distances) const {
+    const auto least = std::min_element(distances.begin(), distances.end());
+    if (least == distances.end() || !(*least < 0.0)) return std::nullopt;
+    return static_cast<std::size_t>(least - distances.begin());
+  }
+
+  void mark(std::size_t robot, std::optional<std::size_t> row, Points& marks) const {
+    if (row && *row < run_.recording.steps.size()) marks.push_back(run_.recording.steps[*row].robots[robot].position);
+  }
+
+  void add_collisions() {
+    const formation::Scenario& scenario = run_.scenario;
+    const formation::Recording& recording = run_.recording;
+    Points marks;
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+      mark(i, deepest(obstacle_distance_series(scenario, recording, i)), marks);
+      for (std::size_t j = i + 1; j < scenario.robots.size(); ++j)
+        mark(i, deepest(robot_distance_series(scenario, recording, i, j)), marks);
+    }
+    if (marks.empty()) return;
+    const int index = data_.begin("collisions: where they were deepest", "x [m], y [m]");
+    for (const Vec2 p : marks) data_.row({p.x, p.y});
+    plot_.data(
+        index,
+        fmt::format("using 1:2 with points pt 1 ps {} lw 4 lc rgb '{}'", detailed_ ? 2.5 : 1.5, kCollisionColour),
+        key("collision"));
   }
 
   void add_goals() {
@@ -221,9 +293,13 @@ class PathsPanel {
   const RecordingFile& run_;
   DataFile& data_;
   bool detailed_;
+  Box view_;
   PlotCommand plot_;
   std::vector<Vec2> labels_;  ///< where times are written, m
 };
+
+/// Characters in 9 points over a panel of 300 px.
+constexpr std::size_t kPanelTitle = 46;
 
 /// A box at least a third as wide as high and the other way round, so that no plot becomes a sliver.
 Box without_slivers(Box box) {
@@ -238,9 +314,19 @@ std::string ranges(const Box& view) {
                      view.low.y, view.high.y);
 }
 
+/// px a metre.
+double scale_of(const Box& view) {
+  return std::min(760.0 / view.width(), 620.0 / view.height());
+}
+
+/// A title stands over the middle of the axes and may go as far to the left as they and their labels do.
+std::string fitted_title(const RecordingFile& run, const Box& view) {
+  return shortened(run_title(run), characters_in(scale_of(view) * view.width() + 100.0));
+}
+
 /// Room for the axes, the title and the legend round a plane drawn to scale.
 Canvas canvas_for(const Box& view, std::size_t longest_key) {
-  const double scale = std::min(760.0 / view.width(), 620.0 / view.height());  // px a metre
+  const double scale = scale_of(view);
   const double legend = 80.0 + 8.0 * static_cast<double>(longest_key);
   return {static_cast<int>(scale * view.width() + 80.0 + legend), static_cast<int>(scale * view.height() + 100.0)};
 }
@@ -248,23 +334,27 @@ Canvas canvas_for(const Box& view, std::size_t longest_key) {
 std::size_t longest_key(const RecordingFile& run) {
   std::size_t longest = run.scenario.formation ? 14 : 10;  // "virtual leader", "enclosures"
   for (const Robot& robot : run.scenario.robots) longest = std::max(longest, robot.id.size());
-  return longest;
+  return std::min(longest, kNameLength);
 }
 
 }  // namespace
 
-double end_of_motion(const RecordingFile& run) {
+double end_of_motion(const RecordingFile& run, std::size_t robot) {
   const auto& steps = run.recording.steps;
   for (std::size_t k = steps.size(); k-- > 0;) {
-    for (const auto& robot : steps[k].robots) {
-      if (norm(robot.velocity) > kVisibleSpeed) return steps[k].time;
-    }
+    if (norm(steps[k].robots[robot].velocity) > kVisibleSpeed) return steps[k].time;
   }
   return 0.0;
 }
 
+double end_of_motion(const RecordingFile& run) {
+  double end = 0.0;
+  for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) end = std::max(end, end_of_motion(run, i));
+  return end;
+}
+
 std::string run_title(const RecordingFile& run) {
-  std::string title = run.info.scenario + ", " + run.info.method;
+  std::string title = shortened(run.info.scenario, kNameLength) + ", " + run.info.method;
   if (run.info.controller) title += ", " + *run.info.controller + " controller";
   return title;
 }
@@ -297,7 +387,7 @@ Figure paths_figure(const RecordingFile& run) {
       "  set grid lc rgb '#dcdcdc'\n"
       "  set key outside right top reverse Left\n"
       "{}",
-      quoted(run_title(run)), ranges(view), panel.plot());
+      quoted(fitted_title(run, view)), ranges(view), panel.plot());
   const std::string shows = "Ways of the robots of " + run_title(run) + "; circles are the robots to scale.";
   return {"paths", data.text(), script_text("paths", shows, canvas_for(view, longest_key(run)), body)};
 }
@@ -315,7 +405,8 @@ Figure paths_sheet(const std::string& name, const std::string& title, const std:
     const PathsPanel paths(*panel.run, data, false);
     const Box view = view_of(*panel.run);
     tallest = std::max(tallest, view.height() / view.width());
-    body += "  set title " + quoted(panel.title) + " font ',9' offset 0,-0.6\n" + ranges(view) + paths.plot();
+    body += "  set title " + quoted(shortened(panel.title, kPanelTitle)) + " font ',9' offset 0,-0.6\n" + ranges(view) +
+            paths.plot();
   }
   body += "  unset multiplot\n";
   const int panel_width = 300;

@@ -4,6 +4,7 @@
 /// \file
 /// The plane: obstacles, enclosures, the robots' ways and where they were when.
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ namespace exactvo::tools {
 std::string run_title(const datasets::RecordingFile& run);
 
 /// `paths`: one run, with a legend, enclosures dashed in their robot's colour and each robot drawn to scale at a few
-/// times.
+/// times and where it ended; a red cross where it was deepest in an obstacle or another robot.
 Figure paths_figure(const datasets::RecordingFile& run);
 
 struct Panel {
@@ -28,6 +29,8 @@ struct Panel {
 /// Many runs side by side on one sheet, a panel each, without legends: for comparing.
 Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns);
 
+/// When the robot came to rest for good, s; the end of the run where it never did.
+double end_of_motion(const datasets::RecordingFile& run, std::size_t robot);
 /// When the last robot came to rest for good, s; the end of the run where one never did.
 double end_of_motion(const datasets::RecordingFile& run);
 

@@ -26,13 +26,24 @@ constexpr Canvas kTallCanvas{960, 700};
 /// With more robots than this, a curve a pair would be a thicket.
 constexpr std::size_t kMostRobotsInPairs = 4;
 
+/// Characters of a legend's entry.
+constexpr std::size_t kKeyLength = 32;
+/// Entries of a legend in one column.
+constexpr std::size_t kKeyRows = 22;
+/// Of values: nothing is to be seen in less, and gnuplot draws no empty range.
+constexpr double kLeastRange = 1e-6;
+/// s: the time axis of a run that is over as it begins.
+constexpr double kLeastTime = 1.0;
+/// m: smaller errors of the formation are drawn here; a logarithmic axis has no zero.
+constexpr double kLeastError = 1e-16;
+
 struct Series {
   std::string label;
   std::vector<double> values;  ///< one a row of the recording
 };
 
 std::string line_style(std::size_t i) {
-  return fmt::format("with lines lw 2 lc rgb '{}'", series_colour(i));
+  return fmt::format("with lines lw 2{} lc rgb '{}'", series_dash(i), series_colour(i));
 }
 
 void add_series(const RecordingFile& run, const std::vector<Series>& all, DataFile& data, PlotCommand& plot) {
@@ -40,29 +51,43 @@ void add_series(const RecordingFile& run, const std::vector<Series>& all, DataFi
     const int index = data.begin(all[i].label, "t [s], value");
     const std::size_t rows = std::min(all[i].values.size(), run.recording.steps.size());
     for (std::size_t k = 0; k < rows; ++k) data.row({run.recording.steps[k].time, all[i].values[k]});
-    plot.data(index, "using 1:2 " + line_style(i), all[i].label);
+    plot.data(index, "using 1:2 " + line_style(i), shortened(all[i].label, kKeyLength));
   }
 }
 
 /// The time axis: to the end, but where robots got stuck not far beyond their last move.
+double run_time(const RecordingFile& run) {
+  return run.recording.steps.empty() ? 0.0 : run.recording.steps.back().time;
+}
 double shown_time(const RecordingFile& run) {
-  const double end = run.recording.steps.empty() ? 1.0 : run.recording.steps.back().time;
-  return run.scenario.formation ? end : std::min(end, 1.5 * end_of_motion(run) + 1.0);
+  const double end = run_time(run);
+  return std::max(kLeastTime, run.scenario.formation ? end : std::min(end, 1.5 * end_of_motion(run) + 1.0));
+}
+
+/// Where the axis ends before the run does: a line where the robots came to rest, with words.
+std::string rest_mark(const RecordingFile& run) {
+  if (shown_time(run) >= run_time(run)) return "  unset arrow\n  unset label\n";
+  return fmt::format(
+      "  set arrow 1 from {0:.6g}, graph 0 to {0:.6g}, graph 1 nohead dt (2,3) lc rgb '#777777'\n"
+      "  set label 1 'at rest from here to {1:.6g} s' at {0:.6g}, graph 0.97 right rotate by 90 offset -0.7,0 "
+      "font ',9' textcolor rgb '#555555'\n",
+      end_of_motion(run), run_time(run));
 }
 
 std::string axes(const RecordingFile& run, const std::string& title, const std::string& y_label) {
-  return fmt::format(
-      "  set title {}\n"
-      "  set xlabel 'time [s]'\n"
-      "  set xrange [0:{:.6g}]\n"
-      "  set ylabel {}\n"
-      "  set grid lc rgb '#dcdcdc'\n"
-      "  set key outside right top reverse Left\n",
-      quoted(title), shown_time(run), quoted(y_label));
+  const std::size_t room = characters_in(kCanvas.width - 60.0);
+  return rest_mark(run) + fmt::format(
+                              "  set title {}\n"
+                              "  set xlabel 'time [s]'\n"
+                              "  set xrange [0:{:.6g}]\n"
+                              "  set ylabel {}\n"
+                              "  set grid lc rgb '#dcdcdc'\n"
+                              "  set key outside right top reverse Left maxrows {}\n",
+                              quoted(shortened(title, room)), shown_time(run), quoted(y_label), kKeyRows);
 }
 
-/// From a little below the lesser of zero and the values to a little above them.
-std::string distance_range(const std::vector<Series>& all) {
+/// From a little below the lesser of zero and the values to a little above them; never empty.
+std::string value_range(const std::vector<Series>& all) {
   double low = 0.0;
   double high = 0.0;
   for (const Series& series : all) {
@@ -72,7 +97,7 @@ std::string distance_range(const std::vector<Series>& all) {
       high = std::max(high, value);
     }
   }
-  const double room = 0.05 * std::max(high - low, 1e-3);
+  const double room = high - low < kLeastRange ? 0.5 : 0.05 * (high - low);
   return fmt::format("  set yrange [{:.6g}:{:.6g}]\n", low - room, high + room);
 }
 
@@ -84,7 +109,7 @@ Figure distance_figure(const RecordingFile& run, const std::string& name, const 
   add_series(run, all, data, plot);
   plot.item("0 with lines lw 1.5 dt (5,4) lc rgb 'black'", "contact");
   const std::string title = run_title(run) + ": " + what;
-  const std::string body = axes(run, title, "distance [m]") + distance_range(all) + plot.text();
+  const std::string body = axes(run, title, "distance [m]") + value_range(all) + plot.text();
   return {name, data.text(), script_text(name, title + ". Below zero they overlap.", kCanvas, body)};
 }
 
@@ -139,9 +164,10 @@ void add_leader(const RecordingFile& run, const std::function<double(Vec2)>& com
 std::string velocity_panel(const RecordingFile& run, const std::string& title, const std::string& y_label,
                            const std::function<double(Vec2)>& component, DataFile& data) {
   PlotCommand plot;
-  add_series(run, velocity_components(run, component), data, plot);
+  const std::vector<Series> all = velocity_components(run, component);
+  add_series(run, all, data, plot);
   add_leader(run, component, data, plot);
-  return axes(run, title, y_label) + "  set offsets graph 0, 0, graph 0.05, graph 0.05\n" + plot.text();
+  return axes(run, title, y_label) + value_range(all) + plot.text();
 }
 
 }  // namespace
@@ -180,6 +206,7 @@ Figure formation_error_figure(const RecordingFile& run) {
   std::vector<Series> all;
   for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) {
     all.push_back({run.scenario.robots[i].id, formation_error_series(run.scenario, run.recording, i)});
+    for (double& value : all.back().values) value = std::max(value, kLeastError);
   }
   add_series(run, all, data, plot);
   const std::string title = run_title(run) + ": distance of each robot from its slot";

@@ -24,6 +24,13 @@ inline const char* series_colour(std::size_t i) {
   return kColours[i % kColours.size()];
 }
 
+/// With series_colour: 28 line styles before one comes again. Empty for a solid line.
+inline const char* series_dash(std::size_t i) {
+  static constexpr std::array<const char*, 4> kDashes = {"", " dt (12,4)", " dt (3,3)", " dt (12,3,3,3)"};
+  return kDashes[i / 7 % kDashes.size()];
+}
+
+inline constexpr const char* kCollisionColour = "#e00000";
 inline constexpr const char* kObstacleFill = "#c9ccd2";
 inline constexpr const char* kObstacleLine = "#3f444d";
 

@@ -4,15 +4,22 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <iostream>
+#include <system_error>
 #include <utility>
+
+#include "exactvo/datasets/data_error.h"
+#include "support/escape.h"
 
 namespace exactvo::tools {
 
 namespace {
 
 bool quiet = false;
+bool reader_left = false;
 volatile std::sig_atomic_t interrupt_seen = 0;
 
 extern "C" void on_interrupt(int) {
@@ -31,12 +38,28 @@ void set_quiet(bool value) {
   quiet = value;
 }
 
+void print(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  check_stdout();
+}
+
+void check_stdout() {
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0 && std::cout.flush().good();
+  if (errno == EPIPE) reader_left = true;
+  if (reader_left || (flushed && std::ferror(stdout) == 0)) return;
+  const int error = errno != 0 ? errno : EIO;
+  std::clearerr(stdout);
+  throw datasets::DataError(datasets::DataCode::file_unwritable, "standard output", "",
+                            std::generic_category().message(error), "a place to write to");
+}
+
 void message(const std::string& text) {
-  if (!quiet) put("exactvo: " + text + "\n");
+  if (!quiet) put("exactvo: " + shown_lines(text) + "\n");
 }
 
 void error_message(const std::string& text) {
-  put("exactvo: error: " + text + "\n");
+  put("exactvo: error: " + shown_lines(text) + "\n");
 }
 
 void note_interrupts() {
@@ -62,7 +85,7 @@ void ProgressLine::show(double done, const std::string& doing) {
     const double rate = done / elapsed;
     pace = fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate);
   }
-  put(fmt::format("\r\033[K{:.4g} of {:.4g} {}: {}{}", done, total_, unit_, doing, pace));
+  put(fmt::format("\r\033[K{:.4g} of {:.4g} {}: {}{}", done, total_, unit_, shown(doing), pace));
   shown_ = true;
 }
 

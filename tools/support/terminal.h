@@ -13,7 +13,13 @@ namespace exactvo::tools {
 /// Silences `message` and `ProgressLine`; errors are still said.
 void set_quiet(bool quiet);
 
-/// "exactvo: TEXT" on stderr, unless quiet.
+/// Prints results on stdout, at once. Throws datasets::DataError (E_FILE_UNWRITABLE) where it takes no more, as a full
+/// disc; a reader that has left is no error.
+void print(const std::string& text);
+/// The same for what was printed by other means.
+void check_stdout();
+
+/// "exactvo: TEXT" on stderr, unless quiet; control characters are shown, not sent.
 void message(const std::string& text);
 void error_message(const std::string& text);
 

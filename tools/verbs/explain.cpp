@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
 
 #include "explain/explanation.h"
 #include "figures/velocity_space.h"
+#include "support/escape.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
@@ -110,9 +110,8 @@ void check(const Flags& flags) {
 ExitCode explain(const Flags& flags) {
   check(flags);
   const Decision decision = decide(flags, read_scenario(flags.scenario));
+  print(shown_lines(explanation(decision)));
   if (!flags.out.empty()) write_figure(decision, flags.out);
-  const std::string text = explanation(decision);
-  std::fwrite(text.data(), 1, text.size(), stdout);
   return ExitCode::success;
 }
 

@@ -2,7 +2,6 @@
 // exactvo paper: Section V of the paper from one command: every scenario, every method, a table and the figures.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -11,6 +10,7 @@
 #include "figures/paths_figure.h"
 #include "support/data_folder.h"
 #include "support/files.h"
+#include "support/outcome.h"
 #include "support/run.h"
 #include "support/terminal.h"
 #include "verb.h"
@@ -25,7 +25,7 @@ namespace {
 
 constexpr Method kMethods[] = {Method::orca, Method::ivo_edge, Method::ivo_cluster, Method::ivo};
 constexpr Controller kControllers[] = {Controller::paper_literal, Controller::paper_signs, Controller::standard};
-constexpr int kAvoidanceScenarios = 15;  // A1-A15
+constexpr int kAvoidanceScenarios = 16;  // A0-A15; A0 has no obstacle: the robots pass each other
 constexpr int kFormationScenarios = 4;   // B0-B3
 constexpr int kRuns = kAvoidanceScenarios * 4 + kFormationScenarios * 3;
 /// The scenario that shows the difference best: two walls, and two robots that must also pass each other.
@@ -47,7 +47,7 @@ class Experiments {
 
   void run_all() {
     print(avoidance_head());
-    for (int i = 1; i <= kAvoidanceScenarios; ++i) run_avoidance("A" + std::to_string(i));
+    for (int i = 0; i < kAvoidanceScenarios; ++i) run_avoidance("A" + std::to_string(i));
     print(formation_head());
     for (int i = 0; i < kFormationScenarios; ++i) run_formation("B" + std::to_string(i));
     line_.clear();
@@ -65,8 +65,7 @@ class Experiments {
  private:
   void print(const std::string& text) {
     line_.clear();
-    if (!flags_.json) std::fputs(text.c_str(), stdout);
-    std::fflush(stdout);
+    if (!flags_.json) tools::print(text);
   }
 
   static std::string avoidance_head() {
@@ -98,10 +97,6 @@ class Experiments {
     FinishedRun finished = run(datasets::load_scenario(file), options, provenance);
     metrics_.push_back(finished.metrics_json());
     return finished;
-  }
-
-  static bool touched(const formation::Metrics& m) {
-    return m.min_obstacle_clearance.value_or(1.0) < 0.0 || m.min_robot_clearance.value_or(1.0) < 0.0;
   }
 
   static std::string number_or_dash(const std::optional<double>& value, const char* format) {
@@ -209,8 +204,8 @@ ExitCode paper(const Flags& flags) {
   write_text(folder.path() / "summary.json", summary);
   if (!flags.no_figures) experiments.draw_figures();
   if (interrupted()) throw Interrupted();
+  if (flags.json) tools::print(summary);
   folder.publish("summary.json");
-  if (flags.json) std::fwrite(summary.data(), 1, summary.size(), stdout);
   message("wrote " + flags.out + "/summary.json" + (flags.no_figures ? "" : " and " + flags.out + "/figures/"));
   return ExitCode::success;
 }

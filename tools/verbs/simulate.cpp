@@ -2,11 +2,12 @@
 // exactvo simulate: one scenario, one method, its metrics, recording and figures.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 
+#include "support/escape.h"
 #include "support/files.h"
+#include "support/outcome.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
@@ -28,10 +29,14 @@ std::string or_dash(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.4g} {}", *value, unit) : "-";
 }
 
-std::string robot_line(const formation::RobotMetrics& robot) {
-  const std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") : "did not arrive";
-  return fmt::format("  {:<12} {}, way {:.4g} m, least clearance to obstacles {}\n", robot.id, arrival,
-                     robot.path_length, or_dash(robot.min_obstacle_clearance, "m"));
+/// A robot of a formation has no goal to arrive at.
+std::string robot_line(const formation::RobotMetrics& robot, bool has_goal) {
+  std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") + ", " : "did not arrive, ";
+  if (!has_goal) arrival.clear();
+  const bool overlaps = robot.min_obstacle_clearance.value_or(0.0) < 0.0;
+  return fmt::format("  {:<12} {}way {:.4g} m, least clearance to obstacles {}{}\n", shown(robot.id), arrival,
+                     robot.path_length, or_dash(robot.min_obstacle_clearance, "m"),
+                     overlaps ? ": touched an obstacle" : "");
 }
 
 std::string formation_lines(const formation::Metrics& m) {
@@ -42,14 +47,11 @@ std::string formation_lines(const formation::Metrics& m) {
 
 std::string summary(const FinishedRun& run) {
   const formation::Metrics& m = run.metrics;
-  std::string text = fmt::format("{}, method {}", run.file.info.scenario, run.file.info.method);
+  std::string text = fmt::format("{}, method {}", shown(run.file.info.scenario), run.file.info.method);
   if (run.file.info.controller) text += fmt::format(", controller {}", *run.file.info.controller);
-  text += ": " + run.file.recording.outcome + "\n";
-  if (!run.file.scenario.formation) {
-    for (const auto& robot : m.robots) text += robot_line(robot);
-  } else {
-    text += formation_lines(m);
-  }
+  text += ": " + outcome_words(run) + "\n";
+  for (const auto& robot : m.robots) text += robot_line(robot, !run.file.scenario.formation);
+  if (run.file.scenario.formation) text += formation_lines(m);
   return text + fmt::format(
                     "  clearance    to obstacles {}, between robots {}\n"
                     "  jitter       {:.4g} m/s^2, {} heading reversals, {} active-set switches\n"
@@ -67,11 +69,17 @@ FinishedRun run_with_progress(const Flags& flags, const formation::Scenario& sce
   return run(scenario, options, provenance, [&](double time) { line.show(time, scenario.name); });
 }
 
-void write_everything(const Flags& flags, const FinishedRun& finished) {
+void print_results(const Flags& flags, const FinishedRun& finished) {
+  print(flags.json ? finished.metrics_json() : summary(finished));
+}
+
+/// Printed before it is published: where stdout takes no more, nothing is written at all.
+void print_and_write(const Flags& flags, const FinishedRun& finished) {
   StagedFolder folder(flags.out);
   write_results(finished, folder.path());
   if (!flags.no_figures) draw(write_figures(finished, folder.path() / "figures"));
   if (interrupted()) throw Interrupted();
+  print_results(flags, finished);
   folder.publish("metrics.json");
   message("wrote " + flags.out);
 }
@@ -80,9 +88,7 @@ ExitCode simulate(const Flags& flags) {
   const formation::SimulationOptions options = simulation_options(flags.simulation);
   const formation::Scenario scenario = read_scenario(flags.scenario);
   const FinishedRun finished = run_with_progress(flags, scenario, options);
-  if (!flags.out.empty()) write_everything(flags, finished);
-  const std::string text = flags.json ? finished.metrics_json() : summary(finished);
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  flags.out.empty() ? print_results(flags, finished) : print_and_write(flags, finished);
   return ExitCode::success;
 }
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/outcome.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+
+namespace exactvo::tools {
+
+namespace {
+
+bool is_overlap(const std::optional<double>& clearance) {
+  return clearance && *clearance < 0.0;
+}
+
+std::string arrivals(const formation::Metrics& m) {
+  const auto all = static_cast<std::ptrdiff_t>(m.robots.size());
+  const std::ptrdiff_t missing =
+      std::count_if(m.robots.begin(), m.robots.end(), [](const auto& r) { return !r.arrived; });
+  if (missing == 0) return all == 1 ? "the robot arrived" : "all robots arrived";
+  if (all == 1) return "the robot did not arrive within the time limit";
+  const std::string who = missing == all ? fmt::format("none of {} robots arrived", all)
+                                         : fmt::format("{} of {} robots did not arrive", missing, all);
+  return who + " within the time limit";
+}
+
+}  // namespace
+
+bool touched(const formation::Metrics& m) {
+  return is_overlap(m.min_obstacle_clearance) || is_overlap(m.min_robot_clearance);
+}
+
+std::string touch_words(const formation::Metrics& m) {
+  if (!touched(m)) return "";
+  std::string text = "touched ";
+  if (is_overlap(m.min_obstacle_clearance)) text += fmt::format("an obstacle by {:.2g} m", -*m.min_obstacle_clearance);
+  if (!is_overlap(m.min_robot_clearance)) return text;
+  if (is_overlap(m.min_obstacle_clearance)) text += " and ";
+  return text + fmt::format("another robot by {:.2g} m", -*m.min_robot_clearance);
+}
+
+std::string outcome_words(const FinishedRun& run) {
+  const formation::Metrics& m = run.metrics;
+  const std::string end = run.file.scenario.formation ? run.file.recording.outcome : arrivals(m);
+  return touched(m) ? "COLLISION: " + touch_words(m) + "; " + end : end;
+}
+
+}  // namespace exactvo::tools
