@@ -191,13 +191,14 @@ class VelocityObstacleFigure {
     ring("S / tau", scaled_outline(s, a.obstacle.time_horizon()), "with lines lw 1.5 dt (2,3) lc rgb '#3f444d'");
     if (a.half_plane) boundary(*a.half_plane);
     arrow("velocity", {}, a.velocity, "#444444");
-    if (!a.overlaps) arrow("u", a.velocity, a.obstacle.nearest_boundary(a.velocity).u, "#D55E00");
+    if (!a.overlaps) arrow("least change u", a.velocity, a.obstacle.nearest_boundary(a.velocity).u, "#D55E00");
   }
 
   Figure figure(const std::string& name) const {
     const std::string title = "Velocity obstacle, tau = " + fmt::format("{:g} s", a_.obstacle.time_horizon());
     const std::string body = fmt::format(
-        "  set title {}\n  set size ratio -1\n  set xrange [{:.6g}:{:.6g}]\n  set yrange [{:.6g}:{:.6g}]\n"
+        "  set title {}\n  set size ratio -1\n  set clip two\n  set xrange [{:.6g}:{:.6g}]\n  set yrange "
+        "[{:.6g}:{:.6g}]\n"
         "  set xlabel 'v_x [m/s]'\n  set ylabel 'v_y [m/s]'\n  set grid lc rgb '#e9e9e9'\n"
         "  set key outside right top reverse Left samplen 3\n{}",
         quoted(title), view_.low.x, view_.high.x, view_.low.y, view_.high.y, plot_.text());

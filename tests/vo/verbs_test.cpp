@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verbs `vo` and `audit` as a user runs them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "exactvo/vo/certificate.h"
+#include "tools/run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using nlohmann::json;
+
+const std::string kSquare = "POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))";
+
+TEST(VerbVo, PrintsEveryAnswerWithACertificateThatHolds) {
+  for (const std::string enclose : {"none", "ellipse"}) {
+    const Outcome run = Workplace().run("vo --obstacle '" + kSquare + "' --enclose " + enclose +
+                                        " --position 0,0 --velocity 1,0.2 --radius 0.3 --time-horizon 3 --json");
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json out = json::parse(run.out);
+    EXPECT_FALSE(out.at("overlaps").get<bool>());
+    EXPECT_TRUE(out.at("contains_velocity").get<bool>());
+    EXPECT_EQ(out.at("legs").size(), 2u);
+    EXPECT_LT(out.at("nearest_boundary").at("signed_distance").get<double>(), 0.0);
+    EXPECT_EQ(out.at("u").size(), 2u);
+    EXPECT_LE(out.at("half_plane").at("offset").get<double>(), 0.0);
+    EXPECT_GT(out.at("stage_counts").at("filter").get<int>(), 0);
+    const auto certificate = vo::read_certificate(out.at("certificate").at("text"));
+    ASSERT_TRUE(certificate);
+    EXPECT_EQ(check(*certificate), vo::Verdict::valid);
+    EXPECT_EQ(certificate->claim.half_plane.offset, out.at("half_plane").at("offset").get<double>());
+  }
+}
+
+TEST(VerbVo, OverlapHasNoCone) {
+  const Outcome run = Workplace().run("vo --obstacle '" + kSquare +
+                                      "' --position 3,0 --velocity 1,0 --radius 0.3 --time-horizon 3 --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json out = json::parse(run.out);
+  EXPECT_TRUE(out.at("overlaps").get<bool>());
+  EXPECT_TRUE(out.at("legs").is_null());
+  EXPECT_TRUE(out.at("half_plane").is_null());
+}
+
+TEST(VerbVo, BadNumbersAreNamed) {
+  const auto with = [](const std::string& radius, const std::string& horizon, const std::string& velocity) {
+    return Workplace().run("vo --obstacle '" + kSquare + "' --position 0,0 --velocity " + velocity +
+                           " --radius=" + radius + " --time-horizon " + horizon);
+  };
+  EXPECT_EQ(with("-1", "3", "1,0").status, 2);
+  EXPECT_EQ(with("nan", "3", "1,0").status, 2);
+  EXPECT_EQ(with("0.3", "0", "1,0").status, 2);
+  EXPECT_EQ(with("0.3", "inf", "1,0").status, 2);
+  EXPECT_EQ(with("0.3", "3", "1").status, 2);
+  EXPECT_NE(with("0.3", "0", "1,0").err.find("--time-horizon"), std::string::npos);
+}
+
+class VerbAudit : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Outcome run = place_.run("simulate " + data_file("paper/A11.json") + " --method ivo --out out --no-figures");
+    ASSERT_EQ(run.status, 0) << run.err;
+  }
+  Workplace place_;
+};
+
+TEST_F(VerbAudit, ARunIsClean) {
+  const Outcome run = place_.run("audit out --json");
+  ASSERT_EQ(run.status, 0) << run.out << run.err;
+  const json out = json::parse(run.out);
+  EXPECT_GT(out.at("half_planes").get<int>(), 0);
+  EXPECT_EQ(out.at("unsafe").get<int>(), 0);
+  EXPECT_GT(out.at("steps").get<int>(), 100);
+  EXPECT_EQ(out.at("collisions").get<int>(), 0);
+}
+
+TEST_F(VerbAudit, ADigitChangedIsCaught) {
+  std::string changed = place_.read("out/recording.jsonl");
+  const std::size_t at = changed.find("\"offset\":-", changed.find('\n'));
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t digit = changed.find_first_of("123456789", at);
+  changed[digit] = changed[digit] == '1' ? '2' : '1';
+  place_.write("out/recording.jsonl", changed);
+  EXPECT_EQ(place_.run("audit out").status, 1);
+}
+
+TEST_F(VerbAudit, AFolderWithoutRecordingsIsAMistake) {
+  std::filesystem::remove(place_.path() / "out/recording.jsonl");
+  EXPECT_EQ(place_.run("audit out").status, 2);
+}
+
+}  // namespace
+}  // namespace exactvo::test
