@@ -23,6 +23,10 @@ constexpr int kDirections = 4096;  // an arc between two of them strays from its
 /// A chosen velocity this near the speed bound (relative) is on it: the solver keeps a slack of a few ulps, and a
 /// recording may have passed through text.
 constexpr double kOnBound = 1e-6;
+/// m: a point this near a shape lies on it, for naming; far above the sampling's error, far below any gap between
+/// obstacles that matters.
+constexpr double kSamePlace = 1e-5;
+constexpr std::size_t kMostNames = 3;
 
 Vec2 direction(int i) {
   const double angle = 2.0 * kPi * i / kDirections;
@@ -47,13 +51,39 @@ bool belongs_to(const geometry::ConvexShape& shape, const geometry::Obstacle& ob
   return false;
 }
 
-/// The ids of the obstacles that the shape stands for: "wall and desk 3".
-std::string owners_of(const geometry::ConvexShape& shape, const Scenario& scenario) {
+/// Where nothing is exactly the same (a convex piece, a hull, a shortened facade): a vertex in the shape or on it.
+bool touches(const geometry::ConvexShape& shape, const geometry::Obstacle& obstacle) {
+  const auto vertices = vertices_of(obstacle);
+  return std::any_of(vertices.begin(), vertices.end(), [&](Vec2 p) {
+    return distance_to({shape, p, 0.0}) <= kSamePlace;
+  });
+}
+
+std::vector<std::string> ids_where(bool (*holds)(const geometry::ConvexShape&, const geometry::Obstacle&),
+                                   const geometry::ConvexShape& shape, const Scenario& scenario) {
   std::vector<std::string> ids;
   for (const auto& obstacle : scenario.obstacles) {
-    if (belongs_to(shape, obstacle.shape)) ids.push_back(obstacle.id);
+    if (holds(shape, obstacle.shape)) ids.push_back(obstacle.id);
   }
-  return fmt::format("{}", fmt::join(ids, " and "));
+  return ids;
+}
+
+/// "a", "a and b", "a, b and c", "a, b, c and 2 more".
+std::string listed(std::vector<std::string> ids) {
+  if (ids.size() > kMostNames) {
+    const std::size_t more = ids.size() - kMostNames;
+    ids.resize(kMostNames);
+    ids.push_back(fmt::format("{} more", more));
+  }
+  if (ids.size() < 2) return fmt::format("{}", fmt::join(ids, ""));
+  return fmt::format("{} and {}", fmt::join(ids.begin(), ids.end() - 1, ", "), ids.back());
+}
+
+/// The ids of the obstacles that the shape stands for: "wall and desk 3".
+std::string owners_of(const geometry::ConvexShape& shape, const Scenario& scenario) {
+  std::vector<std::string> ids = ids_where(belongs_to, shape, scenario);
+  if (ids.empty()) ids = ids_where(touches, shape, scenario);
+  return listed(ids);
 }
 
 std::string ends_of(const geometry::Segment& s) {
@@ -130,6 +160,9 @@ GrownShape grown_shape(const RecordedConstraint& constraint) {
 }
 
 std::string name_of(const RecordedConstraint& constraint, const Scenario& scenario) {
+  if (constraint.source == ConstraintSource::moving_obstacle && constraint.index < scenario.moving_obstacles.size()) {
+    return "moving obstacle " + scenario.moving_obstacles[constraint.index].id;
+  }
   if (constraint.source != ConstraintSource::robot) return static_name(constraint, scenario);
   return "robot " + (constraint.index < scenario.robots.size() ? scenario.robots[constraint.index].id
                                                                : std::to_string(constraint.index));

@@ -33,7 +33,8 @@ struct Decision {
 /// The convex set that the robot must not reach, seen from it.
 geometry::GrownShape grown_shape(const formation::RecordedConstraint& constraint);
 
-/// "the enclosure of wall", "robot R2", "the edge (1, 2)-(3, 4) of wall".
+/// "enclosure 1 of wall", "robot R2", "the edge (1, 2)-(3, 4) of wall", "moving obstacle cart"; of more than three
+/// obstacles "a, b, c and 2 more".
 std::string name_of(const formation::RecordedConstraint& constraint, const formation::Scenario& scenario);
 
 /// From the robot's rim to the shape, m, to about a thousandth of its size; negative inside.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "exactvo/formation/simulation.h"
 
@@ -101,8 +102,9 @@ std::string constraint_words(const Decision& d, std::size_t i) {
 std::string constraints_words(const Decision& d) {
   const auto& all = d.step.constraints;
   const auto active = std::count_if(all.begin(), all.end(), [](const RecordedConstraint& c) { return c.active; });
-  std::string text = fmt::format("{} half-plane{}, of which {} bind{}\n", all.size(), all.size() == 1 ? "" : "s",
-                                 active, active == 1 ? "s" : "");
+  std::string text =
+      fmt::format("{} half-plane{}, of which {} bind{} (the chosen velocity lies on {})\n", all.size(),
+                  all.size() == 1 ? "" : "s", active, active == 1 ? "s" : "", active == 1 ? "its line" : "their lines");
   for (std::size_t i = 0; i < all.size(); ++i) text += constraint_words(d, i);
   return text;
 }
@@ -136,12 +138,51 @@ std::string held_words(const Decision& d, const Balance& b) {
   return fmt::format("The robot is held by {}: no allowed velocity has a component towards the preferred one.\n", by);
 }
 
-std::string why(const Decision& d) {
-  if (d.step.status != lp::Status::optimal) return "";
-  if (norm(d.step.chosen - d.step.preferred) < kNotSeen) return "Why: nothing stands in the way.\n";
+/// How the preferred velocity came about, where it is not simply straight for the goal.
+std::string turned_words(const Decision& d) {
+  switch (d.step.mode) {
+    case formation::Mode::boost:
+      return "boost had turned the preferred velocity onto the tangent of what is in the way";
+    case formation::Mode::following:
+      return "following the boundary after a stall had given the preferred velocity";
+    case formation::Mode::pushing_out:
+      return "the robot is in contact, and the preferred velocity leads away from it";
+    default:
+      return "";
+  }
+}
+
+/// "[1]", "[1] and [3]": those that bind, but push nothing.
+std::string idle_words(const Decision& d, const Balance& b) {
+  std::vector<std::string> idle;
+  for (std::size_t i = 0; i < d.step.constraints.size(); ++i) {
+    const bool pushes = std::any_of(b.forces.begin(), b.forces.end(),
+                                    [&](const Balance::Force& f) { return f.constraint == i && f.factor >= kNotSeen; });
+    if (d.step.constraints[i].active && !pushes) idle.push_back(fmt::format("[{}]", i + 1));
+  }
+  if (idle.empty()) return "";
+  return fmt::format("     It lies on the line{} of {}, which need{} not push it.\n", idle.size() == 1 ? "" : "s",
+                     fmt::join(idle, " and "), idle.size() == 1 ? "s" : "");
+}
+
+std::string unmoved_words(const Decision& d) {
+  const std::string turned = turned_words(d);
+  if (turned.empty() && idle_words(d, {}).empty()) return "Why: nothing stands in the way.\n";
+  const std::string reason = turned.empty() ? "the preferred velocity" : turned + "; it";
+  return "Why: " + reason + " is allowed as it stands.\n" + idle_words(d, {});
+}
+
+std::string moved_words(const Decision& d) {
   const Balance b = balance(d);
   if (b.remainder > kBalanced) return "";
-  return balance_words(b) + (is_held(d) ? held_words(d, b) : "");
+  const std::string turned = turned_words(d);
+  return balance_words(b) + idle_words(d, b) + (turned.empty() ? "" : "     Before that, " + turned + ".\n") +
+         (is_held(d) ? held_words(d, b) : "");
+}
+
+std::string why(const Decision& d) {
+  if (d.step.status != lp::Status::optimal) return "";
+  return norm(d.step.chosen - d.step.preferred) < kNotSeen ? unmoved_words(d) : moved_words(d);
 }
 
 }  // namespace

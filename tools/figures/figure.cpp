@@ -18,7 +18,9 @@ std::filesystem::path write_sources(const Figure& figure, const std::filesystem:
 }
 
 int DataFile::begin(const std::string& title, const std::string& columns) {
+  fill_if_empty();
   if (count_ > 0) text_ += "\n\n";
+  empty_ = lifted_ = true;
   text_ += fmt::format("# {}: {}\n# {}\n", count_, commented(title), columns);
   return count_++;
 }
@@ -34,6 +36,7 @@ void DataFile::row(const std::vector<double>& values) {
     separator = " ";
   }
   text_ += '\n';
+  empty_ = lifted_ = false;
 }
 
 void DataFile::labelled_row(std::initializer_list<double> values, const std::string& label) {
@@ -47,7 +50,12 @@ void DataFile::labelled_row(std::initializer_list<double> values, const std::str
 }
 
 void DataFile::gap() {
-  text_ += '\n';
+  if (!lifted_) text_ += '\n';  // two would end the data set
+  lifted_ = true;
+}
+
+void DataFile::fill_if_empty() {
+  if (empty_) text_ += "NaN NaN NaN NaN\n";
 }
 
 void PlotCommand::data(int index, const std::string& what, const std::string& title) {

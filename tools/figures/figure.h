@@ -36,13 +36,18 @@ class DataFile {
   void row(const std::vector<double>& values);
   /// One line of numbers and a closing word, for labels.
   void labelled_row(std::initializer_list<double> values, const std::string& label);
-  /// Lifts the pen: the next row starts a new curve or polygon of the same data set.
+  /// Lifts the pen: the next row starts a new curve or polygon of the same data set. Lifted twice is lifted once.
   void gap();
   const std::string& text() const { return text_; }
 
  private:
+  /// gnuplot does not count a data set without rows: it gets one that draws nothing.
+  void fill_if_empty();
+
   std::string text_;
   int count_ = 0;
+  bool empty_ = false;  ///< the current data set has no row yet
+  bool lifted_ = true;
 };
 
 /// Items of one `plot` command.

@@ -199,7 +199,9 @@ class PathsPanel {
     plot_.data(index, fmt::format("using 1:2:3 with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
                                   series_colour(i)));
     if (!detailed_) return;
-    plot_.data(index, fmt::format("using 1:($2+$3):4 with labels font ',{}' textcolor rgb '{}' offset 0,0.6",
+    // Aslant of the circle, clear of ways that go straight up or across.
+    plot_.data(index, fmt::format("using ($1+0.7*$3):($2+0.7*$3):4 with labels left font ',{}' textcolor rgb '{}' "
+                                  "offset 0.2,0.3",
                                   robot_count() <= kFewRobots ? 10 : 8,
                                   robot_count() <= kFewRobots ? "#222222" : series_colour(i)));
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 #include "figures/outlines.h"
 
@@ -21,10 +22,15 @@ constexpr const char* kStaticColour = "#7a8290";
 constexpr const char* kRobotColour = "#CC79A7";
 constexpr const char* kActiveColour = "#D55E00";
 constexpr const char* kSlackColour = "#9a9a9a";
+constexpr const char* kSlackNumber = "#6a6a6a";  // the same, readable as text
 constexpr const char* kAllowedColour = "#cdeccd";
-constexpr const char* kPreferredColour = "#0072B2";
-constexpr const char* kChosenColour = "#007a4d";
+constexpr const char* kPreferredColour = "#1030ff";
+constexpr const char* kChosenColour = "#2aa56f";
+constexpr std::size_t kNameLength = 24;  // characters of a name in the title
+constexpr double kTitleRoom = 800.0;     // px over the axes and a little beyond
 constexpr int kArcPoints = 200;
+/// More velocity obstacles than this are drawn paler and thinner.
+constexpr int kFewCones = 4;
 constexpr int kHatchesAcross = 45;  // over the width of the view
 
 class VelocitySpace {
@@ -34,6 +40,7 @@ class VelocitySpace {
     add_cones();
     add_slack_half_planes();
     add_active_half_planes();
+    add_hatching_key();
     add_speed_bound();
     add_numbers();
     add_arrows();
@@ -99,32 +106,60 @@ class VelocitySpace {
   void add_cones_of(bool robots, const char* colour, const std::string& title) {
     const std::vector<const RecordedConstraint*> all = of_kind(robots);
     if (all.empty()) return;
-    const int inside = data_.begin(title, "v_x [m/s], v_y [m/s]");
+    std::vector<Points> rings;
     for (const RecordedConstraint* c : all)
-      add_ring(velocity_obstacle_in(view_, grown_shape(*c), c->tau, c->shape_velocity));
-    plot_.data(inside,
-               fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs transparent solid 0.3 noborder", colour),
+      rings.push_back(velocity_obstacle_in(view_, grown_shape(*c), c->tau, c->shape_velocity));
+    // Many on top of each other would hide what lies below.
+    const double opacity = 0.3 * std::min(1.0, kFewCones / static_cast<double>(all.size()));
+    add_curves(rings, title,
+               fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs transparent solid {:.2f} noborder",
+                           colour, opacity),
                title);
     add_cone_lines(all, colour);
   }
 
+  bool is_in_view(const Points& curve) const {
+    for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+      if (!segment_in_view(curve[i], curve[i + 1]).empty()) return true;
+    }
+    return false;
+  }
+
+  /// One data set of the curves that are in view; nothing, not even in the legend, where none is.
+  void add_curves(const std::vector<Points>& curves, const std::string& what, const std::string& style,
+                  const std::string& title) {
+    std::vector<Points> seen;
+    std::copy_if(curves.begin(), curves.end(), std::back_inserter(seen),
+                 [&](const Points& c) { return is_in_view(c); });
+    if (seen.empty()) return;
+    const int index = data_.begin(what, "v_x [m/s], v_y [m/s]");
+    for (const Points& curve : seen) add_points(curve);
+    plot_.data(index, style, title);
+  }
+
   void add_cone_lines(const std::vector<const RecordedConstraint*>& all, const char* colour) {
-    const int legs = data_.begin("their legs", "v_x [m/s], v_y [m/s]");
-    for (const RecordedConstraint* c : all) add_legs(*c);
-    plot_.data(legs, fmt::format("using 1:2 with lines lw 1.5 lc rgb '{}'", colour), "  its legs");
-    const int cut_offs = data_.begin("their cut-offs", "v_x [m/s], v_y [m/s]");
-    for (const RecordedConstraint* c : all) add_cut_off(*c);
-    plot_.data(cut_offs, fmt::format("using 1:2 with lines lw 3 lc rgb '{}'", colour), "  its cut-off");
-    const int shapes = data_.begin("the shapes they come from, divided by tau", "v_x [m/s], v_y [m/s]");
-    for (const RecordedConstraint* c : all) add_shape(*c);
-    plot_.data(shapes, fmt::format("using 1:2 with lines lw 1 dt (2,3) lc rgb '{}'", colour), "  its shape / τ");
+    std::vector<Points> legs;
+    std::vector<Points> cut_offs;
+    std::vector<Points> shapes;
+    for (const RecordedConstraint* c : all) {
+      add_legs(*c, legs);
+      add_cut_off(*c, cut_offs);
+      add_shape(*c, shapes);
+    }
+    const double thinner = all.size() > kFewCones ? 0.6 : 1.0;
+    const auto lines = [&](double width, const char* dash) {
+      return fmt::format("using 1:2 with lines lw {:.2g} {}lc rgb '{}'", thinner * width, dash, colour);
+    };
+    add_curves(legs, "their legs", lines(1.5, ""), "  its legs");
+    add_curves(cut_offs, "their cut-offs", lines(3.0, ""), "  its cut-off");
+    add_curves(shapes, "the shapes they come from, divided by tau", lines(1.0, "dt (2,3) "), "  its shape / τ");
   }
 
   Vec2 tangent_point(const RecordedConstraint& c, Vec2 normal) const {
     return support_point(grown_shape(c), normal) / c.tau + c.shape_velocity;
   }
 
-  void add_legs(const RecordedConstraint& c) {
+  void add_legs(const RecordedConstraint& c, std::vector<Points>& curves) const {
     const std::optional<LegNormals> legs = leg_normals(grown_shape(c));
     if (!legs) return;
     // Beyond any corner of the view, wherever in it or near it the leg starts.
@@ -132,11 +167,11 @@ class VelocitySpace {
         4.0 * view_.diagonal() + norm(tangent_point(c, legs->left)) + norm(tangent_point(c, legs->right));
     const Vec2 left = tangent_point(c, legs->left);
     const Vec2 right = tangent_point(c, legs->right);
-    add_points({left, left - length * perp(legs->left)});
-    add_points({right, right + length * perp(legs->right)});
+    curves.push_back({left, left - length * perp(legs->left)});
+    curves.push_back({right, right + length * perp(legs->right)});
   }
 
-  void add_cut_off(const RecordedConstraint& c) {
+  void add_cut_off(const RecordedConstraint& c, std::vector<Points>& curves) const {
     const std::optional<LegNormals> legs = leg_normals(grown_shape(c));
     if (!legs) return;
     const double turn = std::atan2(cross(legs->left, legs->right), dot(legs->left, legs->right));
@@ -144,13 +179,14 @@ class VelocitySpace {
     for (int i = 0; i <= kArcPoints; ++i) {
       arc.push_back(tangent_point(c, rotated(legs->left, turn * i / kArcPoints)));
     }
-    add_points(arc);
+    curves.push_back(arc);
   }
 
-  void add_shape(const RecordedConstraint& c) {
+  void add_shape(const RecordedConstraint& c, std::vector<Points>& curves) const {
     Points ring = scaled_outline(grown_shape(c), c.tau);
     for (Vec2& p : ring) p += c.shape_velocity;
-    add_ring(ring);
+    if (!ring.empty()) ring.push_back(ring.front());
+    curves.push_back(ring);
   }
 
   /// The stretch of a half-plane's boundary that is in view; empty where none is.
@@ -217,20 +253,53 @@ class VelocitySpace {
     plot_.data(index, "using 1:2 with lines lw 1.5 dt (6,4) lc rgb 'black'", "speed bound");
   }
 
-  /// The numbers of the printed explanation, beside the middles of the lines.
+  /// The numbers of the printed explanation, beside the lines and in their colours; those that bind choose first.
   void add_numbers() {
-    const int index = data_.begin("numbers of the half-planes", "v_x [m/s], v_y [m/s], number");
-    const double beside = 0.035 * view_.width();
-    bool any = false;
+    add_numbers_of(true, kActiveColour);
+    add_numbers_of(false, kSlackNumber);
+  }
+
+  void add_numbers_of(bool active, const char* colour) {
+    std::vector<std::pair<Vec2, std::size_t>> numbers;
     for (std::size_t i = 0; i < constraints().size(); ++i) {
-      const HalfPlane& h = constraints()[i].half_plane;
-      const Points line = boundary_in_view(h);
-      if (line.empty()) continue;
-      const Vec2 at = line[0] + 0.12 * (line[1] - line[0]) + beside * normalized(h.normal);
-      data_.labelled_row({at.x, at.y}, fmt::format("[{}]", i + 1));
-      any = true;
+      const Points line = boundary_in_view(constraints()[i].half_plane);
+      if (constraints()[i].active != active || line.empty()) continue;
+      numbers.emplace_back(free_place(line, constraints()[i].half_plane.normal), i + 1);
     }
-    if (any) plot_.data(index, "using 1:2:3 with labels font ',11' textcolor rgb '#222222'");
+    if (numbers.empty()) return;
+    const int index = data_.begin("numbers of the half-planes", "v_x [m/s], v_y [m/s], number");
+    for (const auto& [at, number] : numbers) data_.labelled_row({at.x, at.y}, fmt::format("[{}]", number));
+    plot_.data(index, fmt::format("using 1:2:3 with labels font ',11' textcolor rgb '{}'", colour));
+  }
+
+  /// On the allowed side of the line, in view, as far as possible from the numbers that are there: the first place
+  /// that is far enough, else the farthest.
+  Vec2 free_place(const Points& line, Vec2 normal) {
+    const Vec2 aside = 0.03 * view_.width() * normalized(normal);
+    const Box inner = view_.grown(-0.02 * view_.width());
+    Vec2 best = line[0] + 0.5 * (line[1] - line[0]) + aside;
+    double room = -1.0;
+    for (const double along : {0.12, 0.88, 0.25, 0.75, 0.06, 0.94, 0.35, 0.65, 0.5}) {
+      const Vec2 place = line[0] + along * (line[1] - line[0]) + aside;
+      const double here = inner.contains(place) ? distance_to_numbers(place) : 0.0;
+      if (here > room) {
+        room = here;
+        best = place;
+      }
+      if (room > 0.07 * view_.width()) break;
+    }
+    numbers_.push_back(best);
+    return best;
+  }
+
+  double distance_to_numbers(Vec2 place) const {
+    double least = view_.diagonal();
+    for (const Vec2 other : numbers_) least = std::min(least, norm(place - other));
+    return least;
+  }
+
+  void add_hatching_key() {
+    if (!constraints().empty()) plot_.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
   }
 
   void add_arrow(const std::string& title, Vec2 v, const char* colour, double width) {
@@ -243,14 +312,24 @@ class VelocitySpace {
 
   void add_arrows() {
     add_arrow("present velocity", d_.step.velocity, "#444444", 1.5);
-    add_arrow("preferred velocity", d_.step.preferred, kPreferredColour, 2.5);
-    add_arrow("chosen velocity", d_.step.chosen, kChosenColour, 3.5);
+    add_arrow("chosen velocity", d_.step.chosen, kChosenColour, 4.5);
+    // Dashed and on top: where the two are the same, both are seen.
+    add_dashed("preferred velocity", d_.step.preferred, kPreferredColour);
+  }
+
+  /// Without a head, which gnuplot would dash too.
+  void add_dashed(const std::string& title, Vec2 v, const char* colour) {
+    const int index = data_.begin(title, "from v_x, v_y, by v_x, v_y [m/s]");
+    data_.row({0.0, 0.0, v.x, v.y});
+    plot_.data(index, fmt::format("using 1:2:3:4 with vectors nohead lw 2 dt (8,8) lc rgb '{}'", colour), title);
+    plot_.data(index, fmt::format("using ($1+$3):($2+$4) with points pt 7 ps 1.1 lc rgb '{}'", colour));
   }
 
   const Decision& d_;
   Box view_;
   DataFile data_;
   PlotCommand plot_;
+  Points numbers_;  ///< where numbers stand
 };
 
 }  // namespace
@@ -258,7 +337,8 @@ class VelocitySpace {
 Figure velocity_space_figure(const Decision& decision, const std::string& name) {
   const VelocitySpace space(decision);
   const std::string title =
-      fmt::format("{}: velocity space of {} at t = {:.2f} s", decision.scenario.name, decision.who().id, decision.time);
+      fmt::format("{}: velocity space of {} at t = {:.2f} s, {}", shortened(decision.scenario.name, kNameLength),
+                  shortened(decision.who().id, kNameLength), decision.time, decision.method);
   const std::string body = fmt::format(
       "  set title {}\n"
       "  set size ratio -1\n"
@@ -270,8 +350,9 @@ Figure velocity_space_figure(const Decision& decision, const std::string& name) 
       "  set grid lc rgb '#e9e9e9'\n"
       "  set key outside right top reverse Left samplen 3\n"
       "{}",
-      quoted(title), space.box().low.x, space.box().high.x, space.box().low.y, space.box().high.y, space.plot());
-  return {name, space.data(), script_text(name, title + ", " + decision.method + ".", {1060, 740}, body)};
+      quoted(shortened(title, characters_in(kTitleRoom))), space.box().low.x, space.box().high.x, space.box().low.y,
+      space.box().high.y, space.plot());
+  return {name, space.data(), script_text(name, title + ".", {1060, 740}, body)};
 }
 
 }  // namespace exactvo::tools
