@@ -69,6 +69,10 @@ void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0) {
   visitor.other(std::string("a ") + geometry.getGeometryName() + " passed over: no line or polygon");
 }
 
+/// Degrees that a coordinate may lie beyond 180 or 90 and still be one: writers round, and some files hold
+/// 180.00000000000014. A millionth of a degree is 0.1 m on the ground.
+constexpr double kDegreesBeyond = 1e-6;
+
 struct Box {
   geometry::Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   geometry::Vec2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -78,7 +82,10 @@ struct Box {
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
   bool empty() const { return !(low.x <= high.x); }
-  bool is_longitude_latitude() const { return low.x >= -180.0 && high.x <= 180.0 && low.y >= -90.0 && high.y <= 90.0; }
+  bool is_longitude_latitude() const {
+    constexpr double kEast = 180.0 + kDegreesBeyond, kNorth = 90.0 + kDegreesBeyond;
+    return low.x >= -kEast && high.x <= kEast && low.y >= -kNorth && high.y <= kNorth;
+  }
 };
 
 /// To a millionth of a degree (0.1 m): a centre that people can copy.
@@ -99,6 +106,7 @@ class VectorReader {
       settle_coordinates();
       for_each_feature([this](const OGRFeature& feature, std::size_t number) { add(feature, number); });
     }
+    note_extent();
     for (const std::string& words : complaints_.take_warnings()) out_.note("", words);
   }
 
@@ -146,25 +154,56 @@ class VectorReader {
     scale_ = 1.0;
     const OGRSpatialReference* system = layer_->GetSpatialRef();
     const Units units = units_of_layer();
-    if (units == Units::metres) return;
-    if (units == Units::automatic && system == nullptr) return;
-    if (units == Units::automatic && !system->IsGeographic()) {
-      scale_ = system->GetLinearUnits();
-      return;
-    }
+    if (units == Units::metres) return note_units("metres: " + reason_);
+    if (units == Units::automatic && system == nullptr) return note_units("taken as metres: names no reference system");
+    if (units == Units::automatic && !system->IsGeographic()) return settle_projected(*system);
     const Box box = bounding_box();
     if (box.empty()) return;
     if (!box.is_longitude_latitude()) return settle_impossible_degrees(units);
     project_round(box, system != nullptr && system->IsGeographic() ? *system : *OGRSpatialReference::GetWGS84SRS());
+    note_units("degrees: " + reason_ + "; brought to metres round longitude " + number(origin_->longitude) +
+               ", latitude " + number(origin_->latitude));
   }
 
+  void settle_projected(const OGRSpatialReference& system) {
+    scale_ = system.GetLinearUnits();
+    const char* name = system.GetName();
+    note_units(number(scale_) + " m a unit: by its reference system " + (name != nullptr ? name : "without a name"));
+  }
+
+  static std::string number(double value) {
+    std::string text;
+    append_number(text, value);
+    return text;
+  }
+
+  void note_units(const std::string& words) {
+    out_.note(data_->GetLayerCount() > 1 ? std::string("layer ") + layer_->GetName() : "", words);
+  }
+
+  void note_extent() {
+    if (!out_.extent()) return;
+    const auto [low, high] = *out_.extent();
+    out_.note("", "extent " + number(low.x) + " to " + number(high.x) + " m, " + number(low.y) + " to " +
+                      number(high.y) + " m");
+  }
+
+  /// Sets `reason_` as well.
   Units units_of_layer() {
-    if (out_.options().units != Units::automatic || !is_geojson()) return out_.options().units;
+    reason_ = "as the reader was told";
+    if (out_.options().units != Units::automatic) return out_.options().units;
+    reason_ = "by its reference system";
+    return is_geojson() ? units_of_geojson() : Units::automatic;
+  }
+
+  Units units_of_geojson() {
+    reason_ = "GeoJSON that says nothing of units (RFC 7946)";
     const char* native = layer_->GetMetadataItem("NATIVE_DATA", "NATIVE_DATA");
     if (native == nullptr) return Units::automatic;
     const Json members = parse_json(native, path_.string());
     const auto units = members.find("units");
     if (units == members.end()) return Units::automatic;
+    reason_ = "by its member \"units\"";
     if (*units == "m") return Units::metres;
     if (*units == "degrees") return Units::degrees;
     throw DataError(DataCode::not_an_option, path_.string(), "/units", described(*units), "\"m\" or \"degrees\"");
@@ -177,7 +216,7 @@ class VectorReader {
       throw DataError(DataCode::projection, path_.string(), layer_->GetName(),
                       "coordinates beyond 180 degrees east or 90 north", "longitudes and latitudes");
     }
-    out_.note("", "taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
+    note_units("taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
   }
 
   void project_round(const Box& box, OGRSpatialReference from) {
@@ -247,6 +286,7 @@ class VectorReader {
   OGRLayer* layer_ = nullptr;
   std::optional<ProjectionOrigin> origin_;  ///< one for all layers
   double scale_ = 1.0;                      ///< m a unit
+  std::string reason_;                      ///< why the layer's units are what they are
   std::unique_ptr<OGRCoordinateTransformation> to_metres_;
 };
 

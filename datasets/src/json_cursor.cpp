@@ -20,7 +20,8 @@ JsonCursor JsonCursor::at(const std::string& key) const {
 }
 
 JsonCursor JsonCursor::at(std::size_t index) const {
-  if (index >= size()) refuse("at least " + std::to_string(index + 1) + " entries", DataCode::wrong_count);
+  if (index >= size())
+    refuse("at least " + std::to_string(index + 1) + (index == 0 ? " entry" : " entries"), DataCode::wrong_count);
   return child((*value_)[index], std::to_string(index));
 }
 

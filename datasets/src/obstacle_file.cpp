@@ -38,7 +38,14 @@ const Reader& reader_for(const std::filesystem::path& path) {
     if (reader.recognises(glimpse)) return reader;
   }
   throw DataError(DataCode::format_unknown, path.string(), "", excerpt(glimpse.beginning, 0),
-                  "a file of obstacles (" + all_names() + "); --format names one");
+                  "a file of obstacles; a format given by name is not guessed: " + all_names());
+}
+
+/// Missing and unreadable files are named before any reader is asked; an empty one holds nothing in any format.
+void refuse_nothing(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!read_beginning(path, 1).empty()) return;
+  const DataCode code = options.format.empty() ? DataCode::format_unknown : DataCode::format_syntax;
+  throw DataError(code, path.string(), "", "an empty file", "a file of obstacles");
 }
 
 }  // namespace
@@ -64,7 +71,7 @@ const std::vector<Reader>& readers() {
 }
 
 ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options) {
-  read_beginning(path, 1);  // missing and unreadable files are named before any reader is asked
+  refuse_nothing(path, options);
   const Reader& reader = options.format.empty() ? reader_for(path) : reader_named(options.format, path);
   Collector out(path.string(), reader.name, options);
   reader.read(path, out);

@@ -64,6 +64,13 @@ const char* expectation(DataCode code) {
   }
 }
 
+/// Where it is; a JSON pointer names no vertex, so that is said here.
+std::string words_for_where(const RingFinding& finding) {
+  const bool is_pointer = finding.place.rfind('/', 0) == 0;
+  const std::string vertex = is_pointer ? "vertex " + std::to_string(finding.vertex) + ", " : "";
+  return " at " + vertex + coordinates(finding.where);
+}
+
 /// A polygon's JSON needs no repeated first point, so its absence is no repair worth a note there.
 bool is_worth_a_note(const RawGeometry& raw, DataCode code) {
   return code != DataCode::unclosed || raw.ring_pointers.empty();
@@ -83,7 +90,7 @@ std::vector<RingFinding> findings_of(const std::vector<geometry::RingProblem>& p
 }  // namespace
 
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex) {
-  if (ring < raw.ring_pointers.size()) return raw.ring_pointers[ring] + "/" + std::to_string(vertex);
+  if (ring < raw.ring_pointers.size()) return raw.ring_pointers[ring];
   return raw.place + ", ring " + std::to_string(ring) + ", vertex " + std::to_string(vertex);
 }
 
@@ -99,8 +106,7 @@ Judgement judge(const RawGeometry& raw) {
 void refuse_unmended(const Judgement& judgement, const std::string& file) {
   for (const RingFinding& finding : judgement.findings) {
     if (finding.mended) continue;
-    throw DataError(finding.code, file, finding.place,
-                    std::string(words_for(finding.code)) + " at " + coordinates(finding.where),
+    throw DataError(finding.code, file, finding.place, words_for(finding.code) + words_for_where(finding),
                     expectation(finding.code));
   }
 }
@@ -127,7 +133,17 @@ void Collector::add(const RawGeometry& raw) {
   for (const RingFinding& mended : findings) {
     result_.notes.push_back({mended.code, mended.place, words_for_mending(mended.code)});
   }
+  extend(judgement.shape);
   result_.obstacles.push_back({raw.id, std::move(judgement.shape)});
+}
+
+void Collector::extend(const geometry::Obstacle& shape) {
+  for (const geometry::Vec2 p : geometry::vertices_of(shape)) {
+    if (!result_.extent) result_.extent = Extent{p, p};
+    Extent& e = *result_.extent;
+    e.low = {std::min(e.low.x, p.x), std::min(e.low.y, p.y)};
+    e.high = {std::max(e.high.x, p.x), std::max(e.high.y, p.y)};
+  }
 }
 
 void Collector::pass_over(std::string place, std::string text) {

@@ -22,7 +22,7 @@ struct RawGeometry {
   std::vector<std::string> ring_pointers;  ///< JSON pointers of the rings; empty for other formats
 };
 
-/// "feature 3, ring 0, vertex 17" or "/obstacles/4/polygon/17".
+/// "feature 3, ring 0, vertex 17", or the ring's pointer "/obstacles/4/polygon": the vertex alone is not at fault.
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex);
 
 /// The shape put in order, and what was found in it; to be used only if all of that was mended.
@@ -46,6 +46,9 @@ class Collector {
   /// Counts it, and throws it unless reading goes on.
   void reject(DataError error);
   void set_origin(ProjectionOrigin origin) { result_.origin = origin; }
+  /// Grows the file's extent.
+  void extend(const geometry::Obstacle& shape);
+  const std::optional<Extent>& extent() const { return result_.extent; }
   void set_coverage(Coverage coverage) { result_.coverage = coverage; }
 
   const std::string& file() const { return result_.file; }

@@ -93,7 +93,13 @@ class Reader {
   Reader(std::string file_name, std::filesystem::path base_dir)
       : file_(std::move(file_name)), base_dir_(std::move(base_dir)) {}
 
-  Scenario read(const Json& tree) {
+  LoadedScenario read(const Json& tree) {
+    Scenario scenario = read_scenario(tree);
+    return {std::move(scenario), std::move(notes_)};
+  }
+
+ private:
+  Scenario read_scenario(const Json& tree) {
     check_against_schema(tree, parsed_schema(), file_);
     Scenario scenario;
     scenario.name = tree.at("name").get<std::string>();
@@ -108,7 +114,6 @@ class Reader {
     return scenario;
   }
 
- private:
   void read_obstacle_list(const Json& list, Scenario& scenario) {
     for (std::size_t k = 0; k < list.size(); ++k) {
       const std::string pointer = "/obstacles/" + std::to_string(k);
@@ -120,7 +125,7 @@ class Reader {
         refuse_unmended(judgement, file_);
         scenario.obstacles.push_back({id, std::move(judgement.shape)});
       }
-      origin_of_.resize(scenario.obstacles.size(), pointer);
+      origin_of_.resize(scenario.obstacles.size(), {pointer, list[k].contains("id")});
     }
   }
 
@@ -131,12 +136,43 @@ class Reader {
     options.units = to_units(object.value("units", std::string("automatic")));
     const std::string prefix = object.value("id", named.stem().string());
     const std::filesystem::path path = base_dir_ / named;
-    if (!std::filesystem::exists(path)) {
-      throw DataError(DataCode::file_missing, file_, pointer + "/file", path.string(), "a file beside the scenario");
-    }
-    for (formation::SceneObstacle& obstacle : read_obstacles(path, options).obstacles) {
+    ObstacleFile file = read_named_file(path, options, pointer);
+    add_notes(file);
+    for (formation::SceneObstacle& obstacle : file.obstacles) {
       scenario.obstacles.push_back({prefix + "/" + obstacle.id, std::move(obstacle.shape)});
     }
+  }
+
+  /// Whether the mistake is in naming the file, not in what stands in it.
+  static bool is_of_the_name(DataCode code) {
+    return code == DataCode::file_missing || code == DataCode::file_unreadable || code == DataCode::format_unknown ||
+           code == DataCode::format_unavailable || code == DataCode::not_an_option;
+  }
+
+  ObstacleFile read_named_file(const std::filesystem::path& path, const ReadOptions& options,
+                               const std::string& pointer) const {
+    try {
+      return read_obstacles(path, options);
+    } catch (const DataError& error) {
+      if (!is_of_the_name(error.code()) || error.file() != path.string()) throw;
+      const bool is_its_format = error.place() == "format";
+      if (!is_its_format && !error.place().empty()) throw;
+      throw DataError(error.code(), file_, pointer + (is_its_format ? "/format" : "/file"),
+                      error.found() + " (" + path.string() + ")", error.expected());
+    }
+  }
+
+  void add_notes(const ObstacleFile& file) {
+    const std::string name = file.file + ": ";
+    for (const DataNote& note : file.notes) {
+      const bool is_of_the_file = !note.code && note.place.rfind("feature", 0) != 0 && note.place.rfind("line", 0) != 0;
+      if (is_of_the_file) notes_.push_back(name + (note.place.empty() ? "" : note.place + ": ") + note.text);
+    }
+    const auto count = [&](std::size_t n, const char* words) {
+      if (n > 0) notes_.push_back(name + std::to_string(n) + words);
+    };
+    count(file.counts.repaired, " of the obstacles put right (winding, closure, repeated vertices)");
+    count(file.counts.passed_over, " passed over (points, empty geometries)");
   }
 
   static void read_figures(const Json& tree, Scenario& scenario) {
@@ -164,7 +200,9 @@ class Reader {
     seen.clear();
     for (std::size_t k = 0; k < scenario.obstacles.size(); ++k) {
       const std::string& id = scenario.obstacles[k].id;
-      if (!seen.insert(id).second) refuse(origin_of_[k] + "/id", "\"" + id + "\" a second time");
+      const Origin& origin = origin_of_[k];
+      const std::string found = origin.is_named ? "\"" + id + "\"" : "no id, so \"" + id + "\",";
+      if (!seen.insert(id).second) refuse(origin.pointer + (origin.is_named ? "/id" : ""), found + " a second time");
     }
   }
 
@@ -186,22 +224,39 @@ class Reader {
     if (pointer.compare(0, prefix.size(), prefix) != 0) return pointer;
     const std::size_t end = pointer.find('/', prefix.size());
     const std::size_t k = std::stoul(pointer.substr(prefix.size(), end - prefix.size()));
-    return origin_of_.at(k) + (end == std::string::npos ? "" : pointer.substr(end));
+    return origin_of_.at(k).pointer + (end == std::string::npos ? "" : pointer.substr(end));
   }
 
   std::string file_;
   std::filesystem::path base_dir_;
-  std::vector<std::string> origin_of_;  ///< per obstacle of the scenario: its entry in the text
+  /// An obstacle's entry in the text, and whether that has an id.
+  struct Origin {
+    std::string pointer;
+    bool is_named = false;
+  };
+  std::vector<Origin> origin_of_;  ///< per obstacle of the scenario
+  std::vector<std::string> notes_;
 };
 
 }  // namespace
 
-Scenario parse_scenario(const std::string& text, const std::string& file_name, const std::filesystem::path& base_dir) {
+LoadedScenario parse_scenario_with_notes(const std::string& text, const std::string& file_name,
+                                         const std::filesystem::path& base_dir) {
   return Reader(file_name, base_dir).read(parse_json(text, file_name));
 }
 
+Scenario parse_scenario(const std::string& text, const std::string& file_name, const std::filesystem::path& base_dir) {
+  return parse_scenario_with_notes(text, file_name, base_dir).scenario;
+}
+
+LoadedScenario load_scenario_with_notes(const std::filesystem::path& path) {
+  const std::string text = read_text_file(path);
+  if (text.empty()) throw DataError(DataCode::json_syntax, path.string(), "", "an empty file", "a scenario in JSON");
+  return parse_scenario_with_notes(text, path.string(), path.parent_path());
+}
+
 Scenario load_scenario(const std::filesystem::path& path) {
-  return parse_scenario(read_text_file(path), path.string(), path.parent_path());
+  return load_scenario_with_notes(path).scenario;
 }
 
 std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path) {

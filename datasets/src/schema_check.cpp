@@ -130,25 +130,31 @@ class Checker {
     for (std::size_t i = 0; i < value.size(); ++i) check(value[i], rule, at + "/" + std::to_string(i));
   }
 
+  /// "at least 1 entry", "at most 3 entries"
+  static std::string counted(const std::string& limit, const Json& count, const char* one, const char* many) {
+    return limit + " " + count.dump() + " " + (count == 1 ? one : many);
+  }
+
   void min_items(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
     if (!value.is_array() || value.size() >= rule.get<std::size_t>()) return;
     refuse(DataCode::wrong_count, at, described(value),
-           with_description("at least " + rule.dump() + " entries", rules));
+           with_description(counted("at least", rule, "entry", "entries"), rules));
   }
 
   void max_items(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
     if (!value.is_array() || value.size() <= rule.get<std::size_t>()) return;
-    refuse(DataCode::wrong_count, at, described(value), with_description("at most " + rule.dump() + " entries", rules));
+    refuse(DataCode::wrong_count, at, described(value),
+           with_description(counted("at most", rule, "entry", "entries"), rules));
   }
 
   void min_length(const Json& rule, const Json& value, const Json&, const std::string& at) const {
     if (!value.is_string() || characters(value) >= rule.get<std::size_t>()) return;
-    refuse(DataCode::wrong_count, at, described(value), "at least " + rule.dump() + " character(s)");
+    refuse(DataCode::wrong_count, at, described(value), counted("at least", rule, "character", "characters"));
   }
 
   void max_length(const Json& rule, const Json& value, const Json&, const std::string& at) const {
     if (!value.is_string() || characters(value) <= rule.get<std::size_t>()) return;
-    refuse(DataCode::wrong_count, at, described(value), "at most " + rule.dump() + " characters");
+    refuse(DataCode::wrong_count, at, described(value), counted("at most", rule, "character", "characters"));
   }
 
   /// Code points, as JSON Schema counts: every byte of UTF-8 but the continuing ones.
@@ -176,8 +182,15 @@ class Checker {
     } catch (const DataError&) {
       return;
     }
-    refuse(DataCode::no_alternative, at, "what excludes itself",
-           rule.value("description", std::string("something else")));
+    refuse(DataCode::no_alternative, at, all_of_keys(rule), rule.at("description").get<std::string>());
+  }
+
+  /// "both "goal" and "goals"": what a forbidden combination consists of.
+  static std::string all_of_keys(const Json& rule) {
+    std::string words = "both ";
+    const Json& keys = rule.at("required");
+    for (std::size_t i = 0; i < keys.size(); ++i) words += (i == 0 ? "" : " and ") + keys[i].dump();
+    return words;
   }
 
   /// The alternatives are told apart by their required keys; the one that is meant gives its own words.

@@ -55,6 +55,7 @@ std::string line_and_column(std::string_view text, std::size_t byte) {
 }
 
 std::string excerpt(std::string_view text, std::size_t byte, std::size_t length) {
+  if (text.empty()) return "nothing";
   if (byte >= text.size()) return "the end of the file";
   std::string shown = "\"";
   for (const char c : text.substr(byte, length)) {

@@ -20,7 +20,7 @@ std::string read_beginning(const std::filesystem::path& path, std::size_t count)
 /// "line 3, column 7", both from 1; columns count bytes.
 std::string line_and_column(std::string_view text, std::size_t byte);
 
-/// At most `length` printable characters from `byte` on, in quotes, for messages.
+/// At most `length` printable characters from `byte` on, in quotes, for messages; in words if there are none.
 std::string excerpt(std::string_view text, std::size_t byte, std::size_t length = 20);
 
 }  // namespace exactvo::datasets

@@ -77,14 +77,14 @@ INSTANTIATE_TEST_SUITE_P(
         Misfit{"OnePointWall", with(R"("obstacles": [{"polyline": [[1, 1]]}])"), DataCode::wrong_count,
                "/obstacles/0/polyline"},
         Misfit{"SamePointTwice", with(R"("obstacles": [{"polyline": [[1, 1], [1, 1]]}])"), DataCode::too_few_points,
-               "/obstacles/0/polyline/0"},
+               "/obstacles/0/polyline"},
         Misfit{"FlatPolygon", with(R"("obstacles": [{"polygon": [[1,1],[2,2],[3,3]]}])"), DataCode::zero_area,
-               "/obstacles/0/polygon/0"},
+               "/obstacles/0/polygon"},
         Misfit{"Bowtie", with(std::string(kSquare) + R"({"polygon": [[1,1],[3,3],[3,1],[1,3]]}])"),
-               DataCode::self_intersection, "/obstacles/1/polygon/0"},
+               DataCode::self_intersection, "/obstacles/1/polygon"},
         Misfit{"HoleOutside", with(R"("obstacles": [{"polygon": [[5,5],[6,5],[6,6],[5,6]],
                "holes": [[[7,7],[8,7],[8,8]]]}])"),
-               DataCode::hole_outside, "/obstacles/0/holes/0/0"},
+               DataCode::hole_outside, "/obstacles/0/holes/0"},
         Misfit{"NoSuchFile", with(R"("obstacles": [{"file": "no such.wkt"}])"), DataCode::file_missing,
                "/obstacles/0/file"},
         Misfit{"RobotTwice",
@@ -92,7 +92,10 @@ INSTANTIATE_TEST_SUITE_P(
                DataCode::scenario, "/robots/1/id"},
         Misfit{"ObstacleTwice", with(R"("obstacles": [{"id": "a", "polyline": [[3,3],[4,4]]},
                {"id": "a", "polyline": [[5,5],[6,6]]}])"),
-               DataCode::scenario, "/obstacles/1/id"}),
+               DataCode::scenario, "/obstacles/1/id"},
+        Misfit{"UnnamedObstacleTwice", with(R"("obstacles": [{"id": "O2", "polyline": [[3,3],[4,4]]},
+               {"polyline": [[5,5],[6,6]]}])"),
+               DataCode::scenario, "/obstacles/1"}),
     [](const auto& each) { return std::string(each.param.what); });
 
 TEST(ScenarioRefusals, Property3_TheNearestKeyIsSuggested) {
@@ -105,6 +108,20 @@ TEST(ScenarioRefusals, Property3_TheNearestKeyIsSuggested) {
 TEST(ScenarioRefusals, SelfCrossingRingsSayWhere) {
   const DataError error = refused(with(R"("obstacles": [{"polygon": [[1,1],[3,3],[3,1],[1,3]]}])"));
   EXPECT_NE(error.found().find("(2, 2)"), std::string::npos) << error.what();
+}
+
+// The words of what() are what people get to see.
+TEST(ScenarioRefusals, MessagesAreSentences) {
+  const auto message = [](const std::string& text) { return std::string(refused(text).what()); };
+  EXPECT_NE(message(with_robot(R"("goal": [1, 2], "goals": [])"))
+                .find("found both \"goal\" and \"goals\", expected goal or goals, not both"),
+            std::string::npos);
+  EXPECT_NE(message(R"({"name": "n", "robots": []})").find("expected at least 1 entry ("), std::string::npos);
+  EXPECT_NE(message(R"({"name": "", "robots": []})").find("expected at least 1 character ["), std::string::npos);
+  EXPECT_NE(message(with(R"("obstacles": [{"polyline": [[1, 1]]}])")).find("expected at least 2 entries"),
+            std::string::npos);
+  EXPECT_NE(message(with(R"("obstacles": [{"polygon": [[1,1],[3,3],[3,1],[1,3]]}])")).find("at vertex 0, (2, 2)"),
+            std::string::npos);
 }
 
 TEST(ScenarioRefusals, BottomlessNestingEndsEarly) {
@@ -120,6 +137,46 @@ TEST_F(ScenarioFiles, AMissingScenarioIsNamed) {
   EXPECT_EQ(error.code(), DataCode::file_missing);
   EXPECT_EQ(error.file(), (folder_ / "none.json").string());
   EXPECT_EQ(refusal_of([&] { load_scenario(folder_); }).code(), DataCode::file_unreadable);
+}
+
+TEST_F(ScenarioFiles, AnEmptyScenarioIsCalledSo) {
+  const auto path = put("empty.json", "");
+  const DataError error = refusal_of([&] { load_scenario(path); });
+  EXPECT_EQ(error.code(), DataCode::json_syntax);
+  EXPECT_EQ(error.found(), "an empty file");
+}
+
+// Scenario, pointer and path: all three are needed to mend it.
+void expect_named(const DataError& error, DataCode code, const std::string& place, const std::filesystem::path& path) {
+  EXPECT_EQ(error.file(), "scenario.json") << error.what();
+  expect_refusal(error, code, place);
+  EXPECT_NE(error.found().find(path.string()), std::string::npos) << error.what();
+}
+
+TEST_F(ScenarioFiles, AnObstacleFileThatCannotBeReadIsNamedWithTheScenario) {
+  std::filesystem::create_directory(folder_ / "walls");
+  put("empty.wkt", "");
+  put("strange.xyz", "what is this\n");
+  const auto refusal = [&](const std::string& members) {
+    return refusal_of([&] { parse_scenario(with("\"obstacles\": [{" + members + "}]"), "scenario.json", folder_); });
+  };
+  expect_named(refusal(R"("file": "none.wkt")"), DataCode::file_missing, "/obstacles/0/file", folder_ / "none.wkt");
+  expect_named(refusal(R"("file": "walls")"), DataCode::file_unreadable, "/obstacles/0/file", folder_ / "walls");
+  expect_named(refusal(R"("file": "empty.wkt")"), DataCode::format_unknown, "/obstacles/0/file", folder_ / "empty.wkt");
+  expect_named(refusal(R"("file": "strange.xyz")"), DataCode::format_unknown, "/obstacles/0/file",
+               folder_ / "strange.xyz");
+  expect_named(refusal(R"("file": "strange.xyz", "format": "wtk")"), DataCode::not_an_option, "/obstacles/0/format",
+               folder_ / "strange.xyz");
+}
+
+TEST_F(ScenarioFiles, NotesTellWhatWasDoneToObstacleFiles) {
+  put("walls.wkt", "POINT (0 0)\nPOLYGON ((30 0, 31 1, 31 0, 30 0))\n");
+  const LoadedScenario loaded =
+      parse_scenario_with_notes(with(R"("obstacles": [{"file": "walls.wkt"}])"), "scenario.json", folder_);
+  EXPECT_EQ(loaded.scenario.obstacles.size(), 1u);
+  ASSERT_EQ(loaded.notes.size(), 2u);
+  EXPECT_EQ(loaded.notes[0].rfind((folder_ / "walls.wkt").string() + ": 1 of the obstacles put right", 0), 0u);
+  EXPECT_EQ(loaded.notes[1].rfind((folder_ / "walls.wkt").string() + ": 1 passed over", 0), 0u);
 }
 
 TEST_F(ScenarioFiles, ObstacleFilesAreFoundBesideTheScenario) {

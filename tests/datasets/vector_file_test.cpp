@@ -64,10 +64,35 @@ TEST_F(VectorFile, ImpossibleDegreesAreMetresWithANote) {
   const std::string far = R"({"type": "LineString", "coordinates": [[0, 0], [300, 500]]})";
   const ObstacleFile file = read("a.geojson", collection("", far));
   EXPECT_FALSE(file.origin.has_value());
-  ASSERT_EQ(file.notes.size(), 1u);
+  ASSERT_EQ(file.notes.size(), 2u);
+  EXPECT_EQ(file.notes[0].text.rfind("taken as metres: ", 0), 0u) << file.notes[0].text;
+  EXPECT_EQ(file.notes[1].text, "extent 0 to 300 m, 0 to 500 m");
   ReadOptions options;
   options.units = Units::degrees;
   EXPECT_EQ(refusal_of([&] { read("b.geojson", collection("", far), options); }).code(), DataCode::projection);
+}
+
+// As in a public file of the world's land: rounding took a longitude beyond 180.
+TEST_F(VectorFile, DegreesRoundedBeyondTheirRangeAreDegrees) {
+  const std::string coast = R"({"type": "LineString", "coordinates": [[179.9, 60], [180.00000000000014, 60.1]]})";
+  const ObstacleFile file = read("a.geojson", collection("", coast));
+  ASSERT_TRUE(file.origin.has_value());
+  ASSERT_TRUE(file.extent.has_value());
+  EXPECT_NEAR(file.extent->high.x - file.extent->low.x, 5.57e3, 20.0);  // a tenth of a degree at 60 north
+  const std::string far = R"({"type": "LineString", "coordinates": [[179.9, 60], [180.00001, 60.1]]})";
+  EXPECT_FALSE(read("b.geojson", collection("", far)).origin.has_value());
+}
+
+TEST_F(VectorFile, NotesSayHowUnitsWereDecidedAndWhereTheFileLies) {
+  const ObstacleFile file = read("a.geojson", collection("", kSquare));
+  ASSERT_EQ(file.notes.size(), 2u);
+  EXPECT_EQ(
+      file.notes[0].text,
+      "degrees: GeoJSON that says nothing of units (RFC 7946); brought to metres round longitude 13.001, latitude "
+      "52.001");
+  EXPECT_EQ(file.notes[1].text.rfind("extent -68.6", 0), 0u) << file.notes[1].text;
+  const ObstacleFile metres = read("b.geojson", collection("\"units\": \"m\", ", kSquare));
+  EXPECT_EQ(metres.notes.at(0).text, "metres: by its member \"units\"");
 }
 
 TEST_F(VectorFile, UnitsThatMeanNothingAreRefused) {
@@ -87,9 +112,9 @@ TEST_F(VectorFile, RingsArePutRightAndNoted) {
   const std::string clockwise = R"({"type": "Polygon", "coordinates": [[[0, 0], [0, 1], [1, 1], [1, 0], [0, 0]]]})";
   const ObstacleFile file = read("a.geojson", collection("\"units\": \"m\", ", clockwise));
   EXPECT_EQ(file.counts.repaired, 1u);
-  ASSERT_EQ(file.notes.size(), 1u);
-  EXPECT_EQ(file.notes[0].code, DataCode::clockwise);
-  EXPECT_EQ(file.notes[0].place.substr(0, 17), "feature 0, ring 0");
+  ASSERT_EQ(file.notes.size(), 3u);
+  EXPECT_EQ(file.notes[1].code, DataCode::clockwise);
+  EXPECT_EQ(file.notes[1].place.substr(0, 17), "feature 0, ring 0");
 }
 
 TEST_F(VectorFile, SelfCrossingRingsAreRefusedWithTheirPlace) {

@@ -10,8 +10,9 @@
 /// degrees (a geographic reference system; GeoJSON unless told otherwise, RFC 7946) is brought to local metres by the
 /// azimuthal equidistant projection on its ellipsoid round the middle of its bounding box; that centre is recorded. A
 /// GeoJSON file says that it is in metres by a top-level member `"units": "m"`; a caller says so by
-/// `ReadOptions::units`. A GeoJSON file that says nothing and has a coordinate that is no longitude or latitude is
-/// taken as metres, with a note.
+/// `ReadOptions::units`. A GeoJSON file that says nothing and has a coordinate beyond +-180 or +-90 degrees, by more
+/// than the millionth that writers round by, is taken as metres. The notes of a file read by GDAL say how its units
+/// were decided, round what centre it was projected, and its extent.
 ///
 /// Heights (Z, M) are dropped. Points are no obstacles: passed over, with a note.
 
@@ -65,6 +66,12 @@ struct ProjectionOrigin {
   double latitude = 0.0;
 };
 
+/// The box of all vertices of the obstacles that were taken, m.
+struct Extent {
+  geometry::Vec2 low;
+  geometry::Vec2 high;
+};
+
 /// An input counts as `read`; each ends as an obstacle (`done` or `repaired`), passed over or in `rejected`.
 struct ReadCounts {
   std::size_t read = 0;         ///< geometries met: polygons and polylines, one each, and points
@@ -90,6 +97,7 @@ struct ObstacleFile {
   std::vector<RingFinding> findings;       ///< in the order of the file
   std::vector<DataError> rejected;         ///< only with `keep_going`
   std::optional<ProjectionOrigin> origin;  ///< where degrees were projected
+  std::optional<Extent> extent;            ///< none without obstacles
   std::optional<Coverage> coverage;        ///< of grids and scans
   ReadCounts counts;
 };

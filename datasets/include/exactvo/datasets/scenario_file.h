@@ -8,8 +8,7 @@
 /// Properties (tests quote the numbers):
 ///  (1) parse_scenario(write_scenario(s)) == s, bit for bit in every number;
 ///  (2) a refused text yields a DataError whose place is the JSON pointer of the offending value (line and column where
-///  the
-///      text is not JSON at all), and nothing else happens;
+///      the text is not JSON at all), and nothing else happens;
 ///  (3) a key that the schema does not know is refused, with the nearest known key suggested;
 ///  (4) what is returned passes formation::validate.
 
@@ -22,10 +21,23 @@
 
 namespace exactvo::datasets {
 
-/// Reads a scenario; obstacle files it names are looked up beside it. Throws DataError.
+/// A scenario and what a reader of it should know: a line a fact, for people. Of each obstacle file it names: how the
+/// units were decided, the projection's centre and the extent, how many repairs were made and what was passed over.
+struct LoadedScenario {
+  formation::Scenario scenario;
+  std::vector<std::string> notes;  ///< "floor.geojson: metres: by its member "units""; empty without obstacle files
+};
+
+/// Reads a scenario; obstacle files it names are looked up beside it. Throws DataError: for a mistake in such a file it
+/// names that file, for one that can't be opened or told the scenario and the place that names it.
+LoadedScenario load_scenario_with_notes(const std::filesystem::path& path);
+
+/// The same without the notes.
 formation::Scenario load_scenario(const std::filesystem::path& path);
 
 /// The same from text. `file_name` is used in messages, `base_dir` to find obstacle files. Throws DataError.
+LoadedScenario parse_scenario_with_notes(const std::string& text, const std::string& file_name,
+                                         const std::filesystem::path& base_dir);
 formation::Scenario parse_scenario(const std::string& text, const std::string& file_name,
                                    const std::filesystem::path& base_dir);
 
