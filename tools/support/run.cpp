@@ -37,6 +37,12 @@ std::vector<std::vector<geometry::ConvexShape>> enclosures(const Scenario& scena
   return all;
 }
 
+datasets::LoadedScenario load(const std::string& path) {
+  if (path != "-") return datasets::load_scenario_with_notes(path);
+  const std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
+  return datasets::parse_scenario_with_notes(text, "-", fs::current_path());
+}
+
 }  // namespace
 
 std::string FinishedRun::metrics_json() const {
@@ -87,9 +93,9 @@ void draw(const std::vector<fs::path>& scripts) {
 }
 
 Scenario read_scenario(const std::string& path) {
-  if (path != "-") return datasets::load_scenario(path);
-  const std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
-  return datasets::parse_scenario(text, "-", fs::current_path());
+  datasets::LoadedScenario loaded = load(path);
+  for (const std::string& note : loaded.notes) message(note);
+  return std::move(loaded.scenario);
 }
 
 std::vector<fs::path> input_files(const std::string& path) {
