@@ -110,5 +110,28 @@ TEST(VelocitySpace, DrawsEveryLayerOnce) {
   EXPECT_THAT(figure.data, testing::Not(HasSubstr("nan")));
 }
 
+TEST(Decision, NamesAtMostThreeObstacles) {
+  Decision d = with_two_walls();
+  for (const char* id : {"a", "b", "c"})
+    d.scenario.obstacles.push_back({id, geometry::Polyline{{{0.0, 1.5}, {0.0, 1.6}}}});
+  RecordedConstraint all = d.step.constraints[0];
+  all.source = ConstraintSource::enclosure;
+  all.shape = geometry::ellipse_from_axes({0.0, 0.0}, {9.0, 9.0, 0.0});
+  EXPECT_EQ(name_of(all, d.scenario), "enclosure 0 of east, north, a and 2 more");
+  all.shape = geometry::ConvexPolygon{{{1.0, -3.0}, {2.0, -3.0}, {2.0, 3.0}, {1.0, 3.0}}};
+  EXPECT_EQ(name_of(all, d.scenario), "enclosure 0 of east and north");
+}
+
+TEST(Explanation, SaysThatBoostHadTurnedWhatIsAllowedAsItStands) {
+  Decision d = with_two_walls();
+  d.step.chosen = d.step.preferred = {0.5, 0.2};
+  d.step.mode = formation::Mode::boost;
+  d.step.constraints[1].active = false;
+  const std::string words = explanation(d);
+  EXPECT_THAT(words, HasSubstr("boost had turned"));
+  EXPECT_THAT(words, HasSubstr("lies on the line of [1]"));
+  EXPECT_THAT(words, testing::Not(HasSubstr("nothing stands in the way")));
+}
+
 }  // namespace
 }  // namespace exactvo::tools

@@ -105,5 +105,52 @@ TEST(PathsFigure, ViewHoldsEverythingButARunaway) {
   EXPECT_EQ(view_of(run).high.x, calm.high.x);
 }
 
+TEST(DataFile, EveryDataSetCounts) {
+  DataFile data;
+  data.begin("nothing in view", "x");
+  data.gap();
+  data.begin("two curves", "x");
+  data.row({1.0});
+  data.gap();
+  data.gap();
+  data.row({2.0});
+  EXPECT_EQ(data.text(), "# 0: nothing in view\n# x\nNaN NaN NaN NaN\n\n\n# 1: two curves\n# x\n1\n\n2\n");
+}
+
+TEST(Quoted, ShowsWhatWouldEndALine) {
+  EXPECT_EQ(quoted("a\nb\x1b[31m'"), "'a\\nb\\x1b[31m'''");
+  EXPECT_EQ(commented("a`b`\nc\\"), "a'b'\\nc\\ ");
+  DataFile data;
+  data.begin("a\nsystem('b')", "x");
+  data.labelled_row({1.0}, "\"x\n");
+  EXPECT_EQ(data.text(), "# 0: a\\nsystem('b')\n# x\n1 \"'x/n\"\n");
+}
+
+TEST(Shortened, KeepsHeadAndTailAndCountsCharacters) {
+  EXPECT_EQ(shortened("abc", 3), "abc");
+  EXPECT_EQ(shortened("abcdefgh", 5), "ab…gh");
+  EXPECT_EQ(shortened("äöü", 3), "äöü");
+}
+
+TEST(PathsFigure, MarksWhereARobotWasDeepestInAnObstacle) {
+  datasets::RecordingFile run = short_run();
+  EXPECT_THAT(paths_figure(run).script, Not(HasSubstr("collision")));
+  run.scenario.obstacles.push_back({"wall", geometry::Polyline{{{0.5, -1.0}, {0.5, 1.0}}}});
+  const Figure figure = paths_figure(run);
+  EXPECT_THAT(figure.script, HasSubstr("title 'collision'"));
+  EXPECT_THAT(figure.data, HasSubstr("collisions: where they were deepest\n# x [m], y [m]\n0.5 0\n"));
+}
+
+TEST(PathsFigure, TheLastPlaceIsThereWithItsTime) {
+  EXPECT_THAT(paths_figure(short_run()).data, HasSubstr("1 0 0.5 \"1 s\""));
+}
+
+TEST(SeriesFigures, ARunThatIsOverAtOnceHasAxes) {
+  datasets::RecordingFile run = short_run();
+  run.recording.steps.resize(1);
+  run.recording.steps[0].robots[0].velocity = run.recording.steps[0].robots[1].velocity = {};
+  for (const Figure& figure : run_figures(run)) EXPECT_THAT(figure.script, Not(HasSubstr("[0:0]"))) << figure.name;
+}
+
 }  // namespace
 }  // namespace exactvo::tools

@@ -69,6 +69,15 @@ TEST_F(StagedFolderTest, RefusesAFileInItsPlace) {
   EXPECT_EQ(text("out"), "a file");
 }
 
+TEST_F(StagedFolderTest, AFolderOfOthersIsNoPlaceForOutput) {
+  EXPECT_NO_THROW(check_output_folder(root_ / "missing"));
+  EXPECT_NO_THROW(check_output_folder(root_)) << "empty";
+  write_text(root_ / "thesis.tex", "mine");
+  EXPECT_THROW(check_output_folder(root_), datasets::DataError);
+  write_text(root_ / "summary.json", "[]");
+  EXPECT_NO_THROW(check_output_folder(root_)) << "an earlier output";
+}
+
 TEST_F(StagedFolderTest, WritingWhereNothingCanBeNamesThePath) {
   try {
     write_text(root_ / "missing" / "file", "x");

@@ -107,5 +107,19 @@ TEST(Clipped, KeepsTheSideThatIsAsked) {
   EXPECT_EQ(clipped(square, {{1.0, 0.0}, -1.0}).size(), 4u);
 }
 
+TEST(ClippedTo, CutsARingThatIsNotConvexAtTheBox) {
+  // A U whose arms stick out of the top of the box: two pieces within it, joined along its upper side.
+  const Points u = {{0, 0}, {3, 0}, {3, 9}, {2, 9}, {2, 1}, {1, 1}, {1, 9}, {0, 9}};
+  const Box box{{-1.0, -1.0}, {4.0, 4.0}};
+  const Points kept = clipped_to(u, box);
+  double twice_area = 0.0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    EXPECT_TRUE(box.contains(kept[i]));
+    twice_area += cross(kept[i], kept[(i + 1) % kept.size()]);
+  }
+  EXPECT_DOUBLE_EQ(twice_area / 2.0, 3.0 + 2.0 * 3.0);
+  EXPECT_TRUE(clipped_to(u, Box{{10.0, 10.0}, {11.0, 11.0}}).empty());
+}
+
 }  // namespace
 }  // namespace exactvo::tools

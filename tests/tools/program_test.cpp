@@ -228,6 +228,74 @@ TEST(Simulate, AFolderThatCannotBeWrittenIsRefused) {
   EXPECT_EQ(here.read("taken"), "a file");
 }
 
+TEST(Simulate, AFolderOfOthersIsRefusedBeforeAnythingIsWritten) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("simulate s.json --out .");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("other files"), HasSubstr("E_FILE_UNWRITABLE")));
+  EXPECT_FALSE(here.has("metrics.json"));
+}
+
+TEST(Simulate, AFullStandardOutputIsAnError) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  for (const char* options : {"--json", "--json --out out --no-figures", ""}) {
+    const std::string full = " >/dev/full 2>err; echo status $?";
+    const Outcome outcome = here.run(std::string("simulate s.json ") + options + full);
+    EXPECT_THAT(outcome.out, HasSubstr("status 2")) << options;
+    EXPECT_THAT(here.read("err"), AllOf(HasSubstr("standard output"), HasSubstr("E_FILE_UNWRITABLE"))) << options;
+    EXPECT_FALSE(here.has("out"));
+  }
+}
+
+TEST(Simulate, EmptyNamesAndNegativeSeedsAreRefused) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  for (const char* options : {"--out ''", "--seed -1", "--seed=-1", "--out \"$(printf 'a\\nb')\""}) {
+    const Outcome outcome = here.run(std::string("simulate s.json ") + options);
+    EXPECT_EQ(outcome.status, 2) << options;
+    EXPECT_THAT(outcome.err, HasSubstr("found '")) << options;
+    EXPECT_THAT(outcome.out, IsEmpty()) << options;
+  }
+}
+
+TEST(Simulate, OptionsOfFormationsAreNotedWhereThereIsNone) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome outcome = here.run("simulate s.json --controller paper-signs");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--controller does nothing here"), Not(HasSubstr("--integrator"))));
+  EXPECT_THAT(here.run("simulate s.json").err, IsEmpty());
+}
+
+TEST(Simulate, NamesRunNothingAndSendNothingToTheTerminal) {
+  const Workplace here;
+  here.write("s.json", with("\"one\"", R"("x'\n system('touch pwned')\n`touch pwned` {@_^ \u001b[31m\\")"));
+  const Outcome outcome = here.run("simulate s.json --out out");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out + outcome.err, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(outcome.out, HasSubstr("\\x1b[31m"));
+  EXPECT_FALSE(here.has("pwned") || here.has("out/figures/pwned"));
+  EXPECT_TRUE(here.has("out/figures/paths.png"));
+}
+
+TEST(Simulate, ARobotAtItsGoalIsDrawn) {
+  const Workplace here;
+  here.write("s.json", with("[8, 0]", "[0, 0]"));
+  const Outcome outcome = here.run("simulate s.json --out out");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("the robot arrived"));
+  for (const char* name : {"paths", "velocity", "obstacle_distance"})
+    EXPECT_TRUE(here.has(std::string("out/figures/") + name + ".png")) << name;
+}
+
+TEST(Simulate, AFormationListsItsRobotsToo) {
+  const Workplace here;
+  const Outcome outcome = here.run("simulate " + data_file("paper/B1.json"));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("  R1 "), HasSubstr("  R3 "), HasSubstr("position error")));
+}
+
 TEST(Simulate, WithoutGnuplotTheDataAndScriptsStand) {
   const Workplace here;
   here.write("s.json", kOneRobot);

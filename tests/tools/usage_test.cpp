@@ -20,7 +20,10 @@ TEST(EditDistance, CountsInsertionsDeletionsReplacementsAndSwaps) {
 TEST(NearestWord, IsTheNearestAndOnlyIfNearEnough) {
   const std::vector<std::string> methods = {"orca", "ivo-edge", "ivo-cluster", "ivo"};
   EXPECT_EQ(nearest_word("ivo-clusterr", methods), "ivo-cluster");
-  EXPECT_EQ(nearest_word("IVO-edge", {"ivo-edge"}), "");
+  EXPECT_EQ(nearest_word("IVO-edge", {"ivo-edge"}), "ivo-edge");
+  EXPECT_EQ(nearest_word("ORCA", methods), "orca");
+  EXPECT_EQ(nearest_word("xyz", methods), "");
+  EXPECT_EQ(nearest_word("q", {"r"}), "");
   EXPECT_EQ(nearest_word("orka", methods), "orca");
   EXPECT_EQ(nearest_word("something else", methods), "");
   EXPECT_EQ(suggestion("something else", methods), "");

@@ -213,7 +213,7 @@ class PathsPanel {
     for (const Step& step : run_.recording.steps) {
       if (!is_drawable(step.robots[i].position)) break;
       last = &step;
-      if (step.time >= end) break;
+      if (step.time > end || end == 0.0) break;
     }
     return last;
   }

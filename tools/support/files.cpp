@@ -53,6 +53,17 @@ void make_folder(const fs::path& path) {
   if (error) fail(path, error.message());
 }
 
+void check_output_folder(const fs::path& target) {
+  std::error_code error;
+  if (!fs::is_directory(target, error) || fs::is_empty(target, error) || error) return;
+  for (const char* ours : {"metrics.json", "summary.json"}) {
+    if (fs::is_regular_file(target / ours, error)) return;
+  }
+  throw datasets::DataError(datasets::DataCode::file_unwritable, target.string(), "",
+                            "a folder with other files in it, and no metrics.json or summary.json",
+                            "a folder that does not exist, is empty, or holds an earlier output");
+}
+
 StagedFolder::StagedFolder(fs::path target) : target_(without_trailing_slash(std::move(target))) {
   staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
   std::error_code error;

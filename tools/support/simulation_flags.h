@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "exactvo/formation/simulation.h"
 
@@ -17,7 +18,17 @@ struct SimulationFlags {
   std::string controller = "default";
   std::string integrator = "exact";
   std::uint64_t seed = 0;
+  std::vector<const CLI::Option*> of_formations;  ///< --controller and --integrator
 };
+
+/// Declares --out: neither empty nor with control characters.
+CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& help);
+
+/// Declares --seed, which takes no negative number.
+void declare_seed(CLI::App& app, std::uint64_t& seed);
+
+/// A message for each option given that a scenario without a formation does not use.
+void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario);
 
 /// Declares --method, --controller, --integrator and --seed. `flags` must outlive the parsing.
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags);

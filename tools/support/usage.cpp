@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace exactvo::tools {
 
@@ -24,12 +25,28 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
+namespace {
+
+std::string lower_case(std::string word) {
+  for (char& c : word) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return word;
+}
+
+std::size_t allowed(std::size_t letters) {
+  const std::size_t few = letters < 2 ? 0 : letters < 5 ? 1 : 2;
+  return std::max(few, letters / 3);
+}
+
+}  // namespace
+
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < least) {
+    const std::size_t distance = edit_distance(lower_case(word), lower_case(candidate));
+    if (distance < least && distance <= allowed(std::min(word.size(), candidate.size()))) {
       least = distance;
       best = candidate;
     }

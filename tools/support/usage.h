@@ -20,8 +20,8 @@ class UsageError : public std::runtime_error {
 /// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b` (optimal string alignment).
 std::size_t edit_distance(const std::string& a, const std::string& b);
 
-/// The known word nearest to `word`, empty where none is near enough to be meant (a third of its letters may differ,
-/// and two always).
+/// The known word nearest to `word`, whatever the case of ASCII letters; empty where none is near enough to be meant: a
+/// third of the letters of the shorter word may differ, one always, two of five.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
 /// "; did you mean 'simulate'?" or nothing.

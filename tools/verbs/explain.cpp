@@ -109,7 +109,9 @@ void check(const Flags& flags) {
 
 ExitCode explain(const Flags& flags) {
   check(flags);
-  const Decision decision = decide(flags, read_scenario(flags.scenario));
+  const Scenario scenario = read_scenario(flags.scenario);
+  note_unused(flags.simulation, scenario);
+  const Decision decision = decide(flags, scenario);
   print(shown_lines(explanation(decision)));
   if (!flags.out.empty()) write_figure(decision, flags.out);
   return ExitCode::success;
@@ -120,7 +122,7 @@ Action declare(CLI::App& app) {
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   app.add_option("--time,-t", flags->time, "Of the decision, s")->required();
   app.add_option("--robot,-r", flags->robot, "Its id, or its number counted from 0")->required();
-  app.add_option("--out,-o", flags->out, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
+  declare_out(app, flags->out, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
   declare_simulation_flags(app, flags->simulation);
   return [flags] { return explain(*flags); };
 }

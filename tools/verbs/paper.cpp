@@ -12,6 +12,7 @@
 #include "support/files.h"
 #include "support/outcome.h"
 #include "support/run.h"
+#include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "verb.h"
 
@@ -197,6 +198,7 @@ class Experiments {
 };
 
 ExitCode paper(const Flags& flags) {
+  check_output_folder(flags.out);
   StagedFolder folder(flags.out);
   Experiments experiments(flags, data_folder(flags.data, "paper"), folder.path());
   experiments.run_all();
@@ -212,10 +214,9 @@ ExitCode paper(const Flags& flags) {
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("--out,-o", flags->out, "Folder for summary.json and figures/; whole or not at all")->required();
+  declare_out(app, flags->out, "Folder for summary.json and figures/; whole or not at all")->required();
   app.add_option("--data", flags->data, "Folder that holds paper/A1.json and so on; the program's own by default");
-  app.add_option("--seed", flags->seed, "Noted in the provenance; these runs draw no random numbers")
-      ->capture_default_str();
+  declare_seed(app, flags->seed);
   app.add_flag("--json", flags->json, "Print summary.json instead of the tables");
   app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");
   return [flags] { return paper(*flags); };

@@ -87,6 +87,8 @@ void print_and_write(const Flags& flags, const FinishedRun& finished) {
 ExitCode simulate(const Flags& flags) {
   const formation::SimulationOptions options = simulation_options(flags.simulation);
   const formation::Scenario scenario = read_scenario(flags.scenario);
+  note_unused(flags.simulation, scenario);
+  if (!flags.out.empty()) check_output_folder(flags.out);
   const FinishedRun finished = run_with_progress(flags, scenario, options);
   flags.out.empty() ? print_results(flags, finished) : print_and_write(flags, finished);
   return ExitCode::success;
@@ -96,8 +98,8 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags->simulation);
-  app.add_option("--out,-o", flags->out,
-                 "Folder for recording.jsonl, trajectory.csv, metrics.json and figures/; whole or not at all");
+  declare_out(app, flags->out,
+              "Folder for recording.jsonl, trajectory.csv, metrics.json and figures/; whole or not at all");
   app.add_flag("--json", flags->json, "Print the metrics as JSON");
   app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");
   return [flags] { return simulate(*flags); };
