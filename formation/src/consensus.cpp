@@ -5,9 +5,9 @@
 
 namespace exactvo::formation::detail {
 
-std::vector<Vec2> offsets_in_use(const FormationSpec& spec, Controller controller) {
+std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies) {
   std::vector<Vec2> offsets = spec.offsets;
-  if (!spec.recentre || controller != Controller::standard) return offsets;
+  if (!spec.recentre || !remedies.recentred) return offsets;
   Vec2 mean{};
   for (Vec2 d : offsets) mean += d;
   mean = mean / static_cast<double>(offsets.size());
@@ -27,13 +27,13 @@ Vec2 consensus_input(const FormationSpec& spec, const RelativeState& state, std:
   return (position_sign * spec.gains.k1) * position_term - spec.gains.k2 * velocity_term;
 }
 
-Vec2 printed_preference(Vec2 relative_position, double max_speed) {
-  return max_speed * geometry::normalized(relative_position);
-}
-
-Vec2 saturated_preference(const FormationSpec& spec, Vec2 relative_position, Vec2 leader_velocity) {
-  const double speed = std::min(spec.gains.kappa * norm(relative_position), spec.catch_up_speed);
-  return leader_velocity - speed * geometry::normalized(relative_position);
+Vec2 preference(const FormationSpec& spec, const Remedies& remedies, Vec2 relative_position, Vec2 leader_velocity,
+                double max_speed) {
+  const double saturated = std::min(spec.gains.kappa * norm(relative_position), spec.catch_up_speed);
+  const double speed = remedies.saturation ? saturated : max_speed;
+  const Vec2 outward = speed * geometry::normalized(relative_position);
+  const Vec2 relative = remedies.signs ? -outward : outward;
+  return remedies.absolute_frame ? leader_velocity + relative : relative;
 }
 
 }  // namespace exactvo::formation::detail

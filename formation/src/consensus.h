@@ -18,16 +18,15 @@ struct RelativeState {
   std::vector<Vec2> velocity;  ///< m/s
 };
 
-/// Delta_i as the controller uses them: recentred unless the paper is taken as printed.
-std::vector<Vec2> offsets_in_use(const FormationSpec& spec, Controller controller);
+/// Delta_i as the controller uses them: recentred where the scenario and the remedies both say so.
+std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies);
 
 /// u_c of equation (14), m/s^2, with `position_sign` = -1, or +1 as (15) prints it.
 Vec2 consensus_input(const FormationSpec& spec, const RelativeState& state, std::size_t robot, double position_sign);
 
-/// Equation (17) as printed: away from the slot at full speed; 0 at the slot, where the printed quotient is undefined.
-Vec2 printed_preference(Vec2 relative_position, double max_speed);
-
-/// v_L - min(kappa |x^|, v_s) x^ / |x^|.
-Vec2 saturated_preference(const FormationSpec& spec, Vec2 relative_position, Vec2 leader_velocity);
+/// v_pref of equation (17) under the remedies: printed, away from the slot at full speed (0 at the slot, where the
+/// quotient is undefined); saturated, -min(kappa |x^|, v_s) x^ / |x^|; in the absolute frame v_L is added.
+Vec2 preference(const FormationSpec& spec, const Remedies& remedies, Vec2 relative_position, Vec2 leader_velocity,
+                double max_speed);
 
 }  // namespace exactvo::formation::detail

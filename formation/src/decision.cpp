@@ -51,9 +51,11 @@ std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scen
       if (norm(positions[i] - positions[j]) > scenario.neighbour_distance) continue;
       const vo::MovingDisc a{positions[i], velocities[i], scenario.robots[i].radius};
       const vo::MovingDisc b{positions[j], velocities[j], scenario.robots[j].radius};
+      const bool a_yields = scenario.robots[i].cooperates, b_yields = scenario.robots[j].cooperates;
+      pair_options.share_of_a = a_yields == b_yields ? 0.5 : (a_yields ? 1.0 : 0.0);
       const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a, b, pair_options);
-      out[i].push_back(record(pair.a, pair.certified, j, a, b, pair_options.time_horizon));
-      out[j].push_back(record(pair.b, pair.certified, i, b, a, pair_options.time_horizon));
+      if (a_yields) out[i].push_back(record(pair.a, pair.certified, j, a, b, pair_options.time_horizon));
+      if (b_yields) out[j].push_back(record(pair.b, pair.certified, i, b, a, pair_options.time_horizon));
     }
   }
   for (auto& mine : out)

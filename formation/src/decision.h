@@ -18,7 +18,7 @@ struct RobotConstraint {
 
 /// All half-planes of every robot against every other within `neighbour_distance`, nearest first: entry i belongs to
 /// robot i. `positions` and `velocities` are those the pairs are built at; both halves of a pair share their normal bit
-/// for bit.
+/// for bit. A robot that does not cooperate gets none, and who meets it takes the whole avoiding.
 std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scenario, const SimulationOptions& options,
                                                             const std::vector<Vec2>& positions,
                                                             const std::vector<Vec2>& velocities);

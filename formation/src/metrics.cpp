@@ -10,6 +10,7 @@
 #include "exactvo/geometry/require.h"
 #include "leader.h"
 #include "motion.h"
+#include "moving.h"
 
 namespace exactvo::formation {
 namespace {
@@ -45,13 +46,33 @@ double swept_robot_clearance(const Motion& a, const Motion& b, double radii) {
   return least;
 }
 
+/// The same against what moves: by definition straight and uniformly from where it is at one row to the next.
+double swept_moving_clearance(const Scenario& scenario, const Motion& motion, double time, double radius) {
+  double least = kInfinity;
+  for (const MovingObstacle& o : scenario.moving_obstacles) {
+    const Vec2 before = detail::displacement_at(o, time), after = detail::displacement_at(o, time + motion.duration);
+    motion.for_each_chord_in_time([&](const Segment& chord, double from, double to, double sagitta) {
+      const Segment seen{chord.a - before - from * (after - before), chord.b - before - to * (after - before)};
+      least = std::min(least, geometry::swept_distance(o.shape, seen) - sagitta - radius);
+    });
+  }
+  return least;
+}
+
+double swept_clearance(const Scenario& scenario, const Recording& recording, std::size_t step, std::size_t robot) {
+  const Motion motion = motion_of(recording, step, robot);
+  const double radius = scenario.robots[robot].radius;
+  return std::min(swept_obstacle_clearance(scenario, motion, radius),
+                  swept_moving_clearance(scenario, motion, recording.steps[step].time, radius));
+}
+
 void measure_obstacles(const Scenario& scenario, const Recording& recording, Metrics& m) {
-  if (scenario.obstacles.empty()) return;
+  if (scenario.obstacles.empty() && scenario.moving_obstacles.empty()) return;
   double least = kInfinity;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     double mine = kInfinity;
     for (std::size_t k = 0; k + 1 < recording.steps.size(); ++k)
-      mine = std::min(mine, swept_obstacle_clearance(scenario, motion_of(recording, k, i), scenario.robots[i].radius));
+      mine = std::min(mine, swept_clearance(scenario, recording, k, i));
     if (!std::isfinite(mine)) continue;
     m.robots[i].min_obstacle_clearance = mine;
     least = std::min(least, mine);

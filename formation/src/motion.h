@@ -50,11 +50,17 @@ struct Motion {
   /// Calls f(chord, sagitta): a chord of duration d strays at most |x''| d^2 / 8 from the path.
   template <typename F>
   void for_each_chord(const F& f) const {
+    for_each_chord_in_time([&f](const geometry::Segment& chord, double, double, double sagitta) { f(chord, sagitta); });
+  }
+
+  /// The same with the shares of the step between which the chord runs: f(chord, start, end, sagitta).
+  template <typename F>
+  void for_each_chord_in_time(const F& f) const {
     const std::size_t chords = chord_count();
-    const double sagitta = sagitta_of(chords);
+    const double n = static_cast<double>(chords), sagitta = sagitta_of(chords);
     for (std::size_t k = 0; k < chords; ++k) {
-      const double n = static_cast<double>(chords);
-      f(geometry::Segment{at(static_cast<double>(k) / n), at(static_cast<double>(k + 1) / n)}, sagitta);
+      const double start = static_cast<double>(k) / n, end = static_cast<double>(k + 1) / n;
+      f(geometry::Segment{at(start), at(end)}, start, end, sagitta);
     }
   }
 

@@ -14,8 +14,9 @@ constexpr Names<Method, 4> kMethods{{{Method::orca, "orca"},
                                      {Method::ivo_edge, "ivo-edge"},
                                      {Method::ivo_cluster, "ivo-cluster"},
                                      {Method::ivo, "ivo"}}};
-constexpr Names<Controller, 3> kControllers{{{Controller::paper_literal, "paper-literal"},
+constexpr Names<Controller, 4> kControllers{{{Controller::paper_literal, "paper-literal"},
                                              {Controller::paper_signs, "paper-signs"},
+                                             {Controller::corrected, "corrected"},
                                              {Controller::standard, "default"}}};
 constexpr Names<Integrator, 5> kIntegrators{{{Integrator::exact, "exact"},
                                              {Integrator::euler, "euler"},

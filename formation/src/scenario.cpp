@@ -72,6 +72,18 @@ void check_obstacles(const Scenario& s, Checker& c) {
   }
 }
 
+void check_moving(const Scenario& s, Checker& c) {
+  for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k) {
+    const MovingObstacle& o = s.moving_obstacles[k];
+    const std::string at = "/moving_obstacles/" + std::to_string(k);
+    c.require(!geometry::vertices_of(o.shape).empty(), at, "no points", "a polyline or polygon");
+    for (Vec2 p : geometry::vertices_of(o.shape)) c.finite(p, at);
+    c.require(!o.motion.path.empty(), at + "/path", "no points", "at least one point");
+    for (Vec2 p : o.motion.path) c.finite(p, at + "/path");
+    c.not_negative(o.motion.speed, at + "/speed", "m/s");
+  }
+}
+
 void check_times(const Scenario& s, Checker& c) {
   c.positive(s.time_step, "/time_step", "s");
   c.positive(s.time_limit, "/time_limit", "s");
@@ -145,6 +157,7 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
 std::vector<ScenarioProblem> validate(const Scenario& scenario) {
   Checker c;
   check_robots(scenario, c);
+  check_moving(scenario, c);
   check_times(scenario, c);
   if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
   if (c.problems.empty()) check_obstacles(scenario, c);

@@ -49,6 +49,7 @@ geometry::EnclosureOptions enclosure_options(const Scenario& scenario) {
 
 ObstacleLibrary::ObstacleLibrary(const Scenario& scenario) {
   for (const SceneObstacle& obstacle : scenario.obstacles) {
+    first_piece_.push_back(parts_.empty() ? 0 : first_piece_.back() + parts_.back().pieces.size());
     parts_.push_back(geometry::parts_of(obstacle.shape));
     for (vo::OrcaChain& chain : vo::orca_chains(obstacle.shape)) chains_.push_back(std::move(chain));
   }
@@ -83,14 +84,16 @@ void StaticField::add_enclosure(const Enclosure& e, std::size_t index, const Vie
                                 std::vector<StaticConstraint>& out) const {
   const VelocityObstacle grown(e.shape, from.position, from.radius, scenario_->horizons.most);
   const bool inside = e.grade != EnclosureGrade::tight && grown.overlaps();
-  if (!inside) return add_shape(e.shape, index, e.grade, from, out);
+  if (!inside) return add_shape(e.shape, {index, index, e.grade}, from, out);
   // The enclosure gives way to what it encloses.
-  for (std::size_t obstacle : e.obstacles)
+  for (std::size_t obstacle : e.obstacles) {
+    std::size_t shape = enclosures_.size() + library_->first_piece(obstacle);
     for (const ConvexShape& piece : library_->parts()[obstacle].pieces)
-      add_shape(piece, index, EnclosureGrade::tight, from, out);
+      add_shape(piece, {index, shape++, EnclosureGrade::tight}, from, out);
+  }
 }
 
-void StaticField::add_shape(const ConvexShape& shape, std::size_t index, EnclosureGrade grade, const Viewpoint& from,
+void StaticField::add_shape(const ConvexShape& shape, const Name& name, const Viewpoint& from,
                             std::vector<StaticConstraint>& out) const {
   const VelocityObstacle probe(shape, from.position, from.radius, scenario_->horizons.most);
   const VelocityObstacle::Nearest nearest = probe.nearest();
@@ -100,17 +103,18 @@ void StaticField::add_shape(const ConvexShape& shape, std::size_t index, Enclosu
   StaticConstraint c;
   c.distance = nearest.distance;
   c.away = nearest.normal;
-  c.trap_free = grade == EnclosureGrade::trap_free || grade == EnclosureGrade::trap_free_thin;
+  c.shape = name.shape;
+  c.trap_free = name.grade == EnclosureGrade::trap_free || name.grade == EnclosureGrade::trap_free_thin;
   RecordedConstraint& r = c.recorded;
   r.source = ConstraintSource::enclosure;
-  r.index = index;
+  r.index = name.enclosure;
   r.shape = shape;
   r.position = from.position;
   r.radius = from.radius;
   r.tau = tau;
   std::optional<geometry::HalfPlane> h;
   // An ellipse has its margin inside; a bare piece gets it here.
-  const double skin = grade == EnclosureGrade::tight ? scenario_->margins.obstacle + kContactSkin : kContactSkin;
+  const double skin = name.grade == EnclosureGrade::tight ? scenario_->margins.obstacle + kContactSkin : kContactSkin;
   const VelocityObstacle with_skin(shape, from.position, from.radius + skin, tau);
   if (!with_skin.overlaps()) h = with_skin.half_plane(from.velocity);
   if (!h && !probe.overlaps()) h = probe.contact_half_plane();

@@ -19,6 +19,7 @@ struct StaticConstraint {
   RecordedConstraint recorded;
   double distance = 0.0;   ///< m, robot's rim to the shape; negative in contact
   Vec2 away;               ///< unit, from the nearest point of the shape to the robot
+  std::size_t shape = 0;   ///< who it is: the same number is the same shape at every step of a run
   bool trap_free = false;  ///< the shape carries the certificate for this robot's goal
 };
 
@@ -36,9 +37,12 @@ class ObstacleLibrary {
   explicit ObstacleLibrary(const Scenario& scenario);
   const std::vector<geometry::ObstacleParts>& parts() const { return parts_; }
   const std::vector<vo::OrcaChain>& chains() const { return chains_; }
+  /// How many pieces the obstacles before this one have: a number for each piece of the scene.
+  std::size_t first_piece(std::size_t obstacle) const { return first_piece_[obstacle]; }
 
  private:
   std::vector<geometry::ObstacleParts> parts_;
+  std::vector<std::size_t> first_piece_;
   std::vector<vo::OrcaChain> chains_;
 };
 
@@ -60,8 +64,14 @@ class StaticField {
   double horizon(double distance, const Viewpoint& from) const;
   void add_enclosure(const geometry::Enclosure& e, std::size_t index, const Viewpoint& from,
                      std::vector<StaticConstraint>& out) const;
-  void add_shape(const geometry::ConvexShape& shape, std::size_t index, geometry::EnclosureGrade grade,
-                 const Viewpoint& from, std::vector<StaticConstraint>& out) const;
+  /// What a half-plane is named by: the enclosure it stands for, the shape it is built on, and that one's grade.
+  struct Name {
+    std::size_t enclosure;
+    std::size_t shape;
+    geometry::EnclosureGrade grade;
+  };
+  void add_shape(const geometry::ConvexShape& shape, const Name& name, const Viewpoint& from,
+                 std::vector<StaticConstraint>& out) const;
   void add_orca(const Viewpoint& from, std::vector<StaticConstraint>& out) const;
 
   const ObstacleLibrary* library_;

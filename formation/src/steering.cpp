@@ -167,7 +167,7 @@ Follower::Answer Follower::steer(const Situation& s, const std::vector<StaticCon
   return {s.preferred, Mode::direct, 0, "left the boundary: nearer to the goal than where it was met, and unblocked"};
 }
 
-void Follower::commit(const Situation& s, int side, const RecordedConstraint& followed) {
+void Follower::commit(const Situation& s, int side, std::size_t followed) {
   following_ = true;
   side_ = side;
   hit_distance_ = norm(s.goal - s.robot.position);
@@ -200,8 +200,8 @@ Follower::Answer Follower::begin(const Situation& s, const std::vector<StaticCon
   const std::optional<Sweep> right = sweep(near, s.preferred, -1.0, s.robot.max_speed);
   if (!left || !right) return {s.preferred, Mode::direct, 0, ""};  // one exists iff the other does
   Follower to_left, to_right;
-  to_left.commit(s, 1, near[left->last].recorded);
-  to_right.commit(s, -1, near[right->last].recorded);
+  to_left.commit(s, 1, near[left->last].shape);
+  to_right.commit(s, -1, near[right->last].shape);
   const bool go_left = to_left.rehearse(s) <= to_right.rehearse(s) + s.time_step;
   *this = go_left ? to_left : to_right;
   return {(go_left ? left : right)->velocity, Mode::following, side_,
@@ -213,14 +213,14 @@ Follower::Answer Follower::follow(const Situation& s, const std::vector<StaticCo
   last_position_ = s.robot.position;
   Answer answer{s.preferred, Mode::following, side_, ""};
   // Start the turn at the followed shape itself, so that the boundary is hugged round its corners.
-  const auto same = [&](const StaticConstraint& c) { return c.recorded.index == followed_->index; };
+  const auto same = [&](const StaticConstraint& c) { return c.shape == followed_; };
   const auto followed = std::find_if(near.begin(), near.end(), same);
   const Vec2 start = followed == near.end() ? s.preferred : -followed->away;
   for (double speed = s.robot.max_speed; speed > kLeastFollowing * s.robot.max_speed; speed *= 0.5) {
     const std::optional<Sweep> found = sweep(near, start, side_, speed);
     if (!found) continue;
     answer.preferred = found->velocity;
-    if (found->last != Sweep::kNone) followed_ = near[found->last].recorded;
+    if (found->last != Sweep::kNone) followed_ = near[found->last].shape;
     break;
   }
   if (!circled_ && walked_ > 4.0 * kCircleReach && norm(s.robot.position - hit_) < kCircleReach) {

@@ -72,7 +72,7 @@ class Follower {
   bool stalled(const Situation& s);
   Answer begin(const Situation& s, const std::vector<StaticConstraint>& near);
   Answer follow(const Situation& s, const std::vector<StaticConstraint>& near);
-  void commit(const Situation& s, int side, const RecordedConstraint& followed);
+  void commit(const Situation& s, int side, std::size_t followed);
   double rehearse(Situation s) const;
   bool may_leave(const Situation& s, const std::vector<StaticConstraint>& near) const;
 
@@ -83,9 +83,9 @@ class Follower {
   double walked_ = 0.0;        ///< m since then
   Vec2 last_position_;
   bool circled_ = false;
-  std::optional<RecordedConstraint> followed_;  ///< the shape whose boundary is followed
-  double best_distance_ = -1.0;                 ///< m, least to the goal so far
-  double best_time_ = 0.0;                      ///< s, when that was first reached with a margin
+  std::size_t followed_ = 0;     ///< the shape whose boundary is followed
+  double best_distance_ = -1.0;  ///< m, least to the goal so far
+  double best_time_ = 0.0;       ///< s, when that was first reached with a margin
 };
 
 /// Chooses a side when blocked and keeps it while blocked (formations).

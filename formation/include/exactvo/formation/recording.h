@@ -14,14 +14,14 @@
 namespace exactvo::formation {
 
 /// Where a half-plane comes from.
-enum class ConstraintSource { enclosure, obstacle_edge, robot };
+enum class ConstraintSource { enclosure, obstacle_edge, robot, moving_obstacle };
 
 /// One half-plane of a decision, with enough beside it to prove it again: the convex shape (grown by `radius`, seen
 /// from `position`, horizon `tau`) whose velocity obstacle it excludes.
 struct RecordedConstraint {
   geometry::HalfPlane half_plane;
   ConstraintSource source = ConstraintSource::enclosure;
-  std::size_t index = 0;  ///< of the enclosure, obstacle edge or other robot
+  std::size_t index = 0;  ///< of the enclosure, obstacle edge, other robot or moving obstacle
   bool certified = false;
   bool hard = true;
   bool active = false;  ///< binds the chosen velocity
@@ -77,7 +77,8 @@ struct Recording {
   std::vector<Vec2> offsets;   ///< m, Delta_i as the controller used them (recentred or not); empty without a formation
   bool diverged = false;       ///< the formation's error grew to the end, or the state left every bound
   std::string outcome;         ///< in words, for people
-  double wall_time = 0.0;      ///< s
+  std::vector<std::string> warnings;  ///< what was said before the run: a step beyond the integrator's limit
+  double wall_time = 0.0;             ///< s
 };
 
 }  // namespace exactvo::formation

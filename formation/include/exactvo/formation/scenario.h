@@ -25,6 +25,7 @@ struct Robot {
   double radius = 0.5;      ///< m, > 0
   double max_speed = 3.0;   ///< m/s, > 0
   std::vector<Vec2> goals;  ///< m, visited in order; empty for a robot of a formation
+  bool cooperates = true;   ///< false: it ignores other robots, and they take the whole avoiding (alpha = 1)
 };
 
 struct SceneObstacle {
@@ -57,6 +58,14 @@ struct Margins {
 struct Leader {
   std::vector<Vec2> path;  ///< m, at least one point
   double speed = 0.0;      ///< m/s, >= 0
+};
+
+/// An obstacle that moves without turning: `shape` as it stands at t = 0, carried along `motion`. Robots see the
+/// convex hull and take the whole avoiding upon themselves.
+struct MovingObstacle {
+  std::string id;
+  geometry::Obstacle shape;
+  Leader motion;  ///< its path's first point is the origin of the displacement
 };
 
 /// Gains of equations (14), (15) and (17).
@@ -95,6 +104,7 @@ struct Scenario {
   double time_limit = 120.0;         ///< s, > 0
   double arrival_tolerance = 0.1;    ///< m: within this of the last goal a robot has arrived
   double neighbour_distance = 15.0;  ///< m: robots farther apart ignore each other
+  std::vector<MovingObstacle> moving_obstacles;
 };
 
 }  // namespace exactvo::formation

@@ -6,10 +6,12 @@
 /// for bit, on every machine with IEEE doubles.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "exactvo/formation/recording.h"
+#include "exactvo/formation/remedies.h"
 #include "exactvo/formation/scenario.h"
 
 namespace exactvo::formation {
@@ -24,14 +26,18 @@ enum class Method {
 enum class Controller {
   paper_literal,  ///< equations (14)-(17) as printed
   paper_signs,    ///< the sign errors of (15) and (17) mended, nothing else
+  corrected,      ///< the equations as docs/guide/errata.md corrects them, in the paper's order: filter first
   standard        ///< the default: saturated preference, filter last, brake point, side commitment
 };
 
 enum class Integrator { exact, euler, rk4, dopri5, rosenbrock4 };
 
+/// The remedies that a controller consists of.
+Remedies remedies_of(Controller controller);
+
 /// "ivo-edge" and so on, as on the command line; `parse_*` gives nothing for an unknown name.
 const char* name(Method m);
-const char* name(Controller c);  ///< "paper-literal", "paper-signs", "default"
+const char* name(Controller c);  ///< "paper-literal", "paper-signs", "corrected", "default"
 const char* name(Integrator i);
 const char* name(Mode m);
 std::vector<std::string> method_names();
@@ -45,6 +51,7 @@ struct SimulationOptions {
   Method method = Method::ivo;
   Controller controller = Controller::standard;  ///< used by formations only
   Integrator integrator = Integrator::exact;     ///< used by formations only
+  std::optional<Remedies> remedies;              ///< formations: these instead of the controller's
   double facade_minor_to_major = 0.5;            ///< ivo_edge: b = this * a
   double facade_fixed_minor = 0.0;               ///< m, ivo_edge: > 0 fixes b
   bool record_all = false;                       ///< keep every half-plane, not only the active ones

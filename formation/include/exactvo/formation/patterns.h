@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Formation patterns by name, and topologies for any number of robots. Offsets are in metres, in the frame whose x
+/// axis is `heading`, with their mean at the origin.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+
+namespace exactvo::formation {
+
+enum class Pattern {
+  line,    ///< side by side, across the heading
+  wedge,   ///< a V whose point leads
+  circle,  ///< neighbours `spacing` apart
+  grid     ///< rows of ceil(sqrt n), the last one centred
+};
+
+/// "line", "wedge", "circle", "grid".
+const char* name(Pattern pattern);
+std::vector<std::string> pattern_names();
+bool parse(const std::string& text, Pattern& out);
+
+/// `n` slots, neighbours `spacing` (m, > 0) apart, in a fixed order. REQUIRES: n >= 1.
+std::vector<Vec2> pattern_offsets(Pattern pattern, std::size_t n, double spacing, Vec2 heading = {1.0, 0.0});
+
+/// Everybody hears everybody and the leader.
+Topology complete_topology(std::size_t n);
+
+/// Each hears whoever stands within `reach` (m) of its slot; `pinned` lists those who hear the leader (none: all do).
+Topology neighbour_topology(const std::vector<Vec2>& offsets, double reach,
+                            const std::vector<std::size_t>& pinned = {});
+
+}  // namespace exactvo::formation

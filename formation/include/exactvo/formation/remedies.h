@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What separates the paper's formation controller from one that keeps its promises, each on a switch of its own, so
+/// that causes can be told apart (docs/guide/formation.md). The controllers of simulation.h are sets of these.
+
+#include <string>
+#include <vector>
+
+namespace exactvo::formation {
+
+struct Remedies {
+  bool signs = true;                ///< (15) and (17) with their signs mended; without it they are as printed
+  bool recentred = true;            ///< offsets as equation (4) needs them, where the scenario asks for it
+  bool absolute_frame = true;       ///< V_IVO is an absolute velocity; the paper adds the leader's to it
+  bool saturation = true;           ///< v_pref slows towards the slot; the paper's keeps its magnitude
+  bool tau_clamp = true;            ///< horizons within their bounds; the paper's tau = dist / |v|
+  bool filter_last = true;          ///< consensus goes into v_pref, what is tracked is safe; the paper adds it behind
+  bool brake_point = true;          ///< velocity obstacles at x + v / k3, whose velocity is what is tracked
+  bool margins = true;              ///< the scenario's margins; without it the robots' is 0
+  bool side_commitment = true;      ///< a side is chosen once and kept while blocked
+  bool smoothing = false;           ///< v_pref averaged with the last tracked velocity, 1 to 4, before the projection
+  double acceleration_bound = 0.0;  ///< m/s^2, > 0: |u| is held below it; heuristic, see docs/guide/formation.md
+};
+
+/// A set of remedies with the name under which it is reported.
+struct NamedRemedies {
+  std::string name;
+  Remedies remedies;
+};
+
+/// From the mended signs without margins to the default, one remedy more a rung. (The paper's controllers themselves
+/// keep the scenario's margins.)
+std::vector<NamedRemedies> remedy_ladder();
+
+/// The default with one remedy taken away (or smoothing added) at a time.
+std::vector<NamedRemedies> remedy_ablations();
+
+}  // namespace exactvo::formation

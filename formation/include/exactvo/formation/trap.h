@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// When does a robot get stuck? The trap test (docs/guide/trap-test.md): a robot that slides along the boundary of an
+/// enclosure grown by its radius, heading for a goal behind it, comes to rest where the way to the goal is normal to
+/// the boundary and the goal lies nearer than the centre of curvature (D < rho).
+///
+/// Exact: `stall_possible` of an ellipse or disc (predicate F: the goal on or inside the evolute), `start_clear` and
+/// `goal_clear`. Rounded: everything with a length in it. For polygons and segments the sign is rounded too: a flat
+/// edge traps wherever the goal's foot lies within it.
+
+#include <optional>
+#include <vector>
+
+#include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/enclosure.h"
+
+namespace exactvo::formation {
+
+/// A point where a robot that heads for the goal can rest against the shape.
+struct Equilibrium {
+  Vec2 position;                   ///< m, of the robot's centre
+  Vec2 normal;                     ///< unit, out of the shape
+  double radius_of_curvature = 0;  ///< m, rho of the grown boundary; infinite on a flat edge
+  double distance = 0;             ///< m, D to the goal
+  bool stable = false;             ///< D < rho: the robot stays; otherwise it slides off at the slightest offset
+  double rate_at(double max_speed) const;  ///< 1/s: offsets grow like e^{rate t}; negative where stable
+};
+
+/// Every equilibrium of a robot of `robot_radius` heading for `goal` on the far side of `shape`, ordered by angle.
+/// REQUIRES: the goal outside the grown shape.
+std::vector<Equilibrium> equilibria(const geometry::ConvexShape& shape, double robot_radius, Vec2 goal);
+
+/// s; how long an offset s0 from an unstable equilibrium takes to grow to s1: ln(s1 / s0) / rate. Linearised: right to
+/// second order in s1 / rho. REQUIRES: 0 < s0 <= s1, an unstable equilibrium.
+double escape_time(const Equilibrium& e, double max_speed, double s0, double s1);
+
+/// Whether some start may stall at `shape` on the way to `goal`. Exact for ellipses and discs.
+bool stall_possible(const geometry::ConvexShape& shape, Vec2 goal);
+
+/// ((a |gx|)^(2/3) + (b |gy|)^(2/3)) / (a^2 - b^2)^(2/3) - 1: how far the goal lies outside the evolute, relatively;
+/// negative inside, infinite for a circle. Rounded; 0 crossing decided by `stall_possible`.
+double evolute_margin(const geometry::Ellipse& ellipse, Vec2 goal);
+
+struct TrapFinding {
+  std::size_t robot = 0;
+  Vec2 goal;  ///< m
+  geometry::Enclosure enclosure;
+  bool start_clear = false;  ///< the start lies outside the grown enclosure
+  bool goal_clear = false;   ///< so does the goal
+  bool stall_possible = false;
+  std::optional<double> margin;         ///< evolute margin of an ellipse
+  std::vector<Equilibrium> equilibria;  ///< where the goal is clear
+  /// s; for a robot that goes straight from the start and meets the boundary: how long it slides before the way is
+  /// free. Nothing where it misses the shape, or would come to rest.
+  std::optional<double> slide_time;
+};
+
+/// Every robot against every enclosure that the method builds for it. REQUIRES: a valid scenario.
+std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOptions& options = {});
+
+}  // namespace exactvo::formation

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Formations: Sections IV and V.B, with the remedies of remedies.h.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "consensus.h"
+#include "decision.h"
+#include "exactvo/formation/stability.h"
+#include "integrators.h"
+#include "leader.h"
+#include "moving.h"
+#include "remedies.h"
+#include "run_clock.h"
+#include "runs.h"
+#include "slot_follower.h"
+#include "static_field.h"
+#include "steering.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::norm;
+
+struct FormationRobot {
+  BodyState body;
+  Vec2 tracked;  ///< w of the step before
+  StaticField field;
+  SideCommitment side;
+  SlotFollower slot;
+};
+
+Scenario with_margins(Scenario scenario, const Remedies& remedies) {
+  if (!remedies.margins) scenario.margins.robot = 0.0;
+  return scenario;
+}
+
+class FormationRun {
+ public:
+  FormationRun(const Scenario& scenario, const SimulationOptions& options)
+      : remedies_(remedies_in_use(options)),
+        scenario_(with_margins(scenario, remedies_)),
+        spec_(*scenario_.formation),
+        options_(options),
+        library_(scenario_),
+        clock_(scenario_, options),
+        offsets_(offsets_in_use(spec_, remedies_)) {
+    const HorizonRule rule = remedies_.tau_clamp ? HorizonRule::clamped : HorizonRule::literal;
+    for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
+      const Robot& r = scenario_.robots[i];
+      const Vec2 slot = spec_.leader.path.back() + offsets_[i];
+      robots_.push_back({{r.position, r.velocity},
+                         r.velocity,
+                         StaticField(library_, scenario_, options, r.radius, r.position, slot, rule),
+                         {},
+                         {}});
+    }
+  }
+
+  Recording run() {
+    Recording recording;
+    recording.motion = motion_of(options_.integrator);
+    recording.time_step = scenario_.time_step;
+    recording.tracking_gain = spec_.gains.k3;
+    recording.offsets = offsets_;
+    recording.warnings = step_warnings(spec_, options_.integrator, scenario_.time_step);
+    for (std::size_t k = 0; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
+      recording.steps.push_back(decide_all(clock_.time(k)));
+      move(recording.steps.back());
+    }
+    recording.steps.push_back(state_row(clock_.time(recording.steps.size())));
+    judge(recording);
+    return recording;
+  }
+
+ private:
+  /// Where half-planes are built: the brake point x + v / k3, whose velocity is exactly w; the paper builds them at x.
+  Vec2 anchor(std::size_t i) const {
+    const BodyState& b = robots_[i].body;
+    return remedies_.brake_point ? b.position + b.velocity / spec_.gains.k3 : b.position;
+  }
+  Vec2 anchor_velocity(std::size_t i) const {
+    return remedies_.brake_point ? robots_[i].tracked : robots_[i].body.velocity;
+  }
+
+  RelativeState relative_to(const LeaderState& leader) const {
+    RelativeState s;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      s.position.push_back(robots_[i].body.position - leader.position - offsets_[i]);
+      s.velocity.push_back(robots_[i].body.velocity - leader.velocity);
+    }
+    return s;
+  }
+
+  Step decide_all(double time) {
+    Step row = state_row(time);
+    const LeaderState leader{row.leader_position, row.leader_velocity};
+    const RelativeState relative = relative_to(leader);
+    std::vector<Vec2> anchors, velocities;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      anchors.push_back(anchor(i));
+      velocities.push_back(anchor_velocity(i));
+    }
+    auto robot_lines = robot_constraints(scenario_, options_, anchors, velocities);
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      decide_one(i, time, leader, relative, robot_lines[i], row.robots[i]);
+    return row;
+  }
+
+  void decide_one(std::size_t i, double time, const LeaderState& leader, const RelativeState& relative,
+                  std::vector<RobotConstraint>& robot_lines, RobotStep& step) {
+    const Robot& spec = scenario_.robots[i];
+    const Viewpoint here{anchor(i), anchor_velocity(i), spec.radius, spec.max_speed};
+    const std::vector<StaticConstraint> statics = robots_[i].field.constraints(here);
+    for (RobotConstraint& c : moving_constraints(scenario_, here, time)) robot_lines.push_back(std::move(c));
+    const Vec2 wanted = wanted_velocity(i, leader, relative);
+    const SlotFollower::Situation situation{
+        time,  norm(relative.position[i]), scenario_.arrival_tolerance, spec_.catch_up_speed, leader.velocity == Vec2{},
+        wanted};
+    DecisionInput in{steered(i, situation, statics, robot_lines, step), spec.max_speed, &statics, &robot_lines,
+                     clock_.keeps_all(time)};
+    decide(scenario_, in, step);
+    if (!remedies_.smoothing) return;
+    // Math: v_pref <- (v_pref + 4 w_prev) / 5, projected.
+    in.preferred = (in.preferred + 4.0 * robots_[i].tracked) / 5.0;
+    decide(scenario_, in, step);
+  }
+
+  /// The preference, with the consensus term in it where the filter comes last.
+  Vec2 wanted_velocity(std::size_t i, const LeaderState& leader, const RelativeState& relative) const {
+    const Vec2 slotwards =
+        preference(spec_, remedies_, relative.position[i], leader.velocity, scenario_.robots[i].max_speed);
+    if (!remedies_.filter_last) return slotwards;
+    return slotwards + consensus_input(spec_, relative, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
+  }
+
+  Vec2 steered(std::size_t i, SlotFollower::Situation situation, const std::vector<StaticConstraint>& statics,
+               const std::vector<RobotConstraint>& robot_lines, RobotStep& step) {
+    const Vec2 wanted = situation.preferred;
+    if (!remedies_.side_commitment) return wanted;
+    const double speed = std::min(norm(wanted), scenario_.robots[i].max_speed);
+    const SideCommitment::Answer answer = robots_[i].side.steer(wanted, speed, statics);
+    step.side = answer.side;
+    if (answer.side != 0) step.mode = Mode::following;
+    situation.preferred = answer.preferred;
+    const Follower::Answer round = robots_[i].slot.steer(situation, statics, robot_lines);
+    step.note = round.note;
+    if (round.mode != Mode::following) return answer.preferred;
+    step.mode = Mode::following;
+    step.side = round.side;
+    return round.preferred;
+  }
+
+  /// What v follows: the filter's answer itself, or, in the paper's order, the sum in which it is one term.
+  Vec2 tracked_velocity(std::size_t i, const Step& row, const RelativeState& relative) const {
+    Vec2 w = row.robots[i].chosen;
+    if (!remedies_.filter_last) w += consensus_input(spec_, relative, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
+    if (!remedies_.absolute_frame) w += row.leader_velocity;
+    return bounded_change(i, w);
+  }
+
+  /// w drawn towards v so that |k3 (v - w)| keeps the bound. Between two allowed velocities all are allowed; from a
+  /// velocity that is not, this may stay outside a half-plane for as long as the bound needs.
+  Vec2 bounded_change(std::size_t i, Vec2 w) const {
+    if (!(remedies_.acceleration_bound > 0.0)) return w;
+    const Vec2 v = robots_[i].body.velocity;
+    const double most = remedies_.acceleration_bound / spec_.gains.k3;
+    const double asked = norm(w - v);
+    return asked <= most ? w : v + (most / asked) * (w - v);
+  }
+
+  void move(const Step& row) {
+    const RelativeState relative = relative_to({row.leader_position, row.leader_velocity});
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      robots_[i].tracked = tracked_velocity(i, row, relative);
+      robots_[i].body =
+          step_body(options_.integrator, robots_[i].body, robots_[i].tracked, spec_.gains.k3, scenario_.time_step);
+    }
+  }
+
+  Step state_row(double time) const {
+    Step row;
+    row.time = time;
+    const LeaderState leader = leader_at(spec_.leader, time);
+    row.leader_position = leader.position;
+    row.leader_velocity = leader.velocity;
+    for (const FormationRobot& r : robots_) {
+      RobotStep step;
+      step.position = r.body.position;
+      step.velocity = r.body.velocity;
+      row.robots.push_back(step);
+    }
+    return row;
+  }
+
+  /// m: beyond this nothing is worth computing (an explicit Euler step past its limit gets here in seconds).
+  static constexpr double kOutOfBounds = 1e6;
+
+  bool out_of_bounds() const {
+    for (const FormationRobot& r : robots_)
+      if (!(norm(r.body.position) < kOutOfBounds && norm(r.body.velocity) < kOutOfBounds)) return true;
+    return false;
+  }
+
+  double error_in(const Step& row) const {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < row.robots.size(); ++i)
+      worst = std::max(worst, norm(row.robots[i].position - row.leader_position - offsets_[i]));
+    return worst;
+  }
+
+  void judge(Recording& recording) const {
+    const double first = error_in(recording.steps.front());
+    const double last = error_in(recording.steps.back());
+    // Judged by the end alone: a formation that ends farther from its slots than it began has not formed.
+    constexpr double kArrivedOnce = 1.0;  // m: an error this small is no divergence even when the start was exact
+    recording.diverged = out_of_bounds() || last > std::max(first, kArrivedOnce);
+    recording.outcome = recording.diverged ? "diverged: the formation error grew from " + std::to_string(first) +
+                                                 " m to " + std::to_string(last) + " m"
+                                           : "formation error " + std::to_string(last) + " m at the end";
+  }
+
+  Remedies remedies_;
+  Scenario scenario_;
+  const FormationSpec& spec_;
+  const SimulationOptions& options_;
+  ObstacleLibrary library_;
+  RunClock clock_;
+  std::vector<Vec2> offsets_;
+  std::vector<FormationRobot> robots_;
+};
+
+}  // namespace
+
+Recording run_formation(const Scenario& scenario, const SimulationOptions& options) {
+  return FormationRun(scenario, options).run();
+}
+
+}  // namespace exactvo::formation::detail

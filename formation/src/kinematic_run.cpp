@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Kinematic robots with goals: Section V.A.
+#include <algorithm>
+#include <string>
+
+#include "decision.h"
+#include "moving.h"
+#include "run_clock.h"
+#include "runs.h"
+#include "static_field.h"
+#include "steering.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::norm;
+
+struct KinematicRobot {
+  Vec2 position;
+  Vec2 velocity;
+  std::size_t goal = 0;
+  std::optional<StaticField> field;
+  Follower follower;
+};
+
+class KinematicRun {
+ public:
+  KinematicRun(const Scenario& scenario, const SimulationOptions& options)
+      : scenario_(scenario), options_(options), library_(scenario), clock_(scenario, options) {
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+      robots_.push_back({scenario.robots[i].position, scenario.robots[i].velocity, 0, std::nullopt, {}});
+      look_at_goal(i);
+    }
+  }
+
+  Recording run() {
+    Recording recording;
+    recording.motion = MotionLaw::straight;
+    recording.time_step = scenario_.time_step;
+    for (std::size_t k = 0; !clock_.ends_at(k) && !all_arrived(); ++k) {
+      recording.steps.push_back(decide_all(clock_.time(k)));
+      move(recording.steps.back());
+    }
+    recording.steps.push_back(final_row(clock_.time(recording.steps.size())));
+    recording.outcome = outcome();
+    return recording;
+  }
+
+ private:
+  Vec2 goal_of(std::size_t i) const { return scenario_.robots[i].goals[robots_[i].goal]; }
+
+  void look_at_goal(std::size_t i) {
+    const Robot& spec = scenario_.robots[i];
+    robots_[i].field.emplace(library_, scenario_, options_, spec.radius, robots_[i].position, goal_of(i),
+                             HorizonRule::clamped);
+    robots_[i].follower.reset();
+  }
+
+  bool at_goal(std::size_t i) const {
+    const bool last = robots_[i].goal + 1 == scenario_.robots[i].goals.size();
+    return last && norm(goal_of(i) - robots_[i].position) <= scenario_.arrival_tolerance;
+  }
+
+  bool all_arrived() const {
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!at_goal(i)) return false;
+    return true;
+  }
+
+  /// A goal on the way counts as reached within the robot's own radius.
+  void pass_waypoint(std::size_t i) {
+    const Robot& spec = scenario_.robots[i];
+    const double reach = std::max(scenario_.arrival_tolerance, spec.radius);
+    if (robots_[i].goal + 1 >= spec.goals.size() || norm(goal_of(i) - robots_[i].position) > reach) return;
+    ++robots_[i].goal;
+    look_at_goal(i);
+  }
+
+  Step decide_all(double time) {
+    std::vector<Vec2> positions, velocities;
+    for (const KinematicRobot& r : robots_) {
+      positions.push_back(r.position);
+      velocities.push_back(r.velocity);
+    }
+    auto robot_lines = robot_constraints(scenario_, options_, positions, velocities);
+    Step row;
+    row.time = time;
+    for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time, robot_lines[i]));
+    return row;
+  }
+
+  RobotStep decide_one(std::size_t i, double time, std::vector<RobotConstraint>& robot_lines) {
+    pass_waypoint(i);
+    const Robot& spec = scenario_.robots[i];
+    KinematicRobot& r = robots_[i];
+    const Viewpoint here{r.position, r.velocity, spec.radius, spec.max_speed};
+    const std::vector<StaticConstraint> statics = r.field->constraints(here);
+    for (RobotConstraint& c : moving_constraints(scenario_, here, time)) robot_lines.push_back(std::move(c));
+    RobotStep step;
+    step.position = r.position;
+    step.velocity = r.velocity;
+    const Vec2 preferred = steer(i, time, statics, step);
+    decide(scenario_, {preferred, spec.max_speed, &statics, &robot_lines, clock_.keeps_all(time)}, step);
+    return step;
+  }
+
+  Vec2 straight_for_goal(std::size_t i) const {
+    const Vec2 to_goal = goal_of(i) - robots_[i].position;
+    const double speed = std::min(scenario_.robots[i].max_speed, norm(to_goal) / scenario_.time_step);
+    return speed * geometry::normalized(to_goal);
+  }
+
+  Vec2 steer(std::size_t i, double time, const std::vector<StaticConstraint>& statics, RobotStep& step) {
+    const Vec2 preferred = straight_for_goal(i);
+    if (at_goal(i)) {
+      step.mode = Mode::arrived;
+      return preferred;
+    }
+    if (!statics.empty() && statics.front().distance < 0.0) step.mode = Mode::pushing_out;
+    if (options_.method == Method::orca) return preferred;
+    if (options_.method != Method::ivo) return with_tie_broken(statics, preferred);
+    const Robot& spec = scenario_.robots[i];
+    const Viewpoint here{robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
+    const Follower::Answer answer =
+        robots_[i].follower.steer({time, scenario_.time_step, here, goal_of(i),
+                                   spec.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field},
+                                  statics);
+    step.mode = answer.mode;
+    step.side = answer.side;
+    step.note = answer.note;
+    if (answer.mode == Mode::following) return answer.preferred;
+    const std::optional<Vec2> boost = boosted(statics, preferred);
+    if (!boost) return with_tie_broken(statics, preferred);
+    step.mode = Mode::boost;
+    return *boost;
+  }
+
+  void move(const Step& row) {
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      robots_[i].velocity = row.robots[i].chosen;
+      robots_[i].position += scenario_.time_step * row.robots[i].chosen;
+    }
+  }
+
+  Step final_row(double time) const {
+    Step row;
+    row.time = time;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      RobotStep step;
+      step.position = robots_[i].position;
+      step.velocity = robots_[i].velocity;
+      if (at_goal(i)) step.mode = Mode::arrived;
+      row.robots.push_back(step);
+    }
+    return row;
+  }
+
+  std::string outcome() const {
+    std::size_t arrived = 0;
+    for (std::size_t i = 0; i < robots_.size(); ++i) arrived += at_goal(i);
+    if (arrived == robots_.size()) return "all robots arrived";
+    return std::to_string(robots_.size() - arrived) + " of " + std::to_string(robots_.size()) +
+           " robots did not arrive within the time limit";
+  }
+
+  const Scenario& scenario_;
+  const SimulationOptions& options_;
+  ObstacleLibrary library_;
+  RunClock clock_;
+  std::vector<KinematicRobot> robots_;
+};
+
+}  // namespace
+
+Recording run_kinematic(const Scenario& scenario, const SimulationOptions& options) {
+  return KinematicRun(scenario, options).run();
+}
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/patterns.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "exactvo/geometry/require.h"
+
+namespace exactvo::formation {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+constexpr std::array<std::pair<Pattern, const char*>, 4> kNames{
+    {{Pattern::line, "line"}, {Pattern::wedge, "wedge"}, {Pattern::circle, "circle"}, {Pattern::grid, "grid"}}};
+
+Vec2 on_line(std::size_t k) {
+  return {0.0, static_cast<double>(k)};
+}
+
+/// The point, then left and right in turn; each arm's neighbours 1 apart, 45 degrees back.
+Vec2 on_wedge(std::size_t k) {
+  const double rank = static_cast<double>((k + 1) / 2) / std::sqrt(2.0);
+  return {-rank, k % 2 == 1 ? rank : -rank};
+}
+
+Vec2 on_circle(std::size_t k, std::size_t n) {
+  if (n == 1) return {};
+  const double turn = 2.0 * kPi / static_cast<double>(n);
+  const double radius = 0.5 / std::sin(0.5 * turn);
+  const double angle = turn * static_cast<double>(k);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+Vec2 on_grid(std::size_t k, std::size_t n) {
+  const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(n))));
+  const std::size_t row = k / columns;
+  const std::size_t in_row = std::min(columns, n - row * columns);
+  const double middle = 0.5 * static_cast<double>(in_row - 1);
+  return {-static_cast<double>(row), static_cast<double>(k % columns) - middle};
+}
+
+Vec2 slot(Pattern pattern, std::size_t k, std::size_t n) {
+  switch (pattern) {
+    case Pattern::line:
+      return on_line(k);
+    case Pattern::wedge:
+      return on_wedge(k);
+    case Pattern::circle:
+      return on_circle(k, n);
+    case Pattern::grid:
+      return on_grid(k, n);
+  }
+  return {};
+}
+
+}  // namespace
+
+const char* name(Pattern pattern) {
+  return kNames.at(static_cast<std::size_t>(pattern)).second;
+}
+
+std::vector<std::string> pattern_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : kNames) names.emplace_back(entry.second);
+  return names;
+}
+
+bool parse(const std::string& text, Pattern& out) {
+  for (const auto& [pattern, known] : kNames) {
+    if (text != known) continue;
+    out = pattern;
+    return true;
+  }
+  return false;
+}
+
+std::vector<Vec2> pattern_offsets(Pattern pattern, std::size_t n, double spacing, Vec2 heading) {
+  EXACTVO_REQUIRE(n >= 1, std::to_string(n));
+  EXACTVO_REQUIRE(spacing > 0.0 && std::isfinite(spacing), std::to_string(spacing));
+  const Vec2 forward = geometry::normalized(heading);
+  std::vector<Vec2> offsets;
+  Vec2 mean{};
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec2 local = spacing * slot(pattern, k, n);
+    offsets.push_back(local.x * forward + local.y * geometry::perp(forward));
+    mean += offsets.back();
+  }
+  mean = mean / static_cast<double>(n);
+  for (Vec2& d : offsets) d -= mean;
+  return offsets;
+}
+
+Topology complete_topology(std::size_t n) {
+  Topology t;
+  t.adjacency.assign(n, std::vector<double>(n, 1.0));
+  for (std::size_t i = 0; i < n; ++i) t.adjacency[i][i] = 0.0;
+  t.pinning.assign(n, 1.0);
+  return t;
+}
+
+Topology neighbour_topology(const std::vector<Vec2>& offsets, double reach, const std::vector<std::size_t>& pinned) {
+  const std::size_t n = offsets.size();
+  Topology t;
+  t.adjacency.assign(n, std::vector<double>(n, 0.0));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if (i != j && norm(offsets[i] - offsets[j]) <= reach) t.adjacency[i][j] = 1.0;
+  t.pinning.assign(n, pinned.empty() ? 1.0 : 0.0);
+  for (std::size_t i : pinned) t.pinning.at(i) = 1.0;
+  return t;
+}
+
+}  // namespace exactvo::formation

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/stuck.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "boundary.h"
+#include "exactvo/geometry/require.h"
+#include "exactvo/vo/velocity_obstacle.h"
+
+namespace exactvo::formation {
+namespace {
+
+using geometry::norm;
+
+Vec2 target_of(const Scenario& s, const Recording& recording, std::size_t i) {
+  if (!s.formation) return s.robots[i].goals.back();
+  return recording.steps.back().leader_position + recording.offsets[i];
+}
+
+BindingConstraint binding_of(const RecordedConstraint& c, Vec2 robot) {
+  const vo::VelocityObstacle vo(c.shape, robot, c.radius, c.tau > 0.0 ? c.tau : 1.0);
+  const vo::VelocityObstacle::Nearest nearest = vo.nearest();
+  const double rho = detail::Boundary(c.shape, c.radius).radius_of_curvature(nearest.normal);
+  return {c, nearest.normal, nearest.distance, rho};
+}
+
+/// rad: the way to the goal counts as normal to the boundary within this angle. A robot that has nearly come to rest on
+/// a flat trap still creeps towards its foot; the tie-break keeps it about 1e-3 off.
+constexpr double kHeadOn = 0.05;
+
+std::optional<Equilibrium> resting_on(const BindingConstraint& b, Vec2 robot, Vec2 target) {
+  const Vec2 ahead = geometry::normalized(target - robot);
+  if (dot(ahead, b.normal) >= 0.0 || std::fabs(cross(ahead, b.normal)) > kHeadOn) return std::nullopt;
+  Equilibrium e;
+  e.position = robot;
+  e.normal = b.normal;
+  e.radius_of_curvature = b.radius_of_curvature;
+  e.distance = norm(target - robot);
+  e.stable = e.distance < e.radius_of_curvature;
+  return e;
+}
+
+std::string printed(const char* format, double a, double b = 0.0, double c = 0.0) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, a, b, c);
+  return text;
+}
+
+std::string length(double x) {
+  return std::isfinite(x) ? printed("%.3g m", x) : "infinite (a flat edge)";
+}
+
+std::string source_text(const RecordedConstraint& c) {
+  const char* what[] = {"enclosure", "edge of obstacle", "robot", "moving obstacle"};
+  return std::string(what[static_cast<std::size_t>(c.source)]) + " " + std::to_string(c.index);
+}
+
+std::string sentence(const StuckReport& r, const std::string& id) {
+  std::string text = id + " ended " + length(r.goal_distance) + " from its goal" +
+                     printed(", at (%.3f, %.3f), moving at %.2g m/s", r.position.x, r.position.y, r.speed) + "; ";
+  if (r.binding.empty()) return text + "nothing binds: it was on its way";
+  text += "bound by ";
+  for (std::size_t k = 0; k < r.binding.size(); ++k) text += (k ? " and " : "") + source_text(r.binding[k].constraint);
+  if (!r.equilibrium) return text + (r.binding.size() > 1 ? ", between which it rests" : "");
+  return text + ": the way to the goal is normal to the boundary there, whose radius of curvature is " +
+         length(r.equilibrium->radius_of_curvature) +
+         (r.equilibrium->stable ? ", more than that distance: a stable trap" : ": unstable, it is sliding off");
+}
+
+}  // namespace
+
+std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording) {
+  EXACTVO_REQUIRE(!recording.steps.empty(), "an empty recording");
+  std::vector<StuckReport> reports;
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const RobotStep& end = recording.steps.back().robots[i];
+    const Vec2 target = target_of(scenario, recording, i);
+    StuckReport r;
+    r.robot = i;
+    r.position = end.position;
+    r.goal_distance = norm(target - end.position);
+    if (r.goal_distance <= scenario.arrival_tolerance) continue;
+    r.speed = norm(end.velocity);
+    if (recording.steps.size() > 1)
+      for (const RecordedConstraint& c : recording.steps[recording.steps.size() - 2].robots[i].constraints)
+        if (c.active) r.binding.push_back(binding_of(c, end.position));
+    if (r.binding.size() == 1) r.equilibrium = resting_on(r.binding.front(), end.position, target);
+    r.text = sentence(r, scenario.robots[i].id);
+    reports.push_back(std::move(r));
+  }
+  return reports;
+}
+
+}  // namespace exactvo::formation

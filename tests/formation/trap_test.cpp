@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/trap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "paper_scenes.h"
+#include "trap_cases.h"
+
+namespace exactvo::formation {
+namespace {
+
+using test::kRobot;
+using test::kSpeed;
+
+TEST(Trap, AFlatWallAlwaysTrapsWhoseFootLiesWithinIt) {
+  const geometry::Segment wall{{0.0, -3.0}, {0.0, 3.0}};
+  EXPECT_TRUE(stall_possible(wall, {5.0, 1.0}));
+  EXPECT_FALSE(stall_possible(wall, {5.0, 3.5}));
+  const auto found = equilibria(wall, kRobot, {5.0, 1.0});
+  // The flat side, stable, and the two rounded ends, unstable.
+  ASSERT_EQ(found.size(), 3u);
+  int stable = 0;
+  for (const Equilibrium& e : found) {
+    stable += e.stable;
+    EXPECT_EQ(e.stable, std::isinf(e.radius_of_curvature));
+    if (e.stable) {
+      EXPECT_NEAR(e.position.x, -kRobot, 1e-12);
+      EXPECT_NEAR(e.position.y, 1.0, 1e-12);
+    }
+  }
+  EXPECT_EQ(stable, 1);
+}
+
+TEST(Trap, ADiscNeverTraps) {
+  const geometry::Disc disc{{0.0, 0.0}, 2.0};
+  EXPECT_FALSE(stall_possible(disc, {5.0, 0.0}));
+  const auto found = equilibria(disc, kRobot, {5.0, 0.0});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_FALSE(found[0].stable);
+  EXPECT_NEAR(found[0].position.x, -2.5, 1e-9);
+  EXPECT_NEAR(found[0].radius_of_curvature, 2.5, 1e-12);
+  EXPECT_NEAR(found[0].distance, 7.5, 1e-9);
+}
+
+TEST(Trap, OnTheMinorAxisTheNoteGivesTheLeastSemiMinorAxis) {
+  // b >= (-g + sqrt(g^2 + 4 a^2)) / 2.
+  const double a = 3.0, g = 4.0;
+  const double least = 0.5 * (-g + std::sqrt(g * g + 4.0 * a * a));
+  const geometry::Ellipse thin{{0.0, 0.0}, 0.999 * least, 0.0, a}, thick{{0.0, 0.0}, 1.001 * least, 0.0, a};
+  EXPECT_TRUE(stall_possible(thin, {g, 0.0}));
+  EXPECT_FALSE(stall_possible(thick, {g, 0.0}));
+  EXPECT_LT(evolute_margin(thin, {g, 0.0}), 0.0);
+  EXPECT_GT(evolute_margin(thick, {g, 0.0}), 0.0);
+}
+
+TEST(Trap, AStableEquilibriumExistsExactlyInsideTheEvolute) {
+  test::SeededRandom random(test::seed_of_run(11));
+  int traps = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double a = random.uniform(1.0, 5.0), b = random.uniform(0.1, 0.99) * a;
+    const geometry::Ellipse e = geometry::ellipse_from_axes(random.in_box(3.0), {a, b, random.uniform(-1.5, 1.5)});
+    const Vec2 goal = e.center + random.in_box(2.0 * a);
+    if (geometry::locate(geometry::GrownShape{e, {}, kRobot}, goal) != geometry::Place::outside) continue;
+    // Nearer to the evolute than this the two roots fall into one sample.
+    if (std::fabs(evolute_margin(e, goal)) < 1e-2) continue;
+    bool stable = false;
+    for (const Equilibrium& q : equilibria(e, kRobot, goal)) stable = stable || q.stable;
+    ASSERT_EQ(stable, stall_possible(e, goal)) << geometry::to_string(e) << " goal " << goal.x << " " << goal.y;
+    traps += stable;
+  }
+  EXPECT_GT(traps, 100);
+}
+
+TEST(Trap, AgreesWithSimulation) {
+  test::SeededRandom random(test::seed_of_run(12));
+  int traps = 0;
+  for (int k = 0; k < 60; ++k) {
+    const test::TrapCase c = test::random_trap_case(random);
+    EXPECT_TRUE(test::agrees(c)) << "case " << k << ", margin " << c.margin;
+    traps += stall_possible(c.ellipse, c.goal);
+  }
+  EXPECT_GT(traps, 3);
+  EXPECT_LT(traps, 50);
+}
+
+/// s between the two offsets, in a simulation of small steps; interpolated within a step.
+double simulated_escape(const test::TrapCase& c, const Equilibrium& e, double s0, double s1) {
+  Scenario s = c.scenario;
+  s.time_step = 0.002;
+  s.time_limit = 60.0;
+  s.horizons.least = 0.01;  // on the boundary at once
+  // From the boundary itself, half of the way to the first offset.
+  s.robots[0].position = e.position + 1e-4 * e.normal + 0.5 * s0 * geometry::perp(e.normal);
+  const Recording r = simulate(s, c.options);
+  const auto offset = [&](std::size_t k) {
+    return std::fabs(dot(geometry::perp(e.normal), r.steps[k].robots[0].position - e.position));
+  };
+  const auto crossing = [&](double level) {
+    std::size_t k = 1;
+    while (k + 1 < r.steps.size() && offset(k) < level) ++k;
+    const double share = (level - offset(k - 1)) / (offset(k) - offset(k - 1));
+    return r.steps[k - 1].time + share * s.time_step;
+  };
+  return crossing(s1) - crossing(s0);
+}
+
+TEST(Trap, EscapeTimesMatchSimulationWithinOnePerCent) {
+  test::SeededRandom random(test::seed_of_run(13));
+  int judged = 0;
+  for (int k = 0; judged < 50; ++k) {
+    ASSERT_LT(k, 2000);
+    test::TrapCase c = test::random_trap_case(random);
+    // On the minor axis, where the boundary is symmetric and the linear law holds to second order.
+    const geometry::EllipseAxes axes = geometry::axes_of(c.ellipse);
+    c.goal = c.ellipse.center + random.uniform(1.0, 12.0) * geometry::rotated({0.0, 1.0}, axes.angle);
+    if (geometry::locate(test::grown(c.ellipse), c.goal) != geometry::Place::outside) continue;
+    if (evolute_margin(c.ellipse, c.goal) < 0.3) continue;
+    const auto found = equilibria(c.ellipse, kRobot, c.goal);
+    if (found.size() != 1 || !test::place_start(c, 1e-3)) continue;
+    const Equilibrium e = found.front();
+    // Beyond the tie-break's angle, within the linear range.
+    const double s1 = 0.05 * axes.a, s0 = 0.2 * s1;
+    const double angle = 0.5 * s0 * (1.0 / e.radius_of_curvature - 1.0 / e.distance);
+    if (angle < 1.2e-3) continue;
+    const double predicted = escape_time(e, kSpeed, s0, s1);
+    EXPECT_NEAR(simulated_escape(c, e, s0, s1), predicted, 0.01 * predicted) << "case " << k;
+    ++judged;
+  }
+}
+
+TEST(Trap, FindingsOfTheScenesSayWhatTheRunsShow) {
+  // The clusters of A1-A13 carry the certificate where the goal and the start are clear of them.
+  SimulationOptions options;
+  options.method = Method::ivo_cluster;
+  for (const TrapFinding& f : trap_test(test::paper_scene("A4"), options)) {
+    if (!f.enclosure.trap_free()) continue;
+    EXPECT_FALSE(f.stall_possible);
+    EXPECT_TRUE(f.start_clear);
+    EXPECT_GT(f.margin.value(), 0.0);
+    for (const Equilibrium& e : f.equilibria) EXPECT_FALSE(e.stable);
+  }
+  // An ellipse an edge, thin: A11 stops at its wall.
+  options.method = Method::ivo_edge;
+  options.facade_fixed_minor = 0.1;
+  const auto thin = trap_test(test::paper_scene("A11"), options);
+  ASSERT_EQ(thin.size(), 1u);
+  EXPECT_TRUE(thin[0].stall_possible);
+  EXPECT_FALSE(thin[0].slide_time.has_value());
+}
+
+TEST(Trap, SlideTimesAreThoseOfTheRun) {
+  // A disc-like enclosure met off its axis: the robot slides until its way is free.
+  Scenario s;
+  Robot r;
+  r.id = "R1";
+  r.position = {-8.0, 0.5};
+  r.goals = {{9.0, 0.0}};
+  s.robots = {r};
+  s.obstacles = {{"wall", geometry::Polyline{{{0.0, -2.0}, {0.0, 2.0}}}}};
+  s.time_step = 0.005;
+  s.horizons.least = 0.01;
+  SimulationOptions options;
+  options.method = Method::ivo_edge;
+  options.facade_minor_to_major = 0.9;
+  options.record_all = true;
+  const auto found = trap_test(s, options);
+  ASSERT_EQ(found.size(), 1u);
+  ASSERT_TRUE(found[0].slide_time.has_value());
+  const Recording run = simulate(s, options);
+  double sliding = 0.0;
+  for (const Step& row : run.steps)
+    for (const RecordedConstraint& c : row.robots[0].constraints)
+      if (c.active &&
+          geometry::locate({c.shape, {}, r.radius + 0.05}, row.robots[0].position) == geometry::Place::inside)
+        sliding += s.time_step;
+  EXPECT_NEAR(sliding, *found[0].slide_time, 0.1 * *found[0].slide_time);
+}
+
+}  // namespace
+}  // namespace exactvo::formation
