@@ -36,6 +36,12 @@ geometry::ConvexShape to_shape(const JsonCursor& at) {
   return geometry::Ellipse{e.at("center").point(), e.at("l11").number(), e.at("l21").number(), e.at("l22").number()};
 }
 
+std::vector<std::string> to_texts(const JsonCursor& at) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < at.size(); ++i) texts.push_back(at.at(i).text());
+  return texts;
+}
+
 RecordedConstraint to_constraint(const JsonCursor& at) {
   RecordedConstraint c;
   c.half_plane = {at.at("normal").point(), at.at("offset").number()};
@@ -118,6 +124,7 @@ std::size_t read_header(const JsonCursor& at, const std::string& name, Recording
     at.at("offsets").refuse(std::to_string(slots) + " offsets, one a robot of a formation", DataCode::wrong_count);
   recording.diverged = at.at("diverged").truth();
   recording.outcome = at.at("outcome").text();
+  if (at.has("warnings")) recording.warnings = to_texts(at.at("warnings"));
   recording.wall_time = at.at("wall_time").number();
   read_enclosures(at.at("enclosures"), file);
   return at.at("rows").count();

@@ -98,6 +98,9 @@ void append_header(JsonWriter& json, const RecordingFile& file, const std::strin
   json.key("offsets");
   append_points(json, recording.offsets);
   json.member("outcome", recording.outcome).member("rows", recording.steps.size());
+  json.key("warnings").begin_array();
+  for (const std::string& warning : recording.warnings) json.value(warning);
+  json.end_array();
   json.member("rows_sha256", rows_digest);
   json.member("wall_time", recording.wall_time);
   json.key("provenance").raw(to_json(file.info.provenance));

@@ -91,6 +91,7 @@ RecordingFile sample(bool with_formation) {
   file.recording.time_step = 0.02;
   file.recording.tracking_gain = 37.5;
   file.recording.outcome = "all arrived";
+  file.recording.warnings = {"a step of 0.5 s is beyond euler's limit", "\"quoted\""};
   file.recording.wall_time = 0.125;
   for (int k = 0; k < 20; ++k) {
     formation::Step step;
@@ -148,6 +149,7 @@ TEST_F(RecordingFileTest, Property1_EveryBitComesBack) {
     for (std::size_t i = 0; i < a.enclosures.size(); ++i) EXPECT_TRUE(same_bits(a.enclosures[i], b.enclosures[i]));
     EXPECT_EQ(a.recording.motion, b.recording.motion);
     EXPECT_EQ(a.recording.outcome, b.recording.outcome);
+    EXPECT_EQ(a.recording.warnings, b.recording.warnings);
     EXPECT_EQ(a.recording.diverged, b.recording.diverged);
     EXPECT_EQ(a.recording.time_step, b.recording.time_step);
     EXPECT_EQ(a.recording.tracking_gain, b.recording.tracking_gain);
