@@ -10,10 +10,11 @@ Verb paper_verb();
 Verb lp_verb();
 Verb vo_verb();
 Verb audit_verb();
+Verb trap_verb();
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = {simulate_verb(), explain_verb(), paper_verb(),
-                                        lp_verb(),       vo_verb(),      audit_verb()};
+                                        lp_verb(),       vo_verb(),      audit_verb(), trap_verb()};
   return all;
 }
 

@@ -5,8 +5,10 @@ namespace exactvo::datasets {
 
 template <>
 const std::vector<Word<lp::Status>>& words() {
-  static const std::vector<Word<lp::Status>> kWords{
-      {lp::Status::optimal, "optimal"}, {lp::Status::relaxed, "relaxed"}, {lp::Status::infeasible, "infeasible"}};
+  static const std::vector<Word<lp::Status>> kWords{{lp::Status::optimal, "optimal"},
+                                                    {lp::Status::relaxed, "relaxed"},
+                                                    {lp::Status::infeasible, "infeasible"},
+                                                    {lp::Status::pinched, "pinched"}};
   return kWords;
 }
 
@@ -26,7 +28,8 @@ const std::vector<Word<formation::ConstraintSource>>& words() {
   using formation::ConstraintSource;
   static const std::vector<Word<ConstraintSource>> kWords{{ConstraintSource::enclosure, "enclosure"},
                                                           {ConstraintSource::obstacle_edge, "obstacle-edge"},
-                                                          {ConstraintSource::robot, "robot"}};
+                                                          {ConstraintSource::robot, "robot"},
+                                                          {ConstraintSource::moving_obstacle, "moving-obstacle"}};
   return kWords;
 }
 

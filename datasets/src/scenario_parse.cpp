@@ -47,6 +47,7 @@ formation::Robot to_robot(const Json& object) {
   take(object, "max_speed", robot.max_speed);
   if (object.contains("goal")) robot.goals = {to_point(object.at("goal"))};
   if (object.contains("goals")) robot.goals = to_points(object.at("goals"));
+  robot.cooperates = object.value("cooperates", robot.cooperates);
   return robot;
 }
 
@@ -106,6 +107,7 @@ class Reader {
     scenario.description = tree.value("description", std::string());
     for (const Json& robot : tree.at("robots")) scenario.robots.push_back(to_robot(robot));
     read_obstacle_list(tree.value("obstacles", Json::array()), scenario);
+    read_moving_obstacles(tree.value("moving_obstacles", Json::array()), scenario);
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"));
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
     read_figures(tree, scenario);
@@ -126,6 +128,17 @@ class Reader {
         scenario.obstacles.push_back({id, std::move(judgement.shape)});
       }
       origin_of_.resize(scenario.obstacles.size(), {pointer, list[k].contains("id")});
+    }
+  }
+
+  void read_moving_obstacles(const Json& list, Scenario& scenario) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::string pointer = "/moving_obstacles/" + std::to_string(k);
+      const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
+      Judgement judgement = judge(to_raw(list[k], id, pointer));
+      refuse_unmended(judgement, file_);
+      scenario.moving_obstacles.push_back(
+          {id, std::move(judgement.shape), {to_points(list[k].at("path")), list[k].at("speed").get<double>()}});
     }
   }
 

@@ -13,6 +13,7 @@ void append_robot(JsonWriter& json, const formation::Robot& robot) {
   json.member("radius", robot.radius).member("max_speed", robot.max_speed);
   json.key("goals");
   append_points(json, robot.goals);
+  json.member("cooperates", robot.cooperates);
   json.end_object();
 }
 
@@ -34,6 +35,14 @@ void append_obstacle(JsonWriter& json, const formation::SceneObstacle& obstacle)
   json.begin_object().member("id", obstacle.id);
   std::visit([&](const auto& shape) { append_shape(json, shape); }, obstacle.shape);
   json.end_object();
+}
+
+void append_moving(JsonWriter& json, const formation::MovingObstacle& obstacle) {
+  json.begin_object().member("id", obstacle.id);
+  std::visit([&](const auto& shape) { append_shape(json, shape); }, obstacle.shape);
+  json.key("path");
+  append_points(json, obstacle.motion.path);
+  json.member("speed", obstacle.motion.speed).end_object();
 }
 
 void append_numbers(JsonWriter& json, const std::vector<double>& numbers) {
@@ -95,6 +104,9 @@ void append_scenario(JsonWriter& json, const Scenario& scenario) {
   json.end_array();
   json.key("obstacles").begin_array();
   for (const formation::SceneObstacle& obstacle : scenario.obstacles) append_obstacle(json, obstacle);
+  json.end_array();
+  json.key("moving_obstacles").begin_array();
+  for (const formation::MovingObstacle& obstacle : scenario.moving_obstacles) append_moving(json, obstacle);
   json.end_array();
   if (scenario.formation) append_formation(json, *scenario.formation);
   append_figures(json, scenario);
