@@ -119,15 +119,11 @@ bool locate_rounded(const Ellipse& e, Vec2 u, Vec2 size, double r, Place& place)
   }
   const double d = R * D;
   const double disc = cube_discriminant(b, c, d);
-  const double size_disc = 18.0 * size_b * size_c * d + 4.0 * size_b * size_b * size_b * d +
-                           size_b * size_b * size_c * size_c + 4.0 * size_c * size_c * size_c + 27.0 * d * d;
+  const double size_disc = size_b * (size_c * (18.0 * d + size_b * size_c) + 4.0 * size_b * size_b * d) +
+                           4.0 * size_c * size_c * size_c + 27.0 * d * d;
   const double error = kErrorDiscriminant * size_disc + kUnderflowDiscriminant;
-  if (disc < -error) {
-    place = Place::inside;
-    return true;
-  }
-  place = Place::outside;
-  return disc > error && (b < -error_b || c < -error_c);
+  place = disc > 0.0 ? Place::outside : Place::inside;
+  return std::fabs(disc) > error && (disc < 0.0 || b < -error_b || c < -error_c);
 }
 
 Place locate_exactly(const Ellipse& e, const GrownShape& s, Vec2 direction, double t) {
