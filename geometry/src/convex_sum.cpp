@@ -140,9 +140,9 @@ bool is_place(Vec2 p) {
 
 Fan fan_of(const ConvexPolygon& polygon) {
   const auto& v = polygon.vertices;
-  EXACTVO_REQUIRE(!v.empty() && std::all_of(v.begin(), v.end(), is_place), to_string(v));
+  EXACTVO_REQUIRE(!v.empty() && std::all_of(v.begin(), v.end(), is_place), excerpt(v));
   Fan fan(v);
-  EXACTVO_REQUIRE(fan.turns_once_to_the_left(), to_string(v));
+  EXACTVO_REQUIRE(fan.turns_once_to_the_left(), excerpt(v));
   return fan;
 }
 

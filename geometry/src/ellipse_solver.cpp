@@ -351,7 +351,7 @@ void require_places(const std::vector<Vec2>& points) {
   constexpr double kLargest = 0x1p1000;
   const auto is_place = [](Vec2 p) { return std::fabs(p.x) < kLargest && std::fabs(p.y) < kLargest; };
   EXACTVO_REQUIRE(!points.empty(), std::string("no point"));
-  EXACTVO_REQUIRE(std::all_of(points.begin(), points.end(), is_place), to_string(points));
+  EXACTVO_REQUIRE(std::all_of(points.begin(), points.end(), is_place), excerpt(points));
 }
 
 //   swapped: (x, y) = (k21 w1 + k22 w2, k11 w1); the rotation that clears the upper right entry gives L.

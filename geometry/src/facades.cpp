@@ -155,7 +155,7 @@ bool is_usable(const Obstacle& obstacle) {
 
 FacadeSet divide_into_facades(const Obstacle& obstacle, const FacadeOptions& options) {
   EXACTVO_REQUIRE(std::isfinite(options.tolerance) && options.tolerance >= 0.0, hex_text(options.tolerance));
-  EXACTVO_REQUIRE(is_usable(obstacle), to_string(vertices_of(obstacle)));
+  EXACTVO_REQUIRE(is_usable(obstacle), excerpt(vertices_of(obstacle)));
   std::vector<Course> courses = courses_of(obstacle);
   FacadeSet result;
   for (Course& course : courses) {

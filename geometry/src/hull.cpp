@@ -34,9 +34,9 @@ ConvexPolygon from_cgal(const std::vector<Point>& points) {
 
 ConvexPolygon convex_hull(const std::vector<Vec2>& points) {
   EXACTVO_REQUIRE(!points.empty(), std::string("no point"));
-  EXACTVO_REQUIRE(std::all_of(points.begin(), points.end(), is_finite), to_string(points));
+  EXACTVO_REQUIRE(std::all_of(points.begin(), points.end(), is_finite), excerpt(points));
   return detail::without_cgal_failures(
-      "convex_hull", [&] { return to_string(points); },
+      "convex_hull", [&] { return excerpt(points); },
       [&] {
         const std::vector<Point> input = to_cgal(points);
         std::vector<Point> hull;

@@ -79,7 +79,7 @@ void sort_along_line(const std::vector<Vec2>& points, Group& group) {
 
 std::vector<Group> points_along_lines(const std::vector<Vec2>& points, const PointOptions& options) {
   return without_cgal_failures(
-      "points_along_lines", [&] { return to_string(points); },
+      "points_along_lines", [&] { return excerpt(points); },
       [&] {
         Items items = items_of(points);
         Neighbours neighbours(items, options.neighbour_radius);

@@ -66,7 +66,7 @@ Ellipse smallest_ellipse(const std::vector<Vec2>& points) {
   const std::vector<Vec2> hull = convex_hull(points).vertices;
   if (hull.size() == 1) return {hull[0], 0.0, 0.0, 0.0};
   if (hull.size() == 2) return detail::ellipse_of_segment(hull[0], hull[1]);
-  const auto values = [&] { return to_string(hull); };
+  const auto values = [&] { return excerpt(hull); };
   const std::vector<Vec2> support =
       detail::without_cgal_failures("smallest_ellipse", values, [&] { return support_of_smallest_ellipse(hull); });
   return detail::certified_ellipse(detail::solve_smallest_ellipse(support).frame, hull);
