@@ -102,9 +102,11 @@ std::string constraint_words(const Decision& d, std::size_t i) {
 std::string constraints_words(const Decision& d) {
   const auto& all = d.step.constraints;
   const auto active = std::count_if(all.begin(), all.end(), [](const RecordedConstraint& c) { return c.active; });
-  std::string text =
-      fmt::format("{} half-plane{}, of which {} bind{} (the chosen velocity lies on {})\n", all.size(),
-                  all.size() == 1 ? "" : "s", active, active == 1 ? "s" : "", active == 1 ? "its line" : "their lines");
+  const bool one = active == 1;
+  std::string text = fmt::format("{} half-plane{}, of which {} bind{}", all.size(), all.size() == 1 ? "" : "s", active,
+                                 one ? "s" : "");
+  if (active > 0) text += fmt::format(" (the chosen velocity lies on {})", one ? "its line" : "their lines");
+  text += "\n";
   for (std::size_t i = 0; i < all.size(); ++i) text += constraint_words(d, i);
   return text;
 }

@@ -42,6 +42,11 @@ struct Series {
   std::vector<double> values;  ///< one a row of the recording
 };
 
+/// For a run of one row, whose curve has no length.
+std::string point_style(std::size_t i) {
+  return fmt::format("with points pt 7 lc rgb '{}'", series_colour(i));
+}
+
 std::string line_style(std::size_t i) {
   return fmt::format("with lines lw 2{} lc rgb '{}'", series_dash(i), series_colour(i));
 }
@@ -51,7 +56,7 @@ void add_series(const RecordingFile& run, const std::vector<Series>& all, DataFi
     const int index = data.begin(all[i].label, "t [s], value");
     const std::size_t rows = std::min(all[i].values.size(), run.recording.steps.size());
     for (std::size_t k = 0; k < rows; ++k) data.row({run.recording.steps[k].time, all[i].values[k]});
-    plot.data(index, "using 1:2 " + line_style(i), shortened(all[i].label, kKeyLength));
+    plot.data(index, "using 1:2 " + (rows == 1 ? point_style(i) : line_style(i)), shortened(all[i].label, kKeyLength));
   }
 }
 
