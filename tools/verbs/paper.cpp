@@ -97,6 +97,7 @@ class Experiments {
     line_.show(static_cast<double>(metrics_.size()), scenario_name + " " + name(method));
     FinishedRun finished = run(datasets::load_scenario(file), options, provenance);
     metrics_.push_back(finished.metrics_json());
+    finished.file.recording.outcome = outcome_words(finished);  // what a panel's title says
     return finished;
   }
 
@@ -157,8 +158,12 @@ class Experiments {
   }
 
   static std::string panel_title(const datasets::RecordingFile& run) {
-    if (!run.scenario.formation) return run.info.scenario + ": " + run.recording.outcome;
-    return run.info.scenario + ", " + *run.info.controller + (run.recording.diverged ? ": diverged" : "");
+    const std::string& outcome = run.recording.outcome;
+    // A panel is narrow, and all runs have the same limit.
+    if (!run.scenario.formation)
+      return run.info.scenario + ": " + outcome.substr(0, outcome.find(" within the time limit"));
+    return run.info.scenario + ", " + *run.info.controller + (run.recording.diverged ? ": diverged" : "") +
+           (outcome.rfind("COLLISION", 0) == 0 ? ", collision" : "");
   }
 
   void add_sheets() {
