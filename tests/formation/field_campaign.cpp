@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Counts random fields: formation_field_campaign KIND METHOD [FIRST [COUNT [SEED]]], KIND of random_fields.h, METHOD of
-// simulation.h (formations: a controller). A line for each field that is not reached and safe, then the counts.
+// simulation.h (formations: a controller, or a set of remedies by its name, "+ saturation" or "no margins"). A line for
+// each field that is not reached and safe, then the counts.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -12,8 +13,16 @@ namespace {
 
 using namespace exactvo;
 
+/// A rung of the ladder or an ablation, by name.
+bool parse_remedies(const std::string& text, formation::SimulationOptions& options) {
+  for (const auto& list : {formation::remedy_ladder(), formation::remedy_ablations()})
+    for (const formation::NamedRemedies& n : list)
+      if (n.name == text) options.remedies = n.remedies;
+  return options.remedies.has_value();
+}
+
 int usage() {
-  std::fputs("usage: formation_field_campaign KIND METHOD|CONTROLLER [FIRST [COUNT [SEED]]]\n", stderr);
+  std::fputs("usage: formation_field_campaign KIND METHOD|CONTROLLER|REMEDIES [FIRST [COUNT [SEED]]]\n", stderr);
   return 2;
 }
 
@@ -23,7 +32,8 @@ int main(int argc, char** argv) {
   datasets::FieldKind kind{};
   formation::SimulationOptions options;
   if (argc < 3 || !datasets::parse(argv[1], kind)) return usage();
-  if (!parse(argv[2], options.method) && !parse(argv[2], options.controller)) return usage();
+  if (!parse(argv[2], options.method) && !parse(argv[2], options.controller) && !parse_remedies(argv[2], options))
+    return usage();
   const auto number = [&](int at, std::uint64_t fallback) {
     return argc > at ? std::strtoull(argv[at], nullptr, 10) : fallback;
   };
