@@ -46,7 +46,7 @@ inline bool place_start(TrapCase& c, double aside) {
   robot.position = worst->position + 1.0 * worst->normal + aside * geometry::perp(worst->normal);
   c.scenario.robots = {robot};
   // Long enough to slide off from where the tie-break leaves it, and on to the goal.
-  constexpr double kWay = 60.0, kFoldings = 15.0;  // s; e-foldings
+  constexpr double kWay = 60.0, kFoldings = 25.0;  // s; e-foldings
   c.scenario.time_limit = worst->stable ? kWay : kWay + kFoldings / worst->rate_at(kSpeed);
   return true;
 }
