@@ -81,7 +81,7 @@ struct Motion {
   /// w, from v(T) = w + e^{-k T} (v(0) - w).
   Vec2 tracked() const {
     const double decayed = std::exp(-gain * duration);
-    return (to_velocity - decayed * from_velocity) / (1.0 - decayed);
+    return (to_velocity - decayed * from_velocity) / -std::expm1(-gain * duration);
   }
   Vec2 cubic(double s) const {
     const Vec2 m0 = duration * from_velocity, m1 = duration * to_velocity;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
@@ -18,24 +19,31 @@ class RunClock {
   RunClock(const Scenario& scenario, const SimulationOptions& options)
       : options_(&options),
         dt_(scenario.time_step),
-        // A limit that is a multiple of the step up to rounding is that multiple.
-        steps_(static_cast<std::size_t>(std::ceil(scenario.time_limit / scenario.time_step - 1e-9))) {}
+        steps_(static_cast<std::size_t>(std::ceil(scenario.time_limit / scenario.time_step - kSameRow))) {
+    if (options.stop_at) last_decision_ = row_of(*options.stop_at);
+  }
 
   double time(std::size_t step) const { return static_cast<double>(step) * dt_; }
 
   /// Whether `step` is the last row: the time is up, `stop_at` is passed, or the caller wants to stop.
   bool ends_at(std::size_t step) {
-    const bool passed = options_->stop_at >= 0.0 && time(step) > options_->stop_at;
+    const bool passed = last_decision_ && step > *last_decision_;
     return step == steps_ || passed || !beat(time(step));
   }
 
-  /// Whether the decision at `time` keeps every half-plane: all do where asked for, and the last before `stop_at`.
+  /// Whether the decision at `time` keeps every half-plane: all do where asked for, and the last one of `stop_at`.
   bool keeps_all(double time) const {
-    return options_->record_all || (options_->stop_at >= 0.0 && time + dt_ > options_->stop_at);
+    return options_->record_all || (last_decision_ && row_of(time) == *last_decision_);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  /// Share of a step: a time this near to a row is that row's, since 6 * 0.05 is not 0.3 in doubles.
+  static constexpr double kSameRow = 1e-6;
+
+  /// The last row at or before `time`.
+  std::size_t row_of(double time) const { return static_cast<std::size_t>(time / dt_ + kSameRow); }
 
   /// Calls the caller's progress function about ten times a second of wall time; false when the caller wants to stop.
   bool beat(double time) {
@@ -48,6 +56,7 @@ class RunClock {
   const SimulationOptions* options_;
   double dt_;
   std::size_t steps_;
+  std::optional<std::size_t> last_decision_;
   Clock::time_point last_ = Clock::now();
 };
 

@@ -198,7 +198,9 @@ double Follower::rehearse(Situation s) const {
 Follower::Answer Follower::begin(const Situation& s, const std::vector<StaticConstraint>& near) {
   const std::optional<Sweep> left = sweep(near, s.preferred, 1.0, s.robot.max_speed);
   const std::optional<Sweep> right = sweep(near, s.preferred, -1.0, s.robot.max_speed);
-  if (!left || !right) return {s.preferred, Mode::direct, 0, ""};  // one exists iff the other does
+  // At full speed nothing may stand in the way of what a slower preference violates: then there is no boundary.
+  const bool met = left && right && left->last != Sweep::kNone && right->last != Sweep::kNone;
+  if (!met) return {s.preferred, Mode::direct, 0, ""};
   Follower to_left, to_right;
   to_left.commit(s, 1, near[left->last].shape);
   to_right.commit(s, -1, near[right->last].shape);

@@ -3,6 +3,10 @@
 
 /// \file
 /// Figures of a run, from its recording alone. SI units. Nothing where a value does not apply.
+///
+/// Clearances are swept: lower bounds over the continuous motion between rows (of the cubic through both ends, where
+/// the integrator has no closed form), up to `geometry::rounding_of_distance` of the coordinates. The verb `audit`
+/// proves them in rationals. Where a robot overlaps an obstacle they are at most 0, and not its depth.
 
 #include <cstddef>
 #include <optional>

@@ -3,7 +3,8 @@
 
 /// \file
 /// Runs a scenario (paper, Sections III-V). Deterministic: the same scenario and options give the same recording, bit
-/// for bit, on every machine with IEEE doubles.
+/// for bit, on machines whose C library rounds sin, cos, atan2, exp and hypot alike (the same glibc and CPU features
+/// do).
 
 #include <functional>
 #include <optional>
@@ -55,7 +56,8 @@ struct SimulationOptions {
   double facade_minor_to_major = 0.5;            ///< ivo_edge: b = this * a
   double facade_fixed_minor = 0.0;               ///< m, ivo_edge: > 0 fixes b
   bool record_all = false;                       ///< keep every half-plane, not only the active ones
-  double stop_at = -1.0;  ///< s; >= 0: stop at this time, keeping every half-plane of the last decision
+  /// s, >= 0: stop after the last row at or before this time, keeping every half-plane of its decision.
+  std::optional<double> stop_at;
   /// Called about ten times a second of wall time with the simulated time; returning false stops the run.
   std::function<bool(double)> progress;
 };
