@@ -116,7 +116,8 @@ class KinematicRun {
       step.mode = Mode::arrived;
       return preferred;
     }
-    if (!statics.empty() && statics.front().distance < 0.0) step.mode = Mode::pushing_out;
+    const bool in_contact = !statics.empty() && statics.front().distance < 0.0;
+    if (in_contact) step.mode = Mode::pushing_out;
     if (options_.method == Method::orca) return preferred;
     if (options_.method != Method::ivo) return with_tie_broken(statics, preferred);
     const Robot& spec = scenario_.robots[i];
@@ -125,7 +126,7 @@ class KinematicRun {
         robots_[i].follower.steer({time, scenario_.time_step, here, goal_of(i),
                                    spec.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field},
                                   statics);
-    step.mode = answer.mode;
+    step.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
     step.side = answer.side;
     step.note = answer.note;
     if (answer.mode == Mode::following) return answer.preferred;

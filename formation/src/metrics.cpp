@@ -113,9 +113,23 @@ double slot_error(const Recording& recording, std::size_t k, std::size_t i) {
   return norm(row.robots[i].position - row.leader_position - recording.offsets[i]);
 }
 
+/// The row from which a kinematic robot heads for its last goal: the run passes at most one goal on the way a row,
+/// within the tolerance or the robot's radius.
+std::size_t last_leg_since(const Scenario& scenario, const Recording& recording, std::size_t i) {
+  const Robot& spec = scenario.robots[i];
+  const double reach = std::max(scenario.arrival_tolerance, spec.radius);
+  std::size_t goal = 0;
+  std::size_t k = 0;
+  for (; k < recording.steps.size() && goal + 1 < spec.goals.size(); ++k)
+    if (norm(recording.steps[k].robots[i].position - spec.goals[goal]) <= reach) ++goal;
+  return goal + 1 < spec.goals.size() ? recording.steps.size() : k;
+}
+
 void measure_arrival(const Scenario& scenario, const Recording& recording, Metrics& m) {
   for (std::size_t i = 0; i < m.robots.size(); ++i) {
+    const std::size_t last_leg = scenario.formation ? 0 : last_leg_since(scenario, recording, i);
     const auto error = [&](std::size_t k) {
+      if (k < last_leg) return kInfinity;
       return scenario.formation ? slot_error(recording, k, i)
                                 : norm(recording.steps[k].robots[i].position - scenario.robots[i].goals.back());
     };

@@ -364,6 +364,7 @@ void add_tight(const std::vector<ObstacleParts>& obstacles, std::size_t i, std::
 
 Ellipse facade_ellipse(const Segment& facade, const FacadeEllipseOptions& options) {
   EXACTVO_REQUIRE(is_finite(facade.a) && is_finite(facade.b), to_string(ConvexShape{facade}));
+  EXACTVO_REQUIRE(options.fixed_minor > 0.0 || options.minor_to_major > 0.0, std::to_string(options.minor_to_major));
   const Vec2 along = facade.b - facade.a;
   const double half = 0.5 * norm(along);
   const double a = half + options.margin;
@@ -376,7 +377,7 @@ double clearance_of_equation_8(const Segment& facade, const Ellipse& enclosure, 
   const EllipseAxes axes = axes_of(enclosure);
   const double half = 0.5 * norm(facade.b - facade.a);
   const double a = axes.a, b = axes.b;
-  const bool rounded_end = half > a - b * b / a;
+  const bool rounded_end = half >= a - b * b / a;
   const double depth = rounded_end ? a - half : b * std::sqrt(1.0 - half * half / (a * a - b * b));
   return robot_radius + depth;
 }

@@ -52,6 +52,14 @@ TEST(Metrics, ArrivalIsWhenTheRobotStaysNotWhenItPasses) {
   EXPECT_FALSE(m.min_robot_clearance.has_value());
 }
 
+TEST(Metrics, WhoSkipsAGoalOnTheWayHasNotArrived) {
+  Scenario s = scene_of({{2.0, 0.0}});
+  s.robots[0].goals = {{10.0, 0.0}, {2.0, 0.0}};
+  EXPECT_FALSE(measure(s, recording_of({{at({2, 0})}, {at({2, 0})}})).all_arrived);
+  const Metrics m = measure(s, recording_of({{at({2, 0})}, {at({9.8, 0})}, {at({2, 0})}, {at({2, 0})}}));
+  EXPECT_EQ(m.last_arrival_time.value(), 2.0);
+}
+
 TEST(Metrics, WhoEndsElsewhereHasNotArrived) {
   const Metrics m = measure(scene_of({{2.0, 0.0}}), recording_of({{at({2, 0})}, {at({5, 0})}}));
   EXPECT_FALSE(m.all_arrived);

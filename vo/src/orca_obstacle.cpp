@@ -24,8 +24,15 @@ using geometry::perp;
 using geometry::Segment;
 using geometry::squared_norm;
 
+/// REQUIRES of an edge that its ends differ: repeated vertices go first.
+std::vector<Vec2> without_repeats(std::vector<Vec2> vertices) {
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  while (vertices.size() > 1 && vertices.front() == vertices.back()) vertices.pop_back();
+  return vertices;
+}
+
 OrcaChain with_turns(std::vector<Vec2> vertices) {
-  OrcaChain chain{std::move(vertices), {}};
+  OrcaChain chain{without_repeats(std::move(vertices)), {}};
   const std::size_t n = chain.vertices.size();
   for (std::size_t i = 0; i < n; ++i) {
     const geometry::Sign turn =

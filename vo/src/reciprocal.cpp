@@ -50,7 +50,8 @@ double half_offset(double share, double c, Vec2 n, Vec2 own, Vec2 other) {
 }
 
 bool comes_first(const MovingDisc& a, const MovingDisc& b) {
-  return std::tie(a.position.x, a.position.y) < std::tie(b.position.x, b.position.y);
+  return std::tie(a.position.x, a.position.y, a.velocity.x, a.velocity.y, a.radius) <
+         std::tie(b.position.x, b.position.y, b.velocity.x, b.velocity.y, b.radius);
 }
 
 ReciprocalHalfPlanes ordered(const MovingDisc& a, const MovingDisc& b, const ReciprocalOptions& options) {

@@ -36,7 +36,7 @@ struct Metrics {
   double jitter = 0.0;                             ///< m/s^2: sum over steps and robots of |a_{k+1} - a_k|
   std::size_t heading_reversals = 0;    ///< turns whose sign changes from one step to the next, beyond 1e-3 rad
   std::size_t active_set_switches = 0;  ///< steps whose active constraints differ from the step before
-  std::size_t relaxed_steps = 0;        ///< decisions in which soft half-planes had to give
+  std::size_t relaxed_steps = 0;  ///< decisions that were not `optimal`: soft half-planes gave, or no answer held all
   std::size_t uncertified_half_planes = 0;
   std::size_t steps = 0;
   double wall_time = 0.0;  ///< s

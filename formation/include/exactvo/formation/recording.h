@@ -36,7 +36,7 @@ struct RecordedConstraint {
 enum class Mode {
   direct,       ///< straight for the goal or slot
   boost,        ///< turned onto the tangent of a certified trap-free enclosure
-  following,    ///< along a boundary after a stall
+  following,    ///< along a boundary: after a stall, or (formations) on the side committed to
   pushing_out,  ///< in contact: leaving an obstacle
   arrived
 };

@@ -19,7 +19,7 @@ namespace exactvo::geometry {
 
 /// How the semi-minor axis of a single facade's ellipse is chosen (half-length L of the facade).
 struct FacadeEllipseOptions {
-  double minor_to_major = 0.5;  ///< b = this * a; used unless fixed_minor > 0
+  double minor_to_major = 0.5;  ///< b = this * a; > 0; used unless fixed_minor > 0
   double fixed_minor = 0.0;     ///< m; > 0: b is this length
   double margin = 0.05;         ///< m; by how much the facade lies inside: depth >= margin along the major axis
 };
@@ -34,7 +34,7 @@ double clearance_of_equation_8(const Segment& facade, const Ellipse& enclosure, 
 enum class EnclosureGrade {
   trap_free,       ///< goal outside the evolute with the asked slack and margin
   trap_free_thin,  ///< the same with the least slack and margin
-  containing,      ///< encloses, start and goal outside, but a stall is possible: no certificate
+  containing,      ///< encloses, but a stall is possible: no certificate; `fit_trap_free` has start and goal outside
   tight            ///< a convex piece or a facade itself, no ellipse: start or goal lies too near
 };
 
@@ -82,7 +82,8 @@ struct Enclosure {
 
 /// Encloses the obstacles in the way of one robot and goal: what the straight way meets, then what the detours round
 /// those enclosures meet, and so on. Whatever overlaps once grown by the robot (two such can trap at their concave
-/// vertex) is merged and fitted again, until nothing overlaps. What is not in the way, or can't be enclosed, stands as
+/// vertex) is merged and fitted again, until nothing overlaps or no ellipse
+/// holds both (then they stay as they are). What is not in the way, or can't be enclosed, stands as
 /// its pieces, tight: an ellipse there could only shut a passage. Every obstacle is covered by what is returned.
 /// Deterministic; heuristic but for what `fit_trap_free` checks.
 std::vector<Enclosure> enclose(const std::vector<ObstacleParts>& obstacles, double robot_radius, Vec2 start, Vec2 goal,
