@@ -17,6 +17,7 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/validity.h"
 #include "partition_certificate.h"
+#include "ring_contacts.h"
 #include "triangulation.h"
 
 namespace exactvo::geometry {
@@ -71,7 +72,7 @@ std::vector<ConvexPolygon> pieces_by_cgal(const Ring& ring, PartitionMethod meth
 std::optional<std::vector<ConvexPolygon>> proved_pieces_by_cgal(const Ring& ring, PartitionMethod method) {
   try {
     std::vector<ConvexPolygon> pieces = pieces_by_cgal(ring, method);
-    if (detail::is_convex_partition(ring, pieces)) return pieces;
+    if (detail::is_convex_partition({ring}, pieces)) return pieces;
   } catch (const CGAL::Failure_exception&) {
     // The triangles answer instead.
   }
@@ -83,13 +84,50 @@ PartitionMethod chosen(PartitionMethod method, std::size_t size) {
   return size <= kMostForOptimal ? PartitionMethod::optimal : PartitionMethod::triangles;
 }
 
+std::vector<ConvexPolygon> proved_triangles(const std::vector<Ring>& rings) {
+  std::vector<ConvexPolygon> pieces = detail::merged_triangles(rings);
+  EXACTVO_REQUIRE(detail::is_convex_partition(rings, pieces), excerpt(rings.front()));
+  return pieces;
+}
+
 std::vector<ConvexPolygon> proved_pieces(const Ring& ring, PartitionMethod method) {
   if (method != PartitionMethod::triangles) {
     if (auto pieces = proved_pieces_by_cgal(ring, method)) return *std::move(pieces);
   }
-  std::vector<ConvexPolygon> pieces = detail::merged_triangles(ring);
-  EXACTVO_REQUIRE(detail::is_convex_partition(ring, pieces), excerpt(ring));
-  return pieces;
+  return proved_triangles({ring});
+}
+
+/// The rings of a polygon, each with a vertex wherever another one touches it inside an edge.
+std::vector<Ring> rings_split_where_they_touch(const Polygon& polygon) {
+  std::vector<Ring> rings{polygon.outer};
+  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  std::vector<detail::Chain> chains;
+  for (const Ring& ring : rings) chains.push_back({&ring});
+  using Split = std::pair<detail::EdgeId, Vec2>;
+  std::vector<Split> splits;
+  for (const detail::Contact& contact : detail::all_contacts_between(chains)) {
+    for (const detail::EdgeId id : {contact.first, contact.second}) {
+      const Segment edge = chains[id.chain].edge(id.edge);
+      if (contact.where != edge.a && contact.where != edge.b) splits.emplace_back(id, contact.where);
+    }
+  }
+  // From the last edge on, and on each edge from its end on, so that places before stay where they are.
+  const auto comes_first = [&](const Split& s, const Split& t) {
+    if (s.first.chain != t.first.chain) return s.first.chain < t.first.chain;
+    if (s.first.edge != t.first.edge) return s.first.edge > t.first.edge;
+    const Vec2 from = chains[s.first.chain].edge(s.first.edge).a;
+    const bool ascending = detail::lexicographically_less(from, s.second);
+    return ascending ? detail::lexicographically_less(t.second, s.second)
+                     : detail::lexicographically_less(s.second, t.second);
+  };
+  std::sort(splits.begin(), splits.end(), comes_first);
+  std::vector<Ring> split = rings;
+  for (const auto& [id, where] : splits) {
+    Ring& ring = split[id.chain];
+    const auto at = ring.begin() + static_cast<std::ptrdiff_t>(id.edge) + 1;
+    if (at == ring.end() || *at != where) ring.insert(at, where);
+  }
+  return split;
 }
 
 }  // namespace
@@ -99,6 +137,13 @@ std::vector<ConvexPolygon> convex_pieces(const Ring& ring, PartitionMethod metho
   EXACTVO_REQUIRE(is_simple(ring) && winding(ring) == Sign::positive, excerpt(ring));
   return detail::without_cgal_failures(
       "convex_pieces", [&] { return excerpt(ring); }, [&] { return proved_pieces(ring, chosen(method, ring.size())); });
+}
+
+std::vector<ConvexPolygon> convex_pieces(const Polygon& polygon, PartitionMethod method) {
+  if (polygon.holes.empty()) return convex_pieces(polygon.outer, method);
+  return detail::without_cgal_failures(
+      "convex_pieces", [&] { return excerpt(polygon.outer); },
+      [&] { return proved_triangles(rings_split_where_they_touch(polygon)); });
 }
 
 }  // namespace exactvo::geometry

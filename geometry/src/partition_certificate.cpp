@@ -44,9 +44,9 @@ class Boundary {
 
 }  // namespace
 
-bool is_convex_partition(const Ring& ring, const std::vector<ConvexPolygon>& pieces) {
+bool is_convex_partition(const std::vector<Ring>& rings, const std::vector<ConvexPolygon>& pieces) {
   Boundary boundary;
-  boundary.add(ring, -1);
+  for (const Ring& ring : rings) boundary.add(ring, -1);
   for (const ConvexPolygon& piece : pieces) {
     if (!runs_once_round_to_the_left(piece.vertices)) return false;
     boundary.add(piece.vertices, 1);

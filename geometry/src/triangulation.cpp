@@ -27,18 +27,34 @@ using Triangulation =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::No_constraint_intersection_tag>;
 using Triangle = std::array<std::size_t, 3>;
 
-Triangulation triangulation_of(const Ring& ring) {
+/// All vertices, ring after ring, and the edges between them by number.
+struct Outline {
+  std::vector<Vec2> points;
+  std::vector<std::pair<std::size_t, std::size_t>> edges;
+};
+
+Outline outline_of(const std::vector<Ring>& rings) {
+  Outline outline;
+  for (const Ring& ring : rings) {
+    const std::size_t base = outline.points.size();
+    for (std::size_t i = 0; i < ring.size(); ++i) outline.edges.emplace_back(base + i, base + (i + 1) % ring.size());
+    outline.points.insert(outline.points.end(), ring.begin(), ring.end());
+  }
+  return outline;
+}
+
+// Where rings touch, the first vertex there stands for all.
+Triangulation triangulation_of(const Outline& outline) {
   Triangulation triangulation;
   std::vector<Triangulation::Vertex_handle> vertices;
   Triangulation::Face_handle near;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    vertices.push_back(triangulation.insert({ring[i].x, ring[i].y}, near));
-    vertices.back()->info() = i;
+  for (std::size_t i = 0; i < outline.points.size(); ++i) {
+    const std::size_t before = triangulation.number_of_vertices();
+    vertices.push_back(triangulation.insert({outline.points[i].x, outline.points[i].y}, near));
+    if (triangulation.number_of_vertices() > before) vertices.back()->info() = i;
     near = vertices.back()->face();
   }
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    triangulation.insert_constraint(vertices[i], vertices[(i + 1) % ring.size()]);
-  }
+  for (const auto& [from, to] : outline.edges) triangulation.insert_constraint(vertices[from], vertices[to]);
   return triangulation;
 }
 
@@ -61,8 +77,8 @@ void mark_sides(Triangulation& triangulation) {
 }
 
 // Counter-clockwise triangles of vertex numbers, least number first, in ascending order.
-std::vector<Triangle> triangles_of(const Ring& ring) {
-  Triangulation triangulation = triangulation_of(ring);
+std::vector<Triangle> triangles_of(const Outline& outline) {
+  Triangulation triangulation = triangulation_of(outline);
   mark_sides(triangulation);
   std::vector<Triangle> triangles;
   for (const auto face : triangulation.finite_face_handles()) {
@@ -83,7 +99,7 @@ std::vector<Triangle> triangles_of(const Ring& ring) {
 ///        <----- o <-----
 class Loops {
  public:
-  Loops(const Ring& ring, const std::vector<Triangle>& triangles) : ring_(ring) {
+  Loops(const std::vector<Vec2>& points, const std::vector<Triangle>& triangles) : points_(points) {
     for (const Triangle& t : triangles) add(t);
   }
 
@@ -103,7 +119,7 @@ class Loops {
       pieces.emplace_back();
       for (std::size_t h = first; !taken[h]; h = edges_[h].after) {
         taken[h] = true;
-        pieces.back().vertices.push_back(ring_[edges_[h].from]);
+        pieces.back().vertices.push_back(points_[edges_[h].from]);
       }
     }
     return pieces;
@@ -135,9 +151,9 @@ class Loops {
 
   // At the vertex where h begins and its twin ends.
   bool stays_convex(std::size_t h, std::size_t twin) const {
-    const Vec2 at = ring_[edges_[h].from];
-    const Vec2 from = ring_[edges_[edges_[h].before].from];
-    const Vec2 to = ring_[edges_[edges_[edges_[twin].after].after].from];
+    const Vec2 at = points_[edges_[h].from];
+    const Vec2 from = points_[edges_[edges_[h].before].from];
+    const Vec2 to = points_[edges_[edges_[edges_[twin].after].after].from];
     return orientation(from, at, to) != Sign::negative;
   }
 
@@ -152,15 +168,16 @@ class Loops {
     edges_[h].dropped = edges_[t].dropped = true;
   }
 
-  const Ring& ring_;
+  const std::vector<Vec2>& points_;
   std::vector<HalfEdge> edges_;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> number_of_;  ///< by (from, to)
 };
 
 }  // namespace
 
-std::vector<ConvexPolygon> merged_triangles(const Ring& ring) {
-  Loops loops(ring, triangles_of(ring));
+std::vector<ConvexPolygon> merged_triangles(const std::vector<Ring>& rings) {
+  const Outline outline = outline_of(rings);
+  Loops loops(outline.points, triangles_of(outline));
   loops.drop_diagonals();
   return loops.pieces();
 }

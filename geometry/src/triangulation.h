@@ -10,10 +10,11 @@
 
 namespace exactvo::geometry::detail {
 
-/// Splits a simple counter-clockwise ring into convex pieces with vertices of the ring: the constrained Delaunay
-/// triangulation of its edges (exact predicates, nothing constructed, and no edge meets another, so no case is left
-/// out), whose diagonals are then dropped wherever both ends stay convex: at most four times the least number of pieces
-/// (Hertel and Mehlhorn, Fast triangulation of simple polygons, 1983). Deterministic.
-std::vector<ConvexPolygon> merged_triangles(const Ring& ring);
+/// Splits a valid polygon into convex pieces with vertices of its rings: the constrained Delaunay triangulation of the
+/// edges (exact predicates, nothing constructed, and edges meet in vertices only, so no case is left out), whose
+/// diagonals are then dropped wherever both ends stay convex: without holes at most four times the least number of
+/// pieces (Hertel and Mehlhorn, Fast triangulation of simple polygons, 1983). Deterministic.
+/// REQUIRES: rings[0] counter-clockwise, the others clockwise inside it; a ring that touches another has a vertex there.
+std::vector<ConvexPolygon> merged_triangles(const std::vector<Ring>& rings);
 
 }  // namespace exactvo::geometry::detail

@@ -26,6 +26,10 @@ enum class PartitionMethod { automatic, greene, approximate, optimal, triangles 
 /// `triangles` answers instead. REQUIRES: simple, counter-clockwise, at least three vertices, not all collinear.
 std::vector<ConvexPolygon> convex_pieces(const Ring& ring, PartitionMethod method = PartitionMethod::automatic);
 
+/// The same for a polygon with holes, always by `triangles`; a piece may then have a vertex in the middle of a straight
+/// side, where another ring touches. Exact and proved as above. REQUIRES: valid (validity.h).
+std::vector<ConvexPolygon> convex_pieces(const Polygon& polygon, PartitionMethod method = PartitionMethod::automatic);
+
 /// The smallest enclosing circle: the centre rounded, the radius grown until every point is certified inside; it is
 /// within a relative 1e-12 of the least, unless rounding the centre's coordinates costs more. One point gives radius 0.
 /// (CGAL's Min_sphere_of_spheres_d in doubles stopped short of the smallest circle in 0.5 % of small lattice clouds.)
