@@ -83,6 +83,8 @@ const char* code_name(DataCode code) {
       return "E_SELF_INTERSECTION";
     case DataCode::hole_outside:
       return "E_HOLE_OUTSIDE";
+    case DataCode::rounding:
+      return "E_ROUNDING";
   }
   return "E_UNKNOWN";
 }

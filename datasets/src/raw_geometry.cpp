@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "exactvo/geometry/even_odd.h"
 #include "json_text.h"
 
 namespace exactvo::datasets {
@@ -44,8 +45,13 @@ const char* words_for_mending(DataCode code) {
       return "ring closed";
     case DataCode::repeated_vertex:
       return "repeated vertex dropped";
-    default:
+    case DataCode::clockwise:
       return "winding reversed";
+    case DataCode::too_few_points:
+    case DataCode::zero_area:
+      return "hole dropped: nothing is in it";
+    default:
+      return "cut at its crossings, and recombined by the even-odd rule";
   }
 }
 
@@ -76,6 +82,29 @@ bool is_worth_a_note(const RawGeometry& raw, DataCode code) {
   return code != DataCode::unclosed || raw.ring_pointers.empty();
 }
 
+std::vector<DataCode> codes_of(const std::vector<RingFinding>& findings) {
+  std::vector<DataCode> codes;
+  for (const RingFinding& finding : findings) codes.push_back(finding.code);
+  std::sort(codes.begin(), codes.end());
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  return codes;
+}
+
+/// A refusal by a rule of `repair` that is no ring's problem.
+DataError repair_refusal(DataCode code, const std::string& file, const std::string& place) {
+  switch (code) {
+    case DataCode::size:
+      return {code, file, place, "too many crossings of edges", "at most " + std::to_string(geometry::kMostCrossings)};
+    case DataCode::zero_area:
+      return {code, file, place, "rings that enclose nothing an odd number of times", "some area"};
+    case DataCode::rounding:
+      return {code, file, place, "crossings that meet again however they are rounded to doubles",
+              "rings farther apart"};
+    default:
+      return {code, file, place, "rings that could not be cut", "rings that can be"};
+  }
+}
+
 std::vector<RingFinding> findings_of(const std::vector<geometry::RingProblem>& problems, const RawGeometry& raw) {
   std::vector<RingFinding> findings;
   for (const geometry::RingProblem& problem : problems) {
@@ -103,11 +132,14 @@ Judgement judge(const RawGeometry& raw) {
   return {std::move(normal.polygon), findings_of(normal.problems, raw)};
 }
 
+DataError ring_refusal(const RingFinding& finding, const std::string& file) {
+  return {finding.code, file, finding.place, words_for(finding.code) + words_for_where(finding),
+          expectation(finding.code)};
+}
+
 void refuse_unmended(const Judgement& judgement, const std::string& file) {
   for (const RingFinding& finding : judgement.findings) {
-    if (finding.mended) continue;
-    throw DataError(finding.code, file, finding.place, words_for(finding.code) + words_for_where(finding),
-                    expectation(finding.code));
+    if (!finding.mended) throw ring_refusal(finding, file);
   }
 }
 
@@ -117,24 +149,56 @@ Collector::Collector(std::string file, std::string format, const ReadOptions& op
 }
 
 void Collector::add(const RawGeometry& raw) {
-  ++result_.counts.read;
+  if (options_.repair && raw.kind == RawKind::polygon) return add_mended(raw);
   Judgement judgement = judge(raw);
-  const std::vector<RingFinding>& findings = judgement.findings;
-  result_.findings.insert(result_.findings.end(), findings.begin(), findings.end());
+  take_findings(judgement.findings);
   try {
     refuse_unmended(judgement, result_.file);
   } catch (const DataError& error) {
-    ++result_.counts.rejected;
-    if (!options_.keep_going) throw;
-    result_.rejected.push_back(error);
-    return;
+    return reject(error);
   }
+  count(judgement.findings);
+  keep(raw.id, std::move(judgement.shape));
+}
+
+void Collector::add_mended(const RawGeometry& raw) {
+  Repair mended = repair(raw.rings);
+  const Judgement judgement{geometry::Polygon{}, findings_of(mended.problems, raw)};
+  take_findings(judgement.findings);
+  if (mended.changed()) {
+    result_.repairs.push_back({raw.place, raw.id, codes_of(judgement.findings), mended.refused, mended.recombined,
+                               mended.moved, mended.before, mended.after});
+  }
+  if (!mended.ok()) return reject(refusal_of(*mended.refused, judgement, raw.place));
+  count(judgement.findings);
+  for (std::size_t k = 0; k < mended.polygons.size(); ++k) {
+    keep(k == 0 ? raw.id : raw.id + "-" + std::to_string(k + 1), std::move(mended.polygons[k]));
+  }
+}
+
+DataError Collector::refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const {
+  for (const RingFinding& finding : judgement.findings) {
+    if (finding.code == reason && !finding.mended) return ring_refusal(finding, result_.file);
+  }
+  return repair_refusal(reason, result_.file, place);
+}
+
+void Collector::take_findings(const std::vector<RingFinding>& findings) {
+  result_.findings.insert(result_.findings.end(), findings.begin(), findings.end());
+}
+
+/// Of an input that can be used.
+void Collector::count(const std::vector<RingFinding>& findings) {
+  ++result_.counts.read;
   ++(findings.empty() ? result_.counts.done : result_.counts.repaired);
   for (const RingFinding& mended : findings) {
     result_.notes.push_back({mended.code, mended.place, words_for_mending(mended.code)});
   }
-  extend(judgement.shape);
-  result_.obstacles.push_back({raw.id, std::move(judgement.shape)});
+}
+
+void Collector::keep(std::string id, geometry::Obstacle shape) {
+  extend(shape);
+  result_.obstacles.push_back({std::move(id), std::move(shape)});
 }
 
 void Collector::extend(const geometry::Obstacle& shape) {

@@ -32,6 +32,9 @@ struct Judgement {
 };
 Judgement judge(const RawGeometry& raw);
 
+/// The refusal that a finding is.
+DataError ring_refusal(const RingFinding& finding, const std::string& file);
+
 /// Throws DataError for the first finding that was not mended.
 void refuse_unmended(const Judgement& judgement, const std::string& file);
 
@@ -56,6 +59,13 @@ class Collector {
   ObstacleFile take() { return std::move(result_); }
 
  private:
+  /// Where `repair` may do more than `judge`.
+  void add_mended(const RawGeometry& raw);
+  DataError refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const;
+  void take_findings(const std::vector<RingFinding>& findings);
+  void count(const std::vector<RingFinding>& findings);
+  void keep(std::string id, geometry::Obstacle shape);
+
   ObstacleFile result_;
   ReadOptions options_;
 };

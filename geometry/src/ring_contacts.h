@@ -42,6 +42,11 @@ std::optional<Contact> find_contact(const std::vector<Chain>& chains);
 /// Every contact between edges of different chains, ordered. O(n log^2 n + candidates), by the edges' boxes (CGAL).
 std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains);
 
+/// Whether edges of rings, neighbours in a ring left out, meet in more than `most` pairs; also true where more than
+/// kMostBoxPairs pairs of boxes meet, which would take seconds to look through.
+bool has_more_crossings_than(std::size_t most, const std::vector<Ring>& rings);
+inline constexpr std::size_t kMostBoxPairs = std::size_t{1} << 26;
+
 /// A common point of two segments that meet: an end that lies on the other, else the crossing, rounded.
 Vec2 common_point(const Segment& s, const Segment& t);
 

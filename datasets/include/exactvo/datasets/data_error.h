@@ -47,7 +47,8 @@ enum class DataCode {
   clockwise,          ///< E_CLOCKWISE (mended)
   zero_area,          ///< E_ZERO_AREA
   self_intersection,  ///< E_SELF_INTERSECTION
-  hole_outside        ///< E_HOLE_OUTSIDE
+  hole_outside,       ///< E_HOLE_OUTSIDE
+  rounding            ///< E_ROUNDING: crossings can't be rounded to doubles without making new ones (repair.h)
 };
 
 /// "E_FILE_MISSING" and so on.

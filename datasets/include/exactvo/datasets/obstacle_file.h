@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/repair.h"
 #include "exactvo/formation/scenario.h"
 
 namespace exactvo::datasets {
@@ -41,6 +42,8 @@ struct ReadOptions {
       0.0;  ///< m, >= 0: side of a grid's or scan's cell; 0: 1 m for grids without a scale, 0.05 m for scans
   /// False: the first obstacle that can't be used throws. True: it is put into `rejected` and reading goes on.
   bool keep_going = false;
+  /// True: what `repair` (repair.h) mends is no refusal. A polygon may become several obstacles: "7", "7-2", "7-3".
+  bool repair = false;
 };
 
 /// Something that a reader should know and that did not stop the reading: a repair, or something passed over.
@@ -60,6 +63,18 @@ struct RingFinding {
   bool mended = false;
 };
 
+/// What `ReadOptions::repair` made of one polygon that had a problem.
+struct RepairRecord {
+  std::string place;            ///< "feature 3"
+  std::string id;               ///< of the first obstacle that it became
+  std::vector<DataCode> codes;  ///< of its problems, each once, in the order of the documentation
+  std::optional<DataCode> refused;
+  bool recombined = false;
+  double moved = 0.0;  ///< m
+  RepairFacts before;
+  RepairFacts after;
+};
+
 /// Longitude and latitude that became (0, 0), degrees.
 struct ProjectionOrigin {
   double longitude = 0.0;
@@ -76,7 +91,7 @@ struct Extent {
 struct ReadCounts {
   std::size_t read = 0;         ///< geometries met: polygons and polylines, one each, and points
   std::size_t done = 0;         ///< obstacles as they stood
-  std::size_t repaired = 0;     ///< obstacles after a repair
+  std::size_t repaired = 0;     ///< inputs that became one obstacle or several after a repair
   std::size_t passed_over = 0;  ///< points, empty geometries
   std::size_t rejected = 0;
 };
@@ -96,6 +111,7 @@ struct ObstacleFile {
   std::vector<DataNote> notes;
   std::vector<RingFinding> findings;       ///< in the order of the file
   std::vector<DataError> rejected;         ///< only with `keep_going`
+  std::vector<RepairRecord> repairs;       ///< only with `repair`: of every polygon that had a problem
   std::optional<ProjectionOrigin> origin;  ///< where degrees were projected
   std::optional<Extent> extent;            ///< none without obstacles
   std::optional<Coverage> coverage;        ///< of grids and scans

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Mends polygons. What `geometry::normalize` finds and does not mend is mended here where there is a rule for it:
+///
+///  - a ring that crosses, touches or overlaps itself, spikes, holes that lie outside, in each other, or cross another
+///    ring: the polygon becomes what an odd number of its rings enclose (geometry/even_odd.h), in as many polygons as
+///    that takes. So a hole outside its polygon is solid, and so is one in a hole: never less is solid than the rings
+///    say.
+///  - a hole of less than three distinct points or without area is dropped: nothing is in it.
+///
+/// Not mended, and named: coordinates that are not finite, an outer ring of less than three distinct points or without
+/// area, rings of which nothing is left (E_ZERO_AREA), more crossings than there is room for (E_SIZE), and crossings
+/// that can't be rounded to doubles without new ones (E_ROUNDING).
+///
+/// A polygon that was valid but for winding, closure and consecutive duplicates comes back as `normalize` gives it.
+///
+/// Neighbours: `ReadOptions::repair` (obstacle_file.h) does this to every polygon of a file.
+///
+/// Properties (tests quote the numbers):
+///  (1) what comes back is valid: `normalize` mends nothing of it but closure, and the polygons' insides are disjoint;
+///  (2) repairing it again changes nothing;
+///  (3) a valid polygon comes back bit for bit but for winding;
+///  (4) its area is that of the points enclosed an odd number of times, up to rounding (`moved`).
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/validity.h"
+
+namespace exactvo::datasets {
+
+/// What there was, or is.
+struct RepairFacts {
+  std::size_t polygons = 0;
+  std::size_t rings = 0;
+  std::size_t vertices = 0;  ///< first points not repeated
+  /// m^2, rounded; of the outer rings less the holes. Before: by the shoelace formula, as programs do that take no
+  /// notice of crossings; NaN where a coordinate is.
+  double area = 0.0;
+};
+
+struct Repair {
+  std::vector<geometry::Polygon> polygons;      ///< empty if not mended; in order of their least vertex
+  std::vector<geometry::RingProblem> problems;  ///< of the rings as given; `mended` says what became of each
+  std::optional<DataCode> refused;              ///< why nothing could be made of it
+  bool recombined = false;                      ///< by the even-odd rule
+  double moved = 0.0;                           ///< m; how far a crossing was moved by rounding, at most
+  RepairFacts before;
+  RepairFacts after;
+
+  bool ok() const { return !refused; }
+  bool changed() const { return !problems.empty(); }
+};
+
+/// `rings` as `geometry::normalize` takes them: the outer one first, closed or not. REQUIRES: at least one ring.
+Repair repair(const std::vector<geometry::Ring>& rings);
+
+/// Shoelace formula, rounded: of `outer` less the holes.
+double area(const geometry::Polygon& polygon);
+
+}  // namespace exactvo::datasets

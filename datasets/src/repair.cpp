@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/repair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "exactvo/geometry/even_odd.h"
+#include "exactvo/geometry/require.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using geometry::EvenOddStatus;
+using geometry::NormalizedPolygon;
+using geometry::Polygon;
+using geometry::Ring;
+using geometry::RingProblem;
+using geometry::RingProblemCode;
+
+/// Twice the signed area, about the first vertex so that places far from the origin cost nothing.
+double doubled_area(const Ring& ring) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < ring.size(); ++i) sum += cross(ring[i] - ring[0], ring[i + 1] - ring[0]);
+  return sum;
+}
+
+std::size_t count_vertices(const Ring& ring) {
+  const bool is_closed = ring.size() > 1 && ring.front() == ring.back();
+  return ring.size() - (is_closed ? 1 : 0);
+}
+
+RepairFacts facts_of(const std::vector<Ring>& rings) {
+  RepairFacts facts{1, rings.size(), 0, 0.0};
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    facts.vertices += count_vertices(rings[k]);
+    facts.area += (k == 0 ? 0.5 : -0.5) * std::fabs(doubled_area(rings[k]));
+  }
+  return facts;
+}
+
+RepairFacts facts_of(const std::vector<Polygon>& polygons) {
+  RepairFacts facts;
+  for (const Polygon& polygon : polygons) {
+    ++facts.polygons;
+    facts.rings += 1 + polygon.holes.size();
+    facts.vertices += polygon.outer.size();
+    for (const Ring& hole : polygon.holes) facts.vertices += hole.size();
+    facts.area += area(polygon);
+  }
+  return facts;
+}
+
+bool encloses_nothing(const RingProblem& problem) {
+  return problem.code == RingProblemCode::too_few_points || problem.code == RingProblemCode::zero_area;
+}
+
+/// The first problem that no rule mends.
+std::optional<DataCode> hopeless(const std::vector<RingProblem>& problems) {
+  for (const RingProblem& problem : problems) {
+    const bool is_fatal =
+        problem.code == RingProblemCode::not_finite || (encloses_nothing(problem) && problem.ring == 0);
+    if (is_fatal) return data_code(problem.code);
+  }
+  return std::nullopt;
+}
+
+/// The rings that enclose something, and where each stood.
+struct Kept {
+  std::vector<Ring> rings;
+  std::vector<std::size_t> source;
+};
+
+Kept without_empty_holes(const std::vector<Ring>& rings, const std::vector<RingProblem>& problems) {
+  Kept kept;
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    const bool is_empty = std::any_of(problems.begin(), problems.end(),
+                                      [&](const RingProblem& p) { return p.ring == k && encloses_nothing(p); });
+    if (is_empty) continue;
+    kept.rings.push_back(rings[k]);
+    kept.source.push_back(k);
+  }
+  return kept;
+}
+
+/// Holes that enclose nothing keep `normalize` from looking at the places of the others: what it says once they are
+/// gone.
+NormalizedPolygon normalized_without(const Kept& kept, std::vector<RingProblem>& problems) {
+  NormalizedPolygon normal = geometry::normalize(kept.rings);
+  for (RingProblem& problem : normal.problems) problem.ring = kept.source[problem.ring];
+  std::vector<RingProblem> all;
+  std::copy_if(problems.begin(), problems.end(), std::back_inserter(all), [&](const RingProblem& p) {
+    return std::find(kept.source.begin(), kept.source.end(), p.ring) == kept.source.end();
+  });
+  all.insert(all.end(), normal.problems.begin(), normal.problems.end());
+  std::stable_sort(all.begin(), all.end(), [](const RingProblem& a, const RingProblem& b) { return a.ring < b.ring; });
+  problems = std::move(all);
+  return normal;
+}
+
+DataCode reason_for(EvenOddStatus status) {
+  switch (status) {
+    case EvenOddStatus::too_many_crossings:
+      return DataCode::size;
+    case EvenOddStatus::not_roundable:
+      return DataCode::rounding;
+    default:
+      return DataCode::library;
+  }
+}
+
+bool is_valid(const Polygon& polygon) {
+  std::vector<Ring> rings{polygon.outer};
+  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  const auto is_harmless = [](const RingProblem& p) { return p.code == RingProblemCode::unclosed; };
+  const NormalizedPolygon normal = geometry::normalize(rings);
+  return std::all_of(normal.problems.begin(), normal.problems.end(), is_harmless);
+}
+
+void recombine(const std::vector<Ring>& rings, Repair& repair) {
+  geometry::EvenOddRegion region = geometry::even_odd_region(rings);
+  repair.recombined = true;
+  repair.moved = region.moved;
+  if (region.status != EvenOddStatus::done) {
+    repair.refused = reason_for(region.status);
+  } else if (region.polygons.empty()) {
+    repair.refused = DataCode::zero_area;
+  } else if (!std::all_of(region.polygons.begin(), region.polygons.end(), is_valid)) {
+    repair.refused = DataCode::rounding;  // never seen: even_odd_region's own property
+  } else {
+    repair.polygons = std::move(region.polygons);
+  }
+}
+
+void mend(const std::vector<Ring>& rings, Repair& repair) {
+  NormalizedPolygon normal = geometry::normalize(rings);
+  repair.problems = std::move(normal.problems);
+  repair.refused = hopeless(repair.problems);
+  if (repair.refused) return;
+  const Kept kept = without_empty_holes(rings, repair.problems);
+  if (kept.rings.size() < rings.size()) normal = normalized_without(kept, repair.problems);
+  const auto is_bad = [](const RingProblem& p) { return !p.mended && !encloses_nothing(p); };
+  if (std::any_of(repair.problems.begin(), repair.problems.end(), is_bad)) {
+    recombine(kept.rings, repair);
+  } else {
+    repair.polygons = {std::move(normal.polygon)};
+  }
+}
+
+}  // namespace
+
+double area(const Polygon& polygon) {
+  double doubled = std::fabs(doubled_area(polygon.outer));
+  for (const Ring& hole : polygon.holes) doubled -= std::fabs(doubled_area(hole));
+  return 0.5 * doubled;
+}
+
+Repair repair(const std::vector<Ring>& rings) {
+  EXACTVO_REQUIRE(!rings.empty(), std::string("no ring"));
+  Repair result;
+  result.before = facts_of(rings);
+  mend(rings, result);
+  if (!result.ok()) return result;
+  for (RingProblem& problem : result.problems) problem.mended = true;
+  result.after = facts_of(result.polygons);
+  return result;
+}
+
+}  // namespace exactvo::datasets

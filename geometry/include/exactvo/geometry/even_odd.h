@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The region that rings of any kind enclose: every point that lies inside an odd number of them (the even-odd rule).
+/// Rings may cross, touch and overlap themselves and each other; a spike and an edge that is walked twice enclose
+/// nothing; a ring in a ring is a hole, and one in that hole an island.
+///
+/// The rings are cut at their crossings exactly (CGAL's arrangements, which its Boolean operations are built on).
+/// Crossings are then rounded to doubles, and what the rounding made meet is cut again, until nothing changes.
+///
+/// Neighbours: validity.h says whether rings need this; datasets/repair.h does it for obstacles and reports.
+///
+/// Properties (tests quote the numbers):
+///  (1) every polygon of the answer is valid (`normalize` mends nothing but closure), and their insides are disjoint;
+///  (2) the answer to an answer's rings is that answer;
+///  (3) a point farther than `moved` from every ring lies in the answer exactly if an odd number of rings enclose it;
+///  (4) the order, the winding and the start of the rings do not matter.
+
+#include <cstddef>
+#include <vector>
+
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::geometry {
+
+enum class EvenOddStatus {
+  done,
+  /// More than kMostCrossings contacts between edges: nothing was cut.
+  too_many_crossings,
+  /// After kMostRounds roundings new crossings were still being made.
+  not_roundable,
+  /// CGAL gave up: not known to happen.
+  refused
+};
+
+struct EvenOddRegion {
+  EvenOddStatus status = EvenOddStatus::done;
+  std::vector<Polygon> polygons;  ///< empty unless done, and where nothing is enclosed; in order of their least vertex
+  double moved = 0.0;             ///< m; no point was moved farther than this: certified (rounded up)
+  std::size_t rounds = 0;         ///< roundings that changed something
+};
+
+/// An edge may have this many contacts with edges that are not its neighbours, all edges together: each costs about a
+/// kilobyte while the rings are cut.
+inline constexpr std::size_t kMostCrossings = std::size_t{1} << 17;
+
+/// One or two roundings are the rule. From the fourth on all vertices go to a grid that is twice as wide each time.
+inline constexpr std::size_t kMostRounds = 16;
+
+/// REQUIRES: all points finite.
+EvenOddRegion even_odd_region(const std::vector<Ring>& rings);
+
+}  // namespace exactvo::geometry
