@@ -126,10 +126,8 @@ bool locate_rounded(const Ellipse& e, Vec2 u, Vec2 size, double r, Place& place)
   return std::fabs(disc) > error && (disc < 0.0 || b < -error_b || c < -error_c);
 }
 
-Place locate_exactly(const Ellipse& e, const GrownShape& s, Vec2 direction, double t) {
-  const Vector<Exact> p = difference<Exact>(e.center, s.origin);
-  const Exact scale(t);
-  return locate_ellipse_exact(e, {p.x - scale * Exact(direction.x), p.y - scale * Exact(direction.y)}, Exact(s.radius));
+Place locate_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& q) {
+  return locate_ellipse_exact(e, minus(difference<Exact>(e.center, s.origin), q), Exact(s.radius));
 }
 
 namespace {
@@ -155,9 +153,8 @@ struct ChordPoint {
   Sign compare(const Exact& t) const { return sign_with_root(rational - t * scale_rational, root - t * scale_root, f); }
 };
 
-ChordPoint chord_point(const Ellipse& e, const GrownShape& s, Vec2 v) {
+ChordPoint chord_point(const Ellipse& e, const GrownShape& s, const Vector<Exact>& d) {
   const Vector<Exact> p = difference<Exact>(e.center, s.origin);
-  const Vector<Exact> d = make<Exact>(v);
   const Vector<Exact> normal{Exact(0) - d.y, d.x};
   const Exact l11(e.l11), l21(e.l21), l22(e.l22);
   const Vector<Exact> ln{l11 * normal.x + l21 * normal.y, l22 * normal.y};
@@ -172,9 +169,9 @@ ChordPoint chord_point(const Ellipse& e, const GrownShape& s, Vec2 v) {
 }
 
 /// Whether the line through the origin along v meets S: |N.p| <= h of the centred shape in direction N.
-bool line_meets(const Ellipse& e, const GrownShape& s, Vec2 v) {
+bool line_meets(const Ellipse& e, const GrownShape& s, const Vector<Exact>& v) {
   const Vector<Exact> p = difference<Exact>(e.center, s.origin);
-  const Vector<Exact> n{Exact(0) - Exact(v.y), Exact(v.x)};
+  const Vector<Exact> n{Exact(0) - v.y, v.x};
   Exact k = dot_of(n, p);
   if (sign_of(k) == Sign::positive) k = Exact(0) - k;
   const Exact wx = Exact(e.l11) * n.x + Exact(e.l21) * n.y;
@@ -239,11 +236,11 @@ bool segment_meets_rounded(const Ellipse& e, const GrownShape& s, Vec2 v, double
   return true;
 }
 
-bool segment_meets_exactly(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max) {
+bool segment_meets_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& v, const Exact& t_max) {
   if (!line_meets(e, s, v)) return false;
   const ChordPoint chord = chord_point(e, s, v);
-  if (chord.compare(Exact(0)) != Sign::positive) return locate_exactly(e, s, v, 0.0) != Place::outside;
-  if (chord.compare(Exact(t_max)) != Sign::negative) return locate_exactly(e, s, v, t_max) != Place::outside;
+  if (chord.compare(Exact(0)) != Sign::positive) return locate_exactly(e, s, {Exact(0), Exact(0)}) != Place::outside;
+  if (chord.compare(t_max) != Sign::negative) return locate_exactly(e, s, {t_max * v.x, t_max * v.y}) != Place::outside;
   return true;
 }
 

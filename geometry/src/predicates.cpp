@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "exact_sweep.h"
 #include "exact_vector.h"
 #include "exactvo/geometry/require.h"
 #include "grown_ellipse.h"
@@ -125,7 +126,7 @@ struct Locator {
   [[gnu::noinline, gnu::cold]] Place ellipse_exactly(const Ellipse& e) const {
     count_exact();
     require_valid(s);
-    return detail::locate_exactly(e, s, q, 1.0);
+    return detail::locate_exactly(e, s, make<Exact>(q));
   }
   [[gnu::noinline, gnu::cold]] Sign disc_exactly(const Disc& disc) const {
     count_exact();
@@ -172,7 +173,7 @@ struct SegmentMeets {
       count_filter();
       return meets;
     }
-    return disc_exactly(d);
+    return exactly();
   }
   bool operator()(const Segment& g) const {
     const Vec2 ends[2] = {g.a, g.b};
@@ -185,29 +186,15 @@ struct SegmentMeets {
       count_filter();
       return meets;
     }
-    return ellipse_exactly(e);
+    return exactly();
   }
 
  private:
-  // Kept out of the filters' way: their frames would cost as much as a filter.
-  [[gnu::noinline, gnu::cold]] bool disc_exactly(const Disc& d) const {
+  // Kept out of the filters' way: its frame would cost as much as a filter.
+  [[gnu::noinline, gnu::cold]] bool exactly() const {
     count_exact();
     require_valid(s);
-    // A robot at rest: w = 0 takes the first branch.
-    const Vector<Exact> p = difference<Exact>(d.center, s.origin);
-    const Vector<Exact> w = make<Exact>(v);
-    const Exact r2 = squared(Exact(d.radius) + Exact(s.radius));
-    const Exact pv = dot_of(p, w), speed2 = dot_of(w, w), t(t_max);
-    if (sign_of(pv) != Sign::positive) return sign_of(dot_of(p, p) - r2) != Sign::positive;
-    const Vector<Exact> u{p.x - t * w.x, p.y - t * w.y};
-    if (!(pv < t * speed2)) return sign_of(dot_of(u, u) - r2) != Sign::positive;
-    return sign_of(squared(cross_of(w, p)) - r2 * speed2) != Sign::positive;
-  }
-  [[gnu::noinline, gnu::cold]] bool ellipse_exactly(const Ellipse& e) const {
-    if (v == Vec2{}) return Locator{s, v}(e) != Place::outside;
-    count_exact();
-    require_valid(s);
-    return detail::segment_meets_exactly(e, s, v, t_max);
+    return detail::segment_meets_exactly(s, make<Exact>(v), Exact(t_max));
   }
 
   /// False where a sign is in doubt. p errs by u, p.v and v x p by 4 u of their magnitudes, (v x p)^2 by 10 u, r^2

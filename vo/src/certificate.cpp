@@ -23,8 +23,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_well_formed(const HalfPlaneClaim& c) {
   return geometry::is_valid(c.shape) && is_finite(c.position) && c.radius >= 0.0 && std::isfinite(c.radius) &&
-         c.time_horizon > 0.0 && std::isfinite(c.time_horizon) && is_finite(c.shape_velocity) &&
-         is_finite(c.half_plane.normal) && c.half_plane.normal != Vec2{} && std::isfinite(c.half_plane.offset);
+         c.time_horizon > 0.0 && is_finite(c.shape_velocity) && is_finite(c.half_plane.normal) &&
+         c.half_plane.normal != Vec2{} && std::isfinite(c.half_plane.offset);
 }
 
 // --- The support function, as k + sqrt(b) + sqrt(d) in rationals ---
@@ -70,8 +70,10 @@ RootSum excess(const HalfPlaneClaim& c) {
   RootSum h = std::visit(SupportOf{c}, c.shape);
   const Vec2 n = c.half_plane.normal;
   const Rational moved = Rational(n.x) * Rational(c.shape_velocity.x) + Rational(n.y) * Rational(c.shape_velocity.y);
-  const Rational bound = Rational(c.time_horizon) * (Rational(c.half_plane.offset) - moved);
-  if (sgn(bound) < 0) h.k -= bound;
+  const Rational beyond = Rational(c.half_plane.offset) - moved;
+  if (sgn(beyond) >= 0) return h;
+  if (!std::isfinite(c.time_horizon)) return {1, 0, 0};  // the apex itself is cut into: no shape makes that true
+  h.k -= Rational(c.time_horizon) * beyond;
   return h;
 }
 

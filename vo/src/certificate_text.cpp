@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <charconv>
 #include <cstdio>
+#include <limits>
 #include <string_view>
 
 #include "exactvo/vo/certificate.h"
@@ -33,6 +34,7 @@ class Reader {
     const bool negative = !word.empty() && word[0] == '-';
     if (negative) word.remove_prefix(1);
     double value = 0.0;
+    if (ok_ && word == "inf" && !negative) return std::numeric_limits<double>::infinity();
     if (word.substr(0, 2) != "0x") ok_ = false;
     if (!ok_) return value;
     const char* const last = word.data() + word.size();

@@ -75,6 +75,8 @@ inline bool disc_half_plane(Vec2 p, double R, double tau, Vec2 y, HalfPlane& out
   return true;
 }
 
+constexpr double kLongest = 0x1p1000;  // s; an infinite horizon, or one whose products overflow, takes the general way
+
 // --- The search for the best direction ---
 
 struct Best {
@@ -124,7 +126,7 @@ double first_tilt(double h, const SupportValue& v, double depth) {
   return std::max((std::max(h, 0.0) + 4.0 * error_of(v)) / depth, kLeast);
 }
 
-/// Half-planes through 0: the legs. Nudging an offset would not do, since the cone is unbounded.
+/// Half-planes through 0: the legs and the apex. Nudging an offset would not do, since the cone is unbounded.
 std::optional<HalfPlane> leg_half_plane(const GrownShape& s, Vec2 n) {
   const std::optional<Vec2> tilted = certified_inside(s, n);
   if (!tilted) return std::nullopt;
@@ -138,9 +140,9 @@ bool is_about_unit(Vec2 n) {
 }
 
 /// For a robot so near that nothing else could be certified.
-std::optional<HalfPlane> contact(const GrownShape& s, double tau) {
+std::optional<HalfPlane> contact(const GrownShape& s) {
   const Vec2 n = nearest_to(s, {}).normal;
-  if (!is_about_unit(n) || sign_of_support(s, n, tau, 0.0) == geometry::Sign::positive) return std::nullopt;
+  if (!is_about_unit(n) || sign_of_support(s, n, 1.0, 0.0) == geometry::Sign::positive) return std::nullopt;
   return HalfPlane{n, 0.0};
 }
 
@@ -157,7 +159,27 @@ VelocityObstacle::Nearest nearest_to(const GrownShape& s, Vec2 y) {
   return best;
 }
 
-std::optional<Direction> best_direction(const GrownShape& s, Vec2 y) {
+namespace {
+
+/// The best of the two legs, offered for a velocity of any scale.
+void offer_legs(const Tangents& legs, Vec2 y, Best& best) {
+  best.offer(legs.left.normal, -dot(legs.left.normal, y), {}, BoundaryPart::left_leg);
+  best.offer(legs.right.normal, -dot(legs.right.normal, y), {}, BoundaryPart::right_leg);
+}
+
+/// The whole cone: the normal nearest in direction to v. Where v itself is one, the apex is nearest.
+std::optional<Direction> best_direction_of_cone(const GrownShape& s, Vec2 v) {
+  const std::optional<Tangents> legs = tangents(s);
+  if (!legs) return std::nullopt;
+  Best best;
+  offer_legs(*legs, v, best);
+  const Vec2 along = geometry::normalized(v);
+  if (along != Vec2{} && dot(v, legs->left.touch) <= 0.0 && dot(v, legs->right.touch) <= 0.0)
+    best.offer(along, -dot(along, v), {}, BoundaryPart::apex);
+  return best.direction;
+}
+
+std::optional<Direction> best_direction_truncated(const GrownShape& s, Vec2 y) {
   Best best;
   const Normals inner = nearest_normals(s, y);
   for (std::size_t i = 0; i < inner.count; ++i) {
@@ -167,12 +189,15 @@ std::optional<Direction> best_direction(const GrownShape& s, Vec2 y) {
     // y outside S, and its nearest point's normal separates: VO is convex, so that point is the nearest of VO too.
     if (i == 0 && best.direction.f < 0.0) return best.direction;
   }
-  if (const std::optional<Tangents> legs = tangents(s)) {
-    best.offer(legs->left.normal, -dot(legs->left.normal, y), {}, BoundaryPart::left_leg);
-    best.offer(legs->right.normal, -dot(legs->right.normal, y), {}, BoundaryPart::right_leg);
-  }
+  if (const std::optional<Tangents> legs = tangents(s)) offer_legs(*legs, y, best);
   if (!std::isfinite(best.direction.f)) return std::nullopt;
   return best.direction;
+}
+
+}  // namespace
+
+std::optional<Direction> best_direction(const GrownShape& s, double tau, Vec2 v) {
+  return std::isfinite(tau) ? best_direction_truncated(s, tau * v) : best_direction_of_cone(s, v);
 }
 
 std::optional<Vec2> certified_inside(const GrownShape& s, Vec2 n) {
@@ -201,19 +226,18 @@ std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n) {
 }
 
 std::optional<HalfPlane> separating_half_plane(const GrownShape& s, double tau, Vec2 v) {
-  const Vec2 y = tau * v;
   if (const Disc* disc = std::get_if<Disc>(&s.shape)) {
     HalfPlane h;
-    if (disc_half_plane(disc->center - s.origin, disc->radius + s.radius, tau, y, h)) return h;
+    if (tau <= kLongest && disc_half_plane(disc->center - s.origin, disc->radius + s.radius, tau, tau * v, h)) return h;
   }
-  const std::optional<Direction> best = best_direction(s, y);
-  if (!best || !is_about_unit(best->normal)) return contact(s, tau);
+  const std::optional<Direction> best = best_direction(s, tau, v);
+  if (!best || !is_about_unit(best->normal)) return contact(s);
   if (best->part == BoundaryPart::cut_off) {
     const double h_up = best->h + error_of({best->h, best->magnitude});
     if (h_up <= 0.0) return HalfPlane{best->normal, offset_above(h_up, tau)};
   }
   const std::optional<HalfPlane> leg = leg_half_plane(s, best->normal);
-  return leg ? leg : contact(s, tau);
+  return leg ? leg : contact(s);
 }
 
 }  // namespace exactvo::vo::detail

@@ -12,7 +12,7 @@
 
 namespace exactvo::vo::detail {
 
-/// The minimum of f(n) = h_S(n) - n.y over h_S(n) <= 0. Rounded.
+/// The minimum of f(n) = h_S(n) - n.(tau v) over h_S(n) <= 0; with tau infinite, of f(n) = -n.v. Rounded.
 struct Direction {
   Vec2 normal;
   double f = 0.0;
@@ -22,7 +22,7 @@ struct Direction {
 };
 
 /// Nothing where the robot lies in S or so near that neither a leg nor an inner minimum was found.
-std::optional<Direction> best_direction(const GrownShape& s, Vec2 y);
+std::optional<Direction> best_direction(const GrownShape& s, double tau, Vec2 v);
 
 /// n tilted as little as needed for a certified h_S <= 0: n + kappa m for an m with h_S(m) < 0 (h_S is sublinear).
 /// Nothing where no such m is found: overlap, or a few ulps from it.

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "exactvo/geometry/minkowski.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "separation.h"
@@ -30,14 +31,30 @@ VelocityObstacle::VelocityObstacle(geometry::ConvexShape obstacle, Vec2 robot_po
   EXACTVO_REQUIRE(geometry::is_valid(grown_.shape), geometry::to_string(grown_.shape));
   EXACTVO_REQUIRE(geometry::is_finite(robot_position), "a robot position that is not finite");
   EXACTVO_REQUIRE(robot_radius >= 0.0 && std::isfinite(robot_radius), std::to_string(robot_radius));
-  EXACTVO_REQUIRE(time_horizon > 0.0 && std::isfinite(time_horizon), std::to_string(time_horizon));
+  EXACTVO_REQUIRE(time_horizon > 0.0, std::to_string(time_horizon));
+}
+
+VelocityObstacle::VelocityObstacle(geometry::ConvexShape obstacle, Vec2 robot_position, geometry::ConvexPolygon robot,
+                                   double time_horizon)
+    : tau_(time_horizon) {
+  EXACTVO_REQUIRE(time_horizon > 0.0, std::to_string(time_horizon));
+  geometry::OuterShape outer = geometry::grown_by_polygon(obstacle, robot, robot_position);
+  grown_ = std::move(outer.shape);
+  polygonal_ = std::make_shared<const Polygonal>(Polygonal{std::move(obstacle), std::move(robot), outer.error});
 }
 
 bool VelocityObstacle::overlaps() const {
+  if (polygonal_) return sweep_meets(polygonal_->obstacle, polygonal_->robot, grown_.origin, {}, 0.0);
   return locate(grown_, Vec2{}) != geometry::Place::outside;
 }
 
 bool VelocityObstacle::contains(Vec2 v) const {
+  if (polygonal_ || !std::isfinite(tau_)) return contains_sum({{v}});
+  return segment_meets(grown_, v, tau_);
+}
+
+bool VelocityObstacle::contains_sum(const geometry::VectorSum& v) const {
+  if (polygonal_) return sweep_meets(polygonal_->obstacle, polygonal_->robot, grown_.origin, v, tau_);
   return segment_meets(grown_, v, tau_);
 }
 
@@ -56,18 +73,18 @@ std::optional<Legs> VelocityObstacle::legs() const {
 
 NearestBoundary VelocityObstacle::nearest_boundary(Vec2 v) const {
   EXACTVO_REQUIRE(geometry::is_finite(v), "a velocity that is not finite");
-  const std::optional<detail::Direction> best = detail::best_direction(grown_, tau_ * v);
+  const std::optional<detail::Direction> best = detail::best_direction(grown_, tau_, v);
   if (!best) {  // a few ulps from contact: the half-plane away from it is all that is left of the free side
     const Nearest away = nearest();
     return {away.normal, dot(away.normal, v), -dot(away.normal, v) * away.normal, BoundaryPart::cut_off};
   }
-  const double f = best->f / tau_;
+  const double f = std::isfinite(tau_) ? best->f / tau_ : best->f;
   return {best->normal, -f, f * best->normal, best->part};
 }
 
 std::optional<HalfPlane> half_plane(const geometry::GrownShape& s, double time_horizon, Vec2 v) {
   EXACTVO_REQUIRE(geometry::is_finite(v), "a velocity that is not finite");
-  EXACTVO_REQUIRE(time_horizon > 0.0 && std::isfinite(time_horizon), std::to_string(time_horizon));
+  EXACTVO_REQUIRE(time_horizon > 0.0, std::to_string(time_horizon));
   return detail::separating_half_plane(s, time_horizon, v);
 }
 
@@ -82,7 +99,7 @@ std::optional<HalfPlane> VelocityObstacle::half_plane(Vec2 v, double alpha) cons
 
 std::optional<HalfPlane> VelocityObstacle::contact_half_plane() const {
   const Nearest n0 = nearest();
-  if (n0.normal == Vec2{} || sign_of_support(grown_, n0.normal, tau_, 0.0) == geometry::Sign::positive)
+  if (n0.normal == Vec2{} || sign_of_support(grown_, n0.normal, 1.0, 0.0) == geometry::Sign::positive)
     return std::nullopt;
   return HalfPlane{n0.normal, 0.0};
 }

@@ -8,6 +8,7 @@
 ///   polygon (+) polygon     CGAL's minkowski_sum_2 over exact numbers, then rounded     here
 ///   polygon (+) disc        polygons from outside and from inside, certified            here
 ///                           with its arcs, unrounded, as a handle                       exact_offset.h
+///   any convex (+) polygon  a grown shape round it, for polygonal robots                here
 ///   any convex (+) disc     never built for a velocity obstacle: see support.h; `outline` draws it
 ///
 /// Every rounded result says by how much. "Within e" is the Hausdorff distance: no point of either set is farther than
@@ -40,6 +41,17 @@ struct PolygonSum {
 /// The sum of two polygons with holes, by CGAL's minkowski_sum_2, each vertex rounded. Only holes that the sum leaves
 /// open stay. REQUIRES: both valid (see `normalize`).
 PolygonSum minkowski_sum(const Polygon& a, const Polygon& b, SumMethod method = SumMethod::convolution);
+
+struct OuterShape {
+  GrownShape shape;    ///< contains S
+  double error = 0.0;  ///< m; no point of it is farther than this from S: certified
+};
+
+/// S = (obstacle - position) (+) (-robot): the obstacle grown by a robot that is a convex polygon, its vertices
+/// relative to `position`. Rounded outward: where vertices of the sum were rounded, a radius makes up for it; an
+/// ellipse is replaced by a polygon round it, within 2^-12 of its larger entry. Exact questions: swept.h. REQUIRES:
+/// valid shapes, finite and below 2^900.
+OuterShape grown_by_polygon(const ConvexShape& obstacle, const ConvexPolygon& robot, Vec2 position);
 
 enum class Side { inside, outside };
 

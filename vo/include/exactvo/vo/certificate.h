@@ -30,7 +30,7 @@ struct HalfPlaneClaim {
   geometry::ConvexShape shape;
   geometry::Vec2 position;        ///< m, of the robot
   double radius = 0.0;            ///< m, >= 0, of the robot
-  double time_horizon = 0.0;      ///< s, > 0
+  double time_horizon = 0.0;      ///< s, > 0, may be infinite
   geometry::Vec2 shape_velocity;  ///< m/s
   geometry::HalfPlane half_plane;
 };
@@ -41,7 +41,7 @@ struct Certificate {
   std::uint64_t digest = 0;  ///< FNV-1a of the bits of every other number
 };
 
-/// Whether the claim is true. Exact, in rationals. REQUIRES: nothing; a claim with a NaN, an infinity, a negative
+/// Whether the claim is true. Exact, in rationals. REQUIRES: nothing; a claim with a NaN, another infinity, a negative
 /// radius or a horizon that is not positive is not true.
 bool is_true(const HalfPlaneClaim& claim);
 

@@ -2,10 +2,11 @@
 #pragma once
 
 /// \file
-/// The truncated velocity obstacle of a convex shape for a disc-shaped robot (paper, equations (7) and (9), corrected:
-/// 0 < t <= tau), one construction for every shape, through the support function.
+/// The velocity obstacle of a convex shape (paper, equations (7) and (9), corrected: 0 < t <= tau), truncated or, with
+/// tau infinite, the whole cone; for a robot that is a disc or a convex polygon. One construction for every shape,
+/// through the support function.
 ///
-/// With S = (O - p) (+) D(0, r) seen from the robot and 0 not in S,
+/// With S = (O - p) (+) D(0, r), or O - p plus the mirrored polygon of the robot, seen from the robot and 0 not in S,
 ///
 ///     VO = { v : t v in S for some 0 < t <= tau }  is convex, and  h_VO(n) = h_S(n) / tau where h_S(n) <= 0,
 ///     infinite elsewhere.
@@ -18,8 +19,11 @@
 ///                        |
 ///                        o  v = 0
 ///
-/// Exact: `overlaps`, `contains`. Certified: `half_plane`, `legs` (bracket). Rounded: `nearest_boundary`, `support`.
-/// Neighbours: reciprocal.h (robot against robot), orca_obstacle.h (the baseline's polygon rule), lp/ (which velocity).
+/// Exact: `overlaps`, `contains`. Certified: `half_plane`, `legs` (bracket). Rounded: `nearest_boundary`, `nearest`.
+/// For a polygonal robot the last two kinds speak of `grown()`, a shape round S within `grown_error()` of it:
+/// half-planes and inner normals of legs are as safe, and that much less tight. Neighbours: family.h (RVO, HRVO, moving
+/// obstacles), free_velocities.h (what many of them leave), reciprocal.h (robot against robot), orca_obstacle.h (the
+/// baseline's polygon rule), lp/ (which velocity).
 ///
 /// Properties (tests quote the numbers):
 ///  (1) `half_plane` of a static obstacle admits v = 0;
@@ -29,10 +33,12 @@
 ///      mirroring one of discs and segments (polygons change the order of their vertices, ellipses their L);
 ///  (5) a velocity that satisfies `half_plane` is not inside the velocity obstacle.
 
+#include <memory>
 #include <optional>
 
 #include "exactvo/geometry/half_plane.h"
 #include "exactvo/geometry/support.h"
+#include "exactvo/geometry/swept.h"
 
 namespace exactvo::vo {
 
@@ -52,7 +58,8 @@ struct Legs {
   Leg right;
 };
 
-enum class BoundaryPart { left_leg, right_leg, cut_off };
+/// `apex`: of a cone that is not truncated, the point v = 0.
+enum class BoundaryPart { left_leg, right_leg, cut_off, apex };
 
 /// The boundary point of VO nearest to a velocity. Rounded.
 struct NearestBoundary {
@@ -64,12 +71,18 @@ struct NearestBoundary {
 
 class VelocityObstacle {
  public:
-  /// `obstacle` and `robot_position` in metres, `robot_radius` >= 0 m, `time_horizon` > 0 s.
-  /// REQUIRES: all finite, the shape valid (geometry::is_valid).
+  /// `obstacle` and `robot_position` in metres, `robot_radius` >= 0 m, `time_horizon` > 0 s, may be infinite.
+  /// REQUIRES: all else finite, the shape valid (geometry::is_valid).
   VelocityObstacle(geometry::ConvexShape obstacle, Vec2 robot_position, double robot_radius, double time_horizon);
 
-  /// S with its parts.
+  /// A robot that is a convex polygon, its vertices relative to `robot_position`. It does not turn.
+  VelocityObstacle(geometry::ConvexShape obstacle, Vec2 robot_position, geometry::ConvexPolygon robot,
+                   double time_horizon);
+
+  /// S with its parts; of a polygonal robot a shape round S.
   const geometry::GrownShape& grown() const { return grown_; }
+  /// m; how far `grown()` may reach beyond S: 0 for a disc.
+  double grown_error() const { return polygonal_ ? polygonal_->error : 0.0; }
   double time_horizon() const { return tau_; }
 
   /// Whether the robot touches or overlaps the obstacle: 0 in S. Then no cone exists. Exact.
@@ -77,6 +90,8 @@ class VelocityObstacle {
 
   /// Whether v collides within the horizon: the closed VO. Exact. REQUIRES: !overlaps().
   bool contains(Vec2 v) const;
+  /// The same for the exact sum of some velocities: v relative to something that moves.
+  bool contains_sum(const geometry::VectorSum& v) const;
 
   /// The outward normal of S at the point nearest the robot and the distance between the two (negative: the depth
   /// of an overlap), m. Rounded.
@@ -103,8 +118,16 @@ class VelocityObstacle {
   std::optional<HalfPlane> contact_half_plane() const;
 
  private:
+  /// What `grown_` was rounded from, kept for the exact questions.
+  struct Polygonal {
+    geometry::ConvexShape obstacle;
+    geometry::ConvexPolygon robot;
+    double error;
+  };
+
   geometry::GrownShape grown_;
   double tau_;
+  std::shared_ptr<const Polygonal> polygonal_;  ///< nothing for a disc
 };
 
 /// `VelocityObstacle::half_plane` with alpha = 1, for a shape that stands somewhere already: nothing is copied.

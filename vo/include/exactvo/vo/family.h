@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The family: what different authors make of one encounter, as values that can be asked, drawn and compared.
+///
+///   VO    u + C(tau)              velocities that collide if the obstacle keeps u      Fiorini and Shiller 1998
+///   RVO   (v + u)/2 + C(2 tau)    the obstacle does half: 2 v' - v lies in the VO      van den Berg, Lin, Manocha 2008
+///   HRVO  apex + C(2 tau)         RVO's leg on the robot's own side, VO's on the other   Snape et al. 2011
+///   ORCA  one half-plane          v + share (least change), on the shape as it stands  van den Berg et al. 2011
+///   IVO   one half-plane          the whole change, on an ellipse round the shape      the paper, equation (10)
+///
+/// u is the obstacle's velocity, v the robot's, v' the asked one; C(tau) is the velocity obstacle of a robot and an
+/// obstacle with relative velocity (velocity_obstacle.h). The three cones are one cone with different apices. Authors
+/// who give no horizon mean an infinite one; RVO's and HRVO's are cut off at 2 tau here, since v' stands for twice its
+/// offset.
+///
+/// Exact: `ShiftedCone::contains` for the apex that is stated; VO's and RVO's apices are exact sums, HRVO's is the
+/// intersection of two legs, rounded. Certified: IVO's half-plane, and ORCA's with share 1, against the obstacle that
+/// keeps its velocity; ORCA's with a smaller share only together with the obstacle's (see reciprocal.h, which gives
+/// both).
+///
+/// Properties (tests quote the numbers):
+///  (1) VO, RVO and HRVO of an obstacle at rest as seen by a robot at rest have the apex 0;
+///  (2) RVO's apex is the mean of the two velocities, exactly;
+///  (3) v' lies in RVO iff 2 v' - v lies in VO, exactly;
+///  (4) HRVO's apex lies on a leg of RVO and on the other leg of VO, to rounding;
+///  (5) ORCA's offset is affine in `share`: 0 leaves v allowed, 1 is VO's half-plane;
+///  (6) moving everything by one velocity moves every member by it.
+
+#include <optional>
+
+#include "exactvo/vo/velocity_obstacle.h"
+
+namespace exactvo::vo {
+
+enum class Variant { vo, rvo, hrvo, orca, ivo };
+inline constexpr Variant kVariants[] = {Variant::vo, Variant::rvo, Variant::hrvo, Variant::orca, Variant::ivo};
+
+/// "VO", "RVO", "HRVO", "ORCA", "IVO".
+const char* name(Variant variant);
+
+/// One robot and one obstacle, both with a velocity.
+struct Encounter {
+  geometry::ConvexShape obstacle;
+  Vec2 obstacle_velocity;                        ///< m/s
+  Vec2 position;                                 ///< m, of the robot
+  Vec2 velocity;                                 ///< m/s, of the robot
+  double radius = 0.0;                           ///< m, >= 0; ignored where the robot is a polygon
+  std::optional<geometry::ConvexPolygon> robot;  ///< vertices relative to `position`; nothing for a disc
+  double time_horizon = 3.0;                     ///< s, > 0, may be infinite
+  double share = 0.5;                            ///< in [0, 1]: how much of the change ORCA's robot takes
+  /// IVO's ellipse; where it is missing: the smallest round a polygon, a segment or a disc as they are.
+  std::optional<geometry::Ellipse> enclosure;
+};
+
+/// The velocity obstacle of the obstacle as the robot sees it, for relative velocities. REQUIRES: see its constructor.
+VelocityObstacle cone_of(const Encounter& encounter);
+
+/// { apex + w : w in C }: a velocity obstacle in absolute velocities.
+struct ShiftedCone {
+  VelocityObstacle cone;
+  geometry::VectorSum minus_apex;  ///< v - apex is the sum of v and this
+  Vec2 apex;                       ///< m/s, rounded, for people and pictures
+
+  /// Exact. REQUIRES: !cone.overlaps().
+  bool contains(Vec2 v) const;
+};
+
+/// What one author's rule allows the robot.
+struct Member {
+  Variant variant = Variant::vo;
+  std::optional<ShiftedCone> cone;      ///< VO, RVO, HRVO: forbidden
+  std::optional<HalfPlane> half_plane;  ///< ORCA, IVO: allowed
+
+  /// Whether the rule allows v. Exact for cones; rounded for half-planes. True where there is neither.
+  bool allows(Vec2 v) const;
+};
+
+/// Neither cone nor half-plane where the robot touches or overlaps the obstacle (IVO: its ellipse). REQUIRES: see
+/// `cone_of`; velocities finite; share in [0, 1].
+Member family_member(Variant variant, const Encounter& encounter);
+
+/// The paper's horizon (equation (9)): distance to S over speed; infinite at rest, 0 in contact. Rounded.
+double paper_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity);
+
+struct HorizonBounds {
+  double least = 0.3;        ///< s, > 0
+  double most = 3.0;         ///< s, >= least
+  double least_speed = 0.5;  ///< m/s, > 0; slower robots look ahead as far as one of this speed
+};
+
+/// The same within bounds, so that it is a horizon for every robot: clamp(distance / max(speed, least_speed)). Rounded.
+double clamped_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity, const HorizonBounds& bounds = {});
+
+}  // namespace exactvo::vo

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/vo/family.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/require.h"
+
+namespace exactvo::vo {
+namespace {
+
+using geometry::ConvexPolygon;
+using geometry::ConvexShape;
+using geometry::cross;
+using geometry::Disc;
+using geometry::dot;
+using geometry::Ellipse;
+using geometry::kUnitRoundoff;
+using geometry::Segment;
+using geometry::VectorSum;
+
+VelocityObstacle cone_round(const ConvexShape& shape, const Encounter& e, double time_horizon) {
+  if (e.robot) return {shape, e.position, *e.robot, time_horizon};
+  return {shape, e.position, e.radius, time_horizon};
+}
+
+struct Enclosed {
+  ConvexShape operator()(const Disc& d) const { return d; }
+  ConvexShape operator()(const Ellipse& e) const { return e; }
+  ConvexShape operator()(const Segment& s) const { return geometry::smallest_ellipse({s.a, s.b}); }
+  ConvexShape operator()(const ConvexPolygon& p) const { return geometry::smallest_ellipse(p.vertices); }
+};
+
+ShiftedCone cone_of_vo(const Encounter& e) {
+  return {cone_of(e), VectorSum{{-e.obstacle_velocity}}, e.obstacle_velocity};
+}
+
+ShiftedCone cone_of_rvo(const Encounter& e) {
+  const Vec2 half_v = 0.5 * e.velocity, half_u = 0.5 * e.obstacle_velocity;
+  return {cone_round(e.obstacle, e, 2.0 * e.time_horizon), VectorSum{{-half_v, -half_u}}, half_v + half_u};
+}
+
+/// Where the lines p + s a and q + t b meet; nothing where doubles find them parallel.
+std::optional<Vec2> crossing(Vec2 p, Vec2 a, Vec2 q, Vec2 b) {
+  const double s = cross(q - p, b) / cross(a, b);
+  if (!std::isfinite(s)) return std::nullopt;
+  return p + s * a;
+}
+
+/// The robot's own side of the middle of RVO keeps RVO's leg; the other is the VO's, so that changing sides does not
+/// pay.
+///
+///        VO's left leg \   / RVO's right leg      v lies right of the middle
+///                       \ /
+std::optional<ShiftedCone> cone_of_hrvo(const Encounter& e) {
+  ShiftedCone cone = cone_of_rvo(e);
+  const std::optional<Legs> legs = cone.cone.legs();
+  if (!legs) return std::nullopt;
+  const Vec2 left = legs->left.direction, right = legs->right.direction;
+  const bool keeps_left = cross(left + right, e.velocity - e.obstacle_velocity) >= 0.0;
+  const std::optional<Vec2> apex = keeps_left ? crossing(cone.apex, left, e.obstacle_velocity, right)
+                                              : crossing(cone.apex, right, e.obstacle_velocity, left);
+  if (!apex) return cone;
+  cone.apex = *apex;
+  cone.minus_apex = {{-*apex}};
+  return cone;
+}
+
+/// n.v' >= n.v + share (c - n.(v - u)), rounded up past the error of its terms.
+HalfPlane shared(const HalfPlane& relative, const Encounter& e, double share) {
+  const Vec2 n = relative.normal;
+  const double at_v = dot(n, e.velocity), at_u = dot(n, e.obstacle_velocity);
+  const double value = (1.0 - share) * at_v + share * (relative.offset + at_u);
+  const double terms = std::fabs(n.x * e.velocity.x) + std::fabs(n.y * e.velocity.y) +
+                       std::fabs(n.x * e.obstacle_velocity.x) + std::fabs(n.y * e.obstacle_velocity.y) +
+                       std::fabs(relative.offset);
+  constexpr double kRoundings = 16.0;  // at most 8 u of each term, twice that for the bound's own rounding
+  constexpr double kUnderflow = 0x1p-1060;
+  const bool at_rest = e.obstacle_velocity == Vec2{} && share == 1.0;
+  return {n, at_rest ? relative.offset : value + (kRoundings * kUnitRoundoff * terms + kUnderflow)};
+}
+
+std::optional<HalfPlane> half_plane_of(const VelocityObstacle& obstacle, const Encounter& e, double share) {
+  if (obstacle.overlaps()) return std::nullopt;
+  const std::optional<HalfPlane> relative = obstacle.half_plane(e.velocity - e.obstacle_velocity);
+  if (!relative) return std::nullopt;
+  return shared(*relative, e, share);
+}
+
+ConvexShape enclosure_of(const Encounter& e) {
+  return e.enclosure ? ConvexShape{*e.enclosure} : std::visit(Enclosed{}, e.obstacle);
+}
+
+double distance_ahead(const VelocityObstacle& obstacle) {
+  return obstacle.overlaps() ? 0.0 : std::max(obstacle.nearest().distance, 0.0);
+}
+
+}  // namespace
+
+const char* name(Variant variant) {
+  switch (variant) {
+    case Variant::vo:
+      return "VO";
+    case Variant::rvo:
+      return "RVO";
+    case Variant::hrvo:
+      return "HRVO";
+    case Variant::orca:
+      return "ORCA";
+    case Variant::ivo:
+      break;
+  }
+  return "IVO";
+}
+
+VelocityObstacle cone_of(const Encounter& e) {
+  return cone_round(e.obstacle, e, e.time_horizon);
+}
+
+bool ShiftedCone::contains(Vec2 v) const {
+  return cone.contains_sum(VectorSum{{v, minus_apex.terms[0], minus_apex.terms[1]}});
+}
+
+bool Member::allows(Vec2 v) const {
+  if (cone && cone->contains(v)) return false;
+  return !half_plane || violation(*half_plane, v) <= 0.0;
+}
+
+Member family_member(Variant variant, const Encounter& e) {
+  EXACTVO_REQUIRE(geometry::is_finite(e.velocity) && geometry::is_finite(e.obstacle_velocity),
+                  "a velocity that is not finite");
+  EXACTVO_REQUIRE(e.share >= 0.0 && e.share <= 1.0, std::to_string(e.share));
+  Member member{variant, std::nullopt, std::nullopt};
+  if (variant == Variant::ivo) {
+    member.half_plane = half_plane_of(cone_round(enclosure_of(e), e, e.time_horizon), e, 1.0);
+    return member;
+  }
+  const VelocityObstacle obstacle = cone_of(e);
+  if (obstacle.overlaps()) return member;
+  if (variant == Variant::vo) member.cone = cone_of_vo(e);
+  if (variant == Variant::rvo) member.cone = cone_of_rvo(e);
+  if (variant == Variant::hrvo) member.cone = cone_of_hrvo(e);
+  if (variant == Variant::orca) member.half_plane = half_plane_of(obstacle, e, e.share);
+  return member;
+}
+
+double paper_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity) {
+  const double distance = distance_ahead(obstacle);
+  const double speed = norm(velocity);
+  if (speed == 0.0) return distance > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  return distance / speed;
+}
+
+double clamped_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity, const HorizonBounds& bounds) {
+  EXACTVO_REQUIRE(bounds.least > 0.0 && bounds.least <= bounds.most && bounds.least_speed > 0.0,
+                  std::to_string(bounds.least) + ", " + std::to_string(bounds.most));
+  const double asked = distance_ahead(obstacle) / std::max(norm(velocity), bounds.least_speed);
+  return std::clamp(asked, bounds.least, bounds.most);
+}
+
+}  // namespace exactvo::vo
