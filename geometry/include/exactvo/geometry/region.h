@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Regions with straight edges over exact numbers: unions, intersections and differences that do not round (CGAL's
+/// Polygon_set_2 over lazy rationals), behind an immutable handle. Milliseconds for hundreds of edges.
+///
+/// Exact: everything but the doubles that show it (`pieces`, `area`), whose rounding is stated. Regions are
+/// regularised: closures of their interiors, so that what has no area is nothing.
+///
+/// Neighbours: exact_offset.h (one polygon with arcs), vo/free_velocities.h (what this is for).
+
+#include <memory>
+#include <vector>
+
+#include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::geometry {
+
+/// Certified: low <= the number <= high.
+struct Bracket {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+class Region {
+ public:
+  /// Empty.
+  Region();
+
+  /// The hull of the points. REQUIRES: finite.
+  static Region hull_of(const std::vector<Vec2>& points);
+
+  /// What of this region satisfies normal.x >= offset. REQUIRES: finite numbers; a zero normal keeps all or nothing.
+  Region cut(const HalfPlane& keep) const;
+
+  /// What of a convex polygon satisfies all of them. Much faster than cutting a region again and again.
+  static Region cut(const ConvexPolygon& polygon, const std::vector<HalfPlane>& keep);
+
+  Region united(const Region& other) const;
+  Region minus(const Region& other) const;
+  Region met(const Region& other) const;
+
+  bool is_empty() const;
+  Bracket area() const;  ///< m^2 or whatever the square of the unit is
+
+  /// Where x lies. Exact.
+  Place locate(Vec2 x) const;
+
+  /// The connected pieces; those that touch in a point count apart. Largest first.
+  struct Piece;
+  std::vector<Piece> pieces() const;
+
+ private:
+  struct Set;
+  explicit Region(std::shared_ptr<const Set> set);
+  std::shared_ptr<const Set> set_;
+};
+
+struct Region::Piece {
+  Region region;
+  Polygon polygon;  ///< each coordinate rounded to nearest
+  Bracket area;
+};
+
+}  // namespace exactvo::geometry

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The numbered properties of free_velocities.h, and areas that are known.
+#include "exactvo/vo/free_velocities.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "vo/half_plane_audit.h"
+
+namespace exactvo::test {
+namespace {
+
+using geometry::Disc;
+using geometry::Place;
+using geometry::Vec2;
+using vo::Encounter;
+using vo::FreeVelocities;
+using vo::FreeVelocityOptions;
+using vo::Inside;
+using vo::ShiftedCone;
+using vo::Variant;
+
+constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Encounter random_encounter(SeededRandom& random, int i) {
+  Encounter e;
+  e.radius = random.uniform(0.1, 0.4);
+  e.obstacle = random_shape(random, kKinds[i % 4], random.uniform(1.6, 4.0) * random.direction(), 1.0);
+  e.obstacle_velocity = i % 3 == 0 ? random.in_box(0.7) : Vec2{};
+  e.time_horizon = i % 5 == 0 ? kInfinity : random.uniform(0.5, 4.0);
+  if (i % 7 == 0) e.robot = random_convex_polygon(random, {}, e.radius, 5);
+  return e;
+}
+
+std::vector<ShiftedCone> random_scene_of(SeededRandom& random, int count, int first) {
+  std::vector<ShiftedCone> cones;
+  while (static_cast<int>(cones.size()) < count) {
+    const auto cone = vo::family_member(Variant::vo, random_encounter(random, first++)).cone;
+    if (cone) cones.push_back(*cone);
+  }
+  return cones;
+}
+
+TEST(FreeVelocities, NothingForbidsTheDisc) {
+  const FreeVelocities free({}, {2.0, 1e-4});
+  EXPECT_LE(free.area().low, 4.0 * kHalfTurn);
+  EXPECT_GE(free.area().high, 4.0 * kHalfTurn);
+  EXPECT_LT(free.area().high - free.area().low, 1e-2);
+  EXPECT_EQ(free.least_components(), 1u);
+  EXPECT_TRUE(free.contains({2.0, 0.0}));
+  EXPECT_FALSE(free.contains({2.0, 0x1p-30}));
+}
+
+TEST(FreeVelocities, AWedgeOfKnownArea) {
+  // A disc of radius 1 at distance 2 for ever: a wedge of 60 degrees with its corner at 0.
+  const Encounter e{Disc{{2.0, 0.0}, 0.75}, {}, {}, {}, 0.25, {}, kInfinity, 0.5, {}};
+  const FreeVelocities free({*vo::family_member(Variant::vo, e).cone}, {1.0, 1e-5});
+  const double expected = kHalfTurn * 5.0 / 6.0;
+  EXPECT_LE(free.area().low, expected);
+  EXPECT_GE(free.area().high, expected);
+  EXPECT_LT(free.area().high - free.area().low, 1e-3);
+}
+
+TEST(FreeVelocities, ACutOffOfKnownArea) {
+  // With a horizon the wedge begins at the disc scaled by 1/tau: sector minus the two triangles plus the disc's part.
+  const Encounter e{Disc{{2.0, 0.0}, 1.0}, {}, {}, {}, 0.0, {}, 4.0, 0.5, {}};
+  const FreeVelocities free({*vo::family_member(Variant::vo, e).cone}, {1.0, 1e-5});
+  const double r = 0.25, leg = std::sqrt(0.25 - r * r);
+  const double before =
+      leg * r - r * r * kHalfTurn / 3.0;  // the kite to the tangent points minus its sector of 120 deg
+  const double expected = kHalfTurn * 5.0 / 6.0 + before;
+  EXPECT_LE(free.area().low, expected);
+  EXPECT_GE(free.area().high, expected);
+  EXPECT_LT(free.area().high - free.area().low, 1e-3);
+}
+
+TEST(FreeVelocities, Property1_BoundsHoldPointByPoint) {
+  SeededRandom random(seed_of_run(631));
+  int inside = 0, points = 0;
+  for (int i = 0; i < 24; ++i) {
+    const FreeVelocities free(random_scene_of(random, 3, i), {1.5, 1e-3});
+    for (int k = 0; k < 60; ++k, ++points) {
+      const Vec2 v = random.in_box(1.5);
+      const bool is_free = free.contains(v);
+      inside += is_free ? 1 : 0;
+      if (free.inner().locate(v) == Place::inside) {
+        EXPECT_TRUE(is_free) << v.x << " " << v.y;
+      }
+      if (is_free) {
+        EXPECT_NE(free.outer().locate(v), Place::outside) << v.x << " " << v.y;
+      }
+      if (free.outer().locate(v) == Place::outside) {
+        EXPECT_FALSE(is_free);
+      }
+    }
+  }
+  EXPECT_GT(inside, points / 10);
+  EXPECT_LT(inside, points * 9 / 10);
+}
+
+TEST(FreeVelocities, Property2_TheBracketShrinks) {
+  SeededRandom random(seed_of_run(632));
+  for (int i = 0; i < 6; ++i) {
+    const std::vector<ShiftedCone> cones = random_scene_of(random, 3, i);
+    double before = kInfinity;
+    for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+      const auto area = FreeVelocities(cones, {1.5, tolerance}).area();
+      EXPECT_LE(area.low, area.high);
+      EXPECT_LT(area.high - area.low, before);
+      EXPECT_LT(area.high - area.low, 60.0 * tolerance);  // the boundary's length times twice the width
+      before = area.high - area.low;
+    }
+  }
+}
+
+TEST(FreeVelocities, Property3_MoreObstaclesLeaveLess) {
+  SeededRandom random(seed_of_run(633));
+  for (int i = 0; i < 6; ++i) {
+    std::vector<ShiftedCone> cones = random_scene_of(random, 4, i);
+    geometry::Bracket before{kInfinity, kInfinity};
+    for (std::size_t count = 1; count <= cones.size(); ++count) {
+      const auto area =
+          FreeVelocities({cones.begin(), cones.begin() + static_cast<std::ptrdiff_t>(count)}, {1.5, 1e-3}).area();
+      EXPECT_LE(area.low, before.low);
+      EXPECT_LE(area.high, before.high);
+      before = area;
+    }
+  }
+}
+
+TEST(FreeVelocities, Property4_CertifiedHalfPlanesStayInside) {
+  SeededRandom random(seed_of_run(634));
+  for (int i = 0; i < 12; ++i) {
+    const std::vector<ShiftedCone> cones = random_scene_of(random, 3, i);
+    const FreeVelocities free(cones, {1.5, 1e-3});
+    std::vector<geometry::HalfPlane> half_planes;
+    for (const ShiftedCone& cone : cones) {
+      const auto h = cone.cone.half_plane(-cone.apex);
+      ASSERT_TRUE(h);
+      const double shift = dot(h->normal, cone.apex);
+      half_planes.push_back({h->normal, h->offset + shift + 1e-12});
+    }
+    const vo::RegionReport report = free.compare(half_planes);
+    EXPECT_EQ(report.inside, Inside::yes);
+    EXPECT_LE(report.given_away.low, report.given_away.high);
+    EXPECT_NEAR(report.given_away.low, free.area().low - report.area.high, 0.1);
+    double lost = 0.0;
+    for (const vo::LostPiece& piece : report.lost) {
+      lost += piece.area.high;
+      EXPECT_GT(violation(half_planes[piece.half_plane], piece.farthest), 0.0);
+    }
+    EXPECT_LE(lost, report.given_away.high);
+  }
+}
+
+TEST(FreeVelocities, HalfPlanesThatCutIntoAConeAreNotInside) {
+  SeededRandom random(seed_of_run(635));
+  int cut = 0;
+  for (int i = 0; i < 24; ++i) {
+    const FreeVelocities free(random_scene_of(random, 2, i), {1.5, 1e-3});
+    const std::vector<geometry::HalfPlane> half_planes{{random.direction(), random.uniform(-1.0, 0.0)},
+                                                       {random.direction(), random.uniform(-1.0, 0.0)}};
+    const Inside inside = free.compare(half_planes).inside;
+    for (int k = 0; k < 40; ++k) {
+      const Vec2 v = random.in_box(1.0);
+      const bool in_region = norm(v) < 1.5 && violation(half_planes[0], v) < 0.0 && violation(half_planes[1], v) < 0.0;
+      if (!in_region || free.contains(v)) continue;
+      EXPECT_NE(inside, Inside::yes);
+      if (free.outer().locate(v) == Place::outside) {
+        EXPECT_EQ(inside, Inside::no);
+        ++cut;
+      }
+    }
+  }
+  EXPECT_GT(cut, 50);
+}
+
+TEST(FreeVelocities, AWallOfConesSplitsTheDisc) {
+  // Two walls ahead and behind that come nearer: what is left lies to the left and to the right.
+  std::vector<ShiftedCone> cones;
+  for (const double side : {1.0, -1.0}) {
+    const Encounter e{geometry::Segment{{2.0 * side, -2.0}, {2.0 * side, 2.0}},
+                      {-0.1 * side, 0.0},
+                      {},
+                      {},
+                      0.3,
+                      {},
+                      kInfinity,
+                      0.5,
+                      {}};
+    cones.push_back(*vo::family_member(Variant::vo, e).cone);
+  }
+  const FreeVelocities free(cones, {1.0, 1e-3});
+  EXPECT_EQ(free.least_components(), 2u);
+  EXPECT_EQ(free.inner().pieces().size(), 2u);
+}
+
+TEST(FreeVelocities, OverlapLeavesNothing) {
+  ShiftedCone cone{vo::VelocityObstacle(Disc{{0.5, 0.0}, 1.0}, {}, 0.1, 1.0), {}, {}};
+  const FreeVelocities free({cone}, {1.0, 1e-3});
+  EXPECT_EQ(free.area().high, 0.0);
+  EXPECT_FALSE(free.contains({}));
+}
+
+TEST(FreeVelocities, OptionsOutOfRangeAreMistakes) {
+  EXPECT_THROW(FreeVelocities({}, {0.0, 1e-3}), std::logic_error);
+  EXPECT_THROW(FreeVelocities({}, {kInfinity, 1e-3}), std::logic_error);
+  EXPECT_THROW(FreeVelocities({}, {1.0, 0.0}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace exactvo::test

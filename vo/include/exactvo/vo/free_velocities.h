@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What several velocity obstacles leave: the set of free velocities of a scene,
+///
+///     F = { v : |v| <= max_speed } minus the union of the interiors of the obstacles' cones.
+///
+/// F has circular arcs, irrational lines and, where ellipses take part, curves of degree eight. It is held between two
+/// regions with straight edges over exact numbers, `inner` and `outer`: inner, F, outer, each within the next. Every
+/// cone is convex, so a polygon of certified half-planes holds it, and the hull of points that are exactly inside lies
+/// in it; the same construction for every shape, a disc or a polygon for a robot, finite or infinite horizon. What is
+/// between the two is at most `tolerance` wide (and `grown_error` / tau where the robot is a polygon).
+///
+/// Exact: `contains`. Certified: both regions, so every bracket, and the two answers `yes` and `no` of `compare`.
+/// "Within" is up to sets without area: `inner` may touch a cone.
+///
+/// Properties (tests quote the numbers):
+///  (1) a point in the interior of `inner` is contained; a contained point lies in `outer`;
+///  (2) the bracket of the area shrinks with the tolerance;
+///  (3) one obstacle more never enlarges either bound of the area;
+///  (4) half-planes that are certified, one a cone, bound a region that lies in F.
+
+#include <cstddef>
+#include <vector>
+
+#include "exactvo/geometry/region.h"
+#include "exactvo/vo/family.h"
+
+namespace exactvo::vo {
+
+struct FreeVelocityOptions {
+  double max_speed = 2.0;            ///< m/s, > 0
+  double relative_tolerance = 1e-4;  ///< of max_speed, in [1e-7, 0.1]: how far the polygons may stray from the curves
+};
+
+/// Whether one set lies in another.
+enum class Inside { yes, no, undecided };
+/// "yes", "no", "undecided".
+const char* name(Inside answer);
+
+/// A part of F that half-planes give away.
+struct LostPiece {
+  geometry::Polygon polygon;   ///< m/s, rounded
+  geometry::Bracket area;      ///< (m/s)^2, of the part that lies in `inner`
+  Vec2 farthest;               ///< m/s, its corner that the half-plane below excludes by most
+  std::size_t half_plane = 0;  ///< the one that excludes most of it
+};
+
+/// How a region of half-planes (equation (13)) compares with F.
+struct RegionReport {
+  Inside inside = Inside::undecided;
+  geometry::Region region;       ///< within max_speed, from outside
+  geometry::Bracket area;        ///< (m/s)^2, of the region within max_speed
+  geometry::Bracket given_away;  ///< (m/s)^2, of F minus the region
+  std::vector<LostPiece> lost;   ///< largest first; slivers thinner than the tolerance are left out
+};
+
+class FreeVelocities {
+ public:
+  /// REQUIRES: options in range. Cones whose robot overlaps the obstacle forbid everything: F is empty.
+  FreeVelocities(std::vector<ShiftedCone> cones, const FreeVelocityOptions& options = {});
+
+  /// Whether |v| <= max_speed and v lies in no cone, boundaries of cones not counted as free. Exact.
+  bool contains(Vec2 v) const;
+
+  const geometry::Region& inner() const { return inner_; }
+  const geometry::Region& outer() const { return outer_; }
+
+  /// (m/s)^2. Certified.
+  geometry::Bracket area() const;
+
+  /// F has at least so many connected components that are wider than the tolerance: pieces of `outer` that hold a piece
+  /// of `inner`. Certified; slivers thinner than the tolerance may make more.
+  std::size_t least_components() const;
+
+  /// What the half-planes' intersection makes of F. `yes` is proven by certificates (each cone has a half-plane that
+  /// excludes it) or by the regions, `no` by the regions.
+  RegionReport compare(const std::vector<HalfPlane>& half_planes) const;
+
+  const std::vector<ShiftedCone>& cones() const { return cones_; }
+  /// The bounds of cone k within reach of max_speed.
+  const geometry::Region& cone_from_inside(std::size_t k) const { return from_inside_[k]; }
+  const geometry::Region& cone_from_outside(std::size_t k) const { return from_outside_[k]; }
+
+ private:
+  bool proven_by_certificates(const std::vector<HalfPlane>& half_planes) const;
+
+  std::vector<ShiftedCone> cones_;
+  FreeVelocityOptions options_;
+  std::vector<geometry::Region> from_inside_, from_outside_;
+  geometry::Region disc_inside_, disc_outside_;
+  geometry::Region inner_, outer_;
+};
+
+}  // namespace exactvo::vo
