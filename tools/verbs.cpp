@@ -11,10 +11,14 @@ Verb lp_verb();
 Verb vo_verb();
 Verb audit_verb();
 Verb trap_verb();
+Verb validate_verb();
+Verb repair_verb();
+Verb convert_verb();
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {simulate_verb(), explain_verb(), paper_verb(),
-                                        lp_verb(),       vo_verb(),      audit_verb(), trap_verb()};
+  static const std::vector<Verb> all = {simulate_verb(), explain_verb(), paper_verb(), lp_verb(),
+                                        vo_verb(),       audit_verb(),   trap_verb(),  validate_verb(),
+                                        repair_verb(),   convert_verb()};
   return all;
 }
 

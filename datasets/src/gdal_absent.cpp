@@ -2,6 +2,7 @@
 #include "gdal_facts.h"
 #include "grey_image.h"
 #include "readers.h"
+#include "writers.h"
 
 namespace exactvo::datasets {
 
@@ -20,6 +21,11 @@ bool looks_like_vector_file(const Glimpse&) {
 void read_vector_file(const std::filesystem::path& path, Collector&) {
   throw DataError(DataCode::format_unavailable, path.string(), "", "a file that needs GDAL",
                   "a build with EXACTVO_WITH_GDAL=ON, or plain WKT");
+}
+
+std::string to_gdal_file(const Obstacles&, const std::string& driver, const std::string& file) {
+  throw DataError(DataCode::format_unavailable, file, "", "a file that needs GDAL's driver " + driver,
+                  "a build with EXACTVO_WITH_GDAL=ON, or another format");
 }
 
 GreyImage read_gdal_image(const std::filesystem::path& path) {

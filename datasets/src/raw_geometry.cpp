@@ -111,7 +111,7 @@ std::vector<RingFinding> findings_of(const std::vector<geometry::RingProblem>& p
     const DataCode code = data_code(problem.code);
     if (problem.mended && !is_worth_a_note(raw, code)) continue;
     const std::string place = place_of_vertex(raw, problem.ring, problem.vertex);
-    findings.push_back({code, place, problem.where, problem.ring, problem.vertex, problem.mended});
+    findings.push_back({code, place, raw.place, problem.where, problem.ring, problem.vertex, problem.mended});
   }
   return findings;
 }
@@ -167,7 +167,8 @@ void Collector::add_mended(const RawGeometry& raw) {
   take_findings(judgement.findings);
   if (mended.changed()) {
     result_.repairs.push_back({raw.place, raw.id, codes_of(judgement.findings), mended.refused, mended.recombined,
-                               mended.moved, mended.before, mended.after});
+                               mended.moved, mended.recombined ? raw.rings : std::vector<geometry::Ring>{},
+                               mended.before, mended.after});
   }
   if (!mended.ok()) return reject(refusal_of(*mended.refused, judgement, raw.place));
   count(judgement.findings);

@@ -57,6 +57,7 @@ struct DataNote {
 struct RingFinding {
   DataCode code = DataCode::self_intersection;
   std::string place;       ///< "feature 3, ring 0, vertex 17"
+  std::string feature;     ///< "feature 3"
   geometry::Vec2 where;    ///< m
   std::size_t ring = 0;    ///< 0 is the outer one
   std::size_t vertex = 0;  ///< as the file lists them
@@ -70,7 +71,8 @@ struct RepairRecord {
   std::vector<DataCode> codes;  ///< of its problems, each once, in the order of the documentation
   std::optional<DataCode> refused;
   bool recombined = false;
-  double moved = 0.0;  ///< m
+  double moved = 0.0;                 ///< m
+  std::vector<geometry::Ring> given;  ///< where recombined: the rings before, m
   RepairFacts before;
   RepairFacts after;
 };

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The writers of this room: obstacles to the bytes of a file, and what of them did not go in.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+
+namespace exactvo::datasets {
+
+using Obstacles = std::vector<formation::SceneObstacle>;
+
+struct Written {
+  std::string bytes;
+  std::vector<std::string> losses;
+};
+
+geometry::Ring closed(geometry::Ring ring);
+/// The outer ring, then the holes, each closed.
+std::vector<geometry::Ring> closed_rings_of(const geometry::Polygon& polygon);
+std::string wkt_of(const geometry::Obstacle& shape);
+
+// simulator_formats.cpp
+Written to_rings_json(const Obstacles& obstacles, const std::string& file);
+Written to_menge_xml(const Obstacles& obstacles, const std::string& file);
+Written to_sumo_poly(const Obstacles& obstacles, const std::string& file);
+
+// gdal_writer.cpp, or gdal_absent.cpp in a build without GDAL. `driver`: GDAL's name.
+std::string to_gdal_file(const Obstacles& obstacles, const std::string& driver, const std::string& file);
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo convert: obstacles from one format to another, with what is lost said.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "exactvo/datasets/obstacle_write.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/obstacle_files.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+struct Flags {
+  std::string in, out, to;
+  ReadingFlags reading;
+  bool repair = false;
+  bool skip = false;
+};
+
+void say_what_was_read(const datasets::ObstacleFile& file) {
+  if (file.coverage) {
+    message(fmt::format("{}: {} of {} cells are occupied; they became {} polygons that hold exactly those", file.file,
+                        file.coverage->occupied, file.coverage->cells, file.obstacles.size()));
+  }
+  if (file.origin) {
+    message(fmt::format("{}: degrees became metres round longitude {}, latitude {}; {} does not hold that centre",
+                        file.file, file.origin->longitude, file.origin->latitude, "the output"));
+  }
+  if (file.counts.repaired > 0) message(fmt::format("{}: {} obstacles put right", file.file, file.counts.repaired));
+  if (file.counts.passed_over > 0)
+    message(fmt::format("{}: lost {} inputs that are no obstacles (points, empty geometries)", file.file,
+                        file.counts.passed_over));
+}
+
+datasets::ObstacleFile read(const Flags& flags) {
+  datasets::ReadOptions options = reading_options(flags.reading, "--from");
+  options.repair = flags.repair;
+  options.keep_going = flags.skip;
+  try {
+    return datasets::read_obstacles(flags.in, options);
+  } catch (const datasets::DataError& error) {
+    const std::string place = error.place();
+    if (place.find("ring") != std::string::npos && !flags.repair)
+      message("--repair mends most such problems, --skip leaves such obstacles out");
+    throw;
+  }
+}
+
+ExitCode convert(const Flags& flags) {
+  check_format("--to", flags.to, datasets::writable_formats());
+  const std::string to = datasets::format_to_write(flags.out, flags.to);
+  const datasets::ObstacleFile file = read(flags);
+  for (const datasets::DataError& error : file.rejected) message(std::string("left out: ") + error.what());
+  say_what_was_read(file);
+  for (const std::string& loss : datasets::write_obstacles(flags.out, file.obstacles, to)) message("lost: " + loss);
+  message(
+      fmt::format("{} ({}) -> {} ({}): {} obstacles", file.file, file.format, flags.out, to, file.obstacles.size()));
+  return file.rejected.empty() ? ExitCode::success : ExitCode::negative;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + word;
+  return text;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("in", flags->in, "An obstacle file of any readable format")->required();
+  app.add_option("out", flags->out, "The file to write; its extension says the format")->required();
+  declare_reading_flags(app, flags->reading, "--from");
+  app.add_option("--to", flags->to, "What to write:" + listed(datasets::writable_formats()));
+  app.add_flag("--repair", flags->repair, "Mend what can be mended (exactvo repair says what was)");
+  app.add_flag("--skip", flags->skip, "Leave out obstacles that can't be used, and end with status 1");
+  return [flags] { return convert(*flags); };
+}
+
+}  // namespace
+
+Verb convert_verb() {
+  return {"convert", "Bring obstacles from one file format to another",
+          "  exactvo convert map.yaml map.geojson\n"
+          "  exactvo convert city.osm city.gpkg --repair --skip\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

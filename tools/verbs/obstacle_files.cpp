@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/obstacle_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/escape.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+
+namespace exactvo::tools {
+
+using datasets::DataError;
+using datasets::ObstacleFile;
+using datasets::RingFinding;
+
+namespace {
+
+const std::vector<std::string> kUnits{"automatic", "metres", "degrees"};
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + word;
+  return text;
+}
+
+void check_word(const std::string& option, const std::string& word, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return;
+  throw UsageError(option, word, "one of" + listed(known) + suggestion(word, known));
+}
+
+FileAnswer read_one(const std::string& file, const datasets::ReadOptions& options) {
+  try {
+    return {file, datasets::read_obstacles(file, options), std::nullopt};
+  } catch (const DataError& error) {
+    return {file, std::nullopt, error};
+  }
+}
+
+OrderedJson problem_json(const RingFinding& f) {
+  return {{"code", datasets::code_name(f.code)},
+          {"place", f.place},
+          {"feature", f.feature},
+          {"ring", f.ring},
+          {"vertex", f.vertex},
+          {"x", json_number(f.where.x)},
+          {"y", json_number(f.where.y)},
+          {"mended", f.mended}};
+}
+
+/// A refusal that is no ring's finding: of the text, or of the file.
+OrderedJson problem_json(const DataError& error) {
+  return {{"code", datasets::code_name(error.code())},
+          {"place", error.place()},
+          {"found", error.found()},
+          {"expected", error.expected()},
+          {"mended", false}};
+}
+
+/// Refused rings are findings as well; what else was refused is not.
+bool is_a_finding(const DataError& error, const ObstacleFile& content) {
+  return std::any_of(content.findings.begin(), content.findings.end(), [&](const RingFinding& f) {
+    return !f.mended && f.code == error.code() && f.place == error.place();
+  });
+}
+
+OrderedJson problems_json(const FileAnswer& answer) {
+  OrderedJson problems = OrderedJson::array();
+  if (answer.error) problems.push_back(problem_json(*answer.error));
+  if (!answer.content) return problems;
+  for (const RingFinding& f : answer.content->findings) problems.push_back(problem_json(f));
+  for (const DataError& error : answer.content->rejected) {
+    if (!is_a_finding(error, *answer.content)) problems.push_back(problem_json(error));
+  }
+  return problems;
+}
+
+OrderedJson notes_json(const FileAnswer& answer) {
+  OrderedJson notes = OrderedJson::array();
+  if (!answer.content) return notes;
+  for (const datasets::DataNote& note : answer.content->notes) {
+    if (!note.code) notes.push_back(note.place.empty() ? note.text : note.place + ": " + note.text);
+  }
+  return notes;
+}
+
+OrderedJson code_of(const FileAnswer& answer) {
+  if (answer.error) return datasets::code_name(answer.error->code());
+  if (answer.is_whole()) return nullptr;
+  return datasets::code_name(answer.content->rejected.front().code());
+}
+
+}  // namespace
+
+void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string& format_name) {
+  app.add_option(format_name, flags.format,
+                 "What the input is:" + listed(datasets::readable_formats()) + "; else told by content, then by name");
+  app.add_option("--units", flags.units, "What the numbers mean: automatic, metres or degrees");
+  app.add_option("--cell-size", flags.cell_size, "Side of a cell of grids without a scale and of scans, m");
+}
+
+void check_format(const std::string& option, const std::string& format, const std::vector<std::string>& known) {
+  if (!format.empty()) check_word(option, format, known);
+}
+
+datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::string& format_name) {
+  check_format(format_name, flags.format, datasets::readable_formats());
+  check_word("--units", flags.units, kUnits);
+  if (!(flags.cell_size >= 0.0) || std::isinf(flags.cell_size))
+    throw UsageError("--cell-size", fmt::format("{}", flags.cell_size), "a length in m, or 0 for the usual one");
+  datasets::ReadOptions options;
+  options.format = flags.format;
+  if (flags.units == "metres") options.units = datasets::Units::metres;
+  if (flags.units == "degrees") options.units = datasets::Units::degrees;
+  options.cell_size = flags.cell_size;
+  options.keep_going = true;
+  return options;
+}
+
+std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options) {
+  std::vector<FileAnswer> answers;
+  for (const std::string& file : files) {
+    if (interrupted()) throw Interrupted();
+    answers.push_back(read_one(file, options));
+  }
+  return answers;
+}
+
+std::string verdict_of(const FileAnswer& answer) {
+  if (!answer.content) return "unreadable";
+  const datasets::ReadCounts& n = answer.content->counts;
+  if (n.rejected > 0) return "invalid";
+  return n.repaired > 0 ? "mended" : "valid";
+}
+
+OrderedJson json_of(const datasets::ReadCounts& n) {
+  return {{"read", n.read},
+          {"done", n.done},
+          {"repaired", n.repaired},
+          {"passed_over", n.passed_over},
+          {"rejected", n.rejected}};
+}
+
+OrderedJson json_of(const FileAnswer& answer) {
+  OrderedJson json;
+  json["file"] = answer.file;
+  json["format"] = answer.content ? OrderedJson(answer.content->format) : OrderedJson(nullptr);
+  json["verdict"] = verdict_of(answer);
+  json["code"] = code_of(answer);
+  json["counts"] = answer.content ? json_of(answer.content->counts) : OrderedJson(nullptr);
+  json["problems"] = problems_json(answer);
+  json["notes"] = notes_json(answer);
+  return json;
+}
+
+std::string lines_of(const FileAnswer& answer, bool with_mended) {
+  if (answer.error) return shown(answer.error->what()) + "\n";
+  std::string text;
+  for (const RingFinding& f : answer.content->findings) {
+    if (f.mended && !with_mended) continue;
+    text += shown(fmt::format("{}: {}: ({}, {}): {}{}", answer.file, f.place, f.where.x, f.where.y,
+                              datasets::code_name(f.code), f.mended ? ", mended" : "")) +
+            "\n";
+  }
+  for (const DataError& error : answer.content->rejected) {
+    if (!is_a_finding(error, *answer.content)) text += shown(error.what()) + "\n";
+  }
+  return text;
+}
+
+std::string counts_line(const FileAnswer& answer) {
+  if (!answer.content) return shown(answer.file) + ": refused";
+  const datasets::ReadCounts& n = answer.content->counts;
+  return fmt::format("{}: {}, {} read: {} done, {} repaired, {} passed over, {} rejected", shown(answer.file),
+                     answer.content->format, n.read, n.done, n.repaired, n.passed_over, n.rejected);
+}
+
+std::string text_of(const OrderedJson& json) {
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+OrderedJson json_number(double x) {
+  return std::isfinite(x) ? OrderedJson(x) : OrderedJson(nullptr);
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What the verbs that take obstacle files share: the options that say how a file is to be read, and its findings as
+/// lines and as JSON.
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/obstacle_file.h"
+
+namespace exactvo::tools {
+
+/// Keys in the order of writing.
+using OrderedJson = nlohmann::ordered_json;
+
+struct ReadingFlags {
+  std::string format;
+  std::string units = "automatic";
+  double cell_size = 0.0;
+};
+
+/// --format (or `format_name`), --units and --cell-size.
+void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string& format_name = "--format");
+
+/// Throws UsageError with the nearest known word. Reading goes on past bad obstacles.
+datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::string& format_name = "--format");
+
+/// Throws UsageError where `format` is neither empty nor among `known`.
+void check_format(const std::string& option, const std::string& format, const std::vector<std::string>& known);
+
+/// One file read, or why it could not be.
+struct FileAnswer {
+  std::string file;
+  std::optional<datasets::ObstacleFile> content;
+  std::optional<datasets::DataError> error;
+
+  bool is_whole() const { return content && content->counts.rejected == 0; }
+};
+
+/// Reads every file; a DataError of a file becomes its answer.
+std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options);
+
+/// "valid"; "mended": every problem was; "invalid": some obstacles can't be used; "unreadable".
+std::string verdict_of(const FileAnswer& answer);
+
+/// {"file", "format", "verdict", "code" (of the first refusal), "counts", "problems": [{"code", "place", "feature",
+/// "ring", "vertex", "x", "y", "mended", "message"}], "notes"}. A number that is not finite is null.
+OrderedJson json_of(const FileAnswer& answer);
+
+/// A line a problem: "FILE: PLACE: (x, y): E_CODE, mended". `with_mended`: also those.
+std::string lines_of(const FileAnswer& answer, bool with_mended);
+
+/// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 passed over, 0 rejected".
+std::string counts_line(const FileAnswer& answer);
+
+OrderedJson json_of(const datasets::ReadCounts& counts);
+
+/// Text of `json`, whatever bytes are in its strings.
+std::string text_of(const OrderedJson& json);
+
+/// A number, or null where it is none that JSON has.
+OrderedJson json_number(double x);
+
+}  // namespace exactvo::tools

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo repair: mends obstacle files and says what was done: before, after, and what can't be mended.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "exactvo/datasets/obstacle_write.h"
+#include "support/escape.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/figure_file.h"
+#include "verbs/obstacle_files.h"
+#include "verbs/repair_figure.h"
+
+namespace exactvo::tools {
+
+using datasets::ObstacleFile;
+using datasets::RepairFacts;
+using datasets::RepairRecord;
+using formation::SceneObstacle;
+
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  ReadingFlags reading;
+  std::string out, to, figure;
+  bool json = false;
+};
+
+// --- What comes out ---
+
+/// Of several files, each obstacle's id begins with its file's name.
+std::vector<SceneObstacle> all_obstacles(const std::vector<FileAnswer>& answers) {
+  std::vector<SceneObstacle> all;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    const std::string prefix = answers.size() > 1 ? std::filesystem::path(answer.file).stem().string() + "/" : "";
+    for (const SceneObstacle& o : answer.content->obstacles) all.push_back({prefix + o.id, o.shape});
+  }
+  return all;
+}
+
+ExitCode exit_code(const std::vector<FileAnswer>& answers) {
+  const auto is_unread = [](const FileAnswer& a) { return a.error.has_value(); };
+  if (std::any_of(answers.begin(), answers.end(), is_unread)) return ExitCode::bad_input;
+  const auto is_whole = [](const FileAnswer& a) { return a.is_whole(); };
+  return std::all_of(answers.begin(), answers.end(), is_whole) ? ExitCode::success : ExitCode::negative;
+}
+
+// --- The report ---
+
+OrderedJson json_of(const RepairFacts& facts) {
+  return {{"polygons", facts.polygons},
+          {"rings", facts.rings},
+          {"vertices", facts.vertices},
+          {"area", json_number(facts.area)}};
+}
+
+OrderedJson json_of(const RepairRecord& r) {
+  OrderedJson codes = OrderedJson::array();
+  for (const datasets::DataCode code : r.codes) codes.push_back(datasets::code_name(code));
+  OrderedJson json;
+  json["feature"] = r.place;
+  json["id"] = r.id;
+  json["codes"] = codes;
+  json["refused"] = r.refused ? OrderedJson(datasets::code_name(*r.refused)) : OrderedJson(nullptr);
+  json["recombined"] = r.recombined;
+  json["moved"] = json_number(r.moved);
+  json["before"] = json_of(r.before);
+  json["after"] = r.refused ? OrderedJson(nullptr) : json_of(r.after);
+  return json;
+}
+
+std::string to_json(const std::vector<FileAnswer>& answers) {
+  OrderedJson json;
+  json["mended"] = exit_code(answers) == ExitCode::success;
+  json["files"] = OrderedJson::array();
+  for (const FileAnswer& answer : answers) {
+    OrderedJson file = tools::json_of(answer);
+    file["repairs"] = OrderedJson::array();
+    if (answer.content) {
+      for (const RepairRecord& record : answer.content->repairs) file["repairs"].push_back(json_of(record));
+    }
+    json["files"].push_back(file);
+  }
+  return text_of(json);
+}
+
+std::string codes_of(const RepairRecord& r) {
+  std::string text;
+  for (const datasets::DataCode code : r.codes) text += (text.empty() ? "" : " ") + std::string(code_name(code));
+  return text;
+}
+
+std::string words_of(const std::string& file, const RepairRecord& r) {
+  const std::string start = shown(file + ": " + r.place + ": " + codes_of(r));
+  if (r.refused) return fmt::format("{}: not mended: {}\n", start, datasets::code_name(*r.refused));
+  return fmt::format("{}: {} -> {} polygons, {} -> {} rings, {} -> {} vertices, area {:.9g} -> {:.9g} m^2{}\n", start,
+                     r.before.polygons, r.after.polygons, r.before.rings, r.after.rings, r.before.vertices,
+                     r.after.vertices, r.before.area, r.after.area,
+                     r.recombined ? fmt::format(", crossings moved by {:.3g} m", r.moved) : "");
+}
+
+/// The codes of all repairs with how often each was met: what most people want of a file with thousands.
+std::string tally_of(const ObstacleFile& file) {
+  std::map<datasets::DataCode, std::size_t> counts;
+  for (const datasets::RingFinding& f : file.findings) ++counts[f.code];
+  std::string text;
+  for (const auto& [code, count] : counts) text += fmt::format(" {} x {}", count, datasets::code_name(code));
+  return text;
+}
+
+/// Winding, closure and repeated vertices are told by their number only.
+void print_report(const std::vector<FileAnswer>& answers) {
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) {
+      print(lines_of(answer, false));
+      continue;
+    }
+    for (const RepairRecord& record : answer.content->repairs) {
+      if (record.recombined || record.refused) print(words_of(answer.file, record));
+    }
+    const std::string tally = tally_of(*answer.content);
+    message(counts_line(answer) + (tally.empty() ? "" : ";" + tally));
+  }
+}
+
+// --- The figure ---
+
+/// What became of one polygon: the obstacles "7", "7-2", "7-3".
+std::vector<geometry::Polygon> outcome(const ObstacleFile& file, const RepairRecord& record) {
+  std::vector<geometry::Polygon> polygons;
+  if (record.refused) return polygons;
+  const auto first = std::find_if(file.obstacles.begin(), file.obstacles.end(),
+                                  [&](const SceneObstacle& o) { return o.id == record.id; });
+  for (auto o = first; o != file.obstacles.end() && polygons.size() < record.after.polygons; ++o)
+    polygons.push_back(std::get<geometry::Polygon>(o->shape));
+  return polygons;
+}
+
+std::vector<geometry::Vec2> places_of_problems(const ObstacleFile& file, const RepairRecord& record) {
+  std::vector<geometry::Vec2> places;
+  for (const datasets::RingFinding& f : file.findings) {
+    const bool is_grave = f.code == datasets::DataCode::self_intersection || f.code == datasets::DataCode::hole_outside;
+    if (f.feature == record.place && is_grave) places.push_back(f.where);
+  }
+  return places;
+}
+
+std::vector<MendedPolygon> recombined(const std::vector<FileAnswer>& answers) {
+  std::vector<MendedPolygon> polygons;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    for (const RepairRecord& r : answer.content->repairs) {
+      if (!r.recombined) continue;
+      const std::string name = std::filesystem::path(answer.file).filename().string();
+      polygons.push_back(
+          {name + ", " + r.place, r.given, places_of_problems(*answer.content, r), outcome(*answer.content, r)});
+    }
+  }
+  return polygons;
+}
+
+void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out) {
+  const std::vector<MendedPolygon> polygons = recombined(answers);
+  if (polygons.empty()) return message("no figure: nothing had to be cut");
+  if (polygons.size() > kMostMendedDrawn)
+    message(fmt::format("the figure shows {} of {} polygons that were cut", kMostMendedDrawn, polygons.size()));
+  write_figure(repair_figure(polygons, std::filesystem::path(out).stem().string()), out);
+}
+
+// --- The verb ---
+
+ExitCode repair(const Flags& flags) {
+  datasets::ReadOptions options = reading_options(flags.reading);
+  options.repair = true;
+  check_figure_name(flags.figure);
+  check_format("--to", flags.to, datasets::writable_formats());
+  const std::string to = datasets::format_to_write(flags.out, flags.to);
+  const std::vector<FileAnswer> answers = read_each(flags.files, options);
+  const ExitCode code = exit_code(answers);
+  if (flags.json) {
+    print(to_json(answers));
+  } else {
+    print_report(answers);
+  }
+  if (code == ExitCode::bad_input) {
+    for (const FileAnswer& answer : answers) {
+      if (answer.error) error_message(answer.error->what());
+    }
+    return code;
+  }
+  for (const std::string& loss : datasets::write_obstacles(flags.out, all_obstacles(answers), to))
+    message("lost: " + loss);
+  message("wrote " + flags.out);
+  if (!flags.figure.empty()) draw_figure(answers, flags.figure);
+  return code;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
+  app.add_option("--out", flags->out, "The mended obstacles, of all files; the extension says the format")->required();
+  app.add_option("--to", flags->to, "The format of --out, where its extension does not say it");
+  declare_reading_flags(app, flags->reading);
+  app.add_flag("--json", flags->json, "The report as JSON on stdout");
+  app.add_option("--figure", flags->figure, "FILE.svg: before and after of what was cut");
+  return [flags] { return repair(*flags); };
+}
+
+}  // namespace
+
+Verb repair_verb() {
+  return {"repair", "Mend obstacle files: winding, closure, spikes, self-crossings, overlaps",
+          "  exactvo repair countries.geojson --out mended.geojson --figure mended.svg\n"
+          "    (status 1: some obstacles can't be mended; the others are written)\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

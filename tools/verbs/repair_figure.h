@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Polygons before and after a repair, side by side: the rings as given with their problems marked, and the polygons
+/// that they became, a colour each.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "figures/figure.h"
+
+namespace exactvo::tools {
+
+/// One polygon that was recombined.
+struct MendedPolygon {
+  std::string title;
+  std::vector<geometry::Ring> before;
+  std::vector<geometry::Vec2> problems;  ///< where
+  std::vector<geometry::Polygon> after;  ///< empty where it could not be mended
+};
+
+/// At most so many are drawn, a row each.
+inline constexpr std::size_t kMostMendedDrawn = 6;
+
+/// REQUIRES: at least one.
+Figure repair_figure(const std::vector<MendedPolygon>& polygons, const std::string& name);
+
+}  // namespace exactvo::tools
