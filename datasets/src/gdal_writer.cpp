@@ -80,7 +80,9 @@ class LayerWriter {
     fill(*data, obstacles);
     data.reset();
     refuse_unless(true);
-    return memory.bytes();
+    std::string bytes = memory.bytes();
+    if (bytes.empty()) throw DataError(DataCode::wrong_count, file_, "", "no obstacles", "one at least: " + driver_);
+    return bytes;
   }
 
  private:

@@ -16,6 +16,7 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/support.h"
 #include "ring_contacts.h"
+#include "snap_rounding.h"
 
 namespace exactvo::geometry {
 namespace {
@@ -63,11 +64,9 @@ double rounding_of(const Number& exact, double rounded) {
   return std::max(std::fabs(interval.first), std::fabs(interval.second));
 }
 
-// To whole multiples of `grid`, a power of two; 0: to doubles.
+// To doubles, and by how much at most.
 class Rounding {
  public:
-  explicit Rounding(double grid) : grid_(grid) {}
-
   Vec2 operator()(const Kernel::Point_2& exact) {
     const Vec2 p = {coordinate(exact.x()), coordinate(exact.y())};
     // The sum of both is more than their hypotenuse, and takes up the roundings of the sum itself.
@@ -77,15 +76,22 @@ class Rounding {
   double moved() const { return moved_; }
 
  private:
-  double coordinate(const Number& exact) const {
+  static double coordinate(const Number& exact) {
     const double x = nearest_double(exact);
-    const double on_grid = grid_ > 0.0 ? grid_ * std::nearbyint(x / grid_) : x;
-    return on_grid == 0.0 ? 0.0 : on_grid;  // no negative zero
+    return x == 0.0 ? 0.0 : x;  // no negative zero
   }
 
-  double grid_;
   double moved_ = 0.0;
 };
+
+// The k * grid with k * grid - grid / 2 <= x < k * grid + grid / 2. `grid`: a power of two, k exact.
+double centre_of_pixel(const Number& x, double grid) {
+  const Number half(grid / 2);
+  double centre = grid * std::floor(nearest_double(x) / grid + 0.5);
+  while (x < Number(centre) - half) centre -= grid;
+  while (x >= Number(centre) + half) centre += grid;
+  return centre == 0.0 ? 0.0 : centre;
+}
 
 // --- The arrangement of the rings ---
 
@@ -284,18 +290,23 @@ std::vector<Polygon> polygons_of(Arrangement& arrangement, std::size_t component
 
 // --- Rounds ---
 
+Arrangement arrangement_of(const std::vector<Ring>& rings) {
+  Arrangement arrangement;
+  const std::vector<Traits::Curve_2> edges = edges_of_rings(rings);
+  CGAL::insert(arrangement, edges.begin(), edges.end());
+  return arrangement;
+}
+
 struct Cut {
   std::vector<Polygon> polygons;  // rounded: valid only where nothing moved into anything else
   double moved = 0.0;
 };
 
-Cut cut(const std::vector<Ring>& rings, double grid) {
-  Arrangement arrangement;
-  const std::vector<Traits::Curve_2> edges = edges_of_rings(rings);
-  CGAL::insert(arrangement, edges.begin(), edges.end());
+Cut cut(const std::vector<Ring>& rings) {
+  Arrangement arrangement = arrangement_of(rings);
   mark_inside(arrangement);
   const std::size_t components = number_components(arrangement);
-  Rounding rounding(grid);
+  Rounding rounding;
   describe_vertices(arrangement, sorted_vertices(rings), rounding);
   Cut result;
   result.polygons = polygons_of(arrangement, components);
@@ -317,21 +328,33 @@ bool same(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
                     [](const Polygon& p, const Polygon& q) { return p.outer == q.outer && p.holes == q.holes; });
 }
 
-// One unit in the last place of the largest coordinate, doubled each round from the fourth on; 0 before.
-double grid_of_round(std::size_t round, const std::vector<Ring>& rings) {
-  constexpr std::size_t kFirstWithGrid = 3;
-  if (round < kFirstWithGrid) return 0.0;
+// Two units in the last place of the largest coordinate: pixels of that size have exact corners.
+double grid_for(const std::vector<Ring>& rings) {
   double largest = 0.0;
   for (const Ring& ring : rings) {
     for (const Vec2 p : ring) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
   }
-  return std::ldexp(1.0, std::max(std::ilogb(largest) - 52, -1074) + static_cast<int>(round - kFirstWithGrid));
+  constexpr int kLeastExponent = -1073;  // of a number whose half is one
+  return std::ldexp(1.0, std::max(std::ilogb(largest) - 51, kLeastExponent));
+}
+
+std::vector<Ring> snapped(const std::vector<Ring>& rings, double grid) {
+  const Arrangement arrangement = arrangement_of(rings);
+  std::vector<Vec2> hot;
+  for (auto vertex = arrangement.vertices_begin(); vertex != arrangement.vertices_end(); ++vertex)
+    hot.push_back({centre_of_pixel(vertex->point().x(), grid), centre_of_pixel(vertex->point().y(), grid)});
+  return detail::snap_rounded(rings, std::move(hot), grid);
 }
 
 EvenOddRegion cut_until_nothing_changes(std::vector<Ring> rings) {
   EvenOddRegion region;
   for (std::size_t round = 0; round < kMostRounds; ++round) {
-    Cut next = cut(rings, grid_of_round(round, rings));
+    if (round == kPlainRounds) {
+      const double grid = grid_for(rings);
+      rings = snapped(rings, grid);
+      region.moved += grid;  // half a pixel's diagonal, and the rounding of this sum
+    }
+    Cut next = cut(rings);
     if (round > 0 && same(next.polygons, region.polygons)) return region;
     region.polygons = std::move(next.polygons);
     region.moved += next.moved * (1.0 + 4.0 * kUnitRoundoff);

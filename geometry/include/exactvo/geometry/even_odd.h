@@ -7,7 +7,8 @@
 /// nothing; a ring in a ring is a hole, and one in that hole an island.
 ///
 /// The rings are cut at their crossings exactly (CGAL's arrangements, which its Boolean operations are built on).
-/// Crossings are then rounded to doubles, and what the rounding made meet is cut again, until nothing changes.
+/// Crossings are then rounded to doubles, and what the rounding made meet is cut again, until nothing changes; where
+/// that takes long, all vertices go to a grid by snap rounding (Hobby, 1999), which makes no new crossings.
 ///
 /// Neighbours: validity.h says whether rings need this; datasets/repair.h does it for obstacles and reports.
 ///
@@ -28,7 +29,7 @@ enum class EvenOddStatus {
   done,
   /// More than kMostCrossings contacts between edges: nothing was cut.
   too_many_crossings,
-  /// After kMostRounds roundings new crossings were still being made.
+  /// After kMostRounds roundings new crossings were still being made: not known to happen.
   not_roundable,
   /// CGAL gave up: not known to happen.
   refused
@@ -45,8 +46,10 @@ struct EvenOddRegion {
 /// kilobyte while the rings are cut.
 inline constexpr std::size_t kMostCrossings = std::size_t{1} << 17;
 
-/// One or two roundings are the rule. From the fourth on all vertices go to a grid that is twice as wide each time.
-inline constexpr std::size_t kMostRounds = 16;
+/// One or two roundings are the rule. After so many plain ones comes snap rounding, on a grid of two units in the last
+/// place of the largest coordinate.
+inline constexpr std::size_t kPlainRounds = 4;
+inline constexpr std::size_t kMostRounds = 8;
 
 /// REQUIRES: all points finite.
 EvenOddRegion even_odd_region(const std::vector<Ring>& rings);
