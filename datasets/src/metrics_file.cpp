@@ -13,6 +13,29 @@ void append_robot(JsonWriter& json, const formation::RobotMetrics& robot) {
   json.end_object();
 }
 
+void append_texts(JsonWriter& json, const char* key, const std::vector<std::string>& texts) {
+  json.key(key).begin_array();
+  for (const std::string& text : texts) json.value(text);
+  json.end_array();
+}
+
+void append_course(JsonWriter& json, const char* key, const formation::LyapunovCourse& c) {
+  json.key(key).begin_inline_object().member("first", c.first).member("last", c.last).member("least", c.least);
+  json.member("largest_rise", c.largest_rise).end_object();
+}
+
+void append_lyapunov(JsonWriter& json, const std::optional<formation::LyapunovSummary>& summary) {
+  json.key("lyapunov");
+  if (!summary) {
+    json.null();
+    return;
+  }
+  json.begin_object();
+  append_course(json, "paper", summary->paper);
+  append_course(json, "sound", summary->sound);
+  json.end_object();
+}
+
 /// Every line but the first moved right, for an object inside a list.
 std::string indented(const std::string& text) {
   std::string result;
@@ -35,9 +58,14 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.member("formation_position_error", m.formation_position_error);
   json.member("formation_velocity_error", m.formation_velocity_error);
   json.member("leader_arrival_time", m.leader_arrival_time).member("jitter", m.jitter);
+  json.member("velocity_variation", m.velocity_variation).member("peak_acceleration", m.peak_acceleration);
   json.member("heading_reversals", m.heading_reversals).member("active_set_switches", m.active_set_switches);
   json.member("relaxed_steps", m.relaxed_steps).member("uncertified_half_planes", m.uncertified_half_planes);
   json.member("steps", m.steps).member("wall_time", m.wall_time);
+  json.member("outcome", m.outcome);
+  append_texts(json, "warnings", m.warnings);
+  append_texts(json, "stuck", m.stuck);
+  append_lyapunov(json, m.lyapunov);
   json.key("robots").begin_array();
   for (const formation::RobotMetrics& robot : m.robots) append_robot(json, robot);
   json.end_array();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exactvo/formation/recording.h"
+#include "json_cursor.h"
 
 namespace exactvo::datasets {
 
@@ -36,6 +37,17 @@ const char* word_for(E value) {
     if (known.value == value) return known.word;
   }
   return "unknown";
+}
+
+/// The enumerator that the text at hand stands for; refuses other words.
+template <class E>
+E enumerator(const JsonCursor& at) {
+  std::string options;
+  for (const Word<E>& known : words<E>()) {
+    if (at.text() == known.word) return known.value;
+    options += (options.empty() ? "" : ", ") + std::string(known.word);
+  }
+  at.refuse("one of " + options, DataCode::not_an_option);
 }
 
 }  // namespace exactvo::datasets

@@ -4,6 +4,7 @@
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "json_cursor.h"
+#include "recording_extras.h"
 #include "recording_names.h"
 #include "text_file.h"
 
@@ -13,16 +14,6 @@ namespace {
 using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
-
-template <class E>
-E enumerator(const JsonCursor& at) {
-  std::string options;
-  for (const Word<E>& known : words<E>()) {
-    if (at.text() == known.word) return known.value;
-    options += (options.empty() ? "" : ", ") + std::string(known.word);
-  }
-  at.refuse("one of " + options, DataCode::not_an_option);
-}
 
 geometry::ConvexShape to_shape(const JsonCursor& at) {
   if (at.has("disc")) return geometry::Disc{at.at("disc").at("center").point(), at.at("disc").at("radius").number()};
@@ -47,6 +38,7 @@ RecordedConstraint to_constraint(const JsonCursor& at) {
   c.half_plane = {at.at("normal").point(), at.at("offset").number()};
   c.source = enumerator<formation::ConstraintSource>(at.at("source"));
   c.index = at.at("index").count();
+  if (at.has("piece")) c.piece = at.at("piece").count();
   c.certified = at.at("certified").truth();
   c.hard = at.at("hard").truth();
   c.active = at.at("active").truth();
@@ -103,6 +95,16 @@ void read_enclosures(const JsonCursor& at, RecordingFile& file) {
   }
 }
 
+void read_later_enclosures(const JsonCursor& at, formation::Recording& recording) {
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const JsonCursor one = at.at(i);
+    formation::Outlook o{one.at("time").number(), one.at("robot").count(), one.at("goal").count(), {}};
+    const JsonCursor shapes = one.at("shapes");
+    for (std::size_t k = 0; k < shapes.size(); ++k) o.enclosures.push_back(to_shape(shapes.at(k)));
+    recording.later_outlooks.push_back(std::move(o));
+  }
+}
+
 /// Fills everything but the rows; says how many of these there should be.
 std::size_t read_header(const JsonCursor& at, const std::string& name, RecordingFile& file) {
   if (at.at("kind").text() != "exactvo-recording")
@@ -126,7 +128,10 @@ std::size_t read_header(const JsonCursor& at, const std::string& name, Recording
   recording.outcome = at.at("outcome").text();
   if (at.has("warnings")) recording.warnings = to_texts(at.at("warnings"));
   recording.wall_time = at.at("wall_time").number();
+  if (at.has("all_half_planes")) recording.all_half_planes = at.at("all_half_planes").truth();
+  if (at.has("stuck")) read_stuck(at.at("stuck"), file);
   read_enclosures(at.at("enclosures"), file);
+  if (at.has("later_enclosures")) read_later_enclosures(at.at("later_enclosures"), recording);
   return at.at("rows").count();
 }
 
@@ -160,7 +165,9 @@ RecordingFile read_recording(const std::filesystem::path& path) {
   const std::size_t rows = read_header(JsonCursor(header, name, "line 1"), name, file);
   for (std::size_t number = 2; !rest.empty(); ++number) {
     const Json row = parse_line(next_line(rest), name, number);
-    file.recording.steps.push_back(to_step(JsonCursor(row, name, "line " + std::to_string(number)), file.scenario));
+    const JsonCursor at(row, name, "line " + std::to_string(number));
+    file.recording.steps.push_back(to_step(at, file.scenario));
+    if (at.has("lyapunov")) file.lyapunov.push_back(to_lyapunov(at.at("lyapunov"), file.recording.steps.back().time));
   }
   if (file.recording.steps.size() != rows) {
     throw DataError(DataCode::wrong_count, name, "line 1, /rows", std::to_string(file.recording.steps.size()) + " rows",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/recording_file.h"
+#include "recording_extras.h"
 #include "recording_names.h"
 #include "scenario_json.h"
 #include "sha256.h"
@@ -40,6 +41,7 @@ void append_constraint(JsonWriter& json, const RecordedConstraint& c) {
   json.begin_object();
   json.member("normal", c.half_plane.normal).member("offset", c.half_plane.offset);
   json.member("source", word_for(c.source)).member("index", c.index);
+  if (c.piece != 0) json.member("piece", c.piece);
   json.member("certified", c.certified).member("hard", c.hard).member("active", c.active);
   json.key("shape");
   append_convex(json, c.shape);
@@ -67,7 +69,9 @@ void append_robot(JsonWriter& json, const RobotStep& robot) {
   json.end_object();
 }
 
-void append_step(JsonWriter& json, const Step& step, bool has_leader) {
+void append_step(JsonWriter& json, const RecordingFile& file, std::size_t k) {
+  const Step& step = file.recording.steps[k];
+  const bool has_leader = file.scenario.formation.has_value();
   json.begin_object().member("time", step.time);
   if (has_leader) {
     json.key("leader").begin_object();
@@ -75,7 +79,9 @@ void append_step(JsonWriter& json, const Step& step, bool has_leader) {
   }
   json.key("robots").begin_array();
   for (const RobotStep& robot : step.robots) append_robot(json, robot);
-  json.end_array().end_object();
+  json.end_array();
+  if (k < file.lyapunov.size()) append_lyapunov(json, file.lyapunov[k]);
+  json.end_object();
 }
 
 void append_enclosures(JsonWriter& json, const std::vector<std::vector<geometry::ConvexShape>>& enclosures) {
@@ -84,6 +90,19 @@ void append_enclosures(JsonWriter& json, const std::vector<std::vector<geometry:
     json.begin_array();
     for (const geometry::ConvexShape& shape : of_robot) append_convex(json, shape);
     json.end_array();
+  }
+  json.end_array();
+}
+
+/// Only where a robot had more than one goal.
+void append_later_enclosures(JsonWriter& json, const std::vector<formation::Outlook>& outlooks) {
+  if (outlooks.empty()) return;
+  json.key("later_enclosures").begin_array();
+  for (const formation::Outlook& o : outlooks) {
+    json.begin_object().member("time", o.time).member("robot", o.robot).member("goal", o.goal);
+    json.key("shapes").begin_array();
+    for (const geometry::ConvexShape& shape : o.enclosures) append_convex(json, shape);
+    json.end_array().end_object();
   }
   json.end_array();
 }
@@ -101,12 +120,15 @@ void append_header(JsonWriter& json, const RecordingFile& file, const std::strin
   json.key("warnings").begin_array();
   for (const std::string& warning : recording.warnings) json.value(warning);
   json.end_array();
+  append_stuck(json, file);
+  json.member("all_half_planes", recording.all_half_planes);
   json.member("rows_sha256", rows_digest);
   json.member("wall_time", recording.wall_time);
   json.key("provenance").raw(to_json(file.info.provenance));
   json.key("scenario");
   append_scenario(json, file.scenario);
   append_enclosures(json, file.enclosures);
+  append_later_enclosures(json, recording.later_outlooks);
   json.end_object();
 }
 
@@ -114,8 +136,8 @@ void append_header(JsonWriter& json, const RecordingFile& file, const std::strin
 template <class Take>
 void for_each_row(const RecordingFile& file, const Take& take) {
   JsonWriter json(JsonWriter::Layout::compact);
-  for (const Step& step : file.recording.steps) {
-    append_step(json, step, file.scenario.formation.has_value());
+  for (std::size_t k = 0; k < file.recording.steps.size(); ++k) {
+    append_step(json, file, k);
     take(json.text() + "\n");
     json.clear();
   }

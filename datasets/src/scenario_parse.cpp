@@ -7,6 +7,7 @@
 #include "exactvo/formation/simulation.h"
 #include "json_text.h"
 #include "raw_geometry.h"
+#include "scenario_values.h"
 #include "schema_check.h"
 #include "text_file.h"
 
@@ -23,21 +24,6 @@ const Json& parsed_schema() {
 
 // The schema has been held against the text: types and required keys are as they should be from here on.
 
-void take(const Json& object, const char* key, double& field) {
-  if (object.contains(key)) field = object.at(key).get<double>();
-}
-
-Vec2 to_point(const Json& pair) {
-  return {pair[0].get<double>(), pair[1].get<double>()};
-}
-
-std::vector<Vec2> to_points(const Json& list) {
-  std::vector<Vec2> points;
-  points.reserve(list.size());
-  for (const Json& pair : list) points.push_back(to_point(pair));
-  return points;
-}
-
 formation::Robot to_robot(const Json& object) {
   formation::Robot robot;
   robot.id = object.at("id").get<std::string>();
@@ -49,22 +35,6 @@ formation::Robot to_robot(const Json& object) {
   if (object.contains("goals")) robot.goals = to_points(object.at("goals"));
   robot.cooperates = object.value("cooperates", robot.cooperates);
   return robot;
-}
-
-formation::FormationSpec to_formation(const Json& object) {
-  formation::FormationSpec spec;
-  object.at("topology").at("adjacency").get_to(spec.topology.adjacency);
-  object.at("topology").at("pinning").get_to(spec.topology.pinning);
-  spec.offsets = to_points(object.at("offsets"));
-  spec.recentre = object.value("recentre", spec.recentre);
-  spec.leader = {to_points(object.at("leader").at("path")), object.at("leader").at("speed").get<double>()};
-  const Json gains = object.value("gains", Json::object());
-  take(gains, "k1", spec.gains.k1);
-  take(gains, "k2", spec.gains.k2);
-  take(gains, "k3", spec.gains.k3);
-  take(gains, "kappa", spec.gains.kappa);
-  take(object, "catch_up_speed", spec.catch_up_speed);
-  return spec;
 }
 
 RawGeometry to_raw(const Json& object, const std::string& id, const std::string& pointer) {
@@ -108,7 +78,7 @@ class Reader {
     for (const Json& robot : tree.at("robots")) scenario.robots.push_back(to_robot(robot));
     read_obstacle_list(tree.value("obstacles", Json::array()), scenario);
     read_moving_obstacles(tree.value("moving_obstacles", Json::array()), scenario);
-    if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"));
+    if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
     read_figures(tree, scenario);
     refuse_repeated_ids(scenario);

@@ -61,6 +61,26 @@ void append_topology(JsonWriter& json, const formation::Topology& topology) {
   json.end_object();
 }
 
+/// Where there is a profile, `speed` has no meaning.
+void append_speed(JsonWriter& json, const formation::Leader& leader) {
+  if (leader.profile.empty()) {
+    json.member("speed", leader.speed);
+    return;
+  }
+  json.key("profile").begin_object().key("knots").begin_inline_array();
+  for (const formation::SpeedKnot& knot : leader.profile) json.value(geometry::Vec2{knot.time, knot.speed});
+  json.end_array().end_object();
+}
+
+/// Only what is asked for.
+void append_switches(JsonWriter& json, const formation::RemedySwitches& asked) {
+  json.key("remedies").begin_inline_object();
+  for (const formation::RemedySwitch& s : formation::remedy_switches())
+    if (asked.*s.asked) json.member(s.name, *(asked.*s.asked));
+  if (asked.acceleration_bound) json.member("acceleration_bound", *asked.acceleration_bound);
+  json.end_object();
+}
+
 void append_formation(JsonWriter& json, const formation::FormationSpec& spec) {
   json.key("formation").begin_object();
   append_topology(json, spec.topology);
@@ -69,11 +89,14 @@ void append_formation(JsonWriter& json, const formation::FormationSpec& spec) {
   json.member("recentre", spec.recentre);
   json.key("leader").begin_object().key("path");
   append_points(json, spec.leader.path);
-  json.member("speed", spec.leader.speed).end_object();
+  append_speed(json, spec.leader);
+  json.end_object();
   json.key("gains").begin_inline_object();
   json.member("k1", spec.gains.k1).member("k2", spec.gains.k2);
   json.member("k3", spec.gains.k3).member("kappa", spec.gains.kappa).end_object();
-  json.member("catch_up_speed", spec.catch_up_speed).end_object();
+  json.member("catch_up_speed", spec.catch_up_speed);
+  append_switches(json, spec.remedies);
+  json.end_object();
 }
 
 void append_figures(JsonWriter& json, const Scenario& scenario) {

@@ -44,7 +44,7 @@ std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scen
   vo::ReciprocalOptions pair_options;
   const bool baseline = options.method == Method::orca;
   pair_options.time_horizon = baseline ? scenario.horizons.orca : scenario.horizons.robots;
-  pair_options.contact_time = std::max(scenario.time_step, 0.1);
+  pair_options.contact_time = contact_time(scenario);
   pair_options.margin = baseline ? 0.0 : scenario.margins.robot;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
@@ -61,6 +61,10 @@ std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scen
   for (auto& mine : out)
     std::stable_sort(mine.begin(), mine.end(), [](const auto& x, const auto& y) { return x.distance < y.distance; });
   return out;
+}
+
+double contact_time(const Scenario& scenario) {
+  return std::max(scenario.time_step, vo::ReciprocalOptions{}.contact_time);
 }
 
 lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {

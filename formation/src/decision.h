@@ -23,6 +23,9 @@ std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scen
                                                             const std::vector<Vec2>& positions,
                                                             const std::vector<Vec2>& velocities);
 
+/// s: within this a robot in contact is asked to part: never less than a step.
+double contact_time(const Scenario& scenario);
+
 lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed);
 
 struct DecisionInput {

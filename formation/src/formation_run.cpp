@@ -2,6 +2,7 @@
 // Formations: Sections IV and V.B, with the remedies of remedies.h.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "consensus.h"
@@ -35,10 +36,16 @@ Scenario with_margins(Scenario scenario, const Remedies& remedies) {
   return scenario;
 }
 
+std::string metres(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g m", x);
+  return text;
+}
+
 class FormationRun {
  public:
   FormationRun(const Scenario& scenario, const SimulationOptions& options)
-      : remedies_(remedies_in_use(options)),
+      : remedies_(remedies_in_use(scenario, options)),
         scenario_(with_margins(scenario, remedies_)),
         spec_(*scenario_.formation),
         options_(options),
@@ -144,7 +151,7 @@ class FormationRun {
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
     const Follower::Answer round = robots_[i].slot.steer(situation, statics, robot_lines);
-    step.note = round.note;
+    step.note = round.note.empty() ? answer.note : round.note;
     if (round.mode != Mode::following) return answer.preferred;
     step.mode = Mode::following;
     step.side = round.side;
@@ -215,9 +222,9 @@ class FormationRun {
     // Judged by the end alone: a formation that ends farther from its slots than it began has not formed.
     constexpr double kArrivedOnce = 1.0;  // m: an error this small is no divergence even when the start was exact
     recording.diverged = out_of_bounds() || last > std::max(first, kArrivedOnce);
-    recording.outcome = recording.diverged ? "diverged: the formation error grew from " + std::to_string(first) +
-                                                 " m to " + std::to_string(last) + " m"
-                                           : "formation error " + std::to_string(last) + " m at the end";
+    recording.outcome = recording.diverged
+                            ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
+                            : "formation error " + metres(last) + " at the end";
   }
 
   Remedies remedies_;

@@ -9,7 +9,8 @@ namespace exactvo::formation::detail {
 /// What the enclosures of a robot are fitted for at the start: its first goal, or its slot at the leader's end.
 inline Vec2 first_goal(const Scenario& scenario, const SimulationOptions& options, std::size_t robot) {
   if (!scenario.formation) return scenario.robots[robot].goals.front();
-  return scenario.formation->leader.path.back() + offsets_in_use(*scenario.formation, remedies_in_use(options))[robot];
+  return scenario.formation->leader.path.back() +
+         offsets_in_use(*scenario.formation, remedies_in_use(scenario, options))[robot];
 }
 
 }  // namespace exactvo::formation::detail

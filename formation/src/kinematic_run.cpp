@@ -2,6 +2,7 @@
 // Kinematic robots with goals: Section V.A.
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "decision.h"
 #include "moving.h"
@@ -21,6 +22,8 @@ struct KinematicRobot {
   std::size_t goal = 0;
   std::optional<StaticField> field;
   Follower follower;
+  bool tied = false;      ///< the last preference was turned to break a tie
+  std::string note = {};  ///< for the next row
 };
 
 class KinematicRun {
@@ -28,7 +31,7 @@ class KinematicRun {
   KinematicRun(const Scenario& scenario, const SimulationOptions& options)
       : scenario_(scenario), options_(options), library_(scenario), clock_(scenario, options) {
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-      robots_.push_back({scenario.robots[i].position, scenario.robots[i].velocity, 0, std::nullopt, {}});
+      robots_.push_back({scenario.robots[i].position, scenario.robots[i].velocity, 0, std::nullopt, {}, false, {}});
       look_at_goal(i);
     }
   }
@@ -43,6 +46,7 @@ class KinematicRun {
     }
     recording.steps.push_back(final_row(clock_.time(recording.steps.size())));
     recording.outcome = outcome();
+    recording.later_outlooks = std::move(later_outlooks_);
     return recording;
   }
 
@@ -68,12 +72,16 @@ class KinematicRun {
   }
 
   /// A goal on the way counts as reached within the robot's own radius.
-  void pass_waypoint(std::size_t i) {
+  void pass_waypoint(std::size_t i, double time) {
     const Robot& spec = scenario_.robots[i];
     const double reach = std::max(scenario_.arrival_tolerance, spec.radius);
     if (robots_[i].goal + 1 >= spec.goals.size() || norm(goal_of(i) - robots_[i].position) > reach) return;
     ++robots_[i].goal;
     look_at_goal(i);
+    robots_[i].note = "goal " + std::to_string(robots_[i].goal) + " passed: heads for the next";
+    Outlook outlook{time, i, robots_[i].goal, {}};
+    for (const geometry::Enclosure& e : robots_[i].field->enclosures()) outlook.enclosures.push_back(e.shape);
+    later_outlooks_.push_back(std::move(outlook));
   }
 
   Step decide_all(double time) {
@@ -90,7 +98,7 @@ class KinematicRun {
   }
 
   RobotStep decide_one(std::size_t i, double time, std::vector<RobotConstraint>& robot_lines) {
-    pass_waypoint(i);
+    pass_waypoint(i, time);
     const Robot& spec = scenario_.robots[i];
     KinematicRobot& r = robots_[i];
     const Viewpoint here{r.position, r.velocity, spec.radius, spec.max_speed};
@@ -99,6 +107,7 @@ class KinematicRun {
     RobotStep step;
     step.position = r.position;
     step.velocity = r.velocity;
+    step.note = std::exchange(r.note, {});
     const Vec2 preferred = steer(i, time, statics, step);
     decide(scenario_, {preferred, spec.max_speed, &statics, &robot_lines, clock_.keeps_all(time)}, step);
     return step;
@@ -119,7 +128,7 @@ class KinematicRun {
     const bool in_contact = !statics.empty() && statics.front().distance < 0.0;
     if (in_contact) step.mode = Mode::pushing_out;
     if (options_.method == Method::orca) return preferred;
-    if (options_.method != Method::ivo) return with_tie_broken(statics, preferred);
+    if (options_.method != Method::ivo) return ties_broken(i, statics, preferred, step);
     const Robot& spec = scenario_.robots[i];
     const Viewpoint here{robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
     const Follower::Answer answer =
@@ -128,12 +137,21 @@ class KinematicRun {
                                   statics);
     step.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
     step.side = answer.side;
-    step.note = answer.note;
+    if (!answer.note.empty()) step.note = answer.note;
     if (answer.mode == Mode::following) return answer.preferred;
     const std::optional<Vec2> boost = boosted(statics, preferred);
-    if (!boost) return with_tie_broken(statics, preferred);
+    if (!boost) return ties_broken(i, statics, preferred, step);
     step.mode = Mode::boost;
     return *boost;
+  }
+
+  /// Says so when a tie begins.
+  Vec2 ties_broken(std::size_t i, const std::vector<StaticConstraint>& statics, Vec2 preferred, RobotStep& step) {
+    const Vec2 turned = with_tie_broken(statics, preferred);
+    const bool tied = !(turned == preferred);
+    if (tied && !robots_[i].tied && step.note.empty()) step.note = "head-on: the tie between the sides goes left";
+    robots_[i].tied = tied;
+    return turned;
   }
 
   void move(const Step& row) {
@@ -157,11 +175,23 @@ class KinematicRun {
   }
 
   std::string outcome() const {
+    std::string text = arrivals();
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!at_goal(i) && robots_[i].follower.circled())
+        text += "; " + scenario_.robots[i].id +
+                " came full circle along what stands in its way and found no way to its goal";
+    return text;
+  }
+
+  std::string arrivals() const {
     std::size_t arrived = 0;
     for (std::size_t i = 0; i < robots_.size(); ++i) arrived += at_goal(i);
-    if (arrived == robots_.size()) return "all robots arrived";
-    return std::to_string(robots_.size() - arrived) + " of " + std::to_string(robots_.size()) +
-           " robots did not arrive within the time limit";
+    const std::size_t all = robots_.size();
+    if (arrived == all) return all == 1 ? "the robot arrived" : "all robots arrived";
+    if (all == 1) return "the robot did not arrive within the time limit";
+    return (arrived == 0 ? "none of " + std::to_string(all) + " robots arrived"
+                         : std::to_string(all - arrived) + " of " + std::to_string(all) + " robots did not arrive") +
+           " within the time limit";
   }
 
   const Scenario& scenario_;
@@ -169,6 +199,7 @@ class KinematicRun {
   ObstacleLibrary library_;
   RunClock clock_;
   std::vector<KinematicRobot> robots_;
+  std::vector<Outlook> later_outlooks_;
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The virtual leader: a point that walks a polyline at constant speed and rests at its end.
+/// The virtual leader: a point that walks a polyline as fast as it was told and rests at its end.
 
 #include "exactvo/formation/scenario.h"
 

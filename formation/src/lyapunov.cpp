@@ -2,6 +2,8 @@
 #include "exactvo/formation/lyapunov.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 #include "consensus.h"
 #include "exactvo/geometry/require.h"
@@ -28,18 +30,18 @@ double sum_of_squares(const std::vector<Vec2>& v) {
   return sum;
 }
 
-/// sum over i, j of a_ij |y_i - y_j|^2: twice y^T L y.
-double disagreement(const Topology& t, const std::vector<Vec2>& y) {
+/// y^T L z: the sum over pairs of a_ij (y_i - y_j).(z_i - z_j).
+double across(const Topology& t, const std::vector<Vec2>& y, const std::vector<Vec2>& z) {
   double sum = 0.0;
   for (std::size_t i = 0; i < y.size(); ++i)
-    for (std::size_t j = 0; j < y.size(); ++j) sum += t.adjacency[i][j] * squared_norm(y[i] - y[j]);
+    for (std::size_t j = 0; j < i; ++j) sum += t.adjacency[i][j] * dot(y[i] - y[j], z[i] - z[j]);
   return sum;
 }
 
-/// sum of b_i |y_i|^2: y^T B y.
-double pinned(const Topology& t, const std::vector<Vec2>& y) {
+/// y^T B z: the sum of b_i y_i.z_i.
+double pinned(const Topology& t, const std::vector<Vec2>& y, const std::vector<Vec2>& z) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < y.size(); ++i) sum += t.pinning[i] * squared_norm(y[i]);
+  for (std::size_t i = 0; i < y.size(); ++i) sum += t.pinning[i] * dot(y[i], z[i]);
   return sum;
 }
 
@@ -60,8 +62,8 @@ double integrand(const Step& row, const RelativeState& s) {
 PaperTerms paper_terms(const FormationSpec& f, const RelativeState& s, double integral) {
   PaperTerms t;
   t.kinetic = 0.5 * sum_of_squares(s.velocity);
-  t.consensus = 0.25 * f.gains.k1 * disagreement(f.topology, s.position);
-  t.pinning = 0.5 * f.gains.k1 * pinned(f.topology, s.position);
+  t.consensus = 0.5 * f.gains.k1 * across(f.topology, s.position, s.position);
+  t.pinning = 0.5 * f.gains.k1 * pinned(f.topology, s.position, s.position);
   t.integral = f.gains.k3 * integral;
   return t;
 }
@@ -69,24 +71,63 @@ PaperTerms paper_terms(const FormationSpec& f, const RelativeState& s, double in
 SoundTerms sound_terms(const FormationSpec& f, const RelativeState& s) {
   SoundTerms t;
   t.kinetic = 0.5 * sum_of_squares(s.velocity);
-  t.consensus = 0.5 * f.gains.k1 * (0.5 * disagreement(f.topology, s.position) + pinned(f.topology, s.position));
+  t.consensus =
+      0.5 * f.gains.k1 * (across(f.topology, s.position, s.position) + pinned(f.topology, s.position, s.position));
   for (Vec2 x : s.position) t.slots += f.gains.k3 * huber(f, norm(x));
   return t;
 }
 
-/// sum of |e_i|^2: how far the filter moved each preference.
-double squared_intervention(const Step& row) {
-  double sum = 0.0;
-  for (const RobotStep& r : row.robots) sum += squared_norm(r.chosen - r.preferred);
-  return sum;
+/// u_i at the row's time: of the exact law from both ends of the step, else the difference over the step.
+Vec2 acceleration(const Recording& recording, std::size_t k, std::size_t i) {
+  const Vec2 v = recording.steps[k].robots[i].velocity, next = recording.steps[k + 1].robots[i].velocity;
+  if (recording.motion != MotionLaw::exponential) return (next - v) / recording.time_step;
+  return recording.tracking_gain / -std::expm1(-recording.tracking_gain * recording.time_step) * (next - v);
 }
 
-void add_rates(const FormationSpec& f, const Step& row, const RelativeState& s, LyapunovRow& out) {
-  const double consensus = 0.5 * disagreement(f.topology, s.velocity) + pinned(f.topology, s.velocity);
+PaperRates paper_rates(const FormationSpec& f, const Recording& recording, std::size_t k, const RelativeState& s) {
+  PaperRates r;
+  for (std::size_t i = 0; i < s.velocity.size(); ++i) r.kinetic += dot(s.velocity[i], acceleration(recording, k, i));
+  r.consensus = f.gains.k1 * across(f.topology, s.position, s.velocity);
+  r.pinning = f.gains.k1 * pinned(f.topology, s.position, s.velocity);
+  r.integral = f.gains.k3 * integrand(recording.steps[k], s);
+  return r;
+}
+
+/// e_i: what is tracked, whatever the controller (v + u / k3), less the preference of the law that the function belongs
+/// to, consensus term and all: what obstacles, robots and steering ask for.
+Vec2 intervention(const FormationSpec& f, const Recording& recording, std::size_t k, const RelativeState& s,
+                  std::size_t i) {
+  const RobotStep& robot = recording.steps[k].robots[i];
+  const Vec2 tracked = robot.velocity + acceleration(recording, k, i) / f.gains.k3;
+  const Vec2 slotwards = detail::preference(f, Remedies{}, s.position[i], recording.steps[k].leader_velocity, 0.0);
+  return tracked - slotwards - detail::consensus_input(f, s, i, -1.0) / f.gains.k3;
+}
+
+void add_rates(const FormationSpec& f, const Recording& recording, std::size_t k, const RelativeState& s,
+               LyapunovRow& out) {
+  const double consensus = across(f.topology, s.velocity, s.velocity) + pinned(f.topology, s.velocity, s.velocity);
   const double speed2 = sum_of_squares(s.velocity);
+  out.paper_rates = paper_rates(f, recording, k, s);
   out.paper_rate = -f.gains.k2 * consensus;
-  out.free_rate = -f.gains.k2 * consensus - f.gains.k3 * speed2;
-  out.rate_bound = -0.5 * f.gains.k3 * speed2 + 0.5 * f.gains.k3 * squared_intervention(row);
+  double along = 0.0, squared = 0.0;
+  for (std::size_t i = 0; i < s.velocity.size(); ++i) {
+    const Vec2 e = intervention(f, recording, k, s, i);
+    along += dot(s.velocity[i], e);
+    squared += squared_norm(e);
+  }
+  out.sound_rates = {-f.gains.k2 * consensus, -f.gains.k3 * speed2, f.gains.k3 * along};
+  out.rate_bound = -0.5 * f.gains.k3 * speed2 + 0.5 * f.gains.k3 * squared;
+}
+
+LyapunovCourse course_of(const std::vector<LyapunovRow>& rows, const Recording& recording,
+                         double (*value)(const LyapunovRow&)) {
+  LyapunovCourse c{value(rows.front()), value(rows.back()), value(rows.front()), 0.0};
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    c.least = std::min(c.least, value(rows[k]));
+    if (recording.steps[k].leader_velocity == recording.steps[k - 1].leader_velocity)
+      c.largest_rise = std::max(c.largest_rise, value(rows[k]) - value(rows[k - 1]));
+  }
+  return c;
 }
 
 }  // namespace
@@ -94,6 +135,7 @@ void add_rates(const FormationSpec& f, const Step& row, const RelativeState& s, 
 std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recording& recording) {
   EXACTVO_REQUIRE(scenario.formation && recording.offsets.size() == scenario.robots.size(), scenario.name);
   const FormationSpec& f = *scenario.formation;
+  EXACTVO_REQUIRE(f.topology.adjacency.size() == scenario.robots.size(), scenario.name);
   std::vector<LyapunovRow> rows;
   double integral = 0.0, last_integrand = 0.0;
   for (std::size_t k = 0; k < recording.steps.size(); ++k) {
@@ -107,10 +149,16 @@ std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recordin
     out.time = row.time;
     out.paper = paper_terms(f, s, integral);
     out.sound = sound_terms(f, s);
-    add_rates(f, row, s, out);
+    if (k + 1 < recording.steps.size()) add_rates(f, recording, k, s, out);
     rows.push_back(out);
   }
   return rows;
+}
+
+LyapunovSummary summary_of(const std::vector<LyapunovRow>& rows, const Recording& recording) {
+  EXACTVO_REQUIRE(!rows.empty() && rows.size() == recording.steps.size(), std::to_string(rows.size()));
+  return {course_of(rows, recording, [](const LyapunovRow& r) { return r.paper.value(); }),
+          course_of(rows, recording, [](const LyapunovRow& r) { return r.sound.value(); })};
 }
 
 }  // namespace exactvo::formation

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
+#include "exactvo/formation/stuck.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/require.h"
 #include "leader.h"
@@ -28,12 +30,37 @@ Motion motion_of(const Recording& recording, std::size_t step, std::size_t robot
           to.position,      to.velocity};
 }
 
-/// The least clearance of one robot over one step, certified against the chord's error.
-double swept_obstacle_clearance(const Scenario& scenario, const Motion& motion, double radius) {
+double largest(Vec2 v) {
+  return std::max(std::fabs(v.x), std::fabs(v.y));
+}
+double largest(const Segment& s) {
+  return std::max(largest(s.a), largest(s.b));
+}
+
+/// The greatest coordinate of the scene's obstacles.
+double largest_coordinate(const Scenario& scenario) {
+  double most = 0.0;
+  for (const SceneObstacle& o : scenario.obstacles)
+    for (Vec2 p : geometry::vertices_of(o.shape)) most = std::max(most, largest(p));
+  for (const MovingObstacle& o : scenario.moving_obstacles)
+    for (Vec2 p : geometry::vertices_of(o.shape)) most = std::max(most, largest(p));
+  return most;
+}
+
+/// m: what a swept clearance may be off by. The distance's own bound, and as much again for the chords' ends, the
+/// displacement, the sagitta and the radii: fewer than 64 roundings of at most the coordinates between them, and the
+/// bound is 128 units of them.
+double rounding(double scene, const Segment& chord, double others) {
+  return 2.0 * geometry::rounding_of_distance(std::max(scene, largest(chord)) + others);
+}
+
+/// The least clearance of one robot over one step, certified against the chord's error and all roundings.
+double swept_obstacle_clearance(const Scenario& scenario, double scene, const Motion& motion, double radius) {
   double least = kInfinity;
   motion.for_each_chord([&](const Segment& chord, double sagitta) {
+    const double off = sagitta + rounding(scene, chord, radius + motion.reach());
     for (const SceneObstacle& o : scenario.obstacles)
-      least = std::min(least, geometry::swept_distance(o.shape, chord) - sagitta - radius);
+      least = std::min(least, geometry::swept_distance(o.shape, chord) - off - radius);
   });
   return least;
 }
@@ -41,38 +68,43 @@ double swept_obstacle_clearance(const Scenario& scenario, const Motion& motion, 
 double swept_robot_clearance(const Motion& a, const Motion& b, double radii) {
   double least = kInfinity;
   detail::for_each_chord_pair(a, b, [&](const Segment& chord_a, const Segment& chord_b, double sagitta) {
-    least = std::min(least, geometry::swept_distance(chord_a, chord_b) - sagitta - radii);
+    const double off = sagitta + rounding(largest(chord_a), chord_b, radii + a.reach() + b.reach());
+    least = std::min(least, geometry::swept_distance(chord_a, chord_b) - off - radii);
   });
   return least;
 }
 
 /// The same against what moves: by definition straight and uniformly from where it is at one row to the next.
-double swept_moving_clearance(const Scenario& scenario, const Motion& motion, double time, double radius) {
+double swept_moving_clearance(const Scenario& scenario, double scene, const Motion& motion, double time,
+                              double radius) {
   double least = kInfinity;
   for (const MovingObstacle& o : scenario.moving_obstacles) {
     const Vec2 before = detail::displacement_at(o, time), after = detail::displacement_at(o, time + motion.duration);
     motion.for_each_chord_in_time([&](const Segment& chord, double from, double to, double sagitta) {
       const Segment seen{chord.a - before - from * (after - before), chord.b - before - to * (after - before)};
-      least = std::min(least, geometry::swept_distance(o.shape, seen) - sagitta - radius);
+      const double off = sagitta + rounding(scene + largest(chord), seen, radius + motion.reach());
+      least = std::min(least, geometry::swept_distance(o.shape, seen) - off - radius);
     });
   }
   return least;
 }
 
-double swept_clearance(const Scenario& scenario, const Recording& recording, std::size_t step, std::size_t robot) {
+double swept_clearance(const Scenario& scenario, double scene, const Recording& recording, std::size_t step,
+                       std::size_t robot) {
   const Motion motion = motion_of(recording, step, robot);
   const double radius = scenario.robots[robot].radius;
-  return std::min(swept_obstacle_clearance(scenario, motion, radius),
-                  swept_moving_clearance(scenario, motion, recording.steps[step].time, radius));
+  return std::min(swept_obstacle_clearance(scenario, scene, motion, radius),
+                  swept_moving_clearance(scenario, scene, motion, recording.steps[step].time, radius));
 }
 
 void measure_obstacles(const Scenario& scenario, const Recording& recording, Metrics& m) {
   if (scenario.obstacles.empty() && scenario.moving_obstacles.empty()) return;
   double least = kInfinity;
+  const double scene = largest_coordinate(scenario);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     double mine = kInfinity;
     for (std::size_t k = 0; k + 1 < recording.steps.size(); ++k)
-      mine = std::min(mine, swept_clearance(scenario, recording, k, i));
+      mine = std::min(mine, swept_clearance(scenario, scene, recording, k, i));
     if (!std::isfinite(mine)) continue;
     m.robots[i].min_obstacle_clearance = mine;
     least = std::min(least, mine);
@@ -80,13 +112,36 @@ void measure_obstacles(const Scenario& scenario, const Recording& recording, Met
   if (std::isfinite(least)) m.min_obstacle_clearance = least;
 }
 
+/// A step of every robot, with how far it gets from where it starts.
+struct Moved {
+  Motion motion;
+  double strays;  ///< m
+};
+std::vector<Moved> motions_of(const Scenario& scenario, const Recording& recording, std::size_t step) {
+  std::vector<Moved> all;
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const Motion motion = motion_of(recording, step, i);
+    all.push_back({motion, norm(motion.to - motion.from) + motion.sagitta_of(1)});
+  }
+  return all;
+}
+
+/// Pairs that stay farther apart than the least so far are passed over: twice their ways would not bring them nearer.
+void lower_by_step(const Scenario& scenario, const std::vector<Moved>& all, double& least) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      const double radii = scenario.robots[i].radius + scenario.robots[j].radius;
+      const double apart = norm(all[i].motion.from - all[j].motion.from) - radii;
+      if (apart > least + 2.0 * (all[i].strays + all[j].strays)) continue;
+      least = std::min(least, swept_robot_clearance(all[i].motion, all[j].motion, radii));
+    }
+  }
+}
+
 void measure_robots(const Scenario& scenario, const Recording& recording, Metrics& m) {
   double least = kInfinity;
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i)
-    for (std::size_t j = i + 1; j < scenario.robots.size(); ++j)
-      for (std::size_t k = 0; k + 1 < recording.steps.size(); ++k)
-        least = std::min(least, swept_robot_clearance(motion_of(recording, k, i), motion_of(recording, k, j),
-                                                      scenario.robots[i].radius + scenario.robots[j].radius));
+  for (std::size_t k = 0; k + 1 < recording.steps.size(); ++k)
+    lower_by_step(scenario, motions_of(scenario, recording, k), least);
   if (std::isfinite(least)) m.min_robot_clearance = least;
 }
 
@@ -185,10 +240,11 @@ std::size_t reversals_of(const Recording& recording, std::size_t i) {
 }
 
 /// What binds, whatever the order.
-std::vector<std::pair<int, std::size_t>> active_set(const RobotStep& step) {
-  std::vector<std::pair<int, std::size_t>> active;
+using ActiveSet = std::vector<std::tuple<ConstraintSource, std::size_t, std::size_t>>;
+ActiveSet active_set(const RobotStep& step) {
+  ActiveSet active;
   for (const RecordedConstraint& c : step.constraints)
-    if (c.active) active.emplace_back(static_cast<int>(c.source), c.index);
+    if (c.active) active.emplace_back(c.source, c.index, c.piece);
   std::sort(active.begin(), active.end());
   return active;
 }
@@ -198,6 +254,11 @@ void measure_jitter(const Recording& recording, Metrics& m) {
   for (std::size_t i = 0; i < m.robots.size(); ++i) {
     for (std::size_t k = 0; k + 2 < rows; ++k)
       m.jitter += norm(acceleration(recording, k + 1, i) - acceleration(recording, k, i));
+    for (std::size_t k = 0; k + 1 < rows; ++k) {
+      const double a = norm(acceleration(recording, k, i));
+      m.peak_acceleration = std::max(m.peak_acceleration, a);
+      m.velocity_variation += a * recording.time_step;
+    }
     m.heading_reversals += reversals_of(recording, i);
     for (std::size_t k = 1; k + 1 < rows; ++k)
       if (active_set(recording.steps[k].robots[i]) != active_set(recording.steps[k - 1].robots[i]))
@@ -215,6 +276,13 @@ void count_decisions(const Recording& recording, Metrics& m) {
   m.steps = recording.steps.size() - 1;
 }
 
+/// Who stopped elsewhere, a sentence each.
+std::vector<std::string> stuck_words(const Scenario& scenario, const Recording& recording) {
+  std::vector<std::string> words;
+  for (const StuckReport& report : explain_stuck(scenario, recording)) words.push_back(report.text);
+  return words;
+}
+
 }  // namespace
 
 Metrics measure(const Scenario& scenario, const Recording& recording) {
@@ -229,7 +297,16 @@ Metrics measure(const Scenario& scenario, const Recording& recording) {
   measure_jitter(recording, m);
   count_decisions(recording, m);
   m.wall_time = recording.wall_time;
+  m.outcome = recording.outcome;
+  m.warnings = recording.warnings;
+  m.stuck = stuck_words(scenario, recording);
+  if (scenario.formation) m.lyapunov = summary_of(lyapunov_along(scenario, recording), recording);
   return m;
+}
+
+bool is_safe(const Metrics& m) {
+  const auto clear = [](const std::optional<double>& clearance) { return !clearance || *clearance > 0.0; };
+  return clear(m.min_obstacle_clearance) && clear(m.min_robot_clearance) && m.uncertified_half_planes == 0;
 }
 
 std::vector<double> obstacle_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot) {

@@ -34,6 +34,11 @@ struct Motion {
     return from;
   }
 
+  /// m: the greatest length met in computing where the robot is: what its coordinates are rounded in proportion to.
+  double reach() const {
+    return law == MotionLaw::exponential ? duration * norm(tracked()) : duration * norm(to_velocity);
+  }
+
   /// A bound of |x''| over the step, m/s^2.
   double acceleration_bound() const {
     switch (law) {

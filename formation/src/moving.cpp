@@ -32,7 +32,7 @@ RobotConstraint against(const MovingObstacle& obstacle, std::size_t index, const
   c.distance = nearest.distance + from.radius;
   RecordedConstraint& r = c.recorded;
   r.certified = h.has_value();
-  if (!h) h = geometry::HalfPlane{nearest.normal, -nearest.distance / std::max(scenario.time_step, 0.1)};
+  if (!h) h = geometry::HalfPlane{nearest.normal, -nearest.distance / contact_time(scenario)};
   r.half_plane = {h->normal, shifted_up(*h, u)};
   r.source = ConstraintSource::moving_obstacle;
   r.index = index;

@@ -70,10 +70,48 @@ std::vector<NamedRemedies> remedy_ablations() {
           changed("with smoothing", all, [](Remedies& r) { r.smoothing = true; })};
 }
 
+const std::vector<RemedySwitch>& remedy_switches() {
+  using R = Remedies;
+  using A = RemedySwitches;
+  static const std::vector<RemedySwitch> all{{"signs", &R::signs, &A::signs},
+                                             {"recentred", &R::recentred, &A::recentred},
+                                             {"absolute_frame", &R::absolute_frame, &A::absolute_frame},
+                                             {"saturation", &R::saturation, &A::saturation},
+                                             {"tau_clamp", &R::tau_clamp, &A::tau_clamp},
+                                             {"filter_last", &R::filter_last, &A::filter_last},
+                                             {"brake_point", &R::brake_point, &A::brake_point},
+                                             {"margins", &R::margins, &A::margins},
+                                             {"side_commitment", &R::side_commitment, &A::side_commitment},
+                                             {"smoothing", &R::smoothing, &A::smoothing}};
+  return all;
+}
+
+Remedies switched(Remedies base, const RemedySwitches& asked) {
+  for (const RemedySwitch& s : remedy_switches()) base.*s.on = (asked.*s.asked).value_or(base.*s.on);
+  base.acceleration_bound = asked.acceleration_bound.value_or(base.acceleration_bound);
+  return base;
+}
+
+std::optional<Remedies> remedies_named(const std::string& name) {
+  for (const auto& list : {remedy_ladder(), remedy_ablations()})
+    for (const NamedRemedies& n : list)
+      if (n.name == name) return n.remedies;
+  return std::nullopt;
+}
+
+std::vector<std::string> remedy_set_names() {
+  std::vector<std::string> names;
+  for (const auto& list : {remedy_ladder(), remedy_ablations()})
+    for (const NamedRemedies& n : list) names.push_back(n.name);
+  return names;
+}
+
 namespace detail {
 
-Remedies remedies_in_use(const SimulationOptions& options) {
-  return options.remedies ? *options.remedies : remedies_of(options.controller);
+Remedies remedies_in_use(const Scenario& scenario, const SimulationOptions& options) {
+  if (options.remedies) return *options.remedies;
+  const Remedies of_controller = remedies_of(options.controller);
+  return scenario.formation ? switched(of_controller, scenario.formation->remedies) : of_controller;
 }
 
 }  // namespace detail

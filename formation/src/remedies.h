@@ -5,7 +5,7 @@
 
 namespace exactvo::formation::detail {
 
-/// The remedies of a run: those asked for, else the controller's.
-Remedies remedies_in_use(const SimulationOptions& options);
+/// The remedies of a run: those of the options, else the controller's with the scenario's switches.
+Remedies remedies_in_use(const Scenario& scenario, const SimulationOptions& options);
 
 }  // namespace exactvo::formation::detail

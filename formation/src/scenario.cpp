@@ -141,6 +141,17 @@ void check_topology(const Topology& t, std::size_t n, Checker& c) {
             "every robot connected to one with pinning > 0");
 }
 
+void check_profile(const Leader& leader, const std::string& at, Checker& c) {
+  for (std::size_t k = 0; k < leader.profile.size(); ++k) {
+    const SpeedKnot& knot = leader.profile[k];
+    const std::string pointer = at + "/profile/" + std::to_string(k);
+    c.not_negative(knot.time, pointer + "/0", "s");
+    c.not_negative(knot.speed, pointer + "/1", "m/s");
+    c.require(k == 0 || !(knot.time < leader.profile[k - 1].time), pointer + "/0", show(knot.time),
+              "times that do not fall");
+  }
+}
+
 void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
   check_topology(f.topology, n, c);
   c.require(f.offsets.size() == n, "/formation/offsets", std::to_string(f.offsets.size()) + " offsets",
@@ -149,6 +160,8 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
   c.require(!f.leader.path.empty(), "/formation/leader/path", "no points", "at least one point");
   for (Vec2 p : f.leader.path) c.finite(p, "/formation/leader/path");
   c.not_negative(f.leader.speed, "/formation/leader/speed", "m/s");
+  check_profile(f.leader, "/formation/leader", c);
+  c.not_negative(f.remedies.acceleration_bound.value_or(0.0), "/formation/remedies/acceleration_bound", "m/s^2");
   c.positive(f.gains.k1, "/formation/gains/k1", "gain");
   c.positive(f.gains.k2, "/formation/gains/k2", "gain");
   c.positive(f.gains.k3, "/formation/gains/k3", "1/s");

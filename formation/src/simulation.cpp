@@ -5,6 +5,7 @@
 #include <string>
 
 #include "exactvo/geometry/require.h"
+#include "forewarnings.h"
 #include "goals.h"
 #include "runs.h"
 #include "static_field.h"
@@ -28,6 +29,9 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options) {
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
   const Clock::time_point start = Clock::now();
   Recording recording = scenario.formation ? run_formation(scenario, options) : run_kinematic(scenario, options);
+  const std::vector<std::string> warnings = detail::forewarnings(scenario, recording.offsets);
+  recording.warnings.insert(recording.warnings.end(), warnings.begin(), warnings.end());
+  recording.all_half_planes = options.record_all;
   recording.wall_time = seconds_since(start);
   return recording;
 }

@@ -51,7 +51,11 @@ ObstacleLibrary::ObstacleLibrary(const Scenario& scenario) {
   for (const SceneObstacle& obstacle : scenario.obstacles) {
     first_piece_.push_back(parts_.empty() ? 0 : first_piece_.back() + parts_.back().pieces.size());
     parts_.push_back(geometry::parts_of(obstacle.shape));
-    for (vo::OrcaChain& chain : vo::orca_chains(obstacle.shape)) chains_.push_back(std::move(chain));
+    for (vo::OrcaChain& chain : vo::orca_chains(obstacle.shape)) {
+      // A closed chain has an edge a vertex, an open one an edge less: counting vertices numbers both apart.
+      first_edge_.push_back(chains_.empty() ? 0 : first_edge_.back() + chains_.back().vertices.size());
+      chains_.push_back(std::move(chain));
+    }
   }
 }
 
@@ -84,12 +88,13 @@ void StaticField::add_enclosure(const Enclosure& e, std::size_t index, const Vie
                                 std::vector<StaticConstraint>& out) const {
   const VelocityObstacle grown(e.shape, from.position, from.radius, scenario_->horizons.most);
   const bool inside = e.grade != EnclosureGrade::tight && grown.overlaps();
-  if (!inside) return add_shape(e.shape, {index, index, e.grade}, from, out);
+  if (!inside) return add_shape(e.shape, {index, 0, index, e.grade}, from, out);
   // The enclosure gives way to what it encloses.
+  std::size_t piece_number = 0;
   for (std::size_t obstacle : e.obstacles) {
     std::size_t shape = enclosures_.size() + library_->first_piece(obstacle);
     for (const ConvexShape& piece : library_->parts()[obstacle].pieces)
-      add_shape(piece, {index, shape++, EnclosureGrade::tight}, from, out);
+      add_shape(piece, {index, ++piece_number, shape++, EnclosureGrade::tight}, from, out);
   }
 }
 
@@ -108,6 +113,7 @@ void StaticField::add_shape(const ConvexShape& shape, const Name& name, const Vi
   RecordedConstraint& r = c.recorded;
   r.source = ConstraintSource::enclosure;
   r.index = name.enclosure;
+  r.piece = name.piece;
   r.shape = shape;
   r.position = from.position;
   r.radius = from.radius;
@@ -141,7 +147,7 @@ void StaticField::add_orca(const Viewpoint& from, std::vector<StaticConstraint>&
       RecordedConstraint& r = c.recorded;
       r.half_plane = found.half_plane;
       r.source = ConstraintSource::obstacle_edge;
-      r.index = k;
+      r.index = library_->first_edge(k) + found.edge;
       r.certified = found.certified;
       r.shape = edge;
       r.position = from.position;

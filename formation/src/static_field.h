@@ -39,10 +39,13 @@ class ObstacleLibrary {
   const std::vector<vo::OrcaChain>& chains() const { return chains_; }
   /// How many pieces the obstacles before this one have: a number for each piece of the scene.
   std::size_t first_piece(std::size_t obstacle) const { return first_piece_[obstacle]; }
+  /// How many edges the chains before this one have: a number for each edge of the scene.
+  std::size_t first_edge(std::size_t chain) const { return first_edge_[chain]; }
 
  private:
   std::vector<geometry::ObstacleParts> parts_;
   std::vector<std::size_t> first_piece_;
+  std::vector<std::size_t> first_edge_;
   std::vector<vo::OrcaChain> chains_;
 };
 
@@ -67,6 +70,7 @@ class StaticField {
   /// What a half-plane is named by: the enclosure it stands for, the shape it is built on, and that one's grade.
   struct Name {
     std::size_t enclosure;
+    std::size_t piece;
     std::size_t shape;
     geometry::EnclosureGrade grade;
   };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace exactvo::formation::detail {
@@ -195,6 +196,21 @@ double Follower::rehearse(Situation s) const {
   return s.time - start + norm(s.goal - s.robot.position) / s.robot.max_speed;
 }
 
+namespace {
+
+/// "left (12.3 s to go that way, 15.1 s the other)".
+std::string side_words(bool left, double left_time, double right_time) {
+  const auto time = [](double t) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.1f s", t);
+    return std::isfinite(t) ? std::string(text) : std::string("no end");
+  };
+  const std::string mine = time(left ? left_time : right_time), other = time(left ? right_time : left_time);
+  return (left ? "left (" : "right (") + mine + " to go that way, " + other + " the other)";
+}
+
+}  // namespace
+
 Follower::Answer Follower::begin(const Situation& s, const std::vector<StaticConstraint>& near) {
   const std::optional<Sweep> left = sweep(near, s.preferred, 1.0, s.robot.max_speed);
   const std::optional<Sweep> right = sweep(near, s.preferred, -1.0, s.robot.max_speed);
@@ -204,10 +220,11 @@ Follower::Answer Follower::begin(const Situation& s, const std::vector<StaticCon
   Follower to_left, to_right;
   to_left.commit(s, 1, near[left->last].shape);
   to_right.commit(s, -1, near[right->last].shape);
-  const bool go_left = to_left.rehearse(s) <= to_right.rehearse(s) + s.time_step;
+  const double left_time = to_left.rehearse(s), right_time = to_right.rehearse(s);
+  const bool go_left = left_time <= right_time + s.time_step;
   *this = go_left ? to_left : to_right;
   return {(go_left ? left : right)->velocity, Mode::following, side_,
-          std::string("stalled: follows the boundary, turning ") + (go_left ? "left" : "right")};
+          "stalled: follows the boundary, turning " + side_words(go_left, left_time, right_time)};
 }
 
 Follower::Answer Follower::follow(const Situation& s, const std::vector<StaticConstraint>& near) {
@@ -236,17 +253,21 @@ Follower::Answer Follower::follow(const Situation& s, const std::vector<StaticCo
 
 SideCommitment::Answer SideCommitment::steer(Vec2 preferred, double speed, const std::vector<StaticConstraint>& lines) {
   if (!blocked(lines, preferred)) {
+    const bool kept_one = side_ != 0;
     side_ = 0;
-    return {preferred, 0};
+    return {preferred, 0, kept_one ? "free again: the side is given up" : ""};
   }
   const std::optional<Sweep> left = sweep(lines, preferred, 1.0, speed);
   const std::optional<Sweep> right = sweep(lines, preferred, -1.0, speed);
+  std::string note;
   if (side_ == 0) {
-    if (!left && !right) return {preferred, 0};
+    if (!left && !right) return {preferred, 0, ""};
     side_ = left && (!right || left->rotation <= right->rotation) ? 1 : -1;
+    const bool tie = left && right && left->rotation == right->rotation;
+    note = std::string("blocked: keeps ") + (side_ > 0 ? "left" : "right") + (tie ? ", a tie" : ", the smaller turn");
   }
   const std::optional<Sweep>& kept = side_ > 0 ? left : right;
-  return {kept ? kept->velocity : preferred, side_};
+  return {kept ? kept->velocity : preferred, side_, note};
 }
 
 }  // namespace exactvo::formation::detail

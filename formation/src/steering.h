@@ -68,6 +68,9 @@ class Follower {
   /// A new goal: whatever was followed is forgotten.
   void reset();
 
+  /// Whether it has come back to where it began to follow without a way to leave: it goes on circling.
+  bool circled() const { return circled_; }
+
  private:
   bool stalled(const Situation& s);
   Answer begin(const Situation& s, const std::vector<StaticConstraint>& near);
@@ -94,6 +97,7 @@ class SideCommitment {
   struct Answer {
     Vec2 preferred;
     int side = 0;
+    std::string note;  ///< when a side is chosen or given up
   };
   Answer steer(Vec2 preferred, double speed, const std::vector<StaticConstraint>& lines);
 

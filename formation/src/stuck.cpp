@@ -7,6 +7,7 @@
 #include "boundary.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/velocity_obstacle.h"
+#include "leader.h"
 
 namespace exactvo::formation {
 namespace {
@@ -51,21 +52,42 @@ std::string length(double x) {
   return std::isfinite(x) ? printed("%.3g m", x) : "infinite (a flat edge)";
 }
 
-std::string source_text(const RecordedConstraint& c) {
-  const char* what[] = {"enclosure", "edge of obstacle", "robot", "moving obstacle"};
-  return std::string(what[static_cast<std::size_t>(c.source)]) + " " + std::to_string(c.index);
+std::string source_text(const Scenario& s, const RecordedConstraint& c) {
+  switch (c.source) {
+    case ConstraintSource::enclosure:
+      return "enclosure " + std::to_string(c.index) + (c.piece > 0 ? ", piece " + std::to_string(c.piece) : "");
+    case ConstraintSource::obstacle_edge: {
+      const geometry::Segment* edge = std::get_if<geometry::Segment>(&c.shape);
+      return edge ? printed("the edge (%.3g, %.3g)", edge->a.x, edge->a.y) +
+                        printed("-(%.3g, %.3g)", edge->b.x, edge->b.y)
+                  : "edge " + std::to_string(c.index);
+    }
+    case ConstraintSource::robot:
+      return "robot " + s.robots.at(c.index).id;
+    case ConstraintSource::moving_obstacle:
+      return "moving obstacle " + s.moving_obstacles.at(c.index).id;
+  }
+  return "";
 }
 
-std::string sentence(const StuckReport& r, const std::string& id) {
-  std::string text = id + " ended " + length(r.goal_distance) + " from its goal" +
+std::string sentence(const Scenario& s, const StuckReport& r) {
+  const std::string& id = s.robots[r.robot].id;
+  std::string text = id + " is " + length(r.goal_distance) + (s.formation ? " from its slot" : " from its goal") +
                      printed(", at (%.3f, %.3f), moving at %.2g m/s", r.position.x, r.position.y, r.speed) + "; ";
   if (r.binding.empty()) return text + "nothing binds: it was on its way";
   text += "bound by ";
-  for (std::size_t k = 0; k < r.binding.size(); ++k) text += (k ? " and " : "") + source_text(r.binding[k].constraint);
+  for (std::size_t k = 0; k < r.binding.size(); ++k)
+    text += (k ? " and " : "") + source_text(s, r.binding[k].constraint);
   if (!r.equilibrium) return text + (r.binding.size() > 1 ? ", between which it rests" : "");
-  return text + ": the way to the goal is normal to the boundary there, whose radius of curvature is " +
+  return text + ": the way there is normal to the boundary, whose radius of curvature is " +
          length(r.equilibrium->radius_of_curvature) +
          (r.equilibrium->stable ? ", more than that distance: a stable trap" : ": unstable, it is sliding off");
+}
+
+/// Whether standing elsewhere means anything.
+bool is_settled(const Scenario& scenario, const Recording& recording) {
+  if (!scenario.formation) return true;
+  return !recording.diverged && detail::leader_arrival(scenario.formation->leader) <= recording.steps.back().time;
 }
 
 }  // namespace
@@ -73,6 +95,7 @@ std::string sentence(const StuckReport& r, const std::string& id) {
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording) {
   EXACTVO_REQUIRE(!recording.steps.empty(), "an empty recording");
   std::vector<StuckReport> reports;
+  if (!is_settled(scenario, recording)) return reports;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const RobotStep& end = recording.steps.back().robots[i];
     const Vec2 target = target_of(scenario, recording, i);
@@ -86,7 +109,7 @@ std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording
       for (const RecordedConstraint& c : recording.steps[recording.steps.size() - 2].robots[i].constraints)
         if (c.active) r.binding.push_back(binding_of(c, end.position));
     if (r.binding.size() == 1) r.equilibrium = resting_on(r.binding.front(), end.position, target);
-    r.text = sentence(r, scenario.robots[i].id);
+    r.text = sentence(scenario, r);
     reports.push_back(std::move(r));
   }
   return reports;

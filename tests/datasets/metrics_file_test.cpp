@@ -33,12 +33,31 @@ formation::Metrics metrics() {
 
 TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
   const Json tree = Json::parse(metrics_json(info(), metrics()));
-  EXPECT_EQ(keys_of(tree),
-            (std::vector<std::string>{"scenario", "method", "controller", "all_arrived", "last_arrival_time",
-                                      "min_obstacle_clearance", "min_robot_clearance", "formation_position_error",
-                                      "formation_velocity_error", "leader_arrival_time", "jitter", "heading_reversals",
-                                      "active_set_switches", "relaxed_steps", "uncertified_half_planes", "steps",
-                                      "wall_time", "robots", "provenance"}));
+  EXPECT_EQ(keys_of(tree), (std::vector<std::string>{"scenario",
+                                                     "method",
+                                                     "controller",
+                                                     "all_arrived",
+                                                     "last_arrival_time",
+                                                     "min_obstacle_clearance",
+                                                     "min_robot_clearance",
+                                                     "formation_position_error",
+                                                     "formation_velocity_error",
+                                                     "leader_arrival_time",
+                                                     "jitter",
+                                                     "velocity_variation",
+                                                     "peak_acceleration",
+                                                     "heading_reversals",
+                                                     "active_set_switches",
+                                                     "relaxed_steps",
+                                                     "uncertified_half_planes",
+                                                     "steps",
+                                                     "wall_time",
+                                                     "outcome",
+                                                     "warnings",
+                                                     "stuck",
+                                                     "lyapunov",
+                                                     "robots",
+                                                     "provenance"}));
   EXPECT_EQ(keys_of(tree["robots"][0]),
             (std::vector<std::string>{"id", "arrived", "arrival_time", "path_length", "min_obstacle_clearance"}));
 }

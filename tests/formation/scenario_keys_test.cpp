@@ -34,5 +34,82 @@ TEST(ScenarioKeys, AMovingObstacleNeedsItsPath) {
   EXPECT_THROW(datasets::parse_scenario(text, "cart.json", "."), datasets::DataError);
 }
 
+/// A formation of five with `extra` in it.
+std::string five(const std::string& extra) {
+  return R"({ "name": "five", "time_step": 0.02, "robots": [
+    { "id": "a", "position": [0, 0] }, { "id": "b", "position": [-3, 2] }, { "id": "c", "position": [-3, -2] },
+    { "id": "d", "position": [-6, 4] }, { "id": "e", "position": [-6, -4] } ], "formation": { )" +
+         extra + " } }";
+}
+formation::FormationSpec spec_of(const std::string& extra) {
+  return *datasets::parse_scenario(five(extra), "five.json", ".").formation;
+}
+
+const char* const kWedge = R"("pattern": { "name": "wedge", "spacing": 2, "heading": [0, 1] },
+    "topology": { "neighbours_within": 2.5, "pinned": ["a"] },
+    "leader": { "path": [[0, 0], [0, 30]], "profile": { "trapezoid": { "speed": 2, "acceleration": 0.5 } } },
+    "remedies": { "smoothing": true, "side_commitment": false, "acceleration_bound": 12 })";
+
+TEST(ScenarioKeys, PatternsTopologiesProfilesAndRemediesAreRead) {
+  const formation::FormationSpec f = spec_of(kWedge);
+  ASSERT_EQ(f.offsets.size(), 5u);
+  EXPECT_GT(f.offsets[0].y, f.offsets[4].y);  // the point leads along the heading
+  EXPECT_EQ(f.topology.pinning, (std::vector<double>{1, 0, 0, 0, 0}));
+  EXPECT_EQ(f.topology.adjacency[0], (std::vector<double>{0, 1, 1, 0, 0}));
+  ASSERT_EQ(f.leader.profile.size(), 4u);
+  EXPECT_EQ(f.leader.profile[1].time, 4.0);
+  EXPECT_EQ(f.remedies.smoothing, true);
+  EXPECT_EQ(f.remedies.side_commitment, false);
+  EXPECT_EQ(f.remedies.brake_point, std::nullopt);
+  EXPECT_EQ(f.remedies.acceleration_bound, 12.0);
+}
+
+TEST(ScenarioKeys, EveryPatternAndTopologyRuns) {
+  for (const char* pattern : {"line", "wedge", "circle", "grid"}) {
+    const std::string text = std::string(R"("topology": { "complete": true }, "leader": { "path": [[0, 0], [9, 0]],
+      "profile": { "knots": [[0, 0.5], [3, 2]] } }, "pattern": { "spacing": 2, "name": ")") +
+                             pattern + "\" }";
+    const formation::Scenario s = datasets::parse_scenario(five(text), "five.json", ".");
+    EXPECT_LT(run(s, {}).metrics.formation_position_error.value(), 1e-9) << pattern;
+  }
+}
+
+TEST(ScenarioKeys, TheSwitchesChangeTheRun) {
+  const std::string rest = R"("topology": { "complete": true }, "offsets": [[0,0],[2,0],[4,0],[2,2],[0,2]],
+    "leader": { "path": [[0, 0], [9, 0]], "profile": { "legs": [2] } })";
+  const auto chosen = [&](const std::string& remedies) {
+    const formation::Scenario s = datasets::parse_scenario(five(rest + remedies), "five.json", ".");
+    return formation::simulate(s).steps[40].robots[3].chosen;
+  };
+  EXPECT_EQ(chosen(""), chosen(R"(, "remedies": {})"));
+  for (const char* off : {"saturation", "filter_last", "brake_point", "absolute_frame", "signs", "recentred"})
+    EXPECT_FALSE(chosen("") == chosen(std::string(", \"remedies\": { \"") + off + "\": false }")) << off;
+}
+
+TEST(ScenarioKeys, FormationsWrittenAndReadAgain) {
+  const std::string once = datasets::write_scenario(datasets::parse_scenario(five(kWedge), "five.json", "."));
+  EXPECT_EQ(datasets::write_scenario(datasets::parse_scenario(once, "again.json", ".")), once);
+  EXPECT_NE(once.find("\"smoothing\": true"), std::string::npos);
+  EXPECT_NE(once.find("\"knots\""), std::string::npos);
+}
+
+TEST(ScenarioKeys, WhatDoesNotFitIsRefused) {
+  const std::string rest = R"(, "leader": { "path": [[0, 0], [9, 0]], "speed": 1 })";
+  const char* const kGrid = R"("pattern": { "name": "grid", "spacing": 2 })";
+  const std::string bad[] = {
+      std::string(kGrid) + R"(, "topology": { "neighbours_within": 2.5, "pinned": ["z"] })" + rest,
+      std::string(kGrid) + R"(, "offsets": [[0, 0]], "topology": { "complete": true })" + rest,
+      R"("pattern": { "name": "star", "spacing": 2 }, "topology": { "complete": true })" + rest,
+      R"("pattern": { "name": "line", "spacing": 2, "heading": [0, 0] }, "topology": { "complete": true })" + rest,
+      R"("topology": { "complete": true })" + rest,
+      std::string(kGrid) + R"(, "topology": { "complete": true }, "leader": { "path": [[0, 0], [9, 0]] })",
+      std::string(kGrid) + R"(, "topology": { "complete": true },
+        "leader": { "path": [[0, 0], [9, 0]], "profile": { "legs": [1, 2] } })",
+      std::string(kGrid) + R"(, "topology": { "complete": true },
+        "leader": { "path": [[0, 0], [9, 0]], "speed": 1, "profile": { "legs": [1] } })",
+      std::string(kGrid) + R"(, "topology": { "complete": true }, "remedies": { "smothing": true })" + rest};
+  for (const std::string& text : bad) EXPECT_THROW(spec_of(text), datasets::DataError) << text;
+}
+
 }  // namespace
 }  // namespace exactvo::test

@@ -14,7 +14,7 @@
 namespace exactvo::tools {
 
 /// Those that apply, in this order: `paths`; `obstacle_distance` (with obstacles); `robot_distance` (with two robots or
-/// more); `velocity`; `formation_error` (with a formation).
+/// more); `velocity`; `formation_error` and `lyapunov` (with a formation).
 std::vector<Figure> run_figures(const datasets::RecordingFile& run);
 
 }  // namespace exactvo::tools

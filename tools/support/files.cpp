@@ -56,8 +56,8 @@ void make_folder(const fs::path& path) {
 void check_output_folder(const fs::path& target) {
   std::error_code error;
   if (!fs::is_directory(target, error) || fs::is_empty(target, error) || error) return;
-  for (const char* ours : {"metrics.json", "summary.json"}) {
-    if (fs::is_regular_file(target / ours, error)) return;
+  for (const char* ours : {"metrics.json", "summary.json", "random/parts", "ablations/parts"}) {
+    if (fs::exists(target / ours, error)) return;
   }
   throw datasets::DataError(datasets::DataCode::file_unwritable, target.string(), "",
                             "a folder with other files in it, and no metrics.json or summary.json",

@@ -18,7 +18,8 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 void make_folder(const std::filesystem::path& path);
 
 /// Refuses to scatter files: throws datasets::DataError where `target` is a folder that holds something, but neither
-/// metrics.json nor summary.json, so that it is none of ours. To be asked before the work, not after.
+/// metrics.json nor summary.json nor the parts of a campaign, so that it is none of ours. To be asked before the work,
+/// not after.
 void check_output_folder(const std::filesystem::path& target);
 
 /// A folder in the making: a hidden sibling of `target` to write into. `publish` puts it in place; without it the

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstddef>
 #include <optional>
 
 namespace exactvo::tools {
@@ -13,17 +11,6 @@ namespace {
 
 bool is_overlap(const std::optional<double>& clearance) {
   return clearance && *clearance < 0.0;
-}
-
-std::string arrivals(const formation::Metrics& m) {
-  const auto all = static_cast<std::ptrdiff_t>(m.robots.size());
-  const std::ptrdiff_t missing =
-      std::count_if(m.robots.begin(), m.robots.end(), [](const auto& r) { return !r.arrived; });
-  if (missing == 0) return all == 1 ? "the robot arrived" : "all robots arrived";
-  if (all == 1) return "the robot did not arrive within the time limit";
-  const std::string who = missing == all ? fmt::format("none of {} robots arrived", all)
-                                         : fmt::format("{} of {} robots did not arrive", missing, all);
-  return who + " within the time limit";
 }
 
 }  // namespace
@@ -43,7 +30,7 @@ std::string touch_words(const formation::Metrics& m) {
 
 std::string outcome_words(const FinishedRun& run) {
   const formation::Metrics& m = run.metrics;
-  const std::string end = run.file.scenario.formation ? run.file.recording.outcome : arrivals(m);
+  const std::string& end = run.file.recording.outcome;
   return touched(m) ? "COLLISION: " + touch_words(m) + "; " + end : end;
 }
 

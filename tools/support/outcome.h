@@ -16,7 +16,7 @@ bool touched(const formation::Metrics& metrics);
 /// "touched an obstacle by 0.12 m and another robot by 0.03 m"; empty where nothing was touched.
 std::string touch_words(const formation::Metrics& metrics);
 
-/// "all robots arrived", "1 of 3 robots did not arrive within the time limit", "COLLISION: touched an obstacle by
+/// What the recording says, and a collision before it: "all robots arrived", "COLLISION: touched an obstacle by
 /// 0.12 m; all robots arrived", "diverged: ...".
 std::string outcome_words(const FinishedRun& run);
 

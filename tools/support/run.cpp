@@ -9,6 +9,7 @@
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "figures/gnuplot.h"
+#include "figures/lyapunov_figure.h"
 #include "figures/run_figures.h"
 #include "support/files.h"
 #include "support/terminal.h"
@@ -59,14 +60,18 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
   if (interrupted()) throw Interrupted();
   FinishedRun finished;
   finished.metrics = measure(scenario, recording);
-  finished.file = {run_info(scenario, options, provenance), scenario, enclosures(scenario, options),
-                   std::move(recording)};
+  finished.file = {
+      run_info(scenario, options, provenance), scenario, enclosures(scenario, options), std::move(recording), {}, {}};
+  const formation::Recording& kept = finished.file.recording;
+  if (scenario.formation) finished.file.lyapunov = lyapunov_along(scenario, kept);
+  finished.file.stuck = explain_stuck(scenario, kept);
   return finished;
 }
 
 void write_results(const FinishedRun& run, const fs::path& folder) {
   write_recording(folder / "recording.jsonl", run.file);
   write_trajectory_csv(folder / "trajectory.csv", run.file);
+  if (!run.file.lyapunov.empty()) write_text(folder / "lyapunov.csv", lyapunov_csv(run.file.lyapunov));
   write_text(folder / "metrics.json", run.metrics_json());
 }
 

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <optional>
 #include <vector>
 
 #include "support/escape.h"
@@ -17,6 +21,61 @@ std::string help(const char* what, const std::vector<std::string>& names) {
   return fmt::format("{}: {}", what, fmt::join(names, ", "));
 }
 
+std::vector<std::string> switch_names() {
+  std::vector<std::string> names;
+  for (const formation::RemedySwitch& s : formation::remedy_switches()) names.emplace_back(s.name);
+  return names;
+}
+
+constexpr const char* kBound = "acceleration_bound";
+
+double bound_of(const std::string& option, const std::string& text) {
+  std::size_t read = 0;
+  double bound = -1.0;
+  try {
+    bound = std::stod(text, &read);
+  } catch (const std::exception&) {
+    read = 0;
+  }
+  if (read == 0 || read != text.size() || !(bound >= 0.0) || !std::isfinite(bound))
+    throw UsageError("--remedy", option, "a number of m/s^2 from 0 on");
+  return bound;
+}
+
+/// "smoothing=on", "tau_clamp=off", "acceleration_bound=8".
+void apply_switch(const std::string& option, formation::Remedies& remedies) {
+  const std::size_t equals = std::min(option.find('='), option.size());
+  const std::string name = option.substr(0, equals), value = option.substr(std::min(equals + 1, option.size()));
+  if (name == kBound) {
+    remedies.acceleration_bound = bound_of(option, value);
+    return;
+  }
+  for (const formation::RemedySwitch& s : formation::remedy_switches()) {
+    if (name != s.name) continue;
+    if (value != "on" && value != "off") throw UsageError("--remedy", option, name + "=on or " + name + "=off");
+    remedies.*s.on = value == "on";
+    return;
+  }
+  throw UsageError("--remedy", option,
+                   fmt::format("one of {}{}", fmt::join(switch_names(), " "), suggestion(name, switch_names())));
+}
+
+/// Nothing where the command line does not speak of them: then the scenario does.
+std::optional<formation::Remedies> remedies_of(const SimulationFlags& flags, formation::Controller controller) {
+  if (flags.remedies.empty() && flags.switches.empty()) return std::nullopt;
+  formation::Remedies remedies = formation::remedies_of(controller);
+  if (!flags.remedies.empty()) {
+    const auto named = formation::remedies_named(flags.remedies);
+    const std::vector<std::string> names = formation::remedy_set_names();
+    if (!named)
+      throw UsageError("--remedies", flags.remedies,
+                       fmt::format("one of {}{}", fmt::join(names, ", "), suggestion(flags.remedies, names)));
+    remedies = *named;
+  }
+  for (const std::string& option : flags.switches) apply_switch(option, remedies);
+  return remedies;
+}
+
 }  // namespace
 
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
@@ -26,18 +85,23 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
       app.add_option("--controller,-c", flags.controller, help("Of a formation", formation::controller_names()))
           ->capture_default_str(),
       app.add_option("--integrator", flags.integrator, help("Of a formation", formation::integrator_names()))
-          ->capture_default_str()};
+          ->capture_default_str(),
+      app.add_option(
+          "--remedies", flags.remedies,
+          help("Instead of the controller, a rung of the ladder or an ablation", formation::remedy_set_names())),
+      app.add_option("--remedy", flags.switches,
+                     fmt::format("NAME=on or NAME=off, as often as needed, beside the controller or --remedies: {}; "
+                                 "acceleration_bound=8 (m/s^2)",
+                                 fmt::join(switch_names(), ", ")))};
   declare_seed(app, flags.seed);
 }
 
-void declare_seed(CLI::App& app, std::uint64_t& seed) {
+void declare_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
   // The parser would let -1 pass as 2^64 - 1.
   const auto not_negative = [](const std::string& text) {
     return text.rfind('-', 0) == 0 ? "found '" + text + "', expected a whole number from 0 on" : std::string();
   };
-  app.add_option("--seed", seed, "Noted in the provenance; a run draws no random numbers")
-      ->capture_default_str()
-      ->check(CLI::Validator(not_negative, "", ""));
+  app.add_option("--seed", seed, help)->capture_default_str()->check(CLI::Validator(not_negative, "", ""));
 }
 
 CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& help) {
@@ -65,6 +129,7 @@ formation::SimulationOptions simulation_options(const SimulationFlags& flags) {
       parse_choice<formation::Controller>("--controller", flags.controller, formation::controller_names());
   options.integrator =
       parse_choice<formation::Integrator>("--integrator", flags.integrator, formation::integrator_names());
+  options.remedies = remedies_of(flags, options.controller);
   return options;
 }
 

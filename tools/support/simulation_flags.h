@@ -17,20 +17,23 @@ struct SimulationFlags {
   std::string method = "ivo";
   std::string controller = "default";
   std::string integrator = "exact";
+  std::string remedies;               ///< a set by its name, instead of the controller's
+  std::vector<std::string> switches;  ///< "smoothing=on"
   std::uint64_t seed = 0;
-  std::vector<const CLI::Option*> of_formations;  ///< --controller and --integrator
+  std::vector<const CLI::Option*> of_formations;  ///< --controller, --integrator, --remedies, --remedy
 };
 
 /// Declares --out: neither empty nor with control characters.
 CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& help);
 
 /// Declares --seed, which takes no negative number.
-void declare_seed(CLI::App& app, std::uint64_t& seed);
+void declare_seed(CLI::App& app, std::uint64_t& seed,
+                  const std::string& help = "Noted in the provenance; a run draws no random numbers");
 
 /// A message for each option given that a scenario without a formation does not use.
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario);
 
-/// Declares --method, --controller, --integrator and --seed. `flags` must outlive the parsing.
+/// Declares --method, --controller, --integrator, --remedies, --remedy and --seed. `flags` must outlive the parsing.
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags);
 
 /// Throws UsageError for a word that names nothing.

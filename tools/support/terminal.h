@@ -42,6 +42,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(double done, const std::string& doing);
+  /// Whether it is seen at all.
+  bool enabled() const { return enabled_; }
   /// Takes the line away, to print something else.
   void clear();
 

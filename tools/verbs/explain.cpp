@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "exactvo/formation/stuck.h"
 #include "explain/explanation.h"
 #include "figures/velocity_space.h"
 #include "support/escape.h"
@@ -65,7 +66,24 @@ std::string method_words(const Scenario& scenario, const SimulationFlags& flags)
   return "method " + flags.method + (scenario.formation ? ", controller " + flags.controller : "");
 }
 
-Decision decide(const Flags& flags, const Scenario& scenario) {
+struct Explained {
+  Decision decision;
+  std::vector<std::string> remarks;  ///< of the run so far
+};
+
+/// Warnings of the run, and, of a robot that hardly moves, what it rests on.
+std::vector<std::string> remarks_on(const Scenario& scenario, const formation::Recording& recording,
+                                    std::size_t robot) {
+  constexpr double kAtRest = 0.01;  // of its greatest speed
+  std::vector<std::string> remarks;
+  for (const std::string& warning : recording.warnings) remarks.push_back("Warning: " + warning + ".");
+  for (const formation::StuckReport& report : formation::explain_stuck(scenario, recording))
+    if (report.robot == robot && report.speed < kAtRest * scenario.robots[robot].max_speed)
+      remarks.push_back("Stuck: " + report.text + ".");
+  return remarks;
+}
+
+Explained decide(const Flags& flags, const Scenario& scenario) {
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.stop_at = flags.time;
   options.progress = [](double) { return !interrupted(); };
@@ -73,7 +91,8 @@ Decision decide(const Flags& flags, const Scenario& scenario) {
   const formation::Recording recording = formation::simulate(scenario, options);
   if (interrupted()) throw Interrupted();
   const formation::Step& step = last_decision(recording, flags.time);
-  return {scenario, method_words(scenario, flags.simulation), robot, step.time, step.robots.at(robot)};
+  return {{scenario, method_words(scenario, flags.simulation), robot, step.time, step.robots.at(robot)},
+          remarks_on(scenario, recording, robot)};
 }
 
 constexpr const char* kFigureFiles[] = {".dat", ".gp", ".png", ".svg"};
@@ -111,9 +130,10 @@ ExitCode explain(const Flags& flags) {
   check(flags);
   const Scenario scenario = read_scenario(flags.scenario);
   note_unused(flags.simulation, scenario);
-  const Decision decision = decide(flags, scenario);
-  print(shown_lines(explanation(decision)));
-  if (!flags.out.empty()) write_figure(decision, flags.out);
+  const Explained explained = decide(flags, scenario);
+  print(shown_lines(explanation(explained.decision)));
+  for (const std::string& remark : explained.remarks) print(shown(remark) + "\n");
+  if (!flags.out.empty()) write_figure(explained.decision, flags.out);
   return ExitCode::success;
 }
 

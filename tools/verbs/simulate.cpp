@@ -21,6 +21,7 @@ struct Flags {
   std::string scenario;
   SimulationFlags simulation;
   std::string out;
+  bool record_all = false;
   bool json = false;
   bool no_figures = false;
 };
@@ -45,21 +46,33 @@ std::string formation_lines(const formation::Metrics& m) {
                      or_dash(m.leader_arrival_time, "s"));
 }
 
+std::string course_words(const formation::LyapunovCourse& c) {
+  const std::string rise =
+      c.largest_rise > 0.0 ? fmt::format("rises by up to {:.3g} a step", c.largest_rise) : std::string("never rises");
+  return fmt::format("{:.4g} -> {:.4g}, least {:.4g}, {}", c.first, c.last, c.least, rise);
+}
+
+std::string lyapunov_lines(const formation::LyapunovSummary& s) {
+  return fmt::format("  V of (18)    {}\n  V that holds {}\n", course_words(s.paper), course_words(s.sound));
+}
+
 std::string summary(const FinishedRun& run) {
   const formation::Metrics& m = run.metrics;
   std::string text = fmt::format("{}, method {}", shown(run.file.info.scenario), run.file.info.method);
   if (run.file.info.controller) text += fmt::format(", controller {}", *run.file.info.controller);
   text += ": " + outcome_words(run) + "\n";
   for (const auto& robot : m.robots) text += robot_line(robot, !run.file.scenario.formation);
-  if (run.file.scenario.formation) text += formation_lines(m);
+  if (run.file.scenario.formation) text += formation_lines(m) + lyapunov_lines(*m.lyapunov);
+  for (const std::string& words : m.stuck) text += fmt::format("  stuck        {}\n", shown(words));
   return text + fmt::format(
                     "  clearance    to obstacles {}, between robots {}\n"
                     "  jitter       {:.4g} m/s^2, {} heading reversals, {} active-set switches\n"
+                    "  velocity     total variation {:.4g} m/s, peak acceleration {:.4g} m/s^2\n"
                     "  half-planes  {} not certified, relaxed in {} decisions\n"
                     "  steps        {} in {:.3g} s of wall time\n",
                     or_dash(m.min_obstacle_clearance, "m"), or_dash(m.min_robot_clearance, "m"), m.jitter,
-                    m.heading_reversals, m.active_set_switches, m.uncertified_half_planes, m.relaxed_steps, m.steps,
-                    m.wall_time);
+                    m.heading_reversals, m.active_set_switches, m.velocity_variation, m.peak_acceleration,
+                    m.uncertified_half_planes, m.relaxed_steps, m.steps, m.wall_time);
 }
 
 FinishedRun run_with_progress(const Flags& flags, const formation::Scenario& scenario,
@@ -85,11 +98,13 @@ void print_and_write(const Flags& flags, const FinishedRun& finished) {
 }
 
 ExitCode simulate(const Flags& flags) {
-  const formation::SimulationOptions options = simulation_options(flags.simulation);
+  formation::SimulationOptions options = simulation_options(flags.simulation);
+  options.record_all = flags.record_all;
   const formation::Scenario scenario = read_scenario(flags.scenario);
   note_unused(flags.simulation, scenario);
   if (!flags.out.empty()) check_output_folder(flags.out);
   const FinishedRun finished = run_with_progress(flags, scenario, options);
+  for (const std::string& warning : finished.file.recording.warnings) message("warning: " + warning);
   flags.out.empty() ? print_results(flags, finished) : print_and_write(flags, finished);
   return ExitCode::success;
 }
@@ -98,8 +113,12 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags->simulation);
-  declare_out(app, flags->out,
-              "Folder for recording.jsonl, trajectory.csv, metrics.json and figures/; whole or not at all");
+  declare_out(
+      app, flags->out,
+      "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations) and figures/; whole or "
+      "not at all");
+  app.add_flag("--record-all", flags->record_all,
+               "Keep every half-plane of every decision, so that `audit` proves the whole run");
   app.add_flag("--json", flags->json, "Print the metrics as JSON");
   app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");
   return [flags] { return simulate(*flags); };
@@ -110,7 +129,9 @@ Action declare(CLI::App& app) {
 Verb simulate_verb() {
   return {"simulate", "Run one scenario",
           "  exactvo simulate datasets/data/paper/A2.json --method ivo --out out/A2\n"
-          "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n",
+          "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
+          "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
+          "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
           declare};
 }
 

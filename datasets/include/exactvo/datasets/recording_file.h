@@ -17,7 +17,9 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/run_info.h"
+#include "exactvo/formation/lyapunov.h"
 #include "exactvo/formation/recording.h"
+#include "exactvo/formation/stuck.h"
 
 namespace exactvo::datasets {
 
@@ -26,6 +28,8 @@ struct RecordingFile {
   formation::Scenario scenario;
   std::vector<std::vector<geometry::ConvexShape>> enclosures;  ///< per robot; empty where the method has none
   formation::Recording recording;
+  std::vector<formation::LyapunovRow> lyapunov = {};  ///< a row for every row, of a formation; else empty
+  std::vector<formation::StuckReport> stuck = {};     ///< who stopped elsewhere; of what binds, the names only
 };
 
 /// Whole or not at all (atomic_file.h). Throws DataError where it can't be written.

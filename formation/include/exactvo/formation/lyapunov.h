@@ -6,7 +6,8 @@
 /// derivative cancels whatever V_IVO does, and the one that holds (docs/guide/formation.md):
 ///
 ///   V = 1/2 |v^|^2 + (k1/2) x^T (L+B) x^ + k3 sum Phi(x^_i),   Phi the Huber potential of the saturated preference.
-///   In free space V' = -k2 v^T (L+B) v^ - k3 |v^|^2; near obstacles V' <= -(k3/2)|v^|^2 + (k3/2)|e|^2, e = w - v_pref.
+///   In free space V' = -k2 v^T (L+B) v^ - k3 |v^|^2; near obstacles V' <= -(k3/2)|v^|^2 + (k3/2)|e|^2, e = w - v_pref
+///   - u_c / k3.
 ///
 /// Rounded; the integral of (18) by the trapezoid of the recorded rows. Under a moving leader x^ and v^ are relative to
 /// it; the derivative holds while its velocity is constant.
@@ -34,16 +35,56 @@ struct SoundTerms {
   double value() const { return kinetic + consensus + slots; }
 };
 
+/// Equation (19) term by term, with the acceleration that the robots had: what (18) really does.
+struct PaperRates {
+  double kinetic = 0.0;    ///< sum v^_i.u_i
+  double consensus = 0.0;  ///< k1/2 sum a_ij (x^_i - x^_j).(v^_i - v^_j)
+  double pinning = 0.0;    ///< k1 sum b_i x^_i.v^_i
+  double integral = 0.0;   ///< k3 sum v^_i.(v^_i - V_IVO)
+  double value() const { return kinetic + consensus + pinning + integral; }
+};
+
+/// The derivative of the function that holds, near obstacles too, and whatever the controller: e_i is what v_i follows
+/// (v + u / k3) less the preference of the default law in free space.
+struct SoundRates {
+  double consensus = 0.0;     ///< -k2 v^T (L+B) v^
+  double tracking = 0.0;      ///< -k3 |v^|^2
+  double intervention = 0.0;  ///< k3 sum v^_i.e_i: what obstacles and other robots ask for
+  double value() const { return consensus + tracking + intervention; }
+};
+
 struct LyapunovRow {
   double time = 0.0;  ///< s
   PaperTerms paper;
+  PaperRates paper_rates;
   double paper_rate = 0.0;  ///< (20): what the paper says V' is
   SoundTerms sound;
-  double free_rate = 0.0;   ///< -k2 v^T (L+B) v^ - k3 |v^|^2
+  SoundRates sound_rates;
   double rate_bound = 0.0;  ///< -(k3/2) |v^|^2 + (k3/2) |e|^2
 };
 
-/// A row for every row of the recording. REQUIRES: a formation's recording of this scenario.
+/// A row for every row of the recording; the last one, which has no decision, has that of the row before in its
+/// integral and nothing in its rates. REQUIRES: a formation's recording of this scenario.
 std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recording& recording);
+
+/// How a function went over a run.
+struct LyapunovCourse {
+  double first = 0.0, last = 0.0, least = 0.0;
+  double largest_rise = 0.0;  ///< from one row to the next, where the leader kept its velocity; 0 where it never rose
+};
+struct LyapunovSummary {
+  LyapunovCourse paper;
+  LyapunovCourse sound;
+};
+/// REQUIRES: rows that lyapunov_along gave for this recording, at least one.
+LyapunovSummary summary_of(const std::vector<LyapunovRow>& rows, const Recording& recording);
+
+/// The counterexample to Theorem 1 (docs/guide/formation.md): three robots at rest on their slots, equations (14) and
+/// (15) with their signs mended, and an avoidance that asks robot 1 for a constant `push` (m/s) relative to the leader.
+struct Counterexample {
+  Scenario scenario;
+  Recording recording;
+};
+Counterexample theorem_one_counterexample(double push = 0.1, double duration = 1200.0);
 
 }  // namespace exactvo::formation

@@ -4,15 +4,16 @@
 /// \file
 /// Figures of a run, from its recording alone. SI units. Nothing where a value does not apply.
 ///
-/// Clearances are swept: lower bounds over the continuous motion between rows (of the cubic through both ends, where
-/// the integrator has no closed form), up to `geometry::rounding_of_distance` of the coordinates. The verb `audit`
-/// proves them in rationals. Where a robot overlaps an obstacle they are at most 0, and not its depth.
+/// Clearances are swept and certified: lower bounds over the continuous motion between rows (of the cubic through both
+/// ends, where the integrator has no closed form), with all roundings taken off. Where a robot overlaps an obstacle
+/// they are at most 0, and not its depth.
 
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/lyapunov.h"
 #include "exactvo/formation/recording.h"
 
 namespace exactvo::formation {
@@ -34,6 +35,8 @@ struct Metrics {
   std::optional<double> formation_velocity_error;  ///< m/s, at the end
   std::optional<double> leader_arrival_time;       ///< s
   double jitter = 0.0;                             ///< m/s^2: sum over steps and robots of |a_{k+1} - a_k|
+  double velocity_variation = 0.0;                 ///< m/s: sum over steps and robots of |v_{k+1} - v_k|
+  double peak_acceleration = 0.0;                  ///< m/s^2: the greatest |v_{k+1} - v_k| over the time step
   std::size_t heading_reversals = 0;    ///< turns whose sign changes from one step to the next, beyond 1e-3 rad
   std::size_t active_set_switches = 0;  ///< steps whose active constraints differ from the step before
   std::size_t relaxed_steps = 0;  ///< decisions that were not `optimal`: soft half-planes gave, or no answer held all
@@ -41,9 +44,16 @@ struct Metrics {
   std::size_t steps = 0;
   double wall_time = 0.0;  ///< s
   std::vector<RobotMetrics> robots;
+  std::optional<LyapunovSummary> lyapunov;  ///< of a formation
+  std::string outcome;                      ///< the recording's
+  std::vector<std::string> warnings;        ///< the recording's
+  std::vector<std::string> stuck;           ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };
 
 Metrics measure(const Scenario& scenario, const Recording& recording);
+
+/// Nothing was touched, by the swept clearances, and every half-plane was certified.
+bool is_safe(const Metrics& metrics);
 
 /// One series a robot or pair, sampled at the recording's rows: for figures.
 std::vector<double> obstacle_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot);

@@ -21,7 +21,10 @@ enum class ConstraintSource { enclosure, obstacle_edge, robot, moving_obstacle }
 struct RecordedConstraint {
   geometry::HalfPlane half_plane;
   ConstraintSource source = ConstraintSource::enclosure;
-  std::size_t index = 0;  ///< of the enclosure, obstacle edge, other robot or moving obstacle
+  /// Of the enclosure (of those for the robot's present goal), the obstacle edge (counted over the scene), the other
+  /// robot or the moving obstacle.
+  std::size_t index = 0;
+  std::size_t piece = 0;  ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
   bool certified = false;
   bool hard = true;
   bool active = false;  ///< binds the chosen velocity
@@ -69,6 +72,14 @@ enum class MotionLaw {
   hermite       ///< the cubic through both end states (the general integrators)
 };
 
+/// The shapes that one robot saw on its way to one of its goals.
+struct Outlook {
+  double time = 0.0;  ///< s, from then on
+  std::size_t robot = 0;
+  std::size_t goal = 0;  ///< which of its goals, from 0
+  std::vector<geometry::ConvexShape> enclosures;
+};
+
 struct Recording {
   std::vector<Step> steps;  ///< the last row is the final state: its decisions are empty
   MotionLaw motion = MotionLaw::straight;
@@ -77,8 +88,12 @@ struct Recording {
   std::vector<Vec2> offsets;   ///< m, Delta_i as the controller used them (recentred or not); empty without a formation
   bool diverged = false;       ///< the formation's error grew to the end, or the state left every bound
   std::string outcome;         ///< in words, for people
-  std::vector<std::string> warnings;  ///< what was said before the run: a step beyond the integrator's limit
-  double wall_time = 0.0;             ///< s
+  /// What could be said before the run: a step beyond the integrator's limit, a goal inside an obstacle.
+  std::vector<std::string> warnings;
+  std::vector<Outlook>
+      later_outlooks;            ///< of goals after the first, as they came up; those of the first see the scenario
+  bool all_half_planes = false;  ///< every half-plane of every decision was kept
+  double wall_time = 0.0;        ///< s
 };
 
 }  // namespace exactvo::formation

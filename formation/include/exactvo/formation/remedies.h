@@ -5,6 +5,7 @@
 /// What separates the paper's formation controller from one that keeps its promises, each on a switch of its own, so
 /// that causes can be told apart (docs/guide/formation.md). The controllers of simulation.h are sets of these.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,25 @@ struct Remedies {
   double acceleration_bound = 0.0;  ///< m/s^2, > 0: |u| is held below it; heuristic, see docs/guide/formation.md
 };
 
+/// Some of them, set one way or the other: what a scenario asks for beside its controller.
+struct RemedySwitches {
+  std::optional<bool> signs, recentred, absolute_frame, saturation, tau_clamp, filter_last, brake_point, margins,
+      side_commitment, smoothing;
+  std::optional<double> acceleration_bound;  ///< m/s^2, >= 0; 0 for none
+};
+
+/// One of the switches by its name, which is that of the member: "tau_clamp".
+struct RemedySwitch {
+  const char* name;
+  bool Remedies::*on;
+  std::optional<bool> RemedySwitches::*asked;
+};
+/// All of them but the bound, in the order of the struct.
+const std::vector<RemedySwitch>& remedy_switches();
+
+/// `base` with what is asked for.
+Remedies switched(Remedies base, const RemedySwitches& asked);
+
 /// A set of remedies with the name under which it is reported.
 struct NamedRemedies {
   std::string name;
@@ -36,5 +56,9 @@ std::vector<NamedRemedies> remedy_ladder();
 
 /// The default with one remedy taken away (or smoothing added) at a time.
 std::vector<NamedRemedies> remedy_ablations();
+
+/// The rung or ablation of that name; nothing where there is none.
+std::optional<Remedies> remedies_named(const std::string& name);
+std::vector<std::string> remedy_set_names();
 
 }  // namespace exactvo::formation

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/remedies.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::formation {
@@ -54,10 +55,19 @@ struct Margins {
   double robot = 0.04;     ///< m, added to the radius sum of a pair
 };
 
-/// The virtual leader: along the polyline `path` at `speed`, then at rest at its end.
+/// A speed at a time. Between knots the speed is linear; before the first and after the last it is held; two knots at
+/// the same time are a jump.
+struct SpeedKnot {
+  double time = 0.0;   ///< s, >= 0
+  double speed = 0.0;  ///< m/s, >= 0
+};
+
+/// The virtual leader: along the polyline `path` at `speed`, or as `profile` says where that is not empty
+/// (speed_profile.h makes some), then at rest at its end.
 struct Leader {
-  std::vector<Vec2> path;  ///< m, at least one point
-  double speed = 0.0;      ///< m/s, >= 0
+  std::vector<Vec2> path;               ///< m, at least one point
+  double speed = 0.0;                   ///< m/s, >= 0
+  std::vector<SpeedKnot> profile = {};  ///< times not falling
 };
 
 /// An obstacle that moves without turning: `shape` as it stands at t = 0, carried along `motion`. Robots see the
@@ -88,7 +98,8 @@ struct FormationSpec {
   bool recentre = true;       ///< subtract mean(Delta), as equation (4) needs
   Leader leader;
   Gains gains;
-  double catch_up_speed = 1.5;  ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
+  double catch_up_speed = 1.5;   ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
+  RemedySwitches remedies = {};  ///< switched on or off beside what the controller has
 };
 
 struct Scenario {

@@ -31,7 +31,8 @@ struct StuckReport {
   std::string text;  ///< all of it in a sentence or two
 };
 
-/// A report for every robot that is not at its goal or slot in the last row. REQUIRES: a recording of this scenario.
+/// A report for every robot that is not at its goal or slot in the last row; none of a formation that diverged or whose
+/// leader is still under way. REQUIRES: a recording of this scenario.
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording);
 
 }  // namespace exactvo::formation

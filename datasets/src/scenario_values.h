@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Values of a scenario out of JSON that has been held against the schema: types and required keys are as they should
+/// be.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "json_text.h"
+
+namespace exactvo::datasets {
+
+inline void take(const Json& object, const char* key, double& field) {
+  if (object.contains(key)) field = object.at(key).get<double>();
+}
+
+inline geometry::Vec2 to_point(const Json& pair) {
+  return {pair[0].get<double>(), pair[1].get<double>()};
+}
+
+inline std::vector<geometry::Vec2> to_points(const Json& list) {
+  std::vector<geometry::Vec2> points;
+  points.reserve(list.size());
+  for (const Json& pair : list) points.push_back(to_point(pair));
+  return points;
+}
+
+/// The member `formation`, of these robots. Throws DataError for what the schema cannot say: an unknown robot's id, a
+/// speed profile of the wrong length. `file` is used in messages.
+formation::FormationSpec to_formation(const Json& object, const std::vector<formation::Robot>& robots,
+                                      const std::string& file);
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What cannot work: a typed error that names the place, or an outcome that says so. None is silent.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/formation/stuck.h"
+#include "paper_scenes.h"
+
+namespace exactvo::formation {
+namespace {
+
+using test::paper_scene;
+using testing::HasSubstr;
+
+/// That reading what `write_scenario` wrote of it is refused with this pointer, and running it too.
+void expect_refused(const Scenario& s, const std::string& pointer) {
+  ASSERT_FALSE(validate(s).empty());
+  EXPECT_EQ(validate(s).front().pointer, pointer);
+  EXPECT_THROW(simulate(s), std::logic_error);
+  try {
+    datasets::parse_scenario(datasets::write_scenario(s), "bad.json", ".");
+    FAIL() << "was read";
+  } catch (const datasets::DataError& error) {
+    EXPECT_EQ(error.file(), "bad.json");
+    EXPECT_THAT(std::string(error.place()), HasSubstr(pointer));
+    EXPECT_FALSE(error.expected().empty());
+  }
+}
+
+TEST(BadInput, ADisconnectedTopologyIsRefused) {
+  Scenario s = paper_scene("B1");
+  s.formation->topology.adjacency = {{0, 1, 0}, {1, 0, 0}, {0, 0, 0}};
+  s.formation->topology.pinning = {1, 0, 0};
+  expect_refused(s, "/formation/topology");
+}
+
+TEST(BadInput, AnUnpinnedTopologyIsRefused) {
+  Scenario s = paper_scene("B1");
+  s.formation->topology.pinning = {0, 0, 0};
+  expect_refused(s, "/formation/topology");
+}
+
+TEST(BadInput, CoincidingRobotsAreRefused) {
+  for (const char* scene : {"A2", "B1"}) {
+    Scenario s = paper_scene(scene);
+    s.robots[1].position = s.robots[0].position;
+    expect_refused(s, "/robots/1/position");
+  }
+}
+
+TEST(BadInput, AStartInsideAnObstacleIsRefused) {
+  Scenario s = paper_scene("A6");
+  s.robots[0].position = {6.5, 3.0};
+  expect_refused(s, "/robots/0/position");
+  s.robots[0].position = {4.6, 3.0};  // outside, but nearer than its radius
+  expect_refused(s, "/robots/0/position");
+}
+
+TEST(BadInput, GainsOfZeroOrBelowAreRefused) {
+  double Gains::*const gains[] = {&Gains::k1, &Gains::k2, &Gains::k3, &Gains::kappa};
+  const char* const names[] = {"k1", "k2", "k3", "kappa"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (const double value : {0.0, -0.25}) {
+      Scenario s = paper_scene("B1");
+      s.formation->gains.*gains[i] = value;
+      expect_refused(s, std::string("/formation/gains/") + names[i]);
+    }
+  }
+}
+
+TEST(BadInput, AStepBeyondTheHorizonsLimitIsRefused) {
+  Scenario s = paper_scene("A2");
+  s.time_step = 0.2;  // horizons.least is 0.3 s
+  expect_refused(s, "/horizons/least");
+}
+
+TEST(BadInput, AStepBeyondTheIntegratorsLimitIsSaidBeforeTheRun) {
+  Scenario s = paper_scene("B0");
+  s.time_step = 0.06;
+  SimulationOptions euler;
+  euler.integrator = Integrator::euler;
+  const Metrics m = test::run(s, euler).metrics;
+  ASSERT_FALSE(m.warnings.empty());
+  EXPECT_THAT(m.warnings.front(), HasSubstr("beyond explicit Euler's limit"));
+  EXPECT_THAT(m.outcome, HasSubstr("diverged"));
+}
+
+TEST(BadInput, AGoalInsideAnObstacleIsSaidAndStated) {
+  Scenario s = paper_scene("A6");
+  s.robots[0].goals = {{6.5, 3.0}};
+  s.time_limit = 30.0;
+  const Metrics m = test::run(s, {}).metrics;
+  ASSERT_EQ(m.warnings.size(), 1u);
+  EXPECT_THAT(m.warnings[0], HasSubstr("lies inside obstacle"));
+  EXPECT_THAT(m.outcome, HasSubstr("did not arrive"));
+  ASSERT_EQ(m.stuck.size(), 1u);
+  EXPECT_GT(m.min_obstacle_clearance.value(), 0.0);
+}
+
+TEST(BadInput, AGoalNearerToAWallThanTheRadiusIsSaid) {
+  Scenario s = paper_scene("A6");
+  s.robots[0].goals = {{8.3, 3.0}};
+  s.time_limit = 10.0;
+  const Recording r = simulate(s);
+  ASSERT_EQ(r.warnings.size(), 1u);
+  EXPECT_THAT(r.warnings[0], HasSubstr("too near to obstacle"));
+  s.robots[0].goals = {{8.55, 3.0}};
+  EXPECT_TRUE(simulate(s).warnings.empty());
+}
+
+TEST(BadInput, TwoGoalsInOnePlaceAreSaid) {
+  Scenario s = paper_scene("A0");
+  s.robots[1].goals = s.robots[0].goals;
+  s.time_limit = 1.0;
+  const Recording r = simulate(s);
+  ASSERT_EQ(r.warnings.size(), 1u);
+  EXPECT_THAT(r.warnings[0], HasSubstr("too near to each other"));
+}
+
+/// A room without a door round the goal.
+Scenario closed_room() {
+  Scenario s;
+  s.name = "closed-room";
+  Robot r;
+  r.id = "R1";
+  r.goals = {{10.0, 0.0}};
+  s.robots = {r};
+  s.obstacles = {{"room", geometry::Polyline{{{7, -3}, {13, -3}, {13, 3}, {7, 3}, {7, -3}}}}};
+  s.time_limit = 60.0;
+  return s;
+}
+
+TEST(BadInput, AGoalInAClosedRoomEndsWithTheFullCircleStated) {
+  const Scenario s = closed_room();
+  const test::FinishedRun r = test::run(s, {});
+  EXPECT_FALSE(r.metrics.all_arrived);
+  EXPECT_THAT(r.recording.outcome, HasSubstr("the robot did not arrive"));
+  EXPECT_THAT(r.recording.outcome, HasSubstr("R1 came full circle"));
+  EXPECT_GT(r.metrics.min_obstacle_clearance.value(), 0.0);
+}
+
+TEST(BadInput, ASlotInsideAnObstacleIsSaid) {
+  Scenario s = paper_scene("B1");
+  s.obstacles = {{"block", geometry::Polygon{{{22, 22}, {28, 22}, {28, 28}, {22, 28}}, {}}}};
+  const Recording r = simulate(s);
+  ASSERT_EQ(r.warnings.size(), 3u);
+  EXPECT_THAT(r.warnings[0], HasSubstr("slot of R1"));
+}
+
+TEST(Outcomes, CountRobotsInWordsThatAgree) {
+  Scenario s = paper_scene("A0");
+  EXPECT_EQ(simulate(s).outcome, "all robots arrived");
+  s.time_limit = 1.0;
+  EXPECT_EQ(simulate(s).outcome, "none of 2 robots arrived within the time limit");
+  s.robots[1].goals = {s.robots[1].position};
+  EXPECT_EQ(simulate(s).outcome, "1 of 2 robots did not arrive within the time limit");
+  s.robots.pop_back();
+  EXPECT_EQ(simulate(s).outcome, "the robot did not arrive within the time limit");
+  s.robots[0].goals = {s.robots[0].position};
+  EXPECT_EQ(simulate(s).outcome, "the robot arrived");
+}
+
+}  // namespace
+}  // namespace exactvo::formation

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "figures/lyapunov_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "figures/paths_figure.h"
+#include "figures/style.h"
+
+namespace exactvo::tools {
+
+using formation::LyapunovRow;
+
+namespace {
+
+constexpr Canvas kCanvas{960, 1240};
+
+/// A curve: what the legend says, and its value in a row.
+struct Curve {
+  const char* label;
+  double (*value)(const LyapunovRow&);
+  bool sum = false;  ///< drawn black: the others add up to it, or bound it
+};
+
+const std::vector<Curve> kPaper{
+    {"kinetic", [](const LyapunovRow& r) { return r.paper.kinetic; }},
+    {"consensus", [](const LyapunovRow& r) { return r.paper.consensus; }},
+    {"pinning", [](const LyapunovRow& r) { return r.paper.pinning; }},
+    {"integral", [](const LyapunovRow& r) { return r.paper.integral; }},
+    {"V of (18)", [](const LyapunovRow& r) { return r.paper.value(); }, true},
+};
+const std::vector<Curve> kPaperRates{
+    {"kinetic", [](const LyapunovRow& r) { return r.paper_rates.kinetic; }},
+    {"consensus", [](const LyapunovRow& r) { return r.paper_rates.consensus; }},
+    {"pinning", [](const LyapunovRow& r) { return r.paper_rates.pinning; }},
+    {"integral", [](const LyapunovRow& r) { return r.paper_rates.integral; }},
+    {"claimed by (20)", [](const LyapunovRow& r) { return r.paper_rate; }},
+    {"V' of (18)", [](const LyapunovRow& r) { return r.paper_rates.value(); }, true},
+};
+const std::vector<Curve> kSound{
+    {"kinetic", [](const LyapunovRow& r) { return r.sound.kinetic; }},
+    {"consensus", [](const LyapunovRow& r) { return r.sound.consensus; }},
+    {"slots", [](const LyapunovRow& r) { return r.sound.slots; }},
+    {"V that holds", [](const LyapunovRow& r) { return r.sound.value(); }, true},
+};
+const std::vector<Curve> kSoundRates{
+    {"consensus", [](const LyapunovRow& r) { return r.sound_rates.consensus; }},
+    {"tracking", [](const LyapunovRow& r) { return r.sound_rates.tracking; }},
+    {"intervention", [](const LyapunovRow& r) { return r.sound_rates.intervention; }},
+    {"bound", [](const LyapunovRow& r) { return r.rate_bound; }},
+    {"V' that holds", [](const LyapunovRow& r) { return r.sound_rates.value(); }, true},
+};
+
+/// Of V on a logarithmic axis, m^2/s^2: what is smaller is drawn here.
+constexpr double kLeastShown = 1e-24;
+
+void add_curve(const Curve& curve, std::size_t number, const std::vector<LyapunovRow>& rows, double floor,
+               DataFile& data, PlotCommand& plot) {
+  const int index = data.begin(curve.label, "t [s], value");
+  for (const LyapunovRow& row : rows) {
+    const double value = curve.value(row);
+    if (std::isfinite(value)) data.row({row.time, std::max(value, floor)});
+  }
+  plot.data(index,
+            fmt::format("using 1:2 with lines lw {} lc rgb '{}'", curve.sum ? 2.5 : 1.5,
+                        curve.sum ? "black" : series_colour(number)),
+            curve.label);
+}
+
+std::string panel(const std::vector<Curve>& curves, const std::vector<LyapunovRow>& rows, const std::string& title,
+                  const std::string& y_label, bool logarithmic, DataFile& data) {
+  PlotCommand plot;
+  const double floor = logarithmic ? kLeastShown : -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < curves.size(); ++i) add_curve(curves[i], i, rows, floor, data, plot);
+  return fmt::format(
+             "  set title {}\n  set ylabel {}\n  {}\n", quoted(title), quoted(y_label),
+             logarithmic ? "set logscale y\n  set format y '10^{%T}'" : "unset logscale y\n  set format y '%g'") +
+         plot.text();
+}
+
+std::vector<LyapunovRow> without_the_last(std::vector<LyapunovRow> rows) {
+  if (rows.size() > 1) rows.pop_back();  // it has no decision, so no derivative
+  return rows;
+}
+
+}  // namespace
+
+Figure lyapunov_figure(const datasets::RecordingFile& run) {
+  DataFile data;
+  const std::vector<LyapunovRow>& rows = run.lyapunov;
+  const std::vector<LyapunovRow> moving = without_the_last(rows);
+  const double end = rows.empty() ? 1.0 : std::max(rows.back().time, 1.0);
+  const std::string title = run_title(run);
+  const std::string body =
+      fmt::format(
+          "  set multiplot layout 4,1\n  set xlabel 'time [s]'\n  set xrange [0:{:.6g}]\n  set lmargin 12\n"
+          "  set grid lc rgb '#dcdcdc'\n  set key outside right top reverse Left width 2\n",
+          end) +
+      panel(kPaper, rows, title + ": the paper's function (18)", "V [m²/s²]", false, data) +
+      panel(kPaperRates, moving, "its derivative (19), and what (20) says it is", "V' [m²/s³]", false, data) +
+      panel(kSound, rows, "the function that holds", "V [m²/s²]", true, data) +
+      panel(kSoundRates, moving, "its derivative, and its bound near obstacles", "V' [m²/s³]", false, data) +
+      "  unset multiplot\n";
+  return {"lyapunov", data.text(),
+          script_text("lyapunov", "Both Lyapunov functions along " + title + ", term by term.", kCanvas, body)};
+}
+
+std::string lyapunov_csv(const std::vector<LyapunovRow>& rows) {
+  std::string text =
+      "time_s,paper_kinetic_m2_s2,paper_consensus_m2_s2,paper_pinning_m2_s2,paper_integral_m2_s2,"
+      "paper_rate_kinetic_m2_s3,paper_rate_consensus_m2_s3,paper_rate_pinning_m2_s3,paper_rate_integral_m2_s3,"
+      "paper_rate_claimed_m2_s3,sound_kinetic_m2_s2,sound_consensus_m2_s2,sound_slots_m2_s2,"
+      "sound_rate_consensus_m2_s3,sound_rate_tracking_m2_s3,sound_rate_intervention_m2_s3,sound_rate_bound_m2_s3\n";
+  for (const LyapunovRow& r : rows) {
+    text += fmt::format("{}", r.time);
+    for (const double x : {r.paper.kinetic, r.paper.consensus, r.paper.pinning, r.paper.integral, r.paper_rates.kinetic,
+                           r.paper_rates.consensus, r.paper_rates.pinning, r.paper_rates.integral, r.paper_rate,
+                           r.sound.kinetic, r.sound.consensus, r.sound.slots, r.sound_rates.consensus,
+                           r.sound_rates.tracking, r.sound_rates.intervention, r.rate_bound})
+      text += fmt::format(",{}", x);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Counts over random fields (datasets/random_fields.h): how many are reached and safe, by method or by set of
+/// remedies. Resumable (parts.h), and the same bytes for any number of threads.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/random_fields.h"
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/simulation.h"
+
+namespace exactvo::tools {
+
+/// One way of running one kind of field.
+struct Variant {
+  datasets::FieldKind kind = datasets::FieldKind::convex;
+  std::string name;  ///< of the method, controller or set of remedies
+  formation::SimulationOptions options;
+};
+
+/// The kinds against the methods: convex and open by all four, formations by the default controller over three (of
+/// formations ivo and ivo-cluster are the same).
+std::vector<Variant> random_field_variants();
+
+/// Formations by every rung of the ladder and every ablation.
+std::vector<Variant> remedy_variants();
+
+struct FieldResult {
+  std::uint64_t field = 0;
+  bool reached = false;
+  bool safe = false;                                       ///< formation::is_safe
+  double last_arrival = 0.0;                               ///< s; nan where not reached
+  double obstacle_clearance = 0.0, robot_clearance = 0.0;  ///< m, swept; nan where there is nothing to be clear of
+  std::size_t uncertified = 0;
+  double formation_error = 0.0;  ///< m, at the end; nan without a formation
+  double jitter = 0.0;           ///< m/s^2
+  bool good() const { return reached && safe; }
+};
+
+struct VariantResult {
+  std::string kind;
+  std::string name;
+  std::vector<FieldResult> fields;
+
+  std::size_t good() const;
+  std::size_t reached() const;
+  std::size_t safe() const;
+  double latest_arrival() const;  ///< s, of the good ones; nan where there are none
+  double median_jitter() const;   ///< m/s^2, over all
+};
+
+struct CampaignOptions {
+  std::filesystem::path folder;  ///< for the parts
+  std::uint64_t fields = 0;      ///< 0 .. fields - 1 of each variant
+  std::uint64_t seed = datasets::kFieldSeed;
+  unsigned jobs = 1;
+};
+
+std::vector<VariantResult> run_campaign(const std::vector<Variant>& variants, const CampaignOptions& options);
+
+/// A row a field: kind, variant, field, what FieldResult has.
+std::string campaign_csv(const std::vector<VariantResult>& results);
+
+/// `what` names the file; counts a variant, the numbers of the fields that were not good, the seed and the program.
+/// Nothing in it depends on when or by how many threads it was made.
+std::string campaign_json(const std::string& what, const std::vector<VariantResult>& results,
+                          const CampaignOptions& options);
+
+}  // namespace exactvo::tools

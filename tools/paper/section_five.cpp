@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "paper/section_five.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "exactvo/datasets/metrics_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "figures/paths_figure.h"
+#include "support/files.h"
+#include "support/outcome.h"
+#include "support/run.h"
+#include "support/terminal.h"
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+using formation::Controller;
+using formation::Method;
+
+namespace {
+
+constexpr Method kMethods[] = {Method::orca, Method::ivo_edge, Method::ivo_cluster, Method::ivo};
+constexpr Controller kControllers[] = {Controller::paper_literal, Controller::paper_signs, Controller::standard};
+constexpr int kAvoidanceScenarios = 16;  // A0-A15; A0 has no obstacle: the robots pass each other
+constexpr int kFormationScenarios = 4;   // B0-B3
+constexpr int kRuns = kAvoidanceScenarios * 4 + kFormationScenarios * 3;
+/// The scenario that shows the difference best: two walls, and two robots that must also pass each other.
+constexpr const char* kComparison = "A2";
+
+/// The whole of Section V, as it goes.
+class Experiments {
+ public:
+  Experiments(SectionFiveOptions flags, fs::path out)
+      : flags_(std::move(flags)), scenarios_(flags_.scenarios), out_(std::move(out)), line_(kRuns, "runs") {}
+
+  void run_all() {
+    print(avoidance_head());
+    for (int i = 0; i < kAvoidanceScenarios; ++i) run_avoidance("A" + std::to_string(i));
+    print(formation_head());
+    for (int i = 0; i < kFormationScenarios; ++i) run_formation("B" + std::to_string(i));
+    line_.clear();
+    print_footnotes();
+  }
+
+  std::string summary() const { return datasets::summary_json(metrics_); }
+
+  /// All figures in one run of gnuplot.
+  void draw_figures() {
+    add_sheets();
+    draw(scripts_);
+  }
+
+ private:
+  void print(const std::string& text) {
+    line_.clear();
+    if (!flags_.quiet_tables) tools::print(text);
+  }
+
+  static std::string avoidance_head() {
+    std::string text = fmt::format("Section V.A: last arrival [s], X where a robot never arrives\n{:<5}", "");
+    for (const Method m : kMethods) text += fmt::format("{:>13}", name(m));
+    return text + "   least clearance of ivo [m]: obstacles, robots\n";
+  }
+
+  static std::string formation_head() {
+    return fmt::format(
+        "\nSection V.B: three robots and a virtual leader, method ivo\n"
+        "{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11}\n",
+        "", "controller", "position error [m]", "velocity error [m/s]", "obstacles", "robots", "jitter");
+  }
+
+  void print_footnotes() {
+    print(
+        "\n!  touched an obstacle or another robot on the way. Errors are those at the end, clearances the least "
+        "[m].\n");
+  }
+
+  FinishedRun run_one(const std::string& scenario_name, Method method, Controller controller) {
+    const fs::path file = scenarios_ / (scenario_name + ".json");
+    formation::SimulationOptions options;
+    options.method = method;
+    options.controller = controller;
+    const auto provenance = datasets::make_provenance(flags_.command_line, flags_.seed, {file});
+    line_.show(static_cast<double>(metrics_.size()), scenario_name + " " + name(method));
+    FinishedRun finished = run(datasets::load_scenario(file), options, provenance);
+    metrics_.push_back(finished.metrics_json());
+    finished.file.recording.outcome = outcome_words(finished);  // what a panel's title says
+    return finished;
+  }
+
+  static std::string number_or_dash(const std::optional<double>& value, const char* format) {
+    return value ? fmt::format(fmt::runtime(format), *value) : "-";
+  }
+
+  static std::string arrival_cell(const formation::Metrics& m) {
+    const std::string text = m.all_arrived ? number_or_dash(m.last_arrival_time, "{:.1f}") : "X";
+    return fmt::format("{:>12}{}", text, touched(m) ? '!' : ' ');
+  }
+
+  void run_avoidance(const std::string& scenario) {
+    std::string row = fmt::format("{:<5}", scenario);
+    std::string clearances;
+    for (const Method method : kMethods) {
+      FinishedRun finished = run_one(scenario, method, Controller::standard);
+      row += arrival_cell(finished.metrics);
+      clearances = fmt::format("   {}, {}", number_or_dash(finished.metrics.min_obstacle_clearance, "{:.3f}"),
+                               number_or_dash(finished.metrics.min_robot_clearance, "{:.3f}"));
+      keep_avoidance(std::move(finished), method);
+    }
+    print(row + clearances + "\n");
+  }
+
+  void run_formation(const std::string& scenario) {
+    for (const Controller controller : kControllers) {
+      FinishedRun finished = run_one(scenario, Method::ivo, controller);
+      const formation::Metrics& m = finished.metrics;
+      const bool diverged = finished.file.recording.diverged;
+      print(fmt::format(
+          "{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11.0f}{} {}\n", scenario, name(controller),
+          number_or_dash(m.formation_position_error, "{:.2g}"), number_or_dash(m.formation_velocity_error, "{:.2g}"),
+          number_or_dash(m.min_obstacle_clearance, "{:.3f}"), number_or_dash(m.min_robot_clearance, "{:.3f}"), m.jitter,
+          touched(m) ? '!' : ' ', diverged ? "diverged" : ""));
+      keep_formation(std::move(finished), controller);
+    }
+  }
+
+  /// Fig. 5 has the usual method, Fig. 6 the improved one.
+  void keep_avoidance(FinishedRun finished, Method method) {
+    if (flags_.no_figures) return;
+    if (method == Method::orca) add_figures(finished, "fig5-orca");
+    if (method == Method::ivo) add_figures(finished, "fig6-ivo");
+    avoidance_[static_cast<std::size_t>(method)].push_back(std::move(finished.file));
+  }
+
+  void keep_formation(FinishedRun finished, Controller controller) {
+    if (flags_.no_figures) return;
+    if (controller == Controller::standard) add_figures(finished, "fig8-formation");
+    formation_.push_back(std::move(finished.file));
+  }
+
+  void add_figures(const FinishedRun& finished, const std::string& folder) {
+    const fs::path target = out_ / "figures" / folder / finished.file.info.scenario;
+    const std::vector<fs::path> scripts = write_figures(finished, target);
+    scripts_.insert(scripts_.end(), scripts.begin(), scripts.end());
+  }
+
+  static std::string panel_title(const datasets::RecordingFile& run) {
+    const std::string& outcome = run.recording.outcome;
+    // A panel is narrow, and all runs have the same limit.
+    if (!run.scenario.formation)
+      return run.info.scenario + ": " + outcome.substr(0, outcome.find(" within the time limit"));
+    return run.info.scenario + ", " + *run.info.controller + (run.recording.diverged ? ": diverged" : "") +
+           (outcome.rfind("COLLISION", 0) == 0 ? ", collision" : "");
+  }
+
+  void add_sheets() {
+    for (const Method method : kMethods) {
+      std::vector<Panel> panels;
+      for (const auto& run : avoidance_[static_cast<std::size_t>(method)]) panels.push_back({panel_title(run), &run});
+      add_sheet(std::string("all-") + name(method), std::string("Section V.A, method ") + name(method), panels, 4);
+    }
+    std::vector<Panel> panels;
+    for (const auto& run : formation_) panels.push_back({panel_title(run), &run});
+    add_sheet("all-formation", "Section V.B, method ivo: a column a controller", panels, 3);
+    add_comparison();
+  }
+
+  void add_comparison() {
+    std::vector<Panel> panels;
+    for (const Method method : {Method::orca, Method::ivo}) {
+      for (const auto& run : avoidance_[static_cast<std::size_t>(method)]) {
+        if (run.info.scenario == kComparison) panels.push_back({std::string("method ") + name(method), &run});
+      }
+    }
+    add_sheet("two-walls", "Two robots and two walls", panels, 2);
+  }
+
+  void add_sheet(const std::string& stem, const std::string& title, const std::vector<Panel>& panels, int columns) {
+    scripts_.push_back(write_sources(paths_sheet(stem, title, panels, columns), out_ / "figures"));
+  }
+
+  SectionFiveOptions flags_;
+  fs::path scenarios_;
+  fs::path out_;
+  ProgressLine line_;
+  std::vector<std::string> metrics_;
+  std::vector<datasets::RecordingFile> avoidance_[4];  ///< by method
+  std::vector<datasets::RecordingFile> formation_;
+  std::vector<fs::path> scripts_;
+};
+
+}  // namespace
+
+std::string run_section_five(const SectionFiveOptions& options, const fs::path& out) {
+  Experiments experiments(options, out);
+  experiments.run_all();
+  const std::string summary = experiments.summary();
+  write_text(out / "summary.json", summary);
+  if (!options.no_figures) experiments.draw_figures();
+  return summary;
+}
+
+}  // namespace exactvo::tools
