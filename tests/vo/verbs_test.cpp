@@ -59,6 +59,62 @@ TEST(VerbVo, BadNumbersAreNamed) {
   EXPECT_NE(with("0.3", "0", "1,0").err.find("--time-horizon"), std::string::npos);
 }
 
+TEST(VerbVo, TheFamilyOfOneEncounter) {
+  const Outcome run = Workplace().run("vo --obstacle '" + kSquare +
+                                      "' --obstacle-velocity=-0.5,0 --position 0,0 --velocity 1,0.25 --radius 0.3 "
+                                      "--time-horizon infinite --alpha 0.5 --variant all --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json out = json::parse(run.out);
+  ASSERT_EQ(out.at("variants").size(), 5u);
+  EXPECT_EQ(out.at("variants")[0].at("apex"), json({-0.5, 0.0}));
+  EXPECT_EQ(out.at("variants")[1].at("apex"), json({0.25, 0.125}));
+  EXPECT_TRUE(out.at("time_horizon").is_null()) << "JSON has no infinity";
+  EXPECT_TRUE(out.at("variants")[4].contains("half_plane"));
+  const auto certificate = vo::read_certificate(out.at("certificate").at("text"));
+  ASSERT_TRUE(certificate);
+  EXPECT_EQ(check(*certificate), vo::Verdict::valid);
+  EXPECT_EQ(certificate->claim.shape_velocity.x, -0.5);
+}
+
+TEST(VerbVo, HorizonsByRule) {
+  const auto horizon = [](const std::string& rule) {
+    const Outcome run = Workplace().run("vo --obstacle '" + kSquare +
+                                        "' --position 0,0 --velocity 0.5,0 --radius 0.5 --json --time-horizon " + rule);
+    return json::parse(run.out).at("time_horizon");
+  };
+  EXPECT_EQ(horizon("paper"), 3.0);
+  EXPECT_EQ(horizon("clamped"), 3.0);
+  EXPECT_EQ(horizon("2.5"), 2.5);
+}
+
+TEST(VerbVo, APolygonalRobot) {
+  const std::string rest = " --position 0,0 --velocity 1,0 --time-horizon 3 --json";
+  const Outcome run =
+      Workplace().run("vo --obstacle '" + kSquare + "' --robot 'POLYGON((-1 -1, 1 -1, 1 1, -1 1, -1 -1))'" + rest);
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json out = json::parse(run.out);
+  EXPECT_TRUE(out.at("contains_velocity").get<bool>());
+  EXPECT_NEAR(out.at("half_plane").at("offset").get<double>(), -1.0 / 3.0, 1e-12) << "rims 1 m apart";
+}
+
+TEST(VerbVo, FreeVelocitiesOfSeveralObstacles) {
+  Workplace place;
+  const std::string scene = "vo --obstacle '" + kSquare + "' --obstacle 'POLYGON((-4 -1, -2 -1, -2 1, -4 1, -4 -1))'" +
+                            " --position 0,0 --velocity 0,1 --radius 0.5 --time-horizon 4";
+  const Outcome run = place.run(scene + " --free --max-speed 1.5 --json --figure free.svg");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json out = json::parse(run.out);
+  EXPECT_EQ(out.at("obstacles").size(), 2u);
+  EXPECT_TRUE(out.at("velocity_is_free").get<bool>());
+  EXPECT_EQ(out.at("region").at("inside"), "yes");
+  EXPECT_LE(out.at("area")[0], out.at("area")[1]);
+  EXPECT_LT(out.at("region").at("area")[1], out.at("area")[0]);
+  EXPECT_FALSE(out.at("region").at("lost").empty());
+  EXPECT_TRUE(std::filesystem::exists(place.path() / "free.gp"));
+  EXPECT_EQ(place.run(scene + " --json").status, 2) << "several obstacles go with --free";
+  EXPECT_EQ(place.run(scene + " --free --json").status, 2) << "without a speed";
+}
+
 class VerbAudit : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/vo_figure.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "figures/outlines.h"
+
+namespace exactvo::tools {
+
+using geometry::HalfPlane;
+
+namespace {
+
+constexpr const char* kForbidden = "with filledcurves closed fc rgb '#7a8290' fs transparent solid 0.35 noborder";
+constexpr const char* kAllowed = "with filledcurves closed fc rgb '#009E73' fs transparent solid 0.35 noborder";
+constexpr const char* kLost = "with filledcurves closed fc rgb '#E69F00' fs solid 0.75 noborder";
+constexpr const char* kBoundary = "with lines lw 2.5 lc rgb '#009E73'";
+constexpr const char* kScaled = "with lines lw 1.5 dt (2,3) lc rgb '#3f444d'";
+
+/// One set of axes: data sets and the items that draw them.
+class Panel {
+ public:
+  Panel(DataFile& data, Box view) : data_(data), view_(view) {}
+
+  void ring(const std::string& title, Points points, const std::string& style) {
+    if (points.empty()) return;
+    points.push_back(points.front());
+    const int index = data_.begin(title, "v_x [m/s], v_y [m/s]");
+    for (const Vec2 p : points) data_.row({p.x, p.y});
+    plot_.data(index, "using 1:2 " + style, title);
+  }
+  /// Each ring a polygon of its own: holes are drawn in white over them.
+  void rings(const std::string& title, const std::vector<Points>& all, const std::string& style) {
+    if (all.empty()) return;
+    const int index = data_.begin(title, "v_x [m/s], v_y [m/s]");
+    for (const Points& points : all) {
+      for (const Vec2 p : points) data_.row({p.x, p.y});
+      data_.row({points.front().x, points.front().y});
+      data_.gap();
+    }
+    plot_.data(index, "using 1:2 " + style, title);
+  }
+  void boundary(const std::string& title, const HalfPlane& h) {
+    const double length = norm(h.normal);
+    const Vec2 foot = (h.offset / (length * length)) * h.normal;
+    const Vec2 along = (4.0 * view_.diagonal() / length) * perp(h.normal);
+    const int index = data_.begin("half-plane", "v_x [m/s], v_y [m/s]");
+    data_.row({foot.x - along.x, foot.y - along.y});
+    data_.row({foot.x + along.x, foot.y + along.y});
+    plot_.data(index, std::string("using 1:2 ") + kBoundary, title);
+  }
+  void arrow(const std::string& title, Vec2 from, Vec2 by, const char* colour) {
+    const int index = data_.begin(title, "from v_x, v_y, by v_x, v_y [m/s]");
+    data_.row({from.x, from.y, by.x, by.y});
+    plot_.data(index,
+               fmt::format("using 1:2:3:4 with vectors head filled size screen 0.012,18 lw 2.5 lc rgb '{}'", colour),
+               title);
+  }
+  void point(const std::string& title, Vec2 at, const char* colour) {
+    const int index = data_.begin(title, "v_x [m/s], v_y [m/s]");
+    data_.row({at.x, at.y});
+    plot_.data(index, fmt::format("using 1:2 with points pt 7 ps 1 lc rgb '{}'", colour), title);
+  }
+  std::string text(const std::string& title) const {
+    return fmt::format("  set title {}\n  set xrange [{:.6g}:{:.6g}]\n  set yrange [{:.6g}:{:.6g}]\n{}", quoted(title),
+                       view_.low.x, view_.high.x, view_.low.y, view_.high.y, plot_.text());
+  }
+  const Box& view() const { return view_; }
+
+ private:
+  DataFile& data_;
+  Box view_;
+  PlotCommand plot_;
+};
+
+const std::string kAxes =
+    "  set size ratio -1\n  set clip two\n  set xlabel 'v_x [m/s]'\n  set ylabel 'v_y [m/s]'\n  set grid lc rgb "
+    "'#e9e9e9'\n";
+
+Box square_round(const Box& box, double margin) {
+  const double half = margin * std::max({box.width(), box.height(), 1e-9});
+  const Vec2 middle = 0.5 * (box.low + box.high);
+  return {{middle.x - half, middle.y - half}, {middle.x + half, middle.y + half}};
+}
+
+/// A horizon to draw S by, where there is none: as far as the velocity gets.
+double drawn_horizon(const ConeAnswer& a) {
+  if (std::isfinite(a.encounter.time_horizon)) return a.encounter.time_horizon;
+  return std::max(a.cone.nearest().distance, 1e-3) / std::max(norm(a.encounter.velocity), 1e-3);
+}
+
+Box view_of(const ConeAnswer& a) {
+  Box box;
+  box.add(Vec2{});
+  box.add(a.encounter.velocity);
+  box.add(a.encounter.obstacle_velocity);
+  for (const Vec2 p : scaled_outline(a.cone.grown(), drawn_horizon(a))) box.add(p + a.encounter.obstacle_velocity);
+  return square_round(box, 0.65);
+}
+
+Points cone_in(const Box& box, const vo::VelocityObstacle& cone, Vec2 apex) {
+  return velocity_obstacle_in(box, cone.grown(), cone.time_horizon(), apex);
+}
+
+std::string horizon_text(double tau) {
+  return std::isfinite(tau) ? fmt::format("tau = {:g} s", tau) : std::string("no horizon");
+}
+
+// --- One cone ---
+
+Figure cone_figure(const ConeAnswer& a, const std::string& name) {
+  DataFile data;
+  Panel panel(data, view_of(a));
+  const Vec2 u = a.encounter.obstacle_velocity;
+  panel.ring("velocity obstacle", cone_in(panel.view(), a.cone, u), kForbidden);
+  if (std::isfinite(a.encounter.time_horizon)) {
+    Points scaled = scaled_outline(a.cone.grown(), a.encounter.time_horizon);
+    for (Vec2& p : scaled) p += u;
+    panel.ring("S / tau", scaled, kScaled);
+  }
+  if (a.half_plane) panel.boundary("boundary of the half-plane", *a.half_plane);
+  if (u != Vec2{}) panel.arrow("obstacle's velocity", {}, u, "#CC79A7");
+  panel.arrow("velocity", {}, a.encounter.velocity, "#444444");
+  if (a.nearest) panel.arrow("least change u", a.encounter.velocity, a.nearest->u, "#D55E00");
+  const std::string title = "Velocity obstacle, " + horizon_text(a.encounter.time_horizon);
+  const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
+  return {name, data.text(), script_text(name, title + ".", {900, 640}, body)};
+}
+
+// --- The family ---
+
+void draw_member(const vo::Member& m, const ConeAnswer& a, Panel& panel) {
+  if (m.cone) panel.ring("forbidden", cone_in(panel.view(), m.cone->cone, m.cone->apex), kForbidden);
+  if (m.half_plane) {
+    const HalfPlane beyond{-m.half_plane->normal, -m.half_plane->offset};
+    panel.ring("forbidden", clipped(corners(panel.view()), beyond), kForbidden);
+    panel.boundary("boundary", *m.half_plane);
+  }
+  panel.arrow("robot's velocity", {}, a.encounter.velocity, "#444444");
+  panel.arrow("obstacle's velocity", {}, a.encounter.obstacle_velocity, "#CC79A7");
+  if (m.cone) panel.point("apex", m.cone->apex, "#D55E00");
+}
+
+std::string member_title(const vo::Member& m, Vec2 velocity) {
+  return fmt::format("{}: {} v", name(m.variant), m.allows(velocity) ? "allows" : "forbids");
+}
+
+Figure family_figure(const VoAnswer& answer, const std::string& name) {
+  const ConeAnswer& a = answer.cones.front();
+  DataFile data;
+  const int count = static_cast<int>(answer.members.size());
+  const int columns = std::min(count, 3), rows = (count + columns - 1) / columns;
+  std::string body = kAxes + fmt::format("  set multiplot layout {},{} title {}\n  unset key\n", rows, columns,
+                                         quoted("One encounter, " + horizon_text(a.encounter.time_horizon) +
+                                                "; grey is forbidden, black v, pink the obstacle's velocity"));
+  for (const vo::Member& m : answer.members) {
+    Panel panel(data, square_round(view_of(a), 0.7));
+    draw_member(m, a, panel);
+    body += panel.text(member_title(m, a.encounter.velocity));
+  }
+  body += "  unset multiplot\n";
+  const Canvas canvas{60 + 360 * columns, 60 + 360 * rows};
+  return {name, data.text(), script_text(name, "What different rules forbid in one encounter.", canvas, body)};
+}
+
+// --- The free velocities ---
+
+std::vector<Points> outer_rings(const geometry::Region& region) {
+  std::vector<Points> rings;
+  for (const auto& piece : region.pieces()) rings.push_back(piece.polygon.outer);
+  return rings;
+}
+
+std::vector<Points> hole_rings(const geometry::Region& region) {
+  std::vector<Points> rings;
+  for (const auto& piece : region.pieces())
+    rings.insert(rings.end(), piece.polygon.holes.begin(), piece.polygon.holes.end());
+  return rings;
+}
+
+Figure free_figure(const VoAnswer& answer, const std::string& name) {
+  const FreeAnswer& f = *answer.free;
+  DataFile data;
+  Box box;
+  box.add(Vec2{-f.max_speed, -f.max_speed});
+  box.add(Vec2{f.max_speed, f.max_speed});
+  Panel panel(data, square_round(box, 0.55));
+  panel.rings("free, but given away", outer_rings(f.free.inner()), kLost);
+  panel.rings("", hole_rings(f.free.inner()), "with filledcurves closed fc rgb '#ffffff' fs solid noborder");
+  panel.rings("kept by the half-planes", outer_rings(f.report.region),
+              "with filledcurves closed fc rgb '#7fcdb4' fs solid noborder");
+  std::string title_of_cones = "velocity obstacles";
+  for (const ConeAnswer& a : answer.cones) {
+    if (!a.overlaps)
+      panel.ring(title_of_cones, cone_in(panel.view(), a.cone, a.encounter.obstacle_velocity), kForbidden);
+    title_of_cones.clear();
+  }
+  std::string title_of_lines = "half-planes";
+  for (const HalfPlane& h : f.half_planes) {
+    panel.boundary(title_of_lines, h);
+    title_of_lines.clear();
+  }
+  panel.arrow("velocity", {}, answer.question.velocity, "#444444");
+  const std::string title =
+      fmt::format("{:.4g} (m/s)^2 are free, {:.4g} are kept", f.free.area().low, f.report.area.low);
+  const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
+  return {name, data.text(), script_text(name, "The free velocities of a scene.", {960, 640}, body)};
+}
+
+}  // namespace
+
+Figure vo_figure(const VoAnswer& answer, const std::string& name) {
+  if (answer.free) return free_figure(answer, name);
+  if (!answer.members.empty()) return family_figure(answer, name);
+  return cone_figure(answer.cones.front(), name);
+}
+
+}  // namespace exactvo::tools
