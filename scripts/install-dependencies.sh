@@ -11,6 +11,7 @@ packages=(
   libboost-dev libboost-graph-dev libtbb-dev libhwy-dev             # ODE, graphs, threads, SIMD
   libcli11-dev nlohmann-json3-dev libvalijson-dev libfmt-dev        # command line, JSON, text
   libgdal-dev libyaml-cpp-dev libpugixml-dev                        # files in
+  libopenmpi-dev openmpi-bin                                        # a batch over several machines
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev      # tests, benchmarks
   gnuplot-nox fonts-dejavu-core                                     # figures
 )

@@ -14,11 +14,12 @@ Verb trap_verb();
 Verb validate_verb();
 Verb repair_verb();
 Verb convert_verb();
+Verb batch_verb();
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = {simulate_verb(), explain_verb(), paper_verb(), lp_verb(),
                                         vo_verb(),       audit_verb(),   trap_verb(),  validate_verb(),
-                                        repair_verb(),   convert_verb()};
+                                        repair_verb(),   convert_verb(), batch_verb()};
   return all;
 }
 

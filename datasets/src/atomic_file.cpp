@@ -31,14 +31,6 @@ void write_fully(const std::filesystem::path& path, int descriptor, std::string_
   }
 }
 
-/// A rename is durable only once its directory is. Some file systems refuse to sync a directory; the rename stands.
-void sync_directory(const std::filesystem::path& directory) {
-  const int descriptor = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
@@ -74,6 +66,14 @@ void AtomicFile::commit() {
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) throw cannot_write(path_, errno);
   ::close(std::exchange(descriptor_, -1));
   sync_directory(path_.parent_path());
+}
+
+// A rename is durable only once its directory is.
+void sync_directory(const std::filesystem::path& directory) {
+  const int descriptor = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {

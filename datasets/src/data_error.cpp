@@ -65,6 +65,8 @@ const char* code_name(DataCode code) {
       return "E_IMAGE";
     case DataCode::projection:
       return "E_PROJECTION";
+    case DataCode::other_run:
+      return "E_OTHER_RUN";
     case DataCode::library:
       return "E_LIBRARY";
     case DataCode::not_finite:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "exactvo/geometry/require.h"
 #include "readers.h"
 #include "text_file.h"
 
@@ -48,6 +49,14 @@ void refuse_nothing(const std::filesystem::path& path, const ReadOptions& option
   throw DataError(code, path.string(), "", "an empty file", "a file of obstacles");
 }
 
+ObstacleFile read_into(const std::filesystem::path& path, const ReadOptions& options, const ObstacleStream* stream) {
+  refuse_nothing(path, options);
+  const Reader& reader = options.format.empty() ? reader_for(path) : reader_named(options.format, path);
+  Collector out(path.string(), reader.name, options, stream);
+  reader.read(path, out);
+  return out.take();
+}
+
 }  // namespace
 
 const std::vector<Reader>& readers() {
@@ -71,11 +80,17 @@ const std::vector<Reader>& readers() {
 }
 
 ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options) {
-  refuse_nothing(path, options);
-  const Reader& reader = options.format.empty() ? reader_for(path) : reader_named(options.format, path);
-  Collector out(path.string(), reader.name, options);
-  reader.read(path, out);
-  return out.take();
+  return read_into(path, options, nullptr);
+}
+
+ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options,
+                            const ObstacleStream& stream) {
+  EXACTVO_REQUIRE(stream.obstacle && stream.rejected, path.string());
+  return read_into(path, options, &stream);
+}
+
+std::string format_of(const std::filesystem::path& path) {
+  return reader_for(path).name;
 }
 
 std::vector<std::string> readable_formats() {

@@ -143,7 +143,8 @@ void refuse_unmended(const Judgement& judgement, const std::string& file) {
   }
 }
 
-Collector::Collector(std::string file, std::string format, const ReadOptions& options) : options_(options) {
+Collector::Collector(std::string file, std::string format, const ReadOptions& options, const ObstacleStream* stream)
+    : options_(options), stream_(stream) {
   result_.file = std::move(file);
   result_.format = std::move(format);
 }
@@ -158,14 +159,14 @@ void Collector::add(const RawGeometry& raw) {
     return reject(error);
   }
   count(judgement.findings);
-  keep(raw.id, std::move(judgement.shape));
+  keep(raw.id, std::move(judgement.shape), !judgement.findings.empty());
 }
 
 void Collector::add_mended(const RawGeometry& raw) {
   Repair mended = repair(raw.rings);
   const Judgement judgement{geometry::Polygon{}, findings_of(mended.problems, raw)};
   take_findings(judgement.findings);
-  if (mended.changed()) {
+  if (mended.changed() && stream_ == nullptr) {
     result_.repairs.push_back({raw.place, raw.id, codes_of(judgement.findings), mended.refused, mended.recombined,
                                mended.moved, mended.recombined ? raw.rings : std::vector<geometry::Ring>{},
                                mended.before, mended.after});
@@ -173,7 +174,8 @@ void Collector::add_mended(const RawGeometry& raw) {
   if (!mended.ok()) return reject(refusal_of(*mended.refused, judgement, raw.place));
   count(judgement.findings);
   for (std::size_t k = 0; k < mended.polygons.size(); ++k) {
-    keep(k == 0 ? raw.id : raw.id + "-" + std::to_string(k + 1), std::move(mended.polygons[k]));
+    keep(k == 0 ? raw.id : raw.id + "-" + std::to_string(k + 1), std::move(mended.polygons[k]),
+         !judgement.findings.empty());
   }
 }
 
@@ -185,6 +187,7 @@ DataError Collector::refusal_of(DataCode reason, const Judgement& judgement, con
 }
 
 void Collector::take_findings(const std::vector<RingFinding>& findings) {
+  if (stream_ != nullptr) return;
   result_.findings.insert(result_.findings.end(), findings.begin(), findings.end());
 }
 
@@ -192,13 +195,15 @@ void Collector::take_findings(const std::vector<RingFinding>& findings) {
 void Collector::count(const std::vector<RingFinding>& findings) {
   ++result_.counts.read;
   ++(findings.empty() ? result_.counts.done : result_.counts.repaired);
+  if (stream_ != nullptr) return;
   for (const RingFinding& mended : findings) {
     result_.notes.push_back({mended.code, mended.place, words_for_mending(mended.code)});
   }
 }
 
-void Collector::keep(std::string id, geometry::Obstacle shape) {
+void Collector::keep(std::string id, geometry::Obstacle shape, bool repaired) {
   extend(shape);
+  if (stream_ != nullptr) return stream_->obstacle({std::move(id), std::move(shape)}, repaired);
   result_.obstacles.push_back({std::move(id), std::move(shape)});
 }
 
@@ -217,13 +222,19 @@ void Collector::pass_over(std::string place, std::string text) {
   note(std::move(place), std::move(text));
 }
 
+void Collector::progress(double share) const {
+  if (stream_ != nullptr && stream_->progress) stream_->progress(share);
+}
+
 void Collector::note(std::string place, std::string text) {
+  if (stream_ != nullptr && !place.empty()) return;
   result_.notes.push_back({std::nullopt, std::move(place), std::move(text)});
 }
 
 void Collector::reject(DataError error) {
   ++result_.counts.read;
   ++result_.counts.rejected;
+  if (stream_ != nullptr) return stream_->rejected(std::move(error));
   if (!options_.keep_going) throw error;
   result_.rejected.push_back(std::move(error));
 }

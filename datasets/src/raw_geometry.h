@@ -41,7 +41,8 @@ void refuse_unmended(const Judgement& judgement, const std::string& file);
 /// Gathers a file's geometries into an ObstacleFile and keeps the books.
 class Collector {
  public:
-  Collector(std::string file, std::string format, const ReadOptions& options);
+  /// With a stream nothing is kept of single obstacles; it must outlive the collector.
+  Collector(std::string file, std::string format, const ReadOptions& options, const ObstacleStream* stream = nullptr);
 
   void add(const RawGeometry& raw);
   void pass_over(std::string place, std::string text);
@@ -53,6 +54,8 @@ class Collector {
   void extend(const geometry::Obstacle& shape);
   const std::optional<Extent>& extent() const { return result_.extent; }
   void set_coverage(Coverage coverage) { result_.coverage = coverage; }
+  /// How much of the file is read, 0 to 1.
+  void progress(double share) const;
 
   const std::string& file() const { return result_.file; }
   const ReadOptions& options() const { return options_; }
@@ -64,10 +67,11 @@ class Collector {
   DataError refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const;
   void take_findings(const std::vector<RingFinding>& findings);
   void count(const std::vector<RingFinding>& findings);
-  void keep(std::string id, geometry::Obstacle shape);
+  void keep(std::string id, geometry::Obstacle shape, bool repaired);
 
   ObstacleFile result_;
   ReadOptions options_;
+  const ObstacleStream* stream_;
 };
 
 }  // namespace exactvo::datasets

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "readers.h"
-#include "text_file.h"
+#include "wkt_blocks.h"
 #include "wkt_scanner.h"
 
 namespace exactvo::datasets {
@@ -29,13 +29,22 @@ std::string without_dimension(std::string word) {
   return word;
 }
 
+/// Where in its file a piece of text stands.
+struct TextPlace {
+  std::size_t lines = 0;       ///< before it
+  std::size_t geometries = 0;  ///< before it
+};
+
 class WktReader {
  public:
   /// What a polygon's inside is.
   enum class Inside { solid, walkable };
 
-  WktReader(std::string_view text, Inside inside, Collector& out)
-      : scan_(text, out.file()), inside_(inside), out_(out) {}
+  WktReader(std::string_view text, Inside inside, Collector& out, TextPlace before = {})
+      : scan_(text, out.file(), before.lines), inside_(inside), out_(out), geometry_(before.geometries) {}
+
+  /// Met so far, those before it included.
+  std::size_t geometries() const { return geometry_; }
 
   void read_all() {
     for (scan_.skip_between_geometries(); !scan_.at_end(); scan_.skip_between_geometries()) read_one();
@@ -176,15 +185,29 @@ class WktReader {
   WktScanner scan_;
   Inside inside_;
   Collector& out_;
-  std::string where_;         ///< the geometry's first character
-  std::size_t geometry_ = 0;  ///< from 1
-  std::size_t part_ = 0;      ///< obstacles of this geometry so far
+  std::string where_;     ///< the geometry's first character
+  std::size_t geometry_;  ///< from 1
+  std::size_t part_ = 0;  ///< obstacles of this geometry so far
 };
 
 void refuse_degrees(const Collector& out) {
   if (out.options().units != Units::degrees) return;
   throw DataError(DataCode::projection, out.file(), "", "plain WKT said to be in degrees",
                   "metres, or a format with a reference system");
+}
+
+/// A block at a time, cut between geometries: memory does not grow with the file.
+void read_in_blocks(const std::filesystem::path& path, WktReader::Inside inside, Collector& out) {
+  refuse_degrees(out);
+  WktBlocks blocks(path);
+  TextPlace place;
+  while (blocks.next()) {
+    WktReader reader(blocks.text(), inside, out, place);
+    reader.read_all();
+    place.geometries = reader.geometries();
+    place.lines += static_cast<std::size_t>(std::count(blocks.text().begin(), blocks.text().end(), '\n'));
+    out.progress(blocks.share_read());
+  }
 }
 
 }  // namespace
@@ -198,13 +221,11 @@ bool looks_like_wkt(const Glimpse& glimpse) {
 }
 
 void read_wkt(const std::filesystem::path& path, Collector& out) {
-  refuse_degrees(out);
-  WktReader(read_text_file(path), WktReader::Inside::solid, out).read_all();
+  read_in_blocks(path, WktReader::Inside::solid, out);
 }
 
 void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out) {
-  refuse_degrees(out);
-  WktReader(read_text_file(path), WktReader::Inside::walkable, out).read_all();
+  read_in_blocks(path, WktReader::Inside::walkable, out);
 }
 
 bool only_by_name(const Glimpse&) {

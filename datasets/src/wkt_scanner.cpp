@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wkt_scanner.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
@@ -90,7 +91,14 @@ void WktScanner::skip_to_next_geometry(std::size_t start) {
 }
 
 std::string WktScanner::place() const {
-  return line_and_column(text_, at_);
+  const std::size_t here = std::min(at_, text_.size());
+  if (here < counted_to_) counted_to_ = newlines_ = line_start_ = 0;
+  for (; counted_to_ < here; ++counted_to_) {
+    if (text_[counted_to_] != '\n') continue;
+    ++newlines_;
+    line_start_ = counted_to_ + 1;
+  }
+  return "line " + std::to_string(lines_before_ + newlines_ + 1) + ", column " + std::to_string(here - line_start_ + 1);
 }
 
 void WktScanner::refuse(const std::string& expected, DataCode code) {

@@ -13,7 +13,9 @@ namespace exactvo::datasets {
 
 class WktScanner {
  public:
-  WktScanner(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+  /// `lines_before`: of the file, where the text is a piece of it.
+  WktScanner(std::string_view text, const std::string& file, std::size_t lines_before = 0)
+      : text_(text), file_(file), lines_before_(lines_before) {}
 
   /// Past white space and what may stand between geometries (a byte order mark, commas, semicolons).
   void skip_between_geometries();
@@ -39,6 +41,11 @@ class WktScanner {
   std::string_view text_;
   const std::string& file_;
   std::size_t at_ = 0;
+  std::size_t lines_before_;
+  // Up to where newlines were counted, so that places along a long text do not count them all again and again.
+  mutable std::size_t counted_to_ = 0;
+  mutable std::size_t newlines_ = 0;
+  mutable std::size_t line_start_ = 0;
 };
 
 }  // namespace exactvo::datasets

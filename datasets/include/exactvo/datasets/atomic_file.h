@@ -36,6 +36,9 @@ class AtomicFile {
   std::string buffer_;
 };
 
+/// Makes renames in a folder durable; where a file system refuses that, they stand all the same.
+void sync_directory(const std::filesystem::path& directory);
+
 /// The whole content at once.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 

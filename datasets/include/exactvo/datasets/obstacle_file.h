@@ -123,8 +123,25 @@ struct ObstacleFile {
 /// Reads a whole file. Throws DataError: for the file, and (unless `keep_going`) for its first bad obstacle.
 ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// Where obstacles go that are not to be kept: called one by one, in the order of the file, while it is read. What is
+/// thrown in them ends the reading and comes out of it, unless it is a DataError about a format.
+struct ObstacleStream {
+  std::function<void(formation::SceneObstacle obstacle, bool repaired)> obstacle;
+  std::function<void(DataError error)> rejected;
+  std::function<void(double share)> progress;  ///< of the file that is read, 0 to 1; only where a reader knows
+};
+
+/// The same, obstacle by obstacle: what comes back holds the counts and what concerns the file as a whole, but no
+/// obstacle and nothing about single ones. Plain WKT, and what GDAL gives feature by feature, takes no more memory for a
+/// longer file. `keep_going` is implied.
+ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options,
+                            const ObstacleStream& stream);
+
 /// Plain WKT from text: one geometry a line or one spread over many; nested collections, EMPTY, Z and M. Needs no GDAL.
 ObstacleFile parse_wkt(const std::string& text, const std::string& file_name, const ReadOptions& options = {});
+
+/// The format that a file's content and name tell. Throws DataError where they tell none.
+std::string format_of(const std::filesystem::path& path);
 
 /// The names that `ReadOptions::format` takes in this build.
 std::vector<std::string> readable_formats();

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A folder of maps in one go: every obstacle of every file read, judged, mended if asked, taken apart and enclosed
+/// (geometry/obstacle_shapes.h), with a verdict on every shape (docs/guide/batch.md).
+///
+/// Every file and every obstacle ends in exactly one of done, repaired and rejected with a code; a bad one never stops
+/// the rest. What is written does not depend on the number of workers, shards or ranks, nor on how often the batch was
+/// killed and gone on with: the bytes are the same but for the times, which stand on one line of summary.json.
+///
+/// How: inputs are cut into chunks of obstacles; a chunk's results go to a file of their own under OUT/.parts
+/// (temporary file, fsync, rename), and when all are there they are put together in order. What is there is not made
+/// again. A streaming reader (WKT, and what GDAL reads feature by feature) keeps no more than a few chunks in memory.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/geometry/obstacle_shapes.h"
+
+namespace exactvo::datasets {
+
+/// A robot whose velocity obstacles are wanted.
+struct BatchRobot {
+  double radius = 0.0;                    ///< m, >= 0
+  double time_horizon = 0.0;              ///< s, > 0
+  geometry::Vec2 velocity;                ///< m/s; half-planes are the nearest to it
+  std::vector<geometry::Vec2> positions;  ///< m, at least one
+  std::optional<geometry::Vec2> goal;     ///< m; trap-free ellipses are then made to the way from the first position
+};
+
+/// What changes the results.
+struct BatchConfiguration {
+  ReadOptions reading;  ///< keep_going is implied
+  geometry::ShapeOptions shapes;
+  std::optional<BatchRobot> robot;
+  bool geopackage = true;  ///< obstacles.gpkg; not in a build without GDAL
+  bool geojson = true;     ///< obstacles.geojson, facades.geojson, ...
+  bool pictures = true;    ///< index.html
+};
+
+/// How it is run; none of it changes the results.
+struct BatchRun {
+  std::vector<std::filesystem::path> paths;  ///< files, and folders whose files are all taken
+  std::filesystem::path out;
+  int workers = 0;        ///< 0: as many as there are processors
+  bool resume = false;    ///< go on with what is in `out`
+  std::size_t shard = 1;  ///< this process's share of the inputs, from 1
+  std::size_t shards = 1;
+  std::uint64_t memory_limit = 0;         ///< bytes for obstacles under way; 0: no limit but the chunks' own
+  std::vector<std::string> command_line;  ///< for provenance, without what does not change the results
+};
+
+struct BatchProgress {
+  std::size_t inputs = 0;  ///< of this process
+  std::size_t inputs_done = 0;
+  double share_done = 0.0;      ///< 0 to 1, by size of the inputs
+  std::uint64_t obstacles = 0;  ///< so far, in this run
+  std::string doing;            ///< the file under way
+};
+
+/// How many, by how they ended.
+struct BatchTally {
+  std::uint64_t read = 0;  ///< done + repaired + all of rejected
+  std::uint64_t done = 0;
+  std::uint64_t repaired = 0;
+  std::map<std::string, std::uint64_t> rejected;  ///< by code
+  std::uint64_t rejected_in_all() const;
+};
+
+struct BatchSummary {
+  BatchTally files;
+  BatchTally obstacles;
+  std::uint64_t passed_over = 0;    ///< points and empty geometries: no obstacles, not among `read`
+  std::uint64_t obstacles_out = 0;  ///< of what was done or repaired; a repair may make several of one
+  std::uint64_t certified = 0;      ///< of them
+  std::uint64_t uncertified = 0;
+  std::uint64_t vertices = 0;
+  double seconds = 0.0;             ///< of this run
+  std::uint64_t obstacles_now = 0;  ///< taken apart in this run; less than all after a resumption
+  std::uint64_t vertices_now = 0;
+};
+
+enum class BatchEnd {
+  complete,    ///< everything is in `out`
+  incomplete,  ///< this shard is through, others are not
+  interrupted  ///< `keep_going` said no; --resume goes on
+};
+
+struct BatchResult {
+  BatchEnd end = BatchEnd::complete;
+  BatchSummary summary;       ///< of a complete one
+  bool was_complete = false;  ///< there was nothing left to do
+};
+
+/// Called from time to time by one thread; false stops the batch after what is under way.
+using BatchWatch = std::function<bool(const BatchProgress&)>;
+
+/// Runs it. Throws DataError where something can't be done at all: a path that is not there (E_FILE_MISSING), a place
+/// that can't be written (E_FILE_UNWRITABLE: full, removed under the batch), an output of other inputs, another
+/// configuration or another version (E_OTHER_RUN). Whatever is thrown, what was finished stays for a resumption.
+BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {});
+
+/// Whether this process is one of several that mpirun has started, in a build with MPI.
+bool under_mpi();
+
+/// The same over all ranks: the first hands out inputs one by one and puts the parts together, the others take them
+/// apart. The result is that of the first rank; the others' is `incomplete`. REQUIRES: under_mpi().
+BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const BatchRun& run,
+                                 const BatchWatch& watch = {});
+
+/// "MPI 3.1" (the standard), or "none".
+std::string mpi_release();
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/batch.h"
+
+#include <utility>
+
+#include "batch/assemble.h"
+#include "batch/session.h"
+#include "exactvo/geometry/require.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using batch::Ledger;
+using batch::Session;
+
+void require_sensible(const BatchConfiguration& configuration, const BatchRun& run) {
+  EXACTVO_REQUIRE(!run.paths.empty() && !run.out.empty(), std::string("no path"));
+  EXACTVO_REQUIRE(run.shard >= 1 && run.shard <= run.shards, std::to_string(run.shard));
+  if (!configuration.robot) return;
+  EXACTVO_REQUIRE(!configuration.robot->positions.empty() && configuration.robot->radius >= 0.0 &&
+                      configuration.robot->time_horizon > 0.0,
+                  std::string("a robot without position, radius or horizon"));
+}
+
+}  // namespace
+
+std::uint64_t BatchTally::rejected_in_all() const {
+  std::uint64_t sum = 0;
+  for (const auto& [code, count] : rejected) sum += count;
+  return sum;
+}
+
+BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch) {
+  require_sensible(configuration, run);
+  Session session(configuration, run, batch::identity_of(configuration, batch::list_inputs(run.paths, run.out)), watch);
+  const bool joins = run.resume || run.shards > 1;
+  if (session.ledger().look(session.identity(), joins) == Ledger::State::complete) {
+    return {BatchEnd::complete, batch::read_summary(run.out), true};
+  }
+  session.ledger().begin(session.identity());
+  std::vector<std::size_t> mine;
+  for (std::size_t k = run.shard - 1; k < session.identity().inputs.size(); k += run.shards) mine.push_back(k);
+  session.plan(mine);
+  try {
+    for (const std::size_t input : mine) session.process(input);
+  } catch (const batch::Stopped&) {
+    return {BatchEnd::interrupted, {}, false};
+  }
+  return session.finish();
+}
+
+}  // namespace exactvo::datasets

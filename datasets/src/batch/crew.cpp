@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch/crew.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace exactvo::datasets::batch {
+namespace {
+
+/// Chunks handed out before the reader stops to help: enough that few stand idle at the end of a round, few enough to
+/// hold.
+constexpr std::size_t kJobsAWorker = 8;
+
+}  // namespace
+
+Crew::Crew(int workers, std::uint64_t most_bytes)
+    : arena_(std::max(workers, 1)),
+      most_bytes_(most_bytes),
+      most_jobs_(kJobsAWorker * static_cast<std::size_t>(std::max(workers, 1))) {}
+
+Crew::~Crew() {
+  try {
+    finish();
+  } catch (const std::exception&) {
+    // Said already, or nobody is left to hear it.
+  }
+}
+
+void Crew::run(std::function<void()> job, std::uint64_t bytes) {
+  if (failed_ || jobs_ >= most_jobs_ || (jobs_ > 0 && most_bytes_ > 0 && bytes_ + bytes > most_bytes_)) finish();
+  ++jobs_;
+  bytes_ += bytes;
+  arena_.execute([&] {
+    group_.run([this, work = std::move(job)] {
+      try {
+        work();
+      } catch (...) {
+        failed_ = true;
+        throw;
+      }
+    });
+  });
+}
+
+void Crew::finish() {
+  arena_.execute([this] { group_.wait(); });
+  jobs_ = 0;
+  bytes_ = 0;
+}
+
+}  // namespace exactvo::datasets::batch

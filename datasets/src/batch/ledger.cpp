@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch/ledger.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/provenance.h"
+#include "json_text.h"
+#include "system_error.h"
+#include "text_file.h"
+
+namespace exactvo::datasets::batch {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string number_text(std::size_t number) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%06zu", number);
+  return text;
+}
+
+DataError other_run(const fs::path& path, const std::string& found, const std::string& expected) {
+  return {DataCode::other_run, path.string(), "", found, expected};
+}
+
+std::string text_at(const Json& object, const char* key) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
+}
+
+void refuse_other_inputs(const Json& there, const Identity& identity, const fs::path& path) {
+  const auto at = there.find("inputs");
+  const std::size_t count = at != there.end() && at->is_array() ? at->size() : 0;
+  if (count != identity.inputs.size()) {
+    throw other_run(path, "an output of " + std::to_string(count) + " inputs",
+                    std::to_string(identity.inputs.size()) + " inputs as named now; another --out, or an empty one");
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const Input& input = identity.inputs[k];
+    if (text_at((*at)[k], "path") == input.name && text_at((*at)[k], "sha256") == input.sha256) continue;
+    throw other_run(path, "an output of " + text_at((*at)[k], "path") + " as it was",
+                    input.name + " as it is now; another --out, or an empty one");
+  }
+}
+
+/// `there` is run.json or summary.json: both hold these members.
+void refuse_other_batch(const Json& there, const Identity& identity, const fs::path& path) {
+  const std::string release = text_at(there, "version") + " " + text_at(there, "commit");
+  if (release != identity.version + " " + identity.commit) {
+    throw other_run(path, "an output of version " + release,
+                    "version " + identity.version + " " + identity.commit + "; another --out, or an empty one");
+  }
+  if (text_at(there, "configuration_sha256") != sha256_of(identity.configuration)) {
+    throw other_run(path, "an output of other options", "the same options; another --out, or an empty one");
+  }
+  refuse_other_inputs(there, identity, path);
+}
+
+bool holds_nothing_but(const fs::path& folder, const fs::path& allowed) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return true;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path() != allowed) return false;
+  }
+  return true;
+}
+
+void rename_or_throw(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) throw cannot_write(to, error.value());
+}
+
+}  // namespace
+
+std::string to_json(const Identity& identity) {
+  JsonWriter json(JsonWriter::Layout::indented);
+  json.begin_object().member("version", identity.version).member("commit", identity.commit);
+  json.member("configuration_sha256", sha256_of(identity.configuration));
+  json.key("configuration").raw(identity.configuration);
+  json.key("inputs").begin_array();
+  for (const Input& input : identity.inputs) {
+    json.begin_inline_object().member("path", input.name).member("sha256", input.sha256).end_object();
+  }
+  json.end_array();
+  return json.end_object().take() + "\n";
+}
+
+Ledger::Ledger(fs::path out) : out_(std::move(out)), parts_(out_ / ".parts") {}
+
+Ledger::State Ledger::look(const Identity& identity, bool resume) const {
+  std::error_code error;
+  if (fs::exists(out_, error) && !fs::is_directory(out_, error)) {
+    throw DataError(DataCode::file_unwritable, out_.string(), "", "a file of that name", "a folder to write to");
+  }
+  fs::remove_all(litter(), error);
+  if (fs::is_regular_file(run_file(), error)) {
+    if (!resume) {
+      throw other_run(out_, "an unfinished batch", "--resume to go on with it; another --out, or an empty one");
+    }
+    refuse_other_batch(parse_json(read_text_file(run_file()), run_file().string()), identity, run_file());
+    return State::unfinished;
+  }
+  const fs::path summary = out_ / "summary.json";
+  if (fs::is_regular_file(summary, error)) {
+    if (!resume) return State::fresh;
+    refuse_other_batch(parse_json(read_text_file(summary), summary.string()), identity, summary);
+    return State::complete;
+  }
+  if (holds_nothing_but(out_, parts_)) return State::fresh;
+  throw DataError(DataCode::file_unwritable, out_.string(), "", "a folder with other files in it, and no summary.json",
+                  "a folder that does not exist, is empty, or holds an earlier output");
+}
+
+void Ledger::begin(const Identity& identity) const {
+  std::error_code error;
+  fs::create_directories(parts_, error);
+  if (error) throw cannot_write(parts_, error.value());
+  if (!is_open()) write_file_atomically(run_file(), to_json(identity));
+}
+
+fs::path Ledger::part(std::size_t input, std::size_t chunk) const {
+  return parts_ / number_text(input) / number_text(chunk);
+}
+
+fs::path Ledger::input_facts(std::size_t input) const {
+  return parts_ / number_text(input) / "input";
+}
+
+bool Ledger::is_there(const fs::path& path) const {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+bool Ledger::is_open() const {
+  return is_there(run_file());
+}
+
+void Ledger::write(const fs::path& path, const std::string& bytes) const {
+  if (!is_open()) {
+    throw DataError(DataCode::file_unwritable, path.string(), "", "the output folder removed under the batch",
+                    "a folder that stays where it is");
+  }
+  write_file_atomically(path, bytes);
+}
+
+Ledger::Lock::Lock(const Ledger& ledger) {
+  const fs::path path = ledger.parts_ / "lock";
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor_ < 0 && ledger.is_open()) throw cannot_write(path, errno);
+  if (descriptor_ >= 0)
+    ::flock(descriptor_, LOCK_EX);  // where a file system knows no locks, equal bytes are written twice
+}
+
+Ledger::Lock::~Lock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void Ledger::publish(const std::string& last) const {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(final_folder())) files.push_back(entry.path().filename());
+  std::sort(files.begin(), files.end());
+  std::stable_partition(files.begin(), files.end(), [&](const fs::path& file) { return file != last; });
+  for (const fs::path& file : files) rename_or_throw(final_folder() / file, out_ / file);
+  sync_directory(out_);
+  rename_or_throw(parts_, litter());
+  std::error_code ignored;
+  fs::remove_all(litter(), ignored);
+}
+
+}  // namespace exactvo::datasets::batch

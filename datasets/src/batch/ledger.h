@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What of a batch is already there, on disk, so that a killed one can go on: OUT/.parts with
+///
+///     run.json          what the batch is: version, configuration, inputs; written first
+///     NNNNNN/KKKKKK     what was made of chunk K of input N
+///     NNNNNN/input      the input's facts; written when all its chunks are there
+///     final/            the outputs on their way
+///
+/// Every file appears whole (atomic_file.h). When the outputs stand in OUT, summary.json last, .parts is renamed to
+/// .parts.old in one step and removed; what a kill leaves of that, the next look removes.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "batch/inputs.h"
+
+namespace exactvo::datasets::batch {
+
+/// What must agree for a batch to go on with what another process began.
+struct Identity {
+  std::string version;
+  std::string commit;
+  std::string configuration;  ///< JSON on one line
+  std::vector<Input> inputs;
+};
+std::string to_json(const Identity& identity);
+
+class Ledger {
+ public:
+  explicit Ledger(std::filesystem::path out);
+
+  enum class State {
+    fresh,       ///< nothing is there, or a complete output that is to be replaced
+    unfinished,  ///< some parts are
+    complete     ///< an output of just this batch
+  };
+  /// What stands in OUT. Throws DataError: E_OTHER_RUN where it is of another batch and `resume` wants to go on with
+  /// it, or an unfinished one and it does not; E_FILE_UNWRITABLE where OUT holds what is no batch's.
+  State look(const Identity& identity, bool resume) const;
+
+  /// Writes run.json, unless another process of the same batch was quicker.
+  void begin(const Identity& identity) const;
+
+  std::filesystem::path part(std::size_t input, std::size_t chunk) const;
+  std::filesystem::path input_facts(std::size_t input) const;
+  std::filesystem::path final_folder() const { return parts_ / "final"; }
+  const std::filesystem::path& out() const { return out_; }
+
+  bool is_there(const std::filesystem::path& path) const;
+  /// Writes one of the files above. Throws DataError (E_FILE_UNWRITABLE), also where .parts was removed meanwhile.
+  void write(const std::filesystem::path& path, const std::string& bytes) const;
+
+  /// Held while the parts are put together; other processes wait. Goes with its process.
+  class Lock {
+   public:
+    explicit Lock(const Ledger& ledger);
+    ~Lock();
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
+
+   private:
+    int descriptor_ = -1;
+  };
+  /// Whether run.json still stands: no other process has put the parts together meanwhile.
+  bool is_open() const;
+
+  /// Moves the files of `final_folder` to OUT, `last` at the end, and takes .parts away.
+  void publish(const std::string& last) const;
+
+ private:
+  std::filesystem::path run_file() const { return parts_ / "run.json"; }
+  std::filesystem::path litter() const { return out_ / ".parts.old"; }
+
+  std::filesystem::path out_;
+  std::filesystem::path parts_;
+};
+
+}  // namespace exactvo::datasets::batch

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch/part.h"
+
+#include <cstring>
+
+#include "batch/half_planes.h"
+#include "batch/picture.h"
+#include "exactvo/geometry/require.h"
+#include "json_text.h"
+#include "obstacle_record_json.h"
+#include "text_file.h"
+
+namespace exactvo::datasets::batch {
+namespace {
+
+constexpr char kMagic[] = "EXACTVO PART 1\n";
+
+// --- Making ---
+
+void append_rejection(const Chunk& chunk, const ChunkItem& item, Part& part) {
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_object().member("file", chunk.file).member("outcome", "rejected");
+  json.member("code", code_name(item.rejected->code())).member("place", item.rejected->place());
+  json.member("found", item.rejected->found()).member("expected", item.rejected->expected()).end_object();
+  part.figures += json.take() + "\n";
+}
+
+std::string record_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes,
+                      const BatchConfiguration& configuration) {
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_object().member("file", head.file).member("id", head.id).member("key", head.key);
+  json.member("outcome", head.outcome);
+  append_figures(json, shapes);
+  append_verdicts(json, shapes);
+  if (configuration.robot) append_half_planes(json, shapes, *configuration.robot);
+  return json.end_object().take();
+}
+
+void append_features(const FeatureHead& head, const geometry::ObstacleShapes& shapes,
+                     const BatchConfiguration& configuration, Part& part) {
+  if (!configuration.geojson && !configuration.geopackage) return;
+  for (const Feature& feature : features_of(head, shapes)) {
+    if (configuration.geopackage) append_row(part.rows, feature);
+    if (!configuration.geojson) continue;
+    std::string& text = part.features[feature.layer];
+    if (!text.empty()) text += ",\n";
+    text += to_geojson(feature);
+  }
+}
+
+geometry::ShapeOptions options_for(const BatchConfiguration& configuration) {
+  geometry::ShapeOptions options = configuration.shapes;
+  options.check_validity = false;  // the reader has judged them
+  if (configuration.robot) {
+    options.robot_radius = configuration.robot->radius;
+    const std::optional<geometry::Vec2>& goal = configuration.robot->goal;
+    if (goal) options.way = geometry::Way{configuration.robot->positions.front(), *goal};
+  }
+  return options;
+}
+
+// --- Bytes: the magic line, three counts, then every text after its length ---
+
+void append_count(std::string& bytes, std::uint64_t count) {
+  char raw[sizeof count];
+  std::memcpy(raw, &count, sizeof count);
+  bytes.append(raw, sizeof count);
+}
+
+void append_text(std::string& bytes, const std::string& text) {
+  append_count(bytes, text.size());
+  bytes += text;
+}
+
+class PartReader {
+ public:
+  PartReader(std::string_view bytes, const std::filesystem::path& path) : bytes_(bytes), path_(path) {
+    if (bytes_.substr(0, sizeof kMagic - 1) != kMagic) refuse();
+    bytes_.remove_prefix(sizeof kMagic - 1);
+  }
+
+  std::uint64_t count() {
+    std::uint64_t value = 0;
+    if (bytes_.size() < sizeof value) refuse();
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    bytes_.remove_prefix(sizeof value);
+    return value;
+  }
+
+  std::string text() {
+    const std::uint64_t length = count();
+    if (bytes_.size() < length) refuse();
+    std::string taken(bytes_.substr(0, length));
+    bytes_.remove_prefix(length);
+    return taken;
+  }
+
+ private:
+  [[noreturn]] void refuse() const {
+    throw DataError(DataCode::format_syntax, path_.string(), "", "no part of a batch", "what a batch has written");
+  }
+
+  std::string_view bytes_;
+  const std::filesystem::path& path_;
+};
+
+}  // namespace
+
+Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
+  Part part;
+  part.features.resize(layers().size());
+  const geometry::ShapeOptions options = options_for(configuration);
+  std::size_t pictures = chunk.number == 0 && configuration.pictures ? kPicturesOfInput : 0;
+  for (std::size_t k = 0; k < chunk.items.size(); ++k) {
+    const ChunkItem& item = chunk.items[k];
+    if (item.rejected) {
+      append_rejection(chunk, item, part);
+      continue;
+    }
+    const geometry::ObstacleShapes shapes = shapes_of(item.obstacle.shape, options);
+    const FeatureHead head{chunk.file, item.obstacle.id, chunk.file + "#" + std::to_string(chunk.first + k),
+                           item.repaired ? "repaired" : "done"};
+    ++part.obstacles;
+    part.certified += shapes.certified() ? 1 : 0;
+    part.vertices += shapes.figures.vertices;
+    part.figures += record_of(head, shapes, configuration) + "\n";
+    append_features(head, shapes, configuration, part);
+    if (pictures > 0) {
+      part.pictures += picture_of(head.id, shapes);
+      --pictures;
+    }
+  }
+  return part;
+}
+
+std::string to_bytes(const Part& part) {
+  EXACTVO_REQUIRE(part.features.size() == layers().size(), std::to_string(part.features.size()));
+  std::string bytes = kMagic;
+  for (const std::uint64_t count : {part.obstacles, part.certified, part.vertices}) append_count(bytes, count);
+  append_text(bytes, part.figures);
+  for (const std::string& layer : part.features) append_text(bytes, layer);
+  append_text(bytes, part.rows);
+  append_text(bytes, part.pictures);
+  return bytes;
+}
+
+Part read_part(const std::filesystem::path& path) {
+  const std::string bytes = read_text_file(path);
+  PartReader reader(bytes, path);
+  Part part;
+  part.obstacles = reader.count();
+  part.certified = reader.count();
+  part.vertices = reader.count();
+  part.figures = reader.text();
+  for (std::size_t k = 0; k < layers().size(); ++k) part.features.push_back(reader.text());
+  part.rows = reader.text();
+  part.pictures = reader.text();
+  return part;
+}
+
+}  // namespace exactvo::datasets::batch

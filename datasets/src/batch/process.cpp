@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch/process.h"
+
+#include <chrono>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include "batch/part.h"
+#include "json_text.h"
+
+namespace exactvo::datasets::batch {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A chunk ends at so many obstacles or vertices: some hundredths of a second of work.
+constexpr std::size_t kItemsOfChunk = 512;
+constexpr std::size_t kVerticesOfChunk = 8192;
+/// What a vertex takes until its chunk is written: shapes, features, text. Measured: 3 to 5 kB with everything wanted.
+constexpr std::uint64_t kBytesOfVertex = 6000;
+/// What a file that is read whole takes, times its size, at most.
+constexpr std::uint64_t kBytesOfByte = 20;
+
+/// The batch's own failure on its way out of a reader, which must not take it for the file's.
+struct Failure {
+  std::exception_ptr cause;
+};
+
+/// Cuts what a reader gives into chunks and hands them to the crew.
+class Chunker {
+ public:
+  Chunker(const Input& input, std::size_t number, const BatchConfiguration& configuration, const Ledger& ledger,
+          Crew& crew, Meter& meter, const InputWatch& watch)
+      : input_(input),
+        number_(number),
+        configuration_(configuration),
+        ledger_(ledger),
+        crew_(crew),
+        meter_(meter),
+        watch_(watch) {
+    start_chunk();
+  }
+
+  void add(ChunkItem item, std::size_t vertices) {
+    chunk_->vertices += vertices;
+    chunk_->items.push_back(std::move(item));
+    if (chunk_->items.size() >= kItemsOfChunk || chunk_->vertices >= kVerticesOfChunk) hand_over();
+  }
+
+  void show(double share) { share_ = share; }
+
+  /// How many chunks there were.
+  std::size_t finish() {
+    if (!chunk_->items.empty()) hand_over();
+    crew_.finish();
+    return next_;
+  }
+
+ private:
+  void start_chunk() {
+    chunk_ = std::make_shared<Chunk>();
+    chunk_->file = input_.name;
+    chunk_->number = next_;
+    chunk_->first = first_;
+  }
+
+  void hand_over() {
+    if (!watch_(share_)) throw Stopped{};
+    first_ += chunk_->items.size();
+    const std::filesystem::path path = ledger_.part(number_, next_);
+    if (!ledger_.is_there(path)) {
+      // The configuration, the ledger and the meter outlive the crew's jobs; the chunk goes with its own.
+      crew_.run([chunk = chunk_, path, &configuration = configuration_, &ledger = ledger_,
+                 &meter = meter_] { make(*chunk, path, configuration, ledger, meter); },
+                kBytesOfVertex * chunk_->vertices);
+    }
+    ++next_;
+    start_chunk();
+  }
+
+  static void make(const Chunk& chunk, const std::filesystem::path& path, const BatchConfiguration& configuration,
+                   const Ledger& ledger, Meter& meter) {
+    const auto start = Clock::now();
+    const Part part = part_of(chunk, configuration);
+    ledger.write(path, to_bytes(part));
+    meter.obstacles += part.obstacles;
+    meter.vertices += part.vertices;
+    meter.nanoseconds_of_jobs +=
+        static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count());
+  }
+
+  const Input& input_;
+  std::size_t number_;
+  const BatchConfiguration& configuration_;
+  const Ledger& ledger_;
+  Crew& crew_;
+  Meter& meter_;
+  const InputWatch& watch_;
+  std::shared_ptr<Chunk> chunk_;
+  std::size_t next_ = 0;
+  std::uint64_t first_ = 0;
+  double share_ = 0.0;
+};
+
+/// Runs a part of the batch inside a reader.
+template <class Action>
+void outside_the_reader(const Action& action) {
+  try {
+    action();
+  } catch (const Stopped&) {
+    throw;
+  } catch (...) {
+    throw Failure{std::current_exception()};
+  }
+}
+
+bool is_read_whole(const std::string& format) {
+  return format != "wkt" && format != "jupedsim-wkt" && format != "gdal";
+}
+
+void refuse_large_file(const Input& input, const ReadOptions& options, std::uint64_t memory_limit) {
+  if (memory_limit == 0 || input.size <= memory_limit / kBytesOfByte) return;
+  const std::string format = options.format.empty() ? format_of(input.path) : options.format;
+  if (!is_read_whole(format)) return;
+  throw DataError(DataCode::size, input.name, "", "a " + format + " file of " + std::to_string(input.size) + " bytes",
+                  "at most a " + std::to_string(kBytesOfByte) + "th of the memory allowed: it is read whole");
+}
+
+/// The file's outcome is the best of its obstacles'; all rejected is rejected, by the first one's code.
+void judge(InputFacts& facts, const ReadCounts& counts, const std::optional<DataError>& first_rejected) {
+  facts.tally.read = counts.done + counts.repaired + counts.rejected;
+  facts.tally.done = counts.done;
+  facts.tally.repaired = counts.repaired;
+  facts.passed_over = counts.passed_over;
+  if (counts.done + counts.repaired == 0 && first_rejected) {
+    facts.outcome = "rejected";
+    facts.code = code_name(first_rejected->code());
+    facts.message = first_rejected->what();
+  } else {
+    facts.outcome = counts.repaired > 0 ? "repaired" : "done";
+  }
+}
+
+void reject(InputFacts& facts, const char* code, const std::string& message) {
+  facts.outcome = "rejected";
+  facts.code = code;
+  facts.message = message;
+}
+
+/// Reads the file into the chunker; what is wrong with it becomes its facts.
+void read_input(const Input& input, const ReadOptions& given, std::uint64_t memory_limit, Chunker& chunker,
+                InputFacts& facts) {
+  ReadOptions options = given;
+  options.keep_going = true;
+  std::optional<DataError> first_rejected;
+  ObstacleStream stream;
+  stream.obstacle = [&](formation::SceneObstacle obstacle, bool repaired) {
+    outside_the_reader([&] {
+      const std::size_t vertices = geometry::vertices_of(obstacle.shape).size();
+      chunker.add({std::move(obstacle), repaired, std::nullopt}, vertices);
+    });
+  };
+  stream.rejected = [&](DataError error) {
+    ++facts.tally.rejected[code_name(error.code())];
+    if (!first_rejected) first_rejected = error;
+    outside_the_reader([&] { chunker.add({{}, false, std::move(error)}, 1); });
+  };
+  stream.progress = [&](double share) { chunker.show(share); };
+  try {
+    refuse_large_file(input, options, memory_limit);
+    const ObstacleFile file = read_obstacles(input.path, options, stream);
+    facts.format = file.format;
+    facts.origin = file.origin;
+    facts.extent = file.extent;
+    facts.coverage = file.coverage;
+    for (const DataNote& note : file.notes) facts.notes.push_back(note.text);
+    judge(facts, file.counts, first_rejected);
+  } catch (const DataError& error) {
+    facts.tally = {};
+    reject(facts, code_name(error.code()), error.what());
+  } catch (const std::bad_alloc&) {
+    facts.tally = {};
+    reject(facts, code_name(DataCode::size), input.name + ": more memory wanted than there is");
+  }
+}
+
+void append_optional_facts(JsonWriter& json, const InputFacts& facts) {
+  if (facts.origin) {
+    json.key("origin").begin_object().member("longitude", facts.origin->longitude);
+    json.member("latitude", facts.origin->latitude).end_object();
+  }
+  if (facts.extent) {
+    json.key("extent").begin_object().member("low", facts.extent->low).member("high", facts.extent->high).end_object();
+  }
+  if (facts.coverage) {
+    const Coverage& c = *facts.coverage;
+    json.key("coverage").begin_object().member("cells", std::uint64_t{c.cells});
+    json.member("occupied", std::uint64_t{c.occupied}).member("cell_area", c.cell_area).end_object();
+  }
+}
+
+geometry::Vec2 point_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>()};
+}
+
+void parse_optional_facts(const Json& json, InputFacts& facts) {
+  if (const auto at = json.find("origin"); at != json.end()) {
+    facts.origin = ProjectionOrigin{at->at("longitude").get<double>(), at->at("latitude").get<double>()};
+  }
+  if (const auto at = json.find("extent"); at != json.end()) {
+    facts.extent = Extent{point_of(at->at("low")), point_of(at->at("high"))};
+  }
+  if (const auto at = json.find("coverage"); at != json.end()) {
+    facts.coverage = Coverage{at->at("cells").get<std::size_t>(), at->at("occupied").get<std::size_t>(),
+                              at->at("cell_area").get<double>()};
+  }
+}
+
+}  // namespace
+
+std::string to_json(const InputFacts& facts) {
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_object().member("outcome", facts.outcome);
+  if (!facts.code.empty()) json.member("code", facts.code).member("message", facts.message);
+  if (!facts.format.empty()) json.member("format", facts.format);
+  json.member("read", facts.tally.read).member("done", facts.tally.done).member("repaired", facts.tally.repaired);
+  json.key("rejected").begin_object();
+  for (const auto& [code, count] : facts.tally.rejected) json.member(code, count);
+  json.end_object();
+  json.member("passed_over", facts.passed_over).member("chunks", facts.chunks);
+  append_optional_facts(json, facts);
+  json.key("notes").begin_array();
+  for (const std::string& note : facts.notes) json.value(note);
+  return json.end_array().end_object().take();
+}
+
+InputFacts parse_facts(const std::string& text, const std::string& file) {
+  const Json json = parse_json(text, file);
+  InputFacts facts;
+  try {
+    json.at("outcome").get_to(facts.outcome);
+    facts.code = json.value("code", "");
+    facts.message = json.value("message", "");
+    facts.format = json.value("format", "");
+    json.at("read").get_to(facts.tally.read);
+    json.at("done").get_to(facts.tally.done);
+    json.at("repaired").get_to(facts.tally.repaired);
+    for (const auto& [code, count] : json.at("rejected").items()) {
+      facts.tally.rejected[code] = count.get<std::uint64_t>();
+    }
+    json.at("passed_over").get_to(facts.passed_over);
+    json.at("chunks").get_to(facts.chunks);
+    parse_optional_facts(json, facts);
+    json.at("notes").get_to(facts.notes);
+  } catch (const nlohmann::detail::exception& error) {
+    throw DataError(DataCode::wrong_type, file, "", error.what(), "facts of an input as a batch writes them");
+  }
+  return facts;
+}
+
+void process_input(const Input& input, std::size_t number, const BatchConfiguration& configuration,
+                   std::uint64_t memory_limit, const Ledger& ledger, Crew& crew, Meter& meter,
+                   const InputWatch& watch) {
+  Chunker chunker(input, number, configuration, ledger, crew, meter, watch);
+  InputFacts facts;
+  try {
+    read_input(input, configuration.reading, memory_limit, chunker, facts);
+  } catch (const Failure& failure) {
+    std::rethrow_exception(failure.cause);
+  }
+  // Parts of a file that turned out to be broken further on are no results; their number says so.
+  const std::size_t chunks = chunker.finish();
+  facts.chunks = facts.code.empty() || facts.tally.read > 0 ? chunks : 0;
+  ledger.write(ledger.input_facts(number), to_json(facts));
+}
+
+}  // namespace exactvo::datasets::batch

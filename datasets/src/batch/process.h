@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// One input of a batch, from the file to its parts.
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "batch/crew.h"
+#include "batch/ledger.h"
+#include "exactvo/datasets/batch.h"
+
+namespace exactvo::datasets::batch {
+
+/// What is known of an input once it is through: its counts, and what concerns it as a whole.
+struct InputFacts {
+  std::string outcome;  ///< "done", "repaired", "rejected"
+  std::string code;     ///< of a rejected one
+  std::string message;  ///< the same in words
+  std::string format;
+  BatchTally tally;
+  std::uint64_t passed_over = 0;
+  std::uint64_t chunks = 0;
+  std::vector<std::string> notes;
+  std::optional<ProjectionOrigin> origin;
+  std::optional<Extent> extent;
+  std::optional<Coverage> coverage;
+};
+/// One JSON object on one line, and back.
+std::string to_json(const InputFacts& facts);
+InputFacts parse_facts(const std::string& json, const std::string& file);
+
+/// What the jobs of a run count together.
+struct Meter {
+  std::atomic<std::uint64_t> obstacles{0};
+  std::atomic<std::uint64_t> vertices{0};
+  std::atomic<std::uint64_t> nanoseconds_of_jobs{0};
+};
+
+/// Leaves an input where it is when the batch is to stop.
+struct Stopped {};
+
+/// Asked while an input is read, with the share that is through; false stops: `process_input` throws Stopped.
+using InputWatch = std::function<bool(double share)>;
+
+/// Makes every part of the input that is not there, then its facts. Throws DataError for what is wrong with the output,
+/// never for what is wrong with the input.
+void process_input(const Input& input, std::size_t number, const BatchConfiguration& configuration,
+                   std::uint64_t memory_limit, const Ledger& ledger, Crew& crew, Meter& meter, const InputWatch& watch);
+
+}  // namespace exactvo::datasets::batch

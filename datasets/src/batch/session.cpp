@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch/session.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "batch/assemble.h"
+#include "exactvo/datasets/provenance.h"
+#include "json_text.h"
+
+namespace exactvo::datasets::batch {
+namespace {
+
+int workers_of(const BatchRun& run) {
+  if (run.workers > 0) return run.workers;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+const char* name_of(Units units) {
+  switch (units) {
+    case Units::automatic:
+      return "automatic";
+    case Units::metres:
+      return "metres";
+    case Units::degrees:
+      return "degrees";
+  }
+  return "automatic";
+}
+
+const char* name_of(geometry::PartitionMethod method) {
+  switch (method) {
+    case geometry::PartitionMethod::automatic:
+      return "automatic";
+    case geometry::PartitionMethod::greene:
+      return "greene";
+    case geometry::PartitionMethod::approximate:
+      return "approximate";
+    case geometry::PartitionMethod::optimal:
+      return "optimal";
+    case geometry::PartitionMethod::triangles:
+      return "triangles";
+  }
+  return "automatic";
+}
+
+void append_shape_options(JsonWriter& json, const geometry::ShapeOptions& o) {
+  json.key("shapes").begin_object();
+  json.member("facade_tolerance", o.facades.tolerance).member("partition", name_of(o.partition));
+  json.member("minor_to_major", o.facade_ellipses.minor_to_major);
+  json.member("fixed_minor", o.facade_ellipses.fixed_minor).member("facade_margin", o.facade_ellipses.margin);
+  json.member("margin", o.enclosure.margin).member("slack", o.enclosure.slack);
+  json.member("least_margin", o.enclosure.least_margin).member("least_slack", o.enclosure.least_slack);
+  json.member("clear_of_ends", o.enclosure.clear_of_ends).member("most_inflation", o.enclosure.most_inflation);
+  json.member("exact_smallest_ellipse", o.exact_smallest_ellipse).end_object();
+}
+
+void append_robot(JsonWriter& json, const BatchRobot& robot) {
+  json.key("robot").begin_object().member("radius", robot.radius).member("time_horizon", robot.time_horizon);
+  json.member("velocity", robot.velocity).key("positions").begin_array();
+  for (const geometry::Vec2 p : robot.positions) json.value(p);
+  json.end_array().member("goal", robot.goal).end_object();
+}
+
+double share_of(std::uint64_t part, std::uint64_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0;
+}
+
+}  // namespace
+
+std::string to_json(const BatchConfiguration& c) {
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_object().member("format", c.reading.format).member("units", name_of(c.reading.units));
+  json.member("cell_size", c.reading.cell_size).member("repair", c.reading.repair);
+  append_shape_options(json, c.shapes);
+  if (c.robot) append_robot(json, *c.robot);
+  json.member("geopackage", c.geopackage).member("geojson", c.geojson).member("pictures", c.pictures);
+  return json.end_object().take();
+}
+
+Identity identity_of(const BatchConfiguration& configuration, std::vector<Input> inputs) {
+  const Provenance program = make_provenance({}, 0);
+  return {program.version, program.commit, to_json(configuration), std::move(inputs)};
+}
+
+Session::Session(const BatchConfiguration& configuration, const BatchRun& run, Identity identity, BatchWatch watch)
+    : configuration_(configuration),
+      run_(run),
+      identity_(std::move(identity)),
+      watch_(std::move(watch)),
+      ledger_(run.out),
+      crew_(workers_of(run), run.memory_limit),
+      start_(std::chrono::steady_clock::now()) {}
+
+void Session::plan(std::vector<std::size_t> inputs) {
+  progress_.inputs = inputs.size();
+  for (const std::size_t k : inputs) bytes_planned_ += identity_.inputs[k].size;
+}
+
+bool Session::look(const std::string& doing, double share) {
+  if (!watch_) return true;
+  progress_.doing = doing;
+  progress_.obstacles = meter_.obstacles;
+  progress_.share_done = share;
+  return watch_(progress_);
+}
+
+void Session::process(std::size_t number) {
+  const Input& input = identity_.inputs[number];
+  if (!ledger_.is_there(ledger_.input_facts(number))) {
+    const auto share_now = [&](double share) {
+      const auto of_input = static_cast<std::uint64_t>(share * static_cast<double>(input.size));
+      return share_of(bytes_done_ + of_input, bytes_planned_);
+    };
+    if (!look(input.name, share_now(0.0))) throw Stopped{};
+    process_input(input, number, configuration_, run_.memory_limit, ledger_, crew_, meter_,
+                  [&](double share) { return look(input.name, share_now(share)); });
+  }
+  ++progress_.inputs_done;
+  bytes_done_ += input.size;
+}
+
+BatchResult Session::finish() {
+  BatchResult result;
+  result.end = BatchEnd::incomplete;
+  if (!all_there(ledger_, identity_.inputs.size()) && ledger_.is_open()) return result;
+  const Ledger::Lock lock(ledger_);
+  if (!ledger_.is_open()) return result;  // another process was quicker
+  look("putting the parts together", 1.0);
+  Times times;
+  times.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  times.seconds_of_jobs = 1e-9 * static_cast<double>(meter_.nanoseconds_of_jobs);
+  times.obstacles = meter_.obstacles;
+  times.vertices = meter_.vertices;
+  times.workers = workers_of(run_);
+  result.summary = assemble(ledger_, identity_, configuration_, run_, times);
+  result.end = BatchEnd::complete;
+  return result;
+}
+
+}  // namespace exactvo::datasets::batch

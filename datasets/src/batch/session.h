@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// One process's part in a batch: what run_batch does alone and run_batch_over_ranks in company.
+
+#include <chrono>
+#include <string>
+
+#include "batch/crew.h"
+#include "batch/ledger.h"
+#include "batch/process.h"
+#include "exactvo/datasets/batch.h"
+
+namespace exactvo::datasets::batch {
+
+/// Canonical: what changes the results and nothing else.
+std::string to_json(const BatchConfiguration& configuration);
+
+Identity identity_of(const BatchConfiguration& configuration, std::vector<Input> inputs);
+
+class Session {
+ public:
+  /// `run` and `configuration` must outlive it.
+  Session(const BatchConfiguration& configuration, const BatchRun& run, Identity identity, BatchWatch watch);
+
+  const Ledger& ledger() const { return ledger_; }
+  const Identity& identity() const { return identity_; }
+
+  /// Says which inputs are this process's, for progress.
+  void plan(std::vector<std::size_t> inputs);
+  /// Makes what is missing of an input. Throws Stopped.
+  void process(std::size_t input);
+  /// Puts everything together if all is there and no other process has.
+  BatchResult finish();
+
+ private:
+  bool look(const std::string& doing, double share);
+
+  const BatchConfiguration& configuration_;
+  const BatchRun& run_;
+  Identity identity_;
+  BatchWatch watch_;
+  Ledger ledger_;
+  Crew crew_;
+  Meter meter_;
+  BatchProgress progress_;
+  std::uint64_t bytes_planned_ = 0;
+  std::uint64_t bytes_done_ = 0;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace exactvo::datasets::batch

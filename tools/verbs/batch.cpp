@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo batch: every obstacle of every file taken apart, enclosed and certified.
+#include "exactvo/datasets/batch.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <memory>
+
+#include "support/simulation_flags.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+using datasets::BatchConfiguration;
+using datasets::BatchEnd;
+using datasets::BatchProgress;
+using datasets::BatchRun;
+using datasets::BatchSummary;
+using datasets::BatchTally;
+using geometry::Vec2;
+
+struct Flags {
+  std::vector<std::string> paths;
+  std::string out;
+  int workers = 0;
+  bool resume = false;
+  bool repair = false;
+  std::uint64_t limit_memory = 0;
+  std::string shard;
+  std::string format;
+  std::string units = "automatic";
+  double cell_size = 0.0;
+  double tolerance = 0.0;
+  std::string write = "geopackage,geojson,pictures";
+  double time_horizon = 0.0;
+  double radius = 0.0;
+  std::string velocity = "0,0";
+  std::vector<std::string> positions;
+  std::string goal;
+};
+
+Vec2 parse_point(const std::string& option, const std::string& text) {
+  Vec2 v;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_finite(v)) {
+    throw UsageError(option, text, "two finite numbers, X,Y");
+  }
+  return v;
+}
+
+datasets::Units units_named(const std::string& text) {
+  if (text == "automatic") return datasets::Units::automatic;
+  if (text == "metres") return datasets::Units::metres;
+  if (text == "degrees") return datasets::Units::degrees;
+  throw UsageError("--units", text, "automatic, metres or degrees");
+}
+
+void choose_outputs(const std::string& text, BatchConfiguration& configuration) {
+  const std::vector<std::string> known{"geopackage", "geojson", "pictures", "figures"};
+  configuration.geopackage = configuration.geojson = configuration.pictures = false;
+  std::size_t start = 0;
+  while (start <= text.size()) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    const std::string word = text.substr(start, end - start);
+    if (word == "geopackage")
+      configuration.geopackage = true;
+    else if (word == "geojson")
+      configuration.geojson = true;
+    else if (word == "pictures")
+      configuration.pictures = true;
+    else if (word != "figures") {
+      throw UsageError("--write", word, "geopackage, geojson, pictures, figures" + suggestion(word, known));
+    }
+    start = end + 1;
+  }
+}
+
+std::optional<datasets::BatchRobot> robot_of(const Flags& flags) {
+  const bool given = flags.time_horizon > 0.0 || flags.radius > 0.0 || !flags.positions.empty() || !flags.goal.empty();
+  if (!given) return std::nullopt;
+  if (!(flags.time_horizon > 0.0)) throw UsageError("--time-horizon", "none", "seconds, more than 0, with a robot");
+  if (flags.positions.empty()) throw UsageError("--position", "none", "X,Y, once or more, with a robot");
+  datasets::BatchRobot robot;
+  robot.radius = flags.radius;
+  robot.time_horizon = flags.time_horizon;
+  robot.velocity = parse_point("--velocity", flags.velocity);
+  for (const std::string& text : flags.positions) robot.positions.push_back(parse_point("--position", text));
+  if (!flags.goal.empty()) robot.goal = parse_point("--goal", flags.goal);
+  return robot;
+}
+
+BatchConfiguration configuration_of(const Flags& flags) {
+  BatchConfiguration configuration;
+  configuration.reading.format = flags.format;
+  configuration.reading.repair = flags.repair;
+  configuration.reading.cell_size = flags.cell_size;
+  configuration.reading.units = units_named(flags.units);
+  configuration.shapes.facades.tolerance = flags.tolerance;
+  configuration.robot = robot_of(flags);
+  choose_outputs(flags.write, configuration);
+  if (configuration.geopackage && !datasets::built_with_gdal()) {
+    message("note: built without GDAL, so no GeoPackage is written");
+    configuration.geopackage = false;
+  }
+  return configuration;
+}
+
+void parse_shard(const std::string& text, BatchRun& run) {
+  if (text.empty()) return;
+  char rest = 0;
+  const bool two = std::sscanf(text.c_str(), "%zu/%zu%c", &run.shard, &run.shards, &rest) == 2;
+  if (!two || run.shard < 1 || run.shard > run.shards) throw UsageError("--shard", text, "i/n with 1 <= i <= n");
+}
+
+/// The command line without what leaves the results as they are, so that a resumed run's provenance is the same: how
+/// it is run, and where the results lie.
+std::vector<std::string> lasting_words(const std::vector<std::string>& words) {
+  const auto takes_value = [](const std::string& w) {
+    return w == "-j" || w == "--jobs" || w == "--limit-memory" || w == "--shard" || w == "--out" || w == "-o";
+  };
+  const auto stands_alone = [](const std::string& w) {
+    const auto begins = [&](const char* start) { return w.rfind(start, 0) == 0; };
+    return w == "--resume" || w == "--quiet" || w == "-q" || begins("--jobs=") || begins("--limit-memory=") ||
+           begins("--shard=") || begins("--out=") || (begins("-j") && w.size() > 2 && w[1] == 'j');
+  };
+  std::vector<std::string> kept;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (takes_value(words[i])) {
+      ++i;
+    } else if (!stands_alone(words[i])) {
+      kept.push_back(i == 0 ? "exactvo" : words[i]);
+    }
+  }
+  return kept;
+}
+
+BatchRun run_of(const Flags& flags) {
+  BatchRun run;
+  run.paths.assign(flags.paths.begin(), flags.paths.end());
+  run.out = flags.out;
+  run.workers = flags.workers;
+  run.resume = flags.resume;
+  run.memory_limit = flags.limit_memory;
+  run.command_line = lasting_words(command_line());
+  parse_shard(flags.shard, run);
+  return run;
+}
+
+/// A line that is written over on a terminal, a line now and then in a log.
+class Reporter {
+ public:
+  Reporter() : line_(1.0, "of the input"), last_(std::chrono::steady_clock::now()), start_(last_) {}
+
+  void show(const BatchProgress& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    const bool on_terminal = ::isatty(STDERR_FILENO) != 0;
+    if (seconds(now - last_) < (on_terminal ? 0.2 : kLogEvery)) return;
+    last_ = now;
+    const double elapsed = seconds(now - start_);
+    const double left = progress.share_done > 0.0 ? elapsed * (1.0 / progress.share_done - 1.0) : 0.0;
+    const std::string text =
+        fmt::format("{} of {} files, {:.0f} %, {} obstacles, {:.0f}/s, {:.0f} s left: {}", progress.inputs_done,
+                    progress.inputs, 100.0 * progress.share_done, progress.obstacles,
+                    static_cast<double>(progress.obstacles) / elapsed, left, progress.doing);
+    if (on_terminal) {
+      line_.show(progress.share_done, text);
+    } else {
+      message(text);
+    }
+  }
+  void clear() { line_.clear(); }
+
+ private:
+  static constexpr double kLogEvery = 30.0;  // s
+  template <class Duration>
+  static double seconds(Duration d) {
+    return std::chrono::duration<double>(d).count();
+  }
+
+  ProgressLine line_;
+  std::chrono::steady_clock::time_point last_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+std::string words_of(const BatchTally& tally, const char* what) {
+  std::string text = fmt::format("{} {}: {} done, {} repaired, {} rejected", tally.read, what, tally.done,
+                                 tally.repaired, tally.rejected_in_all());
+  for (const auto& [code, count] : tally.rejected) text += fmt::format(", {} {}", code, count);
+  return text;
+}
+
+std::string words_of(const BatchSummary& s, const std::string& out) {
+  std::string text = words_of(s.files, "files") + "\n" + words_of(s.obstacles, "obstacles");
+  text += fmt::format("\n{} points and empty geometries passed over\n", s.passed_over);
+  text += fmt::format("{} obstacles in {}: {} certified, {} uncertified, {} vertices\n", s.obstacles_out, out,
+                      s.certified, s.uncertified, s.vertices);
+  if (s.obstacles_now > 0 && s.seconds > 0.0) {
+    text +=
+        fmt::format("{:.3g} s, {:.0f} obstacles/s, {:.0f} vertices/s\n", s.seconds,
+                    static_cast<double>(s.obstacles_now) / s.seconds, static_cast<double>(s.vertices_now) / s.seconds);
+  }
+  return text;
+}
+
+ExitCode batch(const Flags& flags) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, and said as one
+  const BatchConfiguration configuration = configuration_of(flags);
+  const BatchRun run = run_of(flags);
+  Reporter reporter;
+  const auto watch = [&](const BatchProgress& progress) {
+    reporter.show(progress);
+    return !interrupted();
+  };
+  const datasets::BatchResult result = datasets::under_mpi() ? datasets::run_batch_over_ranks(configuration, run, watch)
+                                                             : datasets::run_batch(configuration, run, watch);
+  reporter.clear();
+  if (result.end == BatchEnd::interrupted) {
+    error_message("interrupted; --resume goes on");
+    return ExitCode::interrupted;
+  }
+  if (result.end == BatchEnd::incomplete) return ExitCode::success;
+  if (result.was_complete) message("nothing left to do");
+  print(words_of(result.summary, flags.out));
+  return result.summary.uncertified == 0 ? ExitCode::success : ExitCode::negative;
+}
+
+void declare_run(CLI::App& app, Flags& flags) {
+  app.add_option("paths", flags.paths, "Files, and folders whose files are all read")->required();
+  declare_out(app, flags.out, "Folder for the results")->required();
+  app.add_option("-j,--jobs", flags.workers, "Workers; as many as there are processors unless said")
+      ->check(CLI::Range(1, 4096));
+  app.add_flag("--resume", flags.resume, "Go on with what a killed batch has left in the folder");
+  app.add_option("--limit-memory", flags.limit_memory, "Bytes for obstacles under way, such as 2GB")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--shard", flags.shard, "i/n: every n-th file from the i-th on; the last shard puts all together");
+  app.add_option("--write", flags.write, "Of geopackage, geojson, pictures, figures (always)")->capture_default_str();
+}
+
+void declare_reading(CLI::App& app, Flags& flags) {
+  app.add_flag("--repair", flags.repair, "Mend what can be mended: self-crossings, overlaps, holes out of place");
+  app.add_option("--format", flags.format, "Of all files; told by content and name unless said");
+  app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
+  app.add_option("--cell-size", flags.cell_size, "m; of grids without a scale (1) and of scans (0.05)")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--tolerance", flags.tolerance, "m; by which facades may leave the obstacle")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+}
+
+void declare_robot(CLI::App& app, Flags& flags) {
+  app.add_option("--time-horizon", flags.time_horizon, "s; of a robot's velocity obstacles")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--radius", flags.radius, "m; of the robot")->check(CLI::NonNegativeNumber);
+  app.add_option("--position", flags.positions, "X,Y of the robot, m; may be repeated")->allow_extra_args(false);
+  app.add_option("--velocity", flags.velocity, "X,Y, m/s; half-planes are the nearest to it")->capture_default_str();
+  app.add_option("--goal", flags.goal, "X,Y, m; trap-free ellipses are made for the way there from the first position");
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  declare_run(app, *flags);
+  declare_reading(app, *flags);
+  declare_robot(app, *flags);
+  return [flags] { return batch(*flags); };
+}
+
+}  // namespace
+
+Verb batch_verb() {
+  return {"batch", "Every obstacle of every file taken apart, enclosed and certified",
+          "  exactvo batch maps --out out/maps -j 4 --repair\n"
+          "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after a kill)\n"
+          "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"
+          "  exactvo batch map.yaml --out out/map --time-horizon 3 --radius 0.3 --position 1,2 --position 4,2\n",
+          declare};
+}
+
+}  // namespace exactvo::tools
