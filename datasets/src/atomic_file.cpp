@@ -59,13 +59,13 @@ void AtomicFile::write(std::string_view bytes) {
   if (buffer_.size() >= kBufferSize) flush();
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(Durability durability) {
   EXACTVO_REQUIRE(descriptor_ >= 0, "a second commit of " + path_.string());
   flush();
   if (::fsync(descriptor_) != 0) throw cannot_write(path_, errno);
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) throw cannot_write(path_, errno);
   ::close(std::exchange(descriptor_, -1));
-  sync_directory(path_.parent_path());
+  if (durability == Durability::name) sync_directory(path_.parent_path());
 }
 
 // A rename is durable only once its directory is.
@@ -76,10 +76,10 @@ void sync_directory(const std::filesystem::path& directory) {
   ::close(descriptor);
 }
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes, Durability durability) {
   AtomicFile file(path);
   file.write(bytes);
-  file.commit();
+  file.commit(durability);
 }
 
 }  // namespace exactvo::datasets

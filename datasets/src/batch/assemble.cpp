@@ -224,9 +224,18 @@ std::vector<InputFacts> all_facts(const Ledger& ledger, std::size_t inputs) {
   facts.reserve(inputs);
   for (std::size_t k = 0; k < inputs; ++k) {
     const fs::path path = ledger.input_facts(k);
-    facts.push_back(parse_facts(read_text_file(path), path.string()));
+    facts.push_back(read_input_record(path).facts);
   }
   return facts;
+}
+
+/// The only chunk of an input stands beside its facts.
+Part part_at(const Ledger& ledger, std::size_t input, std::size_t chunk, std::uint64_t chunks) {
+  if (chunks == 1) {
+    InputRecord record = read_input_record(ledger.input_facts(input));
+    if (record.part) return *std::move(record.part);
+  }
+  return read_part(ledger.part(input, chunk));
 }
 
 void make_folder_anew(const fs::path& folder) {
@@ -276,7 +285,7 @@ BatchSummary assemble(const Ledger& ledger, const Identity& identity, const Batc
   for (std::size_t k = 0; k < facts.size(); ++k) {
     outputs.start_input(identity.inputs[k].name, words_of(facts[k]));
     for (std::size_t chunk = 0; chunk < facts[k].chunks; ++chunk) {
-      const Part part = read_part(ledger.part(k, chunk));
+      const Part part = part_at(ledger, k, chunk, facts[k].chunks);
       summary.obstacles_out += part.obstacles;
       summary.certified += part.certified;
       summary.uncertified += part.obstacles - part.certified;

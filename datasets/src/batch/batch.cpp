@@ -44,6 +44,7 @@ BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& r
   try {
     for (const std::size_t input : mine) session.process(input);
   } catch (const batch::Stopped&) {
+    session.wait();
     return {BatchEnd::interrupted, {}, false};
   }
   return session.finish();

@@ -39,9 +39,12 @@ class Settings {
     CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", "1970-01-01T00:00:00.000Z");
     CPLSetThreadLocalConfigOption("OGR_SQLITE_SYNCHRONOUS", "OFF");
     CPLSetThreadLocalConfigOption("OGR_SQLITE_JOURNAL", "MEMORY");
+    // A second thread would build the spatial index page by page beside this one, in an order of its own.
+    CPLSetThreadLocalConfigOption("OGR_GPKG_ALLOW_THREADED_RTREE", "NO");
   }
   ~Settings() {
-    for (const char* name : {"OGR_CURRENT_DATE", "OGR_SQLITE_SYNCHRONOUS", "OGR_SQLITE_JOURNAL"}) {
+    for (const char* name :
+         {"OGR_CURRENT_DATE", "OGR_SQLITE_SYNCHRONOUS", "OGR_SQLITE_JOURNAL", "OGR_GPKG_ALLOW_THREADED_RTREE"}) {
       CPLSetThreadLocalConfigOption(name, nullptr);
     }
   }

@@ -132,7 +132,7 @@ fs::path Ledger::part(std::size_t input, std::size_t chunk) const {
 }
 
 fs::path Ledger::input_facts(std::size_t input) const {
-  return parts_ / number_text(input) / "input";
+  return parts_ / (number_text(input) + ".input");
 }
 
 bool Ledger::is_there(const fs::path& path) const {
@@ -149,7 +149,8 @@ void Ledger::write(const fs::path& path, const std::string& bytes) const {
     throw DataError(DataCode::file_unwritable, path.string(), "", "the output folder removed under the batch",
                     "a folder that stays where it is");
   }
-  write_file_atomically(path, bytes);
+  // A rename that a power cut takes back is a part that is made again; no need to sync the folder each time.
+  write_file_atomically(path, bytes, Durability::content);
 }
 
 Ledger::Lock::Lock(const Ledger& ledger) {

@@ -6,7 +6,7 @@
 ///
 ///     run.json          what the batch is: version, configuration, inputs; written first
 ///     NNNNNN/KKKKKK     what was made of chunk K of input N
-///     NNNNNN/input      the input's facts; written when all its chunks are there
+///     NNNNNN.input      the input's facts, written when all its chunks are there; an only chunk stands in it
 ///     final/            the outputs on their way
 ///
 /// Every file appears whole (atomic_file.h). When the outputs stand in OUT, summary.json last, .parts is renamed to

@@ -144,8 +144,7 @@ std::string to_bytes(const Part& part) {
   return bytes;
 }
 
-Part read_part(const std::filesystem::path& path) {
-  const std::string bytes = read_text_file(path);
+Part parse_part(std::string_view bytes, const std::filesystem::path& path) {
   PartReader reader(bytes, path);
   Part part;
   part.obstacles = reader.count();
@@ -156,6 +155,10 @@ Part read_part(const std::filesystem::path& path) {
   part.rows = reader.text();
   part.pictures = reader.text();
   return part;
+}
+
+Part read_part(const std::filesystem::path& path) {
+  return parse_part(read_text_file(path), path);
 }
 
 }  // namespace exactvo::datasets::batch

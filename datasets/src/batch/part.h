@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "batch/features.h"
@@ -44,6 +45,7 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration);
 
 std::string to_bytes(const Part& part);
 /// Throws DataError (E_FORMAT_SYNTAX) where the bytes are no part.
+Part parse_part(std::string_view bytes, const std::filesystem::path& path);
 Part read_part(const std::filesystem::path& path);
 
 }  // namespace exactvo::datasets::batch

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/process.h"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <new>
@@ -8,6 +9,7 @@
 
 #include "batch/part.h"
 #include "json_text.h"
+#include "text_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -27,6 +29,14 @@ struct Failure {
   std::exception_ptr cause;
 };
 
+/// An input under way: whoever finishes the last of its chunks writes its facts. An input of one chunk is a single
+/// file.
+struct InputWork {
+  std::filesystem::path facts_path;
+  std::string facts;                 ///< set before the reader lets go
+  std::atomic<std::size_t> open{1};  ///< chunks under way, and the reader
+};
+
 /// Cuts what a reader gives into chunks and hands them to the crew.
 class Chunker {
  public:
@@ -39,6 +49,7 @@ class Chunker {
         crew_(crew),
         meter_(meter),
         watch_(watch) {
+    work_->facts_path = ledger.input_facts(number);
     start_chunk();
   }
 
@@ -50,11 +61,15 @@ class Chunker {
 
   void show(double share) { share_ = share; }
 
-  /// How many chunks there were.
-  std::size_t finish() {
-    if (!chunk_->items.empty()) hand_over();
-    crew_.finish();
-    return next_;
+  /// The input is read: what is left of it, and its facts once the last chunk is there. Without `with_chunks` what was
+  /// made of it counts for nothing.
+  void finish(InputFacts facts, bool with_chunks) {
+    const bool is_single = next_ == 0 && !chunk_->items.empty() && with_chunks;
+    if (!is_single && !chunk_->items.empty()) hand_over();
+    facts.chunks = with_chunks ? std::max<std::size_t>(next_, is_single ? 1 : 0) : 0;
+    work_->facts = to_json(facts) + "\n";
+    if (is_single) return hand_over_whole();
+    let_go(*work_, ledger_);
   }
 
  private:
@@ -70,24 +85,43 @@ class Chunker {
     first_ += chunk_->items.size();
     const std::filesystem::path path = ledger_.part(number_, next_);
     if (!ledger_.is_there(path)) {
-      // The configuration, the ledger and the meter outlive the crew's jobs; the chunk goes with its own.
-      crew_.run([chunk = chunk_, path, &configuration = configuration_, &ledger = ledger_,
-                 &meter = meter_] { make(*chunk, path, configuration, ledger, meter); },
-                kBytesOfVertex * chunk_->vertices);
+      ++work_->open;
+      give([work = work_, path, &ledger = ledger_](const std::string& part) {
+        ledger.write(path, part);
+        let_go(*work, ledger);
+      });
     }
     ++next_;
     start_chunk();
   }
 
-  static void make(const Chunk& chunk, const std::filesystem::path& path, const BatchConfiguration& configuration,
-                   const Ledger& ledger, Meter& meter) {
+  void hand_over_whole() {
+    give([work = work_, &ledger = ledger_](const std::string& part) {
+      ledger.write(work->facts_path, work->facts + part);
+    });
+  }
+
+  /// The configuration, the ledger and the meter outlive the crew's jobs; the chunk goes with its own.
+  template <class Write>
+  void give(Write write) {
+    crew_.run([chunk = chunk_, write, &configuration = configuration_,
+               &meter = meter_] { make(*chunk, configuration, meter, write); },
+              kBytesOfVertex * chunk_->vertices);
+  }
+
+  template <class Write>
+  static void make(const Chunk& chunk, const BatchConfiguration& configuration, Meter& meter, const Write& write) {
     const auto start = Clock::now();
     const Part part = part_of(chunk, configuration);
-    ledger.write(path, to_bytes(part));
+    write(to_bytes(part));
     meter.obstacles += part.obstacles;
     meter.vertices += part.vertices;
     meter.nanoseconds_of_jobs +=
         static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count());
+  }
+
+  static void let_go(InputWork& work, const Ledger& ledger) {
+    if (--work.open == 0) ledger.write(work.facts_path, work.facts);
   }
 
   const Input& input_;
@@ -97,6 +131,7 @@ class Chunker {
   Crew& crew_;
   Meter& meter_;
   const InputWatch& watch_;
+  std::shared_ptr<InputWork> work_ = std::make_shared<InputWork>();
   std::shared_ptr<Chunk> chunk_;
   std::size_t next_ = 0;
   std::uint64_t first_ = 0;
@@ -235,7 +270,7 @@ std::string to_json(const InputFacts& facts) {
   return json.end_array().end_object().take();
 }
 
-InputFacts parse_facts(const std::string& text, const std::string& file) {
+InputFacts parse_facts(std::string_view text, const std::string& file) {
   const Json json = parse_json(text, file);
   InputFacts facts;
   try {
@@ -259,6 +294,26 @@ InputFacts parse_facts(const std::string& text, const std::string& file) {
   return facts;
 }
 
+InputRecord read_input_record(const std::filesystem::path& path) {
+  const std::string bytes = read_text_file(path);
+  const std::size_t line = std::min(bytes.find('\n'), bytes.size());
+  InputRecord record;
+  record.facts = parse_facts(std::string_view(bytes).substr(0, line), path.string());
+  if (line + 1 < bytes.size()) record.part = parse_part(std::string_view(bytes).substr(line + 1), path);
+  return record;
+}
+
+bool is_through(const Ledger& ledger, std::size_t number) {
+  const std::filesystem::path path = ledger.input_facts(number);
+  if (!ledger.is_there(path)) return false;
+  const InputRecord record = read_input_record(path);
+  if (record.part) return true;
+  for (std::size_t chunk = 0; chunk < record.facts.chunks; ++chunk) {
+    if (!ledger.is_there(ledger.part(number, chunk))) return false;
+  }
+  return true;
+}
+
 void process_input(const Input& input, std::size_t number, const BatchConfiguration& configuration,
                    std::uint64_t memory_limit, const Ledger& ledger, Crew& crew, Meter& meter,
                    const InputWatch& watch) {
@@ -269,10 +324,9 @@ void process_input(const Input& input, std::size_t number, const BatchConfigurat
   } catch (const Failure& failure) {
     std::rethrow_exception(failure.cause);
   }
-  // Parts of a file that turned out to be broken further on are no results; their number says so.
-  const std::size_t chunks = chunker.finish();
-  facts.chunks = facts.code.empty() || facts.tally.read > 0 ? chunks : 0;
-  ledger.write(ledger.input_facts(number), to_json(facts));
+  // Of a file that turned out to be broken further on nothing is used.
+  const bool with_chunks = facts.code.empty() || facts.tally.read > 0;
+  chunker.finish(std::move(facts), with_chunks);
 }
 
 }  // namespace exactvo::datasets::batch

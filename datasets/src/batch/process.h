@@ -10,10 +10,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "batch/crew.h"
 #include "batch/ledger.h"
+#include "batch/part.h"
 #include "exactvo/datasets/batch.h"
 
 namespace exactvo::datasets::batch {
@@ -34,7 +36,17 @@ struct InputFacts {
 };
 /// One JSON object on one line, and back.
 std::string to_json(const InputFacts& facts);
-InputFacts parse_facts(const std::string& json, const std::string& file);
+InputFacts parse_facts(std::string_view json, const std::string& file);
+
+/// What stands on disk for an input that is through; of one chunk, that chunk as well.
+struct InputRecord {
+  InputFacts facts;
+  std::optional<Part> part;
+};
+InputRecord read_input_record(const std::filesystem::path& path);
+
+/// Whether all of the input's parts and its facts are there.
+bool is_through(const Ledger& ledger, std::size_t number);
 
 /// What the jobs of a run count together.
 struct Meter {
@@ -49,8 +61,8 @@ struct Stopped {};
 /// Asked while an input is read, with the share that is through; false stops: `process_input` throws Stopped.
 using InputWatch = std::function<bool(double share)>;
 
-/// Makes every part of the input that is not there, then its facts. Throws DataError for what is wrong with the output,
-/// never for what is wrong with the input.
+/// Reads the input and has the crew make every part that is not there, then its facts: all is there when the crew has
+/// finished. Throws DataError for what is wrong with the output, never for what is wrong with the input.
 void process_input(const Input& input, std::size_t number, const BatchConfiguration& configuration,
                    std::uint64_t memory_limit, const Ledger& ledger, Crew& crew, Meter& meter, const InputWatch& watch);
 

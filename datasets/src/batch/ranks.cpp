@@ -81,7 +81,7 @@ class Foreman {
         order_(largest_first(session.identity().inputs)),
         at_work_(ranks - 1) {
     const Ledger& ledger = session.ledger();
-    const auto is_there = [&](std::size_t k) { return ledger.is_there(ledger.input_facts(k)); };
+    const auto is_there = [&](std::size_t k) { return is_through(ledger, k); };
     order_.erase(std::remove_if(order_.begin(), order_.end(), is_there), order_.end());
     progress_.inputs = order_.size();
   }
@@ -137,6 +137,7 @@ void work(Session& session) {
     said = kDone;
     try {
       session.process(static_cast<std::size_t>(input));
+      session.wait();
     } catch (const batch::Stopped&) {
       said = kStopped;
     } catch (const DataError& error) {

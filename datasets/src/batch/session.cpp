@@ -108,7 +108,7 @@ bool Session::look(const std::string& doing, double share) {
 
 void Session::process(std::size_t number) {
   const Input& input = identity_.inputs[number];
-  if (!ledger_.is_there(ledger_.input_facts(number))) {
+  if (!is_through(ledger_, number)) {
     const auto share_now = [&](double share) {
       const auto of_input = static_cast<std::uint64_t>(share * static_cast<double>(input.size));
       return share_of(bytes_done_ + of_input, bytes_planned_);
@@ -121,7 +121,12 @@ void Session::process(std::size_t number) {
   bytes_done_ += input.size;
 }
 
+void Session::wait() {
+  crew_.finish();
+}
+
 BatchResult Session::finish() {
+  crew_.finish();
   BatchResult result;
   result.end = BatchEnd::incomplete;
   if (!all_there(ledger_, identity_.inputs.size()) && ledger_.is_open()) return result;

@@ -29,8 +29,10 @@ class Session {
 
   /// Says which inputs are this process's, for progress.
   void plan(std::vector<std::size_t> inputs);
-  /// Makes what is missing of an input. Throws Stopped.
+  /// Reads an input and sets the crew to make what is missing of it. Throws Stopped.
   void process(std::size_t input);
+  /// Until all that was processed is there.
+  void wait();
   /// Puts everything together if all is there and no other process has.
   BatchResult finish();
 

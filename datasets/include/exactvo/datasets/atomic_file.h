@@ -13,6 +13,10 @@
 
 namespace exactvo::datasets {
 
+/// What a crash of the machine may not take: the content of whatever file stands there, or also that it stands there. (A
+/// crash of the program takes neither.)
+enum class Durability { content, name };
+
 /// A file in the making. Nothing stands at `path` until `commit`; without it the temporary file goes with the object.
 class AtomicFile {
  public:
@@ -24,8 +28,8 @@ class AtomicFile {
 
   /// Buffered.
   void write(std::string_view bytes);
-  /// Flushes, syncs, renames, syncs the directory.
-  void commit();
+  /// Flushes, syncs, renames, and syncs the directory as well for Durability::name.
+  void commit(Durability durability = Durability::name);
 
  private:
   void flush();
@@ -40,6 +44,7 @@ class AtomicFile {
 void sync_directory(const std::filesystem::path& directory);
 
 /// The whole content at once.
-void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes,
+                           Durability durability = Durability::name);
 
 }  // namespace exactvo::datasets
