@@ -15,11 +15,13 @@ Verb validate_verb();
 Verb repair_verb();
 Verb convert_verb();
 Verb batch_verb();
+Verb generate_verb();
+Verb segment_verb();
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {simulate_verb(), explain_verb(), paper_verb(), lp_verb(),
-                                        vo_verb(),       audit_verb(),   trap_verb(),  validate_verb(),
-                                        repair_verb(),   convert_verb(), batch_verb()};
+  static const std::vector<Verb> all = {
+      simulate_verb(), explain_verb(), paper_verb(),   lp_verb(),    vo_verb(),       audit_verb(),  trap_verb(),
+      validate_verb(), repair_verb(),  convert_verb(), batch_verb(), generate_verb(), segment_verb()};
   return all;
 }
 

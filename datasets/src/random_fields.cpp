@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "counter_random.h"
+
 namespace exactvo::datasets {
 namespace {
 
@@ -14,34 +16,7 @@ using geometry::Vec2;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// SplitMix64's output function: a bijection that mixes every bit.
-std::uint64_t mixed(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
-
-/// Draw n of field k of a kind and seed: a function of the four numbers alone.
-class Draws {
- public:
-  Draws(FieldKind kind, std::uint64_t k, std::uint64_t seed)
-      : key_(mixed(mixed(seed + static_cast<std::uint64_t>(kind) * kStride) + k * kStride)) {}
-
-  double uniform(double low, double high) {
-    constexpr double kScale = 0x1p-53;
-    return low + (high - low) * static_cast<double>(bits() >> 11) * kScale;
-  }
-  /// Both ends included.
-  int integer(int low, int high) { return std::min(high, low + static_cast<int>(uniform(0.0, high - low + 1))); }
-  bool coin() { return (bits() >> 63) != 0; }
-
- private:
-  static constexpr std::uint64_t kStride = 0x9e3779b97f4a7c15ULL;
-  std::uint64_t bits() { return mixed(key_ + (++count_) * kStride); }
-
-  std::uint64_t key_;
-  std::uint64_t count_ = 0;
-};
+using Draws = CounterRandom;
 
 struct Circle {
   Vec2 centre;
@@ -187,7 +162,7 @@ bool parse(const std::string& text, FieldKind& out) {
 }
 
 Scenario random_field(FieldKind kind, std::uint64_t k, std::uint64_t seed) {
-  Draws draws(kind, k, seed);
+  Draws draws(random_key(static_cast<std::uint64_t>(kind), k, seed));
   Scenario s = kind == FieldKind::formation
                    ? formation_field(draws)
                    : single_robot_field(draws, kind == FieldKind::convex ? regular_polygon : open_wall);

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verbs for obstacle files as a user meets them: validate, repair, convert, generate, segment.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kGood = "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))\n";
+constexpr const char* kClockwise = "POLYGON ((0 0, 0 4, 4 4, 4 0, 0 0))\n";
+constexpr const char* kBowTie = "POLYGON ((10 0, 12 2, 12 0, 10 2, 10 0))\n";
+constexpr const char* kHopeless = "POLYGON ((0 0, 1 0, 0 0))\n";
+
+TEST(Validate, StatusSaysWhetherEverythingCanBeUsed) {
+  const Workplace here;
+  here.write("good.wkt", kGood);
+  here.write("turned.wkt", kClockwise);
+  here.write("bad.wkt", std::string(kGood) + kBowTie);
+  EXPECT_EQ(here.run("validate good.wkt").status, 0);
+  EXPECT_EQ(here.run("validate turned.wkt").status, 0);
+  EXPECT_EQ(here.run("validate --strict turned.wkt").status, 1);
+  EXPECT_EQ(here.run("validate good.wkt bad.wkt").status, 1);
+  EXPECT_EQ(here.run("validate good.wkt nowhere.wkt bad.wkt").status, 2);
+}
+
+TEST(Validate, NamesFileFeatureRingVertexCodeAndCoordinates) {
+  const Workplace here;
+  here.write("bad.wkt", std::string(kGood) + kBowTie);
+  const Outcome text = here.run("validate bad.wkt");
+  EXPECT_THAT(text.out, AllOf(HasSubstr("bad.wkt: line 2, column 1, ring 0, vertex "), HasSubstr("(11, 1)"),
+                              HasSubstr("E_SELF_INTERSECTION")));
+  const Outcome outcome = here.run("validate bad.wkt --json");
+  const json report = json::parse(outcome.out);
+  EXPECT_FALSE(report.at("valid"));
+  const json& file = report.at("files").at(0);
+  EXPECT_EQ(file.at("file"), "bad.wkt");
+  EXPECT_EQ(file.at("verdict"), "invalid");
+  EXPECT_EQ(file.at("counts").at("rejected"), 1);
+  const json& problem = file.at("problems").at(0);
+  EXPECT_EQ(problem.at("code"), "E_SELF_INTERSECTION");
+  EXPECT_EQ(problem.at("feature"), "line 2, column 1");
+  EXPECT_EQ(problem.at("ring"), 0);
+  EXPECT_EQ(problem.at("x"), 11.0);
+  EXPECT_EQ(problem.at("y"), 1.0);
+  EXPECT_FALSE(problem.at("mended"));
+}
+
+TEST(ObstacleVerbs, MistypedWordsAreAnsweredWithTheNearest) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  const std::pair<const char*, const char*> cases[] = {{"validat a.wkt", "'validate'"},
+                                                       {"validate a.wkt --format wktt", "'wkt'"},
+                                                       {"validate a.wkt --units meters", "'metres'"},
+                                                       {"repair a.wkt --out b.wkt --to geojsn", "'geojson'"},
+                                                       {"convert a.wkt b.wkt --from movingai-mapp", "'movingai-map'"},
+                                                       {"convert a.wkt b.wkt --too wkt", "'--to'"},
+                                                       {"generate maz --out b.wkt", "'maze'"},
+                                                       {"segment a.wkt --figur b.svg", "'--figure'"}};
+  for (const auto& [arguments, nearest] : cases) {
+    const Outcome outcome = here.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("did you mean ") + nearest)) << arguments;
+    EXPECT_THAT(outcome.out, IsEmpty()) << arguments;
+  }
+  EXPECT_FALSE(here.has("b.wkt"));
+}
+
+TEST(Repair, WritesWhatIsMendedAndNamesWhatIsNot) {
+  const Workplace here;
+  here.write("bad.wkt", std::string(kGood) + kBowTie + kHopeless);
+  const Outcome outcome = here.run("repair bad.wkt --out mended.wkt --figure mended.svg --json");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  const json file = json::parse(outcome.out).at("files").at(0);
+  EXPECT_EQ(file.at("counts").at("repaired"), 1);
+  EXPECT_EQ(file.at("counts").at("rejected"), 1);
+  const json& bow_tie = file.at("repairs").at(0);
+  EXPECT_EQ(bow_tie.at("codes"), json::array({"E_SELF_INTERSECTION"}));
+  EXPECT_EQ(bow_tie.at("before").at("area"), 0.0);
+  EXPECT_EQ(bow_tie.at("after").at("area"), 2.0);
+  EXPECT_EQ(bow_tie.at("after").at("polygons"), 2);
+  EXPECT_EQ(file.at("repairs").at(1).at("refused"), "E_TOO_FEW_POINTS");
+  EXPECT_TRUE(here.has("mended.dat"));
+  EXPECT_TRUE(here.has("mended.gp"));
+  const Outcome again = here.run("validate --strict mended.wkt");
+  EXPECT_EQ(again.status, 0) << again.out;
+  EXPECT_THAT(again.err, HasSubstr("3 done"));
+}
+
+TEST(Repair, SeveralFilesBecomeOneAndAnUnreadableOneNone) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  here.write("b.wkt", kBowTie);
+  EXPECT_EQ(here.run("repair a.wkt b.wkt --out all.csv").status, 0);
+  EXPECT_THAT(here.read("all.csv"), AllOf(HasSubstr("\"a/1\""), HasSubstr("\"b/1\""), HasSubstr("\"b/1-2\"")));
+  EXPECT_EQ(here.run("repair a.wkt nowhere.wkt --out none.wkt").status, 2);
+  EXPECT_FALSE(here.has("none.wkt"));
+}
+
+TEST(Convert, SaysWhatIsLost) {
+  const Workplace here;
+  here.write("holed.wkt", "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 1 2, 2 2, 1 1))\nPOINT (3 3)\n");
+  const Outcome outcome = here.run("convert holed.wkt out.poly.xml");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 hole filled"), HasSubstr("lost 1 inputs")));
+  here.write("grid.map", "type octile\nheight 2\nwidth 3\nmap\n@..\n@.@\n");
+  const Outcome grid = here.run("convert grid.map grid.geojson");
+  EXPECT_EQ(grid.status, 0) << grid.err;
+  EXPECT_THAT(grid.err, HasSubstr("3 of 6 cells are occupied; they became 2 polygons"));
+}
+
+TEST(Convert, BadObstaclesStopItUnlessMendedOrSkipped) {
+  const Workplace here;
+  here.write("bad.wkt", std::string(kGood) + kBowTie + kHopeless);
+  const Outcome plain = here.run("convert bad.wkt out.wkt");
+  EXPECT_EQ(plain.status, 2);
+  EXPECT_THAT(plain.err, AllOf(HasSubstr("E_SELF_INTERSECTION"), HasSubstr("--repair")));
+  EXPECT_FALSE(here.has("out.wkt"));
+  EXPECT_EQ(here.run("convert bad.wkt out.wkt --skip").status, 1);
+  EXPECT_EQ(here.read("out.wkt"), kGood);
+  EXPECT_EQ(here.run("convert bad.wkt out.wkt --skip --repair").status, 1);
+  EXPECT_NE(here.read("out.wkt"), kGood);
+}
+
+TEST(Convert, AnUnwritablePlaceLeavesNothing) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  here.write("file", "");
+  const Outcome outcome = here.run("convert a.wkt file/out.wkt");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("E_FILE_UNWRITABLE"));
+  EXPECT_EQ(here.run("convert a.wkt /dev/null/x.wkt").status, 2);
+  EXPECT_EQ(here.run("convert a.wkt out.dwg").status, 2);
+  EXPECT_EQ(here.files(".").size(), 4u);  // the two above, .stdout, .stderr
+}
+
+TEST(Generate, TheSameSeedGivesTheSameFile) {
+  const Workplace here;
+  EXPECT_THAT(here.run("generate --list").out, AllOf(HasSubstr("maze"), HasSubstr("needle"), HasSubstr("field-open")));
+  EXPECT_EQ(here.run("generate star --seed 5 --count 20 --out a.wkt").status, 0);
+  EXPECT_EQ(here.run("generate star --seed 5 --count 20 --out b.wkt").status, 0);
+  EXPECT_EQ(here.run("generate star --seed 6 --count 20 --out c.wkt").status, 0);
+  EXPECT_EQ(here.read("a.wkt"), here.read("b.wkt"));
+  EXPECT_NE(here.read("a.wkt"), here.read("c.wkt"));
+  EXPECT_EQ(here.run("generate star --count 0 --out d.wkt").status, 2);
+  EXPECT_EQ(here.run("generate star --seed -1 --out d.wkt").status, 2);
+  EXPECT_EQ(here.run("generate star").status, 2);
+  EXPECT_FALSE(here.has("d.wkt"));
+}
+
+TEST(Segment, RecordsFeaturesAndAFigure) {
+  const Workplace here;
+  here.write("ell.wkt", "POLYGON ((0 0, 4 0, 4 1, 1 1, 1 4, 0 4, 0 0))\nLINESTRING (10 0, 10 5, 15 5)\n");
+  const Outcome outcome = here.run("segment ell.wkt --json --out shapes.geojson --figure shapes.svg");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json ell = json::parse(outcome.out.substr(0, outcome.out.find('\n')));
+  EXPECT_EQ(ell.at("facades_count"), 6);
+  EXPECT_EQ(ell.at("pieces_count"), 2);
+  EXPECT_TRUE(here.has("shapes.gp"));
+  std::size_t facades = 0;
+  const json collection = json::parse(here.read("shapes.geojson"));
+  for (const json& feature : collection.at("features")) {
+    EXPECT_TRUE(feature.at("properties").at("certified"));
+    facades += feature.at("properties").at("shape") == "facade" ? 1 : 0;
+  }
+  EXPECT_EQ(facades, 6u + 2u);
+  EXPECT_EQ(here.run("segment ell.wkt --out shapes.jsonl").status, 0);
+  EXPECT_EQ(here.read("shapes.jsonl"), outcome.out);
+}
+
+TEST(Segment, WhatCannotBeUsedIsNamed) {
+  const Workplace here;
+  here.write("bad.wkt", std::string(kGood) + kBowTie);
+  const Outcome outcome = here.run("segment bad.wkt");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("E_SELF_INTERSECTION"));
+  EXPECT_EQ(here.run("segment bad.wkt --repair").status, 0);
+  EXPECT_EQ(here.run("segment bad.wkt --tolerance -1").status, 2);
+  EXPECT_EQ(here.run("segment bad.wkt --out x.txt").status, 2);
+  EXPECT_EQ(here.run("segment nowhere.wkt").status, 2);
+}
+
+}  // namespace
+}  // namespace exactvo::test

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/map_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "figures/outlines.h"
+#include "figures/style.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+using geometry::ObstacleShapes;
+using geometry::Polygon;
+using geometry::Polyline;
+using geometry::Ring;
+
+/// One closed path: the outer ring with each hole tied to it by a bridge walked there and back, which no filling shows.
+Points tied_together(const Polygon& polygon) {
+  Points path = polygon.outer;
+  path.push_back(path.front());
+  for (const Ring& hole : polygon.holes) {
+    path.insert(path.end(), hole.begin(), hole.end());
+    path.push_back(hole.front());
+    path.push_back(path.front());
+  }
+  return path;
+}
+
+class Map {
+ public:
+  /// Every point drawn belongs to the view.
+  void curves(const std::string& title, const std::vector<Points>& curves, const std::string& style, bool closed,
+              bool in_key = true) {
+    if (curves.empty()) return;
+    const int index = data_.begin(title, "x, y [m]");
+    for (const Points& curve : curves) {
+      for (const Vec2 p : curve) {
+        data_.row({p.x, p.y});
+        view_.add(p);
+      }
+      if (closed && !curve.empty()) data_.row({curve.front().x, curve.front().y});
+      data_.gap();
+    }
+    plot_.data(index, "using 1:2 " + style, in_key ? title : "");
+  }
+
+  Figure figure(const std::string& title, const std::string& name) const {
+    const double half = 0.53 * std::max({view_.width(), view_.height(), 1e-6});
+    const Vec2 middle = 0.5 * (view_.low + view_.high);
+    const bool is_wide = view_.width() > view_.height();
+    const double half_x = is_wide ? half : std::max(0.53 * view_.width(), 0.3 * half);
+    const double half_y = is_wide ? std::max(0.53 * view_.height(), 0.3 * half) : half;
+    const double width_of_title = 700.0;
+    const std::string body = fmt::format(
+        "  set title {}\n  set size ratio -1\n  set xrange [{:.9g}:{:.9g}]\n  set yrange [{:.9g}:{:.9g}]\n"
+        "  set xlabel 'x [m]'\n  set ylabel 'y [m]'\n  set tics font ',11'\n  set grid lc rgb '#e9e9e9'\n"
+        "  set key outside right top reverse Left samplen 3\n{}",
+        quoted(shortened(title, characters_in(width_of_title))), middle.x - half_x, middle.x + half_x,
+        middle.y - half_y, middle.y + half_y, plot_.text());
+    return {name, data_.text(), script_text(name, title + ".", {1000, 720}, body)};
+  }
+
+ private:
+  DataFile data_;
+  PlotCommand plot_;
+  Box view_;
+};
+
+struct Outlines {
+  std::vector<Points> solids, rings, walls;
+
+  void add(const geometry::Obstacle& obstacle) {
+    if (const auto* line = std::get_if<Polyline>(&obstacle)) return walls.push_back(line->points);
+    const auto& polygon = std::get<Polygon>(obstacle);
+    solids.push_back(tied_together(polygon));
+    rings.push_back(polygon.outer);
+    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  }
+};
+
+std::string solid_fill() {
+  return fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", kObstacleFill);
+}
+std::string line(double width, const std::string& colour, const std::string& dash = "") {
+  return fmt::format("with lines lw {} lc rgb '{}'{}", width, colour, dash);
+}
+
+void draw_obstacles(const Outlines& outlines, bool with_edges, Map& map) {
+  map.curves("solid", outlines.solids, solid_fill(), true);
+  if (with_edges) map.curves("edges", outlines.rings, line(1, kObstacleLine), true, false);
+  map.curves("walls", outlines.walls, line(2.5, kObstacleLine), false);
+}
+
+std::vector<Points> pieces_with_inside(const ObstacleShapes& shapes) {
+  std::vector<Points> pieces;
+  for (const geometry::ConvexShape& piece : shapes.pieces) {
+    Points ring = outline(piece);
+    if (ring.size() > 2) pieces.push_back(std::move(ring));
+  }
+  return pieces;
+}
+
+/// Neighbouring pieces in different colours, as far as taking turns does that.
+void draw_pieces(const std::vector<ObstacleShapes>& obstacles, Map& map) {
+  constexpr std::size_t kColours = 4;
+  std::vector<std::vector<Points>> by_colour(kColours);
+  for (const ObstacleShapes& shapes : obstacles) {
+    const std::vector<Points> pieces = pieces_with_inside(shapes);
+    for (std::size_t k = 0; k < pieces.size(); ++k) by_colour[k % kColours].push_back(pieces[k]);
+  }
+  bool in_key = true;
+  for (std::size_t k = 0; k < kColours; ++k) {
+    map.curves("convex pieces", by_colour[k],
+               fmt::format("with filledcurves closed fs transparent solid 0.22 border lc rgb '#8a919c' fc rgb '{}'",
+                           series_colour(k + 1)),
+               true, in_key);
+    in_key = in_key && by_colour[k].empty();
+  }
+}
+
+template <class Pick>
+std::vector<Points> gathered(const std::vector<ObstacleShapes>& obstacles, const Pick& pick) {
+  std::vector<Points> curves;
+  for (const ObstacleShapes& shapes : obstacles) pick(shapes, curves);
+  return curves;
+}
+
+}  // namespace
+
+Figure map_figure(const std::vector<formation::SceneObstacle>& obstacles, const std::string& title,
+                  const std::string& name) {
+  Map map;
+  Outlines outlines;
+  for (const formation::SceneObstacle& o : obstacles) outlines.add(o.shape);
+  draw_obstacles(outlines, true, map);
+  return map.figure(title, name);
+}
+
+Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::string& title, const std::string& name) {
+  Map map;
+  Outlines outlines;
+  for (const ObstacleShapes& shapes : obstacles) outlines.add(shapes.obstacle);
+  draw_obstacles(outlines, false, map);
+  draw_pieces(obstacles, map);
+  map.curves("facade ellipses",
+             gathered(obstacles,
+                      [](const ObstacleShapes& s, std::vector<Points>& out) {
+                        for (const geometry::FacadeEnclosure& e : s.facade_ellipses) out.push_back(outline(e.ellipse));
+                      }),
+             line(0.8, "#56B4E9"), true);
+  map.curves(
+      "hulls",
+      gathered(obstacles, [](const ObstacleShapes& s, std::vector<Points>& out) { out.push_back(s.hull.vertices); }),
+      line(1.6, "#009E73", " dt (8,5)"), true);
+  map.curves("smallest ellipses",
+             gathered(obstacles, [](const ObstacleShapes& s,
+                                    std::vector<Points>& out) { out.push_back(outline(s.smallest_ellipse)); }),
+             line(1.8, "#0072B2"), true);
+  map.curves("trap-free ellipses",
+             gathered(obstacles,
+                      [](const ObstacleShapes& s, std::vector<Points>& out) {
+                        if (s.trap_free.ellipse) out.push_back(outline(*s.trap_free.ellipse));
+                      }),
+             line(1.8, "#CC79A7", " dt (3,3)"), true);
+  map.curves("facades",
+             gathered(obstacles,
+                      [](const ObstacleShapes& s, std::vector<Points>& out) {
+                        for (const geometry::Segment& f : s.facades.facades) out.push_back({f.a, f.b});
+                      }),
+             "with linespoints lw 2.2 pt 7 ps 0.35 lc rgb '#D55E00'", false);
+  return map.figure(title, name);
+}
+
+}  // namespace exactvo::tools

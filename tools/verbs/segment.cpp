@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo segment: obstacles taken apart: facades, convex pieces, hulls, ellipses, each with its certificate.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/obstacle_record.h"
+#include "exactvo/geometry/obstacle_shapes.h"
+#include "figures/outlines.h"
+#include "support/escape.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/figure_file.h"
+#include "verbs/map_figure.h"
+#include "verbs/obstacle_files.h"
+
+namespace exactvo::tools {
+
+using geometry::ObstacleShapes;
+using geometry::Vec2;
+
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  ReadingFlags reading;
+  double tolerance = 0.0;
+  double radius = 0.0;
+  bool repair = false;
+  bool json = false;
+  std::string out, figure;
+};
+
+struct TakenApart {
+  datasets::RecordHead head;
+  ObstacleShapes shapes;
+};
+
+// --- The work ---
+
+void check(const Flags& flags) {
+  const auto need_length = [](const char* option, double value) {
+    if (!(value >= 0.0) || std::isinf(value))
+      throw UsageError(option, fmt::format("{}", value), "a length in m, from 0 on");
+  };
+  need_length("--tolerance", flags.tolerance);
+  need_length("--radius", flags.radius);
+  check_figure_name(flags.figure);
+  const std::string extension = std::filesystem::path(flags.out).extension().string();
+  if (!flags.out.empty() && extension != ".jsonl" && extension != ".geojson")
+    throw UsageError("--out", flags.out, "a name that ends in .jsonl or .geojson");
+}
+
+std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const Flags& flags) {
+  geometry::ShapeOptions options;
+  options.facades.tolerance = flags.tolerance;
+  options.robot_radius = flags.radius;
+  options.check_validity = false;  // the reader did
+  std::vector<TakenApart> all;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    for (const formation::SceneObstacle& o : answer.content->obstacles) {
+      if (interrupted()) throw Interrupted();
+      all.push_back({{answer.file, o.id, "done"}, geometry::shapes_of(o.shape, options)});
+    }
+  }
+  return all;
+}
+
+// --- Records and features ---
+
+std::string records(const std::vector<TakenApart>& all) {
+  std::string text;
+  for (const TakenApart& t : all) text += datasets::to_json(t.head, t.shapes) + "\n";
+  return text;
+}
+
+OrderedJson positions(const Points& points) {
+  OrderedJson list = OrderedJson::array();
+  for (const Vec2 p : points) list.push_back({p.x, p.y});
+  return list;
+}
+
+OrderedJson ring_geometry(Points ring) {
+  if (ring.size() == 1) return {{"type", "Point"}, {"coordinates", positions(ring)[0]}};
+  if (ring.size() == 2) return {{"type", "LineString"}, {"coordinates", positions(ring)}};
+  ring.push_back(ring.front());
+  return {{"type", "Polygon"}, {"coordinates", OrderedJson::array({positions(ring)})}};
+}
+
+class Features {
+ public:
+  void add(const TakenApart& t) {
+    const ObstacleShapes& s = t.shapes;
+    for (const geometry::Segment& f : s.facades.facades)
+      feature(t, "facade", s.facades_follow, {{"type", "LineString"}, {"coordinates", positions({f.a, f.b})}});
+    for (const geometry::ConvexShape& piece : s.pieces)
+      feature(t, "piece", s.pieces_cover, ring_geometry(outline(piece)));
+    feature(t, "hull", s.hull_contains, ring_geometry(s.hull.vertices));
+    feature(t, "smallest ellipse", s.ellipse_contains, ring_geometry(outline(s.smallest_ellipse)));
+    for (const geometry::FacadeEnclosure& e : s.facade_ellipses)
+      feature(t, "facade ellipse", s.facade_ellipses_contain, ring_geometry(outline(e.ellipse)));
+    if (s.trap_free.ellipse)
+      feature(t, "trap-free ellipse", s.trap_free_contains, ring_geometry(outline(*s.trap_free.ellipse)));
+  }
+  std::string text() const { return text_of({{"type", "FeatureCollection"}, {"units", "m"}, {"features", features_}}); }
+
+ private:
+  void feature(const TakenApart& t, const char* what, const geometry::Verdict& verdict, OrderedJson shape) {
+    OrderedJson properties;
+    properties["file"] = t.head.file;
+    properties["id"] = t.head.id;
+    properties["shape"] = what;
+    properties["certified"] = verdict.certified;
+    OrderedJson feature;
+    feature["type"] = "Feature";
+    feature["properties"] = properties;
+    feature["geometry"] = std::move(shape);
+    features_.push_back(std::move(feature));
+  }
+
+  OrderedJson features_ = OrderedJson::array();
+};
+
+void write_out(const std::vector<TakenApart>& all, const std::string& out) {
+  if (std::filesystem::path(out).extension() == ".jsonl") return datasets::write_file_atomically(out, records(all));
+  Features features;
+  for (const TakenApart& t : all) features.add(t);
+  datasets::write_file_atomically(out, features.text());
+}
+
+// --- Words ---
+
+const char* word(const geometry::Verdict& verdict) {
+  return verdict.certified ? "certified" : "NOT certified";
+}
+
+std::string words_of(const TakenApart& t) {
+  const ObstacleShapes& s = t.shapes;
+  const geometry::ShapeFigures& f = s.figures;
+  return fmt::format(
+      "{} {}: {} vertices, {:.6g} m^2; {} facades within {:.3g} m ({}), {} pieces ({}), hull {:.6g} m^2 ({}), "
+      "ellipse {:.6g} m^2 ({}), facade ellipses ({}), trap-free {}\n",
+      shown(t.head.file), shown(t.head.id), f.vertices, f.area, s.facades.facades.size(), s.facades.deviation,
+      word(s.facades_follow), s.pieces.size(), word(s.pieces_cover), f.hull_area, word(s.hull_contains), f.ellipse_area,
+      word(s.ellipse_contains), word(s.facade_ellipses_contain),
+      s.trap_free.ellipse ? fmt::format("{:.6g} m^2 ({})", f.trap_free_area, word(s.trap_free_contains)) : "none");
+}
+
+std::string title_of(const std::vector<std::string>& files, std::size_t obstacles) {
+  const std::string name = std::filesystem::path(files.front()).filename().string();
+  return fmt::format("{}{}: {} obstacle{}", name, files.size() > 1 ? " and others" : "", obstacles,
+                     obstacles == 1 ? "" : "s");
+}
+
+void draw_figure(const std::vector<TakenApart>& all, const Flags& flags) {
+  if (all.empty()) return message("no figure: no obstacle");
+  std::vector<ObstacleShapes> shapes;
+  for (const TakenApart& t : all) shapes.push_back(t.shapes);
+  write_figure(
+      shapes_figure(shapes, title_of(flags.files, all.size()), std::filesystem::path(flags.figure).stem().string()),
+      flags.figure);
+}
+
+// --- The verb ---
+
+ExitCode exit_code(const std::vector<FileAnswer>& answers, const std::vector<TakenApart>& all) {
+  const bool all_read = std::all_of(answers.begin(), answers.end(), [](const FileAnswer& a) { return a.is_whole(); });
+  const bool proved = std::all_of(all.begin(), all.end(), [](const TakenApart& t) { return t.shapes.certified(); });
+  return all_read && proved ? ExitCode::success : ExitCode::negative;
+}
+
+ExitCode segment(const Flags& flags) {
+  check(flags);
+  datasets::ReadOptions reading = reading_options(flags.reading);
+  reading.repair = flags.repair;
+  const std::vector<FileAnswer> answers = read_each(flags.files, reading);
+  for (const FileAnswer& answer : answers) {
+    if (answer.error) throw datasets::DataError(*answer.error);
+    for (const datasets::DataError& error : answer.content->rejected) message(std::string("left out: ") + error.what());
+  }
+  const std::vector<TakenApart> all = take_apart(answers, flags);
+  if (!flags.out.empty()) write_out(all, flags.out);
+  if (!flags.figure.empty()) draw_figure(all, flags);
+  if (flags.json) print(records(all));
+  if (!flags.json && flags.out.empty()) {
+    for (const TakenApart& t : all) print(words_of(t));
+  }
+  return exit_code(answers, all);
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
+  declare_reading_flags(app, flags->reading);
+  app.add_option("--tolerance", flags->tolerance, "Facades may stray from the obstacle by this much, m");
+  app.add_option("--radius", flags->radius, "Of the robot, for clearances by equation (8), m");
+  app.add_flag("--repair", flags->repair, "Mend what can be mended first");
+  app.add_flag("--json", flags->json, "One record an obstacle on stdout, a line each");
+  app.add_option("--out", flags->out, "FILE.jsonl: the records; FILE.geojson: every shape as a feature");
+  app.add_option("--figure", flags->figure, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
+  return [flags] { return segment(*flags); };
+}
+
+}  // namespace
+
+Verb segment_verb() {
+  return {"segment", "Take obstacles apart: facades, convex pieces, hulls, ellipses, with certificates",
+          "  exactvo segment floor.geojson --figure floor.svg\n"
+          "  exactvo segment city.gpkg --repair --tolerance 0.1 --out city.jsonl\n"
+          "    (status 1: an obstacle could not be used, or something is not certified)\n",
+          declare};
+}
+
+}  // namespace exactvo::tools
