@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/vo/lp/batch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <vector>
 
 #include "batch_layout.h"
 #include "exactvo/geometry/require.h"
@@ -13,40 +17,28 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "batch_pack.h"
+#include "batch_conveyor.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
 
-/// Called for problem i that the walk could not settle or prove; true where exact arithmetic was needed.
-template <class T>
-using Leftover = bool (*)(const BatchProblems<T>&, const BatchAnswers<T>&, std::size_t);
-
-template <class D, class T>
-HWY_INLINE BatchCounts run_pack(D d, const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t at,
-                                Leftover<T> leftover) {
-  std::uint64_t lanes = Walk<D>(d, in, at).run(out);
-  BatchCounts count;
-  for (std::size_t lane = 0; lanes != 0; ++lane, lanes >>= 1) {
-    if ((lanes & 1U) == 0) continue;
-    count.exact += leftover(in, out, at + lane);
-    ++count.scalar;
-  }
-  return count;
-}
-
 template <class T>
 BatchCounts run_range(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t first, std::size_t last,
                       Leftover<T> leftover) {
-  const hn::ScalableTag<T> wide;
-  const hn::CappedTag<T, 1> single;
-  BatchCounts left_over;
-  const auto add = [&](BatchCounts more) { left_over.scalar += more.scalar, left_over.exact += more.exact; };
-  std::size_t at = first;
-  for (; at < last && at % hn::Lanes(wide) != 0; ++at) add(run_pack(single, in, out, at, leftover));
-  for (; at + hn::Lanes(wide) <= last; at += hn::Lanes(wide)) add(run_pack(wide, in, out, at, leftover));
-  for (; at < last; ++at) add(run_pack(single, in, out, at, leftover));
-  return left_over;
+  using D = hn::ScalableTag<T>;
+  const auto run = [&](auto hard, auto prove, auto active) {
+    using Here = Conveyor<D, decltype(hard)::value, decltype(prove)::value, decltype(active)::value>;
+    return Here(in, out, leftover, conveyor_memory<T>(Here::memory(in.lines))).run(first, last);
+  };
+  const auto with_active = [&](auto hard, auto prove) {
+    return out.active ? run(hard, prove, std::true_type()) : run(hard, prove, std::false_type());
+  };
+  const auto with_hard = [&](auto prove) {
+    return in.hard ? with_active(std::true_type(), prove) : with_active(std::false_type(), prove);
+  };
+  if constexpr (sizeof(T) == 8)
+    if (out.proven) return with_hard(std::true_type());
+  return with_hard(std::false_type());
 }
 
 BatchCounts run_double(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,
@@ -65,8 +57,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
-
-#include <cstring>
 
 namespace exactvo::lp {
 

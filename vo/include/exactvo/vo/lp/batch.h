@@ -7,7 +7,7 @@
 /// The same walk as the scalar solver: the most violated line enters, the optimum of the few lines in hand follows.
 /// Lanes never mix and no operation is fused, so in double every target and every number of threads gives the same
 /// bits. Rounded inward like `solve`; a verdict is heuristic in the last digits. Lanes that the lockstep walk cannot
-/// settle (a hard line entering the fallback, too many rounds, contradicting hard lines) go to the scalar solver.
+/// settle (too many rounds, contradicting hard lines) go to the scalar solver.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +20,7 @@ namespace exactvo::lp {
 ///   [(i / block) * block * lines + k * block + i % block],
 /// so that neighbours share a register. Blocks of 16 or 32 keep a problem's lines in few pages and are fastest; one
 /// block for all (block >= count) is the plain structure of arrays, whose lines should not lie a power of two apart.
+/// Arrays that begin at a multiple of 64 bytes are read at full width, others at about half of it.
 /// Nothing is copied. Problems with fewer lines are padded with lines that always hold: normal (1, 0), offset -1e30.
 template <class T>
 struct BatchProblems {
@@ -42,7 +43,7 @@ template <class T>
 struct BatchAnswers {
   T* velocity_x = nullptr;  ///< m/s, [i]
   T* velocity_y = nullptr;
-  T* violation = nullptr;          ///< m/s, [i], as Solution::violation
+  T* violation = nullptr;          ///< m/s, [i], as Solution::violation, up to 8 u disc
   std::uint8_t* status = nullptr;  ///< [i], a Status
   std::int32_t* active = nullptr;  ///< [3 * stride], line indices or kNoLine; may be null
   std::size_t stride = 0;

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How packs of problems travel. A round is a chain of divisions and comparisons that a processor cannot look past, so
+// some packs make each round together: the gaps of one are filled by the others. Both walks go on side by side in a
+// pack, each lane on its own; what it computes does not depend on its company. Compiled once a SIMD target, hence the
+// toggling guard.
+#if defined(EXACTVO_BATCH_CONVEYOR_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef EXACTVO_BATCH_CONVEYOR_H
+#undef EXACTVO_BATCH_CONVEYOR_H
+#else
+#define EXACTVO_BATCH_CONVEYOR_H
+#endif
+
+#include "batch_pool.h"
+#include "batch_proof.h"
+#include "batch_relax.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace exactvo::lp::HWY_NAMESPACE {
+
+/// Called for problem i that the walk could not settle or prove; true where exact arithmetic was needed.
+template <class T>
+using Leftover = bool (*)(const BatchProblems<T>&, const BatchAnswers<T>&, std::size_t);
+
+template <class D, bool kHard, bool kProve, bool kActive>
+class Conveyor {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using U = hwy::MakeUnsigned<T>;
+
+ public:
+  /// How many numbers of memory a conveyor wants.
+  static std::size_t memory(std::size_t lines) { return Pool<D>::numbers(lines) + stage_numbers(lines); }
+
+  Conveyor(const BatchProblems<T>& in, const BatchAnswers<T>& out, Leftover<T> leftover, T* memory)
+      : in_(in), out_(out), leftover_(leftover), rare_(memory, in.lines), stage_(memory + Pool<D>::numbers(in.lines)) {}
+
+  BatchCounts run(std::size_t first, std::size_t last) {
+    std::size_t at = first;
+    const std::size_t ragged = std::min(last, (first + kLanes - 1) / kLanes * kLanes);
+    if (at < ragged) run_copied(at, ragged - at), at = ragged;
+    while (at + kLanes <= last) {
+      const std::size_t packs = std::min(kPacks, (last - at) / kLanes);
+      run_in_place(at, packs);
+      at += packs * kLanes;
+    }
+    if (at < last) run_copied(at, last - at);
+    descend();
+    return counts_;
+  }
+
+ private:
+  static constexpr std::size_t kLanes = hn::MaxLanes(D());
+
+  static std::size_t stage_numbers(std::size_t lines) { return (3 * lines + 4) * kLanes; }
+
+  /// A pack on its way.
+  struct Way {
+    Pack<D> pack;
+    Rows<T> rows;
+    M lanes;     ///< that hold a problem
+    M walking;   ///< still on the first walk
+    M relaxing;  ///< still on the second walk
+    M gone;      ///< handed over: their answers come from elsewhere
+    int rounds;
+
+    HWY_INLINE void begin(M which) {
+      lanes = walking = which;
+      relaxing = gone = pack.none();
+      rounds = 0;
+    }
+    HWY_INLINE bool busy() const { return !hn::AllFalse(D(), hn::Or(walking, relaxing)); }
+  };
+
+  using Ways = Way[kPacks];
+
+  template <class Do>
+  static HWY_INLINE void for_all(Ways& ways, std::size_t packs, Do what) {
+    for (std::size_t k = 0; k < packs; ++k) what(ways[k]);
+  }
+
+  /// Packs from `at` on, where they lie.
+  void run_in_place(std::size_t at, std::size_t packs) {
+    Ways ways;
+    for (std::size_t k = 0; k < packs; ++k) load(at + k * kLanes, ways[k]);
+    solve(ways, packs);
+    for (std::size_t k = 0; k < packs; ++k) finish(ways[k], at + k * kLanes);
+    if (rare_.size() >= kLanes) descend();
+  }
+
+  /// Two rounds, with no line and with one in hand, then as many as it takes.
+  HWY_INLINE void solve(Ways& ways, std::size_t packs) {
+    for_all(ways, packs, [](Way& w) {
+      w.pack.derive();
+      w.pack.start();
+    });
+    for_all(ways, packs, [this](Way& w) { look(w); });
+    for_all(ways, packs, [this](Way& w) { walk<0>(w); });
+    for_all(ways, packs, [this](Way& w) { look(w); });
+    for_all(ways, packs, [this](Way& w) { walk<1>(w); });
+    for_all(ways, packs, [this](Way& w) { look(w); });
+    Way* busy[kPacks];
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < packs; ++k) {
+      busy[count] = ways + k;
+      count += ways[k].busy();
+    }
+    while (count > 0) {
+      for (std::size_t k = 0; k < count; ++k) walk<2>(*busy[k]);
+      for (std::size_t k = 0; k < count; ++k) relax(*busy[k]);
+      for (std::size_t k = 0; k < count; ++k) look(*busy[k]);
+      std::size_t left = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        busy[left] = busy[k];
+        left += busy[k]->busy();
+      }
+      count = left;
+    }
+  }
+
+  /// What is violated now, and by that who goes on.
+  HWY_INLINE void look(Way& way) {
+    price<kHard, kHard || kActive>(way.rows, way.pack);
+    way.walking = hn::And(way.walking, way.pack.violated);
+    way.relaxing = hn::And(way.relaxing, way.pack.violated);
+    if (++way.rounds < kMostLockstepRounds) return;
+    const M old = hn::Or(way.walking, way.relaxing);
+    way.walking = way.relaxing = way.pack.none();
+    way.gone = hn::Or(way.gone, old);
+    leave(way.pack, old);
+  }
+
+  /// A round of the first walk; the lanes that contradict begin the second.
+  template <int kKept>
+  HWY_INLINE void walk(Way& way) {
+    if (kKept > 1 && hn::AllFalse(D(), way.walking)) return;
+    const M contradict = step<kKept>(way.pack, way.walking);
+    if (hn::AllFalse(D(), contradict)) return;
+    way.walking = hn::AndNot(contradict, way.walking);
+    way.pack.third = pick(contradict, way.pack.entering, way.pack.third);
+    start_relaxing(way.pack, contradict);
+    const M ready = hn::And(contradict, surround_zero(way.pack));
+    way.relaxing = hn::Or(way.relaxing, ready);
+    way.pack.relaxing = hn::Or(way.pack.relaxing, ready);
+    set_aside(way, hn::AndNot(ready, contradict));
+  }
+
+  /// A round of the second walk.
+  HWY_INLINE void relax(Way& way) {
+    if (hn::AllFalse(D(), way.relaxing)) return;
+    const M other = pivot<kHard>(way.pack, way.relaxing);
+    way.relaxing = hn::AndNot(other, way.relaxing);
+    set_aside(way, other);
+  }
+
+  /// Lanes whose second walk needs more than three soft planes.
+  HWY_INLINE void set_aside(Way& way, M which) {
+    if (hn::AllFalse(D(), which)) return;
+    way.gone = hn::Or(way.gone, which);
+    rare_.push(way.pack, which, way.rows);
+  }
+
+  HWY_INLINE void load(std::size_t at, Way& way) const {
+    const D d;
+    const std::size_t start = first_line_of(in_, at);
+    way.rows = {in_.normal_x + start, in_.normal_y + start, in_.offset + start, in_.block, in_.lines};
+    Pack<D>& p = way.pack;
+    p.px = hn::LoadU(d, in_.preferred_x + at);
+    p.py = hn::LoadU(d, in_.preferred_y + at);
+    p.speed = hn::LoadU(d, in_.disc + at);
+    p.hard_count = hn::Zero(d);
+    if (kHard) p.hard_count = load_counts(in_.hard + at);
+    p.id = hn::Iota(hn::RebindToUnsigned<D>(), static_cast<U>(at));
+    way.begin(hn::FirstN(d, kLanes));
+  }
+
+  static HWY_INLINE V load_counts(const std::int32_t* counts) {
+    const D d;
+    const auto integers = hn::LoadU(hn::Rebind<std::int32_t, D>(), counts);
+    if constexpr (sizeof(T) == 8)
+      return hn::PromoteTo(d, integers);
+    else
+      return hn::ConvertTo(d, integers);
+  }
+
+  /// Less than a pack, at an end of the range: copied, so that nothing beyond is read. The lanes left over repeat one.
+  void run_copied(std::size_t at, std::size_t count) {
+    const D d;
+    const std::size_t state = 3 * in_.lines * kLanes;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t i = at + std::min(lane, count - 1), line = first_line_of(in_, i);
+      for (std::size_t k = 0; k < in_.lines; ++k) {
+        stage_[3 * k * kLanes + lane] = in_.normal_x[line + k * in_.block];
+        stage_[(3 * k + 1) * kLanes + lane] = in_.normal_y[line + k * in_.block];
+        stage_[(3 * k + 2) * kLanes + lane] = in_.offset[line + k * in_.block];
+      }
+      stage_[state + lane] = in_.preferred_x[i];
+      stage_[state + kLanes + lane] = in_.preferred_y[i];
+      stage_[state + 2 * kLanes + lane] = in_.disc[i];
+      stage_[state + 3 * kLanes + lane] = kHard ? static_cast<T>(in_.hard[i]) : T(0);
+    }
+    Ways ways;
+    Pack<D>& p = ways[0].pack;
+    p.px = hn::LoadU(d, stage_ + state);
+    p.py = hn::LoadU(d, stage_ + state + kLanes);
+    p.speed = hn::LoadU(d, stage_ + state + 2 * kLanes);
+    p.hard_count = hn::LoadU(d, stage_ + state + 3 * kLanes);
+    p.id = hn::Iota(hn::RebindToUnsigned<D>(), static_cast<U>(at));
+    ways[0].rows = {stage_, stage_ + kLanes, stage_ + 2 * kLanes, 3 * kLanes, in_.lines};
+    ways[0].begin(hn::FirstN(d, count));
+    solve(ways, 1);
+    finish_some(p, hn::AndNot(ways[0].gone, ways[0].lanes));
+    descend();
+  }
+
+  /// All that waits for the general second walk.
+  void descend() {
+    const D d;
+    const std::size_t size = rare_.size();
+    rare_.clear();
+    for (std::size_t from = 0; from < size; from += kLanes) {
+      const M lanes = hn::FirstN(d, std::min(kLanes, size - from));
+      Pack<D> p;
+      rare_.load(from, p);
+      Descent<D> descent(p);
+      descent.template run<kHard, kHard || kActive>(rare_.rows(from), lanes);
+      finish_some(p, hn::AndNot(descent.unsettled, lanes));
+      leave(p, hn::And(descent.unsettled, lanes));
+    }
+  }
+
+  void leave(const Pack<D>& p, M which) {
+    if (hn::AllFalse(p.d, which)) return;
+    HWY_ALIGN U ids[kLanes];
+    hn::Store(p.id, hn::RebindToUnsigned<D>(), ids);
+    for (std::uint64_t bits = bits_of(p.d, which); bits != 0; bits &= bits - 1) {
+      counts_.exact += leftover_(in_, out_, static_cast<std::size_t>(ids[hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)]));
+      ++counts_.scalar;
+    }
+  }
+
+  /// The answers of a pack in their places, all at once; those of lanes that are gone have come or come later, in which
+  /// case they are written over.
+  HWY_INLINE void finish(Way& way, std::size_t at) {
+    const D d;
+    const Pack<D>& p = way.pack;
+    const M done = hn::AndNot(way.gone, way.lanes);
+    if (!hn::AllTrue(d, done)) return finish_some(p, done);
+    hn::StoreU(p.vx, d, out_.velocity_x + at);
+    hn::StoreU(p.vy, d, out_.velocity_y + at);
+    hn::StoreU(violation(p), d, out_.violation + at);
+    const std::uint64_t relaxed = bits_of(d, p.relaxing);
+    if (relaxed == 0)
+      std::memset(out_.status + at, 0, kLanes);
+    else
+      for (std::size_t lane = 0; lane < kLanes; ++lane) out_.status[at + lane] = relaxed >> lane & 1U;
+    if (kActive) put_active(p, done);
+    if (!kProve) return;
+    std::memset(out_.proven + at, 1, kLanes);
+    leave_unproven(p, done);
+  }
+
+  static HWY_INLINE V violation(const Pack<D>& p) {
+    return hn::IfThenElseZero(p.relaxing, hn::Max(p.level, hn::Zero(D())));
+  }
+
+  void finish_some(const Pack<D>& p, M done) {
+    const D d;
+    HWY_ALIGN T x[kLanes], y[kLanes], by[kLanes];
+    HWY_ALIGN U ids[kLanes];
+    hn::Store(p.vx, d, x);
+    hn::Store(p.vy, d, y);
+    hn::Store(violation(p), d, by);
+    hn::Store(p.id, hn::RebindToUnsigned<D>(), ids);
+    const std::uint64_t relaxed = bits_of(d, p.relaxing);
+    for (std::uint64_t bits = bits_of(d, done); bits != 0; bits &= bits - 1) {
+      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero64(bits), i = static_cast<std::size_t>(ids[lane]);
+      out_.velocity_x[i] = x[lane];
+      out_.velocity_y[i] = y[lane];
+      out_.violation[i] = by[lane];
+      out_.status[i] = relaxed >> lane & 1U;
+      if (kProve) out_.proven[i] = 1;
+    }
+    if (kActive) put_active(p, done);
+    if (kProve) leave_unproven(p, done);
+  }
+
+  HWY_INLINE void leave_unproven(const Pack<D>& p, M done) {
+    const D d;
+    const M relaxed = hn::And(done, p.relaxing), optimal = hn::AndNot(p.relaxing, done);
+    if (!hn::AllFalse(d, optimal)) leave(p, hn::AndNot(Proof<D>(p).optimum(), optimal));
+    if (!hn::AllFalse(d, relaxed)) leave(p, hn::AndNot(Proof<D>(p).relaxation(), relaxed));
+  }
+
+  void put_active(const Pack<D>& p, M done) const {
+    const D d;
+    HWY_ALIGN T lines[3][kLanes];
+    HWY_ALIGN U ids[kLanes];
+    hn::Store(p.first.index, d, lines[0]);
+    hn::Store(p.second.index, d, lines[1]);
+    hn::Store(p.third.index, d, lines[2]);
+    hn::Store(p.id, hn::RebindToUnsigned<D>(), ids);
+    for (std::uint64_t bits = bits_of(p.d, done); bits != 0; bits &= bits - 1) {
+      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+      for (std::size_t slot = 0; slot < 3; ++slot)
+        out_.active[slot * out_.stride + ids[lane]] = static_cast<std::int32_t>(lines[slot][lane]);
+    }
+  }
+
+  const BatchProblems<T>& in_;
+  const BatchAnswers<T>& out_;
+  Leftover<T> leftover_;
+  Pool<D> rare_;
+  T* stage_;
+  BatchCounts counts_;
+};
+
+}  // namespace exactvo::lp::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

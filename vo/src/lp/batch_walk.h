@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A register full of problems and the first walk. Compiled once a SIMD target, hence the toggling guard.
+#if defined(EXACTVO_BATCH_WALK_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef EXACTVO_BATCH_WALK_H
+#undef EXACTVO_BATCH_WALK_H
+#else
+#define EXACTVO_BATCH_WALK_H
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace exactvo::lp::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The lines of a pack: line k of its first lane stands at x[k * stride], y[...], c[...].
+template <class T>
+struct Rows {
+  const T* x;
+  const T* y;
+  const T* c;
+  std::size_t stride, count;
+};
+
+/// A line a lane. A lane without one has normal (0, 0), offset -1 and index kNoLine: it cuts nothing.
+template <class D>
+struct LineV {
+  hn::Vec<D> x, y, c, index;
+};
+
+template <class D>
+LineV<D> HWY_INLINE no_line(D d) {
+  const hn::Vec<D> zero = hn::Zero(d);
+  return {zero, zero, hn::Set(d, hn::TFromD<D>(-1)), hn::Set(d, hn::TFromD<D>(kNoLine))};
+}
+
+template <class V, class M>
+V HWY_INLINE pick(M m, V yes, V no) {
+  return hn::IfThenElse(m, yes, no);
+}
+template <class D, class M>
+LineV<D> HWY_INLINE pick(M m, const LineV<D>& yes, const LineV<D>& no) {
+  return {pick(m, yes.x, no.x), pick(m, yes.y, no.y), pick(m, yes.c, no.c), pick(m, yes.index, no.index)};
+}
+template <class V>
+V HWY_INLINE dot(V ax, V ay, V bx, V by) {
+  return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by));
+}
+template <class V>
+V HWY_INLINE cross(V ax, V ay, V bx, V by) {
+  return hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx));
+}
+template <class D>
+hn::Vec<D> HWY_INLINE cross(const LineV<D>& a, const LineV<D>& b) {
+  return cross(a.x, a.y, b.x, b.y);
+}
+template <class D>
+hn::Vec<D> HWY_INLINE excess(const LineV<D>& line, hn::Vec<D> x, hn::Vec<D> y) {
+  return hn::Sub(line.c, dot(line.x, line.y, x, y));
+}
+
+/// What is asked of the lanes of a pack, and how far they are.
+template <class D>
+struct Pack {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using Id = hn::Vec<hn::RebindToUnsigned<D>>;
+
+  D d;
+  Id id;                        ///< which problem
+  V px, py, speed, hard_count;  ///< preferred velocity, disc as given, hard lines
+  V slack, noise, disc, disc_squared;
+  V vx, vy;
+  V level;                        ///< of the second walk, m/s: what the soft lines of the basis are violated by
+  LineV<D> first, second, third;  ///< the basis
+  LineV<D> entering;              ///< the line violated most
+  M violated;                     ///< lanes that have one
+  M relaxing;                     ///< lanes on the second walk
+
+  HWY_INLINE void derive() {
+    const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
+    slack = hn::Mul(speed, hn::Set(d, T(16) * T(1.5) * u));
+    noise = hn::Mul(speed, hn::Set(d, T(8) * u));
+    disc = hn::Mul(speed, hn::Set(d, T(1) - T(8) * u));
+    disc_squared = hn::Mul(disc, disc);
+  }
+
+  HWY_INLINE M none() const { return hn::MaskFromVec(hn::Zero(d)); }
+  HWY_INLINE M exists(const LineV<D>& line) const { return hn::Ge(line.index, hn::Zero(d)); }
+  HWY_INLINE M is_soft(const LineV<D>& line) const { return hn::Ge(line.index, hard_count); }
+
+  /// The optimum of the disc alone.
+  HWY_INLINE void start() {
+    const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
+    const V squared = dot(px, py, px, py);
+    const V limit = hn::Mul(hn::Mul(speed, speed), hn::Set(d, T(1) - T(8) * u));
+    const V shrink = hn::Div(disc, hn::Sqrt(hn::Max(squared, limit)));
+    const M inside = hn::Le(squared, limit);
+    vx = pick(inside, px, hn::Mul(px, shrink));
+    vy = pick(inside, py, hn::Mul(py, shrink));
+    level = hn::Zero(d);
+    relaxing = none();
+    first = second = third = entering = no_line(d);
+  }
+};
+
+/// The line violated most a lane. On the first walk all lines carry the slack; on the second only the hard ones do, and
+/// soft ones count from `level` on. Without kIndex any line is number 0: who asks for no numbers is spared their cost.
+template <bool kHard, bool kIndex, class D, class T>
+HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p) {
+  const D d;
+  using V = hn::Vec<D>;
+  const V zero = hn::Zero(d);
+  const V allowed = pick(p.relaxing, hn::Add(p.level, p.noise), hn::Sub(p.noise, p.slack));
+  const V hard_extra = hn::IfThenElseZero(p.relaxing, hn::Add(p.level, p.slack));
+  const V vx = p.vx, vy = p.vy, one = hn::Set(d, T(1)), hard_count = p.hard_count;
+  V most = allowed;
+  V ex = zero, ey = zero, ec = zero, index = hn::Set(d, T(kNoLine)), number = zero;
+  const T *nx = rows.x, *ny = rows.y, *c = rows.c;
+#pragma GCC unroll 2
+  for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
+    const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
+    V by = hn::Sub(offset, dot(x, y, vx, vy));
+    if (kHard) by = hn::Add(by, hn::IfThenElseZero(hn::Lt(number, hard_count), hard_extra));
+    const auto more = hn::Gt(by, most);
+    most = hn::Max(most, by);
+    ex = pick(more, x, ex);
+    ey = pick(more, y, ey);
+    ec = pick(more, offset, ec);
+    if (kIndex) {
+      index = pick(more, number, index);
+      number = hn::Add(number, one);
+    }
+  }
+  p.violated = hn::Gt(most, allowed);
+  if (!kIndex) index = pick(p.violated, zero, index);
+  auto with_slack = hn::Not(p.relaxing);
+  if (kHard) with_slack = hn::Or(with_slack, hn::Lt(index, hard_count));
+  p.entering = {ex, ey, pick(with_slack, hn::Add(ec, p.slack), ec), index};
+}
+
+/// How far the boundary of `line` reaches inside the disc to either side, in the unit of `step`; -1 where it does not.
+template <class D, class V>
+HWY_INLINE V reach_within_disc(const Pack<D>& p, const LineV<D>& line, V squared) {
+  const V room = hn::Sub(hn::Mul(p.disc_squared, squared), hn::Mul(line.c, line.c));
+  const V zero = hn::Zero(p.d);
+  return pick(hn::Lt(room, zero), hn::Set(p.d, hn::TFromD<D>(-1)), hn::Sqrt(hn::Max(room, zero)));
+}
+
+/// Where `other` cuts the boundary of `line` off. Parallel lines are taken for very nearly so: a nudge that is lost in
+/// any other slope stands for 0.
+template <class D, class V>
+HWY_INLINE V cut_off(D d, const LineV<D>& line, V squared, const LineV<D>& other, V& low, V& high) {
+  using T = hn::TFromD<D>;
+  const V slope = hn::Add(cross(line, other), hn::Set(d, sizeof(T) == 8 ? T(1e-300) : T(1e-36)));
+  const V missing = hn::Sub(hn::Mul(other.c, squared), hn::Mul(dot(line.x, line.y, other.x, other.y), line.c));
+  const V cut = hn::Div(missing, slope);
+  const auto raises = hn::Gt(slope, hn::Zero(d));
+  low = pick(raises, hn::Max(low, cut), low);
+  high = pick(raises, high, hn::Min(high, cut));
+  return cut;
+}
+
+/// A round of the first walk for the lanes in `moving`: the optimum on the boundary of `entering`, of the kKept lines
+/// in hand those that bind. Gives the lanes where nothing is left: entering, first and second contradict.
+///
+/// The boundary is v = (c n + s n') / |n|^2, n' being n turned left: one division for all of it, and each line in hand
+/// cuts it off at an s of its own. Masks cost more than numbers, so what binds is found by comparing with that s.
+template <int kKept, class D>
+HWY_INLINE hn::Mask<D> step(Pack<D>& p, hn::Mask<D> moving) {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  const D d;
+  const LineV<D> h = p.entering;
+  const V squared = dot(h.x, h.y, h.x, h.y);
+  const V inverse = hn::Div(hn::Set(d, T(1)), squared);
+  const V reach = reach_within_disc(p, h, squared);
+  V low = hn::Neg(reach), high = reach;
+  V cut_first = hn::Zero(d), cut_second = cut_first;
+  if (kKept > 0) cut_first = cut_off(p.d, h, squared, p.first, low, high);
+  if (kKept > 1) cut_second = cut_off(p.d, h, squared, p.second, low, high);
+  const V where = hn::Min(hn::Max(cross(h.x, h.y, p.px, p.py), low), high);
+  const M empty = hn::Gt(low, high);
+  const M moves = hn::AndNot(empty, moving);
+  p.vx = pick(moves, hn::Mul(hn::Sub(hn::Mul(h.x, h.c), hn::Mul(where, h.y)), inverse), p.vx);
+  p.vy = pick(moves, hn::Mul(hn::Add(hn::Mul(h.y, h.c), hn::Mul(where, h.x)), inverse), p.vy);
+  LineV<D> kept = no_line(d);
+  if (kKept > 1) kept = pick(hn::Eq(where, cut_second), p.second, kept);
+  if (kKept > 0) kept = pick(hn::Eq(where, cut_first), p.first, kept);
+  p.second = pick(moves, kept, p.second);
+  p.first = pick(moves, h, p.first);
+  return hn::And(moving, empty);
+}
+
+}  // namespace exactvo::lp::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
