@@ -54,6 +54,8 @@ const std::vector<Curve> kSoundRates{
     {"V' that holds", [](const LyapunovRow& r) { return r.sound_rates.value(); }, true},
 };
 
+enum class Axis { linear, logarithmic, rates };
+
 /// Of V on a logarithmic axis, m^2/s^2: what is smaller is drawn here.
 constexpr double kLeastShown = 1e-24;
 
@@ -70,15 +72,29 @@ void add_curve(const Curve& curve, std::size_t number, const std::vector<Lyapuno
             curve.label);
 }
 
+/// Of a derivative: what all but the shortest spikes (the start, the leader's stop) need.
+std::string range_of_rates(const std::vector<Curve>& curves, const std::vector<LyapunovRow>& rows) {
+  constexpr double kShare = 0.98;  // of the values
+  std::vector<double> sizes;
+  for (const Curve& curve : curves)
+    for (const LyapunovRow& row : rows)
+      if (std::isfinite(curve.value(row))) sizes.push_back(std::fabs(curve.value(row)));
+  if (sizes.empty()) return "  set autoscale y\n";
+  std::sort(sizes.begin(), sizes.end());
+  const double most =
+      std::max(1.5 * sizes[static_cast<std::size_t>(kShare * static_cast<double>(sizes.size() - 1))], 1e-6);
+  return fmt::format("  set yrange [{:.4g}:{:.4g}]\n", -most, most);
+}
+
 std::string panel(const std::vector<Curve>& curves, const std::vector<LyapunovRow>& rows, const std::string& title,
-                  const std::string& y_label, bool logarithmic, DataFile& data) {
+                  const std::string& y_label, Axis axis, DataFile& data) {
+  const bool logarithmic = axis == Axis::logarithmic;
   PlotCommand plot;
   const double floor = logarithmic ? kLeastShown : -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < curves.size(); ++i) add_curve(curves[i], i, rows, floor, data, plot);
-  return fmt::format(
-             "  set title {}\n  set ylabel {}\n  {}\n", quoted(title), quoted(y_label),
-             logarithmic ? "set logscale y\n  set format y '10^{%T}'" : "unset logscale y\n  set format y '%g'") +
-         plot.text();
+  return fmt::format("  set title {}\n  set ylabel {}\n  {}\n", quoted(title), quoted(y_label),
+                     logarithmic ? "set logscale y\n  set format y '10^%T'" : "unset logscale y\n  set format y '%g'") +
+         (axis == Axis::rates ? range_of_rates(curves, rows) : "  set autoscale y\n") + plot.text();
 }
 
 std::vector<LyapunovRow> without_the_last(std::vector<LyapunovRow> rows) {
@@ -96,13 +112,16 @@ Figure lyapunov_figure(const datasets::RecordingFile& run) {
   const std::string title = run_title(run);
   const std::string body =
       fmt::format(
-          "  set multiplot layout 4,1\n  set xlabel 'time [s]'\n  set xrange [0:{:.6g}]\n  set lmargin 12\n"
+          "  set multiplot layout 4,1\n  set xlabel 'time [s]'\n  set xrange [0:{:.6g}]\n  set lmargin 12\n  set "
+          "rmargin 22\n"
           "  set grid lc rgb '#dcdcdc'\n  set key outside right top reverse Left width 2\n",
           end) +
-      panel(kPaper, rows, title + ": the paper's function (18)", "V [m²/s²]", false, data) +
-      panel(kPaperRates, moving, "its derivative (19), and what (20) says it is", "V' [m²/s³]", false, data) +
-      panel(kSound, rows, "the function that holds", "V [m²/s²]", true, data) +
-      panel(kSoundRates, moving, "its derivative, and its bound near obstacles", "V' [m²/s³]", false, data) +
+      panel(kPaper, rows, title + ": the paper's function (18)", "V [m²/s²]", Axis::linear, data) +
+      panel(kPaperRates, moving, "its derivative (19), and what (20) says it is (the tallest spikes cut)", "V' [m²/s³]",
+            Axis::rates, data) +
+      panel(kSound, rows, "the function that holds", "V [m²/s²]", Axis::logarithmic, data) +
+      panel(kSoundRates, moving, "its derivative, and its bound near obstacles (the tallest spikes cut)", "V' [m²/s³]",
+            Axis::rates, data) +
       "  unset multiplot\n";
   return {"lyapunov", data.text(),
           script_text("lyapunov", "Both Lyapunov functions along " + title + ", term by term.", kCanvas, body)};

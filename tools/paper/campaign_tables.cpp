@@ -128,7 +128,7 @@ Figure counts_figure(const std::vector<VariantResult>& results, const CampaignOp
   plot.data(index, fmt::format("using (0.5*$2):1:(0.5*$2):(0.35):yticlabels(3) with boxxyerror fs solid 0.8 noborder "
                                "lc rgb '{}'",
                                series_colour(0)));
-  plot.data(index, "using 2:1:2 with labels left offset 0.5,0 font ',10'");
+  plot.data(index, "using 2:1:2 with labels left offset 1.2,0 font ',10'");
   const std::string title =
       fmt::format("Reached and safe, of {} random formations (seed {})", options.fields, options.seed);
   const std::string body = fmt::format(

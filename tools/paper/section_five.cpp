@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -42,6 +43,7 @@ class Experiments {
     print(formation_head());
     for (int i = 0; i < kFormationScenarios; ++i) run_formation("B" + std::to_string(i));
     line_.clear();
+    print_jitter_ratios();
     print_footnotes();
   }
 
@@ -70,6 +72,16 @@ class Experiments {
         "\nSection V.B: three robots and a virtual leader, method ivo\n"
         "{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11}\n",
         "", "controller", "position error [m]", "velocity error [m/s]", "obstacles", "robots", "jitter");
+  }
+
+  /// The paper's open problem: how many times less the default jitters than the mended signs alone.
+  void print_jitter_ratios() {
+    std::string text = "\nJitter, paper-signs over default:";
+    for (int i = 0; i < kFormationScenarios; ++i) {
+      const auto& [before, after] = jitter_[static_cast<std::size_t>(i)];
+      text += fmt::format("  B{} {:.0f}", i, after > 0.0 ? before / after : 0.0);
+    }
+    print(text + "\n");
   }
 
   void print_footnotes() {
@@ -118,6 +130,9 @@ class Experiments {
       FinishedRun finished = run_one(scenario, Method::ivo, controller);
       const formation::Metrics& m = finished.metrics;
       const bool diverged = finished.file.recording.diverged;
+      auto& [before, after] = jitter_[static_cast<std::size_t>(scenario.back() - '0')];
+      if (controller == Controller::paper_signs) before = m.jitter;
+      if (controller == Controller::standard) after = m.jitter;
       print(fmt::format(
           "{:<5}{:<15}{:>18}{:>23}{:>12}{:>12}{:>11.0f}{} {}\n", scenario, name(controller),
           number_or_dash(m.formation_position_error, "{:.2g}"), number_or_dash(m.formation_velocity_error, "{:.2g}"),
@@ -190,6 +205,7 @@ class Experiments {
   std::vector<datasets::RecordingFile> avoidance_[4];  ///< by method
   std::vector<datasets::RecordingFile> formation_;
   std::vector<fs::path> scripts_;
+  std::array<std::pair<double, double>, kFormationScenarios> jitter_{};  ///< paper-signs, default; m/s^2
 };
 
 }  // namespace

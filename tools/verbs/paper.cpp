@@ -8,6 +8,7 @@
 
 #include "paper/campaign.h"
 #include "paper/campaign_tables.h"
+#include "paper/report.h"
 #include "paper/section_five.h"
 #include "support/data_folder.h"
 #include "support/files.h"
@@ -33,15 +34,39 @@ struct Flags {
   bool no_figures = false;
 };
 
+/// The pictures of an earlier --ablations, put where the report in the making looks for them.
+bool copy_pictures(const fs::path& from, const fs::path& to) {
+  bool any = false;
+  for (const char* name : {"ablations/remedies.png", "ablations/remedies_jitter.png"}) {
+    if (!fs::exists(from / name)) continue;
+    make_folder((to / name).parent_path());
+    fs::copy_file(from / name, to / name);
+    any = true;
+  }
+  return any;
+}
+
+/// What the report says of the campaigns changes with them.
+void renew_report(const Flags& flags) {
+  const ReportData data(flags.out, flags.out, data_folder(flags.data, "paper"));
+  if (!data.has_runs()) return;
+  write_report(data, flags.out);
+  message("renewed " + flags.out + "/report.html and report.md");
+}
+
 ExitCode section_five(const Flags& flags) {
   StagedFolder folder(flags.out);
   const SectionFiveOptions options{data_folder(flags.data, "paper"), command_line(), flags.seed, flags.json,
                                    flags.no_figures};
   const std::string summary = run_section_five(options, folder.path());
   if (interrupted()) throw Interrupted();
+  // The campaigns' pictures, where an earlier command left some, are found beside those of this one.
+  const bool campaigns_before = copy_pictures(flags.out, folder.path());
+  write_report(ReportData(folder.path(), flags.out, options.scenarios), folder.path());
+  if (campaigns_before) fs::remove_all(folder.path() / "ablations");
   if (flags.json) print(summary);
   folder.publish("summary.json");
-  message("wrote " + flags.out + "/summary.json" + (flags.no_figures ? "" : " and " + flags.out + "/figures/"));
+  message("wrote " + flags.out + "/summary.json, report.html, report.md" + (flags.no_figures ? "" : " and figures/"));
   return ExitCode::success;
 }
 
@@ -76,6 +101,7 @@ ExitCode campaigns(const Flags& flags) try {
     say(flags, files);
     message("wrote " + flags.out + "/ablations/");
   }
+  renew_report(flags);
   return ExitCode::success;
 } catch (const Interrupted&) {
   return kept_parts(flags);
@@ -88,7 +114,8 @@ ExitCode paper(const Flags& flags) {
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  declare_out(app, flags->out, "Folder for summary.json and figures/, random/ or ablations/")->required();
+  declare_out(app, flags->out, "Folder for summary.json, report.html, report.md and figures/; random/ or ablations/")
+      ->required();
   app.add_option("--data", flags->data, "Folder that holds paper/A1.json and so on; the program's own by default");
   app.add_option(
          "--random", flags->random,

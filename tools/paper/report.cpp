@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "paper/report.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/stability.h"
+#include "paper/claims.h"
+#include "paper/equations.h"
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+using Json = ReportData::Json;
+
+namespace {
+
+std::string shown(geometry::Vec2 v) {
+  return fmt::format("({:g}, {:g})", v.x, v.y);
+}
+
+std::string places_of(const Equation& e) {
+  std::string text;
+  for (const EquationPlace& p : e.places) text += (text.empty() ? "`" : ", `") + p.file + "` (`" + p.symbol + "`)";
+  return text;
+}
+
+void add_equations(Document& d) {
+  d.blocks.push_back(Heading{2, "Equations"});
+  d.blocks.push_back(
+      Paragraph{"What is printed, what is wrong with it, and what runs. Controller `paper-literal` runs the formation "
+                "equations as "
+                "printed, `paper-signs` with the signs of (15) and (17) mended, `corrected` all of the fourth column "
+                "in the paper's "
+                "order, `default` what makes it hold."});
+  Table t{{"eq.", "printed", "what is wrong", "implemented", "where"}, {}};
+  for (const Equation& e : equations())
+    t.rows.push_back({e.number, e.printed, e.trouble.empty() ? "-" : e.trouble, e.implemented, places_of(e)});
+  d.blocks.push_back(t);
+}
+
+void add_claims(const ReportData& data, Document& d) {
+  d.blocks.push_back(Heading{2, "Claims"});
+  d.blocks.push_back(
+      Paragraph{"Verdicts are on the paper's own method, computed from the runs below: a claim about many "
+                "runs holds in part where it holds for some of them."});
+  Table t{{"where", "the paper says", "verdict", "seen", "figure"}, {}};
+  for (const Claim& c : claims(data))
+    t.rows.push_back({c.where, c.text, name(c.verdict), c.evidence, "`" + c.figure + "`"});
+  d.blocks.push_back(t);
+}
+
+// --- Tables I and II, and the parameters ---
+
+struct PaperRobot {
+  const char* name;
+  geometry::Vec2 start, target;
+};
+constexpr double kPaperRadius = 0.5;  // m, both tables
+
+void add_table_one(const ReportData& data, Document& d) {
+  const std::array<PaperRobot, 2> paper{{{"robot1", {0, 0}, {25, 13}}, {"robot2", {24, 14}, {10, 0}}}};
+  const formation::Scenario s = datasets::load_scenario(data.scenarios() / "A1.json");
+  Table t{{"robot", "initial position", "as run", "target position", "as run", "initial velocity", "as run",
+           "radius [m]", "as run"},
+          {}};
+  for (std::size_t i = 0; i < paper.size(); ++i) {
+    const formation::Robot& r = s.robots.at(i);
+    t.rows.push_back({paper[i].name, shown(paper[i].start), shown(r.position), shown(paper[i].target),
+                      shown(r.goals.back()), "(0, 0)", shown(r.velocity), fmt::format("{:g}", kPaperRadius),
+                      fmt::format("{:g}", r.radius)});
+  }
+  d.blocks.push_back(Heading{3, "Table I: the two robots of Section V.A (paper, and as run in A1)"});
+  d.blocks.push_back(t);
+}
+
+void add_table_two(const ReportData& data, Document& d) {
+  const std::array<PaperRobot, 3> paper{
+      {{"robot1", {3, 0}, {1, 1}}, {"robot2", {0, 3}, {-1, 1}}, {"robot3", {-3, 0}, {1, -1}}}};
+  const formation::Scenario s = datasets::load_scenario(data.scenarios() / "B1.json");
+  Table t{{"robot", "initial position", "as run", "Delta_i", "as run", "initial velocity", "as run", "radius [m]",
+           "as run"},
+          {}};
+  for (std::size_t i = 0; i < paper.size(); ++i) {
+    const formation::Robot& r = s.robots.at(i);
+    t.rows.push_back({paper[i].name, shown(paper[i].start), shown(r.position), shown(paper[i].target),
+                      shown(s.formation->offsets.at(i)), "(0, 0)", shown(r.velocity), fmt::format("{:g}", kPaperRadius),
+                      fmt::format("{:g}", r.radius)});
+  }
+  d.blocks.push_back(Heading{3, "Table II: the three robots of Section V.B (paper, and as run in B1)"});
+  d.blocks.push_back(t);
+  const formation::Gains& g = s.formation->gains;
+  const formation::Stability stability = stability_of(*s.formation);
+  d.blocks.push_back(
+      Table{{"parameter", "paper", "as run"},
+            {{"k1, k2, k3", "0.25, 0.45, 37.5", fmt::format("{:g}, {:g}, {:g}", g.k1, g.k2, g.k3)},
+             {"leader", "(0, 0) to (25, 25) at (3, 3) m/s",
+              fmt::format("{} to {} at {:.4f} m/s = |(3, 3)|", shown(s.formation->leader.path.front()),
+                          shown(s.formation->leader.path.back()), s.formation->leader.speed)},
+             {"eigenvalues of L + B", "(1, 4, 4 follow from (21))",
+              fmt::format("{:.6g}", fmt::join(stability.eigenvalues, ", "))},
+             {"explicit Euler's step limit", "-", fmt::format("{:.4f} s", stability.euler_step_limit)}}});
+}
+
+// --- Section V.A ---
+
+/// When the last robot is expected to arrive, s; 0 where it is expected to be stuck; negative where nothing is.
+struct Expected {
+  const char* scenario;
+  double orca, edge, cluster;
+};
+constexpr double kStuck = 0.0;
+constexpr double kNotSaid = -1.0;
+constexpr double kDefaultLimit = 18.0;  // s: the default reaches each of A1-A15 by then
+constexpr Expected kExpected[] = {{"A0", kNotSaid, kNotSaid, kNotSaid},
+                                  {"A1", kStuck, 16.8, 25.2},
+                                  {"A2", kStuck, 16.8, 32.7},
+                                  {"A3", kStuck, kStuck, 13.5},
+                                  {"A4", kStuck, kStuck, 13.0},
+                                  {"A5", kStuck, kStuck, 15.7},
+                                  {"A6", 11.1, 11.4, 11.5},
+                                  {"A7", kStuck, 16.8, 25.2},
+                                  {"A8", kStuck, kStuck, 64.0},
+                                  {"A9", kStuck, kStuck, 27.9},
+                                  {"A10", 9.4, 9.5, 9.5},
+                                  {"A11", kStuck, 16.3, 18.5},
+                                  {"A12", kStuck, 15.3, 13.8},
+                                  {"A13", 11.5, 11.5, 12.0},
+                                  {"A14", kStuck, kStuck, kStuck},
+                                  {"A15", kStuck, kStuck, kStuck}};
+
+std::string seconds(const std::optional<double>& t) {
+  return t ? fmt::format("{:.1f}", *t) : "X";
+}
+
+std::string expected_words(double t) {
+  if (t == kNotSaid) return "-";
+  return t == kStuck ? "X" : fmt::format("{:.1f}", t);
+}
+
+std::string avoidance_cell(const Json& run, double expected) {
+  if (run.is_null()) return "not run";
+  const auto seen = run["all_arrived"].get<bool>() ? value_of(run, "last_arrival_time") : std::nullopt;
+  const bool touched = least_clearance(run).value_or(1.0) < 0.0;
+  return seconds(seen) + (touched ? "!" : "") + " / " + expected_words(expected);
+}
+
+std::string default_cell(const Json& run) {
+  if (run.is_null()) return "not run";
+  const auto seen = run["all_arrived"].get<bool>() ? value_of(run, "last_arrival_time") : std::nullopt;
+  return seconds(seen) + fmt::format(" / at most {:g}", kDefaultLimit);
+}
+
+std::string metres(const std::optional<double>& x) {
+  return x ? fmt::format("{:.3f}", *x) : "-";
+}
+
+void add_section_a(const ReportData& data, Document& d) {
+  d.blocks.push_back(Heading{2, "Section V.A: robots among polyhedral obstacles"});
+  d.blocks.push_back(
+      Paragraph{"Last arrival in seconds, seen / expected; X: stuck; !: touched something. The paper's figures "
+                "do not give their obstacles: A0-A15 stand in for them."});
+  Table t{{"scenario", "orca", "ivo-edge, b = a/2", "ivo-cluster", "ivo", "ivo: least clearance to obstacles [m]",
+           "between robots [m]"},
+          {}};
+  for (const Expected& e : kExpected) {
+    const Json& ours = data.run(e.scenario, "ivo");
+    t.rows.push_back({e.scenario, avoidance_cell(data.run(e.scenario, "orca"), e.orca),
+                      avoidance_cell(data.run(e.scenario, "ivo-edge"), e.edge),
+                      avoidance_cell(data.run(e.scenario, "ivo-cluster"), e.cluster), default_cell(ours),
+                      metres(value_of(ours, "min_obstacle_clearance")), metres(value_of(ours, "min_robot_clearance"))});
+  }
+  d.blocks.push_back(t);
+  d.blocks.push_back(Picture{"figures/fig5-orca/A2/paths.png", "Fig. 5(a), scenario A2: ORCA stops at the obstacle."});
+  d.blocks.push_back(Picture{"figures/fig5-orca/A2/obstacle_distance.png", "Fig. 5(b): distance from the obstacles."});
+  d.blocks.push_back(
+      Picture{"figures/fig6-ivo/A2/paths.png", "Fig. 6(a), scenario A2: the improved method goes round."});
+  d.blocks.push_back(Picture{"figures/fig6-ivo/A2/obstacle_distance.png", "Fig. 6(b): distance from the obstacles."});
+  d.blocks.push_back(Picture{"figures/fig6-ivo/A2/robot_distance.png", "Fig. 6(c): distance between the robots."});
+  for (const char* method : {"orca", "ivo-edge", "ivo-cluster", "ivo"})
+    d.blocks.push_back(Picture{std::string("figures/all-") + method + ".png", std::string("A0-A15, method ") + method});
+}
+
+// --- Section V.B ---
+
+std::string short_number(const std::optional<double>& x) {
+  return x ? fmt::format("{:.2g}", *x) : "-";
+}
+
+/// What is expected of the error at the end, m.
+std::string expected_error(const std::string& controller) {
+  if (controller == "paper-literal") return "above 100 (diverges)";
+  return controller == "paper-signs" ? "0.1 to 0.4" : "below 1e-9";
+}
+
+void add_section_b(const ReportData& data, Document& d) {
+  d.blocks.push_back(Heading{2, "Section V.B: three robots and a virtual leader"});
+  Table t{{"scenario", "controller", "position error [m]", "expected", "velocity error [m/s]", "to obstacles [m]",
+           "between robots [m]", "J [m/s^2]", "peak acceleration [m/s^2]", "heading reversals", "active-set switches"},
+          {}};
+  for (const char* scene : {"B0", "B1", "B2", "B3"}) {
+    for (const char* controller : {"paper-literal", "paper-signs", "default"}) {
+      const Json& run = data.run(scene, "ivo", controller);
+      const auto whole = [&](const char* key) {
+        const auto x = value_of(run, key);
+        return x ? fmt::format("{:.0f}", *x) : std::string("-");
+      };
+      t.rows.push_back({scene, controller, short_number(value_of(run, "formation_position_error")),
+                        expected_error(controller), short_number(value_of(run, "formation_velocity_error")),
+                        metres(value_of(run, "min_obstacle_clearance")), metres(value_of(run, "min_robot_clearance")),
+                        whole("jitter"), whole("peak_acceleration"), whole("heading_reversals"),
+                        whole("active_set_switches")});
+    }
+  }
+  d.blocks.push_back(t);
+  const std::pair<const char*, const char*> pictures[] = {{"paths", "Fig. 8(a), (b), (e): the robots' ways in B3."},
+                                                          {"velocity", "Fig. 8(c): velocity components."},
+                                                          {"robot_distance", "Fig. 8(d): distance between the robots."},
+                                                          {"formation_error", "Distance of each robot from its slot."},
+                                                          {"lyapunov", "Both Lyapunov functions, term by term."}};
+  for (const auto& [stem, caption] : pictures)
+    d.blocks.push_back(Picture{std::string("figures/fig8-formation/B3/") + stem + ".png", caption});
+  d.blocks.push_back(Picture{"figures/all-formation.png", "B0-B3: as printed, signs mended, default."});
+}
+
+// --- The campaigns ---
+
+std::string share(const Json& row) {
+  if (row.is_null()) return "-";
+  return fmt::format("{} of {}", row["reached_and_safe"].get<std::uint64_t>(), row["fields"].get<std::uint64_t>());
+}
+
+void add_random(const ReportData& data, Document& d) {
+  d.blocks.push_back(Heading{2, "Random fields"});
+  if (data.random().is_null()) {
+    d.blocks.push_back(Paragraph{"Not run: `exactvo paper --out DIR --random 1000` adds them."});
+    return;
+  }
+  d.blocks.push_back(Paragraph{fmt::format("Reached and safe; seed {}, fields 0 to {}. Expected of ivo: all.",
+                                           data.random()["seed"].get<std::uint64_t>(),
+                                           data.random()["fields"].get<std::uint64_t>() - 1)});
+  Table t{{"fields", "orca", "ivo-edge, b = a/2", "ivo-cluster", "ivo"}, {}};
+  for (const char* kind : {"convex", "open", "formation"})
+    t.rows.push_back({kind, share(data.random(kind, "orca")), share(data.random(kind, "ivo-edge")),
+                      share(data.random(kind, "ivo-cluster")), share(data.random(kind, "ivo"))});
+  d.blocks.push_back(t);
+}
+
+void add_ablations(const ReportData& data, Document& d) {
+  d.blocks.push_back(Heading{2, "The ladder of remedies, and the default less one at a time"});
+  if (data.ablations().is_null()) {
+    d.blocks.push_back(Paragraph{"Not run: `exactvo paper --out DIR --ablations` adds them."});
+    return;
+  }
+  Table t{{"remedies", "reached and safe", "reached", "J in B0 [m/s^2]", "B1", "B2", "B3", "median J"}, {}};
+  for (const Json& row : data.ablations()["rows"]) {
+    std::vector<std::string> cells{row["variant"].get<std::string>(), share(row),
+                                   std::to_string(row["reached"].get<std::uint64_t>())};
+    for (const Json& run : row["scenes"]) {
+      const auto jitter = value_of(run, "jitter");
+      cells.push_back(jitter ? fmt::format("{:.0f}", *jitter) : "-");
+    }
+    const auto median = value_of(row, "median_jitter");
+    cells.push_back(median ? fmt::format("{:.0f}", *median) : "-");
+    t.rows.push_back(cells);
+  }
+  d.blocks.push_back(t);
+  d.blocks.push_back(Picture{"ablations/remedies.png", "How many random formations are reached and safe."});
+  d.blocks.push_back(Picture{"ablations/remedies_jitter.png", "The causes of jitter, told apart."});
+}
+
+}  // namespace
+
+Document reproduction_report(const ReportData& data) {
+  Document d{"Multi-Robot Formation with Obstacle Avoidance: a reproduction", {}};
+  const datasets::Provenance p = datasets::make_provenance({}, 0);
+  d.blocks.push_back(
+      Paragraph{fmt::format("Of \"Multi-Robot Formation with Obstacle Avoidance: An Improved Velocity "
+                            "Obstacle-Based Approach\", by ExactVO {}, commit {}, {}. SI units.",
+                            p.version, p.commit, p.compiler)});
+  add_claims(data, d);
+  add_equations(d);
+  d.blocks.push_back(Heading{2, "Initial states and parameters"});
+  add_table_one(data, d);
+  add_table_two(data, d);
+  add_section_a(data, d);
+  add_section_b(data, d);
+  add_random(data, d);
+  add_ablations(data, d);
+  return d;
+}
+
+void write_report(const ReportData& data, const fs::path& folder) {
+  const Document document = reproduction_report(data);
+  datasets::write_file_atomically(folder / "report.md", markdown(document));
+  datasets::write_file_atomically(folder / "report.html", html(document, folder));
+}
+
+}  // namespace exactvo::tools

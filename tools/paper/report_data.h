@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What the runs left behind, as the report asks for it.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace exactvo::tools {
+
+class ReportData {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  /// Section V's files from one folder, the campaigns' from another (the same, but while the first is in the making).
+  /// `scenarios` holds A1.json and so on.
+  ReportData(const std::filesystem::path& section_five, const std::filesystem::path& campaigns,
+             std::filesystem::path scenarios);
+
+  /// Whether Section V was run; without it there is nothing to report on.
+  bool has_runs() const { return !summary_.empty(); }
+  /// The metrics of one run; `controller` is empty without a formation. Null where it was not run.
+  const Json& run(const std::string& scenario, const std::string& method, const std::string& controller = "") const;
+
+  /// A row of random.json or ablations.json; null where there is none.
+  const Json& random(const std::string& kind, const std::string& variant) const;
+  const Json& random() const { return random_; }
+  const Json& ablations() const { return ablations_; }
+
+  const std::filesystem::path& scenarios() const { return scenarios_; }
+
+ private:
+  Json summary_ = Json::array();
+  Json random_;
+  Json ablations_;
+  std::filesystem::path scenarios_;
+};
+
+/// A number of a run; nothing where it is null or the run is.
+std::optional<double> value_of(const ReportData::Json& run, const char* key);
+/// By how much nothing was touched: the lesser of both clearances; nothing where neither applies.
+std::optional<double> least_clearance(const ReportData::Json& run);
+
+}  // namespace exactvo::tools
