@@ -12,11 +12,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "circle.h"
 #include "competitor.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
 #include "exactvo_commit.h"
+#include "recorded.h"
 
 namespace exactvo::bench {
 namespace {
@@ -62,7 +62,7 @@ bool is_feasible(const lp::Solution& s) {
 /// "C10f": the feasible part of "C10"; nothing to do for other names.
 char part_of(std::string& name) {
   const char last = name.empty() ? ' ' : name.back();
-  if (name.rfind("C", 0) != 0 || (last != 'f' && last != 'i')) return ' ';
+  if ((last != 'f' && last != 'i') || !is_recorded_set(name.substr(0, name.size() - 1))) return ' ';
   name.pop_back();
   return last;
 }
@@ -76,18 +76,17 @@ std::vector<lp::Problem> only(const std::vector<lp::Problem>& problems, bool fea
 }
 
 /// Recorded sets are asked for whole and in parts: each is recorded once.
-const std::vector<lp::Problem>& circle(int m) {
-  static std::map<int, std::vector<lp::Problem>> recorded;
-  if (recorded.count(m) == 0) recorded[m] = record_circle(m, kInstances);
-  return recorded[m];
+const std::vector<lp::Problem>& recording(const std::string& name) {
+  static std::map<std::string, std::vector<lp::Problem>> recorded;
+  if (recorded.count(name) == 0) recorded[name] = record(name, kInstances);
+  return recorded[name];
 }
 
 Set set_named(std::string name, const Flags& flags) {
   const std::string whole_name = name;
   const char part = part_of(name);
-  const bool recorded = name.rfind("C", 0) == 0;
   std::vector<lp::Problem> problems =
-      recorded ? circle(std::stoi(name.substr(1))) : lp::generate(name, kInstances, flags.seed);
+      is_recorded_set(name) ? recording(name) : lp::generate(name, kInstances, flags.seed);
   if (part != ' ') problems = only(problems, part == 'f');
   for (lp::Problem& p : problems) sort_hard_first(p);
   return {whole_name, problems};
