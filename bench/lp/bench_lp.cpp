@@ -12,11 +12,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "adversarial.h"
 #include "competitor.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
 #include "exactvo_commit.h"
 #include "recorded.h"
+#include "results.h"
 
 namespace exactvo::bench {
 namespace {
@@ -28,11 +30,20 @@ constexpr double kApart = 1e-4;
 
 struct Flags {
   std::string sets = "C10,C10f,C10i,C50,RF10,RF20,RI10,RI20,RI50";
-  std::string instances;  ///< file; replaces `sets` by itself, its feasible and its infeasible part
-  std::string json;       ///< file for Google Benchmark's compare.py
+  std::string instances;        ///< file; replaces `sets` by itself, its feasible and its infeasible part
+  std::string json;             ///< file for Google Benchmark's compare.py
+  std::string target;           ///< widest SIMD target to run on ("AVX3", "AVX2", "SSE4"), "" for the best
+  std::size_t adversarial = 0;  ///< problems a family and perturbation
+  bool table = false;           ///< the figures to reach and what was measured, from the sets they need
   std::uint64_t seed = 1;
   int rounds = kRounds;
 };
+
+/// The target of the entry, or the one forced on all that have none of their own.
+std::string forced_target;
+bool limit_target(const Entry& entry) {
+  return lp::limit_batch_target(entry.target.empty() ? forced_target.c_str() : entry.target.c_str());
+}
 
 double thread_nanoseconds() {
   timespec t{};
@@ -92,16 +103,22 @@ Set set_named(std::string name, const Flags& flags) {
   return {whole_name, problems};
 }
 
+/// With a file and the table, the file takes the place of the C10 recorded here.
 std::vector<Set> sets_of(const Flags& flags) {
+  std::vector<Set> sets;
   if (!flags.instances.empty()) {
     std::ifstream in(flags.instances, std::ios::binary);
     if (!in) throw std::runtime_error("cannot read " + flags.instances);
     const std::vector<lp::Problem> all = lp::read_instances(in);
-    return {{"file", all}, {"file-f", only(all, true)}, {"file-i", only(all, false)}};
+    sets = {{"C10", all}, {"C10f", only(all, true)}, {"C10i", only(all, false)}};
+    if (!flags.table) {
+      for (Set& set : sets) set.name = "file" + set.name.substr(3);
+      return sets;
+    }
   }
-  std::vector<Set> sets;
   std::stringstream names(flags.sets);
-  for (std::string name; std::getline(names, name, ',');) sets.push_back(set_named(name, flags));
+  for (std::string name; std::getline(names, name, ',');)
+    if (sets.empty() || name.substr(0, 3) != "C10" || name == "C100") sets.push_back(set_named(name, flags));
   return sets;
 }
 
@@ -116,7 +133,7 @@ struct Run {
 };
 
 void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& run) {
-  lp::limit_batch_target(run.entry.target.c_str());
+  limit_target(run.entry);
   run.competitor->run();
   for (std::size_t i = 0; i < run.competitor->count(); ++i) {
     const Answer answer = run.competitor->answer(i);
@@ -130,7 +147,7 @@ void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& 
 }
 
 void time_once(Run& run) {
-  lp::limit_batch_target(run.entry.target.c_str());
+  limit_target(run.entry);
   const double before = thread_nanoseconds();
   run.competitor->run();
   run.times.push_back((thread_nanoseconds() - before) / static_cast<double>(run.competitor->count()));
@@ -146,7 +163,7 @@ std::vector<Run> enter(const Set& set, const Truth& truth) {
   const bool all_feasible =
       std::all_of(truth.solutions.begin(), truth.solutions.end(), [](const auto& s) { return is_feasible(s); });
   for (Entry& entry : entries()) {
-    if ((entry.feasible_only && !all_feasible) || !lp::limit_batch_target(entry.target.c_str())) continue;
+    if ((entry.feasible_only && !all_feasible) || !limit_target(entry)) continue;
     std::vector<lp::Problem> given = set.problems;
     if (given.size() > entry.most) given.resize(entry.most);
     Run run{entry, entry.build(given), {}, 0, 0.0, 0};
@@ -194,7 +211,7 @@ void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out)
 }
 
 nlohmann::json context(const Flags& flags) {
-  lp::limit_batch_target("");
+  lp::limit_batch_target(flags.target.c_str());
   return {{"executable", "bench_lp"}, {"library_build_type", "release"},
           {"compiler", __VERSION__},  {"simd_target", lp::batch_target()},
           {"commit", EXACTVO_COMMIT}, {"seed", flags.seed},
@@ -205,7 +222,23 @@ bool disagrees(const std::vector<Run>& runs) {
   return std::any_of(runs.begin(), runs.end(), [](const Run& r) { return r.entry.exact && r.wrong > 0; });
 }
 
+void add_results(const Set& set, const Truth& truth, const std::vector<Run>& runs, Results& results) {
+  for (const Run& run : runs) results.ns[set.name][run.entry.name] = quantile(run.times, 0.5);
+  results.exact_share[set.name] = static_cast<double>(truth.exact_stage) / static_cast<double>(set.problems.size());
+}
+
+int adversarial(const Flags& flags) {
+  bool wrong = false;
+  const nlohmann::json out = {{"context", context(flags)},
+                              {"adversarial", run_adversarial(flags.adversarial, flags.seed, wrong)}};
+  if (!flags.json.empty()) std::ofstream(flags.json) << out.dump(2) << '\n';
+  return wrong ? 1 : 0;
+}
+
 int arena(const Flags& flags) {
+  forced_target = flags.target;
+  if (flags.adversarial > 0) return adversarial(flags);
+  Results results;
   nlohmann::json out = {{"context", context(flags)}, {"benchmarks", nlohmann::json::array()}};
   std::printf("%s\n", out["context"].dump().c_str());
   bool sound = true;
@@ -217,28 +250,44 @@ int arena(const Flags& flags) {
       for (Run& run : runs) time_once(run);
     print(set, truth, runs);
     add_json(set, runs, out);
+    add_results(set, truth, runs, results);
     sound = sound && !disagrees(runs);
   }
   if (!flags.json.empty()) std::ofstream(flags.json) << out.dump(2) << '\n';
+  if (flags.table) print_figures(results);
   return sound ? 0 : 1;
+}
+
+void use_table(Flags& flags) {
+  flags.table = true;
+  flags.sets.clear();
+  for (const std::string& set : sets_of_figures()) flags.sets += (flags.sets.empty() ? "" : ",") + set;
 }
 
 Flags read_flags(int argc, char** argv) {
   Flags flags;
   const std::map<std::string, std::string*> texts = {
-      {"--sets", &flags.sets}, {"--instances", &flags.instances}, {"--json", &flags.json}};
-  for (int k = 1; k + 1 < argc; k += 2) {
+      {"--sets", &flags.sets}, {"--instances", &flags.instances}, {"--json", &flags.json}, {"--target", &flags.target}};
+  for (int k = 1; k < argc; ++k) {
     const std::string option = argv[k];
+    if (option == "--table") {
+      use_table(flags);
+      continue;
+    }
+    if (++k == argc) throw std::runtime_error(option + " takes a value");
     if (texts.count(option) != 0)
-      *texts.at(option) = argv[k + 1];
+      *texts.at(option) = argv[k];
     else if (option == "--seed")
-      flags.seed = std::stoull(argv[k + 1]);
+      flags.seed = std::stoull(argv[k]);
     else if (option == "--rounds")
-      flags.rounds = std::max(1, std::stoi(argv[k + 1]));
+      flags.rounds = std::max(1, std::stoi(argv[k]));
+    else if (option == "--adversarial")
+      flags.adversarial = std::stoull(argv[k]);
     else
       throw std::runtime_error("unknown option " + option);
   }
-  if (argc % 2 == 0) throw std::runtime_error("every option takes a value");
+  if (!lp::limit_batch_target(flags.target.c_str())) throw std::runtime_error("no such target: " + flags.target);
+  if (!flags.instances.empty() && !flags.table) flags.sets.clear();
   return flags;
 }
 
@@ -249,6 +298,8 @@ int main(int argc, char** argv) try {
   return exactvo::bench::arena(exactvo::bench::read_flags(argc, argv));
 } catch (const std::exception& e) {
   std::cerr << "bench_lp: " << e.what()
-            << "\nusage: bench_lp [--instances FILE] [--sets C10f,RF10,...] [--json FILE] [--seed N] [--rounds N]\n";
+            << "\nusage: bench_lp [--table] [--instances FILE] [--sets C10f,RF10,...] [--target AVX2] [--json FILE] "
+               "[--seed N]"
+               " [--rounds N]\n       bench_lp --adversarial PROBLEMS [--json FILE] [--seed N]\n";
   return 2;
 }

@@ -34,7 +34,8 @@ class Batch : public Competitor {
   std::size_t count() const override { return arrays_.count; }
   Answer answer(std::size_t i) const override {
     return {{static_cast<double>(arrays_.velocity_x[i]), static_cast<double>(arrays_.velocity_y[i])},
-            arrays_.status[i] == static_cast<std::uint8_t>(lp::Status::optimal)};
+            arrays_.status[i] == static_cast<std::uint8_t>(lp::Status::optimal) ||
+                arrays_.status[i] == static_cast<std::uint8_t>(lp::Status::pinched)};
   }
   void run() override { lp::solve_batch(arrays_.problems(), arrays_.answers(prove_), 0, arrays_.count); }
 
