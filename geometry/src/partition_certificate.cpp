@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
-#include <utility>
 
 #include "convexity.h"
 #include "ring_contacts.h"
@@ -12,34 +10,45 @@
 namespace exactvo::geometry::detail {
 namespace {
 
-struct LessByEnds {
-  bool operator()(const Segment& s, const Segment& t) const {
-    if (s.a != t.a) return lexicographically_less(s.a, t.a);
-    return lexicographically_less(s.b, t.b);
-  }
+/// An edge, its lesser end first, and how often it is run along less how often against.
+struct Run {
+  Segment edge;
+  int times = 0;
 };
 
-/// How often each edge is run along, less how often against; edges are named by their lesser end first.
+bool same_edge(const Run& s, const Run& t) {
+  return s.edge.a == t.edge.a && s.edge.b == t.edge.b;
+}
+
+bool stands_before(const Run& s, const Run& t) {
+  if (s.edge.a != t.edge.a) return lexicographically_less(s.edge.a, t.edge.a);
+  return lexicographically_less(s.edge.b, t.edge.b);
+}
+
 class Boundary {
  public:
   void add(const std::vector<Vec2>& ring, int times) {
     for (std::size_t i = 0; i < ring.size(); ++i) add(ring[i], ring[(i + 1) % ring.size()], times);
   }
 
-  bool is_empty() const {
-    return std::all_of(count_.begin(), count_.end(), [](const auto& edge) { return edge.second == 0; });
+  /// Whether every edge is run along as often as against.
+  bool is_empty() {
+    std::sort(runs_.begin(), runs_.end(), stands_before);
+    for (std::size_t i = 0; i < runs_.size();) {
+      int sum = 0;
+      const Run& first = runs_[i];
+      for (; i < runs_.size() && same_edge(first, runs_[i]); ++i) sum += runs_[i].times;
+      if (sum != 0) return false;
+    }
+    return true;
   }
 
  private:
   void add(Vec2 a, Vec2 b, int times) {
-    if (lexicographically_less(a, b)) {
-      count_[{a, b}] += times;
-    } else {
-      count_[{b, a}] -= times;
-    }
+    runs_.push_back(lexicographically_less(a, b) ? Run{{a, b}, times} : Run{{b, a}, -times});
   }
 
-  std::map<Segment, int, LessByEnds> count_;
+  std::vector<Run> runs_;
 };
 
 }  // namespace

@@ -9,9 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
+#include <tuple>
 #include <utility>
 
+#include "ear_clipping.h"
 #include "exactvo/geometry/predicates.h"
 
 namespace exactvo::geometry::detail {
@@ -25,7 +26,6 @@ using FaceBase = CGAL::Triangulation_face_base_with_info_2<Side, Kernel, PlainFa
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using Triangulation =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::No_constraint_intersection_tag>;
-using Triangle = std::array<std::size_t, 3>;
 
 /// All vertices, ring after ring, and the edges between them by number.
 struct Outline {
@@ -100,7 +100,9 @@ std::vector<Triangle> triangles_of(const Outline& outline) {
 class Loops {
  public:
   Loops(const std::vector<Vec2>& points, const std::vector<Triangle>& triangles) : points_(points) {
+    edges_.reserve(3 * triangles.size());
     for (const Triangle& t : triangles) add(t);
+    find_twins();
   }
 
   void drop_diagonals() {
@@ -139,13 +141,29 @@ class Loops {
     const std::size_t base = edges_.size();
     for (std::size_t i = 0; i < 3; ++i) {
       edges_.push_back({t[i], base + (i + 2) % 3, base + (i + 1) % 3, kNone, false});
-      const std::size_t to = t[(i + 1) % 3];
-      const auto twin = number_of_.find({to, t[i]});
-      if (twin != number_of_.end()) {
-        edges_.back().twin = twin->second;
-        edges_[twin->second].twin = base + i;
-      }
-      number_of_[{t[i], to}] = base + i;
+    }
+  }
+
+  struct Ends {
+    std::size_t low, high, edge;
+  };
+
+  // The two half-edges between the same two vertices.
+  void find_twins() {
+    std::vector<Ends> all;
+    all.reserve(edges_.size());
+    for (std::size_t h = 0; h < edges_.size(); ++h) {
+      const std::size_t from = edges_[h].from;
+      const std::size_t to = edges_[edges_[h].after].from;
+      all.push_back({std::min(from, to), std::max(from, to), h});
+    }
+    std::sort(all.begin(), all.end(), [](const Ends& a, const Ends& b) {
+      return std::tie(a.low, a.high, a.edge) < std::tie(b.low, b.high, b.edge);
+    });
+    for (std::size_t k = 1; k < all.size(); ++k) {
+      if (all[k - 1].low != all[k].low || all[k - 1].high != all[k].high) continue;
+      edges_[all[k - 1].edge].twin = all[k].edge;
+      edges_[all[k].edge].twin = all[k - 1].edge;
     }
   }
 
@@ -170,14 +188,16 @@ class Loops {
 
   const std::vector<Vec2>& points_;
   std::vector<HalfEdge> edges_;
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> number_of_;  ///< by (from, to)
 };
 
 }  // namespace
 
 std::vector<ConvexPolygon> merged_triangles(const std::vector<Ring>& rings) {
   const Outline outline = outline_of(rings);
-  Loops loops(outline.points, triangles_of(outline));
+  std::vector<Triangle> triangles;
+  if (rings.size() == 1 && rings[0].size() <= kMostForEars) triangles = ears_of(rings[0]);
+  if (triangles.empty()) triangles = triangles_of(outline);
+  Loops loops(outline.points, triangles);
   loops.drop_diagonals();
   return loops.pieces();
 }

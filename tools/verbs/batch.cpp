@@ -38,6 +38,7 @@ struct Flags {
   std::string units = "automatic";
   double cell_size = 0.0;
   double tolerance = 0.0;
+  std::string partition = "triangles";
   std::string write = "geopackage,geojson,pictures";
   double time_horizon = 0.0;
   double radius = 0.0;
@@ -60,6 +61,22 @@ datasets::Units units_named(const std::string& text) {
   if (text == "metres") return datasets::Units::metres;
   if (text == "degrees") return datasets::Units::degrees;
   throw UsageError("--units", text, "automatic, metres or degrees");
+}
+
+geometry::PartitionMethod partition_named(const std::string& text) {
+  using geometry::PartitionMethod;
+  static const std::vector<std::pair<std::string, PartitionMethod>> kMethods{
+      {"automatic", PartitionMethod::automatic},
+      {"greene", PartitionMethod::greene},
+      {"approximate", PartitionMethod::approximate},
+      {"optimal", PartitionMethod::optimal},
+      {"triangles", PartitionMethod::triangles}};
+  std::vector<std::string> names;
+  for (const auto& [name, method] : kMethods) {
+    if (text == name) return method;
+    names.push_back(name);
+  }
+  throw UsageError("--partition", text, fmt::format("one of {}{}", fmt::join(names, " "), suggestion(text, names)));
 }
 
 void choose_outputs(const std::string& text, BatchConfiguration& configuration) {
@@ -103,6 +120,7 @@ BatchConfiguration configuration_of(const Flags& flags) {
   configuration.reading.cell_size = flags.cell_size;
   configuration.reading.units = units_named(flags.units);
   configuration.shapes.facades.tolerance = flags.tolerance;
+  configuration.shapes.partition = partition_named(flags.partition);
   configuration.robot = robot_of(flags);
   choose_outputs(flags.write, configuration);
   if (configuration.geopackage && !datasets::built_with_gdal()) {
@@ -249,6 +267,10 @@ void declare_reading(CLI::App& app, Flags& flags) {
   app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
   app.add_option("--cell-size", flags.cell_size, "m; of grids without a scale (1) and of scans (0.05)")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--partition", flags.partition,
+                 "Of polygons into convex pieces: triangles (quick), automatic (fewest up to 32 vertices), greene, "
+                 "approximate, optimal")
+      ->capture_default_str();
   app.add_option("--tolerance", flags.tolerance, "m; by which facades may leave the obstacle")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);

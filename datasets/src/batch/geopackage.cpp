@@ -79,8 +79,11 @@ struct GeoPackage::Inside {
 
   void create_layers() {
     const char* const options[] = {"SPATIAL_INDEX=YES", nullptr};
+    OGRSpatialReference metres;  // without one the format takes numbers for degrees
+    metres.SetLocalCS("local metres");
+    metres.SetLinearUnits("metre", 1.0);
     for (const Layer& layer : batch::layers()) {
-      OGRLayer* made = data->CreateLayer(layer.name, nullptr, wkbUnknown, const_cast<char**>(options));
+      OGRLayer* made = data->CreateLayer(layer.name, &metres, wkbUnknown, const_cast<char**>(options));
       need(made != nullptr);
       for (const Field& field : layer.fields) {
         OGRFieldDefn definition(field.name, type_of(field.type));

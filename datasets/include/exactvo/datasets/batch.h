@@ -38,8 +38,10 @@ struct BatchRobot {
 
 /// What changes the results.
 struct BatchConfiguration {
-  ReadOptions reading;  ///< keep_going is implied
-  geometry::ShapeOptions shapes;
+  BatchConfiguration() { shapes.partition = geometry::PartitionMethod::triangles; }
+
+  ReadOptions reading;            ///< keep_going is implied
+  geometry::ShapeOptions shapes;  ///< pieces by triangles: a tenth more of them than at best, some forty times quicker
   std::optional<BatchRobot> robot;
   bool geopackage = true;  ///< obstacles.gpkg; not in a build without GDAL
   bool geojson = true;     ///< obstacles.geojson, facades.geojson, ...

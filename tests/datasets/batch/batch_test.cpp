@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Batches: the same bytes however they are run, stopped and gone on with; and what is refused.
+#include "exactvo/datasets/batch.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "batch_files.h"
+#include "exactvo/datasets/obstacle_file.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class Batches : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    write_inputs(folder_ / "in", 1300);
+  }
+
+  BatchRun run_to(const std::string& out) const {
+    BatchRun run;
+    run.paths = {folder_ / "in"};
+    run.out = folder_ / out;
+    run.workers = 2;
+    return run;
+  }
+  fs::path out(const std::string& name) const { return folder_ / name; }
+  Json summary_of(const std::string& name) const { return Json::parse(text_of(out(name) / "summary.json")); }
+
+  /// Of a batch that is to throw.
+  static DataCode refusal(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {}) {
+    try {
+      run_batch(configuration, run, watch);
+    } catch (const DataError& error) {
+      EXPECT_FALSE(error.found().empty());
+      return error.code();
+    }
+    ADD_FAILURE() << "nothing thrown";
+    return DataCode::library;
+  }
+
+  BatchConfiguration plain_;
+};
+
+TEST_F(Batches, EveryInputAndObstacleEndsInOneWay) {
+  const BatchResult result = run_batch(plain_, run_to("out"));
+  EXPECT_EQ(result.end, BatchEnd::complete);
+  const BatchSummary& s = result.summary;
+  EXPECT_EQ(s.files.read, 6u);
+  EXPECT_EQ(s.files.done, 2u);      // stars, cells
+  EXPECT_EQ(s.files.repaired, 1u);  // few: a clockwise ring
+  EXPECT_EQ(s.files.rejected.at("E_SELF_INTERSECTION"), 1u);
+  EXPECT_EQ(s.files.rejected.at("E_FORMAT_UNKNOWN"), 1u);
+  EXPECT_EQ(s.files.rejected.at("E_JSON_SYNTAX") + s.files.done + s.files.repaired + 2u, s.files.read);
+  EXPECT_EQ(s.obstacles.read, s.obstacles.done + s.obstacles.repaired + s.obstacles.rejected_in_all());
+  EXPECT_EQ(s.obstacles.rejected.at("E_SELF_INTERSECTION"), 2u);
+  EXPECT_EQ(s.passed_over, 1u);
+  EXPECT_EQ(s.certified, s.obstacles_out);
+  EXPECT_EQ(s.uncertified, 0u);
+}
+
+TEST_F(Batches, OutputsAgreeWithEachOther) {
+  BatchConfiguration configuration;
+  BatchRobot robot;
+  robot.radius = 0.3;
+  robot.time_horizon = 2.0;
+  robot.positions = {{2000.0, 0.0}, {0.5, 0.5}};
+  configuration.robot = robot;
+  const BatchResult result = run_batch(configuration, run_to("out"));
+  std::istringstream figures(text_of(out("out") / "figures.jsonl"));
+  std::string line;
+  std::getline(figures, line);
+  const Json provenance = Json::parse(line).at("provenance");
+  EXPECT_EQ(provenance.at("inputs").size(), 6u);
+  std::uint64_t lines = 0;
+  std::uint64_t rejected = 0;
+  while (std::getline(figures, line)) {
+    const Json record = Json::parse(line);
+    ++lines;
+    if (record.at("outcome") == "rejected") {
+      ++rejected;
+      EXPECT_FALSE(record.at("code").get<std::string>().empty());
+      continue;
+    }
+    EXPECT_EQ(record.at("certified"), true) << line;
+    ASSERT_EQ(record.at("half_planes").size(), 2u);
+    EXPECT_EQ(record.at("half_planes").at(0).at("half_planes").at(0).at("certified"), true) << line;
+    EXPECT_GE(record.at("ellipse_area").get<double>() * (1.0 + 1e-12), record.at("hull_area").get<double>());
+  }
+  EXPECT_EQ(lines, result.summary.obstacles_out + rejected);
+  for (const char* layer : {"obstacles", "hulls", "facades", "pieces", "ellipses"}) {
+    const Json file = Json::parse(text_of(out("out") / (std::string(layer) + ".geojson")));
+    EXPECT_EQ(file.at("units"), "m");
+    EXPECT_GE(file.at("features").size(), result.summary.obstacles_out) << layer;
+  }
+  if (!built_with_gdal()) return;
+  ReadOptions options;
+  options.keep_going = true;
+  const ObstacleFile package = read_obstacles(out("out") / "obstacles.gpkg", options);
+  const ObstacleFile geojson = read_obstacles(out("out") / "obstacles.geojson", options);
+  EXPECT_EQ(geojson.obstacles.size(), result.summary.obstacles_out);
+  EXPECT_GT(package.obstacles.size(), 5 * result.summary.obstacles_out) << "all five layers";
+}
+
+TEST_F(Batches, WorkersDoNotShowInTheBytes) {
+  for (const int workers : {1, 2, 4}) {
+    BatchRun run = run_to("w" + std::to_string(workers));
+    run.workers = workers;
+    run_batch(plain_, run);
+  }
+  EXPECT_EQ(difference(out("w1"), out("w2")), "");
+  EXPECT_EQ(difference(out("w1"), out("w4")), "");
+}
+
+TEST_F(Batches, StoppedAnywhereAndGoneOnWithGivesTheSameBytes) {
+  run_batch(plain_, run_to("whole"));
+  int looks_until_stop = 0;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    BatchRun run = run_to("pieces");
+    run.resume = attempt > 0;
+    int looks = looks_until_stop++;
+    const BatchResult result = run_batch(plain_, run, [&](const BatchProgress&) { return looks-- > 0; });
+    if (result.end == BatchEnd::complete) break;
+    EXPECT_EQ(result.end, BatchEnd::interrupted);
+    EXPECT_FALSE(fs::exists(out("pieces") / "summary.json"));
+  }
+  EXPECT_GT(looks_until_stop, 4);
+  EXPECT_EQ(difference(out("whole"), out("pieces")), "");
+  BatchRun again = run_to("pieces");
+  again.resume = true;
+  EXPECT_TRUE(run_batch(plain_, again).was_complete);
+}
+
+TEST_F(Batches, ShardsMakeTheWhole) {
+  run_batch(plain_, run_to("whole"));
+  for (std::size_t shard = 1; shard <= 3; ++shard) {
+    BatchRun run = run_to("shards");
+    run.shards = 3;
+    run.shard = shard;
+    EXPECT_EQ(run_batch(plain_, run).end, shard < 3 ? BatchEnd::incomplete : BatchEnd::complete);
+  }
+  EXPECT_EQ(difference(out("whole"), out("shards")), "");
+}
+
+TEST_F(Batches, OtherInputsOptionsAndVersionsAreRefused) {
+  BatchRun run = run_to("out");
+  const auto stop_at_once = [](const BatchProgress&) { return false; };
+  ASSERT_EQ(run_batch(plain_, run, stop_at_once).end, BatchEnd::interrupted);
+  EXPECT_EQ(refusal(plain_, run), DataCode::other_run) << "unfinished, and no --resume";
+  run.resume = true;
+  BatchConfiguration other = plain_;
+  other.shapes.facades.tolerance = 0.1;
+  EXPECT_EQ(refusal(other, run), DataCode::other_run);
+  const fs::path run_file = out("out") / ".parts" / "run.json";
+  const std::string there = text_of(run_file);
+  std::string older = there;
+  older.replace(older.find("\"version\": \"") + 12, 1, "9");
+  write_text(run_file, older);
+  EXPECT_EQ(refusal(plain_, run), DataCode::other_run);
+  write_text(run_file, there);
+  write_text(folder_ / "in" / "few.wkt", "LINESTRING (0 0, 9 9)\n");
+  EXPECT_EQ(refusal(plain_, run), DataCode::other_run) << "an input changed";
+}
+
+TEST_F(Batches, AFolderOfOthersIsLeftAlone) {
+  write_text(out("out") / "thesis.tex", "do not touch");
+  EXPECT_EQ(refusal(plain_, run_to("out")), DataCode::file_unwritable);
+  EXPECT_EQ(output_of(out("out")).size(), 1u);
+}
+
+TEST_F(Batches, MissingPathsAreSaidAtOnce) {
+  BatchRun run = run_to("out");
+  run.paths.push_back(folder_ / "nowhere");
+  EXPECT_EQ(refusal(plain_, run), DataCode::file_missing);
+  EXPECT_FALSE(fs::exists(run.out));
+}
+
+TEST_F(Batches, FilesThatCantBeReadAreRejectedAndTheRestGoesOn) {
+  fs::create_symlink("gone.wkt", folder_ / "in" / "link.wkt");
+  const BatchResult result = run_batch(plain_, run_to("out"));
+  EXPECT_EQ(result.summary.files.rejected.at("E_FILE_MISSING"), 1u);
+  EXPECT_EQ(result.summary.files.done, 2u);
+}
+
+TEST_F(Batches, AFolderRemovedUnderTheBatchIsSaid) {
+  const BatchRun run = run_to("out");
+  int looks = 0;
+  const auto removes = [&](const BatchProgress&) {
+    if (++looks == 3) fs::remove_all(run.out);
+    return true;
+  };
+  EXPECT_EQ(refusal(plain_, run, removes), DataCode::file_unwritable);
+  EXPECT_FALSE(fs::exists(run.out / "summary.json"));
+}
+
+/// The status with which a process ends that may write no file of more than `bytes`.
+int status_with_files_up_to(std::size_t bytes, const BatchConfiguration& configuration, const BatchRun& run) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    int status = 0;
+    try {
+      run_batch(configuration, run);
+    } catch (const DataError& error) {
+      status = error.code() == DataCode::file_unwritable ? 42 : 43;
+    }
+    ::_exit(status);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(Batches, AFullDiskIsSaidAndLosesNothing) {
+  BatchRun run = run_to("out");
+  run.workers = 1;  // a child of fork has no threads but its own
+  BatchConfiguration configuration;
+  configuration.geopackage = false;
+  EXPECT_EQ(status_with_files_up_to(20000, configuration, run), 42) << "a part doesn't fit";
+  run.resume = true;
+  EXPECT_EQ(status_with_files_up_to(5000000, configuration, run), 42) << "the parts fit, an output doesn't";
+  EXPECT_FALSE(fs::exists(run.out / "figures.jsonl")) << "nothing is published before all is there";
+  run_batch(configuration, run);
+  run_batch(configuration, run_to("whole"));
+  EXPECT_EQ(difference(out("whole"), out("out")), "");
+}
+
+TEST_F(Batches, RepairsAreCountedAndShown) {
+  BatchConfiguration configuration;
+  configuration.reading.repair = true;
+  const BatchResult result = run_batch(configuration, run_to("out"));
+  EXPECT_EQ(result.summary.obstacles.rejected_in_all(), 0u);
+  EXPECT_EQ(result.summary.obstacles.repaired, 3u);
+  EXPECT_GT(result.summary.obstacles_out, result.summary.obstacles.read) << "a bow tie is two triangles";
+  EXPECT_EQ(result.summary.uncertified, 0u);
+}
+
+TEST_F(Batches, AMemoryLimitRefusesWhatIsReadWholeAndChangesNothingElse) {
+  write_text(
+      folder_ / "in" / "maps" / "large.map", "type octile\nheight 300\nwidth 300\nmap\n" + [] {
+        std::string rows;
+        for (int k = 0; k < 300; ++k) rows += std::string(300, k % 2 == 0 ? '.' : '@') + "\n";
+        return rows;
+      }());
+  run_batch(plain_, run_to("free"));
+  BatchRun run = run_to("limited");
+  run.memory_limit = 1000000;  // a 20th of it is less than the map's 90 kB
+  const BatchResult result = run_batch(plain_, run);
+  EXPECT_EQ(result.summary.files.rejected.at("E_SIZE"), 1u);
+  EXPECT_EQ(text_of(out("free") / "index.html").substr(0, 100), text_of(out("limited") / "index.html").substr(0, 100));
+}
+
+using Streams = TemporaryFolder;
+
+TEST_F(Streams, LargeWktIsTheSameInBlocks) {
+  std::string text = "# not a geometry\n";
+  while (text.size() < 3500000)
+    text += stars_as_wkt(text.size(), 500) +
+            "GEOMETRYCOLLECTION (\nPOINT (1 1),\n"
+            "POLYGON ((0 0, 1 0,\n1 1, 0 0)))\nPOLYGON ((0 0, 1\n";
+  write_text(folder_ / "large.wkt", text);
+  ReadOptions options;
+  options.format = "wkt";
+  options.keep_going = true;
+  const ObstacleFile whole = parse_wkt(text, (folder_ / "large.wkt").string(), options);
+  std::vector<formation::SceneObstacle> obstacles;
+  std::vector<std::string> refusals;
+  const ObstacleFile streamed =
+      read_obstacles(folder_ / "large.wkt", options,
+                     {[&](formation::SceneObstacle o, bool) { obstacles.push_back(std::move(o)); },
+                      [&](const DataError& error) { refusals.push_back(error.what()); },
+                      {}});
+  ASSERT_EQ(obstacles.size(), whole.obstacles.size());
+  EXPECT_EQ(streamed.counts.read, whole.counts.read);
+  EXPECT_TRUE(streamed.obstacles.empty());
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    ASSERT_EQ(obstacles[k].id, whole.obstacles[k].id);
+    ASSERT_EQ(vertices_of(obstacles[k].shape), vertices_of(whole.obstacles[k].shape)) << k;
+  }
+  ASSERT_EQ(refusals.size(), whole.rejected.size());
+  for (std::size_t k = 0; k < refusals.size(); ++k) EXPECT_EQ(refusals[k], whole.rejected[k].what());
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test
