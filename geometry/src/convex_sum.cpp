@@ -32,13 +32,13 @@ bool is_exact_difference(double a, double b) {
 }
 
 struct Edge {
-  Vec2 from;
-  Vec2 to;
+  const Vec2* from;
+  const Vec2* to;
   Vec2 along;  // fl(to - from)
 };
 
 bool is_exact(const Edge& e) {
-  return is_exact_difference(e.from.x, e.to.x) && is_exact_difference(e.from.y, e.to.y);
+  return is_exact_difference(e.from->x, e.to->x) && is_exact_difference(e.from->y, e.to->y);
 }
 
 // Of exact directions: rounding keeps the order of the products p and q, and equal ones are told apart by what was
@@ -54,11 +54,11 @@ std::optional<Sign> turn_of_exact(const Edge& s, const Edge& t, double p, double
   return rest_p > rest_q ? Sign::positive : rest_p < rest_q ? Sign::negative : Sign::zero;
 }
 
-Sign turn_in_doubt(const Edge& s, const Edge& t, double p, double q) {
+[[gnu::noinline, gnu::cold]] Sign turn_in_doubt(const Edge& s, const Edge& t, double p, double q) {
   if (is_exact(s) && is_exact(t)) {
     if (const auto sign = turn_of_exact(s, t, p, q)) return *sign;
   }
-  return exact_turn(s.from, s.to, t.from, t.to);
+  return exact_turn(*s.from, *s.to, *t.from, *t.to);
 }
 
 // The sign of the turn from edge s to edge t. Exact.
@@ -72,22 +72,27 @@ inline Sign turn(const Edge& s, const Edge& t) {
   return turn_in_doubt(s, t, p, q);
 }
 
-bool is_lower(Vec2 a, Vec2 b) {
-  return a.y < b.y || (a.y == b.y && a.x < b.x);
+// Without jumps: which vertex is lowest is anyone's guess.
+inline bool is_lower(Vec2 a, Vec2 b) {
+  return (static_cast<int>(a.y < b.y) | (static_cast<int>(a.y == b.y) & static_cast<int>(a.x < b.x))) != 0;
+}
+
+const Vec2* lowest(const Vec2* begin, const Vec2* end) {
+  const Vec2* low = begin;
+  for (const Vec2* v = begin; v != end; ++v) low = is_lower(*v, *low) ? v : low;
+  return low;
 }
 
 // The directions from angle 0 (included) to pi (excluded).
 bool points_up(const Edge& e) {
-  return e.to.y > e.from.y || (e.to.y == e.from.y && e.to.x > e.from.x);
+  return is_lower(*e.from, *e.to);
 }
 
 // A convex polygon's edges from its lowest vertex on: their directions grow from 0 to 2 pi. Looks at the vertices,
 // which must outlive it. Edges of length 0 are passed over.
 class Fan {
  public:
-  explicit Fan(const std::vector<Vec2>& vertices) : vertices_(vertices) {
-    const auto lowest = std::min_element(vertices.begin(), vertices.end(), is_lower);
-    first_ = static_cast<std::size_t>(lowest - vertices.begin());
+  explicit Fan(const std::vector<Vec2>& v) : begin_(v.data()), end_(v.data() + v.size()), first_(lowest(begin_, end_)) {
     restart();
   }
 
@@ -104,58 +109,70 @@ class Fan {
     return left;
   }
 
-  bool at_end() const { return passed_ > vertices_.size(); }
+  bool at_end() const { return left_ <= 0; }
   const Edge& edge() const { return edge_; }
-  Vec2 at() const { return edge_.from; }
+  Vec2 at() const { return *edge_.from; }
 
   void advance() {
-    const Vec2 from = edge_.to;
-    while (++passed_ <= vertices_.size()) {
-      if (++next_ == vertices_.size()) next_ = 0;
-      const Vec2 to = vertices_[next_];
-      edge_ = {from, to, to - from};
-      if (from != to) return;
+    const Vec2* const from = edge_.to;
+    while (--left_ > 0) {
+      const Vec2* const to = edge_.to + 1 == end_ ? begin_ : edge_.to + 1;
+      edge_ = {from, to, *to - *from};
+      if (edge_.along != Vec2{} || *from != *to) return;
     }
     edge_ = {from, from, {}};
   }
 
  private:
   void restart() {
-    passed_ = 0;
-    next_ = first_;
-    edge_.to = vertices_[first_];
+    left_ = end_ - begin_ + 1;
+    edge_ = {first_, first_, {}};
     advance();
   }
 
-  const std::vector<Vec2>& vertices_;
-  std::size_t first_ = 0;
-  std::size_t next_ = 0;    // the vertex that the edge leads to
-  std::size_t passed_ = 0;  // steps taken; past the number of vertices there is no edge left
-  Edge edge_;
+  const Vec2* begin_;
+  const Vec2* end_;
+  const Vec2* first_;
+  std::ptrdiff_t left_ = 0;  // edges not yet passed, the present one included
+  Edge edge_{};
 };
 
 bool is_place(Vec2 p) {
   return std::fabs(p.x) < 0x1p1000 && std::fabs(p.y) < 0x1p1000;
 }
 
-Fan fan_of(const ConvexPolygon& polygon) {
+[[gnu::noinline, gnu::cold]] void require_convex(const ConvexPolygon& polygon) {
   const auto& v = polygon.vertices;
   EXACTVO_REQUIRE(!v.empty() && std::all_of(v.begin(), v.end(), is_place), excerpt(v));
-  Fan fan(v);
-  EXACTVO_REQUIRE(fan.turns_once_to_the_left(), excerpt(v));
-  return fan;
+  EXACTVO_REQUIRE(Fan(v).turns_once_to_the_left(), excerpt(v));
 }
+
+// Watches directions go by: proven once all rising ones came first and each turned left from the one before, beyond the
+// error of their cross product (a NaN or an overflow proves nothing). A closed ring of such edges is convex.
+class Order {
+ public:
+  void next(Vec2 along) {
+    const bool rises = along.y > 0.0 || (along.y == 0.0 && along.x > 0.0);
+    const double p = last_.x * along.y, q = last_.y * along.x;
+    const bool left = p - q > kTurnError * (std::fabs(p) + std::fabs(q)) + kSafeProduct;
+    proven_ = proven_ && (rises == rose_ ? left || first_ : rose_);
+    first_ = false;
+    rose_ = rises;
+    last_ = along;
+  }
+  bool is_proven() const { return proven_ && !rose_; }
+
+ private:
+  Vec2 last_;
+  bool first_ = true;
+  bool rose_ = true;
+  bool proven_ = true;
+};
 
 // What rounding took from fl(a + b).
 double lost(double a, double b, double sum) {
   const double part = sum - a;
   return std::fabs((a - (sum - part)) + (b - part));
-}
-
-void append_sum(Vec2 a, Vec2 b, ConvexSum& out) {
-  const Vec2 sum = a + b;
-  out.polygon.vertices.push_back(sum);
-  out.error = std::max(out.error, lost(a.x, b.x, sum.x) + lost(a.y, b.y, sum.y));
 }
 
 // Positive if s comes first. Of the next edges of two fans the directions are at most pi apart; opposite ones (a
@@ -166,29 +183,52 @@ Sign order(const Edge& s, const Edge& t) {
   return points_up(s) ? Sign::positive : Sign::negative;
 }
 
-ConvexSum merged(Fan a, Fan b, std::size_t most) {
-  ConvexSum out;
-  out.polygon.vertices.reserve(most);
-  append_sum(a.at(), b.at(), out);
+struct Merged {
+  ConvexSum sum;
+  bool summands_are_convex;  // proven; else they may still be: the edges of both, merged, were in order
+  bool sum_is_convex;        // the same of the rounded sum
+};
+
+void append(Vec2 a, Vec2 b, ConvexSum& sum, Order& order) {
+  const Vec2 at = a + b;
+  sum.error = std::max(sum.error, lost(a.x, b.x, at.x) + lost(a.y, b.y, at.y));
+  order.next(at - sum.polygon.vertices.back());
+  sum.polygon.vertices.push_back(at);
+}
+
+Merged merged(Fan a, Fan b, std::size_t most) {
+  ConvexSum sum;
+  Order edges, rounded_edges;
+  auto& v = sum.polygon.vertices;
+  v.reserve(most);
+  v.push_back(a.at() + b.at());
+  sum.error = lost(a.at().x, b.at().x, v[0].x) + lost(a.at().y, b.at().y, v[0].y);
   while (!a.at_end() || !b.at_end()) {
     const Sign next = a.at_end() ? Sign::negative : b.at_end() ? Sign::positive : order(a.edge(), b.edge());
+    edges.next(next != Sign::negative ? a.edge().along : b.edge().along);
     if (next != Sign::negative) a.advance();
     if (next != Sign::positive) b.advance();
-    append_sum(a.at(), b.at(), out);
+    append(a.at(), b.at(), sum, rounded_edges);
   }
-  if (out.polygon.vertices.size() > 1) out.polygon.vertices.pop_back();  // the start again
-  return out;
+  if (v.size() > 1) v.pop_back();  // the start again
+  return {std::move(sum), edges.is_proven(), rounded_edges.is_proven()};
 }
 
 }  // namespace
 
 ConvexSum minkowski_sum(const ConvexPolygon& a, const ConvexPolygon& b) {
-  ConvexSum sum = merged(fan_of(a), fan_of(b), a.vertices.size() + b.vertices.size() + 1);
-  if (sum.error == 0.0) return sum;
-  sum.error *= 1.0 + 4.0 * kUnitRoundoff;  // |ex| + |ey| is at least the length, but was itself rounded
+  EXACTVO_REQUIRE(!a.vertices.empty() && !b.vertices.empty(), "no vertices");
+  Merged m = merged(Fan(a.vertices), Fan(b.vertices), a.vertices.size() + b.vertices.size() + 1);
+  if (!m.summands_are_convex) {
+    require_convex(a);
+    require_convex(b);
+  }
+  if (m.sum.error == 0.0) return std::move(m.sum);
+  m.sum.error *= 1.0 + 4.0 * kUnitRoundoff;  // |ex| + |ey| is at least the length, but was itself rounded
   // Rounding can push a vertex across its neighbours' edge; the hull moves no point farther than the vertices moved.
-  if (!Fan(sum.polygon.vertices).turns_once_to_the_left()) sum.polygon = convex_hull(sum.polygon.vertices);
-  return sum;
+  if (!m.sum_is_convex && !Fan(m.sum.polygon.vertices).turns_once_to_the_left())
+    m.sum.polygon = convex_hull(m.sum.polygon.vertices);
+  return std::move(m.sum);
 }
 
 }  // namespace exactvo::geometry

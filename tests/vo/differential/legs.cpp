@@ -4,7 +4,6 @@
 #include <CGAL/Algebraic_kernel_d_1.h>
 #include <CGAL/CORE_BigInt.h>
 #include <CGAL/CORE_BigRat.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +11,7 @@
 #include <vector>
 
 #include "exactvo/vo/velocity_obstacle.h"
-#include "support/seeded_random.h"
+#include "vo/differential/tally.h"
 
 namespace exactvo::test {
 namespace {
@@ -63,12 +62,10 @@ double angle_between(Vec2 n, double s) {
   return std::fabs(std::atan2(cross(n, m), dot(n, m)));
 }
 
-void expect_same_legs(const IntegerCase& c) {
+bool has_same_legs(const IntegerCase& c) {
   const auto legs = obstacle_of(c).legs();
-  ASSERT_TRUE(legs);
   const std::vector<double> roots = algebraic_legs(c);
-  ASSERT_GE(roots.size(), 1u);
-  ASSERT_LE(roots.size(), 2u);
+  if (!legs || roots.empty() || roots.size() > 2) return false;
   // A bracket is some 100 u H / |h_S(m)| wide, m the direction of the tilt: below this until the robot is nearer to
   // contact than a hundred-thousandth of its distance, which integers of this size are not.
   constexpr double kWidth = 1e-9;
@@ -76,41 +73,47 @@ void expect_same_legs(const IntegerCase& c) {
     if (roots.size() == 1 && std::fabs(leg.normal.y) < kWidth && leg.normal.x < 0.0) continue;  // s = infinity
     double nearest = 1.0;
     for (const double s : roots) nearest = std::min(nearest, angle_between(leg.normal, s));
-    EXPECT_LT(nearest, kWidth) << c.px << " " << c.py << " " << c.l11 << " " << c.l21 << " " << c.l22 << " " << c.r;
+    if (!(nearest < kWidth)) return false;
   }
+  return true;
 }
 
-TEST(LegsDifferential, RandomEllipsesAgreeWithTheAlgebraicKernel) {
-  SeededRandom random(seed_of_run(71));
-  for (int i = 0; i < 6000; ++i) {
-    const int size = i % 2 == 0 ? 100 : 30000;
-    IntegerCase c{};
-    c.l11 = random.integer(1, size);
-    c.l21 = random.integer(-size, size);
-    c.l22 = random.integer(1, size);
-    c.r = random.integer(0, size);
-    c.px = random.integer(-4 * size, 4 * size);
-    c.py = random.integer(-4 * size, 4 * size);
-    if (!obstacle_of(c).overlaps()) expect_same_legs(c);
-    if (HasFailure()) return;
-  }
+std::string text_of(const IntegerCase& c) {
+  std::string text = "p, L, r of an ellipse in whole numbers:";
+  for (const int x : {c.px, c.py, c.l11, c.l21, c.l22, c.r}) text += " " + std::to_string(x);
+  return text;
 }
 
-TEST(LegsDifferential, SmallIntegersWithAxisParallelAndDoubleRootsAgree) {
-  int compared = 0;
-  for (int px = -6; px <= 6; ++px) {
-    for (int py = -6; py <= 6; ++py) {
-      for (int shape = 0; shape < 27; ++shape) {
-        const IntegerCase c{px, py, 1 + shape % 3, (shape / 3) % 3 - 1, 1 + shape / 9, (px + py + shape) & 1};
-        if (obstacle_of(c).overlaps()) continue;
-        ++compared;
-        expect_same_legs(c);
-        if (HasFailure()) return;
-      }
-    }
-  }
-  EXPECT_GT(compared, 3000);
+IntegerCase random_case(SeededRandom& random, long i) {
+  const int size = i % 2 == 0 ? 100 : 30000;
+  return {random.integer(-4 * size, 4 * size),
+          random.integer(-4 * size, 4 * size),
+          random.integer(1, size),
+          random.integer(-size, size),
+          random.integer(1, size),
+          random.integer(0, size)};
+}
+
+/// Small numbers: legs along the axes, double roots, a root at infinity.
+IntegerCase constructed_case(SeededRandom& random) {
+  return {random.integer(-9, 9), random.integer(-9, 9), random.integer(1, 4),
+          random.integer(-2, 2), random.integer(1, 4),  random.integer(0, 3)};
 }
 
 }  // namespace
+
+Tally compare_legs(const Asked& asked) {
+  Tally tally;
+  SeededRandom random(asked.seed);
+  for (long i = 0; tally.random_cases() < asked.random; ++i) {
+    const IntegerCase c = random_case(random, i);
+    if (!obstacle_of(c).overlaps()) tally.random(has_same_legs(c), text_of(c));
+  }
+  while (tally.constructed_cases() < asked.constructed) {
+    const IntegerCase c = constructed_case(random);
+    if (!obstacle_of(c).overlaps()) tally.constructed(has_same_legs(c), text_of(c));
+  }
+  return tally;
+}
+
 }  // namespace exactvo::test
