@@ -1,30 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // BARN worlds (Perille et al. 2020): Gazebo SDF with upright cylinders. Each stands in the world and again in its
 // recorded <state>; the first counts.
-#include <cmath>
-
-#include "exactvo/geometry/vec2.h"
+#include "discs.h"
 #include "line_reader.h"
 #include "xml_file.h"
 
 namespace exactvo::datasets {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-/// Corners of the polygon round a cylinder: tan(pi/16) / (pi/16) = 1.013 times its area.
-constexpr int kCorners = 16;
-/// The corners' radius is rounded up by this part, far more than the few roundings of each corner (1e-15 or so).
-constexpr double kOutward = 1e-12;
-
-geometry::Ring polygon_round(geometry::Vec2 center, double radius) {
-  geometry::Ring ring;
-  const double reach = radius / std::cos(kPi / kCorners) * (1.0 + kOutward);
-  for (int k = 0; k <= kCorners; ++k) {
-    const double angle = 2.0 * kPi * (k % kCorners) / kCorners;
-    ring.push_back(center + reach * geometry::Vec2{std::cos(angle), std::sin(angle)});
-  }
-  return ring;
-}
 
 geometry::Vec2 position_of(const XmlFile& xml, const pugi::xml_node& model) {
   const pugi::xml_node pose = model.child("pose");

@@ -290,6 +290,17 @@ class VectorReader {
   std::unique_ptr<OGRCoordinateTransformation> to_metres_;
 };
 
+/// As our own XML readers do. Entities are declared before the first element; what is hidden behind a longer comment is
+/// left to expat, which bounds what entities grow to.
+void refuse_entities(const std::filesystem::path& path) {
+  constexpr std::size_t kDeclarations = 1 << 16;
+  const std::string beginning = read_beginning(path, kDeclarations);
+  const std::size_t at = beginning.find("<!ENTITY");
+  if (beginning.empty() || beginning[0] != '<' || at == std::string::npos) return;
+  throw DataError(DataCode::format_syntax, path.string(), line_and_column(beginning, at), excerpt(beginning, at),
+                  "XML without entities of its own: they are not expanded");
+}
+
 }  // namespace
 
 bool looks_like_vector_file(const Glimpse& glimpse) {
@@ -297,6 +308,7 @@ bool looks_like_vector_file(const Glimpse& glimpse) {
 }
 
 void read_vector_file(const std::filesystem::path& path, Collector& out) {
+  refuse_entities(path);
   VectorReader(path, out).read();
 }
 

@@ -36,6 +36,8 @@ void read_wkt(const std::filesystem::path& path, Collector& out);
 /// WKT.
 void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out);
 bool only_by_name(const Glimpse& glimpse);
+/// Well-known text within another file: places and ids begin with those given.
+void read_wkt_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 
 // moving_ai_map.cpp, moving_ai_scen.cpp
 bool looks_like_moving_ai_map(const Glimpse& glimpse);
@@ -54,6 +56,26 @@ bool looks_like_csm_log(const Glimpse& glimpse);
 void read_csm_log(const std::filesystem::path& path, Collector& out);
 bool looks_like_points_csv(const Glimpse& glimpse);
 void read_points_csv(const std::filesystem::path& path, Collector& out);
+
+// graph_formats.cpp
+bool looks_like_graphml(const Glimpse& glimpse);
+void read_graphml(const std::filesystem::path& path, Collector& out);
+bool looks_like_counted_rings(const Glimpse& glimpse);
+void read_counted_rings(const std::filesystem::path& path, Collector& out);
+bool looks_like_pslg(const Glimpse& glimpse);
+void read_pslg(const std::filesystem::path& path, Collector& out);
+
+// planner_formats.cpp
+bool looks_like_ompl_circles(const Glimpse& glimpse);
+void read_ompl_circles(const std::filesystem::path& path, Collector& out);
+bool looks_like_ompl_grid(const Glimpse& glimpse);
+void read_ompl_grid(const std::filesystem::path& path, Collector& out);
+bool looks_like_opentraj_xml(const Glimpse& glimpse);
+void read_opentraj_xml(const std::filesystem::path& path, Collector& out);
+
+// jts_xml.cpp
+bool looks_like_jts_xml(const Glimpse& glimpse);
+void read_jts_xml(const std::filesystem::path& path, Collector& out);
 
 // rings_json.cpp, in the style of the earcut test files: [shell, hole, ...]
 bool looks_like_rings_json(const Glimpse& glimpse);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "readers.h"
 #include "wkt_blocks.h"
@@ -33,6 +34,8 @@ std::string without_dimension(std::string word) {
 struct TextPlace {
   std::size_t lines = 0;       ///< before it
   std::size_t geometries = 0;  ///< before it
+  std::string place;           ///< of text within another format: stands for its own
+  std::string id;              ///< likewise, with a number where it holds several
 };
 
 class WktReader {
@@ -41,7 +44,11 @@ class WktReader {
   enum class Inside { solid, walkable };
 
   WktReader(std::string_view text, Inside inside, Collector& out, TextPlace before = {})
-      : scan_(text, out.file(), before.lines), inside_(inside), out_(out), geometry_(before.geometries) {}
+      : scan_(text, out.file(), before.lines),
+        inside_(inside),
+        out_(out),
+        before_(std::move(before)),
+        geometry_(before_.geometries) {}
 
   /// Met so far, those before it included.
   std::size_t geometries() const { return geometry_; }
@@ -56,7 +63,7 @@ class WktReader {
     ++geometry_;
     const std::size_t start = scan_.position();
     try {
-      where_ = scan_.place();
+      where_ = before_.place.empty() ? scan_.place() : before_.place;
       skip_reference_system();
       geometry(0);
     } catch (const DataError& error) {
@@ -171,10 +178,15 @@ class WktReader {
     return p;
   }
 
+  std::string id() const {
+    if (before_.id.empty()) return std::to_string(geometry_);
+    return before_.id + (geometry_ > 1 ? "/" + std::to_string(geometry_) : "");
+  }
+
   void hand_on(RawKind kind, std::vector<geometry::Ring> rings) {
     RawGeometry raw;
     raw.kind = kind;
-    raw.id = std::to_string(geometry_) + (part_ > 0 ? "." + std::to_string(part_ + 1) : "");
+    raw.id = id() + (part_ > 0 ? "." + std::to_string(part_ + 1) : "");
     raw.place = where_ + (part_ > 0 ? ", part " + std::to_string(part_ + 1) : "");
     raw.rings = std::move(rings);
     ++part_;
@@ -185,6 +197,7 @@ class WktReader {
   WktScanner scan_;
   Inside inside_;
   Collector& out_;
+  TextPlace before_;
   std::string where_;     ///< the geometry's first character
   std::size_t geometry_;  ///< from 1
   std::size_t part_ = 0;  ///< obstacles of this geometry so far
@@ -218,6 +231,10 @@ bool looks_like_wkt(const Glimpse& glimpse) {
   scan.skip_between_geometries();
   const std::string word = without_dimension(scan.peek_word());
   return word == "SRID" || std::find(kGeometryWords.begin(), kGeometryWords.end(), word) != kGeometryWords.end();
+}
+
+void read_wkt_text(std::string_view text, const std::string& place, const std::string& id, Collector& out) {
+  WktReader(text, WktReader::Inside::solid, out, {0, 0, place, id}).read_all();
 }
 
 void read_wkt(const std::filesystem::path& path, Collector& out) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 #include "line_reader.h"
 #include "text_file.h"
@@ -11,6 +12,7 @@ namespace exactvo::datasets {
 
 XmlFile::XmlFile(const std::filesystem::path& path, const std::string& file)
     : file_(file), text_(read_text_file(path)) {
+  refuse_entities();
   const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
   if (result) return;
   const auto byte = static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0));
@@ -18,9 +20,27 @@ XmlFile::XmlFile(const std::filesystem::path& path, const std::string& file)
                   std::string("XML: ") + result.description());
 }
 
+/// None of these formats has any; what they stand for may be endless, or somebody's files.
+void XmlFile::refuse_entities() const {
+  const std::size_t at = text_.find("<!ENTITY");
+  if (at == std::string::npos) return;
+  throw DataError(DataCode::format_syntax, file_, line_and_column(text_, at), excerpt(text_, at),
+                  "XML without entities of its own: they are not expanded");
+}
+
 std::string XmlFile::place_of(const pugi::xml_node& node) const {
-  const std::ptrdiff_t byte = node.offset_debug();
-  return byte < 0 ? std::string(node.name()) : line_and_column(text_, static_cast<std::size_t>(byte));
+  const std::ptrdiff_t offset = node.offset_debug();
+  if (offset < 0) return node.name();
+  const auto byte = static_cast<std::size_t>(offset);
+  if (line_starts_.empty()) index_lines();
+  const auto line = std::prev(std::upper_bound(line_starts_.begin(), line_starts_.end(), byte));
+  return "line " + std::to_string(line - line_starts_.begin() + 1) + ", column " + std::to_string(byte - *line + 1);
+}
+
+void XmlFile::index_lines() const {
+  line_starts_.push_back(0);
+  for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1))
+    line_starts_.push_back(at + 1);
 }
 
 double XmlFile::number(const pugi::xml_node& node, const char* attribute) const {
@@ -33,11 +53,10 @@ double XmlFile::number(const pugi::xml_node& node, const char* attribute) const 
 }
 
 double XmlFile::to_number(const pugi::xml_node& node, std::string_view text) const {
-  const std::string place = place_of(node);
   try {
     return LineReader(text, file_).to_number(trimmed(text));
   } catch (const DataError& error) {
-    throw DataError(error.code(), file_, place, error.found(), error.expected());
+    throw DataError(error.code(), file_, place_of(node), error.found(), error.expected());
   }
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 /// \file
-/// XML for this room, by pugixml: it expands no entities of a file's own and follows no links.
+/// XML for this room, by pugixml: it expands no entities and follows no links; a file that declares entities is
+/// refused.
 
 #include <pugixml.hpp>
 #include <string>
+#include <vector>
 
 #include "readers.h"
 
@@ -23,9 +25,13 @@ class XmlFile {
   double to_number(const pugi::xml_node& node, std::string_view text) const;
 
  private:
+  void refuse_entities() const;
+  void index_lines() const;
+
   const std::string& file_;
   std::string text_;
   pugi::xml_document document_;
+  mutable std::vector<std::size_t> line_starts_;  ///< made when the first place is asked for
 };
 
 /// Whether `element` is the first element of the text, comments and declarations passed over.

@@ -114,13 +114,13 @@ TEST_F(SmallFormats, MengeObstaclesAreClosedOrNot) {
   EXPECT_EQ(refused("c.xml", begin).code(), DataCode::format_syntax);
 }
 
-TEST_F(SmallFormats, EntitiesAreNotExpanded) {
+TEST_F(SmallFormats, EntitiesAreRefused) {
   const std::string text =
       "<?xml version=\"1.0\"?>\n<!DOCTYPE x [<!ENTITY a SYSTEM \"file:///etc/passwd\">]>\n"
       "<shapes><poly id=\"1\" shape=\"&a;\"/></shapes>";
   ReadOptions options;
   options.format = "sumo-poly";
-  EXPECT_EQ(refusal_of([&] { read("a.xml", text, options); }).code(), DataCode::wrong_count);
+  EXPECT_EQ(refusal_of([&] { read("a.xml", text, options); }).code(), DataCode::format_syntax);
 }
 
 TEST_F(SmallFormats, SumoShapesAndOnesThatAreNone) {

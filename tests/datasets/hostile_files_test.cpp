@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files made to hurt: headers that claim 2^31 of something, nesting 10^5 deep, entities that expand, paths that lead
+// out of a map's folder. Each is refused with a code, in seconds, within 20 times its size plus 200 MB.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "exactvo/datasets/moving_ai.h"
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+constexpr double kPatience = 10.0;  // s
+constexpr std::size_t kDeep = 100'000;
+
+/// MB; the largest that this process ever was.
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  for (std::size_t k = 0; k < times; ++k) all += text;
+  return all;
+}
+
+struct HostileFile {
+  const char* name;  ///< of the case
+  const char* file;
+  const char* format;  ///< empty: told by content
+  std::string text;
+  std::optional<DataCode> code;  ///< none: read without a refusal of the file
+};
+
+void PrintTo(const HostileFile& hostile, std::ostream* out) {
+  *out << hostile.name;
+}
+
+class Hostile : public ::testing::TestWithParam<HostileFile> {};
+
+TEST_P(Hostile, IsRefusedWithACodeInTimeAndSpace) {
+  const HostileFile& hostile = GetParam();
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                       ("exactvo_hostile_" + std::string(hostile.name) + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / hostile.file, std::ios::binary) << hostile.text;
+  std::ofstream(folder / "big.pgm", std::ios::binary) << "P5 2147483647 2147483647 255\nxx";
+  std::ofstream(folder / "deep.pgm", std::ios::binary) << "P2 99999 99999 255\n0 0 0";
+  const double before = peak_memory();
+  const auto start = std::chrono::steady_clock::now();
+  std::optional<DataCode> code;
+  try {
+    ReadOptions options;
+    options.format = hostile.format;
+    options.keep_going = true;
+    options.repair = true;
+    const ObstacleFile file = read_obstacles(folder / hostile.file, options);
+    if (!file.rejected.empty()) code = file.rejected.front().code();
+  } catch (const DataError& error) {
+    code = error.code();
+  }
+  std::filesystem::remove_all(folder);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kPatience);
+  EXPECT_LT(peak_memory() - before, 20.0 * static_cast<double>(hostile.text.size()) / 1048576.0 + 200.0);
+  ASSERT_EQ(code.has_value(), hostile.code.has_value()) << (code ? code_name(*code) : "nothing was refused");
+  if (code) {
+    EXPECT_STREQ(code_name(*code), code_name(*hostile.code));
+  }
+}
+
+const std::string kEntities =
+    "<?xml version=\"1.0\"?><!DOCTYPE x [<!ENTITY a \"1111111111\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;\">"
+    "<!ENTITY file SYSTEM \"file:///etc/passwd\">]>";
+
+std::vector<HostileFile> hostile_files() {
+  std::vector<HostileFile> files{
+      {"MapHeader", "a.map", "movingai-map", "type octile\nheight 2147483648\nwidth 2147483648\nmap\n..\n",
+       DataCode::size},
+      {"MapHeaderBeyond64Bits", "a.map", "", "type octile\nheight 99999999999999999999\nwidth 2\nmap\n..\n",
+       DataCode::number},
+      {"PgmHeader", "a.yaml", "", "image: big.pgm\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::size},
+      {"PgmShortOfItsHeader", "a.yaml", "", "image: deep.pgm\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::size},
+      {"PathOutOfTheMap", "a.yaml", "", "image: ../../x\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::path_escape},
+      {"AbsolutePath", "a.yaml", "", "image: /etc/passwd\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::path_escape},
+      {"PathThroughTheMap", "a.yaml", "", "image: sub/../../x.pgm\nresolution: 1\norigin: [0, 0, 0]\n",
+       DataCode::path_escape},
+      {"CarmenCount", "a.log", "carmen-log", "FLASER 2147483648 1 2 3\n", DataCode::wrong_count},
+      {"PslgCount", "a.txt", "", "2147483648 1\n0 0\n", DataCode::size},
+      {"PslgIndex", "a.txt", "", "2 1\n0 0\n1 1\n0 2147483648\n", DataCode::out_of_range},
+      {"LineCount", "a.line", "", "2147483648\n0 0\n", DataCode::size},
+      {"FarPoints", "a.csv", "points-csv", "0,0\n1e9,1e9\n", DataCode::size},
+      {"WktNesting", "a.wkt", "", repeated("GEOMETRYCOLLECTION (", kDeep), DataCode::nesting},
+      {"WktBrackets", "a.wkt", "", "POLYGON " + repeated("(", kDeep), DataCode::number},
+      {"JsonNesting", "a.json", "rings-json", repeated("[", kDeep) + repeated("]", kDeep), DataCode::nesting},
+      {"YamlNesting", "a.yaml", "ros-map", "image: " + repeated("[", kDeep), DataCode::format_syntax},
+      {"XmlNesting", "a.xml", "menge-xml",
+       "<Experiment>" + repeated("<a>", kDeep) + repeated("</a>", kDeep) + "</Experiment>", std::nullopt},
+      {"MengeEntities", "a.xml", "", kEntities + "<Experiment><ObstacleSet/></Experiment>", DataCode::format_syntax},
+      {"SumoEntities", "a.poly.xml", "", kEntities + "<additional><poly id=\"&file;\"/></additional>",
+       DataCode::format_syntax},
+      {"JuPedSimEntities", "a.xml", "jupedsim-xml", kEntities + "<geometry/>", DataCode::format_syntax},
+      {"BarnEntities", "a.world", "barn-world", kEntities + "<sdf/>", DataCode::format_syntax},
+      {"JtsEntities", "a.xml", "jts-xml", kEntities + "<run/>", DataCode::format_syntax},
+      {"GraphmlEntities", "a.graphml", "graphml", kEntities + "<graphml/>", DataCode::format_syntax},
+      {"OpenTrajEntities", "a.xml", "opentraj-xml", kEntities + "<Trial/>", DataCode::format_syntax},
+      {"ManyModels", "a.world", "barn-world",
+       "<sdf><world>" + repeated("<model name='m'>\n</model>", 40'000) + "</world></sdf>", std::nullopt},
+      {"ManyBadPolygons", "a.poly.xml", "",
+       "<shapes>" + repeated("<poly id='p' shape='0,0 x,1'/>\n", 20'000) + "</shapes>", DataCode::number},
+  };
+  if (built_with_gdal()) {
+    files.push_back(
+        {"GeoJsonNesting", "a.geojson", "",
+         "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":null,\"geometry\":" +
+             repeated("{\"type\":\"GeometryCollection\",\"geometries\":[", kDeep),
+         DataCode::library});
+    files.push_back({"GmlEntities", "a.gml", "", kEntities + "<a>&b;&file;</a>", DataCode::format_syntax});
+    files.push_back({"KmlEntities", "a.kml", "", kEntities + "<kml><Document><name>&b;&file;</name></Document></kml>",
+                     DataCode::format_syntax});
+  }
+  return files;
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, Hostile, ::testing::ValuesIn(hostile_files()),
+                         [](const auto& each) { return std::string(each.param.name); });
+
+using HostileTasks = TemporaryFolder;
+
+TEST_F(HostileTasks, AMapsPathIsWordsAndNothingIsOpened) {
+  const auto path = put("a.scen", "version 1\n0\t../../../etc/passwd\t2147483648\t2147483648\t0\t0\t1\t1\t1.5\n");
+  const std::vector<PathTask> tasks = read_tasks(path);
+  ASSERT_EQ(tasks.size(), 1u);
+  EXPECT_EQ(tasks[0].map, "../../../etc/passwd");
+  EXPECT_EQ(tasks[0].width, 2147483648);
+}
+
+TEST_F(HostileTasks, AScenarioNestedTooDeeplyIsRefused) {
+  const auto path = put("a.json", "{\"name\": " + repeated("[", kDeep));
+  try {
+    load_scenario(path);
+    FAIL() << "nothing was refused";
+  } catch (const DataError& error) {
+    EXPECT_EQ(error.code(), DataCode::nesting);
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test
