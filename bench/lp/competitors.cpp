@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "competitor.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/single.h"
 #include "exactvo/vo/lp/solve.h"
 
 namespace exactvo::bench {
@@ -47,6 +49,41 @@ class Batch : public Competitor {
 bool feasible(const lp::Solution& s) {
   return s.status == lp::Status::optimal || s.status == lp::Status::pinched;
 }
+
+/// One problem after the other, each as arrays.
+class Single : public Competitor {
+ public:
+  explicit Single(const std::vector<lp::Problem>& problems) : answers_(problems.size()) {
+    std::size_t lines = 0;
+    for (const lp::Problem& p : problems) lines += padded(p.constraints.size());
+    for (auto* array : {&x_, &y_, &offset_}) array->assign(lines, 0.0);
+    std::size_t at = 0;
+    for (const lp::Problem& p : problems) {
+      problems_.push_back({&x_[at], &y_[at], &offset_[at], p.constraints.size(), 0, p.preferred, p.bound.disc});
+      for (std::size_t k = 0; k < p.constraints.size(); ++k) {
+        x_[at + k] = p.constraints[k].half_plane.normal.x;
+        y_[at + k] = p.constraints[k].half_plane.normal.y;
+        offset_[at + k] = p.constraints[k].half_plane.offset;
+        problems_.back().hard += p.constraints[k].priority == lp::Priority::hard;
+      }
+      at += padded(p.constraints.size());
+    }
+  }
+  std::size_t count() const override { return answers_.size(); }
+  Answer answer(std::size_t i) const override { return {answers_[i].velocity, feasible(answers_[i])}; }
+  void run() override {
+    for (std::size_t i = 0; i < problems_.size(); ++i) answers_[i] = lp::solve_single(problems_[i]);
+  }
+
+ private:
+  static std::size_t padded(std::size_t lines) {
+    return std::max<std::size_t>(1, (lines + lp::kSinglePadding - 1) / lp::kSinglePadding) * lp::kSinglePadding;
+  }
+
+  AlignedVector<double> x_, y_, offset_;
+  std::vector<lp::SingleProblem> problems_;
+  std::vector<lp::Solution> answers_;
+};
 
 /// The solvers that take a Problem; `Solve` gives a Solution.
 template <class Solve>
@@ -92,6 +129,7 @@ std::vector<Entry> entries() {
   all.push_back(batch_entry<float>("batch-float", ""));
   all.push_back(batch_entry<double>("batch-double-AVX2", "AVX2"));
   all.push_back(batch_entry<float>("batch-float-AVX2", "AVX2"));
+  all.push_back({"single", false, false, kAll, "", [](const auto& p) { return std::make_unique<Single>(p); }});
   all.push_back({"incremental", false, false, kAll, "",
                  [](const auto& p) { return one_by_one(p, [](const lp::Problem& q) { return lp::solve(q); }); }});
   all.push_back({"certified", false, true, kSome, "", [](const auto& p) {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// One problem whose lines are arrays of the caller's: nothing is copied or allocated, and its lines are looked at a
+/// register at a time (Highway picks the target at run time). For who has one problem now; for many see batch.h, for
+/// boxes, linear objectives and lines of any length solve.h.
+
+#include <cstddef>
+
+#include "exactvo/vo/lp/solution.h"
+
+namespace exactvo::lp {
+
+/// The arrays must be readable up to a multiple of `kSinglePadding` lines; what stands beyond `count` is not used.
+inline constexpr std::size_t kSinglePadding = 8;
+
+struct SingleProblem {
+  const double* normal_x = nullptr;
+  const double* normal_y = nullptr;  ///< | |normal| - 1 | <= 2^-10
+  const double* offset = nullptr;    ///< m/s
+  std::size_t count = 0;             ///< lines
+  std::size_t hard = 0;              ///< the first so many are hard
+  geometry::Vec2 preferred;          ///< m/s
+  double disc = 0.0;                 ///< m/s, finite, > 0
+};
+
+/// The same walk, slack and promises as a lane of `solve_batch`; what that would hand over goes to `solve`, which
+/// allocates. Deterministic: the same bits on every target. REQUIRES: finite numbers as described.
+Solution solve_single(const SingleProblem& problem);
+
+}  // namespace exactvo::lp
