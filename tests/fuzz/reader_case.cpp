@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reader_case.h"
+
+#include <exception>
+#include <fstream>
+
+#include "exactvo/datasets/moving_ai.h"
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/geometry/validity.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+/// Returns the file to read.
+fs::path put(const FuzzedFormat& format, const std::string& bytes, const fs::path& folder) {
+  const fs::path path = folder / (std::string("case") + format.extension);
+  const std::string mark = "\n%picture%\n";
+  const std::size_t at = std::string(format.name) == "ros-map" ? bytes.find(mark) : std::string::npos;
+  if (at == std::string::npos) {
+    write(path, bytes);
+    return path;
+  }
+  write(path, bytes.substr(0, at + 1));
+  for (const char* picture : {"map.pgm", "map.png", "map.bmp"}) write(folder / picture, bytes.substr(at + mark.size()));
+  return path;
+}
+
+bool is_valid(const geometry::Obstacle& shape) {
+  if (const auto* line = std::get_if<geometry::Polyline>(&shape))
+    return geometry::normalize_polyline(line->points).problems.empty();
+  const auto& polygon = std::get<geometry::Polygon>(shape);
+  std::vector<geometry::Ring> rings{polygon.outer};
+  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  for (const geometry::RingProblem& problem : geometry::normalize(rings).problems) {
+    if (problem.code != geometry::RingProblemCode::unclosed) return false;
+  }
+  return true;
+}
+
+std::string judged(const ObstacleFile& file) {
+  const ReadCounts& n = file.counts;
+  if (n.read != n.done + n.repaired + n.passed_over + n.rejected) return "the books do not balance";
+  if (n.rejected != file.rejected.size()) return "a refusal is not listed";
+  for (const formation::SceneObstacle& obstacle : file.obstacles) {
+    if (!is_valid(obstacle.shape)) return "an invalid obstacle, " + obstacle.id;
+  }
+  return {};
+}
+
+std::string read(const FuzzedFormat& format, const fs::path& path, bool with_repair) {
+  if (std::string(format.name) == "scenario") {
+    load_scenario(path);
+    return {};
+  }
+  ReadOptions options;
+  options.format = format.name;
+  options.keep_going = true;
+  options.repair = with_repair;
+  if (options.format == "movingai-scen") read_tasks(path);
+  return judged(read_obstacles(path, options));
+}
+
+const FuzzedFormat& format_named(const std::string& name) {
+  for (const FuzzedFormat& format : fuzzed_formats()) {
+    if (name == format.name) return format;
+  }
+  throw std::logic_error("no fuzzed format " + name);
+}
+
+}  // namespace
+
+const std::vector<FuzzedFormat>& fuzzed_formats() {
+  static const std::vector<FuzzedFormat> kFormats{
+      {"wkt", ".wkt"},          {"jupedsim-wkt", ".wkt"},   {"gdal", ".geojson"},   {"ros-map", ".yaml"},
+      {"movingai-map", ".map"}, {"movingai-scen", ".scen"}, {"carmen-log", ".log"}, {"csm-log", ".log"},
+      {"points-csv", ".csv"},   {"jupedsim-xml", ".xml"},   {"menge-xml", ".xml"},  {"sumo-poly", ".poly.xml"},
+      {"barn-world", ".world"}, {"rings-json", ".json"},    {"scenario", ".json"},
+  };
+  return kFormats;
+}
+
+std::string read_case(const std::string& name, const std::string& bytes, const fs::path& folder) {
+  const FuzzedFormat& format = format_named(name);
+  const fs::path path = put(format, bytes, folder);
+  try {
+    return read(format, path, bytes.size() % 2 == 1);
+  } catch (const DataError& error) {
+    return std::string(code_name(error.code())) == "E_UNKNOWN" ? "a refusal without a code" : "";
+  } catch (const std::exception& error) {
+    return std::string("an exception of another kind: ") + error.what();
+  }
+}
+
+}  // namespace exactvo::datasets::test
