@@ -7,12 +7,12 @@
 #include <tuple>
 #include <utility>
 
+#include "exactvo/formation/speed_profile.h"
 #include "exactvo/formation/stuck.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/require.h"
 #include "leader.h"
 #include "motion.h"
-#include "moving.h"
 
 namespace exactvo::formation {
 namespace {
@@ -79,7 +79,7 @@ double swept_moving_clearance(const Scenario& scenario, double scene, const Moti
                               double radius) {
   double least = kInfinity;
   for (const MovingObstacle& o : scenario.moving_obstacles) {
-    const Vec2 before = detail::displacement_at(o, time), after = detail::displacement_at(o, time + motion.duration);
+    const Vec2 before = displacement_at(o, time), after = displacement_at(o, time + motion.duration);
     motion.for_each_chord_in_time([&](const Segment& chord, double from, double to, double sagitta) {
       const Segment seen{chord.a - before - from * (after - before), chord.b - before - to * (after - before)};
       const double off = sagitta + rounding(scene + largest(chord), seen, radius + motion.reach());

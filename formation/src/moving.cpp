@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/vo/velocity_obstacle.h"
 #include "leader.h"
@@ -47,10 +48,6 @@ RobotConstraint against(const MovingObstacle& obstacle, std::size_t index, const
 
 }  // namespace
 
-Vec2 displacement_at(const MovingObstacle& obstacle, double time) {
-  return leader_at(obstacle.motion, time).position - obstacle.motion.path.front();
-}
-
 geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time) {
   const Vec2 moved = displacement_at(obstacle, time);
   std::vector<Vec2> points = geometry::vertices_of(obstacle.shape);
@@ -68,3 +65,11 @@ std::vector<RobotConstraint> moving_constraints(const Scenario& scenario, const 
 }
 
 }  // namespace exactvo::formation::detail
+
+namespace exactvo::formation {
+
+Vec2 displacement_at(const MovingObstacle& obstacle, double time) {
+  return detail::leader_at(obstacle.motion, time).position - obstacle.motion.path.front();
+}
+
+}  // namespace exactvo::formation

@@ -11,9 +11,6 @@
 
 namespace exactvo::formation::detail {
 
-/// How far the obstacle has moved from where it was at t = 0, m.
-Vec2 displacement_at(const MovingObstacle& obstacle, double time);
-
 /// The convex hull of the obstacle as it stands at `time`.
 geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time);
 

@@ -35,6 +35,7 @@ RecordedConstraint constraint_number(int k, SeededRandom& random) {
   c.half_plane = {random.direction(), random.uniform(-1e-9, 1e9)};
   c.source = static_cast<formation::ConstraintSource>(k % 3);
   c.index = static_cast<std::size_t>(k);
+  c.piece = static_cast<std::size_t>(k % 2);
   c.certified = k % 2 == 0;
   c.hard = k % 3 == 0;
   c.active = k % 5 == 0;
@@ -61,6 +62,45 @@ RobotStep robot_step(int k, SeededRandom& random) {
   robot.uncertified = static_cast<std::size_t>(k % 2);
   for (int c = 0; c < k % 4; ++c) robot.constraints.push_back(constraint_number(k + c, random));
   return robot;
+}
+
+formation::BindingConstraint binding(SeededRandom& random) {
+  formation::BindingConstraint b;
+  b.constraint.source = formation::ConstraintSource::obstacle_edge;
+  b.constraint.index = 7;
+  b.constraint.piece = 3;
+  b.normal = random.in_box(1);
+  b.clearance = random.uniform(0, 1);
+  b.radius_of_curvature = std::numeric_limits<double>::infinity();
+  return b;
+}
+
+/// Every term another number.
+formation::LyapunovRow lyapunov_row(double time, SeededRandom& random) {
+  const auto any = [&random] { return random.uniform(-9, 9); };
+  return {time,  {any(), any(), any(), any()}, {any(), any(), any(), any()},
+          any(), {any(), any(), any()},        {any(), any(), any()},
+          any()};
+}
+
+std::vector<double> terms_of(const formation::LyapunovRow& r) {
+  return {r.time,
+          r.paper.kinetic,
+          r.paper.consensus,
+          r.paper.pinning,
+          r.paper.integral,
+          r.paper_rates.kinetic,
+          r.paper_rates.consensus,
+          r.paper_rates.pinning,
+          r.paper_rates.integral,
+          r.paper_rate,
+          r.sound.kinetic,
+          r.sound.consensus,
+          r.sound.slots,
+          r.sound_rates.consensus,
+          r.sound_rates.tracking,
+          r.sound_rates.intervention,
+          r.rate_bound};
 }
 
 RecordingFile sample(bool with_formation) {
@@ -93,12 +133,17 @@ RecordingFile sample(bool with_formation) {
   file.recording.outcome = "all arrived";
   file.recording.warnings = {"a step of 0.5 s is beyond euler's limit", "\"quoted\""};
   file.recording.wall_time = 0.125;
+  file.recording.all_half_planes = with_formation;
+  if (!with_formation) file.recording.later_outlooks = {{0.1, 2, 1, {shape_number(1, random)}}, {0.2, 0, 1, {}}};
+  file.stuck = {{1, random.in_box(5), 3.5, 0.25, {binding(random)}, std::nullopt, "bound \"here\""}};
+  if (with_formation) file.stuck.front().equilibrium = formation::Equilibrium{random.in_box(1), {1, 0}, 2.5, 1.5, true};
   for (int k = 0; k < 20; ++k) {
     formation::Step step;
     step.time = 0.02 * k;
     for (int i = 0; i < 3; ++i) step.robots.push_back(robot_step(k + i, random));
     if (with_formation) step.leader_position = random.in_box(9), step.leader_velocity = random.in_box(3);
     file.recording.steps.push_back(step);
+    if (with_formation) file.lyapunov.push_back(lyapunov_row(step.time, random));
   }
   return file;
 }
@@ -108,6 +153,7 @@ void expect_same_constraint(const RecordedConstraint& a, const RecordedConstrain
   EXPECT_TRUE(same_bits(a.half_plane.offset, b.half_plane.offset));
   EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.index, b.index);
+  EXPECT_EQ(a.piece, b.piece);
   EXPECT_EQ(a.certified, b.certified);
   EXPECT_EQ(a.hard, b.hard);
   EXPECT_EQ(a.active, b.active);
@@ -131,6 +177,35 @@ void expect_same_step(const RobotStep& a, const RobotStep& b) {
   EXPECT_EQ(a.uncertified, b.uncertified);
   ASSERT_EQ(a.constraints.size(), b.constraints.size());
   for (std::size_t i = 0; i < a.constraints.size(); ++i) expect_same_constraint(a.constraints[i], b.constraints[i]);
+}
+
+void expect_same_reports(const formation::StuckReport& a, const formation::StuckReport& b) {
+  EXPECT_EQ(a.robot, b.robot);
+  EXPECT_EQ(a.text, b.text);
+  EXPECT_TRUE(same_bits(a.position, b.position));
+  ASSERT_EQ(a.binding.size(), b.binding.size());
+  EXPECT_EQ(a.binding[0].constraint.source, b.binding[0].constraint.source);
+  EXPECT_EQ(a.binding[0].constraint.piece, b.binding[0].constraint.piece);
+  EXPECT_TRUE(same_bits(a.binding[0].radius_of_curvature, b.binding[0].radius_of_curvature));
+  ASSERT_EQ(a.equilibrium.has_value(), b.equilibrium.has_value());
+  if (a.equilibrium) {
+    EXPECT_TRUE(same_bits(a.equilibrium->distance, b.equilibrium->distance));
+    EXPECT_EQ(a.equilibrium->stable, b.equilibrium->stable);
+  }
+}
+
+void expect_same_extras(const RecordingFile& a, const RecordingFile& b) {
+  EXPECT_EQ(a.recording.all_half_planes, b.recording.all_half_planes);
+  ASSERT_EQ(a.recording.later_outlooks.size(), b.recording.later_outlooks.size());
+  for (std::size_t i = 0; i < a.recording.later_outlooks.size(); ++i) {
+    EXPECT_EQ(a.recording.later_outlooks[i].robot, b.recording.later_outlooks[i].robot);
+    EXPECT_TRUE(same_bits(a.recording.later_outlooks[i].enclosures, b.recording.later_outlooks[i].enclosures));
+  }
+  ASSERT_EQ(a.stuck.size(), b.stuck.size());
+  for (std::size_t i = 0; i < a.stuck.size(); ++i) expect_same_reports(a.stuck[i], b.stuck[i]);
+  ASSERT_EQ(a.lyapunov.size(), b.lyapunov.size());
+  for (std::size_t k = 0; k < a.lyapunov.size(); ++k)
+    EXPECT_TRUE(same_bits(terms_of(a.lyapunov[k]), terms_of(b.lyapunov[k]))) << k;
 }
 
 using RecordingFileTest = TemporaryFolder;
@@ -162,6 +237,7 @@ TEST_F(RecordingFileTest, Property1_EveryBitComesBack) {
       for (std::size_t i = 0; i < 3; ++i)
         expect_same_step(a.recording.steps[k].robots[i], b.recording.steps[k].robots[i]);
     }
+    expect_same_extras(a, b);
     write_recording(folder_ / "again.jsonl", b);
     EXPECT_EQ(content_of(folder_ / "again.jsonl"), content_of(folder_ / "r.jsonl"));
   }

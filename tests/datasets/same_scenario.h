@@ -70,6 +70,14 @@ inline void expect_same(const formation::FormationSpec& a, const formation::Form
   EXPECT_EQ(a.recentre, b.recentre);
   EXPECT_TRUE(same_bits(a.leader.path, b.leader.path));
   EXPECT_TRUE(same_bits(a.leader.speed, b.leader.speed));
+  ASSERT_EQ(a.leader.profile.size(), b.leader.profile.size());
+  for (std::size_t k = 0; k < a.leader.profile.size(); ++k) {
+    EXPECT_TRUE(same_bits(a.leader.profile[k].time, b.leader.profile[k].time));
+    EXPECT_TRUE(same_bits(a.leader.profile[k].speed, b.leader.profile[k].speed));
+  }
+  for (const formation::RemedySwitch& s : formation::remedy_switches())
+    EXPECT_EQ(a.remedies.*s.asked, b.remedies.*s.asked) << s.name;
+  EXPECT_EQ(a.remedies.acceleration_bound, b.remedies.acceleration_bound);
   EXPECT_TRUE(same_bits(std::vector<double>{a.gains.k1, a.gains.k2, a.gains.k3, a.gains.kappa},
                         std::vector<double>{b.gains.k1, b.gains.k2, b.gains.k3, b.gains.kappa}));
   EXPECT_TRUE(same_bits(a.catch_up_speed, b.catch_up_speed));

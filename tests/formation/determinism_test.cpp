@@ -3,21 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "exactvo/datasets/provenance.h"
 #include "paper_scenes.h"
+#include "support/c_library.h"
 
 namespace exactvo::formation {
 namespace {
 
-void append(std::string& bytes, double x) {
-  char raw[sizeof x];
-  std::memcpy(raw, &x, sizeof x);
-  bytes.append(raw, sizeof x);
-}
+using test::append_bits;
 
 /// SHA-256 over the bits of every state and chosen velocity.
 std::string fingerprint(const Recording& recording) {
@@ -25,8 +22,8 @@ std::string fingerprint(const Recording& recording) {
   for (const Step& row : recording.steps) {
     for (const RobotStep& r : row.robots)
       for (const Vec2 v : {r.position, r.velocity, r.chosen}) {
-        append(bytes, v.x);
-        append(bytes, v.y);
+        append_bits(bytes, v.x);
+        append_bits(bytes, v.y);
       }
   }
   return datasets::sha256_of(bytes);
@@ -40,31 +37,33 @@ TEST(Determinism, TheSameScenarioGivesTheSameBits) {
   for (const char* scene : {"A2", "A7", "A15", "B1", "B3"}) EXPECT_EQ(fingerprint_of(scene), fingerprint_of(scene));
 }
 
+TEST(Determinism, ThreadsChangeNothing) {
+  const std::vector<const char*> scenes{"A2", "A7", "A14", "B1", "B2", "B3"};
+  std::vector<std::string> alone;
+  for (const char* scene : scenes) alone.push_back(fingerprint_of(scene));
+  for (const std::size_t count : {2u, 4u}) {
+    std::vector<std::string> together(scenes.size());
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < count; ++t)
+      threads.emplace_back([&, t] {
+        for (std::size_t i = t; i < scenes.size(); i += count) together[i] = fingerprint_of(scenes[i]);
+      });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(together, alone) << count << " threads";
+  }
+}
+
 TEST(Determinism, RecordingEverythingChangesNothing) {
   SimulationOptions all;
   all.record_all = true;
   EXPECT_EQ(fingerprint(simulate(test::paper_scene("B1"), all)), fingerprint_of("B1"));
 }
 
-/// SHA-256 over what the C library's functions give here: two machines on which it agrees give the same recordings.
-std::string library_fingerprint() {
-  std::string bytes;
-  for (int k = 1; k <= 2000; ++k) {
-    const double x = 0.0137 * k;
-    for (const double y : {std::sin(x), std::cos(x), std::atan2(x, 3.0 - x), std::exp(-x), std::expm1(-x), std::cbrt(x),
-                           std::hypot(x, 1.0 / x), std::acos(1.0 / (1.0 + x))})
-      append(bytes, y);
-  }
-  return datasets::sha256_of(bytes);
-}
-
-constexpr const char* kLibrary = "3422fe293ac92e331750ef804244295409db88af78029ad65fa9eb723b649b1e";
-
 /// Holds the bits where the C library is the one they were recorded with; elsewhere, where its functions round
 /// otherwise, the end of the run to within what that can do to it.
 void expect_golden(const char* scene, const char* golden, const std::vector<Vec2>& ends) {
   const Recording recording = simulate(test::paper_scene(scene));
-  if (library_fingerprint() == kLibrary) {
+  if (test::c_library_is_the_recorded_one()) {
     EXPECT_EQ(fingerprint(recording), golden);
   }
   constexpr double kOtherLibrary = 1e-6;  // m: ulps of the elementary functions, grown along a run

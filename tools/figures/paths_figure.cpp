@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "exactvo/formation/metrics.h"
+#include "exactvo/formation/speed_profile.h"
+#include "figures/label_places.h"
 #include "figures/outlines.h"
 
 namespace exactvo::tools {
@@ -46,6 +49,9 @@ Box box_of_obstacles(const formation::Scenario& scenario) {
   for (const auto& obstacle : scenario.obstacles) {
     for (const Vec2 p : vertices_of(obstacle.shape)) box.add(p);
   }
+  for (const auto& obstacle : scenario.moving_obstacles) {
+    for (const Vec2 p : vertices_of(obstacle.shape)) box.add(p);
+  }
   return box;
 }
 
@@ -63,12 +69,19 @@ std::vector<const Step*> time_marks(const RecordingFile& run) {
   return marks;
 }
 
+/// px a metre of the plane in the SVG.
+double scale_of(const Box& view) {
+  return std::min(760.0 / view.width(), 620.0 / view.height());
+}
+
 /// The layers of one panel: data sets and the plot items that draw them.
 class PathsPanel {
  public:
   PathsPanel(const RecordingFile& run, DataFile& data, bool detailed)
-      : run_(run), data_(data), detailed_(detailed), view_(view_of(run)) {
+      : run_(run), data_(data), detailed_(detailed), view_(view_of(run)), times_(view_, scale_of(view_)) {
+    if (detailed_) note_lines();
     add_obstacles();
+    add_moving_obstacles();
     if (detailed_) add_enclosures();
     add_leader();
     for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) add_way(i);
@@ -145,6 +158,35 @@ class PathsPanel {
                key(in_legend ? "obstacle" : "wall"));
   }
 
+  static Points vertices_at(const formation::MovingObstacle& obstacle, double time) {
+    Points points = vertices_of(obstacle.shape);
+    for (Vec2& p : points) p += displacement_at(obstacle, time);
+    return points;
+  }
+
+  /// Where they are at every time mark, the first and the last outlined strongly, and the way of their middle.
+  void add_moving_obstacles() {
+    if (run_.scenario.moving_obstacles.empty()) return;
+    const std::vector<const Step*> marks = time_marks(run_);
+    const int index = data_.begin("moving obstacles at the time marks", "x [m], y [m]");
+    for (const auto& obstacle : run_.scenario.moving_obstacles)
+      for (const Step* mark : marks) add_ring(vertices_at(obstacle, mark->time));
+    const int ways = data_.begin("ways of the moving obstacles", "x [m], y [m]");
+    for (const auto& obstacle : run_.scenario.moving_obstacles) {
+      const Points points = vertices_of(obstacle.shape);
+      Vec2 middle{};
+      for (const Vec2 p : points) middle += p / static_cast<double>(points.size());
+      for (const Step* mark : marks) {
+        const Vec2 p = middle + displacement_at(obstacle, mark->time);
+        data_.row({p.x, p.y});
+      }
+      data_.gap();
+    }
+    plot_.data(index, fmt::format("using 1:2 with lines lw 1.5 dt (8,3) lc rgb '{}'", kObstacleLine),
+               key("moving obstacle"));
+    plot_.data(ways, fmt::format("using 1:2 with linespoints lw 1 pt 7 ps 0.5 dt (2,3) lc rgb '{}'", kObstacleLine));
+  }
+
   /// Ellipses only: a facade that stands for itself would be drawn over the obstacle.
   void add_enclosures() {
     bool any = false;
@@ -156,6 +198,11 @@ class PathsPanel {
     std::vector<Points> rings;
     for (const auto& shape : run_.enclosures[i]) {
       if (std::holds_alternative<geometry::Ellipse>(shape)) rings.push_back(outline(shape));
+    }
+    for (const formation::Outlook& later : run_.recording.later_outlooks) {
+      if (later.robot != i) continue;
+      for (const auto& shape : later.enclosures)
+        if (std::holds_alternative<geometry::Ellipse>(shape)) rings.push_back(outline(shape));
     }
     if (rings.empty()) return false;
     const int index = data_.begin("enclosures seen by " + run_.scenario.robots[i].id, "x [m], y [m]");
@@ -189,19 +236,18 @@ class PathsPanel {
   /// The robot to scale: at every time mark that it has moved to (without details at its start only) and at its end.
   void add_places(std::size_t i) {
     const Robot& robot = run_.scenario.robots[i];
-    const int index = data_.begin("places of " + robot.id, "x [m], y [m], radius [m], t");
+    const int index = data_.begin("places of " + robot.id, "x [m], y [m], radius [m], where t is written [m], [m], t");
     const std::vector<const Step*> places = places_of(i);
     // The last one first: its label is always there, and the others give way.
     for (std::size_t k = places.size(); k-- > 0;) {
       const Vec2 p = places[k]->robots[i].position;
-      data_.labelled_row({p.x, p.y, robot.radius}, label(p, places[k]->time, k, places.size()));
+      const Label time = label(p, robot.radius, places[k]->time, k, places.size());
+      data_.labelled_row({p.x, p.y, robot.radius, time.place.x, time.place.y}, time.text);
     }
     plot_.data(index, fmt::format("using 1:2:3 with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
                                   series_colour(i)));
     if (!detailed_) return;
-    // Aslant of the circle, clear of ways that go straight up or across.
-    plot_.data(index, fmt::format("using ($1+0.7*$3):($2+0.7*$3):4 with labels left font ',{}' textcolor rgb '{}' "
-                                  "offset 0.2,0.3",
+    plot_.data(index, fmt::format("using 4:5:6 with labels center font ',{}' textcolor rgb '{}'",
                                   robot_count() <= kFewRobots ? 10 : 8,
                                   robot_count() <= kFewRobots ? "#222222" : series_colour(i)));
   }
@@ -236,17 +282,36 @@ class PathsPanel {
     return places;
   }
 
-  /// The time; nothing where another one would be written over, unless it is the robot's last.
-  std::string label(Vec2 p, double time, std::size_t k, std::size_t count) {
+  /// What no time may be written on.
+  void note_lines() {
+    for (const auto& obstacle : run_.scenario.obstacles)
+      for (const geometry::Segment& edge : edges_of(obstacle.shape)) times_.keep_off({edge.a, edge.b}, false);
+    for (const auto& of_robot : run_.enclosures)
+      for (const auto& shape : of_robot)
+        if (std::holds_alternative<geometry::Ellipse>(shape)) times_.keep_off(outline(shape), true);
+    for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) {
+      Points way;
+      for (const Step& step : run_.recording.steps)
+        if (is_drawable(step.robots[i].position)) way.push_back(step.robots[i].position);
+      times_.keep_off(way, false);
+      for (const Vec2 goal : run_.scenario.robots[i].goals) times_.keep_off({goal}, false);
+    }
+    for (const auto& obstacle : run_.scenario.moving_obstacles)
+      for (const Step* mark : time_marks(run_)) times_.keep_off(vertices_at(obstacle, mark->time), true);
+  }
+
+  struct Label {
+    Vec2 place;
+    std::string text;
+  };
+  /// The time; nothing where it would lie on something, unless it is the robot's last.
+  Label label(Vec2 p, double radius, double time, std::size_t k, std::size_t count) {
     const bool last = k + 1 == count;
     const bool middle = k == count / 2;
-    if (robot_count() > kFewRobots && !last && !middle) return "";
-    for (const Vec2 other : labels_) {
-      const bool beside = std::abs(p.x - other.x) < 0.055 * view_.width();
-      if (!last && beside && std::abs(p.y - other.y) < 0.03 * view_.height()) return "";
-    }
-    labels_.push_back(p);
-    return fmt::format("{:.3g} s", time);
+    if (!detailed_ || (robot_count() > kFewRobots && !last && !middle)) return {p, ""};
+    const std::optional<Vec2> place = times_.place_beside(p, radius, last);
+    if (!place) return {p, ""};
+    return {*place, fmt::format("{:.3g} s", time)};
   }
 
   /// The row at which the series is least, where that is below zero.
@@ -297,7 +362,7 @@ class PathsPanel {
   bool detailed_;
   Box view_;
   PlotCommand plot_;
-  std::vector<Vec2> labels_;  ///< where times are written, m
+  LabelPlaces times_;
 };
 
 /// Characters in 9 points over a panel of 300 px.
@@ -316,11 +381,6 @@ std::string ranges(const Box& view) {
                      view.low.y, view.high.y);
 }
 
-/// px a metre.
-double scale_of(const Box& view) {
-  return std::min(760.0 / view.width(), 620.0 / view.height());
-}
-
 /// A title stands over the middle of the axes and may go as far to the left as they and their labels do.
 std::string fitted_title(const RecordingFile& run, const Box& view) {
   return shortened(run_title(run), characters_in(scale_of(view) * view.width() + 100.0));
@@ -335,6 +395,7 @@ Canvas canvas_for(const Box& view, std::size_t longest_key) {
 
 std::size_t longest_key(const RecordingFile& run) {
   std::size_t longest = run.scenario.formation ? 14 : 10;  // "virtual leader", "enclosures"
+  if (!run.scenario.moving_obstacles.empty()) longest = std::max<std::size_t>(longest, 15);  // "moving obstacle"
   for (const Robot& robot : run.scenario.robots) longest = std::max(longest, robot.id.size());
   return std::min(longest, kNameLength);
 }

@@ -94,7 +94,9 @@ std::string jitter_cell(const Json& run) {
 /// Whether a scene ended formed and nothing was touched.
 bool formed(const Json& run) {
   constexpr double kFormed = 1e-6;  // m
-  const auto clear = [&](const char* key) { return run[key].is_null() || run[key].get<double>() > 0.0; };
+  const auto clear = [&](const char* key) {
+    return run[key].is_null() || run[key].get<double>() >= -formation::kContactDepth;
+  };
   const Json& error = run["formation_position_error"];
   return !error.is_null() && error.get<double>() < kFormed && clear("min_obstacle_clearance") &&
          clear("min_robot_clearance");

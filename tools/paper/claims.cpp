@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "exactvo/formation/lyapunov.h"
+#include "exactvo/formation/metrics.h"
 
 namespace exactvo::tools {
 
@@ -48,7 +49,7 @@ bool arrived(const Json& run) {
   return run["all_arrived"].get<bool>();
 }
 bool untouched(const Json& run) {
-  return least_clearance(run).value_or(1.0) > 0.0;
+  return least_clearance(run).value_or(1.0) >= -formation::kContactDepth;
 }
 bool bypassed(const Json& run) {
   return arrived(run) && untouched(run);

@@ -8,6 +8,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/metrics.h"
 #include "exactvo/formation/stability.h"
 #include "paper/claims.h"
 #include "paper/equations.h"
@@ -145,7 +146,7 @@ std::string expected_words(double t) {
 std::string avoidance_cell(const Json& run, double expected) {
   if (run.is_null()) return "not run";
   const auto seen = run["all_arrived"].get<bool>() ? value_of(run, "last_arrival_time") : std::nullopt;
-  const bool touched = least_clearance(run).value_or(1.0) < 0.0;
+  const bool touched = least_clearance(run).value_or(1.0) < -formation::kContactDepth;
   return seconds(seen) + (touched ? "!" : "") + " / " + expected_words(expected);
 }
 

@@ -10,7 +10,7 @@ namespace exactvo::tools {
 namespace {
 
 bool is_overlap(const std::optional<double>& clearance) {
-  return clearance && *clearance < 0.0;
+  return clearance && *clearance < -formation::kContactDepth;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ std::string or_dash(const std::optional<double>& value, const char* unit) {
 std::string robot_line(const formation::RobotMetrics& robot, bool has_goal) {
   std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") + ", " : "did not arrive, ";
   if (!has_goal) arrival.clear();
-  const bool overlaps = robot.min_obstacle_clearance.value_or(0.0) < 0.0;
+  const bool overlaps = robot.min_obstacle_clearance.value_or(0.0) < -formation::kContactDepth;
   return fmt::format("  {:<12} {}way {:.4g} m, least clearance to obstacles {}{}\n", shown(robot.id), arrival,
                      robot.path_length, or_dash(robot.min_obstacle_clearance, "m"),
                      overlaps ? ": touched an obstacle" : "");

@@ -52,6 +52,10 @@ struct Metrics {
 
 Metrics measure(const Scenario& scenario, const Recording& recording);
 
+/// m: contact is spoken of from this depth on. Certified clearances lie below the true ones by less than it up to 10 km
+/// from the origin (four times 2^-46 of the coordinates), so two robots that keep exactly their distance do not touch.
+inline constexpr double kContactDepth = 1e-9;
+
 /// Nothing was touched, by the swept clearances, and every half-plane was certified.
 bool is_safe(const Metrics& metrics);
 

@@ -27,4 +27,7 @@ double distance_at(const std::vector<SpeedKnot>& profile, double time);
 /// s; when `distance` (m) is first covered; infinite where it never is.
 double time_to_cover(const std::vector<SpeedKnot>& profile, double distance);
 
+/// m; how far a moving obstacle has come at `time` (s) from where it stands at t = 0.
+Vec2 displacement_at(const MovingObstacle& obstacle, double time);
+
 }  // namespace exactvo::formation
