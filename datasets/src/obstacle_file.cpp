@@ -79,6 +79,7 @@ const std::vector<Reader>& readers() {
       {"pslg", looks_like_pslg, read_pslg},
       {"ompl-circles", looks_like_ompl_circles, read_ompl_circles},
       {"ompl-grid", looks_like_ompl_grid, read_ompl_grid},
+      {"scenario", looks_like_scenario, read_scenario_obstacles},
       {"rings-json", looks_like_rings_json, read_rings_json},
       {"points-csv", looks_like_points_csv, read_points_csv},
       {"gdal", looks_like_vector_file, read_vector_file},

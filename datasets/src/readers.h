@@ -73,6 +73,10 @@ void read_ompl_grid(const std::filesystem::path& path, Collector& out);
 bool looks_like_opentraj_xml(const Glimpse& glimpse);
 void read_opentraj_xml(const std::filesystem::path& path, Collector& out);
 
+// scenario_obstacles.cpp
+bool looks_like_scenario(const Glimpse& glimpse);
+void read_scenario_obstacles(const std::filesystem::path& path, Collector& out);
+
 // jts_xml.cpp
 bool looks_like_jts_xml(const Glimpse& glimpse);
 void read_jts_xml(const std::filesystem::path& path, Collector& out);

@@ -99,6 +99,18 @@ TEST_F(GraphFormats, OmplGridsHaveTheirFirstRowOnTop) {
       DataCode::wrong_count);
 }
 
+TEST_F(GraphFormats, AScenarioGivesItsObstaclesWithThoseOfItsFiles) {
+  put("more.wkt", "POLYGON ((0 9, 4 9, 4 8, 0 9))\n");
+  const auto path =
+      put("s.json", R"({"name": "s", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}],)"
+                    R"( "obstacles": [{"id": "w", "polyline": [[3, 3], [5, 3]]}, {"file": "more.wkt"}]})");
+  const ObstacleFile file = read_obstacles(path);
+  EXPECT_EQ(file.format, "scenario");
+  ASSERT_EQ(file.obstacles.size(), 2u);
+  EXPECT_EQ(file.obstacles[0].id, "w");
+  EXPECT_TRUE(std::holds_alternative<Polygon>(file.obstacles[1].shape));
+}
+
 TEST_F(GraphFormats, OpenTrajLinesAreWalls) {
   const auto path = put("m.xml",
                         "<Trial><obstacles><obstacle><TrialObstacle><Lines><Line x1='0' y1='1' x2='2' y2='3'/></Lines>"

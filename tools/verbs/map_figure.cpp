@@ -143,6 +143,8 @@ Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::st
   Map map;
   Outlines outlines;
   for (const ObstacleShapes& shapes : obstacles) outlines.add(shapes.obstacle);
+  constexpr std::size_t kMostDrawnBold = 40;
+  const bool crowded = obstacles.size() > kMostDrawnBold;
   draw_obstacles(outlines, false, map);
   draw_pieces(obstacles, map);
   map.curves("facade ellipses",
@@ -150,7 +152,7 @@ Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::st
                       [](const ObstacleShapes& s, std::vector<Points>& out) {
                         for (const geometry::FacadeEnclosure& e : s.facade_ellipses) out.push_back(outline(e.ellipse));
                       }),
-             line(0.8, "#56B4E9"), true);
+             line(crowded ? 0.4 : 0.8, "#56B4E9"), true);
   map.curves(
       "hulls",
       gathered(obstacles, [](const ObstacleShapes& s, std::vector<Points>& out) { out.push_back(s.hull.vertices); }),
@@ -170,7 +172,7 @@ Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::st
                       [](const ObstacleShapes& s, std::vector<Points>& out) {
                         for (const geometry::Segment& f : s.facades.facades) out.push_back({f.a, f.b});
                       }),
-             "with linespoints lw 2.2 pt 7 ps 0.35 lc rgb '#D55E00'", false);
+             crowded ? line(1.0, "#D55E00") : "with linespoints lw 2.2 pt 7 ps 0.35 lc rgb '#D55E00'", false);
   return map.figure(title, name);
 }
 
