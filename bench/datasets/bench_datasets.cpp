@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How quick a batch is, and how much memory it takes.
+//
+//   bench_datasets [--stars N] [--sumo FILE] [--folder DIR] [--largest N]
+//
+// In this order: peak memory of batches of 10^4, 10^5, ... obstacles, each a process of its own; the shapes of N
+// generated obstacles in memory on one core, stage by stage; the naive exact way beside them, after their answers were
+// compared; the same for a file of real polygons; whole batches with one and two workers.
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "exactvo/datasets/batch.h"
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/geometry/obstacle_shapes.h"
+#include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/validity.h"
+#include "naive.h"
+#include "stars.h"
+
+namespace exactvo::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using datasets::BatchConfiguration;
+using datasets::BatchResult;
+using datasets::BatchRun;
+using geometry::ObstacleShapes;
+using geometry::Polygon;
+using geometry::Vec2;
+
+/// What this process has computed, all threads together, s: what else runs on the machine counts little.
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+template <class Work>
+double cpu_of(const Work& work) {
+  const double start = cpu_seconds();
+  work();
+  return cpu_seconds() - start;
+}
+
+void need(bool holds, const char* what) {
+  if (!holds) throw std::runtime_error(what);
+}
+
+std::size_t vertices_of(const std::vector<Polygon>& polygons) {
+  std::size_t count = 0;
+  for (const Polygon& p : polygons) count += geometry::vertices_of(geometry::Obstacle{p}).size();
+  return count;
+}
+
+geometry::ShapeOptions batch_options() {
+  geometry::ShapeOptions options = BatchConfiguration().shapes;
+  options.check_validity = false;
+  return options;
+}
+
+// --- One core, in memory ---
+
+/// Shapes of all, every one certified; validity is checked as a reader does.
+double seconds_for_shapes(const std::vector<Polygon>& polygons) {
+  const geometry::ShapeOptions options = batch_options();
+  return cpu_of([&] {
+    for (const Polygon& polygon : polygons) {
+      std::vector<geometry::Ring> rings{polygon.outer};
+      rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+      need(geometry::normalize(rings).ok(), "an invalid obstacle");
+      need(shapes_of(polygon, options).certified(), "an obstacle without certificate");
+    }
+  });
+}
+
+void show_rate(const char* what, const std::vector<Polygon>& polygons, double seconds) {
+  const auto count = static_cast<double>(polygons.size());
+  std::printf("%-44s %8.2f us each  %8.0f obstacles/s  %9.0f vertices/s\n", what, 1e6 * seconds / count,
+              count / seconds, static_cast<double>(vertices_of(polygons)) / seconds);
+}
+
+/// The certification again: what shapes_of asks of what it has found.
+void certify(const ObstacleShapes& s) {
+  bool all = true;
+  for (const Vec2 p : geometry::vertices_of(s.obstacle)) all = all && contains(s.hull, p);
+  for (const Vec2 p : s.hull.vertices)
+    all = all && contains(s.smallest_ellipse, p) && contains(*s.trap_free.ellipse, p);
+  for (std::size_t k = 0; k < s.facade_ellipses.size(); ++k) {
+    const geometry::Segment& facade = s.facades.facades[k];
+    all = all && contains(s.facade_ellipses[k].ellipse, facade.a) && contains(s.facade_ellipses[k].ellipse, facade.b);
+  }
+  need(all && trap_free_for_every_goal(*s.trap_free.ellipse), "a certificate that does not hold");
+}
+
+void show_stages(const std::vector<Polygon>& polygons) {
+  const geometry::ShapeOptions options = batch_options();
+  std::vector<ObstacleShapes> shapes;
+  for (const Polygon& p : polygons) shapes.push_back(shapes_of(p, options));
+  const auto each = [&](const char* what, const auto& work) {
+    const double seconds = cpu_of([&] {
+      for (std::size_t k = 0; k < polygons.size(); ++k) work(polygons[k], shapes[k]);
+    });
+    std::printf("  %-42s %8.2f us\n", what, 1e6 * seconds / static_cast<double>(polygons.size()));
+  };
+  each("validity", [](const Polygon& p, const ObstacleShapes&) { geometry::normalize({p.outer}); });
+  each("facades", [](const Polygon& p, const ObstacleShapes&) { divide_into_facades(p); });
+  each("convex pieces, with their proof",
+       [&](const Polygon& p, const ObstacleShapes&) { convex_pieces(p, options.partition); });
+  each("hull (CGAL)", [](const Polygon& p, const ObstacleShapes&) { geometry::convex_hull(p.outer); });
+  each("smallest ellipse, with its growth to certainty",
+       [](const Polygon&, const ObstacleShapes& s) { geometry::fast_smallest_ellipse(s.hull.vertices); });
+  each("facade ellipses, the same", [](const Polygon&, const ObstacleShapes& s) {
+    for (const geometry::Segment& f : s.facades.facades) geometry::facade_ellipse(f);
+  });
+  each("certification of all, again", [](const Polygon&, const ObstacleShapes& s) { certify(s); });
+}
+
+// --- The naive way ---
+
+/// The same hulls as sets of vertices, areas that agree to what ours may be larger, facade ellipses that contain.
+void compare_answers(const Polygon& polygon) {
+  const ObstacleShapes ours = shapes_of(polygon, batch_options());
+  const NaiveShapes theirs = naive_shapes(polygon);
+  need(ours.hull.vertices == theirs.hull, "hulls differ");
+  constexpr double kApart = 1e-8;  // ours is within 1e-10 of the least, theirs is rounded from numbers of many digits
+  need(std::fabs(ours.figures.ellipse_area / theirs.ellipse_area - 1.0) < kApart, "smallest ellipses differ");
+  need(theirs.facade_ellipses_contain && ours.certified(), "a facade ellipse that does not contain");
+  need(theirs.pieces >= 1, "no piece");
+}
+
+void show_naive(const std::vector<Polygon>& polygons) {
+  constexpr std::size_t kSample = 300;
+  constexpr int kRounds = 3;
+  const std::vector<Polygon> sample(polygons.begin(), polygons.begin() + std::min(kSample, polygons.size()));
+  for (const Polygon& p : sample) compare_answers(p);
+  double ours = 1e300;
+  double theirs = 1e300;
+  for (int round = 0; round < kRounds; ++round) {
+    ours = std::min(ours, seconds_for_shapes(sample));
+    theirs = std::min(theirs, cpu_of([&] {
+                        for (const Polygon& p : sample) need(naive_shapes(p).pieces > 0, "no piece");
+                      }));
+  }
+  show_rate("of these, the first 300", sample, ours);
+  show_rate("the naive exact way on them", sample, theirs);
+  std::printf("%-44s %8.0f times as long\n", "naive / ours (to reach: 50)", theirs / ours);
+}
+
+// --- Whole batches ---
+
+BatchConfiguration configuration_of(bool everything) {
+  BatchConfiguration configuration;
+  configuration.geopackage = configuration.geojson = configuration.pictures = everything;
+  return configuration;
+}
+
+BatchResult batch(const fs::path& input, const fs::path& out, int workers, bool everything) {
+  BatchRun run;
+  run.paths = {input};
+  run.out = out;
+  run.workers = workers;
+  fs::remove_all(out);
+  return run_batch(configuration_of(everything), run);
+}
+
+void show_batches(const fs::path& input, const fs::path& folder) {
+  for (const bool everything : {false, true}) {
+    double alone = 0.0;
+    for (const int workers : {1, 2}) {
+      const double wall = wall_seconds();
+      const double cpu = cpu_seconds();
+      const BatchResult result = batch(input, folder / "out", workers, everything);
+      const double seconds = wall_seconds() - wall;
+      need(result.summary.uncertified == 0, "an obstacle without certificate");
+      if (workers == 1) alone = seconds;
+      std::printf("  %-34s %d worker(s) %7.2f s  %8.0f obstacles/s  %9.0f vertices/s  cpu %6.2f s  x%.2f\n",
+                  everything ? "GeoPackage, GeoJSON, pictures, figures" : "figures alone", workers, seconds,
+                  static_cast<double>(result.summary.obstacles_out) / seconds,
+                  static_cast<double>(result.summary.vertices) / seconds, cpu_seconds() - cpu, alone / seconds);
+    }
+  }
+}
+
+/// Seconds of the stages of a batch with one worker: reading alone, reading and taking apart, everything.
+void show_shares(const fs::path& input, const fs::path& folder) {
+  datasets::ReadOptions options;
+  options.keep_going = true;
+  const double reading = cpu_of([&] {
+    read_obstacles(input, options,
+                   {[](const formation::SceneObstacle&, bool) {}, [](const datasets::DataError&) {}, {}});
+  });
+  const std::vector<Polygon> polygons = [&] {
+    std::vector<Polygon> all;
+    read_obstacles(input, options,
+                   {[&](const formation::SceneObstacle& o, bool) { all.push_back(std::get<Polygon>(o.shape)); },
+                    [](const datasets::DataError&) {},
+                    {}});
+    return all;
+  }();
+  const geometry::ShapeOptions shape_options = batch_options();
+  std::vector<ObstacleShapes> shapes;
+  const double taking_apart = cpu_of([&] {
+    for (const Polygon& p : polygons) need(shapes_of(p, shape_options).certified(), "no certificate");
+  });
+  const double hulls = cpu_of([&] {
+    for (const Polygon& p : polygons) geometry::convex_hull(p.outer);
+  });
+  for (const Polygon& p : polygons) shapes.push_back(shapes_of(p, shape_options));
+  const double certifying = cpu_of([&] {
+    for (const ObstacleShapes& s : shapes) certify(s);
+  });
+  const double all = cpu_of([&] { batch(input, folder / "out", 1, false); });
+  const double share = 100.0 / all;
+  std::printf(
+      "  shares of %.2f s with figures alone: reading and validity %.0f %%, shapes %.0f %% (of it CGAL %.0f %%, "
+      "certifying %.0f %%), writing %.0f %%\n",
+      all, share * reading, share * taking_apart, share * hulls, share * certifying,
+      share * (all - reading - taking_apart));
+}
+
+// --- Memory ---
+
+/// kB at most in a process that runs one batch.
+long peak_memory(const fs::path& input, const fs::path& out) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    int status = 1;
+    try {
+      status = batch(input, out, 1, false).summary.uncertified == 0 ? 0 : 1;
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+    }
+    ::_exit(status);
+  }
+  int status = 0;
+  rusage usage{};
+  ::wait4(child, &status, 0, &usage);
+  need(WIFEXITED(status) && WEXITSTATUS(status) == 0, "a batch failed");
+  return usage.ru_maxrss;
+}
+
+void show_memory(const fs::path& folder, std::size_t largest) {
+  std::printf("peak memory of a batch from WKT, one worker, figures:\n");
+  for (std::size_t count = 10000; count <= largest; count *= 10) {
+    const fs::path input = folder / "stars.wkt";
+    write_stars(input, count);
+    const auto size = static_cast<double>(fs::file_size(input));
+    std::printf("  %8zu obstacles, a file of %6.1f MB: %6.1f MB\n", count, 1e-6 * size,
+                1.024e-3 * static_cast<double>(peak_memory(input, folder / "out")));
+    std::fflush(stdout);
+    fs::remove(input);
+    fs::remove_all(folder / "out");
+  }
+}
+
+struct Flags {
+  std::size_t stars = 100000;
+  std::size_t largest = 1000000;
+  std::string sumo = EXACTVO_SOURCE_DIR "/../shared/data/sumo-poly/erlangen.poly.xml";
+  std::string folder;
+};
+
+std::vector<Polygon> real_polygons(const std::string& path) {
+  datasets::ReadOptions options;
+  options.keep_going = true;
+  std::vector<Polygon> polygons;
+  for (const formation::SceneObstacle& o : datasets::read_obstacles(path, options).obstacles) {
+    if (const auto* polygon = std::get_if<Polygon>(&o.shape)) polygons.push_back(*polygon);
+  }
+  return polygons;
+}
+
+void run(const Flags& flags) {
+  std::string name = flags.folder;
+  if (name.empty()) {
+    name = (fs::temp_directory_path() / "exactvo_bench_XXXXXX").string();
+    need(::mkdtemp(name.data()) != nullptr, "no folder to work in");
+  }
+  const fs::path folder = name;
+  std::printf("%s\n", to_json(datasets::make_provenance({}, 0)).c_str());
+  show_memory(folder, flags.largest);
+  const std::vector<Polygon> generated = stars(flags.stars);
+  std::printf("%zu generated obstacles of 3 to 16 corners, one core (to reach: 20000 a second):\n", generated.size());
+  show_rate("validity, shapes, all certified", generated, seconds_for_shapes(generated));
+  show_stages(generated);
+  show_naive(generated);
+  if (fs::exists(flags.sumo)) {
+    const std::vector<Polygon> real = real_polygons(flags.sumo);
+    std::printf("%zu real polygons of %s, one core:\n", real.size(), flags.sumo.c_str());
+    show_rate("validity, shapes, all certified", real, seconds_for_shapes(real));
+  }
+  const fs::path input = folder / "stars.wkt";
+  write_stars(input, flags.stars);
+  std::printf("whole batches of %zu generated obstacles:\n", flags.stars);
+  show_shares(input, folder);
+  show_batches(input, folder);
+  if (flags.folder.empty()) fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace exactvo::bench
+
+int main(int argc, char** argv) {
+  exactvo::bench::Flags flags;
+  CLI::App app("How quick a batch is, and how much memory it takes.");
+  app.add_option("--stars", flags.stars, "Generated obstacles")->capture_default_str();
+  app.add_option("--largest", flags.largest, "Obstacles of the largest batch whose memory is measured");
+  app.add_option("--sumo", flags.sumo, "A file of real polygons")->capture_default_str();
+  app.add_option("--folder", flags.folder, "To work in; a temporary one unless said");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    exactvo::bench::run(flags);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_datasets: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
