@@ -77,6 +77,10 @@ void read_opentraj_xml(const std::filesystem::path& path, Collector& out);
 bool looks_like_scenario(const Glimpse& glimpse);
 void read_scenario_obstacles(const std::filesystem::path& path, Collector& out);
 
+// wkb_text.cpp, within another file: places and ids begin with those given
+bool is_wkb_text(std::string_view text);
+void read_wkb_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
+
 // jts_xml.cpp
 bool looks_like_jts_xml(const Glimpse& glimpse);
 void read_jts_xml(const std::filesystem::path& path, Collector& out);

@@ -72,7 +72,9 @@ class WktReader {
           error.code() != DataCode::nesting) {
         throw;
       }
-      out_.reject(error);
+      out_.reject(before_.place.empty()
+                      ? error
+                      : DataError(error.code(), error.file(), before_.place, error.found(), error.expected()));
       scan_.skip_to_next_geometry(start);
     }
   }

@@ -20,7 +20,7 @@ ReadOptions going_on() {
   return options;
 }
 
-TEST_F(GraphFormats, ArgumentsOfJtsCasesAreReadAndHexadecimalOnesRefused) {
+TEST_F(GraphFormats, ArgumentsOfJtsCasesAreRead) {
   const auto path =
       put("t.xml",
           "<run>\n<case><desc>x</desc>\n<a>\n POLYGON((0 0, 4 0, 4 4, 0 0)) </a><b>LINESTRING(0 0, 1 1)</b>"
@@ -30,9 +30,29 @@ TEST_F(GraphFormats, ArgumentsOfJtsCasesAreReadAndHexadecimalOnesRefused) {
   ASSERT_EQ(file.obstacles.size(), 2u);
   EXPECT_EQ(file.obstacles[0].id, "0a");
   EXPECT_EQ(file.obstacles[1].id, "0b");
-  ASSERT_EQ(file.rejected.size(), 1u);
+  ASSERT_EQ(file.rejected.size(), 1u);  // a point without its coordinates
   EXPECT_EQ(file.rejected[0].code(), DataCode::format_syntax);
   EXPECT_EQ(file.rejected[0].place().substr(0, 6), "line 5");
+}
+
+TEST_F(GraphFormats, HexadecimalWkbOfEitherByteOrderAndWithHeights) {
+  const std::string little = "0102000000020000000000000000000000000000000000F03F00000000000000400000000000000840";
+  const std::string big = "000000000200000002000000000000000000000000000000003FF00000000000003FF0000000000000";
+  // PostGIS's flag for Z; then ISO's thousand, and a multipolygon that claims 2^32 - 1 parts.
+  const std::string heights =
+      "01020000800200000000000000000000000000000000000000000000000000F03F000000000000F03F000000000000F03F000000000000F0"
+      "3F";
+  const auto path = put("w.xml", "<run><case><a>\n  " + little + "\n</a><b>" + big + "</b></case><case><a>" + heights +
+                                     "</a><b>0106000000FFFFFFFF</b></case>\n<case><a>POLYGON((</a></case></run>");
+  const ObstacleFile file = read_obstacles(path, going_on());
+  ASSERT_EQ(file.obstacles.size(), 3u);
+  const auto points = [&](std::size_t k) { return std::get<Polyline>(file.obstacles[k].shape).points; };
+  EXPECT_EQ(points(0), (std::vector<geometry::Vec2>{{0, 1}, {2, 3}}));
+  EXPECT_EQ(points(1), (std::vector<geometry::Vec2>{{0, 0}, {1, 1}}));
+  EXPECT_EQ(points(2), (std::vector<geometry::Vec2>{{0, 0}, {1, 1}}));
+  ASSERT_EQ(file.rejected.size(), 2u);
+  EXPECT_EQ(file.rejected[0].code(), DataCode::size);
+  EXPECT_EQ(file.rejected[1].place().substr(0, 6), "line 4");  // of the file, not of the text in it
 }
 
 TEST_F(GraphFormats, GraphMlRingsAreOnePolygonWithTheLargestOutside) {
