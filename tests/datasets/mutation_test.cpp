@@ -92,6 +92,22 @@ INSTANTIATE_TEST_SUITE_P(
                R"({"nrays": 2, "theta": [0, 1], "readings": [1, null], "valid": [1, 0], "odometry": [0, 0, 1]})"},
         Sample{"points-csv", "a.csv", "x,y\n0.5,1\n-2,3\n"},
         Sample{"rings-json", "a.json", "[[[0,0],[9,0],[9,9],[0,9]],[[1,1],[2,1],[2,2]]]"},
+        Sample{"jts-xml", "a.xml",
+               "<run><case><a>POLYGON((0 0, 4 0, 4 4, 0 0))</a><b>0102000000020000000000000000000000000000000000F03F"
+               "00000000000000400000000000000840</b></case></run>"},
+        Sample{"graphml", "a.graphml",
+               "<graphml><graph><node id='0'><data key='x'>0</data><data key='y'>0</data></node><node id='1'>"
+               "<data key='x'>1</data><data key='y'>0</data></node><edge source='0' target='1'/></graph></graphml>"},
+        Sample{"counted-rings", "a.line", "4\n0 0\n4 0\n4 4\n0 0\n"},
+        Sample{"pslg", "a.txt", "4 3\n0 0\n4 0\n4 4\n2 2\n0 1\n1 2\n2 0\n"},
+        Sample{"ompl-circles", "a.txt", "units: meter\n x y r\n1 27 15 5\n2 1 1 0.5\n"},
+        Sample{"ompl-grid", "a.txt", "discretization(cells): 3 2\nenvironment:\n1 0 0\n0 0 1\n"},
+        Sample{"opentraj-xml", "a.xml",
+               "<Trial><obstacles><obstacle><TrialObstacle><Lines><Line x1='0' y1='1' x2='2' y2='3'/></Lines>"
+               "</TrialObstacle></obstacle></obstacles></Trial>"},
+        Sample{"scenario", "a.json",
+               R"({"name": "s", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}],)"
+               R"( "obstacles": [{"id": "w", "polyline": [[3, 3], [5, 3]]}]})"},
         Sample{"menge-xml", "a.xml",
                R"(<Experiment><ObstacleSet><Obstacle closed="1"><Vertex p_x="0" p_y="0"/><Vertex p_x="1" p_y="0"/>)"
                R"(<Vertex p_x="1" p_y="1"/></Obstacle></ObstacleSet></Experiment>)"},

@@ -44,6 +44,13 @@ seed menge-xml "$data"/menge-xml/*
 seed sumo-poly "$data"/sumo-poly/*
 seed barn-world "$data"/barn-world/*
 seed rings-json "$data"/earcut-json/*
+seed jts-xml "$data"/jts-xml/* "$data"/geos-xml/*
+seed opentraj-xml "$data"/opentraj-xml/*
+seed graphml "$data"/salzburg-gpl/*.graphml
+seed counted-rings "$data"/salzburg-gpl/*.line
+seed pslg "$data"/pslg-cdt/*
+seed ompl-circles "$data"/ompl/circle_obstacles.txt
+seed ompl-grid "$data"/ompl/env*.txt
 for yaml in "$data"/ros-map/*/*.yaml; do
   for picture in "$(dirname "$yaml")"/*.pgm "$(dirname "$yaml")"/*.png "$(dirname "$yaml")"/*.bmp; do
     [ ! -f "$picture" ] || ros_seed "$yaml" "$picture"

@@ -81,7 +81,9 @@ const std::vector<FuzzedFormat>& fuzzed_formats() {
       {"wkt", ".wkt"},          {"jupedsim-wkt", ".wkt"},   {"gdal", ".geojson"},   {"ros-map", ".yaml"},
       {"movingai-map", ".map"}, {"movingai-scen", ".scen"}, {"carmen-log", ".log"}, {"csm-log", ".log"},
       {"points-csv", ".csv"},   {"jupedsim-xml", ".xml"},   {"menge-xml", ".xml"},  {"sumo-poly", ".poly.xml"},
-      {"barn-world", ".world"}, {"rings-json", ".json"},    {"scenario", ".json"},
+      {"barn-world", ".world"}, {"rings-json", ".json"},    {"jts-xml", ".xml"},    {"opentraj-xml", ".xml"},
+      {"graphml", ".graphml"},  {"counted-rings", ".line"}, {"pslg", ".txt"},       {"ompl-circles", ".txt"},
+      {"ompl-grid", ".txt"},    {"scenario", ".json"},
   };
   return kFormats;
 }
