@@ -4,8 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
+#include "figures/label_places.h"
+#include "figures/lyapunov_figure.h"
 #include "figures/paths_figure.h"
 #include "figures/run_figures.h"
 
@@ -142,7 +147,54 @@ TEST(PathsFigure, MarksWhereARobotWasDeepestInAnObstacle) {
 }
 
 TEST(PathsFigure, TheLastPlaceIsThereWithItsTime) {
-  EXPECT_THAT(paths_figure(short_run()).data, HasSubstr("1 0 0.5 \"1 s\""));
+  EXPECT_THAT(paths_figure(short_run()).data, testing::ContainsRegex("\n1 0 0.5 [-0-9.]+ [-0-9.]+ \"1 s\""));
+}
+
+TEST(PathsFigure, DrawsWhatMovesAtEveryTimeMark) {
+  datasets::RecordingFile run = short_run();
+  EXPECT_THAT(paths_figure(run).script, Not(HasSubstr("moving obstacle")));
+  formation::MovingObstacle cart;
+  cart.shape = geometry::Polygon{{{3, 4}, {4, 4}, {4, 5}}, {}};
+  cart.motion = {{{0, 0}, {0, 9}}, 2.0};
+  run.scenario.moving_obstacles = {cart};
+  const Figure figure = paths_figure(run);
+  EXPECT_THAT(figure.script, HasSubstr("title 'moving obstacle'"));
+  EXPECT_THAT(figure.data, HasSubstr("moving obstacles at the time marks\n# x [m], y [m]\n3 4\n4 4\n4 5\n3 4\n"));
+  EXPECT_THAT(figure.data, HasSubstr("3 5.8\n4 5.8\n4 6.8\n"));  // at 0.9 s, when the last robot stops
+}
+
+TEST(LabelPlaces, KeepClearOfLinesAndOfEachOther) {
+  LabelPlaces places(Box{{0, 0}, {20, 20}}, 30.0);
+  places.keep_off({{0, 10}, {20, 10}}, false);
+  places.keep_off({{10, 0}, {10, 20}}, false);
+  std::vector<Vec2> taken;
+  for (int k = 0; k < 3; ++k) {
+    const std::optional<Vec2> place = places.place_beside({10, 10}, 0.5, false);
+    ASSERT_TRUE(place.has_value());
+    EXPECT_GT(30.0 * std::fabs(place->y - 10.0), 8.0);
+    EXPECT_GT(30.0 * std::fabs(place->x - 10.0), 22.0);
+    for (Vec2 other : taken) EXPECT_GT(norm(*place - other), 16.0 / 30.0);
+    taken.push_back(*place);
+  }
+  LabelPlaces crowded(Box{{0, 0}, {20, 20}}, 30.0);
+  for (int k = 0; k < 200; ++k) crowded.keep_off({{0, 0.1 * k}, {20, 0.1 * k}}, false);
+  EXPECT_FALSE(crowded.place_beside({10, 10}, 0.5, false).has_value());
+  EXPECT_TRUE(crowded.place_beside({10, 10}, 0.5, true).has_value());
+}
+
+TEST(LyapunovFigure, HasEveryTermAndTheTableToo) {
+  datasets::RecordingFile run = short_run();
+  run.lyapunov.resize(run.recording.steps.size());
+  for (std::size_t k = 0; k < run.lyapunov.size(); ++k) run.lyapunov[k].time = run.recording.steps[k].time;
+  run.lyapunov[1].sound_rates.intervention = 0.625;
+  const Figure figure = lyapunov_figure(run);
+  for (const char* term : {"'kinetic'", "'consensus'", "'pinning'", "'integral'", "'V of (18)'", "'claimed by (20)'",
+                           "'slots'", "'tracking'", "'intervention'", "'bound'"})
+    EXPECT_THAT(figure.script, HasSubstr(std::string("title ") + term));
+  EXPECT_THAT(figure.data, HasSubstr("0.625"));
+  const std::string table = lyapunov_csv(run.lyapunov);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')), run.lyapunov.size() + 1);
+  EXPECT_THAT(table, HasSubstr(",0.625,"));
 }
 
 TEST(SeriesFigures, ARunThatIsOverAtOnceHasAxes) {

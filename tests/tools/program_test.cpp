@@ -177,9 +177,10 @@ TEST(Simulate, OutputIsComplete) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   const auto files = here.files("out");
-  for (const char* name : {"recording.jsonl", "metrics.json", "trajectory.csv"})
+  for (const char* name : {"recording.jsonl", "metrics.json", "trajectory.csv", "lyapunov.csv"})
     EXPECT_EQ(files.count(name), 1u) << name;
-  for (const char* figure : {"paths", "obstacle_distance", "robot_distance", "velocity", "formation_error"}) {
+  for (const char* figure :
+       {"paths", "obstacle_distance", "robot_distance", "velocity", "formation_error", "lyapunov"}) {
     for (const char* extension : {".dat", ".gp", ".svg", ".png"}) {
       const std::string name = std::string("figures/") + figure + extension;
       ASSERT_EQ(files.count(name), 1u) << name;
@@ -188,7 +189,51 @@ TEST(Simulate, OutputIsComplete) {
     EXPECT_THAT(files.at(std::string("figures/") + figure + ".svg"), HasSubstr("</svg>"));
   }
   EXPECT_TRUE(json::accept(files.at("metrics.json")));
-  EXPECT_EQ(files.size(), 3u + 5u * 4u) << "nothing else";
+  EXPECT_EQ(files.size(), 4u + 6u * 4u) << "nothing else";
+}
+
+TEST(Simulate, SaysWhatAFormationIsBeforeAndWhyARobotStopped) {
+  const Workplace here;
+  const Outcome formation = here.run("simulate " + data_file("paper/B0.json") + " --integrator euler");
+  EXPECT_THAT(formation.err,
+              AllOf(HasSubstr("eigenvalues of L + B from 1 to 4"), HasSubstr("step limit is 0.05089 s")));
+  EXPECT_THAT(formation.out, AllOf(HasSubstr("V of (18)"), HasSubstr("V that holds"), HasSubstr("peak acceleration")));
+  const Outcome stuck = here.run("simulate " + data_file("paper/A11.json") + " --method orca --out out --no-figures");
+  EXPECT_THAT(stuck.out, AllOf(HasSubstr("stuck        R1 is 11.5 m from its goal"), HasSubstr("a stable trap")));
+  const json header =
+      json::parse(here.read("out/recording.jsonl").substr(0, here.read("out/recording.jsonl").find('\n')));
+  ASSERT_EQ(header["stuck"].size(), 1u);
+  EXPECT_EQ(header["stuck"][0]["equilibrium"]["stable"], true);
+  EXPECT_EQ(json::parse(here.read("out/metrics.json"))["stuck"].size(), 1u);
+}
+
+TEST(Simulate, RemediesByNameAndOnSwitches) {
+  const Workplace here;
+  const std::string scene = "simulate " + data_file("paper/B1.json") + " --json ";
+  const auto jitter = [&](const std::string& flags) {
+    return json::parse(here.run(scene + flags).out)["jitter"].get<double>();
+  };
+  EXPECT_EQ(jitter("--remedies default"), jitter(""));
+  EXPECT_LT(jitter("--remedy smoothing=on"), jitter(""));
+  EXPECT_EQ(jitter("--remedy smoothing=on"), jitter("--remedies 'with smoothing'"));
+  EXPECT_EQ(jitter("--remedies 'no margins'"), jitter("--remedy margins=off"));
+  const std::pair<const char*, const char*> bad[] = {{"--remedies 'no margin'", "'no margins'"},
+                                                     {"--remedy smothing=on", "'smoothing'"},
+                                                     {"--remedy smoothing=yes", "smoothing=on or smoothing=off"},
+                                                     {"--remedy acceleration_bound=-1", "from 0 on"}};
+  for (const auto& [flags, expected] : bad) {
+    const Outcome outcome = here.run(scene + flags);
+    EXPECT_EQ(outcome.status, 2) << flags;
+    EXPECT_THAT(outcome.err, HasSubstr(expected)) << flags;
+  }
+}
+
+TEST(Simulate, ARunThatKeepsAllIsAuditedWhole) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A14.json") + " --record-all --no-figures --out out").status, 0);
+  const Outcome audit = here.run("audit out --json");
+  EXPECT_EQ(audit.status, 0) << audit.out;
+  EXPECT_THAT(audit.out, HasSubstr("\"unsafe\": 0"));
 }
 
 TEST(Simulate, TwoRunsGiveTheSameBytesButForTimes) {

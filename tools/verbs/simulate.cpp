@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "exactvo/formation/stability.h"
 #include "support/escape.h"
 #include "support/files.h"
 #include "support/outcome.h"
@@ -75,6 +76,23 @@ std::string summary(const FinishedRun& run) {
                     m.uncertified_half_planes, m.relaxed_steps, m.steps, m.wall_time);
 }
 
+/// What can be said of a formation before it runs.
+void announce(const formation::Scenario& scenario, const formation::SimulationOptions& options) {
+  if (!scenario.formation) return;
+  const formation::Stability s = stability_of(*scenario.formation);
+  message(fmt::format(
+      "formation: eigenvalues of L + B from {:.4g} to {:.4g}; the slowest mode decays at {:.4g} 1/s; "
+      "explicit Euler's step limit is {:.4g} s, the step {:.4g} s",
+      s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate, s.euler_step_limit, scenario.time_step));
+  for (const std::string& warning : step_warnings(*scenario.formation, options.integrator, scenario.time_step))
+    message("warning: " + warning);
+}
+
+/// What was warned of beside that.
+void warn(const formation::Recording& recording, std::size_t said) {
+  for (std::size_t k = said; k < recording.warnings.size(); ++k) message("warning: " + recording.warnings[k]);
+}
+
 FinishedRun run_with_progress(const Flags& flags, const formation::Scenario& scenario,
                               const formation::SimulationOptions& options) {
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, input_files(flags.scenario));
@@ -103,8 +121,10 @@ ExitCode simulate(const Flags& flags) {
   const formation::Scenario scenario = read_scenario(flags.scenario);
   note_unused(flags.simulation, scenario);
   if (!flags.out.empty()) check_output_folder(flags.out);
+  announce(scenario, options);
   const FinishedRun finished = run_with_progress(flags, scenario, options);
-  for (const std::string& warning : finished.file.recording.warnings) message("warning: " + warning);
+  warn(finished.file.recording,
+       scenario.formation ? step_warnings(*scenario.formation, options.integrator, scenario.time_step).size() : 0);
   flags.out.empty() ? print_results(flags, finished) : print_and_write(flags, finished);
   return ExitCode::success;
 }
