@@ -27,7 +27,7 @@ constexpr const char* kExitCodes =
     "  1    done, and the answer is no (of verbs that judge)\n"
     "  2    a file, an option or a place to write to is wrong; nothing was written\n"
     "  3    a defect of the program\n"
-    "  130  interrupted; nothing was written\n"
+    "  130  interrupted; nothing was written (a batch keeps what it has for --resume)\n"
     "\n"
     "Results go to stdout, messages to stderr. SI units: metres, seconds, radians.";
 

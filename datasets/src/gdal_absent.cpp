@@ -14,12 +14,9 @@ bool built_with_gdal() {
   return false;
 }
 
-bool looks_like_vector_file(const Glimpse&) {
-  return false;
-}
-
 void read_vector_file(const std::filesystem::path& path, Collector&) {
-  throw DataError(DataCode::format_unavailable, path.string(), "", "a file that needs GDAL",
+  throw DataError(DataCode::format_unavailable, path.string(), "",
+                  "a vector file, and this build is without GDAL, which reads them",
                   "a build with EXACTVO_WITH_GDAL=ON, or plain WKT");
 }
 

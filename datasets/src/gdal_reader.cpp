@@ -2,7 +2,6 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -17,10 +16,6 @@ namespace {
 
 /// Collections within collections: each level is a call.
 constexpr int kDeepestCollection = 64;
-
-constexpr std::array<const char*, 15> kExtensions{".geojson", ".json", ".shp", ".dbf", ".gpkg",
-                                                  ".fgb",     ".csv",  ".osm", ".pbf", ".dxf",
-                                                  ".kml",     ".gml",  ".gpx", ".tab", ".topojson"};
 
 geometry::Ring points_of(const OGRSimpleCurve& curve) {
   geometry::Ring points(static_cast<std::size_t>(curve.getNumPoints()));
@@ -302,10 +297,6 @@ void refuse_entities(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-bool looks_like_vector_file(const Glimpse& glimpse) {
-  return std::find(kExtensions.begin(), kExtensions.end(), glimpse.extension) != kExtensions.end();
-}
 
 void read_vector_file(const std::filesystem::path& path, Collector& out) {
   refuse_entities(path);

@@ -2,6 +2,7 @@
 #include "exactvo/datasets/obstacle_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 #include "exactvo/geometry/require.h"
@@ -10,6 +11,10 @@
 
 namespace exactvo::datasets {
 namespace {
+
+constexpr std::array<const char*, 15> kVectorExtensions{".geojson", ".json", ".shp", ".dbf", ".gpkg",
+                                                        ".fgb",     ".csv",  ".osm", ".pbf", ".dxf",
+                                                        ".kml",     ".gml",  ".gpx", ".tab", ".topojson"};
 
 Glimpse glimpse_of(const std::filesystem::path& path) {
   Glimpse glimpse;
@@ -85,6 +90,11 @@ const std::vector<Reader>& readers() {
       {"gdal", looks_like_vector_file, read_vector_file},
   };
   return kReaders;
+}
+
+// By name alone, so that a build without GDAL can say what it lacks.
+bool looks_like_vector_file(const Glimpse& glimpse) {
+  return std::find(kVectorExtensions.begin(), kVectorExtensions.end(), glimpse.extension) != kVectorExtensions.end();
 }
 
 ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options) {

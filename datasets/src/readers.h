@@ -99,7 +99,7 @@ void read_jupedsim_xml(const std::filesystem::path& path, Collector& out);
 bool looks_like_barn_world(const Glimpse& glimpse);
 void read_barn_world(const std::filesystem::path& path, Collector& out);
 
-// gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL
+// obstacle_file.cpp; gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL
 bool looks_like_vector_file(const Glimpse& glimpse);
 void read_vector_file(const std::filesystem::path& path, Collector& out);
 

@@ -163,7 +163,7 @@ BatchRun run_of(const Flags& flags) {
   BatchRun run;
   run.paths.assign(flags.paths.begin(), flags.paths.end());
   run.out = flags.out;
-  run.workers = flags.workers;
+  run.workers = flags.workers == 0 && datasets::under_mpi() ? 1 : flags.workers;  // ranks share a machine's processors
   run.resume = flags.resume;
   run.memory_limit = flags.limit_memory;
   run.command_line = lasting_words(command_line());
@@ -252,7 +252,8 @@ ExitCode batch(const Flags& flags) {
 void declare_run(CLI::App& app, Flags& flags) {
   app.add_option("paths", flags.paths, "Files, and folders whose files are all read")->required();
   declare_out(app, flags.out, "Folder for the results")->required();
-  app.add_option("-j,--jobs", flags.workers, "Workers; as many as there are processors unless said")
+  app.add_option("-j,--jobs", flags.workers,
+                 "Workers; as many as there are processors unless said, one a rank under mpirun")
       ->check(CLI::Range(1, 4096));
   app.add_flag("--resume", flags.resume, "Go on with what a killed batch has left in the folder");
   app.add_option("--limit-memory", flags.limit_memory, "Bytes for obstacles under way, such as 2GB")

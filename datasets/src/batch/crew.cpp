@@ -15,7 +15,8 @@ constexpr std::size_t kJobsAWorker = 8;
 }  // namespace
 
 Crew::Crew(int workers, std::uint64_t most_bytes)
-    : arena_(std::max(workers, 1)),
+    : threads_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(workers, 1))),
+      arena_(std::max(workers, 1)),
       most_bytes_(most_bytes),
       most_jobs_(kJobsAWorker * static_cast<std::size_t>(std::max(workers, 1))) {}
 

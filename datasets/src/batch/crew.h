@@ -5,10 +5,13 @@
 /// Workers that take a reader's chunks apart while it reads on. What they make does not depend on how many they are:
 /// every job writes a file of its own.
 
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 
 namespace exactvo::datasets::batch {
@@ -28,6 +31,7 @@ class Crew {
   void finish();
 
  private:
+  tbb::global_control threads_;  ///< as many as asked for, be there fewer processors
   tbb::task_arena arena_;
   tbb::task_group group_;
   std::uint64_t most_bytes_;

@@ -265,6 +265,21 @@ TEST_F(Batches, AMemoryLimitRefusesWhatIsReadWholeAndChangesNothingElse) {
 
 using Streams = TemporaryFolder;
 
+TEST_F(Streams, AVectorFileIsReadOrTheMissingLibraryIsNamed) {
+  write_text(folder_ / "one.geojson",
+             R"({"type":"Feature","properties":{},"geometry":{"type":"LineString","coordinates":[[0,0],[1,1]]}})");
+  std::size_t obstacles = 0;
+  std::string words;
+  try {
+    obstacles = read_obstacles(folder_ / "one.geojson").obstacles.size();
+  } catch (const DataError& error) {
+    EXPECT_EQ(error.code(), DataCode::format_unavailable);
+    words = error.what();
+  }
+  EXPECT_EQ(obstacles, built_with_gdal() ? 1u : 0u);
+  EXPECT_EQ(words.find("without GDAL") != std::string::npos, !built_with_gdal()) << words;
+}
+
 TEST_F(Streams, LargeWktIsTheSameInBlocks) {
   std::string text = "# not a geometry\n";
   while (text.size() < 3500000)
