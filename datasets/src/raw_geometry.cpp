@@ -94,7 +94,8 @@ std::vector<DataCode> codes_of(const std::vector<RingFinding>& findings) {
 DataError repair_refusal(DataCode code, const std::string& file, const std::string& place) {
   switch (code) {
     case DataCode::size:
-      return {code, file, place, "too many crossings of edges", "at most " + std::to_string(geometry::kMostCrossings)};
+      return {code, file, place, "too many crossings of edges",
+              "at most " + std::to_string(geometry::most_crossings(0)) + " and two an edge"};
     case DataCode::zero_area:
       return {code, file, place, "rings that enclose nothing an odd number of times", "some area"};
     case DataCode::rounding:

@@ -368,7 +368,10 @@ EvenOddRegion cut_until_nothing_changes(std::vector<Ring> rings) {
 
 EvenOddRegion even_odd_region(const std::vector<Ring>& rings) {
   for (const Ring& ring : rings) EXACTVO_REQUIRE(std::all_of(ring.begin(), ring.end(), is_finite), excerpt(ring));
-  if (detail::has_more_crossings_than(kMostCrossings, rings)) return {EvenOddStatus::too_many_crossings, {}, 0.0, 0};
+  std::size_t edges = 0;
+  for (const Ring& ring : rings) edges += ring.size();
+  if (detail::has_more_crossings_than(most_crossings(edges), rings))
+    return {EvenOddStatus::too_many_crossings, {}, 0.0, 0};
   try {
     return cut_until_nothing_changes(rings);
   } catch (const CGAL::Failure_exception&) {

@@ -27,7 +27,7 @@ namespace exactvo::geometry {
 
 enum class EvenOddStatus {
   done,
-  /// More than kMostCrossings contacts between edges: nothing was cut.
+  /// More than `most_crossings` contacts between edges: nothing was cut.
   too_many_crossings,
   /// After kMostRounds roundings new crossings were still being made: not known to happen.
   not_roundable,
@@ -42,9 +42,12 @@ struct EvenOddRegion {
   std::size_t rounds = 0;         ///< roundings that changed something
 };
 
-/// An edge may have this many contacts with edges that are not its neighbours, all edges together: each costs about a
-/// kilobyte while the rings are cut.
-inline constexpr std::size_t kMostCrossings = std::size_t{1} << 17;
+/// So many contacts may the edges have with others that are not their neighbours, all together. Each costs 5 kB while
+/// the rings are cut, so that a short text can't ask for more than 80 MB and a second or two; rings that run over each
+/// other all along have three a pair of edges.
+inline constexpr std::size_t most_crossings(std::size_t edges) {
+  return (std::size_t{1} << 14) + 2 * edges;
+}
 
 /// One or two roundings are the rule. After so many plain ones comes snap rounding, on a grid of two units in the last
 /// place of the largest coordinate.
