@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The arena: every solver on every set. First each answer is compared with the certified one, then all are timed,
 // interleaved, in thread CPU time; the table gives ns a solve and the ratio to `usual`.
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,11 +12,13 @@
 
 #include "adversarial.h"
 #include "competitor.h"
+#include "cpu_time.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
 #include "exactvo_commit.h"
 #include "recorded.h"
 #include "results.h"
+#include "warm.h"
 
 namespace exactvo::bench {
 namespace {
@@ -32,6 +32,7 @@ struct Flags {
   std::string sets = "C10,C10f,C10i,C50,RF10,RF20,RI10,RI20,RI50";
   std::string instances;        ///< file; replaces `sets` by itself, its feasible and its infeasible part
   std::string json;             ///< file for Google Benchmark's compare.py
+  std::string warm;             ///< a recorded set: with and without the lines that bound a step before
   std::string target;           ///< widest SIMD target to run on ("AVX3", "AVX2", "SSE4"), "" for the best
   std::size_t adversarial = 0;  ///< problems a family and perturbation
   bool table = false;           ///< the figures to reach and what was measured, from the sets they need
@@ -43,12 +44,6 @@ struct Flags {
 std::string forced_target;
 bool limit_target(const Entry& entry) {
   return lp::limit_batch_target(entry.target.empty() ? forced_target.c_str() : entry.target.c_str());
-}
-
-double thread_nanoseconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
 }
 
 struct Truth {
@@ -241,6 +236,10 @@ int adversarial(const Flags& flags) {
 int arena(const Flags& flags) {
   forced_target = flags.target;
   if (flags.adversarial > 0) return adversarial(flags);
+  if (!flags.warm.empty()) {
+    run_warm(flags.warm, flags.rounds);
+    return 0;
+  }
   Results results;
   nlohmann::json out = {{"context", context(flags)}, {"benchmarks", nlohmann::json::array()}};
   std::printf("%s\n", out["context"].dump().c_str());
@@ -269,8 +268,11 @@ void use_table(Flags& flags) {
 
 Flags read_flags(int argc, char** argv) {
   Flags flags;
-  const std::map<std::string, std::string*> texts = {
-      {"--sets", &flags.sets}, {"--instances", &flags.instances}, {"--json", &flags.json}, {"--target", &flags.target}};
+  const std::map<std::string, std::string*> texts = {{"--sets", &flags.sets},
+                                                     {"--instances", &flags.instances},
+                                                     {"--json", &flags.json},
+                                                     {"--target", &flags.target},
+                                                     {"--warm", &flags.warm}};
   for (int k = 1; k < argc; ++k) {
     const std::string option = argv[k];
     if (option == "--table") {
@@ -300,9 +302,10 @@ Flags read_flags(int argc, char** argv) {
 int main(int argc, char** argv) try {
   return exactvo::bench::arena(exactvo::bench::read_flags(argc, argv));
 } catch (const std::exception& e) {
-  std::cerr << "bench_lp: " << e.what()
-            << "\nusage: bench_lp [--table] [--instances FILE] [--sets C10f,RF10,...] [--target AVX2] [--json FILE] "
-               "[--seed N]"
-               " [--rounds N]\n       bench_lp --adversarial PROBLEMS [--json FILE] [--seed N]\n";
+  std::cerr
+      << "bench_lp: " << e.what()
+      << "\nusage: bench_lp [--table] [--instances FILE] [--sets C10f,RF10,...] [--target AVX2] [--json FILE] "
+         "[--seed N]"
+         " [--rounds N]\n       bench_lp --adversarial PROBLEMS [--json FILE] [--seed N]\n       bench_lp --warm C10\n";
   return 2;
 }

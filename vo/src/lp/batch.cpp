@@ -116,8 +116,9 @@ void require_arrays(const BatchProblems<T>& in, const BatchAnswers<T>& out, std:
           in.count <= out.stride,
       "problems " + std::to_string(first) + " to " + std::to_string(last) + " of " + std::to_string(in.count));
   EXACTVO_REQUIRE(in.disc && in.preferred_x && in.preferred_y && out.velocity_x && out.velocity_y && out.violation &&
-                      out.status && (in.lines == 0 || (in.normal_x && in.normal_y && in.offset)),
-                  "an array that is null");
+                      out.status && (!in.hint || in.hint_stride >= in.count) &&
+                      (in.lines == 0 || (in.normal_x && in.normal_y && in.offset)),
+                  "an array that is null or too short");
 }
 
 template <class T, class Range>

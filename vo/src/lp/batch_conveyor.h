@@ -88,17 +88,87 @@ class Conveyor {
     if (rare_.size() >= kLanes) descend();
   }
 
+  HWY_INLINE void first_rounds(Ways& ways, std::size_t packs) {
+    for_all(ways, packs, [this](Way& w) { look(w); });
+    for_all(ways, packs, [this](Way& w) { walk<0>(w); });
+    for_all(ways, packs, [this](Way& w) { look(w); });
+    for_all(ways, packs, [this](Way& w) { walk<1>(w); });
+    for_all(ways, packs, [this](Way& w) { look(w); });
+  }
+
+  /// The lines that bound last time enter first, unseen.
+  HWY_INLINE void follow_hints(Ways& ways, std::size_t packs) {
+    for_all(ways, packs, [this](Way& w) { follow<0>(w); });
+    for_all(ways, packs, [this](Way& w) { follow<1>(w); });
+    for_all(ways, packs, [this](Way& w) { follow<2>(w); });
+    for_all(ways, packs, [this](Way& w) {
+      w.walking = hn::AndNot(hn::Or(w.gone, w.pack.relaxing), w.lanes);
+      relax(w);
+      look(w);
+    });
+  }
+
+  template <int kSlot>
+  HWY_INLINE void follow(Way& way) {
+    Pack<D>& p = way.pack;
+    const M still = hn::AndNot(hn::Or(way.gone, p.relaxing), way.lanes);
+    p.entering = hinted(way, kSlot);
+    const V by = excess(p.entering, p.vx, p.vy);
+    way.walking = hn::And(hn::And(still, p.exists(p.entering)), hn::Gt(by, hn::Sub(p.noise, p.slack)));
+    p.entering.c = hn::Add(p.entering.c, p.slack);
+    walk<kSlot>(way);
+  }
+
+  HWY_INLINE LineV<D> hinted(const Way& way, std::size_t slot) const {
+    const D d;
+    const hn::Rebind<std::int32_t, D> words;
+    const auto number = hint_numbers(static_cast<std::size_t>(hn::GetLane(way.pack.id)), slot);
+    const auto known = hn::And(hn::Gt(number, hn::Set(words, kNoLine)),
+                               hn::Lt(number, hn::Set(words, static_cast<std::int32_t>(in_.lines))));
+    const auto stride = hn::Set(words, static_cast<std::int32_t>(way.rows.stride));
+    const auto at = hn::Add(hn::Mul(hn::IfThenElseZero(known, number), stride), hn::Iota(words, 0));
+    const V index = from_words(hn::IfThenElse(known, number, hn::Set(words, kNoLine)));
+    const M exists = hn::Ge(index, hn::Zero(d));
+    const V c = gather(way.rows.c, at);
+    return {hn::IfThenElseZero(exists, gather(way.rows.x, at)), hn::IfThenElseZero(exists, gather(way.rows.y, at)),
+            hn::IfThenElse(exists, c, hn::Set(d, T(-1))), index};
+  }
+
+  HWY_INLINE auto hint_numbers(std::size_t first, std::size_t slot) const {
+    const hn::Rebind<std::int32_t, D> words;
+    const std::int32_t* hints = in_.hint + slot * in_.hint_stride;
+    if (first + kLanes <= in_.count) return hn::LoadU(words, hints + first);
+    HWY_ALIGN std::int32_t some[kLanes];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) some[lane] = hints[std::min(first + lane, in_.count - 1)];
+    return hn::LoadU(words, some);
+  }
+
+  template <class Words>
+  static HWY_INLINE V from_words(Words words) {
+    if constexpr (sizeof(T) == 8)
+      return hn::PromoteTo(D(), words);
+    else
+      return hn::ConvertTo(D(), words);
+  }
+
+  template <class Words>
+  static HWY_INLINE V gather(const T* base, Words at) {
+    if constexpr (sizeof(T) == 8)
+      return hn::GatherIndex(D(), base, hn::PromoteTo(hn::RebindToSigned<D>(), at));
+    else
+      return hn::GatherIndex(D(), base, at);
+  }
+
   /// Two rounds, with no line and with one in hand, then as many as it takes.
   HWY_INLINE void solve(Ways& ways, std::size_t packs) {
     for_all(ways, packs, [](Way& w) {
       w.pack.derive();
       w.pack.start();
     });
-    for_all(ways, packs, [this](Way& w) { look(w); });
-    for_all(ways, packs, [this](Way& w) { walk<0>(w); });
-    for_all(ways, packs, [this](Way& w) { look(w); });
-    for_all(ways, packs, [this](Way& w) { walk<1>(w); });
-    for_all(ways, packs, [this](Way& w) { look(w); });
+    if (in_.hint)
+      follow_hints(ways, packs);
+    else
+      first_rounds(ways, packs);
     Way* busy[kPacks];
     std::size_t count = 0;
     for (std::size_t k = 0; k < packs; ++k) {
@@ -175,12 +245,7 @@ class Conveyor {
   }
 
   static HWY_INLINE V load_counts(const std::int32_t* counts) {
-    const D d;
-    const auto integers = hn::LoadU(hn::Rebind<std::int32_t, D>(), counts);
-    if constexpr (sizeof(T) == 8)
-      return hn::PromoteTo(d, integers);
-    else
-      return hn::ConvertTo(d, integers);
+    return from_words(hn::LoadU(hn::Rebind<std::int32_t, D>(), counts));
   }
 
   /// Less than a pack, at an end of the range: copied, so that nothing beyond is read. The lanes left over repeat one.

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/vo/lp/single.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "exactvo/vo/lp/batch.h"
+#include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/instances.h"
+#include "problem_text.h"
+
+namespace exactvo::lp {
+namespace {
+
+/// A problem as arrays; what stands beyond its lines would forbid everything, if it were looked at.
+class Arrays {
+ public:
+  explicit Arrays(const Problem& p) : disc_(p.bound.disc), preferred_(p.preferred), count_(p.constraints.size()) {
+    const std::size_t padded = (count_ + kSinglePadding - 1) / kSinglePadding * kSinglePadding;
+    x_.assign(padded, 1.0);
+    y_.assign(padded, 0.0);
+    offset_.assign(padded, 100.0);
+    for (std::size_t k = 0; k < count_; ++k) {
+      x_[k] = p.constraints[k].half_plane.normal.x;
+      y_[k] = p.constraints[k].half_plane.normal.y;
+      offset_[k] = p.constraints[k].half_plane.offset;
+      hard_ += p.constraints[k].priority == Priority::hard;
+    }
+  }
+  Solution solve() const {
+    return solve_single({x_.data(), y_.data(), offset_.data(), count_, hard_, preferred_, disc_});
+  }
+
+ private:
+  double disc_;
+  Vec2 preferred_;
+  std::size_t count_, hard_ = 0;
+  std::vector<double> x_, y_, offset_;
+};
+
+std::vector<Problem> mixture() {
+  std::vector<Problem> problems;
+  for (const char* set : {"RF10", "RI10", "RF3", "RI20", "RF0", "RI3", "RF17"}) {
+    const auto more = generate(set, 500, 31);
+    problems.insert(problems.end(), more.begin(), more.end());
+  }
+  for (std::size_t k = 0; k < problems.size(); k += 5)
+    for (std::size_t j = 0; j < problems[k].constraints.size() / 3; ++j)
+      problems[k].constraints[j].priority = Priority::hard;
+  return problems;
+}
+
+TEST(Single, VerdictsAndCertificatesAreThoseOfTheCertifiedSolver) {
+  for (const Problem& problem : mixture()) {
+    const Solution s = Arrays(problem).solve();
+    ASSERT_STREQ(name(s.status), name(solve_certified(problem).solution.status)) << text_of(problem);
+    const auto certificate = certify(problem, s);
+    ASSERT_TRUE(certificate.has_value()) << text_of(problem);
+    ASSERT_EQ(check(problem, *certificate), Flaw::none) << text_of(problem);
+  }
+}
+
+TEST(Single, EveryTargetGivesTheSameBits) {
+  std::vector<Solution> widest;
+  for (const Problem& problem : mixture()) widest.push_back(Arrays(problem).solve());
+  for (const char* target : {"AVX2", "SSE4", "SSSE3"}) {
+    if (!limit_batch_target(target)) continue;
+    std::size_t i = 0;
+    for (const Problem& problem : mixture()) {
+      const Solution s = Arrays(problem).solve();
+      EXPECT_EQ(s.velocity, widest[i].velocity) << target << text_of(problem);
+      EXPECT_EQ(s.active, widest[i].active) << target;
+      EXPECT_EQ(s.violation, widest[i++].violation) << target;
+    }
+  }
+  ASSERT_TRUE(limit_batch_target(""));
+}
+
+TEST(Single, AnswersHoldExactlyWhereTheRegionIsNotThin) {
+  for (const Problem& problem : generate("RF10", 2000, 32)) {
+    const Solution s = Arrays(problem).solve();
+    ASSERT_EQ(s.status, Status::optimal);
+    EXPECT_LE(squared_norm(s.velocity), problem.bound.disc * problem.bound.disc);
+    for (const Constraint& c : problem.constraints) EXPECT_LE(geometry::violation(c.half_plane, s.velocity), 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::lp
