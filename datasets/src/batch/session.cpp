@@ -63,6 +63,13 @@ void append_robot(JsonWriter& json, const BatchRobot& robot) {
   json.end_array().member("goal", robot.goal).end_object();
 }
 
+/// Said before the work, not after.
+void refuse_the_unavailable(const BatchConfiguration& configuration, const BatchRun& run) {
+  if (!configuration.geopackage || built_with_gdal()) return;
+  throw DataError(DataCode::format_unavailable, run.out.string(), "", "a GeoPackage to write, and a build without GDAL",
+                  "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON alone");
+}
+
 double share_of(std::uint64_t part, std::uint64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0;
 }
@@ -91,7 +98,9 @@ Session::Session(const BatchConfiguration& configuration, const BatchRun& run, I
       watch_(std::move(watch)),
       ledger_(run.out),
       crew_(workers_of(run), run.memory_limit),
-      start_(std::chrono::steady_clock::now()) {}
+      start_(std::chrono::steady_clock::now()) {
+  refuse_the_unavailable(configuration, run);
+}
 
 void Session::plan(std::vector<std::size_t> inputs) {
   progress_.inputs = inputs.size();

@@ -43,9 +43,9 @@ struct BatchConfiguration {
   ReadOptions reading;            ///< keep_going is implied
   geometry::ShapeOptions shapes;  ///< pieces by triangles: a tenth more of them than at best, some forty times quicker
   std::optional<BatchRobot> robot;
-  bool geopackage = true;  ///< obstacles.gpkg; not in a build without GDAL
-  bool geojson = true;     ///< obstacles.geojson, facades.geojson, ...
-  bool pictures = true;    ///< index.html
+  bool geopackage = built_with_gdal();  ///< obstacles.gpkg; E_FORMAT_UNAVAILABLE in a build without GDAL
+  bool geojson = true;                  ///< obstacles.geojson, facades.geojson, ...
+  bool pictures = true;                 ///< index.html
 };
 
 /// How it is run; none of it changes the results.
