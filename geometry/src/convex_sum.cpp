@@ -54,7 +54,17 @@ std::optional<Sign> turn_of_exact(const Edge& s, const Edge& t, double p, double
   return rest_p > rest_q ? Sign::positive : rest_p < rest_q ? Sign::negative : Sign::zero;
 }
 
+bool is_place(Vec2 p) {
+  return std::fabs(p.x) < 0x1p1000 && std::fabs(p.y) < 0x1p1000;
+}
+
+bool is_between_places(const Edge& e) {
+  return is_place(*e.from) && is_place(*e.to);
+}
+
 [[gnu::noinline, gnu::cold]] Sign turn_in_doubt(const Edge& s, const Edge& t, double p, double q) {
+  // Summands are merged before they are checked: any answer will do for what will be refused.
+  if (!is_between_places(s) || !is_between_places(t)) return Sign::zero;
   if (is_exact(s) && is_exact(t)) {
     if (const auto sign = turn_of_exact(s, t, p, q)) return *sign;
   }
@@ -136,10 +146,6 @@ class Fan {
   std::ptrdiff_t left_ = 0;  // edges not yet passed, the present one included
   Edge edge_{};
 };
-
-bool is_place(Vec2 p) {
-  return std::fabs(p.x) < 0x1p1000 && std::fabs(p.y) < 0x1p1000;
-}
 
 [[gnu::noinline, gnu::cold]] void require_convex(const ConvexPolygon& polygon) {
   const auto& v = polygon.vertices;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Audits N half-planes in rationals: `audit_half_planes [N = 10000000] [SEED = 1]`. Prints how many were audited and
 // how many were unsafe, certified and plain; exit status 1 where a certified one is unsafe.
+// `audit_half_planes ulps N [SEED]` prints for N discs by how many ulps the two cut-offs clear the velocity obstacle
+// (below 0: they cut into it): the data of docs/images/plain-is-unsafe.gp.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "exactvo/geometry/hull.h"
 #include "exactvo/vo/certificate.h"
@@ -96,6 +99,30 @@ int run(unsigned long wanted, unsigned long seed) {
   return counts.unsafe == 0 ? 0 : 1;
 }
 
+/// offset - h_S(n) / tau in ulps of the offset, by numbers of 64 bits: right to a thousandth of an ulp.
+double clear_by_ulps(const Instance& i, const geometry::HalfPlane& h) {
+  using Long = long double;
+  const auto& disc = std::get<Disc>(i.s.shape);
+  const Long nx = h.normal.x, ny = h.normal.y;
+  const Long along = nx * (Long(disc.center.x) - i.s.origin.x) + ny * (Long(disc.center.y) - i.s.origin.y);
+  const Long support = along + (Long(disc.radius) + i.s.radius) * std::sqrt(nx * nx + ny * ny);
+  const double ulp = std::nextafter(std::fabs(h.offset), 1e300) - std::fabs(h.offset);
+  return static_cast<double>((Long(h.offset) - support / i.time_horizon) / ulp);
+}
+
+int print_ulps(unsigned long wanted, unsigned long seed) {
+  Stream random(seed);
+  std::printf("# number, ulps by which the plain and the certified cut-off clear the velocity obstacle\n");
+  for (unsigned long k = 0; k < wanted;) {
+    const Instance i = random_instance(random, Obstacle::disc);
+    const auto certified = vo::half_plane(i.s, i.time_horizon, i.velocity);
+    const auto plain = plain_half_plane(i.s, i.time_horizon, i.velocity);
+    if (!certified || !plain || certified->offset == 0.0 || plain->offset == 0.0) continue;  // a leg
+    std::printf("%lu %.3f %.3f\n", k++, clear_by_ulps(i, *plain), clear_by_ulps(i, *certified));
+  }
+  return 0;
+}
+
 unsigned long number(int argc, char** argv, int index, unsigned long fallback) {
   return argc > index ? std::strtoul(argv[index], nullptr, 10) : fallback;
 }
@@ -104,5 +131,8 @@ unsigned long number(int argc, char** argv, int index, unsigned long fallback) {
 }  // namespace exactvo::bench
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "ulps") == 0)
+    return exactvo::bench::print_ulps(exactvo::bench::number(argc, argv, 2, 800),
+                                      exactvo::bench::number(argc, argv, 3, 1));
   return exactvo::bench::run(exactvo::bench::number(argc, argv, 1, 10000000), exactvo::bench::number(argc, argv, 2, 1));
 }

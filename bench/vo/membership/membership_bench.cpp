@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What does exact membership cost? Against plain doubles (`ratio` = exact / plain), against rationals without a filter
-// (`ratio` = rational / exact), and how often the filter fails on random input (`failure_rate`).
+// (`ratio` = rational / exact: with the filter's short cuts, and `naive`, every sign evaluated), and how often the
+// filter fails on random input (`failure_rate`).
 #include "exactvo/geometry/predicates.h"
 #include "in_turns.h"
 #include "instances.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::size_t kInstances = 16384;
 constexpr std::size_t kSlowInstances = 1024;
+constexpr int kPasses = 32;  // of the fast side a round
 
 bool exact(const Instance& i) {
   return geometry::segment_meets(i.s, i.velocity, i.time_horizon);
@@ -20,6 +22,10 @@ bool plain(const Instance& i) {
 }
 bool rational(const Instance& i) {
   return rational_meets(i.s, i.velocity, i.time_horizon);
+}
+
+bool naive(const Instance& i) {
+  return naive_meets(i.s, i.velocity, i.time_horizon);
 }
 
 void exact_against_plain(benchmark::State& state, Obstacle kind) {
@@ -45,11 +51,20 @@ void rational_against_exact(benchmark::State& state, Obstacle kind) {
   const std::vector<Instance> instances = random_instances(kind, kSlowInstances, 9);
   for (const Instance& i : instances)
     if (exact(i) != rational(i)) return state.SkipWithError("the exact answers differ");
-  report_ratio(state, instances, exact, rational, exact, 9);
+  report_ratio(state, instances, exact, rational, exact, 9, kPasses);
 }
 BENCHMARK_CAPTURE(rational_against_exact, disc, Obstacle::disc);
 BENCHMARK_CAPTURE(rational_against_exact, ellipse, Obstacle::ellipse);
 BENCHMARK_CAPTURE(rational_against_exact, polygon_8, Obstacle::polygon8);
+
+void naive_against_exact(benchmark::State& state, Obstacle kind) {
+  const std::vector<Instance> instances = random_instances(kind, kSlowInstances, 9);
+  for (const Instance& i : instances)
+    if (exact(i) != naive(i)) return state.SkipWithError("the exact answers differ");
+  report_ratio(state, instances, exact, naive, exact, 9, kPasses);
+}
+BENCHMARK_CAPTURE(naive_against_exact, disc, Obstacle::disc);
+BENCHMARK_CAPTURE(naive_against_exact, ellipse, Obstacle::ellipse);
 
 }  // namespace
 }  // namespace exactvo::bench

@@ -116,6 +116,54 @@ struct Rational {
 
 }  // namespace
 
+namespace {
+
+/// Every sign of predicate B2, then the answer: is the start in S, is the end, does the line meet S between the two?
+struct Naive {
+  const GrownShape& s;
+  P v;
+  Q t_max;
+
+  bool operator()(const geometry::Disc& d) const {
+    const P p = exactly(d.center) - exactly(s.origin);
+    const Q reach = Q(d.radius) + Q(s.radius), r2 = reach * reach, speed2 = dot(v, v), c = cross(v, p), pv = dot(p, v);
+    const P u{Q(p.x - t_max * v.x), Q(p.y - t_max * v.y)};
+    const bool start = dot(p, p) <= r2, end = dot(u, u) <= r2, line = c * c <= r2 * speed2;
+    const bool after = sgn(pv) > 0, before = pv < t_max * speed2;
+    return start || end || (line && after && before);
+  }
+  bool operator()(const Ellipse& e) const {
+    const P p = exactly(e.center) - exactly(s.origin), n{Q(-v.y), v.x};
+    const Q l11(e.l11), l21(e.l21), l22(e.l22), r(s.radius);
+    const P ln{Q(l11 * n.x + l21 * n.y), Q(l22 * n.y)}, ld{Q(l11 * v.x + l21 * v.y), Q(l22 * v.y)};
+    const Q speed2 = dot(v, v), b = dot(ln, ln), d = r * r * speed2, np = dot(n, p), rest = np * np - b - d;
+    const bool line = sgn(rest) <= 0 || rest * rest <= 4 * b * d;
+    const Q tilt = np * dot(ld, ln), f = b * d, pv = dot(p, v), later = pv - t_max * speed2;
+    const bool after = sign_with_root(pv * b - tilt, pv, f) > 0;
+    const bool before = sign_with_root(later * b - tilt, later, f) < 0;
+    const bool start = holds(e, p), end = holds(e, {Q(p.x - t_max * v.x), Q(p.y - t_max * v.y)});
+    return start || end || (line && after && before);
+  }
+  bool operator()(const geometry::Segment& g) const { return Rational{s, v, t_max}(g); }
+  bool operator()(const geometry::ConvexPolygon& p) const { return Rational{s, v, t_max}(p); }
+
+ private:
+  bool holds(const Ellipse& e, const P& u) const {
+    const Q l11(e.l11), l21(e.l21), l22(e.l22), R = Q(s.radius) * Q(s.radius);
+    const Q trace = l11 * l11 + l21 * l21 + l22 * l22, det = l11 * l22, D = det * det;
+    const Q x = l22 * u.x, y = l11 * u.y - l21 * u.x;
+    const Q b = trace + R - dot(u, u), c = D + R * trace - (x * x + y * y), d = R * D;
+    const Q discriminant = 18 * b * c * d - 4 * b * b * b * d + b * b * c * c - 4 * c * c * c - 27 * d * d;
+    return (sgn(b) >= 0 && sgn(c) >= 0) || sgn(discriminant) <= 0;
+  }
+};
+
+}  // namespace
+
+bool naive_meets(const GrownShape& s, Vec2 v, double t_max) {
+  return std::visit(Naive{s, exactly(v), Q(t_max)}, s.shape);
+}
+
 bool rational_meets(const GrownShape& s, Vec2 v, double t_max) {
   return std::visit(Rational{s, exactly(v), Q(t_max)}, s.shape);
 }
