@@ -96,6 +96,8 @@ DataError repair_refusal(DataCode code, const std::string& file, const std::stri
     case DataCode::size:
       return {code, file, place, "too many crossings of edges",
               "at most " + std::to_string(geometry::most_crossings(0)) + " and two an edge"};
+    case DataCode::out_of_range:
+      return {code, file, place, "rings that cross and have a coordinate beyond 2^100 m", "nearer ones"};
     case DataCode::zero_area:
       return {code, file, place, "rings that enclose nothing an odd number of times", "some area"};
     case DataCode::rounding:

@@ -100,6 +100,8 @@ NormalizedPolygon normalized_without(const Kept& kept, std::vector<RingProblem>&
 
 DataCode reason_for(EvenOddStatus status) {
   switch (status) {
+    case EvenOddStatus::too_large:
+      return DataCode::out_of_range;
     case EvenOddStatus::too_many_crossings:
       return DataCode::size;
     case EvenOddStatus::not_roundable:

@@ -364,10 +364,17 @@ EvenOddRegion cut_until_nothing_changes(std::vector<Ring> rings) {
   return {EvenOddStatus::not_roundable, {}, 0.0, kMostRounds};
 }
 
+bool is_small_enough(Vec2 p) {
+  return std::max(std::fabs(p.x), std::fabs(p.y)) <= kLargestCutCoordinate;
+}
+
 }  // namespace
 
 EvenOddRegion even_odd_region(const std::vector<Ring>& rings) {
   for (const Ring& ring : rings) EXACTVO_REQUIRE(std::all_of(ring.begin(), ring.end(), is_finite), excerpt(ring));
+  for (const Ring& ring : rings) {
+    if (!std::all_of(ring.begin(), ring.end(), is_small_enough)) return {EvenOddStatus::too_large, {}, 0.0, 0};
+  }
   std::size_t edges = 0;
   for (const Ring& ring : rings) edges += ring.size();
   if (detail::has_more_crossings_than(most_crossings(edges), rings))

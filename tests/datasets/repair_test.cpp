@@ -238,6 +238,13 @@ TEST(Repair, WhatHasNoRuleIsNamed) {
   EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {1, 0}, {1, 1}}}), DataCode::zero_area);
 }
 
+TEST(Repair, CrossingsTooFarOutForFiltersAreRefused) {
+  EXPECT_EQ(repair({{{2.2e292, 0}, {-2, 5}, {1, 7}, {3, -4}}}).refused, DataCode::out_of_range);
+  const double far = 0x1p99;
+  repaired_and_checked({{{far, 0}, {-far, 5}, {-far, 0}, {far, 5}}}, "at the bound");
+  EXPECT_TRUE(repair({{{2.2e292, 0}, {5, 5}, {0, 0}}}).ok());  // nothing to cut
+}
+
 TEST(Repair, TooManyCrossingsAreRefusedBeforeTheyAreCut) {
   Ring comb;  // a weave of 2 x 600 long edges: 360,000 crossings
   for (int i = 0; i < 600; ++i) comb.push_back({1.0 * i, i % 2 == 0 ? 0.0 : 1000.0});

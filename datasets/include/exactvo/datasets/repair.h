@@ -11,8 +11,9 @@
 ///  - a hole of less than three distinct points or without area is dropped: nothing is in it.
 ///
 /// Not mended, and named: coordinates that are not finite, an outer ring of less than three distinct points or without
-/// area, rings of which nothing is left (E_ZERO_AREA), more crossings than there is room for (E_SIZE), and crossings
-/// that can't be rounded to doubles without new ones (E_ROUNDING).
+/// area, rings of which nothing is left (E_ZERO_AREA), more crossings than there is room for (E_SIZE), coordinates
+/// beyond 2^100 m in rings that must be cut (E_RANGE), and crossings that can't be rounded to doubles without new ones
+/// (E_ROUNDING).
 ///
 /// A polygon that was valid but for winding, closure and consecutive duplicates comes back as `normalize` gives it.
 ///

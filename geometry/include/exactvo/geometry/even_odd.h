@@ -27,6 +27,8 @@ namespace exactvo::geometry {
 
 enum class EvenOddStatus {
   done,
+  /// A coordinate beyond kLargestCutCoordinate: nothing was cut.
+  too_large,
   /// More than `most_crossings` contacts between edges: nothing was cut.
   too_many_crossings,
   /// After kMostRounds roundings new crossings were still being made: not known to happen.
@@ -48,6 +50,10 @@ struct EvenOddRegion {
 inline constexpr std::size_t most_crossings(std::size_t edges) {
   return (std::size_t{1} << 14) + 2 * edges;
 }
+
+/// m. Comparing two crossings takes products of seven coordinates: beyond this they would leave the range of the
+/// intervals that CGAL's filters compute in.
+inline constexpr double kLargestCutCoordinate = 0x1p100;
 
 /// One or two roundings are the rule. After so many plain ones comes snap rounding, on a grid of two units in the last
 /// place of the largest coordinate.
