@@ -12,6 +12,7 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/support.h"
 #include "exactvo/vo/velocity_obstacle.h"
+#include "separation.h"
 
 namespace exactvo::vo {
 namespace {
@@ -124,34 +125,30 @@ std::optional<Vec2> nearest_normal(const EdgeCone& cone, Vec2 v, double tau) {
 /// The certified half-plane with outward normal close to n: its offset from the support function, tilted where h_S
 /// would be positive.
 OrcaHalfPlane certified_half_plane(const VelocityObstacle& obstacle, Vec2 n, double tau) {
+  const geometry::GrownShape& s = obstacle.grown();
   const VelocityObstacle::Nearest n0 = obstacle.nearest();
-  const geometry::SupportValue at_n = geometry::support(obstacle.grown(), n);
+  const geometry::SupportValue at_n = geometry::support(s, n);
   const double bound = geometry::kSupportError * at_n.magnitude + geometry::kSupportUnderflow;
-  // Beyond rounding on the wrong side: the direction does not separate, so the nearest point's normal stands in.
-  constexpr double kLeastTilt = 0x1p-60;  // less would not change n; an underflow must not be doubled for ever
-  double kappa = n0.distance > 0.0 ? std::max((std::max(at_n.h, 0.0) + 2.0 * bound) / n0.distance, kLeastTilt) : 2.0;
-  Vec2 normal = n;
-  for (; at_n.h + bound > 0.0 && kappa < 1.0; kappa *= 2.0) {
-    normal = n + kappa * n0.normal;
-    if (geometry::support_upper_bound(obstacle.grown(), normal) <= 0.0) break;
+  std::optional<Vec2> normal = n;
+  if (at_n.h + bound > 0.0) {
+    // Beyond rounding on the wrong side: the direction does not separate, so the nearest point's normal is mixed in.
+    normal.reset();
+    if (n0.distance > 0.0)
+      normal = detail::tilted_inside(s, n, n0.normal, (std::max(at_n.h, 0.0) + 2.0 * bound) / n0.distance);
   }
-  const double h_up = geometry::support_upper_bound(obstacle.grown(), normal);
-  if (h_up <= 0.0) {
-    const double c = h_up / tau;
-    return {{normal, std::min(0.0, c + 4.0 * geometry::kUnitRoundoff * std::fabs(c))}, 0, true};
+  if (normal) {
+    const double c = geometry::support_upper_bound(s, *normal) / tau;
+    return {{*normal, std::min(0.0, c + 4.0 * geometry::kUnitRoundoff * std::fabs(c))}, 0, true};
   }
   const auto contact = obstacle.contact_half_plane();
   return contact ? OrcaHalfPlane{*contact, 0, true} : OrcaHalfPlane{{n0.normal, 0.0}, 0, false};
 }
 
-/// Whether a half-plane found before already keeps the robot from both ends of this edge.
-bool covered(const std::vector<OrcaHalfPlane>& found, Vec2 left, Vec2 right, double radius, double tau) {
-  return std::any_of(found.begin(), found.end(), [&](const OrcaHalfPlane& f) {
-    const HalfPlane& h = f.half_plane;
-    const double reach = h.offset - radius / tau;
-    constexpr double kCoincident = 1e-9;  // m/s: vertices shared by two edges are found covered by either
-    return dot(h.normal, left) / tau <= reach + kCoincident && dot(h.normal, right) / tau <= reach + kCoincident;
-  });
+/// Whether a half-plane found before already excludes this edge's velocity obstacle. Exact: at a vertex that two edges
+/// share, one's half-plane excludes the other or it does not.
+bool covered(const std::vector<OrcaHalfPlane>& found, const geometry::GrownShape& edge, double tau) {
+  return std::any_of(found.begin(), found.end(),
+                     [&](const OrcaHalfPlane& f) { return half_plane_is_safe(edge, tau, f.half_plane); });
 }
 
 Edge edge_at(const OrcaChain& chain, std::size_t i, Vec2 position) {
@@ -202,9 +199,9 @@ std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, Vec2 positio
     const Edge edge = edge_at(chain, i, position);
     // The free side is on the right: from the left of an edge another edge is in front of it.
     if (cross(edge.direction, -edge.left) > 0.0) continue;
-    if (covered(found, edge.left, edge.right, radius, time_horizon)) continue;
     const VelocityObstacle obstacle(Segment{edge.left + position, edge.right + position}, position, radius,
                                     time_horizon);
+    if (covered(found, obstacle.grown(), time_horizon)) continue;
     std::optional<Vec2> normal;
     if (obstacle.overlaps()) {
       normal = obstacle.nearest().normal;

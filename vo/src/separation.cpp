@@ -120,10 +120,12 @@ std::optional<Inward> inward(const GrownShape& s) {
   return Inward{nearest.normal, nearest.distance};
 }
 
+/// Less would not change n; it also keeps an underflow from doubling 0 for ever.
+constexpr double kLeastTilt = 0x1p-60;
+
 /// The tilt that outdoes h > 0 and the errors of both supports twice over.
 double first_tilt(double h, const SupportValue& v, double depth) {
-  constexpr double kLeast = 0x1p-60;  // less would not change n; it also keeps an underflow from doubling 0 for ever
-  return std::max((std::max(h, 0.0) + 4.0 * error_of(v)) / depth, kLeast);
+  return std::max((std::max(h, 0.0) + 4.0 * error_of(v)) / depth, kLeastTilt);
 }
 
 /// Half-planes through 0: the legs and the apex. Nudging an offset would not do, since the cone is unbounded.
@@ -200,15 +202,19 @@ std::optional<Direction> best_direction(const GrownShape& s, double tau, Vec2 v)
   return std::isfinite(tau) ? best_direction_truncated(s, tau * v) : best_direction_of_cone(s, v);
 }
 
+std::optional<Vec2> tilted_inside(const GrownShape& s, Vec2 n, Vec2 m, double first) {
+  for (double kappa = std::max(first, kLeastTilt); kappa < 1.0; kappa *= 2.0) {
+    const Vec2 tilted = n + kappa * m;
+    if (support_upper_bound(s, tilted) <= 0.0) return tilted;
+  }
+  return std::nullopt;
+}
+
 std::optional<Vec2> certified_inside(const GrownShape& s, Vec2 n) {
   const std::optional<Inward> in = inward(s);
   if (!in) return std::nullopt;
   const SupportValue v = support(s, n);
-  for (double kappa = first_tilt(v.h, v, in->depth); kappa < 1.0; kappa *= 2.0) {
-    const Vec2 tilted = n + kappa * in->m;
-    if (support_upper_bound(s, tilted) <= 0.0) return tilted;
-  }
-  return std::nullopt;
+  return tilted_inside(s, n, in->m, first_tilt(v.h, v, in->depth));
 }
 
 std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n) {

@@ -24,6 +24,9 @@ struct Direction {
 /// Nothing where the robot lies in S or so near that neither a leg nor an inner minimum was found.
 std::optional<Direction> best_direction(const GrownShape& s, double tau, Vec2 v);
 
+/// The first n + kappa m, kappa = `first`, twice that, ... below 1, whose h_S is certified <= 0. REQUIRES: first >= 0.
+std::optional<Vec2> tilted_inside(const GrownShape& s, Vec2 n, Vec2 m, double first);
+
 /// n tilted as little as needed for a certified h_S <= 0: n + kappa m for an m with h_S(m) < 0 (h_S is sublinear).
 /// Nothing where no such m is found: overlap, or a few ulps from it.
 std::optional<Vec2> certified_inside(const GrownShape& s, Vec2 n);
