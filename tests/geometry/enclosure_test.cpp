@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What enclosure.h promises of every ellipse that it returns, checked by predicates and in rationals.
+#include "exactvo/geometry/enclosure.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "exactvo/geometry/predicates.h"
+#include "geometry/rational_oracle.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::geometry {
+namespace {
+
+using test::SeededRandom;
+
+TEST(FacadeEllipse, HoldsItsFacadeWithTheMargin) {
+  SeededRandom random(test::seed_of_run(91));
+  for (int i = 0; i < 2000; ++i) {
+    const Vec2 a = random.in_box(i % 3 == 0 ? 1e5 : 5.0);
+    const Segment facade{a, a + random.uniform(0.0, 4.0) * random.direction()};
+    const Ellipse e = facade_ellipse(facade);
+    ASSERT_TRUE(test::in_ellipse(e, facade.a) && test::in_ellipse(e, facade.b)) << to_string(ConvexShape{e});
+    const EllipseAxes axes = axes_of(e);
+    EXPECT_GE(axes.a - 0.5 * norm(facade.b - facade.a), 0.05 - 1e-9);
+  }
+}
+
+// Equation (8), corrected: robot radius + the least depth of the facade in the ellipse, here by marching.
+TEST(FacadeEllipse, Equation8IsTheLeastDepth) {
+  const Segment facade{{-1.0, 0.0}, {1.0, 0.0}};
+  const Ellipse e{{0.0, 0.0}, 2.0, 0.0, 1.0};
+  double least = 1e300;
+  for (int i = 0; i < 20000; ++i) {
+    const double angle = 6.28318530717958647692 * i / 20000;
+    const Vec2 rim{2.0 * std::cos(angle), std::sin(angle)};
+    least = std::min(least, norm(rim - Vec2{std::clamp(rim.x, -1.0, 1.0), 0.0}));
+  }
+  EXPECT_NEAR(clearance_of_equation_8(facade, e, 0.3), 0.3 + least, 1e-6);
+}
+
+std::vector<Vec2> random_wall(SeededRandom& random) {
+  const Vec2 along = random.direction();
+  std::vector<Vec2> points;
+  for (int i = 0; i < 6; ++i)
+    points.push_back(random.uniform(-1.5, 1.5) * along + random.uniform(-0.1, 0.1) * perp(along));
+  return points;
+}
+
+TEST(FitTrapFree, WhatIsReturnedHolds) {
+  SeededRandom random(test::seed_of_run(92));
+  int free = 0, refused = 0;
+  for (int i = 0; i < 120; ++i) {
+    const std::vector<Vec2> points = random_wall(random);
+    const Vec2 start = random.uniform(1.5, 6.0) * random.direction(),
+               goal = random.uniform(1.5, 6.0) * random.direction();
+    const auto fitted = fit_trap_free(points, 0.3, start, goal);
+    if (!fitted) {
+      ++refused;
+      continue;
+    }
+    const GrownShape grown{fitted->ellipse, {}, 0.3};
+    for (const Vec2 p : points) ASSERT_TRUE(test::in_ellipse(fitted->ellipse, p));
+    EXPECT_EQ(locate(grown, start), Place::outside);
+    EXPECT_EQ(locate(grown, goal), Place::outside);
+    const bool certified =
+        fitted->grade == EnclosureGrade::trap_free || fitted->grade == EnclosureGrade::trap_free_thin;
+    EXPECT_NE(fitted->grade, EnclosureGrade::tight);
+    if (certified) {
+      EXPECT_TRUE(goal_outside_evolute(fitted->ellipse, goal));
+      ++free;
+    }
+  }
+  EXPECT_GT(free, 40);
+  EXPECT_LT(refused, 60);
+}
+
+TEST(FitTrapFree, NoEllipseWhereTheGoalIsAtTheWall) {
+  EXPECT_FALSE(fit_trap_free({{-1, 0}, {1, 0}}, 0.3, {0, -3}, {0, 0.2}));
+}
+
+TEST(Enclose, EveryObstacleIsCovered) {
+  SeededRandom random(test::seed_of_run(93));
+  for (int i = 0; i < 6; ++i) {
+    std::vector<ObstacleParts> obstacles;
+    std::vector<std::vector<Vec2>> points;
+    for (int k = 0; k < 4; ++k) {
+      const Vec2 at = random.in_box(3.0);
+      const Polygon box{{at, at + Vec2{0.8, 0}, at + Vec2{0.8, 0.5}, at + Vec2{0, 0.5}}, {}};
+      obstacles.push_back(parts_of(Obstacle{box}));
+      points.push_back(box.outer);
+    }
+    const std::vector<Enclosure> enclosures = enclose(obstacles, 0.25, {-6, -6}, {6, 6});
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      for (const Vec2 p : points[k]) {
+        const bool covered = std::any_of(enclosures.begin(), enclosures.end(), [&](const Enclosure& e) {
+          const bool mine = std::find(e.obstacles.begin(), e.obstacles.end(), k) != e.obstacles.end();
+          return mine && locate({e.shape, {}, 0.0}, p) != Place::outside;
+        });
+        EXPECT_TRUE(covered) << "obstacle " << k;
+      }
+    }
+    for (const Enclosure& e : enclosures) {
+      EXPECT_TRUE(std::is_sorted(e.obstacles.begin(), e.obstacles.end()));
+      if (const auto* ellipse = std::get_if<Ellipse>(&e.shape); ellipse != nullptr && e.trap_free()) {
+        EXPECT_TRUE(goal_outside_evolute(*ellipse, {6, 6}));
+      }
+    }
+  }
+}
+
+TEST(Enclose, RefusesWhatIsNoPlace) {
+  EXPECT_THROW(facade_ellipse({{0, 0}, {std::nan(""), 0}}), std::logic_error);
+  EXPECT_THROW(fit_trap_free({}, 0.3, {0, 0}, {1, 1}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace exactvo::geometry
