@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "run_program.h"
@@ -46,6 +47,21 @@ TEST(Paper, EveryRunIsInTheSummaryAndEveryFigureIsDrawnTwiceTheSame) {
     EXPECT_EQ(a.count(std::string("figures/") + picture + ".svg"), 1u) << picture;
     EXPECT_EQ(a.count(std::string("figures/") + picture + ".png"), 1u) << picture;
   }
+}
+
+TEST(Paper, TheReportHasEveryPictureThatAClaimNames) {
+  const Workplace here;
+  ASSERT_EQ(here.run("paper --out out").status, 0);
+  EXPECT_THAT(here.read("out/report.html"), testing::Not(testing::HasSubstr("(not drawn:")));
+  const std::string text = here.read("out/report.md");
+  const std::regex picture("`(figures/[^`]*[.]png)`");
+  int named = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), picture), end; it != end; ++it, ++named)
+    EXPECT_TRUE(here.has("out/" + (*it)[1].str())) << (*it)[1];
+  EXPECT_GE(named, 12);
+  EXPECT_THAT(text, testing::HasSubstr("Not run: `exactvo paper --out DIR --random 1000`"));
+  ASSERT_EQ(here.run("paper --out out --random 2 -j 1").status, 0);
+  EXPECT_THAT(here.read("out/report.md"), testing::HasSubstr("| convex |"));
 }
 
 TEST(Paper, AFolderWithoutScenariosIsRefused) {

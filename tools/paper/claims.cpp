@@ -194,7 +194,7 @@ Claim jitter_is_avoidance(const ReportData& data) {
               "J without any obstacle (B0): {:.0f} m/s^2; with a wall (B1): {:.0f}. The preference of constant size "
               "causes it: see the ablations.",
               free.value_or(0.0), wall.value_or(0.0)),
-          "ablations/remedies_jitter.png"};
+          "figures/jitter.png"};
 }
 
 Claim spacing_stays_positive(const ReportData& data) {
@@ -235,7 +235,7 @@ Claim open_problem(const ReportData& data) {
           !ran ? Verdict::not_run : (least >= kSolved ? Verdict::holds : Verdict::fails),
           fmt::format("Solved in the default: J on B1 and B3 is at most a {:.0f}th of that with the signs mended.",
                       ran ? least : 0.0),
-          "ablations/remedies_jitter.png"};
+          "figures/jitter.png"};
 }
 
 }  // namespace

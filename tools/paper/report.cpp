@@ -225,6 +225,7 @@ void add_section_b(const ReportData& data, Document& d) {
                                                           {"lyapunov", "Both Lyapunov functions, term by term."}};
   for (const auto& [stem, caption] : pictures)
     d.blocks.push_back(Picture{std::string("figures/fig8-formation/B3/") + stem + ".png", caption});
+  d.blocks.push_back(Picture{"figures/jitter.png", "Jitter with the signs mended and with the default."});
   d.blocks.push_back(Picture{"figures/all-formation.png", "B0-B3: as printed, signs mended, default."});
 }
 

@@ -10,6 +10,7 @@
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "figures/paths_figure.h"
+#include "figures/style.h"
 #include "support/files.h"
 #include "support/outcome.h"
 #include "support/run.h"
@@ -181,6 +182,29 @@ class Experiments {
     for (const auto& run : formation_) panels.push_back({panel_title(run), &run});
     add_sheet("all-formation", "Section V.B, method ivo: a column a controller", panels, 3);
     add_comparison();
+    add_jitter();
+  }
+
+  /// J of the mended signs and of the default, side by side.
+  void add_jitter() {
+    DataFile data;
+    const int index = data.begin("jitter J [m/s^2]", "place, paper-signs, default, scenario");
+    for (std::size_t i = 0; i < jitter_.size(); ++i)
+      data.labelled_row({static_cast<double>(i), jitter_[i].first, jitter_[i].second}, "B" + std::to_string(i));
+    PlotCommand plot;
+    const char* style = "using ($1{}0.2):{}:(0.35):xticlabels(4) with boxes fs solid 0.8 noborder lc rgb '{}'";
+    plot.data(index, fmt::format(fmt::runtime(style), '-', 2, series_colour(1)), "paper-signs");
+    plot.data(index, fmt::format(fmt::runtime(style), '+', 3, series_colour(0)), "default");
+    plot.data(index, "using ($1-0.2):2:(sprintf('%.0f', $2)) with labels offset 0,0.6 font ',10'");
+    plot.data(index, "using ($1+0.2):3:(sprintf('%.0f', $3)) with labels offset 0,0.6 font ',10'");
+    const std::string title = "Jitter J, the sum of |a_{k+1} - a_k|; B0 has no obstacle";
+    const std::string body =
+        "  set title " + quoted(title) +
+        "\n  set logscale y\n  set format y '10^%T'\n  set yrange [100:2e6]\n  set xrange [-0.6:3.6]\n"
+        "  set ylabel 'J [m/s^2]'\n  set grid y lc rgb '#dcdcdc'\n  set key outside right top\n" +
+        plot.text();
+    scripts_.push_back(
+        write_sources({"jitter", data.text(), script_text("jitter", title, {860, 460}, body)}, out_ / "figures"));
   }
 
   void add_comparison() {
