@@ -113,7 +113,7 @@ Figure lyapunov_figure(const datasets::RecordingFile& run) {
   const std::string body =
       fmt::format(
           "  set multiplot layout 4,1\n  set xlabel 'time [s]'\n  set xrange [0:{:.6g}]\n  set lmargin 12\n  set "
-          "rmargin 22\n"
+          "rmargin at screen 0.77\n"
           "  set grid lc rgb '#dcdcdc'\n  set key outside right top reverse Left width 2\n",
           end) +
       panel(kPaper, rows, title + ": the paper's function (18)", "V [m²/s²]", Axis::linear, data) +
