@@ -8,8 +8,7 @@ namespace exactvo::formation {
 namespace {
 
 TEST(Hundred, ArriveSafelyFasterThanRealTime) {
-  const Scenario s =
-      datasets::load_scenario(std::string(EXACTVO_SOURCE_DIR) + "/datasets/data/formation/hundred.json");
+  const Scenario s = datasets::load_scenario(std::string(EXACTVO_SOURCE_DIR) + "/datasets/data/formation/hundred.json");
   ASSERT_EQ(s.robots.size(), 100u);
   ASSERT_EQ(s.obstacles.size(), 50u);
   const test::FinishedRun r = test::run(s, {});
