@@ -2,7 +2,9 @@
 #include <CGAL/Arr_conic_traits_2.h>
 #include <CGAL/CORE_algebraic_number_traits.h>
 #include <CGAL/Cartesian.h>
+#include <CGAL/exceptions.h>
 
+#include <optional>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -100,6 +102,16 @@ Place expected_place(const GrownShape& s, Vec2 q) {
   return found.touching > 0 ? Place::boundary : Place::outside;
 }
 
+/// Nothing where CORE's root isolation breaks its own assertion (Sturm.h, evalExactSign: some one case in thousands).
+std::optional<Place> place_by_cgal(const GrownShape& s, Vec2 q, Tally& tally) {
+  try {
+    return expected_place(s, q);
+  } catch (const CGAL::Failure_exception&) {
+    tally.oracle_gave_up();
+    return std::nullopt;
+  }
+}
+
 std::string text_of(const GrownShape& s, Vec2 q) {
   using geometry::hex_text;
   return to_string(s.shape) + "  origin " + hex_text(s.origin.x) + " " + hex_text(s.origin.y) + "  radius " +
@@ -121,7 +133,8 @@ Tally compare_conics(const Asked& asked) {
     const GrownShape s = random_integer_ellipse(random);
     const Vec2 near = support_point(s, random.direction());  // rounded to a grid: beside the boundary, on both sides
     const Vec2 q{std::round(near.x * 16.0) / 16.0, std::round(near.y * 16.0) / 16.0};
-    tally.random(expected_place(s, q) == locate(s, q), text_of(s, q));
+    const std::optional<Place> place = place_by_cgal(s, q, tally);
+    if (place) tally.random(*place == locate(s, q), text_of(s, q));
   }
   while (tally.constructed_cases() < asked.constructed) {
     TangentCase c = random_tangent_ellipse(random);
@@ -129,9 +142,10 @@ Tally compare_conics(const Asked& asked) {
     if (e.l11 == 0.0 || e.l22 == 0.0 || c.s.radius == 0.0) continue;
     Vec2 q = c.touch;
     if (random.integer(0, 2) == 0) q.x = std::nextafter(q.x, random.integer(0, 1) == 0 ? -1e300 : 1e300);
-    const Place place = expected_place(c.s, q);
-    if (place == Place::boundary) tally.at_a_contact();
-    tally.constructed(place == locate(c.s, q), text_of(c.s, q));
+    const std::optional<Place> place = place_by_cgal(c.s, q, tally);
+    if (!place) continue;
+    if (*place == Place::boundary) tally.at_a_contact();
+    tally.constructed(*place == locate(c.s, q), text_of(c.s, q));
   }
   return tally;
 }

@@ -25,8 +25,8 @@ int run(const char* wanted, const Asked& asked) {
     known = true;
     const std::clock_t start = std::clock();
     const Tally tally = topic.compare(asked);
-    std::printf("%-9s  random %ld  constructed %ld  contacts %ld  mismatches %ld  (%.1f s)\n", topic.name,
-                tally.random_cases(), tally.constructed_cases(), tally.contacts(), tally.mismatches(),
+    std::printf("%-9s  random %ld  constructed %ld  contacts %ld  given up %ld  mismatches %ld  (%.1f s)\n", topic.name,
+                tally.random_cases(), tally.constructed_cases(), tally.contacts(), tally.given_up(), tally.mismatches(),
                 static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     std::fflush(stdout);
     same = same && tally.mismatches() == 0;
