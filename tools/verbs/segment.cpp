@@ -66,7 +66,7 @@ std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const
     if (!answer.content) continue;
     for (const formation::SceneObstacle& o : answer.content->obstacles) {
       if (interrupted()) throw Interrupted();
-      all.push_back({{answer.file, o.id, "done"}, geometry::shapes_of(o.shape, options)});
+      all.push_back({{answer.file, o.id, ""}, geometry::shapes_of(o.shape, options)});
     }
   }
   return all;
