@@ -6,13 +6,12 @@
 #include <cmath>
 
 #include "chain_fit.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry::detail {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// The dual is solved when no point exceeds 3 by more: the area is then within a relative 1e-11 of the least.
 constexpr double kOptimality = 1e-11;

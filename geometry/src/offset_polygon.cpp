@@ -5,13 +5,13 @@
 
 #include "exact_number.h"
 #include "exactvo/geometry/minkowski.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Below this part of the radius a tolerance asks for more than 10^5 corners.
 constexpr double kFinestOfRadius = 0x1p-30;
 /// Below these parts of the coordinates the rounding of the sum would show.

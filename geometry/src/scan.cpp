@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "chain_fit.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
 #include "region_growing.h"
 
 namespace exactvo::geometry {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Consecutive hits of one wall, as indices into what was given.
 using Run = std::vector<std::size_t>;

@@ -6,12 +6,11 @@
 #include <cstdio>
 
 #include "convexity.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 bool all_finite(const std::vector<Vec2>& points) {
   return std::all_of(points.begin(), points.end(), [](Vec2 p) { return is_finite(p); });

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "exactvo/geometry/pi.h"
+
 namespace exactvo::vo::detail {
 namespace {
 
@@ -20,8 +22,7 @@ Vec2 at_angle(double angle) {
 
 /// A regular polygon of so many corners stays within the tolerance of its circle: 1 - cos(pi/k) <= (pi/k)^2 / 2.
 int corners_of_circle(const Window& window) {
-  constexpr double kHalfTurn = 3.14159265358979323846;
-  const double asked = kHalfTurn / std::sqrt(2.0 * window.tolerance / window.speed);
+  const double asked = geometry::kPi / std::sqrt(2.0 * window.tolerance / window.speed);
   constexpr double kFewest = 16.0;
   return static_cast<int>(std::ceil(std::max(asked, kFewest)));
 }
@@ -167,7 +168,7 @@ Region disc_from_inside(const Window& window) {
   const GrownShape disc{geometry::Disc{{}, window.speed}, {}, 0.0};
   std::vector<Vec2> points;
   for (int i = 0; i < count; ++i) {
-    const double angle = 6.28318530717958647692 * i / count;
+    const double angle = 2.0 * geometry::kPi * i / count;
     Vec2 p = window.speed * at_angle(angle);
     while (locate(disc, p) == geometry::Place::outside) p = (1.0 - 4.0 * kUnitRoundoff) * p;
     points.push_back(p);
@@ -179,7 +180,7 @@ Region disc_from_outside(const Window& window) {
   const int count = corners_of_circle(window);
   std::vector<geometry::HalfPlane> keep;
   for (int i = 0; i < count; ++i) {
-    const Vec2 n = at_angle(6.28318530717958647692 * i / count);
+    const Vec2 n = at_angle(2.0 * geometry::kPi * i / count);
     keep.push_back({-n, -window.speed * norm(n) * (1.0 + 8.0 * kUnitRoundoff)});  // a root, two products, a sum
   }
   return Region::cut(square_of(window), keep);
