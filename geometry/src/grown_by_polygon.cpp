@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
+#include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/minkowski.h"
 #include "exactvo/geometry/require.h"
@@ -40,7 +41,7 @@ struct RoundedShape {
 }  // namespace
 
 OuterShape grown_by_polygon(const ConvexShape& obstacle, const ConvexPolygon& robot, Vec2 position) {
-  EXACTVO_REQUIRE(is_valid(obstacle), to_string(obstacle));
+  EXACTVO_REQUIRE(is_valid(obstacle), excerpt(obstacle));
   EXACTVO_REQUIRE(is_valid(ConvexShape{robot}) && is_finite(position), excerpt(robot.vertices));
   Rounded whole = std::visit(RoundedShape{}, obstacle);
   const ConvexSum sum = minkowski_sum(whole.polygon, mirrored(convex_hull(robot.vertices)));

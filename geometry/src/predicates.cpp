@@ -7,6 +7,7 @@
 
 #include "exact_sweep.h"
 #include "exact_vector.h"
+#include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/require.h"
 #include "grown_ellipse.h"
 #include "grown_polygon.h"
@@ -38,7 +39,7 @@ std::string show(Vec2 v) {
 
 /// No filter decides with a NaN or an infinity among its numbers, so the exact stages are where they are caught.
 void require_valid(const GrownShape& s) {
-  EXACTVO_REQUIRE(is_valid(s.shape) && is_finite(s.origin) && std::isfinite(s.radius), to_string(s.shape));
+  EXACTVO_REQUIRE(is_valid(s.shape) && is_finite(s.origin) && std::isfinite(s.radius), excerpt(s.shape));
 }
 void require_valid(const Ellipse& e) {
   EXACTVO_REQUIRE(is_valid(ConvexShape{e}), to_string(ConvexShape{e}));
@@ -152,7 +153,7 @@ struct Locator {
   }
 
   Place polygon(const Vec2* vertices, std::size_t count) const {
-    EXACTVO_REQUIRE(count > 0, to_string(s.shape));
+    EXACTVO_REQUIRE(count > 0, excerpt(s.shape));
     const GrownPolygon grown(vertices, count, s.origin, s.radius);
     const Place place = grown.place_of(detail::along(q, 1.0));
     if (grown.was_exact()) require_valid(s);
@@ -232,7 +233,7 @@ struct SegmentMeets {
   }
 
   bool polygon(const Vec2* vertices, std::size_t count) const {
-    EXACTVO_REQUIRE(count > 0, to_string(s.shape));
+    EXACTVO_REQUIRE(count > 0, excerpt(s.shape));
     const GrownPolygon grown(vertices, count, s.origin, s.radius);
     const bool meets = grown.meets(v, t_max);
     if (grown.was_exact()) require_valid(s);

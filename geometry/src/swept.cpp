@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exact_sweep.h"
+#include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "stages.h"
@@ -190,7 +191,7 @@ Vec2 rounded(const VectorSum& sum) {
 bool segment_meets(const GrownShape& s, const VectorSum& direction, double t_max) {
   require_motion(direction, t_max);
   EXACTVO_REQUIRE(is_valid(s.shape) && is_finite(s.origin) && s.radius >= 0.0 && std::isfinite(s.radius),
-                  to_string(s.shape));
+                  excerpt(s.shape));
   const Point d = exact_sum(direction);
   const double extent = std::visit(Extent{}, s.shape) + size_of(s.origin) + s.radius;
   const Vec2 whole = rounded(direction);
@@ -203,7 +204,7 @@ bool segment_meets(const GrownShape& s, const VectorSum& direction, double t_max
 bool sweep_meets(const ConvexShape& obstacle, const ConvexPolygon& robot, Vec2 position, const VectorSum& direction,
                  double t_max) {
   require_motion(direction, t_max);
-  EXACTVO_REQUIRE(is_valid(obstacle), to_string(obstacle));
+  EXACTVO_REQUIRE(is_valid(obstacle), excerpt(obstacle));
   EXACTVO_REQUIRE(is_valid(ConvexShape{robot}) && is_finite(position), excerpt(robot.vertices));
   detail::count_exact();
   const Point d = exact_sum(direction);

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/minkowski.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
@@ -28,7 +29,7 @@ std::optional<Leg> leg_of(const geometry::GrownShape& s, const detail::Tangent& 
 VelocityObstacle::VelocityObstacle(geometry::ConvexShape obstacle, Vec2 robot_position, double robot_radius,
                                    double time_horizon)
     : grown_{std::move(obstacle), robot_position, robot_radius}, tau_(time_horizon) {
-  EXACTVO_REQUIRE(geometry::is_valid(grown_.shape), geometry::to_string(grown_.shape));
+  EXACTVO_REQUIRE(geometry::is_valid(grown_.shape), geometry::excerpt(grown_.shape));
   EXACTVO_REQUIRE(geometry::is_finite(robot_position), "a robot position that is not finite");
   EXACTVO_REQUIRE(robot_radius >= 0.0 && std::isfinite(robot_radius), std::to_string(robot_radius));
   EXACTVO_REQUIRE(time_horizon > 0.0, std::to_string(time_horizon));
