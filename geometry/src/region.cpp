@@ -28,8 +28,19 @@ std::string show(const HalfPlane& h) {
   return hex_text(h.normal.x) + " " + hex_text(h.normal.y) + " " + hex_text(h.offset);
 }
 
-void require_finite(const HalfPlane& h) {
-  EXACTVO_REQUIRE(is_finite(h.normal) && std::isfinite(h.offset), show(h));
+bool is_in_range(double x) {
+  return std::fabs(x) <= kLargestCoordinate;
+}
+bool is_in_range(Vec2 x) {
+  return is_in_range(x.x) && is_in_range(x.y);
+}
+
+void require_in_range(const HalfPlane& h) {
+  EXACTVO_REQUIRE(is_in_range(h.normal) && is_in_range(h.offset), show(h));
+}
+
+void require_in_range(const std::vector<Vec2>& points) {
+  EXACTVO_REQUIRE(std::all_of(points.begin(), points.end(), [](Vec2 p) { return is_in_range(p); }), excerpt(points));
 }
 
 /// Its positive side is normal.x > offset.
@@ -145,17 +156,19 @@ Region::Region() : set_(std::make_shared<const Set>()) {}
 Region::Region(std::shared_ptr<const Set> set) : set_(std::move(set)) {}
 
 Region Region::hull_of(const std::vector<Vec2>& points) {
+  require_in_range(points);
   if (points.empty()) return {};
   return cut(convex_hull(points), {});
 }
 
 Region Region::cut(const ConvexPolygon& polygon, const std::vector<HalfPlane>& keep) {
+  require_in_range(polygon.vertices);
   EXACTVO_REQUIRE(is_valid(ConvexShape{polygon}), excerpt(polygon.vertices));
   return guarded("Region::cut", [&]() -> Region {
     Cycle cycle = cycle_of(convex_hull(polygon.vertices).vertices);
     if (cycle.size() < 3) return {};
     for (const HalfPlane& h : keep) {
-      require_finite(h);
+      require_in_range(h);
       if (h.normal == Vec2{}) {
         if (h.offset > 0.0) return {};
         continue;
@@ -170,7 +183,7 @@ Region Region::cut(const ConvexPolygon& polygon, const std::vector<HalfPlane>& k
 }
 
 Region Region::cut(const HalfPlane& keep) const {
-  require_finite(keep);
+  require_in_range(keep);
   if (keep.normal == Vec2{}) return keep.offset > 0.0 ? Region() : *this;
   if (is_empty()) return {};
   return guarded("Region::cut", [&]() -> Region {
@@ -180,7 +193,7 @@ Region Region::cut(const HalfPlane& keep) const {
       const auto box = polygon.outer_boundary().bbox();
       reach = std::max({reach, -box.xmin(), box.xmax(), -box.ymin(), box.ymax()});
     }
-    const double r = 2.0 * reach + 1.0;
+    const double r = std::min(2.0 * reach + 1.0, kLargestCoordinate);
     return met(cut(ConvexPolygon{{{-r, -r}, {r, -r}, {r, r}, {-r, r}}}, {keep}));
   });
 }
@@ -222,7 +235,7 @@ Bracket Region::area() const {
 }
 
 Place Region::locate(Vec2 x) const {
-  EXACTVO_REQUIRE(is_finite(x), hex_text(x.x) + " " + hex_text(x.y));
+  EXACTVO_REQUIRE(is_in_range(x), hex_text(x.x) + " " + hex_text(x.y));
   return guarded("Region::locate", [&] {
     const CGAL::Oriented_side side = set_->set.oriented_side(Point(Number(x.x), Number(x.y)));
     if (side == CGAL::ON_ORIENTED_BOUNDARY) return Place::boundary;

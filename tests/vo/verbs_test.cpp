@@ -59,6 +59,29 @@ TEST(VerbVo, BadNumbersAreNamed) {
   EXPECT_NE(with("0.3", "0", "1,0").err.find("--time-horizon"), std::string::npos);
 }
 
+TEST(VerbVo, NumbersFarOutOfRangeAreNamed) {
+  const auto with = [](const std::string& options) {
+    const Outcome run = Workplace().run("vo --obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --radius 0.3 " +
+                                        "--free --time-horizon 3 " + options);
+    return std::to_string(run.status) + " " + run.err;
+  };
+  for (const std::string speed : {"1e120", "1e-300", "1e-310"})
+    EXPECT_EQ(with("--max-speed " + speed).find("2 exactvo: error: --max-speed: found"), 0u) << speed;
+  EXPECT_EQ(with("--max-speed 1 --obstacle-velocity 1e160,0").find("2 exactvo: error: --obstacle-velocity: found"), 0u);
+  EXPECT_EQ(with("--max-speed 1 --obstacle 'LINESTRING(1e200 0, 2 0)'").find("2 exactvo: error: --obstacle: found"),
+            0u);
+}
+
+TEST(VerbVo, APaperHorizonOfNothingIsNamed) {
+  // The exact test says that the two are apart, by a distance that rounds to nothing.
+  const std::string scene =
+      "vo --obstacle 'LINESTRING(0.4 1.6, 0.5 4.5)' --position 0,0 --velocity 1,0 --radius 1.6492422502470643 ";
+  const Outcome run = Workplace().run(scene + "--time-horizon paper");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("--time-horizon: found 'paper, which is 0 s"), std::string::npos) << run.err;
+  EXPECT_EQ(Workplace().run(scene + "--time-horizon clamped").status, 0);
+}
+
 TEST(VerbVo, TheFamilyOfOneEncounter) {
   const Outcome run = Workplace().run("vo --obstacle '" + kSquare +
                                       "' --obstacle-velocity=-0.5,0 --position 0,0 --velocity 1,0.25 --radius 0.3 "

@@ -194,6 +194,9 @@ ConeAnswer answer_of(const vo::Encounter& e, double alpha) {
   return a;
 }
 
+/// How far the polygons may stray from the curves, of the speed: finer than a pixel of the figure. The guide quotes it.
+constexpr double kOfSpeed = 1e-4;
+
 FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion& question) {
   std::vector<vo::ShiftedCone> shifted;
   std::vector<HalfPlane> half_planes;
@@ -205,7 +208,7 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
     half_planes.push_back(*cones[k].full);
     obstacle_of.push_back(k);
   }
-  FreeAnswer answer{vo::FreeVelocities(std::move(shifted), {question.max_speed, 1e-4}),
+  FreeAnswer answer{vo::FreeVelocities(std::move(shifted), {question.max_speed, kOfSpeed}),
                     question.max_speed,
                     std::move(half_planes),
                     std::move(obstacle_of),

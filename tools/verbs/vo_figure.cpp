@@ -80,15 +80,17 @@ const std::string kAxes =
     "'#e9e9e9'\n";
 
 Box square_round(const Box& box, double margin) {
-  const double half = margin * std::max({box.width(), box.height(), 1e-9});
+  constexpr double kLeast = 1e-9;  // m/s: a range that gnuplot can still put tics on
+  const double half = margin * std::max({box.width(), box.height(), kLeast});
   const Vec2 middle = 0.5 * (box.low + box.high);
   return {{middle.x - half, middle.y - half}, {middle.x + half, middle.y + half}};
 }
 
 /// A horizon to draw S by, where there is none: as far as the velocity gets.
 double drawn_horizon(const ConeAnswer& a) {
+  constexpr double kNearest = 1e-3, kSlowest = 1e-3;  // m, m/s: in contact and at rest there is still something to draw
   if (std::isfinite(a.encounter.time_horizon)) return a.encounter.time_horizon;
-  return std::max(a.cone.nearest().distance, 1e-3) / std::max(norm(a.encounter.velocity), 1e-3);
+  return std::max(a.cone.nearest().distance, kNearest) / std::max(norm(a.encounter.velocity), kSlowest);
 }
 
 Box view_of(const ConeAnswer& a) {

@@ -12,6 +12,7 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/vo/free_velocities.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {
@@ -24,20 +25,32 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Of coordinates and velocities: their squares and those of their sums stay far within doubles.
+constexpr double kLargestNumber = vo::kMostApex;
+
+bool is_in_range(Vec2 v) {
+  return std::fabs(v.x) <= kLargestNumber && std::fabs(v.y) <= kLargestNumber;
+}
+
 Vec2 parse_point(const std::string& option, const std::string& text) {
   Vec2 v;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_finite(v))
-    throw UsageError(option, text, "two finite numbers, X,Y");
+  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_in_range(v))
+    throw UsageError(option, text, fmt::format("two numbers within {:g}, X,Y", kLargestNumber));
   return v;
 }
 
 /// The points of every obstacle in the text: WKT, or the name of a file.
-std::vector<std::vector<Vec2>> obstacles_in(const std::string& text) {
+std::vector<std::vector<Vec2>> obstacles_in(const std::string& option, const std::string& text) {
   const datasets::ObstacleFile file =
-      fs::exists(text) ? datasets::read_obstacles(text) : datasets::parse_wkt(text, "--obstacle", {});
+      fs::exists(text) ? datasets::read_obstacles(text) : datasets::parse_wkt(text, option, {});
   std::vector<std::vector<Vec2>> points;
-  for (const auto& obstacle : file.obstacles) points.push_back(vertices_of(obstacle.shape));
+  for (const auto& obstacle : file.obstacles) {
+    points.push_back(vertices_of(obstacle.shape));
+    for (const Vec2 v : points.back())
+      if (!is_in_range(v))
+        throw UsageError(option, fmt::format("{:g} {:g}", v.x, v.y), fmt::format("within {:g}", kLargestNumber));
+  }
   return points;
 }
 
@@ -64,9 +77,17 @@ ConvexShape convex_shape(const std::vector<Vec2>& points, const VoFlags& flags) 
 }
 
 ConvexPolygon robot_of(const std::string& text) {
-  const auto rings = obstacles_in(text);
+  const auto rings = obstacles_in("--robot", text);
   if (rings.size() != 1) throw UsageError("--robot", fmt::format("{} geometries", rings.size()), "one polygon");
   return geometry::convex_hull(rings[0]);
+}
+
+/// The paper's rule gives no horizon to a robot whose distance rounds to nothing.
+double paper_horizon(const vo::VelocityObstacle& cone, Vec2 relative) {
+  const double seconds = vo::paper_time_horizon(cone, relative);
+  if (!(seconds > 0.0))
+    throw UsageError("--time-horizon", "paper, which is 0 s so near the obstacle", "a time above 0 s, or clamped");
+  return seconds;
 }
 
 /// A number of seconds, or a rule.
@@ -78,7 +99,7 @@ double horizon_of(const std::string& text, const vo::Encounter& encounter) {
     const vo::VelocityObstacle cone = cone_of(any);
     const Vec2 relative = encounter.velocity - encounter.obstacle_velocity;
     if (cone.overlaps()) return 1.0;  // no cone, so no horizon
-    return text == "paper" ? vo::paper_time_horizon(cone, relative) : vo::clamped_time_horizon(cone, relative);
+    return text == "paper" ? paper_horizon(cone, relative) : vo::clamped_time_horizon(cone, relative);
   }
   double seconds = 0.0;
   char rest = 0;
@@ -110,11 +131,11 @@ void check_numbers(const VoFlags& flags) {
   const auto require = [](bool ok, const char* option, double found, const char* expected) {
     if (!ok) throw UsageError(option, fmt::format("{}", found), expected);
   };
-  require(flags.radius >= 0.0 && std::isfinite(flags.radius), "--radius", flags.radius, "a length from 0 m on");
+  require(flags.radius >= 0.0 && flags.radius <= kLargestNumber, "--radius", flags.radius, "a length from 0 m on");
   require(flags.alpha > 0.0 && flags.alpha <= 1.0, "--alpha", flags.alpha, "a number in (0, 1]");
   if (flags.free)
-    require(flags.max_speed > 0.0 && std::isfinite(flags.max_speed), "--max-speed", flags.max_speed,
-            "a speed above 0 m/s, with --free");
+    require(flags.max_speed >= vo::kLeastMaxSpeed && flags.max_speed <= vo::kMostMaxSpeed, "--max-speed",
+            flags.max_speed, "a speed from 2^-60 to 2^60 m/s, with --free");
   if (!flags.figure.empty() && fs::path(flags.figure).extension() != ".svg")
     throw UsageError("--figure", flags.figure, "a name that ends in .svg");
 }
@@ -141,7 +162,7 @@ VoQuestion question_of(const VoFlags& flags) {
   const vo::Encounter alone = robot_alone(flags);
   q.velocity = alone.velocity;
   for (std::size_t i = 0; i < flags.obstacles.size(); ++i) {
-    for (const std::vector<Vec2>& points : obstacles_in(flags.obstacles[i])) {
+    for (const std::vector<Vec2>& points : obstacles_in("--obstacle", flags.obstacles[i])) {
       vo::Encounter e = alone;
       e.obstacle = convex_shape(points, flags);
       if (i < flags.obstacle_velocities.size())

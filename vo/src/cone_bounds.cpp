@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/pi.h"
 
 namespace exactvo::vo::detail {
@@ -29,29 +30,35 @@ int corners_of_circle(const Window& window) {
 
 // --- The normals at which a cone is touched ---
 
+/// m/s: points farther out are left out, so that what is built of them stays within geometry::kLargestCoordinate.
+constexpr double kFarthest = geometry::kLargestCoordinate / 16.0;
+
 struct Contact {
   double angle;  ///< of the outward normal
   Vec2 at;       ///< m/s, relative: the point of S / tau there, rounded
 };
 
 /// The arc of normals from the left leg's over the cut-off's to the right leg's, counter-clockwise, divided until the
-/// triangles between neighbouring contacts are lower than the tolerance.
+/// triangles between neighbouring contacts are lower than the tolerance or lie outside the square.
 ///
-///              . apex               height <= chord/2 tan(theta/2), theta the angle between the normals
+///              . tip                  height <= chord/2 tan(theta/2), theta the angle between the normals
 ///          .       .
 ///      a ------------- b
 class Cutoff {
  public:
-  Cutoff(const VelocityObstacle& cone, const Legs& legs, double tolerance)
-      : s_(cone.grown()), scale_(1.0 / cone.time_horizon()), tolerance_(tolerance) {
+  Cutoff(const ShiftedCone& cone, const Legs& legs, const Window& window)
+      : s_(cone.cone.grown()),
+        scale_(1.0 / cone.cone.time_horizon()),
+        apex_(cone.apex),
+        half_width_(kReach * window.speed),
+        lowest_(std::max(window.tolerance, rounding(legs.left.normal))) {
     const double first = std::atan2(legs.left.normal.y, legs.left.normal.x);
     const double turn =
         std::atan2(cross(legs.left.normal, legs.right.normal), dot(legs.left.normal, legs.right.normal));
     const Contact left{first, scale_ * legs.left.touch}, right{first + turn, scale_ * legs.right.touch};
     contacts_.push_back(left);
-    std::vector<double> seeds = edge_normals(first, turn);
     Contact from = left;
-    for (const double angle : seeds) {
+    for (const double angle : edge_normals(first, turn)) {
       const Contact to = contact(angle);
       refine(from, to, kMostHalvings);
       from = to;
@@ -62,13 +69,18 @@ class Cutoff {
   const std::vector<Contact>& contacts() const { return contacts_; }
 
  private:
-  static constexpr int kMostHalvings = 24;
+  static constexpr int kMostHalvings = 48;  ///< of at most half a turn: finer angles than that are rounding
 
   Contact contact(double angle) const { return {angle, scale_ * support_point(s_, at_angle(angle))}; }
 
+  /// How far a contact may be off: lower triangles are made of rounding.
+  double rounding(Vec2 n) const {
+    return scale_ * geometry::kSupportError * support(s_, n).magnitude + 4.0 * kUnitRoundoff * norm(apex_);
+  }
+
   void refine(const Contact& a, const Contact& b, int halvings) {
     const double height = 0.5 * norm(b.at - a.at) * std::tan(0.5 * (b.angle - a.angle));
-    if (!(height > tolerance_) || halvings == 0) {
+    if (!(height > lowest_) || halvings == 0 || is_out_of_reach(a, b, height)) {
       contacts_.push_back(b);
       return;
     }
@@ -77,9 +89,25 @@ class Cutoff {
     refine(middle, b, halvings - 1);
   }
 
+  /// Whether a line along a side of the triangle or of the square has the two on different sides. Rounded: a wrong
+  /// answer costs width, no proof.
+  bool is_out_of_reach(const Contact& a, const Contact& b, double height) const {
+    constexpr double kWidest = 1.0;  // rad; below, the tip lies over the chord
+    if (!(b.angle - a.angle < kWidest)) return false;
+    const Vec2 p = apex_ + a.at, q = apex_ + b.at;
+    return least_of_square(at_angle(a.angle)) > dot(at_angle(a.angle), p) ||
+           least_of_square(at_angle(b.angle)) > dot(at_angle(b.angle), q) ||
+           least_of_square(geometry::perp(q - p)) > dot(geometry::perp(q - p), p) ||
+           std::min(p.x, q.x) - height > half_width_ || std::max(p.x, q.x) + height < -half_width_ ||
+           std::min(p.y, q.y) - height > half_width_ || std::max(p.y, q.y) + height < -half_width_;
+  }
+
+  /// The least n.v of the square.
+  double least_of_square(Vec2 n) const { return -half_width_ * (std::fabs(n.x) + std::fabs(n.y)); }
+
   /// A normal a little to either side of each edge's, so that an edge costs two contacts and no halvings.
   std::vector<double> edge_normals(double first, double turn) const {
-    constexpr double kBeside = 0x1p-30;
+    constexpr double kBeside = 0x1p-30;  // rad: far above the rounding of an angle, and a triangle as flat as 2^-31
     std::vector<double> angles;
     std::vector<Vec2> v;
     if (const auto* p = std::get_if<geometry::ConvexPolygon>(&s_.shape)) v = p->vertices;
@@ -98,14 +126,16 @@ class Cutoff {
 
   const GrownShape& s_;
   double scale_;  ///< 0 for a cone without end: every contact is the apex
-  double tolerance_;
+  Vec2 apex_;
+  double half_width_;  ///< m/s, of the square
+  double lowest_;      ///< m/s: triangles are not divided below
   std::vector<Contact> contacts_;
 };
 
 // --- From outside: certified half-planes ---
 
 /// n.v <= c + n.apex for all v of the cone, rounded up past the error of its terms; as the half-plane that keeps them.
-geometry::HalfPlane keeping(Vec2 n, double c, const ShiftedCone& cone) {
+geometry::HalfPlane keeping(Vec2 n, double c, const ShiftedCone& cone, const Window& window) {
   double value = c, terms = std::fabs(c);
   for (const Vec2 m : cone.minus_apex.terms) {
     value -= dot(n, m);
@@ -113,28 +143,32 @@ geometry::HalfPlane keeping(Vec2 n, double c, const ShiftedCone& cone) {
   }
   constexpr double kRoundings = 16.0;  // at most 5 u of each term, thrice that for the bound's own rounding
   constexpr double kUnderflow = 0x1p-1060;
-  return {-n, -(value + (kRoundings * kUnitRoundoff * terms + kUnderflow))};
+  return within_reach({-n, -(value + (kRoundings * kUnitRoundoff * terms + kUnderflow))}, window);
 }
 
 /// h_S(n) <= h_up <= 0 makes n.w <= h_up / tau on the relative cone.
-std::optional<geometry::HalfPlane> keeping_beyond(double angle, const ShiftedCone& cone) {
+std::optional<geometry::HalfPlane> keeping_beyond(double angle, const ShiftedCone& cone, const Window& window) {
+  constexpr double kFinite = 0x1p1000;  // so that a horizon near 0 leaves room for the terms
   const Vec2 n = at_angle(angle);
   const double h_up = support_upper_bound(cone.cone.grown(), n);
   if (!(h_up <= 0.0)) return std::nullopt;
-  const double c = h_up / cone.cone.time_horizon();
-  return keeping(n, c * (1.0 - 4.0 * kUnitRoundoff), cone);
+  const double c = std::max(h_up / cone.cone.time_horizon(), -kFinite);
+  return keeping(n, c * (1.0 - 4.0 * kUnitRoundoff), cone, window);
 }
 
 // --- From inside: points that are exactly in the cone ---
 
 /// p, or a point between it and `deep` that is exactly inside: the cone is convex, so what lies between is inside too.
 void add_inside(const ShiftedCone& cone, Vec2 p, Vec2 deep, std::vector<Vec2>& points) {
-  constexpr double kFirst = 0x1p-50, kLast = 0x1p-4;
+  constexpr double kFew = 4.0;      // roundings of p; and by what the steps grow
+  constexpr double kLast = 0x1p-4;  // of the way: a point still outside there was no point of this cone's boundary
+  if (!(norm(p) < kFarthest)) return;
   if (cone.contains(p)) {
     points.push_back(p);
     return;
   }
-  for (double share = kFirst; share < kLast; share *= 4.0) {
+  const double first = kFew * kUnitRoundoff * (norm(p) + norm(cone.apex)) / norm(deep - p);
+  for (double share = std::max(first, kUnitRoundoff * kUnitRoundoff); share < kLast; share *= kFew) {
     const Vec2 nudged = p + share * (deep - p);
     if (!cone.contains(nudged)) continue;
     points.push_back(nudged);
@@ -142,21 +176,70 @@ void add_inside(const ShiftedCone& cone, Vec2 p, Vec2 deep, std::vector<Vec2>& p
   }
 }
 
-/// Directions from `a` to `b`, clockwise, at most a sixth of a turn apart.
-std::vector<Vec2> fan(Vec2 a, Vec2 b) {
+/// The cone's directions without end: from the left leg's so far clockwise; where no legs certify, the half-plane of a
+/// robot in bare contact.
+struct Opening {
+  Vec2 left;
+  double turn;  ///< rad, > 0
+};
+
+std::optional<Opening> opening_of(const ShiftedCone& cone, const std::optional<Legs>& legs) {
+  if (legs) {
+    const Vec2 left = legs->left.direction, right = legs->right.direction;
+    return Opening{left, std::fabs(std::atan2(cross(left, right), dot(left, right)))};
+  }
+  const std::optional<geometry::HalfPlane> away = cone.cone.contact_half_plane();
+  if (!away) return std::nullopt;
+  return Opening{-geometry::perp(away->normal), geometry::kPi};
+}
+
+/// Its directions, at most a sixth of a turn apart.
+std::vector<Vec2> fan(const Opening& opening) {
   constexpr double kStep = 1.0;  // rad
-  const double turn = std::atan2(cross(a, b), dot(a, b));
-  const int steps = 1 + static_cast<int>(std::fabs(turn) / kStep);
+  const int steps = 1 + static_cast<int>(opening.turn / kStep);
   std::vector<Vec2> directions;
-  for (int i = 0; i <= steps; ++i) directions.push_back(geometry::rotated(a, turn * i / steps));
+  for (int i = 0; i <= steps; ++i) directions.push_back(geometry::rotated(opening.left, -opening.turn * i / steps));
   return directions;
 }
 
 std::vector<Contact> contacts_of(const ShiftedCone& cone, const Legs& legs, const Window& window) {
-  return Cutoff(cone.cone, legs, window.tolerance).contacts();
+  return Cutoff(cone, legs, window).contacts();
+}
+
+/// Where the hull's near corners are wanted: the contacts, or where there are no legs, the point nearest to the robot.
+std::vector<Vec2> near_corners(const ShiftedCone& cone, const std::optional<Legs>& legs, const Window& window) {
+  std::vector<Vec2> corners;
+  if (legs) {
+    for (const Contact& contact : contacts_of(cone, *legs, window)) corners.push_back(contact.at);
+  } else {
+    const VelocityObstacle::Nearest nearest = cone.cone.nearest();
+    corners.push_back((-nearest.distance / cone.cone.time_horizon()) * nearest.normal);
+  }
+  return corners;
+}
+
+/// So far out that chords between directions a radian apart stay beyond the square, (|apex| + 1.5 sqrt(2) speed) /
+/// cos(1/2), and beyond the cut-off in every direction: it lies in the triangle of the apex and its two ends.
+double far_out(const ShiftedCone& cone, const std::vector<Vec2>& near, const Window& window) {
+  double far = 3.0 * window.speed + 2.0 * norm(cone.apex);
+  for (const Vec2 p : {near.front(), near.back()})
+    if (norm(p) < kFarthest) far = std::max(far, 2.0 * norm(p));
+  return std::min(far, 0.5 * kFarthest);
+}
+
+std::vector<geometry::HalfPlane> sides_of_square(const Window& window) {
+  const double r = kReach * window.speed;
+  return {{{1.0, 0.0}, -r}, {{-1.0, 0.0}, -r}, {{0.0, 1.0}, -r}, {{0.0, -1.0}, -r}};
 }
 
 }  // namespace
+
+geometry::HalfPlane within_reach(const geometry::HalfPlane& h, const Window& window) {
+  constexpr double kBeyond = 4.0;  // > 1.5 sqrt(2): |n.v| of the square, in speeds times |n|
+  const double limit = kBeyond * window.speed * norm(h.normal);
+  if (!(limit > 0.0)) return h;
+  return {h.normal, std::clamp(h.offset, -limit, limit)};
+}
 
 geometry::ConvexPolygon square_of(const Window& window) {
   const double r = kReach * window.speed;
@@ -188,28 +271,30 @@ Region disc_from_outside(const Window& window) {
 
 Region cone_from_outside(const ShiftedCone& cone, const Window& window) {
   const std::optional<Legs> legs = cone.cone.legs();
-  if (!legs) return Region::cut(square_of(window), {});
-  std::vector<geometry::HalfPlane> keep{keeping(legs->left.normal, 0.0, cone), keeping(legs->right.normal, 0.0, cone)};
-  for (const Contact& contact : contacts_of(cone, *legs, window))
-    if (const auto h = keeping_beyond(contact.angle, cone)) keep.push_back(*h);
+  std::vector<geometry::HalfPlane> keep;
+  if (legs) {
+    keep = {keeping(legs->left.normal, 0.0, cone, window), keeping(legs->right.normal, 0.0, cone, window)};
+    for (const Contact& contact : contacts_of(cone, *legs, window))
+      if (const auto h = keeping_beyond(contact.angle, cone, window)) keep.push_back(*h);
+  } else if (const auto away = cone.cone.contact_half_plane()) {
+    keep.push_back(keeping(away->normal, 0.0, cone, window));
+  }
   return Region::cut(square_of(window), keep);
 }
 
 Region cone_from_inside(const ShiftedCone& cone, const Window& window) {
   const std::optional<Legs> legs = cone.cone.legs();
-  if (!legs) return {};
-  // So far out that chords between directions a radian apart stay outside the square: 1.5 sqrt(2) / cos(1/2) < 3.
-  const double far = 3.0 * window.speed + norm(cone.apex);
-  const Vec2 middle = geometry::normalized(legs->left.direction + legs->right.direction);
-  const Vec2 deep = cone.apex + 2.0 * far * middle;
+  const std::optional<Opening> opening = opening_of(cone, legs);
+  if (!opening) return {};
+  const std::vector<Vec2> near = near_corners(cone, legs, window);
+  const double far = far_out(cone, near, window);
+  const Vec2 deep = cone.apex + 2.0 * far * geometry::rotated(opening->left, -0.5 * opening->turn);
   std::vector<Vec2> points;
-  for (const Contact& c : contacts_of(cone, *legs, window))
-    if (norm(c.at) < far) add_inside(cone, cone.apex + c.at, deep, points);
-  for (const Vec2 d : fan(legs->left.direction, legs->right.direction)) {
-    const Vec2 p = cone.apex + far * d;
-    add_inside(cone, p, deep, points);
-  }
-  return Region::hull_of(points);
+  for (const Vec2 at : near) add_inside(cone, cone.apex + at, deep, points);
+  const Vec2 corner = legs ? cone.apex : cone.apex + near.front();
+  for (const Vec2 d : fan(*opening)) add_inside(cone, corner + far * d, deep, points);
+  if (points.size() < 3) return {};
+  return Region::cut(geometry::convex_hull(points), sides_of_square(window));
 }
 
 }  // namespace exactvo::vo::detail

@@ -22,8 +22,20 @@ detail::Window window_of(const FreeVelocityOptions& options) {
 }
 
 void require_in_range(const FreeVelocityOptions& o) {
-  EXACTVO_REQUIRE(o.max_speed > 0.0 && std::isfinite(o.max_speed), std::to_string(o.max_speed));
+  EXACTVO_REQUIRE(o.max_speed >= kLeastMaxSpeed && o.max_speed <= kMostMaxSpeed, std::to_string(o.max_speed));
   EXACTVO_REQUIRE(o.relative_tolerance >= 1e-7 && o.relative_tolerance <= 0.1, std::to_string(o.relative_tolerance));
+}
+
+void require_in_range(const ShiftedCone& cone) {
+  for (const Vec2 m : cone.minus_apex.terms)
+    EXACTVO_REQUIRE(std::fabs(m.x) <= kMostApex && std::fabs(m.y) <= kMostApex,
+                    std::to_string(m.x) + ", " + std::to_string(m.y));
+}
+
+std::vector<HalfPlane> within_reach(const std::vector<HalfPlane>& half_planes, const detail::Window& window) {
+  std::vector<HalfPlane> out;
+  for (const HalfPlane& h : half_planes) out.push_back(detail::within_reach(h, window));
+  return out;
 }
 
 /// Half-planes over a region that holds the disc, in one cut.
@@ -76,6 +88,7 @@ FreeVelocities::FreeVelocities(std::vector<ShiftedCone> cones, const FreeVelocit
   inner_ = disc_inside_;
   outer_ = disc_outside_;
   for (const ShiftedCone& cone : cones_) {
+    require_in_range(cone);
     const bool overlaps = cone.cone.overlaps();
     const Region whole = Region::cut(detail::square_of(window), {});
     from_inside_.push_back(overlaps ? whole : detail::cone_from_inside(cone, window));
@@ -109,15 +122,18 @@ bool FreeVelocities::proven_by_certificates(const std::vector<HalfPlane>& half_p
   });
 }
 
-RegionReport FreeVelocities::compare(const std::vector<HalfPlane>& half_planes) const {
+RegionReport FreeVelocities::compare(const std::vector<HalfPlane>& as_given) const {
   const detail::Window window = window_of(options_);
+  const std::vector<HalfPlane> half_planes = within_reach(as_given, window);
   RegionReport report;
   const Region from_inside = kept(disc_inside_, half_planes, window);
   report.region = kept(disc_outside_, half_planes, window);
   report.area = {from_inside.area().low, report.region.area().high};
   const auto cut_into = [&](const Region& cone) { return !from_inside.met(cone).is_empty(); };
   if (std::any_of(from_inside_.begin(), from_inside_.end(), cut_into)) report.inside = Inside::no;
-  if (proven_by_certificates(half_planes) || report.region.minus(inner_).is_empty()) report.inside = Inside::yes;
+  const auto misses = [&](const Region& cone) { return report.region.met(cone).is_empty(); };
+  if (proven_by_certificates(as_given) || std::all_of(from_outside_.begin(), from_outside_.end(), misses))
+    report.inside = Inside::yes;
   const Region lost = inner_.minus(report.region);
   report.given_away = {lost.area().low, outer_.minus(from_inside).area().high};
   for (Region::Piece& piece : lost.pieces()) {
@@ -125,7 +141,7 @@ RegionReport FreeVelocities::compare(const std::vector<HalfPlane>& half_planes) 
     LostPiece out{std::move(piece.polygon), piece.area, {}, 0};
     if (!half_planes.empty()) {
       out.half_plane = blamed(piece.region, piece.area.high, half_planes);
-      out.farthest = farthest_out(out.polygon, half_planes[out.half_plane]);
+      out.farthest = farthest_out(out.polygon, as_given[out.half_plane]);
     }
     report.lost.push_back(std::move(out));
   }

@@ -25,18 +25,24 @@ struct Bracket {
   double high = 0.0;
 };
 
+/// Of what regions are built of, and of what is asked of them: no number is larger, so that the products of five of
+/// them, which CGAL's filters make, are finite.
+inline constexpr double kLargestCoordinate = 0x1p200;
+
 class Region {
  public:
   /// Empty.
   Region();
 
-  /// The hull of the points. REQUIRES: finite.
+  /// The hull of the points. REQUIRES: coordinates within kLargestCoordinate.
   static Region hull_of(const std::vector<Vec2>& points);
 
-  /// What of this region satisfies normal.x >= offset. REQUIRES: finite numbers; a zero normal keeps all or nothing.
+  /// What of this region satisfies normal.x >= offset. REQUIRES: numbers within kLargestCoordinate. A zero normal keeps
+  /// all or nothing.
   Region cut(const HalfPlane& keep) const;
 
-  /// What of a convex polygon satisfies all of them. Much faster than cutting a region again and again.
+  /// What of a convex polygon satisfies all of them. Much faster than cutting a region again and again. REQUIRES: the
+  /// same.
   static Region cut(const ConvexPolygon& polygon, const std::vector<HalfPlane>& keep);
 
   Region united(const Region& other) const;
@@ -46,7 +52,7 @@ class Region {
   bool is_empty() const;
   Bracket area() const;  ///< m^2 or whatever the square of the unit is
 
-  /// Where x lies. Exact.
+  /// Where x lies. Exact. REQUIRES: within kLargestCoordinate.
   Place locate(Vec2 x) const;
 
   /// The connected pieces; those that touch in a point count apart. Largest first.

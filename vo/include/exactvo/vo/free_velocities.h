@@ -4,16 +4,19 @@
 /// \file
 /// What several velocity obstacles leave: the set of free velocities of a scene,
 ///
-///     F = { v : |v| <= max_speed } minus the union of the interiors of the obstacles' cones.
+///     F = { v : |v| <= max_speed } minus the union of the obstacles' cones, boundaries included.
 ///
 /// F has circular arcs, irrational lines and, where ellipses take part, curves of degree eight. It is held between two
 /// regions with straight edges over exact numbers, `inner` and `outer`: inner, F, outer, each within the next. Every
 /// cone is convex, so a polygon of certified half-planes holds it, and the hull of points that are exactly inside lies
 /// in it; the same construction for every shape, a disc or a polygon for a robot, finite or infinite horizon. What is
-/// between the two is at most `tolerance` wide (and `grown_error` / tau where the robot is a polygon).
+/// between the two is at most `tolerance` wide (and `grown_error` / tau where the robot is a polygon), but for two
+/// exceptions: where doubles of the size of the coordinates over tau, or of the apex, are coarser than that, it is as
+/// wide as their rounding; and where the robot is a few ulps from contact, so that no legs certify, the cone is held
+/// from outside by the half-plane away from the nearest point, or if that cannot be proven either, not at all.
 ///
 /// Exact: `contains`. Certified: both regions, so every bracket, and the two answers `yes` and `no` of `compare`.
-/// "Within" is up to sets without area: `inner` may touch a cone.
+/// "Within" is up to sets without area: `inner` is closed and may touch a cone, whose boundary is not free.
 ///
 /// Properties (tests quote the numbers):
 ///  (1) a point in the interior of `inner` is contained; a contained point lies in `outer`;
@@ -29,8 +32,14 @@
 
 namespace exactvo::vo {
 
+/// m/s. Far beyond what moves, and no product of a few leaves the range of doubles.
+inline constexpr double kLeastMaxSpeed = 0x1p-60;
+inline constexpr double kMostMaxSpeed = 0x1p60;
+/// m/s, each coordinate of a cone's apex: its sums stay within geometry::kLargestCoordinate.
+inline constexpr double kMostApex = 0x1p100;
+
 struct FreeVelocityOptions {
-  double max_speed = 2.0;            ///< m/s, > 0
+  double max_speed = 2.0;            ///< m/s, from kLeastMaxSpeed to kMostMaxSpeed
   double relative_tolerance = 1e-4;  ///< of max_speed, in [1e-7, 0.1]: how far the polygons may stray from the curves
 };
 
@@ -53,12 +62,13 @@ struct RegionReport {
   geometry::Region region;       ///< within max_speed, from outside
   geometry::Bracket area;        ///< (m/s)^2, of the region within max_speed
   geometry::Bracket given_away;  ///< (m/s)^2, of F minus the region
-  std::vector<LostPiece> lost;   ///< largest first; slivers thinner than the tolerance are left out
+  std::vector<LostPiece> lost;   ///< largest first; those of an area below tolerance times max_speed are left out
 };
 
 class FreeVelocities {
  public:
-  /// REQUIRES: options in range. Cones whose robot overlaps the obstacle forbid everything: F is empty.
+  /// REQUIRES: options in range, apices within kMostApex. Cones whose robot overlaps the obstacle forbid everything: F
+  /// is empty.
   FreeVelocities(std::vector<ShiftedCone> cones, const FreeVelocityOptions& options = {});
 
   /// Whether |v| <= max_speed and v lies in no cone, boundaries of cones not counted as free. Exact.
@@ -70,12 +80,13 @@ class FreeVelocities {
   /// (m/s)^2. Certified.
   geometry::Bracket area() const;
 
-  /// F has at least so many connected components that are wider than the tolerance: pieces of `outer` that hold a piece
-  /// of `inner`. Certified; slivers thinner than the tolerance may make more.
+  /// F has at least so many connected components: pieces of `outer` that hold a piece of `inner`. Certified; parts
+  /// thinner than the bracket may make more.
   std::size_t least_components() const;
 
   /// What the half-planes' intersection makes of F. `yes` is proven by certificates (each cone has a half-plane that
-  /// excludes it) or by the regions, `no` by the regions.
+  /// excludes it) or by the regions, `no` by the regions. REQUIRES: normals within geometry::kLargestCoordinate, finite
+  /// offsets.
   RegionReport compare(const std::vector<HalfPlane>& half_planes) const;
 
   const std::vector<ShiftedCone>& cones() const { return cones_; }
