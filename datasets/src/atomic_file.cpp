@@ -4,10 +4,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <utility>
 
 #include "exactvo/geometry/require.h"
 #include "system_error.h"
+#include "unique_word.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -35,10 +37,13 @@ void write_fully(const std::filesystem::path& path, int descriptor, std::string_
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   make_directories(path_.parent_path());
-  // The process id keeps two programs that write the same file apart; the later rename wins, whole.
-  temporary_ = path_;
-  temporary_ += ".part." + std::to_string(::getpid());
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  // A name of its own keeps programs that write the same file apart, on whatever machines; the later rename wins,
+  // whole.
+  do {
+    temporary_ = path_;
+    temporary_ += ".part." + unique_word();
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
   if (descriptor_ < 0) throw cannot_write(path_, errno);
 }
 
