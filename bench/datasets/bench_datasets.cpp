@@ -303,6 +303,8 @@ void run(const Flags& flags) {
     const std::vector<Polygon> real = real_polygons(flags.sumo);
     std::printf("%zu real polygons of %s, one core:\n", real.size(), flags.sumo.c_str());
     show_rate("validity, shapes, all certified", real, seconds_for_shapes(real));
+  } else {
+    std::printf("no real polygons measured: there is no %s (--sumo FILE)\n", flags.sumo.c_str());
   }
   const fs::path input = folder / "stars.wkt";
   write_stars(input, flags.stars);

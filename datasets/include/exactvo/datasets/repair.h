@@ -6,8 +6,9 @@
 ///
 ///  - a ring that crosses, touches or overlaps itself, spikes, holes that lie outside, in each other, or cross another
 ///    ring: the polygon becomes what an odd number of its rings enclose (geometry/even_odd.h), in as many polygons as
-///    that takes. So a hole outside its polygon is solid, and so is one in a hole: never less is solid than the rings
-///    say.
+///    that takes. So a hole outside its polygon is solid, and so is one in a hole. But what a ring winds round twice becomes
+///    free (the middle of a pentagram), and so does what two rings both enclose where they overlap: what is left solid
+///    can be less than the ring goes round. The report gives the area before and after.
 ///  - a hole of less than three distinct points or without area is dropped: nothing is in it.
 ///
 /// Not mended, and named: coordinates that are not finite, an outer ring of less than three distinct points or without

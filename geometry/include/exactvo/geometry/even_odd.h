@@ -29,7 +29,8 @@ enum class EvenOddStatus {
   done,
   /// A coordinate beyond kLargestCutCoordinate: nothing was cut.
   too_large,
-  /// More than `most_crossings` contacts between edges: nothing was cut.
+  /// More than `most_crossings` contacts between edges, or so long edges so close together that looking for contacts
+  /// would take seconds (2^26 pairs of their boxes meet): nothing was cut.
   too_many_crossings,
   /// After kMostRounds roundings new crossings were still being made: not known to happen.
   not_roundable,
