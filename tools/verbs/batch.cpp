@@ -146,7 +146,7 @@ std::vector<std::string> lasting_words(const std::vector<std::string>& words) {
   const auto stands_alone = [](const std::string& w) {
     const auto begins = [&](const char* start) { return w.rfind(start, 0) == 0; };
     return w == "--resume" || w == "--quiet" || w == "-q" || begins("--jobs=") || begins("--limit-memory=") ||
-           begins("--shard=") || begins("--out=") || (begins("-j") && w.size() > 2 && w[1] == 'j');
+           begins("--shard=") || begins("--out=") || begins("-j") || begins("-o");
   };
   std::vector<std::string> kept;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -214,17 +214,23 @@ std::string words_of(const BatchTally& tally, const char* what) {
   return text;
 }
 
-std::string words_of(const BatchSummary& s, const std::string& out) {
+/// Of a shard only what the last one did is known, and how long that took: no rate of the whole.
+std::string words_of(const BatchSummary& s, const std::string& out, bool with_rates) {
   std::string text = words_of(s.files, "files") + "\n" + words_of(s.obstacles, "obstacles");
   text += fmt::format("\n{} points and empty geometries passed over\n", s.passed_over);
   text += fmt::format("{} obstacles in {}: {} certified, {} uncertified, {} vertices\n", s.obstacles_out, out,
                       s.certified, s.uncertified, s.vertices);
-  if (s.obstacles_now > 0 && s.seconds > 0.0) {
+  if (with_rates && s.obstacles_now > 0 && s.seconds > 0.0) {
     text +=
         fmt::format("{:.3g} s, {:.0f} obstacles/s, {:.0f} vertices/s\n", s.seconds,
                     static_cast<double>(s.obstacles_now) / s.seconds, static_cast<double>(s.vertices_now) / s.seconds);
   }
   return text;
+}
+
+std::string words_of_shard(const BatchRun& run) {
+  return fmt::format("shard {}/{} is through, others are not: nothing is put together yet; the last one does that",
+                     run.shard, run.shards);
 }
 
 ExitCode batch(const Flags& flags) {
@@ -243,9 +249,12 @@ ExitCode batch(const Flags& flags) {
     error_message("interrupted; --resume goes on");
     return ExitCode::interrupted;
   }
-  if (result.end == BatchEnd::incomplete) return ExitCode::success;
+  if (result.end == BatchEnd::incomplete) {
+    if (run.shards > 1) message(words_of_shard(run));
+    return ExitCode::success;
+  }
   if (result.was_complete) message("nothing left to do");
-  print(words_of(result.summary, flags.out));
+  print(words_of(result.summary, flags.out, run.shards == 1));
   return result.summary.uncertified == 0 ? ExitCode::success : ExitCode::negative;
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/assemble.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <memory>
 #include <utility>
 
@@ -169,16 +171,17 @@ void append_tally(JsonWriter& json, const BatchTally& tally) {
   json.end_object();
 }
 
-double rate(std::uint64_t count, double seconds) {
-  return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
+std::optional<double> rate(std::uint64_t count, const Times& times) {
+  if (!times.has_rates || count == 0 || !(times.seconds > 0.0)) return std::nullopt;
+  return static_cast<double>(count) / times.seconds;
 }
 
 void append_times(JsonWriter& json, const Times& times) {
   json.key("times").begin_inline_object().member("written_at", times.written_at);
   json.member("seconds", times.seconds).member("seconds_of_jobs", times.seconds_of_jobs);
   json.member("workers", times.workers).member("obstacles", times.obstacles).member("vertices", times.vertices);
-  json.member("obstacles_per_second", rate(times.obstacles, times.seconds));
-  json.member("vertices_per_second", rate(times.vertices, times.seconds)).end_object();
+  json.member("obstacles_per_second", rate(times.obstacles, times));
+  json.member("vertices_per_second", rate(times.vertices, times)).end_object();
 }
 
 std::string summary_json(const BatchSummary& summary, const Identity& identity, const std::string& provenance,
@@ -238,11 +241,14 @@ Part part_at(const Ledger& ledger, std::size_t input, std::size_t chunk, std::ui
   return read_part(ledger.part(input, chunk));
 }
 
-void make_folder_anew(const fs::path& folder) {
-  std::error_code error;
-  fs::remove_all(folder, error);
-  fs::create_directories(folder, error);
-  if (error) throw DataError(DataCode::file_unwritable, folder.string(), "", error.message(), "a place to write to");
+/// Whatever a batch may write to OUT, of this configuration or another.
+bool is_output(const std::string& name) {
+  if (name == "figures.jsonl" || name == "obstacles.gpkg" || name == page_name(0)) return true;
+  for (const Layer& layer : layers()) {
+    if (name == std::string(layer.name) + ".geojson") return true;
+  }
+  const std::size_t number = std::strtoull(name.c_str() + std::min<std::size_t>(name.size(), 5), nullptr, 10);
+  return number > 1 && name == page_name(number - 1);
 }
 
 std::uint64_t sum_of(const Json& rejected, std::map<std::string, std::uint64_t>& out) {
@@ -279,7 +285,6 @@ BatchSummary assemble(const Ledger& ledger, const Identity& identity, const Batc
   }
   const std::string provenance = provenance_json(identity, run);
   const std::string words = words_of(summary.files, "files") + ". " + words_of(summary.obstacles, "obstacles") + ".";
-  make_folder_anew(ledger.final_folder());
   Outputs outputs(ledger.final_folder(), configuration, provenance, facts.size(), words);
   std::vector<std::string> facts_json;
   for (std::size_t k = 0; k < facts.size(); ++k) {
@@ -300,7 +305,7 @@ BatchSummary assemble(const Ledger& ledger, const Identity& identity, const Batc
   times.written_at = make_provenance({}, 0).written_at;
   write_file_atomically(ledger.final_folder() / "summary.json",
                         summary_json(summary, identity, provenance, facts_json, times));
-  ledger.publish("summary.json");
+  ledger.publish("summary.json", is_output);
   summary.seconds = times.seconds;
   summary.obstacles_now = times.obstacles;
   summary.vertices_now = times.vertices;

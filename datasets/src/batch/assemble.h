@@ -18,13 +18,14 @@ struct Times {
   std::uint64_t obstacles = 0;   ///< taken apart in this run
   std::uint64_t vertices = 0;
   int workers = 1;
+  bool has_rates = true;  ///< not of a shard: what the others took is not known
   std::string written_at;
 };
 
 /// Whether every input has its facts.
 bool all_there(const Ledger& ledger, std::size_t inputs);
 
-/// Puts everything into `ledger.final_folder()` and publishes it.
+/// Puts everything into `ledger.final_folder()`, started before, and publishes it.
 BatchSummary assemble(const Ledger& ledger, const Identity& identity, const BatchConfiguration& configuration,
                       const BatchRun& run, Times times);
 

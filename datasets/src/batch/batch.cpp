@@ -22,17 +22,7 @@ void require_sensible(const BatchConfiguration& configuration, const BatchRun& r
                   std::string("a robot without position, radius or horizon"));
 }
 
-}  // namespace
-
-std::uint64_t BatchTally::rejected_in_all() const {
-  std::uint64_t sum = 0;
-  for (const auto& [code, count] : rejected) sum += count;
-  return sum;
-}
-
-BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch) {
-  require_sensible(configuration, run);
-  Session session(configuration, run, batch::identity_of(configuration, batch::list_inputs(run.paths, run.out)), watch);
+BatchResult run_share(Session& session, const BatchRun& run) {
   const bool joins = run.resume || run.shards > 1;
   if (session.ledger().look(session.identity(), joins) == Ledger::State::complete) {
     return {BatchEnd::complete, batch::read_summary(run.out), true};
@@ -48,6 +38,26 @@ BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& r
     return {BatchEnd::interrupted, {}, false};
   }
   return session.finish();
+}
+
+}  // namespace
+
+std::uint64_t BatchTally::rejected_in_all() const {
+  std::uint64_t sum = 0;
+  for (const auto& [code, count] : rejected) sum += count;
+  return sum;
+}
+
+BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch) {
+  require_sensible(configuration, run);
+  Session session(configuration, run, batch::identity_of(configuration, batch::list_inputs(run.paths, run.out)), watch);
+  try {
+    return run_share(session, run);
+  } catch (const DataError&) {
+    // The same batch in another process may have put everything together under this one.
+    if (!session.ledger().another_finished(session.identity())) throw;
+    return {BatchEnd::complete, batch::read_summary(run.out), true};
+  }
 }
 
 }  // namespace exactvo::datasets

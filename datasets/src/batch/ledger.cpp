@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <utility>
 
@@ -15,11 +16,14 @@
 #include "json_text.h"
 #include "system_error.h"
 #include "text_file.h"
+#include "unique_word.h"
 
 namespace exactvo::datasets::batch {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kFinal = "final.";
 
 std::string number_text(std::size_t number) {
   char text[24];
@@ -79,6 +83,24 @@ void rename_or_throw(const fs::path& from, const fs::path& to) {
   if (error) throw cannot_write(to, error.value());
 }
 
+void remove_or_throw(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) throw cannot_write(path, error.value());
+}
+
+/// In order.
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (auto at = fs::directory_iterator(folder, error); !error && at != fs::directory_iterator(); at.increment(error)) {
+    names.push_back(at->path().filename().string());
+  }
+  if (error) throw cannot_write(folder, error.value());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 }  // namespace
 
 std::string to_json(const Identity& identity) {
@@ -94,7 +116,8 @@ std::string to_json(const Identity& identity) {
   return json.end_object().take() + "\n";
 }
 
-Ledger::Ledger(fs::path out) : out_(std::move(out)), parts_(out_ / ".parts") {}
+Ledger::Ledger(fs::path out)
+    : out_(std::move(out)), parts_(out_ / ".parts"), final_(parts_ / (kFinal + unique_word())) {}
 
 Ledger::State Ledger::look(const Identity& identity, bool resume) const {
   std::error_code error;
@@ -106,7 +129,7 @@ Ledger::State Ledger::look(const Identity& identity, bool resume) const {
     if (!resume) {
       throw other_run(out_, "an unfinished batch", "--resume to go on with it; another --out, or an empty one");
     }
-    refuse_other_batch(parse_json(read_text_file(run_file()), run_file().string()), identity, run_file());
+    require_same(identity);
     return State::unfinished;
   }
   const fs::path summary = out_ / "summary.json";
@@ -127,6 +150,10 @@ void Ledger::begin(const Identity& identity) const {
   if (!is_open()) write_file_atomically(run_file(), to_json(identity));
 }
 
+void Ledger::require_same(const Identity& identity) const {
+  refuse_other_batch(parse_json(read_text_file(run_file()), run_file().string()), identity, run_file());
+}
+
 fs::path Ledger::part(std::size_t input, std::size_t chunk) const {
   return parts_ / number_text(input) / number_text(chunk);
 }
@@ -144,6 +171,15 @@ bool Ledger::is_open() const {
   return is_there(run_file());
 }
 
+bool Ledger::another_finished(const Identity& identity) const {
+  if (is_open() || !is_there(out_ / "summary.json")) return false;
+  try {
+    return look(identity, true) == State::complete;
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
 void Ledger::write(const fs::path& path, const std::string& bytes) const {
   if (!is_open()) {
     throw DataError(DataCode::file_unwritable, path.string(), "", "the output folder removed under the batch",
@@ -157,20 +193,38 @@ Ledger::Lock::Lock(const Ledger& ledger) {
   const fs::path path = ledger.parts_ / "lock";
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0 && ledger.is_open()) throw cannot_write(path, errno);
-  if (descriptor_ >= 0)
-    ::flock(descriptor_, LOCK_EX);  // where a file system knows no locks, equal bytes are written twice
+  if (descriptor_ < 0) return;
+  int failed = 0;
+  do {
+    failed = ::flock(descriptor_, LOCK_EX);
+  } while (failed != 0 && errno == EINTR);
+  is_alone_ = failed == 0;
 }
 
 Ledger::Lock::~Lock() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void Ledger::publish(const std::string& last) const {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(final_folder())) files.push_back(entry.path().filename());
-  std::sort(files.begin(), files.end());
-  std::stable_partition(files.begin(), files.end(), [&](const fs::path& file) { return file != last; });
-  for (const fs::path& file : files) rename_or_throw(final_folder() / file, out_ / file);
+void Ledger::start_final(bool is_alone) const {
+  std::error_code error;
+  if (is_alone) {
+    for (const std::string& name : names_in(parts_)) {
+      if (name.rfind(kFinal, 0) == 0) fs::remove_all(parts_ / name, error);
+    }
+  }
+  fs::create_directories(final_, error);
+  if (error) throw cannot_write(final_, error.value());
+}
+
+void Ledger::publish(const std::string& last, const std::function<bool(const std::string&)>& is_output) const {
+  std::vector<std::string> names = names_in(final_);
+  names.erase(std::remove(names.begin(), names.end(), last), names.end());
+  for (const std::string& name : names) rename_or_throw(final_ / name, out_ / name);
+  for (const std::string& name : names_in(out_)) {
+    const bool is_ours = name == last || std::binary_search(names.begin(), names.end(), name);
+    if (!is_ours && is_output(name)) remove_or_throw(out_ / name);
+  }
+  rename_or_throw(final_ / last, out_ / last);
   sync_directory(out_);
   rename_or_throw(parts_, litter());
   std::error_code ignored;

@@ -7,12 +7,13 @@
 ///     run.json          what the batch is: version, configuration, inputs; written first
 ///     NNNNNN/KKKKKK     what was made of chunk K of input N
 ///     NNNNNN.input      the input's facts, written when all its chunks are there; an only chunk stands in it
-///     final/            the outputs on their way
+///     final.WORD/       the outputs on their way; each process has a folder of its own
 ///
 /// Every file appears whole (atomic_file.h). When the outputs stand in OUT, summary.json last, .parts is renamed to
 /// .parts.old in one step and removed; what a kill leaves of that, the next look removes.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -45,16 +46,21 @@ class Ledger {
   /// Writes run.json, unless another process of the same batch was quicker.
   void begin(const Identity& identity) const;
 
+  /// Throws DataError: E_OTHER_RUN where run.json is of another batch, E_FILE_MISSING where this process sees none.
+  void require_same(const Identity& identity) const;
+
   std::filesystem::path part(std::size_t input, std::size_t chunk) const;
   std::filesystem::path input_facts(std::size_t input) const;
-  std::filesystem::path final_folder() const { return parts_ / "final"; }
+  const std::filesystem::path& final_folder() const { return final_; }
   const std::filesystem::path& out() const { return out_; }
 
   bool is_there(const std::filesystem::path& path) const;
   /// Writes one of the files above. Throws DataError (E_FILE_UNWRITABLE), also where .parts was removed meanwhile.
   void write(const std::filesystem::path& path, const std::string& bytes) const;
 
-  /// Held while the parts are put together; other processes wait. Goes with its process.
+  /// Held while the parts are put together; other processes wait. Goes with its process. On a file system that knows no
+  /// locks nobody waits: several may put the parts together at once, each in its own folder, and what they move to OUT
+  /// is the same but for the times; who comes last finds .parts gone (`is_open`).
   class Lock {
    public:
     explicit Lock(const Ledger& ledger);
@@ -62,14 +68,23 @@ class Ledger {
     Lock(const Lock&) = delete;
     Lock& operator=(const Lock&) = delete;
 
+    /// Whether nobody else can be at it.
+    bool is_alone() const { return is_alone_; }
+
    private:
     int descriptor_ = -1;
+    bool is_alone_ = false;
   };
   /// Whether run.json still stands: no other process has put the parts together meanwhile.
   bool is_open() const;
+  /// Whether an output of just this batch stands in OUT and nothing is under way there.
+  bool another_finished(const Identity& identity) const;
 
-  /// Moves the files of `final_folder` to OUT, `last` at the end, and takes .parts away.
-  void publish(const std::string& last) const;
+  /// Makes an empty `final_folder`. Alone, it takes away what killed processes left in theirs.
+  void start_final(bool is_alone) const;
+  /// Moves the files of `final_folder` to OUT, takes away those of an earlier output (`is_output` knows their names)
+  /// that this one does not have, moves `last`, and takes .parts away.
+  void publish(const std::string& last, const std::function<bool(const std::string& name)>& is_output) const;
 
  private:
   std::filesystem::path run_file() const { return parts_ / "run.json"; }
@@ -77,6 +92,7 @@ class Ledger {
 
   std::filesystem::path out_;
   std::filesystem::path parts_;
+  std::filesystem::path final_;
 };
 
 }  // namespace exactvo::datasets::batch

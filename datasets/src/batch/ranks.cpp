@@ -3,16 +3,16 @@
 #include <mpi.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
+#include <exception>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "batch/assemble.h"
 #include "batch/session.h"
-#include "exactvo/geometry/require.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -24,6 +24,16 @@ using batch::Session;
 enum Tag : int { kAsk = 1, kWork = 2 };
 enum Said : long { kReady = 0, kDone = 1, kStopped = 2, kFailed = 3 };
 constexpr long kNoMore = -1;
+
+/// A rank's word on its last input, and what it has taken apart since the word before.
+struct Report {
+  long said = kReady;
+  long obstacles = 0;
+  long vertices = 0;
+  long nanoseconds_of_jobs = 0;
+};
+constexpr int kLongsOfReport = 4;
+static_assert(sizeof(Report) == kLongsOfReport * sizeof(long));
 
 /// MPI lives as long as the object; a failure in one rank ends all of them, as a scheduler expects.
 class World {
@@ -46,22 +56,53 @@ class World {
     MPI_Bcast(&value, 1, MPI_LONG, 0, MPI_COMM_WORLD);
     return value;
   }
+  /// The least that any rank gives, to all.
+  long least(long value) const {
+    long least = value;
+    MPI_Allreduce(&value, &least, 1, MPI_LONG, MPI_MIN, MPI_COMM_WORLD);
+    return least;
+  }
 
  private:
   int rank_ = 0;
   int size_ = 1;
 };
 
-void send(long value, int to, Tag tag) {
-  MPI_Send(&value, 1, MPI_LONG, to, tag, MPI_COMM_WORLD);
+/// Whether `step` went well in every rank. The first rank in which it did not throws what it threw there; the others
+/// leave quietly, so that nobody waits for a rank that is gone and what is wrong is said once.
+template <class Step>
+bool all_manage(const World& world, const Step& step) {
+  std::exception_ptr failure;
+  try {
+    step();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  const long first_failed = world.least(failure ? world.rank() : world.size());
+  if (first_failed == world.rank()) std::rethrow_exception(failure);
+  return first_failed == world.size();
 }
 
-long receive(int from, Tag tag, int* sender = nullptr) {
-  long value = 0;
+void send_work(long input, int to) {
+  MPI_Send(&input, 1, MPI_LONG, to, kWork, MPI_COMM_WORLD);
+}
+
+long receive_work() {
+  long input = 0;
+  MPI_Recv(&input, 1, MPI_LONG, 0, kWork, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return input;
+}
+
+void send_report(const Report& report) {
+  MPI_Send(&report, kLongsOfReport, MPI_LONG, 0, kAsk, MPI_COMM_WORLD);
+}
+
+Report receive_report(int& sender) {
+  Report report;
   MPI_Status status;
-  MPI_Recv(&value, 1, MPI_LONG, from, tag, MPI_COMM_WORLD, &status);
-  if (sender != nullptr) *sender = status.MPI_SOURCE;
-  return value;
+  MPI_Recv(&report, kLongsOfReport, MPI_LONG, MPI_ANY_SOURCE, kAsk, MPI_COMM_WORLD, &status);
+  sender = status.MPI_SOURCE;
+  return report;
 }
 
 std::vector<std::size_t> largest_first(const std::vector<batch::Input>& inputs) {
@@ -75,64 +116,106 @@ std::vector<std::size_t> largest_first(const std::vector<batch::Input>& inputs) 
 /// The first rank: answers whoever asks until all is handed out and every rank has been told so.
 class Foreman {
  public:
-  Foreman(const Session& session, int ranks, BatchWatch watch)
-      : session_(session),
-        watch_(std::move(watch)),
-        order_(largest_first(session.identity().inputs)),
-        at_work_(ranks - 1) {
-    const Ledger& ledger = session.ledger();
-    const auto is_there = [&](std::size_t k) { return is_through(ledger, k); };
-    order_.erase(std::remove_if(order_.begin(), order_.end(), is_there), order_.end());
-    progress_.inputs = order_.size();
-  }
+  Foreman(Session& session, int ranks, BatchWatch watch)
+      : session_(session), watch_(std::move(watch)), at_work_(ranks - 1), last_(static_cast<std::size_t>(ranks)) {}
 
-  /// False where the watch, or a rank, stopped it.
+  /// False where the watch, or a rank, stopped it. A failure of its own is thrown once every rank was sent home.
   bool hand_out() {
+    try_to([&] { line_up(); });
     while (at_work_ > 0) {
-      int sender = 0;
-      const long said = receive(MPI_ANY_SOURCE, kAsk, &sender);
-      if (said == kDone) ++progress_.inputs_done;
-      if (said == kStopped || said == kFailed) stopped_ = true;
-      if (said == kFailed) failed_ = true;
-      answer(sender);
+      int rank = 0;
+      hear(receive_report(rank), rank);
+      answer(rank);
     }
+    if (failure_) std::rethrow_exception(failure_);
     return !stopped_;
   }
-  bool failed() const { return failed_; }
+  bool a_rank_failed() const { return a_rank_failed_; }
 
  private:
+  const std::vector<batch::Input>& inputs() const { return session_.identity().inputs; }
+
+  template <class Action>
+  void try_to(const Action& action) {
+    try {
+      action();
+    } catch (...) {
+      failure_ = std::current_exception();
+      stopped_ = true;
+    }
+  }
+
+  /// What is through already is nobody's work.
+  void line_up() {
+    order_ = largest_first(inputs());
+    const auto is_there = [&](std::size_t k) { return is_through(session_.ledger(), k); };
+    order_.erase(std::remove_if(order_.begin(), order_.end(), is_there), order_.end());
+    progress_.inputs = order_.size();
+    for (const std::size_t k : order_) bytes_planned_ += inputs()[k].size;
+  }
+
+  void hear(const Report& report, int rank) {
+    session_.count({static_cast<std::uint64_t>(report.obstacles), static_cast<std::uint64_t>(report.vertices),
+                    static_cast<std::uint64_t>(report.nanoseconds_of_jobs)});
+    if (report.said == kDone) {
+      ++progress_.inputs_done;
+      bytes_done_ += inputs()[last_[static_cast<std::size_t>(rank)]].size;
+    }
+    if (report.said == kStopped || report.said == kFailed) stopped_ = true;
+    if (report.said == kFailed) a_rank_failed_ = true;
+  }
+
   void answer(int rank) {
-    const bool go_on = !stopped_ && next_ < order_.size() && look(order_[next_]);
-    if (go_on) return send(static_cast<long>(order_[next_++]), rank, kWork);
-    send(kNoMore, rank, kWork);
-    --at_work_;
+    bool go_on = false;
+    try_to([&] { go_on = !stopped_ && next_ < order_.size() && look(order_[next_]); });
+    if (!go_on) {
+      --at_work_;
+      return send_work(kNoMore, rank);
+    }
+    last_[static_cast<std::size_t>(rank)] = order_[next_];
+    send_work(static_cast<long>(order_[next_++]), rank);
   }
 
   bool look(std::size_t input) {
-    progress_.doing = session_.identity().inputs[input].name;
-    progress_.share_done =
-        static_cast<double>(progress_.inputs_done) / static_cast<double>(std::max<std::size_t>(progress_.inputs, 1));
+    progress_.doing = inputs()[input].name;
+    progress_.obstacles = session_.counted().obstacles;
+    progress_.share_done = batch::share_of(bytes_done_, bytes_planned_);
     stopped_ = watch_ && !watch_(progress_);
     return !stopped_;
   }
 
-  const Session& session_;
+  Session& session_;
   BatchWatch watch_;
   std::vector<std::size_t> order_;
   std::size_t next_ = 0;
   int at_work_;
+  std::vector<std::size_t> last_;  ///< the input that each rank was given last
   bool stopped_ = false;
-  bool failed_ = false;
+  bool a_rank_failed_ = false;
+  std::exception_ptr failure_;
+  std::uint64_t bytes_planned_ = 0;
+  std::uint64_t bytes_done_ = 0;
   BatchProgress progress_;
 };
 
-/// Another rank: asks, works, asks again. A failure of its own is thrown after the first rank was told.
+/// Says what was counted between this report and the last one.
+Report report_of(long said, const batch::Counts& now, batch::Counts& before) {
+  const Report report{said, static_cast<long>(now.obstacles - before.obstacles),
+                      static_cast<long>(now.vertices - before.vertices),
+                      static_cast<long>(now.nanoseconds_of_jobs - before.nanoseconds_of_jobs)};
+  before = now;
+  return report;
+}
+
+/// Another rank: asks, works, asks again. A failure of its own, of whatever kind, is thrown after the first rank was
+/// told: it sends nobody further work, and nobody waits for this one.
 void work(Session& session) {
   long said = kReady;
-  std::optional<DataError> failure;
+  batch::Counts before;
+  std::exception_ptr failure;
   for (;;) {
-    send(said, 0, kAsk);
-    const long input = receive(0, kWork);
+    send_report(report_of(said, session.counted(), before));
+    const long input = receive_work();
     if (input == kNoMore) break;
     said = kDone;
     try {
@@ -140,29 +223,42 @@ void work(Session& session) {
       session.wait();
     } catch (const batch::Stopped&) {
       said = kStopped;
-    } catch (const DataError& error) {
+    } catch (...) {
       said = kFailed;
-      failure = error;
+      failure = std::current_exception();
     }
   }
-  if (failure) throw DataError(*failure);
+  if (failure) std::rethrow_exception(failure);
 }
 
-/// Opens the output in the first rank; the others learn whether there is something to do.
-long open_output(const World& world, Session& session, bool resume) {
-  enum : long { kGo, kComplete, kRefused };
-  long verdict = kRefused;
-  if (world.rank() == 0) {
-    try {
-      const bool complete = session.ledger().look(session.identity(), resume) == Ledger::State::complete;
-      if (!complete) session.ledger().begin(session.identity());
-      verdict = complete ? kComplete : kGo;
-    } catch (const DataError&) {
-      world.broadcast(kRefused);
-      throw;
-    }
+enum Verdict : long { kGo, kComplete };
+
+/// Opens the output, in the first rank.
+Verdict open_output(const Session& session, bool resume) {
+  if (session.ledger().look(session.identity(), resume) == Ledger::State::complete) return kComplete;
+  session.ledger().begin(session.identity());
+  return kGo;
+}
+
+/// Shares the work out; every rank has the same batch before it.
+BatchResult share_out(const World& world, Session& session, const BatchWatch& watch) {
+  const BatchResult nothing{BatchEnd::incomplete, {}, false};
+  if (world.rank() > 0) {
+    work(session);
+    return nothing;
   }
-  return world.broadcast(verdict);
+  session.joined_by(world.size() - 1);
+  Foreman foreman(session, world.size(), watch);
+  if (foreman.hand_out()) return session.finish();
+  return foreman.a_rank_failed() ? nothing : BatchResult{BatchEnd::interrupted, {}, false};
+}
+
+void refuse_shards(const BatchRun& run, int ranks) {
+  if (run.shards == 1) return;
+  throw DataError(DataCode::other_run, run.out.string(), "",
+                  "shard " + std::to_string(run.shard) + "/" + std::to_string(run.shards) + " in each of " +
+                      std::to_string(ranks) + " ranks",
+                  "shards or ranks: ranks share all inputs among them");
 }
 
 }  // namespace
@@ -178,19 +274,25 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
                                  const BatchWatch& watch) {
   const World world;
   if (world.size() == 1) return run_batch(configuration, run, watch);
-  Session session(configuration, run, batch::identity_of(configuration, batch::list_inputs(run.paths, run.out)), {});
-  const long verdict = open_output(world, session, run.resume);
-  if (verdict == 1 && world.rank() == 0) return {BatchEnd::complete, batch::read_summary(run.out), true};
-  if (verdict != 0) return {BatchEnd::incomplete, {}, false};
-  if (world.rank() > 0) {
-    work(session);
-    return {BatchEnd::incomplete, {}, false};
+  const BatchResult nothing{BatchEnd::incomplete, {}, false};
+  std::optional<Session> session;
+  Verdict verdict = kGo;
+  const bool opened = all_manage(world, [&] {
+    refuse_shards(run, world.size());
+    session.emplace(configuration, run, batch::identity_of(configuration, batch::list_inputs(run.paths, run.out)),
+                    BatchWatch{});
+  });
+  if (!opened || !all_manage(world, [&] {
+        if (world.rank() == 0) verdict = open_output(*session, run.resume);
+      })) {
+    return nothing;
   }
-  Foreman foreman(session, world.size(), watch);
-  if (!foreman.hand_out()) {
-    return {foreman.failed() ? BatchEnd::incomplete : BatchEnd::interrupted, {}, false};
+  if (world.broadcast(verdict) == kComplete) {
+    return world.rank() > 0 ? nothing : BatchResult{BatchEnd::complete, batch::read_summary(run.out), true};
   }
-  return session.finish();
+  // Work is told by its number, so a rank that sees other files, or another folder, would do another's.
+  if (!all_manage(world, [&] { session->ledger().require_same(session->identity()); })) return nothing;
+  return share_out(world, *session, watch);
 }
 
 std::string mpi_release() {

@@ -70,11 +70,11 @@ void refuse_the_unavailable(const BatchConfiguration& configuration, const Batch
                   "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON alone");
 }
 
+}  // namespace
+
 double share_of(std::uint64_t part, std::uint64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0;
 }
-
-}  // namespace
 
 std::string to_json(const BatchConfiguration& c) {
   JsonWriter json(JsonWriter::Layout::compact);
@@ -134,6 +134,16 @@ void Session::wait() {
   crew_.finish();
 }
 
+Counts Session::counted() const {
+  return {meter_.obstacles, meter_.vertices, meter_.nanoseconds_of_jobs};
+}
+
+void Session::count(const Counts& more) {
+  meter_.obstacles += more.obstacles;
+  meter_.vertices += more.vertices;
+  meter_.nanoseconds_of_jobs += more.nanoseconds_of_jobs;
+}
+
 BatchResult Session::finish() {
   crew_.finish();
   BatchResult result;
@@ -142,15 +152,26 @@ BatchResult Session::finish() {
   const Ledger::Lock lock(ledger_);
   if (!ledger_.is_open()) return result;  // another process was quicker
   look("putting the parts together", 1.0);
+  try {
+    ledger_.start_final(lock.is_alone());
+    result.summary = assemble(ledger_, identity_, configuration_, run_, times());
+  } catch (const DataError&) {
+    if (ledger_.is_open() || lock.is_alone()) throw;
+    return result;  // another process was quicker here as well
+  }
+  result.end = BatchEnd::complete;
+  return result;
+}
+
+Times Session::times() const {
   Times times;
   times.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   times.seconds_of_jobs = 1e-9 * static_cast<double>(meter_.nanoseconds_of_jobs);
   times.obstacles = meter_.obstacles;
   times.vertices = meter_.vertices;
-  times.workers = workers_of(run_);
-  result.summary = assemble(ledger_, identity_, configuration_, run_, times);
-  result.end = BatchEnd::complete;
-  return result;
+  times.workers = processes_ * workers_of(run_);
+  times.has_rates = run_.shards == 1;
+  return times;
 }
 
 }  // namespace exactvo::datasets::batch

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <string>
 
+#include "batch/assemble.h"
 #include "batch/crew.h"
 #include "batch/ledger.h"
 #include "batch/process.h"
@@ -18,6 +19,16 @@ namespace exactvo::datasets::batch {
 std::string to_json(const BatchConfiguration& configuration);
 
 Identity identity_of(const BatchConfiguration& configuration, std::vector<Input> inputs);
+
+/// `part` of `whole`; of nothing, all.
+double share_of(std::uint64_t part, std::uint64_t whole);
+
+/// What was taken apart.
+struct Counts {
+  std::uint64_t obstacles = 0;
+  std::uint64_t vertices = 0;
+  std::uint64_t nanoseconds_of_jobs = 0;
+};
 
 class Session {
  public:
@@ -33,19 +44,27 @@ class Session {
   void process(std::size_t input);
   /// Until all that was processed is there.
   void wait();
+  /// What was taken apart so far, here and by what `count` was told of.
+  Counts counted() const;
+  /// What another process took apart for this one.
+  void count(const Counts& more);
+  /// Says that so many processes do the work in this one's stead.
+  void joined_by(int processes) { processes_ = processes; }
   /// Puts everything together if all is there and no other process has.
   BatchResult finish();
 
  private:
   bool look(const std::string& doing, double share);
+  Times times() const;
 
   const BatchConfiguration& configuration_;
   const BatchRun& run_;
   Identity identity_;
   BatchWatch watch_;
   Ledger ledger_;
-  Crew crew_;
   Meter meter_;
+  Crew crew_;  ///< after what its jobs write to: its destructor waits for them
+  int processes_ = 1;
   BatchProgress progress_;
   std::uint64_t bytes_planned_ = 0;
   std::uint64_t bytes_done_ = 0;
