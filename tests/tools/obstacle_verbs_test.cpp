@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "exactvo/datasets/obstacle_file.h"
 #include "run_program.h"
 
 namespace exactvo::test {
@@ -103,6 +104,54 @@ TEST(Repair, SeveralFilesBecomeOneAndAnUnreadableOneNone) {
   EXPECT_THAT(here.read("all.csv"), AllOf(HasSubstr("\"a/1\""), HasSubstr("\"b/1\""), HasSubstr("\"b/1-2\"")));
   EXPECT_EQ(here.run("repair a.wkt nowhere.wkt --out none.wkt").status, 2);
   EXPECT_FALSE(here.has("none.wkt"));
+}
+
+TEST(Repair, FilesOfOneNameKeepTheirObstaclesApart) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  here.write("a.txt", kGood);
+  EXPECT_EQ(here.run("repair a.wkt a.txt --format wkt --out all.csv").status, 0);
+  EXPECT_THAT(here.read("all.csv"), AllOf(HasSubstr("\"a/1\""), HasSubstr("\"a-2/1\"")));
+}
+
+std::string geojson_at(int longitude) {
+  const std::string x = std::to_string(longitude);
+  return R"({"type":"Feature","properties":{},"geometry":{"type":"Polygon","coordinates":[[[)" + x + ",50],[" + x +
+         ".001,50],[" + x + ".001,50.001],[" + x + ",50]]]}}\n";
+}
+
+TEST(Repair, FilesOfDegreesAreNotPutOnOneHeap) {
+  const Workplace here;
+  here.write("here.geojson", geojson_at(7));
+  here.write("there.geojson", geojson_at(8));
+  const Outcome both = here.run("repair here.geojson there.geojson --out all.csv");
+  EXPECT_EQ(both.status, 2);
+  EXPECT_FALSE(here.has("all.csv"));
+  if (!datasets::built_with_gdal()) return;
+  EXPECT_THAT(both.err, AllOf(HasSubstr("here.geojson (round 7.0"), HasSubstr("there.geojson (round 8.0")));
+  const Outcome one = here.run("repair here.geojson --out one.csv --json");
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_NEAR(json::parse(one.out).at("files").at(0).at("origin").at("longitude").get<double>(), 7.0005, 1e-3);
+}
+
+TEST(Batch, WhereTheResultsLieDoesNotShowInThem) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  EXPECT_EQ(here.run("batch a.wkt --write figures -oone").status, 0);
+  EXPECT_EQ(here.run("batch a.wkt --write figures --out two -j1").status, 0);
+  EXPECT_EQ(here.read("one/figures.jsonl"), here.read("two/figures.jsonl"));
+}
+
+TEST(Batch, AShardThatIsThroughFirstSaysSo) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  here.write("b.wkt", kGood);
+  const Outcome first = here.run("batch a.wkt b.wkt --write figures --out out --shard 1/2");
+  EXPECT_EQ(first.status, 0);
+  EXPECT_THAT(first.err, HasSubstr("shard 1/2 is through"));
+  EXPECT_FALSE(here.has("out/summary.json"));
+  EXPECT_EQ(here.run("batch a.wkt b.wkt --write figures --out out --shard 2/2").status, 0);
+  EXPECT_TRUE(here.has("out/summary.json"));
 }
 
 TEST(Convert, SaysWhatIsLost) {

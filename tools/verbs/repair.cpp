@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "exactvo/datasets/obstacle_write.h"
 #include "support/escape.h"
@@ -34,15 +35,50 @@ struct Flags {
 
 // --- What comes out ---
 
-/// Of several files, each obstacle's id begins with its file's name.
-std::vector<SceneObstacle> all_obstacles(const std::vector<FileAnswer>& answers) {
-  std::vector<SceneObstacle> all;
+/// What the ids of each file's obstacles begin with: of several files the name without its extension, and a number
+/// where an earlier one has that already.
+std::vector<std::string> prefixes_of(const std::vector<FileAnswer>& answers) {
+  std::vector<std::string> prefixes;
+  std::set<std::string> taken;
   for (const FileAnswer& answer : answers) {
-    if (!answer.content) continue;
-    const std::string prefix = answers.size() > 1 ? std::filesystem::path(answer.file).stem().string() + "/" : "";
-    for (const SceneObstacle& o : answer.content->obstacles) all.push_back({prefix + o.id, o.shape});
+    const std::string stem = std::filesystem::path(answer.file).stem().string();
+    std::string name = stem;
+    for (int number = 2; !taken.insert(name).second; ++number) name = stem + "-" + std::to_string(number);
+    prefixes.push_back(answers.size() > 1 ? name + "/" : "");
+  }
+  return prefixes;
+}
+
+std::vector<SceneObstacle> all_obstacles(const std::vector<FileAnswer>& answers) {
+  const std::vector<std::string> prefixes = prefixes_of(answers);
+  std::vector<SceneObstacle> all;
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    if (!answers[k].content) continue;
+    for (const SceneObstacle& o : answers[k].content->obstacles) all.push_back({prefixes[k] + o.id, o.shape});
   }
   return all;
+}
+
+bool same_origin(const ObstacleFile& a, const ObstacleFile& b) {
+  if (!a.origin || !b.origin) return !a.origin && !b.origin;
+  return a.origin->longitude == b.origin->longitude && a.origin->latitude == b.origin->latitude;
+}
+
+std::string words_of_origin(const ObstacleFile& file) {
+  if (!file.origin) return file.file + " (metres as they stand)";
+  return fmt::format("{} (round {:.9g}, {:.9g} degrees)", file.file, file.origin->longitude, file.origin->latitude);
+}
+
+/// Degrees are projected round the middle of their own file: what lies side by side on earth would lie on one heap.
+void refuse_several_planes(const std::vector<FileAnswer>& answers) {
+  const ObstacleFile* first = nullptr;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content || answer.content->obstacles.empty()) continue;
+    if (first == nullptr) first = &*answer.content;
+    if (same_origin(*first, *answer.content)) continue;
+    throw UsageError("files", words_of_origin(*first) + " beside " + words_of_origin(*answer.content),
+                     "files of one plane for one --out: one of degrees at a time, or all in metres");
+  }
 }
 
 ExitCode exit_code(const std::vector<FileAnswer>& answers) {
@@ -76,12 +112,20 @@ OrderedJson json_of(const RepairRecord& r) {
   return json;
 }
 
+/// Where degrees were projected to metres: round what place.
+OrderedJson origin_json(const FileAnswer& answer) {
+  if (!answer.content || !answer.content->origin) return nullptr;
+  return {{"longitude", json_number(answer.content->origin->longitude)},
+          {"latitude", json_number(answer.content->origin->latitude)}};
+}
+
 std::string to_json(const std::vector<FileAnswer>& answers) {
   OrderedJson json;
   json["mended"] = exit_code(answers) == ExitCode::success;
   json["files"] = OrderedJson::array();
   for (const FileAnswer& answer : answers) {
     OrderedJson file = tools::json_of(answer);
+    file["origin"] = origin_json(answer);
     file["repairs"] = OrderedJson::array();
     if (answer.content) {
       for (const RepairRecord& record : answer.content->repairs) file["repairs"].push_back(json_of(record));
@@ -138,8 +182,10 @@ std::vector<geometry::Polygon> outcome(const ObstacleFile& file, const RepairRec
   if (record.refused) return polygons;
   const auto first = std::find_if(file.obstacles.begin(), file.obstacles.end(),
                                   [&](const SceneObstacle& o) { return o.id == record.id; });
-  for (auto o = first; o != file.obstacles.end() && polygons.size() < record.after.polygons; ++o)
-    polygons.push_back(std::get<geometry::Polygon>(o->shape));
+  for (auto o = first; o != file.obstacles.end() && polygons.size() < record.after.polygons; ++o) {
+    // A wall may bear the same id.
+    if (const auto* polygon = std::get_if<geometry::Polygon>(&o->shape)) polygons.push_back(*polygon);
+  }
   return polygons;
 }
 
@@ -195,6 +241,7 @@ ExitCode repair(const Flags& flags) {
     }
     return code;
   }
+  refuse_several_planes(answers);
   for (const std::string& loss : datasets::write_obstacles(flags.out, all_obstacles(answers), to))
     message("lost: " + loss);
   message("wrote " + flags.out);
