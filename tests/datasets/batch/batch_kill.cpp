@@ -75,7 +75,9 @@ class Campaign {
       const pid_t batch = start_batch("killed", resume);
       resume = true;
       std::this_thread::sleep_for(std::chrono::duration<double>(random_.uniform(0.0, 1.05 * usual_)));
-      if (!strike(batch)) break;
+      const Strike what = strike(batch);
+      if (what == Strike::failed) return fail("a batch failed of itself after kills" + history_);
+      if (what == Strike::too_late) break;
       ++struck_;
       history_ += " " + std::to_string(struck_);
     }
@@ -119,17 +121,26 @@ class Campaign {
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
   }
 
-  /// Kills the batch, or one of its ranks; false where it was through already.
-  bool strike(pid_t batch) {
+  enum class Strike { struck, too_late, failed };
+
+  /// Kills the batch, or one of its ranks. What ends in any other way than through or by that signal has failed.
+  Strike strike(pid_t batch) {
+    bool sent = false;
     if (plan_.ranks == 1) {
-      ::kill(batch, SIGKILL);
+      sent = ::kill(batch, SIGKILL) == 0;
     } else {
       const std::vector<pid_t> ranks = children_of(batch);
-      if (!ranks.empty()) ::kill(ranks[random_.bits() % ranks.size()], SIGKILL);
+      sent = !ranks.empty() && ::kill(ranks[random_.bits() % ranks.size()], SIGKILL) == 0;
     }
     int status = 0;
     ::waitpid(batch, &status, 0);
-    return !(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return Strike::too_late;
+    // mpirun says by its status what signal its rank died of.
+    const bool by_signal = plan_.ranks == 1 ? WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL
+                                            : WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGKILL;
+    if (sent && by_signal) return Strike::struck;
+    std::fprintf(stderr, "ended with status 0x%x, not by the signal\n", static_cast<unsigned>(status));
+    return Strike::failed;
   }
 
   static std::vector<pid_t> children_of(pid_t parent) {
