@@ -116,16 +116,10 @@ TEST_F(SharedBatch, CountsAgreeWithTheManifest) {
   const std::map<std::string, Json> plain = run(false);
   // What the manifest counts of a format, by programs of others, where that is an obstacle or a refusal each. (Of grids
   // and scans it counts cells and beams; test suites in XML have other geometries beside the polygons.)
-  const std::map<std::string, std::string> kCounted{{"barn-world", "cylinders"},
-                                                    {"counted-rings", "poly"},
-                                                    {"gdal", "poly"},
-                                                    {"jupedsim-wkt", "poly"},
-                                                    {"menge-xml", "poly"},
-                                                    {"ompl-circles", "circles"},
-                                                    {"opentraj-xml", "lines"},
-                                                    {"rings-json", "poly"},
-                                                    {"sumo-poly", "poly"},
-                                                    {"wkt", "poly"}};
+  const std::map<std::string, std::string> kCounted{
+      {"barn-world", "cylinders"}, {"counted-rings", "poly"},   {"gdal", "poly"},
+      {"menge-xml", "poly"},       {"ompl-circles", "circles"}, {"opentraj-xml", "lines"},
+      {"rings-json", "poly"},      {"sumo-poly", "poly"},       {"wkt", "poly"}};
   std::map<std::string, int> compared;
   for (const ManifestRow& row : manifest()) {
     const auto found = plain.find(row.path);
