@@ -33,6 +33,11 @@ void for_each_term(Row& row, const Take& take) {
   take("sound_rates", "bound", row.rate_bound);
 }
 
+/// The last row of a run has no decision, so no derivatives.
+bool is_rate(const std::string& group) {
+  return group == "paper_rates" || group == "sound_rates";
+}
+
 void append_binding(JsonWriter& json, const BindingConstraint& b) {
   json.begin_object().member("source", word_for(b.constraint.source)).member("index", b.constraint.index);
   json.member("piece", b.constraint.piece).member("normal", b.normal).member("clearance", b.clearance);
@@ -90,6 +95,7 @@ void append_lyapunov(JsonWriter& json, const LyapunovRow& row) {
   std::string open;
   json.key("lyapunov").begin_object();
   for_each_term(row, [&](const char* group, const char* key, double number) {
+    if (!row.has_rates && is_rate(group)) return;
     if (open != group) {
       if (!open.empty()) json.end_object();
       json.key(group).begin_object();
@@ -103,8 +109,10 @@ void append_lyapunov(JsonWriter& json, const LyapunovRow& row) {
 LyapunovRow to_lyapunov(const JsonCursor& at, double time) {
   LyapunovRow row;
   row.time = time;
-  for_each_term(row,
-                [&](const char* group, const char* key, double& number) { number = at.at(group).at(key).number(); });
+  row.has_rates = at.has("paper_rates");
+  for_each_term(row, [&](const char* group, const char* key, double& number) {
+    if (row.has_rates || !is_rate(group)) number = at.at(group).at(key).number();
+  });
   return row;
 }
 

@@ -120,6 +120,7 @@ std::size_t read_header(const JsonCursor& at, const std::string& name, Recording
   recording.time_step = at.at("time_step").number();
   recording.motion = enumerator<formation::MotionLaw>(at.at("motion"));
   recording.tracking_gain = at.at("tracking_gain").number();
+  if (at.has("relative_frame")) recording.relative_frame = at.at("relative_frame").truth();
   recording.offsets = at.at("offsets").points();
   const std::size_t slots = file.scenario.formation ? file.scenario.robots.size() : 0;
   if (recording.offsets.size() != slots)

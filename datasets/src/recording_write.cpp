@@ -114,6 +114,7 @@ void append_header(JsonWriter& json, const RecordingFile& file, const std::strin
   json.member("integrator", file.info.integrator);
   json.member("time_step", recording.time_step).member("motion", word_for(recording.motion));
   json.member("tracking_gain", recording.tracking_gain).member("diverged", recording.diverged);
+  json.member("relative_frame", recording.relative_frame);
   json.key("offsets");
   append_points(json, recording.offsets);
   json.member("outcome", recording.outcome).member("rows", recording.steps.size());

@@ -2,9 +2,11 @@
 #include "forewarnings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "exactvo/geometry/distance.h"
+#include "leader.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -57,6 +59,14 @@ void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vect
   }
 }
 
+void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
+  const double arrival = leader_arrival(s.formation->leader);
+  if (!(arrival > s.time_limit)) return;
+  char when[80];
+  std::snprintf(when, sizeof when, "only after %.6g s, beyond the time limit of %.6g s", arrival, s.time_limit);
+  out.push_back(std::string("the leader reaches the end of its path ") + (std::isfinite(arrival) ? when : "never"));
+}
+
 }  // namespace
 
 std::vector<std::string> forewarnings(const Scenario& scenario, const std::vector<Vec2>& offsets) {
@@ -68,6 +78,7 @@ std::vector<std::string> forewarnings(const Scenario& scenario, const std::vecto
     last.push_back(targets.back());
   }
   warn_of_pairs(scenario, last, out);
+  if (scenario.formation) warn_of_leader(scenario, out);
   return out;
 }
 

@@ -7,7 +7,6 @@
 
 #include "consensus.h"
 #include "decision.h"
-#include "exactvo/formation/stability.h"
 #include "integrators.h"
 #include "leader.h"
 #include "moving.h"
@@ -69,8 +68,8 @@ class FormationRun {
     recording.motion = motion_of(options_.integrator);
     recording.time_step = scenario_.time_step;
     recording.tracking_gain = spec_.gains.k3;
+    recording.relative_frame = !remedies_.absolute_frame;
     recording.offsets = offsets_;
-    recording.warnings = step_warnings(spec_, options_.integrator, scenario_.time_step);
     for (std::size_t k = 0; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
       recording.steps.push_back(decide_all(clock_.time(k)));
       move(recording.steps.back());
@@ -151,7 +150,7 @@ class FormationRun {
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
     const Follower::Answer round = robots_[i].slot.steer(situation, statics, robot_lines);
-    step.note = round.note.empty() ? answer.note : round.note;
+    step.note = joined_notes(answer.note, round.note);
     if (round.mode != Mode::following) return answer.preferred;
     step.mode = Mode::following;
     step.side = round.side;
@@ -225,6 +224,8 @@ class FormationRun {
     recording.outcome = recording.diverged
                             ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
                             : "formation error " + metres(last) + " at the end";
+    if (leader_arrival(spec_.leader) > recording.steps.back().time)
+      recording.outcome += "; the leader did not reach its end";
   }
 
   Remedies remedies_;

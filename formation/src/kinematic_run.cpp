@@ -137,7 +137,7 @@ class KinematicRun {
                                   statics);
     step.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
     step.side = answer.side;
-    if (!answer.note.empty()) step.note = answer.note;
+    step.note = joined_notes(step.note, answer.note);
     if (answer.mode == Mode::following) return answer.preferred;
     const std::optional<Vec2> boost = boosted(statics, preferred);
     if (!boost) return ties_broken(i, statics, preferred, step);
@@ -149,7 +149,7 @@ class KinematicRun {
   Vec2 ties_broken(std::size_t i, const std::vector<StaticConstraint>& statics, Vec2 preferred, RobotStep& step) {
     const Vec2 turned = with_tie_broken(statics, preferred);
     const bool tied = !(turned == preferred);
-    if (tied && !robots_[i].tied && step.note.empty()) step.note = "head-on: the tie between the sides goes left";
+    if (tied && !robots_[i].tied) step.note = joined_notes(step.note, "head-on: the tie between the sides goes left");
     robots_[i].tied = tied;
     return turned;
   }

@@ -51,11 +51,41 @@ double huber(const FormationSpec& f, double s) {
   return s <= knee ? 0.5 * f.gains.kappa * s * s : f.catch_up_speed * (s - 0.5 * knee);
 }
 
-/// sum of v^_i.(v^_i - V_IVO,i), V_IVO relative to the leader.
-double integrand(const Step& row, const RelativeState& s) {
+/// V_IVO of (15): the decision of row k, relative to the leader.
+Vec2 avoidance(const Recording& recording, std::size_t k, std::size_t i) {
+  const Step& row = recording.steps[k];
+  return recording.relative_frame ? row.robots[i].chosen : row.robots[i].chosen - row.leader_velocity;
+}
+
+/// sum of v^_i.(v^_i - V_IVO,i).
+double integrand(const Recording& recording, std::size_t k, const RelativeState& s) {
   double sum = 0.0;
   for (std::size_t i = 0; i < s.velocity.size(); ++i)
-    sum += dot(s.velocity[i], s.velocity[i] - (row.robots[i].chosen - row.leader_velocity));
+    sum += dot(s.velocity[i], s.velocity[i] - avoidance(recording, k, i));
+  return sum;
+}
+
+/// The integral of v^.(v^ - a) over a step in which v^ goes from `from` to `to` as v' = -k3 (v - w).
+/// Math: v^ = w + b e^{-k3 t}, so it is h w.(w - a) + E1 b.(2w - a) + E2 |b|^2 with E_n = (1 - e^{-n k3 h}) / (n k3).
+double exponential_integral(Vec2 from, Vec2 to, Vec2 a, double k3, double h) {
+  const double settled = -std::expm1(-k3 * h);
+  const Vec2 b = (from - to) / settled;
+  const Vec2 w = from - b;
+  const double e1 = settled / k3, e2 = -std::expm1(-2.0 * k3 * h) / (2.0 * k3);
+  return h * dot(w, w - a) + e1 * dot(b, 2.0 * w - a) + e2 * squared_norm(b);
+}
+
+/// Of the integrand over the step from row k on, with the decision and the leader's velocity of that row.
+double integral_over_step(const Recording& recording, std::size_t k) {
+  const double h = recording.time_step;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < recording.steps[k].robots.size(); ++i) {
+    const Vec2 leader = recording.steps[k].leader_velocity, a = avoidance(recording, k, i);
+    const Vec2 from = recording.steps[k].robots[i].velocity - leader;
+    const Vec2 to = recording.steps[k + 1].robots[i].velocity - leader;
+    sum += recording.motion == MotionLaw::exponential ? exponential_integral(from, to, a, recording.tracking_gain, h)
+                                                      : 0.5 * h * (dot(from, from - a) + dot(to, to - a));
+  }
   return sum;
 }
 
@@ -89,7 +119,7 @@ PaperRates paper_rates(const FormationSpec& f, const Recording& recording, std::
   for (std::size_t i = 0; i < s.velocity.size(); ++i) r.kinetic += dot(s.velocity[i], acceleration(recording, k, i));
   r.consensus = f.gains.k1 * across(f.topology, s.position, s.velocity);
   r.pinning = f.gains.k1 * pinned(f.topology, s.position, s.velocity);
-  r.integral = f.gains.k3 * integrand(recording.steps[k], s);
+  r.integral = f.gains.k3 * integrand(recording, k, s);
   return r;
 }
 
@@ -137,19 +167,19 @@ std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recordin
   const FormationSpec& f = *scenario.formation;
   EXACTVO_REQUIRE(f.topology.adjacency.size() == scenario.robots.size(), scenario.name);
   std::vector<LyapunovRow> rows;
-  double integral = 0.0, last_integrand = 0.0;
+  double integral = 0.0;
   for (std::size_t k = 0; k < recording.steps.size(); ++k) {
     const Step& row = recording.steps[k];
     const RelativeState s = relative_state(row, recording.offsets);
-    // The last row has no decision: its integrand is that of the row before.
-    const double now = k + 1 < recording.steps.size() ? integrand(row, s) : last_integrand;
-    if (k > 0) integral += 0.5 * recording.time_step * (last_integrand + now);
-    last_integrand = now;
     LyapunovRow out;
     out.time = row.time;
     out.paper = paper_terms(f, s, integral);
     out.sound = sound_terms(f, s);
-    if (k + 1 < recording.steps.size()) add_rates(f, recording, k, s, out);
+    out.has_rates = k + 1 < recording.steps.size();
+    if (out.has_rates) {
+      add_rates(f, recording, k, s, out);
+      integral += integral_over_step(recording, k);
+    }
     rows.push_back(out);
   }
   return rows;

@@ -3,10 +3,14 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 
+#include "consensus.h"
+#include "exactvo/formation/stability.h"
 #include "exactvo/geometry/require.h"
 #include "forewarnings.h"
 #include "goals.h"
+#include "remedies.h"
 #include "runs.h"
 #include "static_field.h"
 
@@ -21,16 +25,29 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+std::vector<Vec2> offsets_of(const Scenario& scenario, const SimulationOptions& options) {
+  if (!scenario.formation) return {};
+  return offsets_in_use(*scenario.formation, remedies_in_use(scenario, options));
+}
+
 }  // namespace
+
+std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {
+  std::vector<std::string> warnings;
+  if (scenario.formation) warnings = step_warnings(*scenario.formation, options.integrator, scenario.time_step);
+  for (std::string& warning : forewarnings(scenario, offsets_of(scenario, options)))
+    warnings.push_back(std::move(warning));
+  return warnings;
+}
 
 Recording simulate(const Scenario& scenario, const SimulationOptions& options) {
   const std::vector<ScenarioProblem> problems = validate(scenario);
   EXACTVO_REQUIRE(problems.empty(),
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
   const Clock::time_point start = Clock::now();
+  std::vector<std::string> warnings = warnings_before(scenario, options);
   Recording recording = scenario.formation ? run_formation(scenario, options) : run_kinematic(scenario, options);
-  const std::vector<std::string> warnings = detail::forewarnings(scenario, recording.offsets);
-  recording.warnings.insert(recording.warnings.end(), warnings.begin(), warnings.end());
+  recording.warnings = std::move(warnings);
   recording.all_half_planes = options.record_all;
   recording.wall_time = seconds_since(start);
   return recording;

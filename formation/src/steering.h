@@ -91,6 +91,11 @@ class Follower {
   double best_time_ = 0.0;       ///< s, when that was first reached with a margin
 };
 
+/// Both notes of a row, where it has two.
+inline std::string joined_notes(const std::string& first, const std::string& second) {
+  return first.empty() || second.empty() ? first + second : first + "; " + second;
+}
+
 /// Chooses a side when blocked and keeps it while blocked (formations).
 class SideCommitment {
  public:

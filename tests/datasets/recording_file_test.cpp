@@ -133,7 +133,7 @@ RecordingFile sample(bool with_formation) {
   file.recording.outcome = "all arrived";
   file.recording.warnings = {"a step of 0.5 s is beyond euler's limit", "\"quoted\""};
   file.recording.wall_time = 0.125;
-  file.recording.all_half_planes = with_formation;
+  file.recording.all_half_planes = file.recording.relative_frame = with_formation;
   if (!with_formation) file.recording.later_outlooks = {{0.1, 2, 1, {shape_number(1, random)}}, {0.2, 0, 1, {}}};
   file.stuck = {{1, random.in_box(5), 3.5, 0.25, {binding(random)}, std::nullopt, "bound \"here\""}};
   if (with_formation) file.stuck.front().equilibrium = formation::Equilibrium{random.in_box(1), {1, 0}, 2.5, 1.5, true};
@@ -196,6 +196,7 @@ void expect_same_reports(const formation::StuckReport& a, const formation::Stuck
 
 void expect_same_extras(const RecordingFile& a, const RecordingFile& b) {
   EXPECT_EQ(a.recording.all_half_planes, b.recording.all_half_planes);
+  EXPECT_EQ(a.recording.relative_frame, b.recording.relative_frame);
   ASSERT_EQ(a.recording.later_outlooks.size(), b.recording.later_outlooks.size());
   for (std::size_t i = 0; i < a.recording.later_outlooks.size(); ++i) {
     EXPECT_EQ(a.recording.later_outlooks[i].robot, b.recording.later_outlooks[i].robot);

@@ -187,6 +187,26 @@ TEST(Lyapunov, Equation19HoldsTermByTermAndEquation20DoesNot) {
   EXPECT_TRUE(rises);
 }
 
+TEST(Lyapunov, Equation20IsTheDerivativeOf18UnderThePapersOwnLaw) {
+  // The paper defines the integral of (18) so that (20) follows from (15): with V_IVO in the paper's frame it does.
+  for (const char* scene : {"B0", "B1"}) {
+    const Scenario s = paper_scene(scene);
+    const Recording r = simulate(s, test::with_controller(Controller::paper_signs));
+    const std::vector<LyapunovRow> rows = lyapunov_along(s, r);
+    for (std::size_t k = 0; k + 1 < rows.size(); ++k)
+      ASSERT_NEAR(rows[k].paper_rates.value(), rows[k].paper_rate, 1e-9) << scene << " row " << k;
+  }
+}
+
+TEST(Lyapunov, TheIntegralOf18KeepsTheDecisionOfItsStep) {
+  // V falls in B0 all along, and to where the exact integral of the held decisions leads.
+  const Scenario s = paper_scene("B0");
+  const Recording r = simulate(s, test::with_controller(Controller::paper_signs));
+  const LyapunovCourse course = summary_of(lyapunov_along(s, r), r).paper;
+  EXPECT_EQ(course.largest_rise, 0.0);
+  EXPECT_NEAR(course.last, -1406.0, 1.0);
+}
+
 TEST(Lyapunov, ThePapersFunctionFallsBelowZeroWhileTheFormationIsLost) {
   // A constant relative V_IVO = 0.1 on robot 1 against equations (14) and (15): x^ settles at (7.5, 3.75, 3.75) and V
   // of (18) only falls, to -0.3256.

@@ -27,6 +27,12 @@ SimulationOptions everything_of(Method method) {
   return options;
 }
 
+TEST(Notes, ARowKeepsBoth) {
+  EXPECT_EQ(detail::joined_notes("goal 1 passed", "stalled"), "goal 1 passed; stalled");
+  EXPECT_EQ(detail::joined_notes("", "stalled"), "stalled");
+  EXPECT_EQ(detail::joined_notes("goal 1 passed", ""), "goal 1 passed");
+}
+
 bool a_robot_binds(const RobotStep& step) {
   for (const RecordedConstraint& c : step.constraints)
     if (c.active && c.source == ConstraintSource::robot) return true;

@@ -135,11 +135,18 @@ std::string lyapunov_csv(const std::vector<LyapunovRow>& rows) {
       "sound_rate_consensus_m2_s3,sound_rate_tracking_m2_s3,sound_rate_intervention_m2_s3,sound_rate_bound_m2_s3\n";
   for (const LyapunovRow& r : rows) {
     text += fmt::format("{}", r.time);
-    for (const double x : {r.paper.kinetic, r.paper.consensus, r.paper.pinning, r.paper.integral, r.paper_rates.kinetic,
-                           r.paper_rates.consensus, r.paper_rates.pinning, r.paper_rates.integral, r.paper_rate,
-                           r.sound.kinetic, r.sound.consensus, r.sound.slots, r.sound_rates.consensus,
-                           r.sound_rates.tracking, r.sound_rates.intervention, r.rate_bound})
-      text += fmt::format(",{}", x);
+    const auto values = [&text](std::initializer_list<double> all) {
+      for (const double x : all) text += fmt::format(",{}", x);
+    };
+    // A cell of a derivative that does not exist is empty.
+    const auto rates = [&](std::initializer_list<double> all) {
+      r.has_rates ? values(all) : void(text.append(all.size(), ','));
+    };
+    values({r.paper.kinetic, r.paper.consensus, r.paper.pinning, r.paper.integral});
+    rates(
+        {r.paper_rates.kinetic, r.paper_rates.consensus, r.paper_rates.pinning, r.paper_rates.integral, r.paper_rate});
+    values({r.sound.kinetic, r.sound.consensus, r.sound.slots});
+    rates({r.sound_rates.consensus, r.sound_rates.tracking, r.sound_rates.intervention, r.rate_bound});
     text += "\n";
   }
   return text;

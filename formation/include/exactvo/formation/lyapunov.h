@@ -9,8 +9,9 @@
 ///   In free space V' = -k2 v^T (L+B) v^ - k3 |v^|^2; near obstacles V' <= -(k3/2)|v^|^2 + (k3/2)|e|^2, e = w - v_pref
 ///   - u_c / k3.
 ///
-/// Rounded; the integral of (18) by the trapezoid of the recorded rows. Under a moving leader x^ and v^ are relative to
-/// it; the derivative holds while its velocity is constant.
+/// Rounded. V_IVO is the decision of a row, held over its step: the integral of (18) is exact where the motion is
+/// exponential, else the trapezoid between both ends of the step. Under a moving leader x^, v^ and V_IVO are relative
+/// to it; the derivative holds while its velocity is constant.
 
 #include <vector>
 
@@ -35,7 +36,8 @@ struct SoundTerms {
   double value() const { return kinetic + consensus + slots; }
 };
 
-/// Equation (19) term by term, with the acceleration that the robots had: what (18) really does.
+/// Equation (19) term by term, with the acceleration that the robots had at the row's time: what (18) really does. Of
+/// laws other than the exponential it is the mean acceleration over the step.
 struct PaperRates {
   double kinetic = 0.0;    ///< sum v^_i.u_i
   double consensus = 0.0;  ///< k1/2 sum a_ij (x^_i - x^_j).(v^_i - v^_j)
@@ -54,7 +56,8 @@ struct SoundRates {
 };
 
 struct LyapunovRow {
-  double time = 0.0;  ///< s
+  double time = 0.0;      ///< s
+  bool has_rates = true;  ///< false in the last row, which has no decision: its derivatives are nothing
   PaperTerms paper;
   PaperRates paper_rates;
   double paper_rate = 0.0;  ///< (20): what the paper says V' is
@@ -63,8 +66,7 @@ struct LyapunovRow {
   double rate_bound = 0.0;  ///< -(k3/2) |v^|^2 + (k3/2) |e|^2
 };
 
-/// A row for every row of the recording; the last one, which has no decision, has that of the row before in its
-/// integral and nothing in its rates. REQUIRES: a formation's recording of this scenario.
+/// A row for every row of the recording. REQUIRES: a formation's recording of this scenario.
 std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recording& recording);
 
 /// How a function went over a run.

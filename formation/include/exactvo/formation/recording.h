@@ -85,9 +85,11 @@ struct Recording {
   MotionLaw motion = MotionLaw::straight;
   double time_step = 0.0;      ///< s
   double tracking_gain = 0.0;  ///< k3, 1/s, where motion is exponential
-  std::vector<Vec2> offsets;   ///< m, Delta_i as the controller used them (recentred or not); empty without a formation
-  bool diverged = false;       ///< the formation's error grew to the end, or the state left every bound
-  std::string outcome;         ///< in words, for people
+  /// `chosen` is relative to the leader, as the paper's controllers have it (V_IVO of (15)); else absolute.
+  bool relative_frame = false;
+  std::vector<Vec2> offsets;  ///< m, Delta_i as the controller used them (recentred or not); empty without a formation
+  bool diverged = false;      ///< the formation's error grew to the end, or the state left every bound
+  std::string outcome;        ///< in words, for people
   /// What could be said before the run: a step beyond the integrator's limit, a goal inside an obstacle.
   std::vector<std::string> warnings;
   std::vector<Outlook>

@@ -62,6 +62,10 @@ struct SimulationOptions {
   std::function<bool(double)> progress;
 };
 
+/// What can be said before a run, a line each: a step beyond the integrator's limit, goals, slots or a leader's end
+/// that cannot be reached, or not within the time limit. The run's recording has the same.
+std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options = {});
+
 /// REQUIRES: a valid scenario (`validate`).
 Recording simulate(const Scenario& scenario, const SimulationOptions& options = {});
 
