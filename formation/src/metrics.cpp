@@ -304,6 +304,14 @@ Metrics measure(const Scenario& scenario, const Recording& recording) {
   return m;
 }
 
+bool touched(const std::optional<double>& clearance) {
+  return clearance && !(*clearance >= -kContactDepth);
+}
+
+bool touched(const Metrics& m) {
+  return touched(m.min_obstacle_clearance) || touched(m.min_robot_clearance);
+}
+
 bool is_safe(const Metrics& m) {
   const auto clear = [](const std::optional<double>& clearance) { return !clearance || *clearance > 0.0; };
   return clear(m.min_obstacle_clearance) && clear(m.min_robot_clearance) && m.uncertified_half_planes == 0;

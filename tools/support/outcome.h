@@ -10,9 +10,6 @@
 
 namespace exactvo::tools {
 
-/// Whether a robot's rim went into an obstacle or another robot (swept clearances below zero).
-bool touched(const formation::Metrics& metrics);
-
 /// "touched an obstacle by 0.12 m and another robot by 0.03 m"; empty where nothing was touched.
 std::string touch_words(const formation::Metrics& metrics);
 

@@ -56,7 +56,16 @@ Metrics measure(const Scenario& scenario, const Recording& recording);
 /// from the origin (four times 2^-46 of the coordinates), so two robots that keep exactly their distance do not touch.
 inline constexpr double kContactDepth = 1e-9;
 
-/// Nothing was touched, by the swept clearances, and every half-plane was certified.
+/// Whether a clearance is a contact; nothing is what there was nothing to touch for.
+bool touched(const std::optional<double>& clearance);
+/// An obstacle or another robot was touched, by the swept clearances.
+bool touched(const Metrics& metrics);
+
+/// m and m/s: a formation that ends nearer to its slots, or to the leader's velocity, has formed.
+inline constexpr double kFormed = 1e-6;
+
+/// Proven: every swept clearance is above 0 and every half-plane was certified. More than not to have touched, which
+/// leaves out what rounding alone could explain.
 bool is_safe(const Metrics& metrics);
 
 /// One series a robot or pair, sampled at the recording's rows: for figures.
