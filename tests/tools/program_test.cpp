@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -205,6 +206,49 @@ TEST(Simulate, SaysWhatAFormationIsBeforeAndWhyARobotStopped) {
   ASSERT_EQ(header["stuck"].size(), 1u);
   EXPECT_EQ(header["stuck"][0]["equilibrium"]["stable"], true);
   EXPECT_EQ(json::parse(here.read("out/metrics.json"))["stuck"].size(), 1u);
+}
+
+TEST(Simulate, WithoutFiguresNoneOfAnEarlierRunStay) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --out out", "PATH=/nowhere").status, 0);
+  ASSERT_TRUE(here.has("out/figures/paths.gp"));
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A3.json") + " --out out --no-figures").status, 0);
+  EXPECT_FALSE(here.has("out/figures"));
+}
+
+TEST(Paper, OptionsOfCampaignsAreNotedWhereThereIsNone) {
+  const Workplace here;
+  const Outcome outcome = here.run("paper --out out --random 1 --fields 3");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("note: --fields does nothing here"));
+}
+
+TEST(Simulate, TheLastRowHasNoDerivatives) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/B0.json") + " --out out --no-figures").status, 0);
+  const auto last_line = [&](const std::string& file) {
+    const std::string text = here.read(file);
+    return text.substr(text.rfind('\n', text.size() - 2) + 1);
+  };
+  EXPECT_THAT(last_line("out/lyapunov.csv"), testing::EndsWith(",,,,\n"));
+  const json row = json::parse(last_line("out/recording.jsonl"));
+  EXPECT_TRUE(row["lyapunov"].contains("paper"));
+  EXPECT_FALSE(row["lyapunov"].contains("paper_rates"));
+  EXPECT_EQ(here.run("audit out").status, 0);
+}
+
+TEST(Simulate, ALeaderThatNeverArrivesIsToldBeforeAndAfter) {
+  const Workplace here;
+  std::ifstream file(data_file("paper/B0.json"));
+  json scene = json::parse(file);
+  scene["formation"]["leader"].erase("speed");
+  scene["formation"]["leader"]["profile"] = {{"knots", {{0, 2}, {3, 0}}}};
+  scene["formation"]["leader"]["path"] = {{0, 0}, {90, 0}};
+  here.write("never.json", scene.dump());
+  const Outcome outcome = here.run("simulate never.json");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: the leader reaches the end of its path never"));
+  EXPECT_THAT(outcome.out, HasSubstr("; the leader did not reach its end"));
 }
 
 TEST(Simulate, RemediesByNameAndOnSwitches) {

@@ -64,6 +64,12 @@ void check_output_folder(const fs::path& target) {
                             "a folder that does not exist, is empty, or holds an earlier output");
 }
 
+void remove_figures(const fs::path& target) {
+  std::error_code error;
+  fs::remove_all(target / "figures", error);
+  if (error) fail(target / "figures", error.message());
+}
+
 StagedFolder::StagedFolder(fs::path target) : target_(without_trailing_slash(std::move(target))) {
   staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
   std::error_code error;

@@ -22,6 +22,9 @@ void make_folder(const std::filesystem::path& path);
 /// not after.
 void check_output_folder(const std::filesystem::path& target);
 
+/// Takes an earlier output's pictures away, which would show another run than the one that is put there without any.
+void remove_figures(const std::filesystem::path& target);
+
 /// A folder in the making: a hidden sibling of `target` to write into. `publish` puts it in place; without it the
 /// destructor leaves no trace, so a run that fails or is interrupted never leaves half an output.
 class StagedFolder {

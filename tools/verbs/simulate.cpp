@@ -35,10 +35,9 @@ std::string or_dash(const std::optional<double>& value, const char* unit) {
 std::string robot_line(const formation::RobotMetrics& robot, bool has_goal) {
   std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") + ", " : "did not arrive, ";
   if (!has_goal) arrival.clear();
-  const bool overlaps = robot.min_obstacle_clearance.value_or(0.0) < -formation::kContactDepth;
   return fmt::format("  {:<12} {}way {:.4g} m, least clearance to obstacles {}{}\n", shown(robot.id), arrival,
                      robot.path_length, or_dash(robot.min_obstacle_clearance, "m"),
-                     overlaps ? ": touched an obstacle" : "");
+                     formation::touched(robot.min_obstacle_clearance) ? ": touched an obstacle" : "");
 }
 
 std::string formation_lines(const formation::Metrics& m) {
@@ -76,21 +75,15 @@ std::string summary(const FinishedRun& run) {
                     m.uncertified_half_planes, m.relaxed_steps, m.steps, m.wall_time);
 }
 
-/// What can be said of a formation before it runs.
+/// What can be said before the run.
 void announce(const formation::Scenario& scenario, const formation::SimulationOptions& options) {
+  for (const std::string& warning : warnings_before(scenario, options)) message("warning: " + warning);
   if (!scenario.formation) return;
   const formation::Stability s = stability_of(*scenario.formation);
   message(fmt::format(
       "formation: eigenvalues of L + B from {:.4g} to {:.4g}; the slowest mode decays at {:.4g} 1/s; "
       "explicit Euler's step limit is {:.4g} s, the step {:.4g} s",
       s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate, s.euler_step_limit, scenario.time_step));
-  for (const std::string& warning : step_warnings(*scenario.formation, options.integrator, scenario.time_step))
-    message("warning: " + warning);
-}
-
-/// What was warned of beside that.
-void warn(const formation::Recording& recording, std::size_t said) {
-  for (std::size_t k = said; k < recording.warnings.size(); ++k) message("warning: " + recording.warnings[k]);
 }
 
 FinishedRun run_with_progress(const Flags& flags, const formation::Scenario& scenario,
@@ -111,6 +104,7 @@ void print_and_write(const Flags& flags, const FinishedRun& finished) {
   if (!flags.no_figures) draw(write_figures(finished, folder.path() / "figures"));
   if (interrupted()) throw Interrupted();
   print_results(flags, finished);
+  if (flags.no_figures) remove_figures(flags.out);
   folder.publish("metrics.json");
   message("wrote " + flags.out);
 }
@@ -123,8 +117,6 @@ ExitCode simulate(const Flags& flags) {
   if (!flags.out.empty()) check_output_folder(flags.out);
   announce(scenario, options);
   const FinishedRun finished = run_with_progress(flags, scenario, options);
-  warn(finished.file.recording,
-       scenario.formation ? step_warnings(*scenario.formation, options.integrator, scenario.time_step).size() : 0);
   flags.out.empty() ? print_results(flags, finished) : print_and_write(flags, finished);
   return ExitCode::success;
 }
