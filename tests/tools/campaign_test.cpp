@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
+#include <limits>
+#include <map>
 
 #include "exactvo/datasets/provenance.h"
 #include "paper/campaign_tables.h"
@@ -91,13 +94,53 @@ TEST(Campaign, AnotherSeedIsAnotherField) {
   EXPECT_NE(campaign_csv(results), campaign_csv(others));
 }
 
+TEST(Campaign, AJitterThatIsNoNumberIsReadBackAndLeftOut) {
+  FieldResult good, bad;
+  good.jitter = 5.0;
+  bad.field = 1;
+  bad.jitter = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<VariantResult> results{{"convex", "ivo", {bad, good}}};
+  EXPECT_EQ(results[0].median_jitter(), 5.0);
+  EXPECT_EQ(results[0].without_jitter(), 1u);
+  EXPECT_THAT(campaign_json("x", results, {"", 2, 7, 1}), HasSubstr("\"without_jitter\": 1"));
+  // The same rows as a finished part.
+  const std::string head = "convex,ivo,", csv = campaign_csv({{"convex", "ivo", {good, bad}}});
+  std::string text = csv.substr(csv.find(head));
+  for (std::size_t at; (at = text.find(head)) != std::string::npos;) text.erase(at, head.size());
+  const Workplace here;
+  here.write("convex-ivo-7-000000-000001.part",
+             "exactvo-part " + datasets::sha256_of(program_key()) + " " + datasets::sha256_of(text) + "\n" + text);
+  const auto read = run_campaign({random_field_variants().at(3)}, {here.path(), 2, 7, 1});
+  ASSERT_EQ(read[0].fields.size(), 2u);
+  EXPECT_EQ(read[0].fields[0].jitter, 5.0);
+  EXPECT_TRUE(std::isnan(read[0].fields[1].jitter));
+}
+
+using PartTimes = std::map<std::string, std::filesystem::file_time_type>;
+PartTimes parts_in(const std::filesystem::path& folder) {
+  PartTimes parts;
+  if (!std::filesystem::exists(folder)) return parts;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".part") parts[entry.path().filename().string()] = entry.last_write_time();
+  return parts;
+}
+
 TEST(Campaign, AKilledRunGoesOnAndGivesTheSameBytes) {
   const Workplace whole, killed;
   ASSERT_EQ(whole.run("paper --out out --random 15 --jobs 1").status, 0);
-  EXPECT_NE(killed.run("paper --out out --random 15 --jobs 2", "timeout -s KILL 0.7").status, 0);
+  // Killed once the first part is there, by the shell that started it.
+  const std::string kill_it =
+      "sh -c '\"$@\" & while [ -z \"$(ls out/random/parts/*.part 2>/dev/null)\" ] && kill -0 $!; do sleep 0.02; done; "
+      "kill -KILL $!; wait $!' sh";
+  EXPECT_NE(killed.run("paper --out out --random 15 --jobs 2", kill_it).status, 0);
   EXPECT_FALSE(killed.has("out/random/random.json"));
+  const PartTimes survived = parts_in(killed.path() / "out/random/parts");
+  ASSERT_FALSE(survived.empty());
   const test::Outcome again = killed.run("paper --out out --random 15 --jobs 2");
   ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("parts are there already"));
+  const PartTimes after = parts_in(killed.path() / "out/random/parts");
+  for (const auto& [name, time] : survived) EXPECT_EQ(after.at(name), time) << name << " was done again";
   for (const char* file : {"out/random/random.json", "out/random/random.csv", "out/random/random.txt"})
     EXPECT_EQ(whole.read(file), killed.read(file)) << file;
 }

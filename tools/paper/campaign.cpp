@@ -41,7 +41,7 @@ FieldResult judged(const formation::Scenario& scenario, formation::SimulationOpt
           m.jitter};
 }
 
-/// Shortest digits that read back to the same double.
+/// Shortest digits that read back to the same double; nothing for what does not apply.
 std::string number(double x) {
   return std::isnan(x) ? "" : fmt::format("{}", x);
 }
@@ -52,7 +52,7 @@ double number_of(const std::string& text) {
 std::string csv_row(const FieldResult& r) {
   return fmt::format("{},{:d},{:d},{},{},{},{},{},{}\n", r.field, r.reached, r.safe, number(r.last_arrival),
                      number(r.obstacle_clearance), number(r.robot_clearance), r.uncertified, number(r.formation_error),
-                     number(r.jitter));
+                     r.jitter);  // always applies: where it is no number, "nan"
 }
 
 FieldResult from_csv_row(const std::string& row) {
@@ -137,10 +137,15 @@ double VariantResult::latest_arrival() const {
 
 double VariantResult::median_jitter() const {
   std::vector<double> all;
-  for (const FieldResult& r : fields) all.push_back(r.jitter);
+  for (const FieldResult& r : fields)
+    if (!std::isnan(r.jitter)) all.push_back(r.jitter);
   if (all.empty()) return kNone;
   std::sort(all.begin(), all.end());
   return all[all.size() / 2];
+}
+
+std::size_t VariantResult::without_jitter() const {
+  return count(fields, [](const FieldResult& r) { return std::isnan(r.jitter); });
 }
 
 std::vector<VariantResult> run_campaign(const std::vector<Variant>& variants, const CampaignOptions& options) {
@@ -182,6 +187,7 @@ std::string campaign_json(const std::string& what, const std::vector<VariantResu
     row["safe"] = v.safe();
     row["latest_arrival"] = std::isnan(v.latest_arrival()) ? Json() : Json(v.latest_arrival());
     row["median_jitter"] = std::isnan(v.median_jitter()) ? Json() : Json(v.median_jitter());
+    row["without_jitter"] = v.without_jitter();
     row["not_reached_and_safe"] = failed;
     rows.push_back(row);
   }

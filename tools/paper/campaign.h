@@ -38,7 +38,7 @@ struct FieldResult {
   double obstacle_clearance = 0.0, robot_clearance = 0.0;  ///< m, swept; nan where there is nothing to be clear of
   std::size_t uncertified = 0;
   double formation_error = 0.0;  ///< m, at the end; nan without a formation
-  double jitter = 0.0;           ///< m/s^2
+  double jitter = 0.0;           ///< m/s^2; nan where a robot left every bound
   bool good() const { return reached && safe; }
 };
 
@@ -51,7 +51,8 @@ struct VariantResult {
   std::size_t reached() const;
   std::size_t safe() const;
   double latest_arrival() const;  ///< s, of the good ones; nan where there are none
-  double median_jitter() const;   ///< m/s^2, over all
+  double median_jitter() const;   ///< m/s^2, over all that have one
+  std::size_t without_jitter() const;
 };
 
 struct CampaignOptions {

@@ -14,6 +14,7 @@
 #include "exactvo/formation/remedies.h"
 #include "figures/style.h"
 #include "paper/parts.h"
+#include "paper/report_data.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/terminal.h"
@@ -93,13 +94,9 @@ std::string jitter_cell(const Json& run) {
 
 /// Whether a scene ended formed and nothing was touched.
 bool formed(const Json& run) {
-  constexpr double kFormed = 1e-6;  // m
-  const auto clear = [&](const char* key) {
-    return run[key].is_null() || run[key].get<double>() >= -formation::kContactDepth;
-  };
-  const Json& error = run["formation_position_error"];
-  return !error.is_null() && error.get<double>() < kFormed && clear("min_obstacle_clearance") &&
-         clear("min_robot_clearance");
+  const std::optional<double> error = value_of(run, "formation_position_error");
+  return error && *error < formation::kFormed && !formation::touched(value_of(run, "min_obstacle_clearance")) &&
+         !formation::touched(value_of(run, "min_robot_clearance"));
 }
 
 std::string ablation_table(const std::vector<VariantResult>& results, const std::vector<Json>& scenes,
@@ -116,7 +113,12 @@ std::string ablation_table(const std::vector<VariantResult>& results, const std:
     for (const Json& run : scenes[i]) text += fmt::format("{:>9}{}", jitter_cell(run), formed(run) ? ' ' : '!');
     text += fmt::format("{:>14.0f}\n", v.median_jitter());
   }
-  return text + "!  not formed, or touched an obstacle or another robot\n";
+  text += "!  not formed, or touched an obstacle or another robot\n";
+  for (const VariantResult& v : results)
+    if (v.without_jitter() > 0)
+      text +=
+          fmt::format("{}: J is not a number in {} fields, which the median leaves out\n", v.name, v.without_jitter());
+  return text;
 }
 
 /// Bars from the top down: the ladder, then the ablations.
