@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "paper/expected.h"
 #include "paper_scenes.h"
 
 namespace exactvo::test {
@@ -14,28 +15,11 @@ namespace {
 using formation::Method;
 using formation::Metrics;
 
-/// A row of the table: the arrival of the last robot in seconds, or that it never comes.
-struct Row {
-  const char* scene;
-  double orca;         ///< s; kStuck
-  bool edge_thin;      ///< an ellipse a facade, b = 0.1 m: arrives
-  bool edge_half;      ///< b = a / 2: arrives
-  bool cluster;        ///< pure equation (12)
-  bool has_obstacles;  ///< A0 has none
-};
-constexpr double kStuck = -1.0;
-
-constexpr Row kTable[] = {{"A0", 9.4, true, true, true, false},       {"A1", kStuck, false, true, true, true},
-                          {"A2", kStuck, false, true, true, true},    {"A3", kStuck, false, false, true, true},
-                          {"A4", kStuck, false, false, true, true},   {"A5", kStuck, false, false, true, true},
-                          {"A6", 11.1, false, true, true, true},      {"A7", kStuck, false, true, true, true},
-                          {"A8", kStuck, false, false, true, true},   {"A9", kStuck, false, false, true, true},
-                          {"A10", 9.4, false, true, true, true},      {"A11", kStuck, false, true, true, true},
-                          {"A12", kStuck, false, true, true, true},   {"A13", 11.5, true, true, true, true},
-                          {"A14", kStuck, false, false, false, true}, {"A15", kStuck, false, false, false, true}};
-
-constexpr double kLatest = 18.0;        // s: what the default method is held to
-constexpr double kOrcaTolerance = 0.5;  // s: between two implementations of the same rule
+using tools::kExpected;
+using tools::kLatest;
+using tools::kOrcaTolerance;
+using tools::kStuck;
+using Row = tools::Expected;
 
 constexpr double kNothingNear = 1e9;  // m: where the scene has nothing to be clear of
 
@@ -46,7 +30,7 @@ void expect_safe(const Metrics& m) {
 }
 
 void default_method_arrives(const Row& row) {
-  const Metrics m = run(paper_scene(row.scene), with_method(Method::ivo)).metrics;
+  const Metrics m = run(paper_scene(row.scenario), with_method(Method::ivo)).metrics;
   ASSERT_TRUE(m.all_arrived);
   EXPECT_LT(*m.last_arrival_time, kLatest);
   EXPECT_EQ(m.min_obstacle_clearance.has_value(), row.has_obstacles);
@@ -54,20 +38,20 @@ void default_method_arrives(const Row& row) {
 }
 
 void cluster_arrives_where_pure_12_can(const Row& row) {
-  const Metrics m = run(paper_scene(row.scene), with_method(Method::ivo_cluster)).metrics;
+  const Metrics m = run(paper_scene(row.scenario), with_method(Method::ivo_cluster)).metrics;
   EXPECT_EQ(m.all_arrived, row.cluster);
   expect_safe(m);
 }
 
 void orca_is_stuck_where_the_table_says(const Row& row) {
-  const Metrics m = run(paper_scene(row.scene), with_method(Method::orca)).metrics;
+  const Metrics m = run(paper_scene(row.scenario), with_method(Method::orca)).metrics;
   EXPECT_EQ(m.all_arrived, row.orca != kStuck);
   EXPECT_NEAR(m.last_arrival_time.value_or(kStuck), row.orca, kOrcaTolerance);
   EXPECT_EQ(m.uncertified_half_planes, 0u);
 }
 
 void edge_with_half_axes(const Row& row) {
-  const Metrics m = run(paper_scene(row.scene), with_method(Method::ivo_edge)).metrics;
+  const Metrics m = run(paper_scene(row.scenario), with_method(Method::ivo_edge)).metrics;
   EXPECT_EQ(m.all_arrived, row.edge_half);
   expect_safe(m);
 }
@@ -75,7 +59,7 @@ void edge_with_half_axes(const Row& row) {
 void edge_with_thin_axes(const Row& row) {
   formation::SimulationOptions options = with_method(Method::ivo_edge);
   options.facade_fixed_minor = 0.1;  // m
-  const Metrics m = run(paper_scene(row.scene), options).metrics;
+  const Metrics m = run(paper_scene(row.scenario), options).metrics;
   EXPECT_EQ(m.all_arrived, row.edge_thin);
   expect_safe(m);
 }
@@ -90,13 +74,13 @@ class TableTest : public testing::Test {
 };
 
 void register_row(const Row& row, const char* method, void (*check)(const Row&)) {
-  const std::string name = std::string(row.scene) + "_" + method;
+  const std::string name = std::string(row.scenario) + "_" + method;
   testing::RegisterTest("PaperTable", name.c_str(), nullptr, nullptr, __FILE__, __LINE__,
                         [&row, check]() -> testing::Test* { return new TableTest([&row, check] { check(row); }); });
 }
 
 const bool kRegistered = [] {
-  for (const Row& row : kTable) {
+  for (const Row& row : kExpected) {
     register_row(row, "orca", orca_is_stuck_where_the_table_says);
     register_row(row, "ivo_edge", edge_with_half_axes);
     register_row(row, "ivo_edge_thin", edge_with_thin_axes);

@@ -73,43 +73,217 @@ json rosy_summary() {
   return all;
 }
 
-Verdict verdict_on(const std::vector<Claim>& all, const std::string& where) {
+Claim claim_at(const std::vector<Claim>& all, const std::string& where) {
   for (const Claim& c : all)
-    if (c.where == where) return c.verdict;
+    if (c.where == where) return c;
   ADD_FAILURE() << where;
-  return Verdict::not_run;
+  return {};
 }
 
-std::vector<Claim> claims_of(const json& summary) {
+std::vector<Claim> claims_of(const json& summary, const json& ablations = nullptr) {
   const Workplace here;
   here.write("summary.json", summary.dump());
+  if (!ablations.is_null()) {
+    std::filesystem::create_directories(here.path() / "ablations");
+    here.write("ablations/ablations.json", ablations.dump());
+  }
   return claims(ReportData(here.path(), here.path(), kSources / "datasets/data/paper"));
 }
 
-TEST(Claims, VerdictsFollowTheNumbers) {
-  json summary = rosy_summary();
-  EXPECT_EQ(verdict_on(claims_of(summary), "Fig. 6, Section V.A"), Verdict::holds);
-  EXPECT_EQ(verdict_on(claims_of(summary), "Fig. 5, Section V.A"), Verdict::fails);  // nothing stopped
-  EXPECT_EQ(verdict_on(claims_of(summary), "Theorem 1, Section IV.B"), Verdict::holds);
-  EXPECT_EQ(verdict_on(claims_of(summary), "Section VI"), Verdict::fails);  // no less jitter
-  for (json& run : summary) {
-    if (run["method"] == "orca") run["all_arrived"] = false;
-    if (run["scenario"] == "A3" && run["method"] == "ivo-edge") run["all_arrived"] = false;
-    if (run["controller"] == "paper-signs") run["formation_position_error"] = 0.2, run["jitter"] = 1e6;
-  }
-  const std::vector<Claim> seen = claims_of(summary);
-  EXPECT_EQ(verdict_on(seen, "Fig. 6, Section V.A"), Verdict::holds_in_part);
-  EXPECT_EQ(verdict_on(seen, "Fig. 5, Section V.A"), Verdict::holds);
-  EXPECT_EQ(verdict_on(seen, "Theorem 1, Section IV.B"), Verdict::fails);
-  EXPECT_EQ(verdict_on(seen, "Section VI"), Verdict::holds);
-  EXPECT_EQ(verdict_on(seen, "(18)-(20)"), Verdict::fails);  // the counterexample is run each time
+/// A claim, a change that turns its verdict, and a run without which there is none.
+struct Turn {
+  const char* where;
+  Verdict rosy;
+  Verdict turned;
+  const char* scenario;  ///< of the run that is changed or taken away
+  const char* judged;    ///< its method, or controller
+  const char* key;
+  json value;
+};
+
+bool is_of(const json& run, const Turn& t) {
+  const json& word = run["controller"].is_null() ? run["method"] : run["controller"];
+  return run["scenario"] == t.scenario && word == t.judged;
 }
 
-TEST(Claims, EachNamesAFigure) {
-  for (const Claim& c : claims_of(rosy_summary())) {
-    EXPECT_THAT(c.figure, testing::EndsWith(".png")) << c.where;
-    EXPECT_FALSE(c.evidence.empty()) << c.where;
+const std::vector<Turn>& turns() {
+  static const std::vector<Turn> all{
+      {"Fig. 5, Section V.A", Verdict::fails, Verdict::holds_in_part, "A4", "orca", "all_arrived", false},
+      {"Fig. 6, Section V.A", Verdict::holds, Verdict::holds_in_part, "A3", "ivo-edge", "all_arrived", false},
+      {"Fig. 6(b), (c)", Verdict::holds, Verdict::holds_in_part, "A9", "ivo-edge", "min_obstacle_clearance", -0.1},
+      {"Section V.A", Verdict::holds, Verdict::fails, "A7", "ivo-edge", "min_robot_clearance", -0.1},
+      {"Section III.B, (11)-(13)", Verdict::holds, Verdict::holds_in_part, "A7", "ivo-edge", "relaxed_steps", 3},
+      {"Theorem 1, Section IV.B", Verdict::holds, Verdict::holds_in_part, "B1", "paper-signs",
+       "formation_position_error", 0.2},
+      {"Fig. 8(c)", Verdict::holds, Verdict::holds_in_part, "B2", "paper-signs", "formation_velocity_error", 0.2},
+      {"Fig. 8(d)", Verdict::holds, Verdict::holds_in_part, "B0", "paper-signs", "min_robot_clearance", -0.1},
+      {"Fig. 8(e), Section VI", Verdict::holds, Verdict::holds_in_part, "B3", "paper-signs", "all_arrived", false}};
+  return all;
+}
+
+TEST(Claims, EachVerdictFollowsItsOwnNumbersBothWays) {
+  const std::vector<Claim> rosy = claims_of(rosy_summary());
+  for (const Turn& t : turns()) {
+    EXPECT_EQ(claim_at(rosy, t.where).verdict, t.rosy) << t.where;
+    json summary = rosy_summary();
+    for (json& run : summary)
+      if (is_of(run, t)) run[t.key] = t.value;
+    EXPECT_EQ(claim_at(claims_of(summary), t.where).verdict, t.turned) << t.where;
   }
+}
+
+TEST(Claims, AMissingRunGivesNoVerdictAndNoNumber) {
+  for (const Turn& t : turns()) {
+    json summary = json::array();
+    for (const json& run : rosy_summary())
+      if (!is_of(run, t)) summary.push_back(run);
+    const Claim claim = claim_at(claims_of(summary), t.where);
+    EXPECT_EQ(claim.verdict, Verdict::not_run) << t.where;
+    EXPECT_THAT(claim.evidence, HasSubstr("-")) << t.where;
+  }
+  // Nothing but one run: no sentinel of an empty list gets into a sentence.
+  for (const Claim& c : claims_of(json::array({run_of("A1", "orca", nullptr)}))) {
+    EXPECT_THAT(c.evidence, Not(HasSubstr("e+300"))) << c.where;
+    EXPECT_THAT(c.evidence, Not(testing::ContainsRegex("[0-9]{20}"))) << c.where;
+  }
+}
+
+TEST(Claims, ARunWithoutAClearanceShowsNoSafety) {
+  json summary = rosy_summary();
+  for (json& run : summary)
+    if (run["scenario"] == "A9") run["min_obstacle_clearance"] = run["min_robot_clearance"] = nullptr;
+  EXPECT_EQ(claim_at(claims_of(summary), "Fig. 6(b), (c)").verdict, Verdict::holds_in_part);
+}
+
+TEST(Claims, TheDefaultDoesNotSpeakForThePapersMethod) {
+  json summary = rosy_summary();
+  for (json& run : summary)
+    if (run["method"] == "ivo" && run["controller"].is_null()) run["relaxed_steps"] = 5;
+  EXPECT_EQ(claim_at(claims_of(summary), "Section III.B, (11)-(13)").verdict, Verdict::holds);
+}
+
+TEST(Claims, TheOpenProblemIsSolvedOrNot) {
+  json summary = rosy_summary();
+  const Claim before = claim_at(claims_of(summary), "Section VI");
+  EXPECT_EQ(before.verdict, Verdict::not_solved);
+  EXPECT_THAT(before.evidence, HasSubstr("1 times the default's in B1"));
+  for (json& run : summary)
+    if (run["controller"] == "paper-signs") run["jitter"] = 1e6;
+  EXPECT_EQ(claim_at(claims_of(summary), "Section VI").verdict, Verdict::solved);
+  summary.erase(summary.end() - 1);  // B3 default
+  EXPECT_EQ(claim_at(claims_of(summary), "Section VI").verdict, Verdict::not_run);
+}
+
+TEST(Claims, TheCauseOfJitterIsReadFromTheAblations) {
+  const auto jitter_claim = [](const std::vector<Claim>& all) {
+    for (const Claim& c : all)
+      if (c.text.find("jitter is caused") != std::string::npos) return c;
+    return Claim{};
+  };
+  EXPECT_THAT(jitter_claim(claims_of(rosy_summary())).evidence, HasSubstr("was not run"));
+  const auto row = [](const char* variant, double j) {
+    return json{{"variant", variant},
+                {"fields", 1},
+                {"reached_and_safe", 1},
+                {"reached", 1},
+                {"median_jitter", j},
+                {"kind", "formation"},
+                {"scenes", {{{"scenario", "B0"}, {"jitter", j}}}}};
+  };
+  const json ablations{{"kind", "exactvo-ablations"},
+                       {"seed", 1},
+                       {"fields", 1},
+                       {"program", {{"version", "1"}, {"commit", "c"}, {"compiler", "g"}}},
+                       {"rows", {row("default", 2.0), row("constant |v_pref|", 84.0)}}};
+  EXPECT_THAT(jitter_claim(claims_of(rosy_summary(), ablations)).evidence, HasSubstr("42 times as much"));
+  json summary = rosy_summary();
+  EXPECT_EQ(jitter_claim(claims_of(summary)).verdict, Verdict::fails);
+  for (json& run : summary)
+    if (run["scenario"] == "B0") run["jitter"] = 1.0;
+  EXPECT_EQ(jitter_claim(claims_of(summary)).verdict, Verdict::holds);
+}
+
+TEST(Claims, TheCounterexampleIsRunEachTime) {
+  EXPECT_EQ(claim_at(claims_of(rosy_summary()), "(18)-(20)").verdict, Verdict::fails);
+}
+
+TEST(Claims, EachFigureShowsWhatIsJudged) {
+  for (const Claim& c : claims_of(rosy_summary())) {
+    EXPECT_FALSE(c.evidence.empty()) << c.where;
+    EXPECT_THAT(c.figure, testing::EndsWith(".png")) << c.where;
+    // Two sheets have several controllers side by side.
+    if (c.figure == "figures/all-formation.png" || c.figure == "figures/jitter.png") continue;
+    const std::string folder = c.judged == "orca"       ? "figures/fig5-orca/"
+                               : c.judged == "ivo-edge" ? "figures/fig6-ivo-edge/"
+                                                        : "figures/fig8-paper-signs/";
+    EXPECT_TRUE(c.figure.rfind(folder, 0) == 0 || c.figure == "figures/all-" + c.judged + ".png")
+        << c.where << ": " << c.judged << " is judged, " << c.figure << " is shown";
+  }
+}
+
+TEST(ReportFiles, ADamagedOrForeignOneIsNamedBeforeTheWork) {
+  struct Bad {
+    const char* file;
+    std::string text;
+    const char* words;
+  };
+  json run = rosy_summary();
+  run[3]["all_arrived"] = "yes";
+  const std::vector<Bad> all{
+      {"summary.json", "[{", "[E_JSON_SYNTAX]"},
+      {"summary.json", "{\"a\": 1}", "expected a list"},
+      {"summary.json", run.dump(), "/3/all_arrived: found \"yes\", expected true or false [E_TYPE]"},
+      {"summary.json", "[{\"scenario\": \"A1\"}]", "/0: found no 'method'"},
+      {"random/random.json", "[]", "expected an object"},
+      {"random/random.json", "{\"kind\": \"exactvo-ablations\"}", "/kind: found \"exactvo-ablations\""},
+      {"ablations/ablations.json", "{\"kind\": \"exactvo-ablations\", \"seed\": -1}",
+       "/seed: found -1, expected a count"}};
+  for (const Bad& bad : all) {
+    const Workplace here;
+    for (const char* folder : {"out/random", "out/ablations"})
+      std::filesystem::create_directories(here.path() / folder);
+    here.write("out/summary.json", "[]");
+    here.write(std::string("out/") + bad.file, bad.text);
+    const test::Outcome outcome = here.run("paper --out out --random 1000000");
+    EXPECT_EQ(outcome.status, 2) << bad.text;
+    EXPECT_THAT(outcome.err, HasSubstr(bad.file));
+    EXPECT_THAT(outcome.err, HasSubstr(bad.words));
+    EXPECT_FALSE(here.has("out/random/parts"));
+  }
+}
+
+std::string report_of(const json& summary) {
+  const Workplace here;
+  here.write("summary.json", summary.dump());
+  return markdown(reproduction_report(ReportData(here.path(), here.path(), kSources / "datasets/data/paper")));
+}
+
+TEST(Report, NamesTheProgramOfEachFile) {
+  json summary = rosy_summary();
+  const json input{{"path", "/x/A1.json"}, {"sha256", "0123456789abcdef0123"}};
+  for (json& run : summary)
+    run["provenance"] = {{"version", "1.2.3"}, {"commit", "abcdef"}, {"inputs", json::array({input})}};
+  const std::string one = report_of(summary);
+  EXPECT_THAT(one, HasSubstr("1.2.3, commit abcdef |"));
+  EXPECT_THAT(one, HasSubstr("| A1.json 0123456789ab |"));
+  EXPECT_THAT(one, Not(HasSubstr("not all of one program")));
+  summary[5]["provenance"]["commit"] = "012345";
+  EXPECT_THAT(report_of(summary), HasSubstr("not all of one program"));
+}
+
+TEST(Report, SaysWhereAPromiseIsNotKept) {
+  json summary = rosy_summary();  // everybody arrives after 12 s
+  const auto row = [&](const std::string& scenario) {
+    const std::string text = report_of(summary), head = "| " + scenario + " | ";
+    const std::size_t at = text.find(head, text.find("Section V.A: robots"));
+    return text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_THAT(row("A1"), HasSubstr("| 12.0 / X DIFFERS | 12.0 / arrives | 12.0 / arrives | 12.0 / below 18 |"));
+  EXPECT_THAT(row("A6"), HasSubstr("| 12.0 / 11.1 +- 0.5 DIFFERS |"));
+  EXPECT_THAT(row("A13"), HasSubstr("| 12.0 / 11.5 +- 0.5 |"));
+  EXPECT_THAT(row("A3"), HasSubstr("| 12.0 / X DIFFERS | 12.0 / X DIFFERS | 12.0 / arrives |"));
+  for (json& run : summary) run["all_arrived"] = false;
+  EXPECT_THAT(row("A1"), HasSubstr("| X / X | X / arrives DIFFERS | X / arrives DIFFERS | X / below 18 DIFFERS |"));
 }
 
 TEST(Report, IsOneFileWithThePicturesInIt) {

@@ -12,12 +12,19 @@
 
 namespace exactvo::tools {
 
+/// A file that the report is made of, and what made it.
+struct SourceFile {
+  std::string name;
+  std::vector<std::string> inputs;    ///< "A1.json 0123456789ab": of what its runs read, with the head of its digest
+  std::vector<std::string> programs;  ///< "1.0.0, commit abc": one, where one program wrote all of it
+};
+
 class ReportData {
  public:
   using Json = nlohmann::ordered_json;
 
   /// Section V's files from one folder, the campaigns' from another (the same, but while the first is in the making).
-  /// `scenarios` holds A1.json and so on.
+  /// `scenarios` holds A1.json and so on. Throws datasets::DataError for a file that is there and not one of ours.
   ReportData(const std::filesystem::path& section_five, const std::filesystem::path& campaigns,
              std::filesystem::path scenarios);
 
@@ -32,12 +39,16 @@ class ReportData {
   const Json& ablations() const { return ablations_; }
 
   const std::filesystem::path& scenarios() const { return scenarios_; }
+  const std::vector<SourceFile>& sources() const { return sources_; }
 
  private:
+  void add_source(const std::string& name, const std::vector<Json>& programs);
+
   Json summary_ = Json::array();
   Json random_;
   Json ablations_;
   std::filesystem::path scenarios_;
+  std::vector<SourceFile> sources_;
 };
 
 /// A number of a run; nothing where it is null or the run is.

@@ -143,10 +143,11 @@ class Experiments {
     }
   }
 
-  /// Fig. 5 has the usual method, Fig. 6 the improved one.
+  /// Fig. 5 has the usual method, Fig. 6 the improved one: the paper's own, which verdicts are on, and the default.
   void keep_avoidance(FinishedRun finished, Method method) {
     if (flags_.no_figures) return;
     if (method == Method::orca) add_figures(finished, "fig5-orca");
+    if (method == Method::ivo_edge) add_figures(finished, "fig6-ivo-edge");
     if (method == Method::ivo) add_figures(finished, "fig6-ivo");
     avoidance_[static_cast<std::size_t>(method)].push_back(std::move(finished.file));
   }
@@ -154,6 +155,7 @@ class Experiments {
   void keep_formation(FinishedRun finished, Controller controller) {
     if (flags_.no_figures) return;
     if (controller == Controller::standard) add_figures(finished, "fig8-formation");
+    if (controller == Controller::paper_signs) add_figures(finished, "fig8-paper-signs");
     formation_.push_back(std::move(finished.file));
   }
 

@@ -32,7 +32,16 @@ struct Flags {
   unsigned jobs = 0;
   bool json = false;
   bool no_figures = false;
+  const CLI::Option* fields_given = nullptr;
+  const CLI::Option* jobs_given = nullptr;
 };
+
+void note_unused(const Flags& flags) {
+  if (flags.fields_given->count() > 0 && !flags.ablations)
+    message("note: --fields does nothing here: it is of --ablations");
+  if (flags.jobs_given->count() > 0 && !flags.ablations && flags.random == 0)
+    message("note: --jobs does nothing here: it is of --random and --ablations");
+}
 
 /// The pictures of an earlier --ablations, put where the report in the making looks for them.
 bool copy_pictures(const fs::path& from, const fs::path& to) {
@@ -44,6 +53,11 @@ bool copy_pictures(const fs::path& from, const fs::path& to) {
     any = true;
   }
   return any;
+}
+
+/// What the report will be made of, read before the work: a damaged file is told at once.
+void check_earlier_files(const Flags& flags) {
+  ReportData(flags.out, flags.out, {});
 }
 
 /// What the report says of the campaigns changes with them.
@@ -65,6 +79,7 @@ ExitCode section_five(const Flags& flags) {
   write_report(ReportData(folder.path(), flags.out, options.scenarios), folder.path());
   if (campaigns_before) fs::remove_all(folder.path() / "ablations");
   if (flags.json) print(summary);
+  if (flags.no_figures) remove_figures(flags.out);
   folder.publish("summary.json");
   message("wrote " + flags.out + "/summary.json, report.html, report.md" + (flags.no_figures ? "" : " and figures/"));
   return ExitCode::success;
@@ -109,6 +124,8 @@ ExitCode campaigns(const Flags& flags) try {
 
 ExitCode paper(const Flags& flags) {
   check_output_folder(flags.out);
+  note_unused(flags);
+  check_earlier_files(flags);
   return flags.random > 0 || flags.ablations ? campaigns(flags) : section_five(flags);
 }
 
@@ -123,12 +140,14 @@ Action declare(CLI::App& app) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
   app.add_flag("--ablations", flags->ablations,
                "Instead of Section V: the ladder of remedies and the default less one at a time");
-  app.add_option("--fields", flags->fields, "Random formations for each set of remedies of --ablations")
-      ->capture_default_str()
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
-  app.add_option("--jobs,-j", flags->jobs,
-                 "Threads for --random and --ablations, one a processor by default; results do not depend on it")
-      ->check(CLI::Range(1u, 1024u));
+  flags->fields_given =
+      app.add_option("--fields", flags->fields, "Random formations for each set of remedies of --ablations")
+          ->capture_default_str()
+          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+  flags->jobs_given =
+      app.add_option("--jobs,-j", flags->jobs,
+                     "Threads for --random and --ablations, one a processor by default; results do not depend on it")
+          ->check(CLI::Range(1u, 1024u));
   declare_seed(app, flags->seed, "Of the random fields; noted in the provenance");
   app.add_flag("--json", flags->json, "Print the JSON instead of the tables");
   app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");

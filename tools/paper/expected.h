@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What is promised of Section V.A's scenarios: the report prints it beside what was seen, and
+/// tests/formation/paper_table_test.cpp holds the runs to it.
+
+namespace exactvo::tools {
+
+/// A row: when the last robot arrives by ORCA, and which of the others arrive at all. Their times are not promised.
+struct Expected {
+  const char* scenario;
+  double orca;         ///< s; kStuck
+  bool edge_thin;      ///< an ellipse a facade, b = 0.1 m: arrives
+  bool edge_half;      ///< b = a / 2: arrives
+  bool cluster;        ///< pure equation (12)
+  bool has_obstacles;  ///< A0 has none
+};
+inline constexpr double kStuck = -1.0;
+
+inline constexpr Expected kExpected[] = {
+    {"A0", 9.4, true, true, true, false},       {"A1", kStuck, false, true, true, true},
+    {"A2", kStuck, false, true, true, true},    {"A3", kStuck, false, false, true, true},
+    {"A4", kStuck, false, false, true, true},   {"A5", kStuck, false, false, true, true},
+    {"A6", 11.1, false, true, true, true},      {"A7", kStuck, false, true, true, true},
+    {"A8", kStuck, false, false, true, true},   {"A9", kStuck, false, false, true, true},
+    {"A10", 9.4, false, true, true, true},      {"A11", kStuck, false, true, true, true},
+    {"A12", kStuck, false, true, true, true},   {"A13", 11.5, true, true, true, true},
+    {"A14", kStuck, false, false, false, true}, {"A15", kStuck, false, false, false, true}};
+
+inline constexpr double kLatest = 18.0;        ///< s: the default method arrives everywhere before it
+inline constexpr double kOrcaTolerance = 0.5;  ///< s: between two implementations of the same rule
+
+}  // namespace exactvo::tools
