@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -207,6 +209,96 @@ TEST_P(Kinds, FloatVerdictsAreNearlyAlwaysRight) {
 
 INSTANTIATE_TEST_SUITE_P(Lines, Kinds, testing::Values(false, true),
                          [](const auto& kind) { return kind.param ? "SomeHard" : "AllSoft"; });
+
+/// The numbers of a counter, mixed: the same everywhere.
+double uniform(std::uint64_t& counter, double least, double most) {
+  std::uint64_t z = counter += 0x9E3779B97F4A7C15ULL;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return least + (most - least) * static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+/// Walls that pass within some units in the last place of one point, and a robot that asks for what lies far outside
+/// the disc: the violation, up to 2^`most_level` times the speed, is many roundings of the walls wide.
+/// Out of line, since GCC 12 drops such conversions where it sees two side by side.
+template <class T>
+[[gnu::noinline]] double as_given(double x) {
+  return static_cast<double>(static_cast<T>(x));
+}
+
+template <class T>
+Problem crowded_wall(std::uint64_t& counter, double most_level) {
+  const double u = static_cast<double>(std::numeric_limits<T>::epsilon()) / 2.0;
+  Problem p;
+  p.bound.disc = 1.0;
+  p.preferred = {0.0, as_given<T>(uniform(counter, -0.6, 0.6))};
+  p.constraints.push_back({{{1.0, 0.0}, 0.5}, Priority::hard, -1});
+  const int more = uniform(counter, 0.0, 1.0) < 0.6 ? 1 : 2;
+  for (int k = 0; k < more; ++k) {
+    const double angle = uniform(counter, -1.2, 1.2), x = as_given<T>(std::cos(angle)),
+                 y = as_given<T>(std::sin(angle));
+    const double offset = 0.5 * x + p.preferred.y * y + uniform(counter, 15.0, 60.0) * u;
+    p.constraints.push_back({{{x, y}, as_given<T>(offset)}, Priority::hard, -1});
+  }
+  const double far = as_given<T>(std::exp2(uniform(counter, 1.0, most_level)));
+  p.constraints.push_back({{{-1.0, 0.0}, far}, Priority::soft, -1});
+  return p;
+}
+
+template <class T>
+std::vector<Problem> crowded_walls(double most_level) {
+  std::vector<Problem> problems;
+  std::uint64_t counter = 5;
+  for (int k = 0; k < 6000; ++k) problems.push_back(crowded_wall<T>(counter, most_level));
+  return problems;
+}
+
+/// Exact: `check` looks at the velocity before it looks for a proof.
+bool keeps_hard_lines(const Problem& problem, Vec2 velocity) {
+  Problem hard = problem;
+  hard.constraints.erase(std::remove_if(hard.constraints.begin(), hard.constraints.end(),
+                                        [](const Constraint& c) { return c.priority == Priority::soft; }),
+                         hard.constraints.end());
+  Certificate claim;
+  claim.velocity = velocity;
+  return check(hard, claim) != Flaw::velocity;
+}
+
+template <class T>
+std::size_t broken_walls(const Batch<T>& batch) {
+  std::size_t broken = 0;
+  for (std::size_t i = 0; i < batch.problems().size(); ++i) {
+    const Solution s = batch.solution(i);
+    const bool must = s.status == Status::optimal || s.status == Status::relaxed;
+    broken += must && !keeps_hard_lines(batch.problems()[i], s.velocity);
+  }
+  return broken;
+}
+
+template <class T>
+void expect_walls_kept(double most_level) {
+  Batch<T> batch(crowded_walls<T>(most_level));
+  solve_batch(batch.in(), batch.out(), 0, batch.problems().size());
+  EXPECT_EQ(broken_walls(batch), 0u);
+  EXPECT_GT(std::count(batch.status.begin(), batch.status.end(), 1), 3000);
+}
+
+TEST(Batch, HardLinesHoldHoweverFarSoftOnesGive) {
+  for (const double most_level : {6.0, 30.0}) {
+    expect_walls_kept<double>(most_level);
+    expect_walls_kept<float>(most_level);
+  }
+}
+
+TEST(Batch, WhatIsProvenKeepsTheHardLines) {
+  Batch<double> batch(crowded_walls<double>(6.0));
+  std::vector<std::uint8_t> proven(batch.status.size());
+  BatchAnswers<double> out = batch.out();
+  out.proven = proven.data();
+  solve_batch(batch.in(), out, 0, batch.problems().size());
+  EXPECT_EQ(broken_walls(batch), 0u);
+  EXPECT_EQ(std::count(proven.begin(), proven.begin() + 6000, 1), 6000);
+}
 
 TEST(Batch, NamesTheCallersMistakes) {
   Batch<double> batch(generate("RF10", 4, 1));

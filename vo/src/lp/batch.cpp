@@ -11,6 +11,7 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
+#include "inward.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lp/batch.cpp"
@@ -68,6 +69,9 @@ namespace {
 /// Problems a task: some microseconds of work, a multiple of every lane count.
 constexpr std::size_t kGrain = 1024;
 
+/// Lines of a block that hints may point into.
+constexpr std::size_t kMostHintedBlock = std::size_t{1} << 31U;
+
 template <class T>
 Problem problem_at(const BatchProblems<T>& in, std::size_t i) {
   Problem problem;
@@ -100,7 +104,8 @@ template <class T>
 bool solve_alone(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t i) {
   const Problem problem = problem_at(in, i);
   if (!out.proven) {
-    put(solve(problem), out, i);
+    const Solution s = solve(problem);
+    put(sizeof(T) == 8 ? s : in_float(problem, s), out, i);
     return false;
   }
   const Proven answer = solve_certified(problem);
@@ -115,6 +120,9 @@ void require_arrays(const BatchProblems<T>& in, const BatchAnswers<T>& out, std:
       first <= last && last <= in.count && (in.block >= in.count || in.block % kMostLanes == 0) && in.block > 0 &&
           in.count <= out.stride,
       "problems " + std::to_string(first) + " to " + std::to_string(last) + " of " + std::to_string(in.count));
+  EXACTVO_REQUIRE(!in.hint || in.lines == 0 || in.block <= kMostHintedBlock / in.lines,
+                  "hints in a block of " + std::to_string(in.block) + " problems of " + std::to_string(in.lines) +
+                      " lines: they are fetched by numbers of 32 bits");
   EXACTVO_REQUIRE(in.disc && in.preferred_x && in.preferred_y && out.velocity_x && out.velocity_y && out.violation &&
                       out.status && (!in.hint || in.hint_stride >= in.count) &&
                       (in.lines == 0 || (in.normal_x && in.normal_y && in.offset)),

@@ -165,6 +165,7 @@ class Conveyor {
       w.pack.derive();
       w.pack.start();
     });
+    for_all(ways, packs, [this](Way& w) { turn_away(w); });
     if (in_.hint)
       follow_hints(ways, packs);
     else
@@ -186,6 +187,15 @@ class Conveyor {
       }
       count = left;
     }
+  }
+
+  /// Lanes whose numbers are too large or too small to square.
+  HWY_INLINE void turn_away(Way& way) {
+    const M odd = hn::AndNot(way.pack.in_range(), way.lanes);
+    if (hn::AllFalse(D(), odd)) return;
+    way.walking = hn::AndNot(odd, way.walking);
+    way.gone = hn::Or(way.gone, odd);
+    leave(way.pack, odd);
   }
 
   /// What is violated now, and by that who goes on.

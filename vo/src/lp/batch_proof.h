@@ -49,7 +49,7 @@ class Proof {
     const V pull_x = hn::Sub(p_.vx, p_.px), pull_y = hn::Sub(p_.vy, p_.py);
     const V squared = dot(p_.vx, p_.vy, p_.vx, p_.vy);
     const V limit = hn::Mul(speed, speed);
-    const M at_disc = hn::AndNot(exists(p_.second), hn::Gt(squared, hn::Mul(limit, hn::Set(p_.d, T(1) - T(0x1p-40)))));
+    const M at_disc = hn::AndNot(exists(p_.second), hn::Gt(squared, hn::Mul(limit, hn::Set(p_.d, T(1) - T(kOnDisc)))));
     const M line = exists(p_.first), single = hn::AndNot(hn::Or(exists(p_.second), at_disc), line);
     const V yx = pick(at_disc, hn::Neg(p_.vx), p_.second.x), yy = pick(at_disc, hn::Neg(p_.vy), p_.second.y);
     const V turn = hn::Sub(hn::Mul(p_.first.x, yy), hn::Mul(p_.first.y, yx));

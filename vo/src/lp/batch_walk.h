@@ -81,9 +81,9 @@ struct Pack {
 
   HWY_INLINE void derive() {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
-    slack = hn::Mul(speed, hn::Set(d, T(16) * T(1.5) * u));
-    noise = hn::Mul(speed, hn::Set(d, T(8) * u));
-    disc = hn::Mul(speed, hn::Set(d, T(1) - T(8) * u));
+    slack = hn::Mul(speed, hn::Set(d, T(kSlackUnits) * u));
+    noise = hn::Mul(speed, hn::Set(d, T(kNoiseUnits) * u));
+    disc = hn::Mul(speed, hn::Set(d, T(1) - T(kDiscUnits) * u));
     disc_squared = hn::Mul(disc, disc);
   }
 
@@ -91,11 +91,17 @@ struct Pack {
   HWY_INLINE M exists(const LineV<D>& line) const { return hn::Ge(line.index, hn::Zero(d)); }
   HWY_INLINE M is_soft(const LineV<D>& line) const { return hn::Ge(line.index, hard_count); }
 
+  /// Lanes whose squares neither overflow nor lose digits.
+  HWY_INLINE M in_range() const {
+    const V limit = hn::Mul(speed, speed), most = hn::Max(dot(px, py, px, py), limit);
+    return hn::And(hn::Ge(limit, hn::Set(d, kLeastSquare<T>)), hn::Le(most, hn::Set(d, kMostSquare<T>)));
+  }
+
   /// The optimum of the disc alone.
   HWY_INLINE void start() {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
     const V squared = dot(px, py, px, py);
-    const V limit = hn::Mul(hn::Mul(speed, speed), hn::Set(d, T(1) - T(8) * u));
+    const V limit = hn::Mul(hn::Mul(speed, speed), hn::Set(d, T(1) - T(kDiscUnits) * u));
     const V shrink = hn::Div(disc, hn::Sqrt(hn::Max(squared, limit)));
     const M inside = hn::Le(squared, limit);
     vx = pick(inside, px, hn::Mul(px, shrink));
@@ -107,14 +113,18 @@ struct Pack {
 };
 
 /// The line violated most a lane. On the first walk all lines carry the slack; on the second only the hard ones do, and
-/// soft ones count from `level` on. Without kIndex any line is number 0: who asks for no numbers is spared their cost.
+/// soft ones count from `level` on. The level is taken off the soft ones rather than added to the hard ones: it may be
+/// many times the speed, and its rounding would then exceed the slack. Without kIndex any line is number 0: who asks
+/// for no numbers is spared their cost.
 template <bool kHard, bool kIndex, class D, class T>
 HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p) {
   const D d;
   using V = hn::Vec<D>;
   const V zero = hn::Zero(d);
-  const V allowed = pick(p.relaxing, hn::Add(p.level, p.noise), hn::Sub(p.noise, p.slack));
-  const V hard_extra = hn::IfThenElseZero(p.relaxing, hn::Add(p.level, p.slack));
+  const V enough = kHard ? p.noise : hn::Add(p.level, p.noise);
+  const V allowed = pick(p.relaxing, enough, hn::Sub(p.noise, p.slack));
+  const V hard_extra = hn::IfThenElseZero(p.relaxing, p.slack);
+  const V soft_extra = hn::IfThenElseZero(p.relaxing, hn::Neg(p.level));
   const V vx = p.vx, vy = p.vy, one = hn::Set(d, T(1)), hard_count = p.hard_count;
   V most = allowed;
   V ex = zero, ey = zero, ec = zero, index = hn::Set(d, T(kNoLine)), number = zero;
@@ -123,7 +133,7 @@ HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p) {
   for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
     const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
     V by = hn::Sub(offset, dot(x, y, vx, vy));
-    if (kHard) by = hn::Add(by, hn::IfThenElseZero(hn::Lt(number, hard_count), hard_extra));
+    if (kHard) by = hn::Add(by, pick(hn::Lt(number, hard_count), hard_extra, soft_extra));
     const auto more = hn::Gt(by, most);
     most = hn::Max(most, by);
     ex = pick(more, x, ex);
@@ -154,7 +164,7 @@ HWY_INLINE V reach_within_disc(const Pack<D>& p, const LineV<D>& line, V squared
 template <class D, class V>
 HWY_INLINE V cut_off(D d, const LineV<D>& line, V squared, const LineV<D>& other, V& low, V& high) {
   using T = hn::TFromD<D>;
-  const V slope = hn::Add(cross(line, other), hn::Set(d, sizeof(T) == 8 ? T(1e-300) : T(1e-36)));
+  const V slope = hn::Add(cross(line, other), hn::Set(d, kParallel<T>));
   const V missing = hn::Sub(hn::Mul(other.c, squared), hn::Mul(dot(line.x, line.y, other.x, other.y), line.c));
   const V cut = hn::Div(missing, slope);
   const auto raises = hn::Gt(slope, hn::Zero(d));

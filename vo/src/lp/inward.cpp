@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "active_set.h"
 #include "exact_sign.h"
@@ -12,6 +13,9 @@ namespace {
 
 /// Neighbours up to this many steps away are tried; a vertex rounded to nearest lies within one of the exact one.
 constexpr int kReach = 3;
+
+/// Steps of float that a velocity may be moved by to stay inside when it becomes one.
+constexpr int kInwardSteps = 3;
 
 bool must_hold(const Constraint& c, Status status) {
   if (status == Status::optimal || status == Status::pinched) return true;
@@ -30,6 +34,11 @@ std::optional<Vec2> neighbour_inside(const Problem& problem, Status status, Vec2
     }
   }
   return std::nullopt;
+}
+
+/// Out of line, since GCC 12 drops such conversions where it sees two side by side.
+[[gnu::noinline]] double rounded_to_float(double x) {
+  return static_cast<double>(static_cast<float>(x));
 }
 
 Problem musts_near(const Problem& problem, Status status, Vec2 target) {
@@ -58,6 +67,28 @@ double violation_that_counts(const Problem& problem, Status status, Vec2 v) {
     if (gives) most = std::max(most, geometry::violation(c.half_plane, v));
   }
   return most;
+}
+
+Solution in_float(const Problem& problem, Solution s) {
+  if (s.status != Status::optimal && s.status != Status::relaxed) return s;
+  const Vec2 exact = s.velocity;
+  const double step =
+      static_cast<double>(std::numeric_limits<float>::epsilon()) / 2.0 * std::max(std::abs(exact.x), std::abs(exact.y));
+  const Status asked = s.status;
+  s.status = Status::pinched;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = -kInwardSteps; i <= kInwardSteps; ++i) {
+    for (int j = -kInwardSteps; j <= kInwardSteps; ++j) {
+      const Vec2 v = {rounded_to_float(exact.x + i * step), rounded_to_float(exact.y + j * step)};
+      const double away = squared_norm(v - exact);
+      if (!(away < least) || !holds(problem, asked, v)) continue;
+      least = away;
+      s.velocity = v;
+      s.status = asked;
+    }
+  }
+  s.violation = violation_that_counts(problem, s.status, s.velocity);
+  return s;
 }
 
 Vec2 into_box(Vec2 v, const SpeedBound& b) {

@@ -29,13 +29,14 @@ class SingleWalk {
  public:
   explicit SingleWalk(const SingleProblem& problem)
       : p_(problem),
-        slack_(24.0 * 0x1p-53 * problem.disc),
-        noise_(8.0 * 0x1p-53 * problem.disc),
-        disc_(problem.disc * (1.0 - 8.0 * 0x1p-53)),
+        slack_(kSlackUnits * 0x1p-53 * problem.disc),
+        noise_(kNoiseUnits * 0x1p-53 * problem.disc),
+        disc_(problem.disc * (1.0 - kDiscUnits * 0x1p-53)),
         disc_squared_(disc_ * disc_) {}
 
   /// False where the walk cannot tell: for `solve`.
   HWY_INLINE bool run(Solution& s) {
+    if (!in_range()) return false;
     start();
     int round = 0;
     for (; look(noise_ - slack_); ++round) {
@@ -48,9 +49,17 @@ class SingleWalk {
   }
 
  private:
+  /// As Pack::in_range.
+  HWY_INLINE bool in_range() const {
+    const double limit = p_.disc * p_.disc;
+    const double squared = p_.preferred.x * p_.preferred.x + p_.preferred.y * p_.preferred.y;
+    return limit >= kLeastSquare<double> && std::max(squared, limit) <= kMostSquare<double>;
+  }
+
   HWY_INLINE void start() {
     const double squared = p_.preferred.x * p_.preferred.x + p_.preferred.y * p_.preferred.y;
-    const double shrink = squared <= p_.disc * p_.disc * (1.0 - 8.0 * 0x1p-53) ? 1.0 : disc_ / std::sqrt(squared);
+    const double shrink =
+        squared <= p_.disc * p_.disc * (1.0 - kDiscUnits * 0x1p-53) ? 1.0 : disc_ / std::sqrt(squared);
     x_ = p_.preferred.x * shrink;
     y_ = p_.preferred.y * shrink;
   }
@@ -82,7 +91,7 @@ class SingleWalk {
 
   /// Where `other` cuts the boundary of `line` off, in the unit of `step`.
   HWY_INLINE double cut_off(const Line& line, double squared, const Line& other, double& low, double& high) const {
-    const double slope = cross(line, other) + 1e-300;
+    const double slope = cross(line, other) + kParallel<double>;
     const double cut = (other.c * squared - (line.x * other.x + line.y * other.y) * line.c) / slope;
     if (slope > 0.0)
       low = std::max(low, cut);
@@ -163,7 +172,7 @@ class SingleWalk {
     s.violation = status == Status::relaxed ? std::max(level_, 0.0) : 0.0;
     for (const Line* line : {&first_, &second_, &third_})
       if (line->exists()) s.active[s.active_count++] = static_cast<std::size_t>(line->index);
-    const bool on_disc = x_ * x_ + y_ * y_ > p_.disc * p_.disc * (1.0 - 0x1p-40);
+    const bool on_disc = x_ * x_ + y_ * y_ > p_.disc * p_.disc * (1.0 - kOnDisc);
     if (on_disc && s.active_count < (status == Status::optimal ? 2U : 3U)) s.active[s.active_count++] = kSpeedBound;
   }
 

@@ -90,7 +90,7 @@ class Batch {
       if (line != kNoLine) s.active[s.active_count++] = order_[slot * lines_ + static_cast<std::size_t>(line)];
     }
     const bool room = s.active_count < (s.status == Status::optimal ? 2U : 3U);
-    if (room && norm(s.velocity) > disc_[slot] * (1.0 - 0x1p-40)) s.active[s.active_count++] = kSpeedBound;
+    if (room && norm(s.velocity) > disc_[slot] * (1.0 - kOnDisc)) s.active[s.active_count++] = kSpeedBound;
     return s;
   }
 
