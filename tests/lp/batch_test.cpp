@@ -300,6 +300,113 @@ TEST(Batch, WhatIsProvenKeepsTheHardLines) {
   EXPECT_EQ(std::count(proven.begin(), proven.begin() + 6000, 1), 6000);
 }
 
+/// Two equal lines that bind, of which a walk without hints names the first, and a line between them that holds.
+Problem twice_the_same() {
+  Problem p;
+  p.bound.disc = 2.0;
+  p.preferred = {1.5, 0.25};
+  for (const double offset : {-0.5, -1.75, -0.5}) p.constraints.push_back({{{-1.0, 0.0}, offset}, Priority::soft, -1});
+  return p;
+}
+
+template <class T, class Run>
+void expect_hints_followed(Run run) {
+  Batch<T> batch(std::vector<Problem>(45, twice_the_same()));
+  std::vector<std::int32_t> hints(3 * batch.status.size(), kNoLine);
+  for (std::size_t i = 0; i < 45; i += 2) hints[i] = 2;
+  BatchProblems<T> in = batch.in();
+  in.hint = hints.data();
+  in.hint_stride = batch.status.size();
+  run(in, batch.out());
+  for (std::size_t i = 0; i < 45; ++i) {
+    EXPECT_EQ(batch.active[i], i % 2 == 0 ? 2 : 0) << i;
+    EXPECT_NEAR(static_cast<double>(batch.vx[i]), 0.5, 1e-5);  // 24 u of float and its last digit
+  }
+}
+
+const auto all_at_once = [](const auto& in, const auto& out) { solve_batch(in, out, 0, in.count); };
+const auto on_threads = [](const auto& in, const auto& out) { solve_batch_parallel(in, out); };
+const auto in_pieces = [](const auto& in, const auto& out) {
+  for (std::size_t first = 0; first < in.count; first += 7) solve_batch(in, out, first, std::min(in.count, first + 7));
+};
+
+TEST(Batch, TheWalkBeginsAtTheHint) {
+  for (const char* target : {"", "AVX2", "SSE4", "SSSE3"}) {
+    if (!limit_batch_target(target)) continue;
+    expect_hints_followed<double>(all_at_once);
+    expect_hints_followed<double>(on_threads);
+    expect_hints_followed<double>(in_pieces);
+    expect_hints_followed<float>(all_at_once);
+    expect_hints_followed<float>(on_threads);
+    expect_hints_followed<float>(in_pieces);
+  }
+  ASSERT_TRUE(limit_batch_target(""));
+}
+
+TEST_P(Kinds, HintedLanesAreProvenAndTheSameOnEveryWay) {
+  Batch<double> cold(mixture(GetParam()));
+  solve_batch(cold.in(), cold.out(), 0, cold.problems().size());
+  const std::vector<std::int32_t> hints(cold.active.rbegin(), cold.active.rend());
+  const auto solved = [&](auto run) {
+    Batch<double> warm(mixture(GetParam()));
+    std::vector<std::uint8_t> proven(warm.status.size());
+    BatchProblems<double> in = warm.in();
+    in.hint = hints.data();
+    in.hint_stride = hints.size() / 3;
+    BatchAnswers<double> out = warm.out();
+    out.proven = proven.data();
+    run(in, out);
+    EXPECT_EQ(static_cast<std::size_t>(std::count(proven.begin(), proven.end(), 1)), warm.problems().size());
+    EXPECT_EQ(warm.status, cold.status);
+    return warm;
+  };
+  const Batch<double> widest = solved(all_at_once);
+  for (const char* target : {"", "AVX2", "SSE4"}) {
+    if (!limit_batch_target(target)) continue;
+    for (const Batch<double>& other : {solved(all_at_once), solved(on_threads), solved(in_pieces)}) {
+      EXPECT_EQ(other.vx, widest.vx);
+      EXPECT_EQ(other.vy, widest.vy);
+      EXPECT_EQ(other.active, widest.active);
+    }
+  }
+  ASSERT_TRUE(limit_batch_target(""));
+}
+
+TEST(Batch, HintsThatNumbersOf32BitsCannotReachAreRefused) {
+  Batch<double> batch(generate("RF10", 4, 1));
+  const std::vector<std::int32_t> hints(3 * batch.status.size(), kNoLine);
+  BatchProblems<double> in = batch.in();
+  in.hint = hints.data();
+  in.hint_stride = batch.status.size();
+  in.block = std::size_t{1} << 28U;
+  EXPECT_THROW(solve_batch(in, batch.out(), 0, 0), std::logic_error);
+  in.hint = nullptr;
+  EXPECT_NO_THROW(solve_batch(in, batch.out(), 0, 0));
+}
+
+template <class T>
+void expect_aim(double preferred, double disc) {
+  Problem p;
+  p.bound.disc = disc;
+  p.preferred = {preferred, preferred};
+  p.constraints.push_back({{{1.0, 0.0}, -0.9 * disc}, Priority::soft, -1});
+  Batch<T> batch(std::vector<Problem>(21, p));
+  EXPECT_EQ(solve_batch(batch.in(), batch.out(), 0, 21).scalar, 21u);
+  const double u = static_cast<double>(std::numeric_limits<T>::epsilon());
+  for (std::size_t i = 0; i < 21; ++i) {
+    EXPECT_EQ(batch.status[i], 0);
+    EXPECT_NEAR(static_cast<double>(batch.vx[i]) / disc, std::sqrt(0.5), 32.0 * u);
+    EXPECT_NEAR(static_cast<double>(batch.vy[i]) / disc, std::sqrt(0.5), 32.0 * u);
+  }
+}
+
+TEST(Batch, SpeedsWhoseSquaresLeaveTheRangeOfANumberAreAnswered) {
+  expect_aim<double>(1e200, 1.0);
+  expect_aim<double>(1e-180, 1e-200);
+  expect_aim<float>(1e30, 1.0);
+  expect_aim<float>(1e-21, 1e-25);
+}
+
 TEST(Batch, NamesTheCallersMistakes) {
   Batch<double> batch(generate("RF10", 4, 1));
   EXPECT_THROW(solve_batch(batch.in(), batch.out(), 0, 5), std::logic_error);

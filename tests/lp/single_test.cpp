@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "exactvo/vo/lp/batch.h"
@@ -76,6 +78,19 @@ TEST(Single, EveryTargetGivesTheSameBits) {
     }
   }
   ASSERT_TRUE(limit_batch_target(""));
+}
+
+TEST(Single, SpeedsWhoseSquaresLeaveTheRangeOfANumberAreAnswered) {
+  for (const auto& [preferred, disc] : {std::pair(1e200, 1.0), std::pair(1e-180, 1e-200)}) {
+    Problem p;
+    p.bound.disc = disc;
+    p.preferred = {preferred, preferred};
+    p.constraints.push_back({{{1.0, 0.0}, -0.9 * disc}, Priority::soft, -1});
+    const Solution s = Arrays(p).solve();
+    EXPECT_EQ(s.status, Status::optimal);
+    EXPECT_NEAR(s.velocity.x / disc, std::sqrt(0.5), 1e-14);
+    EXPECT_NEAR(s.velocity.y / disc, std::sqrt(0.5), 1e-14);
+  }
 }
 
 TEST(Single, AnswersHoldExactlyWhereTheRegionIsNotThin) {

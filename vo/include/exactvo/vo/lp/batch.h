@@ -7,7 +7,9 @@
 /// The same walk as the scalar solver: the most violated line enters, the optimum of the few lines in hand follows.
 /// Lanes never mix and no operation is fused, so in double every target and every number of threads gives the same
 /// bits. Rounded inward like `solve`; a verdict is heuristic in the last digits. Lanes that the lockstep walk cannot
-/// settle (too many rounds, contradicting hard lines) go to the scalar solver.
+/// settle (too many rounds, contradicting hard lines, speeds whose squares leave the range of T: below 2^-200 or above
+/// 2^250 m/s, of float 2^-25 and 2^30) go to the scalar solver. Float answers from there are moved inward once more,
+/// by up to three steps of float, and are `pinched` where that does not do.
 
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +38,7 @@ struct BatchProblems {
   const std::int32_t* hard = nullptr;  ///< [i]: the first so many lines are hard; null: none
   /// Where the walk begins, laid out as BatchAnswers::active: the numbers that the lines which bound a moment ago have
   /// now, kNoLine for those that are gone. It saves rounds, though mostly not time (docs/guide/linear-program.md); the
-  /// answer promises the same, only its last digits may differ. May be null.
+  /// answer promises the same, only its last digits may differ. May be null. REQUIRES: block * lines <= 2^31.
   const std::int32_t* hint = nullptr;
   std::size_t hint_stride = 0;
 };
