@@ -2,6 +2,7 @@
 #include "warm.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <vector>
@@ -104,13 +105,21 @@ void compare(const Sequence& sequence, const char* what, int rounds) {
     lp::solve_batch(problems, arrays.answers(), 0, arrays.count);
     return (thread_nanoseconds() - before) / static_cast<double>(arrays.count);
   };
+  const auto verdicts = [&](const lp::BatchProblems<T>& problems) {
+    const lp::BatchAnswers<T> out = arrays.answers();
+    lp::solve_batch(problems, out, 0, arrays.count);
+    return std::vector<std::uint8_t>(out.status, out.status + arrays.count);
+  };
+  const std::vector<std::uint8_t> expected = verdicts(cold), found = verdicts(warm);
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < arrays.count; ++i) differ += expected[i] != found[i];
   std::vector<double> cold_times, warm_times;
   for (int round = 0; round < rounds; ++round) {
     cold_times.push_back(nanoseconds(cold));
     warm_times.push_back(nanoseconds(warm));
   }
-  std::printf("  %-8s cold %7.1f ns   warm %7.1f ns   %5.2f times as fast\n", what, median(cold_times),
-              median(warm_times), median(cold_times) / median(warm_times));
+  std::printf("  %-8s cold %7.1f ns   warm %7.1f ns   %5.2f times as fast   %zu verdicts differ\n", what,
+              median(cold_times), median(warm_times), median(cold_times) / median(warm_times), differ);
 }
 
 }  // namespace

@@ -170,5 +170,18 @@ TEST(Certificate, FlawsHaveNames) {
   EXPECT_STREQ(name(Flaw::contradiction), "contradiction");
 }
 
+TEST(Certificate, APreferenceWhoseSquareOverflowsIsAimedAt) {
+  Problem p;
+  p.bound.disc = 1.0;
+  p.preferred = {1e200, 1e200};
+  p.constraints.push_back({{{1.0, 0.0}, -0.9}, Priority::soft, -1});
+  for (const Proven& answer : {solve_certified(p), solve_exact(p)}) {
+    EXPECT_STREQ(name(answer.solution.status), "optimal");
+    EXPECT_NEAR(answer.solution.velocity.x, std::sqrt(0.5), 1e-14);
+    EXPECT_NEAR(answer.solution.velocity.y, std::sqrt(0.5), 1e-14);
+    EXPECT_TRUE(!answer.certificate || check(p, *answer.certificate) == Flaw::none);
+  }
+}
+
 }  // namespace
 }  // namespace exactvo::lp

@@ -51,6 +51,14 @@ void round_point(ExactOptimum& o) {
   o.rounded.y = rounded_coordinate(o.point.y0, o.point.y1, root, w, o.error);
 }
 
+/// The same direction by a power of two, of a length near 1, so that doubles follow the search: exact, or as it was.
+Vec2 brought_near(Vec2 direction) {
+  const int exponent = std::ilogb(std::max(std::abs(direction.x), std::abs(direction.y)));
+  const Vec2 near = {std::scalbn(direction.x, -exponent), std::scalbn(direction.y, -exponent)};
+  const bool same = std::scalbn(near.x, exponent) == direction.x && std::scalbn(near.y, exponent) == direction.y;
+  return same ? near : direction;
+}
+
 /// The point of the disc farthest along `direction`.
 ExactPoint top_of_disc(const ExactVector& direction, const Exact& radius) {
   const Exact squared = dot(direction, direction);
@@ -67,7 +75,8 @@ ExactOptimum start_of(const ExactRegion& region, const Aim& aim) {
   if (aim.directions.empty() && inside_disc(aim.target, region)) {
     o.point = {Exact(aim.target.x), 0, Exact(aim.target.y), 0, 1, 0};
   } else {
-    o.point = top_of_disc(exact(aim.directions.empty() ? aim.target : aim.directions.front()), region.disc);
+    o.point =
+        top_of_disc(exact(brought_near(aim.directions.empty() ? aim.target : aim.directions.front())), region.disc);
     o.on_disc = true;
   }
   round_point(o);
