@@ -78,8 +78,13 @@ formation::BindingConstraint binding(SeededRandom& random) {
 /// Every term another number.
 formation::LyapunovRow lyapunov_row(double time, SeededRandom& random) {
   const auto any = [&random] { return random.uniform(-9, 9); };
-  return {time,  {any(), any(), any(), any()}, {any(), any(), any(), any()},
-          any(), {any(), any(), any()},        {any(), any(), any()},
+  return {time,
+          true,
+          {any(), any(), any(), any()},
+          {any(), any(), any(), any()},
+          any(),
+          {any(), any(), any()},
+          {any(), any(), any()},
           any()};
 }
 
