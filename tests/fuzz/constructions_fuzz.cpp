@@ -14,6 +14,7 @@
 #include "exactvo/geometry/validity.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/family.h"
+#include "exactvo/vo/free_velocities.h"
 #include "geometry/rational_oracle.h"
 
 namespace exactvo::fuzz {
@@ -72,6 +73,21 @@ void examine_sum(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
   });
 }
 
+/// The bounds of what one cone leaves, asked at its apex, at a velocity and at the corners of the bounds.
+void examine_free(const vo::ShiftedCone& cone, Vec2 velocity, double speed, const std::string& text) {
+  if (!(std::fabs(cone.apex.x) <= vo::kMostApex && std::fabs(cone.apex.y) <= vo::kMostApex)) return;
+  const vo::FreeVelocities free({cone}, {speed, 1e-2});
+  std::vector<Vec2> asked{cone.apex, velocity, {}, {speed, 0.0}};
+  for (const geometry::Region* region : {&free.inner(), &free.outer()})
+    for (const auto& piece : region->pieces())
+      asked.insert(asked.end(), piece.polygon.outer.begin(), piece.polygon.outer.end());
+  for (const Vec2 v : asked) {
+    const bool is_free = free.contains(v);
+    if (!is_free && free.inner().locate(v) == geometry::Place::inside) fail("a collision called free", text);
+    if (is_free && free.outer().locate(v) == geometry::Place::outside) fail("a free velocity left out", text);
+  }
+}
+
 void examine_encounter(Bytes& bytes) {
   vo::Encounter e;
   e.obstacle = bytes.shape();
@@ -85,10 +101,13 @@ void examine_encounter(Bytes& bytes) {
   if (kind % 3 == 0) e.robot = geometry::convex_hull(bytes.points());
   if (kind % 5 == 0) e.time_horizon = INFINITY;
   if (e.time_horizon == 0.0) return;
+  const double length = bytes.length();
+  const double speed = length > 0.0 ? length : 1.0;
   const std::string text = to_string(e.obstacle);
   guarded(true, text, [&] {
     for (const vo::Variant v : vo::kVariants) {
       const vo::Member member = vo::family_member(v, e);
+      if (member.cone) examine_free(*member.cone, e.velocity, speed, text);
       if (v != vo::Variant::orca || !member.half_plane || e.robot) continue;
       if (!vo::is_true({e.obstacle, e.position, e.radius, e.time_horizon, e.obstacle_velocity, *member.half_plane}))
         fail("an unsafe half-plane", text);
