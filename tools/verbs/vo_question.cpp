@@ -131,7 +131,8 @@ void check_numbers(const VoFlags& flags) {
   const auto require = [](bool ok, const char* option, double found, const char* expected) {
     if (!ok) throw UsageError(option, fmt::format("{}", found), expected);
   };
-  require(flags.radius >= 0.0 && flags.radius <= kLargestNumber, "--radius", flags.radius, "a length from 0 m on");
+  require(flags.radius >= 0.0 && flags.radius <= kLargestNumber, "--radius", flags.radius,
+          "a length from 0 m to 2^100 m");
   require(flags.alpha > 0.0 && flags.alpha <= 1.0, "--alpha", flags.alpha, "a number in (0, 1]");
   if (flags.free)
     require(flags.max_speed >= vo::kLeastMaxSpeed && flags.max_speed <= vo::kMostMaxSpeed, "--max-speed",
