@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -64,13 +65,19 @@ double rounding_of(const Number& exact, double rounded) {
   return std::max(std::fabs(interval.first), std::fabs(interval.second));
 }
 
+// Not less than the exact sum of two numbers >= 0. Nothing and nothing stays nothing.
+double sum_rounded_up(double a, double b) {
+  if (a == 0.0 || b == 0.0) return a + b;
+  return std::nextafter(a + b, std::numeric_limits<double>::infinity());
+}
+
 // To doubles, and by how much at most.
 class Rounding {
  public:
   Vec2 operator()(const Kernel::Point_2& exact) {
     const Vec2 p = {coordinate(exact.x()), coordinate(exact.y())};
-    // The sum of both is more than their hypotenuse, and takes up the roundings of the sum itself.
-    moved_ = std::max(moved_, rounding_of(exact.x(), p.x) + rounding_of(exact.y(), p.y));
+    // The sum of both is not less than their hypotenuse.
+    moved_ = std::max(moved_, sum_rounded_up(rounding_of(exact.x(), p.x), rounding_of(exact.y(), p.y)));
     return p;
   }
   double moved() const { return moved_; }
@@ -352,12 +359,12 @@ EvenOddRegion cut_until_nothing_changes(std::vector<Ring> rings) {
     if (round == kPlainRounds) {
       const double grid = grid_for(rings);
       rings = snapped(rings, grid);
-      region.moved += grid;  // half a pixel's diagonal, and the rounding of this sum
+      region.moved = sum_rounded_up(region.moved, grid);  // more than half a pixel's diagonal
     }
     Cut next = cut(rings);
     if (round > 0 && same(next.polygons, region.polygons)) return region;
     region.polygons = std::move(next.polygons);
-    region.moved += next.moved * (1.0 + 4.0 * kUnitRoundoff);
+    region.moved = sum_rounded_up(region.moved, next.moved);
     region.rounds = round + 1;
     rings = rings_of(region.polygons);
   }

@@ -114,14 +114,20 @@ void divide(const Subject& subject, const ShapeOptions& options, ObstacleShapes&
 
 // --- Pieces ---
 
-void split(const ShapeOptions& options, ObstacleShapes& out) {
+/// A wall's own edges, straight runs merged: what half-planes of pieces keep clear of must not be simplified.
+void split_wall(const Subject& subject, ObstacleShapes& out) {
+  const FacadeSet edges = out.facades.deviation > 0.0 ? divide_into_facades(out.obstacle) : out.facades;
+  out.pieces.assign(edges.facades.begin(), edges.facades.end());
+  out.pieces_cover = verdict(edges.deviation == 0.0 && facades_follow(edges, subject), "an edge is not covered");
+}
+
+void split(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out) {
   attempt(out.pieces_cover, [&] {
     if (const auto* polygon = std::get_if<Polygon>(&out.obstacle)) {
       for (ConvexPolygon& piece : convex_pieces(*polygon, options.partition)) out.pieces.emplace_back(std::move(piece));
       out.pieces_cover = {true, {}};  // convex_pieces gives no partition that it has not proved
     } else {
-      out.pieces.assign(out.facades.facades.begin(), out.facades.facades.end());
-      out.pieces_cover = out.facades_follow;
+      split_wall(subject, out);
     }
   });
 }
@@ -209,36 +215,71 @@ std::optional<Ellipse> grown_to_contain(const Ellipse& e, const std::vector<Vec2
 }
 
 void free_for_every_goal(ObstacleShapes& out) {
-  TrapFreeEllipse& free = out.trap_free;
-  free.grade = EnclosureGrade::trap_free;
-  free.for_every_goal = true;
-  if (out.ellipse_contains.certified && trap_free_for_every_goal(out.smallest_ellipse)) {
-    free.ellipse = out.smallest_ellipse;
-  } else {
+  std::optional<Ellipse> free = out.smallest_ellipse;
+  if (!out.ellipse_contains.certified || !trap_free_for_every_goal(*free)) {
     const Ellipse e = smallest_free_ellipse(out.hull.vertices, axes_of(out.smallest_ellipse).angle);
-    free.ellipse = grown_to_contain(e, out.hull.vertices);
-    free.for_every_goal = free.ellipse && trap_free_for_every_goal(*free.ellipse);
+    free = grown_to_contain(e, out.hull.vertices);
   }
+  if (free && trap_free_for_every_goal(*free))
+    out.trap_free = {free, EnclosureGrade::trap_free, true, TrapFreeAnswer::found};
+}
+
+ConvexShape shape_of_hull(const ConvexPolygon& hull) {
+  if (hull.vertices.size() > 2) return hull;
+  return Segment{hull.vertices.front(), hull.vertices.back()};
+}
+
+/// Whether the robot at one end is as near to the hull as the options forbid.
+bool leaves_no_room(const ShapeOptions& options, const ConvexPolygon& hull) {
+  const double near = options.robot_radius + options.enclosure.clear_of_ends + options.enclosure.least_margin;
+  const ConvexShape shape = shape_of_hull(hull);
+  const auto is_near = [&](Vec2 x) { return locate({shape, x, near}, {0.0, 0.0}) != Place::outside; };
+  return is_near(options.way->start) || is_near(options.way->goal);
+}
+
+/// Why the fit found none.
+TrapFreeAnswer answer_without(const ShapeOptions& options, const ConvexPolygon& hull) {
+  if (leaves_no_room(options, hull)) return TrapFreeAnswer::no_room;
+  const Way& way = *options.way;
+  EnclosureOptions any_size = options.enclosure;
+  any_size.most_inflation = std::numeric_limits<double>::max();
+  const bool exists = fit_trap_free(hull.vertices, options.robot_radius, way.start, way.goal, any_size).has_value();
+  return exists ? TrapFreeAnswer::too_large : TrapFreeAnswer::failed;
 }
 
 void free_along_way(const ShapeOptions& options, ObstacleShapes& out) {
   const Way& way = *options.way;
   const auto fitted = fit_trap_free(out.hull.vertices, options.robot_radius, way.start, way.goal, options.enclosure);
-  if (!fitted) return;
-  out.trap_free.ellipse = fitted->ellipse;
-  out.trap_free.grade = fitted->grade;
-  out.trap_free.for_every_goal = trap_free_for_every_goal(fitted->ellipse);
+  if (!fitted) {
+    out.trap_free.answer = answer_without(options, out.hull);
+    return;
+  }
+  const bool for_every_goal = trap_free_for_every_goal(fitted->ellipse);
+  out.trap_free = {fitted->ellipse, fitted->grade, for_every_goal, TrapFreeAnswer::found};
+}
+
+const char* reason_of(TrapFreeAnswer answer) {
+  switch (answer) {
+    case TrapFreeAnswer::no_room:
+      return "the start or the goal lies too near";
+    case TrapFreeAnswer::too_large:
+      return "only larger ellipses than allowed leave the start and the goal outside";
+    case TrapFreeAnswer::found:
+    case TrapFreeAnswer::failed:
+      break;
+  }
+  return "no such ellipse found";
 }
 
 void enclose_free_of_traps(const ShapeOptions& options, ObstacleShapes& out) {
   attempt(out.trap_free_contains, [&] {
-    if (options.way) {
-      free_along_way(options, out);
-    } else {
-      free_for_every_goal(out);
+    if (out.hull.vertices.empty()) {
+      out.trap_free_contains = {false, "no certified hull"};
+      return;
     }
+    options.way ? free_along_way(options, out) : free_for_every_goal(out);
     out.trap_free_contains = out.trap_free.ellipse ? verdict_of(*out.trap_free.ellipse, out)
-                                                   : Verdict{false, "the start or the goal lies too near"};
+                                                   : Verdict{false, reason_of(out.trap_free.answer)};
   });
 }
 
@@ -364,9 +405,11 @@ ObstacleShapes shapes_of_hits(const std::vector<Vec2>& hits, const ShapeOptions&
 }  // namespace
 
 bool ObstacleShapes::certified() const {
-  const bool free_or_no_room = trap_free_contains.certified || !trap_free.ellipse;
+  const TrapFreeAnswer answer = trap_free.answer;
+  const bool found = answer == TrapFreeAnswer::found && trap_free.ellipse && trap_free_contains.certified;
+  const bool excused = answer == TrapFreeAnswer::no_room || answer == TrapFreeAnswer::too_large;
   return valid && facades_follow.certified && pieces_cover.certified && hull_contains.certified &&
-         ellipse_contains.certified && facade_ellipses_contain.certified && free_or_no_room;
+         ellipse_contains.certified && facade_ellipses_contain.certified && (found || excused);
 }
 
 ObstacleShapes shapes_of(const Obstacle& obstacle, const ShapeOptions& options) {
@@ -380,7 +423,7 @@ ObstacleShapes shapes_of(const Obstacle& obstacle, const ShapeOptions& options) 
   }
   const Subject subject = subject_of(out.obstacle);
   divide(subject, options, out);
-  split(options, out);
+  split(subject, options, out);
   enclose_and_measure(subject, options, out);
   return out;
 }

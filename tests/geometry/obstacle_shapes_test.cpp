@@ -63,6 +63,41 @@ TEST(ObstacleShapes, AWallIsItsOwnPieces) {
   EXPECT_EQ(shapes.figures.area, 0.0);
 }
 
+/// Whether x lies on the piece. Exact.
+bool lies_on(const ConvexShape& piece, Vec2 x) {
+  return intersect(std::get<Segment>(piece), {x, x});
+}
+
+/// Whether the pieces run along the wall from its first point to its last, vertex by vertex, and nowhere else. Exact.
+bool run_along(const std::vector<ConvexShape>& pieces, const std::vector<Vec2>& wall) {
+  std::size_t at = 0;
+  for (const ConvexShape& piece : pieces) {
+    const Segment s = std::get<Segment>(piece);
+    if (s.a != wall[at]) return false;
+    while (wall[at] != s.b) {
+      if (++at == wall.size() || !lies_on(piece, wall[at])) return false;
+    }
+  }
+  return at + 1 == wall.size();
+}
+
+TEST(ObstacleShapes, PiecesOfAWallKeepEveryEdgeWhateverTheTolerance) {
+  SeededRandom random(test::seed_of_run(65));
+  ShapeOptions options;
+  options.facades.tolerance = 0.5;
+  std::size_t simplified = 0;
+  for (int k = 0; k < 100; ++k) {
+    Polyline wall;
+    const int corners = random.integer(3, 30);
+    for (int i = 0; i < corners; ++i) wall.points.push_back({0.5 * i, random.uniform(-0.4, 0.4)});
+    const ObstacleShapes shapes = shapes_of(wall, options);
+    EXPECT_TRUE(shapes.certified()) << shapes.pieces_cover.reason;
+    simplified += shapes.facades.facades.size() + 1 < wall.points.size() ? 1 : 0;
+    EXPECT_TRUE(run_along(shapes.pieces, wall.points)) << to_string(wall.points);
+  }
+  EXPECT_GT(simplified, 50u) << "the facades must have left something out for this to mean anything";
+}
+
 TEST(ObstacleShapes, AStraightWallIsFlatAndStillFreeOfTraps) {
   const ObstacleShapes shapes = shapes_of(Polyline{{{0, 0}, {4, 0}}});
   EXPECT_TRUE(shapes.certified());
@@ -107,6 +142,33 @@ TEST(ObstacleShapes, AWayGivesAnEllipseMadeToMeasureOrTheReasonWhyNot) {
   EXPECT_FALSE(near.trap_free.ellipse);
   EXPECT_FALSE(near.trap_free_contains.reason.empty());
   EXPECT_TRUE(near.certified()) << "no room for an ellipse is an answer";
+}
+
+TEST(ObstacleShapes, AnEllipseThatIsMissingIsExcusedByAWayAlone) {
+  ObstacleShapes shapes = shapes_of(kRoomWithTwoPillars);
+  ASSERT_TRUE(shapes.certified());
+  EXPECT_EQ(shapes.trap_free.answer, TrapFreeAnswer::found);
+  shapes.trap_free = {};
+  shapes.trap_free_contains = {false, "no such ellipse found"};
+  EXPECT_FALSE(shapes.certified()) << "nothing excuses it";
+  shapes.trap_free.answer = TrapFreeAnswer::no_room;
+  EXPECT_TRUE(shapes.certified());
+}
+
+TEST(ObstacleShapes, NoRoomAndTooLargeAreToldApart) {
+  ShapeOptions options;
+  options.robot_radius = 0.1;
+  options.way = Way{{-5.0, 0.1}, {0.1, 0.0}};
+  const Polyline wall{{{0, -2}, {0, 2}}};
+  const ObstacleShapes near = shapes_of(wall, options);
+  EXPECT_EQ(near.trap_free.answer, TrapFreeAnswer::no_room);
+  options.way->goal = {3.0, 0.0};
+  EXPECT_EQ(shapes_of(wall, options).trap_free.answer, TrapFreeAnswer::found);
+  options.enclosure.most_inflation = 0.01;
+  const ObstacleShapes small = shapes_of(wall, options);
+  EXPECT_EQ(small.trap_free.answer, TrapFreeAnswer::too_large);
+  EXPECT_NE(small.trap_free_contains.reason, near.trap_free_contains.reason);
+  EXPECT_TRUE(small.certified());
 }
 
 TEST(ObstacleShapes, TrapFreeForEveryGoalIsDecidedExactly) {

@@ -6,9 +6,10 @@
 /// facades, convex pieces, hull, smallest ellipse, an ellipse round every facade (paper, equation (8)), an ellipse
 /// at which no robot can stall, and figures.
 ///
-/// Every verdict is decided again here, on the doubles that are returned, by exact predicates: `certified` never rests
-/// on how a shape was found. Nothing throws for an obstacle, valid or not: an invalid one has its problems and
-/// nothing else, and a shape that can't be had has a failed verdict that says why. Deterministic; no time in it.
+/// Every verdict is decided by exact predicates on the doubles that are returned: `certified` never rests on how a
+/// shape was found. All are decided here, but for a polygon's pieces, which hull.h proves before it returns them.
+/// Nothing throws for an obstacle, valid or not: an invalid one has its problems and nothing else, and a shape that
+/// can't be had has a failed verdict that says why. Deterministic; no time in it.
 ///
 /// Neighbours: validity.h (the problems), facades.h, hull.h, enclosure.h, scan.h (the parts, one by one).
 
@@ -54,13 +55,22 @@ struct FacadeEnclosure {
   double clearance = 0.0;  ///< m; d of equation (8), rounded
 };
 
+/// What became of the search for a trap-free ellipse. Without a `way` it is found or has failed.
+enum class TrapFreeAnswer {
+  found,
+  no_room,    ///< start or goal within radius, `clear_of_ends` and `least_margin` of the hull
+  too_large,  ///< found, but only beyond `most_inflation`
+  failed      ///< not found though none of these stands against it, or the arithmetic overflowed
+};
+
 /// An ellipse round the whole obstacle at which no robot stalls, whatever its radius.
 struct TrapFreeEllipse {
-  std::optional<Ellipse> ellipse;  ///< none where the start or the goal lies too near
+  std::optional<Ellipse> ellipse;  ///< where found
   EnclosureGrade grade = EnclosureGrade::tight;
   /// Certified: no goal outside the ellipse can make a robot stall there. The evolute lies in the ellipse, which for
   /// semi-axes a >= b is a^2 <= 2 b^2. Without it the certificate, if any, is for the goal of `way`.
   bool for_every_goal = false;
+  TrapFreeAnswer answer = TrapFreeAnswer::failed;
 };
 
 /// Rounded, for people; never part of a proof.
@@ -82,22 +92,25 @@ struct ObstacleShapes {
   std::vector<RingProblem> problems;  ///< all that was found; where one is not mended nothing else is here
   Obstacle obstacle;                  ///< as put right; walls of a scan or of loose points: the first facade
   FacadeSet facades;
-  std::vector<ConvexShape> pieces;  ///< disjoint inside, their union is the obstacle; walls: the facades
+  /// Disjoint inside, their union is the obstacle, whatever the facades' tolerance. A wall's are its edges, straight
+  /// runs merged. Of a scan or of loose points, where there is no obstacle but the facades: the facades.
+  std::vector<ConvexShape> pieces;
   ConvexPolygon hull;
   Ellipse smallest_ellipse;
   std::vector<FacadeEnclosure> facade_ellipses;  ///< one a facade, in their order
   TrapFreeEllipse trap_free;
   ShapeFigures figures;
 
-  Verdict facades_follow;           ///< the facades keep to the boundary, within their deviation
-  Verdict pieces_cover;             ///< the pieces are convex and cover the obstacle and nothing else
-  Verdict hull_contains;            ///< every vertex lies in the hull
-  Verdict ellipse_contains;         ///< every vertex lies in the smallest ellipse
+  Verdict facades_follow;    ///< the facades keep to the boundary, within their deviation
+  Verdict pieces_cover;      ///< the pieces are convex and cover the obstacle and nothing else; scans: as facades
+  Verdict hull_contains;     ///< every vertex lies in the hull
+  Verdict ellipse_contains;  ///< every vertex lies in the smallest ellipse
   Verdict facade_ellipses_contain;  ///< both ends of every facade lie in its ellipse
   Verdict trap_free_contains;       ///< every vertex lies in the trap-free ellipse; reason where there is none
 
   bool valid = false;  ///< every problem was mended
-  /// All of the above, but for a trap-free ellipse that the robot's start or goal leaves no room for.
+  /// All of the above, but for a trap-free ellipse along a `way` whose ends leave no room for it, or none of the size
+  /// allowed (`TrapFreeAnswer`). Without a way the ellipse must be there, free for every goal.
   bool certified() const;
 };
 
