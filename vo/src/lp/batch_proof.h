@@ -12,8 +12,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
 
-/// Roundings of a proof: at most 30 operations deep on terms of at most the scale it is multiplied with, doubled.
+/// Roundings of a proof in units of u, of the terms before anything cancels. (4): a coordinate of p + w is wrong by 3 u
+/// (|p| + sum of lambda), hence its square by 9 u |p + w| (|p| + sum of lambda); the offsets, with the slack put on and
+/// taken off, by 4 u lambda |c|, twice; sums and squares add 4 u each, at most four deep. (1), (2): w and the offsets
+/// likewise. Below 40 u in all.
 inline constexpr double kProofError = 64.0;
+
+/// What the square of an error adds to |p + w|, as a share of |p| + sum of lambda: above 3 u, doubled and rounded up.
+inline constexpr double kSecondOrder = 0x1p-48;
 
 template <class D>
 class Proof {
@@ -70,7 +76,11 @@ class Proof {
     const V own = dot(p_.px, p_.py, p_.px, p_.py);
     const V lower = hn::Sub(hn::Sub(hn::Add(own, hn::Add(offsets, offsets)), hn::Mul(nu, limit)), pulled);
     const V gap = hn::Sub(dot(pull_x, pull_y, pull_x, pull_y), lower);
-    const V terms = hn::Add(hn::Add(own, pulled), hn::Add(hn::Mul(nu, limit), hn::Add(limit, hn::Abs(offsets))));
+    const V shares = hn::Add(hn::Mul(alpha, hn::Abs(p_.first.c)), hn::Mul(second_share, hn::Abs(p_.second.c)));
+    const V spread = hn::Add(hn::Add(hn::Abs(p_.px), hn::Abs(p_.py)), hn::Add(alpha, second_share));
+    const V sum = hn::Add(hn::Add(hn::Abs(gx), hn::Abs(gy)), hn::Mul(hn::Set(p_.d, T(kSecondOrder)), spread));
+    const V turned = hn::Div(hn::Mul(sum, spread), hn::Add(one, nu));
+    const V terms = hn::Add(hn::Add(own, hn::Add(pulled, turned)), hn::Add(hn::Mul(nu, limit), hn::Add(limit, shares)));
     const V widest = hn::Mul(hn::Set(p_.d, T(kWidestGap)), hn::Add(limit, own));
     const V error = hn::Mul(hn::Set(p_.d, T(kProofError * 0x1p-53)), terms);
     return hn::And(hn::Le(hn::Add(gap, error), widest), hn::Ge(squared, zero));
