@@ -14,9 +14,6 @@
 namespace exactvo::datasets {
 namespace {
 
-/// Collections within collections: each level is a call.
-constexpr int kDeepestCollection = 64;
-
 geometry::Ring points_of(const OGRSimpleCurve& curve) {
   geometry::Ring points(static_cast<std::size_t>(curve.getNumPoints()));
   for (std::size_t i = 0; i < points.size(); ++i) {

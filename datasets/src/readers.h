@@ -29,6 +29,9 @@ struct Reader {
 /// In order of preference: the surest marks first.
 const std::vector<Reader>& readers();
 
+/// Collections within collections, in whatever format: each level is a call.
+inline constexpr int kDeepestCollection = 64;
+
 // wkt_reader.cpp
 bool looks_like_wkt(const Glimpse& glimpse);
 void read_wkt(const std::filesystem::path& path, Collector& out);
@@ -48,6 +51,8 @@ void read_moving_ai_scen(const std::filesystem::path& path, Collector& out);
 // ros_map.cpp
 bool looks_like_ros_map(const Glimpse& glimpse);
 void read_ros_map(const std::filesystem::path& path, Collector& out);
+/// The picture that the map names, in the map's folder or below. Throws DataError as the reader does.
+std::filesystem::path picture_of_ros_map(const std::filesystem::path& map);
 
 // carmen_log.cpp, csm_log.cpp, points_csv.cpp: hits become the cells that hold them (hits.h)
 bool looks_like_carmen_log(const Glimpse& glimpse);

@@ -42,9 +42,11 @@ class MapYaml {
     if (!root_.IsMap()) throw DataError(DataCode::format_syntax, file_, "", "no keys", "the keys of a map");
   }
 
+  std::string image() const { return required<std::string>("image", "the name of a picture"); }
+
   MapFacts facts() const {
     MapFacts m;
-    m.image = required<std::string>("image", "the name of a picture");
+    m.image = image();
     m.resolution = finite(required<double>("resolution", "metres a cell"), "resolution");
     if (!(m.resolution > 0.0))
       refuse("resolution", DataCode::out_of_range, std::to_string(m.resolution), "a number > 0");
@@ -106,6 +108,17 @@ class MapYaml {
   YAML::Node root_;
 };
 
+/// A map's description is a few lines; beyond this it is something else.
+constexpr std::size_t kLongestDescription = 1 << 20;
+
+std::string description_of(const std::filesystem::path& map) {
+  std::string text = read_beginning(map, kLongestDescription + 1);
+  if (text.size() > kLongestDescription) {
+    throw DataError(DataCode::size, map.string(), "", "more than a megabyte", "the few lines of a map's description");
+  }
+  return text;
+}
+
 /// A map is a folder's business: its picture lies in the same folder or below.
 std::filesystem::path image_path(const std::filesystem::path& map, const std::string& image) {
   const std::filesystem::path folder = std::filesystem::weakly_canonical(map).parent_path();
@@ -158,8 +171,13 @@ bool looks_like_ros_map(const Glimpse& glimpse) {
          glimpse.beginning.find("image:") != std::string::npos;
 }
 
+std::filesystem::path picture_of_ros_map(const std::filesystem::path& map) {
+  const std::string file = map.string();
+  return image_path(map, MapYaml(description_of(map), file).image());
+}
+
 void read_ros_map(const std::filesystem::path& path, Collector& out) {
-  const MapFacts map = MapYaml(read_text_file(path), out.file()).facts();
+  const MapFacts map = MapYaml(description_of(path), out.file()).facts();
   const Grid grid = to_grid(read_image(image_path(path, map.image)), map, out);
   add_grid(grid, {{map.origin[0], map.origin[1]}, map.resolution, map.origin[2], 0, 0}, out);
 }

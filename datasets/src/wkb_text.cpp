@@ -11,9 +11,6 @@
 namespace exactvo::datasets {
 namespace {
 
-/// Collections within collections: each level is a call.
-constexpr int kDeepestCollection = 64;
-
 int digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;

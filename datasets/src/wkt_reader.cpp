@@ -10,9 +10,6 @@
 namespace exactvo::datasets {
 namespace {
 
-/// Collections within collections: each level is a call.
-constexpr int kDeepestCollection = 64;
-
 constexpr std::array<const char*, 9> kGeometryWords{"POINT",           "LINESTRING",   "LINEARRING",
                                                     "POLYGON",         "MULTIPOINT",   "TRIANGLE",
                                                     "MULTILINESTRING", "MULTIPOLYGON", "GEOMETRYCOLLECTION"};

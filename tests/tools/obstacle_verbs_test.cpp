@@ -96,6 +96,17 @@ TEST(Repair, WritesWhatIsMendedAndNamesWhatIsNot) {
   EXPECT_THAT(again.err, HasSubstr("3 done"));
 }
 
+TEST(Repair, AWallOfTheSameIdDoesNotStopTheFigure) {
+  const Workplace here;
+  here.write("twice.geojson", R"({"type":"FeatureCollection","features":[
+    {"type":"Feature","id":"A","properties":{"id":"A"},"geometry":{"type":"LineString","coordinates":[[0,0],[1,5]]}},
+    {"type":"Feature","id":"A","properties":{"id":"A"},"geometry":{"type":"Polygon",
+     "coordinates":[[[10,0],[12,2],[12,0],[10,2],[10,0]]]}}]})");
+  const Outcome outcome = here.run("repair twice.geojson --units metres --out mended.wkt --figure mended.svg");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(here.has("mended.dat"));
+}
+
 TEST(Repair, SeveralFilesBecomeOneAndAnUnreadableOneNone) {
   const Workplace here;
   here.write("a.wkt", kGood);
@@ -215,11 +226,21 @@ TEST(Segment, RecordsFeaturesAndAFigure) {
   EXPECT_EQ(ell.at("pieces_count"), 2);
   EXPECT_TRUE(here.has("shapes.gp"));
   std::size_t facades = 0;
+  std::size_t ellipses = 0;
   const json collection = json::parse(here.read("shapes.geojson"));
   for (const json& feature : collection.at("features")) {
-    EXPECT_TRUE(feature.at("properties").at("certified"));
-    facades += feature.at("properties").at("shape") == "facade" ? 1 : 0;
+    const json& properties = feature.at("properties");
+    const bool is_ellipse = properties.at("shape").get<std::string>().find("ellipse") != std::string::npos;
+    EXPECT_TRUE(properties.at(is_ellipse ? "ellipse_certified" : "certified"));
+    EXPECT_EQ(properties.contains("certified"), !is_ellipse) << "an ellipse's outline is drawn within it";
+    if (properties.at("shape") != "smallest ellipse" || properties.at("id") != ell.at("id")) continue;
+    EXPECT_EQ(properties.at("center_x"), ell.at("smallest_ellipse").at("center").at(0));
+    EXPECT_EQ(properties.at("l22"), ell.at("smallest_ellipse").at("l22"));
+    ++ellipses;
   }
+  for (const json& feature : collection.at("features"))
+    facades += feature.at("properties").at("shape") == "facade" ? 1 : 0;
+  EXPECT_EQ(ellipses, 1u);
   EXPECT_EQ(facades, 6u + 2u);
   EXPECT_EQ(here.run("segment ell.wkt --out shapes.jsonl").status, 0);
   EXPECT_EQ(here.read("shapes.jsonl"), outcome.out);

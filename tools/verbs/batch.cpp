@@ -121,6 +121,7 @@ BatchConfiguration configuration_of(const Flags& flags) {
   configuration.reading.units = units_named(flags.units);
   configuration.shapes.facades.tolerance = flags.tolerance;
   configuration.shapes.partition = partition_named(flags.partition);
+  configuration.memory_limit = flags.limit_memory;
   configuration.robot = robot_of(flags);
   choose_outputs(flags.write, configuration);
   if (configuration.geopackage && !datasets::built_with_gdal()) {
@@ -141,12 +142,12 @@ void parse_shard(const std::string& text, BatchRun& run) {
 /// it is run, and where the results lie.
 std::vector<std::string> lasting_words(const std::vector<std::string>& words) {
   const auto takes_value = [](const std::string& w) {
-    return w == "-j" || w == "--jobs" || w == "--limit-memory" || w == "--shard" || w == "--out" || w == "-o";
+    return w == "-j" || w == "--jobs" || w == "--shard" || w == "--out" || w == "-o";
   };
   const auto stands_alone = [](const std::string& w) {
     const auto begins = [&](const char* start) { return w.rfind(start, 0) == 0; };
-    return w == "--resume" || w == "--quiet" || w == "-q" || begins("--jobs=") || begins("--limit-memory=") ||
-           begins("--shard=") || begins("--out=") || begins("-j") || begins("-o");
+    return w == "--resume" || w == "--quiet" || w == "-q" || begins("--jobs=") || begins("--shard=") ||
+           begins("--out=") || begins("-j") || begins("-o");
   };
   std::vector<std::string> kept;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -165,7 +166,6 @@ BatchRun run_of(const Flags& flags) {
   run.out = flags.out;
   run.workers = flags.workers == 0 && datasets::under_mpi() ? 1 : flags.workers;  // ranks share a machine's processors
   run.resume = flags.resume;
-  run.memory_limit = flags.limit_memory;
   run.command_line = lasting_words(command_line());
   parse_shard(flags.shard, run);
   return run;

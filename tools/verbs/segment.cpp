@@ -102,26 +102,47 @@ class Features {
     for (const geometry::ConvexShape& piece : s.pieces)
       feature(t, "piece", s.pieces_cover, ring_geometry(outline(piece)));
     feature(t, "hull", s.hull_contains, ring_geometry(s.hull.vertices));
-    feature(t, "smallest ellipse", s.ellipse_contains, ring_geometry(outline(s.smallest_ellipse)));
+    ellipse(t, "smallest ellipse", s.ellipse_contains, s.smallest_ellipse);
     for (const geometry::FacadeEnclosure& e : s.facade_ellipses)
-      feature(t, "facade ellipse", s.facade_ellipses_contain, ring_geometry(outline(e.ellipse)));
-    if (s.trap_free.ellipse)
-      feature(t, "trap-free ellipse", s.trap_free_contains, ring_geometry(outline(*s.trap_free.ellipse)));
+      ellipse(t, "facade ellipse", s.facade_ellipses_contain, e.ellipse);
+    if (s.trap_free.ellipse) ellipse(t, "trap-free ellipse", s.trap_free_contains, *s.trap_free.ellipse);
   }
   std::string text() const { return text_of({{"type", "FeatureCollection"}, {"units", "m"}, {"features", features_}}); }
 
  private:
-  void feature(const TakenApart& t, const char* what, const geometry::Verdict& verdict, OrderedJson shape) {
+  static OrderedJson head(const TakenApart& t, const char* what) {
     OrderedJson properties;
     properties["file"] = t.head.file;
     properties["id"] = t.head.id;
     properties["shape"] = what;
-    properties["certified"] = verdict.certified;
+    return properties;
+  }
+
+  void add(OrderedJson properties, OrderedJson shape) {
     OrderedJson feature;
     feature["type"] = "Feature";
-    feature["properties"] = properties;
+    feature["properties"] = std::move(properties);
     feature["geometry"] = std::move(shape);
     features_.push_back(std::move(feature));
+  }
+
+  void feature(const TakenApart& t, const char* what, const geometry::Verdict& verdict, OrderedJson shape) {
+    OrderedJson properties = head(t, what);
+    properties["certified"] = verdict.certified;
+    add(std::move(properties), std::move(shape));
+  }
+
+  /// The drawn outline has its corners on the ellipse and so lies within it: the certificate is the ellipse's, whose
+  /// numbers stand beside it.
+  void ellipse(const TakenApart& t, const char* what, const geometry::Verdict& verdict, const geometry::Ellipse& e) {
+    OrderedJson properties = head(t, what);
+    properties["ellipse_certified"] = verdict.certified;
+    properties["center_x"] = e.center.x;
+    properties["center_y"] = e.center.y;
+    properties["l11"] = e.l11;
+    properties["l21"] = e.l21;
+    properties["l22"] = e.l22;
+    add(std::move(properties), ring_geometry(outline(e)));
   }
 
   OrderedJson features_ = OrderedJson::array();

@@ -50,7 +50,9 @@ std::uint64_t BatchTally::rejected_in_all() const {
 
 BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch) {
   require_sensible(configuration, run);
-  Session session(configuration, run, batch::identity_of(configuration, batch::list_inputs(run.paths, run.out)), watch);
+  Session session(
+      configuration, run,
+      batch::identity_of(configuration, batch::list_inputs(run.paths, run.out, configuration.reading.format)), watch);
   try {
     return run_share(session, run);
   } catch (const DataError&) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "exactvo/geometry/pi.h"
 #include "json_text.h"
 
 namespace exactvo::datasets::batch {
@@ -21,7 +22,6 @@ enum LayerNumber : std::size_t { kObstacles, kFacades, kPieces, kHulls, kEllipse
 
 constexpr int kFinePoints = 48;    // round the whole obstacle
 constexpr int kCoarsePoints = 20;  // round a facade
-constexpr double kTwoPi = 6.28318530717958647692;
 
 /// Decimal places that leave a 10,000th of `size`.
 double rounding_for(double size) {
@@ -300,7 +300,7 @@ Ring outline_of(const Ellipse& e, int points) {
   Ring ring;
   ring.reserve(static_cast<std::size_t>(points));
   for (int i = 0; i < points; ++i) {
-    const double angle = kTwoPi * i / points;
+    const double angle = 2.0 * geometry::kPi * i / points;
     const double c = std::cos(angle);
     const double s = std::sin(angle);
     const Vec2 p = e.center + Vec2{e.l11 * c, e.l21 * c + e.l22 * s};

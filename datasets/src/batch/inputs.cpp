@@ -6,17 +6,15 @@
 #include <set>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/provenance.h"
-#include "line_reader.h"
-#include "text_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "readers.h"
 
 namespace exactvo::datasets::batch {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A map's description is short; a larger .yaml is none.
-constexpr std::size_t kMapDescription = 1 << 16;
 
 std::string lower_extension(const fs::path& path) {
   std::string text = path.extension().string();
@@ -24,57 +22,78 @@ std::string lower_extension(const fs::path& path) {
   return text;
 }
 
-/// The picture that a ROS map names, if the file names one beside or below it.
-std::vector<fs::path> pictures_of(const fs::path& path) {
-  try {
-    const std::string text = read_beginning(path, kMapDescription);
-    LineReader lines(text, path.native());
-    while (lines.next()) {
-      std::string_view line = trimmed(lines.line());
-      constexpr std::string_view kKey = "image:";
-      if (line.substr(0, kKey.size()) != kKey) continue;
-      line = trimmed(line.substr(kKey.size()));
-      if (line.size() > 1 && (line.front() == '"' || line.front() == '\'')) line = line.substr(1, line.size() - 2);
-      return {path.parent_path() / std::string(line)};
-    }
-  } catch (const DataError&) {
-    // An unreadable file has no companions; reading it as an input says what is wrong.
-  }
-  return {};
+bool is_regular(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
 }
 
-/// What the file cannot be read without.
-std::vector<fs::path> companions_of(const fs::path& path) {
+/// One name for each file; where links can't be followed, the path as it stands.
+fs::path name_of_file(const fs::path& path) {
+  std::error_code error;
+  fs::path canonical = fs::weakly_canonical(path, error);
+  return error ? path : canonical;
+}
+
+/// What `action` lists. A file that can't be understood names none; reading it as an input says what is wrong.
+template <class Action>
+std::vector<fs::path> listed(const Action& action) {
+  try {
+    return action();
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+/// What belongs to the file and is no input of its own.
+std::vector<fs::path> belongings_of(const fs::path& path, const std::string& format) {
   const std::string extension = lower_extension(path);
   std::vector<fs::path> found;
-  if (extension == ".yaml" || extension == ".yml") found = pictures_of(path);
+  if (extension == ".yaml" || extension == ".yml" || format == "ros-map") {
+    found = listed([&] { return std::vector<fs::path>{picture_of_ros_map(path)}; });
+  }
   if (extension == ".shp") {
     for (const char* other : {".shx", ".dbf", ".prj", ".cpg", ".SHX", ".DBF", ".PRJ", ".CPG"}) {
       found.push_back(fs::path(path).replace_extension(other));
     }
   }
-  const auto missing = [](const fs::path& p) {
-    std::error_code error;
-    return !fs::is_regular_file(p, error);
-  };
-  found.erase(std::remove_if(found.begin(), found.end(), missing), found.end());
+  found.erase(std::remove_if(found.begin(), found.end(), [](const fs::path& p) { return !is_regular(p); }),
+              found.end());
   return found;
 }
 
-std::string identity_of(const fs::path& path) {
+/// The obstacle files that a scenario names: inputs of their own as well, where they lie in a folder that is walked.
+std::vector<fs::path> named_by_scenario(const fs::path& path, const std::string& format) {
+  return listed([&] {
+    const bool is_scenario = format == "scenario" || (format.empty() && format_of(path) == "scenario");
+    return is_scenario ? files_of_scenario(path) : std::vector<fs::path>{};
+  });
+}
+
+/// Everything that is read with the file, the file itself first, each once.
+void collect(const fs::path& path, const std::string& format, std::vector<fs::path>& files, std::set<fs::path>& seen) {
+  if (!seen.insert(name_of_file(path)).second) return;
+  files.push_back(path);
+  for (const fs::path& other : belongings_of(path, format)) collect(other, {}, files, seen);
+  for (const fs::path& other : named_by_scenario(path, format)) collect(other, {}, files, seen);
+}
+
+/// Empty where it can't be read. Whatever is no regular file, a pipe for instance, is not opened.
+std::string hash_of(const fs::path& path) {
+  if (!is_regular(path)) return {};
   try {
-    const std::string own = sha256_of_file(path);
-    std::string all = own;
-    for (const fs::path& companion : companions_of(path)) all += " " + sha256_of_file(companion);
-    return all == own ? own : sha256_of(all);
+    return sha256_of_file(path);
   } catch (const DataError&) {
     return {};
   }
 }
 
+DataError cannot_walk(const fs::path& folder, const std::error_code& error) {
+  return {DataCode::file_unreadable, folder.string(), "", error.message(), "a folder whose files can be listed"};
+}
+
 class Listing {
  public:
-  explicit Listing(const fs::path& out) : out_(fs::weakly_canonical(out)) {}
+  Listing(const fs::path& out, const std::string& format) : out_(fs::weakly_canonical(out)), format_(format) {}
 
   void add(const fs::path& path) {
     std::error_code error;
@@ -83,57 +102,76 @@ class Listing {
     }
     if (fs::is_directory(path, error)) return add_folder(path);
     files_.push_back(path);
+    named_.insert(name_of_file(path));
   }
 
-  std::vector<Input> take() {
-    std::set<fs::path> seen = companions();
+  std::vector<Input> take() const {
+    std::set<fs::path> seen;
     std::vector<Input> inputs;
     for (const fs::path& file : files_) {
+      const fs::path name = name_of_file(file);
+      const bool belongs = belongings_.count(name) > 0 && named_.count(name) == 0;
+      if (belongs || !seen.insert(name).second) continue;
       std::error_code error;
-      if (!seen.insert(fs::weakly_canonical(file, error)).second) continue;
       const std::uintmax_t size = fs::file_size(file, error);
-      inputs.push_back({file.generic_string(), file, identity_of(file), error ? 0 : std::uint64_t{size}});
+      inputs.push_back(
+          {file.generic_string(), file, identity_of_input(file, format_), error ? 0 : std::uint64_t{size}});
     }
     return inputs;
   }
 
  private:
   void add_folder(const fs::path& folder) {
-    std::vector<fs::path> found;
-    std::error_code error;
-    for (auto at = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, error);
-         at != fs::recursive_directory_iterator(); at.increment(error)) {
-      const bool hidden = at->path().filename().string().rfind('.', 0) == 0;
-      if (at->is_directory(error)) {
-        if (hidden || fs::weakly_canonical(at->path(), error) == out_) at.disable_recursion_pending();
-      } else if (!hidden) {
-        found.push_back(at->path());
-      }
-    }
+    std::vector<fs::path> found = files_below(folder);
     std::sort(found.begin(), found.end());
     for (const fs::path& file : found) {
-      for (const fs::path& companion : companions_of(file)) companions_.push_back(companion);
+      for (const fs::path& other : belongings_of(file, format_)) belongings_.insert(name_of_file(other));
     }
     files_.insert(files_.end(), found.begin(), found.end());
   }
 
-  /// Only what was met in a folder: a file that the user names is wanted, whatever else needs it.
-  std::set<fs::path> companions() const {
-    std::set<fs::path> all;
+  /// Links to folders are listed as they are, to be counted as what can't be read: they might lead round in circles.
+  std::vector<fs::path> files_below(const fs::path& folder) const {
+    std::vector<fs::path> found;
     std::error_code error;
-    for (const fs::path& companion : companions_) all.insert(fs::weakly_canonical(companion, error));
-    return all;
+    fs::recursive_directory_iterator at(folder, error);
+    if (error) throw cannot_walk(folder, error);
+    while (at != fs::recursive_directory_iterator()) {
+      const fs::path path = at->path();
+      std::error_code unknown;  // what kind of file it is; then it is listed and refused when it is read
+      const bool is_link = at->is_symlink(unknown);
+      const bool is_folder = at->is_directory(unknown);
+      const bool is_left_out = path.filename().string().rfind('.', 0) == 0 || (is_folder && name_of_file(path) == out_);
+      if (is_left_out && is_folder) at.disable_recursion_pending();
+      if (!is_left_out && (is_link || !is_folder)) found.push_back(path);
+      at.increment(error);
+      if (error) throw cannot_walk(path, error);
+    }
+    return found;
   }
 
   fs::path out_;
+  std::string format_;
   std::vector<fs::path> files_;
-  std::vector<fs::path> companions_;
+  std::set<fs::path> named_;       ///< by the user: wanted, whatever else needs them
+  std::set<fs::path> belongings_;  ///< of files met in a folder
 };
 
 }  // namespace
 
-std::vector<Input> list_inputs(const std::vector<fs::path>& paths, const fs::path& out) {
-  Listing listing(out);
+std::string identity_of_input(const fs::path& path, const std::string& format) {
+  const std::string own = hash_of(path);
+  if (own.empty()) return own;
+  std::vector<fs::path> files;
+  std::set<fs::path> seen;
+  collect(path, format, files, seen);
+  std::string all = own;
+  for (std::size_t k = 1; k < files.size(); ++k) all += " " + hash_of(files[k]);
+  return files.size() == 1 ? own : sha256_of(all);
+}
+
+std::vector<Input> list_inputs(const std::vector<fs::path>& paths, const fs::path& out, const std::string& format) {
+  Listing listing(out, format);
   for (const fs::path& path : paths) listing.add(path);
   return listing.take();
 }

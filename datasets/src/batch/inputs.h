@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// Which files a batch reads, and what tells each from any other: the SHA-256 of its content, and of what it cannot be
-/// read without (the picture of a ROS map, the tables beside a Shapefile).
+/// Which files a batch reads, and what tells each from any other: the SHA-256 of its content, and of whatever is read
+/// with it (the picture of a ROS map, the tables beside a Shapefile, the files that a scenario names).
 
 #include <cstdint>
 #include <filesystem>
@@ -19,9 +19,15 @@ struct Input {
   std::uint64_t size = 0;
 };
 
-/// Files as named, folders walked in order of names. Hidden files and folders, what belongs to another file (the tables
-/// of a Shapefile, the pictures of ROS maps) and whatever is below `out` are no inputs. Each file once. Throws
-/// DataError (E_FILE_MISSING) for a path that is not there.
-std::vector<Input> list_inputs(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out);
+/// Files as named, folders walked in order of names. In a folder, hidden files and folders, what belongs to another
+/// file (the tables of a Shapefile, the pictures of ROS maps) and whatever is below `out` are no inputs; a file that is
+/// named is one in any case. Each file once. Links to folders and what is no regular file are inputs without a hash,
+/// never opened here. `format` is that of all files, if it is given. Throws DataError for a path that is not there
+/// (E_FILE_MISSING) and a folder that can't be walked (E_FILE_UNREADABLE).
+std::vector<Input> list_inputs(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
+                               const std::string& format = {});
+
+/// What `Input::sha256` is now.
+std::string identity_of_input(const std::filesystem::path& path, const std::string& format = {});
 
 }  // namespace exactvo::datasets::batch

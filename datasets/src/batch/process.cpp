@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <utility>
 
+#include "batch/inputs.h"
 #include "batch/part.h"
 #include "json_text.h"
 #include "text_file.h"
@@ -183,6 +185,16 @@ void reject(InputFacts& facts, const char* code, const std::string& message) {
   facts.message = message;
 }
 
+/// A pipe would be waited for, a folder is no file.
+void refuse_irregular_file(const Input& input) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(input.path, error);
+  if (error || !std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
+  const bool is_folder = std::filesystem::is_directory(status);
+  throw DataError(DataCode::file_unreadable, input.name, "", is_folder ? "a link to a folder" : "no regular file",
+                  is_folder ? "files, and folders named by themselves" : "a regular file");
+}
+
 /// Reads the file into the chunker; what is wrong with it becomes its facts.
 void read_input(const Input& input, const ReadOptions& given, std::uint64_t memory_limit, Chunker& chunker,
                 InputFacts& facts) {
@@ -203,6 +215,7 @@ void read_input(const Input& input, const ReadOptions& given, std::uint64_t memo
   };
   stream.progress = [&](double share) { chunker.show(share); };
   try {
+    refuse_irregular_file(input);
     refuse_large_file(input, options, memory_limit);
     const ObstacleFile file = read_obstacles(input.path, options, stream);
     facts.format = file.format;
@@ -217,7 +230,21 @@ void read_input(const Input& input, const ReadOptions& given, std::uint64_t memo
   } catch (const std::bad_alloc&) {
     facts.tally = {};
     reject(facts, code_name(DataCode::size), input.name + ": more memory wanted than there is");
+  } catch (const std::exception& error) {
+    facts.tally = {};
+    reject(facts, code_name(DataCode::library), input.name + ": " + error.what());
   }
+}
+
+/// Parts of other bytes than the ledger's must not be found by a resumption.
+void refuse_changed_input(const Input& input, std::size_t number, const std::string& format, const Ledger& ledger,
+                          Crew& crew) {
+  if (identity_of_input(input.path, format) == input.sha256) return;
+  crew.finish();
+  std::error_code ignored;
+  std::filesystem::remove_all(ledger.part(number, 0).parent_path(), ignored);
+  throw DataError(DataCode::other_run, input.name, "", "a file that changed under the batch",
+                  "files that stay as they are; another --out, or an empty one");
 }
 
 void append_optional_facts(JsonWriter& json, const InputFacts& facts) {
@@ -315,15 +342,15 @@ bool is_through(const Ledger& ledger, std::size_t number) {
 }
 
 void process_input(const Input& input, std::size_t number, const BatchConfiguration& configuration,
-                   std::uint64_t memory_limit, const Ledger& ledger, Crew& crew, Meter& meter,
-                   const InputWatch& watch) {
+                   const Ledger& ledger, Crew& crew, Meter& meter, const InputWatch& watch) {
   Chunker chunker(input, number, configuration, ledger, crew, meter, watch);
   InputFacts facts;
   try {
-    read_input(input, configuration.reading, memory_limit, chunker, facts);
+    read_input(input, configuration.reading, configuration.memory_limit, chunker, facts);
   } catch (const Failure& failure) {
     std::rethrow_exception(failure.cause);
   }
+  refuse_changed_input(input, number, configuration.reading.format, ledger, crew);
   // Of a file that turned out to be broken further on nothing is used.
   const bool with_chunks = facts.code.empty() || facts.tally.read > 0;
   chunker.finish(std::move(facts), with_chunks);

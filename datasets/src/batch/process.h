@@ -62,8 +62,9 @@ struct Stopped {};
 using InputWatch = std::function<bool(double share)>;
 
 /// Reads the input and has the crew make every part that is not there, then its facts: all is there when the crew has
-/// finished. Throws DataError for what is wrong with the output, never for what is wrong with the input.
+/// finished. Throws DataError for what is wrong with the output, and where the input changed since it was listed
+/// (E_OTHER_RUN); its parts are then gone. Whatever else is wrong with the input becomes its facts.
 void process_input(const Input& input, std::size_t number, const BatchConfiguration& configuration,
-                   std::uint64_t memory_limit, const Ledger& ledger, Crew& crew, Meter& meter, const InputWatch& watch);
+                   const Ledger& ledger, Crew& crew, Meter& meter, const InputWatch& watch);
 
 }  // namespace exactvo::datasets::batch

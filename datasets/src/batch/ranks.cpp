@@ -279,8 +279,10 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
   Verdict verdict = kGo;
   const bool opened = all_manage(world, [&] {
     refuse_shards(run, world.size());
-    session.emplace(configuration, run, batch::identity_of(configuration, batch::list_inputs(run.paths, run.out)),
-                    BatchWatch{});
+    session.emplace(
+        configuration, run,
+        batch::identity_of(configuration, batch::list_inputs(run.paths, run.out, configuration.reading.format)),
+        BatchWatch{});
   });
   if (!opened || !all_manage(world, [&] {
         if (world.rank() == 0) verdict = open_output(*session, run.resume);

@@ -80,6 +80,7 @@ std::string to_json(const BatchConfiguration& c) {
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object().member("format", c.reading.format).member("units", name_of(c.reading.units));
   json.member("cell_size", c.reading.cell_size).member("repair", c.reading.repair);
+  json.member("memory_limit", c.memory_limit);
   append_shape_options(json, c.shapes);
   if (c.robot) append_robot(json, *c.robot);
   json.member("geopackage", c.geopackage).member("geojson", c.geojson).member("pictures", c.pictures);
@@ -97,7 +98,7 @@ Session::Session(const BatchConfiguration& configuration, const BatchRun& run, I
       identity_(std::move(identity)),
       watch_(std::move(watch)),
       ledger_(run.out),
-      crew_(workers_of(run), run.memory_limit),
+      crew_(workers_of(run), configuration.memory_limit),
       start_(std::chrono::steady_clock::now()) {
   refuse_the_unavailable(configuration, run);
 }
@@ -123,7 +124,7 @@ void Session::process(std::size_t number) {
       return share_of(bytes_done_ + of_input, bytes_planned_);
     };
     if (!look(input.name, share_now(0.0))) throw Stopped{};
-    process_input(input, number, configuration_, run_.memory_limit, ledger_, crew_, meter_,
+    process_input(input, number, configuration_, ledger_, crew_, meter_,
                   [&](double share) { return look(input.name, share_now(share)); });
   }
   ++progress_.inputs_done;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -173,6 +174,9 @@ TEST_F(Batches, OtherInputsOptionsAndVersionsAreRefused) {
   BatchConfiguration other = plain_;
   other.shapes.facades.tolerance = 0.1;
   EXPECT_EQ(refusal(other, run), DataCode::other_run);
+  BatchConfiguration limited = plain_;
+  limited.memory_limit = 1000000;
+  EXPECT_EQ(refusal(limited, run), DataCode::other_run) << "it decides what is refused for its size";
   const fs::path run_file = out("out") / ".parts" / "run.json";
   const std::string there = text_of(run_file);
   std::string older = there;
@@ -182,6 +186,102 @@ TEST_F(Batches, OtherInputsOptionsAndVersionsAreRefused) {
   write_text(run_file, there);
   write_text(folder_ / "in" / "few.wkt", "LINESTRING (0 0, 9 9)\n");
   EXPECT_EQ(refusal(plain_, run), DataCode::other_run) << "an input changed";
+}
+
+TEST_F(Batches, WhatAnInputIsReadWithBelongsToIt) {
+  const std::string picture = "P2 2 2 255\n0 255\n255 255\n";
+  write_text(folder_ / "in" / "floor.yaml",
+             "image : 'floor.pgm'  # drawn by hand\nresolution: 1\norigin: [0, 0, 0]\n"
+             "occupied_thresh: 0.65\nfree_thresh: 0.2\nnegate: 0\n");
+  write_text(folder_ / "in" / "floor.pgm", picture);
+  write_text(folder_ / "beside" / "walls.wkt", "LINESTRING (5 5, 6 6)\n");
+  write_text(folder_ / "in" / "one.json", R"({"robots": [{"start": [0, 0], "goal": [1, 0], "radius": 0.1}],)"
+                                          R"( "obstacles": [{"file": "../beside/walls.wkt"}]})");
+  BatchRun run = run_to("out");
+  const BatchResult first = run_batch(plain_, run, [](const BatchProgress&) { return false; });
+  ASSERT_EQ(first.end, BatchEnd::interrupted);
+  run.resume = true;
+  write_text(folder_ / "beside" / "walls.wkt", "LINESTRING (5 5, 6 7)\n");
+  EXPECT_EQ(refusal(plain_, run), DataCode::other_run) << "a file that a scenario names";
+  write_text(folder_ / "beside" / "walls.wkt", "LINESTRING (5 5, 6 6)\n");
+  write_text(folder_ / "in" / "floor.pgm", "P2 2 2 255\n0 0\n255 255\n");
+  EXPECT_EQ(refusal(plain_, run), DataCode::other_run) << "the picture of a map";
+  write_text(folder_ / "in" / "floor.pgm", picture);
+  const BatchResult rest = run_batch(plain_, run);
+  EXPECT_EQ(rest.summary.files.read, 8u) << "the picture is none of them";
+}
+
+TEST_F(Batches, AnInputThatChangesUnderTheBatchIsSaid) {
+  const fs::path few = folder_ / "in" / "few.wkt";
+  const std::string there = text_of(few);
+  BatchRun run = run_to("out");
+  const auto changes = [&](const BatchProgress& progress) {
+    if (progress.doing == few.generic_string()) write_text(few, "LINESTRING (0 0, 9 9)\n");
+    return true;
+  };
+  EXPECT_EQ(refusal(plain_, run, changes), DataCode::other_run);
+  EXPECT_FALSE(fs::exists(run.out / "summary.json"));
+  write_text(few, there);
+  run.resume = true;
+  run_batch(plain_, run);
+  run_batch(plain_, run_to("whole"));
+  EXPECT_EQ(difference(out("whole"), out("out")), "") << "nothing of the other bytes is left";
+}
+
+TEST_F(Batches, WhateverAReaderThrowsIsOneFilesMatter) {
+  write_text(folder_ / "in" / "long.yaml", "image: " + std::string(5000, 'x') +
+                                               "\nresolution: 1\norigin: [0, 0, 0]\n"
+                                               "occupied_thresh: 0.65\nfree_thresh: 0.2\nnegate: 0\n");
+  const BatchResult result = run_batch(plain_, run_to("out"));
+  EXPECT_EQ(result.summary.files.rejected.at("E_LIBRARY"), 1u);
+  EXPECT_EQ(result.summary.files.read, 7u);
+}
+
+TEST_F(Batches, PipesAndLinksToFoldersAreCountedAndNotFollowed) {
+  ASSERT_EQ(::mkfifo((folder_ / "in" / "pipe.wkt").c_str(), 0600), 0);
+  write_text(folder_ / "beside" / "walls.wkt", "LINESTRING (5 5, 6 6)\n");
+  fs::create_directory_symlink(folder_ / "beside", folder_ / "in" / "link");
+  fs::create_directory_symlink(folder_ / "in", folder_ / "in" / "round");
+  const BatchResult result = run_batch(plain_, run_to("out"));
+  EXPECT_EQ(result.summary.files.read, 9u);
+  EXPECT_EQ(result.summary.files.rejected.at("E_FILE_UNREADABLE"), 3u);
+}
+
+TEST_F(Batches, AMapHidesNothingOutsideItsFolderNorWhatIsNamed) {
+  const std::string rest = "\nresolution: 1\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\nnegate: 0\n";
+  write_text(folder_ / "maps" / "below" / "floor.yaml", "image: ../walls.wkt" + rest);
+  write_text(folder_ / "maps" / "walls.wkt", "LINESTRING (5 5, 6 6)\n");
+  write_text(folder_ / "maps" / "own.yaml", "image: own.pgm" + rest);
+  write_text(folder_ / "maps" / "own.pgm", "P2 2 2 255\n0 255\n255 255\n");
+  BatchRun run = run_to("out");
+  run.paths = {folder_ / "maps"};
+  EXPECT_EQ(run_batch(plain_, run).summary.files.read, 3u) << "own.pgm alone belongs to a map";
+  run = run_to("named");
+  run.paths = {folder_ / "maps", folder_ / "maps" / "own.pgm"};
+  EXPECT_EQ(run_batch(plain_, run).summary.files.read, 4u);
+}
+
+/// The status of a process that can open no further file: 42 where it is said that `run`'s folder can't be walked.
+int status_without_descriptors(const BatchConfiguration& configuration, const BatchRun& run) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const rlimit limit{0, 0};
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+    int status = 0;
+    try {
+      run_batch(configuration, run);
+    } catch (const DataError& error) {
+      status = error.code() == DataCode::file_unreadable ? 42 : 43;
+    }
+    ::_exit(status);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(Batches, AFolderThatCantBeWalkedIsNotAnEmptyOne) {
+  EXPECT_EQ(status_without_descriptors(plain_, run_to("out")), 42);
 }
 
 TEST_F(Batches, AFolderOfOthersIsLeftAlone) {
@@ -320,9 +420,10 @@ TEST_F(Batches, AMemoryLimitRefusesWhatIsReadWholeAndChangesNothingElse) {
         return rows;
       }());
   run_batch(plain_, run_to("free"));
+  BatchConfiguration limited;
+  limited.memory_limit = 1000000;  // a 20th of it is less than the map's 90 kB
   BatchRun run = run_to("limited");
-  run.memory_limit = 1000000;  // a 20th of it is less than the map's 90 kB
-  const BatchResult result = run_batch(plain_, run);
+  const BatchResult result = run_batch(limited, run);
   EXPECT_EQ(result.summary.files.rejected.at("E_SIZE"), 1u);
   const auto is_of_map = [](const Json& record) {
     return record.at("file").get<std::string>().find("large.map") != std::string::npos;

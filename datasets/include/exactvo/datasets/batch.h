@@ -42,6 +42,9 @@ struct BatchConfiguration {
 
   ReadOptions reading;            ///< keep_going is implied
   geometry::ShapeOptions shapes;  ///< pieces by triangles: a tenth more of them than at best, some forty times quicker
+  /// Bytes for obstacles under way; 0: no limit but the chunks' own. Files that are read whole and larger than a 20th
+  /// of it are refused: so it belongs to what is written.
+  std::uint64_t memory_limit = 0;
   std::optional<BatchRobot> robot;
   bool geopackage = built_with_gdal();  ///< obstacles.gpkg; E_FORMAT_UNAVAILABLE in a build without GDAL
   bool geojson = true;                  ///< obstacles.geojson, facades.geojson, ...
@@ -56,7 +59,6 @@ struct BatchRun {
   bool resume = false;    ///< go on with what is in `out`
   std::size_t shard = 1;  ///< this process's share of the inputs, from 1
   std::size_t shards = 1;
-  std::uint64_t memory_limit = 0;         ///< bytes for obstacles under way; 0: no limit but the chunks' own
   std::vector<std::string> command_line;  ///< for provenance, without what does not change the results
 };
 
@@ -107,7 +109,8 @@ using BatchWatch = std::function<bool(const BatchProgress&)>;
 
 /// Runs it. Throws DataError where something can't be done at all: a path that is not there (E_FILE_MISSING), a place
 /// that can't be written (E_FILE_UNWRITABLE: full, removed under the batch), an output of other inputs, another
-/// configuration or another version (E_OTHER_RUN). Whatever is thrown, what was finished stays for a resumption.
+/// configuration or another version, or an input that changes under the batch (E_OTHER_RUN). Whatever is thrown, what
+/// was finished stays for a resumption.
 BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {});
 
 /// Whether this process is one of several that mpirun has started, in a build with MPI.
