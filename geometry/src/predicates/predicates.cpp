@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/geometry/predicates.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "exact/exact_vector.h"
+#include "exact/running_error.h"
+#include "exact/stages.h"
+#include "exactvo/geometry/excerpt.h"
+#include "exactvo/geometry/require.h"
+#include "predicates/exact_sweep.h"
+#include "predicates/grown_ellipse.h"
+#include "predicates/grown_polygon.h"
+
+namespace exactvo::geometry {
+namespace {
+
+using detail::count_exact;
+using detail::count_filter;
+using detail::cross_of;
+using detail::decided;
+using detail::difference;
+using detail::dot_of;
+using detail::Exact;
+using detail::GrownPolygon;
+using detail::make;
+using detail::sign_of;
+using detail::sign_of_double;
+using detail::sign_with_two_roots;
+using detail::squared;
+using detail::Tracked;
+using detail::Vector;
+
+std::string show(Vec2 v) {
+  return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ")";
+}
+
+/// No filter decides with a NaN or an infinity among its numbers, so the exact stages are where they are caught.
+void require_valid(const GrownShape& s) {
+  EXACTVO_REQUIRE(is_valid(s.shape) && is_finite(s.origin) && std::isfinite(s.radius), excerpt(s.shape));
+}
+void require_valid(const Ellipse& e) {
+  EXACTVO_REQUIRE(is_valid(ConvexShape{e}), to_string(ConvexShape{e}));
+}
+
+/// Evaluates `formula(number<T>)` in tracked doubles and, where the sign stays in doubt, exactly. `formula` is generic
+/// and uses + - * only.
+template <typename Formula>
+Sign filtered_sign(const Formula& formula) {
+  const Tracked approx = formula(Tracked{});
+  if (decided(approx)) {
+    count_filter();
+    return sign_of_double(approx.value);
+  }
+  count_exact();
+  return sign_of(formula(Exact{}));
+}
+
+/// h_S(n) - tau c = k + sqrt(b) + sqrt(d).
+struct SupportParts {
+  Exact k, b, d;
+};
+
+Exact exact_offset(Vec2 n, Vec2 x, Vec2 origin) {
+  return dot_of(make<Exact>(n), difference<Exact>(x, origin));
+}
+
+Exact farthest(const std::vector<Vec2>& vertices, Vec2 n, Vec2 origin) {
+  Exact best = exact_offset(n, vertices.front(), origin);
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    const Exact value = exact_offset(n, vertices[i], origin);
+    if (best < value) best = value;
+  }
+  return best;
+}
+
+Exact exact_squared_norm(Vec2 n) {
+  return dot_of(make<Exact>(n), make<Exact>(n));
+}
+
+struct PartsOf {
+  const GrownShape& s;
+  Vec2 n;
+
+  SupportParts operator()(const Disc& disc) const {
+    const Exact grown = Exact(disc.radius) + Exact(s.radius);
+    return {exact_offset(n, disc.center, s.origin), Exact(0), squared(grown) * exact_squared_norm(n)};
+  }
+  SupportParts operator()(const Segment& segment) const { return of_vertices({segment.a, segment.b}); }
+  SupportParts operator()(const ConvexPolygon& polygon) const { return of_vertices(polygon.vertices); }
+  SupportParts operator()(const Ellipse& e) const {
+    const Exact wx = Exact(e.l11) * Exact(n.x) + Exact(e.l21) * Exact(n.y);
+    const Exact wy = Exact(e.l22) * Exact(n.y);
+    return {exact_offset(n, e.center, s.origin), wx * wx + wy * wy, squared(Exact(s.radius)) * exact_squared_norm(n)};
+  }
+  SupportParts of_vertices(const std::vector<Vec2>& vertices) const {
+    return {farthest(vertices, n, s.origin), Exact(0), squared(Exact(s.radius)) * exact_squared_norm(n)};
+  }
+};
+
+// --- Predicates B1 and B2 ---
+
+struct Locator {
+  const GrownShape& s;
+  Vec2 q;
+
+  Place operator()(const Disc& disc) const { return static_cast<Place>(static_cast<int>(disc_sign(disc))); }
+  Place operator()(const Segment& segment) const {
+    const Vec2 ends[2] = {segment.a, segment.b};
+    return polygon(ends, 2);
+  }
+  Place operator()(const ConvexPolygon& p) const { return polygon(p.vertices.data(), p.vertices.size()); }
+  Place operator()(const Ellipse& e) const {
+    const Vec2 p = e.center - s.origin;
+    const Vec2 size{std::fabs(p.x) + std::fabs(q.x), std::fabs(p.y) + std::fabs(q.y)};
+    Place place{};
+    if (detail::locate_rounded(e, p - q, size, s.radius, place)) {
+      count_filter();
+      return place;
+    }
+    return ellipse_exactly(e);
+  }
+
+ private:
+  [[gnu::noinline, gnu::cold]] Place ellipse_exactly(const Ellipse& e) const {
+    count_exact();
+    require_valid(s);
+    return detail::locate_exactly(e, s, make<Exact>(q));
+  }
+  [[gnu::noinline, gnu::cold]] Sign disc_exactly(const Disc& disc) const {
+    count_exact();
+    require_valid(s);
+    const Vector<Exact> u = detail::minus(difference<Exact>(disc.center, s.origin), make<Exact>(q));
+    return sign_of(dot_of(u, u) - squared(Exact(disc.radius) + Exact(s.radius)));
+  }
+  /// Sign of |centre - origin - q|^2 - (sum of the radii)^2.
+  Sign disc_sign(const Disc& disc) const {
+    // u errs by 2 u of its size, the squares by 6 u, the radii's by 4 u, the difference by 2 u more; kUnderflow is more
+    // than three underflowed squares.
+    constexpr double kError = 16.0 * kUnitRoundoff;
+    constexpr double kUnderflow = 0x1p-1060;
+    const Vec2 p = disc.center - s.origin;
+    const Vec2 size{std::fabs(p.x) + std::fabs(q.x), std::fabs(p.y) + std::fabs(q.y)};
+    const double reach = disc.radius + s.radius;
+    const double value = squared_norm(p - q) - reach * reach;
+    if (std::fabs(value) > kError * (squared_norm(size) + reach * reach) + kUnderflow) {
+      count_filter();
+      return sign_of_double(value);
+    }
+    return disc_exactly(disc);
+  }
+
+  Place polygon(const Vec2* vertices, std::size_t count) const {
+    EXACTVO_REQUIRE(count > 0, excerpt(s.shape));
+    const GrownPolygon grown(vertices, count, s.origin, s.radius);
+    const Place place = grown.place_of(detail::along(q, 1.0));
+    if (grown.was_exact()) require_valid(s);
+    grown.was_exact() ? count_exact() : count_filter();
+    return place;
+  }
+};
+
+struct SegmentMeets {
+  const GrownShape& s;
+  Vec2 v;
+  double t_max;
+
+  /// A disc is a point grown by both radii; their sum is not a double, so the exact stage is its own.
+  bool operator()(const Disc& d) const {
+    bool meets = false;
+    if (disc_rounded(d, meets)) {
+      count_filter();
+      return meets;
+    }
+    return exactly();
+  }
+  bool operator()(const Segment& g) const {
+    const Vec2 ends[2] = {g.a, g.b};
+    return polygon(ends, 2);
+  }
+  bool operator()(const ConvexPolygon& p) const { return polygon(p.vertices.data(), p.vertices.size()); }
+  bool operator()(const Ellipse& e) const {
+    bool meets = false;
+    if (detail::segment_meets_rounded(e, s, v, t_max, meets)) {
+      count_filter();
+      return meets;
+    }
+    return exactly();
+  }
+
+ private:
+  // Kept out of the filters' way: its frame would cost as much as a filter.
+  [[gnu::noinline, gnu::cold]] bool exactly() const {
+    count_exact();
+    require_valid(s);
+    return detail::segment_meets_exactly(s, make<Exact>(v), Exact(t_max));
+  }
+
+  /// False where a sign is in doubt. p errs by u, p.v and v x p by 4 u of their magnitudes, (v x p)^2 by 10 u, r^2
+  /// |v|^2 by 6 u; 32 u is more than all of it. Under the cap, underflow (2^-1075 a product) stays below kUnderflow.
+  bool disc_rounded(const Disc& d, bool& meets) const {
+    constexpr double kError = 32.0 * kUnitRoundoff;
+    constexpr double kLargest = 0x1p200;
+    constexpr double kUnderflow = 0x1p-600;
+    const Vec2 p = d.center - s.origin;
+    const double reach = d.radius + s.radius;
+    const double r2 = reach * reach;
+    const double speed2 = squared_norm(v);
+    const double c = cross(v, p);
+    const double size_c = std::fabs(v.x * p.y) + std::fabs(v.y * p.x);
+    const double line = c * c - r2 * speed2;
+    const double error_line = kError * (size_c * size_c + r2 * speed2) + kUnderflow;
+    if (!(size_c + speed2 + r2 <= kLargest)) return false;
+    if (line > error_line) return true;  // meets stays false
+    const double pv = dot(p, v);
+    const double size_pv = std::fabs(p.x * v.x) + std::fabs(p.y * v.y);
+    const double beyond = t_max * speed2;
+    if (!(size_pv + beyond + t_max <= kLargest)) return false;
+    const double error_pv = kError * (size_pv + beyond) + kUnderflow;
+    if (pv > error_pv && pv < beyond - error_pv) {
+      meets = true;
+      return line < -error_line;
+    }
+    const bool ahead = pv >= beyond;
+    if (ahead ? !(pv > beyond + error_pv) : !(pv < -error_pv)) return false;
+    const Vec2 q = ahead ? t_max * v : Vec2{};
+    const Vec2 size{std::fabs(p.x) + std::fabs(q.x), std::fabs(p.y) + std::fabs(q.y)};
+    const double value = squared_norm(p - q) - r2;
+    meets = value < 0.0;
+    return std::fabs(value) > kError * (squared_norm(size) + r2) + kUnderflow;
+  }
+
+  bool polygon(const Vec2* vertices, std::size_t count) const {
+    EXACTVO_REQUIRE(count > 0, excerpt(s.shape));
+    const GrownPolygon grown(vertices, count, s.origin, s.radius);
+    const bool meets = grown.meets(v, t_max);
+    if (grown.was_exact()) require_valid(s);
+    grown.was_exact() ? count_exact() : count_filter();
+    return meets;
+  }
+};
+
+// --- Predicate F ---
+
+/// (A + B - C')^3 + 27 A B C' with A = a^2 gx^2, B = b^2 gy^2, C' = factor (a^2 - b^2)^2. Its sign is that of
+/// A^(1/3) + B^(1/3) - C'^(1/3), since x + 3 cbrt(y) and x^3 + 27 y agree in sign. In terms of Sigma = L L^T and u =
+/// goal - centre: A + B = u.Sigma u, (a^2 - b^2)^2 = tr^2 - 4 det, A B (a^2 - b^2)^2 = det (u x Sigma u)^2: all
+/// rational.
+template <typename T>
+T evolute_polynomial(const Ellipse& e, Vec2 goal, double factor) {
+  const T l11(e.l11), l21(e.l21), l22(e.l22);
+  const T s11 = l11 * l11, s12 = l11 * l21, s22 = l21 * l21 + l22 * l22;
+  const Vector<T> u = difference<T>(goal, e.center);
+  const Vector<T> su{s11 * u.x + s12 * u.y, s12 * u.x + s22 * u.y};
+  const T det = squared(T(l11 * l22));
+  // tr^2 - 4 det as a sum of squares.
+  const T spread = squared(T(s11 - s22)) + T(4) * squared(s12);
+  const T f = T(factor);
+  const T x = dot_of(u, su) - f * spread;
+  return x * x * x + T(27) * f * det * squared(cross_of(u, su));
+}
+
+[[gnu::noinline, gnu::cold]] Sign sign_of_support_exactly(const GrownShape& s, Vec2 n, double tau, double c) {
+  count_exact();
+  require_valid(s);
+  const SupportParts parts = std::visit(PartsOf{s, n}, s.shape);
+  return sign_with_two_roots(parts.k - Exact(tau) * Exact(c), parts.b, parts.d);
+}
+
+[[gnu::noinline, gnu::cold]] void require_segment(const GrownShape& s, Vec2 direction, double t_max) {
+  EXACTVO_REQUIRE(is_finite(direction) && t_max >= 0.0 && std::isfinite(t_max) && s.radius >= 0.0, show(direction));
+}
+
+}  // namespace
+
+Sign sign_of_support(const GrownShape& s, Vec2 n, double tau, double c) {
+  EXACTVO_REQUIRE(is_finite(n) && std::isfinite(tau) && std::isfinite(c), show(n));
+  const SupportValue v = support(s, n);
+  const double shift = tau * c;
+  const double value = v.h - shift;
+  const double bound = kSupportError * (v.magnitude + std::fabs(shift)) + kSupportUnderflow;
+  if (std::fabs(value) > bound) {
+    count_filter();
+    return sign_of_double(value);
+  }
+  return sign_of_support_exactly(s, n, tau, c);
+}
+
+bool half_plane_is_safe(const GrownShape& s, double tau, const HalfPlane& h) {
+  EXACTVO_REQUIRE(tau > 0.0, std::to_string(tau));
+  if (h.normal == Vec2{}) return h.offset > 0.0;  // no velocity, or every one
+  return sign_of_support(s, h.normal, tau, 0.0) != Sign::positive &&
+         sign_of_support(s, h.normal, tau, h.offset) != Sign::positive;
+}
+
+Place locate(const GrownShape& s, Vec2 q) {
+  EXACTVO_REQUIRE(is_finite(q) && s.radius >= 0.0, show(q));
+  return std::visit(Locator{s, q}, s.shape);
+}
+
+bool segment_meets(const GrownShape& s, Vec2 direction, double t_max) {
+  constexpr double kFarFromOverflow = 0x1p1000;
+  const double all =
+      std::fabs(direction.x) + std::fabs(direction.y) + t_max;  // one comparison catches NaN and infinity
+  if (!(all < kFarFromOverflow && t_max >= 0.0 && s.radius >= 0.0)) require_segment(s, direction, t_max);
+  return std::visit(SegmentMeets{s, direction, t_max}, s.shape);
+}
+
+bool contains(const Ellipse& e, Vec2 x) {
+  EXACTVO_REQUIRE(is_finite(x), show(x));
+  require_valid(e);
+  if (e.l11 == 0.0 || e.l22 == 0.0) return locate({e, {}, 0.0}, x) != Place::outside;
+  return filtered_sign([&](auto number) {
+           using T = decltype(number);
+           const Vector<T> u = difference<T>(x, e.center);
+           const T l11(e.l11), l21(e.l21), l22(e.l22);
+           return T(squared(T(l22 * u.x)) + squared(T(l11 * u.y - l21 * u.x)) - squared(T(l11 * l22)));
+         }) != Sign::positive;
+}
+
+Sign orientation(Vec2 a, Vec2 b, Vec2 c) {
+  EXACTVO_REQUIRE(is_finite(a) && is_finite(b) && is_finite(c), show(a));
+  return filtered_sign([&](auto number) {
+    using T = decltype(number);
+    return T(cross_of(difference<T>(b, a), difference<T>(c, a)));
+  });
+}
+
+bool goal_outside_evolute(const Ellipse& ellipse, Vec2 goal, double slack) {
+  EXACTVO_REQUIRE(is_finite(goal) && slack >= 0.0 && std::isfinite(slack), show(goal));
+  require_valid(ellipse);
+  const double factor = (1.0 + slack) * (1.0 + slack) * (1.0 + slack);
+  return filtered_sign([&](auto number) { return evolute_polynomial<decltype(number)>(ellipse, goal, factor); }) ==
+         Sign::positive;
+}
+
+}  // namespace exactvo::geometry

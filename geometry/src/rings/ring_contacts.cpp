@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rings/ring_contacts.h"
+
+#include <CGAL/Box_intersection_d/Box_with_info_d.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "cgal_guard.h"
+#include "exactvo/geometry/distance.h"
+
+namespace exactvo::geometry::detail {
+namespace {
+
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 2, EdgeId>;
+
+Box box_of(const Segment& s, EdgeId id) {
+  double low[2] = {std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y)};
+  double high[2] = {std::max(s.a.x, s.b.x), std::max(s.a.y, s.b.y)};
+  return {low, high, id};
+}
+
+std::vector<Box> boxes_of(const std::vector<Chain>& chains) {
+  std::vector<Box> boxes;
+  for (std::size_t c = 0; c < chains.size(); ++c) {
+    for (std::size_t i = 0; i < chains[c].edge_count(); ++i) boxes.push_back(box_of(chains[c].edge(i), {c, i}));
+  }
+  return boxes;
+}
+
+struct TooMany {};
+
+// Counts crossings, and ends the search by an exception, the only way out of CGAL's.
+class CrossingCount {
+ public:
+  CrossingCount(std::size_t most, const std::vector<Ring>& rings) : most_(most), rings_(rings) {}
+
+  void operator()(const Box& a, const Box& b) {
+    if (++pairs_ > kMostBoxPairs) throw TooMany{};
+    if (are_neighbours(a.info(), b.info()) || !intersect(edge(a.info()), edge(b.info()))) return;
+    if (++crossings_ > most_) throw TooMany{};
+  }
+
+ private:
+  Segment edge(EdgeId id) const { return Chain{&rings_[id.chain]}.edge(id.edge); }
+  bool are_neighbours(EdgeId a, EdgeId b) const {
+    const std::size_t n = rings_[a.chain].size();
+    return a.chain == b.chain && ((a.edge + 1) % n == b.edge || (b.edge + 1) % n == a.edge);
+  }
+
+  std::size_t most_;
+  const std::vector<Ring>& rings_;
+  std::size_t pairs_ = 0;
+  std::size_t crossings_ = 0;
+};
+
+auto key(const Contact& c) {
+  return std::make_tuple(c.first.chain, c.first.edge, c.second.chain, c.second.edge);
+}
+
+}  // namespace
+
+std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains) {
+  std::vector<Contact> contacts;
+  const auto report = [&](const Box& a, const Box& b) {
+    EdgeId first = a.info();
+    EdgeId second = b.info();
+    if (second.chain < first.chain) std::swap(first, second);
+    if (first.chain == second.chain) return;
+    const Segment s = chains[first.chain].edge(first.edge);
+    const Segment t = chains[second.chain].edge(second.edge);
+    if (intersect(s, t)) contacts.push_back({first, second, common_point(s, t)});
+  };
+  without_cgal_failures(
+      "all_contacts_between", [&] { return std::to_string(chains.size()) + " chains"; },
+      [&] {
+        std::vector<Box> boxes = boxes_of(chains);
+        CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), report);
+      });
+  std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return key(a) < key(b); });
+  return contacts;
+}
+
+bool has_more_crossings_than(std::size_t most, const std::vector<Ring>& rings) {
+  std::vector<Chain> chains;
+  for (const Ring& ring : rings) chains.push_back(Chain{&ring});
+  std::vector<Box> boxes = boxes_of(chains);
+  CrossingCount count(most, rings);
+  try {
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) { count(a, b); });
+  } catch (const TooMany&) {
+    return true;
+  }
+  return false;
+}
+
+}  // namespace exactvo::geometry::detail

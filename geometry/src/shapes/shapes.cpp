@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/geometry/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "exactvo/geometry/pi.h"
+#include "exactvo/geometry/require.h"
+#include "rings/convexity.h"
+
+namespace exactvo::geometry {
+namespace {
+
+bool all_finite(const std::vector<Vec2>& points) {
+  return std::all_of(points.begin(), points.end(), [](Vec2 p) { return is_finite(p); });
+}
+
+bool valid(const Disc& d) {
+  return is_finite(d.center) && std::isfinite(d.radius) && d.radius >= 0.0;
+}
+bool valid(const Segment& s) {
+  return is_finite(s.a) && is_finite(s.b);
+}
+
+// One point, a segment, or once round; a vertex may be listed twice running, which only the slow path looks into.
+bool bounds_a_convex_set(const std::vector<Vec2>& vertices) {
+  if (detail::runs_once_round_to_the_left(vertices) || detail::on_one_line(vertices)) return true;
+  std::vector<Vec2> distinct = vertices;
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  if (distinct.front() == distinct.back()) distinct.pop_back();
+  return detail::runs_once_round_to_the_left(distinct);
+}
+
+bool valid(const ConvexPolygon& p) {
+  return !p.vertices.empty() && all_finite(p.vertices) && bounds_a_convex_set(p.vertices);
+}
+bool valid(const Ellipse& e) {
+  return is_finite(e.center) && std::isfinite(e.l11) && std::isfinite(e.l21) && std::isfinite(e.l22);
+}
+
+void append_chain(const std::vector<Vec2>& points, std::vector<Segment>& out) {
+  for (std::size_t i = 1; i < points.size(); ++i) out.push_back({points[i - 1], points[i]});
+}
+
+void append_ring(const Ring& ring, std::vector<Segment>& out) {
+  append_chain(ring, out);
+  if (ring.size() > 1) out.push_back({ring.back(), ring.front()});
+}
+
+// The largest magnitude in L: what the squares below are scaled by, so that none over- or underflows.
+double largest_entry(const Ellipse& e) {
+  return std::max({std::fabs(e.l11), std::fabs(e.l21), std::fabs(e.l22)});
+}
+
+std::string text(Vec2 p) {
+  return hex_text(p.x) + " " + hex_text(p.y);
+}
+
+std::string text(const Disc& d) {
+  return "disc " + text(d.center) + " " + hex_text(d.radius);
+}
+std::string text(const Segment& s) {
+  return "segment " + text(s.a) + " " + text(s.b);
+}
+std::string text(const ConvexPolygon& p) {
+  return "convex_polygon " + to_string(p.vertices);
+}
+std::string text(const Ellipse& e) {
+  return "ellipse " + text(e.center) + " " + hex_text(e.l11) + " " + hex_text(e.l21) + " " + hex_text(e.l22);
+}
+
+}  // namespace
+
+// M = R diag(a, b) maps the unit disc to the ellipse; L is M times the rotation that clears the upper right entry:
+//   [a c, -b s]     [l11   0 ]        l11 = hypot(a c, b s),  l21 = (a^2 - b^2) s c / l11,  l22 = a b / l11.
+//   [a s,  b c] Q = [l21  l22]
+Ellipse ellipse_from_axes(Vec2 center, EllipseAxes axes) {
+  const double a = axes.a;
+  const double b = axes.b;
+  EXACTVO_REQUIRE(std::isfinite(a) && b >= 0.0 && a >= b && std::isfinite(axes.angle) && is_finite(center),
+                  "a = " + hex_text(a) + ", b = " + hex_text(b) + ", angle = " + hex_text(axes.angle));
+  const double c = std::cos(axes.angle);
+  const double s = std::sin(axes.angle);
+  const double l11 = std::hypot(a * c, b * s);
+  if (!(l11 > 0.0)) return {center, 0.0, a, 0.0};  // underflow: the ellipse is its a axis, upright or a point
+  return {center, l11, ((a - b) * s) * ((a + b) / l11 * c), a * (b / l11)};
+}
+
+EllipseAxes axes_of(const Ellipse& ellipse) {
+  const double scale = largest_entry(ellipse);
+  if (!(scale > 0.0)) return {};
+  const double x = ellipse.l11 / scale;
+  const double y = ellipse.l21 / scale;
+  const double z = ellipse.l22 / scale;
+  const double a = 0.5 * (std::hypot(x + z, y) + std::hypot(x - z, y));
+  const double b = std::min(a, std::fabs(x * z) / a);  // det / a: no cancellation for needles
+  double angle = 0.5 * std::atan2(2.0 * x * y, (x - y) * (x + y) - z * z);
+  if (angle <= -0.5 * kPi) angle = 0.5 * kPi;
+  return {a * scale, b * scale, angle};
+}
+
+double area(const Ellipse& ellipse) {
+  return kPi * std::fabs(ellipse.l11 * ellipse.l22);
+}
+
+bool is_valid(const ConvexShape& shape) {
+  return std::visit([](const auto& s) { return valid(s); }, shape);
+}
+
+std::vector<Segment> edges_of(const Obstacle& obstacle) {
+  std::vector<Segment> edges;
+  if (const auto* polyline = std::get_if<Polyline>(&obstacle)) {
+    append_chain(polyline->points, edges);
+    return edges;
+  }
+  const auto& polygon = std::get<Polygon>(obstacle);
+  append_ring(polygon.outer, edges);
+  for (const Ring& hole : polygon.holes) append_ring(hole, edges);
+  return edges;
+}
+
+std::vector<Vec2> vertices_of(const Obstacle& obstacle) {
+  if (const auto* polyline = std::get_if<Polyline>(&obstacle)) return polyline->points;
+  const auto& polygon = std::get<Polygon>(obstacle);
+  std::vector<Vec2> vertices = polygon.outer;
+  for (const Ring& hole : polygon.holes) vertices.insert(vertices.end(), hole.begin(), hole.end());
+  return vertices;
+}
+
+std::string hex_text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%a", value);
+  return buffer;
+}
+
+std::string to_string(const std::vector<Vec2>& points) {
+  std::string out = std::to_string(points.size());
+  for (const Vec2 p : points) out += " " + text(p);
+  return out;
+}
+
+std::string excerpt(const std::vector<Vec2>& points) {
+  if (points.size() <= kVerticesShown) return to_string(points);
+  std::string out = std::to_string(points.size()) + " points, first";
+  for (std::size_t i = 0; i < kVerticesShown; ++i) out += " " + text(points[i]);
+  return out + " ...";
+}
+
+std::string to_string(const ConvexShape& shape) {
+  return std::visit([](const auto& s) { return text(s); }, shape);
+}
+
+}  // namespace exactvo::geometry
