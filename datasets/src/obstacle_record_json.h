@@ -8,7 +8,7 @@
 
 #include "exactvo/geometry/obstacle_shapes.h"
 #include "json_text.h"
-#include "scenario_json.h"
+#include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
 

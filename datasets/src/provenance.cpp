@@ -12,7 +12,7 @@
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo_commit.h"
-#include "gdal_facts.h"
+#include "gdal/gdal_facts.h"
 #include "json_text.h"
 #include "sha256.h"
 #include "system_error.h"

@@ -10,7 +10,7 @@
 
 #include "batch/features.h"
 #include "exactvo/datasets/data_error.h"
-#include "gdal_session.h"
+#include "gdal/gdal_session.h"
 #include "system_error.h"
 
 namespace exactvo::datasets::batch {

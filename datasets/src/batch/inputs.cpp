@@ -9,7 +9,7 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/scenario_file.h"
-#include "readers.h"
+#include "readers/readers.h"
 
 namespace exactvo::datasets::batch {
 namespace {

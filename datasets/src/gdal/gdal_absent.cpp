@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gdal/gdal_facts.h"
+#include "readers/grey_image.h"
+#include "readers/readers.h"
+#include "writers/writers.h"
+
+namespace exactvo::datasets {
+
+std::string gdal_release() {
+  return "none";
+}
+
+bool built_with_gdal() {
+  return false;
+}
+
+void read_vector_file(const std::filesystem::path& path, Collector&) {
+  throw DataError(DataCode::format_unavailable, path.string(), "",
+                  "a vector file, and this build is without GDAL, which reads them",
+                  "a build with EXACTVO_WITH_GDAL=ON, or plain WKT");
+}
+
+std::string to_gdal_file(const Obstacles&, const std::string& driver, const std::string& file) {
+  throw DataError(DataCode::format_unavailable, file, "", "a file that needs GDAL's driver " + driver,
+                  "a build with EXACTVO_WITH_GDAL=ON, or another format");
+}
+
+GreyImage read_gdal_image(const std::filesystem::path& path) {
+  throw DataError(DataCode::format_unavailable, path.string(), "", "a picture that needs GDAL",
+                  "a build with EXACTVO_WITH_GDAL=ON, or PGM");
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "gdal/gdal_session.h"
+#include "json_text.h"
+#include "readers/readers.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+geometry::Ring points_of(const OGRSimpleCurve& curve) {
+  geometry::Ring points(static_cast<std::size_t>(curve.getNumPoints()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = {curve.getX(static_cast<int>(i)), curve.getY(static_cast<int>(i))};
+  }
+  return points;
+}
+
+std::vector<geometry::Ring> rings_of(const OGRPolygon& polygon) {
+  std::vector<geometry::Ring> rings;
+  for (const OGRLinearRing* ring : polygon) rings.push_back(points_of(*ring));
+  return rings;
+}
+
+/// The lines and polygons inside a geometry of any kind, in order, and a word about what else is there.
+struct Visitor {
+  std::function<void(RawKind, std::vector<geometry::Ring>)> shape;
+  std::function<void(const std::string&)> other;
+};
+
+void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0) {
+  if (depth > kDeepestCollection) return visitor.other("collections nested too deeply passed over");
+  if (geometry.IsEmpty()) return visitor.other(std::string("an empty ") + geometry.getGeometryName() + " passed over");
+  switch (wkbFlatten(geometry.getGeometryType())) {
+    case wkbPoint:
+    case wkbMultiPoint:
+      return visitor.other("a " + std::string(geometry.getGeometryName()) + " passed over: points are no obstacles");
+    case wkbLineString:
+      return visitor.shape(RawKind::polyline, {points_of(*geometry.toLineString())});
+    case wkbPolygon:
+    case wkbTriangle:
+      return visitor.shape(RawKind::polygon, rings_of(*geometry.toPolygon()));
+    case wkbMultiLineString:
+    case wkbMultiPolygon:
+    case wkbGeometryCollection:
+      for (const OGRGeometry* part : *geometry.toGeometryCollection()) visit(*part, visitor, depth + 1);
+      return;
+    default:
+      break;
+  }
+  const std::unique_ptr<OGRGeometry> straight(geometry.getLinearGeometry());
+  if (straight && wkbFlatten(straight->getGeometryType()) != wkbFlatten(geometry.getGeometryType())) {
+    return visit(*straight, visitor, depth + 1);
+  }
+  visitor.other(std::string("a ") + geometry.getGeometryName() + " passed over: no line or polygon");
+}
+
+/// Degrees that a coordinate may lie beyond 180 or 90 and still be one: writers round, and some files hold
+/// 180.00000000000014. A millionth of a degree is 0.1 m on the ground.
+constexpr double kDegreesBeyond = 1e-6;
+
+struct Box {
+  geometry::Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  geometry::Vec2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+  void add(geometry::Vec2 p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  bool empty() const { return !(low.x <= high.x); }
+  bool is_longitude_latitude() const {
+    constexpr double kEast = 180.0 + kDegreesBeyond, kNorth = 90.0 + kDegreesBeyond;
+    return low.x >= -kEast && high.x <= kEast && low.y >= -kNorth && high.y <= kNorth;
+  }
+};
+
+/// To a millionth of a degree (0.1 m): a centre that people can copy.
+double rounded_degrees(double degrees) {
+  return std::round(degrees * 1e6) / 1e6;
+}
+
+class VectorReader {
+ public:
+  VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out) {
+    data_ = open_vectors(path);
+    refuse_complaints("", data_ == nullptr);
+  }
+
+  void read() {
+    for (int k = 0; k < data_->GetLayerCount(); ++k) {
+      layer_ = data_->GetLayer(k);
+      settle_coordinates();
+      for_each_feature([this](const OGRFeature& feature, std::size_t number) { add(feature, number); });
+    }
+    note_extent();
+    for (const std::string& words : complaints_.take_warnings()) out_.note("", words);
+  }
+
+ private:
+  /// A failure is what GDAL called one; `failed` says that it gave nothing.
+  void refuse_complaints(const std::string& place, bool failed = false) {
+    const std::string words = complaints_.take_failure();
+    if (words.empty() && !failed) return;
+    throw DataError(DataCode::library, path_.string(), place,
+                    words.empty() ? "a file that no vector driver reads" : words, "a vector file that GDAL reads");
+  }
+
+  template <class Action>
+  void for_each_feature(Action action) {
+    layer_->ResetReading();
+    std::size_t number = 0;
+    while (const std::unique_ptr<OGRFeature> feature{layer_->GetNextFeature()}) {
+      const std::string place = "feature " + std::to_string(number);
+      refuse_complaints(place);
+      action(*feature, number++);
+    }
+    refuse_complaints("after feature " + std::to_string(number));
+  }
+
+  Box bounding_box() {
+    Box box;
+    Visitor visitor;
+    visitor.other = [](const std::string&) {};
+    visitor.shape = [&](RawKind, const std::vector<geometry::Ring>& rings) {
+      for (const geometry::Ring& ring : rings) {
+        for (const geometry::Vec2 p : ring) {
+          if (geometry::is_finite(p)) box.add(p);
+        }
+      }
+    };
+    for_each_feature([&](const OGRFeature& feature, std::size_t) {
+      if (const OGRGeometry* shape = feature.GetGeometryRef()) visit(*shape, visitor);
+    });
+    return box;
+  }
+
+  /// What the numbers of this layer mean: sets `scale_` or `to_metres_`.
+  void settle_coordinates() {
+    to_metres_.reset();
+    scale_ = 1.0;
+    const OGRSpatialReference* system = layer_->GetSpatialRef();
+    const Units units = units_of_layer();
+    if (units == Units::metres) return note_units("metres: " + reason_);
+    if (units == Units::automatic && system == nullptr) return note_units("taken as metres: names no reference system");
+    if (units == Units::automatic && !system->IsGeographic()) return settle_projected(*system);
+    const Box box = bounding_box();
+    if (box.empty()) return;
+    if (!box.is_longitude_latitude()) return settle_impossible_degrees(units);
+    project_round(box, system != nullptr && system->IsGeographic() ? *system : *OGRSpatialReference::GetWGS84SRS());
+    note_units("degrees: " + reason_ + "; brought to metres round longitude " + number(origin_->longitude) +
+               ", latitude " + number(origin_->latitude));
+  }
+
+  void settle_projected(const OGRSpatialReference& system) {
+    scale_ = system.GetLinearUnits();
+    const char* name = system.GetName();
+    note_units(number(scale_) + " m a unit: by its reference system " + (name != nullptr ? name : "without a name"));
+  }
+
+  static std::string number(double value) {
+    std::string text;
+    append_number(text, value);
+    return text;
+  }
+
+  void note_units(const std::string& words) {
+    out_.note(data_->GetLayerCount() > 1 ? std::string("layer ") + layer_->GetName() : "", words);
+  }
+
+  void note_extent() {
+    if (!out_.extent()) return;
+    const auto [low, high] = *out_.extent();
+    out_.note("", "extent " + number(low.x) + " to " + number(high.x) + " m, " + number(low.y) + " to " +
+                      number(high.y) + " m");
+  }
+
+  /// Sets `reason_` as well.
+  Units units_of_layer() {
+    reason_ = "as the reader was told";
+    if (out_.options().units != Units::automatic) return out_.options().units;
+    reason_ = "by its reference system";
+    return is_geojson() ? units_of_geojson() : Units::automatic;
+  }
+
+  Units units_of_geojson() {
+    reason_ = "GeoJSON that says nothing of units (RFC 7946)";
+    const char* native = layer_->GetMetadataItem("NATIVE_DATA", "NATIVE_DATA");
+    if (native == nullptr) return Units::automatic;
+    const Json members = parse_json(native, path_.string());
+    const auto units = members.find("units");
+    if (units == members.end()) return Units::automatic;
+    reason_ = "by its member \"units\"";
+    if (*units == "m") return Units::metres;
+    if (*units == "degrees") return Units::degrees;
+    throw DataError(DataCode::not_an_option, path_.string(), "/units", described(*units), "\"m\" or \"degrees\"");
+  }
+
+  bool is_geojson() const { return std::string(data_->GetDriverName()).find("GeoJSON") == 0; }
+
+  void settle_impossible_degrees(Units units) {
+    if (units == Units::degrees || !is_geojson()) {
+      throw DataError(DataCode::projection, path_.string(), layer_->GetName(),
+                      "coordinates beyond 180 degrees east or 90 north", "longitudes and latitudes");
+    }
+    note_units("taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
+  }
+
+  void project_round(const Box& box, OGRSpatialReference from) {
+    if (!origin_) {
+      origin_ = {rounded_degrees((box.low.x + box.high.x) / 2), rounded_degrees((box.low.y + box.high.y) / 2)};
+      out_.set_origin(*origin_);
+    }
+    from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    OGRSpatialReference local;
+    local.CopyGeogCSFrom(&from);
+    local.SetAE(origin_->latitude, origin_->longitude, 0.0, 0.0);
+    to_metres_.reset(OGRCreateCoordinateTransformation(&from, &local));
+    refuse_complaints(layer_->GetName(), to_metres_ == nullptr);
+  }
+
+  void bring_to_metres(geometry::Ring& ring, const std::string& place) {
+    for (geometry::Vec2& p : ring) {
+      if (!geometry::is_finite(p)) continue;
+      if (to_metres_ == nullptr) {
+        p = scale_ * p;
+      } else if (!to_metres_->Transform(1, &p.x, &p.y)) {
+        complaints_.take_failure();
+        throw DataError(DataCode::projection, path_.string(), place, "a point that has no place on the local plane",
+                        "coordinates near each other");
+      }
+    }
+  }
+
+  void add(const OGRFeature& feature, std::size_t number) {
+    const std::string place = place_of(number);
+    const OGRGeometry* shape = feature.GetGeometryRef();
+    if (shape == nullptr) return out_.pass_over(place, "a feature without geometry passed over");
+    std::size_t part = 0;
+    Visitor visitor;
+    visitor.other = [&](const std::string& words) { out_.pass_over(place, words); };
+    visitor.shape = [&](RawKind kind, std::vector<geometry::Ring> rings) {
+      hand_on(number, part++, place, kind, std::move(rings));
+    };
+    visit(*shape, visitor);
+  }
+
+  std::string place_of(std::size_t number) const {
+    const std::string feature = "feature " + std::to_string(number);
+    return data_->GetLayerCount() > 1 ? std::string("layer ") + layer_->GetName() + ", " + feature : feature;
+  }
+
+  void hand_on(std::size_t number, std::size_t part, const std::string& place, RawKind kind,
+               std::vector<geometry::Ring> rings) {
+    RawGeometry raw;
+    raw.kind = kind;
+    raw.id = std::to_string(number) + (part > 0 ? "." + std::to_string(part) : "");
+    if (data_->GetLayerCount() > 1) raw.id = std::string(layer_->GetName()) + "/" + raw.id;
+    raw.place = place + (part > 0 ? ", part " + std::to_string(part) : "");
+    raw.rings = std::move(rings);
+    try {
+      for (geometry::Ring& ring : raw.rings) bring_to_metres(ring, raw.place);
+    } catch (const DataError& error) {
+      return out_.reject(error);
+    }
+    out_.add(raw);
+  }
+
+  std::filesystem::path path_;
+  Collector& out_;
+  GdalComplaints complaints_;
+  std::unique_ptr<GDALDataset> data_;
+  OGRLayer* layer_ = nullptr;
+  std::optional<ProjectionOrigin> origin_;  ///< one for all layers
+  double scale_ = 1.0;                      ///< m a unit
+  std::string reason_;                      ///< why the layer's units are what they are
+  std::unique_ptr<OGRCoordinateTransformation> to_metres_;
+};
+
+/// As our own XML readers do. Entities are declared before the first element; what is hidden behind a longer comment is
+/// left to expat, which bounds what entities grow to.
+void refuse_entities(const std::filesystem::path& path) {
+  constexpr std::size_t kDeclarations = 1 << 16;
+  const std::string beginning = read_beginning(path, kDeclarations);
+  const std::size_t at = beginning.find("<!ENTITY");
+  if (beginning.empty() || beginning[0] != '<' || at == std::string::npos) return;
+  throw DataError(DataCode::format_syntax, path.string(), line_and_column(beginning, at), excerpt(beginning, at),
+                  "XML without entities of its own: they are not expanded");
+}
+
+}  // namespace
+
+void read_vector_file(const std::filesystem::path& path, Collector& out) {
+  refuse_entities(path);
+  VectorReader(path, out).read();
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// BARN worlds (Perille et al. 2020): Gazebo SDF with upright cylinders. Each stands in the world and again in its
+// recorded <state>; the first counts.
+#include "readers/discs.h"
+#include "readers/line_reader.h"
+#include "readers/xml_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+geometry::Vec2 position_of(const XmlFile& xml, const pugi::xml_node& model) {
+  const pugi::xml_node pose = model.child("pose");
+  const std::vector<std::string_view> words = words_of(pose.child_value());
+  if (words.size() < 2) return {};
+  return {xml.to_number(pose, words[0]), xml.to_number(pose, words[1])};
+}
+
+void add_model(const XmlFile& xml, const pugi::xml_node& model, Collector& out) {
+  const pugi::xml_node shape = model.child("link").child("collision").child("geometry");
+  const pugi::xml_node radius = shape.child("cylinder").child("radius");
+  if (!radius)
+    return out.pass_over(xml.place_of(model),
+                         std::string("model ") + model.attribute("name").value() + " passed over: no cylinder");
+  RawGeometry raw;
+  raw.id = model.attribute("name").value();
+  raw.place = xml.place_of(model) + ", model " + raw.id;
+  const double r = xml.to_number(radius, radius.child_value());
+  raw.rings.push_back(polygon_round(position_of(xml, model), r));
+  out.add(raw);
+}
+
+}  // namespace
+
+bool looks_like_barn_world(const Glimpse& glimpse) {
+  return first_element_is(glimpse.beginning, "sdf") && glimpse.beginning.find("<world") != std::string::npos;
+}
+
+void read_barn_world(const std::filesystem::path& path, Collector& out) {
+  const XmlFile xml(path, out.file());
+  for (const pugi::xml_node model : xml.document().child("sdf").child("world").children("model"))
+    add_model(xml, model, out);
+  out.note("", "cylinders stand as polygons of 16 corners round them, 1.3 % larger in area");
+}
+
+}  // namespace exactvo::datasets

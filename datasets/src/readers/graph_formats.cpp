@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Polygons as graphs and as counted lists: GraphML with coordinates (Salzburg's polygon collection), its .line files,
+// and planar straight line graphs as triangulators' tests hold them.
+#include <map>
+
+#include "readers/line_reader.h"
+#include "readers/plane_graph.h"
+#include "readers/xml_file.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+// --- GraphML: <node id><data key="x">..</data><data key="y">..</data></node>, <edge source target/> ---
+
+double coordinate(const XmlFile& xml, const pugi::xml_node& node, const char* key, const std::string& file) {
+  for (const pugi::xml_node data : node.children("data")) {
+    if (std::string_view(data.attribute("key").value()) == key) return xml.to_number(data, data.child_value());
+  }
+  throw DataError(DataCode::key_missing, file, xml.place_of(node), std::string("no data of key ") + key,
+                  "coordinates as data of keys x and y");
+}
+
+using NodeNumbers = std::map<std::string, std::size_t, std::less<>>;
+
+std::size_t node_number(const NodeNumbers& numbers, const XmlFile& xml, const pugi::xml_node& edge, const char* end,
+                        const std::string& file) {
+  const auto found = numbers.find(std::string_view(edge.attribute(end).value()));
+  if (found != numbers.end()) return found->second;
+  throw DataError(DataCode::not_an_option, file, xml.place_of(edge),
+                  std::string(end) + " \"" + edge.attribute(end).value() + "\"", "the id of a node");
+}
+
+PlaneGraph read_graph(const XmlFile& xml, const pugi::xml_node& element, const std::string& file) {
+  PlaneGraph graph;
+  NodeNumbers numbers;
+  for (const pugi::xml_node node : element.children("node")) {
+    numbers.emplace(node.attribute("id").value(), graph.points.size());
+    graph.points.push_back({coordinate(xml, node, "x", file), coordinate(xml, node, "y", file)});
+  }
+  for (const pugi::xml_node edge : element.children("edge")) {
+    graph.edges.emplace_back(node_number(numbers, xml, edge, "source", file),
+                             node_number(numbers, xml, edge, "target", file));
+  }
+  return graph;
+}
+
+// --- Counted lists ---
+
+/// Lines that hold something, so many fields each.
+class CountedLines {
+ public:
+  CountedLines(std::string_view text, const std::string& file) : lines_(text, file) {}
+
+  bool next() {
+    while (lines_.next()) {
+      words_ = words_of(lines_.line());
+      if (!words_.empty()) return true;
+    }
+    return false;
+  }
+  void need(const std::string& what) {
+    if (!next()) lines_.refuse(DataCode::format_syntax, "the end of the file", what);
+  }
+  std::size_t fields() const { return words_.size(); }
+  geometry::Vec2 point() {
+    need("a point, x y");
+    if (words_.size() < 2) lines_.refuse(DataCode::wrong_count, excerpt(lines_.line(), 0), "a point, x y");
+    return {lines_.to_number(words_[0]), lines_.to_number(words_[1])};
+  }
+  /// A number of things that follow, a line each of two characters at least: no more than the file has room for.
+  std::size_t count(std::size_t field) const {
+    const std::int64_t n = field < words_.size() ? lines_.to_integer(words_[field]) : -1;
+    if (n < 0) lines_.refuse(DataCode::format_syntax, excerpt(lines_.line(), 0), "a count");
+    if (static_cast<std::uint64_t>(n) > lines_.left() / 2 + 1)
+      lines_.refuse(DataCode::size, std::to_string(n) + " lines", "no more than the file holds");
+    return static_cast<std::size_t>(n);
+  }
+  std::size_t index(std::size_t field, std::size_t below) const {
+    const std::int64_t n = field < words_.size() ? lines_.to_integer(words_[field]) : -1;
+    if (n < 0 || static_cast<std::uint64_t>(n) >= below)
+      lines_.refuse(DataCode::out_of_range, excerpt(lines_.line(), 0), "indices of points, from 0 on");
+    return static_cast<std::size_t>(n);
+  }
+  std::string place() const { return lines_.place(); }
+
+ private:
+  LineReader lines_;
+  std::vector<std::string_view> words_;
+};
+
+bool is_count(std::string_view word) {
+  return !word.empty() && word.size() <= 10 && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// The fields of the first two lines that hold something.
+std::vector<std::vector<std::string_view>> first_lines(const Glimpse& glimpse) {
+  std::vector<std::vector<std::string_view>> lines;
+  const std::string name;
+  LineReader reader(glimpse.beginning, name);
+  while (lines.size() < 2 && reader.next()) {
+    std::vector<std::string_view> words = words_of(reader.line());
+    if (!words.empty()) lines.push_back(std::move(words));
+  }
+  return lines;
+}
+
+}  // namespace
+
+bool looks_like_graphml(const Glimpse& glimpse) {
+  return first_element_is(glimpse.beginning, "graphml");
+}
+
+void read_graphml(const std::filesystem::path& path, Collector& out) {
+  const XmlFile xml(path, out.file());
+  for (const pugi::xml_node graph : xml.document().child("graphml").children("graph"))
+    add_graph(read_graph(xml, graph, out.file()), xml.place_of(graph), out);
+}
+
+bool looks_like_counted_rings(const Glimpse& glimpse) {
+  const auto lines = first_lines(glimpse);
+  return glimpse.extension == ".line" && !lines.empty() && lines[0].size() == 1 && is_count(lines[0][0]);
+}
+
+/// Rings, each its count and its points; the first is outside.
+void read_counted_rings(const std::filesystem::path& path, Collector& out) {
+  const std::string text = read_text_file(path);
+  CountedLines lines(text, out.file());
+  RawGeometry raw;
+  raw.id = "0";
+  raw.place = "polygon";
+  while (lines.next()) {
+    geometry::Ring& ring = raw.rings.emplace_back();
+    for (std::size_t n = lines.count(0); n > 0; --n) ring.push_back(lines.point());
+  }
+  if (raw.rings.empty()) return out.pass_over(raw.place, "an empty polygon passed over");
+  out.add(raw);
+}
+
+bool looks_like_pslg(const Glimpse& glimpse) {
+  const auto lines = first_lines(glimpse);
+  if (glimpse.extension != ".txt" && glimpse.extension != ".pslg") return false;
+  return lines.size() == 2 && lines[0].size() == 2 && lines[1].size() == 2 && is_count(lines[0][0]) &&
+         is_count(lines[0][1]);
+}
+
+/// "points edges", the points, the edges as pairs of indices. What is inside is not said: walls.
+void read_pslg(const std::filesystem::path& path, Collector& out) {
+  const std::string text = read_text_file(path);
+  CountedLines lines(text, out.file());
+  lines.need("the numbers of points and edges");
+  const std::size_t points = lines.count(0);
+  const std::size_t edges = lines.count(1);
+  PlaneGraph graph;
+  for (std::size_t k = 0; k < points; ++k) graph.points.push_back(lines.point());
+  for (std::size_t k = 0; k < edges; ++k) {
+    lines.need("an edge, two indices");
+    graph.edges.emplace_back(lines.index(0, points), lines.index(1, points));
+  }
+  add_graph_as_walls(graph, "graph", out);
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "readers/line_reader.h"
+
+#include <charconv>
+
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\v\f";
+
+template <class T>
+bool parsed_whole(std::string_view field, T& value) {
+  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
+  const std::from_chars_result result = std::from_chars(field.data(), field.data() + field.size(), value);
+  return result.ec == std::errc() && result.ptr == field.data() + field.size();
+}
+
+}  // namespace
+
+bool LineReader::next() {
+  if (rest_.empty()) return false;
+  const std::size_t end = rest_.find('\n');
+  line_ = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  if (!line_.empty() && line_.back() == '\r') line_.remove_suffix(1);
+  ++number_;
+  return true;
+}
+
+double LineReader::to_number(std::string_view field) const {
+  double value = 0.0;
+  if (!parsed_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a number");
+  return value;
+}
+
+std::int64_t LineReader::to_integer(std::string_view field) const {
+  std::int64_t value = 0;
+  if (!parsed_whole(field, value)) refuse(DataCode::number, excerpt(field, 0), "a whole number");
+  return value;
+}
+
+void LineReader::refuse(DataCode code, const std::string& found, const std::string& expected) const {
+  throw DataError(code, file_, place(), found, expected);
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = 0; (at = line.find_first_not_of(kBlanks, at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+std::vector<std::string_view> fields_of(std::string_view line, char separator) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t end = line.find(separator);
+    fields.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
+  }
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Moving AI maps: "type octile", "height H", "width W", "map", then H rows of W symbols, the top one first.
+#include <map>
+
+#include "readers/grid.h"
+#include "readers/line_reader.h"
+#include "readers/readers.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+struct Header {
+  std::size_t height = 0;
+  std::size_t width = 0;
+};
+
+/// Blocked: out of bounds, trees, water. Free: ground, swamp, and what games and warehouses put on the ground.
+enum class Ground { free, blocked, unknown };
+
+Ground ground_of(char symbol) {
+  switch (symbol) {
+    case '@':
+    case 'O':
+    case 'T':
+    case 'W':
+      return Ground::blocked;
+    case '.':
+    case 'G':
+    case 'S':
+    case 's':
+    case 't':
+    case 'g':
+    case 'E':
+      return Ground::free;
+    default:
+      return Ground::unknown;
+  }
+}
+
+std::size_t to_size(const LineReader& lines, std::string_view field) {
+  const std::int64_t value = lines.to_integer(field);
+  if (value < 1 || static_cast<std::uint64_t>(value) > kMostCells) {
+    lines.refuse(DataCode::size, std::to_string(value) + " cells", "between 1 and " + std::to_string(kMostCells));
+  }
+  return static_cast<std::size_t>(value);
+}
+
+/// The type line may be missing, and the others may come in any order.
+Header read_header(LineReader& lines) {
+  Header header;
+  while (lines.next()) {
+    const std::vector<std::string_view> words = words_of(lines.line());
+    if (words.empty()) continue;
+    if (words[0] == "map" && words.size() == 1) break;
+    if (words.size() != 2)
+      lines.refuse(DataCode::format_syntax, excerpt(lines.line(), 0), "type, height, width or map");
+    if (words[0] == "height") header.height = to_size(lines, words[1]);
+    if (words[0] == "width") header.width = to_size(lines, words[1]);
+  }
+  if (header.height == 0 || header.width == 0) {
+    lines.refuse(DataCode::format_syntax, "no height, no width or no map", "height, width and map lines");
+  }
+  // The grid must be there before memory is taken for it.
+  if (header.height > kMostCells / header.width || header.height * header.width > lines.left()) {
+    lines.refuse(DataCode::size, std::to_string(header.height) + " rows of " + std::to_string(header.width),
+                 "as many cells as the file holds, at most " + std::to_string(kMostCells));
+  }
+  return header;
+}
+
+void read_row(const LineReader& lines, std::size_t y, Grid& grid, std::map<char, std::size_t>& odd) {
+  const std::string_view row = lines.line();
+  if (row.size() != grid.width) {
+    lines.refuse(DataCode::wrong_count, std::to_string(row.size()) + " cells", std::to_string(grid.width) + " cells");
+  }
+  for (std::size_t x = 0; x < row.size(); ++x) {
+    const Ground ground = ground_of(row[x]);
+    if (ground == Ground::unknown) {
+      lines.refuse(DataCode::format_syntax, "the symbol " + excerpt(row, x, 1), "one of . G S @ O T W");
+    }
+    if (ground == Ground::blocked) grid.occupied[y * grid.width + x] = 1;
+    if (row[x] == 's' || row[x] == 't' || row[x] == 'g' || row[x] == 'E') ++odd[row[x]];
+  }
+}
+
+Grid read_grid(LineReader& lines, Collector& out) {
+  const Header header = read_header(lines);
+  Grid grid{header.width, header.height, std::vector<std::uint8_t>(header.width * header.height, 0)};
+  std::map<char, std::size_t> odd;
+  for (std::size_t row = 0; row < header.height; ++row) {
+    if (!lines.next()) {
+      lines.refuse(DataCode::wrong_count, std::to_string(row) + " rows", std::to_string(header.height) + " rows");
+    }
+    read_row(lines, header.height - 1 - row, grid, odd);
+  }
+  for (const auto& [symbol, count] : odd) {
+    out.note("", std::to_string(count) + " cells of the unusual symbol " + symbol + " taken as free");
+  }
+  return grid;
+}
+
+}  // namespace
+
+bool looks_like_moving_ai_map(const Glimpse& glimpse) {
+  if (glimpse.extension != ".map") return false;
+  const std::string& text = glimpse.beginning;
+  return text.rfind("type ", 0) == 0 || text.rfind("height ", 0) == 0 || text.rfind("width ", 0) == 0;
+}
+
+void read_moving_ai_map(const std::filesystem::path& path, Collector& out) {
+  const std::string text = read_text_file(path);
+  LineReader lines(text, out.file());
+  const Grid grid = read_grid(lines, out);
+  const double cell = out.options().cell_size > 0.0 ? out.options().cell_size : 1.0;
+  add_grid(grid, {{0.0, 0.0}, cell, 0.0, 0, 0}, out);
+}
+
+}  // namespace exactvo::datasets

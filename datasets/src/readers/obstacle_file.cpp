@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/obstacle_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "exactvo/geometry/require.h"
+#include "readers/readers.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+constexpr std::array<const char*, 15> kVectorExtensions{".geojson", ".json", ".shp", ".dbf", ".gpkg",
+                                                        ".fgb",     ".csv",  ".osm", ".pbf", ".dxf",
+                                                        ".kml",     ".gml",  ".gpx", ".tab", ".topojson"};
+
+Glimpse glimpse_of(const std::filesystem::path& path) {
+  Glimpse glimpse;
+  glimpse.path = path;
+  glimpse.extension = path.extension().string();
+  for (char& c : glimpse.extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  glimpse.beginning = read_beginning(path, kGlimpseLength);
+  return glimpse;
+}
+
+std::string all_names() {
+  std::string names;
+  for (const Reader& reader : readers()) names += (names.empty() ? "" : ", ") + std::string(reader.name);
+  return names;
+}
+
+const Reader& reader_named(const std::string& name, const std::filesystem::path& path) {
+  for (const Reader& reader : readers()) {
+    if (name == reader.name) return reader;
+  }
+  throw DataError(DataCode::not_an_option, path.string(), "format", "\"" + name + "\"", "one of " + all_names());
+}
+
+const Reader& reader_for(const std::filesystem::path& path) {
+  const Glimpse glimpse = glimpse_of(path);
+  for (const Reader& reader : readers()) {
+    if (reader.recognises(glimpse)) return reader;
+  }
+  throw DataError(DataCode::format_unknown, path.string(), "", excerpt(glimpse.beginning, 0),
+                  "a file of obstacles; a format given by name is not guessed: " + all_names());
+}
+
+/// Missing and unreadable files are named before any reader is asked; an empty one holds nothing in any format.
+void refuse_nothing(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!read_beginning(path, 1).empty()) return;
+  const DataCode code = options.format.empty() ? DataCode::format_unknown : DataCode::format_syntax;
+  throw DataError(code, path.string(), "", "an empty file", "a file of obstacles");
+}
+
+ObstacleFile read_into(const std::filesystem::path& path, const ReadOptions& options, const ObstacleStream* stream) {
+  refuse_nothing(path, options);
+  const Reader& reader = options.format.empty() ? reader_for(path) : reader_named(options.format, path);
+  Collector out(path.string(), reader.name, options, stream);
+  reader.read(path, out);
+  return out.take();
+}
+
+}  // namespace
+
+const std::vector<Reader>& readers() {
+  static const std::vector<Reader> kReaders{
+      {"wkt", looks_like_wkt, read_wkt},
+      {"jupedsim-wkt", only_by_name, read_jupedsim_wkt},
+      {"movingai-map", looks_like_moving_ai_map, read_moving_ai_map},
+      {"movingai-scen", looks_like_moving_ai_scen, read_moving_ai_scen},
+      {"ros-map", looks_like_ros_map, read_ros_map},
+      {"csm-log", looks_like_csm_log, read_csm_log},
+      {"carmen-log", looks_like_carmen_log, read_carmen_log},
+      {"menge-xml", looks_like_menge_xml, read_menge_xml},
+      {"sumo-poly", looks_like_sumo_poly, read_sumo_poly},
+      {"jupedsim-xml", looks_like_jupedsim_xml, read_jupedsim_xml},
+      {"barn-world", looks_like_barn_world, read_barn_world},
+      {"jts-xml", looks_like_jts_xml, read_jts_xml},
+      {"opentraj-xml", looks_like_opentraj_xml, read_opentraj_xml},
+      {"graphml", looks_like_graphml, read_graphml},
+      {"counted-rings", looks_like_counted_rings, read_counted_rings},
+      {"pslg", looks_like_pslg, read_pslg},
+      {"ompl-circles", looks_like_ompl_circles, read_ompl_circles},
+      {"ompl-grid", looks_like_ompl_grid, read_ompl_grid},
+      {"scenario", looks_like_scenario, read_scenario_obstacles},
+      {"rings-json", looks_like_rings_json, read_rings_json},
+      {"points-csv", looks_like_points_csv, read_points_csv},
+      {"gdal", looks_like_vector_file, read_vector_file},
+  };
+  return kReaders;
+}
+
+// By name alone, so that a build without GDAL can say what it lacks.
+bool looks_like_vector_file(const Glimpse& glimpse) {
+  return std::find(kVectorExtensions.begin(), kVectorExtensions.end(), glimpse.extension) != kVectorExtensions.end();
+}
+
+ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options) {
+  return read_into(path, options, nullptr);
+}
+
+ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options,
+                            const ObstacleStream& stream) {
+  EXACTVO_REQUIRE(stream.obstacle && stream.rejected, path.string());
+  return read_into(path, options, &stream);
+}
+
+std::string format_of(const std::filesystem::path& path) {
+  return reader_for(path).name;
+}
+
+std::vector<std::string> readable_formats() {
+  std::vector<std::string> names;
+  for (const Reader& reader : readers()) names.emplace_back(reader.name);
+  return names;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ROS maps: a yaml that names a picture, its scale and thresholds (map_server). Occupied cells are obstacles; unknown
+// ones are counted and left free.
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "readers/grey_image.h"
+#include "readers/grid.h"
+#include "readers/readers.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+enum class MapMode { trinary, scale, raw };
+
+struct MapFacts {
+  std::string image;
+  double resolution = 0.0;
+  std::array<double, 3> origin{};  ///< x, y (m), yaw (rad) of the picture's lower left corner
+  bool negate = false;
+  double occupied_thresh = 0.65;
+  double free_thresh = 0.196;
+  MapMode mode = MapMode::trinary;
+};
+
+/// The yaml's values, with the key in every refusal.
+class MapYaml {
+ public:
+  MapYaml(const std::string& text, const std::string& file) : file_(file) {
+    try {
+      root_ = YAML::Load(text);
+    } catch (const YAML::Exception& error) {
+      throw DataError(
+          DataCode::format_syntax, file_,
+          "line " + std::to_string(error.mark.line + 1) + ", column " + std::to_string(error.mark.column + 1),
+          error.msg, "YAML");
+    }
+    if (!root_.IsMap()) throw DataError(DataCode::format_syntax, file_, "", "no keys", "the keys of a map");
+  }
+
+  std::string image() const { return required<std::string>("image", "the name of a picture"); }
+
+  MapFacts facts() const {
+    MapFacts m;
+    m.image = image();
+    m.resolution = finite(required<double>("resolution", "metres a cell"), "resolution");
+    if (!(m.resolution > 0.0))
+      refuse("resolution", DataCode::out_of_range, std::to_string(m.resolution), "a number > 0");
+    const auto origin = required<std::vector<double>>("origin", "[x, y, yaw]");
+    if (origin.size() != 3)
+      refuse("origin", DataCode::wrong_count, std::to_string(origin.size()) + " numbers", "[x, y, yaw]");
+    for (std::size_t i = 0; i < 3; ++i) m.origin[i] = finite(origin[i], "origin");
+    m.negate = negate();
+    m.occupied_thresh = finite(value<double>("occupied_thresh", m.occupied_thresh, "a number"), "occupied_thresh");
+    m.free_thresh = finite(value<double>("free_thresh", m.free_thresh, "a number"), "free_thresh");
+    m.mode = mode();
+    return m;
+  }
+
+ private:
+  template <class T>
+  T required(const char* key, const char* expected) const {
+    if (!root_[key]) throw DataError(DataCode::key_missing, file_, "", "no key \"" + std::string(key) + "\"", expected);
+    return value<T>(key, {}, expected);
+  }
+
+  template <class T>
+  T value(const char* key, const T& otherwise, const char* expected) const {
+    const YAML::Node node = root_[key];
+    if (!node) return otherwise;
+    try {
+      return node.as<T>();
+    } catch (const YAML::Exception&) {
+      refuse(key, DataCode::wrong_type, node.IsScalar() ? "\"" + node.Scalar() + "\"" : "a list or keys", expected);
+    }
+  }
+
+  double finite(double number, const char* key) const {
+    if (!std::isfinite(number)) refuse(key, DataCode::number, std::to_string(number), "a finite number");
+    return number;
+  }
+
+  bool negate() const {
+    const std::string word = value<std::string>("negate", "0", "0 or 1");
+    if (word == "0" || word == "false") return false;
+    if (word == "1" || word == "true") return true;
+    refuse("negate", DataCode::not_an_option, "\"" + word + "\"", "0 or 1");
+  }
+
+  MapMode mode() const {
+    const std::string word = value<std::string>("mode", "trinary", "trinary, scale or raw");
+    if (word == "trinary") return MapMode::trinary;
+    if (word == "scale") return MapMode::scale;
+    if (word == "raw") return MapMode::raw;
+    refuse("mode", DataCode::not_an_option, "\"" + word + "\"", "trinary, scale or raw");
+  }
+
+  [[noreturn]] void refuse(const char* key, DataCode code, const std::string& found,
+                           const std::string& expected) const {
+    throw DataError(code, file_, std::string("key ") + key, found, expected);
+  }
+
+  const std::string& file_;
+  YAML::Node root_;
+};
+
+/// A map's description is a few lines; beyond this it is something else.
+constexpr std::size_t kLongestDescription = 1 << 20;
+
+std::string description_of(const std::filesystem::path& map) {
+  std::string text = read_beginning(map, kLongestDescription + 1);
+  if (text.size() > kLongestDescription) {
+    throw DataError(DataCode::size, map.string(), "", "more than a megabyte", "the few lines of a map's description");
+  }
+  return text;
+}
+
+/// A map is a folder's business: its picture lies in the same folder or below.
+std::filesystem::path image_path(const std::filesystem::path& map, const std::string& image) {
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(map).parent_path();
+  const std::filesystem::path picture = std::filesystem::weakly_canonical(folder / image);
+  const auto [end, at] = std::mismatch(folder.begin(), folder.end(), picture.begin(), picture.end());
+  if (end != folder.end()) {
+    throw DataError(DataCode::path_escape, map.string(), "key image", "\"" + image + "\"",
+                    "a picture in the map's folder");
+  }
+  if (!std::filesystem::is_regular_file(picture)) {
+    throw DataError(DataCode::image, map.string(), "key image", "\"" + image + "\", which is not there", "a picture");
+  }
+  return picture;
+}
+
+enum class Occupancy { free, occupied, unknown };
+
+/// map_server's rule; comparisons are strict. In mode scale only what is above the threshold is an obstacle; the
+/// levels between are costs. In mode raw the pixel is the occupancy in per cent, and above 100 unknown.
+Occupancy occupancy_of(double brightness, const MapFacts& map) {
+  if (map.mode == MapMode::raw) {
+    if (brightness > 100.0) return Occupancy::unknown;
+    return brightness > 100.0 * map.occupied_thresh ? Occupancy::occupied : Occupancy::free;
+  }
+  const double occ = map.negate ? brightness / 255.0 : (255.0 - brightness) / 255.0;
+  if (occ > map.occupied_thresh) return Occupancy::occupied;
+  return occ < map.free_thresh ? Occupancy::free : Occupancy::unknown;
+}
+
+Grid to_grid(const GreyImage& image, const MapFacts& map, Collector& out) {
+  Grid grid{image.width, image.height, std::vector<std::uint8_t>(image.width * image.height, 0)};
+  std::size_t unknown = 0;
+  for (std::size_t row = 0; row < image.height; ++row) {
+    for (std::size_t x = 0; x < image.width; ++x) {
+      const std::size_t pixel = row * image.width + x;
+      const bool clear = !image.is_transparent.empty() && image.is_transparent[pixel];
+      const Occupancy is = clear ? Occupancy::unknown : occupancy_of(static_cast<double>(image.brightness[pixel]), map);
+      if (is == Occupancy::occupied) grid.occupied[(image.height - 1 - row) * image.width + x] = 1;
+      unknown += is == Occupancy::unknown ? 1 : 0;
+    }
+  }
+  if (unknown > 0) out.note("", std::to_string(unknown) + " unknown cells taken as free");
+  return grid;
+}
+
+}  // namespace
+
+bool looks_like_ros_map(const Glimpse& glimpse) {
+  return (glimpse.extension == ".yaml" || glimpse.extension == ".yml") &&
+         glimpse.beginning.find("image:") != std::string::npos;
+}
+
+std::filesystem::path picture_of_ros_map(const std::filesystem::path& map) {
+  const std::string file = map.string();
+  return image_path(map, MapYaml(description_of(map), file).image());
+}
+
+void read_ros_map(const std::filesystem::path& path, Collector& out) {
+  const MapFacts map = MapYaml(description_of(path), out.file()).facts();
+  const Grid grid = to_grid(read_image(image_path(path, map.image)), map, out);
+  add_grid(grid, {{map.origin[0], map.origin[1]}, map.resolution, map.origin[2], 0, 0}, out);
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "readers/xml_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
+#include "readers/line_reader.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+
+XmlFile::XmlFile(const std::filesystem::path& path, const std::string& file)
+    : file_(file), text_(read_text_file(path)) {
+  refuse_entities();
+  const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
+  if (result) return;
+  const auto byte = static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0));
+  throw DataError(DataCode::format_syntax, file_, line_and_column(text_, byte), excerpt(text_, byte),
+                  std::string("XML: ") + result.description());
+}
+
+/// None of these formats has any; what they stand for may be endless, or somebody's files.
+void XmlFile::refuse_entities() const {
+  const std::size_t at = text_.find("<!ENTITY");
+  if (at == std::string::npos) return;
+  throw DataError(DataCode::format_syntax, file_, line_and_column(text_, at), excerpt(text_, at),
+                  "XML without entities of its own: they are not expanded");
+}
+
+std::string XmlFile::place_of(const pugi::xml_node& node) const {
+  const std::ptrdiff_t offset = node.offset_debug();
+  if (offset < 0) return node.name();
+  const auto byte = static_cast<std::size_t>(offset);
+  if (line_starts_.empty()) index_lines();
+  const auto line = std::prev(std::upper_bound(line_starts_.begin(), line_starts_.end(), byte));
+  return "line " + std::to_string(line - line_starts_.begin() + 1) + ", column " + std::to_string(byte - *line + 1);
+}
+
+void XmlFile::index_lines() const {
+  line_starts_.push_back(0);
+  for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1))
+    line_starts_.push_back(at + 1);
+}
+
+double XmlFile::number(const pugi::xml_node& node, const char* attribute) const {
+  const pugi::xml_attribute found = node.attribute(attribute);
+  if (!found) {
+    throw DataError(DataCode::key_missing, file_, place_of(node), std::string("no attribute ") + attribute,
+                    std::string(attribute) + "=\"a number\"");
+  }
+  return to_number(node, found.value());
+}
+
+double XmlFile::to_number(const pugi::xml_node& node, std::string_view text) const {
+  try {
+    return LineReader(text, file_).to_number(trimmed(text));
+  } catch (const DataError& error) {
+    throw DataError(error.code(), file_, place_of(node), error.found(), error.expected());
+  }
+}
+
+bool first_element_is(const std::string& text, const std::string& element) {
+  std::size_t at = text.find('<');
+  while (at != std::string::npos && at + 1 < text.size() && (text[at + 1] == '?' || text[at + 1] == '!')) {
+    const bool comment = text.compare(at, 4, "<!--") == 0;
+    at = text.find(comment ? "-->" : ">", at);
+    if (at != std::string::npos) at = text.find('<', at);
+  }
+  if (at == std::string::npos || text.compare(at + 1, element.size(), element) != 0) return false;
+  const std::size_t end = at + 1 + element.size();
+  return end < text.size() && std::isalnum(static_cast<unsigned char>(text[end])) == 0;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// XML for this room, by pugixml: it expands no entities and follows no links; a file that declares entities is
+/// refused.
+
+#include <pugixml.hpp>
+#include <string>
+#include <vector>
+
+#include "readers/readers.h"
+
+namespace exactvo::datasets {
+
+class XmlFile {
+ public:
+  /// Throws DataError with line and column.
+  XmlFile(const std::filesystem::path& path, const std::string& file);
+
+  const pugi::xml_document& document() const { return document_; }
+  std::string place_of(const pugi::xml_node& node) const;
+  /// The attribute as a number. Throws DataError naming the node's place and the attribute.
+  double number(const pugi::xml_node& node, const char* attribute) const;
+  double to_number(const pugi::xml_node& node, std::string_view text) const;
+
+ private:
+  void refuse_entities() const;
+  void index_lines() const;
+
+  const std::string& file_;
+  std::string text_;
+  pugi::xml_document document_;
+  mutable std::vector<std::size_t> line_starts_;  ///< made when the first place is asked for
+};
+
+/// Whether `element` is the first element of the text, comments and declarations passed over.
+bool first_element_is(const std::string& text, const std::string& element);
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recordings/recording_names.h"
+
+namespace exactvo::datasets {
+
+template <>
+const std::vector<Word<lp::Status>>& words() {
+  static const std::vector<Word<lp::Status>> kWords{{lp::Status::optimal, "optimal"},
+                                                    {lp::Status::relaxed, "relaxed"},
+                                                    {lp::Status::infeasible, "infeasible"},
+                                                    {lp::Status::pinched, "pinched"}};
+  return kWords;
+}
+
+template <>
+const std::vector<Word<formation::Mode>>& words() {
+  using formation::Mode;
+  static const std::vector<Word<Mode>> kWords{{Mode::direct, "direct"},
+                                              {Mode::boost, "boost"},
+                                              {Mode::following, "following"},
+                                              {Mode::pushing_out, "pushing-out"},
+                                              {Mode::arrived, "arrived"}};
+  return kWords;
+}
+
+template <>
+const std::vector<Word<formation::ConstraintSource>>& words() {
+  using formation::ConstraintSource;
+  static const std::vector<Word<ConstraintSource>> kWords{{ConstraintSource::enclosure, "enclosure"},
+                                                          {ConstraintSource::obstacle_edge, "obstacle-edge"},
+                                                          {ConstraintSource::robot, "robot"},
+                                                          {ConstraintSource::moving_obstacle, "moving-obstacle"}};
+  return kWords;
+}
+
+template <>
+const std::vector<Word<formation::MotionLaw>>& words() {
+  using formation::MotionLaw;
+  static const std::vector<Word<MotionLaw>> kWords{
+      {MotionLaw::straight, "straight"}, {MotionLaw::exponential, "exponential"}, {MotionLaw::hermite, "hermite"}};
+  return kWords;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/recording_file.h"
+#include "json_text.h"
+#include "recordings/recording_names.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// RFC 4180: quoted where it must be.
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
+void append_pair(std::string& row, geometry::Vec2 v) {
+  row += ',';
+  append_number(row, v.x);
+  row += ',';
+  append_number(row, v.y);
+}
+
+std::string csv_row(const formation::Step& step, const formation::RobotStep& robot, const std::string& id,
+                    bool has_leader) {
+  std::string row;
+  append_number(row, step.time);
+  row += "," + csv_text(id);
+  for (const geometry::Vec2 v : {robot.position, robot.velocity, robot.preferred, robot.chosen}) append_pair(row, v);
+  row += std::string(",") + word_for(robot.status) + "," + word_for(robot.mode) + "," + std::to_string(robot.side);
+  if (has_leader) {
+    append_pair(row, step.leader_position);
+    append_pair(row, step.leader_velocity);
+  }
+  return row + "\n";
+}
+
+}  // namespace
+
+void write_trajectory_csv(const std::filesystem::path& path, const RecordingFile& file) {
+  const bool has_leader = file.scenario.formation.has_value();
+  AtomicFile out(path);
+  out.write(
+      "time_s,robot,x_m,y_m,vx_m_s,vy_m_s,preferred_vx_m_s,preferred_vy_m_s,chosen_vx_m_s,chosen_vy_m_s,status,mode,"
+      "side");
+  out.write(has_leader ? ",leader_x_m,leader_y_m,leader_vx_m_s,leader_vy_m_s\n" : "\n");
+  for (const formation::Step& step : file.recording.steps) {
+    for (std::size_t i = 0; i < step.robots.size(); ++i) {
+      out.write(csv_row(step, step.robots[i], file.scenario.robots.at(i).id, has_leader));
+    }
+  }
+  out.commit();
+}
+
+}  // namespace exactvo::datasets

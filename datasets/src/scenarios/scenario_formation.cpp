@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "exactvo/formation/patterns.h"
+#include "exactvo/formation/speed_profile.h"
+#include "scenarios/scenario_values.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using formation::FormationSpec;
+using formation::Robot;
+using geometry::Vec2;
+
+class FormationReader {
+ public:
+  FormationReader(const std::vector<Robot>& robots, const std::string& file) : robots_(robots), file_(file) {}
+
+  FormationSpec read(const Json& object) const {
+    FormationSpec spec;
+    spec.offsets = object.contains("offsets") ? to_points(object.at("offsets")) : of_pattern(object.at("pattern"));
+    spec.topology = to_topology(object.at("topology"), spec.offsets);
+    spec.recentre = object.value("recentre", spec.recentre);
+    spec.leader = to_leader(object.at("leader"));
+    const Json gains = object.value("gains", Json::object());
+    take(gains, "k1", spec.gains.k1);
+    take(gains, "k2", spec.gains.k2);
+    take(gains, "k3", spec.gains.k3);
+    take(gains, "kappa", spec.gains.kappa);
+    take(object, "catch_up_speed", spec.catch_up_speed);
+    spec.remedies = to_switches(object.value("remedies", Json::object()));
+    return spec;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& at, const std::string& found, const std::string& expected) const {
+    throw DataError(DataCode::scenario, file_, "/formation" + at, found, expected);
+  }
+
+  std::vector<Vec2> of_pattern(const Json& object) const {
+    formation::Pattern pattern{};
+    parse(object.at("name").get<std::string>(), pattern);  // the schema knows the names
+    const Vec2 heading = object.contains("heading") ? to_point(object.at("heading")) : Vec2{1.0, 0.0};
+    if (heading == Vec2{}) refuse("/pattern/heading", "[0, 0]", "a direction");
+    return pattern_offsets(pattern, robots_.size(), object.at("spacing").get<double>(), heading);
+  }
+
+  formation::Topology to_topology(const Json& object, const std::vector<Vec2>& offsets) const {
+    if (object.contains("complete")) return formation::complete_topology(robots_.size());
+    if (object.contains("neighbours_within"))
+      return formation::neighbour_topology(offsets, object.at("neighbours_within").get<double>(), pinned(object));
+    formation::Topology topology;
+    object.at("adjacency").get_to(topology.adjacency);
+    object.at("pinning").get_to(topology.pinning);
+    return topology;
+  }
+
+  std::vector<std::size_t> pinned(const Json& object) const {
+    std::vector<std::size_t> places;
+    const Json ids = object.value("pinned", Json::array());
+    for (std::size_t k = 0; k < ids.size(); ++k) {
+      const std::string id = ids[k].get<std::string>();
+      const auto found = std::find_if(robots_.begin(), robots_.end(), [&](const Robot& r) { return r.id == id; });
+      if (found == robots_.end())
+        refuse("/topology/pinned/" + std::to_string(k), "\"" + id + "\"", "the id of a robot");
+      places.push_back(static_cast<std::size_t>(found - robots_.begin()));
+    }
+    return places;
+  }
+
+  formation::Leader to_leader(const Json& object) const {
+    formation::Leader leader;
+    leader.path = to_points(object.at("path"));
+    take(object, "speed", leader.speed);
+    if (object.contains("profile")) leader.profile = to_profile(object.at("profile"), leader.path);
+    return leader;
+  }
+
+  std::vector<formation::SpeedKnot> to_profile(const Json& object, const std::vector<Vec2>& path) const {
+    if (object.contains("trapezoid")) {
+      const Json& t = object.at("trapezoid");
+      return formation::trapezoid(path, t.at("speed").get<double>(), t.at("acceleration").get<double>());
+    }
+    if (object.contains("legs")) return of_legs(object.at("legs").get<std::vector<double>>(), path);
+    std::vector<formation::SpeedKnot> knots;
+    for (const Json& pair : object.at("knots")) knots.push_back({pair[0].get<double>(), pair[1].get<double>()});
+    return knots;
+  }
+
+  std::vector<formation::SpeedKnot> of_legs(const std::vector<double>& speeds, const std::vector<Vec2>& path) const {
+    if (speeds.size() + 1 != path.size())
+      refuse("/leader/profile/legs", std::to_string(speeds.size()) + " speeds",
+             "one a leg of the path: " + std::to_string(path.size() - 1));
+    return formation::speed_of_legs(path, speeds);
+  }
+
+  static formation::RemedySwitches to_switches(const Json& object) {
+    formation::RemedySwitches asked;
+    for (const formation::RemedySwitch& s : formation::remedy_switches())
+      if (object.contains(s.name)) asked.*s.asked = object.at(s.name).get<bool>();
+    if (object.contains("acceleration_bound")) asked.acceleration_bound = object.at("acceleration_bound").get<double>();
+    return asked;
+  }
+
+  const std::vector<Robot>& robots_;
+  const std::string& file_;
+};
+
+}  // namespace
+
+FormationSpec to_formation(const Json& object, const std::vector<Robot>& robots, const std::string& file) {
+  return FormationReader(robots, file).read(object);
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The obstacles of a scenario (scenario_file.h), those of the files that it names included.
+#include "exactvo/datasets/scenario_file.h"
+#include "readers/readers.h"
+#include "writers/writers.h"
+
+namespace exactvo::datasets {
+namespace {
+
+RawGeometry to_raw(const formation::SceneObstacle& obstacle) {
+  RawGeometry raw;
+  raw.id = obstacle.id;
+  raw.place = "obstacle " + obstacle.id;
+  if (const auto* line = std::get_if<geometry::Polyline>(&obstacle.shape)) {
+    raw.kind = RawKind::polyline;
+    raw.rings.push_back(line->points);
+  } else {
+    raw.rings = closed_rings_of(std::get<geometry::Polygon>(obstacle.shape));
+  }
+  return raw;
+}
+
+}  // namespace
+
+bool looks_like_scenario(const Glimpse& glimpse) {
+  const std::size_t first = glimpse.beginning.find_first_not_of(" \t\r\n");
+  return first != std::string::npos && glimpse.beginning[first] == '{' &&
+         glimpse.beginning.find("\"robots\"") != std::string::npos &&
+         glimpse.beginning.find("\"FeatureCollection\"") == std::string::npos;
+}
+
+void read_scenario_obstacles(const std::filesystem::path& path, Collector& out) {
+  const LoadedScenario loaded = load_scenario_with_notes(path);
+  for (const formation::SceneObstacle& obstacle : loaded.scenario.obstacles) out.add(to_raw(obstacle));
+  for (const std::string& note : loaded.notes) out.note("", note);
+  const std::size_t moving = loaded.scenario.moving_obstacles.size();
+  if (moving > 0) out.note("", std::to_string(moving) + " moving obstacles left out: they have no one place");
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <set>
+#include <utility>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/simulation.h"
+#include "json_text.h"
+#include "readers/raw_geometry.h"
+#include "scenarios/scenario_values.h"
+#include "scenarios/schema_check.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using formation::Scenario;
+using geometry::Vec2;
+
+const Json& parsed_schema() {
+  static const Json schema = parse_json(scenario_schema(), "scenario.schema.json");
+  return schema;
+}
+
+// The schema has been held against the text: types and required keys are as they should be from here on.
+
+formation::Robot to_robot(const Json& object) {
+  formation::Robot robot;
+  robot.id = object.at("id").get<std::string>();
+  robot.position = to_point(object.at("position"));
+  if (object.contains("velocity")) robot.velocity = to_point(object.at("velocity"));
+  take(object, "radius", robot.radius);
+  take(object, "max_speed", robot.max_speed);
+  if (object.contains("goal")) robot.goals = {to_point(object.at("goal"))};
+  if (object.contains("goals")) robot.goals = to_points(object.at("goals"));
+  robot.cooperates = object.value("cooperates", robot.cooperates);
+  return robot;
+}
+
+RawGeometry to_raw(const Json& object, const std::string& id, const std::string& pointer) {
+  RawGeometry raw;
+  raw.id = id;
+  raw.place = pointer;
+  raw.kind = object.contains("polyline") ? RawKind::polyline : RawKind::polygon;
+  const char* key = object.contains("polyline") ? "polyline" : "polygon";
+  raw.rings.push_back(to_points(object.at(key)));
+  raw.ring_pointers.push_back(pointer + "/" + key);
+  const Json holes = object.value("holes", Json::array());
+  for (std::size_t h = 0; h < holes.size(); ++h) {
+    raw.rings.push_back(to_points(holes[h]));
+    raw.ring_pointers.push_back(pointer + "/holes/" + std::to_string(h));
+  }
+  return raw;
+}
+
+Units to_units(const std::string& word) {
+  if (word == "metres") return Units::metres;
+  return word == "degrees" ? Units::degrees : Units::automatic;
+}
+
+/// Reads one scenario; a class only so that the file's name and folder need not be handed round.
+class Reader {
+ public:
+  Reader(std::string file_name, std::filesystem::path base_dir)
+      : file_(std::move(file_name)), base_dir_(std::move(base_dir)) {}
+
+  LoadedScenario read(const Json& tree) {
+    Scenario scenario = read_scenario(tree);
+    return {std::move(scenario), std::move(notes_)};
+  }
+
+ private:
+  Scenario read_scenario(const Json& tree) {
+    check_against_schema(tree, parsed_schema(), file_);
+    Scenario scenario;
+    scenario.name = tree.at("name").get<std::string>();
+    scenario.description = tree.value("description", std::string());
+    for (const Json& robot : tree.at("robots")) scenario.robots.push_back(to_robot(robot));
+    read_obstacle_list(tree.value("obstacles", Json::array()), scenario);
+    read_moving_obstacles(tree.value("moving_obstacles", Json::array()), scenario);
+    if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
+    if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
+    read_figures(tree, scenario);
+    refuse_repeated_ids(scenario);
+    refuse_what_cannot_run(scenario);
+    return scenario;
+  }
+
+  void read_obstacle_list(const Json& list, Scenario& scenario) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::string pointer = "/obstacles/" + std::to_string(k);
+      if (list[k].contains("file")) {
+        read_obstacle_file(list[k], pointer, scenario);
+      } else {
+        const std::string id = list[k].value("id", "O" + std::to_string(k + 1));
+        Judgement judgement = judge(to_raw(list[k], id, pointer));
+        refuse_unmended(judgement, file_);
+        scenario.obstacles.push_back({id, std::move(judgement.shape)});
+      }
+      origin_of_.resize(scenario.obstacles.size(), {pointer, list[k].contains("id")});
+    }
+  }
+
+  void read_moving_obstacles(const Json& list, Scenario& scenario) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::string pointer = "/moving_obstacles/" + std::to_string(k);
+      const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
+      Judgement judgement = judge(to_raw(list[k], id, pointer));
+      refuse_unmended(judgement, file_);
+      scenario.moving_obstacles.push_back(
+          {id, std::move(judgement.shape), {to_points(list[k].at("path")), list[k].at("speed").get<double>()}});
+    }
+  }
+
+  void read_obstacle_file(const Json& object, const std::string& pointer, Scenario& scenario) {
+    const std::filesystem::path named = object.at("file").get<std::string>();
+    ReadOptions options;
+    options.format = object.value("format", std::string());
+    options.units = to_units(object.value("units", std::string("automatic")));
+    const std::string prefix = object.value("id", named.stem().string());
+    const std::filesystem::path path = base_dir_ / named;
+    ObstacleFile file = read_named_file(path, options, pointer);
+    add_notes(file);
+    for (formation::SceneObstacle& obstacle : file.obstacles) {
+      scenario.obstacles.push_back({prefix + "/" + obstacle.id, std::move(obstacle.shape)});
+    }
+  }
+
+  /// Whether the mistake is in naming the file, not in what stands in it.
+  static bool is_of_the_name(DataCode code) {
+    return code == DataCode::file_missing || code == DataCode::file_unreadable || code == DataCode::format_unknown ||
+           code == DataCode::format_unavailable || code == DataCode::not_an_option;
+  }
+
+  ObstacleFile read_named_file(const std::filesystem::path& path, const ReadOptions& options,
+                               const std::string& pointer) const {
+    try {
+      return read_obstacles(path, options);
+    } catch (const DataError& error) {
+      if (!is_of_the_name(error.code()) || error.file() != path.string()) throw;
+      const bool is_its_format = error.place() == "format";
+      if (!is_its_format && !error.place().empty()) throw;
+      throw DataError(error.code(), file_, pointer + (is_its_format ? "/format" : "/file"),
+                      error.found() + " (" + path.string() + ")", error.expected());
+    }
+  }
+
+  void add_notes(const ObstacleFile& file) {
+    const std::string name = file.file + ": ";
+    for (const DataNote& note : file.notes) {
+      const bool is_of_the_file = !note.code && note.place.rfind("feature", 0) != 0 && note.place.rfind("line", 0) != 0;
+      if (is_of_the_file) notes_.push_back(name + (note.place.empty() ? "" : note.place + ": ") + note.text);
+    }
+    const auto count = [&](std::size_t n, const char* words) {
+      if (n > 0) notes_.push_back(name + std::to_string(n) + words);
+    };
+    count(file.counts.repaired, " of the obstacles put right (winding, closure, repeated vertices)");
+    count(file.counts.passed_over, " passed over (points, empty geometries)");
+  }
+
+  static void read_figures(const Json& tree, Scenario& scenario) {
+    const Json horizons = tree.value("horizons", Json::object());
+    take(horizons, "least", scenario.horizons.least);
+    take(horizons, "most", scenario.horizons.most);
+    take(horizons, "speed_floor", scenario.horizons.speed_floor);
+    take(horizons, "orca", scenario.horizons.orca);
+    take(horizons, "robots", scenario.horizons.robots);
+    const Json margins = tree.value("margins", Json::object());
+    take(margins, "obstacle", scenario.margins.obstacle);
+    take(margins, "robot", scenario.margins.robot);
+    take(tree, "time_step", scenario.time_step);
+    take(tree, "time_limit", scenario.time_limit);
+    take(tree, "arrival_tolerance", scenario.arrival_tolerance);
+    take(tree, "neighbour_distance", scenario.neighbour_distance);
+  }
+
+  void refuse_repeated_ids(const Scenario& scenario) const {
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+      const std::string& id = scenario.robots[i].id;
+      if (!seen.insert(id).second) refuse("/robots/" + std::to_string(i) + "/id", "\"" + id + "\" a second time");
+    }
+    seen.clear();
+    for (std::size_t k = 0; k < scenario.obstacles.size(); ++k) {
+      const std::string& id = scenario.obstacles[k].id;
+      const Origin& origin = origin_of_[k];
+      const std::string found = origin.is_named ? "\"" + id + "\"" : "no id, so \"" + id + "\",";
+      if (!seen.insert(id).second) refuse(origin.pointer + (origin.is_named ? "/id" : ""), found + " a second time");
+    }
+  }
+
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& found) const {
+    throw DataError(DataCode::scenario, file_, pointer, found, "an id of its own");
+  }
+
+  /// What no schema can say: robots that overlap, lists whose lengths must agree, ...
+  void refuse_what_cannot_run(const Scenario& scenario) const {
+    const std::vector<formation::ScenarioProblem> problems = formation::validate(scenario);
+    if (problems.empty()) return;
+    const formation::ScenarioProblem& first = problems.front();
+    throw DataError(DataCode::scenario, file_, in_the_text(first.pointer), first.found, first.expected);
+  }
+
+  /// Problems name obstacles by their place in the scenario; in the text one entry may stand for a file of many.
+  std::string in_the_text(const std::string& pointer) const {
+    const std::string prefix = "/obstacles/";
+    if (pointer.compare(0, prefix.size(), prefix) != 0) return pointer;
+    const std::size_t end = pointer.find('/', prefix.size());
+    const std::size_t k = std::stoul(pointer.substr(prefix.size(), end - prefix.size()));
+    return origin_of_.at(k).pointer + (end == std::string::npos ? "" : pointer.substr(end));
+  }
+
+  std::string file_;
+  std::filesystem::path base_dir_;
+  /// An obstacle's entry in the text, and whether that has an id.
+  struct Origin {
+    std::string pointer;
+    bool is_named = false;
+  };
+  std::vector<Origin> origin_of_;  ///< per obstacle of the scenario
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+LoadedScenario parse_scenario_with_notes(const std::string& text, const std::string& file_name,
+                                         const std::filesystem::path& base_dir) {
+  return Reader(file_name, base_dir).read(parse_json(text, file_name));
+}
+
+Scenario parse_scenario(const std::string& text, const std::string& file_name, const std::filesystem::path& base_dir) {
+  return parse_scenario_with_notes(text, file_name, base_dir).scenario;
+}
+
+LoadedScenario load_scenario_with_notes(const std::filesystem::path& path) {
+  const std::string text = read_text_file(path);
+  if (text.empty()) throw DataError(DataCode::json_syntax, path.string(), "", "an empty file", "a scenario in JSON");
+  return parse_scenario_with_notes(text, path.string(), path.parent_path());
+}
+
+Scenario load_scenario(const std::filesystem::path& path) {
+  return load_scenario_with_notes(path).scenario;
+}
+
+std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files{path};
+  const Json tree = parse_json(read_text_file(path), path.string());
+  for (const Json& obstacle : tree.value("obstacles", Json::array()))
+    if (obstacle.contains("file")) files.push_back(path.parent_path() / obstacle.at("file").get<std::string>());
+  return files;
+}
+
+}  // namespace exactvo::datasets

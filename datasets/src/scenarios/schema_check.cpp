@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scenarios/schema_check.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace exactvo::datasets {
+namespace {
+
+class Checker {
+ public:
+  Checker(const Json& root, const std::string& file) : root_(root), file_(file) {}
+
+  void check(const Json& value, const Json& schema, const std::string& pointer) const {
+    const Json& rules = resolved(schema);
+    for (const auto& [keyword, rule] : rules.items()) apply(keyword, rule, value, rules, pointer);
+  }
+
+ private:
+  using Rule = void (Checker::*)(const Json& rule, const Json& value, const Json& rules, const std::string& at) const;
+  struct Keyword {
+    const char* name;
+    Rule rule;
+  };
+  static const std::vector<Keyword>& keywords();
+
+  void apply(const std::string& keyword, const Json& rule, const Json& value, const Json& rules,
+             const std::string& at) const {
+    for (const Keyword& known : keywords()) {
+      if (keyword != known.name) continue;
+      if (known.rule != nullptr) (this->*known.rule)(rule, value, rules, at);
+      return;
+    }
+    throw std::logic_error("schema keyword not supported: " + keyword);
+  }
+
+  const Json& resolved(const Json& schema) const {
+    const auto reference = schema.find("$ref");
+    if (reference == schema.end()) return schema;
+    return root_.at(Json::json_pointer(reference->get<std::string>().substr(1)));
+  }
+
+  [[noreturn]] void refuse(DataCode code, const std::string& at, const std::string& found,
+                           const std::string& expected) const {
+    throw DataError(code, file_, at, found, expected);
+  }
+
+  /// "a number (m)": the rule's own words, where it has any.
+  static std::string with_description(const std::string& text, const Json& rules) {
+    const auto words = rules.find("description");
+    return words == rules.end() ? text : text + " (" + words->get<std::string>() + ")";
+  }
+
+  static bool is_of_type(const Json& value, const std::string& type) {
+    if (type == "object") return value.is_object();
+    if (type == "array") return value.is_array();
+    if (type == "string") return value.is_string();
+    if (type == "number") return value.is_number();
+    if (type == "boolean") return value.is_boolean();
+    throw std::logic_error("schema type not supported: " + type);
+  }
+
+  static std::string name_of_type(const std::string& type) {
+    if (type == "object") return "an object";
+    if (type == "array") return "a list";
+    if (type == "string") return "text in quotes";
+    if (type == "boolean") return "true or false";
+    return "a " + type;
+  }
+
+  void type(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+    const std::string wanted = rule.get<std::string>();
+    if (is_of_type(value, wanted)) return;
+    refuse(DataCode::wrong_type, at, described(value), with_description(name_of_type(wanted), rules));
+  }
+
+  void one_of_words(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+    if (std::find(rule.begin(), rule.end(), value) != rule.end()) return;
+    std::string options;
+    for (const Json& option : rule) options += (options.empty() ? "" : ", ") + option.dump();
+    refuse(DataCode::not_an_option, at, described(value), "one of " + options);
+  }
+
+  void required(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+    if (!value.is_object()) return;
+    for (const Json& key : rule) {
+      const std::string name = key.get<std::string>();
+      if (!value.contains(name)) refuse_missing(name, value, rules, at);
+    }
+  }
+
+  /// A mistyped key leaves one key missing and one unknown; the unknown one tells the writer more.
+  [[noreturn]] void refuse_missing(const std::string& name, const Json& value, const Json& rules,
+                                   const std::string& at) const {
+    if (rules.contains("properties") && rules.contains("additionalProperties")) {
+      only_known_keys(rules.at("additionalProperties"), value, rules, at);
+    }
+    refuse(DataCode::key_missing, at, "no key \"" + name + "\"", "the key \"" + name + "\"");
+  }
+
+  void properties(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+    if (!value.is_object()) return;
+    for (const auto& [key, member] : value.items()) {
+      const auto known = rule.find(key);
+      if (known != rule.end()) check(member, *known, at + "/" + pointer_token(key));
+    }
+  }
+
+  void only_known_keys(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+    if (rule != false) throw std::logic_error("schema: additionalProperties other than false is not supported");
+    if (!value.is_object()) return;
+    std::vector<std::string> known;
+    for (const auto& [key, member] : rules.at("properties").items()) known.push_back(key);
+    for (const auto& [key, member] : value.items()) {
+      if (std::find(known.begin(), known.end(), key) == known.end()) refuse_unknown(key, known, at);
+    }
+  }
+
+  [[noreturn]] void refuse_unknown(const std::string& key, const std::vector<std::string>& known,
+                                   const std::string& at) const {
+    const std::string nearest = nearest_word(key, known);
+    std::string all;
+    for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
+    refuse(DataCode::key_unknown, at + "/" + pointer_token(key), "an unknown key \"" + key + "\"",
+           nearest.empty() ? "one of " + all : "a known key; did you mean \"" + nearest + "\"?");
+  }
+
+  void items(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+    if (!value.is_array()) return;
+    for (std::size_t i = 0; i < value.size(); ++i) check(value[i], rule, at + "/" + std::to_string(i));
+  }
+
+  /// "at least 1 entry", "at most 3 entries"
+  static std::string counted(const std::string& limit, const Json& count, const char* one, const char* many) {
+    return limit + " " + count.dump() + " " + (count == 1 ? one : many);
+  }
+
+  void min_items(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+    if (!value.is_array() || value.size() >= rule.get<std::size_t>()) return;
+    refuse(DataCode::wrong_count, at, described(value),
+           with_description(counted("at least", rule, "entry", "entries"), rules));
+  }
+
+  void max_items(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+    if (!value.is_array() || value.size() <= rule.get<std::size_t>()) return;
+    refuse(DataCode::wrong_count, at, described(value),
+           with_description(counted("at most", rule, "entry", "entries"), rules));
+  }
+
+  void min_length(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+    if (!value.is_string() || characters(value) >= rule.get<std::size_t>()) return;
+    refuse(DataCode::wrong_count, at, described(value), counted("at least", rule, "character", "characters"));
+  }
+
+  void max_length(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+    if (!value.is_string() || characters(value) <= rule.get<std::size_t>()) return;
+    refuse(DataCode::wrong_count, at, described(value), counted("at most", rule, "character", "characters"));
+  }
+
+  /// Code points, as JSON Schema counts: every byte of UTF-8 but the continuing ones.
+  static std::size_t characters(const Json& value) {
+    const std::string& text = value.get_ref<const std::string&>();
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+  }
+
+  void bound(bool holds, const std::string& words, const Json& value, const Json& rules, const std::string& at) const {
+    if (!holds) refuse(DataCode::out_of_range, at, described(value), with_description(words, rules));
+  }
+  void minimum(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+    if (value.is_number()) bound(value >= rule, "a number >= " + rule.dump(), value, rules, at);
+  }
+  void maximum(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+    if (value.is_number()) bound(value <= rule, "a number <= " + rule.dump(), value, rules, at);
+  }
+  void above(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+    if (value.is_number()) bound(value > rule, "a number > " + rule.dump(), value, rules, at);
+  }
+
+  void none_of(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+    try {
+      check(value, rule, at);
+    } catch (const DataError&) {
+      return;
+    }
+    refuse(DataCode::no_alternative, at, all_of_keys(rule), rule.at("description").get<std::string>());
+  }
+
+  /// "both "goal" and "goals"": what a forbidden combination consists of.
+  static std::string all_of_keys(const Json& rule) {
+    std::string words = "both ";
+    const Json& keys = rule.at("required");
+    for (std::size_t i = 0; i < keys.size(); ++i) words += (i == 0 ? "" : " and ") + keys[i].dump();
+    return words;
+  }
+
+  /// The alternatives are told apart by their required keys; the one that is meant gives its own words.
+  void one_of(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+    if (!value.is_object()) refuse(DataCode::wrong_type, at, described(value), "an object");
+    for (const Json& alternative : rule) {
+      if (has_required_keys(value, alternative)) return check(value, alternative, at);
+    }
+    std::string titles;
+    for (const Json& alternative : rule) {
+      titles += (titles.empty() ? "" : "; or ") + alternative.at("title").get<std::string>();
+    }
+    refuse(DataCode::no_alternative, at, "an object that is none of them", titles);
+  }
+
+  static bool has_required_keys(const Json& value, const Json& alternative) {
+    const Json& keys = alternative.at("required");
+    return std::all_of(keys.begin(), keys.end(),
+                       [&](const Json& key) { return value.contains(key.get<std::string>()); });
+  }
+
+  const Json& root_;
+  const std::string& file_;
+};
+
+const std::vector<Checker::Keyword>& Checker::keywords() {
+  static const std::vector<Keyword> kKeywords{
+      {"type", &Checker::type},
+      {"enum", &Checker::one_of_words},
+      {"required", &Checker::required},
+      {"additionalProperties", &Checker::only_known_keys},
+      {"properties", &Checker::properties},
+      {"items", &Checker::items},
+      {"minItems", &Checker::min_items},
+      {"maxItems", &Checker::max_items},
+      {"minLength", &Checker::min_length},
+      {"maxLength", &Checker::max_length},
+      {"minimum", &Checker::minimum},
+      {"maximum", &Checker::maximum},
+      {"exclusiveMinimum", &Checker::above},
+      {"not", &Checker::none_of},
+      {"oneOf", &Checker::one_of},
+      {"$schema", nullptr},
+      {"$id", nullptr},
+      {"title", nullptr},
+      {"description", nullptr},
+      {"default", nullptr},
+      {"definitions", nullptr},
+  };
+  return kKeywords;
+}
+
+}  // namespace
+
+void check_against_schema(const Json& value, const Json& schema, const std::string& file_name) {
+  Checker(schema, file_name).check(value, schema, "");
+}
+
+}  // namespace exactvo::datasets

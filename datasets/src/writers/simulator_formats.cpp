@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Obstacles as simulators of crowds and traffic and a triangulator's tests hold them: outlines, mostly without holes.
+#include "exactvo/datasets/data_error.h"
+#include "json_text.h"
+#include "scenarios/scenario_json.h"
+#include "writers/writers.h"
+
+namespace exactvo::datasets {
+namespace {
+
+std::size_t count_holes(const Obstacles& obstacles) {
+  std::size_t holes = 0;
+  for (const formation::SceneObstacle& obstacle : obstacles) {
+    if (const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape)) holes += polygon->holes.size();
+  }
+  return holes;
+}
+
+/// Where holes are lost, what was free in them counts as solid.
+std::vector<std::string> hole_losses(const Obstacles& obstacles, const char* format) {
+  const std::size_t holes = count_holes(obstacles);
+  if (holes == 0) return {};
+  return {std::to_string(holes) + (holes == 1 ? " hole" : " holes") + " filled: " + format +
+          " has outlines only; nothing that was solid is lost"};
+}
+
+const std::vector<geometry::Vec2>& outline_of(const geometry::Obstacle& shape) {
+  if (const auto* polygon = std::get_if<geometry::Polygon>(&shape)) return polygon->outer;
+  return std::get<geometry::Polyline>(shape).points;
+}
+
+std::string number(double x) {
+  std::string text;
+  append_number(text, x);
+  return text;
+}
+
+/// A file of XML 1.0 may hold no control character but tab and line ends.
+std::string xml_attribute(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Written to_rings_json(const Obstacles& obstacles, const std::string& file) {
+  const auto* polygon = obstacles.size() == 1 ? std::get_if<geometry::Polygon>(&obstacles.front().shape) : nullptr;
+  if (polygon == nullptr) {
+    throw DataError(DataCode::wrong_count, file, "", std::to_string(obstacles.size()) + " obstacles",
+                    "one polygon: rings-json holds no more, and no walls");
+  }
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_array();
+  append_points(json, polygon->outer);
+  for (const geometry::Ring& hole : polygon->holes) append_points(json, hole);
+  return {json.end_array().take() + "\n", {"the id: rings-json has no place for it"}};
+}
+
+Written to_menge_xml(const Obstacles& obstacles, const std::string&) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<Experiment version=\"2.0\">\n"
+      "  <ObstacleSet type=\"explicit\" class=\"1\">\n";
+  for (const formation::SceneObstacle& obstacle : obstacles) {
+    text += std::string("    <Obstacle closed=\"") + (geometry::has_interior(obstacle.shape) ? "1" : "0") + "\">\n";
+    for (const geometry::Vec2 p : outline_of(obstacle.shape))
+      text += "      <Vertex p_x=\"" + number(p.x) + "\" p_y=\"" + number(p.y) + "\"/>\n";
+    text += "    </Obstacle>\n";
+  }
+  Written written{text + "  </ObstacleSet>\n</Experiment>\n", hole_losses(obstacles, "Menge")};
+  written.losses.emplace_back("ids: Menge has no place for them");
+  return written;
+}
+
+Written to_sumo_poly(const Obstacles& obstacles, const std::string&) {
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<additional>\n";
+  for (const formation::SceneObstacle& obstacle : obstacles) {
+    const bool is_solid = geometry::has_interior(obstacle.shape);
+    const std::vector<geometry::Vec2>& points = outline_of(obstacle.shape);
+    text += "  <poly id=\"" + xml_attribute(obstacle.id) + "\" type=\"obstacle\" color=\"128,128,128\" fill=\"" +
+            (is_solid ? "1" : "0") + "\" layer=\"0\" shape=\"";
+    for (const geometry::Vec2 p : is_solid ? closed(points) : points)
+      text += (text.back() == '"' ? "" : " ") + number(p.x) + "," + number(p.y);
+    text += "\"/>\n";
+  }
+  return {text + "</additional>\n", hole_losses(obstacles, "SUMO")};
+}
+
+}  // namespace exactvo::datasets
