@@ -35,8 +35,8 @@ void write_fully(const std::filesystem::path& path, int descriptor, std::string_
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
-  make_directories(path_.parent_path());
+AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing) : path_(std::move(path)) {
+  if (missing == MissingFolder::is_made) make_directories(path_.parent_path());
   // A name of its own keeps programs that write the same file apart, on whatever machines; the later rename wins,
   // whole.
   do {

@@ -66,6 +66,12 @@ TEST_F(AtomicFileTest, AFolderThatCannotBeMadeIsNamed) {
   EXPECT_NE(std::string(error.what()).find("E_FILE_UNWRITABLE"), std::string::npos);
 }
 
+TEST_F(AtomicFileTest, AFolderThatIsGoneStaysAwayWhereThatIsAsked) {
+  const auto write = [&] { AtomicFile(folder_ / "gone" / "a.txt", MissingFolder::is_refused); };
+  EXPECT_EQ(refusal_of(write).code(), DataCode::file_unwritable);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "gone"));
+}
+
 TEST_F(AtomicFileTest, AFullDiskLeavesTheOldFile) {
   const std::filesystem::path place = put("a.txt", "old");
   const FilesUpTo limit(100);  // bytes

@@ -47,12 +47,18 @@ void count_file(BatchTally& files, const InputFacts& facts) {
 
 // --- Outputs that take parts one by one ---
 
+/// On a file system without locks another process may be through first and take the folder away. Made anew it would
+/// hold some of the outputs only, and `publish` takes the others for an earlier batch's.
+std::unique_ptr<AtomicFile> output_file(const fs::path& path) {
+  return std::make_unique<AtomicFile>(path, MissingFolder::is_refused);
+}
+
 /// obstacles.geojson and so on.
 class GeoJsonLayers {
  public:
   GeoJsonLayers(const fs::path& folder, const std::string& provenance) {
     for (const Layer& layer : layers()) {
-      files_.push_back({std::make_unique<AtomicFile>(folder / (std::string(layer.name) + ".geojson")), true});
+      files_.push_back({output_file(folder / (std::string(layer.name) + ".geojson")), true});
       files_.back().file->write("{\"type\":\"FeatureCollection\",\"name\":\"" + std::string(layer.name) +
                                 "\",\"units\":\"m\",\"provenance\":" + provenance + ",\"features\":[\n");
     }
@@ -111,7 +117,7 @@ class PicturePages {
 
  private:
   void start_page() {
-    file_ = std::make_unique<AtomicFile>(folder_ / page_name(page_));
+    file_ = output_file(folder_ / page_name(page_));
     file_->write(page_head(page_, pages_, words_));
   }
 
@@ -129,8 +135,8 @@ class Outputs {
  public:
   Outputs(const fs::path& folder, const BatchConfiguration& configuration, const std::string& provenance,
           std::size_t inputs, const std::string& words)
-      : figures_(folder / "figures.jsonl") {
-    figures_.write("{\"provenance\":" + provenance + "}\n");
+      : figures_(output_file(folder / "figures.jsonl")) {
+    figures_->write("{\"provenance\":" + provenance + "}\n");
     if (configuration.geojson) geojson_.emplace(folder, provenance);
     if (configuration.pictures) pictures_.emplace(folder, inputs, provenance, words);
     if (configuration.geopackage) geopackage_ = std::make_unique<GeoPackage>(folder / "obstacles.gpkg", provenance);
@@ -140,7 +146,7 @@ class Outputs {
     if (pictures_) pictures_->start_input(file, words);
   }
   void add(const Part& part) {
-    figures_.write(part.figures);
+    figures_->write(part.figures);
     if (geojson_) geojson_->add(part);
     if (pictures_) pictures_->add(part);
     if (geopackage_) geopackage_->add(part.rows);
@@ -149,14 +155,14 @@ class Outputs {
     if (pictures_) pictures_->finish_input();
   }
   void finish() {
-    figures_.commit();
+    figures_->commit();
     if (geojson_) geojson_->finish();
     if (pictures_) pictures_->finish();
     if (geopackage_) geopackage_->finish();
   }
 
  private:
-  AtomicFile figures_;
+  std::unique_ptr<AtomicFile> figures_;
   std::optional<GeoJsonLayers> geojson_;
   std::optional<PicturePages> pictures_;
   std::unique_ptr<GeoPackage> geopackage_;
@@ -303,8 +309,9 @@ BatchSummary assemble(const Ledger& ledger, const Identity& identity, const Batc
   outputs.finish();
   times.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   times.written_at = make_provenance({}, 0).written_at;
-  write_file_atomically(ledger.final_folder() / "summary.json",
-                        summary_json(summary, identity, provenance, facts_json, times));
+  const auto last = output_file(ledger.final_folder() / "summary.json");
+  last->write(summary_json(summary, identity, provenance, facts_json, times));
+  last->commit();
   ledger.publish("summary.json", is_output);
   summary.seconds = times.seconds;
   summary.obstacles_now = times.obstacles;

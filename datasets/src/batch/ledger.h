@@ -60,7 +60,7 @@ class Ledger {
 
   /// Held while the parts are put together; other processes wait. Goes with its process. On a file system that knows no
   /// locks nobody waits: several may put the parts together at once, each in its own folder, and what they move to OUT
-  /// is the same but for the times; who comes last finds .parts gone (`is_open`).
+  /// is the same but for the times; who comes last finds .parts gone (`is_open`), and must not make it anew.
   class Lock {
    public:
     explicit Lock(const Ledger& ledger);

@@ -17,11 +17,14 @@ namespace exactvo::datasets {
 /// crash of the program takes neither.)
 enum class Durability { content, name };
 
+/// A folder that is not there: made, or a reason not to write. The latter where somebody else may have taken it away.
+enum class MissingFolder { is_made, is_refused };
+
 /// A file in the making. Nothing stands at `path` until `commit`; without it the temporary file goes with the object.
 class AtomicFile {
  public:
-  /// Creates missing directories. Throws DataError (E_FILE_UNWRITABLE), as the others do.
-  explicit AtomicFile(std::filesystem::path path);
+  /// Throws DataError (E_FILE_UNWRITABLE), as the others do.
+  explicit AtomicFile(std::filesystem::path path, MissingFolder missing = MissingFolder::is_made);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
