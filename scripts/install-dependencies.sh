@@ -10,7 +10,7 @@ packages=(
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev                  # exact geometry, linear algebra
   libboost-dev libboost-graph-dev libtbb-dev libhwy-dev             # ODE, graphs, threads, SIMD
   libcli11-dev nlohmann-json3-dev libvalijson-dev libfmt-dev        # command line, JSON, text
-  libgdal-dev libyaml-cpp-dev libpugixml-dev                        # files in
+  libgdal-dev libsqlite3-dev libyaml-cpp-dev libpugixml-dev         # files in and out
   libopenmpi-dev openmpi-bin                                        # a batch over several machines
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev      # tests, benchmarks
   gnuplot-nox fonts-dejavu-core                                     # figures

@@ -1,56 +1,175 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/geopackage.h"
 
-#include <cpl_conv.h>
 #include <fcntl.h>
-#include <ogrsf_frmts.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "batch/features.h"
+#include "batch/package_schema.h"
+#include "batch/packed_rtree.h"
+#include "batch/sqlite_file.h"
 #include "exactvo/datasets/data_error.h"
-#include "gdal/gdal_session.h"
 #include "system_error.h"
 
 namespace exactvo::datasets::batch {
 namespace {
 
-/// Rows between commits: few enough to hold in memory, many enough to be quick.
-constexpr std::size_t kRowsOfTransaction = 100000;
+// --- Geometries ---
 
-OGRFieldType type_of(FieldType type) {
-  switch (type) {
-    case FieldType::text:
-      return OFTString;
-    case FieldType::real:
-      return OFTReal;
-    case FieldType::integer:
-      return OFTInteger64;
+struct Extent {
+  double min_x = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity();
+  double min_y = std::numeric_limits<double>::infinity();
+  double max_y = -std::numeric_limits<double>::infinity();
+
+  void add(double x, double y) {
+    min_x = std::min(min_x, x);
+    max_x = std::max(max_x, x);
+    min_y = std::min(min_y, y);
+    max_y = std::max(max_y, y);
   }
-  return OFTString;
+  void add(const Extent& other) {
+    add(other.min_x, other.min_y);
+    add(other.max_x, other.max_y);
+  }
+  Box box() const { return {rounded_down(min_x), rounded_up(max_x), rounded_down(min_y), rounded_up(max_y)}; }
+};
+
+template <class T>
+T take(std::string_view& bytes) {
+  T value;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  bytes.remove_prefix(sizeof value);
+  return value;
 }
 
-/// Set for this thread while it lives. The file is synced once, at its end; until then a crash loses nothing, since
-/// nobody reads it.
-class Settings {
- public:
-  Settings() {
-    CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", "1970-01-01T00:00:00.000Z");
-    CPLSetThreadLocalConfigOption("OGR_SQLITE_SYNCHRONOUS", "OFF");
-    CPLSetThreadLocalConfigOption("OGR_SQLITE_JOURNAL", "MEMORY");
-    // A second thread would build the spatial index page by page beside this one, in an order of its own.
-    CPLSetThreadLocalConfigOption("OGR_GPKG_ALLOW_THREADED_RTREE", "NO");
+/// Of the line, or of the first ring, which goes round the others.
+Extent extent_of(std::string_view wkb) {
+  constexpr std::uint32_t kPolygon = 3;
+  wkb.remove_prefix(1);
+  if (take<std::uint32_t>(wkb) == kPolygon) wkb.remove_prefix(sizeof(std::uint32_t));
+  Extent extent;
+  for (auto points = take<std::uint32_t>(wkb); points > 0; --points) {
+    const auto x = take<double>(wkb);
+    extent.add(x, take<double>(wkb));
   }
-  ~Settings() {
-    for (const char* name :
-         {"OGR_CURRENT_DATE", "OGR_SQLITE_SYNCHRONOUS", "OGR_SQLITE_JOURNAL", "OGR_GPKG_ALLOW_THREADED_RTREE"}) {
-      CPLSetThreadLocalConfigOption(name, nullptr);
+  return extent;
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
+/// OGC 12-128, 2.1.3: "GP", a version, flags, the reference system, the extent, well-known binary.
+void write_geometry(const Row& row, std::int32_t reference, const Extent& extent, std::string& bytes) {
+  constexpr char kVersion = 0;
+  constexpr char kLittleEndian = 1;
+  constexpr char kExtentOfTwoDimensions = 1 << 1;
+  bytes = {'G', 'P', kVersion, kLittleEndian | kExtentOfTwoDimensions};
+  append(bytes, reference);
+  for (const double side : {extent.min_x, extent.max_x, extent.min_y, extent.max_y}) append(bytes, side);
+  bytes += row.wkb;
+}
+
+// --- Tables ---
+
+std::string insertion_into(const Layer& layer) {
+  std::string columns = "INSERT INTO " + sql_name(layer.name) + " (fid, geom";
+  std::string values = ") VALUES (?, ?";
+  for (const Field& field : layer.fields) {
+    columns += ", " + sql_name(field.name);
+    values += ", ?";
+  }
+  return columns + values + ")";
+}
+
+std::int32_t reference_of(SqliteFile& file, const Layer& layer) {
+  SqliteStatement find(file, "SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = ?");
+  find.bind_text(0, layer.name).step();
+  return static_cast<std::int32_t>(find.integer(0));
+}
+
+class LayerTable {
+ public:
+  LayerTable(SqliteFile& file, const Layer& layer)
+      : name_(layer.name),
+        insert_(file, insertion_into(layer)),
+        index_(file, "rtree_" + name_ + "_geom"),
+        reference_(reference_of(file, layer)) {}
+
+  void add(const Row& row) {
+    const Extent extent = extent_of(row.wkb);
+    write_geometry(row, reference_, extent, geometry_);
+    insert_.bind(0, ++rows_).bind_bytes(1, geometry_);
+    for (std::size_t k = 0; k < row.values.size(); ++k) bind(static_cast<int>(k) + 2, row.values[k]);
+    insert_.run();
+    index_.add(rows_, extent.box());
+    extent_.add(extent);
+  }
+
+  void finish(SqliteFile& file) {
+    index_.finish();
+    SqliteStatement count(file, "UPDATE gpkg_ogr_contents SET feature_count = ? WHERE table_name = ?");
+    count.bind(0, rows_).bind_text(1, name_).run();
+    if (rows_ == 0) return;
+    SqliteStatement place(file,
+                          "UPDATE gpkg_contents SET min_x = ?, max_x = ?, min_y = ?, max_y = ? WHERE table_name = ?");
+    place.bind(0, extent_.min_x).bind(1, extent_.max_x).bind(2, extent_.min_y).bind(3, extent_.max_y);
+    place.bind_text(4, name_).run();
+  }
+
+ private:
+  void bind(int column, const Value& value) {
+    if (const auto* number = std::get_if<std::int64_t>(&value)) {
+      insert_.bind(column, *number);
+    } else if (const auto* real = std::get_if<double>(&value)) {
+      insert_.bind(column, *real);
+    } else {
+      insert_.bind_text(column, std::get<std::string>(value));
     }
   }
-  Settings(const Settings&) = delete;
-  Settings& operator=(const Settings&) = delete;
+
+  std::string name_;
+  SqliteStatement insert_;
+  PackedRtree index_;
+  std::int32_t reference_;
+  std::int64_t rows_ = 0;
+  Extent extent_;
+  std::string geometry_;
 };
+
+/// What keeps counts and indices up to date row by row is set aside while all rows come: each would cost as much as its
+/// row, and they call functions that GDAL has and SQLite has not.
+std::vector<std::string> take_triggers(SqliteFile& file) {
+  std::vector<std::string> names;
+  std::vector<std::string> definitions;
+  SqliteStatement triggers(file, "SELECT name, sql FROM sqlite_master WHERE type = 'trigger' ORDER BY rowid");
+  while (triggers.step()) {
+    names.push_back(triggers.text(0));
+    definitions.push_back(triggers.text(1));
+  }
+  for (const std::string& name : names) file.run("DROP TRIGGER " + sql_name(name));
+  return definitions;
+}
+
+void write_file(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << bytes << std::flush;
+  if (!file) throw cannot_write(path, errno);
+}
 
 void sync_file(const std::filesystem::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -63,90 +182,47 @@ void sync_file(const std::filesystem::path& path) {
 }  // namespace
 
 struct GeoPackage::Inside {
+  explicit Inside(const std::filesystem::path& place) : path(place), file(place) {}
+
+  void begin() {
+    // 16 MB of pages in memory.
+    file.run("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA cache_size = -16384; BEGIN");
+    triggers = take_triggers(file);
+    for (const Layer& layer : layers()) tables.push_back(std::make_unique<LayerTable>(file, layer));
+  }
+
+  void finish() {
+    for (const auto& table : tables) table->finish(file);
+    tables.clear();
+    for (const std::string& trigger : triggers) file.run(trigger);
+    file.run("COMMIT");
+    file.close();
+    sync_file(path);
+  }
+
   std::filesystem::path path;
-  GdalComplaints complaints;
-  Settings settings;
-  std::unique_ptr<GDALDataset> data;
-  std::vector<OGRLayer*> layers;
-  std::size_t uncommitted = 0;
-
-  void need(bool done) {
-    const std::string words = complaints.take_failure();
-    if (done && words.empty()) return;
-    throw DataError(DataCode::file_unwritable, path.string(), "", words.empty() ? "GDAL can't write it" : words,
-                    "a place that can be written");
-  }
-
-  void create_layers() {
-    const char* const options[] = {"SPATIAL_INDEX=YES", nullptr};
-    OGRSpatialReference metres;  // without one the format takes numbers for degrees
-    metres.SetLocalCS("local metres");
-    metres.SetLinearUnits("metre", 1.0);
-    for (const Layer& layer : batch::layers()) {
-      OGRLayer* made = data->CreateLayer(layer.name, &metres, wkbUnknown, const_cast<char**>(options));
-      need(made != nullptr);
-      for (const Field& field : layer.fields) {
-        OGRFieldDefn definition(field.name, type_of(field.type));
-        need(made->CreateField(&definition) == OGRERR_NONE);
-      }
-      layers.push_back(made);
-    }
-  }
-
-  void add(const Row& row) {
-    OGRLayer* layer = layers[row.layer];
-    OGRFeature feature(layer->GetLayerDefn());
-    for (std::size_t k = 0; k < row.values.size(); ++k) set(feature, static_cast<int>(k), row.values[k]);
-    OGRGeometry* shape = nullptr;
-    need(OGRGeometryFactory::createFromWkb(row.wkb.data(), nullptr, &shape, row.wkb.size()) == OGRERR_NONE);
-    feature.SetGeometryDirectly(shape);
-    need(layer->CreateFeature(&feature) == OGRERR_NONE);
-  }
-
-  static void set(OGRFeature& feature, int field, const Value& value) {
-    if (const auto* number = std::get_if<std::int64_t>(&value)) {
-      feature.SetField(field, static_cast<GIntBig>(*number));
-    } else if (const auto* real = std::get_if<double>(&value)) {
-      feature.SetField(field, *real);
-    } else {
-      feature.SetField(field, std::get<std::string>(value).c_str());
-    }
-  }
+  SqliteFile file;
+  std::vector<std::string> triggers;
+  std::vector<std::unique_ptr<LayerTable>> tables;
 };
 
-GeoPackage::GeoPackage(const std::filesystem::path& path, const std::string& provenance)
-    : inside_(std::make_unique<Inside>()) {
-  register_gdal_once();
-  inside_->path = path;
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  inside_->need(driver != nullptr);
-  inside_->data.reset(driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  inside_->need(inside_->data != nullptr);
-  inside_->need(inside_->data->SetMetadataItem("EXACTVO_PROVENANCE", provenance.c_str()) == CE_None);
-  inside_->create_layers();
-  inside_->need(inside_->data->StartTransaction() == OGRERR_NONE);
+GeoPackage::GeoPackage(const std::filesystem::path& path, const std::string& provenance) {
+  write_file(path, empty_package(provenance, path));
+  inside_ = std::make_unique<Inside>(path);
+  inside_->begin();
 }
 
 GeoPackage::~GeoPackage() = default;
 
 void GeoPackage::add(std::string_view rows) {
   while (!rows.empty()) {
-    inside_->add(read_row(rows));
-    if (++inside_->uncommitted < kRowsOfTransaction) continue;
-    inside_->need(inside_->data->CommitTransaction() == OGRERR_NONE);
-    inside_->need(inside_->data->StartTransaction() == OGRERR_NONE);
-    inside_->uncommitted = 0;
+    const Row row = read_row(rows);
+    inside_->tables[row.layer]->add(row);
   }
 }
 
 void GeoPackage::finish() {
-  inside_->need(inside_->data->CommitTransaction() == OGRERR_NONE);
-  inside_->data->FlushCache();
-  inside_->data.reset();
-  inside_->need(true);
-  sync_file(inside_->path);
+  inside_->finish();
 }
 
 }  // namespace exactvo::datasets::batch

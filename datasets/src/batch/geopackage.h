@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// The GeoPackage of a batch, written row after row. The same rows give the same bytes: the times that the format
-/// records are those of 1970.
+/// The GeoPackage of a batch, written row after row: GDAL makes the tables (package_schema.h), SQLite takes the rows,
+/// and the spatial indices are packed at the end (packed_rtree.h). The same rows give the same bytes.
 
 #include <filesystem>
 #include <memory>
