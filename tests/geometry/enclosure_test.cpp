@@ -78,6 +78,38 @@ TEST(FitTrapFree, WhatIsReturnedHolds) {
   EXPECT_LT(refused, 60);
 }
 
+// Ties (a wall seen at right angles) and near ties included: no double of the moved scene is rounded.
+TEST(FitTrapFree, MovesWithTheScene) {
+  constexpr double kGrid = 0x1p-20;
+  const auto on_grid = [](Vec2 p) { return Vec2{std::round(p.x / kGrid) * kGrid, std::round(p.y / kGrid) * kGrid}; };
+  SeededRandom random(test::seed_of_run(94));
+  int compared = 0;
+  for (int i = 0; i < 30; ++i) {
+    const bool tie = i == 0;
+    std::vector<Vec2> points = tie ? std::vector<Vec2>{{6, -2}, {6, 2}} : random_wall(random);
+    for (Vec2& p : points) p = on_grid(p);
+    const Vec2 start = tie ? Vec2{0, 0} : on_grid(4.0 * random.direction());
+    const Vec2 goal = tie ? Vec2{12, 0} : on_grid(4.0 * random.direction());
+    const auto here = fit_trap_free(points, 0.3, start, goal);
+    for (const Vec2 shift : {Vec2{1, 1}, Vec2{64, -64}, Vec2{0x1p20, 1000}}) {
+      std::vector<Vec2> moved = points;
+      for (Vec2& p : moved) p = p + shift;
+      const auto there = fit_trap_free(moved, 0.3, start + shift, goal + shift);
+      ASSERT_EQ(here.has_value(), there.has_value()) << "case " << i << ", by " << shift.x << ", " << shift.y;
+      if (!here) continue;
+      ++compared;
+      EXPECT_EQ(here->grade, there->grade);
+      // The centre is rounded once, to 2^-33 m at 2^20 m; the ellipse grows to hold the points again.
+      constexpr double kRounded = 1e-8;
+      EXPECT_NEAR(norm(there->ellipse.center - shift - here->ellipse.center), 0.0, kRounded) << "case " << i;
+      EXPECT_NEAR(there->ellipse.l11, here->ellipse.l11, kRounded);
+      EXPECT_NEAR(there->ellipse.l21, here->ellipse.l21, kRounded);
+      EXPECT_NEAR(there->ellipse.l22, here->ellipse.l22, kRounded);
+    }
+  }
+  EXPECT_GT(compared, 30);
+}
+
 TEST(FitTrapFree, NoEllipseWhereTheGoalIsAtTheWall) {
   EXPECT_FALSE(fit_trap_free({{-1, 0}, {1, 0}}, 0.3, {0, -3}, {0, 0.2}));
 }

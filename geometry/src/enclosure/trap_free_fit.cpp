@@ -185,10 +185,27 @@ Scored refine(const std::vector<Vec2>& hull, const FitGoal& want, double size, S
   return best;
 }
 
+std::vector<Vec2> seen_from(Vec2 origin, std::vector<Vec2> points) {
+  for (Vec2& p : points) p = p - origin;
+  return points;
+}
+
+FitGoal seen_from(Vec2 origin, FitGoal want) {
+  want.start = want.start - origin;
+  want.goal = want.goal - origin;
+  return want;
+}
+
+/// Searched for from the first corner: of ellipses as good as each other the same one is taken wherever the scene lies.
 std::optional<Ellipse> fit(const std::vector<Vec2>& hull, const FitGoal& want, double size) {
-  const Scored coarse = sweep(hull, want, size);
+  const Vec2 origin = hull.front();
+  const std::vector<Vec2> local = seen_from(origin, hull);
+  const FitGoal local_want = seen_from(origin, want);
+  const Scored coarse = sweep(local, local_want, size);
   if (!std::isfinite(coarse.area)) return std::nullopt;
-  const Ellipse e = inflate_to_contain(refine(hull, want, size, coarse).ellipse, hull);
+  Ellipse e = refine(local, local_want, size, coarse).ellipse;
+  e.center = e.center + origin;
+  e = inflate_to_contain(e, hull);
   if (!admissible(e, want)) return std::nullopt;
   return e;
 }
