@@ -67,7 +67,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// The parser's words, and the nearest option where one was mistyped.
+/// The mistyped option with the nearest known one, where there is one; the parser may complain of what it lacks
+/// instead.
 std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<std::string> known = option_names(app);
   for (const CLI::App* verb : app.get_subcommands()) {
@@ -76,7 +77,7 @@ std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) 
   for (const std::string& word : words) {
     const std::string option = word.substr(0, word.find('='));
     const bool unknown = option.rfind("--", 0) == 0 && std::find(known.begin(), known.end(), option) == known.end();
-    if (unknown) return std::string(error.what()) + suggestion(option, known);
+    if (unknown) return option + " means nothing" + suggestion(option, known);
   }
   return error.what();
 }

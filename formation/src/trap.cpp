@@ -9,6 +9,7 @@
 #include "boundary.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/vo/orca_obstacle.h"
 #include "goals.h"
 #include "remedies.h"
 #include "static_field.h"
@@ -88,6 +89,71 @@ std::optional<double> first_hit(const detail::Boundary& boundary, Vec2 start, Ve
   return hit;
 }
 
+// --- Edges as they stand, for the method that builds no enclosures ---
+
+/// An edge with free space on its right, and the corner in which it ends.
+struct Facade {
+  std::size_t obstacle = 0;
+  geometry::Segment edge;
+  std::optional<Vec2> beyond;  ///< where the next edge ends, if it turns into the free space
+};
+
+std::vector<Facade> facades_of(const Scenario& scenario) {
+  std::vector<Facade> facades;
+  for (std::size_t k = 0; k < scenario.obstacles.size(); ++k) {
+    for (const vo::OrcaChain& chain : vo::orca_chains(scenario.obstacles[k].shape)) {
+      const std::size_t n = chain.vertices.size();
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t end = (i + 1) % n;
+        facades.push_back({k, {chain.vertices[i], chain.vertices[end]}, {}});
+        if (!chain.convex[end]) facades.back().beyond = chain.vertices[(end + 1) % n];
+      }
+    }
+  }
+  return facades;
+}
+
+Vec2 free_side(Vec2 along) {
+  return -geometry::perp(geometry::normalized(along));
+}
+
+/// A robot rests over the goal's foot.
+std::optional<Equilibrium> rest_on_edge(const Facade& f, double radius, Vec2 goal) {
+  const Vec2 along = f.edge.b - f.edge.a, out = free_side(along);
+  const double foot = dot(goal - f.edge.a, along), depth = -dot(goal - f.edge.a, out);
+  if (!(depth > 0.0) || foot < 0.0 || foot > squared_norm(along)) return std::nullopt;
+  const double distance = depth + radius;
+  return Equilibrium{goal + distance * out, out, std::numeric_limits<double>::infinity(), distance, true};
+}
+
+/// A robot that touches both edges rests where they leave it no way nearer to the goal: the way there is
+/// -(s out + t out_beyond) with s, t >= 0.
+std::optional<Equilibrium> rest_in_corner(const Facade& f, double radius, Vec2 goal) {
+  if (!f.beyond) return std::nullopt;
+  const Vec2 out = free_side(f.edge.b - f.edge.a), next = free_side(*f.beyond - f.edge.b);
+  const double turn = cross(out, next);  // < 0: the chain turns right
+  if (!(turn < 0.0)) return std::nullopt;
+  const Vec2 at = f.edge.b + (radius / (1.0 + dot(out, next))) * (out + next);
+  if (!is_finite(at)) return std::nullopt;  // a slit
+  const Vec2 way = goal - at;
+  if (cross(way, next) / turn > 0.0 || cross(out, way) / turn > 0.0) return std::nullopt;
+  return Equilibrium{at, geometry::normalized(out + next), std::numeric_limits<double>::infinity(), norm(way), true};
+}
+
+TrapFinding examine(const Facade& f, const Robot& robot, Vec2 goal) {
+  TrapFinding finding;
+  finding.goal = goal;
+  finding.enclosure = {f.edge, {f.obstacle}, geometry::EnclosureGrade::tight};
+  finding.start_clear = clear_of(f.edge, robot.radius, robot.position);
+  finding.goal_clear = clear_of(f.edge, robot.radius, goal);
+  for (const auto& rest : {rest_on_edge(f, robot.radius, goal), rest_in_corner(f, robot.radius, goal)})
+    if (rest) finding.equilibria.push_back(*rest);
+  finding.stall_possible = !finding.equilibria.empty();
+  return finding;
+}
+
+// --- Enclosures ---
+
 TrapFinding examine(const geometry::Enclosure& enclosure, const Robot& robot, Vec2 goal) {
   TrapFinding f;
   f.goal = goal;
@@ -146,12 +212,17 @@ double evolute_margin(const Ellipse& ellipse, Vec2 goal) {
 std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOptions& options) {
   EXACTVO_REQUIRE(validate(scenario).empty(), validate(scenario).front().pointer);
   const detail::ObstacleLibrary library(scenario);
+  const std::vector<Facade> facades = options.method == Method::orca ? facades_of(scenario) : std::vector<Facade>{};
   std::vector<TrapFinding> findings;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const Robot& robot = scenario.robots[i];
     const Vec2 goal = detail::first_goal(scenario, options, i);
     const detail::StaticField field(library, scenario, options, robot.radius, robot.position, goal,
                                     detail::HorizonRule::clamped);
+    for (const Facade& facade : facades) {
+      findings.push_back(examine(facade, robot, goal));
+      findings.back().robot = i;
+    }
     for (const geometry::Enclosure& enclosure : field.enclosures()) {
       findings.push_back(examine(enclosure, robot, goal));
       findings.back().robot = i;

@@ -150,6 +150,69 @@ TEST(Trap, FindingsOfTheScenesSayWhatTheRunsShow) {
   EXPECT_FALSE(thin[0].slide_time.has_value());
 }
 
+/// A robot at the origin, its goal 8 m to the east.
+Scenario one_robot(geometry::Obstacle obstacle) {
+  Scenario s;
+  Robot r;
+  r.id = "R1";
+  r.goals = {{8.0, 0.0}};
+  s.robots = {r};
+  s.obstacles = {{"o", std::move(obstacle)}};
+  return s;
+}
+
+std::vector<Equilibrium> rests_without_enclosures(const Scenario& s) {
+  SimulationOptions options;
+  options.method = Method::orca;
+  std::vector<Equilibrium> rests;
+  for (const TrapFinding& f : trap_test(s, options)) {
+    EXPECT_EQ(f.stall_possible, !f.equilibria.empty());
+    rests.insert(rests.end(), f.equilibria.begin(), f.equilibria.end());
+  }
+  return rests;
+}
+
+TEST(Trap, WithoutEnclosuresAFlatEdgeBeforeTheGoalTraps) {
+  const Scenario wall = one_robot(geometry::Polyline{{{4.0, -1.0}, {4.0, 1.0}}});
+  const auto rests = rests_without_enclosures(wall);
+  ASSERT_EQ(rests.size(), 1u) << "from the side that looks away from the goal only";
+  EXPECT_NEAR(rests[0].position.x, 4.0 - wall.robots[0].radius, 1e-12);
+  EXPECT_NEAR(rests[0].position.y, 0.0, 1e-12);
+  EXPECT_TRUE(rests[0].stable);
+  SimulationOptions options;
+  options.method = Method::orca;
+  const Recording run = simulate(wall, options);
+  EXPECT_LT(norm(run.steps.back().robots[0].position - rests[0].position), 0.05);
+
+  const geometry::Polygon desk{{{3.0, -0.5}, {5.0, -0.5}, {5.0, 0.5}, {3.0, 0.5}}, {}};
+  EXPECT_EQ(rests_without_enclosures(one_robot(desk)).size(), 1u) << "not the side that faces the goal";
+  const geometry::Polygon aside{{{3.0, 0.5}, {5.0, 0.5}, {5.0, 1.5}, {3.0, 1.5}}, {}};
+  EXPECT_TRUE(rests_without_enclosures(one_robot(aside)).empty());
+}
+
+TEST(Trap, WithoutEnclosuresAHollowCornerTraps) {
+  // A wedge that opens to the west: the goal's foot lies on neither wall.
+  const Scenario wedge = one_robot(geometry::Polyline{{{3.0, -1.5}, {4.0, 0.0}, {3.0, 1.5}}});
+  const auto rests = rests_without_enclosures(wedge);
+  ASSERT_EQ(rests.size(), 1u);
+  EXPECT_NEAR(rests[0].position.y, 0.0, 1e-12);
+  EXPECT_LT(rests[0].position.x, 4.0 - wedge.robots[0].radius);
+  SimulationOptions options;
+  options.method = Method::orca;
+  const Recording run = simulate(wedge, options);
+  EXPECT_LT(norm(run.steps.back().robots[0].position - rests[0].position), 0.05);
+  // Seen from behind, the same corner parts the ways.
+  const Scenario behind = one_robot(geometry::Polyline{{{5.0, -1.5}, {4.0, 0.0}, {5.0, 1.5}}});
+  EXPECT_TRUE(rests_without_enclosures(behind).empty());
+}
+
+TEST(Trap, WithoutEnclosuresNoSceneThatStopsIsCleared) {
+  for (const std::string name : {"A1", "A4", "A11"}) {
+    const Scenario scene = test::paper_scene(name);
+    EXPECT_FALSE(rests_without_enclosures(scene).empty()) << name;
+  }
+}
+
 TEST(Trap, SlideTimesAreThoseOfTheRun) {
   // A disc-like enclosure met off its axis: the robot slides until its way is free.
   Scenario s;

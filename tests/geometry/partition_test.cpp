@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pieces.h"
 #include "exactvo/geometry/validity.h"
 #include "geometry/random_shapes.h"
 #include "geometry/rational_oracle.h"
@@ -37,6 +38,32 @@ void expect_partition(const Ring& ring, PartitionMethod method) {
     sum += test::doubled_area(piece.vertices);
   }
   ASSERT_TRUE(sum == test::doubled_area(ring));
+}
+
+TEST(ConvexCover, OfWhatIsConvexIsOneShape) {
+  const Obstacle square = Polygon{{{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}}, {}};
+  EXPECT_TRUE(is_convex(square));
+  ASSERT_EQ(convex_cover(square).size(), 1u);
+  EXPECT_EQ(std::get<ConvexPolygon>(convex_cover(square)[0]).vertices.size(), 4u);
+  const Obstacle straight = Polyline{{{0, 0}, {3, 3}, {1, 1}}};
+  EXPECT_TRUE(is_convex(straight));
+  EXPECT_EQ(std::get<Segment>(convex_cover(straight).at(0)).b, (Vec2{3, 3}));
+}
+
+TEST(ConvexCover, OfWhatIsNotIsItExactly) {
+  const Obstacle court = Polygon{{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{{2, 2}, {2, 8}, {8, 8}, {8, 2}}}};
+  EXPECT_FALSE(is_convex(court));
+  test::Rational sum = 0;
+  for (const ConvexShape& piece : convex_cover(court)) {
+    ASSERT_TRUE(is_valid(piece));
+    sum += test::doubled_area(std::get<ConvexPolygon>(piece).vertices);
+  }
+  EXPECT_TRUE(sum == 2 * (100 - 36));
+  const Obstacle corner = Polyline{{{0, 0}, {2, 0}, {4, 0}, {4, 4}}};
+  EXPECT_FALSE(is_convex(corner));
+  const auto edges = convex_cover(corner);
+  ASSERT_EQ(edges.size(), 2u);
+  EXPECT_EQ(std::get<Segment>(edges[0]).b, (Vec2{4, 0}));
 }
 
 TEST(ConvexPieces, EveryRingOfTheCorpus) {

@@ -53,6 +53,19 @@ TEST(Program, VersionHasBuildFacts) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("exactvo "), HasSubstr("commit "), HasSubstr("CGAL "), HasSubstr("GMP ")));
 }
 
+TEST(Program, TrapJudgesAMethodWithoutEnclosures) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  const Outcome words = here.run("trap s.json --method orca");
+  EXPECT_EQ(words.status, 0) << words.err;
+  EXPECT_THAT(words.out, AllOf(HasSubstr("a stall is possible"), HasSubstr("rests at")));
+  const json findings = json::parse(here.run("trap s.json --method orca --json").out);
+  ASSERT_EQ(findings.size(), 2u) << "both sides of the wall";
+  EXPECT_NE(findings[0].at("stall_possible"), findings[1].at("stall_possible"));
+  here.write("empty.json", with(R"({ "id": "wall", "polyline": [[4, -1], [4, 1]] })", ""));
+  EXPECT_THAT(here.run("trap empty.json --method orca").out, HasSubstr("no obstacles"));
+}
+
 TEST(Program, MistypedWordsAreAnsweredWithTheNearest) {
   const Workplace here;
   here.write("s.json", kOneRobot);

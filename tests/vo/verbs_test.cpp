@@ -2,6 +2,7 @@
 // The verbs `vo` and `audit` as a user runs them.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -136,6 +137,217 @@ TEST(VerbVo, FreeVelocitiesOfSeveralObstacles) {
   EXPECT_TRUE(std::filesystem::exists(place.path() / "free.gp"));
   EXPECT_EQ(place.run(scene + " --json").status, 2) << "several obstacles go with --free";
   EXPECT_EQ(place.run(scene + " --free --json").status, 2) << "without a speed";
+}
+
+json json_of(const std::string& arguments) {
+  const Outcome run = Workplace().run("vo " + arguments + " --json");
+  EXPECT_EQ(run.status, 0) << run.err;
+  return json::parse(run.out);
+}
+
+std::string words_of(const std::string& arguments) {
+  const Outcome run = Workplace().run("vo " + arguments);
+  EXPECT_EQ(run.status, 0) << run.err;
+  return run.out;
+}
+
+/// Whether the certificate is valid and of the half-plane beside it.
+void expect_proven(const json& cone) {
+  const auto certificate = vo::read_certificate(cone.at("certificate").at("text"));
+  ASSERT_TRUE(certificate);
+  EXPECT_EQ(check(*certificate), vo::Verdict::valid);
+  EXPECT_EQ(certificate->claim.half_plane.offset, cone.at("half_plane").at("offset").get<double>());
+  EXPECT_EQ(certificate->claim.half_plane.normal.x, cone.at("half_plane").at("normal")[0].get<double>());
+}
+
+TEST(VerbVo, TheCertificateIsOfTheHalfPlaneBesideItWhateverTheShare) {
+  const std::string scene =
+      "--obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --alpha 0.5";
+  const json out = json_of(scene);
+  expect_proven(out);
+  EXPECT_NEAR(out.at("half_plane").at("offset").get<double>(), -0.75, 1e-12);
+  const json& shared = out.at("shared_half_plane");
+  EXPECT_NEAR(shared.at("half_plane").at("offset").get<double>(), -0.875, 1e-12);
+  EXPECT_TRUE(shared.at("certificate").is_null());
+  EXPECT_NE(words_of(scene).find("holds only if the other side takes its share"), std::string::npos);
+}
+
+const std::string kCourtyard = "'POLYGON((0 0,10 0,10 10,0 10,0 0),(2 2,2 8,8 8,8 2,2 2))'";
+const std::string kCorner = "'POLYGON((0 0,10 0,10 1,1 1,1 10,0 10,0 0))'";
+
+TEST(VerbVo, AnObstacleThatIsNotConvexIsTakenByItsPieces) {
+  const std::string in_court = "--obstacle " + kCourtyard + " --position 5,5 --radius 0.5 --time-horizon 2 ";
+  const json rest = json_of(in_court + "--velocity 0,0");
+  EXPECT_FALSE(rest.at("overlaps").get<bool>());
+  EXPECT_FALSE(rest.at("contains_velocity").get<bool>());
+  EXPECT_EQ(rest.at("taken_as").at("what"), "convex pieces");
+  ASSERT_EQ(rest.at("cones").size(), rest.at("taken_as").at("convex_shapes").get<std::size_t>());
+  for (const json& cone : rest.at("cones")) expect_proven(cone);
+  EXPECT_TRUE(json_of(in_court + "--velocity 2,0").at("contains_velocity").get<bool>()) << "the east wing, 2.5 m away";
+
+  const std::string corner = "--obstacle " + kCorner + " --position 7,7 --velocity -1,-1 --radius 0.5 ";
+  EXPECT_FALSE(json_of(corner + "--time-horizon 2").at("contains_velocity").get<bool>());
+  EXPECT_TRUE(json_of(corner + "--time-horizon 7").at("contains_velocity").get<bool>());
+  const std::string wall = "--obstacle 'LINESTRING(0 0, 4 0, 4 4)' --position 1,3 --radius 0.2 --time-horizon 9 ";
+  EXPECT_FALSE(json_of(wall + "--velocity 0,0").at("overlaps").get<bool>());
+  EXPECT_EQ(json_of(wall + "--velocity 0,0").at("cones").size(), 2u);
+}
+
+TEST(VerbVo, TheHullOnRequestSaysSo) {
+  const std::string scene =
+      "--obstacle " + kCourtyard + " --position 5,5 --radius 0.5 --velocity 0,0 --time-horizon 2 --pieces hull";
+  const json out = json_of(scene);
+  EXPECT_TRUE(out.at("overlaps").get<bool>());
+  EXPECT_EQ(out.at("taken_as").at("what"), "convex hull");
+  EXPECT_NE(words_of(scene).find("touches or overlaps its convex hull"), std::string::npos);
+}
+
+TEST(VerbVo, FreeVelocitiesWithinACourtyard) {
+  const json out = json_of("--obstacle " + kCourtyard +
+                           " --position 5,5 --radius 0.5 --velocity 0.5,0 --time-horizon 2 --free --max-speed 1");
+  EXPECT_GT(out.at("area")[0].get<double>(), 3.14) << "no wall is reached in 2 s";
+  EXPECT_TRUE(out.at("velocity_is_free").get<bool>());
+  EXPECT_EQ(out.at("region").at("inside"), "yes");
+  for (const json& cone : out.at("obstacles")[0].at("cones")) expect_proven(cone);
+}
+
+TEST(VerbVo, FreeOnTheObstacleKeepsNothing) {
+  const std::string scene =
+      "--obstacle '" + kSquare + "' --position 3,0 --radius 0.3 --velocity 1,0 --time-horizon 2 --free --max-speed 1";
+  EXPECT_TRUE(json_of(scene).at("region").is_null());
+  EXPECT_EQ(json_of(scene).at("area")[1].get<double>(), 0.0);
+  EXPECT_NE(words_of(scene).find("nothing is free, nothing is kept"), std::string::npos);
+}
+
+TEST(VerbVo, BareContactHasAHalfPlaneWithItsProof) {
+  const json out =
+      json_of("--obstacle '" + kSquare + "' --position 1.5,0 --radius 0.5 --velocity 1,0 --time-horizon 2");
+  EXPECT_TRUE(out.at("overlaps").get<bool>());
+  EXPECT_TRUE(out.at("half_plane").is_null());
+  EXPECT_EQ(out.at("contact_half_plane").at("offset"), 0.0);
+  EXPECT_EQ(out.at("certificate").at("verdict"), "valid");
+}
+
+TEST(VerbVo, DiscsAndEllipsesByTheirNumbers) {
+  const std::string rest = " --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2";
+  const json disc = json_of("--obstacle 'DISC(4 0, 1)'" + rest);
+  EXPECT_NEAR(disc.at("half_plane").at("offset").get<double>(), -1.25, 1e-12) << "2.5 m in 2 s";
+  expect_proven(disc);
+  const json ellipse = json_of("--obstacle 'ellipse (4 1.5, 1.3 0.3 0.5)'" + rest);
+  EXPECT_EQ(ellipse.at("shape").get<std::string>(), geometry::to_string(geometry::Ellipse{{4.0, 1.5}, 1.3, 0.3, 0.5}));
+  expect_proven(ellipse);
+  const json turned = json_of("--obstacle 'ELLIPSE(4 0, 1 2, 90)'" + rest);
+  EXPECT_NEAR(turned.at("half_plane").at("offset").get<double>(), -0.75, 1e-9) << "2 m towards the robot";
+  const json two = json_of("--obstacle 'DISC(4 0, 1)' --obstacle 'DISC(-4 0, 1)' --free --max-speed 2" + rest);
+  EXPECT_EQ(two.at("obstacles").size(), 2u);
+  for (const std::string bad : {"DISC(4 0, -1)", "DISC(4 0)", "DISC(4 0, 1", "DISC(4, 0, 1)", "ELLIPSE(4 0, 1)",
+                                "ELLIPSE(4 0, -1 1, 0)", "DISC(4 0, nan)", "DISC(4 0, 1x)", "DISC(4 0, 1e40)"}) {
+    const Outcome run = Workplace().run("vo --obstacle '" + bad + "'" + rest);
+    EXPECT_EQ(run.status, 2) << bad;
+    EXPECT_EQ(run.err.find("exactvo: error: --obstacle: found"), 0u) << run.err;
+  }
+  EXPECT_EQ(Workplace().run("vo --obstacle 'DISC(4 0, 1)' --enclose ellipse" + rest).status, 2);
+}
+
+TEST(VerbVo, AnEllipseRoundAnObstacleSaysThatItContainsIt) {
+  const std::string scene =
+      "--obstacle '" + kSquare + "' --enclose ellipse --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2";
+  const json taken = json_of(scene).at("taken_as");
+  EXPECT_EQ(taken.at("what"), "smallest ellipse");
+  EXPECT_EQ(taken.at("vertices"), 4);
+  EXPECT_TRUE(taken.at("contained_exactly").get<bool>());
+  EXPECT_NE(words_of(scene).find("contains 4 of its 4 vertices"), std::string::npos);
+}
+
+TEST(VerbVo, WhatWouldBeIgnoredIsRefused) {
+  const std::string scene = "vo --obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --time-horizon 2 ";
+  const auto refusal = [&](const std::string& options) {
+    const Outcome run = Workplace().run(scene + options);
+    EXPECT_EQ(run.status, 2) << options;
+    EXPECT_TRUE(run.out.empty()) << options;
+    return run.err;
+  };
+  const std::string robot = "--robot 'POLYGON((-1 -1, 1 -1, 1 1, -1 1, -1 -1))'";
+  EXPECT_NE(refusal("").find("--radius: found 'nothing'"), std::string::npos);
+  EXPECT_NE(refusal("--radius 1 " + robot).find("--radius"), std::string::npos);
+  EXPECT_NE(refusal("--radius 1 --max-speed 1").find("--free"), std::string::npos);
+  EXPECT_NE(refusal("--radius 1 --free").find("--max-speed: found 'nothing'"), std::string::npos);
+  EXPECT_NE(refusal("--radius 1 --pieces hull --enclose ellipse").find("--pieces"), std::string::npos);
+  EXPECT_NE(refusal("--robot " + kCorner).find("not convex"), std::string::npos);
+  EXPECT_NE(refusal("--robot " + kCourtyard).find("not convex"), std::string::npos);
+  EXPECT_NE(refusal("--radius 1 --goal 1,1").find("--goal"), std::string::npos);
+}
+
+TEST(VerbVo, ObstaclesThatAreNoneAreNamed) {
+  const auto refusal = [](const std::string& obstacle) {
+    const Outcome run = Workplace().run(obstacle + " --position 0,0 --velocity 1,0 --radius 1 --time-horizon 2");
+    EXPECT_EQ(run.status, 2) << obstacle;
+    return run.err;
+  };
+  EXPECT_NE(refusal("vo --obstacle nofile.wkt").find("a file that is there"), std::string::npos);
+  EXPECT_NE(refusal("vo --obstacle 'POINT(3 0)'").find("a point is no obstacle"), std::string::npos);
+  const std::string mistyped = refusal("vo --obstcle x");
+  EXPECT_NE(mistyped.find("--obstcle means nothing; did you mean '--obstacle'?"), std::string::npos) << mistyped;
+}
+
+TEST(VerbVo, EveryFieldIsSaidToBeExactCertifiedOrRounded) {
+  const json out = json_of("--obstacle '" + kSquare +
+                           "' --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2 --alpha 0.5 --variant all");
+  std::string all;
+  for (const json& kind : out.at("kinds"))
+    for (const json& field : kind) all += " " + field.get<std::string>() + " ";
+  for (const auto& [key, value] : out.items()) {
+    if (key == "kinds" || key == "time_horizon" || key == "stage_counts" || key == "legs") continue;
+    EXPECT_NE(all.find(" " + key + " "), std::string::npos) << key;
+  }
+}
+
+TEST(VerbVo, FiguresShowTheVelocityBesideALongConeAndWhatAnEllipseEncloses) {
+  Workplace place;
+  const std::string rest = " --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2 --figure ";
+  ASSERT_EQ(place.run("vo --obstacle 'LINESTRING(2 -200, 2 200)'" + rest + "needle.svg").status, 0);
+  const std::string script = place.read("needle.gp");
+  const std::size_t range = script.find("set xrange [");
+  ASSERT_NE(range, std::string::npos);
+  double low = 0.0, high = 0.0;
+  ASSERT_EQ(std::sscanf(script.c_str() + range, "set xrange [%lf:%lf]", &low, &high), 2);
+  EXPECT_LT(high - low, 10.0) << "a velocity of 1 m/s is to be seen";
+  ASSERT_EQ(place.run("vo --obstacle '" + kSquare + "' --enclose ellipse" + rest + "ellipse.svg").status, 0);
+  EXPECT_NE(place.read("ellipse.gp").find("the obstacle / tau, not grown"), std::string::npos);
+}
+
+TEST(VerbVo, UIsAChangeOnlyWhereOneIsNeeded) {
+  const std::string scene = "--obstacle '" + kSquare + "' --position 0,0 --radius 0.5 --time-horizon 2 --velocity ";
+  EXPECT_NE(words_of(scene + "1,0").find("the least change that avoids it"), std::string::npos);
+  EXPECT_NE(words_of(scene + "-1,0").find("to that boundary; no change is needed"), std::string::npos);
+}
+
+TEST(VerbAuditOfCertificates, JudgesTextsAndWhatVoPrints) {
+  Workplace place;
+  const std::string vo = "vo --obstacle " + kCourtyard + " --position 5,5 --radius 0.5 --velocity 0,0 --time-horizon 2";
+  const Outcome made = place.run(vo + " --json");
+  ASSERT_EQ(made.status, 0) << made.err;
+  place.write("vo.json", made.out);
+  const Outcome whole = place.run("audit --certificate vo.json --json");
+  EXPECT_EQ(whole.status, 0) << whole.out << whole.err;
+  const std::size_t count = json::parse(made.out).at("cones").size();
+  EXPECT_EQ(json::parse(whole.out).at("valid").get<std::size_t>(), count);
+
+  const std::string text = json::parse(made.out).at("cones")[0].at("certificate").at("text");
+  place.write("one", text + "\n");
+  EXPECT_EQ(place.run("audit --certificate - < one").status, 0);
+  std::string changed = text;
+  const std::size_t digit = changed.find("offset ") + 12;
+  changed[digit] = changed[digit] == '1' ? '2' : '1';
+  place.write("changed", text + "\n" + changed + "\nhalf-plane-certificat 1\n");
+  const Outcome run = place.run("audit --certificate changed");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.out.find("3: not a certificate"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("3 certificates, 1 valid"), std::string::npos) << run.out;
+  place.write("empty", "");
+  for (const std::string bad : {"audit --certificate empty", "audit --certificate nofile", "audit --certificate .",
+                                "audit", "audit --certificate one one"})
+    EXPECT_EQ(place.run(bad).status, 2) << bad;
 }
 
 class VerbAudit : public ::testing::Test {

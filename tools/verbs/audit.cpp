@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "exactvo/datasets/audit.h"
+#include "support/certificates.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -20,8 +21,11 @@ namespace {
 
 struct Flags {
   std::string path;
+  std::string certificates;
   bool json = false;
 };
+
+// --- Recordings ---
 
 /// The file itself, or every recording.jsonl below the folder, in the order of their names.
 std::vector<fs::path> recordings_in(const std::string& path) {
@@ -43,7 +47,7 @@ std::string summary(const datasets::AuditReport& report) {
   return text;
 }
 
-ExitCode audit(const Flags& flags) {
+ExitCode audit_recordings(const Flags& flags) {
   datasets::AuditReport sum;
   for (const fs::path& file : recordings_in(flags.path)) {
     datasets::AuditReport report = datasets::audit_recording(file);
@@ -56,18 +60,40 @@ ExitCode audit(const Flags& flags) {
   return sum.clean() ? ExitCode::success : ExitCode::negative;
 }
 
+// --- Certificates ---
+
+ExitCode audit_certificates(const Flags& flags) {
+  const std::vector<JudgedCertificate> judged = judge_certificates(flags.certificates);
+  const std::string text = flags.json ? to_json(judged) : in_words(judged);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  const bool all = std::all_of(judged.begin(), judged.end(), [](const JudgedCertificate& c) { return c.valid(); });
+  return all ? ExitCode::success : ExitCode::negative;
+}
+
+ExitCode audit(const Flags& flags) {
+  if (flags.path.empty() == flags.certificates.empty())
+    throw UsageError("audit", flags.path.empty() ? "nothing" : "path and --certificate", "one of the two");
+  return flags.path.empty() ? audit_certificates(flags) : audit_recordings(flags);
+}
+
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("path", flags->path, "A recording.jsonl, or a folder with some in it or below")->required();
-  app.add_flag("--json", flags->json, "The counts and findings as JSON on stdout");
+  app.add_option("path", flags->path, "A recording.jsonl, or a folder with some in it or below");
+  app.add_option("--certificate", flags->certificates,
+                 "FILE with a half-plane certificate a line, or with what vo --json printed; - for stdin");
+  app.add_flag("--json", flags->json, "The counts and findings, or a verdict a certificate, as JSON on stdout");
   return [flags] { return audit(*flags); };
 }
 
 }  // namespace
 
 Verb audit_verb() {
-  return {"audit", "Prove recordings again in rationals: every half-plane, every step (exit status 1 where one fails)",
-          "  exactvo audit out --json\n", declare};
+  return {
+      "audit", "Prove recordings again in rationals: every half-plane, every step (exit status 1 where one fails)",
+      "  exactvo audit out --json\n"
+      "  exactvo vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --json \\\n"
+      "      | exactvo audit --certificate -\n",
+      declare};
 }
 
 }  // namespace exactvo::tools

@@ -78,18 +78,28 @@ std::string json_of(const formation::Scenario& scenario, const std::vector<TrapF
   return text + (findings.empty() ? "]\n" : "\n]\n");
 }
 
+std::string curvature_words(double radius) {
+  return std::isfinite(radius) ? fmt::format("radius of curvature {:.4g} m", radius) : "flat or hollow";
+}
+
+/// The edges of an obstacle have one name: theirs is told.
+std::string place_words(const TrapFinding& f) {
+  const auto* edge = std::get_if<geometry::Segment>(&f.enclosure.shape);
+  if (!edge) return "";
+  return fmt::format(", edge ({:.4g}, {:.4g})-({:.4g}, {:.4g})", edge->a.x, edge->a.y, edge->b.x, edge->b.y);
+}
+
 std::string words_of(const formation::Scenario& scenario, const TrapFinding& f) {
   std::string text =
-      fmt::format("{} round {}: {} ({})", scenario.robots[f.robot].id, list_of_obstacles(scenario, f, " and "),
-                  f.stall_possible ? "a stall is possible" : "no stall", name(f.enclosure.grade));
+      fmt::format("{} round {}{}: {} ({})", scenario.robots[f.robot].id, list_of_obstacles(scenario, f, " and "),
+                  place_words(f), f.stall_possible ? "a stall is possible" : "no stall", name(f.enclosure.grade));
   if (f.margin && std::isfinite(*f.margin)) text += fmt::format(", margin {:.3g}", *f.margin);
   if (!f.start_clear) text += "; the start is not clear of it";
   if (!f.goal_clear) text += "; the goal is not clear of it";
   if (f.slide_time) text += fmt::format("; slides {:.3g} s", *f.slide_time);
   for (const Equilibrium& e : f.equilibria)
-    text +=
-        fmt::format("\n    {} at ({:.4g}, {:.4g}): radius of curvature {:.4g} m, goal {:.4g} m away",
-                    e.stable ? "rests" : "may balance", e.position.x, e.position.y, e.radius_of_curvature, e.distance);
+    text += fmt::format("\n    {} at ({:.4g}, {:.4g}): {}, goal {:.4g} m away", e.stable ? "rests" : "may balance",
+                        e.position.x, e.position.y, curvature_words(e.radius_of_curvature), e.distance);
   return text + "\n";
 }
 
@@ -101,7 +111,7 @@ ExitCode trap(const Flags& flags) {
     text = json_of(scenario, findings);
   } else {
     for (const TrapFinding& f : findings) text += words_of(scenario, f);
-    if (findings.empty()) text = "no enclosures: nothing to stall at\n";
+    if (findings.empty()) text = "no obstacles: nothing to stall at\n";
   }
   std::fwrite(text.data(), 1, text.size(), stdout);
   return ExitCode::success;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "exactvo/geometry/predicates.h"
@@ -12,6 +13,43 @@ namespace exactvo::tools {
 using geometry::HalfPlane;
 
 namespace {
+
+bool any_overlaps(const VoAnswer& a) {
+  return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& cone) { return cone.overlaps; });
+}
+bool any_contains(const VoAnswer& a) {
+  return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& cone) { return cone.contains; });
+}
+
+/// The obstacle, and which of its cones, whose half-plane excludes the piece.
+struct Place {
+  std::size_t obstacle = 0;
+  std::size_t cone = 0;
+};
+Place place_of(const VoAnswer& a, const vo::LostPiece& piece) {
+  if (a.free->half_planes.empty()) return {};
+  const std::size_t cone = a.free->cone_of[piece.half_plane];
+  const std::vector<AskedObstacle>& all = a.question.obstacles;
+  std::size_t k = 0;
+  while (k + 1 < all.size() && all[k + 1].first_encounter <= cone) ++k;
+  return {k, cone - all[k].first_encounter};
+}
+
+const char* name(Taken taken) {
+  switch (taken) {
+    case Taken::itself:
+      return "itself";
+    case Taken::convex_pieces:
+      return "convex pieces";
+    case Taken::convex_hull:
+      return "convex hull";
+    case Taken::smallest_ellipse:
+      return "smallest ellipse";
+    case Taken::trap_free_ellipse:
+      break;
+  }
+  return "trap-free ellipse";
+}
 
 // --- JSON ---
 
@@ -74,6 +112,19 @@ std::string certificate_json(const ConeAnswer& a) {
                      json(a.certificate->margin), write_certificate(*a.certificate));
 }
 
+std::string half_planes_json(const ConeAnswer& a) {
+  return fmt::format("\"half_plane\": {},\n  \"contact_half_plane\": {},\n  \"certificate\": {}", json(a.half_plane),
+                     json(a.contact), certificate_json(a));
+}
+
+std::string shared_json(const ConeAnswer& a) {
+  if (a.encounter.share >= 1.0) return "";
+  return fmt::format(
+      "\"shared_half_plane\": {{\"alpha\": {}, \"half_plane\": {}, \"certificate\": null,\n"
+      "    \"holds\": \"only if the other side takes its share\"}},\n  ",
+      json(a.encounter.share), json(a.shared));
+}
+
 std::string member_json(const vo::Member& m, Vec2 velocity) {
   std::string text =
       fmt::format("{{\"variant\": \"{}\", \"allows_velocity\": {}", name(m.variant), json(m.allows(velocity)));
@@ -96,25 +147,38 @@ std::string stages_json() {
   return fmt::format("\"stage_counts\": {{\"filter\": {}, \"exact\": {}}}", counts.filter, counts.exact);
 }
 
+std::string shape_json(const ConeAnswer& a) {
+  return fmt::format("\"shape\": \"{}\",\n  ", to_string(a.encounter.obstacle));
+}
+
+std::string verdict_json(bool overlaps, bool contains) {
+  return fmt::format("\"overlaps\": {},\n  \"contains_velocity\": {},\n  ", json(overlaps),
+                     overlaps ? "null" : json(contains));
+}
+
+std::string relative_json(const ConeAnswer& a) {
+  return fmt::format("\"apex\": {},\n  \"time_horizon\": {},\n  ", json(a.encounter.obstacle_velocity),
+                     json(a.encounter.time_horizon));
+}
+
+std::string bounds_json(const ConeAnswer& a) {
+  return fmt::format("\"legs\": {},\n  {},\n  {}{}", legs_json(a), boundary_json(a), shared_json(a),
+                     half_planes_json(a));
+}
+
+/// What stands for the obstacle.
+std::string taken_json(const VoQuestion& q, const AskedObstacle& o) {
+  const auto containment = containment_of(q, o);
+  const std::string proof = containment
+                                ? fmt::format(", \"vertices\": {}, \"contained_exactly\": {}", containment->vertices,
+                                              json(containment->contained == containment->vertices))
+                                : "";
+  return fmt::format("\"taken_as\": {{\"what\": \"{}\", \"convex_shapes\": {}{}}},\n  ", name(o.taken), o.encounters,
+                     proof);
+}
+
 std::string cone_json(const ConeAnswer& a) {
-  return fmt::format(
-      "  \"shape\": \"{}\",\n  \"overlaps\": {},\n  \"contains_velocity\": {},\n  \"apex\": {},\n"
-      "  \"time_horizon\": {},\n  \"legs\": {},\n  {},\n  \"half_plane\": {},\n  \"certificate\": {},\n",
-      to_string(a.encounter.obstacle), json(a.overlaps), a.overlaps ? "null" : json(a.contains),
-      json(a.encounter.obstacle_velocity), json(a.encounter.time_horizon), legs_json(a), boundary_json(a),
-      json(a.half_plane), certificate_json(a));
-}
-
-// --- The same of --free ---
-
-std::string obstacle_json(const ConeAnswer& a) {
-  return fmt::format("{{\"shape\": \"{}\", \"overlaps\": {}, \"half_plane\": {}, \"certificate\": {}}}",
-                     to_string(a.encounter.obstacle), json(a.overlaps), json(a.full), certificate_json(a));
-}
-
-std::string lost_json(const FreeAnswer& f, const vo::LostPiece& piece) {
-  return fmt::format("{{\"area\": {}, \"farthest\": {}, \"obstacle\": {}}}", json(piece.area), json(piece.farthest),
-                     f.half_planes.empty() ? 0 : f.obstacle_of[piece.half_plane]);
+  return shape_json(a) + verdict_json(a.overlaps, a.contains) + relative_json(a) + bounds_json(a);
 }
 
 std::string joined(const std::vector<std::string>& items) {
@@ -123,74 +187,235 @@ std::string joined(const std::vector<std::string>& items) {
   return text;
 }
 
+/// Which fields are what. A certificate's numbers are doubles; what it proves of them is exact.
+constexpr const char* kKindsOfCone =
+    "\"kinds\": {\n    \"exact\": [\"shape\", \"taken_as\", \"overlaps\", \"contains_velocity\", \"apex\"],\n"
+    "    \"certified\": [\"half_plane\", \"contact_half_plane\", \"certificate\", \"legs/bracket\"],\n"
+    "    \"rounded\": [\"legs/direction\", \"legs/touch\", \"nearest_boundary\", \"u\", \"shared_half_plane\", "
+    "\"variants\"]},\n  ";
+constexpr const char* kKindsOfFree =
+    "\"kinds\": {\n    \"exact\": [\"obstacles/shape\", \"obstacles/taken_as\", \"obstacles/overlaps\", "
+    "\"velocity_is_free\"],\n"
+    "    \"certified\": [\"obstacles/half_plane\", \"obstacles/contact_half_plane\", \"obstacles/certificate\", "
+    "\"area\",\n      \"least_components\", \"region/inside\", \"region/area\", \"region/given_away\", "
+    "\"region/lost/area\"],\n"
+    "    \"rounded\": [\"region/lost/farthest\"]},\n  ";
+
+/// A cone a convex shape; where the obstacle is one of those, its fields stand at the top.
+std::string single_json(const VoAnswer& a) {
+  const AskedObstacle& o = a.question.obstacles.front();
+  const std::string head = "{\n  " + taken_json(a.question, o);
+  const std::string tail = ",\n" + members_json(a) + "  " + kKindsOfCone + stages_json() + "\n}\n";
+  if (a.cones.size() == 1) return head + cone_json(a.cones.front()) + tail;
+  std::vector<std::string> cones;
+  for (const ConeAnswer& cone : a.cones)
+    cones.push_back("{" + shape_json(cone) + verdict_json(cone.overlaps, cone.contains) + bounds_json(cone) + "}");
+  return head + verdict_json(any_overlaps(a), any_contains(a)) + relative_json(a.cones.front()) + "\"cones\": [" +
+         joined(cones) + "]" + tail;
+}
+
+// --- The same of --free ---
+
+std::string piece_json(const ConeAnswer& a) {
+  return shape_json(a) + fmt::format("\"overlaps\": {}, ", json(a.overlaps)) + half_planes_json(a);
+}
+
+std::string obstacle_json(const VoAnswer& a, const AskedObstacle& o) {
+  const std::string head = "{" + taken_json(a.question, o);
+  if (o.encounters == 1) return head + piece_json(a.cones[o.first_encounter]) + "}";
+  std::vector<std::string> pieces;
+  bool overlaps = false;
+  for (std::size_t k = 0; k < o.encounters; ++k) {
+    pieces.push_back("{" + piece_json(a.cones[o.first_encounter + k]) + "}");
+    overlaps = overlaps || a.cones[o.first_encounter + k].overlaps;
+  }
+  return head + fmt::format("\"overlaps\": {}, \"cones\": [{}]}}", json(overlaps), joined(pieces));
+}
+
+std::string lost_json(const VoAnswer& a, const vo::LostPiece& piece) {
+  const auto [obstacle, cone] = place_of(a, piece);
+  return fmt::format("{{\"area\": {}, \"farthest\": {}, \"obstacle\": {}, \"cone\": {}}}", json(piece.area),
+                     json(piece.farthest), obstacle, cone);
+}
+
+std::string region_json(const VoAnswer& a) {
+  if (!a.free->report) return "null";
+  const vo::RegionReport& report = *a.free->report;
+  std::vector<std::string> lost;
+  for (const vo::LostPiece& piece : report.lost) lost.push_back(lost_json(a, piece));
+  return fmt::format("{{\n    \"inside\": \"{}\",\n    \"area\": {},\n    \"given_away\": {},\n    \"lost\": [{}]}}",
+                     name(report.inside), json(report.area), json(report.given_away), joined(lost));
+}
+
 std::string free_json(const VoAnswer& a) {
   const FreeAnswer& f = *a.free;
-  std::vector<std::string> obstacles, lost;
-  for (const ConeAnswer& cone : a.cones) obstacles.push_back(obstacle_json(cone));
-  for (const vo::LostPiece& piece : f.report.lost) lost.push_back(lost_json(f, piece));
+  std::vector<std::string> obstacles;
+  for (const AskedObstacle& o : a.question.obstacles) obstacles.push_back(obstacle_json(a, o));
   return fmt::format(
       "{{\n  \"obstacles\": [{}],\n  \"max_speed\": {},\n  \"velocity_is_free\": {},\n  \"area\": {},\n"
-      "  \"least_components\": {},\n  \"region\": {{\n    \"inside\": \"{}\",\n    \"area\": {},\n"
-      "    \"given_away\": {},\n    \"lost\": [{}]}},\n  {}\n}}\n",
+      "  \"least_components\": {},\n  \"region\": {},\n  {}{}\n}}\n",
       joined(obstacles), json(f.max_speed), json(f.free.contains(a.question.velocity)), json(f.free.area()),
-      f.free.least_components(), name(f.report.inside), json(f.report.area), json(f.report.given_away), joined(lost),
-      stages_json());
+      f.free.least_components(), region_json(a), kKindsOfFree, stages_json());
 }
 
 // --- Words ---
 
+std::string text_of(const HalfPlane& h) {
+  return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s", h.normal.x, h.normal.y, h.offset);
+}
+
+std::string half_plane_words(const ConeAnswer& a) {
+  const char* verdict = a.certificate ? name(check(*a.certificate)) : "none";
+  std::string text;
+  if (a.half_plane) text += fmt::format("half-plane        {}\n", text_of(*a.half_plane));
+  if (a.contact) text += fmt::format("half-plane        {}, away from the nearest point\n", text_of(*a.contact));
+  text += fmt::format("certificate       {}{}\n", verdict, a.certificate ? ", of this half-plane" : "");
+  if (a.shared)
+    text += fmt::format(
+        "shared            {}: alpha {:g} of u, not certified,\n"
+        "                  holds only if the other side takes its share\n",
+        text_of(*a.shared), a.encounter.share);
+  return text;
+}
+
+/// To the boundary either way; only a velocity that collides has to change.
+std::string nearest_words(const ConeAnswer& a) {
+  return fmt::format(
+      "nearest boundary  {}, {:.6g} m/s away\n"
+      "u                 ({:.6g}, {:.6g}) m/s, {}\n",
+      name(a.nearest->part), std::fabs(a.nearest->signed_distance), a.nearest->u.x, a.nearest->u.y,
+      a.contains ? "the least change that avoids it" : "to that boundary; no change is needed");
+}
+
 std::string cone_words(const ConeAnswer& a) {
-  if (a.overlaps) return "The robot touches or overlaps the obstacle: there is no cone.\n";
-  std::string text =
-      a.contains ? "The velocity collides within the horizon.\n" : "The velocity is free within the horizon.\n";
-  if (a.nearest) {
-    text += fmt::format("nearest boundary  {}, {:.6g} m/s away\n", name(a.nearest->part),
-                        std::fabs(a.nearest->signed_distance));
-    text += fmt::format("u                 ({:.6g}, {:.6g}) m/s\n", a.nearest->u.x, a.nearest->u.y);
-  }
-  if (a.half_plane)
-    text += fmt::format("half-plane        {:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s\n", a.half_plane->normal.x,
-                        a.half_plane->normal.y, a.half_plane->offset);
-  return text + fmt::format("certificate       {}\n", a.certificate ? name(check(*a.certificate)) : "none");
+  return (a.nearest ? nearest_words(a) : "") + half_plane_words(a);
+}
+
+std::string verdict_words(bool overlaps, bool contains, const char* what) {
+  if (overlaps) return fmt::format("The robot touches or overlaps {}: there is no cone.\n", what);
+  return contains ? "The velocity collides within the horizon.\n" : "The velocity is free within the horizon.\n";
+}
+
+std::string taken_words(const VoQuestion& q, const AskedObstacle& o) {
+  if (o.taken == Taken::itself) return "";
+  std::string text = fmt::format("The obstacle is taken as {}", in_words(o));
+  if (const auto containment = containment_of(q, o))
+    text +=
+        fmt::format(", which contains {} of its {} vertices (exactly)", containment->contained, containment->vertices);
+  return text + ".\n";
+}
+
+std::string single_words(const VoAnswer& a) {
+  const AskedObstacle& o = a.question.obstacles.front();
+  const bool stands_in = o.taken != Taken::itself && o.taken != Taken::convex_pieces;
+  const std::string what = stands_in ? in_words(o) : "the obstacle";
+  std::string text = taken_words(a.question, o) + verdict_words(any_overlaps(a), any_contains(a), what.c_str());
+  if (a.cones.size() == 1) return text + cone_words(a.cones.front());
+  for (std::size_t k = 0; k < a.cones.size(); ++k)
+    text += fmt::format("piece {}: {}{}", k, verdict_words(a.cones[k].overlaps, a.cones[k].contains, "it"),
+                        cone_words(a.cones[k]));
+  return text + "A velocity is safe that satisfies the half-planes of all pieces.\n";
 }
 
 std::string member_words(const vo::Member& m, Vec2 velocity) {
   return fmt::format("{:<17} {} the velocity\n", name(m.variant), m.allows(velocity) ? "allows" : "forbids");
 }
 
-std::string free_words(const FreeAnswer& f) {
-  std::string text =
+std::string region_words(const VoAnswer& a) {
+  const vo::RegionReport& report = *a.free->report;
+  std::string text = fmt::format("half-planes       keep {:.6g} to {:.6g} of it; all free: {}\n", report.area.low,
+                                 report.area.high, name(report.inside));
+  text += fmt::format("given away        {:.6g} to {:.6g}\n", report.given_away.low, report.given_away.high);
+  for (const vo::LostPiece& piece : report.lost) {
+    const auto [obstacle, cone] = place_of(a, piece);
+    const bool one = a.question.obstacles[obstacle].encounters == 1;
+    text +=
+        fmt::format("  {:.4g} as far as ({:.4g}, {:.4g}) m/s, by the half-plane of obstacle {}{}\n", piece.area.high,
+                    piece.farthest.x, piece.farthest.y, obstacle, one ? "" : fmt::format(", piece {}", cone));
+  }
+  return text;
+}
+
+std::string free_words(const VoAnswer& a) {
+  const FreeAnswer& f = *a.free;
+  std::string text;
+  for (std::size_t k = 0; k < a.question.obstacles.size(); ++k)
+    if (const AskedObstacle& o = a.question.obstacles[k]; o.taken != Taken::itself)
+      text += fmt::format("obstacle {:<8} taken as {}\n", k, in_words(o));
+  text +=
       fmt::format("free velocities   {:.6g} to {:.6g} (m/s)^2, in at least {} {}\n", f.free.area().low,
                   f.free.area().high, f.free.least_components(), f.free.least_components() == 1 ? "piece" : "pieces");
-  text += fmt::format("half-planes       keep {:.6g} to {:.6g} of it; all free: {}\n", f.report.area.low,
-                      f.report.area.high, name(f.report.inside));
-  text += fmt::format("given away        {:.6g} to {:.6g}\n", f.report.given_away.low, f.report.given_away.high);
-  for (const vo::LostPiece& piece : f.report.lost)
-    text +=
-        fmt::format("  {:.4g} as far as ({:.4g}, {:.4g}) m/s, by the half-plane of obstacle {}\n", piece.area.high,
-                    piece.farthest.x, piece.farthest.y, f.half_planes.empty() ? 0 : f.obstacle_of[piece.half_plane]);
-  return text;
+  if (f.report) return text + region_words(a);
+  return text + (any_overlaps(a) ? "The robot touches or overlaps an obstacle: nothing is free, nothing is kept.\n"
+                                 : "half-planes       none is proven at an obstacle: nothing is kept\n");
+}
+
+}  // namespace
+
+std::string in_words(const AskedObstacle& o) {
+  switch (o.taken) {
+    case Taken::itself:
+      return "it stands";
+    case Taken::convex_pieces:
+      return fmt::format("its {} convex pieces", o.encounters);
+    case Taken::convex_hull:
+      return "its convex hull, which is larger";
+    case Taken::smallest_ellipse:
+      return "the smallest ellipse round it";
+    case Taken::trap_free_ellipse:
+      break;
+  }
+  return "a trap-free ellipse round it";
+}
+
+std::optional<Containment> containment_of(const VoQuestion& question, const AskedObstacle& o) {
+  const auto* obstacle = std::get_if<geometry::Obstacle>(&o.given);
+  const auto* ellipse = std::get_if<geometry::Ellipse>(&question.encounters[o.first_encounter].obstacle);
+  if (!obstacle || !ellipse) return std::nullopt;
+  Containment answer;
+  for (const Vec2 x : vertices_of(*obstacle)) {
+    ++answer.vertices;
+    if (geometry::contains(*ellipse, x)) ++answer.contained;
+  }
+  return answer;
+}
+
+namespace {
+
+/// What can be proven where the robot is in contact or within a few ulps of it. For an obstacle that moves the offset
+/// is rounded up: two products and a sum err by less than 2u of the sum of their magnitudes, u = 2^-53.
+std::optional<HalfPlane> contact_half_plane(const ConeAnswer& a) {
+  constexpr double kFourRoundings = 4.0 * 0x1p-53;
+  std::optional<HalfPlane> h = a.cone.contact_half_plane();
+  const Vec2 u = a.encounter.obstacle_velocity;
+  if (h)
+    h->offset =
+        geometry::dot(h->normal, u) + kFourRoundings * (std::fabs(h->normal.x * u.x) + std::fabs(h->normal.y * u.y));
+  return h;
 }
 
 }  // namespace
 
 ConeAnswer answer_of(const vo::Encounter& e, double alpha) {
-  ConeAnswer a{e, cone_of(e), false, false, {}, {}, {}, {}};
+  ConeAnswer a{e, cone_of(e), false, false, {}, {}, {}, {}, {}};
   a.overlaps = a.cone.overlaps();
-  if (a.overlaps) return a;
-  vo::Encounter shared = e;
-  const auto half_plane = [&](double share) {
-    shared.share = share;
-    return family_member(vo::Variant::orca, shared).half_plane;
-  };
-  a.contains = a.cone.contains_sum({{e.velocity, -e.obstacle_velocity}});
-  a.nearest = a.cone.nearest_boundary(e.velocity - e.obstacle_velocity);
-  a.half_plane = half_plane(alpha);
-  a.full = half_plane(1.0);
-  if (a.full) {
-    const geometry::GrownShape& s = a.cone.grown();
-    a.certificate = vo::certify({s.shape, s.origin, s.radius, e.time_horizon, e.obstacle_velocity, *a.full});
+  if (!a.overlaps) {
+    vo::Encounter shared = e;
+    const auto half_plane = [&](double share) {
+      shared.share = share;
+      return family_member(vo::Variant::orca, shared).half_plane;
+    };
+    a.contains = a.cone.contains_sum({{e.velocity, -e.obstacle_velocity}});
+    a.nearest = a.cone.nearest_boundary(e.velocity - e.obstacle_velocity);
+    a.half_plane = half_plane(1.0);
+    if (alpha < 1.0) a.shared = half_plane(alpha);
   }
+  if (!a.half_plane) a.contact = contact_half_plane(a);
+  if (const auto& proven = a.half_plane ? a.half_plane : a.contact) {
+    const geometry::GrownShape& s = a.cone.grown();
+    a.certificate = vo::certify({s.shape, s.origin, s.radius, e.time_horizon, e.obstacle_velocity, *proven});
+  }
+  if (a.contact && !a.certificate) a.contact.reset();
   return a;
 }
 
@@ -200,20 +425,23 @@ constexpr double kOfSpeed = 1e-4;
 FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion& question) {
   std::vector<vo::ShiftedCone> shifted;
   std::vector<HalfPlane> half_planes;
-  std::vector<std::size_t> obstacle_of;
+  std::vector<std::size_t> cone_of;
+  bool overlaps = false;
   for (std::size_t k = 0; k < cones.size(); ++k) {
     const Vec2 u = cones[k].encounter.obstacle_velocity;
     shifted.push_back({cones[k].cone, {{-u}}, u});
-    if (!cones[k].full) continue;
-    half_planes.push_back(*cones[k].full);
-    obstacle_of.push_back(k);
+    overlaps = overlaps || cones[k].overlaps;
+    const auto& proven = cones[k].half_plane ? cones[k].half_plane : cones[k].contact;
+    if (!proven) continue;
+    half_planes.push_back(*proven);
+    cone_of.push_back(k);
   }
   FreeAnswer answer{vo::FreeVelocities(std::move(shifted), {question.max_speed, kOfSpeed}),
                     question.max_speed,
                     std::move(half_planes),
-                    std::move(obstacle_of),
+                    std::move(cone_of),
                     {}};
-  answer.report = answer.free.compare(answer.half_planes);
+  if (!overlaps && answer.half_planes.size() == cones.size()) answer.report = answer.free.compare(answer.half_planes);
   return answer;
 }
 
@@ -226,13 +454,12 @@ VoAnswer answer_of(const VoQuestion& question) {
 }
 
 std::string to_json(const VoAnswer& a) {
-  if (a.free) return free_json(a);
-  return "{\n" + cone_json(a.cones.front()) + members_json(a) + "  " + stages_json() + "\n}\n";
+  return a.free ? free_json(a) : single_json(a);
 }
 
 std::string in_words(const VoAnswer& a) {
-  if (a.free) return free_words(*a.free);
-  std::string text = cone_words(a.cones.front());
+  if (a.free) return free_words(a);
+  std::string text = single_words(a);
   for (const vo::Member& m : a.members) text += member_words(m, a.question.velocity);
   return text;
 }

@@ -21,23 +21,31 @@ struct ConeAnswer {
   bool overlaps = false;
   bool contains = false;
   std::optional<vo::NearestBoundary> nearest;
-  std::optional<geometry::HalfPlane> half_plane;  ///< with the asked alpha
-  std::optional<geometry::HalfPlane> full;        ///< with alpha = 1, which is what is certified
-  std::optional<vo::Certificate> certificate;
+  std::optional<geometry::HalfPlane> half_plane;  ///< with alpha = 1: it holds whatever the obstacle's side does
+  std::optional<geometry::HalfPlane> shared;   ///< with the asked alpha < 1: holds only if the other side does its part
+  std::optional<geometry::HalfPlane> contact;  ///< away from the nearest point, where there is no other
+  std::optional<vo::Certificate> certificate;  ///< of `half_plane`, or of `contact`
 };
 
 ConeAnswer answer_of(const vo::Encounter& encounter, double alpha);
 
-/// About all of them.
+/// About all of them. Nothing is compared with half-planes where a cone has none.
 struct FreeAnswer {
   vo::FreeVelocities free;
   double max_speed = 0.0;
   std::vector<geometry::HalfPlane> half_planes;
-  std::vector<std::size_t> obstacle_of;  ///< of each half-plane
-  vo::RegionReport report;
+  std::vector<std::size_t> cone_of;  ///< of each half-plane
+  std::optional<vo::RegionReport> report;
 };
 
 FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion& question);
+
+/// Whether the ellipse round an obstacle contains it: asked of every vertex by the exact predicate.
+struct Containment {
+  std::size_t vertices = 0;
+  std::size_t contained = 0;
+};
+std::optional<Containment> containment_of(const VoQuestion& question, const AskedObstacle& obstacle);
 
 struct VoAnswer {
   VoQuestion question;
@@ -47,6 +55,9 @@ struct VoAnswer {
 };
 
 VoAnswer answer_of(const VoQuestion& question);
+
+/// "its 3 convex pieces", "the smallest ellipse round it".
+std::string in_words(const AskedObstacle& obstacle);
 
 std::string to_json(const VoAnswer& answer);
 std::string in_words(const VoAnswer& answer);

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "figures/outlines.h"
 
@@ -17,6 +19,8 @@ constexpr const char* kForbidden = "with filledcurves closed fc rgb '#7a8290' fs
 constexpr const char* kAllowed = "with filledcurves closed fc rgb '#009E73' fs transparent solid 0.35 noborder";
 constexpr const char* kLost = "with filledcurves closed fc rgb '#E69F00' fs solid 0.75 noborder";
 constexpr const char* kBoundary = "with lines lw 2.5 lc rgb '#009E73'";
+constexpr const char* kShared = "with lines lw 2 dt (6,4) lc rgb '#009E73'";
+constexpr const char* kGiven = "with lines lw 1.5 lc rgb '#0072B2'";
 constexpr const char* kScaled = "with lines lw 1.5 dt (2,3) lc rgb '#3f444d'";
 
 /// One set of axes: data sets and the items that draw them.
@@ -42,14 +46,14 @@ class Panel {
     }
     plot_.data(index, "using 1:2 " + style, title);
   }
-  void boundary(const std::string& title, const HalfPlane& h) {
+  void boundary(const std::string& title, const HalfPlane& h, const char* style = kBoundary) {
     const double length = norm(h.normal);
     const Vec2 foot = (h.offset / (length * length)) * h.normal;
     const Vec2 along = (4.0 * view_.diagonal() / length) * perp(h.normal);
     const int index = data_.begin("half-plane", "v_x [m/s], v_y [m/s]");
     data_.row({foot.x - along.x, foot.y - along.y});
     data_.row({foot.x + along.x, foot.y + along.y});
-    plot_.data(index, std::string("using 1:2 ") + kBoundary, title);
+    plot_.data(index, std::string("using 1:2 ") + style, title);
   }
   void arrow(const std::string& title, Vec2 from, Vec2 by, const char* colour) {
     const int index = data_.begin(title, "from v_x, v_y, by v_x, v_y [m/s]");
@@ -93,13 +97,33 @@ double drawn_horizon(const ConeAnswer& a) {
   return std::max(a.cone.nearest().distance, kNearest) / std::max(norm(a.encounter.velocity), kSlowest);
 }
 
-Box view_of(const ConeAnswer& a) {
+/// Of the velocities' spread: a cone that is wider is shown in part, so that the arrows remain to be seen.
+constexpr double kWidestView = 3.0;
+
+Box velocities_of(const ConeAnswer& a) {
   Box box;
   box.add(Vec2{});
   box.add(a.encounter.velocity);
   box.add(a.encounter.obstacle_velocity);
-  for (const Vec2 p : scaled_outline(a.cone.grown(), drawn_horizon(a))) box.add(p + a.encounter.obstacle_velocity);
-  return square_round(box, 0.65);
+  if (a.nearest) box.add(a.encounter.velocity + a.nearest->u);
+  return box;
+}
+
+/// What lies in both. They meet.
+Box common(const Box& a, const Box& b) {
+  return {{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)},
+          {std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)}};
+}
+
+/// The velocities, and as much of S / tau as leaves them visible.
+Box view_of(const std::vector<ConeAnswer>& cones) {
+  Box velocities;
+  for (const ConeAnswer& a : cones) velocities.add(velocities_of(a));
+  Box all = velocities;
+  for (const ConeAnswer& a : cones)
+    for (const Vec2 p : scaled_outline(a.cone.grown(), drawn_horizon(a))) all.add(p + a.encounter.obstacle_velocity);
+  const bool at_rest = velocities.width() == 0.0 && velocities.height() == 0.0;
+  return square_round(at_rest ? all : common(all, square_round(velocities, kWidestView)), 0.65);
 }
 
 Points cone_in(const Box& box, const vo::VelocityObstacle& cone, Vec2 apex) {
@@ -112,20 +136,62 @@ std::string horizon_text(double tau) {
 
 // --- One cone ---
 
-Figure cone_figure(const ConeAnswer& a, const std::string& name) {
-  DataFile data;
-  Panel panel(data, view_of(a));
-  const Vec2 u = a.encounter.obstacle_velocity;
-  panel.ring("velocity obstacle", cone_in(panel.view(), a.cone, u), kForbidden);
-  if (std::isfinite(a.encounter.time_horizon)) {
-    Points scaled = scaled_outline(a.cone.grown(), a.encounter.time_horizon);
-    for (Vec2& p : scaled) p += u;
-    panel.ring("S / tau", scaled, kScaled);
+/// Titles its first use only.
+class Once {
+ public:
+  explicit Once(std::string title) : title_(std::move(title)) {}
+  std::string operator()() { return std::exchange(title_, ""); }
+
+ private:
+  std::string title_;
+};
+
+/// The obstacle that the ellipse stands for, seen from the robot and divided by the horizon as S is.
+void draw_given(const VoAnswer& answer, Panel& panel) {
+  const ConeAnswer& a = answer.cones.front();
+  const AskedObstacle& asked = answer.question.obstacles.front();
+  const auto* obstacle = std::get_if<geometry::Obstacle>(&asked.given);
+  const bool replaced = asked.taken != Taken::itself && asked.taken != Taken::convex_pieces;
+  if (!obstacle || !replaced) return;
+  Once title("the obstacle / tau, not grown");
+  for (const geometry::Segment& edge : edges_of(*obstacle)) {
+    const auto seen = [&](Vec2 x) {
+      return (1.0 / drawn_horizon(a)) * (x - a.encounter.position) + a.encounter.obstacle_velocity;
+    };
+    panel.ring(title(), {seen(edge.a), seen(edge.b)}, kGiven);
   }
-  if (a.half_plane) panel.boundary("boundary of the half-plane", *a.half_plane);
+}
+
+void draw_cone(const ConeAnswer& a, Panel& panel, Once& cone, Once& scaled) {
+  const Vec2 u = a.encounter.obstacle_velocity;
+  panel.ring(cone(), cone_in(panel.view(), a.cone, u), kForbidden);
+  if (!std::isfinite(a.encounter.time_horizon)) return;
+  Points outline = scaled_outline(a.cone.grown(), a.encounter.time_horizon);
+  for (Vec2& p : outline) p += u;
+  panel.ring(scaled(), outline, kScaled);
+}
+
+void draw_half_planes(const ConeAnswer& a, Panel& panel, Once& proven, Once& shared) {
+  if (a.half_plane) panel.boundary(proven(), *a.half_plane);
+  if (a.contact) panel.boundary(proven(), *a.contact);
+  if (a.shared) panel.boundary(shared(), *a.shared, kShared);
+}
+
+Figure cone_figure(const VoAnswer& answer, const std::string& name) {
+  const ConeAnswer& a = answer.cones.front();
+  DataFile data;
+  Panel panel(data, view_of(answer.cones));
+  Once cone("velocity obstacle"), scaled("S / tau"), proven("boundary of the half-plane"),
+      shared("of the shared one, not certified");
+  for (const ConeAnswer& each : answer.cones) draw_cone(each, panel, cone, scaled);
+  draw_given(answer, panel);
+  for (const ConeAnswer& each : answer.cones) draw_half_planes(each, panel, proven, shared);
+  const Vec2 u = a.encounter.obstacle_velocity;
   if (u != Vec2{}) panel.arrow("obstacle's velocity", {}, u, "#CC79A7");
   panel.arrow("velocity", {}, a.encounter.velocity, "#444444");
-  if (a.nearest) panel.arrow("least change u", a.encounter.velocity, a.nearest->u, "#D55E00");
+  Once change("least change u"), way("u, to the boundary");
+  for (const ConeAnswer& each : answer.cones)
+    if (each.nearest) panel.arrow(each.contains ? change() : way(), a.encounter.velocity, each.nearest->u, "#D55E00");
   const std::string title = "Velocity obstacle, " + horizon_text(a.encounter.time_horizon);
   const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
   return {name, data.text(), script_text(name, title + ".", {900, 640}, body)};
@@ -158,7 +224,7 @@ Figure family_figure(const VoAnswer& answer, const std::string& name) {
                                          quoted("One encounter, " + horizon_text(a.encounter.time_horizon) +
                                                 "; grey is forbidden, black v, pink the obstacle's velocity"));
   for (const vo::Member& m : answer.members) {
-    Panel panel(data, square_round(view_of(a), 0.7));
+    Panel panel(data, square_round(view_of(answer.cones), 0.7));
     draw_member(m, a, panel);
     body += panel.text(member_title(m, a.encounter.velocity));
   }
@@ -191,8 +257,9 @@ Figure free_figure(const VoAnswer& answer, const std::string& name) {
   Panel panel(data, square_round(box, 0.55));
   panel.rings("free, but given away", outer_rings(f.free.inner()), kLost);
   panel.rings("", hole_rings(f.free.inner()), "with filledcurves closed fc rgb '#ffffff' fs solid noborder");
-  panel.rings("kept by the half-planes", outer_rings(f.report.region),
-              "with filledcurves closed fc rgb '#7fcdb4' fs solid noborder");
+  if (f.report)
+    panel.rings("kept by the half-planes", outer_rings(f.report->region),
+                "with filledcurves closed fc rgb '#7fcdb4' fs solid noborder");
   std::string title_of_cones = "velocity obstacles";
   for (const ConeAnswer& a : answer.cones) {
     if (!a.overlaps)
@@ -206,7 +273,7 @@ Figure free_figure(const VoAnswer& answer, const std::string& name) {
   }
   panel.arrow("velocity", {}, answer.question.velocity, "#444444");
   const std::string title =
-      fmt::format("{:.4g} (m/s)^2 are free, {:.4g} are kept", f.free.area().low, f.report.area.low);
+      fmt::format("{:.4g} (m/s)^2 are free, {:.4g} are kept", f.free.area().low, f.report ? f.report->area.low : 0.0);
   const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
   return {name, data.text(), script_text(name, "The free velocities of a scene.", {960, 640}, body)};
 }
@@ -216,7 +283,7 @@ Figure free_figure(const VoAnswer& answer, const std::string& name) {
 Figure vo_figure(const VoAnswer& answer, const std::string& name) {
   if (answer.free) return free_figure(answer, name);
   if (!answer.members.empty()) return family_figure(answer, name);
-  return cone_figure(answer.cones.front(), name);
+  return cone_figure(answer, name);
 }
 
 }  // namespace exactvo::tools

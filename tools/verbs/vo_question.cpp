@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <limits>
 
-#include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pieces.h"
 #include "exactvo/vo/free_velocities.h"
 #include "support/usage.h"
 
@@ -40,47 +40,49 @@ Vec2 parse_point(const std::string& option, const std::string& text) {
   return v;
 }
 
-/// The points of every obstacle in the text: WKT, or the name of a file.
-std::vector<std::vector<Vec2>> obstacles_in(const std::string& option, const std::string& text) {
-  const datasets::ObstacleFile file =
-      fs::exists(text) ? datasets::read_obstacles(text) : datasets::parse_wkt(text, option, {});
-  std::vector<std::vector<Vec2>> points;
-  for (const auto& obstacle : file.obstacles) {
-    points.push_back(vertices_of(obstacle.shape));
-    for (const Vec2 v : points.back())
-      if (!is_in_range(v))
-        throw UsageError(option, fmt::format("{:g} {:g}", v.x, v.y), fmt::format("within {:g}", kLargestNumber));
-  }
-  return points;
-}
-
-ConvexShape hull_of(const std::vector<Vec2>& points) {
-  ConvexPolygon hull = geometry::convex_hull(points);
-  if (hull.vertices.size() > 2) return hull;
-  return geometry::Segment{hull.vertices.front(), hull.vertices.back()};
-}
+// --- The obstacles ---
 
 ConvexShape trap_free(const std::vector<Vec2>& points, const VoFlags& flags) {
   if (flags.goal.empty()) throw UsageError("--enclose", "trap-free without --goal", "a goal, X,Y");
-  const auto fitted = geometry::fit_trap_free(points, flags.radius, parse_point("--position", flags.position),
-                                              parse_point("--goal", flags.goal));
+  const auto fitted = geometry::fit_trap_free(
+      points, flags.radius.value_or(0.0), parse_point("--position", flags.position), parse_point("--goal", flags.goal));
   if (!fitted) throw UsageError("--enclose", "trap-free", "a robot and a goal farther from the obstacle");
   return fitted->ellipse;
 }
 
-/// A velocity obstacle is built of a convex shape: the hull of the obstacle, or an ellipse round it.
-ConvexShape convex_shape(const std::vector<Vec2>& points, const VoFlags& flags) {
-  if (flags.enclose == "none") return hull_of(points);
-  if (flags.enclose == "ellipse") return geometry::smallest_ellipse(points);
-  if (flags.enclose == "trap-free") return trap_free(points, flags);
-  throw UsageError("--enclose", flags.enclose, "one of none ellipse trap-free");
+/// A velocity obstacle is built of convex shapes.
+struct Shapes {
+  Taken taken = Taken::itself;
+  std::vector<ConvexShape> shapes;
+};
+
+Shapes shapes_of(const geometry::Obstacle& obstacle, const VoFlags& flags) {
+  if (flags.enclose == "ellipse") return {Taken::smallest_ellipse, {geometry::smallest_ellipse(vertices_of(obstacle))}};
+  if (flags.enclose == "trap-free") return {Taken::trap_free_ellipse, {trap_free(vertices_of(obstacle), flags)}};
+  if (geometry::is_convex(obstacle)) return {Taken::itself, geometry::convex_cover(obstacle)};
+  if (flags.pieces == "hull") return {Taken::convex_hull, {geometry::hull_shape(vertices_of(obstacle))}};
+  return {Taken::convex_pieces, geometry::convex_cover(obstacle)};
 }
 
-ConvexPolygon robot_of(const std::string& text) {
-  const auto rings = obstacles_in("--robot", text);
-  if (rings.size() != 1) throw UsageError("--robot", fmt::format("{} geometries", rings.size()), "one polygon");
-  return geometry::convex_hull(rings[0]);
+Shapes shapes_of(const GivenObstacle& given, const VoFlags& flags) {
+  if (const auto* obstacle = std::get_if<geometry::Obstacle>(&given)) return shapes_of(*obstacle, flags);
+  if (flags.enclose != "none")
+    throw UsageError("--enclose", flags.enclose, "a polygon or a wall to enclose: a disc or an ellipse is one already");
+  return {Taken::itself, {std::get<ConvexShape>(given)}};
 }
+
+/// The hull of a robot that is its own hull.
+ConvexPolygon robot_of(const std::string& text) {
+  const std::vector<GivenObstacle> given = obstacles_in("--robot", text);
+  if (given.size() != 1) throw UsageError("--robot", fmt::format("{} geometries", given.size()), "one convex polygon");
+  const auto* polygon = std::get_if<geometry::Obstacle>(&given.front());
+  if (!polygon) throw UsageError("--robot", text, "a convex polygon (a disc is given by --radius)");
+  if (!geometry::is_convex(*polygon))
+    throw UsageError("--robot", "a shape that is not convex", "a convex polygon without holes, or --radius");
+  return geometry::convex_hull(vertices_of(*polygon));
+}
+
+// --- The horizon ---
 
 /// The paper's rule gives no horizon to a robot whose distance rounds to nothing.
 double paper_horizon(const vo::VelocityObstacle& cone, Vec2 relative) {
@@ -127,18 +129,40 @@ std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
   return variants;
 }
 
+void require(bool ok, const char* option, const std::string& found, const char* expected) {
+  if (!ok) throw UsageError(option, found, expected);
+}
+
+/// What goes with what, and what would be ignored.
+void check_company(const VoFlags& flags) {
+  require(flags.radius || !flags.robot.empty(), "--radius", "nothing", "the robot's radius in m (or --robot WKT)");
+  require(!flags.radius || flags.robot.empty(), "--radius", "--radius beside --robot", "one of the two");
+  require(flags.max_speed || !flags.free, "--max-speed", "nothing", "a speed in m/s, which --free needs");
+  require(!flags.max_speed || flags.free, "--max-speed", "--max-speed without --free", "both or neither");
+  require(flags.goal.empty() || flags.enclose == "trap-free", "--goal", flags.goal, "--enclose trap-free beside it");
+  require(flags.enclose != "trap-free" || flags.robot.empty(), "--robot", "--robot beside --enclose trap-free",
+          "--radius, which the enclosure is fitted for");
+  require(flags.alpha == 1.0 || !flags.free, "--alpha", "--alpha beside --free", "one of the two");
+  require(flags.variants.empty() || !flags.free, "--variant", "--variant beside --free", "one of the two");
+}
+
+void check_words(const VoFlags& flags) {
+  const bool known = flags.enclose == "none" || flags.enclose == "ellipse" || flags.enclose == "trap-free";
+  require(known, "--enclose", flags.enclose, "one of none ellipse trap-free");
+  require(flags.pieces.empty() || flags.pieces == "convex" || flags.pieces == "hull", "--pieces", flags.pieces,
+          "one of convex hull");
+  require(flags.pieces.empty() || flags.enclose == "none", "--pieces", "--pieces beside --enclose", "one of the two");
+  require(flags.figure.empty() || fs::path(flags.figure).extension() == ".svg", "--figure", flags.figure,
+          "a name that ends in .svg");
+}
+
 void check_numbers(const VoFlags& flags) {
-  const auto require = [](bool ok, const char* option, double found, const char* expected) {
-    if (!ok) throw UsageError(option, fmt::format("{}", found), expected);
-  };
-  require(flags.radius >= 0.0 && flags.radius <= kLargestNumber, "--radius", flags.radius,
+  const double radius = flags.radius.value_or(0.0), speed = flags.max_speed.value_or(vo::kLeastMaxSpeed);
+  require(radius >= 0.0 && radius <= kLargestNumber, "--radius", fmt::format("{}", radius),
           "a length from 0 m to 2^100 m");
-  require(flags.alpha > 0.0 && flags.alpha <= 1.0, "--alpha", flags.alpha, "a number in (0, 1]");
-  if (flags.free)
-    require(flags.max_speed >= vo::kLeastMaxSpeed && flags.max_speed <= vo::kMostMaxSpeed, "--max-speed",
-            flags.max_speed, "a speed from 2^-60 to 2^60 m/s, with --free");
-  if (!flags.figure.empty() && fs::path(flags.figure).extension() != ".svg")
-    throw UsageError("--figure", flags.figure, "a name that ends in .svg");
+  require(flags.alpha > 0.0 && flags.alpha <= 1.0, "--alpha", fmt::format("{}", flags.alpha), "a number in (0, 1]");
+  require(speed >= vo::kLeastMaxSpeed && speed <= vo::kMostMaxSpeed, "--max-speed", fmt::format("{}", speed),
+          "a speed from 2^-60 to 2^60 m/s, with --free");
 }
 
 /// What all obstacles share.
@@ -146,64 +170,89 @@ vo::Encounter robot_alone(const VoFlags& flags) {
   vo::Encounter e;
   e.position = parse_point("--position", flags.position);
   e.velocity = parse_point("--velocity", flags.velocity);
-  e.radius = flags.radius;
+  e.radius = flags.radius.value_or(0.0);
+  e.share = flags.alpha;
   if (!flags.robot.empty()) e.robot = robot_of(flags.robot);
   return e;
+}
+
+/// All pieces of an obstacle look as far ahead as the one with the shortest horizon: for a rule that is the nearest.
+void add_obstacle(const GivenObstacle& given, vo::Encounter e, const VoFlags& flags, VoQuestion& q) {
+  Shapes taken = shapes_of(given, flags);
+  const std::size_t first = q.encounters.size();
+  double horizon = kInfinity;
+  for (ConvexShape& shape : taken.shapes) {
+    e.obstacle = std::move(shape);
+    horizon = std::min(horizon, horizon_of(flags.time_horizon, e));
+    q.encounters.push_back(e);
+  }
+  for (std::size_t k = first; k < q.encounters.size(); ++k) q.encounters[k].time_horizon = horizon;
+  q.obstacles.push_back({given, taken.taken, first, q.encounters.size() - first});
+}
+
+void check_obstacles(const VoFlags& flags, const VoQuestion& q) {
+  if (q.obstacles.size() != 1 && !q.free)
+    throw UsageError("--obstacle", fmt::format("{} obstacles", q.obstacles.size()),
+                     "one obstacle (several go with --free)");
+  if (q.encounters.size() != 1 && !q.variants.empty())
+    throw UsageError("--variant", fmt::format("an obstacle of {} convex pieces", q.encounters.size()),
+                     "a convex shape: add --pieces hull or --enclose ellipse");
+  if (flags.obstacle_velocities.size() > flags.obstacles.size())
+    throw UsageError("--obstacle-velocity", fmt::format("{} velocities", flags.obstacle_velocities.size()),
+                     "at most one an --obstacle");
 }
 
 }  // namespace
 
 VoQuestion question_of(const VoFlags& flags) {
+  check_company(flags);
+  check_words(flags);
   check_numbers(flags);
   VoQuestion q;
   q.variants = variants_of(flags.variants);
   q.alpha = flags.alpha;
   q.free = flags.free;
-  q.max_speed = flags.max_speed;
+  q.max_speed = flags.max_speed.value_or(0.0);
   const vo::Encounter alone = robot_alone(flags);
   q.velocity = alone.velocity;
   for (std::size_t i = 0; i < flags.obstacles.size(); ++i) {
-    for (const std::vector<Vec2>& points : obstacles_in("--obstacle", flags.obstacles[i])) {
-      vo::Encounter e = alone;
-      e.obstacle = convex_shape(points, flags);
-      if (i < flags.obstacle_velocities.size())
-        e.obstacle_velocity = parse_point("--obstacle-velocity", flags.obstacle_velocities[i]);
-      e.time_horizon = horizon_of(flags.time_horizon, e);
-      e.share = flags.alpha;
-      q.encounters.push_back(std::move(e));
-    }
+    vo::Encounter e = alone;
+    if (i < flags.obstacle_velocities.size())
+      e.obstacle_velocity = parse_point("--obstacle-velocity", flags.obstacle_velocities[i]);
+    for (const GivenObstacle& given : obstacles_in("--obstacle", flags.obstacles[i])) add_obstacle(given, e, flags, q);
   }
-  if (q.encounters.empty() || (q.encounters.size() > 1 && !q.free))
-    throw UsageError("--obstacle", fmt::format("{} obstacles", q.encounters.size()),
-                     q.free ? "an obstacle" : "one obstacle (several go with --free)");
-  if (flags.obstacle_velocities.size() > flags.obstacles.size())
-    throw UsageError("--obstacle-velocity", fmt::format("{} velocities", flags.obstacle_velocities.size()),
-                     "at most one an --obstacle");
+  check_obstacles(flags, q);
   return q;
 }
 
 void declare_options(CLI::App& app, VoFlags& flags) {
   app.add_option("--obstacle", flags.obstacles,
-                 "WKT, or a file with one obstacle; its convex hull is taken. Several with --free")
+                 "WKT; a file with one obstacle; 'DISC(x y, r)'; 'ELLIPSE(cx cy, l11 l21 l22)', the image of the unit "
+                 "disc under [l11 0; l21 l22]; 'ELLIPSE(cx cy, a b, degrees)'. Several with --free")
       ->required()
       ->allow_extra_args(false);
   app.add_option("--obstacle-velocity", flags.obstacle_velocities,
                  "X,Y in m/s, one an --obstacle; at rest where missing")
       ->allow_extra_args(false);
+  app.add_option("--pieces", flags.pieces,
+                 "Of an obstacle that is not convex: convex (the default: all of its convex pieces) or hull");
   app.add_option("--enclose", flags.enclose, "none, ellipse (the smallest) or trap-free (needs --goal)");
   app.add_option("--position", flags.position, "Of the robot, X,Y in m")->required();
   app.add_option("--velocity", flags.velocity, "X,Y in m/s")->required();
-  app.add_option("--radius", flags.radius, "Of the robot, m; without meaning where --robot is given");
-  app.add_option("--robot", flags.robot, "A robot that is a convex polygon: WKT round 0,0, its reference point");
+  app.add_option("--radius", flags.radius, "Of the robot, m; required, or --robot in its place");
+  app.add_option("--robot", flags.robot,
+                 "A robot that is a convex polygon, in place of --radius: WKT round 0,0, its reference point");
   app.add_option("--time-horizon", flags.time_horizon,
                  "s; or infinite, paper (distance over speed) or clamped (the same within 0.3 s and 3 s)")
       ->required();
-  app.add_option("--alpha", flags.alpha, "The share of the change that the robot takes; 1 is certified");
+  app.add_option("--alpha", flags.alpha,
+                 "The share of the change that the robot takes, in (0, 1]. Below 1 a second half-plane is "
+                 "given, which holds only if the other side takes its share");
   app.add_option("--goal", flags.goal, "X,Y in m, for --enclose trap-free");
   app.add_option("--variant", flags.variants, "vo, rvo, hrvo, orca, ivo or all: the family, side by side in the figure")
       ->allow_extra_args(false);
   app.add_flag("--free", flags.free, "The free velocities of all obstacles, with what the half-planes give away");
-  app.add_option("--max-speed", flags.max_speed, "m/s, for --free");
+  app.add_option("--max-speed", flags.max_speed, "m/s, required by --free");
   app.add_flag("--json", flags.json, "Everything as JSON on stdout");
   app.add_option("--figure", flags.figure, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
 }

@@ -5,10 +5,12 @@
 /// What the options of `exactvo vo` ask.
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "exactvo/vo/family.h"
+#include "support/given_obstacle.h"
 
 namespace exactvo::tools {
 
@@ -19,21 +21,41 @@ struct VoFlags {
   std::vector<std::string> obstacles;
   std::vector<std::string> obstacle_velocities;
   std::string enclose = "none";
+  std::string pieces;
   std::string position, velocity, goal, robot;
-  double radius = 0.0;
+  std::optional<double> radius;
   std::string time_horizon;
   double alpha = 1.0;
   std::vector<std::string> variants;
   bool free = false;
-  double max_speed = 0.0;
+  std::optional<double> max_speed;
   bool json = false;
   std::string figure;
 };
 
 void declare_options(CLI::App& app, VoFlags& flags);
 
-/// The same as values, checked. `encounters` has one entry an obstacle; without --free there is exactly one.
+/// What stands for an obstacle in the answer.
+enum class Taken {
+  itself,             ///< it is convex
+  convex_pieces,      ///< whose union it is
+  convex_hull,        ///< of an obstacle that is not convex, because --pieces hull asks for it
+  smallest_ellipse,   ///< round it
+  trap_free_ellipse,  ///< round it
+};
+
+/// One obstacle as it was given, and what of it the encounters are with.
+struct AskedObstacle {
+  GivenObstacle given;
+  Taken taken = Taken::itself;
+  std::size_t first_encounter = 0;
+  std::size_t encounters = 1;
+};
+
+/// The same as values, checked. `encounters` are with convex shapes: one an obstacle, or one a piece of it. Without
+/// --free there is exactly one obstacle.
 struct VoQuestion {
+  std::vector<AskedObstacle> obstacles;
   std::vector<vo::Encounter> encounters;
   std::vector<vo::Variant> variants;
   double alpha = 1.0;

@@ -22,7 +22,7 @@ namespace exactvo::formation {
 struct Equilibrium {
   Vec2 position;                   ///< m, of the robot's centre
   Vec2 normal;                     ///< unit, out of the shape
-  double radius_of_curvature = 0;  ///< m, rho of the grown boundary; infinite on a flat edge
+  double radius_of_curvature = 0;  ///< m, rho of the grown boundary; infinite on a flat edge and in a concave corner
   double distance = 0;             ///< m, D to the goal
   bool stable = false;             ///< D < rho: the robot stays; otherwise it slides off at the slightest offset
   double rate_at(double max_speed) const;  ///< 1/s: offsets grow like e^{rate t}; negative where stable
@@ -36,7 +36,8 @@ std::vector<Equilibrium> equilibria(const geometry::ConvexShape& shape, double r
 /// second order in s1 / rho. REQUIRES: 0 < s0 <= s1, an unstable equilibrium.
 double escape_time(const Equilibrium& e, double max_speed, double s0, double s1);
 
-/// Whether some start may stall at `shape` on the way to `goal`. Exact for ellipses and discs.
+/// Whether some start may stall at `shape` on the way to `goal`. Exact for ellipses and discs. A segment has two free
+/// sides.
 bool stall_possible(const geometry::ConvexShape& shape, Vec2 goal);
 
 /// ((a |gx|)^(2/3) + (b |gy|)^(2/3)) / (a^2 - b^2)^(2/3) - 1: how far the goal lies outside the evolute, relatively;
@@ -57,7 +58,10 @@ struct TrapFinding {
   std::optional<double> slide_time;
 };
 
-/// Every robot against every enclosure that the method builds for it. REQUIRES: a valid scenario.
+/// Every robot against every enclosure that the method builds for it. The method `orca` builds none: there each edge of
+/// each obstacle stands for itself, seen from its free side, together with the corner at its end where that is a concave
+/// one; a robot may rest on the edge over the goal's foot, or in the corner. Passages too narrow between two obstacles
+/// are judged by no method. REQUIRES: a valid scenario.
 std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOptions& options = {});
 
 }  // namespace exactvo::formation

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/given_obstacle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/geometry/pi.h"
+#include "support/usage.h"
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+using geometry::ConvexShape;
+using geometry::Vec2;
+
+namespace {
+
+constexpr const char* kShapeWords = "DISC(x y, r), ELLIPSE(cx cy, l11 l21 l22) or ELLIPSE(cx cy, a b, degrees)";
+
+/// Numbers between blanks, as WKT has them.
+std::optional<std::vector<double>> numbers_in(const std::string& text) {
+  std::vector<double> numbers;
+  const char* at = text.c_str();
+  for (;;) {
+    while (std::isspace(static_cast<unsigned char>(*at))) ++at;
+    if (*at == '\0') return numbers;
+    char* end = nullptr;
+    numbers.push_back(std::strtod(at, &end));
+    const bool whole = *end == '\0' || std::isspace(static_cast<unsigned char>(*end));
+    if (end == at || !whole || !(std::fabs(numbers.back()) <= kLargestGiven)) return std::nullopt;
+    at = end;
+  }
+}
+
+/// A word before a bracket, and the groups of numbers between commas within; nothing where the text is no such thing.
+struct Call {
+  std::string word;
+  std::vector<std::vector<double>> groups;
+
+  bool has(std::initializer_list<std::size_t> sizes) const {
+    return std::equal(groups.begin(), groups.end(), sizes.begin(), sizes.end(),
+                      [](const std::vector<double>& group, std::size_t size) { return group.size() == size; });
+  }
+};
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\n\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\n\r") - first + 1);
+}
+
+std::string word_before_bracket(const std::string& text) {
+  std::string word = trimmed(text.substr(0, text.find('(')));
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::toupper(c); });
+  return word;
+}
+
+Call call_in(const std::string& text) {
+  Call call{word_before_bracket(text), {}};
+  const std::string whole = trimmed(text);
+  if (whole.empty() || whole.back() != ')') return call;
+  const auto open = whole.find('(');
+  const std::string within = whole.substr(open + 1, whole.size() - open - 2);
+  std::size_t from = 0;
+  for (;;) {
+    const std::size_t comma = within.find(',', from);
+    const auto group = numbers_in(within.substr(from, comma == std::string::npos ? comma : comma - from));
+    if (!group) return {call.word, {}};
+    call.groups.push_back(*group);
+    if (comma == std::string::npos) return call;
+    from = comma + 1;
+  }
+}
+
+geometry::Ellipse ellipse_by_axes(Vec2 center, double a, double b, double degrees) {
+  const double turned = a >= b ? degrees : degrees + 90.0;
+  return geometry::ellipse_from_axes(center, {std::max(a, b), std::min(a, b), turned * geometry::kPi / 180.0});
+}
+
+std::optional<ConvexShape> shape_of(const Call& call) {
+  const auto& g = call.groups;
+  if (call.word == "DISC" && call.has({2, 1}) && g[1][0] >= 0.0) return geometry::Disc{{g[0][0], g[0][1]}, g[1][0]};
+  if (call.word != "ELLIPSE") return std::nullopt;
+  const Vec2 center = g.empty() || g[0].size() != 2 ? Vec2{} : Vec2{g[0][0], g[0][1]};
+  if (call.has({2, 3})) return geometry::Ellipse{center, g[1][0], g[1][1], g[1][2]};
+  if (call.has({2, 2, 1}) && g[1][0] >= 0.0 && g[1][1] >= 0.0)
+    return ellipse_by_axes(center, g[1][0], g[1][1], g[2][0]);
+  return std::nullopt;
+}
+
+void check_range(const std::string& option, const geometry::Obstacle& obstacle) {
+  for (const Vec2 v : vertices_of(obstacle)) {
+    if (std::fabs(v.x) <= kLargestGiven && std::fabs(v.y) <= kLargestGiven) continue;
+    throw UsageError(option, fmt::format("{:g} {:g}", v.x, v.y), "coordinates within 2^100 m");
+  }
+}
+
+datasets::ObstacleFile read(const std::string& option, const std::string& text) {
+  if (fs::exists(text)) return datasets::read_obstacles(text);
+  if (text.find('(') == std::string::npos)
+    throw UsageError(option, text, std::string("a file that is there, WKT, ") + kShapeWords);
+  return datasets::parse_wkt(text, option, {});
+}
+
+}  // namespace
+
+std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::string& text) {
+  const Call call = text.find('(') == std::string::npos || fs::exists(text) ? Call{} : call_in(text);
+  if (call.word == "DISC" || call.word == "ELLIPSE") {
+    const std::optional<ConvexShape> shape = shape_of(call);
+    if (!shape) throw UsageError(option, text, std::string(kShapeWords) + ", lengths >= 0 m, within 2^100 m");
+    return {*shape};
+  }
+  std::vector<GivenObstacle> given;
+  for (auto& obstacle : read(option, text).obstacles) {
+    check_range(option, obstacle.shape);
+    given.emplace_back(std::move(obstacle.shape));
+  }
+  if (given.empty())
+    throw UsageError(option, text, "a polygon or a line (a point is no obstacle, but DISC(x y, 0) is one)");
+  return given;
+}
+
+}  // namespace exactvo::tools
