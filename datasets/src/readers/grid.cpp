@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "readers/grid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
 namespace exactvo::datasets {
 namespace {
 
-constexpr std::uint32_t kNoLabel = 0;
-
+/// 32 bits: a corner of a long boundary takes 8 bytes.
 struct Lattice {
-  std::size_t x = 0;
-  std::size_t y = 0;
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
 };
 
 bool operator==(Lattice a, Lattice b) {
@@ -54,18 +54,28 @@ double signed_area(const Corners& ring) {
   return doubled / 2;
 }
 
+/// A corner of a walk, and whether two cells touch there at their corners only: no others are passed twice.
+struct Turn {
+  Lattice at;
+  bool is_touched = false;
+};
+
 /// A walk that passes a corner twice, cut there into walks that do not.
 ///
 ///      +---+
 ///      | B |        walk: ... A -> v -> B -> ... -> back to v -> A
 ///      +---v---+    two rings that touch at v
 ///          | A |
-std::vector<Corners> cut_at_repeats(const Corners& walk) {
+std::vector<Corners> cut_at_repeats(const std::vector<Turn>& walk) {
   std::vector<Corners> rings;
   Corners open;
   std::unordered_map<std::size_t, std::size_t> place_of;  // looked up, never iterated
   const auto key = [](Lattice p) { return p.y * (kMostCells + 2) + p.x; };
-  for (const Lattice p : walk) {
+  for (const auto& [p, is_touched] : walk) {
+    if (!is_touched) {
+      open.push_back(p);
+      continue;
+    }
     const auto seen = place_of.find(key(p));
     if (seen != place_of.end()) {
       const auto begin = open.begin() + static_cast<std::ptrdiff_t>(seen->second);
@@ -93,18 +103,15 @@ Corners without_straight_corners(const Corners& ring) {
   return kept;
 }
 
+/// What has been seen of a cell.
+enum Seen : std::uint8_t { kInComponent = 1, kBottomWalked = 2, kTopWalked = 4 };
+
+/// Takes a byte a cell, 4 for each occupied one, and the boundary of one component at a time.
 class Tracer {
  public:
-  explicit Tracer(const Grid& grid)
-      : grid_(grid),
-        label_(grid.occupied.size(), kNoLabel),
-        bottom_done_(grid.occupied.size(), 0),
-        top_done_(bottom_done_) {
-    for (std::size_t y = 0; y < grid.height; ++y) {
-      for (std::size_t x = 0; x < grid.width; ++x) {
-        if (grid.at(x, y) && label_[index(x, y)] == kNoLabel) flood({x, y});
-      }
-    }
+  explicit Tracer(const Grid& grid) : grid_(grid), seen_(grid.occupied.size(), 0) {
+    cells_.reserve(static_cast<std::size_t>(
+        std::count_if(grid.occupied.begin(), grid.occupied.end(), [](std::uint8_t cell) { return cell != 0; })));
   }
 
   struct Component {
@@ -112,72 +119,94 @@ class Tracer {
     std::vector<Corners> rings;  ///< the outer one first
   };
 
-  std::vector<Component> trace() {
-    std::vector<Component> components(first_cells_.size());
-    for (std::size_t k = 0; k < components.size(); ++k) components[k].first = first_cells_[k];
-    for (std::size_t y = 0; y < grid_.height; ++y) {
-      for (std::size_t x = 0; x < grid_.width; ++x) {
-        if (!grid_.at(x, y)) continue;
-        std::vector<Corners>& rings = components[label_[index(x, y)] - 1].rings;
-        if (!grid_.at(x, y - 1) && bottom_done_[index(x, y)] == 0) add_walk({x, y}, kEast, rings);
-        if (!grid_.at(x, y + 1) && top_done_[index(x, y)] == 0) add_walk({x + 1, y + 1}, kWest, rings);
+  /// Every component, in the order of their lowest left cells.
+  template <class Take>
+  void trace(const Take& take) {
+    for (std::uint32_t y = 0; y < grid_.height; ++y) {
+      for (std::uint32_t x = 0; x < grid_.width; ++x) {
+        if (grid_.at(x, y) && !has_seen({x, y}, kInComponent)) take(component_from({x, y}));
       }
     }
-    return components;
   }
 
  private:
-  std::size_t index(std::size_t x, std::size_t y) const { return y * grid_.width + x; }
+  std::size_t index(Lattice cell) const { return cell.y * grid_.width + cell.x; }
+  bool has_seen(Lattice cell, Seen what) const { return (seen_[index(cell)] & what) != 0; }
+  void see(Lattice cell, Seen what) { seen_[index(cell)] = static_cast<std::uint8_t>(seen_[index(cell)] | what); }
 
-  void flood(Lattice start) {
-    first_cells_.push_back(start);
-    const auto label = static_cast<std::uint32_t>(first_cells_.size());
-    std::vector<Lattice> waiting{start};
-    label_[index(start.x, start.y)] = label;
-    while (!waiting.empty()) {
-      const Lattice cell = waiting.back();
-      waiting.pop_back();
+  Component component_from(Lattice first) {
+    flood(first);
+    std::sort(cells_.begin(), cells_.end());
+    Component component{first, {}};
+    for (const std::uint32_t number : cells_) {
+      const Lattice cell = cell_of(number);
+      const Lattice beyond{cell.x + 1, cell.y + 1};
+      if (!grid_.at(cell.x, cell.y - std::size_t{1}) && !has_seen(cell, kBottomWalked))
+        add_walk(cell, kEast, component.rings);
+      if (!grid_.at(cell.x, beyond.y) && !has_seen(cell, kTopWalked)) add_walk(beyond, kWest, component.rings);
+    }
+    return component;
+  }
+
+  Lattice cell_of(std::uint32_t number) const {
+    const auto width = static_cast<std::uint32_t>(grid_.width);
+    return {number % width, number / width};
+  }
+
+  void take_cell(Lattice cell) {
+    see(cell, kInComponent);
+    cells_.push_back(static_cast<std::uint32_t>(index(cell)));
+  }
+
+  /// The cells of a component, in `cells_`.
+  void flood(Lattice first) {
+    cells_.clear();
+    take_cell(first);
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
       for (const Direction d : {kEast, kNorth, kWest, kSouth}) {
-        const Lattice next = step(cell, d);  // wraps below 0, which `at` takes for outside
-        if (!grid_.at(next.x, next.y) || label_[index(next.x, next.y)] != kNoLabel) continue;
-        label_[index(next.x, next.y)] = label;
-        waiting.push_back(next);
+        const Lattice next = step(cell_of(cells_[k]), d);  // wraps below 0, which `at` takes for outside
+        if (grid_.at(next.x, next.y) && !has_seen(next, kInComponent)) take_cell(next);
       }
     }
   }
 
+  /// The cells round p, from the one between east and north on, counter-clockwise.
+  bool is_occupied_round(Lattice p, int quarter) const {
+    const bool is_left = quarter == 1 || quarter == 2;
+    const bool is_below = quarter >= 2;
+    return grid_.at(std::size_t{p.x} - (is_left ? 1 : 0), std::size_t{p.y} - (is_below ? 1 : 0));
+  }
+
   /// Whether the boundary runs from p in direction d: occupied on its left, free on its right.
-  bool runs(Lattice p, Direction d) const {
-    switch (d) {
-      case kEast:
-        return grid_.at(p.x, p.y) && !grid_.at(p.x, p.y - 1);
-      case kNorth:
-        return grid_.at(p.x - 1, p.y) && !grid_.at(p.x, p.y);
-      case kWest:
-        return grid_.at(p.x - 1, p.y - 1) && !grid_.at(p.x - 1, p.y);
-      default:
-        return grid_.at(p.x, p.y - 1) && !grid_.at(p.x - 1, p.y - 1);
-    }
+  bool runs(Lattice p, Direction d) const { return is_occupied_round(p, d) && !is_occupied_round(p, (d + 3) % 4); }
+
+  /// Whether two occupied cells meet at p and nowhere else round it.
+  bool is_touched(Lattice p) const {
+    const bool first = is_occupied_round(p, 0);
+    const bool second = is_occupied_round(p, 1);
+    return first != second && first == is_occupied_round(p, 2) && second == is_occupied_round(p, 3);
   }
 
   void mark(Lattice p, Direction d) {
-    if (d == kEast) bottom_done_[index(p.x, p.y)] = 1;
-    if (d == kWest) top_done_[index(p.x - 1, p.y - 1)] = 1;
+    if (d == kEast) see(p, kBottomWalked);
+    if (d == kWest) see({p.x - 1, p.y - 1}, kTopWalked);
   }
 
   /// Keeps the component on the left; where two of its cells meet at a corner only, stays with the nearer one (left).
-  Corners walk_from(Lattice start, Direction direction) {
-    Corners walk;
+  /// Where it starts, and where it turns.
+  std::vector<Turn> walk_from(Lattice start, Direction direction) {
+    std::vector<Turn> walk{{start, is_touched(start)}};
     Lattice at = start;
     Direction d = direction;
-    do {
-      walk.push_back(at);
+    while (true) {
       mark(at, d);
       at = step(at, d);
       const Direction left = turned_left(d);
-      d = runs(at, left) ? left : runs(at, d) ? d : turned_right(d);
-    } while (!(at == start && d == direction));
-    return walk;
+      const Direction next = runs(at, left) ? left : runs(at, d) ? d : turned_right(d);
+      if (at == start && next == direction) return walk;
+      if (next != d) walk.push_back({at, is_touched(at)});
+      d = next;
+    }
   }
 
   void add_walk(Lattice start, Direction direction, std::vector<Corners>& rings) {
@@ -188,10 +217,8 @@ class Tracer {
   }
 
   const Grid& grid_;
-  std::vector<std::uint32_t> label_;  ///< from 1
-  std::vector<std::uint8_t> bottom_done_;
-  std::vector<std::uint8_t> top_done_;
-  std::vector<Lattice> first_cells_;
+  std::vector<std::uint8_t> seen_;    ///< sums of Seen
+  std::vector<std::uint32_t> cells_;  ///< of the component under way, by their index
 };
 
 geometry::Ring placed(const Corners& corners, const GridPlacement& placement) {
@@ -213,15 +240,15 @@ geometry::Vec2 lattice_point(const GridPlacement& placement, std::size_t column,
 }
 
 void add_grid(const Grid& grid, const GridPlacement& placement, Collector& out) {
-  const std::vector<Tracer::Component> components = Tracer(grid).trace();
-  for (std::size_t k = 0; k < components.size(); ++k) {
+  std::size_t number = 0;
+  Tracer(grid).trace([&](const Tracer::Component& component) {
     RawGeometry raw;
-    raw.id = std::to_string(k);
-    raw.place = "cells from column " + std::to_string(components[k].first.x) + ", row " +
-                std::to_string(components[k].first.y) + " from below";
-    for (const Corners& ring : components[k].rings) raw.rings.push_back(placed(ring, placement));
+    raw.id = std::to_string(number++);
+    raw.place = "cells from column " + std::to_string(component.first.x) + ", row " +
+                std::to_string(component.first.y) + " from below";
+    for (const Corners& ring : component.rings) raw.rings.push_back(placed(ring, placement));
     out.add(raw);
-  }
+  });
   std::size_t occupied = 0;
   for (const std::uint8_t cell : grid.occupied) occupied += cell != 0 ? 1 : 0;
   out.set_coverage({grid.width * grid.height, occupied, placement.resolution * placement.resolution});

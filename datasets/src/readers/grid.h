@@ -43,8 +43,8 @@ geometry::Vec2 lattice_point(const GridPlacement& placement, std::size_t column,
 /// is simple: where a component meets itself at a corner, the ring is cut in two there.
 void add_grid(const Grid& grid, const GridPlacement& placement, Collector& out);
 
-/// 4096 x 4096: tracing takes 7 bytes a cell, so this is the largest grid that stays under 120 MB, whatever a header
-/// claims.
+/// 4096 x 4096: a grid and its tracing take 6 bytes a cell, 100 MB, whatever a header claims; the boundaries come on top,
+/// of one component at a time.
 inline constexpr std::size_t kMostCells = std::size_t{1} << 24;
 
 }  // namespace exactvo::datasets

@@ -33,6 +33,8 @@ bool report_not_finite(const std::vector<Vec2>& points, std::size_t ring, Proble
 
 CleanRing without_repeats(const std::vector<Vec2>& points, std::size_t ring, Problems& problems) {
   CleanRing clean;
+  clean.points.reserve(points.size());
+  clean.source.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!clean.points.empty() && clean.points.back() == points[i]) {
       problems.push_back({RingProblemCode::repeated_vertex, ring, i, points[i], true});
