@@ -5,7 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/vo/certificate.h"
+#include "exactvo/vo/containment.h"
 #include "vo/half_plane_audit.h"
 
 namespace exactvo::test {
@@ -168,6 +171,69 @@ TEST(Certificate, NumbersThatAreNoneAreMalformed) {
   bad = good;
   bad.claim.shape = geometry::ConvexPolygon{};
   EXPECT_EQ(check(bad), Verdict::malformed);
+}
+
+// --- Containment ---
+
+vo::Containment random_containment(SeededRandom& random) {
+  std::vector<Vec2> points;
+  const double scale = std::ldexp(1.0, random.integer(-20, 20));
+  for (int k = random.integer(3, 12); k > 0; --k)
+    points.push_back({scale * random.uniform(-3.0, 5.0), scale * random.uniform(-2.0, 2.0)});
+  const auto c = vo::certify_containment(geometry::smallest_ellipse(points), points);
+  EXPECT_TRUE(c);
+  return *c;
+}
+
+TEST(Containment, Property1And2_OfSmallestEllipsesIssuedReadAndValid) {
+  SeededRandom random(seed_of_run(66));
+  for (int i = 0; i < 200; ++i) {
+    const vo::Containment c = random_containment(random);
+    const std::string text = write_containment(c);
+    ASSERT_EQ(check(c), Verdict::valid) << text;
+    const auto read = vo::read_containment(text);
+    ASSERT_TRUE(read) << text;
+    EXPECT_EQ(write_containment(*read), text);
+    EXPECT_EQ(check(*read), Verdict::valid);
+    for (const Vec2 x : c.points) EXPECT_TRUE(geometry::contains(c.ellipse, x)) << text;
+  }
+}
+
+TEST(Containment, Property3_AnyNumberChangedByAnUlpIsNoticed) {
+  SeededRandom random(seed_of_run(67));
+  for (int i = 0; i < 50; ++i) {
+    vo::Containment c = random_containment(random);
+    std::vector<double*> numbers{&c.ellipse.center.x, &c.ellipse.center.y, &c.ellipse.l11,
+                                 &c.ellipse.l21,      &c.ellipse.l22,      &c.margin};
+    for (Vec2& x : c.points) numbers.insert(numbers.end(), {&x.x, &x.y});
+    for (double* number : numbers) {
+      const double kept = *number;
+      for (const double to : {-kInfinity, kInfinity}) {
+        *number = std::nextafter(kept, to);
+        EXPECT_NE(check(c), Verdict::valid);
+      }
+      *number = std::nan("");
+      EXPECT_EQ(check(c), Verdict::malformed);
+      *number = kept;
+    }
+    c.digest ^= 1;
+    EXPECT_EQ(check(c), Verdict::altered);
+  }
+}
+
+TEST(Containment, WhatIsNotContainedOrFlatHasNone) {
+  const geometry::Ellipse unit{{0.0, 0.0}, 1.0, 0.0, 1.0};
+  const auto touching = vo::certify_containment(unit, {{0.6, 0.8}, {-1.0, 0.0}, {0.28125, 0.0}});
+  EXPECT_FALSE(touching) << "the doubles 0.6 and 0.8 lie an ulp beyond the circle";
+  const auto on_it = vo::certify_containment(unit, {{-1.0, 0.0}, {0.0, 1.0}});
+  ASSERT_TRUE(on_it);
+  EXPECT_EQ(on_it->margin, 0.0);
+  EXPECT_FALSE(vo::certify_containment(unit, {{std::nextafter(1.0, 2.0), 0.0}}));
+  EXPECT_FALSE(vo::certify_containment(unit, {}));
+  EXPECT_FALSE(vo::certify_containment({{0.0, 0.0}, 1.0, 0.0, 0.0}, {{0.5, 0.0}})) << "a segment";
+  vo::Containment forged = *on_it;
+  forged.points[0].x = -1.5;
+  EXPECT_EQ(check(forged), Verdict::wrong_margin);
 }
 
 }  // namespace

@@ -255,8 +255,16 @@ TEST(VerbVo, AnEllipseRoundAnObstacleSaysThatItContainsIt) {
   const json taken = json_of(scene).at("taken_as");
   EXPECT_EQ(taken.at("what"), "smallest ellipse");
   EXPECT_EQ(taken.at("vertices"), 4);
-  EXPECT_TRUE(taken.at("contained_exactly").get<bool>());
-  EXPECT_NE(words_of(scene).find("contains 4 of its 4 vertices"), std::string::npos);
+  EXPECT_EQ(taken.at("contained"), 4);
+  EXPECT_NE(words_of(scene).find("contains 4 of its 4 vertices exactly, certificate: valid"), std::string::npos);
+  const Workplace place;
+  const std::string text = taken.at("certificate").at("text");
+  place.write("one", text + "\n");
+  EXPECT_EQ(place.run("audit --certificate one").status, 0);
+  place.write("vo.json", place.run("vo " + scene + " --json").out);
+  EXPECT_EQ(json::parse(place.run("audit --certificate vo.json --json").out).at("valid"), 2) << "and the half-plane";
+  place.write("changed", std::string(text).replace(text.find("points 4") + 11, 1, "9"));
+  EXPECT_EQ(place.run("audit --certificate changed").status, 1);
 }
 
 TEST(VerbVo, WhatWouldBeIgnoredIsRefused) {

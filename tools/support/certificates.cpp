@@ -3,19 +3,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/vo/certificate.h"
+#include "exactvo/vo/containment.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {
 
 namespace {
 
-constexpr const char* kFirstWord = "half-plane-certificate ";
+constexpr const char* kFirstWords[] = {"half-plane-certificate ", "containment-certificate "};
 
 std::string text_of(const std::string& file) {
   if (file == "-") return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
@@ -38,31 +43,43 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+bool begins_as_one(const std::string& text, std::size_t at) {
+  return std::any_of(std::begin(kFirstWords), std::end(kFirstWords),
+                     [&](const char* word) { return text.compare(at, std::strlen(word), word) == 0; });
+}
+
 /// A certificate has no character that JSON escapes.
 std::vector<std::string> strings_of_json(const std::string& text) {
   std::vector<std::string> strings;
-  const std::string start = std::string("\"") + kFirstWord;
-  for (std::size_t at = text.find(start); at != std::string::npos; at = text.find(start, at + 1))
-    strings.push_back(text.substr(at + 1, text.find('"', at + 1) - at - 1));
+  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 1))
+    if (begins_as_one(text, at + 1)) strings.push_back(text.substr(at + 1, text.find('"', at + 1) - at - 1));
   return strings;
 }
 
-JudgedCertificate judge(const std::string& text) {
-  JudgedCertificate judged{vo::read_certificate(text), "not a certificate"};
-  if (judged.certificate) judged.verdict = name(check(*judged.certificate));
-  return judged;
-}
-
-/// What was proven: the claim, rounded for people.
 std::string claim_words(const vo::HalfPlaneClaim& c) {
   const geometry::HalfPlane& h = c.half_plane;
   return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s, robot at ({:.6g}, {:.6g}), radius {:.6g} m, {:g} s",
                      h.normal.x, h.normal.y, h.offset, c.position.x, c.position.y, c.radius, c.time_horizon);
 }
 
+std::string claim_words(const vo::Containment& c) {
+  return fmt::format("an ellipse round ({:.6g}, {:.6g}) contains {} points", c.ellipse.center.x, c.ellipse.center.y,
+                     c.points.size());
+}
+
+JudgedCertificate judged_as(vo::Verdict verdict, std::string claim) {
+  return {name(verdict), std::move(claim), verdict == vo::Verdict::valid};
+}
+
+JudgedCertificate judge(const std::string& text) {
+  if (const auto c = vo::read_certificate(text)) return judged_as(check(*c), claim_words(c->claim));
+  if (const auto c = vo::read_containment(text)) return judged_as(check(*c), claim_words(*c));
+  return {"not a certificate", "", false};
+}
+
 std::size_t count_valid(const std::vector<JudgedCertificate>& judged) {
   std::size_t valid = 0;
-  for (const JudgedCertificate& j : judged) valid += j.valid() ? 1 : 0;
+  for (const JudgedCertificate& j : judged) valid += j.valid ? 1 : 0;
   return valid;
 }
 
@@ -78,7 +95,7 @@ std::vector<JudgedCertificate> judge_certificates_in(const std::string& text) {
 
 std::vector<JudgedCertificate> judge_certificates(const std::string& file) {
   std::vector<JudgedCertificate> judged = judge_certificates_in(text_of(file));
-  if (judged.empty()) throw UsageError("--certificate", file + ": no certificate", "a half-plane certificate a line");
+  if (judged.empty()) throw UsageError("--certificate", file + ": no certificate", "a certificate a line");
   return judged;
 }
 
@@ -94,7 +111,7 @@ std::string in_words(const std::vector<JudgedCertificate>& judged) {
   std::string text;
   for (std::size_t k = 0; k < judged.size(); ++k) {
     text += fmt::format("{}: {}", k + 1, judged[k].verdict);
-    if (judged[k].certificate) text += "; " + claim_words(judged[k].certificate->claim);
+    if (!judged[k].claim.empty()) text += "; " + judged[k].claim;
     text += "\n";
   }
   return text + fmt::format("{} certificates, {} valid\n", judged.size(), count_valid(judged));

@@ -2,21 +2,18 @@
 #pragma once
 
 /// \file
-/// Half-plane certificates as text, judged by the checker of vo/certificate.h, which shares nothing with what makes
-/// them.
+/// Certificates as text, of half-planes and of containment, judged by the checkers of vo/certificate.h and
+/// vo/containment.h, which share nothing with what makes them.
 
-#include <optional>
 #include <string>
 #include <vector>
-
-#include "exactvo/vo/certificate.h"
 
 namespace exactvo::tools {
 
 struct JudgedCertificate {
-  std::optional<vo::Certificate> certificate;  ///< nothing where the text is none
-  std::string verdict;                         ///< vo::name(Verdict), or "not a certificate"
-  bool valid() const { return certificate && check(*certificate) == vo::Verdict::valid; }
+  std::string verdict;  ///< vo::name(Verdict), or "not a certificate"
+  std::string claim;    ///< what is claimed, rounded for people; empty where it is none
+  bool valid = false;
 };
 
 /// Every certificate of a text: one a line, where blank lines do not count and any other line is "not a certificate";

@@ -66,7 +66,7 @@ ExitCode audit_certificates(const Flags& flags) {
   const std::vector<JudgedCertificate> judged = judge_certificates(flags.certificates);
   const std::string text = flags.json ? to_json(judged) : in_words(judged);
   std::fwrite(text.data(), 1, text.size(), stdout);
-  const bool all = std::all_of(judged.begin(), judged.end(), [](const JudgedCertificate& c) { return c.valid(); });
+  const bool all = std::all_of(judged.begin(), judged.end(), [](const JudgedCertificate& c) { return c.valid; });
   return all ? ExitCode::success : ExitCode::negative;
 }
 
@@ -80,7 +80,7 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("path", flags->path, "A recording.jsonl, or a folder with some in it or below");
   app.add_option("--certificate", flags->certificates,
-                 "FILE with a half-plane certificate a line, or with what vo --json printed; - for stdin");
+                 "FILE with a certificate a line, or with what vo --json printed; - for stdin");
   app.add_flag("--json", flags->json, "The counts and findings, or a verdict a certificate, as JSON on stdout");
   return [flags] { return audit(*flags); };
 }

@@ -166,13 +166,19 @@ std::string bounds_json(const ConeAnswer& a) {
                      half_planes_json(a));
 }
 
+std::string containment_json(const std::optional<vo::Containment>& c) {
+  if (!c) return "null";
+  return fmt::format("{{\"verdict\": \"{}\", \"margin\": {}, \"text\": \"{}\"}}", name(check(*c)), json(c->margin),
+                     write_containment(*c));
+}
+
 /// What stands for the obstacle.
 std::string taken_json(const VoQuestion& q, const AskedObstacle& o) {
-  const auto containment = containment_of(q, o);
-  const std::string proof = containment
-                                ? fmt::format(", \"vertices\": {}, \"contained_exactly\": {}", containment->vertices,
-                                              json(containment->contained == containment->vertices))
-                                : "";
+  const auto enclosed = enclosed_of(q, o);
+  const std::string proof =
+      enclosed ? fmt::format(", \"vertices\": {}, \"contained\": {},\n    \"certificate\": {}", enclosed->vertices,
+                             enclosed->contained, containment_json(enclosed->certificate))
+               : "";
   return fmt::format("\"taken_as\": {{\"what\": \"{}\", \"convex_shapes\": {}{}}},\n  ", name(o.taken), o.encounters,
                      proof);
 }
@@ -298,11 +304,11 @@ std::string verdict_words(bool overlaps, bool contains, const char* what) {
 
 std::string taken_words(const VoQuestion& q, const AskedObstacle& o) {
   if (o.taken == Taken::itself) return "";
-  std::string text = fmt::format("The obstacle is taken as {}", in_words(o));
-  if (const auto containment = containment_of(q, o))
-    text +=
-        fmt::format(", which contains {} of its {} vertices (exactly)", containment->contained, containment->vertices);
-  return text + ".\n";
+  const std::string text = fmt::format("The obstacle is taken as {}", in_words(o));
+  const auto enclosed = enclosed_of(q, o);
+  if (!enclosed) return text + ".\n";
+  return text + fmt::format(";\nit contains {} of its {} vertices exactly, certificate: {}.\n", enclosed->contained,
+                            enclosed->vertices, enclosed->certificate ? name(check(*enclosed->certificate)) : "none");
 }
 
 std::string single_words(const VoAnswer& a) {
@@ -368,16 +374,14 @@ std::string in_words(const AskedObstacle& o) {
   return "a trap-free ellipse round it";
 }
 
-std::optional<Containment> containment_of(const VoQuestion& question, const AskedObstacle& o) {
+std::optional<Enclosed> enclosed_of(const VoQuestion& question, const AskedObstacle& o) {
   const auto* obstacle = std::get_if<geometry::Obstacle>(&o.given);
   const auto* ellipse = std::get_if<geometry::Ellipse>(&question.encounters[o.first_encounter].obstacle);
   if (!obstacle || !ellipse) return std::nullopt;
-  Containment answer;
-  for (const Vec2 x : vertices_of(*obstacle)) {
-    ++answer.vertices;
-    if (geometry::contains(*ellipse, x)) ++answer.contained;
-  }
-  return answer;
+  const std::vector<Vec2> vertices = vertices_of(*obstacle);
+  const auto contained =
+      std::count_if(vertices.begin(), vertices.end(), [&](Vec2 x) { return geometry::contains(*ellipse, x); });
+  return Enclosed{vertices.size(), static_cast<std::size_t>(contained), vo::certify_containment(*ellipse, vertices)};
 }
 
 namespace {

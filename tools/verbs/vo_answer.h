@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exactvo/vo/certificate.h"
+#include "exactvo/vo/containment.h"
 #include "exactvo/vo/free_velocities.h"
 #include "verbs/vo_question.h"
 
@@ -41,11 +42,12 @@ struct FreeAnswer {
 FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion& question);
 
 /// Whether the ellipse round an obstacle contains it: asked of every vertex by the exact predicate.
-struct Containment {
+struct Enclosed {
   std::size_t vertices = 0;
   std::size_t contained = 0;
+  std::optional<vo::Containment> certificate;  ///< of the vertices; nothing for a flat ellipse
 };
-std::optional<Containment> containment_of(const VoQuestion& question, const AskedObstacle& obstacle);
+std::optional<Enclosed> enclosed_of(const VoQuestion& question, const AskedObstacle& obstacle);
 
 struct VoAnswer {
   VoQuestion question;

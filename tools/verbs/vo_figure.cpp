@@ -260,6 +260,9 @@ Figure free_figure(const VoAnswer& answer, const std::string& name) {
   if (f.report)
     panel.rings("kept by the half-planes", outer_rings(f.report->region),
                 "with filledcurves closed fc rgb '#7fcdb4' fs solid noborder");
+  const bool in_contact =
+      std::any_of(answer.cones.begin(), answer.cones.end(), [](const ConeAnswer& a) { return a.overlaps; });
+  if (in_contact) panel.ring("nothing is free: contact", outline(geometry::Disc{{}, f.max_speed}), kForbidden);
   std::string title_of_cones = "velocity obstacles";
   for (const ConeAnswer& a : answer.cones) {
     if (!a.overlaps)

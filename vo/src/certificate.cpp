@@ -5,13 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <vector>
+
+#include "certificate_words.h"
 
 namespace exactvo::vo {
 namespace {
 
+using detail::Fnv;
 using geometry::ConvexPolygon;
 using geometry::Disc;
 using geometry::Ellipse;
@@ -120,29 +122,6 @@ double exact_margin(const RootSum& excess) {
 }
 
 // --- The digest ---
-
-class Fnv {
- public:
-  void add(double x) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &x, sizeof bits);
-    add(bits);
-  }
-  void add(Vec2 v) {
-    add(v.x);
-    add(v.y);
-  }
-  void add(std::uint64_t word) {
-    for (int i = 0; i < 8; ++i) {
-      hash_ ^= (word >> (8 * i)) & 0xFF;
-      hash_ *= 0x100000001B3ULL;
-    }
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xCBF29CE484222325ULL;
-};
 
 struct AddTo {
   Fnv& hash;

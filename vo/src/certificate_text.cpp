@@ -1,67 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <charconv>
-#include <cstdio>
-#include <limits>
 #include <string_view>
 
+#include "certificate_words.h"
 #include "exactvo/vo/certificate.h"
 
 namespace exactvo::vo {
 namespace {
 
+using detail::digest_text;
+using detail::Reader;
 using geometry::hex_text;
 using geometry::Vec2;
 
 std::string text(Vec2 v) {
   return hex_text(v.x) + " " + hex_text(v.y);
 }
-
-/// Words separated by single spaces; the first that is not as expected makes everything after it fail.
-class Reader {
- public:
-  explicit Reader(std::string_view text) : rest_(text) {}
-
-  void expect(std::string_view word) { ok_ = ok_ && next() == word; }
-  std::string_view next() {
-    const std::size_t end = rest_.find(' ');
-    const std::string_view word = rest_.substr(0, end);
-    at_end_ = end == std::string_view::npos;
-    rest_.remove_prefix(at_end_ ? rest_.size() : end + 1);
-    return word;
-  }
-  double number() {
-    std::string_view word = next();
-    const bool negative = !word.empty() && word[0] == '-';
-    if (negative) word.remove_prefix(1);
-    double value = 0.0;
-    if (ok_ && word == "inf" && !negative) return std::numeric_limits<double>::infinity();
-    if (word.substr(0, 2) != "0x") ok_ = false;
-    if (!ok_) return value;
-    const char* const last = word.data() + word.size();
-    const auto result = std::from_chars(word.data() + 2, last, value, std::chars_format::hex);
-    ok_ = result.ec == std::errc() && result.ptr == last;
-    return negative ? -value : value;
-  }
-  Vec2 point() {
-    const double x = number();
-    return {x, number()};
-  }
-  template <typename Integer>
-  Integer integer(int base) {
-    const std::string_view word = next();
-    Integer value = 0;
-    const auto result = std::from_chars(word.data(), word.data() + word.size(), value, base);
-    ok_ = ok_ && result.ec == std::errc() && result.ptr == word.data() + word.size();
-    return value;
-  }
-  bool ok() const { return ok_; }
-  bool finished() const { return ok_ && at_end_; }
-
- private:
-  std::string_view rest_;
-  bool ok_ = true;
-  bool at_end_ = false;
-};
 
 geometry::ConvexShape read_shape(Reader& in) {
   const std::string_view kind = in.next();
@@ -86,12 +39,6 @@ geometry::ConvexShape read_shape(Reader& in) {
   const auto count = in.integer<std::size_t>(10);
   for (std::size_t i = 0; i < count && in.ok(); ++i) polygon.vertices.push_back(in.point());
   return polygon;
-}
-
-std::string digest_text(std::uint64_t digest) {
-  char buffer[17];
-  std::snprintf(buffer, sizeof buffer, "%016llx", static_cast<unsigned long long>(digest));
-  return buffer;
 }
 
 }  // namespace
