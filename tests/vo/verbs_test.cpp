@@ -37,6 +37,32 @@ TEST(VerbVo, PrintsEveryAnswerWithACertificateThatHolds) {
   }
 }
 
+TEST(VerbVo, ExactLegsCanBeChecked) {
+  const Outcome run = Workplace().run(
+      "vo --obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --radius 0 --time-horizon 3 --exact-legs --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json legs = json::parse(run.out).at("exact_legs");
+  ASSERT_EQ(legs.size(), 2u);
+  EXPECT_EQ(legs[0].at("polynomial"), json({"-1", "2"})) << "towards (2, 1)";
+  EXPECT_EQ(legs[0].at("slope"), json({"1/2", "1/2"}));
+  EXPECT_EQ(legs[1].at("polynomial"), json({"1", "2"}));
+  EXPECT_EQ(legs[1].at("quarter_turns"), 0);
+}
+
+TEST(VerbVo, ConesThatShareALegAreListedTogether) {
+  // Both pass the direction (2, 1), one on each side; the robot is a point.
+  const Outcome run = Workplace().run(
+      "vo --obstacle 'POLYGON((2 1, 3 -1, 4 -1, 2 1))' --obstacle 'POLYGON((6 3, 6 5, 4 4, 6 3))' --position 0,0 "
+      "--velocity 1,0 --radius 0 --time-horizon 3 --free --max-speed 1 --exact-legs --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json out = json::parse(run.out);
+  EXPECT_EQ(out.at("obstacles")[1].at("exact_legs").size(), 2u);
+  const json order = out.at("legs_by_angle");
+  ASSERT_EQ(order.size(), 3u);
+  EXPECT_EQ(order[1], json::parse(R"([{"obstacle": 0, "cone": 0, "side": "left"},
+                                     {"obstacle": 1, "cone": 0, "side": "right"}])"));
+}
+
 TEST(VerbVo, OverlapHasNoCone) {
   const Outcome run = Workplace().run("vo --obstacle '" + kSquare +
                                       "' --position 3,0 --velocity 1,0 --radius 0.3 --time-horizon 3 --json");

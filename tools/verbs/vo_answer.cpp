@@ -161,8 +161,13 @@ std::string relative_json(const ConeAnswer& a) {
                      json(a.encounter.time_horizon));
 }
 
+/// Where they were asked for.
+std::string exact_json(const ConeAnswer& a) {
+  return a.exact_legs ? fmt::format("\"exact_legs\": {},\n  ", exact_legs_json(*a.exact_legs)) : "";
+}
+
 std::string bounds_json(const ConeAnswer& a) {
-  return fmt::format("\"legs\": {},\n  {},\n  {}{}", legs_json(a), boundary_json(a), shared_json(a),
+  return fmt::format("\"legs\": {},\n  {}{},\n  {}{}", legs_json(a), exact_json(a), boundary_json(a), shared_json(a),
                      half_planes_json(a));
 }
 
@@ -207,11 +212,26 @@ constexpr const char* kKindsOfFree =
     "\"region/lost/area\"],\n"
     "    \"rounded\": [\"region/lost/farthest\"]},\n  ";
 
+bool has_exact_legs(const VoAnswer& a) {
+  return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& c) { return c.exact_legs.has_value(); });
+}
+
+/// With the fields that were asked for besides.
+std::string kinds(const char* always, const VoAnswer& a) {
+  std::string text = always;
+  const std::string exact = "\"exact\": [";
+  if (has_exact_legs(a)) {
+    const std::string more = a.free ? "\"obstacles/exact_legs\", \"legs_by_angle\", " : "\"exact_legs\", ";
+    text.insert(text.find(exact) + exact.size(), more);
+  }
+  return text;
+}
+
 /// A cone a convex shape; where the obstacle is one of those, its fields stand at the top.
 std::string single_json(const VoAnswer& a) {
   const AskedObstacle& o = a.question.obstacles.front();
   const std::string head = "{\n  " + taken_json(a.question, o);
-  const std::string tail = ",\n" + members_json(a) + "  " + kKindsOfCone + stages_json() + "\n}\n";
+  const std::string tail = ",\n" + members_json(a) + "  " + kinds(kKindsOfCone, a) + stages_json() + "\n}\n";
   if (a.cones.size() == 1) return head + cone_json(a.cones.front()) + tail;
   std::vector<std::string> cones;
   for (const ConeAnswer& cone : a.cones)
@@ -223,7 +243,7 @@ std::string single_json(const VoAnswer& a) {
 // --- The same of --free ---
 
 std::string piece_json(const ConeAnswer& a) {
-  return shape_json(a) + fmt::format("\"overlaps\": {}, ", json(a.overlaps)) + half_planes_json(a);
+  return shape_json(a) + fmt::format("\"overlaps\": {}, ", json(a.overlaps)) + exact_json(a) + half_planes_json(a);
 }
 
 std::string obstacle_json(const VoAnswer& a, const AskedObstacle& o) {
@@ -253,15 +273,29 @@ std::string region_json(const VoAnswer& a) {
                      name(report.inside), json(report.area), json(report.given_away), joined(lost));
 }
 
+/// Which cones share a leg: numbered as in `obstacles`, the cones of each in their order.
+std::string by_angle_json(const VoAnswer& a) {
+  if (!has_exact_legs(a)) return "";
+  std::vector<LegsOfCone> legs;
+  for (std::size_t i = 0; i < a.question.obstacles.size(); ++i) {
+    const AskedObstacle& o = a.question.obstacles[i];
+    for (std::size_t k = 0; k < o.encounters; ++k) {
+      const auto& exact = a.cones[o.first_encounter + k].exact_legs;
+      if (exact) legs.push_back({i, k, &*exact});
+    }
+  }
+  return fmt::format("\"legs_by_angle\": {},\n  ", legs_by_angle_json(legs));
+}
+
 std::string free_json(const VoAnswer& a) {
   const FreeAnswer& f = *a.free;
   std::vector<std::string> obstacles;
   for (const AskedObstacle& o : a.question.obstacles) obstacles.push_back(obstacle_json(a, o));
   return fmt::format(
       "{{\n  \"obstacles\": [{}],\n  \"max_speed\": {},\n  \"velocity_is_free\": {},\n  \"area\": {},\n"
-      "  \"least_components\": {},\n  \"region\": {},\n  {}{}\n}}\n",
+      "  \"least_components\": {},\n  \"region\": {},\n  {}{}{}\n}}\n",
       joined(obstacles), json(f.max_speed), json(f.free.contains(a.question.velocity)), json(f.free.area()),
-      f.free.least_components(), region_json(a), kKindsOfFree, stages_json());
+      f.free.least_components(), region_json(a), by_angle_json(a), kinds(kKindsOfFree, a), stages_json());
 }
 
 // --- Words ---
@@ -401,7 +435,7 @@ std::optional<HalfPlane> contact_half_plane(const ConeAnswer& a) {
 }  // namespace
 
 ConeAnswer answer_of(const vo::Encounter& e, double alpha) {
-  ConeAnswer a{e, cone_of(e), false, false, {}, {}, {}, {}, {}};
+  ConeAnswer a{e, cone_of(e), false, false, {}, {}, {}, {}, {}, {}};
   a.overlaps = a.cone.overlaps();
   if (!a.overlaps) {
     vo::Encounter shared = e;
@@ -451,7 +485,10 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
 
 VoAnswer answer_of(const VoQuestion& question) {
   VoAnswer a{question, {}, {}, {}};
-  for (const vo::Encounter& e : question.encounters) a.cones.push_back(answer_of(e, question.alpha));
+  for (const vo::Encounter& e : question.encounters) {
+    a.cones.push_back(answer_of(e, question.alpha));
+    if (question.exact_legs) a.cones.back().exact_legs = a.cones.back().cone.exact_legs();
+  }
   for (const vo::Variant v : question.variants) a.members.push_back(family_member(v, question.encounters.front()));
   if (question.free) a.free = free_answer_of(a.cones, question);
   return a;
@@ -462,8 +499,11 @@ std::string to_json(const VoAnswer& a) {
 }
 
 std::string in_words(const VoAnswer& a) {
-  if (a.free) return free_words(a);
-  std::string text = single_words(a);
+  std::string exact_legs;
+  for (const ConeAnswer& cone : a.cones)
+    if (cone.exact_legs) exact_legs += exact_legs_words(*cone.exact_legs);
+  if (a.free) return free_words(a) + exact_legs;
+  std::string text = single_words(a) + exact_legs;
   for (const vo::Member& m : a.members) text += member_words(m, a.question.velocity);
   return text;
 }

@@ -11,6 +11,7 @@
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
 #include "exactvo/vo/free_velocities.h"
+#include "verbs/vo_exact_legs.h"
 #include "verbs/vo_question.h"
 
 namespace exactvo::tools {
@@ -26,6 +27,7 @@ struct ConeAnswer {
   std::optional<geometry::HalfPlane> shared;   ///< with the asked alpha < 1: holds only if the other side does its part
   std::optional<geometry::HalfPlane> contact;  ///< away from the nearest point, where there is no other
   std::optional<vo::Certificate> certificate;  ///< of `half_plane`, or of `contact`
+  std::optional<vo::ExactLegs> exact_legs;     ///< where they are asked for, and there is a cone
 };
 
 ConeAnswer answer_of(const vo::Encounter& encounter, double alpha);

@@ -211,6 +211,7 @@ VoQuestion question_of(const VoFlags& flags) {
   VoQuestion q;
   q.variants = variants_of(flags.variants);
   q.alpha = flags.alpha;
+  q.exact_legs = flags.exact_legs;
   q.free = flags.free;
   q.max_speed = flags.max_speed.value_or(0.0);
   const vo::Encounter alone = robot_alone(flags);
@@ -251,6 +252,8 @@ void declare_options(CLI::App& app, VoFlags& flags) {
   app.add_option("--goal", flags.goal, "X,Y in m, for --enclose trap-free");
   app.add_option("--variant", flags.variants, "vo, rvo, hrvo, orca, ivo or all: the family, side by side in the figure")
       ->allow_extra_args(false);
+  app.add_flag("--exact-legs", flags.exact_legs,
+               "The legs as algebraic numbers: polynomial, interval; with --free also which cones share one");
   app.add_flag("--free", flags.free, "The free velocities of all obstacles, with what the half-planes give away");
   app.add_option("--max-speed", flags.max_speed, "m/s, required by --free");
   app.add_flag("--json", flags.json, "Everything as JSON on stdout");

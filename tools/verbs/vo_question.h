@@ -27,6 +27,7 @@ struct VoFlags {
   std::string time_horizon;
   double alpha = 1.0;
   std::vector<std::string> variants;
+  bool exact_legs = false;
   bool free = false;
   std::optional<double> max_speed;
   bool json = false;
@@ -59,6 +60,7 @@ struct VoQuestion {
   std::vector<vo::Encounter> encounters;
   std::vector<vo::Variant> variants;
   double alpha = 1.0;
+  bool exact_legs = false;
   bool free = false;
   double max_speed = 0.0;  ///< m/s, of --free
   Vec2 velocity;

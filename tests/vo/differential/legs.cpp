@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The certified brackets of an ellipse's legs against the roots of their quartic, isolated by CGAL's
-// Algebraic_kernel_d_1.
+// The certified brackets of an ellipse's legs, and the legs as algebraic numbers, against the roots of their quartic,
+// isolated by CGAL's Algebraic_kernel_d_1; and the order of two cones' legs against the kernel's.
 #include <CGAL/Algebraic_kernel_d_1.h>
 #include <CGAL/CORE_BigInt.h>
 #include <CGAL/CORE_BigRat.h>
@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "exactvo/vo/velocity_obstacle.h"
@@ -78,6 +80,60 @@ bool has_same_legs(const IntegerCase& c) {
   return true;
 }
 
+// --- The algebraic numbers themselves ---
+
+using Real = Kernel::Algebraic_real_1;
+
+/// The kernel's root for the leg's slope: of the leg's own polynomial, the only one in its interval. Nothing where the
+/// kernel finds another number of them.
+std::optional<Real> slope_of(const vo::AlgebraicDirection& leg) {
+  std::vector<Integer> f;
+  for (const std::string& c : leg.polynomial()) f.emplace_back(c);
+  const Kernel kernel;
+  std::vector<Real> all, inside;
+  kernel.solve_1_object()(Kernel::Polynomial_1(f.begin(), f.end()), true, std::back_inserter(all));
+  const auto side = [&](const Real& root, const std::string& bound) {
+    return kernel.compare_1_object()(root, Kernel::Bound(bound.c_str()));
+  };
+  for (const Real& root : all)
+    if (side(root, leg.low()) != CGAL::SMALLER && side(root, leg.high()) != CGAL::LARGER) inside.push_back(root);
+  if (inside.size() != 1) return std::nullopt;
+  return inside.front();
+}
+
+/// Whether an outward normal, of the half-angle formula, is that of the leg; of both of them one must be.
+bool is_among(Vec2 normal, const std::vector<double>& roots) {
+  constexpr double kRounded = 1e-14;  // both sides are doubles of numbers that are known exactly
+  if (std::fabs(normal.y) < kRounded && normal.x < 0.0) return true;  // s = infinity
+  return std::any_of(roots.begin(), roots.end(), [&](double s) { return angle_between(normal, s) < kRounded; });
+}
+
+bool has_same_exact_legs(const IntegerCase& c) {
+  const auto legs = obstacle_of(c).exact_legs();
+  const std::vector<double> roots = algebraic_legs(c);
+  if (!legs || !slope_of(legs->left) || !slope_of(legs->right)) return false;
+  return is_among(perp(legs->left.rounded()), roots) && is_among(-perp(legs->right.rounded()), roots);
+}
+
+/// Any two legs within a quarter are ordered as their slopes.
+bool has_same_order(const IntegerCase& a, const IntegerCase& b, Tally& tally) {
+  const auto of_a = obstacle_of(a).exact_legs(), of_b = obstacle_of(b).exact_legs();
+  for (const vo::AlgebraicDirection& p : {of_a->left, of_a->right}) {
+    for (const vo::AlgebraicDirection& q : {of_b->left, of_b->right}) {
+      if (p.quarter_turns() != q.quarter_turns()) continue;
+      const auto theirs = Kernel().compare_1_object()(*slope_of(p), *slope_of(q));
+      if (theirs == CGAL::EQUAL) tally.at_a_contact();
+      if (static_cast<int>(turn(q, p)) != static_cast<int>(theirs)) return false;
+    }
+  }
+  return true;
+}
+
+bool agrees(const IntegerCase& c, const IntegerCase& other, Tally& tally) {
+  return has_same_legs(c) && has_same_exact_legs(c) &&
+         (obstacle_of(other).overlaps() || has_same_order(c, other, tally));
+}
+
 std::string text_of(const IntegerCase& c) {
   std::string text = "p, L, r of an ellipse in whole numbers:";
   for (const int x : {c.px, c.py, c.l11, c.l21, c.l22, c.r}) text += " " + std::to_string(x);
@@ -94,6 +150,16 @@ IntegerCase random_case(SeededRandom& random, long i) {
           random.integer(0, size)};
 }
 
+/// A case that shares something with another: the same from twice as far, the mirror image, the same but for a radius.
+IntegerCase related(IntegerCase c, SeededRandom& random) {
+  const int kind = random.integer(0, 3);
+  if (kind == 0) return {2 * c.px, 2 * c.py, 2 * c.l11, 2 * c.l21, 2 * c.l22, 2 * c.r};
+  if (kind == 1) return {-c.px, -c.py, c.l11, c.l21, c.l22, c.r};
+  if (kind == 2) return {3 * c.px, 3 * c.py, 3 * c.l11, 3 * c.l21, 3 * c.l22, 3 * c.r};
+  c.r += 1;
+  return c;
+}
+
 /// Small numbers: legs along the axes, double roots, a root at infinity.
 IntegerCase constructed_case(SeededRandom& random) {
   return {random.integer(-9, 9), random.integer(-9, 9), random.integer(1, 4),
@@ -107,11 +173,11 @@ Tally compare_legs(const Asked& asked) {
   SeededRandom random(asked.seed);
   for (long i = 0; tally.random_cases() < asked.random; ++i) {
     const IntegerCase c = random_case(random, i);
-    if (!obstacle_of(c).overlaps()) tally.random(has_same_legs(c), text_of(c));
+    if (!obstacle_of(c).overlaps()) tally.random(agrees(c, random_case(random, i), tally), text_of(c));
   }
   while (tally.constructed_cases() < asked.constructed) {
     const IntegerCase c = constructed_case(random);
-    if (!obstacle_of(c).overlaps()) tally.constructed(has_same_legs(c), text_of(c));
+    if (!obstacle_of(c).overlaps()) tally.constructed(agrees(c, related(c, random), tally), text_of(c));
   }
   return tally;
 }

@@ -19,11 +19,12 @@
 ///                        |
 ///                        o  v = 0
 ///
-/// Exact: `overlaps`, `contains`. Certified: `half_plane`, `legs` (bracket). Rounded: `nearest_boundary`, `nearest`.
+/// Exact: `overlaps`, `contains`, `exact_legs`. Certified: `half_plane`, `legs` (bracket). Rounded: `nearest_boundary`,
+/// `nearest`.
 /// For a polygonal robot the last two kinds speak of `grown()`, a shape round S within `grown_error()` of it:
 /// half-planes and inner normals of legs are as safe, and that much less tight. Neighbours: family.h (RVO, HRVO, moving
-/// obstacles), free_velocities.h (what many of them leave), reciprocal.h (robot against robot), orca_obstacle.h (the
-/// baseline's polygon rule), lp/ (which velocity).
+/// obstacles), algebraic_direction.h (the exact legs), free_velocities.h (what many of them leave), reciprocal.h (robot
+/// against robot), orca_obstacle.h (the baseline's polygon rule), lp/ (which velocity).
 ///
 /// Properties (tests quote the numbers):
 ///  (1) `half_plane` of a static obstacle admits v = 0;
@@ -39,11 +40,18 @@
 #include "exactvo/geometry/half_plane.h"
 #include "exactvo/geometry/support.h"
 #include "exactvo/geometry/swept.h"
+#include "exactvo/vo/algebraic_direction.h"
 
 namespace exactvo::vo {
 
 using geometry::HalfPlane;
 using geometry::Vec2;
+
+class VelocityObstacle;
+namespace detail {
+struct GrownBody;
+GrownBody grown_body(const VelocityObstacle& obstacle);
+}  // namespace detail
 
 /// One side of the cone.
 struct Leg {
@@ -104,6 +112,10 @@ class VelocityObstacle {
   /// Both sides of the cone; nothing where the robot overlaps or is so near (a few ulps) that no bracket certifies.
   std::optional<Legs> legs() const;
 
+  /// Both sides as algebraic numbers, of S itself also where the robot is a polygon; nothing where the robot overlaps.
+  /// Exact; tens of microseconds a vertex.
+  std::optional<ExactLegs> exact_legs() const;
+
   /// REQUIRES: !overlaps().
   NearestBoundary nearest_boundary(Vec2 v) const;
 
@@ -124,6 +136,8 @@ class VelocityObstacle {
     geometry::ConvexPolygon robot;
     double error;
   };
+
+  friend detail::GrownBody detail::grown_body(const VelocityObstacle& obstacle);
 
   geometry::GrownShape grown_;
   double tau_;

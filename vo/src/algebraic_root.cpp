@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "algebraic_root.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace exactvo::vo::detail {
+namespace {
+
+void trim(Polynomial& f) {
+  while (!f.empty() && sgn(f.back()) == 0) f.pop_back();
+}
+
+/// Divides by the greatest common divisor of the coefficients: a positive number, so that signs stay.
+void make_coprime(Polynomial& f) {
+  trim(f);
+  Integer content = 0;
+  for (const Integer& c : f) content = gcd(content, c);
+  if (content > 1)
+    for (Integer& c : f) mpz_divexact(c.get_mpz_t(), c.get_mpz_t(), content.get_mpz_t());
+}
+
+/// A positive multiple of the remainder of a over b, b not zero.
+Polynomial remainder(Polynomial a, const Polynomial& b) {
+  const Integer scale = abs(b.back());
+  while (a.size() >= b.size()) {
+    const Integer factor = sgn(b.back()) > 0 ? a.back() : Integer(-a.back());
+    const std::size_t shift = a.size() - b.size();
+    for (Integer& c : a) c *= scale;
+    for (std::size_t i = 0; i < b.size(); ++i) a[i + shift] -= factor * b[i];
+    make_coprime(a);
+  }
+  return a;
+}
+
+/// A multiple of a / b. REQUIRES: b divides a.
+Polynomial quotient(Polynomial a, const Polynomial& b) {
+  std::vector<Rational> out(a.size() - b.size() + 1);
+  std::vector<Rational> rest(a.begin(), a.end());
+  for (std::size_t k = out.size(); k-- > 0;) {
+    out[k] = rest[k + b.size() - 1] / Rational(b.back());
+    for (std::size_t i = 0; i < b.size(); ++i) rest[k + i] -= out[k] * Rational(b[i]);
+  }
+  return primitive(out);
+}
+
+Polynomial derivative(const Polynomial& f) {
+  Polynomial out;
+  for (std::size_t i = 1; i < f.size(); ++i) out.push_back(f[i] * static_cast<unsigned long>(i));
+  make_coprime(out);
+  return out;
+}
+
+/// Sturm's chain: the number of sign changes along it falls by one at every root.
+class Chain {
+ public:
+  explicit Chain(const Polynomial& f) : links_{f, derivative(f)} {
+    while (links_.back().size() > 1) {
+      Polynomial next = remainder(links_[links_.size() - 2], links_.back());
+      for (Integer& c : next) c = -c;
+      links_.push_back(std::move(next));
+    }
+  }
+  /// Roots in (low, high].
+  int count(const Rational& low, const Rational& high) const { return variations(low) - variations(high); }
+
+ private:
+  int variations(const Rational& x) const {
+    int changes = 0, before = 0;
+    for (const Polynomial& link : links_) {
+      const int sign = sign_at(link, x);
+      if (sign != 0 && before == -sign) ++changes;
+      if (sign != 0) before = sign;
+    }
+    return changes;
+  }
+  std::vector<Polynomial> links_;
+};
+
+Rational middle(const Rational& a, const Rational& b) {
+  return (a + b) / 2;
+}
+
+/// The root x with an interval round it that holds no other.
+Root round_about(const Polynomial& f, const Chain& chain, const Rational& x, Rational reach) {
+  while (chain.count(x - reach, x + reach) != 1 || sign_at(f, x - reach) == 0) reach /= 2;
+  return {{Integer(-x.get_num()), x.get_den()}, x - reach, x + reach};
+}
+
+void isolate(const Polynomial& f, const Chain& chain, const Rational& low, const Rational& high,
+             std::vector<Root>& out) {
+  const int count = chain.count(low, high);
+  if (count == 0) return;
+  if (count == 1 && sign_at(f, high) == 0) {
+    out.push_back(round_about(f, chain, high, high - low));
+    return;
+  }
+  if (count == 1 && sign_at(f, low) != 0) {
+    out.push_back({f, low, high});
+    return;
+  }
+  const Rational half = middle(low, high);
+  isolate(f, chain, low, half, out);
+  isolate(f, chain, half, high, out);
+}
+
+int compare_rationals(const Rational& a, const Rational& b) {
+  const int order = cmp(a, b);
+  return (order > 0) - (order < 0);
+}
+
+/// Whether the common divisor of both has a root where the intervals overlap: that is then the root of both.
+bool are_equal(const Root& a, const Root& b) {
+  const Polynomial common = gcd(a.f, b.f);
+  if (common.size() < 2) return false;
+  return sign_at(common, std::max(a.low, b.low)) * sign_at(common, std::min(a.high, b.high)) < 0;
+}
+
+}  // namespace
+
+Polynomial primitive(const std::vector<Rational>& coefficients) {
+  Integer denominator = 1;
+  for (const Rational& c : coefficients) denominator = lcm(denominator, c.get_den());
+  Polynomial f;
+  for (const Rational& c : coefficients) f.push_back(Rational(c * denominator).get_num());
+  make_coprime(f);
+  return f;
+}
+
+Polynomial gcd(const Polynomial& a, const Polynomial& b) {
+  if (b.empty()) return a;
+  return gcd(b, remainder(a, b));
+}
+
+Polynomial square_free(const Polynomial& f) {
+  Polynomial out = f.size() > 2 ? quotient(f, gcd(f, derivative(f))) : f;
+  if (sgn(out.back()) < 0)
+    for (Integer& c : out) c = -c;
+  return out;
+}
+
+int sign_at(const Polynomial& f, const Rational& x) {
+  Integer sum = 0, power = 1;  // Horner, times the denominator's power
+  for (std::size_t i = f.size(); i-- > 0;) {
+    sum = sum * x.get_num() + f[i] * power;
+    power *= x.get_den();
+  }
+  return sgn(sum);
+}
+
+std::vector<Root> isolate(const Polynomial& f, const Rational& low, const Rational& high) {
+  std::vector<Root> out;
+  if (f.size() > 1) isolate(f, Chain(f), low, high, out);
+  return out;
+}
+
+Root rational_root(const Rational& x) {
+  return {{Integer(-x.get_num()), x.get_den()}, x, x};
+}
+
+Root settled(Root root) {
+  const Polynomial& f = root.f;
+  if (f.size() == 2) return rational_root(Rational(-f[0]) / Rational(f[1]));
+  if (f.size() != 3) return root;
+  const Integer discriminant = f[1] * f[1] - 4 * f[0] * f[2];
+  if (mpz_perfect_square_p(discriminant.get_mpz_t()) == 0) return root;
+  for (const Integer& side : {Integer(sqrt(discriminant)), Integer(-sqrt(discriminant))}) {
+    const Rational x = Rational(Integer(side - f[1])) / Rational(Integer(2 * f[2]));
+    if (root.low < x && x < root.high) return rational_root(x);
+  }
+  return root;
+}
+
+void halve(Root& root) {
+  const Rational half = middle(root.low, root.high);
+  const int sign = sign_at(root.f, half);
+  if (sign == 0) {
+    root = rational_root(half);
+  } else if (sign == sign_at(root.f, root.high)) {
+    root.high = half;
+  } else {
+    root.low = half;
+  }
+}
+
+int compare(const Root& a, const Rational& b) {
+  if (a.is_rational()) return compare_rationals(a.low, b);
+  if (b <= a.low) return 1;
+  if (b >= a.high) return -1;
+  const int sign = sign_at(a.f, b);
+  if (sign == 0) return 0;
+  return sign == sign_at(a.f, a.high) ? -1 : 1;
+}
+
+int compare(Root a, Root b) {
+  bool may_be_equal = true;
+  for (;;) {
+    if (b.is_rational()) return compare(a, b.low);
+    if (a.is_rational()) return -compare(b, a.low);
+    if (a.high <= b.low) return -1;
+    if (b.high <= a.low) return 1;
+    if (may_be_equal && are_equal(a, b)) return 0;
+    may_be_equal = false;
+    halve(Rational(a.high - a.low) < Rational(b.high - b.low) ? b : a);
+  }
+}
+
+}  // namespace exactvo::vo::detail

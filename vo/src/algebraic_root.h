@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Real roots of polynomials with integer coefficients, exactly: Sturm's theorem finds them, halving narrows them, the
+/// greatest common divisor tells whether two are one. For degrees up to four; nothing is tuned for more.
+
+#include <gmpxx.h>
+
+#include <vector>
+
+namespace exactvo::vo::detail {
+
+using Integer = mpz_class;
+using Rational = mpq_class;
+
+/// Coefficients from the constant term up, coprime, the last one not zero. Empty: the zero polynomial.
+using Polynomial = std::vector<Integer>;
+
+/// A positive multiple of the polynomial with these coefficients.
+Polynomial primitive(const std::vector<Rational>& coefficients);
+
+Polynomial gcd(const Polynomial& a, const Polynomial& b);
+
+/// The same roots, each once; the last coefficient is positive. REQUIRES: not zero.
+Polynomial square_free(const Polynomial& f);
+
+int sign_at(const Polynomial& f, const Rational& x);
+
+/// The only root of a square-free f in (low, high), neither of which is a root; or, where f is linear, low = high is
+/// it.
+struct Root {
+  Polynomial f;
+  Rational low, high;
+
+  bool is_rational() const { return f.size() == 2; }
+};
+
+/// Roots in (low, high], ascending. Each interval is open and of positive length, also where f is linear: its ends tell
+/// what changes sign at the root. REQUIRES: f square-free, low < high.
+std::vector<Root> isolate(const Polynomial& f, const Rational& low, const Rational& high);
+
+/// Where the root is rational and f of degree 1 or 2: the linear factor with low = high.
+Root settled(Root root);
+
+Root rational_root(const Rational& x);
+
+/// Halves the interval, or finds the root. REQUIRES: low < high.
+void halve(Root& root);
+
+int compare(const Root& a, const Rational& b);
+int compare(Root a, Root b);
+
+}  // namespace exactvo::vo::detail

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What an AlgebraicDirection holds, and the signs that are asked of it in rationals.
+
+#include "algebraic_root.h"
+#include "exactvo/vo/algebraic_direction.h"
+
+namespace exactvo::vo::detail {
+
+struct RationalVector {
+  Rational x, y;
+};
+
+inline RationalVector operator-(const RationalVector& a, const RationalVector& b) {
+  return {a.x - b.x, a.y - b.y};
+}
+inline Rational cross(const RationalVector& a, const RationalVector& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+struct AlgebraicValue {
+  Root slope;             ///< -1 < t <= 1
+  int quarter_turns = 0;  ///< 0 to 3
+};
+
+/// Counter-clockwise by k quarter turns, k of any sign.
+RationalVector turned(const RationalVector& v, int k);
+
+/// REQUIRES: v not zero.
+AlgebraicDirection direction_of(const RationalVector& v);
+AlgebraicDirection direction_of(Root slope, int quarter_turns);
+
+/// The signs of cross(a, v) and dot(a, v).
+int turn_sign(const AlgebraicValue& a, const RationalVector& v);
+int along_sign(const AlgebraicValue& a, const RationalVector& v);
+
+}  // namespace exactvo::vo::detail
