@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The set of free velocities of a scene of discs, segments and polygons, unrounded:
+///
+///     F = { v : |v| <= max_speed } minus the union of the obstacles' cones, boundaries included,
+///
+/// as the pieces that it falls into, each bounded by arcs of the speed's circle, arcs of fronts, offset edges and legs.
+/// All that is decided (which curves meet, in which order along each, which stretch bounds what is free, how the
+/// stretches join) is decided for algebraic numbers, also where curves touch, coincide or meet three in a point. Only
+/// the numbers that show the answer are rounded, as certified brackets.
+///
+/// Every cone is convex and reaches beyond the disc, so that no piece has a hole: a piece is one closed walk, and the
+/// number of walks is the number of components.
+///
+/// Robots are discs or polygons, horizons finite or infinite, cones moved to any apex. Ellipses are not taken (their
+/// offset has degree eight): free_velocities.h holds them, and everything else faster, between two bounds.
+///
+/// Exact: `contains`, the pieces, their number, `holds`. Certified: end points and areas. An offline object:
+/// milliseconds for a few cones, seconds for kMostCurves; see docs/guide/velocity-obstacles.md for the cost measured.
+///
+/// Properties (tests quote the numbers):
+///  (1) `area` lies within the bracket of FreeVelocities;
+///  (2) there are at least as many components as FreeVelocities::least_components;
+///  (3) one cone more never enlarges the area;
+///  (4) each arc of a piece begins where the one before it ends;
+///  (5) what FreeVelocities::compare proves of half-planes, `yes` or `no`, `holds` says too.
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "exactvo/geometry/region.h"
+#include "exactvo/vo/family.h"
+
+namespace exactvo::vo {
+
+/// Cones and curves beyond these are refused: the curves are compared pair by pair.
+inline constexpr std::size_t kMostCones = 64;
+inline constexpr std::size_t kMostCurves = 512;  ///< legs, arcs and edges of the fronts, of all cones together
+
+enum class ArcKind { speed_circle, front_arc, offset_edge, leg };
+/// "speed circle", "front arc", "offset edge", "leg".
+const char* name(ArcKind kind);
+
+/// Certified: the point lies in the box. Each side is at most 2^-48 max_speed wide, or as narrow as doubles are there.
+struct PointBracket {
+  geometry::Bracket x, y;  ///< m/s
+};
+
+/// A stretch of a piece's boundary, what is free on its left.
+struct FreeArc {
+  ArcKind kind = ArcKind::speed_circle;
+  std::size_t cone = 0;  ///< whose; without meaning for the speed's circle
+  PointBracket from, to;
+  Vec2 center;          ///< m/s, rounded; of arcs
+  double radius = 0.0;  ///< m/s, rounded; of arcs
+  /// Of arcs: round the speed's circle counter-clockwise, round a front clockwise. 0 for straight stretches.
+  int turn = 0;
+};
+
+/// One component of F.
+struct FreePiece {
+  std::vector<FreeArc> boundary;
+  geometry::Bracket area;  ///< (m/s)^2; at most 2^-48 max_speed^2 wide, or as narrow as doubles are there
+};
+
+class FreeArrangement {
+ public:
+  /// REQUIRES: max_speed and apices as of FreeVelocities, every cone `can_hold`, at most kMostCones and kMostCurves.
+  /// Cones whose robot overlaps the obstacle forbid everything: F is empty.
+  FreeArrangement(std::vector<ShiftedCone> cones, double max_speed);
+
+  /// Whether no curve of the cone is worse than a circle: not an ellipse, unless it is a disc or a segment.
+  static bool can_hold(const ShiftedCone& cone);
+
+  /// Whether |v| <= max_speed and v lies in no cone, boundaries of cones not counted as free. Exact.
+  bool contains(Vec2 v) const;
+
+  /// The components, largest first.
+  const std::vector<FreePiece>& pieces() const { return pieces_; }
+  geometry::Bracket area() const;
+
+  /// Whether all that |v| <= max_speed and the half-planes allow (equation (13)) is free, up to sets without area.
+  /// Exact, for the doubles of the half-planes. REQUIRES: finite numbers.
+  bool holds(const std::vector<HalfPlane>& half_planes) const;
+
+  const std::vector<ShiftedCone>& cones() const { return cones_; }
+  double max_speed() const { return max_speed_; }
+
+ private:
+  std::vector<ShiftedCone> cones_;
+  double max_speed_;
+  std::vector<FreePiece> pieces_;
+};
+
+}  // namespace exactvo::vo

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arrangement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "exactvo/geometry/require.h"
+
+namespace exactvo::vo::detail {
+namespace {
+
+/// Points farther apart than this part of the speed are told apart by their doubles, whose own error is some 2^-53 of
+/// it; nearer ones by exact signs.
+constexpr double kFarApart = 0x1p-30;
+
+/// Where a direction lies on the way clockwise from another one: ahead of it, before, at or after the half turn.
+int quarter_clockwise(const Point& base, const Point& d) {
+  const int side = cross(base, d).sign();
+  if (side != 0) return side < 0 ? 1 : 3;
+  return dot(base, d).sign() > 0 ? 0 : 2;
+}
+
+/// Whether a comes before b on the way clockwise from `base`.
+bool comes_first(const Point& base, const Point& a, const Point& b) {
+  const int of_a = quarter_clockwise(base, a), of_b = quarter_clockwise(base, b);
+  return of_a != of_b ? of_a < of_b : cross(a, b).sign() < 0;
+}
+
+}  // namespace
+
+Arrangement::Arrangement(std::vector<Owner> owners, double max_speed)
+    : owners_(std::move(owners)), max_speed_(max_speed) {
+  for (std::size_t o = 0; o < owners_.size(); ++o) {
+    for (Curve& c : owners_[o].curves) {
+      c.owner = o;
+      curves_.push_back(c);
+    }
+  }
+  cuts_.resize(curves_.size());
+  coinciding_.resize(curves_.size());
+  for (std::size_t a = 0; a < curves_.size(); ++a) {
+    if (curves_[a].has_from) cuts_[a].push_back(index_of(curves_[a].from));
+    if (curves_[a].has_to) cuts_[a].push_back(index_of(curves_[a].to));
+    for (std::size_t b = 0; b < a; ++b)
+      if (curves_[a].owner != curves_[b].owner) cut_at_common_points(a, b);
+  }
+  std::vector<Stretch> boundary;
+  for (std::size_t k = 0; k < curves_.size(); ++k)
+    for (const Stretch& s : stretches_of(k))
+      if (is_boundary(s)) boundary.push_back(s);
+  walk_all(boundary);
+}
+
+void Arrangement::cut_at_ends_of(std::size_t a, std::size_t b) {
+  const Curve& c = curves_[b];
+  if (c.has_from && curves_[a].reaches(c.from)) cuts_[a].push_back(index_of(c.from));
+  if (c.has_to && curves_[a].reaches(c.to)) cuts_[a].push_back(index_of(c.to));
+}
+
+void Arrangement::cut_at_common_points(std::size_t a, std::size_t b) {
+  if (coincide(curves_[a], curves_[b])) {
+    coinciding_[a].push_back(b);
+    coinciding_[b].push_back(a);
+    cut_at_ends_of(a, b);
+    cut_at_ends_of(b, a);
+    return;
+  }
+  for (const Point& x : common_points(curves_[a], curves_[b])) {
+    if (is_out_of_reach({x.x.doubleValue(), x.y.doubleValue()})) continue;
+    if (!curves_[a].reaches(x) || !curves_[b].reaches(x)) continue;
+    const std::size_t k = index_of(x);
+    cuts_[a].push_back(k);
+    cuts_[b].push_back(k);
+  }
+}
+
+/// Beyond the disc by more than any rounding: nothing there bounds anything.
+bool Arrangement::is_out_of_reach(Vec2 rounded) const {
+  return !(std::hypot(rounded.x, rounded.y) <= (1.0 + kFarApart) * max_speed_);
+}
+
+std::size_t Arrangement::index_of(const Point& x) {
+  const Vec2 at{x.x.doubleValue(), x.y.doubleValue()};
+  const double near = kFarApart * (max_speed_ + std::fabs(at.x) + std::fabs(at.y));
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    if (std::fabs(rounded_[k].x - at.x) > near || std::fabs(rounded_[k].y - at.y) > near) continue;
+    if ((points_[k].x - x.x).sign() == 0 && (points_[k].y - x.y).sign() == 0) return k;
+  }
+  points_.push_back(x);
+  rounded_.push_back(at);
+  return points_.size() - 1;
+}
+
+std::vector<Stretch> Arrangement::stretches_of(std::size_t curve) {
+  const Curve& c = curves_[curve];
+  std::vector<std::size_t> cuts = cuts_[curve];
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  std::sort(cuts.begin(), cuts.end(),
+            [&](std::size_t i, std::size_t k) { return i != k && c.position(points_[i]) < c.position(points_[k]); });
+  std::vector<Stretch> out;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) out.push_back({curve, cuts[i], cuts[i + 1]});
+  return out;
+}
+
+/// Of an arc that is no more than half of its circle: over the middle of its chord.
+Point Arrangement::middle_of(const Stretch& s) const {
+  const Curve& c = curves_[s.curve];
+  const Point &from = points_[s.from], &to = points_[s.to];
+  if (!c.is_arc) return Number(0.5) * (from + to);
+  const Point left = perp(to - from), out = c.is_counter_clockwise ? Number(-1) * left : left;
+  return detail::point(c.circle.centre) + quotient(number(c.circle.radius), root_of(dot(out, out))) * out;
+}
+
+bool Arrangement::passes(std::size_t owner, const Stretch& s, const Point& middle) const {
+  const Curve& own = curves_[s.curve];
+  for (const std::size_t k : coinciding_[s.curve]) {
+    const Curve& other = curves_[k];
+    if (other.owner != owner || !other.reaches(middle)) continue;
+    const bool same_side = own.is_arc ? own.is_counter_clockwise == other.is_counter_clockwise
+                                      : dot(own.direction, other.direction).sign() > 0;
+    return same_side && own.owner < owner;
+  }
+  return owners_[owner].allows(middle);
+}
+
+bool Arrangement::is_boundary(const Stretch& s) const {
+  const Vec2 mean = 0.5 * (rounded_[s.from] + rounded_[s.to]);
+  if (!curves_[s.curve].is_arc && is_out_of_reach(mean)) return false;
+  const Point middle = middle_of(s);
+  for (std::size_t o = 0; o < owners_.size(); ++o)
+    if (o != curves_[s.curve].owner && !passes(o, s, middle)) return false;
+  return true;
+}
+
+/// The direction of the stretch at one of its ends.
+Point Arrangement::heading(const Stretch& s, std::size_t at) const {
+  const Curve& c = curves_[s.curve];
+  if (!c.is_arc) return c.direction;
+  const Point left = perp(points_[at] - detail::point(c.circle.centre));
+  return c.is_counter_clockwise ? left : Number(-1) * left;
+}
+
+// Arriving at a point where several stretches leave, what is allowed lies clockwise of the way back: the first one met
+// that way bounds it.
+//
+//            \  allowed  ^
+//             \  .--->  /
+//     --------->o -----'  next
+void Arrangement::walk_all(const std::vector<Stretch>& stretches) {
+  std::vector<std::vector<std::size_t>> leaving(points_.size());
+  for (std::size_t i = 0; i < stretches.size(); ++i) leaving[stretches[i].from].push_back(i);
+  const auto next_of = [&](std::size_t i) {
+    const std::size_t at = stretches[i].to;
+    EXACTVO_REQUIRE(!leaving[at].empty(), "a boundary that ends");
+    const Point back = leaving[at].size() > 1 ? Number(-1) * heading(stretches[i], at) : Point{};
+    std::size_t first = leaving[at].front();
+    for (const std::size_t k : leaving[at])
+      if (k != first && comes_first(back, heading(stretches[k], at), heading(stretches[first], at))) first = k;
+    return first;
+  };
+  std::vector<bool> walked(stretches.size(), false);
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    std::vector<Stretch> walk;
+    for (std::size_t k = i; !walked[k]; k = next_of(k)) {
+      walked[k] = true;
+      walk.push_back(stretches[k]);
+    }
+    if (!walk.empty()) walks_.push_back(std::move(walk));
+  }
+}
+
+}  // namespace exactvo::vo::detail

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The curves that bound what is allowed: circles, lines and stretches of them over exact algebraic numbers
+/// (CORE::Expr: rationals, sums, products, quotients and square roots, whose signs are exact).
+///
+/// A curve runs so that what its owner allows lies on its left: the speed's circle counter-clockwise, a cone's front
+/// clockwise, from its right leg, inward, over the front to its left leg, outward.
+
+#include <CGAL/CORE_Expr.h>
+
+#include <vector>
+
+#include "exactvo/vo/free_arrangement.h"
+#include "grown_body.h"
+
+namespace exactvo::vo::detail {
+
+using Number = CORE::Expr;
+
+struct Point {
+  Number x, y;
+};
+
+inline Point operator+(const Point& a, const Point& b) {
+  return {a.x + b.x, a.y + b.y};
+}
+inline Point operator-(const Point& a, const Point& b) {
+  return {a.x - b.x, a.y - b.y};
+}
+inline Point operator*(const Number& s, const Point& a) {
+  return {s * a.x, s * a.y};
+}
+inline Number dot(const Point& a, const Point& b) {
+  return a.x * b.x + a.y * b.y;
+}
+inline Number cross(const Point& a, const Point& b) {
+  return a.x * b.y - a.y * b.x;
+}
+inline Point perp(const Point& a) {
+  return {-a.y, a.x};
+}
+
+Number number(const Rational& x);
+
+/// a / b and the square root, exactly. CORE's filter writes a file where it sees a divisor that rounds to zero or a
+/// root of less: here such numbers go past the filter. REQUIRES: b not zero; x >= 0.
+Number quotient(const Number& a, const Number& b);
+Number root_of(const Number& x);
+
+Point point(const RationalVector& v);
+
+struct Circle {
+  RationalVector centre;
+  Rational radius;
+};
+
+/// A stretch of a line or of a circle (at most half of it).
+struct Curve {
+  ArcKind kind = ArcKind::leg;
+  std::size_t owner = 0;
+  bool is_arc = false;
+  bool is_counter_clockwise = false;  ///< of arcs
+  Circle circle;                      ///< of arcs
+  Point anchor, direction;            ///< of lines; of arcs the start and the chord: positions are measured along it
+  Point from, to;                     ///< where there are such
+  bool has_from = true, has_to = true;
+
+  /// Grows along the curve. REQUIRES: x on the curve.
+  Number position(const Point& x) const { return dot(x - anchor, direction); }
+  /// The sign of how far x lies on the left of the line, or of the chord.
+  int side(const Point& x) const { return cross(direction, x - anchor).sign(); }
+  /// Whether a point of the whole line or circle is one of the stretch, its ends included.
+  bool reaches(const Point& x) const;
+};
+
+/// A part of what is allowed: inside the disc, on the left of a line, outside a cone.
+struct Owner {
+  enum class Kind { disc, half_plane, cone } kind = Kind::disc;
+  Circle disc;
+  std::vector<Curve> curves;
+
+  /// Whether it allows x, which is on none of its curves.
+  bool allows(const Point& x) const;
+};
+
+Owner speed_disc(double max_speed);
+Owner allowed_by(const HalfPlane& h);
+/// REQUIRES: FreeArrangement::can_hold(cone), !cone.cone.overlaps(). `index` is the owner's.
+Owner outside_of(const ShiftedCone& cone);
+
+/// Whether both are stretches of one line or circle.
+bool coincide(const Curve& a, const Curve& b);
+
+/// The points that the whole lines or circles have in common. REQUIRES: they do not coincide.
+std::vector<Point> common_points(const Curve& a, const Curve& b);
+
+}  // namespace exactvo::vo::detail

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/vo/free_arrangement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "arc_measure.h"
+#include "cgal_guard.h"
+#include "exactvo/geometry/excerpt.h"
+#include "exactvo/geometry/require.h"
+#include "exactvo/vo/free_velocities.h"
+
+namespace exactvo::vo {
+namespace {
+
+using detail::Arrangement;
+using detail::Owner;
+using detail::Stretch;
+using geometry::Bracket;
+
+bool overlap_any(const std::vector<ShiftedCone>& cones) {
+  return std::any_of(cones.begin(), cones.end(), [](const ShiftedCone& c) { return c.cone.overlaps(); });
+}
+
+/// The cones' boundaries come last: a stretch that they share with another owner is that one's.
+void add_cones(const std::vector<ShiftedCone>& cones, std::vector<Owner>& owners) {
+  std::size_t curves = 0;
+  for (const ShiftedCone& cone : cones) {
+    owners.push_back(detail::outside_of(cone));
+    curves += owners.back().curves.size();
+    EXACTVO_REQUIRE(curves <= kMostCurves, "curves beyond kMostCurves");
+  }
+}
+
+template <class Work>
+auto guarded(const std::vector<ShiftedCone>& cones, Work&& work) {
+  const auto values = [&] {
+    std::string text;
+    for (const ShiftedCone& c : cones) text += (text.empty() ? "" : "; ") + geometry::excerpt(c.cone.grown().shape);
+    return text;
+  };
+  return geometry::detail::without_cgal_failures("FreeArrangement", values, std::forward<Work>(work));
+}
+
+void require_in_range(const std::vector<ShiftedCone>& cones, double max_speed) {
+  EXACTVO_REQUIRE(max_speed >= kLeastMaxSpeed && max_speed <= kMostMaxSpeed, std::to_string(max_speed));
+  EXACTVO_REQUIRE(cones.size() <= kMostCones, std::to_string(cones.size()) + " cones");
+  for (const ShiftedCone& cone : cones) {
+    EXACTVO_REQUIRE(FreeArrangement::can_hold(cone), geometry::excerpt(cone.cone.grown().shape));
+    for (const Vec2 m : cone.minus_apex.terms)
+      EXACTVO_REQUIRE(std::fabs(m.x) <= kMostApex && std::fabs(m.y) <= kMostApex, geometry::hex_text(m.x));
+  }
+}
+
+FreeArc shown(const Arrangement& arrangement, const Stretch& s, double max_speed) {
+  const detail::Curve& c = arrangement.curve(s);
+  FreeArc out{c.kind,
+              c.owner == 0 ? 0 : c.owner - 1,
+              detail::bracket_of(arrangement.point(s.from), max_speed),
+              detail::bracket_of(arrangement.point(s.to), max_speed),
+              {},
+              0.0,
+              0};
+  if (!c.is_arc) return out;
+  out.center = {c.circle.centre.x.get_d(), c.circle.centre.y.get_d()};
+  out.radius = c.circle.radius.get_d();
+  out.turn = c.is_counter_clockwise ? 1 : -1;
+  return out;
+}
+
+/// The speed's circle is cut in two for the arrangement's sake: whether b goes on where a ends.
+bool is_one_arc(const Arrangement& arrangement, const Stretch& a, const Stretch& b) {
+  return arrangement.curve(a).kind == ArcKind::speed_circle && arrangement.curve(b).kind == ArcKind::speed_circle;
+}
+
+/// Neighbours on the speed's circle are one arc, unless the walk is all of it.
+std::vector<Stretch> merged(const Arrangement& arrangement, std::vector<Stretch> walk) {
+  const auto starts_anew = [&](std::size_t i) {
+    return !is_one_arc(arrangement, walk[(i + walk.size() - 1) % walk.size()], walk[i]);
+  };
+  std::size_t first = 0;
+  while (first < walk.size() && !starts_anew(first)) ++first;
+  if (first == walk.size()) return walk;
+  std::rotate(walk.begin(), walk.begin() + static_cast<std::ptrdiff_t>(first), walk.end());
+  std::vector<Stretch> out;
+  for (std::size_t i = 0; i < walk.size(); ++i) {
+    if (i > 0 && is_one_arc(arrangement, walk[i - 1], walk[i])) {
+      out.back().to = walk[i].to;
+    } else {
+      out.push_back(walk[i]);
+    }
+  }
+  return out;
+}
+
+std::vector<FreePiece> pieces_of(const Arrangement& arrangement, double max_speed) {
+  std::vector<FreePiece> pieces;
+  for (const std::vector<Stretch>& walk : arrangement.walks()) {
+    FreePiece piece{{}, detail::area_of(arrangement, walk, max_speed)};
+    for (const Stretch& s : merged(arrangement, walk)) piece.boundary.push_back(shown(arrangement, s, max_speed));
+    pieces.push_back(std::move(piece));
+  }
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const FreePiece& a, const FreePiece& b) { return a.area.low > b.area.low; });
+  return pieces;
+}
+
+/// A half-plane without a normal allows everything or nothing.
+bool allows_nothing(const HalfPlane& h) {
+  return h.normal == Vec2{} && h.offset > 0.0;
+}
+
+}  // namespace
+
+const char* name(ArcKind kind) {
+  switch (kind) {
+    case ArcKind::speed_circle:
+      return "speed circle";
+    case ArcKind::front_arc:
+      return "front arc";
+    case ArcKind::offset_edge:
+      return "offset edge";
+    case ArcKind::leg:
+      break;
+  }
+  return "leg";
+}
+
+bool FreeArrangement::can_hold(const ShiftedCone& cone) {
+  return detail::grown_body(cone.cone).body.is_disc();
+}
+
+FreeArrangement::FreeArrangement(std::vector<ShiftedCone> cones, double max_speed)
+    : cones_(std::move(cones)), max_speed_(max_speed) {
+  require_in_range(cones_, max_speed);
+  if (overlap_any(cones_)) return;
+  guarded(cones_, [&] {
+    std::vector<Owner> owners{detail::speed_disc(max_speed)};
+    add_cones(cones_, owners);
+    pieces_ = pieces_of(Arrangement(std::move(owners), max_speed), max_speed);
+  });
+}
+
+bool FreeArrangement::contains(Vec2 v) const {
+  const geometry::GrownShape disc{geometry::Disc{{}, max_speed_}, {}, 0.0};
+  if (locate(disc, v) == geometry::Place::outside) return false;
+  return std::none_of(cones_.begin(), cones_.end(),
+                      [v](const ShiftedCone& c) { return c.cone.overlaps() || c.contains(v); });
+}
+
+Bracket FreeArrangement::area() const {
+  Bracket sum;
+  for (const FreePiece& piece : pieces_) {
+    sum.low = std::nextafter(sum.low + piece.area.low, 0.0);
+    sum.high = std::nextafter(sum.high + piece.area.high, HUGE_VAL);
+  }
+  return sum;
+}
+
+// The half-planes and the disc bound a convex region. Where no cone cuts into it, no cone bounds what is left of it,
+// and something is left.
+bool FreeArrangement::holds(const std::vector<HalfPlane>& half_planes) const {
+  std::vector<Owner> region{detail::speed_disc(max_speed_)};
+  for (const HalfPlane& h : half_planes) {
+    EXACTVO_REQUIRE(geometry::is_finite(h.normal) && std::isfinite(h.offset), geometry::hex_text(h.offset));
+    if (allows_nothing(h)) return true;
+    if (h.normal != Vec2{}) region.push_back(detail::allowed_by(h));
+  }
+  return guarded(cones_, [&] {
+    if (Arrangement(region, max_speed_).walks().empty()) return true;
+    if (overlap_any(cones_)) return false;
+    const std::size_t first_cone = region.size();
+    add_cones(cones_, region);
+    const Arrangement left(std::move(region), max_speed_);
+    const auto is_cone = [&](const Stretch& s) { return left.curve(s).owner >= first_cone; };
+    return !left.walks().empty() && std::none_of(left.walks().begin(), left.walks().end(), [&](const auto& walk) {
+      return std::any_of(walk.begin(), walk.end(), is_cone);
+    });
+  });
+}
+
+}  // namespace exactvo::vo
