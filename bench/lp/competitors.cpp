@@ -72,7 +72,7 @@ class Single : public Competitor {
   std::size_t count() const override { return answers_.size(); }
   Answer answer(std::size_t i) const override { return {answers_[i].velocity, feasible(answers_[i])}; }
   void run() override {
-    for (std::size_t i = 0; i < problems_.size(); ++i) answers_[i] = lp::solve_single(problems_[i]);
+    for (std::size_t i = 0; i < problems_.size(); ++i) lp::solve_single(problems_[i], answers_[i]);
   }
 
  private:

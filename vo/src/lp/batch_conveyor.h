@@ -250,8 +250,14 @@ class Conveyor {
     p.speed = hn::LoadU(d, in_.disc + at);
     p.hard_count = hn::Zero(d);
     if (kHard) p.hard_count = load_counts(in_.hard + at);
-    p.id = hn::Iota(hn::RebindToUnsigned<D>(), static_cast<U>(at));
+    p.id = numbers_from(at);
     way.begin(hn::FirstN(d, kLanes));
+  }
+
+  /// `Iota` from what is not a constant is stored lane by lane.
+  static HWY_INLINE auto numbers_from(std::size_t at) {
+    const hn::RebindToUnsigned<D> d;
+    return hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<U>(at)));
   }
 
   static HWY_INLINE V load_counts(const std::int32_t* counts) {
@@ -280,7 +286,7 @@ class Conveyor {
     p.py = hn::LoadU(d, stage_ + state + kLanes);
     p.speed = hn::LoadU(d, stage_ + state + 2 * kLanes);
     p.hard_count = hn::LoadU(d, stage_ + state + 3 * kLanes);
-    p.id = hn::Iota(hn::RebindToUnsigned<D>(), static_cast<U>(at));
+    p.id = numbers_from(at);
     ways[0].rows = {stage_, stage_ + kLanes, stage_ + 2 * kLanes, 3 * kLanes, in_.lines};
     ways[0].begin(hn::FirstN(d, count));
     solve(ways, 1);

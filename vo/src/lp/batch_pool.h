@@ -17,10 +17,11 @@ inline constexpr std::size_t kPacks = 4;
 
 template <class D>
 HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> m) {
+  constexpr std::size_t kBytes = (hn::MaxLanes(D()) + 7) / 8;
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(d, m, bytes);
   std::uint64_t bits = 0;
-  std::memcpy(&bits, bytes, sizeof bits);
+  for (std::size_t k = 0; k < kBytes; ++k) bits |= std::uint64_t{bytes[k]} << (8 * k);
   return bits;
 }
 

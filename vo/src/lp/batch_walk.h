@@ -102,10 +102,14 @@ struct Pack {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
     const V squared = dot(px, py, px, py);
     const V limit = hn::Mul(hn::Mul(speed, speed), hn::Set(d, T(1) - T(kDiscUnits) * u));
-    const V shrink = hn::Div(disc, hn::Sqrt(hn::Max(squared, limit)));
     const M inside = hn::Le(squared, limit);
-    vx = pick(inside, px, hn::Mul(px, shrink));
-    vy = pick(inside, py, hn::Mul(py, shrink));
+    vx = px;
+    vy = py;
+    if (!hn::AllTrue(d, inside)) {
+      const V shrink = hn::Div(disc, hn::Sqrt(hn::Max(squared, limit)));
+      vx = pick(inside, px, hn::Mul(px, shrink));
+      vy = pick(inside, py, hn::Mul(py, shrink));
+    }
     level = hn::Zero(d);
     relaxing = none();
     first = second = third = entering = no_line(d);
@@ -151,12 +155,16 @@ HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p) {
   p.entering = {ex, ey, pick(with_slack, hn::Add(ec, p.slack), ec), index};
 }
 
-/// How far the boundary of `line` reaches inside the disc to either side, in the unit of `step`; -1 where it does not.
+/// 1 / |n|^2 of a normal of length within 2^-10 of 1, by multiplying: a divider takes one register at a time, and a
+/// step has enough for it to do. Wrong by e in |n|^2, 2 - |n|^2 is wrong by e^2, and each of Newton's steps squares
+/// that again: from e <= 2^-8, 2^-64 after two, 2^-32 after one. Rounding adds 2 u.
 template <class D, class V>
-HWY_INLINE V reach_within_disc(const Pack<D>& p, const LineV<D>& line, V squared) {
-  const V room = hn::Sub(hn::Mul(p.disc_squared, squared), hn::Mul(line.c, line.c));
-  const V zero = hn::Zero(p.d);
-  return pick(hn::Lt(room, zero), hn::Set(p.d, hn::TFromD<D>(-1)), hn::Sqrt(hn::Max(room, zero)));
+HWY_INLINE V inverse_of_square(D d, V squared) {
+  const V two = hn::Set(d, hn::TFromD<D>(2));
+  V inverse = hn::Sub(two, squared);
+  for (int k = 0; k < (sizeof(hn::TFromD<D>) == 8 ? 2 : 1); ++k)
+    inverse = hn::Mul(inverse, hn::Sub(two, hn::Mul(squared, inverse)));
+  return inverse;
 }
 
 /// Where `other` cuts the boundary of `line` off. Parallel lines are taken for very nearly so: a nudge that is lost in
@@ -176,8 +184,9 @@ HWY_INLINE V cut_off(D d, const LineV<D>& line, V squared, const LineV<D>& other
 /// A round of the first walk for the lanes in `moving`: the optimum on the boundary of `entering`, of the kKept lines
 /// in hand those that bind. Gives the lanes where nothing is left: entering, first and second contradict.
 ///
-/// The boundary is v = (c n + s n') / |n|^2, n' being n turned left: one division for all of it, and each line in hand
-/// cuts it off at an s of its own. Masks cost more than numbers, so what binds is found by comparing with that s.
+/// The boundary is v = (c n + s n') / |n|^2, n' being n turned left, and each line in hand cuts it off at an s of its
+/// own. Masks cost more than numbers, so what binds is found by comparing with that s. The disc is asked only where the
+/// s found lies beyond it.
 template <int kKept, class D>
 HWY_INLINE hn::Mask<D> step(Pack<D>& p, hn::Mask<D> moving) {
   using T = hn::TFromD<D>;
@@ -186,14 +195,24 @@ HWY_INLINE hn::Mask<D> step(Pack<D>& p, hn::Mask<D> moving) {
   const D d;
   const LineV<D> h = p.entering;
   const V squared = dot(h.x, h.y, h.x, h.y);
-  const V inverse = hn::Div(hn::Set(d, T(1)), squared);
-  const V reach = reach_within_disc(p, h, squared);
-  V low = hn::Neg(reach), high = reach;
+  const V inverse = inverse_of_square(d, squared);
+  const V far = hn::Set(d, hwy::HighestValue<T>());
+  V low = hn::Neg(far), high = far;
   V cut_first = hn::Zero(d), cut_second = cut_first;
   if (kKept > 0) cut_first = cut_off(p.d, h, squared, p.first, low, high);
   if (kKept > 1) cut_second = cut_off(p.d, h, squared, p.second, low, high);
-  const V where = hn::Min(hn::Max(cross(h.x, h.y, p.px, p.py), low), high);
-  const M empty = hn::Gt(low, high);
+  const V wish = cross(h.x, h.y, p.px, p.py);
+  V where = hn::Min(hn::Max(wish, low), high);
+  const V room = hn::Sub(hn::Mul(p.disc_squared, squared), hn::Mul(h.c, h.c));
+  const M beyond = hn::And(moving, hn::Gt(hn::Mul(where, where), room));
+  M empty = hn::Gt(low, high);
+  if (!hn::AllFalse(d, beyond)) {
+    const V reach = hn::Sqrt(hn::Max(room, hn::Zero(d)));
+    low = hn::Max(low, hn::Neg(reach));
+    high = hn::Min(high, reach);
+    where = hn::Min(hn::Max(wish, low), high);
+    empty = hn::Or(hn::Gt(low, high), hn::Lt(room, hn::Zero(d)));
+  }
   const M moves = hn::AndNot(empty, moving);
   p.vx = pick(moves, hn::Mul(hn::Sub(hn::Mul(h.x, h.c), hn::Mul(where, h.y)), inverse), p.vx);
   p.vy = pick(moves, hn::Mul(hn::Add(hn::Mul(h.y, h.c), hn::Mul(where, h.x)), inverse), p.vy);

@@ -29,4 +29,7 @@ struct SingleProblem {
 /// allocates. Deterministic: the same bits on every target. REQUIRES: finite numbers as described.
 Solution solve_single(const SingleProblem& problem);
 
+/// The same into a place of the caller's, which saves copying what has just been written.
+void solve_single(const SingleProblem& problem, Solution& answer);
+
 }  // namespace exactvo::lp
