@@ -95,7 +95,7 @@ class Batch {
 
 std::vector<Problem> mixture(bool hard) {
   std::vector<Problem> problems;
-  for (const char* set : {"RF10", "RI10", "RF3", "RI20"}) {
+  for (const char* set : {"RF10", "RI10", "RF3", "RI20", "RF60", "RI60"}) {
     const auto more = generate(set, 1003, 21);
     problems.insert(problems.end(), more.begin(), more.end());
   }

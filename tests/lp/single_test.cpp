@@ -44,7 +44,7 @@ class Arrays {
 
 std::vector<Problem> mixture() {
   std::vector<Problem> problems;
-  for (const char* set : {"RF10", "RI10", "RF3", "RI20", "RF0", "RI3", "RF17"}) {
+  for (const char* set : {"RF10", "RI10", "RF3", "RI20", "RF0", "RI3", "RF17", "RF60", "RI60", "RF63", "RF64"}) {
     const auto more = generate(set, 500, 31);
     problems.insert(problems.end(), more.begin(), more.end());
   }

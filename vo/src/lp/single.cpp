@@ -243,7 +243,7 @@ class Slide : private Allowance {
   }
 
  private:
-  /// Boundaries followed before the walk is tried: one in 4 of 5 recorded problems, more than three in none of 10^4.
+  /// Boundaries followed before the walk is tried: one in 4 of 5 recorded problems, more than three in 1 of 10^4.
   static constexpr int kMostSlides = 4;
 
   /// A bit a line, the last of which says that there is none.

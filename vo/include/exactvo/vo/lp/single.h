@@ -25,8 +25,8 @@ struct SingleProblem {
   double disc = 0.0;                 ///< m/s, finite, > 0
 };
 
-/// The same walk, slack and promises as a lane of `solve_batch`; what that would hand over goes to `solve`, which
-/// allocates. Deterministic: the same bits on every target. REQUIRES: finite numbers as described.
+/// The slack and the promises of a lane of `solve_batch`, by a shorter way; what the way cannot settle goes to `solve`,
+/// which allocates. Deterministic: the same bits on every target. REQUIRES: finite numbers as described.
 Solution solve_single(const SingleProblem& problem);
 
 /// The same into a place of the caller's, which saves copying what has just been written.
