@@ -71,6 +71,19 @@ Rational exact_support(const std::vector<Vec2>& vertices, Vec2 n) {
   return best;
 }
 
+TEST(ConvexSum, IntoMemoryThatIsUsedAgain) {
+  SeededRandom random(test::seed_of_run(79));
+  ConvexSum again;
+  for (int i = 0; i < 2000; ++i) {
+    const ConvexPolygon a = random_convex(random, random.integer(1, 9), i % 2 == 0);
+    const ConvexPolygon b = random_convex(random, random.integer(1, 9), i % 2 == 0);
+    minkowski_sum(a, b, again);
+    const ConvexSum once = minkowski_sum(a, b);
+    ASSERT_EQ(again.polygon.vertices, once.polygon.vertices);
+    ASSERT_EQ(again.error, once.error);
+  }
+}
+
 // Property 3, in rationals; with the certified error where vertices were rounded.
 TEST(ConvexSum, Property3SupportsAddUp) {
   SeededRandom random(test::seed_of_run(72));

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -107,9 +108,9 @@ class Loops {
 
   void drop_diagonals() {
     for (std::size_t h = 0; h < edges_.size(); ++h) {
-      const std::size_t t = edges_[h].twin;
-      if (t == kNone || h > t) continue;
-      if (stays_convex(h, t) && stays_convex(t, h)) drop(h, t);
+      const std::optional<std::size_t> twin = edges_[h].twin;
+      if (!twin || h > *twin) continue;
+      if (stays_convex(h, *twin) && stays_convex(*twin, h)) drop(h, *twin);
     }
   }
 
@@ -128,19 +129,18 @@ class Loops {
   }
 
  private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   struct HalfEdge {
     std::size_t from = 0;
     std::size_t before = 0;
     std::size_t after = 0;
-    std::size_t twin = kNone;
+    std::optional<std::size_t> twin{};  ///< none where the edge is the ring's
     bool dropped = false;
   };
 
   void add(const Triangle& t) {
     const std::size_t base = edges_.size();
     for (std::size_t i = 0; i < 3; ++i) {
-      edges_.push_back({t[i], base + (i + 2) % 3, base + (i + 1) % 3, kNone, false});
+      edges_.push_back({t[i], base + (i + 2) % 3, base + (i + 1) % 3, std::nullopt, false});
     }
   }
 

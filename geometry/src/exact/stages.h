@@ -16,6 +16,10 @@ struct StageCounter {
   std::atomic<std::uint64_t> exact{0};
   bool known = false;  ///< to the registry of stages.cpp
 };
+/// Found without a call (which would cost the filters their registers), as what is there from a program's start is.
+#if defined(__GNUC__) && defined(__ELF__)
+[[gnu::tls_model("initial-exec")]]
+#endif
 inline thread_local StageCounter t_stage_counter;
 
 /// Makes the calling thread's counter known until the thread ends.
@@ -29,6 +33,18 @@ inline void count_filter() {
   StageCounter& mine = t_stage_counter;
   if (!mine.known) register_stage_counter();
   increment(mine.filter);
+}
+/// Counts and hands the answer on, so that nothing need be kept across the call that makes a counter known.
+[[gnu::noinline, gnu::cold]] inline bool count_first_filtered(bool answer) {
+  register_stage_counter();
+  increment(t_stage_counter.filter);
+  return answer;
+}
+inline bool count_filtered(bool answer) {
+  StageCounter& mine = t_stage_counter;
+  if (!mine.known) return count_first_filtered(answer);
+  increment(mine.filter);
+  return answer;
 }
 inline void count_exact() {
   StageCounter& mine = t_stage_counter;

@@ -190,10 +190,12 @@ constexpr double kErrorLine = 16.0 * kUnit;
 /// (p.v - t |v|^2)(b + sqrt f) errs by (4 + 13) u, (N.p)(v.Sigma N) by 12 u of their magnitudes; twice that and more.
 constexpr double kErrorTime = 48.0 * kUnit;
 
-}  // namespace
+Way way_of(bool decided, bool meets) {
+  return !decided ? Way::unknown : meets ? Way::meets : Way::misses;
+}
 
-bool segment_meets_rounded(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max, bool& meets) {
-  const Vec2 p = e.center - s.origin;
+/// By the line first, then by where on it.
+Way way_past_rounded(const Ellipse& e, const GrownShape& s, Vec2 p, Vec2 v, double t_max) {
   const double np = cross(v, p);
   const Vec2 ln{e.l21 * v.x - e.l11 * v.y, e.l22 * v.x};
   const double speed2 = squared_norm(v);
@@ -205,35 +207,43 @@ bool segment_meets_rounded(const Ellipse& e, const GrownShape& s, Vec2 v, double
   const double size_l = std::fabs(e.l11) + std::fabs(e.l21) + std::fabs(e.l22);
   const double error_line = kErrorLine * size_v * (size_p + size_l + s.radius) + kSupportUnderflow;
   const double gap = std::fabs(np) - root - reach;
-  if (gap > error_line) {
-    meets = false;
-    return true;
-  }
-  if (!(gap < -error_line)) return false;
+  if (gap > error_line) return Way::misses;
+  if (!(gap < -error_line)) return Way::unknown;
   // Where on the line: the sign of A (b + sqrt f) - tilt at t = 0 and t = t_max.
   const Vec2 ld{e.l11 * v.x + e.l21 * v.y, e.l22 * v.y};
   const double width = root * (root + reach);
   const double beyond = t_max * speed2;
   const double at_start = dot(p, v) * width - np * dot(ld, ln);
   const double at_end = at_start - beyond * width;
-  if (!(size_p + size_v + size_l + s.radius + beyond <= kLargest) || e.l11 == 0.0 || e.l22 == 0.0) return false;
+  if (!(size_p + size_v + size_l + s.radius + beyond <= kLargest) || e.l11 == 0.0 || e.l22 == 0.0) return Way::unknown;
   const double size_root = size_l * size_v;
   const double error =
       kErrorTime * size_root * ((size_p * size_v + beyond) * (size_root + reach) + size_p * size_v * size_root) +
       kUnderflowTime;
-  if (at_start > error && at_end < -error) {
-    meets = true;
-    return true;
-  }
+  if (at_start > error && at_end < -error) return Way::meets;
   // The chord lies behind or ahead: the nearer end decides.
   Place place{};
   const Vec2 q = t_max * v;
   const bool ahead = at_end > error;
-  if (!ahead && !(at_start < -error)) return false;
+  if (!ahead && !(at_start < -error)) return Way::unknown;
   const Vec2 size{std::fabs(p.x) + (ahead ? std::fabs(q.x) : 0.0), std::fabs(p.y) + (ahead ? std::fabs(q.y) : 0.0)};
-  if (!locate_rounded(e, ahead ? p - q : p, size, s.radius, place)) return false;
-  meets = place != Place::outside;
-  return true;
+  const bool decided = locate_rounded(e, ahead ? p - q : p, size, s.radius, place);
+  return way_of(decided, place != Place::outside);
+}
+
+}  // namespace
+
+/// With T = |L|^2 (Frobenius), D = det(L)^2 and R = r^2 the semi-axes are at most sqrt(T) and at least sqrt(D / T), so
+/// S lies between the discs of squared radius 2 (T + R) >= (sqrt(T) + r)^2 and D / T + R round its centre. Those,
+/// rounded, are off by 5 u and 8 u; 0 / 0 decides nothing.
+Way way_past_ellipse(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max) {
+  const Vec2 p = e.center - s.origin;
+  const double trace = e.l11 * e.l11 + e.l21 * e.l21 + e.l22 * e.l22;
+  const double R = s.radius * s.radius;
+  if (way_past_disc(p, v, t_max, 2.0 * (trace + R)) == Way::misses) return Way::misses;
+  const double det = e.l11 * e.l22;
+  if (way_past_disc(p, v, t_max, det * det / trace + R) == Way::meets) return Way::meets;
+  return way_past_rounded(e, s, p, v, t_max);
 }
 
 bool segment_meets_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& v, const Exact& t_max) {

@@ -6,6 +6,7 @@
 
 #include "exact/exact_vector.h"
 #include "exactvo/geometry/predicates.h"
+#include "predicates/way_past_disc.h"
 
 namespace exactvo::geometry::detail {
 
@@ -15,8 +16,8 @@ bool locate_rounded(const Ellipse& e, Vec2 u, Vec2 size, double radius, Place& p
 /// The point q is seen from s.origin; `e` is the shape of s.
 Place locate_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& q);
 
-/// Whether [0, t_max v] meets S; the first says false where a sign is in doubt. REQUIRES: v is not zero.
-bool segment_meets_rounded(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max, bool& meets);
+/// Whether [0, t_max v] meets S. REQUIRES: t_max >= 0; of the second, v is not zero.
+Way way_past_ellipse(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max);
 bool segment_meets_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& v, const Exact& t_max);
 
 }  // namespace exactvo::geometry::detail

@@ -13,6 +13,7 @@
 #include "predicates/exact_sweep.h"
 #include "predicates/grown_ellipse.h"
 #include "predicates/grown_polygon.h"
+#include "predicates/way_past_disc.h"
 
 namespace exactvo::geometry {
 namespace {
@@ -32,6 +33,8 @@ using detail::sign_with_two_roots;
 using detail::squared;
 using detail::Tracked;
 using detail::Vector;
+using detail::Way;
+using detail::way_past_disc;
 
 std::string show(Vec2 v) {
   return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ")";
@@ -40,6 +43,9 @@ std::string show(Vec2 v) {
 /// No filter decides with a NaN or an infinity among its numbers, so the exact stages are where they are caught.
 void require_valid(const GrownShape& s) {
   EXACTVO_REQUIRE(is_valid(s.shape) && is_finite(s.origin) && std::isfinite(s.radius), excerpt(s.shape));
+}
+void require_segment(const GrownShape& s, Vec2 direction, double t_max) {
+  EXACTVO_REQUIRE(is_finite(direction) && t_max >= 0.0 && std::isfinite(t_max) && s.radius >= 0.0, show(direction));
 }
 void require_valid(const Ellipse& e) {
   EXACTVO_REQUIRE(is_valid(ConvexShape{e}), to_string(ConvexShape{e}));
@@ -162,85 +168,34 @@ struct Locator {
   }
 };
 
-struct SegmentMeets {
-  const GrownShape& s;
-  Vec2 v;
-  double t_max;
+// Kept out of the filters' way: its frame would cost as much as a filter. They decide nothing with a NaN.
+[[gnu::noinline, gnu::cold]] bool segment_meets_in_doubt(const GrownShape& s, Vec2 v, double t_max) {
+  require_segment(s, v, t_max);
+  require_valid(s);
+  count_exact();
+  return detail::segment_meets_exactly(s, make<Exact>(v), Exact(t_max));
+}
 
-  /// A disc is a point grown by both radii; their sum is not a double, so the exact stage is its own.
-  bool operator()(const Disc& d) const {
-    bool meets = false;
-    if (disc_rounded(d, meets)) {
-      count_filter();
-      return meets;
-    }
-    return exactly();
-  }
-  bool operator()(const Segment& g) const {
-    const Vec2 ends[2] = {g.a, g.b};
-    return polygon(ends, 2);
-  }
-  bool operator()(const ConvexPolygon& p) const { return polygon(p.vertices.data(), p.vertices.size()); }
-  bool operator()(const Ellipse& e) const {
-    bool meets = false;
-    if (detail::segment_meets_rounded(e, s, v, t_max, meets)) {
-      count_filter();
-      return meets;
-    }
-    return exactly();
-  }
+inline bool met(Way way, const GrownShape& s, Vec2 v, double t_max) {
+  if (way == Way::unknown) return segment_meets_in_doubt(s, v, t_max);
+  return detail::count_filtered(way == Way::meets);
+}
 
- private:
-  // Kept out of the filters' way: its frame would cost as much as a filter.
-  [[gnu::noinline, gnu::cold]] bool exactly() const {
-    count_exact();
-    require_valid(s);
-    return detail::segment_meets_exactly(s, make<Exact>(v), Exact(t_max));
-  }
+[[gnu::noinline]] bool segment_meets_polygon(const GrownShape& s, const Vec2* vertices, std::size_t count, Vec2 v,
+                                             double t_max) {
+  require_segment(s, v, t_max);
+  EXACTVO_REQUIRE(count > 0, excerpt(s.shape));
+  const GrownPolygon grown(vertices, count, s.origin, s.radius);
+  const bool meets = grown.meets(v, t_max);
+  if (grown.was_exact()) require_valid(s);
+  grown.was_exact() ? count_exact() : count_filter();
+  return meets;
+}
 
-  /// False where a sign is in doubt. p errs by u, p.v and v x p by 4 u of their magnitudes, (v x p)^2 by 10 u, r^2
-  /// |v|^2 by 6 u; 32 u is more than all of it. Under the cap, underflow (2^-1075 a product) stays below kUnderflow.
-  bool disc_rounded(const Disc& d, bool& meets) const {
-    constexpr double kError = 32.0 * kUnitRoundoff;
-    constexpr double kLargest = 0x1p200;
-    constexpr double kUnderflow = 0x1p-600;
-    const Vec2 p = d.center - s.origin;
-    const double reach = d.radius + s.radius;
-    const double r2 = reach * reach;
-    const double speed2 = squared_norm(v);
-    const double c = cross(v, p);
-    const double size_c = std::fabs(v.x * p.y) + std::fabs(v.y * p.x);
-    const double line = c * c - r2 * speed2;
-    const double error_line = kError * (size_c * size_c + r2 * speed2) + kUnderflow;
-    if (!(size_c + speed2 + r2 <= kLargest)) return false;
-    if (line > error_line) return true;  // meets stays false
-    const double pv = dot(p, v);
-    const double size_pv = std::fabs(p.x * v.x) + std::fabs(p.y * v.y);
-    const double beyond = t_max * speed2;
-    if (!(size_pv + beyond + t_max <= kLargest)) return false;
-    const double error_pv = kError * (size_pv + beyond) + kUnderflow;
-    if (pv > error_pv && pv < beyond - error_pv) {
-      meets = true;
-      return line < -error_line;
-    }
-    const bool ahead = pv >= beyond;
-    if (ahead ? !(pv > beyond + error_pv) : !(pv < -error_pv)) return false;
-    const Vec2 q = ahead ? t_max * v : Vec2{};
-    const Vec2 size{std::fabs(p.x) + std::fabs(q.x), std::fabs(p.y) + std::fabs(q.y)};
-    const double value = squared_norm(p - q) - r2;
-    meets = value < 0.0;
-    return std::fabs(value) > kError * (squared_norm(size) + r2) + kUnderflow;
-  }
-
-  bool polygon(const Vec2* vertices, std::size_t count) const {
-    EXACTVO_REQUIRE(count > 0, excerpt(s.shape));
-    const GrownPolygon grown(vertices, count, s.origin, s.radius);
-    const bool meets = grown.meets(v, t_max);
-    if (grown.was_exact()) require_valid(s);
-    grown.was_exact() ? count_exact() : count_filter();
-    return meets;
-  }
-};
+[[gnu::noinline]] bool segment_meets_segment(const GrownShape& s, const Segment& g, Vec2 v, double t_max) {
+  const Vec2 ends[2] = {g.a, g.b};
+  return segment_meets_polygon(s, ends, 2, v, t_max);
+}
 
 // --- Predicate F ---
 
@@ -267,10 +222,6 @@ T evolute_polynomial(const Ellipse& e, Vec2 goal, double factor) {
   require_valid(s);
   const SupportParts parts = std::visit(PartsOf{s, n}, s.shape);
   return sign_with_two_roots(parts.k - Exact(tau) * Exact(c), parts.b, parts.d);
-}
-
-[[gnu::noinline, gnu::cold]] void require_segment(const GrownShape& s, Vec2 direction, double t_max) {
-  EXACTVO_REQUIRE(is_finite(direction) && t_max >= 0.0 && std::isfinite(t_max) && s.radius >= 0.0, show(direction));
 }
 
 }  // namespace
@@ -300,12 +251,18 @@ Place locate(const GrownShape& s, Vec2 q) {
   return std::visit(Locator{s, q}, s.shape);
 }
 
+/// A disc is a point grown by both radii; their sum is not a double, so the exact stage is its own.
 bool segment_meets(const GrownShape& s, Vec2 direction, double t_max) {
-  constexpr double kFarFromOverflow = 0x1p1000;
-  const double all =
-      std::fabs(direction.x) + std::fabs(direction.y) + t_max;  // one comparison catches NaN and infinity
-  if (!(all < kFarFromOverflow && t_max >= 0.0 && s.radius >= 0.0)) require_segment(s, direction, t_max);
-  return std::visit(SegmentMeets{s, direction, t_max}, s.shape);
+  if (t_max < 0.0 || s.radius < 0.0) return segment_meets_in_doubt(s, direction, t_max);  // refused there
+  if (const auto* d = std::get_if<Disc>(&s.shape)) {
+    const double reach = d->radius + s.radius;
+    return met(way_past_disc(d->center - s.origin, direction, t_max, reach * reach), s, direction, t_max);
+  }
+  if (const auto* e = std::get_if<Ellipse>(&s.shape))
+    return met(detail::way_past_ellipse(*e, s, direction, t_max), s, direction, t_max);
+  if (const auto* g = std::get_if<Segment>(&s.shape)) return segment_meets_segment(s, *g, direction, t_max);
+  const std::vector<Vec2>& v = std::get<ConvexPolygon>(s.shape).vertices;
+  return segment_meets_polygon(s, v.data(), v.size(), direction, t_max);
 }
 
 bool contains(const Ellipse& e, Vec2 x) {

@@ -29,6 +29,8 @@ struct ConvexSum {
 ///
 /// Properties: (1) commutes; (2) adding a point moves; (3) h of the sum is the sum of the h's, within `error`.
 ConvexSum minkowski_sum(const ConvexPolygon& a, const ConvexPolygon& b);
+/// The same into `sum`, whose memory is used again. REQUIRES: `sum.polygon` is neither a nor b.
+void minkowski_sum(const ConvexPolygon& a, const ConvexPolygon& b, ConvexSum& sum);
 
 /// How CGAL goes about it; the sum is the same. Decomposition is the slower, independent check.
 enum class SumMethod { convolution, decomposition };
