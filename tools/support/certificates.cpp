@@ -114,7 +114,8 @@ std::string in_words(const std::vector<JudgedCertificate>& judged) {
     if (!judged[k].claim.empty()) text += "; " + judged[k].claim;
     text += "\n";
   }
-  return text + fmt::format("{} certificates, {} valid\n", judged.size(), count_valid(judged));
+  return text + fmt::format("{} {}, {} valid\n", judged.size(), judged.size() == 1 ? "certificate" : "certificates",
+                            count_valid(judged));
 }
 
 }  // namespace exactvo::tools
