@@ -5,17 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "figures/outlines.h"
 
 namespace exactvo::tools {
 
+using geometry::dot;
 using geometry::HalfPlane;
 
 namespace {
 
 constexpr const char* kForbidden = "with filledcurves closed fc rgb '#7a8290' fs transparent solid 0.35 noborder";
+/// For many that overlap: their union is one grey.
+constexpr const char* kForbiddenUnion = "with filledcurves closed fc rgb '#cfd2d7' fs solid noborder";
 constexpr const char* kAllowed = "with filledcurves closed fc rgb '#009E73' fs transparent solid 0.35 noborder";
 constexpr const char* kLost = "with filledcurves closed fc rgb '#E69F00' fs solid 0.75 noborder";
 constexpr const char* kBoundary = "with lines lw 2.5 lc rgb '#009E73'";
@@ -37,24 +39,31 @@ class Panel {
   }
   /// Each ring a polygon of its own: holes are drawn in white over them.
   void rings(const std::string& title, const std::vector<Points>& all, const std::string& style) {
-    if (all.empty()) return;
+    if (std::all_of(all.begin(), all.end(), [](const Points& points) { return points.empty(); })) return;
     const int index = data_.begin(title, "v_x [m/s], v_y [m/s]");
     for (const Points& points : all) {
+      if (points.empty()) continue;
       for (const Vec2 p : points) data_.row({p.x, p.y});
       data_.row({points.front().x, points.front().y});
       data_.gap();
     }
     plot_.data(index, "using 1:2 " + style, title);
   }
-  void boundary(const std::string& title, const HalfPlane& h, const char* style = kBoundary) {
-    const double length = norm(h.normal);
-    const Vec2 foot = (h.offset / (length * length)) * h.normal;
-    const Vec2 along = (4.0 * view_.diagonal() / length) * perp(h.normal);
-    const int index = data_.begin("half-plane", "v_x [m/s], v_y [m/s]");
-    data_.row({foot.x - along.x, foot.y - along.y});
-    data_.row({foot.x + along.x, foot.y + along.y});
+  /// One data set however many they are: gnuplot reads the file anew for each.
+  void boundaries(const std::string& title, const std::vector<HalfPlane>& all, const char* style = kBoundary) {
+    if (all.empty()) return;
+    const int index = data_.begin("half-planes", "v_x [m/s], v_y [m/s]");
+    for (const HalfPlane& h : all) {
+      const double length = norm(h.normal);
+      const Vec2 foot = (h.offset / (length * length)) * h.normal;
+      const Vec2 along = (4.0 * view_.diagonal() / length) * perp(h.normal);
+      data_.row({foot.x - along.x, foot.y - along.y});
+      data_.row({foot.x + along.x, foot.y + along.y});
+      data_.gap();
+    }
     plot_.data(index, std::string("using 1:2 ") + style, title);
   }
+  void boundary(const std::string& title, const HalfPlane& h) { boundaries(title, {h}); }
   void arrow(const std::string& title, Vec2 from, Vec2 by, const char* colour) {
     const int index = data_.begin(title, "from v_x, v_y, by v_x, v_y [m/s]");
     data_.row({from.x, from.y, by.x, by.y});
@@ -80,7 +89,8 @@ class Panel {
 };
 
 const std::string kAxes =
-    "  set size ratio -1\n  set clip two\n  set xlabel 'v_x [m/s]'\n  set ylabel 'v_y [m/s]'\n  set grid lc rgb "
+    "  set size ratio -1\n  set clip two\n  set tics front\n  set xlabel 'v_x [m/s]'\n  set ylabel 'v_y [m/s]'\n  set "
+    "grid lc rgb "
     "'#e9e9e9'\n";
 
 Box square_round(const Box& box, double margin) {
@@ -136,16 +146,6 @@ std::string horizon_text(double tau) {
 
 // --- One cone ---
 
-/// Titles its first use only.
-class Once {
- public:
-  explicit Once(std::string title) : title_(std::move(title)) {}
-  std::string operator()() { return std::exchange(title_, ""); }
-
- private:
-  std::string title_;
-};
-
 /// The obstacle that the ellipse stands for, seen from the robot and divided by the horizon as S is.
 void draw_given(const VoAnswer& answer, Panel& panel) {
   const ConeAnswer& a = answer.cones.front();
@@ -153,45 +153,77 @@ void draw_given(const VoAnswer& answer, Panel& panel) {
   const auto* obstacle = std::get_if<geometry::Obstacle>(&asked.given);
   const bool replaced = asked.taken != Taken::itself && asked.taken != Taken::convex_pieces;
   if (!obstacle || !replaced) return;
-  Once title("the obstacle / tau, not grown");
+  std::vector<Points> edges;
   for (const geometry::Segment& edge : edges_of(*obstacle)) {
     const auto seen = [&](Vec2 x) {
       return (1.0 / drawn_horizon(a)) * (x - a.encounter.position) + a.encounter.obstacle_velocity;
     };
-    panel.ring(title(), {seen(edge.a), seen(edge.b)}, kGiven);
+    edges.push_back({seen(edge.a), seen(edge.b)});
   }
+  panel.rings("the obstacle / tau, not grown", edges, kGiven);
 }
 
-void draw_cone(const ConeAnswer& a, Panel& panel, Once& cone, Once& scaled) {
-  const Vec2 u = a.encounter.obstacle_velocity;
-  panel.ring(cone(), cone_in(panel.view(), a.cone, u), kForbidden);
-  if (!std::isfinite(a.encounter.time_horizon)) return;
-  Points outline = scaled_outline(a.cone.grown(), a.encounter.time_horizon);
-  for (Vec2& p : outline) p += u;
-  panel.ring(scaled(), outline, kScaled);
+void draw_cones(const std::vector<ConeAnswer>& cones, Panel& panel) {
+  std::vector<Points> forbidden, scaled;
+  for (const ConeAnswer& a : cones) {
+    const Vec2 u = a.encounter.obstacle_velocity;
+    forbidden.push_back(cone_in(panel.view(), a.cone, u));
+    if (!std::isfinite(a.encounter.time_horizon)) continue;
+    scaled.push_back(scaled_outline(a.cone.grown(), a.encounter.time_horizon));
+    for (Vec2& p : scaled.back()) p += u;
+  }
+  panel.rings("velocity obstacle", forbidden, cones.size() == 1 ? kForbidden : kForbiddenUnion);
+  panel.rings("S / tau", scaled, kScaled);
 }
 
-void draw_half_planes(const ConeAnswer& a, Panel& panel, Once& proven, Once& shared) {
-  if (a.half_plane) panel.boundary(proven(), *a.half_plane);
-  if (a.contact) panel.boundary(proven(), *a.contact);
-  if (a.shared) panel.boundary(shared(), *a.shared, kShared);
+/// Those of several that have a side of what all of them allow within the view; all, where that is nothing.
+std::vector<HalfPlane> that_bind(const std::vector<HalfPlane>& all, const Box& view) {
+  const double near = 1e-9 * view.diagonal();  // m/s: far below a pixel, far above the rounding of the corners
+  Points allowed = corners(view);
+  for (const HalfPlane& h : all) allowed = clipped(allowed, h);
+  if (all.size() == 1 || allowed.empty()) return all;
+  std::vector<HalfPlane> binding;
+  for (const HalfPlane& h : all) {
+    const auto on_it = std::count_if(allowed.begin(), allowed.end(), [&](Vec2 v) {
+      return std::fabs(dot(h.normal, v) - h.offset) <= near * norm(h.normal);
+    });
+    if (on_it >= 2) binding.push_back(h);
+  }
+  return binding;
+}
+
+void draw_half_planes(const std::vector<ConeAnswer>& cones, Panel& panel) {
+  std::vector<HalfPlane> proven, shared;
+  for (const ConeAnswer& a : cones) {
+    if (const auto& h = a.half_plane ? a.half_plane : a.contact) proven.push_back(*h);
+    if (a.shared) shared.push_back(*a.shared);
+  }
+  panel.boundaries(cones.size() == 1 ? "boundary of the half-plane" : "half-planes, where they bind",
+                   that_bind(proven, panel.view()));
+  panel.boundaries("of the shared one, not certified", shared, kShared);
+}
+
+/// Of several cones the way to the nearest means something where the velocity is free, and no single one else.
+void draw_change(const std::vector<ConeAnswer>& cones, Panel& panel) {
+  const auto nearer = [](const ConeAnswer& a, const ConeAnswer& b) {
+    return a.nearest && (!b.nearest || a.nearest->signed_distance < b.nearest->signed_distance);
+  };
+  const ConeAnswer& a = *std::min_element(cones.begin(), cones.end(), nearer);
+  if (!a.nearest || (a.contains && cones.size() > 1)) return;
+  panel.arrow(a.contains ? "least change u" : "u, to the boundary", a.encounter.velocity, a.nearest->u, "#D55E00");
 }
 
 Figure cone_figure(const VoAnswer& answer, const std::string& name) {
   const ConeAnswer& a = answer.cones.front();
   DataFile data;
   Panel panel(data, view_of(answer.cones));
-  Once cone("velocity obstacle"), scaled("S / tau"), proven("boundary of the half-plane"),
-      shared("of the shared one, not certified");
-  for (const ConeAnswer& each : answer.cones) draw_cone(each, panel, cone, scaled);
+  draw_cones(answer.cones, panel);
   draw_given(answer, panel);
-  for (const ConeAnswer& each : answer.cones) draw_half_planes(each, panel, proven, shared);
+  draw_half_planes(answer.cones, panel);
   const Vec2 u = a.encounter.obstacle_velocity;
   if (u != Vec2{}) panel.arrow("obstacle's velocity", {}, u, "#CC79A7");
   panel.arrow("velocity", {}, a.encounter.velocity, "#444444");
-  Once change("least change u"), way("u, to the boundary");
-  for (const ConeAnswer& each : answer.cones)
-    if (each.nearest) panel.arrow(each.contains ? change() : way(), a.encounter.velocity, each.nearest->u, "#D55E00");
+  draw_change(answer.cones, panel);
   const std::string title = "Velocity obstacle, " + horizon_text(a.encounter.time_horizon);
   const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
   return {name, data.text(), script_text(name, title + ".", {900, 640}, body)};
@@ -263,17 +295,11 @@ Figure free_figure(const VoAnswer& answer, const std::string& name) {
   const bool in_contact =
       std::any_of(answer.cones.begin(), answer.cones.end(), [](const ConeAnswer& a) { return a.overlaps; });
   if (in_contact) panel.ring("nothing is free: contact", outline(geometry::Disc{{}, f.max_speed}), kForbidden);
-  std::string title_of_cones = "velocity obstacles";
-  for (const ConeAnswer& a : answer.cones) {
-    if (!a.overlaps)
-      panel.ring(title_of_cones, cone_in(panel.view(), a.cone, a.encounter.obstacle_velocity), kForbidden);
-    title_of_cones.clear();
-  }
-  std::string title_of_lines = "half-planes";
-  for (const HalfPlane& h : f.half_planes) {
-    panel.boundary(title_of_lines, h);
-    title_of_lines.clear();
-  }
+  std::vector<Points> forbidden;
+  for (const ConeAnswer& a : answer.cones)
+    if (!a.overlaps) forbidden.push_back(cone_in(panel.view(), a.cone, a.encounter.obstacle_velocity));
+  panel.rings("velocity obstacles", forbidden, kForbidden);
+  panel.boundaries("half-planes", f.half_planes);
   panel.arrow("velocity", {}, answer.question.velocity, "#444444");
   const std::string title =
       fmt::format("{:.4g} (m/s)^2 are free, {:.4g} are kept", f.free.area().low, f.report ? f.report->area.low : 0.0);
