@@ -60,6 +60,19 @@ struct VoAnswer {
 
 VoAnswer answer_of(const VoQuestion& question);
 
+bool any_overlaps(const VoAnswer& answer);
+bool any_contains(const VoAnswer& answer);
+
+/// The obstacle, and which of its cones, whose half-plane excludes the piece.
+struct Place {
+  std::size_t obstacle = 0;
+  std::size_t cone = 0;
+};
+Place place_of(const VoAnswer& answer, const vo::LostPiece& piece);
+
+/// "cut-off", "apex", "left leg", "right leg".
+const char* name(vo::BoundaryPart part);
+
 /// "its 3 convex pieces", "the smallest ellipse round it".
 std::string in_words(const AskedObstacle& obstacle);
 

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `exactvo vo` answers, in words.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "verbs/vo_answer.h"
+
+namespace exactvo::tools {
+
+using geometry::HalfPlane;
+
+std::string in_words(const AskedObstacle& o) {
+  switch (o.taken) {
+    case Taken::itself:
+      return "it stands";
+    case Taken::convex_pieces:
+      return fmt::format("its {} convex pieces", o.encounters);
+    case Taken::convex_hull:
+      return "its convex hull, which is larger";
+    case Taken::smallest_ellipse:
+      return "the smallest ellipse round it";
+    case Taken::trap_free_ellipse:
+      break;
+  }
+  return "a trap-free ellipse round it";
+}
+
+namespace {
+
+std::string text_of(const HalfPlane& h) {
+  return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s", h.normal.x, h.normal.y, h.offset);
+}
+
+std::string half_plane_words(const ConeAnswer& a) {
+  const char* verdict = a.certificate ? name(check(*a.certificate)) : "none";
+  std::string text;
+  if (a.half_plane) text += fmt::format("half-plane        {}\n", text_of(*a.half_plane));
+  if (a.contact) text += fmt::format("half-plane        {}, away from the nearest point\n", text_of(*a.contact));
+  text += fmt::format("certificate       {}{}\n", verdict, a.certificate ? ", of this half-plane" : "");
+  if (a.shared)
+    text += fmt::format(
+        "shared            {}: alpha {:g} of u, not certified,\n"
+        "                  holds only if the other side takes its share\n",
+        text_of(*a.shared), a.encounter.share);
+  return text;
+}
+
+/// To the boundary either way; only a velocity that collides has to change.
+std::string nearest_words(const ConeAnswer& a) {
+  return fmt::format(
+      "nearest boundary  {}, {:.6g} m/s away\n"
+      "u                 ({:.6g}, {:.6g}) m/s, {}\n",
+      name(a.nearest->part), std::fabs(a.nearest->signed_distance), a.nearest->u.x, a.nearest->u.y,
+      a.contains ? "the least change that avoids it" : "to that boundary; no change is needed");
+}
+
+std::string cone_words(const ConeAnswer& a) {
+  return (a.nearest ? nearest_words(a) : "") + half_plane_words(a);
+}
+
+std::string verdict_words(bool overlaps, bool contains, const char* what) {
+  if (overlaps) return fmt::format("The robot touches or overlaps {}: there is no cone.\n", what);
+  return contains ? "The velocity collides within the horizon.\n" : "The velocity is free within the horizon.\n";
+}
+
+std::string taken_words(const VoQuestion& q, const AskedObstacle& o) {
+  if (o.taken == Taken::itself) return "";
+  const std::string text = fmt::format("The obstacle is taken as {}", in_words(o));
+  const auto enclosed = enclosed_of(q, o);
+  if (!enclosed) return text + ".\n";
+  return text + fmt::format(";\nit contains {} of its {} vertices exactly, certificate: {}.\n", enclosed->contained,
+                            enclosed->vertices, enclosed->certificate ? name(check(*enclosed->certificate)) : "none");
+}
+
+std::string single_words(const VoAnswer& a) {
+  const AskedObstacle& o = a.question.obstacles.front();
+  const bool stands_in = o.taken != Taken::itself && o.taken != Taken::convex_pieces;
+  const std::string what = stands_in ? in_words(o) : "the obstacle";
+  std::string text = taken_words(a.question, o) + verdict_words(any_overlaps(a), any_contains(a), what.c_str());
+  if (a.cones.size() == 1) return text + cone_words(a.cones.front());
+  for (std::size_t k = 0; k < a.cones.size(); ++k)
+    text += fmt::format("piece {}: {}{}", k, verdict_words(a.cones[k].overlaps, a.cones[k].contains, "it"),
+                        cone_words(a.cones[k]));
+  return text + "A velocity is safe that satisfies the half-planes of all pieces.\n";
+}
+
+std::string member_words(const vo::Member& m, Vec2 velocity) {
+  return fmt::format("{:<17} {} the velocity\n", name(m.variant), m.allows(velocity) ? "allows" : "forbids");
+}
+
+std::string region_words(const VoAnswer& a) {
+  const vo::RegionReport& report = *a.free->report;
+  std::string text = fmt::format("half-planes       keep {:.6g} to {:.6g} of it; all free: {}\n", report.area.low,
+                                 report.area.high, name(report.inside));
+  text += fmt::format("given away        {:.6g} to {:.6g}\n", report.given_away.low, report.given_away.high);
+  for (const vo::LostPiece& piece : report.lost) {
+    const auto [obstacle, cone] = place_of(a, piece);
+    const bool one = a.question.obstacles[obstacle].encounters == 1;
+    text +=
+        fmt::format("  {:.4g} as far as ({:.4g}, {:.4g}) m/s, by the half-plane of obstacle {}{}\n", piece.area.high,
+                    piece.farthest.x, piece.farthest.y, obstacle, one ? "" : fmt::format(", piece {}", cone));
+  }
+  return text;
+}
+
+std::string free_words(const VoAnswer& a) {
+  const FreeAnswer& f = *a.free;
+  std::string text;
+  for (std::size_t k = 0; k < a.question.obstacles.size(); ++k)
+    if (const AskedObstacle& o = a.question.obstacles[k]; o.taken != Taken::itself)
+      text += fmt::format("obstacle {:<8} taken as {}\n", k, in_words(o));
+  text +=
+      fmt::format("free velocities   {:.6g} to {:.6g} (m/s)^2, in at least {} {}\n", f.free.area().low,
+                  f.free.area().high, f.free.least_components(), f.free.least_components() == 1 ? "piece" : "pieces");
+  if (f.report) return text + region_words(a);
+  return text + (any_overlaps(a) ? "The robot touches or overlaps an obstacle: nothing is free, nothing is kept.\n"
+                                 : "half-planes       none is proven at an obstacle: nothing is kept\n");
+}
+
+}  // namespace
+
+std::string in_words(const VoAnswer& a) {
+  std::string exact_legs;
+  for (const ConeAnswer& cone : a.cones)
+    if (cone.exact_legs) exact_legs += exact_legs_words(*cone.exact_legs);
+  if (a.free) return free_words(a) + exact_legs;
+  std::string text = single_words(a) + exact_legs;
+  for (const vo::Member& m : a.members) text += member_words(m, a.question.velocity);
+  return text;
+}
+
+}  // namespace exactvo::tools
