@@ -209,6 +209,11 @@ TEST(VerbVo, AnObstacleThatIsNotConvexIsTakenByItsPieces) {
   EXPECT_EQ(rest.at("taken_as").at("what"), "convex pieces");
   ASSERT_EQ(rest.at("cones").size(), rest.at("taken_as").at("convex_shapes").get<std::size_t>());
   for (const json& cone : rest.at("cones")) expect_proven(cone);
+  EXPECT_NE(words_of(in_court + "--velocity 0,0").find("satisfies the half-planes of all pieces"), std::string::npos);
+  const std::string in_wall =
+      "--obstacle " + kCourtyard + " --position 1,5 --radius 0.5 --velocity 0,0 --time-horizon 2";
+  EXPECT_TRUE(json_of(in_wall).at("overlaps").get<bool>());
+  EXPECT_NE(words_of(in_wall).find("No velocity is proven safe"), std::string::npos);
   EXPECT_TRUE(json_of(in_court + "--velocity 2,0").at("contains_velocity").get<bool>()) << "the east wing, 2.5 m away";
 
   const std::string corner = "--obstacle " + kCorner + " --position 7,7 --velocity -1,-1 --radius 0.5 ";

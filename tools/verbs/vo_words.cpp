@@ -2,6 +2,7 @@
 // What `exactvo vo` answers, in words.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "verbs/vo_answer.h"
@@ -56,7 +57,8 @@ std::string nearest_words(const ConeAnswer& a) {
 }
 
 std::string cone_words(const ConeAnswer& a) {
-  return (a.nearest ? nearest_words(a) : "") + half_plane_words(a);
+  return (a.nearest ? nearest_words(a) : "") + half_plane_words(a) +
+         (a.exact_legs ? exact_legs_words(*a.exact_legs) : "");
 }
 
 std::string verdict_words(bool overlaps, bool contains, const char* what) {
@@ -82,7 +84,10 @@ std::string single_words(const VoAnswer& a) {
   for (std::size_t k = 0; k < a.cones.size(); ++k)
     text += fmt::format("piece {}: {}{}", k, verdict_words(a.cones[k].overlaps, a.cones[k].contains, "it"),
                         cone_words(a.cones[k]));
-  return text + "A velocity is safe that satisfies the half-planes of all pieces.\n";
+  const bool all_proven =
+      std::all_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& cone) { return cone.certificate.has_value(); });
+  return text + (all_proven ? "A velocity is safe that satisfies the half-planes of all pieces.\n"
+                            : "No velocity is proven safe: a piece has no half-plane.\n");
 }
 
 std::string member_words(const vo::Member& m, Vec2 velocity) {
@@ -121,12 +126,14 @@ std::string free_words(const VoAnswer& a) {
 }  // namespace
 
 std::string in_words(const VoAnswer& a) {
-  std::string exact_legs;
+  if (!a.free) {
+    std::string text = single_words(a);
+    for (const vo::Member& m : a.members) text += member_words(m, a.question.velocity);
+    return text;
+  }
+  std::string text = free_words(a);
   for (const ConeAnswer& cone : a.cones)
-    if (cone.exact_legs) exact_legs += exact_legs_words(*cone.exact_legs);
-  if (a.free) return free_words(a) + exact_legs;
-  std::string text = single_words(a) + exact_legs;
-  for (const vo::Member& m : a.members) text += member_words(m, a.question.velocity);
+    if (cone.exact_legs) text += exact_legs_words(*cone.exact_legs);
   return text;
 }
 
