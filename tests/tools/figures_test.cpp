@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "figures/label_places.h"
+#include "figures/local_origin.h"
 #include "figures/lyapunov_figure.h"
 #include "figures/paths_figure.h"
 #include "figures/run_figures.h"
@@ -49,6 +50,51 @@ std::vector<std::string> names_of(const std::vector<Figure>& figures) {
   std::vector<std::string> names;
   for (const Figure& figure : figures) names.push_back(figure.name);
   return names;
+}
+
+TEST(PathsFigure, WhatStandsInAHoleIsNotPaintedOver) {
+  datasets::RecordingFile run = short_run();
+  run.scenario.obstacles.push_back({"shelf", geometry::Polygon{{{4.2, 1.2}, {4.8, 1.2}, {4.8, 1.8}, {4.2, 1.8}}, {}}});
+  const Figure figure = paths_figure(run);
+  EXPECT_THAT(figure.script, Not(HasSubstr("white' fs solid")));
+  EXPECT_THAT(figure.data, HasSubstr("3 0\n4 1\n"));  // the bridge to the hole
+  EXPECT_THAT(figure.data, HasSubstr("4.2 1.2"));
+}
+
+/// `run` moved by `by`, as a map in the coordinates of a country is.
+datasets::RecordingFile moved(datasets::RecordingFile run, geometry::Vec2 by) {
+  for (formation::Robot& robot : run.scenario.robots) {
+    robot.position += by;
+    for (geometry::Vec2& goal : robot.goals) goal += by;
+  }
+  auto& block = std::get<geometry::Polygon>(run.scenario.obstacles[0].shape);
+  for (geometry::Vec2& p : block.outer) p += by;
+  for (geometry::Vec2& p : block.holes[0]) p += by;
+  for (formation::Step& step : run.recording.steps)
+    for (formation::RobotStep& robot : step.robots) robot.position += by;
+  return run;
+}
+
+TEST(PathsFigure, FarFromTheOriginAxesCountFromARoundPointNearby) {
+  const Figure here = paths_figure(short_run());
+  EXPECT_THAT(here.script, HasSubstr("set xlabel 'x [m]'"));
+  EXPECT_THAT(here.script, HasSubstr("using 1:2 with lines"));
+  const Figure far = paths_figure(moved(short_run(), {1e9, 5.5e6}));
+  EXPECT_THAT(far.script, HasSubstr("set xlabel 'x - 1000000000 [m]'"));
+  EXPECT_THAT(far.script, HasSubstr("set ylabel 'y - 5500000 [m]'"));
+  EXPECT_THAT(far.script, HasSubstr("using ($1 - x0):($2 - y0) with lines"));
+  EXPECT_THAT(far.script, Not(HasSubstr("using 1:2 ")));
+  EXPECT_THAT(far.data, HasSubstr("\n1000000000.1 5500000 0.1\n"));  // the way, a tenth of a metre later
+}
+
+TEST(LocalOrigin, IsAMultipleOfThePowerOfTenAboveTheView) {
+  EXPECT_FALSE(LocalOrigin(Box{{-3, -2}, {9, 4}}).is_far());
+  EXPECT_FALSE(LocalOrigin(Box{{0, 0}, {3e6, 3e6}}).is_far());
+  EXPECT_FALSE(LocalOrigin(Box{{900, 900}, {940, 940}}).is_far());
+  EXPECT_EQ(LocalOrigin(Box{{512345, 0}, {512349, 3}}).place(), (geometry::Vec2{512350, 0}));
+  EXPECT_EQ(LocalOrigin(Box{{-1e9, 7e5}, {-1e9 + 4, 7e5 + 3}}).place(), (geometry::Vec2{-1e9, 7e5}));
+  EXPECT_EQ(LocalOrigin(Box{{-1e9, 0}, {-1e9 + 4, 3}}).x_label(), "x + 1000000000 [m]");
+  EXPECT_EQ(LocalOrigin(Box{{1e4, 0}, {1e4 + 4e-9, 3e-9}}).x_label(), "x - 10000.00000000 [m]");
 }
 
 TEST(DataFile, NumbersItsDataSetsAsGnuplotDoes) {
@@ -92,7 +138,7 @@ TEST(PathsFigure, HasEqualAxesObstaclesHolesAndQuotedNames) {
   EXPECT_THAT(figure.script, HasSubstr("set size ratio -1"));
   EXPECT_THAT(figure.script, HasSubstr("title 'R''1'"));
   EXPECT_THAT(figure.data, HasSubstr("obstacles with an inside"));
-  EXPECT_THAT(figure.data, HasSubstr("holes in them"));
+  EXPECT_THAT(figure.data, HasSubstr("\n3 0\n4 1\n4 2\n"));
 }
 
 TEST(PathsFigure, EndOfMotionIsWhenTheLastRobotStops) {

@@ -32,7 +32,8 @@ void DataFile::row(std::initializer_list<double> values) {
 void DataFile::row(const std::vector<double>& values) {
   const char* separator = "";
   for (const double value : values) {
-    text_ += fmt::format("{}{:.9g}", separator, value);
+    text_ += separator;
+    text_ += all_digits_ ? fmt::format("{}", value) : fmt::format("{:.9g}", value);
     separator = " ";
   }
   text_ += '\n';

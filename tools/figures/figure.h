@@ -31,7 +31,10 @@ class DataFile {
  public:
   /// Starts a data set and returns the number that `index` takes in a script.
   int begin(const std::string& title, const std::string& columns);
-  /// One line of the current data set, nine significant digits a number.
+  /// Rows have nine significant digits a number, which is enough for drawing; from now on as many as it takes to read
+  /// the same doubles back.
+  void write_all_digits() { all_digits_ = true; }
+  /// One line of the current data set.
   void row(std::initializer_list<double> values);
   void row(const std::vector<double>& values);
   /// One line of numbers and a closing word, for labels.
@@ -48,6 +51,7 @@ class DataFile {
   int count_ = 0;
   bool empty_ = false;  ///< the current data set has no row yet
   bool lifted_ = true;
+  bool all_digits_ = false;
 };
 
 /// Items of one `plot` command.

@@ -86,6 +86,17 @@ Points scaled_outline(const GrownShape& s, double tau) {
   return ring;
 }
 
+Points tied_together(const geometry::Polygon& polygon) {
+  Points path = polygon.outer;
+  path.push_back(path.front());
+  for (const geometry::Ring& hole : polygon.holes) {
+    path.insert(path.end(), hole.begin(), hole.end());
+    path.push_back(hole.front());
+    path.push_back(path.front());
+  }
+  return path;
+}
+
 Points corners(const Box& box) {
   return {box.low, {box.high.x, box.low.y}, box.high, {box.low.x, box.high.y}};
 }

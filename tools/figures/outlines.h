@@ -22,6 +22,10 @@ Points outline(const geometry::ConvexShape& shape);
 /// Of S scaled by 1/tau: the points of the velocity plane that reach S at exactly time tau.
 Points scaled_outline(const geometry::GrownShape& s, double tau);
 
+/// One closed path: the outer ring with each hole tied to it by a bridge walked there and back, which no filling shows.
+/// What lies in a hole is not painted over.
+Points tied_together(const geometry::Polygon& polygon);
+
 /// The corners of the box, counter-clockwise.
 Points corners(const Box& box);
 

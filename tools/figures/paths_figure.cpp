@@ -12,6 +12,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/speed_profile.h"
 #include "figures/label_places.h"
+#include "figures/local_origin.h"
 #include "figures/outlines.h"
 
 namespace exactvo::tools {
@@ -29,7 +30,7 @@ constexpr int kFewRobots = 3;
 constexpr std::size_t kNameLength = 32;
 /// m/s: slower than this nobody sees a robot move.
 constexpr double kVisibleSpeed = 0.01;
-/// m: a step that long leaves the picture anyway; larger numbers would only upset gnuplot.
+/// m: what is so far beyond the view leaves the picture anyway; larger numbers would only upset gnuplot.
 constexpr double kFarAway = 1e6;
 
 Box business_of_robots(const formation::Scenario& scenario) {
@@ -55,10 +56,6 @@ Box box_of_obstacles(const formation::Scenario& scenario) {
   return box;
 }
 
-bool is_drawable(Vec2 p) {
-  return is_finite(p) && std::abs(p.x) < kFarAway && std::abs(p.y) < kFarAway;
-}
-
 std::vector<const Step*> time_marks(const RecordingFile& run) {
   std::vector<const Step*> marks;
   const double end = end_of_motion(run);
@@ -78,7 +75,13 @@ double scale_of(const Box& view) {
 class PathsPanel {
  public:
   PathsPanel(const RecordingFile& run, DataFile& data, bool detailed)
-      : run_(run), data_(data), detailed_(detailed), view_(view_of(run)), times_(view_, scale_of(view_)) {
+      : run_(run),
+        data_(data),
+        detailed_(detailed),
+        view_(view_of(run)),
+        origin_(view_),
+        times_(view_, scale_of(view_)) {
+    origin_.prepare(data_);
     if (detailed_) note_lines();
     add_obstacles();
     add_moving_obstacles();
@@ -89,9 +92,11 @@ class PathsPanel {
     add_collisions();
   }
   std::string plot() const { return plot_.text(); }
+  const LocalOrigin& origin() const { return origin_; }
 
  private:
   std::string key(const std::string& text) const { return detailed_ ? text : ""; }
+  bool is_drawable(Vec2 p) const { return is_finite(p) && view_.grown(kFarAway).contains(p); }
   int robot_count() const { return static_cast<int>(run_.scenario.robots.size()); }
 
   void add_ring(const Points& ring) {
@@ -103,48 +108,45 @@ class PathsPanel {
 
   void add_obstacles() {
     bool polygons = false;
-    bool holes = false;
     bool walls = false;
     for (const auto& obstacle : run_.scenario.obstacles) {
       const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape);
       polygons |= polygon != nullptr;
-      holes |= polygon != nullptr && !polygon->holes.empty();
       walls |= polygon == nullptr;
     }
     if (polygons) add_polygons();
-    if (holes) add_holes();
     if (walls) add_walls(!polygons);
   }
 
-  std::vector<Points> rings_of_polygons(bool holes) const {
-    std::vector<Points> rings;
-    for (const auto& obstacle : run_.scenario.obstacles) {
-      const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape);
-      if (polygon == nullptr) continue;
-      if (!holes) rings.push_back(polygon->outer);
-      if (holes) rings.insert(rings.end(), polygon->holes.begin(), polygon->holes.end());
-    }
-    return rings;
+  std::vector<const geometry::Polygon*> polygons() const {
+    std::vector<const geometry::Polygon*> all;
+    for (const auto& obstacle : run_.scenario.obstacles)
+      if (const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape)) all.push_back(polygon);
+    return all;
   }
 
-  /// gnuplot cuts lines at the axes but lets fillings run over the labels: those are cut here.
-  void add_filled(const std::string& what, const std::vector<Points>& rings, const char* fill,
-                  const std::string& title) {
-    const int inside = data_.begin(what + ", as far as in view", "x [m], y [m]");
-    for (const Points& ring : rings) add_ring(clipped_to(ring, view_));
-    const int border = data_.begin(what + ": outlines", "x [m], y [m]");
-    for (const Points& ring : rings) add_ring(ring);
-    const bool in_view =
-        std::any_of(rings.begin(), rings.end(), [&](const Points& r) { return !clipped_to(r, view_).empty(); });
-    if (!in_view) return;
-    plot_.data(inside, fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs solid noborder", fill), title);
-    plot_.data(border, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", kObstacleLine));
-  }
-
+  /// gnuplot cuts lines at the axes but lets fillings run over the labels: those are cut here. Holes stay free, for
+  /// what stands in them.
   void add_polygons() {
-    add_filled("obstacles with an inside", rings_of_polygons(false), kObstacleFill, key("obstacle"));
+    bool in_view = false;
+    const int inside = data_.begin("obstacles with an inside, as far as in view", "x [m], y [m]");
+    for (const geometry::Polygon* polygon : polygons()) {
+      const Points seen = clipped_to(tied_together(*polygon), view_);
+      in_view |= !seen.empty();
+      add_ring(seen);
+    }
+    const int border = data_.begin("obstacles with an inside: outlines", "x [m], y [m]");
+    for (const geometry::Polygon* polygon : polygons()) {
+      add_ring(polygon->outer);
+      for (const geometry::Ring& hole : polygon->holes) add_ring(hole);
+    }
+    if (!in_view) return;
+    plot_.data(inside,
+               fmt::format("{} with filledcurves closed fc rgb '{}' fs solid noborder", origin_.using_columns(),
+                           kObstacleFill),
+               key("obstacle"));
+    plot_.data(border, fmt::format("{} with lines lw 1 lc rgb '{}'", origin_.using_columns(), kObstacleLine));
   }
-  void add_holes() { add_filled("holes in them", rings_of_polygons(true), "white", ""); }
 
   void add_walls(bool in_legend) {
     const int index = data_.begin("walls", "x [m], y [m]");
@@ -154,8 +156,10 @@ class PathsPanel {
       for (const Vec2 p : wall->points) data_.row({p.x, p.y});
       data_.gap();
     }
-    plot_.data(index, fmt::format("using 1:2 with lines lw {} lc rgb '{}'", detailed_ ? 4 : 2.5, kObstacleLine),
-               key(in_legend ? "obstacle" : "wall"));
+    plot_.data(
+        index,
+        fmt::format("{} with lines lw {} lc rgb '{}'", origin_.using_columns(), detailed_ ? 4 : 2.5, kObstacleLine),
+        key(in_legend ? "obstacle" : "wall"));
   }
 
   static Points vertices_at(const formation::MovingObstacle& obstacle, double time) {
@@ -182,9 +186,10 @@ class PathsPanel {
       }
       data_.gap();
     }
-    plot_.data(index, fmt::format("using 1:2 with lines lw 1.5 dt (8,3) lc rgb '{}'", kObstacleLine),
+    plot_.data(index, fmt::format("{} with lines lw 1.5 dt (8,3) lc rgb '{}'", origin_.using_columns(), kObstacleLine),
                key("moving obstacle"));
-    plot_.data(ways, fmt::format("using 1:2 with linespoints lw 1 pt 7 ps 0.5 dt (2,3) lc rgb '{}'", kObstacleLine));
+    plot_.data(ways, fmt::format("{} with linespoints lw 1 pt 7 ps 0.5 dt (2,3) lc rgb '{}'", origin_.using_columns(),
+                                 kObstacleLine));
   }
 
   /// Ellipses only: a facade that stands for itself would be drawn over the obstacle.
@@ -207,7 +212,8 @@ class PathsPanel {
     if (rings.empty()) return false;
     const int index = data_.begin("enclosures seen by " + run_.scenario.robots[i].id, "x [m], y [m]");
     for (const Points& ring : rings) add_ring(ring);
-    plot_.data(index, fmt::format("using 1:2 with lines lw 1.2 dt (6,5) lc rgb '{}'", series_colour(i)));
+    plot_.data(index,
+               fmt::format("{} with lines lw 1.2 dt (6,5) lc rgb '{}'", origin_.using_columns(), series_colour(i)));
     return true;
   }
 
@@ -215,7 +221,7 @@ class PathsPanel {
     if (!run_.scenario.formation) return;
     const int index = data_.begin("virtual leader", "x [m], y [m]");
     for (const Step& step : run_.recording.steps) data_.row({step.leader_position.x, step.leader_position.y});
-    plot_.data(index, "using 1:2 with lines lw 1.5 dt (2,4) lc rgb 'black'", key("virtual leader"));
+    plot_.data(index, origin_.using_columns() + " with lines lw 1.5 dt (2,4) lc rgb 'black'", key("virtual leader"));
   }
 
   void add_way(std::size_t i) {
@@ -227,8 +233,8 @@ class PathsPanel {
       data_.row({p.x, p.y, step.time});
     }
     plot_.data(way,
-               fmt::format("using 1:2 with lines lw {}{} lc rgb '{}'", detailed_ ? 2.5 : 1.5, series_dash(i),
-                           series_colour(i)),
+               fmt::format("{} with lines lw {}{} lc rgb '{}'", origin_.using_columns(), detailed_ ? 2.5 : 1.5,
+                           series_dash(i), series_colour(i)),
                key(shortened(robot.id, kNameLength)));
     add_places(i);
   }
@@ -244,12 +250,14 @@ class PathsPanel {
       const Label time = label(p, robot.radius, places[k]->time, k, places.size());
       data_.labelled_row({p.x, p.y, robot.radius, time.place.x, time.place.y}, time.text);
     }
-    plot_.data(index, fmt::format("using 1:2:3 with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
-                                  series_colour(i)));
+    plot_.data(index, origin_.using_columns(1, 2, ":3") +
+                          fmt::format(" with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
+                                      series_colour(i)));
     if (!detailed_) return;
-    plot_.data(index, fmt::format("using 4:5:6 with labels center font ',{}' textcolor rgb '{}'",
-                                  robot_count() <= kFewRobots ? 10 : 8,
-                                  robot_count() <= kFewRobots ? "#222222" : series_colour(i)));
+    plot_.data(index, origin_.using_columns(4, 5, ":6") +
+                          fmt::format(" with labels center font ',{}' textcolor rgb '{}'",
+                                      robot_count() <= kFewRobots ? 10 : 8,
+                                      robot_count() <= kFewRobots ? "#222222" : series_colour(i)));
   }
 
   /// The row at which the robot came to rest, or the last one that can be drawn.
@@ -337,10 +345,10 @@ class PathsPanel {
     if (marks.empty()) return;
     const int index = data_.begin("collisions: where they were deepest", "x [m], y [m]");
     for (const Vec2 p : marks) data_.row({p.x, p.y});
-    plot_.data(
-        index,
-        fmt::format("using 1:2 with points pt 1 ps {} lw 4 lc rgb '{}'", detailed_ ? 2.5 : 1.5, kCollisionColour),
-        key("collision"));
+    plot_.data(index,
+               fmt::format("{} with points pt 1 ps {} lw 4 lc rgb '{}'", origin_.using_columns(), detailed_ ? 2.5 : 1.5,
+                           kCollisionColour),
+               key("collision"));
   }
 
   void add_goals() {
@@ -350,8 +358,8 @@ class PathsPanel {
       if (robot.goals.empty()) continue;
       const int index = data_.begin("goals of " + robot.id, "x [m], y [m]");
       for (const Vec2 goal : robot.goals) data_.row({goal.x, goal.y});
-      plot_.data(index, fmt::format("using 1:2 with points pt 2 ps {} lw 2.5 lc rgb '{}'", detailed_ ? 1.3 : 0.7,
-                                    series_colour(i)));
+      plot_.data(index, fmt::format("{} with points pt 2 ps {} lw 2.5 lc rgb '{}'", origin_.using_columns(),
+                                    detailed_ ? 1.3 : 0.7, series_colour(i)));
       any = true;
     }
     if (any && detailed_) plot_.item("keyentry with points pt 2 ps 1.3 lw 2.5 lc rgb '#222222'", "goal");
@@ -361,6 +369,7 @@ class PathsPanel {
   DataFile& data_;
   bool detailed_;
   Box view_;
+  LocalOrigin origin_;
   PlotCommand plot_;
   LabelPlaces times_;
 };
@@ -374,11 +383,6 @@ Box without_slivers(Box box) {
   const double missing_x = std::max(0.0, least - box.width()) / 2.0;
   const double missing_y = std::max(0.0, least - box.height()) / 2.0;
   return {{box.low.x - missing_x, box.low.y - missing_y}, {box.high.x + missing_x, box.high.y + missing_y}};
-}
-
-std::string ranges(const Box& view) {
-  return fmt::format("  set xrange [{:.6g}:{:.6g}]\n  set yrange [{:.6g}:{:.6g}]\n", view.low.x, view.high.x,
-                     view.low.y, view.high.y);
 }
 
 /// A title stands over the middle of the axes and may go as far to the left as they and their labels do.
@@ -445,12 +449,13 @@ Figure paths_figure(const RecordingFile& run) {
       "  set title {}\n"
       "  set size ratio -1\n"
       "{}"
-      "  set xlabel 'x [m]'\n"
-      "  set ylabel 'y [m]'\n"
+      "  set xlabel '{}'\n"
+      "  set ylabel '{}'\n"
       "  set grid lc rgb '#dcdcdc'\n"
       "  set key outside right top reverse Left\n"
       "{}",
-      quoted(fitted_title(run, view)), ranges(view), panel.plot());
+      quoted(fitted_title(run, view)), panel.origin().ranges(view), panel.origin().x_label(), panel.origin().y_label(),
+      panel.plot());
   const std::string shows = "Ways of the robots of " + run_title(run) + "; circles are the robots to scale.";
   return {"paths", data.text(), script_text("paths", shows, canvas_for(view, longest_key(run)), body)};
 }
@@ -468,7 +473,8 @@ Figure paths_sheet(const std::string& name, const std::string& title, const std:
     const PathsPanel paths(*panel.run, data, false);
     const Box view = view_of(*panel.run);
     tallest = std::max(tallest, view.height() / view.width());
-    body += "  set title " + quoted(shortened(panel.title, kPanelTitle)) + " font ',9' offset 0,-0.6\n" + ranges(view) +
+    const std::string panel_title = shortened(panel.title + paths.origin().in_title(), kPanelTitle);
+    body += "  set title " + quoted(panel_title) + " font ',9' offset 0,-0.6\n" + paths.origin().ranges(view) +
             paths.plot();
   }
   body += "  unset multiplot\n";

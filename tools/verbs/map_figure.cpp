@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "figures/local_origin.h"
 #include "figures/outlines.h"
 #include "figures/style.h"
 
@@ -15,19 +16,6 @@ namespace {
 using geometry::ObstacleShapes;
 using geometry::Polygon;
 using geometry::Polyline;
-using geometry::Ring;
-
-/// One closed path: the outer ring with each hole tied to it by a bridge walked there and back, which no filling shows.
-Points tied_together(const Polygon& polygon) {
-  Points path = polygon.outer;
-  path.push_back(path.front());
-  for (const Ring& hole : polygon.holes) {
-    path.insert(path.end(), hole.begin(), hole.end());
-    path.push_back(hole.front());
-    path.push_back(path.front());
-  }
-  return path;
-}
 
 class Map {
  public:
@@ -35,37 +23,56 @@ class Map {
   void curves(const std::string& title, const std::vector<Points>& curves, const std::string& style, bool closed,
               bool in_key = true) {
     if (curves.empty()) return;
-    const int index = data_.begin(title, "x, y [m]");
-    for (const Points& curve : curves) {
-      for (const Vec2 p : curve) {
-        data_.row({p.x, p.y});
-        view_.add(p);
-      }
-      if (closed && !curve.empty()) data_.row({curve.front().x, curve.front().y});
-      data_.gap();
-    }
-    plot_.data(index, "using 1:2 " + style, in_key ? title : "");
+    layers_.push_back({title, curves, style, closed, in_key});
+    for (const Points& curve : curves)
+      for (const Vec2 p : curve) view_.add(p);
   }
 
   Figure figure(const std::string& title, const std::string& name) const {
+    const Box shown = axes();
+    const LocalOrigin origin(shown);
+    DataFile data;
+    origin.prepare(data);
+    PlotCommand plot;
+    for (const Layer& layer : layers_)
+      plot.data(write(layer, data), origin.using_columns() + " " + layer.style, layer.in_key ? layer.title : "");
+    const double width_of_title = 700.0;
+    const std::string body = fmt::format(
+        "  set title {}\n  set size ratio -1\n{}  set xlabel '{}'\n  set ylabel '{}'\n  set tics font ',11'\n"
+        "  set grid lc rgb '#e9e9e9'\n  set key outside right top reverse Left samplen 3\n{}",
+        quoted(shortened(title, characters_in(width_of_title))), origin.ranges(shown), origin.x_label(),
+        origin.y_label(), plot.text());
+    return {name, data.text(), script_text(name, title + ".", {1000, 720}, body)};
+  }
+
+ private:
+  struct Layer {
+    std::string title;
+    std::vector<Points> curves;
+    std::string style;
+    bool closed, in_key;
+  };
+
+  Box axes() const {
     const double half = 0.53 * std::max({view_.width(), view_.height(), 1e-6});
     const Vec2 middle = 0.5 * (view_.low + view_.high);
     const bool is_wide = view_.width() > view_.height();
     const double half_x = is_wide ? half : std::max(0.53 * view_.width(), 0.3 * half);
     const double half_y = is_wide ? std::max(0.53 * view_.height(), 0.3 * half) : half;
-    const double width_of_title = 700.0;
-    const std::string body = fmt::format(
-        "  set title {}\n  set size ratio -1\n  set xrange [{:.9g}:{:.9g}]\n  set yrange [{:.9g}:{:.9g}]\n"
-        "  set xlabel 'x [m]'\n  set ylabel 'y [m]'\n  set tics font ',11'\n  set grid lc rgb '#e9e9e9'\n"
-        "  set key outside right top reverse Left samplen 3\n{}",
-        quoted(shortened(title, characters_in(width_of_title))), middle.x - half_x, middle.x + half_x,
-        middle.y - half_y, middle.y + half_y, plot_.text());
-    return {name, data_.text(), script_text(name, title + ".", {1000, 720}, body)};
+    return {{middle.x - half_x, middle.y - half_y}, {middle.x + half_x, middle.y + half_y}};
   }
 
- private:
-  DataFile data_;
-  PlotCommand plot_;
+  static int write(const Layer& layer, DataFile& data) {
+    const int index = data.begin(layer.title, "x, y [m]");
+    for (const Points& curve : layer.curves) {
+      for (const Vec2 p : curve) data.row({p.x, p.y});
+      if (layer.closed && !curve.empty()) data.row({curve.front().x, curve.front().y});
+      data.gap();
+    }
+    return index;
+  }
+
+  std::vector<Layer> layers_;
   Box view_;
 };
 
