@@ -100,6 +100,16 @@ Json parse_json(std::string_view text, const std::string& file_name) {
   }
 }
 
+Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number) {
+  try {
+    return parse_json(line, file_name);
+  } catch (const DataError& error) {
+    const std::string column = error.place().substr(error.place().find(", ") + 2);
+    throw DataError(error.code(), file_name, "line " + std::to_string(number) + ", " + column, error.found(),
+                    error.expected());
+  }
+}
+
 std::string described(const Json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return "a list of " + std::to_string(value.size());

@@ -27,6 +27,9 @@ inline constexpr int kDeepestJson = 100;
 /// Throws DataError (E_JSON_SYNTAX, E_JSON_DUPLICATE_KEY, E_NESTING, E_NUMBER) with line and column.
 Json parse_json(std::string_view text, const std::string& file_name);
 
+/// The same for line `number` of a file of lines, each of which is JSON: places name that line.
+Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number);
+
 /// "a number", "text", ... with the value where it is short: what messages say was found.
 std::string described(const Json& value);
 

@@ -5,14 +5,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <cerrno>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <system_error>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/lp_problems.h"
 #include "exactvo/vo/lp/solvers.h"
+#include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
 #include "verbs/lp_lines.h"
@@ -27,10 +32,21 @@ struct Flags {
   bool json = false;
 };
 
+/// A file, a pipe or stdin.
 std::string read_all(const std::string& file) {
   if (file == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  using datasets::DataCode;
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error))
+    throw datasets::DataError(DataCode::file_unreadable, file, "", "a folder", "a file that can be read");
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw datasets::DataError(datasets::DataCode::file_missing, file, "the file", "nothing", "a file to read");
+  if (!in) {
+    const bool missing = errno == ENOENT || errno == ENOTDIR;
+    throw datasets::DataError(missing ? DataCode::file_missing : DataCode::file_unreadable, file, "",
+                              missing ? "no such file" : std::generic_category().message(errno),
+                              "a file that can be read");
+  }
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -44,6 +60,7 @@ struct Summary {
   std::size_t problems = 0;
   std::array<std::size_t, 4> by_status{};
   std::size_t certified = 0;
+  std::optional<std::size_t> unproven;  ///< where proofs were asked for: answers without one
   std::size_t exact_fallbacks = 0;
   double worst_violation = 0.0;  ///< m/s, of what the status says must hold
   double ns_per_solve = 0.0;
@@ -63,7 +80,7 @@ double broken_by(const lp::Problem& problem, const lp::Proven& answer) {
   return most;
 }
 
-Summary summarise(const std::vector<lp::Problem>& problems, const std::vector<lp::Proven>& answers) {
+Summary summarise(const std::vector<lp::Problem>& problems, const std::vector<lp::Proven>& answers, bool with_proofs) {
   Summary summary;
   summary.problems = problems.size();
   for (std::size_t k = 0; k < problems.size(); ++k) {
@@ -73,6 +90,7 @@ Summary summarise(const std::vector<lp::Problem>& problems, const std::vector<lp
     summary.exact_fallbacks += answer.exact_stage;
     summary.worst_violation = std::max(summary.worst_violation, broken_by(problems[k], answer));
   }
+  if (with_proofs) summary.unproven = summary.problems - summary.certified;
   return summary;
 }
 
@@ -80,43 +98,73 @@ nlohmann::ordered_json summary_json(const Summary& s) {
   nlohmann::ordered_json fields = {{"problems", s.problems}};
   for (std::size_t k = 0; k < s.by_status.size(); ++k) fields[name(static_cast<lp::Status>(k))] = s.by_status[k];
   fields["certified"] = s.certified;
+  fields["unproven"] = s.unproven ? nlohmann::ordered_json(*s.unproven) : nlohmann::ordered_json();
   fields["exact_fallbacks"] = s.exact_fallbacks;
   fields["worst_violation"] = s.worst_violation;
   fields["ns_per_solve"] = s.ns_per_solve;
   return {{"summary", fields}};
 }
 
+/// Prints in chunks: neither a system call a line nor the whole text in memory.
+class Output {
+ public:
+  void add(const std::string& line) {
+    text_ += line;
+    if (text_.size() > kChunk) flush();
+  }
+  void flush() {
+    print(text_);
+    text_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kChunk = std::size_t{1} << 16;
+  std::string text_;
+};
+
 void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
+  Output out;
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const lp::Solution& a = answers[k].solution;
-    fmt::print("{:>8} {:<11}{:>22.17g}{:>24.17g}{:>12.4g}  {}\n", k, name(a.status), a.velocity.x, a.velocity.y,
-               a.violation, answers[k].certificate ? "proven" : "");
+    const char* without = s.unproven ? "NOT proven" : "";
+    out.add(fmt::format("{:>8} {:<11}{:>22.17g}{:>24.17g}{:>12.4g}  {}\n", k, name(a.status), a.velocity.x,
+                        a.velocity.y, a.violation, answers[k].certificate ? "proven" : without));
   }
-  fmt::print("{} problems: {} optimal, {} relaxed, {} infeasible, {} pinched; {} proven, {} by the exact stage\n",
-             s.problems, s.by_status[0], s.by_status[1], s.by_status[2], s.by_status[3], s.certified,
-             s.exact_fallbacks);
+  out.add(fmt::format(
+      "{} problems: {} optimal, {} relaxed, {} infeasible, {} pinched; {} proven, {} by the exact stage\n", s.problems,
+      s.by_status[0], s.by_status[1], s.by_status[2], s.by_status[3], s.certified, s.exact_fallbacks));
+  out.flush();
 }
 
 void print_lines(const std::vector<lp::Proven>& answers, const Summary& summary) {
-  for (std::size_t k = 0; k < answers.size(); ++k) std::cout << result_line(k, answers[k]).dump() << '\n';
-  std::cout << summary_json(summary).dump() << '\n';
+  Output out;
+  for (std::size_t k = 0; k < answers.size(); ++k) out.add(result_line(k, answers[k]).dump() + "\n");
+  out.add(summary_json(summary).dump() + "\n");
+  out.flush();
+}
+
+bool asks_for_proofs(lp::Solver solver, const Flags& flags) {
+  return flags.certify || solver == lp::Solver::certified || solver == lp::Solver::exact;
 }
 
 ExitCode run(const Flags& flags) {
   const auto solver = parse_choice<lp::Solver>("--solver", flags.solver, lp::solver_names());
-  const std::vector<lp::Problem> problems = read_problems(read_all(flags.file), flags.file);
+  const std::vector<lp::Problem> problems = datasets::parse_lp_problems(read_all(flags.file), flags.file);
   const double before = thread_nanoseconds();
   std::vector<lp::Proven> answers = lp::solve_all(solver, problems);
   const double spent = thread_nanoseconds() - before;
   if (flags.certify)
     for (std::size_t k = 0; k < problems.size(); ++k) prove(problems[k], answers[k]);
-  Summary summary = summarise(problems, answers);
+  Summary summary = summarise(problems, answers, asks_for_proofs(solver, flags));
   summary.ns_per_solve = problems.empty() ? 0.0 : spent / static_cast<double>(problems.size());
   if (flags.json)
     print_lines(answers, summary);
   else
     print_table(answers, summary);
-  return ExitCode::success;
+  if (summary.unproven.value_or(0) == 0) return ExitCode::success;
+  message(fmt::format("warning: {} of {} answers have no proof: their multipliers leave the range of doubles",
+                      *summary.unproven, summary.problems));
+  return ExitCode::negative;
 }
 
 Action declare(CLI::App& app) {
@@ -134,7 +182,10 @@ Verb lp_verb() {
   return {
       "lp", "Solve the small linear programs that turn half-planes into a velocity, with proofs",
       "  echo '{\"bound\": {\"disc\": 2}, \"preferred\": [2, 0], \"constraints\": [{\"normal\": [-1, 0], \"offset\": "
-      "-0.5}]}' | exactvo lp - --json\n",
+      "-0.5}]}' | exactvo lp - --json\n"
+      "    (status 1: an answer has no proof where proofs were asked for, by `certified`, `exact` or --certify. The "
+      "lines:\n"
+      "    docs/guide/linear-program.md)\n",
       declare};
 }
 

@@ -15,6 +15,8 @@ using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
 
+constexpr std::string_view kKind = "exactvo-recording";
+
 geometry::ConvexShape to_shape(const JsonCursor& at) {
   if (at.has("disc")) return geometry::Disc{at.at("disc").at("center").point(), at.at("disc").at("radius").number()};
   if (at.has("segment")) {
@@ -107,8 +109,7 @@ void read_later_enclosures(const JsonCursor& at, formation::Recording& recording
 
 /// Fills everything but the rows; says how many of these there should be.
 std::size_t read_header(const JsonCursor& at, const std::string& name, RecordingFile& file) {
-  if (at.at("kind").text() != "exactvo-recording")
-    at.at("kind").refuse("\"exactvo-recording\"", DataCode::not_an_option);
+  if (at.at("kind").text() != kKind) at.at("kind").refuse("\"exactvo-recording\"", DataCode::not_an_option);
   if (at.at("format_version").integer() != 1) at.at("format_version").refuse("1", DataCode::out_of_range);
   file.scenario = parse_scenario(at.at("scenario").json().dump(), name, {});
   file.info.scenario = file.scenario.name;
@@ -144,15 +145,10 @@ std::string_view next_line(std::string_view& text) {
   return line;
 }
 
-/// The line as JSON; a syntax error in it is placed in the file, not in the line.
-Json parse_line(std::string_view line, const std::string& name, std::size_t number) {
-  try {
-    return parse_json(line, name);
-  } catch (const DataError& error) {
-    const std::string column = error.place().substr(error.place().find(", ") + 2);
-    throw DataError(error.code(), name, "line " + std::to_string(number) + ", " + column, error.found(),
-                    error.expected());
-  }
+/// A file of another kind is refused as a whole: what is wrong in its first line tells nobody anything.
+void require_recording(std::string_view text, const std::string& name) {
+  if (text.substr(0, text.find('\n')).find(kKind) != std::string_view::npos) return;
+  throw DataError(DataCode::format_unknown, name, "", "no recording", "a recording.jsonl, as simulate --out writes it");
 }
 
 }  // namespace
@@ -160,12 +156,13 @@ Json parse_line(std::string_view line, const std::string& name, std::size_t numb
 RecordingFile read_recording(const std::filesystem::path& path) {
   const std::string text = read_text_file(path);
   const std::string name = path.string();
+  require_recording(text, name);
   std::string_view rest = text;
   RecordingFile file;
-  const Json header = parse_line(next_line(rest), name, 1);
+  const Json header = parse_json_line(next_line(rest), name, 1);
   const std::size_t rows = read_header(JsonCursor(header, name, "line 1"), name, file);
   for (std::size_t number = 2; !rest.empty(); ++number) {
-    const Json row = parse_line(next_line(rest), name, number);
+    const Json row = parse_json_line(next_line(rest), name, number);
     const JsonCursor at(row, name, "line " + std::to_string(number));
     file.recording.steps.push_back(to_step(at, file.scenario));
     if (at.has("lyapunov")) file.lyapunov.push_back(to_lyapunov(at.at("lyapunov"), file.recording.steps.back().time));

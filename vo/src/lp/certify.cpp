@@ -50,6 +50,14 @@ Vec2 column(const Problem& problem, std::size_t index, Vec2 v) {
   return index == kSpeedBound ? -v : half_plane_at(problem, index).normal;
 }
 
+/// nu of (4), |p|/|v| - 1 where the disc binds alone. Beyond 1/u a larger one moves the bound by less than u |p|^2, the
+/// least gap anyway; a disc of 0, or one whose square underflows, has no other.
+double multiplier_of_disc(Vec2 sum, Vec2 towards_centre) {
+  constexpr double kMost = 1.0 / kUnitRoundoff;
+  const double nu = dot(sum, towards_centre) / squared_norm(towards_centre);
+  return nu < kMost ? std::max(0.0, nu) : kMost;  // also where nu is 0/0
+}
+
 /// The disc's multiplier is part of the proof for the nearest velocity only.
 void add_unless_implied(const Problem& problem, std::size_t index, double value, Multipliers& m) {
   if (index != kSpeedBound || problem.objective == Objective::nearest) m.add(index, value);
@@ -60,7 +68,9 @@ Multipliers of_optimum(const Problem& problem, Vec2 v, const std::vector<std::si
   const Vec2 sum = pull(problem, v);
   if (chosen.size() == 1) {
     const Vec2 x = column(problem, chosen[0], v);
-    add_unless_implied(problem, chosen[0], std::max(0.0, dot(sum, x) / squared_norm(x)), m);
+    const bool is_disc = chosen[0] == kSpeedBound;
+    const double multiplier = is_disc ? multiplier_of_disc(sum, x) : std::max(0.0, dot(sum, x) / squared_norm(x));
+    add_unless_implied(problem, chosen[0], multiplier, m);
   } else if (chosen.size() == 2) {
     const auto pair = solve_pair(column(problem, chosen[0], v), column(problem, chosen[1], v), sum);
     add_unless_implied(problem, chosen[0], std::max(0.0, pair[0]), m);

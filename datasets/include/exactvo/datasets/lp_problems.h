@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Problems of the linear program from files: lines of JSON, or the binary instance file (vo/lp/instances.h).
+///
+///   {"bound": {"disc": 2, "box": [1, 1]}, "preferred": [1, 0], "objective": "nearest",
+///    "constraints": [{"normal": [1, 0], "offset": 0.5, "priority": "soft", "label": 3}]}
+///
+/// `bound`, `disc`, `box`, `objective`, `priority` ("hard") and `label` (-1) may be left out. A line is held against
+/// the published schema, datasets/schema/lp.schema.json: an unknown key, a number beyond 1e90 and the like are refused
+/// with the line and the JSON pointer of what is wrong, as in scenarios.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/vo/lp/problem.h"
+
+namespace exactvo::datasets {
+
+/// Empty lines are passed over. Throws DataError; `file_name` is used in its words. Every problem returned passes
+/// lp::require_well_formed.
+std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name);
+
+/// The JSON Schema that a line is held against.
+const std::string& lp_schema();
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/lp_problems.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "exactvo/vo/lp/instances.h"
+#include "json_text.h"
+#include "scenarios/schema_check.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using geometry::Vec2;
+
+const Json& parsed_schema() {
+  static const Json schema = parse_json(lp_schema(), "lp.schema.json");
+  return schema;
+}
+
+/// A line that fits the schema, and what no schema can say of it.
+class Line {
+ public:
+  Line(const Json& tree, const std::string& file) : tree_(tree), file_(file) {}
+
+  lp::Problem problem() const {
+    lp::Problem problem;
+    problem.preferred = to_vector(tree_.at("preferred"));
+    if (tree_.contains("bound")) problem.bound = to_bound(tree_.at("bound"));
+    if (tree_.value("objective", "nearest") == "farthest") problem.objective = lp::Objective::farthest;
+    const Json& constraints = tree_.at("constraints");
+    for (std::size_t k = 0; k < constraints.size(); ++k)
+      problem.constraints.push_back(to_constraint(constraints[k], "/constraints/" + std::to_string(k)));
+    if (problem.objective == lp::Objective::farthest) check_direction(problem);
+    return problem;
+  }
+
+ private:
+  static Vec2 to_vector(const Json& list) { return {list[0].get<double>(), list[1].get<double>()}; }
+
+  static lp::SpeedBound to_bound(const Json& object) {
+    lp::SpeedBound bound;
+    if (object.contains("disc")) bound.disc = object.at("disc").get<double>();
+    if (!object.contains("box")) return bound;
+    const Vec2 box = to_vector(object.at("box"));
+    bound.box_x = box.x;
+    bound.box_y = box.y;
+    return bound;
+  }
+
+  lp::Constraint to_constraint(const Json& object, const std::string& at) const {
+    lp::Constraint c;
+    c.half_plane = {to_vector(object.at("normal")), object.at("offset").get<double>()};
+    if (c.half_plane.normal == Vec2{})
+      refuse(DataCode::out_of_range, at + "/normal", "[0, 0]", "a normal that is not 0");
+    if (object.value("priority", "hard") == "soft") c.priority = lp::Priority::soft;
+    if (!object.contains("label")) return c;
+    const double label = object.at("label").get<double>();
+    if (label != std::floor(label))
+      refuse(DataCode::wrong_type, at + "/label", object.at("label").dump(), "a whole number");
+    c.label = static_cast<int>(label);
+    return c;
+  }
+
+  void check_direction(const lp::Problem& problem) const {
+    const lp::SpeedBound& b = problem.bound;
+    if (problem.preferred == Vec2{})
+      refuse(DataCode::out_of_range, "/preferred", "[0, 0]", "a direction that is not 0");
+    if (std::isinf(b.disc) && std::isinf(b.box_x))
+      refuse(DataCode::no_alternative, "/bound", "no bound", "a disc or a box, for the objective farthest");
+  }
+
+  [[noreturn]] void refuse(DataCode code, const std::string& at, const std::string& found,
+                           const std::string& expected) const {
+    throw DataError(code, file_, at, found, expected);
+  }
+
+  const Json& tree_;
+  const std::string& file_;
+};
+
+lp::Problem parse_line(const std::string& text, std::size_t number, const std::string& file) {
+  const Json tree = parse_json_line(text, file, number);
+  try {
+    check_against_schema(tree, parsed_schema(), file);
+    return Line(tree, file).problem();
+  } catch (const DataError& e) {
+    const std::string line = "line " + std::to_string(number);
+    throw DataError(e.code(), file, line + (e.place().empty() ? "" : ", " + e.place()), e.found(), e.expected());
+  }
+}
+
+std::vector<lp::Problem> read_lines(const std::string& bytes, const std::string& file) {
+  std::vector<lp::Problem> problems;
+  std::istringstream in(bytes);
+  std::size_t number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") != std::string::npos) problems.push_back(parse_line(line, number, file));
+  }
+  return problems;
+}
+
+std::vector<lp::Problem> read_binary(const std::string& bytes, const std::string& file) {
+  std::istringstream in(bytes);
+  try {
+    return lp::read_instances(in);
+  } catch (const lp::InstanceError& e) {
+    throw DataError(DataCode::format_syntax, file, e.place, e.found, e.expected);
+  }
+}
+
+/// A line of JSON starts with `{` and a quotation mark or a brace; the count of a binary file does not look like that
+/// below half a million instances.
+bool looks_like_lines(const std::string& bytes) {
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) return true;
+  if (bytes[first] != '{') return false;
+  const std::size_t second = bytes.find_first_not_of(" \t\r\n", first + 1);
+  return second == std::string::npos || bytes[second] == '"' || bytes[second] == '}';
+}
+
+}  // namespace
+
+std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name) {
+  return looks_like_lines(bytes) ? read_lines(bytes, file_name) : read_binary(bytes, file_name);
+}
+
+}  // namespace exactvo::datasets

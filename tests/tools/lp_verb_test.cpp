@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verb `lp` as a user meets it: what it refuses and how, what it says of answers without a proof.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kGood = R"({"bound": {"disc": 2}, "preferred": [2, 0],
+ "constraints": [{"normal": [-1, 0], "offset": -0.5}]})";
+
+std::string on_one_line(std::string text) {
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text + "\n";
+}
+
+/// What stdin's only line, or its second after a good one, is refused with.
+struct Refusal {
+  const char* line;
+  const char* place;
+  const char* words;
+};
+
+TEST(Lp, WhatALineMayNotHoldIsNamedWithItsPlace) {
+  const Workplace here;
+  const Refusal refusals[] = {
+      {R"({"bound":{"disk":1.2},"preferred":[3,3],"constraints":[]})", "line 2, /bound/disk", "did you mean \"disc\"?"},
+      {R"({"preferred":[3,3],"constraints":[{"normal":[1,0],"offset":1,"hard":false}]})", "line 2, /constraints/0/hard",
+       "[E_KEY_UNKNOWN]"},
+      {R"({"preferred":[3,3],"constraints":[],"foo":1})", "line 2, /foo", "[E_KEY_UNKNOWN]"},
+      {R"({"preferred":[3,3]})", "line 2", "[E_KEY_MISSING]"},
+      {R"({"preferred":[3,3],"constraints":[],"constraints":[]})", "line 2, column", "[E_JSON_DUPLICATE_KEY]"},
+      {R"({"preferred":[3,3],"constraints":[})", "line 2, column 35", "[E_JSON_SYNTAX]"},
+      {R"({"preferred":[3,3],"constraints":[{"normal":[0,0],"offset":1}]})", "line 2, /constraints/0/normal",
+       "a normal that is not 0"},
+      {R"({"bound":{"disc":-1},"preferred":[3,3],"constraints":[]})", "line 2, /bound/disc", "[E_RANGE]"},
+      {R"({"bound":{"disc":1e300},"preferred":[3,3],"constraints":[]})", "line 2, /bound/disc", "1e+90"},
+      {R"({"preferred":[3,3],"constraints":[],"objective":"farthest"})", "line 2, /bound", "a disc or a box"},
+      {R"({"preferred":[3,3],"constraints":[{"normal":[1,0],"offset":1,"label":0.5}]})", "line 2, /constraints/0/label",
+       "a whole number"},
+      {R"({"preferred":[3,3],"constraints":[],"objective":"nearst"})", "line 2, /objective", "[E_OPTION]"}};
+  for (const Refusal& r : refusals) {
+    here.write("p.jsonl", on_one_line(kGood) + r.line + "\n");
+    const Outcome outcome = here.run("lp p.jsonl");
+    EXPECT_EQ(outcome.status, 2) << r.line;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(r.place), HasSubstr(r.words), Not(HasSubstr("requires")))) << r.line;
+  }
+}
+
+TEST(Lp, AFolderAMissingFileAndAFullDiskAreNoDefectsOfTheProgram) {
+  const Workplace here;
+  here.write("p.jsonl", on_one_line(kGood));
+  const Outcome folder = here.run("lp .");
+  EXPECT_EQ(folder.status, 2);
+  EXPECT_THAT(folder.err, HasSubstr("E_FILE_UNREADABLE"));
+  const Outcome missing = here.run("lp nowhere.jsonl");
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.err, HasSubstr("E_FILE_MISSING"));
+  here.run("lp p.jsonl 2>words >/dev/full; echo $? >status; } ; true", "{");
+  EXPECT_EQ(here.read("status"), "2\n");
+  EXPECT_THAT(here.read("words"), HasSubstr("E_FILE_UNWRITABLE"));
+}
+
+TEST(Lp, AReaderThatLeavesIsNoError) {
+  const Workplace here;
+  std::string lines;
+  for (int k = 0; k < 4000; ++k) lines += on_one_line(kGood);
+  here.write("many.jsonl", lines);
+  here.run("lp many.jsonl --json 2>words; echo $? >status; } | head -1 ; true", "{");
+  EXPECT_EQ(here.read("status"), "0\n");
+  EXPECT_EQ(here.read("words"), "");
+}
+
+/// The distance squared to the only velocity is 18: what is proven is that, up to rounding.
+TEST(Lp, AGapIsARoundingErrorAlsoWhereTheDiscIsAPoint) {
+  const Workplace here;
+  for (const char* disc : {"0", "1e-300", "1e-30", "1"}) {
+    here.write("p.jsonl", std::string(R"({"bound":{"disc":)") + disc + R"(},"preferred":[3,3],"constraints":[]})");
+    for (const char* solver : {"certified", "exact"}) {
+      const Outcome outcome = here.run(std::string("lp p.jsonl --json --solver ") + solver);
+      EXPECT_EQ(outcome.status, 0) << disc << outcome.err;
+      const json answer = json::parse(outcome.out.substr(0, outcome.out.find('\n')));
+      ASSERT_TRUE(answer.at("certificate").is_object()) << disc << ' ' << solver;
+      EXPECT_LE(answer.at("certificate").at("gap"), 18 * 0x1p-40) << disc << ' ' << solver;
+    }
+  }
+}
+
+json summary_of(const Outcome& outcome) {
+  const std::size_t last = outcome.out.rfind('\n', outcome.out.size() - 2);
+  return json::parse(outcome.out.substr(last == std::string::npos ? 0 : last + 1)).at("summary");
+}
+
+TEST(Lp, WhoAsksForProofsIsToldHowManyThereAreNot) {
+  const Workplace here;
+  here.write("p.jsonl", on_one_line(kGood));
+  EXPECT_EQ(summary_of(here.run("lp p.jsonl --json")).at("unproven"), 0);
+  EXPECT_EQ(summary_of(here.run("lp p.jsonl --json --solver incremental --certify")).at("unproven"), 0);
+  EXPECT_TRUE(summary_of(here.run("lp p.jsonl --json --solver incremental")).at("unproven").is_null());
+}
+
+}  // namespace
+}  // namespace exactvo::test
