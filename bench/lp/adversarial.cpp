@@ -7,6 +7,7 @@
 #include "competitor.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
+#include "violation.h"
 
 namespace exactvo::bench {
 namespace {
@@ -26,8 +27,7 @@ struct Tally {
     false_feasible += !feasible && answer.feasible;
     excess = std::max(excess, norm(answer.velocity) / problem.bound.disc - 1.0);
     if (!feasible || !answer.feasible) return;
-    for (const lp::Constraint& c : problem.constraints)
-      violation = std::max(violation, geometry::violation(c.half_plane, answer.velocity));
+    violation = std::max(violation, worst_violation(problem.constraints, answer.velocity));
   }
   void add(const Tally& t) {
     problems += t.problems;

@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "adversarial.h"
 #include "competitor.h"
@@ -18,6 +19,7 @@
 #include "exactvo_commit.h"
 #include "recorded.h"
 #include "results.h"
+#include "violation.h"
 #include "warm.h"
 
 namespace exactvo::bench {
@@ -122,9 +124,9 @@ std::vector<Set> sets_of(const Flags& flags) {
 struct Run {
   Entry entry;
   std::unique_ptr<Competitor> competitor;
-  std::vector<double> times;  ///< ns a solve, one a round
-  std::size_t wrong = 0;      ///< verdicts
-  double worst_violation = 0.0;
+  std::vector<double> times;     ///< ns a solve, one a round
+  std::size_t wrong = 0;         ///< verdicts
+  double worst_violation = 0.0;  ///< m/s, in exact arithmetic, of answers rightly called feasible
   std::size_t apart = 0;
 };
 
@@ -137,8 +139,7 @@ void compare(const std::vector<lp::Problem>& problems, const Truth& truth, Run& 
     run.wrong += answer.feasible != feasible;
     if (!feasible || !answer.feasible || run.entry.feasible_only) continue;
     run.apart += norm(answer.velocity - truth.solutions[i].velocity) > kApart;
-    for (const lp::Constraint& c : problems[i].constraints)
-      run.worst_violation = std::max(run.worst_violation, geometry::violation(c.half_plane, answer.velocity));
+    run.worst_violation = std::max(run.worst_violation, worst_violation(problems[i].constraints, answer.velocity));
   }
 }
 
@@ -204,17 +205,53 @@ void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out)
                                  {"p10", quantile(run.times, 0.1)},
                                  {"p90", quantile(run.times, 0.9)},
                                  {"ratio_to_usual", usual / median},
+                                 {"problems", run.competitor->count()},
                                  {"wrong_verdicts", run.wrong},
+                                 {"apart", run.apart},
                                  {"worst_violation", run.worst_violation}});
   }
 }
 
+void add_json(const std::vector<FigureRow>& rows, nlohmann::json& out) {
+  out["figures"] = nlohmann::json::array();
+  for (const FigureRow& row : rows)
+    out["figures"].push_back({{"what", row.what},
+                              {"reach", row.reach},
+                              {"measured", row.measured},
+                              {"at_most", row.at_most},
+                              {"reached", row.reached()}});
+}
+
+/// "AMD EPYC 9B45"; empty where the system does not say.
+std::string processor() {
+  std::ifstream facts("/proc/cpuinfo");
+  for (std::string line; std::getline(facts, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(": ") + 2);
+  return "";
+}
+
+/// The mean number of processes that wanted to run in the last minute: figures of a busy machine are not those of a
+/// quiet one.
+double load() {
+  std::ifstream facts("/proc/loadavg");
+  double mean = 0.0;
+  facts >> mean;
+  return mean;
+}
+
 nlohmann::json context(const Flags& flags) {
   lp::limit_batch_target(flags.target.c_str());
-  return {{"executable", "bench_lp"}, {"library_build_type", "release"},
-          {"compiler", __VERSION__},  {"simd_target", lp::batch_target()},
-          {"commit", EXACTVO_COMMIT}, {"seed", flags.seed},
-          {"rounds", flags.rounds},   {"clock", "thread CPU time, median of the rounds, solvers interleaved"}};
+  return {{"cpu", processor()},
+          {"cpus", std::thread::hardware_concurrency()},
+          {"load_at_start", load()},
+          {"executable", "bench_lp"},
+          {"library_build_type", "release"},
+          {"compiler", __VERSION__},
+          {"simd_target", lp::batch_target()},
+          {"commit", EXACTVO_COMMIT},
+          {"seed", flags.seed},
+          {"rounds", flags.rounds},
+          {"clock", "thread CPU time, median of the rounds, solvers interleaved"}};
 }
 
 bool disagrees(const std::vector<Run>& runs) {
@@ -256,8 +293,12 @@ int arena(const Flags& flags) {
     add_results(set, truth, runs, results);
     sound = sound && !disagrees(runs);
   }
+  if (flags.table) {
+    const std::vector<FigureRow> rows = figures_of(results);
+    print_figures(rows);
+    add_json(rows, out);
+  }
   if (!flags.json.empty()) std::ofstream(flags.json) << out.dump(2) << '\n';
-  if (flags.table) print_figures(results);
   return sound ? 0 : 1;
 }
 
@@ -267,8 +308,22 @@ void use_table(Flags& flags) {
   for (const std::string& set : sets_of_figures()) flags.sets += (flags.sets.empty() ? "" : ",") + set;
 }
 
+constexpr const char* kUsage =
+    "usage: bench_lp [--table | --sets C10f,RF10,...] [--instances FILE] [--target AVX2] [--json FILE] [--seed N]\n"
+    "                [--rounds N] [--untimed PASSES]\n"
+    "       bench_lp --adversarial PROBLEMS [--json FILE] [--seed N]\n"
+    "       bench_lp --warm C10\n"
+    "Times in thread CPU time; `wrong` counts verdicts that are not the exact ones, `apart` velocities more than 1e-4\n"
+    "m/s from the exact one, `violation` is the worst of a feasible answer, in exact arithmetic. docs/guide/\n"
+    "linear-program.md says what the sets and solvers are.\n";
+
+bool asks_for_help(const std::string& option) {
+  return option == "--help" || option == "-h";
+}
+
 Flags read_flags(int argc, char** argv) {
   Flags flags;
+  bool sets_given = false;
   const std::map<std::string, std::string*> texts = {{"--sets", &flags.sets},
                                                      {"--instances", &flags.instances},
                                                      {"--json", &flags.json},
@@ -280,6 +335,7 @@ Flags read_flags(int argc, char** argv) {
       use_table(flags);
       continue;
     }
+    sets_given = sets_given || option == "--sets";
     if (++k == argc) throw std::runtime_error(option + " takes a value");
     if (texts.count(option) != 0)
       *texts.at(option) = argv[k];
@@ -294,6 +350,7 @@ Flags read_flags(int argc, char** argv) {
     else
       throw std::runtime_error("unknown option " + option);
   }
+  if (sets_given && flags.table) throw std::runtime_error("--table has its own sets: leave --sets out");
   if (!lp::limit_batch_target(flags.target.c_str())) throw std::runtime_error("no such target: " + flags.target);
   if (!flags.instances.empty() && !flags.table) flags.sets.clear();
   return flags;
@@ -303,12 +360,13 @@ Flags read_flags(int argc, char** argv) {
 }  // namespace exactvo::bench
 
 int main(int argc, char** argv) try {
-  return exactvo::bench::arena(exactvo::bench::read_flags(argc, argv));
+  using namespace exactvo::bench;
+  if (std::any_of(argv + 1, argv + argc, asks_for_help)) {
+    std::cout << kUsage;
+    return 0;
+  }
+  return arena(read_flags(argc, argv));
 } catch (const std::exception& e) {
-  std::cerr << "bench_lp: " << e.what()
-            << "\nusage: bench_lp [--table] [--instances FILE] [--sets C10f,RF10,...] [--target AVX2] [--json FILE] "
-               "[--seed N]"
-               " [--rounds N] [--untimed PASSES]\n       bench_lp --adversarial PROBLEMS [--json FILE] [--seed N]\n    "
-               "   bench_lp --warm C10\n";
+  std::cerr << "bench_lp: " << e.what() << '\n' << exactvo::bench::kUsage;
   return 2;
 }

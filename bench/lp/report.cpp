@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lp_report ARENA.json ADVERSARIAL.json FOLDER: what `bench_lp --json` wrote, as a page with three pictures: time
-// against the number of lines, wrong verdicts against the perturbation, and a performance profile (Dolan and More
-// 2002).
+// lp_report ARENA.json ADVERSARIAL.json FOLDER: what `bench_lp --json` wrote, as a page: the figures to reach, how long
+// each solver takes and how often it is wrong, time against the number of lines, wrong verdicts against the
+// perturbation, and a performance profile (Dolan and More 2002). A solver has one colour and dash in every picture.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -22,6 +22,12 @@ using nlohmann::json;
 /// ns a solve by set and solver.
 using Times = std::map<std::string, std::map<std::string, double>>;
 
+/// One solver on one set: what the page says beside its time.
+struct Accuracy {
+  double wrong = 0.0, apart = 0.0, violation = 0.0;
+};
+using Accuracies = std::map<std::string, std::map<std::string, Accuracy>>;
+
 /// Competitors that answer another question, or a part of it, are left out of the profile.
 const std::set<std::string> kPartial = {"cgal-qp-Gmpzf", "glpk"};
 /// A logarithmic axis has no zero: shares of wrong verdicts below this are drawn here.
@@ -31,6 +37,13 @@ json read(const char* file) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error(std::string("cannot read ") + file);
   return json::parse(in);
+}
+
+/// Refuses a file without a list that `bench_lp` writes, with words about which file is in whose place.
+void require_list(const json& file, const char* key, const char* name, const char* command) {
+  if (file.is_object() && file.contains(key) && file.at(key).is_array()) return;
+  throw std::runtime_error(std::string(name) + ": found no list \"" + key + "\", expected what `" + command +
+                           "` writes (ARENA.json comes before ADVERSARIAL.json)");
 }
 
 std::ofstream open(const fs::path& file) {
@@ -49,6 +62,17 @@ Times times_of(const json& arena) {
   return times;
 }
 
+Accuracies accuracies_of(const json& arena) {
+  Accuracies all;
+  for (const json& row : arena.at("benchmarks")) {
+    const std::string name = row.at("name");
+    const std::size_t slash = name.find('/');
+    all[name.substr(0, slash)][name.substr(slash + 1)] = {row.at("wrong_verdicts"), row.value("apart", 0.0),
+                                                          row.at("worst_violation")};
+  }
+  return all;
+}
+
 std::set<std::string> solvers_of(const Times& times) {
   std::set<std::string> solvers;
   for (const auto& [set, row] : times)
@@ -56,9 +80,32 @@ std::set<std::string> solvers_of(const Times& times) {
   return solvers;
 }
 
-const char* colour(std::size_t i) {
-  constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#555555"};
-  return kColours[i % std::size(kColours)];
+/// How a solver is drawn, the same everywhere: a colour a family, dashes for its narrower or slower members.
+struct Look {
+  const char* solver;
+  const char* colour;
+  const char* dash;
+};
+constexpr Look kLooks[] = {
+    {"usual", "#555555", ""},           {"batch-double", "#0072B2", ""},     {"batch-double-AVX2", "#0072B2", " dt 2"},
+    {"batch-certified", "#009E73", ""}, {"batch-float", "#E69F00", ""},      {"batch-float-AVX2", "#E69F00", " dt 2"},
+    {"single", "#56B4E9", ""},          {"incremental", "#56B4E9", " dt 2"}, {"certified", "#CC79A7", ""},
+    {"exact", "#CC79A7", " dt 2"},      {"cgal-qp-Gmpzf", "#D55E00", ""},    {"glpk", "#D55E00", " dt 2"}};
+
+Look look_of(const std::string& solver) {
+  for (const Look& look : kLooks)
+    if (solver == look.solver) return look;
+  return {"", "#000000", " dt 3"};
+}
+
+/// Solvers in the order of the table above, then whatever it does not know.
+std::vector<std::string> in_order(const std::set<std::string>& solvers) {
+  std::vector<std::string> ordered;
+  for (const Look& look : kLooks)
+    if (solvers.count(look.solver) != 0) ordered.emplace_back(look.solver);
+  for (const std::string& solver : solvers)
+    if (std::find(ordered.begin(), ordered.end(), solver) == ordered.end()) ordered.push_back(solver);
+  return ordered;
 }
 
 /// A curve a solver: `points` gives lines of "x y".
@@ -74,10 +121,10 @@ void draw(const fs::path& folder, const std::string& name, const std::string& se
          << "set key outside right\nset grid lc rgb '#dddddd'\n"
          << setup << "plot";
   for (std::size_t i = 0; i < curves.size(); ++i) {
+    const Look look = look_of(curves[i].label);
     data << "# " << curves[i].label << '\n' << curves[i].points << "\n\n";
     script << (i == 0 ? " " : ", ") << "'" << name << ".dat' index " << i << " with linespoints pt " << 4 + i % 9
-           << " ps 0.7 lw 2 lc rgb '" << colour(i) << "'" << (i >= 7 ? " dt 2" : "") << " title '" << curves[i].label
-           << "'";
+           << " ps 0.7 lw 2 lc rgb '" << look.colour << "'" << look.dash << " title '" << curves[i].label << "'";
   }
   script << '\n';
   script.close();
@@ -99,7 +146,7 @@ std::map<int, std::string> sets_by_lines(const Times& times, const std::string& 
 
 void draw_times(const fs::path& folder, const Times& times, const std::string& kind) {
   std::vector<Curve> curves;
-  for (const std::string& solver : solvers_of(times)) {
+  for (const std::string& solver : in_order(solvers_of(times))) {
     std::ostringstream points;
     for (const auto& [m, set] : sets_by_lines(times, kind))
       if (times.at(set).count(solver) != 0) points << m << ' ' << times.at(set).at(solver) << '\n';
@@ -112,7 +159,7 @@ void draw_times(const fs::path& folder, const Times& times, const std::string& k
 
 void draw_profile(const fs::path& folder, const Times& times) {
   std::vector<Curve> curves;
-  for (const std::string& solver : solvers_of(times)) {
+  for (const std::string& solver : in_order(solvers_of(times))) {
     if (kPartial.count(solver) != 0) continue;
     std::vector<double> factors;
     for (const auto& [set, row] : times) {
@@ -141,10 +188,12 @@ void draw_accuracy(const fs::path& folder, const json& adversarial) {
     bad += row.at("false_infeasible").get<double>() + row.at("false_feasible").get<double>();
     all += row.at("problems").get<double>();
   }
+  std::set<std::string> solvers;
+  for (const auto& [solver, counts] : wrong) solvers.insert(solver);
   std::vector<Curve> curves;
-  for (const auto& [solver, by_perturbation] : wrong) {
+  for (const std::string& solver : in_order(solvers)) {
     std::ostringstream points;
-    for (const auto& [e, counts] : by_perturbation)
+    for (const auto& [e, counts] : wrong.at(solver))
       points << e << ' ' << std::max(kLeastShare, counts.first / counts.second) << '\n';
     curves.push_back({solver, points.str()});
   }
@@ -154,36 +203,131 @@ void draw_accuracy(const fs::path& folder, const json& adversarial) {
        curves);
 }
 
-void write_page(const fs::path& folder, const json& arena, const Times& times) {
-  std::ofstream page = open(folder / "report.html");
-  const std::set<std::string> solvers = solvers_of(times);
-  page << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>The arena</title>\n"
-       << "<style>body{font:15px sans-serif;max-width:70em;margin:2em auto}td,th{padding:.2em .6em;text-align:right}"
-       << "img{display:block;margin:1em 0}</style></head><body>\n<h1>The arena of the linear program</h1>\n<p>";
-  for (const auto& [key, value] : arena.at("context").items())
-    page << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "; ";
-  page << "</p>\n<h2>Nanoseconds a solve (times as fast as the usual solver)</h2>\n<table><tr><th>set</th>";
-  for (const std::string& solver : solvers) page << "<th>" << solver << "</th>";
-  page << "</tr>\n";
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return out;
+}
+
+std::string number(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+void write_context(std::ostream& page, const json& context) {
+  page << "<h2>Where and how</h2>\n<table class=\"facts\">\n";
+  for (const auto& [key, value] : context.items())
+    page << "<tr><th>" << escaped(key) << "</th><td>"
+         << escaped(value.is_string() ? value.get<std::string>() : value.dump()) << "</td></tr>\n";
+  page << "</table>\n<p>All times are of one thread, in its own CPU time, the median of the rounds. A load above the "
+          "number of "
+          "processors at the start means that caches and wide registers were shared with other work, and that figures "
+          "are too high.</p>\n";
+}
+
+void write_figures(std::ostream& page, const json& arena) {
+  if (!arena.contains("figures")) {
+    page << "<p>Without the figures to reach: <code>bench_lp --table --json</code> writes them.</p>\n";
+    return;
+  }
+  page << "<h2>Figures to reach</h2>\n<p>Times as fast as the usual float solver, where nothing else is said.</p>\n"
+       << "<table><tr><th class=\"words\">figure</th><th>reach</th><th>measured</th><th></th></tr>\n";
+  for (const json& row : arena.at("figures")) {
+    const bool reached = row.at("reached");
+    page << "<tr><td class=\"words\">" << escaped(row.at("what")) << "</td><td>"
+         << (row.at("at_most").get<bool>() ? "&le; " : "&ge; ") << number("%.4g", row.at("reach")) << "</td><td>"
+         << number("%.3g", row.at("measured")) << "</td><td class=\"" << (reached ? "good\">reached" : "bad\">short")
+         << "</td></tr>\n";
+  }
+  page << "</table>\n";
+}
+
+std::string header_of(const std::vector<std::string>& solvers) {
+  std::string row = "<tr><th>set</th>";
+  for (const std::string& solver : solvers)
+    row += "<th><span style=\"color:" + std::string(look_of(solver).colour) + "\">&#9632;</span> " + escaped(solver) +
+           "</th>";
+  return row + "</tr>\n";
+}
+
+void write_times(std::ostream& page, const Times& times, const std::vector<std::string>& solvers) {
+  page << "<h2>Nanoseconds a solve (times as fast as the usual solver)</h2>\n<p>Fast is not right: the next table says "
+          "how often each is wrong on the same sets.</p>\n<table>"
+       << header_of(solvers);
   for (const auto& [set, row] : times) {
-    page << "<tr><th>" << set << "</th>";
+    page << "<tr><th>" << escaped(set) << "</th>";
     for (const std::string& solver : solvers) {
       page << "<td>";
       if (row.count(solver) != 0) {
-        char cell[64];
-        std::snprintf(cell, sizeof cell, "%.3g (%.2f)", row.at(solver), row.at("usual") / row.at(solver));
-        page << cell;
+        page << number("%.3g", row.at(solver));
+        if (row.count("usual") != 0) page << number(" (%.2f)", row.at("usual") / row.at(solver));
       }
       page << "</td>";
     }
     page << "</tr>\n";
   }
-  page << "</table>\n<h2>Time against the number of lines</h2>\n";
+  page << "</table>\n";
+}
+
+void write_accuracies(std::ostream& page, const Accuracies& all, const std::vector<std::string>& solvers) {
+  page << "<h2>Wrong / apart / violation</h2>\n<p><b>Wrong</b>: verdicts (feasible or not) that are not the exact one. "
+          "<b>Apart</b>: velocities, of problems rightly called feasible, more than 10<sup>-4</sup> m/s from the exact "
+          "optimum. <b>Violation</b>: the worst of a half-plane by such a velocity, m/s, in exact arithmetic; 0 where "
+          "none is broken at all. Slow solvers see a part of each set.</p>\n<table>"
+       << header_of(solvers);
+  for (const auto& [set, row] : all) {
+    page << "<tr><th>" << escaped(set) << "</th>";
+    for (const std::string& solver : solvers) {
+      const auto found = row.find(solver);
+      if (found == row.end()) {
+        page << "<td></td>";
+        continue;
+      }
+      const Accuracy& a = found->second;
+      page << "<td class=\"" << (a.wrong > 0.0 ? "bad" : "good") << "\">" << number("%.0f", a.wrong)
+           << number(" / %.0f", a.apart) << number(" / %.1g", a.violation) << "</td>";
+    }
+    page << "</tr>\n";
+  }
+  page << "</table>\n";
+}
+
+void write_pictures(std::ostream& page, const fs::path& folder) {
+  page << "<h2>Time against the number of lines</h2>\n<p>C: recorded from robots on a circle; B: among blocks, with "
+          "hard "
+          "lines; RF, RI: random, feasible and infeasible.</p>\n";
   for (const char* kind : {"C", "B", "RF", "RI"})
     if (fs::exists(folder / ("time-" + std::string(kind) + ".svg")))
       page << "<img src=\"time-" << kind << ".svg\" alt=\"time against m, " << kind << "\">\n";
-  page << "<h2>Wrong verdicts against the perturbation</h2>\n<img src=\"accuracy.svg\" alt=\"wrong verdicts\">\n"
-       << "<h2>Performance profile</h2>\n<img src=\"profile.svg\" alt=\"performance profile\">\n</body></html>\n";
+  page << "<h2>Wrong verdicts against the perturbation</h2>\n<p>Problems made to be hard: lines that are nearly "
+          "parallel, "
+          "tangent or through one point, perturbed by so much. Curves at the bottom have no wrong verdict.</p>\n"
+       << "<img src=\"accuracy.svg\" alt=\"wrong verdicts\">\n"
+       << "<h2>Performance profile</h2>\n<p>On what share of the sets a solver takes at most so many times as long as "
+          "the "
+          "fastest; higher and further left is faster. It says nothing of wrong answers.</p>\n"
+       << "<img src=\"profile.svg\" alt=\"performance profile\">\n";
+}
+
+void write_page(const fs::path& folder, const json& arena, const Times& times) {
+  std::ofstream page = open(folder / "report.html");
+  const std::vector<std::string> solvers = in_order(solvers_of(times));
+  page << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>The arena</title>\n"
+       << "<style>body{font:15px/1.45 sans-serif;max-width:76em;margin:2em auto;padding:0 1em}table{border-collapse:"
+          "collapse;font-size:13px}td,th{padding:.25em .6em;text-align:right;border-bottom:1px solid #ddd}"
+          "p{max-width:46em}.words,.facts td,.facts th{text-align:left}.good{color:#006b4f}.bad{color:#b03000}"
+          "img{display:block;margin:1em 0}</style></head><body>\n<h1>The arena of the linear program</h1>\n"
+       << "<p>Half-planes in, one velocity out: which solver is fast, and which is right? Every answer was first "
+          "compared "
+          "with the certified one, then all solvers were timed in turns on the same problems. A solver has one colour "
+          "throughout; dashes are its narrower or slower kin.</p>\n";
+  write_figures(page, arena);
+  write_times(page, times, solvers);
+  write_accuracies(page, accuracies_of(arena), solvers);
+  write_pictures(page, folder);
+  write_context(page, arena.at("context"));
+  page << "</body></html>\n";
 }
 
 }  // namespace
@@ -191,14 +335,22 @@ void write_page(const fs::path& folder, const json& arena, const Times& times) {
 
 int main(int argc, char** argv) try {
   using namespace exactvo::bench;
+  if (argc == 2 && (std::string(argv[1]) == "--help" || std::string(argv[1]) == "-h")) {
+    std::cout << "usage: lp_report ARENA.json ADVERSARIAL.json FOLDER\nThe files are those of `bench_lp --json` and "
+                 "`bench_lp --adversarial N --json`; the folder gets report.html and its pictures.\n";
+    return 0;
+  }
   if (argc != 4) throw std::runtime_error("usage: lp_report ARENA.json ADVERSARIAL.json FOLDER");
+  const json arena = read(argv[1]);
+  const json adversarial = read(argv[2]);
+  require_list(arena, "benchmarks", argv[1], "bench_lp --json");
+  require_list(adversarial, "adversarial", argv[2], "bench_lp --adversarial N --json");
   const std::filesystem::path folder = argv[3];
   std::filesystem::create_directories(folder);
-  const json arena = read(argv[1]);
   const Times times = times_of(arena);
   for (const char* kind : {"C", "B", "RF", "RI"}) draw_times(folder, times, kind);
   draw_profile(folder, times);
-  draw_accuracy(folder, read(argv[2]));
+  draw_accuracy(folder, adversarial);
   write_page(folder, arena, times);
   return 0;
 } catch (const std::exception& e) {

@@ -41,13 +41,6 @@ constexpr Figure kFigures[] = {
 
 constexpr double kWithoutExact = 0.999;
 
-bool print_row(const char* what, double reach, double measured, bool at_most) {
-  const bool reached = at_most ? measured > 0.0 && measured <= reach : measured >= reach;
-  std::printf("  %-54s %s %8.3g %10.3g   %s\n", what, at_most ? "<=" : ">=", reach, measured,
-              reached ? "reached" : "short");
-  return reached;
-}
-
 }  // namespace
 
 double Results::ratio(const std::string& set, const std::string& slower, const std::string& faster) const {
@@ -61,22 +54,33 @@ std::vector<std::string> sets_of_figures() {
           "B50", "RF10", "RF20", "RF50", "RI10", "RI20", "RI50"};
 }
 
-bool print_figures(const Results& results) {
-  std::printf("\n  %-54s %11s %10s\n", "figure (times as fast)", "reach", "measured");
-  bool all = true;
+bool FigureRow::reached() const {
+  return at_most ? measured > 0.0 && measured <= reach : measured >= reach;
+}
+
+std::vector<FigureRow> figures_of(const Results& results) {
+  std::vector<FigureRow> rows;
   for (const Figure& f : kFigures)
-    all = print_row(f.what, f.reach, results.ratio(f.set, f.slower, f.faster), f.at_most) && all;
+    rows.push_back({f.what, f.reach, results.ratio(f.set, f.slower, f.faster), f.at_most});
   double least = std::numeric_limits<double>::infinity();
   std::string where;
   for (const auto& [set, times] : results.ns) {
     const double ratio = results.ratio(set, kUsual, "batch-double");
     if (ratio < least) least = ratio, where = set;
   }
-  all = print_row(("every set, double: least, on " + where).c_str(), 1.0, least, false) && all;
+  rows.push_back({"every set, double: least, on " + where, 1.0, least, false});
   double most_exact = 0.0;
   for (const auto& [set, share] : results.exact_share)
     if (set[0] == 'C' || set[0] == 'B') most_exact = std::max(most_exact, share);
-  return print_row("recorded instances without exact arithmetic, least", kWithoutExact, 1.0 - most_exact, false) && all;
+  rows.push_back({"recorded instances without exact arithmetic, least", kWithoutExact, 1.0 - most_exact, false});
+  return rows;
+}
+
+void print_figures(const std::vector<FigureRow>& rows) {
+  std::printf("\n  %-54s %11s %10s\n", "figure (times as fast)", "reach", "measured");
+  for (const FigureRow& row : rows)
+    std::printf("  %-54s %s %8.3g %10.3g   %s\n", row.what.c_str(), row.at_most ? "<=" : ">=", row.reach, row.measured,
+                row.reached() ? "reached" : "short");
 }
 
 }  // namespace exactvo::bench

@@ -22,7 +22,17 @@ struct Results {
 /// The sets that the table of figures needs.
 std::vector<std::string> sets_of_figures();
 
-/// The table: what is asked, what was measured, whether that reaches it. False where a figure is short.
-bool print_figures(const Results& results);
+/// One line of the table: what is asked, what was measured, whether that reaches it.
+struct FigureRow {
+  std::string what;
+  double reach = 0.0;
+  double measured = 0.0;  ///< 0 where something is missing
+  bool at_most = false;   ///< else at least
+  bool reached() const;
+};
+
+std::vector<FigureRow> figures_of(const Results& results);
+
+void print_figures(const std::vector<FigureRow>& rows);
 
 }  // namespace exactvo::bench
