@@ -38,7 +38,7 @@ TEST(Validate, NamesFileFeatureRingVertexCodeAndCoordinates) {
   here.write("bad.wkt", std::string(kGood) + kBowTie);
   const Outcome text = here.run("validate bad.wkt");
   EXPECT_THAT(text.out, AllOf(HasSubstr("bad.wkt: line 2, column 1, ring 0, vertex "), HasSubstr("(11, 1)"),
-                              HasSubstr("E_SELF_INTERSECTION")));
+                              HasSubstr("a ring that crosses or touches itself [E_SELF_INTERSECTION]")));
   const Outcome outcome = here.run("validate bad.wkt --json");
   const json report = json::parse(outcome.out);
   EXPECT_FALSE(report.at("valid"));
@@ -53,6 +53,7 @@ TEST(Validate, NamesFileFeatureRingVertexCodeAndCoordinates) {
   EXPECT_EQ(problem.at("x"), 11.0);
   EXPECT_EQ(problem.at("y"), 1.0);
   EXPECT_FALSE(problem.at("mended"));
+  EXPECT_EQ(problem.at("found"), "a ring that crosses or touches itself");
 }
 
 TEST(ObstacleVerbs, MistypedWordsAreAnsweredWithTheNearest) {
@@ -145,12 +146,61 @@ TEST(Repair, FilesOfDegreesAreNotPutOnOneHeap) {
   EXPECT_NEAR(json::parse(one.out).at("files").at(0).at("origin").at("longitude").get<double>(), 7.0005, 1e-3);
 }
 
+constexpr const char* kFourByThree = R"({"type":"Polygon","coordinates":[[[0,0],[4,0],[4,3],[0,3],[0,0]]]})";
+
+/// A 4 x 3 rectangle without units is one of degrees by RFC 7946: nobody means that, so it is said.
+TEST(ObstacleVerbs, DegreesThatBecameMetresAreSaid) {
+  const Workplace here;
+  here.write("unit.geojson", kFourByThree);
+  here.write("unit.json", R"({"name": "unit", "robots": [{"id": "R", "position": [2, 1], "goal": [9, 9]}],
+    "obstacles": [{"file": "unit.geojson"}]})");
+  const std::string vo = "vo --obstacle unit.geojson --position 5,5 --velocity 1,0 --radius 0.5 --time-horizon 2";
+  for (const std::string& arguments :
+       {std::string("validate unit.geojson"), std::string("segment unit.geojson"),
+        std::string("repair unit.geojson --out u.wkt"), std::string("convert unit.geojson u.wkt"), vo,
+        std::string("simulate unit.json")})
+    EXPECT_THAT(here.run(arguments).err, HasSubstr("degrees became metres")) << arguments;
+  for (const std::string& arguments : {std::string("validate unit.geojson --units metres"), vo + " --units metres"})
+    EXPECT_THAT(here.run(arguments).err, testing::Not(HasSubstr("degrees"))) << arguments;
+  EXPECT_THAT(here.run(vo + " --units metres").out, HasSubstr("nearest boundary"));
+}
+
 TEST(Batch, WhereTheResultsLieDoesNotShowInThem) {
   const Workplace here;
   here.write("a.wkt", kGood);
   EXPECT_EQ(here.run("batch a.wkt --write figures -oone").status, 0);
   EXPECT_EQ(here.run("batch a.wkt --write figures --out two -j1").status, 0);
   EXPECT_EQ(here.read("one/figures.jsonl"), here.read("two/figures.jsonl"));
+}
+
+TEST(Batch, RejectedFilesAreNamedAndNothingAtAllIsNoSuccess) {
+  const Workplace here;
+  std::filesystem::create_directory(here.path() / "maps");
+  here.write("maps/good.wkt", kGood);
+  for (int k = 10; k < 35; ++k) here.write("maps/bad" + std::to_string(k) + ".wkt", "POLYGON ((0 0");
+  const Outcome some = here.run("batch maps --out out --write figures");
+  EXPECT_EQ(some.status, 0) << some.err;
+  EXPECT_THAT(some.err, AllOf(HasSubstr("rejected: maps/bad10.wkt: E_"), HasSubstr("rejected: maps/bad29.wkt"),
+                              testing::Not(HasSubstr("bad30.wkt")), HasSubstr("and 5 more, see out/summary.json")));
+  const Outcome again = here.run("batch maps --out out --write figures");
+  EXPECT_THAT(again.err, HasSubstr("note: replaces the earlier batch in out"));
+  EXPECT_THAT(here.run("batch maps --out out --write figures --resume").err, HasSubstr("rejected: maps/bad10.wkt"));
+  EXPECT_EQ(here.run("batch maps/bad10.wkt --out none --write figures").status, 1);
+  std::filesystem::create_directory(here.path() / "empty");
+  const Outcome nothing = here.run("batch empty --out zero --write figures");
+  EXPECT_EQ(nothing.status, 1);
+  EXPECT_THAT(nothing.err, HasSubstr("no file was found"));
+}
+
+TEST(Batch, NumbersOutOfRangeAreSaidInWords) {
+  const Workplace here;
+  here.write("good.wkt", kGood);
+  for (const char* option : {"--radius -1", "--tolerance -1", "--cell-size nan", "--time-horizon 0"}) {
+    const Outcome outcome = here.run(std::string("batch good.wkt --out out ") + option);
+    EXPECT_EQ(outcome.status, 2) << option;
+    EXPECT_THAT(outcome.err, HasSubstr("expected a ")) << option;
+    EXPECT_LT(outcome.err.size(), 120u) << outcome.err;
+  }
 }
 
 TEST(Batch, AShardThatIsThroughFirstSaysSo) {
@@ -175,6 +225,17 @@ TEST(Convert, SaysWhatIsLost) {
   const Outcome grid = here.run("convert grid.map grid.geojson");
   EXPECT_EQ(grid.status, 0) << grid.err;
   EXPECT_THAT(grid.err, HasSubstr("3 of 6 cells are occupied; they became 2 polygons"));
+}
+
+TEST(Convert, ADashIsStandardOutputAndAReplacedInputIsNoted) {
+  const Workplace here;
+  here.write("a.wkt", kClockwise);
+  EXPECT_EQ(here.run("convert a.wkt -").out, kGood);
+  EXPECT_THAT(here.run("convert a.wkt - --to geojson").out, HasSubstr("FeatureCollection"));
+  EXPECT_THAT(here.run("generate star --count 3 --out -").out, testing::StartsWith("POLYGON"));
+  EXPECT_EQ(here.run("repair a.wkt --out -").status, 2);
+  EXPECT_FALSE(here.has("-"));
+  EXPECT_THAT(here.run("convert a.wkt a.wkt").err, HasSubstr("note: a.wkt is replaced, which was the input"));
 }
 
 TEST(Convert, BadObstaclesStopItUnlessMendedOrSkipped) {
@@ -244,6 +305,54 @@ TEST(Segment, RecordsFeaturesAndAFigure) {
   EXPECT_EQ(facades, 6u + 2u);
   EXPECT_EQ(here.run("segment ell.wkt --out shapes.jsonl").status, 0);
   EXPECT_EQ(here.read("shapes.jsonl"), outcome.out);
+}
+
+TEST(Segment, SaysWhatItWroteAndWhereNoObstacleWas) {
+  const Workplace here;
+  here.write("pt.wkt", "POINT (1 2)\n");
+  const Outcome outcome = here.run("segment pt.wkt --out x.jsonl");
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("no obstacle in pt.wkt"), HasSubstr("wrote x.jsonl")));
+}
+
+TEST(Segment, TheMarginOfFacadesIsAnOption) {
+  const Workplace here;
+  here.write("tiny.wkt", "POLYGON ((0 0, 4e-9 0, 4e-9 4e-9, 0 4e-9, 0 0))\n");
+  const auto semi_axis = [&](const std::string& option) {
+    const Outcome outcome = here.run("segment tiny.wkt --json" + option);
+    return json::parse(outcome.out).at("facade_ellipses").at(0).at("l11").get<double>();
+  };
+  EXPECT_GT(semi_axis(""), 0.02);
+  EXPECT_LT(semi_axis(" --facade-margin 1e-10"), 1e-8);
+  EXPECT_EQ(here.run("segment tiny.wkt --facade-margin -1").status, 2);
+}
+
+TEST(ObstacleVerbs, HiddenFilesInTheMakingAreNotNamed) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  const Outcome figure = here.run("segment a.wkt --figure /proc/x.svg");
+  EXPECT_EQ(figure.status, 2);
+  EXPECT_THAT(figure.err, AllOf(HasSubstr("/proc/x.svg"), testing::Not(HasSubstr("..x"))));
+  const Outcome batch = here.run("batch a.wkt --out /proc/x");
+  EXPECT_EQ(batch.status, 2);
+  EXPECT_THAT(batch.err, AllOf(HasSubstr("/proc/x"), testing::Not(HasSubstr(".parts"))));
+}
+
+TEST(Audit, WhatIsNoRecordingIsSaidToBeNone) {
+  const Workplace here;
+  here.write("mine.json", R"({"name": "mine", "robots": []})");
+  const Outcome scenario = here.run("audit mine.json");
+  EXPECT_EQ(scenario.status, 2);
+  EXPECT_THAT(scenario.err, HasSubstr("no recording"));
+  std::filesystem::create_directory(here.path() / "empty");
+  EXPECT_THAT(here.run("audit empty").err, HasSubstr("path: found 'empty'"));
+}
+
+TEST(Repair, AMissingFileIsSaidOnce) {
+  const Workplace here;
+  const Outcome outcome = here.run("repair nofile.wkt --out x.wkt");
+  EXPECT_EQ(outcome.status, 2);
+  const std::string all = outcome.out + outcome.err;
+  EXPECT_EQ(all.find("E_FILE_MISSING"), all.rfind("E_FILE_MISSING"));
 }
 
 TEST(Segment, WhatCannotBeUsedIsNamed) {

@@ -70,11 +70,13 @@ void remove_figures(const fs::path& target) {
   if (error) fail(target / "figures", error.message());
 }
 
-StagedFolder::StagedFolder(fs::path target) : target_(without_trailing_slash(std::move(target))) {
+StagedFolder::StagedFolder(fs::path target, const fs::path& named)
+    : target_(without_trailing_slash(std::move(target))) {
   staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
   std::error_code error;
   if (fs::exists(target_, error) && !fs::is_directory(target_)) fail(target_, "a file of that name");
-  make_folder(staging_);
+  fs::create_directories(staging_, error);
+  if (error) fail(named.empty() ? target_ : named, error.message());
 }
 
 StagedFolder::~StagedFolder() {

@@ -29,8 +29,9 @@ void remove_figures(const std::filesystem::path& target);
 /// destructor leaves no trace, so a run that fails or is interrupted never leaves half an output.
 class StagedFolder {
  public:
-  /// Creates the hidden folder (and the target's parents).
-  explicit StagedFolder(std::filesystem::path target);
+  /// Creates the hidden folder (and the target's parents). `named` is what the user called the whole, for messages;
+  /// the target itself where empty.
+  explicit StagedFolder(std::filesystem::path target, const std::filesystem::path& named = {});
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;

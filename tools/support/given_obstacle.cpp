@@ -12,6 +12,7 @@
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/pi.h"
+#include "support/projection.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {
@@ -101,8 +102,14 @@ void check_range(const std::string& option, const geometry::Obstacle& obstacle) 
   }
 }
 
-datasets::ObstacleFile read(const std::string& option, const std::string& text) {
-  if (fs::exists(text)) return datasets::read_obstacles(text);
+datasets::ObstacleFile read_file(const std::string& name, const datasets::ReadOptions& options) {
+  datasets::ObstacleFile file = datasets::read_obstacles(name, options);
+  say_projection(file);
+  return file;
+}
+
+datasets::ObstacleFile read(const std::string& option, const std::string& text, const datasets::ReadOptions& reading) {
+  if (fs::exists(text)) return read_file(text, reading);
   if (text.find('(') == std::string::npos)
     throw UsageError(option, text, std::string("a file that is there, WKT, ") + kShapeWords);
   return datasets::parse_wkt(text, option, {});
@@ -110,7 +117,8 @@ datasets::ObstacleFile read(const std::string& option, const std::string& text) 
 
 }  // namespace
 
-std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::string& text) {
+std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::string& text,
+                                        const datasets::ReadOptions& reading) {
   const Call call = text.find('(') == std::string::npos || fs::exists(text) ? Call{} : call_in(text);
   if (call.word == "DISC" || call.word == "ELLIPSE") {
     const std::optional<ConvexShape> shape = shape_of(call);
@@ -118,7 +126,7 @@ std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::st
     return {*shape};
   }
   std::vector<GivenObstacle> given;
-  for (auto& obstacle : read(option, text).obstacles) {
+  for (auto& obstacle : read(option, text, reading).obstacles) {
     check_range(option, obstacle.shape);
     given.emplace_back(std::move(obstacle.shape));
   }

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/shapes.h"
 
 namespace exactvo::tools {
@@ -21,7 +22,9 @@ inline constexpr double kLargestGiven = 0x1p100;
 
 /// The obstacles in `text`, at least one: a file with some; WKT; `DISC(x y, r)`; `ELLIPSE(cx cy, l11 l21 l22)`, the set
 /// c + L w with |w| <= 1 and L = [l11 0; l21 l22], exactly as given; `ELLIPSE(cx cy, a b, degrees)`, semi-axes and the
-/// angle of the first, rounded to such an L. Throws UsageError that names `option`, DataError for a file or bad WKT.
-std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::string& text);
+/// angle of the first, rounded to such an L. A file is read as `reading` says; degrees that became metres are said.
+/// Throws UsageError that names `option`, DataError for a file or bad WKT.
+std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::string& text,
+                                        const datasets::ReadOptions& reading = {});
 
 }  // namespace exactvo::tools

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/usage.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -9,6 +12,11 @@ namespace exactvo::tools {
 
 UsageError::UsageError(const std::string& where, const std::string& found, const std::string& expected)
     : std::runtime_error(where + ": found '" + found + "', expected " + expected) {}
+
+void require_length(const std::string& option, double value) {
+  if (!(value >= 0.0) || std::isinf(value))
+    throw UsageError(option, fmt::format("{}", value), "a length in m, from 0 on");
+}
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));

@@ -17,6 +17,9 @@ class UsageError : public std::runtime_error {
   UsageError(const std::string& where, const std::string& found, const std::string& expected);
 };
 
+/// Throws UsageError unless `value` is a finite length of 0 m or more.
+void require_length(const std::string& option, double value);
+
 /// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b` (optimal string alignment).
 std::size_t edit_distance(const std::string& a, const std::string& b);
 

@@ -35,7 +35,7 @@ std::vector<fs::path> recordings_in(const std::string& path) {
     if (entry.is_regular_file() && entry.path().filename() == "recording.jsonl") found.push_back(entry.path());
   }
   std::sort(found.begin(), found.end());
-  if (found.empty()) throw UsageError("DIR", path, "a folder with a recording.jsonl in it or below");
+  if (found.empty()) throw UsageError("path", path, "a folder with a recording.jsonl in it or below");
   return found;
 }
 

@@ -6,8 +6,11 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
@@ -40,7 +43,7 @@ struct Flags {
   double tolerance = 0.0;
   std::string partition = "triangles";
   std::string write = "geopackage,geojson,pictures";
-  double time_horizon = 0.0;
+  std::optional<double> time_horizon;
   double radius = 0.0;
   std::string velocity = "0,0";
   std::vector<std::string> positions;
@@ -99,14 +102,23 @@ void choose_outputs(const std::string& text, BatchConfiguration& configuration) 
   }
 }
 
+void check_numbers(const Flags& flags) {
+  require_length("--cell-size", flags.cell_size);
+  require_length("--tolerance", flags.tolerance);
+  require_length("--radius", flags.radius);
+  const std::optional<double>& horizon = flags.time_horizon;
+  if (horizon && (!(*horizon > 0.0) || std::isinf(*horizon)))
+    throw UsageError("--time-horizon", fmt::format("{}", *horizon), "a time above 0 s");
+}
+
 std::optional<datasets::BatchRobot> robot_of(const Flags& flags) {
-  const bool given = flags.time_horizon > 0.0 || flags.radius > 0.0 || !flags.positions.empty() || !flags.goal.empty();
+  const bool given = flags.time_horizon || flags.radius > 0.0 || !flags.positions.empty() || !flags.goal.empty();
   if (!given) return std::nullopt;
-  if (!(flags.time_horizon > 0.0)) throw UsageError("--time-horizon", "none", "seconds, more than 0, with a robot");
+  if (!flags.time_horizon) throw UsageError("--time-horizon", "none", "seconds, more than 0, with a robot");
   if (flags.positions.empty()) throw UsageError("--position", "none", "X,Y, once or more, with a robot");
   datasets::BatchRobot robot;
   robot.radius = flags.radius;
-  robot.time_horizon = flags.time_horizon;
+  robot.time_horizon = *flags.time_horizon;
   robot.velocity = parse_point("--velocity", flags.velocity);
   for (const std::string& text : flags.positions) robot.positions.push_back(parse_point("--position", text));
   if (!flags.goal.empty()) robot.goal = parse_point("--goal", flags.goal);
@@ -114,6 +126,7 @@ std::optional<datasets::BatchRobot> robot_of(const Flags& flags) {
 }
 
 BatchConfiguration configuration_of(const Flags& flags) {
+  check_numbers(flags);
   BatchConfiguration configuration;
   configuration.reading.format = flags.format;
   configuration.reading.repair = flags.repair;
@@ -233,10 +246,38 @@ std::string words_of_shard(const BatchRun& run) {
                      run.shard, run.shards);
 }
 
+/// On stderr, so that nobody takes a batch of bad files for a good one; all of them are in summary.json.
+void name_rejected(const BatchSummary& summary, const std::string& out) {
+  constexpr std::size_t kMostNamed = 20;
+  const std::vector<datasets::RejectedFile>& all = summary.rejected_files;
+  for (std::size_t k = 0; k < std::min(all.size(), kMostNamed); ++k)
+    message(fmt::format("rejected: {}: {}", all[k].path, all[k].code));
+  if (all.size() > kMostNamed) message(fmt::format("and {} more, see {}/summary.json", all.size() - kMostNamed, out));
+}
+
+/// What is there already, where this batch does not go on with it.
+void announce(const Flags& flags) {
+  std::error_code error;
+  if (!flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error))
+    message("note: replaces the earlier batch in " + flags.out);
+}
+
+/// Nothing of this process's own to tell: the last of several puts the parts together.
+void say_incomplete(const Flags& flags, const BatchRun& run) {
+  if (run.shards > 1) return message(words_of_shard(run));
+  if (!datasets::under_mpi()) message("another process puts the results together in " + flags.out);
+}
+
+ExitCode verdict(const BatchSummary& s) {
+  if (s.obstacles_out == 0) message(s.files.read == 0 ? "warning: no file was found" : "warning: no obstacle came out");
+  return s.uncertified == 0 && s.obstacles_out > 0 ? ExitCode::success : ExitCode::negative;
+}
+
 ExitCode batch(const Flags& flags) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, and said as one
   const BatchConfiguration configuration = configuration_of(flags);
   const BatchRun run = run_of(flags);
+  announce(flags);
   Reporter reporter;
   const auto watch = [&](const BatchProgress& progress) {
     reporter.show(progress);
@@ -250,12 +291,13 @@ ExitCode batch(const Flags& flags) {
     return ExitCode::interrupted;
   }
   if (result.end == BatchEnd::incomplete) {
-    if (run.shards > 1) message(words_of_shard(run));
+    say_incomplete(flags, run);
     return ExitCode::success;
   }
   if (result.was_complete) message("nothing left to do");
   print(words_of(result.summary, flags.out, run.shards == 1));
-  return result.summary.uncertified == 0 ? ExitCode::success : ExitCode::negative;
+  name_rejected(result.summary, flags.out);
+  return verdict(result.summary);
 }
 
 void declare_run(CLI::App& app, Flags& flags) {
@@ -275,21 +317,17 @@ void declare_reading(CLI::App& app, Flags& flags) {
   app.add_flag("--repair", flags.repair, "Mend what can be mended: self-crossings, overlaps, holes out of place");
   app.add_option("--format", flags.format, "Of all files; told by content and name unless said");
   app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
-  app.add_option("--cell-size", flags.cell_size, "m; of grids without a scale (1) and of scans (0.05)")
-      ->check(CLI::NonNegativeNumber);
+  app.add_option("--cell-size", flags.cell_size, "m; of grids without a scale (1) and of scans (0.05)");
   app.add_option("--partition", flags.partition,
                  "Of polygons into convex pieces: triangles (quick), automatic (fewest up to 32 vertices), greene, "
                  "approximate, optimal")
       ->capture_default_str();
-  app.add_option("--tolerance", flags.tolerance, "m; by which facades may leave the obstacle")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+  app.add_option("--tolerance", flags.tolerance, "m; by which facades may leave the obstacle")->capture_default_str();
 }
 
 void declare_robot(CLI::App& app, Flags& flags) {
-  app.add_option("--time-horizon", flags.time_horizon, "s; of a robot's velocity obstacles")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--radius", flags.radius, "m; of the robot")->check(CLI::NonNegativeNumber);
+  app.add_option("--time-horizon", flags.time_horizon, "s; of a robot's velocity obstacles");
+  app.add_option("--radius", flags.radius, "m; of the robot");
   app.add_option("--position", flags.positions, "X,Y of the robot, m; may be repeated")->allow_extra_args(false);
   app.add_option("--velocity", flags.velocity, "X,Y, m/s; half-planes are the nearest to it")->capture_default_str();
   app.add_option("--goal", flags.goal, "X,Y, m; trap-free ellipses are made for the way there from the first position");
@@ -309,6 +347,7 @@ Verb batch_verb() {
   return {"batch", "Every obstacle of every file taken apart, enclosed and certified",
           "  exactvo batch maps --out out/maps -j 4 --repair\n"
           "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after a kill)\n"
+          "    (status 1: something is not certified, or no obstacle came out; rejected files are named)\n"
           "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"
           "  exactvo batch map.yaml --out out/map --time-horizon 3 --radius 0.3 --position 1,2 --position 4,2\n",
           declare};

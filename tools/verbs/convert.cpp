@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "exactvo/datasets/obstacle_write.h"
+#include "support/projection.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -26,10 +27,7 @@ void say_what_was_read(const datasets::ObstacleFile& file) {
     message(fmt::format("{}: {} of {} cells are occupied; they became {} polygons that hold exactly those", file.file,
                         file.coverage->occupied, file.coverage->cells, file.obstacles.size()));
   }
-  if (file.origin) {
-    message(fmt::format("{}: degrees became metres round longitude {}, latitude {}; {} does not hold that centre",
-                        file.file, file.origin->longitude, file.origin->latitude, "the output"));
-  }
+  if (file.origin) message(projection_line(file) + "; the output does not hold that centre");
   if (file.counts.repaired > 0) message(fmt::format("{}: {} obstacles put right", file.file, file.counts.repaired));
   if (file.counts.passed_over > 0)
     message(fmt::format("{}: lost {} inputs that are no obstacles (points, empty geometries)", file.file,
@@ -52,11 +50,12 @@ datasets::ObstacleFile read(const Flags& flags) {
 
 ExitCode convert(const Flags& flags) {
   check_format("--to", flags.to, datasets::writable_formats());
-  const std::string to = datasets::format_to_write(flags.out, flags.to);
+  const std::string to = output_format(flags.out, flags.to);
   const datasets::ObstacleFile file = read(flags);
   for (const datasets::DataError& error : file.rejected) message(std::string("left out: ") + error.what());
   say_what_was_read(file);
-  for (const std::string& loss : datasets::write_obstacles(flags.out, file.obstacles, to)) message("lost: " + loss);
+  note_replaced_input(flags.in, flags.out);
+  write_or_print(flags.out, file.obstacles, to);
   message(
       fmt::format("{} ({}) -> {} ({}): {} obstacles", file.file, file.format, flags.out, to, file.obstacles.size()));
   return file.rejected.empty() ? ExitCode::success : ExitCode::negative;
@@ -71,7 +70,9 @@ std::string listed(const std::vector<std::string>& words) {
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("in", flags->in, "An obstacle file of any readable format")->required();
-  app.add_option("out", flags->out, "The file to write; its extension says the format")->required();
+  app.add_option("out", flags->out,
+                 "The file to write; its extension says the format. - is stdout (wkt, or as --to says)")
+      ->required();
   declare_reading_flags(app, flags->reading, "--from");
   app.add_option("--to", flags->to, "What to write:" + listed(datasets::writable_formats()));
   app.add_flag("--repair", flags->repair, "Mend what can be mended (exactvo repair says what was)");

@@ -18,7 +18,7 @@ void check_figure_name(const std::string& name) {
 void write_figure(const Figure& figure, const fs::path& out) {
   const fs::path parent = fs::absolute(out).parent_path();
   make_folder(parent);
-  StagedFolder folder(parent / ("." + figure.name + ".figure"));
+  StagedFolder folder(parent / ("." + figure.name + ".figure"), out);
   draw({write_sources(figure, folder.path())});
   for (const char* extension : {".dat", ".gp", ".png", ".svg"}) {
     const std::string name = figure.name + extension;

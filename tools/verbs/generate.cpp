@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/generators.h"
@@ -73,22 +74,23 @@ std::vector<SceneObstacle> items(const Flags& flags, std::uint64_t count) {
 
 /// A line at a time: memory does not grow with the count.
 std::size_t stream_wkt(const Flags& flags, std::uint64_t count) {
-  datasets::AtomicFile file(flags.out);
+  std::optional<datasets::AtomicFile> file;
+  if (flags.out != "-") file.emplace(flags.out);
   std::size_t written = 0;
   for (std::uint64_t k = 0; k < count; ++k) {
     const std::vector<SceneObstacle> obstacles = item(flags, k);
-    file.write(datasets::to_wkt(obstacles));
+    file ? file->write(datasets::to_wkt(obstacles)) : print(datasets::to_wkt(obstacles));
     written += obstacles.size();
   }
-  file.commit();
+  if (file) file->commit();
   return written;
 }
 
 std::size_t write(const Flags& flags, std::uint64_t count) {
-  const std::string to = datasets::format_to_write(flags.out, flags.to);
+  const std::string to = output_format(flags.out, flags.to);
   if (to == "wkt") return stream_wkt(flags, count);
   const std::vector<SceneObstacle> all = items(flags, count);
-  for (const std::string& loss : datasets::write_obstacles(flags.out, all, to)) message("lost: " + loss);
+  write_or_print(flags.out, all, to);
   return all.size();
 }
 
@@ -116,7 +118,8 @@ Action declare(CLI::App& app) {
   app.add_option("kind", flags->kind, fmt::format("One of {}", fmt::join(datasets::generator_kind_names(), " ")));
   app.add_option("--seed", flags->seed, "Of the generator; the same seed gives the same bytes on every machine");
   app.add_option("--count", flags->count, "Items; a maze, a block or a field is one of several obstacles");
-  app.add_option("--out", flags->out, "The file to write; its extension says the format");
+  app.add_option("--out", flags->out,
+                 "The file to write; its extension says the format. - is stdout (wkt, or as --to says)");
   app.add_option("--to", flags->to, "The format of --out, where its extension does not say it");
   app.add_option("--figure", flags->figure, "FILE.svg of the first 400 items");
   app.add_flag("--list", flags->list, "Print the kinds");

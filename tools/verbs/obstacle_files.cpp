@@ -5,8 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
+#include "exactvo/datasets/obstacle_write.h"
 #include "support/escape.h"
+#include "support/files.h"
+#include "support/projection.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 
@@ -33,7 +39,9 @@ void check_word(const std::string& option, const std::string& word, const std::v
 
 FileAnswer read_one(const std::string& file, const datasets::ReadOptions& options) {
   try {
-    return {file, datasets::read_obstacles(file, options), std::nullopt};
+    FileAnswer answer{file, datasets::read_obstacles(file, options), std::nullopt};
+    say_projection(*answer.content);
+    return answer;
   } catch (const DataError& error) {
     return {file, std::nullopt, error};
   }
@@ -47,6 +55,7 @@ OrderedJson problem_json(const RingFinding& f) {
           {"vertex", f.vertex},
           {"x", json_number(f.where.x)},
           {"y", json_number(f.where.y)},
+          {"found", datasets::words_of(f)},
           {"mended", f.mended}};
 }
 
@@ -119,6 +128,28 @@ datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::stri
   return options;
 }
 
+void note_replaced_input(const std::string& in, const std::string& out) {
+  std::error_code error;
+  if (std::filesystem::equivalent(in, out, error)) message("note: " + out + " is replaced, which was the input");
+}
+
+std::string output_format(const std::string& out, const std::string& to) {
+  return datasets::format_to_write(out == "-" ? "stdout.wkt" : out, to);
+}
+
+void write_or_print(const std::string& out, const std::vector<formation::SceneObstacle>& obstacles,
+                    const std::string& to) {
+  if (out != "-") {
+    for (const std::string& loss : datasets::write_obstacles(out, obstacles, to)) message("lost: " + loss);
+    return;
+  }
+  const StagedFolder folder(std::filesystem::temp_directory_path() / "exactvo");
+  const std::filesystem::path file = folder.path() / ("obstacles." + to);
+  for (const std::string& loss : datasets::write_obstacles(file, obstacles, to)) message("lost: " + loss);
+  std::ifstream written(file, std::ios::binary);
+  print({std::istreambuf_iterator<char>(written), std::istreambuf_iterator<char>()});
+}
+
 std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options) {
   std::vector<FileAnswer> answers;
   for (const std::string& file : files) {
@@ -160,8 +191,8 @@ std::string lines_of(const FileAnswer& answer, bool with_mended) {
   std::string text;
   for (const RingFinding& f : answer.content->findings) {
     if (f.mended && !with_mended) continue;
-    text += shown(fmt::format("{}: {}: ({}, {}): {}{}", answer.file, f.place, f.where.x, f.where.y,
-                              datasets::code_name(f.code), f.mended ? ", mended" : "")) +
+    text += shown(fmt::format("{}: {}: ({}, {}): {} [{}]{}", answer.file, f.place, f.where.x, f.where.y,
+                              datasets::words_of(f), datasets::code_name(f.code), f.mended ? ", mended" : "")) +
             "\n";
   }
   for (const DataError& error : answer.content->rejected) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/formation/scenario.h"
 
 namespace exactvo::tools {
 
@@ -42,17 +43,29 @@ struct FileAnswer {
   bool is_whole() const { return content && content->counts.rejected == 0; }
 };
 
-/// Reads every file; a DataError of a file becomes its answer.
+/// A note where `out` is `in`, which is about to be replaced.
+void note_replaced_input(const std::string& in, const std::string& out);
+
+/// Writes obstacles to a file, or to stdout where `out` is "-" (`to` then names the format, wkt if empty). Says what
+/// was lost.
+void write_or_print(const std::string& out, const std::vector<formation::SceneObstacle>& obstacles,
+                    const std::string& to);
+
+/// The format to write: `to`, or as the extension of `out` says; wkt for "-". Throws DataError.
+std::string output_format(const std::string& out, const std::string& to);
+
+/// Reads every file; a DataError of a file becomes its answer. Says which were projected.
 std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options);
 
 /// "valid"; "mended": every problem was; "invalid": some obstacles can't be used; "unreadable".
 std::string verdict_of(const FileAnswer& answer);
 
 /// {"file", "format", "verdict", "code" (of the first refusal), "counts", "problems": [{"code", "place", "feature",
-/// "ring", "vertex", "x", "y", "mended", "message"}], "notes"}. A number that is not finite is null.
+/// "ring", "vertex", "x", "y", "found", "mended"}], "notes"}. What is no ring's has "code", "place", "found",
+/// "expected" and "mended". A number that is not finite is null.
 OrderedJson json_of(const FileAnswer& answer);
 
-/// A line a problem: "FILE: PLACE: (x, y): E_CODE, mended". `with_mended`: also those.
+/// A line a problem: "FILE: PLACE: (x, y): what is wrong [E_CODE], mended". `with_mended`: also those.
 std::string lines_of(const FileAnswer& answer, bool with_mended);
 
 /// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 passed over, 0 rejected".

@@ -96,7 +96,10 @@ void say(const Flags& flags, const CampaignFiles& files) {
 
 /// What a request to stop leaves: the parts that are done.
 ExitCode kept_parts(const Flags& flags) {
-  error_message("interrupted; what was finished is kept in " + flags.out + ": the same command goes on from there");
+  std::error_code error;
+  const bool any = fs::exists(flags.out, error);
+  error_message(any ? "interrupted; what was finished is kept in " + flags.out + ": the same command goes on from there"
+                    : std::string("interrupted; nothing was finished, so nothing is kept"));
   return ExitCode::interrupted;
 }
 

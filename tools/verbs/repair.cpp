@@ -162,10 +162,7 @@ std::string tally_of(const ObstacleFile& file) {
 /// Winding, closure and repeated vertices are told by their number only.
 void print_report(const std::vector<FileAnswer>& answers) {
   for (const FileAnswer& answer : answers) {
-    if (!answer.content) {
-      print(lines_of(answer, false));
-      continue;
-    }
+    if (!answer.content) continue;  // said as an error
     for (const RepairRecord& record : answer.content->repairs) {
       if (record.recombined || record.refused) print(words_of(answer.file, record));
     }
@@ -226,6 +223,7 @@ ExitCode repair(const Flags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading);
   options.repair = true;
   check_figure_name(flags.figure);
+  if (flags.out == "-") throw UsageError("--out", "-", "a file: stdout has the report");
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = datasets::format_to_write(flags.out, flags.to);
   const std::vector<FileAnswer> answers = read_each(flags.files, options);
@@ -242,8 +240,8 @@ ExitCode repair(const Flags& flags) {
     return code;
   }
   refuse_several_planes(answers);
-  for (const std::string& loss : datasets::write_obstacles(flags.out, all_obstacles(answers), to))
-    message("lost: " + loss);
+  for (const std::string& file : flags.files) note_replaced_input(file, flags.out);
+  write_or_print(flags.out, all_obstacles(answers), to);
   message("wrote " + flags.out);
   if (!flags.figure.empty()) draw_figure(answers, flags.figure);
   return code;

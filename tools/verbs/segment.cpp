@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -31,6 +30,7 @@ struct Flags {
   ReadingFlags reading;
   double tolerance = 0.0;
   double radius = 0.0;
+  double facade_margin = geometry::FacadeEllipseOptions{}.margin;
   bool repair = false;
   bool json = false;
   std::string out, figure;
@@ -44,12 +44,9 @@ struct TakenApart {
 // --- The work ---
 
 void check(const Flags& flags) {
-  const auto need_length = [](const char* option, double value) {
-    if (!(value >= 0.0) || std::isinf(value))
-      throw UsageError(option, fmt::format("{}", value), "a length in m, from 0 on");
-  };
-  need_length("--tolerance", flags.tolerance);
-  need_length("--radius", flags.radius);
+  require_length("--tolerance", flags.tolerance);
+  require_length("--radius", flags.radius);
+  require_length("--facade-margin", flags.facade_margin);
   check_figure_name(flags.figure);
   const std::string extension = std::filesystem::path(flags.out).extension().string();
   if (!flags.out.empty() && extension != ".jsonl" && extension != ".geojson")
@@ -60,6 +57,7 @@ std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const
   geometry::ShapeOptions options;
   options.facades.tolerance = flags.tolerance;
   options.robot_radius = flags.radius;
+  options.facade_ellipses.margin = flags.facade_margin;
   options.check_validity = false;  // the reader did
   std::vector<TakenApart> all;
   for (const FileAnswer& answer : answers) {
@@ -206,7 +204,13 @@ ExitCode segment(const Flags& flags) {
     for (const datasets::DataError& error : answer.content->rejected) message(std::string("left out: ") + error.what());
   }
   const std::vector<TakenApart> all = take_apart(answers, flags);
-  if (!flags.out.empty()) write_out(all, flags.out);
+  for (const FileAnswer& answer : answers) {
+    if (answer.content->obstacles.empty()) message("no obstacle in " + counts_line(answer));
+  }
+  if (!flags.out.empty()) {
+    write_out(all, flags.out);
+    message("wrote " + flags.out);
+  }
   if (!flags.figure.empty()) draw_figure(all, flags);
   if (flags.json) print(records(all));
   if (!flags.json && flags.out.empty()) {
@@ -221,6 +225,9 @@ Action declare(CLI::App& app) {
   declare_reading_flags(app, flags->reading);
   app.add_option("--tolerance", flags->tolerance, "Facades may stray from the obstacle by this much, m");
   app.add_option("--radius", flags->radius, "Of the robot, for clearances by equation (8), m");
+  app.add_option("--facade-margin", flags->facade_margin,
+                 "How deep a facade lies at least in its ellipse, m; choose less for obstacles of millimetres")
+      ->capture_default_str();
   app.add_flag("--repair", flags->repair, "Mend what can be mended first");
   app.add_flag("--json", flags->json, "One record an obstacle on stdout, a line each");
   app.add_option("--out", flags->out, "FILE.jsonl: the records; FILE.geojson: every shape as a feature");

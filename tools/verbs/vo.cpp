@@ -4,34 +4,18 @@
 #include <filesystem>
 #include <memory>
 
-#include "support/files.h"
-#include "support/run.h"
-#include "support/terminal.h"
 #include "verb.h"
+#include "verbs/figure_file.h"
 #include "verbs/vo_figure.h"
 
 namespace exactvo::tools {
 
-namespace fs = std::filesystem;
-
 namespace {
-
-void write_figure(const VoAnswer& answer, const fs::path& out) {
-  const fs::path parent = fs::absolute(out).parent_path();
-  make_folder(parent);
-  const std::string stem = out.stem().string();
-  StagedFolder folder(parent / ("." + stem + ".figure"));
-  draw({write_sources(vo_figure(answer, stem), folder.path())});
-  for (const char* extension : {".dat", ".gp", ".png", ".svg"}) {
-    if (fs::exists(folder.path() / (stem + extension)))
-      fs::rename(folder.path() / (stem + extension), parent / (stem + extension));
-  }
-  message("wrote " + out.string());
-}
 
 ExitCode show(const VoFlags& flags) {
   const VoAnswer answer = answer_of(question_of(flags));
-  if (!flags.figure.empty()) write_figure(answer, flags.figure);
+  if (!flags.figure.empty())
+    write_figure(vo_figure(answer, std::filesystem::path(flags.figure).stem().string()), flags.figure);
   const std::string text = flags.json ? to_json(answer) : in_words(answer);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return ExitCode::success;

@@ -71,9 +71,16 @@ Shapes shapes_of(const GivenObstacle& given, const VoFlags& flags) {
   return {Taken::itself, {std::get<ConvexShape>(given)}};
 }
 
+/// One bad obstacle refuses its file.
+datasets::ReadOptions whole_files(const ReadingFlags& reading) {
+  datasets::ReadOptions options = reading_options(reading);
+  options.keep_going = false;
+  return options;
+}
+
 /// The hull of a robot that is its own hull.
-ConvexPolygon robot_of(const std::string& text) {
-  const std::vector<GivenObstacle> given = obstacles_in("--robot", text);
+ConvexPolygon robot_of(const std::string& text, const ReadingFlags& reading) {
+  const std::vector<GivenObstacle> given = obstacles_in("--robot", text, whole_files(reading));
   if (given.size() != 1) throw UsageError("--robot", fmt::format("{} geometries", given.size()), "one convex polygon");
   const auto* polygon = std::get_if<geometry::Obstacle>(&given.front());
   if (!polygon) throw UsageError("--robot", text, "a convex polygon (a disc is given by --radius)");
@@ -172,7 +179,7 @@ vo::Encounter robot_alone(const VoFlags& flags) {
   e.velocity = parse_point("--velocity", flags.velocity);
   e.radius = flags.radius.value_or(0.0);
   e.share = flags.alpha;
-  if (!flags.robot.empty()) e.robot = robot_of(flags.robot);
+  if (!flags.robot.empty()) e.robot = robot_of(flags.robot, flags.reading);
   return e;
 }
 
@@ -220,7 +227,8 @@ VoQuestion question_of(const VoFlags& flags) {
     vo::Encounter e = alone;
     if (i < flags.obstacle_velocities.size())
       e.obstacle_velocity = parse_point("--obstacle-velocity", flags.obstacle_velocities[i]);
-    for (const GivenObstacle& given : obstacles_in("--obstacle", flags.obstacles[i])) add_obstacle(given, e, flags, q);
+    for (const GivenObstacle& given : obstacles_in("--obstacle", flags.obstacles[i], whole_files(flags.reading)))
+      add_obstacle(given, e, flags, q);
   }
   check_obstacles(flags, q);
   return q;
@@ -232,6 +240,7 @@ void declare_options(CLI::App& app, VoFlags& flags) {
                  "disc under [l11 0; l21 l22]; 'ELLIPSE(cx cy, a b, degrees)'. Several with --free")
       ->required()
       ->allow_extra_args(false);
+  declare_reading_flags(app, flags.reading);
   app.add_option("--obstacle-velocity", flags.obstacle_velocities,
                  "X,Y in m/s, one an --obstacle; at rest where missing")
       ->allow_extra_args(false);

@@ -11,6 +11,7 @@
 
 #include "exactvo/vo/family.h"
 #include "support/given_obstacle.h"
+#include "verbs/obstacle_files.h"
 
 namespace exactvo::tools {
 
@@ -22,6 +23,7 @@ struct VoFlags {
   std::vector<std::string> obstacle_velocities;
   std::string enclose = "none";
   std::string pieces;
+  ReadingFlags reading;  ///< of obstacles that are files
   std::string position, velocity, goal, robot;
   std::optional<double> radius;
   std::string time_horizon;

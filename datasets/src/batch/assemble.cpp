@@ -36,9 +36,11 @@ void add(BatchTally& sum, const BatchTally& one) {
   for (const auto& [code, count] : one.rejected) sum.rejected[code] += count;
 }
 
+constexpr const char* kRejected = "rejected";
+
 void count_file(BatchTally& files, const InputFacts& facts) {
   ++files.read;
-  if (facts.outcome == "rejected") {
+  if (facts.outcome == kRejected) {
     ++files.rejected[facts.code];
   } else {
     ++(facts.outcome == "repaired" ? files.repaired : files.done);
@@ -284,8 +286,10 @@ BatchSummary assemble(const Ledger& ledger, const Identity& identity, const Batc
   const auto start = std::chrono::steady_clock::now();
   const std::vector<InputFacts> facts = all_facts(ledger, identity.inputs.size());
   BatchSummary summary;
-  for (const InputFacts& one : facts) {
+  for (std::size_t k = 0; k < facts.size(); ++k) {
+    const InputFacts& one = facts[k];
     count_file(summary.files, one);
+    if (one.outcome == kRejected) summary.rejected_files.push_back({identity.inputs[k].name, one.code});
     add(summary.obstacles, one.tally);
     summary.passed_over += one.passed_over;
   }
@@ -331,6 +335,11 @@ BatchSummary read_summary(const fs::path& out) {
     json.at("certified").get_to(summary.certified);
     json.at("uncertified").get_to(summary.uncertified);
     json.at("vertices").get_to(summary.vertices);
+    for (const Json& input : json.at("inputs")) {
+      const Json& facts = input.at("facts");
+      if (facts.at("outcome") == kRejected)
+        summary.rejected_files.push_back({input.at("path").get<std::string>(), facts.at("code").get<std::string>()});
+    }
   } catch (const nlohmann::detail::exception& error) {
     throw DataError(DataCode::wrong_type, path.string(), "", error.what(), "a summary as a batch writes it");
   }

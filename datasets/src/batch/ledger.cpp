@@ -146,7 +146,7 @@ Ledger::State Ledger::look(const Identity& identity, bool resume) const {
 void Ledger::begin(const Identity& identity) const {
   std::error_code error;
   fs::create_directories(parts_, error);
-  if (error) throw cannot_write(parts_, error.value());
+  if (error) throw cannot_write(out_, error.value());
   if (!is_open()) write_file_atomically(run_file(), to_json(identity));
 }
 

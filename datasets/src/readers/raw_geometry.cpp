@@ -121,6 +121,10 @@ std::vector<RingFinding> findings_of(const std::vector<geometry::RingProblem>& p
 
 }  // namespace
 
+const char* words_of(const RingFinding& finding) {
+  return words_for(finding.code);
+}
+
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex) {
   if (ring < raw.ring_pointers.size()) return raw.ring_pointers[ring];
   return raw.place + ", ring " + std::to_string(ring) + ", vertex " + std::to_string(vertex);

@@ -121,6 +121,7 @@ class Reader {
     const std::filesystem::path path = base_dir_ / named;
     ObstacleFile file = read_named_file(path, options, pointer);
     add_notes(file);
+    if (file.origin) projected_ += (projected_.empty() ? "" : ", ") + named.string();
     for (formation::SceneObstacle& obstacle : file.obstacles) {
       scenario.obstacles.push_back({prefix + "/" + obstacle.id, std::move(obstacle.shape)});
     }
@@ -198,7 +199,14 @@ class Reader {
     const std::vector<formation::ScenarioProblem> problems = formation::validate(scenario);
     if (problems.empty()) return;
     const formation::ScenarioProblem& first = problems.front();
-    throw DataError(DataCode::scenario, file_, in_the_text(first.pointer), first.found, first.expected);
+    throw DataError(DataCode::scenario, file_, in_the_text(first.pointer), first.found + words_of_projection(),
+                    first.expected);
+  }
+
+  /// Numbers that were no degrees are the likeliest reason why robots and obstacles do not fit together.
+  std::string words_of_projection() const {
+    if (projected_.empty()) return "";
+    return " (" + projected_ + ": degrees became metres; \"units\": \"metres\" takes its numbers as they stand)";
   }
 
   /// Problems name obstacles by their place in the scenario; in the text one entry may stand for a file of many.
@@ -219,6 +227,7 @@ class Reader {
   };
   std::vector<Origin> origin_of_;  ///< per obstacle of the scenario
   std::vector<std::string> notes_;
+  std::string projected_;  ///< files whose degrees became metres, with commas between
 };
 
 }  // namespace

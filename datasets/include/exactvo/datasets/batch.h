@@ -79,8 +79,15 @@ struct BatchTally {
   std::uint64_t rejected_in_all() const;
 };
 
+/// A file of which nothing could be used.
+struct RejectedFile {
+  std::string path;
+  std::string code;  ///< "E_FORMAT_UNKNOWN"
+};
+
 struct BatchSummary {
   BatchTally files;
+  std::vector<RejectedFile> rejected_files;  ///< in the order of the inputs
   BatchTally obstacles;
   std::uint64_t passed_over = 0;    ///< points and empty geometries: no obstacles, not among `read`
   std::uint64_t obstacles_out = 0;  ///< of what was done or repaired; a repair may make several of one

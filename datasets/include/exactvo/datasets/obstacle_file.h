@@ -64,6 +64,9 @@ struct RingFinding {
   bool mended = false;
 };
 
+/// What was found, for people: "a hole that is not inside its polygon or meets another ring".
+const char* words_of(const RingFinding& finding);
+
 /// What `ReadOptions::repair` made of one polygon that had a problem.
 struct RepairRecord {
   std::string place;            ///< "feature 3"
