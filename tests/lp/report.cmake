@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The arena's page: made from two small results, it says what is wrong beside what is fast; given in the wrong order,
+# they are refused in words.
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+set(rows "")
+foreach(set C5 C10)
+  foreach(solver usual batch-float exact)
+    string(APPEND rows "{\"name\": \"${set}/${solver}\", \"cpu_time\": 40, \"wrong_verdicts\": 10, \"apart\": 28, \"worst_violation\": 0},")
+  endforeach()
+endforeach()
+string(REGEX REPLACE ",$" "" rows "${rows}")
+file(WRITE ${WORK}/arena.json "{\"context\": {\"cpu\": \"a processor\"}, \"benchmarks\": [${rows}],
+  \"figures\": [{\"what\": \"C10, double\", \"reach\": 4, \"measured\": 2, \"at_most\": false, \"reached\": false}]}")
+file(WRITE ${WORK}/adversarial.json "{\"adversarial\": [{\"perturbation\": \"1e-3\", \"solver\": \"exact\",
+  \"false_infeasible\": 0, \"false_feasible\": 0, \"problems\": 10}, {\"perturbation\": \"1e-3\", \"solver\": \"usual\",
+  \"false_infeasible\": 1, \"false_feasible\": 0, \"problems\": 10}]}")
+
+execute_process(COMMAND ${LP_REPORT} ${WORK}/adversarial.json ${WORK}/arena.json ${WORK}/page
+                RESULT_VARIABLE status ERROR_VARIABLE words)
+if(NOT status EQUAL 2 OR NOT words MATCHES "adversarial.json: found no list \"benchmarks\"" OR EXISTS ${WORK}/page)
+  message(FATAL_ERROR "swapped files: status ${status}, ${words}")
+endif()
+
+execute_process(COMMAND ${LP_REPORT} ${WORK}/arena.json ${WORK}/adversarial.json ${WORK}/page
+                RESULT_VARIABLE status ERROR_VARIABLE words)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "status ${status}, ${words}")
+endif()
+file(READ ${WORK}/page/report.html page)
+foreach(text "10 / 28 / 0" "a processor" "Figures to reach" ">short<" "Where and how")
+  if(NOT page MATCHES "${text}")
+    message(FATAL_ERROR "the page does not have '${text}'")
+  endif()
+endforeach()
+foreach(picture time-C profile accuracy)
+  file(READ ${WORK}/page/${picture}.gp script)
+  if(NOT script MATCHES "lc rgb '#CC79A7' dt 2 title 'exact'" OR NOT script MATCHES "lc rgb '#555555' title 'usual'")
+    message(FATAL_ERROR "${picture}: a solver has another colour than elsewhere:\n${script}")
+  endif()
+endforeach()
