@@ -18,7 +18,7 @@ if(SANITIZE)
 endif()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 
-file(GLOB_RECURSE readme ${WORK}/prefix/share/doc/README.md)
+file(GLOB readme ${WORK}/prefix/share/doc/*/README.md)
 list(LENGTH readme count)
 if(NOT count EQUAL 1)
   message(FATAL_ERROR "installed READMEs: '${readme}'")
