@@ -229,6 +229,12 @@ TEST(Simulate, WithoutFiguresNoneOfAnEarlierRunStay) {
   EXPECT_FALSE(here.has("out/figures"));
 }
 
+TEST(Paper, WhatAnInterruptedCampaignLeavesIsSaidAsItIs) {
+  const Workplace here;
+  const Outcome outcome = here.run("paper --out pp --random 100000 --jobs 1", "timeout -s INT 0.5");
+  EXPECT_THAT(outcome.err, HasSubstr(here.has("pp") ? "is kept in pp" : "nothing is kept"));
+}
+
 TEST(Paper, OptionsOfCampaignsAreNotedWhereThereIsNone) {
   const Workplace here;
   const Outcome outcome = here.run("paper --out out --random 1 --fields 3");
