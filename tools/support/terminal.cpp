@@ -39,7 +39,9 @@ void set_quiet(bool value) {
 }
 
 void print(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  errno = 0;
+  // What is longer than the buffer is written here, not at the flush.
+  if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size() && errno == EPIPE) reader_left = true;
   check_stdout();
 }
 
