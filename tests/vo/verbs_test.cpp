@@ -2,12 +2,15 @@
 // The verbs `vo` and `audit` as a user runs them.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "exactvo/vo/certificate.h"
+#include "exactvo/vo/containment.h"
 #include "tools/run_program.h"
 
 namespace exactvo::test {
@@ -16,6 +19,18 @@ namespace {
 using nlohmann::json;
 
 const std::string kSquare = "POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))";
+
+json json_of(const std::string& arguments) {
+  const Outcome run = Workplace().run("vo " + arguments + " --json");
+  EXPECT_EQ(run.status, 0) << run.err;
+  return json::parse(run.out);
+}
+
+std::string words_of(const std::string& arguments) {
+  const Outcome run = Workplace().run("vo " + arguments);
+  EXPECT_EQ(run.status, 0) << run.err;
+  return run.out;
+}
 
 TEST(VerbVo, PrintsEveryAnswerWithACertificateThatHolds) {
   for (const std::string enclose : {"none", "ellipse"}) {
@@ -137,6 +152,25 @@ TEST(VerbVo, HorizonsByRule) {
   EXPECT_EQ(horizon("2.5"), 2.5);
 }
 
+TEST(VerbVo, ARuleTakesTheNearestPieceThatIsClear) {
+  // On the first leg of the wall, 3.5 m before the second.
+  const std::string on_a_wall =
+      "--obstacle 'LINESTRING(0 0,4 0,4 4)' --position 0,0.1 --velocity 1,0 --radius 0.5 --time-horizon ";
+  EXPECT_EQ(json_of(on_a_wall + "clamped").at("time_horizon"), 3.0);
+  EXPECT_DOUBLE_EQ(json_of(on_a_wall + "paper").at("time_horizon").get<double>(), 3.5);
+  EXPECT_EQ(json_of(on_a_wall + "2").at("time_horizon"), 2.0);
+  for (const std::string rule : {"clamped", "paper"}) {
+    const json inside =
+        json_of("--obstacle '" + kSquare + "' --position 3,0 --velocity 1,0 --radius 0.5 --time-horizon " + rule);
+    EXPECT_TRUE(inside.at("overlaps").get<bool>());
+    EXPECT_TRUE(inside.at("time_horizon").is_null()) << "no piece to measure a horizon from";
+    const json touching =
+        json_of("--obstacle '" + kSquare + "' --position 1.5,0 --velocity 1,0 --radius 0.5 --time-horizon " + rule);
+    EXPECT_TRUE(touching.at("time_horizon").is_null());
+    EXPECT_EQ(touching.at("certificate").at("verdict"), "valid") << "for any time";
+  }
+}
+
 TEST(VerbVo, APolygonalRobot) {
   const std::string rest = " --position 0,0 --velocity 1,0 --time-horizon 3 --json";
   const Outcome run =
@@ -165,16 +199,28 @@ TEST(VerbVo, FreeVelocitiesOfSeveralObstacles) {
   EXPECT_EQ(place.run(scene + " --free --json").status, 2) << "without a speed";
 }
 
-json json_of(const std::string& arguments) {
-  const Outcome run = Workplace().run("vo " + arguments + " --json");
-  EXPECT_EQ(run.status, 0) << run.err;
-  return json::parse(run.out);
+double next_up(double x) {
+  return std::nextafter(x, std::numeric_limits<double>::infinity());
 }
 
-std::string words_of(const std::string& arguments) {
-  const Outcome run = Workplace().run("vo " + arguments);
-  EXPECT_EQ(run.status, 0) << run.err;
-  return run.out;
+/// That the program reads the certificate and finds it changed.
+void expect_caught(const std::string& text, const std::string& verdict) {
+  EXPECT_TRUE(verdict == "wrong margin" || verdict == "altered") << verdict;
+  const Workplace place;
+  place.write("changed", text + "\n");
+  const Outcome run = place.run("audit --certificate changed --json");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(json::parse(run.out).at("verdicts"), json::array({verdict}));
+}
+
+/// What `audit` says of JSON, with its exit status in "status".
+json judged(const json& certificates) {
+  const Workplace place;
+  place.write("vo.json", certificates.dump());
+  const Outcome run = place.run("audit --certificate vo.json --json");
+  json out = json::parse(run.out);
+  out["status"] = run.status;
+  return out;
 }
 
 /// Whether the certificate is valid and of the half-plane beside it.
@@ -294,8 +340,20 @@ TEST(VerbVo, AnEllipseRoundAnObstacleSaysThatItContainsIt) {
   EXPECT_EQ(place.run("audit --certificate one").status, 0);
   place.write("vo.json", place.run("vo " + scene + " --json").out);
   EXPECT_EQ(json::parse(place.run("audit --certificate vo.json --json").out).at("valid"), 2) << "and the half-plane";
-  place.write("changed", std::string(text).replace(text.find("points 4") + 11, 1, "9"));
-  EXPECT_EQ(place.run("audit --certificate changed").status, 1);
+}
+
+TEST(VerbAuditOfCertificates, AContainmentChangedByAnUlpIsCaught) {
+  const json taken = json_of("--obstacle '" + kSquare +
+                             "' --enclose ellipse --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2")
+                         .at("taken_as");
+  const auto made = vo::read_containment(taken.at("certificate").at("text"));
+  ASSERT_TRUE(made);
+  vo::Containment moved = *made, easier = *made, smaller = *made;
+  moved.points[0].x = next_up(moved.points[0].x);
+  easier.margin = next_up(easier.margin);
+  smaller.ellipse.l11 = std::nextafter(smaller.ellipse.l11, 0.0);
+  for (const vo::Containment& changed : {moved, easier, smaller})
+    expect_caught(write_containment(changed), name(check(changed)));
 }
 
 TEST(VerbVo, WhatWouldBeIgnoredIsRefused) {
@@ -375,18 +433,80 @@ TEST(VerbAuditOfCertificates, JudgesTextsAndWhatVoPrints) {
   const std::string text = json::parse(made.out).at("cones")[0].at("certificate").at("text");
   place.write("one", text + "\n");
   EXPECT_EQ(place.run("audit --certificate - < one").status, 0);
-  std::string changed = text;
-  const std::size_t digit = changed.find("offset ") + 12;
-  changed[digit] = changed[digit] == '1' ? '2' : '1';
-  place.write("changed", text + "\n" + changed + "\nhalf-plane-certificat 1\n");
+  vo::Certificate changed = *vo::read_certificate(text);
+  changed.claim.half_plane.offset = std::nextafter(changed.claim.half_plane.offset, -1.0);
+  place.write("changed", text + "\n" + write_certificate(changed) + "\nhalf-plane-certificat 1\n");
   const Outcome run = place.run("audit --certificate changed");
   EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.out.find("2: wrong margin"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("3: not a certificate"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("3 certificates, 1 valid"), std::string::npos) << run.out;
   place.write("empty", "");
   for (const std::string bad : {"audit --certificate empty", "audit --certificate nofile", "audit --certificate .",
                                 "audit", "audit --certificate one one"})
     EXPECT_EQ(place.run(bad).status, 2) << bad;
+}
+
+TEST(VerbAuditOfCertificates, AHalfPlaneChangedByAnUlpIsCaught) {
+  const json out = json_of("--obstacle 'DISC(4 0.5, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2");
+  const auto made = vo::read_certificate(out.at("certificate").at("text"));
+  ASSERT_TRUE(made);
+  vo::Certificate turned = *made, later = *made, easier = *made, digest = *made;
+  turned.claim.half_plane.normal.x = next_up(turned.claim.half_plane.normal.x);
+  later.claim.time_horizon = next_up(later.claim.time_horizon);
+  easier.margin = next_up(easier.margin);
+  digest.digest ^= 1;
+  for (const vo::Certificate& changed : {turned, later, easier, digest})
+    expect_caught(write_certificate(changed), name(check(changed)));
+}
+
+TEST(VerbAuditOfCertificates, InJsonNoneIsPassedOver) {
+  const json whole = json_of("--obstacle '" + kSquare +
+                             "' --enclose ellipse --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2");
+  EXPECT_EQ(judged(whole).at("status"), 0);
+  EXPECT_EQ(judged(whole).at("verdicts"), json({"valid", "valid"}));
+  EXPECT_EQ(judged(whole).at("none"), 0);
+
+  for (const std::string beginning : {"half-plane-certificat3 1", "", "?"}) {
+    json damaged = whole;
+    damaged["certificate"]["text"] = beginning + std::string(whole["certificate"]["text"]).substr(24);
+    EXPECT_EQ(judged(damaged).at("status"), 1) << beginning;
+    EXPECT_EQ(judged(damaged).at("certificates"), 2) << beginning;
+    EXPECT_EQ(judged(damaged).at("valid"), 1) << beginning;
+  }
+  for (const json& no_text : {json(7), json::object(), json({{"text", nullptr}}), json("text")}) {
+    json damaged = whole;
+    damaged["certificate"] = no_text;
+    EXPECT_EQ(judged(damaged).at("status"), 1) << no_text;
+  }
+  json without = whole;
+  without["certificate"] = nullptr;
+  EXPECT_EQ(judged(without).at("none"), 1);
+  EXPECT_EQ(judged(without).at("certificates"), 1);
+  EXPECT_EQ(judged(json::array({whole["certificate"]["text"]})).at("valid"), 1) << "a list of texts";
+}
+
+TEST(VerbAuditOfCertificates, TheEllipseMustBeTheOneBesideIt) {
+  const std::string rest = "' --enclose ellipse --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2";
+  json one = json_of("--obstacle '" + kSquare + rest);
+  const json other = json_of("--obstacle 'POLYGON((2 -1, 4 -1, 4 1.5, 2 1, 2 -1))" + rest);
+  one["certificate"] = other["certificate"];
+  EXPECT_EQ(judged(one).at("status"), 1);
+  EXPECT_EQ(judged(one).at("valid"), 1) << "each is valid for itself";
+  EXPECT_NE(judged(one).dump().find("of another ellipse"), std::string::npos);
+}
+
+TEST(VerbAuditOfCertificates, JsonThatCannotBeReadIsNotValid) {
+  Workplace place;
+  const std::string text =
+      json_of("--obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2").dump();
+  const std::string deep(100000, '[');
+  for (const std::string& bad : {text.substr(0, text.size() - 1), text + "]", deep, deep + std::string(100000, ']')}) {
+    place.write("bad.json", bad);
+    const Outcome run = place.run("audit --certificate bad.json");
+    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.out, "1: unreadable JSON\n1 certificate, 0 valid\n");
+  }
 }
 
 class VerbAudit : public ::testing::Test {

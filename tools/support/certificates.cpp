@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -43,17 +46,9 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-bool begins_as_one(const std::string& text, std::size_t at) {
+bool begins_as_one(const std::string& text) {
   return std::any_of(std::begin(kFirstWords), std::end(kFirstWords),
-                     [&](const char* word) { return text.compare(at, std::strlen(word), word) == 0; });
-}
-
-/// A certificate has no character that JSON escapes.
-std::vector<std::string> strings_of_json(const std::string& text) {
-  std::vector<std::string> strings;
-  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 1))
-    if (begins_as_one(text, at + 1)) strings.push_back(text.substr(at + 1, text.find('"', at + 1) - at - 1));
-  return strings;
+                     [&](const char* word) { return text.compare(0, std::strlen(word), word) == 0; });
 }
 
 std::string claim_words(const vo::HalfPlaneClaim& c) {
@@ -77,45 +72,137 @@ JudgedCertificate judge(const std::string& text) {
   return {"not a certificate", "", false};
 }
 
-std::size_t count_valid(const std::vector<JudgedCertificate>& judged) {
-  std::size_t valid = 0;
-  for (const JudgedCertificate& j : judged) valid += j.valid ? 1 : 0;
-  return valid;
+// --- In JSON ---
+
+using Json = nlohmann::ordered_json;
+
+/// What `exactvo vo` prints is far from so deep, and what walks the tree calls itself.
+constexpr int kDeepest = 100;
+
+/// Nothing where it is none, or too deep.
+std::optional<Json> parsed(const std::string& text) {
+  bool too_deep = false;
+  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  Json json = Json::parse(text, shallow, false);
+  if (too_deep || json.is_discarded()) return std::nullopt;
+  return json;
+}
+
+/// The text of a `certificate`; nothing where there is none that could be read.
+std::optional<std::string> text_in(const Json& certificate) {
+  if (certificate.is_string()) return certificate.get<std::string>();
+  if (!certificate.is_object()) return std::nullopt;
+  const auto text = certificate.find("text");
+  if (text == certificate.end() || !text->is_string()) return std::nullopt;
+  return text->get<std::string>();
+}
+
+/// The ellipse that the obstacle beside a half-plane was proven to lie in.
+std::optional<geometry::Ellipse> contained_in(const Json& object) {
+  const auto taken = object.find("taken_as");
+  if (taken == object.end() || !taken->is_object() || !taken->contains("certificate")) return std::nullopt;
+  const auto text = text_in(taken->at("certificate"));
+  const auto containment = text ? vo::read_containment(*text) : std::nullopt;
+  return containment ? std::optional(containment->ellipse) : std::nullopt;
+}
+
+/// Whether the half-plane is of an ellipse, and not of this one.
+bool is_of_another(const std::string& text, const geometry::Ellipse& ellipse) {
+  const auto c = vo::read_certificate(text);
+  const auto* of = c ? std::get_if<geometry::Ellipse>(&c->claim.shape) : nullptr;
+  const auto numbers = [](const geometry::Ellipse& e) {
+    return std::array{e.center.x, e.center.y, e.l11, e.l21, e.l22};
+  };
+  return of && numbers(*of) != numbers(ellipse);
+}
+
+JudgedCertificate judge_beside(const std::string& text, const std::optional<geometry::Ellipse>& ellipse) {
+  JudgedCertificate judged = judge(text);
+  if (judged.valid && ellipse && is_of_another(text, *ellipse)) {
+    judged.verdict = "of another ellipse";
+    judged.valid = false;
+  }
+  return judged;
+}
+
+void judge_member(const Json& certificate, const Json& object, JudgedCertificates& judged) {
+  if (certificate.is_null()) {
+    ++judged.none;
+  } else {
+    judged.all.push_back(judge_beside(text_in(certificate).value_or(""), contained_in(object)));
+  }
+}
+
+void judge_tree(const Json& value, JudgedCertificates& judged) {
+  if (value.is_string() && begins_as_one(value.get_ref<const std::string&>()))
+    judged.all.push_back(judge(value.get<std::string>()));
+  if (value.is_array())
+    for (const Json& item : value) judge_tree(item, judged);
+  if (!value.is_object()) return;
+  for (const auto& [key, member] : value.items()) {
+    if (key == "certificate") {
+      judge_member(member, value, judged);
+    } else {
+      judge_tree(member, judged);
+    }
+  }
+}
+
+JudgedCertificates judge_json(const std::string& text) {
+  JudgedCertificates judged;
+  if (const auto json = parsed(text)) {
+    judge_tree(*json, judged);
+  } else {
+    judged.all.push_back({"unreadable JSON", "", false});
+  }
+  return judged;
+}
+
+JudgedCertificates judge_lines(const std::string& text) {
+  JudgedCertificates judged;
+  for (const std::string& one : lines_of(text)) judged.all.push_back(judge(one));
+  return judged;
+}
+
+auto count_valid(const JudgedCertificates& judged) {
+  return std::count_if(judged.all.begin(), judged.all.end(), [](const JudgedCertificate& j) { return j.valid; });
 }
 
 }  // namespace
 
-std::vector<JudgedCertificate> judge_certificates_in(const std::string& text) {
+JudgedCertificates judge_certificates_in(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool json = first != std::string::npos && (text[first] == '{' || text[first] == '[');
-  std::vector<JudgedCertificate> judged;
-  for (const std::string& one : json ? strings_of_json(text) : lines_of(text)) judged.push_back(judge(one));
+  return json ? judge_json(text) : judge_lines(text);
+}
+
+JudgedCertificates judge_certificates(const std::string& file) {
+  JudgedCertificates judged = judge_certificates_in(text_of(file));
+  if (judged.all.empty()) throw UsageError("--certificate", file + ": no certificate", "a certificate a line");
   return judged;
 }
 
-std::vector<JudgedCertificate> judge_certificates(const std::string& file) {
-  std::vector<JudgedCertificate> judged = judge_certificates_in(text_of(file));
-  if (judged.empty()) throw UsageError("--certificate", file + ": no certificate", "a certificate a line");
-  return judged;
-}
-
-std::string to_json(const std::vector<JudgedCertificate>& judged) {
+std::string to_json(const JudgedCertificates& judged) {
   std::string verdicts;
-  for (const JudgedCertificate& j : judged)
+  for (const JudgedCertificate& j : judged.all)
     verdicts += fmt::format("{}\"{}\"", verdicts.empty() ? "" : ", ", j.verdict);
-  return fmt::format("{{\"certificates\": {}, \"valid\": {}, \"verdicts\": [{}]}}\n", judged.size(),
-                     count_valid(judged), verdicts);
+  return fmt::format("{{\"certificates\": {}, \"valid\": {}, \"none\": {}, \"verdicts\": [{}]}}\n", judged.all.size(),
+                     count_valid(judged), judged.none, verdicts);
 }
 
-std::string in_words(const std::vector<JudgedCertificate>& judged) {
+std::string in_words(const JudgedCertificates& judged) {
   std::string text;
-  for (std::size_t k = 0; k < judged.size(); ++k) {
-    text += fmt::format("{}: {}", k + 1, judged[k].verdict);
-    if (!judged[k].claim.empty()) text += "; " + judged[k].claim;
+  for (std::size_t k = 0; k < judged.all.size(); ++k) {
+    text += fmt::format("{}: {}", k + 1, judged.all[k].verdict);
+    if (!judged.all[k].claim.empty()) text += "; " + judged.all[k].claim;
     text += "\n";
   }
-  return text + fmt::format("{} {}, {} valid\n", judged.size(), judged.size() == 1 ? "certificate" : "certificates",
-                            count_valid(judged));
+  const std::string none = judged.none > 0 ? fmt::format(", {} null", judged.none) : "";
+  return text + fmt::format("{} {}, {} valid{}\n", judged.all.size(),
+                            judged.all.size() == 1 ? "certificate" : "certificates", count_valid(judged), none);
 }
 
 }  // namespace exactvo::tools

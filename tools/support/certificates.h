@@ -5,26 +5,35 @@
 /// Certificates as text, of half-planes and of containment, judged by the checkers of vo/certificate.h and
 /// vo/containment.h, which share nothing with what makes them.
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace exactvo::tools {
 
 struct JudgedCertificate {
-  std::string verdict;  ///< vo::name(Verdict), or "not a certificate"
+  std::string verdict;  ///< vo::name(Verdict), "not a certificate", "of another ellipse" or "unreadable JSON"
   std::string claim;    ///< what is claimed, rounded for people; empty where it is none
   bool valid = false;
 };
 
-/// Every certificate of a text: one a line, where blank lines do not count and any other line is "not a certificate";
-/// of JSON (first letter { or [) every string that begins as one. In order.
-std::vector<JudgedCertificate> judge_certificates_in(const std::string& text);
+struct JudgedCertificates {
+  std::vector<JudgedCertificate> all;  ///< in order
+  std::size_t none = 0;                ///< places of JSON that say that there is none: "certificate": null
+};
+
+/// Every certificate of a text: one a line, where blank lines do not count and any other line is "not a certificate".
+/// Of JSON (first letter { or [) the text of every `certificate`, whatever it begins with, and every other string that
+/// begins as one; JSON that cannot be read is one that is not valid. A half-plane of an ellipse beside a `taken_as`
+/// with a certificate of containment must be of the same ellipse, number by number; in lines, nothing says which belong
+/// together, and this is not checked.
+JudgedCertificates judge_certificates_in(const std::string& text);
 
 /// The same of a file, or of stdin where its name is "-". Throws DataError where it can't be read, UsageError where
 /// nothing is in it.
-std::vector<JudgedCertificate> judge_certificates(const std::string& file);
+JudgedCertificates judge_certificates(const std::string& file);
 
-std::string to_json(const std::vector<JudgedCertificate>& judged);
-std::string in_words(const std::vector<JudgedCertificate>& judged);
+std::string to_json(const JudgedCertificates& judged);
+std::string in_words(const JudgedCertificates& judged);
 
 }  // namespace exactvo::tools

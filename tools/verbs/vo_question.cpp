@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <optional>
 
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
@@ -99,23 +100,29 @@ double paper_horizon(const vo::VelocityObstacle& cone, Vec2 relative) {
   return seconds;
 }
 
-/// A number of seconds, or a rule.
-double horizon_of(const std::string& text, const vo::Encounter& encounter) {
-  if (text == "infinite") return kInfinity;
-  if (text == "paper" || text == "clamped") {
-    vo::Encounter any = encounter;
-    any.time_horizon = 1.0;
-    const vo::VelocityObstacle cone = cone_of(any);
-    const Vec2 relative = encounter.velocity - encounter.obstacle_velocity;
-    if (cone.overlaps()) return 1.0;  // no cone, so no horizon
-    return text == "paper" ? paper_horizon(cone, relative) : vo::clamped_time_horizon(cone, relative);
-  }
+/// The rule takes the distance over the speed: nothing for a piece in contact, which has no cone to measure it from.
+std::optional<double> horizon_by_rule(const std::string& rule, vo::Encounter e) {
+  e.time_horizon = 1.0;  // any: the distance does not depend on it
+  const vo::VelocityObstacle cone = cone_of(e);
+  if (cone.overlaps()) return std::nullopt;
+  const Vec2 relative = e.velocity - e.obstacle_velocity;
+  return rule == "paper" ? paper_horizon(cone, relative) : vo::clamped_time_horizon(cone, relative);
+}
+
+double horizon_in_seconds(const std::string& text) {
   double seconds = 0.0;
   char rest = 0;
   const bool is_number = std::sscanf(text.c_str(), "%lf%c", &seconds, &rest) == 1;
   if (!is_number || !(seconds > 0.0) || !std::isfinite(seconds))
     throw UsageError("--time-horizon", text, "a time above 0 s, or infinite, paper or clamped");
   return seconds;
+}
+
+/// A number of seconds, or a rule.
+std::optional<double> horizon_of(const std::string& text, const vo::Encounter& encounter) {
+  if (text == "infinite") return kInfinity;
+  if (text == "paper" || text == "clamped") return horizon_by_rule(text, encounter);
+  return horizon_in_seconds(text);
 }
 
 std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
@@ -183,14 +190,15 @@ vo::Encounter robot_alone(const VoFlags& flags) {
   return e;
 }
 
-/// All pieces of an obstacle look as far ahead as the one with the shortest horizon: for a rule that is the nearest.
+/// All pieces of an obstacle look as far ahead as the free one with the shortest horizon: for a rule that is the
+/// nearest. Where a rule finds all of them in contact there is none: what is proven of contact holds for any time.
 void add_obstacle(const GivenObstacle& given, vo::Encounter e, const VoFlags& flags, VoQuestion& q) {
   Shapes taken = shapes_of(given, flags);
   const std::size_t first = q.encounters.size();
   double horizon = kInfinity;
   for (ConvexShape& shape : taken.shapes) {
     e.obstacle = std::move(shape);
-    horizon = std::min(horizon, horizon_of(flags.time_horizon, e));
+    horizon = std::min(horizon, horizon_of(flags.time_horizon, e).value_or(kInfinity));
     q.encounters.push_back(e);
   }
   for (std::size_t k = first; k < q.encounters.size(); ++k) q.encounters[k].time_horizon = horizon;

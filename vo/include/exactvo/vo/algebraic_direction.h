@@ -25,7 +25,7 @@
 ///                            K - B - D = 0                    where B or D is nothing (degree 2),
 ///                            (K - B - D)^2 - 4 B D = 0        for an ellipse with a disc (degree 4).
 ///
-/// Of it the square-free part is kept, with coprime coefficients and a positive first one; where the root of a
+/// Of it the square-free part is kept, with coprime coefficients and a positive leading one; where the root of a
 /// quadratic is rational, the linear factor. It need not be irreducible. Which root is the leg was decided by the sign
 /// of h at both ends of its interval, in rationals.
 ///

@@ -11,7 +11,7 @@
 /// Properties (tests quote the numbers):
 ///  (1) read_containment(write_containment(c)) == c, bit for bit;
 ///  (2) check(c) is `valid` for every c of `certify_containment`;
-///  (3) a certificate of which any number was changed is not valid.
+///  (3) a certificate of which any number was changed is not valid, unless margin and digest are made anew.
 
 #include <cstdint>
 #include <optional>
