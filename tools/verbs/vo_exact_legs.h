@@ -21,8 +21,8 @@ struct LegsOfCone {
 /// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
 std::string exact_legs_json(const vo::ExactLegs& legs);
 
-/// All of them counter-clockwise from just after (-1, 0) on, which is the last itself; groups of equal ones: which cones
-/// share a leg.
+/// All of them counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
+/// cones share a leg.
 std::string legs_by_angle_json(const std::vector<LegsOfCone>& legs);
 
 std::string exact_legs_words(const vo::ExactLegs& legs);
