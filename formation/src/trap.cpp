@@ -117,37 +117,69 @@ Vec2 free_side(Vec2 along) {
   return -geometry::perp(geometry::normalized(along));
 }
 
-/// A robot rests over the goal's foot.
+/// A robot rests over the goal's foot, also where the goal lies in front of the edge by less than the robot's radius.
 std::optional<Equilibrium> rest_on_edge(const Facade& f, double radius, Vec2 goal) {
   const Vec2 along = f.edge.b - f.edge.a, out = free_side(along);
   const double foot = dot(goal - f.edge.a, along), depth = -dot(goal - f.edge.a, out);
-  if (!(depth > 0.0) || foot < 0.0 || foot > squared_norm(along)) return std::nullopt;
   const double distance = depth + radius;
+  if (!(distance > 0.0) || foot < 0.0 || foot > squared_norm(along)) return std::nullopt;
   return Equilibrium{goal + distance * out, out, std::numeric_limits<double>::infinity(), distance, true};
 }
 
+/// Whether the point's foot lies on the edge, ends included.
+bool is_over(const geometry::Segment& edge, Vec2 point) {
+  const Vec2 along = edge.b - edge.a;
+  const double foot = dot(point - edge.a, along);
+  return foot >= 0.0 && foot <= squared_norm(along);
+}
+
+/// Where a robot touches an edge and the next one, and both with its rim. Nothing in a slit, nor past an edge's end.
+std::optional<Vec2> touching_both(const geometry::Segment& edge, const geometry::Segment& next, double radius) {
+  const Vec2 out = free_side(edge.b - edge.a), out_next = free_side(next.b - next.a);
+  const Vec2 at = edge.b + (radius / (1.0 + dot(out, out_next))) * (out + out_next);
+  if (!is_finite(at) || !is_over(edge, at) || !is_over(next, at)) return std::nullopt;
+  return at;
+}
+
+/// Whether a robot there keeps clear of every edge of the obstacle. It touches two: the rounding of `at`, some 2^-52 of
+/// its coordinates, stays below the slack so long as these are less than 2^20 radii.
+bool is_clear_of_all(const std::vector<Facade>& facades, std::size_t obstacle, double radius, Vec2 at) {
+  constexpr double kSlack = 0x1p-30;  // of the radius
+  return std::all_of(facades.begin(), facades.end(), [&](const Facade& f) {
+    return f.obstacle != obstacle || clear_of(f.edge, (1.0 - kSlack) * radius, at);
+  });
+}
+
 /// A robot that touches both edges rests where they leave it no way nearer to the goal: the way there is
-/// -(s out + t out_beyond) with s, t >= 0.
+/// -(s out + t out_next) with s, t >= 0, and not nothing.
 std::optional<Equilibrium> rest_in_corner(const Facade& f, double radius, Vec2 goal) {
   if (!f.beyond) return std::nullopt;
   const Vec2 out = free_side(f.edge.b - f.edge.a), next = free_side(*f.beyond - f.edge.b);
   const double turn = cross(out, next);  // < 0: the chain turns right
   if (!(turn < 0.0)) return std::nullopt;
-  const Vec2 at = f.edge.b + (radius / (1.0 + dot(out, next))) * (out + next);
-  if (!is_finite(at)) return std::nullopt;  // a slit
-  const Vec2 way = goal - at;
-  if (cross(way, next) / turn > 0.0 || cross(out, way) / turn > 0.0) return std::nullopt;
-  return Equilibrium{at, geometry::normalized(out + next), std::numeric_limits<double>::infinity(), norm(way), true};
+  const auto at = touching_both(f.edge, {f.edge.b, *f.beyond}, radius);
+  if (!at) return std::nullopt;
+  const Vec2 way = goal - *at;
+  if (way == Vec2{} || cross(way, next) / turn > 0.0 || cross(out, way) / turn > 0.0) return std::nullopt;
+  return Equilibrium{*at, geometry::normalized(out + next), std::numeric_limits<double>::infinity(), norm(way), true};
 }
 
-TrapFinding examine(const Facade& f, const Robot& robot, Vec2 goal) {
+/// The rests on the edge and in the corner at its end.
+std::vector<Equilibrium> rests_at(const Facade& f, const std::vector<Facade>& all, double radius, Vec2 goal) {
+  std::vector<Equilibrium> rests;
+  if (const auto rest = rest_on_edge(f, radius, goal)) rests.push_back(*rest);
+  const auto corner = rest_in_corner(f, radius, goal);
+  if (corner && is_clear_of_all(all, f.obstacle, radius, corner->position)) rests.push_back(*corner);
+  return rests;
+}
+
+TrapFinding examine(const Facade& f, const std::vector<Facade>& all, const Robot& robot, Vec2 goal) {
   TrapFinding finding;
   finding.goal = goal;
   finding.enclosure = {f.edge, {f.obstacle}, geometry::EnclosureGrade::tight};
   finding.start_clear = clear_of(f.edge, robot.radius, robot.position);
   finding.goal_clear = clear_of(f.edge, robot.radius, goal);
-  for (const auto& rest : {rest_on_edge(f, robot.radius, goal), rest_in_corner(f, robot.radius, goal)})
-    if (rest) finding.equilibria.push_back(*rest);
+  finding.equilibria = rests_at(f, all, robot.radius, goal);
   finding.stall_possible = !finding.equilibria.empty();
   return finding;
 }
@@ -220,7 +252,7 @@ std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOpt
     const detail::StaticField field(library, scenario, options, robot.radius, robot.position, goal,
                                     detail::HorizonRule::clamped);
     for (const Facade& facade : facades) {
-      findings.push_back(examine(facade, robot, goal));
+      findings.push_back(examine(facade, facades, robot, goal));
       findings.back().robot = i;
     }
     for (const geometry::Enclosure& enclosure : field.enclosures()) {

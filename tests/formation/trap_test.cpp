@@ -206,6 +206,64 @@ TEST(Trap, WithoutEnclosuresAHollowCornerTraps) {
   EXPECT_TRUE(rests_without_enclosures(behind).empty());
 }
 
+Recording run_without_enclosures(const Scenario& s) {
+  SimulationOptions options;
+  options.method = Method::orca;
+  return simulate(s, options);
+}
+
+TEST(Trap, WithoutEnclosuresAGoalNearerToAnEdgeThanTheRadiusTrapsToo) {
+  // The robot cannot come nearer to the wall than its radius: over a goal 0.1 m before it, it rests.
+  const double radius = one_robot(geometry::Polyline{{{4.0, -1.0}, {4.0, 1.0}}}).robots[0].radius;
+  const auto before = [](double gap) { return one_robot(geometry::Polyline{{{8.0 + gap, -1.0}, {8.0 + gap, 1.0}}}); };
+  const auto from_the_west = [&](double gap) {
+    int count = 0;
+    for (const Equilibrium& e : rests_without_enclosures(before(gap))) count += e.normal.x < 0.0;
+    return count;
+  };
+  ASSERT_GT(radius, 0.2);
+  EXPECT_EQ(from_the_west(0.1), 1);
+  EXPECT_EQ(from_the_west(0.99 * radius), 1);
+  EXPECT_EQ(from_the_west(radius), 0) << "it arrives";
+  EXPECT_EQ(from_the_west(1.01 * radius), 0);
+  EXPECT_NEAR(run_without_enclosures(before(0.1)).steps.back().robots[0].position.x, 8.1 - radius, 0.05);
+}
+
+TEST(Trap, WithoutEnclosuresACornerThatTheRobotDoesNotFitInIsNone) {
+  const double radius = one_robot(geometry::Polyline{{{4.0, -1.0}, {4.0, 1.0}}}).robots[0].radius;
+  // A wedge whose edges are shorter than the way to where the robot would touch both.
+  const geometry::Polyline small{{{4.0 - 0.1 * radius, -0.1 * radius}, {4.0, 0.0}, {4.0 - 0.1 * radius, 0.1 * radius}}};
+  EXPECT_TRUE(rests_without_enclosures(one_robot(small)).empty());
+  // A wedge with a bar before it, over where the robot would rest: only the bar is left.
+  const geometry::Polyline open{{{3.0, -1.5}, {4.0, 0.0}, {3.0, 1.5}}};
+  const auto in_the_open = rests_without_enclosures(one_robot(open));
+  ASSERT_EQ(in_the_open.size(), 1u);
+  const double x = in_the_open[0].position.x;
+  const geometry::Polyline barred{{{3.0, -1.5}, {4.0, 0.0}, {3.0, 1.5}, {x, 1.5}, {x, 0.1 * radius}}};
+  for (const Equilibrium& e : rests_without_enclosures(one_robot(barred)))
+    EXPECT_GT(norm(e.position - in_the_open[0].position), 0.5 * radius);
+}
+
+TEST(Trap, WithoutEnclosuresAGoalInTheCornerItselfIsReached) {
+  Scenario wedge = one_robot(geometry::Polyline{{{3.0, -1.5}, {4.0, 0.0}, {3.0, 1.5}}});
+  wedge.robots[0].goals = {rests_without_enclosures(wedge).at(0).position};
+  for (const Equilibrium& e : rests_without_enclosures(wedge)) EXPECT_GT(e.distance, 0.0);
+}
+
+TEST(Trap, WithoutEnclosuresASceneThatPassesIsClear) {
+  // A desk beside the way, a block on it that turns a corner to the robot, a slanted wall: it slides past them.
+  const Scenario scenes[] = {
+      one_robot(geometry::Polygon{{{3.0, 0.6}, {5.0, 0.6}, {5.0, 1.5}, {3.0, 1.5}}, {}}),
+      one_robot(geometry::Polygon{{{3.0, 0.1}, {4.5, -0.6}, {5.0, 0.3}, {4.3, 0.9}}, {}}),
+      one_robot(geometry::Polyline{{{2.0, 0.3}, {5.0, -2.5}}}),
+  };
+  for (const Scenario& scene : scenes) {
+    EXPECT_TRUE(rests_without_enclosures(scene).empty());
+    const Vec2 end = run_without_enclosures(scene).steps.back().robots[0].position;
+    EXPECT_LT(norm(end - scene.robots[0].goals[0]), 0.1);
+  }
+}
+
 TEST(Trap, WithoutEnclosuresNoSceneThatStopsIsCleared) {
   for (const std::string name : {"A1", "A4", "A11"}) {
     const Scenario scene = test::paper_scene(name);

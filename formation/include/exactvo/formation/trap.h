@@ -59,9 +59,11 @@ struct TrapFinding {
 };
 
 /// Every robot against every enclosure that the method builds for it. The method `orca` builds none: there each edge of
-/// each obstacle stands for itself, seen from its free side, together with the corner at its end where that is a concave
-/// one; a robot may rest on the edge over the goal's foot, or in the corner. Passages too narrow between two obstacles
-/// are judged by no method. REQUIRES: a valid scenario.
+/// each obstacle stands for itself, seen from its free side, together with the corner at its end where that is a
+/// concave one; a robot may rest on the edge over the goal's foot, or in the corner where it touches both edges and
+/// nothing else of the obstacle. With `orca` that is rounded, and heuristic: an edge knows nothing of the rest of its
+/// obstacle, nor where the robot comes from. Passages too narrow between two obstacles, and slots within one, are
+/// judged by no method. REQUIRES: a valid scenario.
 std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOptions& options = {});
 
 }  // namespace exactvo::formation
