@@ -19,12 +19,16 @@
 #include "batch/packed_rtree.h"
 #include "batch/sqlite_file.h"
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/require.h"
 #include "system_error.h"
 
 namespace exactvo::datasets::batch {
 namespace {
 
 // --- Geometries ---
+
+/// As the machines are that this runs on; the same number in well-known binary and in a GeoPackage's flags.
+constexpr char kLittleEndian = 1;
 
 struct Extent {
   double min_x = std::numeric_limits<double>::infinity();
@@ -47,22 +51,25 @@ struct Extent {
 
 template <class T>
 T take(std::string_view& bytes) {
+  EXACTVO_REQUIRE(bytes.size() >= sizeof(T), std::to_string(bytes.size()) + " bytes left of a geometry");
   T value;
   std::memcpy(&value, bytes.data(), sizeof value);
   bytes.remove_prefix(sizeof value);
   return value;
 }
 
-/// Of the line, or of the first ring, which goes round the others.
+/// Of the line, or of the first ring, which goes round the others. REQUIRES: a point in it, the byte order of `take`.
 Extent extent_of(std::string_view wkb) {
   constexpr std::uint32_t kPolygon = 3;
-  wkb.remove_prefix(1);
+  const int order = take<char>(wkb);
+  EXACTVO_REQUIRE(order == kLittleEndian, "byte order " + std::to_string(order));
   if (take<std::uint32_t>(wkb) == kPolygon) wkb.remove_prefix(sizeof(std::uint32_t));
   Extent extent;
   for (auto points = take<std::uint32_t>(wkb); points > 0; --points) {
     const auto x = take<double>(wkb);
     extent.add(x, take<double>(wkb));
   }
+  EXACTVO_REQUIRE(extent.min_x <= extent.max_x && extent.min_y <= extent.max_y, "a geometry without a point");
   return extent;
 }
 
@@ -76,7 +83,6 @@ void append(std::string& bytes, T value) {
 /// OGC 12-128, 2.1.3: "GP", a version, flags, the reference system, the extent, well-known binary.
 void write_geometry(const Row& row, std::int32_t reference, const Extent& extent, std::string& bytes) {
   constexpr char kVersion = 0;
-  constexpr char kLittleEndian = 1;
   constexpr char kExtentOfTwoDimensions = 1 << 1;
   bytes = {'G', 'P', kVersion, kLittleEndian | kExtentOfTwoDimensions};
   append(bytes, reference);
@@ -98,7 +104,8 @@ std::string insertion_into(const Layer& layer) {
 
 std::int32_t reference_of(SqliteFile& file, const Layer& layer) {
   SqliteStatement find(file, "SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = ?");
-  find.bind_text(0, layer.name).step();
+  const bool is_there = find.bind_text(0, layer.name).step();
+  EXACTVO_REQUIRE(is_there, std::string("no geometries of ") + layer.name + " in the schema");
   return static_cast<std::int32_t>(find.integer(0));
 }
 

@@ -4,8 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
 
+#include "batch/features.h"
+#include "batch/geopackage.h"
 #include "support/seeded_random.h"
 #include "temporary_folder.h"
 
@@ -63,10 +68,11 @@ std::vector<std::int64_t> expected(const std::vector<Box>& boxes, const Box& win
   return ids;
 }
 
-// A root alone; one level; two; more than are gathered at once.
+// A root alone; one level; two; as many as are gathered at once (kGathered), with nothing left for the end, one less
+// and one more; more.
 TEST_F(PackedIndices, FindWhatIsThere) {
   exactvo::test::SeededRandom random(exactvo::test::seed_of_run(107));
-  for (const std::size_t count : {0u, 1u, 51u, 52u, 51u * 51u + 1u, 150000u}) {
+  for (const std::size_t count : {0u, 1u, 51u, 52u, 51u * 51u + 1u, 131071u, 131072u, 131073u, 150000u}) {
     SCOPED_TRACE(count);
     const std::vector<Box> boxes = random_boxes(random, count);
     const auto file = index_of(boxes, std::to_string(count));
@@ -96,6 +102,93 @@ TEST(PackedIndex, FloatsAreRoundedOutward) {
   }
   EXPECT_EQ(batch::rounded_down(1e39), std::numeric_limits<float>::max());
   EXPECT_EQ(batch::rounded_down(0.5), 0.5F);
+}
+
+/// Floats in their order as integers in theirs, from -infinity to infinity.
+std::int64_t place_of(float f) {
+  std::int32_t bits = 0;
+  std::memcpy(&bits, &f, sizeof bits);
+  return bits >= 0 ? bits : std::int64_t{std::numeric_limits<std::int32_t>::min()} - bits;
+}
+
+float float_at(std::int64_t place) {
+  const std::int64_t bits = place >= 0 ? place : std::int64_t{std::numeric_limits<std::int32_t>::min()} - place;
+  const auto raw = static_cast<std::int32_t>(bits);
+  float f = 0.0F;
+  std::memcpy(&f, &raw, sizeof f);
+  return f;
+}
+
+/// The largest float that is not above x: by halving all floats, without rounding anything.
+float largest_not_above(double x) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  std::int64_t low = place_of(-infinity), above = place_of(infinity);
+  while (above - low > 1) {
+    const std::int64_t middle = low + (above - low) / 2;
+    (double{float_at(middle)} <= x ? low : above) = middle;
+  }
+  return float_at(low);
+}
+
+TEST(PackedIndex, RoundedDownIsTheLargestFloatNotAbove) {
+  exactvo::test::SeededRandom random(exactvo::test::seed_of_run(113));
+  std::vector<double> numbers = {0.0,   1.0,   0.1,   16777217.0, 3.4028234663852886e38, 3.5e38, 1e39,
+                                 1e-45, 7e-46, 1e-46, 1e-38};
+  for (int k = 0; k < 20000; ++k) numbers.push_back(std::ldexp(random.uniform(1.0, 2.0), k % 290 - 155));
+  for (int k = 0; k < 2000; ++k) {
+    const double exact = static_cast<float>(random.uniform(0.0, 1000.0));  // and the doubles beside a float
+    numbers.insert(numbers.end(), {exact, std::nextafter(exact, 1e9), std::nextafter(exact, -1e9)});
+  }
+  for (const double x : numbers) {
+    EXPECT_EQ(batch::rounded_down(x), largest_not_above(x)) << x;
+    EXPECT_EQ(batch::rounded_down(-x), largest_not_above(-x)) << -x;
+    EXPECT_EQ(batch::rounded_up(x), -largest_not_above(-x)) << x;
+    EXPECT_EQ(batch::rounded_up(-x), -largest_not_above(x)) << -x;
+  }
+}
+
+// --- What the package holds against its rows ---
+
+class Packages : public TemporaryFolder {
+ protected:
+  /// Whether the package takes a row of the first layer with this geometry.
+  bool takes(std::string_view wkb) const {
+    batch::GeoPackage package(folder_ / "rows.gpkg", "{}");
+    try {
+      package.add(row_with(wkb));
+    } catch (const std::logic_error&) {
+      return false;
+    }
+    return true;
+  }
+
+ private:
+  /// As `append_row` lays it out: the layer, the geometry's length and bytes, the values.
+  static std::string row_with(std::string_view wkb) {
+    std::string row(1, '\0');
+    append_length(row, wkb.size());
+    row += wkb;
+    for (const batch::Field& field : batch::layers()[0].fields) {
+      const std::size_t bytes = field.type == batch::FieldType::text ? sizeof(std::uint32_t) : sizeof(double);
+      row.append(bytes, '\0');  // an empty text, or a nought
+    }
+    return row;
+  }
+  static void append_length(std::string& row, std::size_t length) {
+    const auto count = static_cast<std::uint32_t>(length);
+    char raw[sizeof count];
+    std::memcpy(raw, &count, sizeof count);
+    row.append(raw, sizeof count);
+  }
+};
+
+TEST_F(Packages, HoldGeometriesToTheirForm) {
+  // A line of one point at (0, 0): byte order, kind, count, coordinates.
+  const std::string line = std::string("\1\2\0\0\0\1\0\0\0", 9) + std::string(16, '\0');
+  EXPECT_TRUE(takes(line));
+  EXPECT_FALSE(takes(std::string("\0\0\0\0\2\0\0\0\1", 9) + std::string(16, '\0'))) << "the other byte order";
+  EXPECT_FALSE(takes(std::string("\1\2\0\0\0\0\0\0\0", 9))) << "no point";
+  for (std::size_t length = 0; length < line.size(); ++length) EXPECT_FALSE(takes(line.substr(0, length))) << length;
 }
 
 }  // namespace
