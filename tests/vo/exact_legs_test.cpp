@@ -124,12 +124,17 @@ TEST(ExactLegs, Property1_ThePolynomialChangesItsSign) {
   }
 }
 
+/// What `rounded` promises of each coordinate: 4 ulps of 1.
+constexpr double kCoordinate = 4.0 * 0x1p-52;
+
 TEST(ExactLegs, Property2_TheOrderIsThatOfTheAngles) {
   SeededRandom random(seed_of_run(702));
   std::vector<AlgebraicDirection> all = random_legs(random, 40);
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return compare(a, b) == Sign::negative; });
-  const auto angle = [](const AlgebraicDirection& a) { return std::atan2(a.rounded().y, a.rounded().x); };
-  constexpr double kRounded = 1e-15;
+  // -0 becomes 0, so that (-1, 0) is at pi.
+  const auto angle = [](const AlgebraicDirection& a) { return std::atan2(a.rounded().y + 0.0, a.rounded().x); };
+  // Two angles: each is off by the way of its unit vector, sqrt(2) coordinates, and by an ulp of atan2, 2^-51 near pi.
+  constexpr double kRounded = 2.0 * (1.415 * kCoordinate + 0x1p-51);
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     EXPECT_LE(angle(all[i]), angle(all[i + 1]) + kRounded);
     EXPECT_EQ(compare(all[i], all[i]), Sign::zero);
@@ -141,11 +146,13 @@ TEST(ExactLegs, Property2_TheOrderIsThatOfTheAngles) {
 TEST(ExactLegs, Property3_TurnsAreSignsOfCrossProducts) {
   SeededRandom random(seed_of_run(703));
   const std::vector<AlgebraicDirection> all = random_legs(random, 24);
+  // Two unit vectors, each off by sqrt(2) coordinates; two products and a difference round by less than 2^-51.
+  constexpr double kCross = 2.0 * 1.415 * kCoordinate + 0x1p-51;
   for (const AlgebraicDirection& a : all) {
     for (const AlgebraicDirection& b : all) {
       EXPECT_EQ(static_cast<int>(turn(a, b)), -static_cast<int>(turn(b, a)));
       const double rounded = cross(a.rounded(), b.rounded());
-      if (std::fabs(rounded) > 1e-14) {
+      if (std::fabs(rounded) > kCross) {
         EXPECT_EQ(turn(a, b), rounded > 0 ? Sign::positive : Sign::negative);
       }
     }
