@@ -44,6 +44,13 @@ void PrintTo(const HostileFile& hostile, std::ostream* out) {
   *out << hostile.name;
 }
 
+/// A picture of one pixel whose comment claims 1.5 GB.
+const std::string kPngWithAHugeChunk(
+    "\x89PNG\r\n\x1a\n"
+    "\0\0\0\x0dIHDR\0\0\0\1\0\0\0\1\x08\0\0\0\0\x3a\x7e\x9b\x55"
+    "\x58\xfc\0\x1dtEXtComment\0x",
+    8 + 25 + 17);
+
 class Hostile : public ::testing::TestWithParam<HostileFile> {};
 
 TEST_P(Hostile, IsRefusedWithACodeInTimeAndSpace) {
@@ -54,6 +61,7 @@ TEST_P(Hostile, IsRefusedWithACodeInTimeAndSpace) {
   std::ofstream(folder / hostile.file, std::ios::binary) << hostile.text;
   std::ofstream(folder / "big.pgm", std::ios::binary) << "P5 2147483647 2147483647 255\nxx";
   std::ofstream(folder / "deep.pgm", std::ios::binary) << "P2 99999 99999 255\n0 0 0";
+  std::ofstream(folder / "big.png", std::ios::binary) << kPngWithAHugeChunk;
   const double before = peak_memory();
   const auto start = std::chrono::steady_clock::now();
   std::optional<DataCode> code;
@@ -87,6 +95,7 @@ std::vector<HostileFile> hostile_files() {
       {"MapHeaderBeyond64Bits", "a.map", "", "type octile\nheight 99999999999999999999\nwidth 2\nmap\n..\n",
        DataCode::number},
       {"PgmHeader", "a.yaml", "", "image: big.pgm\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::size},
+      {"PngChunkBeyondTheFile", "a.yaml", "", "image: big.png\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::size},
       {"PgmShortOfItsHeader", "a.yaml", "", "image: deep.pgm\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::size},
       {"PathOutOfTheMap", "a.yaml", "", "image: ../../x\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::path_escape},
       {"AbsolutePath", "a.yaml", "", "image: /etc/passwd\nresolution: 1\norigin: [0, 0, 0]\n", DataCode::path_escape},

@@ -6,6 +6,7 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "readers/grid.h"
+#include "readers/png_chunks.h"
 #include "text_file.h"
 
 namespace exactvo::datasets {
@@ -98,7 +99,10 @@ GreyImage read_image(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) {
     throw DataError(DataCode::image, path.string(), "", "no such picture", "the picture that the map names");
   }
-  if (!is_pgm(read_beginning(path, 3))) return read_gdal_image(path);
+  if (!is_pgm(read_beginning(path, 3))) {
+    require_whole_png_chunks(path);
+    return read_gdal_image(path);
+  }
   return read_pgm(read_text_file(path), path.string());
 }
 
