@@ -59,6 +59,12 @@ std::vector<double> algebraic_legs(const IntegerCase& c) {
   return legs;
 }
 
+/// Whether the normal (-1, 0) is a leg's, s = infinity: the leading coefficient C^2 - l11^2 is nothing, and C < 0.
+bool has_leg_at_infinity(const IntegerCase& c) {
+  const Integer C(c.r - c.px), l11(c.l11);
+  return C < Integer(0) && C * C - l11 * l11 == Integer(0);
+}
+
 double angle_between(Vec2 n, double s) {
   const Vec2 m{1.0 - s * s, 2.0 * s};
   return std::fabs(std::atan2(cross(n, m), dot(n, m)));
@@ -72,7 +78,7 @@ bool has_same_legs(const IntegerCase& c) {
   // contact than a hundred-thousandth of its distance, which integers of this size are not.
   constexpr double kWidth = 1e-9;
   for (const vo::Leg& leg : {legs->left, legs->right}) {
-    if (roots.size() == 1 && std::fabs(leg.normal.y) < kWidth && leg.normal.x < 0.0) continue;  // s = infinity
+    if (has_leg_at_infinity(c) && std::fabs(leg.normal.y) < kWidth && leg.normal.x < 0.0) continue;
     double nearest = 1.0;
     for (const double s : roots) nearest = std::min(nearest, angle_between(leg.normal, s));
     if (!(nearest < kWidth)) return false;
@@ -102,9 +108,9 @@ std::optional<Real> slope_of(const vo::AlgebraicDirection& leg) {
 }
 
 /// Whether an outward normal, of the half-angle formula, is that of the leg; of both of them one must be.
-bool is_among(Vec2 normal, const std::vector<double>& roots) {
+bool is_among(Vec2 normal, const std::vector<double>& roots, bool also_at_infinity) {
   constexpr double kRounded = 1e-14;  // both sides are doubles of numbers that are known exactly
-  if (std::fabs(normal.y) < kRounded && normal.x < 0.0) return true;  // s = infinity
+  if (also_at_infinity && std::fabs(normal.y) < kRounded && normal.x < 0.0) return true;
   return std::any_of(roots.begin(), roots.end(), [&](double s) { return angle_between(normal, s) < kRounded; });
 }
 
@@ -112,16 +118,21 @@ bool has_same_exact_legs(const IntegerCase& c) {
   const auto legs = obstacle_of(c).exact_legs();
   const std::vector<double> roots = algebraic_legs(c);
   if (!legs || !slope_of(legs->left) || !slope_of(legs->right)) return false;
-  return is_among(perp(legs->left.rounded()), roots) && is_among(-perp(legs->right.rounded()), roots);
+  const bool at_infinity = has_leg_at_infinity(c);
+  return is_among(perp(legs->left.rounded()), roots, at_infinity) &&
+         is_among(-perp(legs->right.rounded()), roots, at_infinity);
 }
 
 /// Any two legs within a quarter are ordered as their slopes.
 bool has_same_order(const IntegerCase& a, const IntegerCase& b, Tally& tally) {
   const auto of_a = obstacle_of(a).exact_legs(), of_b = obstacle_of(b).exact_legs();
+  if (!of_a || !of_b) return false;
   for (const vo::AlgebraicDirection& p : {of_a->left, of_a->right}) {
     for (const vo::AlgebraicDirection& q : {of_b->left, of_b->right}) {
       if (p.quarter_turns() != q.quarter_turns()) continue;
-      const auto theirs = Kernel().compare_1_object()(*slope_of(p), *slope_of(q));
+      const auto slope_p = slope_of(p), slope_q = slope_of(q);
+      if (!slope_p || !slope_q) return false;
+      const auto theirs = Kernel().compare_1_object()(*slope_p, *slope_q);
       if (theirs == CGAL::EQUAL) tally.at_a_contact();
       if (static_cast<int>(turn(q, p)) != static_cast<int>(theirs)) return false;
     }
