@@ -66,7 +66,8 @@ ExitCode audit_certificates(const Flags& flags) {
   const JudgedCertificates judged = judge_certificates(flags.certificates);
   const std::string text = flags.json ? to_json(judged) : in_words(judged);
   std::fwrite(text.data(), 1, text.size(), stdout);
-  const bool all = std::all_of(judged.all.begin(), judged.all.end(), [](const JudgedCertificate& c) { return c.valid; });
+  const bool all =
+      std::all_of(judged.all.begin(), judged.all.end(), [](const JudgedCertificate& c) { return c.valid; });
   return all ? ExitCode::success : ExitCode::negative;
 }
 
