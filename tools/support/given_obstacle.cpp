@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/pi.h"
@@ -108,8 +109,14 @@ datasets::ObstacleFile read_file(const std::string& name, const datasets::ReadOp
   return file;
 }
 
+/// A text too long for a name is no file.
+bool is_there(const std::string& name) {
+  std::error_code too_long;
+  return fs::exists(name, too_long);
+}
+
 datasets::ObstacleFile read(const std::string& option, const std::string& text, const datasets::ReadOptions& reading) {
-  if (fs::exists(text)) return read_file(text, reading);
+  if (is_there(text)) return read_file(text, reading);
   if (text.find('(') == std::string::npos)
     throw UsageError(option, text, std::string("a file that is there, WKT, ") + kShapeWords);
   return datasets::parse_wkt(text, option, {});
@@ -119,7 +126,7 @@ datasets::ObstacleFile read(const std::string& option, const std::string& text, 
 
 std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::string& text,
                                         const datasets::ReadOptions& reading) {
-  const Call call = text.find('(') == std::string::npos || fs::exists(text) ? Call{} : call_in(text);
+  const Call call = text.find('(') == std::string::npos || is_there(text) ? Call{} : call_in(text);
   if (call.word == "DISC" || call.word == "ELLIPSE") {
     const std::optional<ConvexShape> shape = shape_of(call);
     if (!shape) throw UsageError(option, text, std::string(kShapeWords) + ", lengths >= 0 m, within 2^100 m");

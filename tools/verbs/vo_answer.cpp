@@ -21,11 +21,7 @@ bool any_contains(const VoAnswer& a) {
 
 Place place_of(const VoAnswer& a, const vo::LostPiece& piece) {
   if (a.free->half_planes.empty()) return {};
-  const std::size_t cone = a.free->cone_of[piece.half_plane];
-  const std::vector<AskedObstacle>& all = a.question.obstacles;
-  std::size_t k = 0;
-  while (k + 1 < all.size() && all[k + 1].first_encounter <= cone) ++k;
-  return {k, cone - all[k].first_encounter};
+  return place_of(a.question, a.free->cone_of[piece.half_plane]);
 }
 
 const char* name(vo::BoundaryPart part) {
@@ -201,11 +197,13 @@ constexpr const char* kKindsOfCone =
     "\"variants\"]},\n  ";
 constexpr const char* kKindsOfFree =
     "\"kinds\": {\n    \"exact\": [\"obstacles/shape\", \"obstacles/taken_as\", \"obstacles/overlaps\", "
-    "\"velocity_is_free\"],\n"
+    "\"velocity_is_free\",\n      \"exact/components\", \"exact/region_inside\", \"exact/pieces/arcs/kind\", "
+    "\"exact/pieces/arcs/obstacle\", \"exact/pieces/arcs/cone\", \"exact/pieces/arcs/turn\"],\n"
     "    \"certified\": [\"obstacles/half_plane\", \"obstacles/contact_half_plane\", \"obstacles/certificate\", "
     "\"area\",\n      \"least_components\", \"region/inside\", \"region/area\", \"region/given_away\", "
-    "\"region/lost/area\"],\n"
-    "    \"rounded\": [\"region/lost/farthest\"]},\n  ";
+    "\"region/lost/area\",\n      \"exact/area\", \"exact/pieces/area\", \"exact/pieces/arcs/from\", "
+    "\"exact/pieces/arcs/to\"],\n"
+    "    \"rounded\": [\"region/lost/farthest\", \"exact/pieces/arcs/center\", \"exact/pieces/arcs/radius\"]},\n  ";
 
 bool has_exact_legs(const VoAnswer& a) {
   return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& c) { return c.exact_legs.has_value(); });
@@ -288,9 +286,10 @@ std::string free_json(const VoAnswer& a) {
   for (const AskedObstacle& o : a.question.obstacles) obstacles.push_back(obstacle_json(a, o));
   return fmt::format(
       "{{\n  \"obstacles\": [{}],\n  \"max_speed\": {},\n  \"velocity_is_free\": {},\n  \"area\": {},\n"
-      "  \"least_components\": {},\n  \"region\": {},\n  {}{}{}\n}}\n",
+      "  \"least_components\": {},\n  \"region\": {},\n  {},\n  {}{}{}\n}}\n",
       joined(obstacles), json(f.max_speed), json(f.free.contains(a.question.velocity)), json(f.free.area()),
-      f.free.least_components(), region_json(a), by_angle_json(a), kinds(kKindsOfFree, a), stages_json());
+      f.free.least_components(), region_json(a), exact_free_json(f.exact, a.question), by_angle_json(a),
+      kinds(kKindsOfFree, a), stages_json());
 }
 
 }  // namespace
@@ -365,8 +364,11 @@ FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion
                     question.max_speed,
                     std::move(half_planes),
                     std::move(cone_of),
+                    {},
                     {}};
-  if (!overlaps && answer.half_planes.size() == cones.size()) answer.report = answer.free.compare(answer.half_planes);
+  const bool keep_something = !overlaps && answer.half_planes.size() == cones.size();
+  if (keep_something) answer.report = answer.free.compare(answer.half_planes);
+  answer.exact = exact_free_of(answer.free.cones(), question, keep_something ? &answer.half_planes : nullptr);
   return answer;
 }
 

@@ -11,6 +11,7 @@
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
 #include "exactvo/vo/free_velocities.h"
+#include "verbs/vo_exact_free.h"
 #include "verbs/vo_exact_legs.h"
 #include "verbs/vo_question.h"
 
@@ -39,6 +40,7 @@ struct FreeAnswer {
   std::vector<geometry::HalfPlane> half_planes;
   std::vector<std::size_t> cone_of;  ///< of each half-plane
   std::optional<vo::RegionReport> report;
+  ExactFree exact;
 };
 
 FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion& question);
@@ -63,11 +65,7 @@ VoAnswer answer_of(const VoQuestion& question);
 bool any_overlaps(const VoAnswer& answer);
 bool any_contains(const VoAnswer& answer);
 
-/// The obstacle, and which of its cones, whose half-plane excludes the piece.
-struct Place {
-  std::size_t obstacle = 0;
-  std::size_t cone = 0;
-};
+/// Whose half-plane excludes the piece.
 Place place_of(const VoAnswer& answer, const vo::LostPiece& piece);
 
 /// "cut-off", "apex", "left leg", "right leg".

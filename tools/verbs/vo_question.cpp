@@ -219,6 +219,13 @@ void check_obstacles(const VoFlags& flags, const VoQuestion& q) {
 
 }  // namespace
 
+Place place_of(const VoQuestion& question, std::size_t encounter) {
+  const std::vector<AskedObstacle>& all = question.obstacles;
+  std::size_t k = 0;
+  while (k + 1 < all.size() && all[k + 1].first_encounter <= encounter) ++k;
+  return {k, encounter - all[k].first_encounter};
+}
+
 VoQuestion question_of(const VoFlags& flags) {
   check_company(flags);
   check_words(flags);
@@ -271,7 +278,10 @@ void declare_options(CLI::App& app, VoFlags& flags) {
       ->allow_extra_args(false);
   app.add_flag("--exact-legs", flags.exact_legs,
                "The legs as algebraic numbers: polynomial, interval; with --free also which cones share one");
-  app.add_flag("--free", flags.free, "The free velocities of all obstacles, with what the half-planes give away");
+  app.add_flag(
+      "--free", flags.free,
+      "The free velocities of all obstacles: their area and pieces, between bounds and (without ellipses) exactly; "
+      "what the half-planes give away");
   app.add_option("--max-speed", flags.max_speed, "m/s, required by --free");
   app.add_flag("--json", flags.json, "Everything as JSON on stdout");
   app.add_option("--figure", flags.figure, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");

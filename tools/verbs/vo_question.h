@@ -5,6 +5,7 @@
 /// What the options of `exactvo vo` ask.
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,6 +68,13 @@ struct VoQuestion {
   double max_speed = 0.0;  ///< m/s, of --free
   Vec2 velocity;
 };
+
+/// The obstacle, and which of its encounters.
+struct Place {
+  std::size_t obstacle = 0;
+  std::size_t cone = 0;
+};
+Place place_of(const VoQuestion& question, std::size_t encounter);
 
 /// Throws UsageError with the option that is wrong, DataError for a file.
 VoQuestion question_of(const VoFlags& flags);

@@ -118,6 +118,7 @@ std::string free_words(const VoAnswer& a) {
   text +=
       fmt::format("free velocities   {:.6g} to {:.6g} (m/s)^2, in at least {} {}\n", f.free.area().low,
                   f.free.area().high, f.free.least_components(), f.free.least_components() == 1 ? "piece" : "pieces");
+  text += exact_free_words(f.exact);
   if (f.report) return text + region_words(a);
   return text + (any_overlaps(a) ? "The robot touches or overlaps an obstacle: nothing is free, nothing is kept.\n"
                                  : "half-planes       none is proven at an obstacle: nothing is kept\n");

@@ -132,6 +132,11 @@ bool FreeArrangement::can_hold(const ShiftedCone& cone) {
   return detail::grown_body(cone.cone).body.is_disc();
 }
 
+std::size_t FreeArrangement::curves_of(const ShiftedCone& cone) {
+  EXACTVO_REQUIRE(can_hold(cone) && !cone.cone.overlaps(), geometry::excerpt(cone.cone.grown().shape));
+  return guarded({cone}, [&] { return detail::outside_of(cone).curves.size(); });
+}
+
 FreeArrangement::FreeArrangement(std::vector<ShiftedCone> cones, double max_speed)
     : cones_(std::move(cones)), max_speed_(max_speed) {
   require_in_range(cones_, max_speed);

@@ -69,11 +69,15 @@ struct FreePiece {
 class FreeArrangement {
  public:
   /// REQUIRES: max_speed and apices as of FreeVelocities, every cone `can_hold`, at most kMostCones and kMostCurves.
-  /// Cones whose robot overlaps the obstacle forbid everything: F is empty.
+  /// Cones whose robot overlaps the obstacle forbid everything: F is empty. Where a scene's numbers are many powers of
+  /// ten apart (1 and 1e-9 were once in a hundred), CGAL's may give up: a std::logic_error.
   FreeArrangement(std::vector<ShiftedCone> cones, double max_speed);
 
   /// Whether no curve of the cone is worse than a circle: not an ellipse, unless it is a disc or a segment.
   static bool can_hold(const ShiftedCone& cone);
+
+  /// How many curves bound the cone, of the kMostCurves. REQUIRES: can_hold(cone), !cone.cone.overlaps().
+  static std::size_t curves_of(const ShiftedCone& cone);
 
   /// Whether |v| <= max_speed and v lies in no cone, boundaries of cones not counted as free. Exact.
   bool contains(Vec2 v) const;
