@@ -8,20 +8,18 @@
 
 #include "duality.h"
 #include "exact_sign.h"
+#include "inward.h"
 #include "region.h"
+#include "rounded_gap.h"
 
 namespace exactvo::lp {
 namespace {
 
-/// A choice of at most three of the candidates and a double each.
-struct Multipliers {
-  std::array<std::size_t, 3> constraint{};
-  std::array<double, 3> value{};
+/// Up to three of the candidates.
+struct Chosen {
+  std::array<std::size_t, 3> index{};
   std::size_t count = 0;
-  void add(std::size_t index, double multiplier) {
-    constraint[count] = index;
-    value[count++] = multiplier;
-  }
+  std::size_t operator[](std::size_t k) const { return index[k]; }
 };
 
 bool usable(const Multipliers& m) {
@@ -63,15 +61,15 @@ void add_unless_implied(const Problem& problem, std::size_t index, double value,
   if (index != kSpeedBound || problem.objective == Objective::nearest) m.add(index, value);
 }
 
-Multipliers of_optimum(const Problem& problem, Vec2 v, const std::vector<std::size_t>& chosen) {
+Multipliers of_optimum(const Problem& problem, Vec2 v, const Chosen& chosen) {
   Multipliers m;
   const Vec2 sum = pull(problem, v);
-  if (chosen.size() == 1) {
+  if (chosen.count == 1) {
     const Vec2 x = column(problem, chosen[0], v);
     const bool is_disc = chosen[0] == kSpeedBound;
     const double multiplier = is_disc ? multiplier_of_disc(sum, x) : std::max(0.0, dot(sum, x) / squared_norm(x));
     add_unless_implied(problem, chosen[0], multiplier, m);
-  } else if (chosen.size() == 2) {
+  } else if (chosen.count == 2) {
     const auto pair = solve_pair(column(problem, chosen[0], v), column(problem, chosen[1], v), sum);
     add_unless_implied(problem, chosen[0], std::max(0.0, pair[0]), m);
     add_unless_implied(problem, chosen[1], std::max(0.0, pair[1]), m);
@@ -80,17 +78,17 @@ Multipliers of_optimum(const Problem& problem, Vec2 v, const std::vector<std::si
 }
 
 /// Weights whose sum of normals vanishes, or where the disc binds points along v.
-Multipliers of_least_violation(const Problem& problem, Vec2 v, const std::vector<std::size_t>& chosen, bool on_disc) {
+Multipliers of_least_violation(const Problem& problem, Vec2 v, const Chosen& chosen, bool on_disc) {
   Multipliers m;
   const auto normal = [&](std::size_t k) { return half_plane_at(problem, chosen[k]).normal; };
-  if (chosen.size() == 1) {
+  if (chosen.count == 1) {
     m.add(chosen[0], 1.0);
-  } else if (chosen.size() == 2) {
+  } else if (chosen.count == 2) {
     const Vec2 a = normal(0), b = normal(1);
     const double turn = std::copysign(1.0, cross(a, b));
     m.add(chosen[0], on_disc ? turn * cross(v, b) : norm(b));
     m.add(chosen[1], on_disc ? turn * cross(a, v) : norm(a));
-  } else if (chosen.size() == 3) {
+  } else if (chosen.count == 3) {
     const Vec2 a = normal(0), b = normal(1), c = normal(2);
     const std::array<double, 3> w = {cross(b, c), cross(c, a), cross(a, b)};
     const double turn = std::copysign(1.0, w[0] + w[1] + w[2]);
@@ -104,85 +102,100 @@ Scope scope_of(Status status) {
   return status == Status::infeasible ? Scope::hard_may_give : Scope::all_must_hold;
 }
 
-double speed_of(const Problem& problem) {
-  return region_of(problem).speed;
+/// What a gap is measured by: (V + |p|)^2 of (4), V |d| of (3), V of (2), V the largest speed in play.
+double unit_of_gap(const Problem& problem, Scope scope) {
+  const double speed = largest_speed(problem), p = norm(problem.preferred);
+  if (scope != Scope::all_must_hold) return speed;
+  return problem.objective == Objective::nearest ? (speed + p) * (speed + p) : speed * p;
 }
 
+/// The least gap tried first: rounding alone makes one as large.
+double least_gap(const Problem& problem, Scope scope) {
+  return std::max(kUnitRoundoff * unit_of_gap(problem, scope), std::numeric_limits<double>::min());
+}
+
+/// Finds the multipliers that prove the claim with the smallest gap.
 class Search {
  public:
-  Search(const Problem& problem, const Solution& solution, double widest)
-      : problem_(problem), solution_(solution), scope_(scope_of(solution.status)), widest_(widest) {
-    const double speed = speed_of(problem);
-    const double p = norm(problem.preferred);
-    if (scope_ != Scope::all_must_hold)
-      least_gap_ = kUnitRoundoff * speed;
-    else
-      least_gap_ = kUnitRoundoff * (problem.objective == Objective::nearest ? (speed + p) * (speed + p) : speed * p);
-    least_gap_ = std::max(least_gap_, std::numeric_limits<double>::min());
-  }
+  Search(const Problem& problem, Scope scope, const Claim& claim, double widest)
+      : problem_(problem), scope_(scope), claim_(claim), widest_(widest), least_(least_gap(problem, scope)) {}
 
   /// Tries every choice of at most three candidates.
   void run(const std::vector<std::size_t>& candidates) {
-    attempt({});
+    attempt({}, 0);
     for (std::size_t i = 0; i < candidates.size() && !settled(); ++i) {
-      attempt({candidates[i]});
+      attempt({candidates[i]}, 1);
       for (std::size_t j = i + 1; j < candidates.size() && !settled(); ++j) {
-        attempt({candidates[i], candidates[j]});
+        attempt({candidates[i], candidates[j]}, 2);
         for (std::size_t k = j + 1; k < candidates.size() && !settled() && scope_ != Scope::all_must_hold; ++k)
-          attempt({candidates[i], candidates[j], candidates[k]});
+          attempt({candidates[i], candidates[j], candidates[k]}, 3);
       }
     }
   }
 
   bool found() const { return found_; }
-  double gap() const { return best_gap_; }
-  const std::vector<Term>& terms() const { return best_; }
+  double gap() const { return gap_; }
+  const Multipliers& best() const { return best_; }
 
  private:
-  bool settled() const { return found_ && best_gap_ <= 64.0 * least_gap_; }
+  bool settled() const { return found_ && gap_ <= 64.0 * least_; }
 
-  void attempt(const std::vector<std::size_t>& chosen) {
+  void attempt(const std::array<std::size_t, 3>& candidates, std::size_t count) {
+    Chosen chosen;
     if (scope_ == Scope::all_must_hold) {
-      consider(of_optimum(problem_, solution_.velocity, chosen));
-      return;
+      chosen = {candidates, count};
+      return consider(of_optimum(problem_, claim_.velocity, chosen));
     }
-    std::vector<std::size_t> lines;
-    for (const std::size_t k : chosen)
-      if (k != kSpeedBound) lines.push_back(k);
-    consider(of_least_violation(problem_, solution_.velocity, lines, false));
-    if (lines.size() == 2) consider(of_least_violation(problem_, solution_.velocity, lines, true));
+    for (std::size_t k = 0; k < count; ++k)
+      if (candidates[k] != kSpeedBound) chosen.index[chosen.count++] = candidates[k];
+    consider(of_least_violation(problem_, claim_.velocity, chosen, false));
+    if (chosen.count == 2) consider(of_least_violation(problem_, claim_.velocity, chosen, true));
   }
 
   void consider(const Multipliers& m) {
     if (!usable(m)) return;
-    const std::vector<Term> terms = terms_of(m);
-    const Combination sum = combine(problem_, terms, scope_);
-    if (!sum.well_formed) return;
-    const double limit = found_ ? 0.5 * best_gap_ : widest_;
-    for (double gap = bounds(sum, 0.0) ? 0.0 : least_gap_; gap <= limit && std::isfinite(gap); gap *= 4.0) {
-      if (bounds(sum, gap)) {
-        found_ = true;
-        best_gap_ = gap;
-        best_ = terms;
-        return;
-      }
-    }
+    const std::optional<double> gap = gap_within(m, found_ ? 0.5 * gap_ : widest_);
+    if (!gap) return;
+    found_ = true;
+    gap_ = *gap;
+    best_ = m;
+  }
+
+  /// A gap of at most `limit` with which m proves the claim: rounding settles nearly all.
+  std::optional<double> gap_within(const Multipliers& m, double limit) const {
+    const auto rough = rounded_gap(problem_, m, scope_, claim_, Digits::of_double);
+    if (rough && rough->low > limit) return std::nullopt;
+    const auto fine = rounded_gap(problem_, m, scope_, claim_, Digits::twice);
+    if (fine && fine->low > limit) return std::nullopt;
+    if (fine && fine->high <= limit && std::isfinite(fine->high)) return std::max(0.0, fine->high);
+    return exact_gap_within(m, limit);
+  }
+
+  std::optional<double> exact_gap_within(const Multipliers& m, double limit) const {
+    const Combination sum = combine(problem_, terms_of(m), scope_);
+    if (!sum.well_formed) return std::nullopt;
+    for (double gap = bounds(sum, 0.0) ? 0.0 : least_; gap <= limit && std::isfinite(gap); gap *= 4.0)
+      if (bounds(sum, gap)) return gap;
+    return std::nullopt;
   }
 
   bool bounds(const Combination& sum, double gap) const {
-    if (scope_ == Scope::all_must_hold) return bounds_objective(problem_, sum, solution_.velocity, gap);
-    return bounds_violation(problem_, sum, solution_.violation, gap);
+    if (scope_ == Scope::all_must_hold) return bounds_objective(problem_, sum, claim_.velocity, gap);
+    return bounds_violation(problem_, sum, claim_.violation, gap);
   }
 
   const Problem& problem_;
-  const Solution& solution_;
   Scope scope_;
+  Claim claim_;
   double widest_;
-  double least_gap_ = 0.0;
+  double least_;
   bool found_ = false;
-  double best_gap_ = 0.0;
-  std::vector<Term> best_;
+  double gap_ = 0.0;
+  Multipliers best_;
 };
+
+/// What products may lose below the normal range.
+constexpr double kUnderflow = 0x1p-1060;
 
 /// A solver's violation is rounded; the certificate's must not be too small.
 double violation_not_less(const Problem& problem, const Solution& s) {
@@ -192,36 +205,52 @@ double violation_not_less(const Problem& problem, const Solution& s) {
     if (c.priority != gives) continue;
     const HalfPlane& h = c.half_plane;
     const double terms = std::abs(h.offset) + std::abs(h.normal.x * s.velocity.x) + std::abs(h.normal.y * s.velocity.y);
-    most = std::max(most, geometry::violation(h, s.velocity) + 4.0 * kUnitRoundoff * terms);
+    most = std::max(most, geometry::violation(h, s.velocity) + 4.0 * kUnitRoundoff * terms + kUnderflow);
   }
   return most;
+}
+
+/// Whether the claim of an answer is one: what must hold holds. What may give is violated by at most the claim's
+/// violation as `violation_not_less` rounds it.
+bool claims_truly(const Problem& problem, const Solution& solution) {
+  return is_finite(solution.velocity) && holds(problem, solution.status, solution.velocity);
+}
+
+std::vector<std::size_t> usable_candidates(const Problem& problem, std::vector<std::size_t> candidates, Scope scope) {
+  const auto unusable = [&](std::size_t k) { return !can_be_used(problem, k, scope); };
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(), unusable), candidates.end());
+  return candidates;
+}
+
+bool proves_contradiction(const Problem& problem, const Multipliers& m, Scope scope) {
+  if (const auto surplus = rounded_surplus(problem, m, scope)) {
+    if (surplus->low > 0.0) return true;
+    if (surplus->high <= 0.0) return false;
+  }
+  return contradicts(problem, combine(problem, terms_of(m), scope));
 }
 
 }  // namespace
 
 double widest_gap_of_doubles(const Problem& problem, Status status) {
-  const double speed = speed_of(problem);
-  if (status != Status::optimal) return kWidestGap * speed;
-  const double p = norm(problem.preferred);
-  return kWidestGap * (problem.objective == Objective::nearest ? (speed + p) * (speed + p) : speed * p);
+  return kWidestGap * unit_of_gap(problem, scope_of(status));
 }
 
-std::optional<Certificate> certificate_for(const Problem& problem, const Solution& given,
+std::optional<Certificate> certificate_for(const Problem& problem, const Solution& solution,
                                            const std::vector<std::size_t>& candidates,
                                            const std::vector<Term>& contradiction, double widest_gap) {
-  Solution solution = given;
-  const bool gives = given.status == Status::relaxed || given.status == Status::infeasible;
-  if (gives) solution.violation = violation_not_less(problem, given);
-  Search search(problem, solution, widest_gap);
-  search.run(candidates);
+  if (!claims_truly(problem, solution)) return std::nullopt;
+  const Scope scope = scope_of(solution.status);
+  const bool gives = scope != Scope::all_must_hold;
+  const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
+  Search search(problem, scope, claim, widest_gap);
+  search.run(usable_candidates(problem, candidates, scope));
   if (!search.found()) return std::nullopt;
-  Certificate c{given.status, given.velocity, gives ? solution.violation : 0.0, {}, search.terms(), search.gap(), {}};
-  if (gives) {
-    c.contradiction = search.terms();
-    if (!contradicts(problem, combine(problem, c.contradiction, scope_of(given.status))))
-      c.contradiction = contradiction;
-  }
-  if (check(problem, c) != Flaw::none) return std::nullopt;
+  Certificate c{solution.status, claim.velocity, claim.violation, {}, terms_of(search.best()), search.gap(), {}};
+  if (!gives) return c;
+  const bool by_itself = proves_contradiction(problem, search.best(), scope);
+  if (!by_itself && !contradicts(problem, combine(problem, contradiction, scope))) return std::nullopt;
+  c.contradiction = by_itself ? c.bound : contradiction;
   return c;
 }
 

@@ -20,18 +20,6 @@ HalfPlane side_of_box(const SpeedBound& bound, std::size_t index) {
   }
 }
 
-bool can_be_used(const Problem& problem, std::size_t index, Scope scope) {
-  if (index == kSpeedBound) return std::isfinite(problem.bound.disc);
-  if (is_speed_bound(index)) return std::isfinite(half_plane_at(problem, index).offset);
-  if (index >= problem.constraints.size()) return false;
-  return scope != Scope::hard_may_give || problem.constraints[index].priority == Priority::hard;
-}
-
-bool may_give(const Problem& problem, std::size_t index, Scope scope) {
-  if (is_speed_bound(index) || scope == Scope::all_must_hold) return false;
-  return scope == Scope::hard_may_give || problem.constraints[index].priority == Priority::soft;
-}
-
 bool sum_exactly(const std::vector<double>& parts, Exact& sum) {
   for (const double part : parts) {
     if (!std::isfinite(part)) return false;
@@ -77,6 +65,18 @@ bool bounds_farthest(const Problem& problem, const Combination& sum, Vec2 veloci
 }
 
 }  // namespace
+
+bool can_be_used(const Problem& problem, std::size_t index, Scope scope) {
+  if (index == kSpeedBound) return std::isfinite(problem.bound.disc);
+  if (is_speed_bound(index)) return std::isfinite(half_plane_at(problem, index).offset);
+  if (index >= problem.constraints.size()) return false;
+  return scope != Scope::hard_may_give || problem.constraints[index].priority == Priority::hard;
+}
+
+bool may_give(const Problem& problem, std::size_t index, Scope scope) {
+  if (is_speed_bound(index) || scope == Scope::all_must_hold) return false;
+  return scope == Scope::hard_may_give || problem.constraints[index].priority == Priority::soft;
+}
 
 HalfPlane half_plane_at(const Problem& problem, std::size_t index) {
   return is_speed_bound(index) ? side_of_box(problem.bound, index) : problem.constraints[index].half_plane;

@@ -28,6 +28,13 @@ enum class Scope {
   hard_may_give   ///< infeasible: soft ones are not to be used at all
 };
 
+/// Whether it names a constraint, a finite side of the box or a finite disc, and not a soft one where soft ones are
+/// out.
+bool can_be_used(const Problem& problem, std::size_t index, Scope scope);
+
+/// Whether it may be violated. REQUIRES: it can be used.
+bool may_give(const Problem& problem, std::size_t index, Scope scope);
+
 Combination combine(const Problem& problem, const std::vector<Term>& terms, Scope scope);
 
 /// The half-plane of a constraint or of a side of the box.

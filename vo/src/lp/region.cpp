@@ -27,17 +27,6 @@ std::string words(std::size_t index, const HalfPlane& h) {
          std::to_string(h.offset);
 }
 
-/// The largest speed that can matter: the bound's where there is one, else that of the data.
-double largest_speed(const Problem& problem) {
-  const SpeedBound& b = problem.bound;
-  const double bounded = std::min(b.disc, std::hypot(b.box_x, b.box_y));
-  if (std::isfinite(bounded)) return std::max(bounded, std::numeric_limits<double>::min());
-  double speed = std::max(norm(problem.preferred), std::numeric_limits<double>::min());
-  for (const Constraint& c : problem.constraints)
-    speed = std::max(speed, std::abs(c.half_plane.offset) / norm(c.half_plane.normal));
-  return speed;
-}
-
 Line line_of(const HalfPlane& h, double slack_of_unit, std::size_t index, bool soft) {
   const double slack = slack_of_unit * (std::abs(h.normal.x) + std::abs(h.normal.y));
   return {h.normal, h.offset + slack, squared_norm(h.normal), slack, index, soft};
@@ -73,6 +62,16 @@ void require_well_formed(const Problem& problem) {
 const char* name(Status status) {
   constexpr const char* kNames[] = {"optimal", "relaxed", "infeasible", "pinched"};
   return kNames[static_cast<int>(status)];
+}
+
+double largest_speed(const Problem& problem) {
+  const SpeedBound& b = problem.bound;
+  const double bounded = std::min(b.disc, std::hypot(b.box_x, b.box_y));
+  if (std::isfinite(bounded)) return std::max(bounded, std::numeric_limits<double>::min());
+  double speed = std::max(norm(problem.preferred), std::numeric_limits<double>::min());
+  for (const Constraint& c : problem.constraints)
+    speed = std::max(speed, std::abs(c.half_plane.offset) / norm(c.half_plane.normal));
+  return speed;
 }
 
 Region region_of(const Problem& problem, double slack_units) {

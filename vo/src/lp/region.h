@@ -45,6 +45,9 @@ struct Region {
   double speed = 1.0;                                     ///< V: the largest speed in play, m/s
 };
 
+/// The largest speed that can matter, m/s: the bound's where there is one, else that of the data.
+double largest_speed(const Problem& problem);
+
 /// The lines of `problem` with `slack_units` times the inward slack. `with_soft` leaves the soft ones out where false.
 Region region_of(const Problem& problem, double slack_units = 1.0);
 

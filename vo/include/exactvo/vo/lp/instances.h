@@ -5,12 +5,14 @@
 /// Instance sets by name and seed, the same on every machine, and the binary file they travel in. Every bench and every
 /// accuracy test draws on these (docs/guide/linear-program.md).
 ///
-///   RF<m>            random feasible: m soft lines around a witness in a disc of 0.9 v_max, slack U(0, 1.5)
-///   RI<m>            random infeasible: three soft lines 120 degrees +- 0.35 rad apart exclude a centre by U(0.05,
-///   0.5) parallel:<e>     neighbours tilted by e against each other corridor:<e>     antiparallel lines with a gap of
-///   +-e through:<e>      lines that pass v_pref at a distance of +-e tangent:<e>      lines that miss or touch the
-///   speed disc by +-e concurrent:<e>   three lines through a point, up to +-e far:<e>          as corridor, the
-///   offsets taken from points 100 m/s away along the line
+/// - RF<m>: random feasible, m soft lines around a witness in a disc of 0.9 v_max, slack U(0, 1.5)
+/// - RI<m>: random infeasible, three soft lines 120 degrees +- 0.35 rad apart exclude a centre by U(0.05, 0.5)
+/// - parallel:<e>: neighbours tilted by e against each other
+/// - corridor:<e>: antiparallel lines with a gap of +-e
+/// - through:<e>: lines that pass v_pref at a distance of +-e
+/// - tangent:<e>: lines that miss or touch the speed disc by +-e
+/// - concurrent:<e>: three lines through a point, up to +-e
+/// - far:<e>: as corridor, the offsets taken from points 100 m/s away along the line
 ///
 /// The last six are the adversarial families: ten lines, of which the first two or three are as said and the rest
 /// random.
