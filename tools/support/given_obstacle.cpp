@@ -115,10 +115,17 @@ bool is_there(const std::string& name) {
   return fs::exists(name, too_long);
 }
 
+/// What begins WKT; EMPTY and Z, M are the reader's to judge.
+bool begins_wkt(const std::string& word) {
+  for (const char* known : {"POLYGON", "LINESTRING", "POINT", "MULTI", "GEOMETRYCOLLECTION"})
+    if (word.rfind(known, 0) == 0) return true;
+  return false;
+}
+
 datasets::ObstacleFile read(const std::string& option, const std::string& text, const datasets::ReadOptions& reading) {
   if (is_there(text)) return read_file(text, reading);
-  if (text.find('(') == std::string::npos)
-    throw UsageError(option, text, std::string("a file that is there, WKT, ") + kShapeWords);
+  if (text.find('(') == std::string::npos || !begins_wkt(word_before_bracket(text)))
+    throw UsageError(option, text, std::string("a file that is there, WKT (POLYGON(...), ...), ") + kShapeWords);
   return datasets::parse_wkt(text, option, {});
 }
 
