@@ -163,17 +163,24 @@ class Search {
 
   /// A gap of at most `limit` with which m proves the claim: rounding settles nearly all.
   std::optional<double> gap_within(const Multipliers& m, double limit) const {
+    if (is_preferred(m)) return 0.0;
     const auto rough = rounded_gap(problem_, m, scope_, claim_, Digits::of_double);
     if (rough && rough->low > limit) return std::nullopt;
     const auto fine = rounded_gap(problem_, m, scope_, claim_, Digits::twice);
     if (fine && fine->low > limit) return std::nullopt;
-    if (fine && fine->high <= limit && std::isfinite(fine->high)) return std::max(0.0, fine->high);
-    return exact_gap_within(m, limit);
+    if (!fine || !(fine->high <= limit) || std::isinf(fine->high)) return exact_gap_within(m, limit);
+    const bool may_be_none = fine->low <= 0.0 && fine->high > 0.0;
+    return may_be_none && bounds(combine(problem_, terms_of(m), scope_), 0.0) ? 0.0 : std::max(0.0, fine->high);
+  }
+
+  /// Nothing is nearer, and nothing is needed to prove that.
+  bool is_preferred(const Multipliers& m) const {
+    return m.count == 0 && scope_ == Scope::all_must_hold && problem_.objective == Objective::nearest &&
+           claim_.velocity == problem_.preferred;
   }
 
   std::optional<double> exact_gap_within(const Multipliers& m, double limit) const {
     const Combination sum = combine(problem_, terms_of(m), scope_);
-    if (!sum.well_formed) return std::nullopt;
     for (double gap = bounds(sum, 0.0) ? 0.0 : least_; gap <= limit && std::isfinite(gap); gap *= 4.0)
       if (bounds(sum, gap)) return gap;
     return std::nullopt;
