@@ -3,12 +3,13 @@
 
 #include <cmath>
 
+#include "exactvo/geometry/pi.h"
+
 namespace exactvo::bench {
 namespace {
 
+using geometry::kPi;
 using geometry::Vec2;
-
-constexpr double kPi = 3.14159265358979323846;
 
 geometry::ConvexPolygon polygon(Stream& random, Vec2 centre, int count) {
   geometry::ConvexPolygon out;
@@ -21,7 +22,9 @@ geometry::ConvexPolygon polygon(Stream& random, Vec2 centre, int count) {
   return out;
 }
 
-geometry::ConvexShape shape(Stream& random, Obstacle kind, Vec2 centre) {
+}  // namespace
+
+geometry::ConvexShape random_shape(Stream& random, Obstacle kind, Vec2 centre) {
   switch (kind) {
     case Obstacle::disc:
       return geometry::Disc{centre, random.uniform(0.2, 1.0)};
@@ -38,8 +41,6 @@ geometry::ConvexShape shape(Stream& random, Obstacle kind, Vec2 centre) {
   }
   return geometry::ellipse_from_axes(centre, {1.0, random.uniform(0.1, 1.0), random.uniform(-0.5 * kPi, 0.5 * kPi)});
 }
-
-}  // namespace
 
 double Stream::uniform(double low, double high) {
   state_ += 0x9E3779B97F4A7C15ULL;
@@ -59,7 +60,7 @@ Instance random_instance(Stream& random, Obstacle kind) {
   const Vec2 origin{random.uniform(-10.0, 10.0), random.uniform(-10.0, 10.0)};
   const double radius = random.uniform(0.2, 0.6);
   const Vec2 centre = origin + (1.0 + radius + random.uniform(0.05, 5.0)) * random.direction();
-  Instance out{{shape(random, kind, centre), origin, radius}, random.uniform(0.5, 4.0), {}};
+  Instance out{{random_shape(random, kind, centre), origin, radius}, random.uniform(0.5, 4.0), {}};
   const bool aimed = random.uniform(0.0, 1.0) < 0.5;
   const Vec2 direction = random.direction();
   const double turn = random.uniform(-0.6, 0.6);

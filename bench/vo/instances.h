@@ -31,6 +31,9 @@ class Stream {
   std::uint64_t state_;
 };
 
+/// About 1 m wide; reaches at most 1 m from `centre`.
+geometry::ConvexShape random_shape(Stream& random, Obstacle kind, geometry::Vec2 centre);
+
 /// Obstacles of about 1 m, 0.05 m to 5 m from the robot's rim, velocities up to 2 m/s, half of them aimed within 0.6
 /// rad of the obstacle, half in any direction: legs, cut-offs, inside and outside all occur.
 Instance random_instance(Stream& random, Obstacle kind);

@@ -31,9 +31,8 @@ class Arrays {
       hard_ += p.constraints[k].priority == Priority::hard;
     }
   }
-  Solution solve() const {
-    return solve_single({x_.data(), y_.data(), offset_.data(), count_, hard_, preferred_, disc_});
-  }
+  SingleProblem problem() const { return {x_.data(), y_.data(), offset_.data(), count_, hard_, preferred_, disc_}; }
+  Solution solve() const { return solve_single(problem()); }
 
  private:
   double disc_;
@@ -99,6 +98,76 @@ TEST(Single, AnswersHoldExactlyWhereTheRegionIsNotThin) {
     ASSERT_EQ(s.status, Status::optimal);
     EXPECT_LE(squared_norm(s.velocity), problem.bound.disc * problem.bound.disc);
     for (const Constraint& c : problem.constraints) EXPECT_LE(geometry::violation(c.half_plane, s.velocity), 0.0);
+  }
+}
+
+TEST(Keeps, IsExactOnALineAndOneUlpBesideIt) {
+  // Twelve lines: a whole register and a part of one. The last is the one that v lies on.
+  for (const Vec2 v : {Vec2{0.1, 0.7}, Vec2{-1e-3, 0x1p-40}, Vec2{3.0, -4.0}}) {
+    Problem p;
+    p.bound.disc = 5.0;
+    for (int k = 0; k < 11; ++k) p.constraints.push_back({{{1.0, 0.0}, -6.0 - k}, Priority::hard, -1});
+    p.constraints.push_back({{{0.5, 1.0}, 0.5 * v.x + v.y}, Priority::hard, -1});
+    const double rounded = p.constraints.back().half_plane.offset;
+    // The products are exact; what their sum lost in rounding says on which side of the line v lies (Knuth's two-sum).
+    const double y = rounded - 0.5 * v.x;
+    const double lost = (0.5 * v.x - (rounded - y)) + (v.y - y);
+    EXPECT_EQ(keeps(Arrays(p).problem(), v), lost >= 0.0);
+    p.constraints.back().half_plane.offset = std::nextafter(rounded, 10.0);
+    EXPECT_FALSE(keeps(Arrays(p).problem(), v));
+    p.constraints.back().half_plane.offset = std::nextafter(rounded, -10.0);
+    EXPECT_TRUE(keeps(Arrays(p).problem(), v));
+  }
+}
+
+TEST(Keeps, IsExactOnTheDisc) {
+  Problem p;
+  p.bound.disc = 5.0;
+  EXPECT_TRUE(keeps(Arrays(p).problem(), {3.0, -4.0}));
+  EXPECT_FALSE(keeps(Arrays(p).problem(), {std::nextafter(3.0, 4.0), -4.0}));
+  p.bound.disc = std::nextafter(5.0, 0.0);
+  EXPECT_FALSE(keeps(Arrays(p).problem(), {3.0, -4.0}));
+}
+
+TEST(Keeps, HoldsOfEveryOptimumAndOfNoRelaxedAnswer) {
+  for (const Problem& problem : mixture()) {
+    const Arrays arrays(problem);
+    const Solution s = arrays.solve();
+    if (s.status == Status::pinched) continue;
+    ASSERT_EQ(keeps(arrays.problem(), s.velocity), s.status == Status::optimal) << text_of(problem);
+  }
+}
+
+TEST(SolveKeeping, FindsTheOptimumOrNothing) {
+  constexpr double kSame = 1e-9;  // m/s: slacks are of the order of 1e-15, corners magnify them
+  std::size_t optimal = 0, missed = 0;
+  for (const Problem& problem : mixture()) {
+    const Arrays arrays(problem);
+    const Solution s = arrays.solve();
+    Vec2 v;
+    const bool is_found = solve_keeping(arrays.problem(), v);
+    optimal += s.status == Status::optimal;
+    missed += s.status == Status::optimal && !is_found;
+    if (!is_found) continue;
+    ASSERT_EQ(s.status, Status::optimal) << text_of(problem);
+    ASSERT_TRUE(keeps(arrays.problem(), v)) << text_of(problem);
+    ASSERT_NEAR(norm(v - problem.preferred), norm(s.velocity - problem.preferred), kSame) << text_of(problem);
+  }
+  EXPECT_LE(1000 * missed, optimal) << missed << " of " << optimal;
+}
+
+TEST(SolveKeeping, SaysNoWhereNothingKeepsAllOrOnlyAPointDoes) {
+  Vec2 v;
+  for (const double gap : {0.5, 0.0}) {  // of the two walls
+    Problem p;
+    p.bound.disc = 2.0;
+    p.preferred = {1.0, 0.0};
+    p.constraints.push_back({{{1.0, 0.0}, gap}, Priority::hard, -1});
+    p.constraints.push_back({{{-1.0, 0.0}, 0.0}, Priority::hard, -1});
+    EXPECT_FALSE(solve_keeping(Arrays(p).problem(), v)) << gap;
+    p.constraints.assign(20, p.constraints.front());
+    p.constraints.push_back({{{-1.0, 0.0}, 0.0}, Priority::hard, -1});
+    EXPECT_FALSE(solve_keeping(Arrays(p).problem(), v)) << gap;
   }
 }
 

@@ -41,8 +41,7 @@ RationalVector turned(const RationalVector& v, int k) {
 }
 
 AlgebraicDirection direction_of(Root slope, int quarter_turns) {
-  return AlgebraicDirection(
-      std::make_shared<const AlgebraicValue>(AlgebraicValue{std::move(slope), quarter_turns % 4}));
+  return AlgebraicDoor::direction({std::move(slope), quarter_turns % 4});
 }
 
 AlgebraicDirection direction_of(const RationalVector& v) {
@@ -64,6 +63,7 @@ int along_sign(const AlgebraicValue& a, const RationalVector& v) {
 
 }  // namespace detail
 
+using detail::value_of;
 using geometry::Sign;
 using geometry::Vec2;
 
@@ -74,10 +74,9 @@ detail::RationalVector checked(Vec2 v) {
   return {detail::Rational(v.x), detail::Rational(v.y)};
 }
 
-std::shared_ptr<const detail::AlgebraicValue> value_of(Vec2 v) {
+detail::RationalVector checked_direction(Vec2 v) {
   EXACTVO_REQUIRE(v != Vec2{}, "a direction of the zero vector");
-  const AlgebraicDirection direction = detail::direction_of(checked(v));
-  return std::make_shared<const detail::AlgebraicValue>(direction.value());
+  return checked(v);
 }
 
 }  // namespace
@@ -85,7 +84,7 @@ std::shared_ptr<const detail::AlgebraicValue> value_of(Vec2 v) {
 AlgebraicDirection::AlgebraicDirection(std::shared_ptr<const detail::AlgebraicValue> value)
     : value_(std::move(value)) {}
 
-AlgebraicDirection::AlgebraicDirection(Vec2 v) : value_(value_of(v)) {}
+AlgebraicDirection::AlgebraicDirection(Vec2 v) : AlgebraicDirection(detail::direction_of(checked_direction(v))) {}
 
 std::vector<std::string> AlgebraicDirection::polynomial() const {
   std::vector<std::string> out;
@@ -103,19 +102,19 @@ int AlgebraicDirection::quarter_turns() const {
   return value_->quarter_turns;
 }
 bool AlgebraicDirection::is_rational() const {
-  return value_->slope.is_rational();
+  return value_->slope.is_settled();
 }
 
 AlgebraicDirection AlgebraicDirection::refined(double width) const {
   EXACTVO_REQUIRE(width > 0.0 && std::isfinite(width), geometry::hex_text(width));
   detail::Root slope = value_->slope;
-  while (!slope.is_rational() && slope.high - slope.low > detail::Rational(width)) detail::halve(slope);
+  while (!slope.is_settled() && slope.high - slope.low > detail::Rational(width)) detail::halve(slope);
   return detail::direction_of(std::move(slope), value_->quarter_turns);
 }
 
 Vec2 AlgebraicDirection::rounded() const {
   constexpr double kBelowAnUlp = 0x1p-56;  // of 1: the slope's part in the coordinates
-  const double t = refined(kBelowAnUlp).value().slope.high.get_d();
+  const double t = refined(kBelowAnUlp).value_->slope.high.get_d();
   const double length = std::sqrt(1.0 + t * t);
   const Vec2 v{1.0 / length, t / length};
   const Vec2 all[] = {v, perp(v), -v, -perp(v)};
@@ -123,9 +122,9 @@ Vec2 AlgebraicDirection::rounded() const {
 }
 
 Sign compare(const AlgebraicDirection& a, const AlgebraicDirection& b) {
-  const int quarter_a = detail::place_in_turn(a.value()), quarter_b = detail::place_in_turn(b.value());
+  const int quarter_a = detail::place_in_turn(value_of(a)), quarter_b = detail::place_in_turn(value_of(b));
   if (quarter_a != quarter_b) return quarter_a < quarter_b ? Sign::negative : Sign::positive;
-  return static_cast<Sign>(compare(a.value().slope, b.value().slope));
+  return static_cast<Sign>(compare(value_of(a).slope, value_of(b).slope));
 }
 
 // A quarter reaches over an eighth of a turn to both sides, its upper end included: from anywhere in one, all of the
@@ -134,16 +133,16 @@ Sign turn(const AlgebraicDirection& a, const AlgebraicDirection& b) {
   const int ahead = (b.quarter_turns() - a.quarter_turns() + 4) % 4;
   if (ahead == 1) return Sign::positive;
   if (ahead == 3) return Sign::negative;
-  const int by_slope = compare(b.value().slope, a.value().slope);
+  const int by_slope = compare(value_of(b).slope, value_of(a).slope);
   return static_cast<Sign>(ahead == 0 ? by_slope : -by_slope);
 }
 
 Sign turn(const AlgebraicDirection& a, Vec2 v) {
-  return static_cast<Sign>(turn_sign(a.value(), checked(v)));
+  return static_cast<Sign>(turn_sign(value_of(a), checked(v)));
 }
 
 Sign along(const AlgebraicDirection& a, Vec2 v) {
-  return static_cast<Sign>(along_sign(a.value(), checked(v)));
+  return static_cast<Sign>(along_sign(value_of(a), checked(v)));
 }
 
 }  // namespace exactvo::vo

@@ -184,7 +184,7 @@ void halve(Root& root) {
 }
 
 int compare(const Root& a, const Rational& b) {
-  if (a.is_rational()) return compare_rationals(a.low, b);
+  if (a.is_settled()) return compare_rationals(a.low, b);
   if (b <= a.low) return 1;
   if (b >= a.high) return -1;
   const int sign = sign_at(a.f, b);
@@ -195,8 +195,8 @@ int compare(const Root& a, const Rational& b) {
 int compare(Root a, Root b) {
   bool may_be_equal = true;
   for (;;) {
-    if (b.is_rational()) return compare(a, b.low);
-    if (a.is_rational()) return -compare(b, a.low);
+    if (b.is_settled()) return compare(a, b.low);
+    if (a.is_settled()) return -compare(b, a.low);
     if (a.high <= b.low) return -1;
     if (b.high <= a.low) return 1;
     if (may_be_equal && are_equal(a, b)) return 0;

@@ -27,13 +27,14 @@ Polynomial square_free(const Polynomial& f);
 
 int sign_at(const Polynomial& f, const Rational& x);
 
-/// The only root of a square-free f in (low, high), neither of which is a root; or, where f is linear, low = high is
-/// it.
+/// The only root of a square-free f in (low, high), neither of which is a root; or low = high is it.
 struct Root {
   Polynomial f;
   Rational low, high;
 
-  bool is_rational() const { return f.size() == 2; }
+  /// Whether the root is known as a number. A root of a linear f in an interval is rational as well; `settled` finds
+  /// it.
+  bool is_settled() const { return low == high; }
 };
 
 /// Roots in (low, high], ascending. Each interval is open and of positive length, also where f is linear: its ends tell

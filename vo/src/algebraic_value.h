@@ -4,6 +4,9 @@
 /// \file
 /// What an AlgebraicDirection holds, and the signs that are asked of it in rationals.
 
+#include <memory>
+#include <utility>
+
 #include "algebraic_root.h"
 #include "exactvo/vo/algebraic_direction.h"
 
@@ -24,6 +27,18 @@ struct AlgebraicValue {
   Root slope;             ///< -1 < t <= 1
   int quarter_turns = 0;  ///< 0 to 3
 };
+
+/// The way into an AlgebraicDirection and out of it, for this folder alone.
+struct AlgebraicDoor {
+  static AlgebraicDirection direction(AlgebraicValue value) {
+    return AlgebraicDirection(std::make_shared<const AlgebraicValue>(std::move(value)));
+  }
+  static const AlgebraicValue& value(const AlgebraicDirection& a) { return *a.value_; }
+};
+
+inline const AlgebraicValue& value_of(const AlgebraicDirection& a) {
+  return AlgebraicDoor::value(a);
+}
 
 /// Counter-clockwise by k quarter turns, k of any sign.
 RationalVector turned(const RationalVector& v, int k);

@@ -14,6 +14,10 @@ namespace {
 /// it; nearer ones by exact signs.
 constexpr double kFarApart = 0x1p-30;
 
+Vec2 rounded(const Point& x) {
+  return {x.x.doubleValue(), x.y.doubleValue()};
+}
+
 /// Where a direction lies on the way clockwise from another one: ahead of it, before, at or after the half turn.
 int quarter_clockwise(const Point& base, const Point& d) {
   const int side = cross(base, d).sign();
@@ -29,8 +33,35 @@ bool comes_first(const Point& base, const Point& a, const Point& b) {
 
 }  // namespace
 
+// A coordinate of a point within reach, an anchor or a centre errs by a few u of its size; so do differences, and a
+// distance to a line by as much of what is multiplied with its unit normal. kFarApart of all sizes is more by far.
+RoundedOwner::RoundedOwner(const Owner& owner, double margin) {
+  if (owner.kind == Owner::Kind::disc) return;
+  for (const Curve& c : owner.curves) {
+    Side side;
+    side.anchor = rounded(c.anchor);
+    side.left = perp(geometry::normalized(rounded(c.direction)));
+    side.has_disc = c.is_arc;
+    if (c.is_arc) {
+      side.centre = {c.circle.centre.x.get_d(), c.circle.centre.y.get_d()};
+      side.radius = c.circle.radius.get_d();
+    }
+    side.margin = margin + kFarApart * (norm(side.anchor) + norm(side.centre) + side.radius);
+    sides_.push_back(side);
+  }
+}
+
+bool RoundedOwner::forbids(Vec2 x) const {
+  if (sides_.empty()) return false;
+  return std::all_of(sides_.begin(), sides_.end(), [x](const Side& s) {
+    // Written so that a NaN tells nothing.
+    return dot(s.left, x - s.anchor) < -s.margin || (s.has_disc && norm(x - s.centre) < s.radius - s.margin);
+  });
+}
+
 Arrangement::Arrangement(std::vector<Owner> owners, double max_speed)
     : owners_(std::move(owners)), max_speed_(max_speed) {
+  for (const Owner& owner : owners_) rounded_owners_.emplace_back(owner, kFarApart * max_speed);
   for (std::size_t o = 0; o < owners_.size(); ++o) {
     for (Curve& c : owners_[o].curves) {
       c.owner = o;
@@ -67,7 +98,8 @@ void Arrangement::cut_at_common_points(std::size_t a, std::size_t b) {
     return;
   }
   for (const Point& x : common_points(curves_[a], curves_[b])) {
-    if (is_out_of_reach({x.x.doubleValue(), x.y.doubleValue()})) continue;
+    const Vec2 at = rounded(x);
+    if (is_out_of_reach(at) || is_hidden(at, curves_[a].owner, curves_[b].owner)) continue;
     if (!curves_[a].reaches(x) || !curves_[b].reaches(x)) continue;
     const std::size_t k = index_of(x);
     cuts_[a].push_back(k);
@@ -80,8 +112,16 @@ bool Arrangement::is_out_of_reach(Vec2 rounded) const {
   return !(std::hypot(rounded.x, rounded.y) <= (1.0 + kFarApart) * max_speed_);
 }
 
+/// Where a curve enters or leaves what all allow, no owner forbids a neighbourhood of the point. So a cut that a third
+/// one hides may be left out: all of the stretch that it would have ended is hidden, up to the cuts that are kept.
+bool Arrangement::is_hidden(Vec2 rounded, std::size_t owner_a, std::size_t owner_b) const {
+  for (std::size_t o = 0; o < rounded_owners_.size(); ++o)
+    if (o != owner_a && o != owner_b && rounded_owners_[o].forbids(rounded)) return true;
+  return false;
+}
+
 std::size_t Arrangement::index_of(const Point& x) {
-  const Vec2 at{x.x.doubleValue(), x.y.doubleValue()};
+  const Vec2 at = rounded(x);
   const double near = kFarApart * (max_speed_ + std::fabs(at.x) + std::fabs(at.y));
   for (std::size_t k = 0; k < points_.size(); ++k) {
     if (std::fabs(rounded_[k].x - at.x) > near || std::fabs(rounded_[k].y - at.y) > near) continue;

@@ -22,6 +22,27 @@ struct Stretch {
   std::size_t from = 0, to = 0;  ///< points
 };
 
+/// An owner in doubles: enough to see that a point is forbidden far from its boundary.
+class RoundedOwner {
+ public:
+  /// Distances below `margin` are not trusted.
+  RoundedOwner(const Owner& owner, double margin);
+
+  /// Whether the point is certainly not allowed, nor within half the margin of what is.
+  bool forbids(Vec2 x) const;
+
+ private:
+  /// The points on the right of a line or chord by more than the margin, or in the disc beyond a chord.
+  struct Side {
+    Vec2 anchor, left;    ///< left: of length 1
+    double margin = 0.0;  ///< infinite where nothing can be told
+    bool has_disc = false;
+    Vec2 centre;
+    double radius = 0.0;
+  };
+  std::vector<Side> sides_;
+};
+
 class Arrangement {
  public:
   /// REQUIRES: the first owner is the speed's disc, of this radius.
@@ -37,6 +58,7 @@ class Arrangement {
   void cut_at_ends_of(std::size_t a, std::size_t b);
   std::size_t index_of(const Point& x);
   bool is_out_of_reach(Vec2 rounded) const;
+  bool is_hidden(Vec2 rounded, std::size_t owner_a, std::size_t owner_b) const;
   std::vector<Stretch> stretches_of(std::size_t curve);
   Point middle_of(const Stretch& s) const;
   bool is_boundary(const Stretch& s) const;
@@ -45,6 +67,7 @@ class Arrangement {
   void walk_all(const std::vector<Stretch>& stretches);
 
   std::vector<Owner> owners_;
+  std::vector<RoundedOwner> rounded_owners_;
   double max_speed_;
   std::vector<Curve> curves_;
   std::vector<std::vector<std::size_t>> cuts_;        ///< of each curve, points

@@ -97,15 +97,16 @@ std::vector<RationalVector> front_of(const std::vector<RationalVector>& hull, co
 }
 
 /// The exact root of a polynomial of degree 1 or 2: of the two the one in the interval.
-Number number_of(const Root& root) {
-  if (root.is_rational()) return number(root.low);
+Number number_of(const Root& given) {
+  const Root root = settled(given);
+  if (root.is_settled()) return number(root.low);
   const Rational c(root.f[0]), b(root.f[1]), a(root.f[2]);  // a > 0, so that the sign at the upper end tells which
   const Number half(number(Rational(b / (2 * a)))), rest = root_of(number(Rational(square(b / (2 * a)) - c / a)));
   return sign_at(root.f, root.high) > 0 ? rest - half : -rest - half;
 }
 
 Point vector_of(const AlgebraicDirection& d) {
-  const Number t = number_of(d.value().slope);
+  const Number t = number_of(value_of(d).slope);
   const Point all[] = {{1, t}, {-t, 1}, {-1, -t}, {t, -1}};
   return all[d.quarter_turns()];
 }

@@ -99,12 +99,10 @@ int change(const Tangency& tangency, const Root& root, int side) {
 
 /// The legs of one body, or nothing yet.
 struct Found {
-  std::shared_ptr<const AlgebraicValue> left, right;
+  std::optional<AlgebraicDirection> left, right;
 
   void look_at(const Tangency& tangency, const Root& root, int quarter_turns) {
-    const auto at = [&](int turns) {
-      return std::make_shared<const AlgebraicValue>(AlgebraicValue{settled(root), turns % 4});
-    };
+    const auto at = [&](int turns) { return direction_of(settled(root), turns); };
     const int on_left = change(tangency, root, 1), on_right = change(tangency, root, -1);
     if (on_left < 0) left = at(quarter_turns);
     if (on_left > 0) right = at(quarter_turns + 2);
@@ -120,7 +118,7 @@ ExactLegs legs_of(const RationalVector& centre, const Body& body) {
     const Tangency tangency(centre, body, k);
     for (const Root& root : isolate(tangency.polynomial(), -1, 1)) found.look_at(tangency, root, k);
   }
-  return {AlgebraicDirection(found.left), AlgebraicDirection(found.right)};
+  return {*found.left, *found.right};
 }
 
 /// Of points, no body needs algebra.

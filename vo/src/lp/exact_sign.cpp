@@ -10,11 +10,6 @@ namespace {
 
 using Exact = CGAL::Mpzf;
 
-/// Three rounded operations on top of the rounded products: 4 u of the terms covers them to first order with room to
-/// spare, and kUnderflow what products may lose below the normal range.
-constexpr double kFilter = 4.0 * 0x1p-53;
-constexpr double kUnderflow = 0x1p-1060;
-
 int sign_of(double x) {
   return (x > 0.0) - (x < 0.0);
 }
@@ -25,7 +20,7 @@ int sign_of_violation(const HalfPlane& h, Vec2 v) {
   const double px = h.normal.x * v.x;
   const double py = h.normal.y * v.y;
   const double rounded = h.offset - (px + py);
-  const double error = kFilter * (std::abs(px) + std::abs(py) + std::abs(h.offset)) + kUnderflow;
+  const double error = kSignError * (std::abs(px) + std::abs(py) + std::abs(h.offset)) + kSignUnderflow;
   if (std::abs(rounded) > error) return sign_of(rounded);
   return static_cast<int>(
       CGAL::sign(Exact(h.offset) - Exact(h.normal.x) * Exact(v.x) - Exact(h.normal.y) * Exact(v.y)));
@@ -35,7 +30,7 @@ int sign_of_excess_speed(Vec2 v, double radius) {
   if (std::isinf(radius)) return -1;
   const double speed = squared_norm(v);
   const double limit = radius * radius;
-  const double error = kFilter * (speed + limit) + kUnderflow;
+  const double error = kSignError * (speed + limit) + kSignUnderflow;
   if (std::abs(speed - limit) > error) return sign_of(speed - limit);
   const Exact x(v.x), y(v.y), r(radius);
   return static_cast<int>(CGAL::sign(x * x + y * y - r * r));

@@ -50,14 +50,13 @@ namespace exactvo::vo {
 
 namespace detail {
 struct AlgebraicValue;
-}
+struct AlgebraicDoor;
+}  // namespace detail
 
 class AlgebraicDirection {
  public:
   /// The direction of a vector of doubles, exactly. REQUIRES: v finite, not zero.
   explicit AlgebraicDirection(geometry::Vec2 v);
-  /// Internal: of a root that stands somewhere already.
-  explicit AlgebraicDirection(std::shared_ptr<const detail::AlgebraicValue> value);
 
   /// Integers in decimal, from the constant term up; the last one is positive.
   std::vector<std::string> polynomial() const;
@@ -76,9 +75,10 @@ class AlgebraicDirection {
   /// Of length 1; rounded: each coordinate within 4 ulps of 1.
   geometry::Vec2 rounded() const;
 
-  const detail::AlgebraicValue& value() const { return *value_; }
-
  private:
+  friend struct detail::AlgebraicDoor;
+  explicit AlgebraicDirection(std::shared_ptr<const detail::AlgebraicValue> value);
+
   std::shared_ptr<const detail::AlgebraicValue> value_;
 };
 

@@ -32,4 +32,14 @@ Solution solve_single(const SingleProblem& problem);
 /// The same into a place of the caller's, which saves copying what has just been written.
 void solve_single(const SingleProblem& problem, Solution& answer);
 
+/// Whether v keeps every line, hard or soft, and the disc. Exact. With certified half-planes of velocity obstacles this
+/// is the proof that v lies in the interior of none. REQUIRES: finite numbers.
+bool keeps(const SingleProblem& problem, geometry::Vec2 v);
+
+/// For who wants an answer that keeps everything or none: true where `velocity` is one that `keeps`, the nearest to the
+/// preferred one up to rounding inward as `solve_single` does. False, and no more is said, where no velocity keeps
+/// everything or so few do that there is no room to round inward: nothing is relaxed, nothing allocated. A robot among
+/// obstacles that stand still can then stop: v = 0 keeps all their half-planes. REQUIRES: as `solve_single`.
+bool solve_keeping(const SingleProblem& problem, geometry::Vec2& velocity);
+
 }  // namespace exactvo::lp
