@@ -265,6 +265,19 @@ TEST(SegmentMeets, DegenerateEllipsesAndRestingRobots) {
   EXPECT_TRUE(segment_meets({upright, {}, 5.0}, {-1, 0}, 0.0)) << "in touch at t = 0";
 }
 
+TEST(SegmentMeets, SpeedsWhoseSquaresAreLostToUnderflow) {
+  SeededRandom random(seed_of_run(29));
+  for (int i = 0; i < 4000; ++i) {
+    RandomScene scene = random_scene(random, kKinds[i % 4]);
+    if (i % 2 == 0) scene.s.origin += support_point(scene.s, random.direction());  // on the rim of what is forbidden
+    const Vec2 n = random.direction();
+    const bool stands_in_it = locate(scene.s, {}) != Place::outside;
+    for (const int halvings : {440, 500, 520, 540, 700, 1000, 1060})
+      ASSERT_EQ(segment_meets(scene.s, std::ldexp(1.0, -halvings) * n, 1.0), stands_in_it)
+          << to_string(scene.s.shape) << " 2^-" << halvings;
+  }
+}
+
 TEST(Place, NotANumberIsTheCallersMistake) {
   const double nan = std::nan("");
   const GrownShape s{Ellipse{{5, 0}, 2, 0, 1}, {}, 1};
@@ -275,6 +288,9 @@ TEST(Place, NotANumberIsTheCallersMistake) {
   EXPECT_THROW(locate({ConvexPolygon{}, {}, 1}, {0, 0}), std::logic_error);
   EXPECT_THROW(segment_meets(s, {kInfinity, 0}, 1.0), std::logic_error);
   EXPECT_THROW(segment_meets(s, {1, 0}, -1.0), std::logic_error);
+  for (const Vec2 bad : {Vec2{nan, 0.0}, Vec2{0.0, kInfinity}})
+    for (const Vec2 v : {Vec2{1.0, 0.0}, Vec2{0.0, 1.0}, Vec2{1.0, 1.0}})
+      EXPECT_THROW(segment_meets({ConvexPolygon{{{5, 0}, {6, 0}, bad}}, {}, 1}, v, 1.0), std::logic_error);
   EXPECT_THROW(segment_meets(s, {1, 0}, kInfinity), std::logic_error);
   EXPECT_THROW(contains(Ellipse{{5, 0}, 2, 0, 1}, {nan, 0}), std::logic_error);
   EXPECT_THROW(contains(Ellipse{{5, 0}, nan, 0, 1}, {0, 0}), std::logic_error);

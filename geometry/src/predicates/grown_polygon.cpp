@@ -19,6 +19,7 @@ constexpr double kSquares = 32.0 * kUnit;
 /// Every product that underflows errs by at most 2^-1075, here multiplied by at most kLargest^2.
 constexpr double kLargest = 0x1p100;  // of a coordinate, m; larger ones are decided exactly
 constexpr double kUnderflow = 0x1p-600;
+constexpr double kLeastSquare = 0x1p-900;  // of a speed: neither lost to underflow nor short of digits
 
 double size_of(Vec2 v) {
   return std::fabs(v.x) + std::fabs(v.y);
@@ -131,9 +132,14 @@ Place GrownPolygon::place_of(const Seen& q) const {
 /// The vertices' extents across and along the direction. S misses the segment where it lies to one side of its line,
 /// behind the robot or beyond the end. Where all vertices lie ahead and before the end and the line passes between them
 /// or within r of one, it is met there.
+///
+/// A vertex p (in error by u) has products with v along and across it that err by less than 4 u |p| |v| each, and |p|
+/// |v| is at most 2^(1/2) times the larger of them: 24 u times the largest of all vertices is more than any errs.
+/// `reach` and `beyond` err by less than 4 u of themselves, where |v|^2 has all its digits. The sum has a NaN or an
+/// infinity wherever a vertex has; where products overflow, one of the two is infinite.
 GrownPolygon::Slab GrownPolygon::slab(Vec2 direction, double t_max) const {
   const double infinity = std::numeric_limits<double>::infinity();
-  double left = -infinity, right = infinity, ahead = -infinity, behind = infinity, size = 0.0;
+  double left = -infinity, right = infinity, ahead = -infinity, behind = infinity, sum = 0.0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Vec2 p = vertices_[i] - origin_;
     const double across = cross(direction, p);
@@ -142,14 +148,15 @@ GrownPolygon::Slab GrownPolygon::slab(Vec2 direction, double t_max) const {
     right = std::min(right, across);
     ahead = std::max(ahead, forward);
     behind = std::min(behind, forward);
-    size += size_of(p);  // the largest would do, but a sum keeps a NaN
+    sum += across;  // extremes lose a NaN
   }
   const double speed2 = squared_norm(direction);
   const double reach = radius_ * std::sqrt(speed2);
   const double beyond = t_max * speed2;
-  const double size_v = size_of(direction);
-  if (!(size + size_v + t_max + radius_ <= kLargest)) return {};
-  const double error = kProduct * (size_v * (size + radius_) + beyond) + kUnderflow;
+  const double size = std::max(std::max(left, -right), std::max(ahead, -behind));
+  if (!(size + t_max + radius_ + std::fabs(sum) <= kLargest && speed2 >= kLeastSquare && speed2 <= kLargest * kLargest))
+    return {};
+  const double error = kProduct * (3.0 * size + reach + beyond) + kUnderflow;
   const double far = reach + error;
   if (right > far || left < -far || ahead < -far || behind > beyond + far) return {Slab::misses};
   const double near = reach - error;
