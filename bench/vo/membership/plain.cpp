@@ -99,10 +99,10 @@ struct Plain {
     const double speed2 = squared_norm(v);
     const double reach = s.radius * std::sqrt(speed2);
     const double beyond = t_max * speed2;
-    if (right > reach || left < -reach || ahead < -reach || behind > beyond + reach) return -1;
+    if ((right > reach) | (left < -reach) | (ahead < -reach) | (behind > beyond + reach)) return -1;
     start_is_clear = behind > reach;
     end_is_clear = ahead < beyond - reach;
-    return right < reach && left > -reach && behind > 0.0 && ahead < beyond ? 1 : 0;
+    return static_cast<int>((right < reach) & (left > -reach) & (behind > 0.0) & (ahead < beyond));
   }
   bool holds_point(const Vec2* vertices, std::size_t count, Vec2 q) const {
     bool inside = true;

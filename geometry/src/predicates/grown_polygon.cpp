@@ -21,10 +21,6 @@ constexpr double kLargest = 0x1p100;  // of a coordinate, m; larger ones are dec
 constexpr double kUnderflow = 0x1p-600;
 constexpr double kLeastSquare = 0x1p-900;  // of a speed: neither lost to underflow nor short of digits
 
-double size_of(Vec2 v) {
-  return std::fabs(v.x) + std::fabs(v.y);
-}
-
 Vector<Exact> exactly(const Seen& p) {
   const Exact scale(p.scale);
   return {scale * Exact(p.base.x) - Exact(p.origin.x), scale * Exact(p.base.y) - Exact(p.origin.y)};
@@ -75,16 +71,6 @@ Sign exact_distance(const Vector<Exact>& q, const Vector<Exact>& a, const Vector
 }
 
 }  // namespace
-
-Seen seen(Vec2 base, Vec2 origin) {
-  const Vec2 at = base - origin;
-  return {base, origin, 1.0, at, size_of(at)};
-}
-
-Seen along(Vec2 direction, double t) {
-  const Vec2 at = t * direction;
-  return {direction, {}, t, at, size_of(at)};
-}
 
 /// The sign of the turn a -> b -> c.
 Sign GrownPolygon::turn(const Seen& a, const Seen& b, const Seen& c) const {
@@ -158,9 +144,10 @@ GrownPolygon::Slab GrownPolygon::slab(Vec2 direction, double t_max) const {
     return {};
   const double error = kProduct * (3.0 * size + reach + beyond) + kUnderflow;
   const double far = reach + error;
-  if (right > far || left < -far || ahead < -far || behind > beyond + far) return {Slab::misses};
+  // Bits, not jumps: which of the four it will be, nobody can guess.
+  if ((right > far) | (left < -far) | (ahead < -far) | (behind > beyond + far)) return {Slab::misses};
   const double near = reach - error;
-  if (right < near && left > -near && behind > error && ahead < beyond - error) return {Slab::meets};
+  if ((right < near) & (left > -near) & (behind > error) & (ahead < beyond - error)) return {Slab::meets};
   return {Slab::unknown, behind > far, ahead < beyond - far};
 }
 

@@ -5,6 +5,7 @@
 /// Exact questions about hull(vertices) (+) D(0, r) for a point or a segment from the robot. Each elementary sign is
 /// taken in doubles with a static bound and, where that is undecided, exactly.
 
+#include <cmath>
 #include <cstddef>
 
 #include "exactvo/geometry/predicates.h"
@@ -18,8 +19,14 @@ struct Seen {
   Vec2 at;      ///< rounded
   double size;  ///< |x| + |y| of `at`
 };
-Seen seen(Vec2 base, Vec2 origin);
-Seen along(Vec2 direction, double t);
+inline Seen seen(Vec2 base, Vec2 origin) {
+  const Vec2 at = base - origin;
+  return {base, origin, 1.0, at, std::fabs(at.x) + std::fabs(at.y)};
+}
+inline Seen along(Vec2 direction, double t) {
+  const Vec2 at = t * direction;
+  return {direction, {}, t, at, std::fabs(at.x) + std::fabs(at.y)};
+}
 
 /// Vertices counter-clockwise, at least one; they need not have an area.
 class GrownPolygon {
