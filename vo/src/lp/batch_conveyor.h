@@ -63,12 +63,14 @@ class Conveyor {
     M relaxing;  ///< still on the second walk
     M gone;      ///< handed over: their answers come from elsewhere
     int rounds;
+    const T* ahead[3];  ///< x, y and c of a pack to come, one for each of the first rounds
 
     HWY_INLINE void begin(M which) {
       lanes = walking = which;
       relaxing = gone = pack.none();
       rounds = 0;
     }
+    HWY_INLINE const T* asked_now() const { return rounds < 3 ? ahead[rounds] : rows.x; }
     HWY_INLINE bool busy() const { return !hn::AllFalse(D(), hn::Or(walking, relaxing)); }
   };
 
@@ -200,7 +202,7 @@ class Conveyor {
 
   /// What is violated now, and by that who goes on.
   HWY_INLINE void look(Way& way) {
-    price<kHard, kHard || kActive>(way.rows, way.pack);
+    price<kHard, kHard || kActive>(way.rows, way.pack, way.asked_now());
     way.walking = hn::And(way.walking, way.pack.violated);
     way.relaxing = hn::And(way.relaxing, way.pack.violated);
     if (++way.rounds < kMostLockstepRounds) return;
@@ -252,6 +254,18 @@ class Conveyor {
     if (kHard) p.hard_count = load_counts(in_.hard + at);
     p.id = numbers_from(at);
     way.begin(hn::FirstN(d, kLanes));
+    ask_for(std::min(at + kPacks * kLanes, (in_.count - 1) / kLanes * kLanes), way);
+  }
+
+  /// What the pack at `at` will need: its lines little by little, since a burst of them stops the processor.
+  HWY_INLINE void ask_for(std::size_t at, Way& way) const {
+    const std::size_t start = first_line_of(in_, at);
+    way.ahead[0] = in_.normal_x + start;
+    way.ahead[1] = in_.normal_y + start;
+    way.ahead[2] = in_.offset + start;
+    for (const T* numbers : {in_.preferred_x, in_.preferred_y, in_.disc}) hwy::Prefetch(numbers + at);
+    for (const T* numbers : {out_.velocity_x, out_.velocity_y, out_.violation}) hwy::Prefetch(numbers + at);
+    hwy::Prefetch(out_.status + at);
   }
 
   /// `Iota` from what is not a constant is stored lane by lane.
@@ -289,6 +303,7 @@ class Conveyor {
     p.id = numbers_from(at);
     ways[0].rows = {stage_, stage_ + kLanes, stage_ + 2 * kLanes, 3 * kLanes, in_.lines};
     ways[0].begin(hn::FirstN(d, count));
+    std::fill_n(ways[0].ahead, 3, stage_);
     solve(ways, 1);
     finish_some(p, hn::AndNot(ways[0].gone, ways[0].lanes));
     descend();

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
 
 /// Packs that make their rounds together: with fewer a processor waits, more leave its first cache.
-inline constexpr std::size_t kPacks = 4;
+inline constexpr std::size_t kPacks = 6;
 
 template <class D>
 HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> m) {

@@ -150,7 +150,7 @@ class Descent {
         lowest_on_plane(p_.entering, p_.first, p_.second, p_.third, moving);
       }
       const M priced = hn::AndNot(unsettled, moving);
-      price<kHard, kIndex>(rows, p_);
+      price<kHard, kIndex>(rows, p_, rows.x);
       moving = hn::And(priced, p_.violated);
     }
     unsettled = hn::Or(unsettled, moving);

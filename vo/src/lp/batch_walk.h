@@ -7,6 +7,7 @@
 #define EXACTVO_BATCH_WALK_H
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -119,9 +120,9 @@ struct Pack {
 /// The line violated most a lane. On the first walk all lines carry the slack; on the second only the hard ones do, and
 /// soft ones count from `level` on. The level is taken off the soft ones rather than added to the hard ones: it may be
 /// many times the speed, and its rounding would then exceed the slack. Without kIndex any line is number 0: who asks
-/// for no numbers is spared their cost.
+/// for no numbers is spared their cost. With each line one of `ahead` is asked for, which a later pack will read.
 template <bool kHard, bool kIndex, class D, class T>
-HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p) {
+HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead) {
   const D d;
   using V = hn::Vec<D>;
   const V zero = hn::Zero(d);
@@ -135,6 +136,7 @@ HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p) {
   const T *nx = rows.x, *ny = rows.y, *c = rows.c;
 #pragma GCC unroll 2
   for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
+    hwy::Prefetch(ahead + k * rows.stride);
     const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
     V by = hn::Sub(offset, dot(x, y, vx, vy));
     if (kHard) by = hn::Add(by, pick(hn::Lt(number, hard_count), hard_extra, soft_extra));
