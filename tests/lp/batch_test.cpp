@@ -147,6 +147,62 @@ TEST_P(Kinds, EveryTargetLayoutAndThreadCountGivesTheSameBits) {
   expect_equal(singly);
 }
 
+/// With as few arrays as a caller may give: a kernel of its own.
+template <class T>
+void expect_same_bits_of_the_barest(const std::vector<Problem>& problems, bool some_hard, bool prove) {
+  const auto solved = [&](bool bare) {
+    Batch<T> batch(problems);
+    std::vector<std::uint8_t> proven(batch.status.size());
+    BatchProblems<T> in = batch.in();
+    BatchAnswers<T> out = batch.out();
+    if (bare) out.active = nullptr;
+    if (bare && !some_hard) in.hard = nullptr;
+    if (prove) out.proven = proven.data();
+    solve_batch(in, out, 0, in.count);
+    return batch;
+  };
+  const Batch<T> full = solved(false);
+  for (const char* target : {"", "AVX2", "SSE4"}) {
+    if (!limit_batch_target(target)) continue;
+    const Batch<T> bare = solved(true);
+    EXPECT_EQ(bare.vx, full.vx);
+    EXPECT_EQ(bare.vy, full.vy);
+    EXPECT_EQ(bare.violation, full.violation);
+    EXPECT_EQ(bare.status, full.status);
+  }
+  ASSERT_TRUE(limit_batch_target(""));
+}
+
+TEST_P(Kinds, WhatNobodyAsksForChangesNoBit) {
+  expect_same_bits_of_the_barest<double>(mixture(GetParam()), GetParam(), false);
+  expect_same_bits_of_the_barest<double>(mixture(GetParam()), GetParam(), true);
+  expect_same_bits_of_the_barest<float>(mixture(GetParam()), GetParam(), false);
+}
+
+TEST(Batch, WhatNobodyAsksForChangesNoBitOfAdversarialAnswers) {
+  for (const std::string& family : adversarial_families())
+    for (const char* perturbation : {"1e-3", "1e-9", "1e-15", "0"}) {
+      const std::vector<Problem> problems = generate(family + ":" + perturbation, 500, 9);
+      expect_same_bits_of_the_barest<double>(problems, false, false);
+      expect_same_bits_of_the_barest<double>(problems, false, true);
+      expect_same_bits_of_the_barest<float>(problems, false, false);
+    }
+}
+
+/// How many packs go together depends on their lines.
+TEST(Batch, AnyNumberOfLinesIsProven) {
+  for (const char* set : {"RF1", "RI15", "RF25", "RI40", "RI100", "RF200"}) {
+    Batch<double> batch(generate(set, 331, 5));
+    std::vector<std::uint8_t> proven(batch.status.size());
+    BatchAnswers<double> out = batch.out();
+    out.proven = proven.data();
+    solve_batch(batch.in(), out, 0, 331);
+    EXPECT_EQ(std::count(proven.begin(), proven.end(), 1), 331) << set;
+    for (std::size_t i = 0; i < 331; ++i)
+      ASSERT_TRUE(certify(batch.problems()[i], batch.solution(i)).has_value()) << text_of(batch.problems()[i]);
+  }
+}
+
 TEST_P(Kinds, LanesAreProvenInTheSamePass) {
   Batch<double> batch(mixture(GetParam()));
   std::vector<std::uint8_t> proven(batch.status.size());

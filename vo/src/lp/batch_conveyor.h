@@ -33,14 +33,19 @@ class Conveyor {
   static std::size_t memory(std::size_t lines) { return Pool<D>::numbers(lines) + stage_numbers(lines); }
 
   Conveyor(const BatchProblems<T>& in, const BatchAnswers<T>& out, Leftover<T> leftover, T* memory)
-      : in_(in), out_(out), leftover_(leftover), rare_(memory, in.lines), stage_(memory + Pool<D>::numbers(in.lines)) {}
+      : in_(in),
+        out_(out),
+        leftover_(leftover),
+        rare_(memory, in.lines),
+        stage_(memory + Pool<D>::numbers(in.lines)),
+        packs_(packs_under_way<D>(in.lines)) {}
 
   BatchCounts run(std::size_t first, std::size_t last) {
     std::size_t at = first;
     const std::size_t ragged = std::min(last, (first + kLanes - 1) / kLanes * kLanes);
     if (at < ragged) run_copied(at, ragged - at), at = ragged;
     while (at + kLanes <= last) {
-      const std::size_t packs = std::min(kPacks, (last - at) / kLanes);
+      const std::size_t packs = std::min(packs_, (last - at) / kLanes);
       run_in_place(at, packs);
       at += packs * kLanes;
     }
@@ -50,6 +55,7 @@ class Conveyor {
   }
 
  private:
+  static constexpr bool kIndex = kHard || kActive;  ///< whether numbers of lines are asked for
   static constexpr std::size_t kLanes = hn::MaxLanes(D());
 
   static std::size_t stage_numbers(std::size_t lines) { return (3 * lines + 4) * kLanes; }
@@ -70,7 +76,6 @@ class Conveyor {
       relaxing = gone = pack.none();
       rounds = 0;
     }
-    HWY_INLINE const T* asked_now() const { return rounds < 3 ? ahead[rounds] : rows.x; }
     HWY_INLINE bool busy() const { return !hn::AllFalse(D(), hn::Or(walking, relaxing)); }
   };
 
@@ -91,11 +96,11 @@ class Conveyor {
   }
 
   HWY_INLINE void first_rounds(Ways& ways, std::size_t packs) {
-    for_all(ways, packs, [this](Way& w) { look(w); });
+    for_all(ways, packs, [this](Way& w) { look<0>(w); });
     for_all(ways, packs, [this](Way& w) { walk<0>(w); });
-    for_all(ways, packs, [this](Way& w) { look(w); });
+    for_all(ways, packs, [this](Way& w) { look<1>(w); });
     for_all(ways, packs, [this](Way& w) { walk<1>(w); });
-    for_all(ways, packs, [this](Way& w) { look(w); });
+    for_all(ways, packs, [this](Way& w) { look<2>(w); });
   }
 
   /// The lines that bound last time enter first, unseen.
@@ -106,7 +111,7 @@ class Conveyor {
     for_all(ways, packs, [this](Way& w) {
       w.walking = hn::AndNot(hn::Or(w.gone, w.pack.relaxing), w.lanes);
       relax(w);
-      look(w);
+      look<0>(w);
     });
   }
 
@@ -200,9 +205,15 @@ class Conveyor {
     leave(way.pack, odd);
   }
 
-  /// What is violated now, and by that who goes on.
+  static constexpr int kNothing = -1;
+
+  /// What is violated now, and by that who goes on. In passing, x, y or c (0, 1, 2) of a pack to come are asked for.
+  template <int kAsked = kNothing>
   HWY_INLINE void look(Way& way) {
-    price<kHard, kHard || kActive>(way.rows, way.pack, way.asked_now());
+    if constexpr (kAsked == kNothing)
+      price<kHard, kIndex, false>(way.rows, way.pack);
+    else
+      price<kHard, kIndex, true>(way.rows, way.pack, way.ahead[kAsked]);
     way.walking = hn::And(way.walking, way.pack.violated);
     way.relaxing = hn::And(way.relaxing, way.pack.violated);
     if (++way.rounds < kMostLockstepRounds) return;
@@ -216,12 +227,12 @@ class Conveyor {
   template <int kKept>
   HWY_INLINE void walk(Way& way) {
     if (kKept > 1 && hn::AllFalse(D(), way.walking)) return;
-    const M contradict = step<kKept>(way.pack, way.walking);
+    const M contradict = step<kKept, kIndex>(way.pack, way.walking);
     if (hn::AllFalse(D(), contradict)) return;
     way.walking = hn::AndNot(contradict, way.walking);
-    way.pack.third = pick(contradict, way.pack.entering, way.pack.third);
-    start_relaxing(way.pack, contradict);
-    const M ready = hn::And(contradict, surround_zero(way.pack));
+    way.pack.third = pick<kIndex>(contradict, way.pack.entering, way.pack.third);
+    start_relaxing<kHard, kIndex>(way.pack, contradict);
+    const M ready = hn::And(contradict, surround_zero<kHard>(way.pack));
     way.relaxing = hn::Or(way.relaxing, ready);
     way.pack.relaxing = hn::Or(way.pack.relaxing, ready);
     set_aside(way, hn::AndNot(ready, contradict));
@@ -230,7 +241,7 @@ class Conveyor {
   /// A round of the second walk.
   HWY_INLINE void relax(Way& way) {
     if (hn::AllFalse(D(), way.relaxing)) return;
-    const M other = pivot<kHard>(way.pack, way.relaxing);
+    const M other = pivot<kHard, kIndex>(way.pack, way.relaxing);
     way.relaxing = hn::AndNot(other, way.relaxing);
     set_aside(way, other);
   }
@@ -254,7 +265,7 @@ class Conveyor {
     if (kHard) p.hard_count = load_counts(in_.hard + at);
     p.id = numbers_from(at);
     way.begin(hn::FirstN(d, kLanes));
-    ask_for(std::min(at + kPacks * kLanes, (in_.count - 1) / kLanes * kLanes), way);
+    ask_for(std::min(at + packs_ * kLanes, (in_.count - 1) / kLanes * kLanes), way);
   }
 
   /// What the pack at `at` will need: its lines little by little, since a burst of them stops the processor.
@@ -319,7 +330,7 @@ class Conveyor {
       Pack<D> p;
       rare_.load(from, p);
       Descent<D> descent(p);
-      descent.template run<kHard, kHard || kActive>(rare_.rows(from), lanes);
+      descent.template run<kHard, kIndex>(rare_.rows(from), lanes);
       finish_some(p, hn::AndNot(descent.unsettled, lanes));
       leave(p, hn::And(descent.unsettled, lanes));
     }
@@ -408,6 +419,7 @@ class Conveyor {
   Leftover<T> leftover_;
   Pool<D> rare_;
   T* stage_;
+  std::size_t packs_;
   BatchCounts counts_;
 };
 

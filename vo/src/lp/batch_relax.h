@@ -15,28 +15,30 @@ namespace exactvo::lp::HWY_NAMESPACE {
 
 /// A contradiction of three lines as found by the first walk, in counter-clockwise order of normals and without the
 /// slack that soft lines had there. `first` is said to enter: no other line has been looked for.
-template <class D>
+template <bool kHard, bool kIndex, class D>
 HWY_INLINE void start_relaxing(Pack<D>& p, hn::Mask<D> which) {
   const hn::Vec<D> zero = hn::Zero(p.d);
   const auto without_slack = [&](LineV<D>& line) {
-    line.c = pick(hn::And(which, p.is_soft(line)), hn::Sub(line.c, p.slack), line.c);
+    const auto soft = kHard ? hn::And(which, p.is_soft(line)) : which;
+    line.c = pick(soft, hn::Sub(line.c, p.slack), line.c);
   };
   without_slack(p.first);
   without_slack(p.second);
   without_slack(p.third);
   const auto clockwise = hn::And(which, hn::Lt(cross(p.first, p.second), zero));
   const LineV<D> first = p.first;
-  p.first = pick(clockwise, p.second, first);
-  p.second = pick(clockwise, first, p.second);
-  p.entering = pick(which, p.first, p.entering);
+  p.first = pick<kIndex>(clockwise, p.second, first);
+  p.second = pick<kIndex>(clockwise, first, p.second);
+  p.entering = pick<kIndex>(which, p.first, p.entering);
 }
 
 /// Whether 0 lies strictly inside the triangle of the normals, which are in counter-clockwise order, and all are soft.
-template <class D>
+template <bool kHard, class D>
 HWY_INLINE hn::Mask<D> surround_zero(const Pack<D>& p) {
   const hn::Vec<D> zero = hn::Zero(p.d);
   const auto around = hn::And(hn::Gt(cross(p.first, p.second), zero),
                               hn::And(hn::Gt(cross(p.second, p.third), zero), hn::Gt(cross(p.third, p.first), zero)));
+  if (!kHard) return around;
   return hn::And(around, hn::And(p.is_soft(p.first), hn::And(p.is_soft(p.second), p.is_soft(p.third))));
 }
 
@@ -48,7 +50,7 @@ HWY_INLINE hn::Mask<D> surround_zero(const Pack<D>& p) {
 ///
 /// Lanes where a hard line enters, where no two lie clearly on either side, or where they meet outside the disc are
 /// given back untouched: they go on with Descent.
-template <bool kHard, class D>
+template <bool kHard, bool kIndex, class D>
 HWY_INLINE hn::Mask<D> pivot(Pack<D>& p, hn::Mask<D> moving) {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
@@ -60,8 +62,8 @@ HWY_INLINE hn::Mask<D> pivot(Pack<D>& p, hn::Mask<D> moving) {
   const M left_second = hn::Gt(by_second, zero);
   const M from_first = hn::AndNot(left_second, hn::Gt(by_first, zero));
   const M from_second = hn::AndNot(hn::Gt(by_third, zero), left_second);
-  const LineV<D> b = pick(from_first, p.first, pick(from_second, p.second, p.third));
-  const LineV<D> c = pick(from_first, p.second, pick(from_second, p.third, p.first));
+  const LineV<D> b = pick<kIndex>(from_first, p.first, pick<kIndex>(from_second, p.second, p.third));
+  const LineV<D> c = pick<kIndex>(from_first, p.second, pick<kIndex>(from_second, p.third, p.first));
   const V by_b = pick(from_first, by_first, pick(from_second, by_second, by_third));
   const V by_c = pick(from_first, by_second, pick(from_second, by_third, by_first));
 
@@ -76,9 +78,9 @@ HWY_INLINE hn::Mask<D> pivot(Pack<D>& p, hn::Mask<D> moving) {
   p.vx = pick(good, x, p.vx);
   p.vy = pick(good, y, p.vy);
   p.level = pick(good, excess(a, x, y), p.level);
-  p.first = pick(good, a, p.first);
-  p.second = pick(good, b, p.second);
-  p.third = pick(good, c, p.third);
+  p.first = pick<kIndex>(good, a, p.first);
+  p.second = pick<kIndex>(good, b, p.second);
+  p.third = pick<kIndex>(good, c, p.third);
   return hn::AndNot(good, moving);
 }
 
@@ -150,7 +152,7 @@ class Descent {
         lowest_on_plane(p_.entering, p_.first, p_.second, p_.third, moving);
       }
       const M priced = hn::AndNot(unsettled, moving);
-      price<kHard, kIndex>(rows, p_, rows.x);
+      price<kHard, kIndex, false>(rows, p_);
       moving = hn::And(priced, p_.violated);
     }
     unsettled = hn::Or(unsettled, moving);

@@ -40,9 +40,11 @@ template <class V, class M>
 V HWY_INLINE pick(M m, V yes, V no) {
   return hn::IfThenElse(m, yes, no);
 }
-template <class D, class M>
+/// Without kIndex nobody asks for numbers of lines, and they stay as they are.
+template <bool kIndex = true, class D, class M>
 LineV<D> HWY_INLINE pick(M m, const LineV<D>& yes, const LineV<D>& no) {
-  return {pick(m, yes.x, no.x), pick(m, yes.y, no.y), pick(m, yes.c, no.c), pick(m, yes.index, no.index)};
+  return {pick(m, yes.x, no.x), pick(m, yes.y, no.y), pick(m, yes.c, no.c),
+          kIndex ? pick(m, yes.index, no.index) : no.index};
 }
 template <class V>
 V HWY_INLINE dot(V ax, V ay, V bx, V by) {
@@ -89,8 +91,14 @@ struct Pack {
   }
 
   HWY_INLINE M none() const { return hn::MaskFromVec(hn::Zero(d)); }
-  HWY_INLINE M exists(const LineV<D>& line) const { return hn::Ge(line.index, hn::Zero(d)); }
-  HWY_INLINE M is_soft(const LineV<D>& line) const { return hn::Ge(line.index, hard_count); }
+  HWY_INLINE M exists(const LineV<D>& line) const {
+    return hn::Gt(hn::Max(hn::Abs(line.x), hn::Abs(line.y)), hn::Zero(d));
+  }
+  /// Where no line is hard numbers may be missing, and hard_count is 0.
+  HWY_INLINE M is_soft(const LineV<D>& line) const {
+    const M hard = hn::And(hn::Ge(line.index, hn::Zero(d)), hn::Lt(line.index, hard_count));
+    return hn::AndNot(hard, exists(line));
+  }
 
   /// Lanes whose squares neither overflow nor lose digits.
   HWY_INLINE M in_range() const {
@@ -119,10 +127,11 @@ struct Pack {
 
 /// The line violated most a lane. On the first walk all lines carry the slack; on the second only the hard ones do, and
 /// soft ones count from `level` on. The level is taken off the soft ones rather than added to the hard ones: it may be
-/// many times the speed, and its rounding would then exceed the slack. Without kIndex any line is number 0: who asks
-/// for no numbers is spared their cost. With each line one of `ahead` is asked for, which a later pack will read.
-template <bool kHard, bool kIndex, class D, class T>
-HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead) {
+/// many times the speed, and its rounding would then exceed the slack. Without kIndex the number of the line stays what
+/// it was: who asks for none is spared the cost. With kAsk each line goes with one of `ahead`, which a later pack will
+/// read.
+template <bool kHard, bool kIndex, bool kAsk, class D, class T>
+HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead = nullptr) {
   const D d;
   using V = hn::Vec<D>;
   const V zero = hn::Zero(d);
@@ -132,11 +141,12 @@ HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead) {
   const V soft_extra = hn::IfThenElseZero(p.relaxing, hn::Neg(p.level));
   const V vx = p.vx, vy = p.vy, one = hn::Set(d, T(1)), hard_count = p.hard_count;
   V most = allowed;
-  V ex = zero, ey = zero, ec = zero, index = hn::Set(d, T(kNoLine)), number = zero;
+  V ex = zero, ey = zero, ec = zero, number = zero;
+  V index = kIndex ? hn::Set(d, T(kNoLine)) : p.entering.index;
   const T *nx = rows.x, *ny = rows.y, *c = rows.c;
 #pragma GCC unroll 2
   for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
-    hwy::Prefetch(ahead + k * rows.stride);
+    if (kAsk) hwy::Prefetch(ahead + k * rows.stride);
     const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
     V by = hn::Sub(offset, dot(x, y, vx, vy));
     if (kHard) by = hn::Add(by, pick(hn::Lt(number, hard_count), hard_extra, soft_extra));
@@ -151,7 +161,6 @@ HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead) {
     }
   }
   p.violated = hn::Gt(most, allowed);
-  if (!kIndex) index = pick(p.violated, zero, index);
   auto with_slack = hn::Not(p.relaxing);
   if (kHard) with_slack = hn::Or(with_slack, hn::Lt(index, hard_count));
   p.entering = {ex, ey, pick(with_slack, hn::Add(ec, p.slack), ec), index};
@@ -189,7 +198,7 @@ HWY_INLINE V cut_off(D d, const LineV<D>& line, V squared, const LineV<D>& other
 /// The boundary is v = (c n + s n') / |n|^2, n' being n turned left, and each line in hand cuts it off at an s of its
 /// own. Masks cost more than numbers, so what binds is found by comparing with that s. The disc is asked only where the
 /// s found lies beyond it.
-template <int kKept, class D>
+template <int kKept, bool kIndex, class D>
 HWY_INLINE hn::Mask<D> step(Pack<D>& p, hn::Mask<D> moving) {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
@@ -219,10 +228,10 @@ HWY_INLINE hn::Mask<D> step(Pack<D>& p, hn::Mask<D> moving) {
   p.vx = pick(moves, hn::Mul(hn::Sub(hn::Mul(h.x, h.c), hn::Mul(where, h.y)), inverse), p.vx);
   p.vy = pick(moves, hn::Mul(hn::Add(hn::Mul(h.y, h.c), hn::Mul(where, h.x)), inverse), p.vy);
   LineV<D> kept = no_line(d);
-  if (kKept > 1) kept = pick(hn::Eq(where, cut_second), p.second, kept);
-  if (kKept > 0) kept = pick(hn::Eq(where, cut_first), p.first, kept);
-  p.second = pick(moves, kept, p.second);
-  p.first = pick(moves, h, p.first);
+  if (kKept > 1) kept = pick<kIndex>(hn::Eq(where, cut_second), p.second, kept);
+  if (kKept > 0) kept = pick<kIndex>(hn::Eq(where, cut_first), p.first, kept);
+  p.second = pick<kIndex>(moves, kept, p.second);
+  p.first = pick<kIndex>(moves, h, p.first);
   return hn::And(moving, empty);
 }
 
