@@ -16,6 +16,8 @@ namespace {
 
 /// Bytes kept back before a write call.
 constexpr std::size_t kBufferSize = std::size_t{1} << 18;
+/// Of a large file, so many bytes are sent on to the disk while the rest is being made; `commit` waits for less then.
+constexpr std::size_t kSentAtOnce = std::size_t{1} << 22;
 
 void make_directories(const std::filesystem::path& directory) {
   if (directory.empty()) return;
@@ -54,14 +56,23 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::flush() {
-  write_fully(path_, descriptor_, buffer_);
+  put(buffer_);
   buffer_.clear();
+}
+
+void AtomicFile::put(std::string_view bytes) {
+  write_fully(path_, descriptor_, bytes);
+  unsent_ += bytes.size();
+  if (unsent_ < kSentAtOnce) return;
+  ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE);  // a hint: its failure is fsync's to find
+  unsent_ = 0;
 }
 
 void AtomicFile::write(std::string_view bytes) {
   EXACTVO_REQUIRE(descriptor_ >= 0, "a write after commit to " + path_.string());
+  if (buffer_.size() + bytes.size() >= kBufferSize) flush();
+  if (bytes.size() >= kBufferSize) return put(bytes);  // uncopied
   buffer_ += bytes;
-  if (buffer_.size() >= kBufferSize) flush();
 }
 
 void AtomicFile::commit(Durability durability) {

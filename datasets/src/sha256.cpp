@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sha256.h"
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <cpuid.h>
+#include <immintrin.h>
+#define EXACTVO_SHA_INSTRUCTIONS 1
+#endif
+
 namespace exactvo::datasets {
 namespace {
 
@@ -37,29 +43,102 @@ std::array<std::uint32_t, 64> schedule(const unsigned char* block) {
   return w;
 }
 
-}  // namespace
+using State = std::array<std::uint32_t, 8>;
 
-void Sha256::compress(const unsigned char* block) {
+/// Section 6.2.2.
+void compress_block(State& state, const unsigned char* block) {
   const std::array<std::uint32_t, 64> w = schedule(block);
-  auto [a, b, c, d, e, f, g, h] = state_;
+  auto [a, b, c, d, e, f, g, h] = state;
   for (std::size_t t = 0; t < 64; ++t) {
     const std::uint32_t t1 =
         h + (turned(e, 6) ^ turned(e, 11) ^ turned(e, 25)) + ((e & f) ^ (~e & g)) + kRound[t] + w[t];
     const std::uint32_t t2 = (turned(a, 2) ^ turned(a, 13) ^ turned(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
     h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
   }
-  const std::array<std::uint32_t, 8> mixed{a, b, c, d, e, f, g, h};
-  for (std::size_t i = 0; i < 8; ++i) state_[i] += mixed[i];
+  const State mixed{a, b, c, d, e, f, g, h};
+  for (std::size_t i = 0; i < 8; ++i) state[i] += mixed[i];
+}
+
+#ifdef EXACTVO_SHA_INSTRUCTIONS
+
+/// What the processor says of itself: the instructions for SHA-256, and SSSE3 and SSE4.1 for the bytes' order.
+bool ask_processor() {
+  constexpr unsigned kSsse3AndSse41 = 1u << 9 | 1u << 19;  // leaf 1, ecx
+  constexpr unsigned kSha = 1u << 29;                      // leaf 7, ebx
+  unsigned a = 0;
+  unsigned b = 0;
+  unsigned c = 0;
+  unsigned d = 0;
+  if (__get_cpuid(1, &a, &b, &c, &d) == 0 || (c & kSsse3AndSse41) != kSsse3AndSse41) return false;
+  return __get_cpuid_count(7, 0, &a, &b, &c, &d) != 0 && (b & kSha) != 0;
+}
+
+__attribute__((target("sha,ssse3,sse4.1"))) __m128i four_words(const void* words) {
+  return _mm_loadu_si128(static_cast<const __m128i*>(words));
+}
+
+/// compress_block, four rounds a step. The instructions want the state as (a, b, e, f) and (c, d, g, h), first word
+/// highest; each makes two rounds, after which the former pair is the new second one.
+__attribute__((target("sha,ssse3,sse4.1"))) void compress_block_by_instructions(State& state,
+                                                                                const unsigned char* block) {
+  const __m128i big_endian_order = _mm_set_epi8(12, 13, 14, 15, 8, 9, 10, 11, 4, 5, 6, 7, 0, 1, 2, 3);
+  const auto word = [&state](std::size_t k) { return static_cast<int>(state[k]); };
+  const __m128i abef_before = _mm_set_epi32(word(0), word(1), word(4), word(5));
+  const __m128i cdgh_before = _mm_set_epi32(word(2), word(3), word(6), word(7));
+  __m128i abef = abef_before;
+  __m128i cdgh = cdgh_before;
+  __m128i w[4];
+  for (std::size_t k = 0; k < 4; ++k) w[k] = _mm_shuffle_epi8(four_words(block + 16 * k), big_endian_order);
+  for (std::size_t k = 0; k < 16; ++k) {
+    __m128i& now = w[k % 4];
+    const __m128i sum = _mm_add_epi32(now, four_words(&kRound[4 * k]));
+    cdgh = _mm_sha256rnds2_epu32(cdgh, abef, sum);
+    abef = _mm_sha256rnds2_epu32(abef, cdgh, _mm_shuffle_epi32(sum, 0x0e));  // the upper two words
+    if (k >= 12) continue;
+    // Four words on: w[t-16] + s0(w[t-15]), + w[t-7], + s1(w[t-2]).
+    const __m128i last = w[(k + 3) % 4];
+    const __m128i seven_back = _mm_alignr_epi8(last, w[(k + 2) % 4], 4);
+    now = _mm_sha256msg2_epu32(_mm_add_epi32(_mm_sha256msg1_epu32(now, w[(k + 1) % 4]), seven_back), last);
+  }
+  alignas(16) std::uint32_t low_first[8];
+  _mm_store_si128(reinterpret_cast<__m128i*>(low_first), _mm_add_epi32(abef, abef_before));
+  _mm_store_si128(reinterpret_cast<__m128i*>(low_first + 4), _mm_add_epi32(cdgh, cdgh_before));
+  const auto& [f, e, b, a, h, g, d, c] = low_first;
+  state = {a, b, c, d, e, f, g, h};
+}
+
+#else
+
+bool ask_processor() {
+  return false;
+}
+
+void compress_block_by_instructions(State& state, const unsigned char* block) {
+  compress_block(state, block);
+}
+
+#endif
+
+}  // namespace
+
+bool has_sha256_instructions() {
+  static const bool kHas = ask_processor();
+  return kHas;
+}
+
+void Sha256::compress(std::string_view blocks) {
+  const auto compress_one = by_instructions_ ? compress_block_by_instructions : compress_block;
+  for (; !blocks.empty(); blocks.remove_prefix(kBlock)) {
+    compress_one(state_, reinterpret_cast<const unsigned char*>(blocks.data()));
+  }
 }
 
 void Sha256::add(std::string_view bytes) {
   length_ += bytes.size();
   pending_ += bytes;
-  std::size_t done = 0;
-  for (; pending_.size() - done >= kBlock; done += kBlock) {
-    compress(reinterpret_cast<const unsigned char*>(pending_.data() + done));
-  }
-  pending_.erase(0, done);
+  const std::size_t whole = pending_.size() - pending_.size() % kBlock;
+  compress(std::string_view(pending_).substr(0, whole));
+  pending_.erase(0, whole);
 }
 
 std::string Sha256::digest() {

@@ -112,6 +112,32 @@ TEST_F(GridTest, PolygonsAreTheUnionOfTheCells) {
   }
 }
 
+/// A comb of two corners a tooth, rows of teeth on rows of cells: one component, and above it a cell of its own.
+std::vector<std::string> combs(std::size_t side) {
+  std::string teeth;
+  for (std::size_t x = 0; x < side; ++x) teeth += x % 2 == 0 ? '@' : '.';
+  const std::string free = std::string(side, '.');
+  std::vector<std::string> rows{std::string(side - 1, '.') + "@", free};
+  while (rows.size() < side) {
+    rows.push_back(teeth);
+    rows.push_back(std::string(side, '@'));
+    rows.push_back("@" + std::string(side - 1, '.'));
+  }
+  return rows;
+}
+
+TEST_F(GridTest, AComponentOfTooManyCornersIsRejectedAlone) {
+  const std::vector<std::string> rows = combs(640);
+  EXPECT_EQ(refusal_of([&] { read(rows); }).code(), DataCode::size);
+  ReadOptions options;
+  options.keep_going = true;
+  const ObstacleFile file = read(rows, options);
+  EXPECT_EQ(file.obstacles.size(), 1u);
+  ASSERT_EQ(file.rejected.size(), 1u);
+  EXPECT_EQ(file.rejected[0].code(), DataCode::size);
+  EXPECT_EQ(read(combs(64)).obstacles.size(), 2u);
+}
+
 TEST_F(GridTest, OddMapsAreRead) {
   EXPECT_EQ(area_of(read_obstacles(put("a.map", "height 1\nwidth 3\nmap\n@T."))), 2.0)
       << "no type line, no last newline";

@@ -39,6 +39,17 @@ TEST(Instances, UnknownSetsAreTheCallersMistake) {
     EXPECT_THROW(generate(set, 1, 1), std::logic_error) << set;
 }
 
+TEST(Instances, AnUnknownSetIsToldWhichThereAre) {
+  try {
+    generate("RFx", 1, 1);
+    FAIL() << "RFx is a set";
+  } catch (const std::logic_error& e) {
+    const std::string message = e.what();
+    for (const char* part : {"no set \"RFx\"", "RFm", "RIm", "parallel:E", "far:E"})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
+
 TEST(Instances, AFileReadsBackToTheFloatsThatWereWritten) {
   std::stringstream first, second;
   write_instances(first, generate("RF10", 20, 1));

@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The verbs for obstacle files as a user meets them: validate, repair, convert, generate, segment.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <future>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "run_program.h"
@@ -213,6 +223,66 @@ TEST(Batch, AShardThatIsThroughFirstSaysSo) {
   EXPECT_FALSE(here.has("out/summary.json"));
   EXPECT_EQ(here.run("batch a.wkt b.wkt --write figures --out out --shard 2/2").status, 0);
   EXPECT_TRUE(here.has("out/summary.json"));
+}
+
+/// Held as by a process that puts parts together: others wait for it.
+class HeldLock {
+ public:
+  explicit HeldLock(const std::filesystem::path& path)
+      : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    EXPECT_EQ(::flock(descriptor_, LOCK_EX), 0);
+  }
+  ~HeldLock() { ::close(descriptor_); }
+  HeldLock(const HeldLock&) = delete;
+  HeldLock& operator=(const HeldLock&) = delete;
+
+  /// Until so many processes wait for it, a minute at most.
+  bool is_awaited_by(int processes) const {
+    struct stat file {};
+    ::fstat(descriptor_, &file);
+    const std::string inode = ":" + std::to_string(file.st_ino) + " ";
+    for (int looks = 0; looks < 6000; ++looks, std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
+      std::ifstream locks("/proc/locks");
+      int waiting = 0;
+      for (std::string line; std::getline(locks, line);)
+        waiting += line.find("->") != std::string::npos && line.find(inode) != std::string::npos ? 1 : 0;
+      if (waiting >= processes) return true;
+    }
+    return false;
+  }
+
+ private:
+  int descriptor_;
+};
+
+TEST(Batch, OfTwoAtOnceOnePutsTogetherAndTheOtherReportsTheSame) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  here.write("b.wkt", kGood);
+  ASSERT_EQ(here.run("batch a.wkt b.wkt --write figures --out out --shard 1/2").status, 0);
+  std::optional<HeldLock> lock(here.path() / "out/.parts/lock");
+  // In folders of their own, as each leaves its output where it starts.
+  const auto resumed = [&here](const std::string& folder) {
+    std::filesystem::create_directory(here.path() / folder);
+    const std::string command = "cd '" + here.path().string() +
+                                "' && '" EXACTVO_PROGRAM "' batch a.wkt b.wkt --write figures --out out --resume >" +
+                                folder + "/out 2>" + folder + "/err";
+    return std::async(std::launch::async, [command] { return std::system(command.c_str()); });
+  };
+  std::future<int> one = resumed("one");
+  std::future<int> other = resumed("other");
+  EXPECT_TRUE(lock->is_awaited_by(2));
+  lock.reset();
+  EXPECT_EQ(one.get(), 0);
+  EXPECT_EQ(other.get(), 0);
+  const std::string told = here.read("one/err") + here.read("other/err");
+  const std::size_t first = told.find("nothing left to do");
+  EXPECT_NE(first, std::string::npos) << told;
+  EXPECT_EQ(told.find("nothing left to do", first + 1), std::string::npos) << told;
+  for (const char* report : {"one/out", "other/out"})
+    EXPECT_THAT(here.read(report), HasSubstr("2 obstacles")) << report;
+  EXPECT_TRUE(here.has("out/summary.json"));
+  EXPECT_FALSE(here.has("out/.parts"));
 }
 
 TEST(Convert, SaysWhatIsLost) {

@@ -9,6 +9,8 @@
 #include <iterator>
 #include <optional>
 
+#include "exactvo/datasets/markup.h"
+
 namespace exactvo::tools {
 
 namespace fs = std::filesystem;
@@ -21,30 +23,17 @@ constexpr const char* kStyle =
     "text-align:left;vertical-align:top}th{background:#f2f2f2}code{background:#f4f4f4;padding:0 .2em}"
     "figure{margin:1.5em 0}img{max-width:100%}figcaption{color:#555;font-size:14px}h2{border-bottom:1px solid #ccc}";
 
+/// What stands between backticks is code.
 std::string escaped_html(const std::string& text) {
   std::string out;
   bool code = false;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '`':
-        code = !code;
-        out += code ? "<code>" : "</code>";
-        break;
-      default:
-        out += c;
+  for (const char c : datasets::escaped_markup(text)) {
+    if (c != '`') {
+      out += c;
+      continue;
     }
+    code = !code;
+    out += code ? "<code>" : "</code>";
   }
   return out + (code ? "</code>" : "");
 }

@@ -265,7 +265,8 @@ void announce(const Flags& flags) {
 /// Nothing of this process's own to tell: the last of several puts the parts together.
 void say_incomplete(const Flags& flags, const BatchRun& run) {
   if (run.shards > 1) return message(words_of_shard(run));
-  if (!datasets::under_mpi()) message("another process puts the results together in " + flags.out);
+  if (!datasets::under_mpi())
+    message("another process took the parts of this batch from " + flags.out + " and left no summary");
 }
 
 ExitCode verdict(const BatchSummary& s) {

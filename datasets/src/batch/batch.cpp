@@ -54,12 +54,13 @@ BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& r
       configuration, run,
       batch::identity_of(configuration, batch::list_inputs(run.paths, run.out, configuration.reading.format)), watch);
   try {
-    return run_share(session, run);
+    const BatchResult result = run_share(session, run);
+    if (result.end != BatchEnd::incomplete || !session.ledger().another_finished(session.identity())) return result;
   } catch (const DataError&) {
     // The same batch in another process may have put everything together under this one.
     if (!session.ledger().another_finished(session.identity())) throw;
-    return {BatchEnd::complete, batch::read_summary(run.out), true};
   }
+  return {BatchEnd::complete, batch::read_summary(run.out), true};
 }
 
 }  // namespace exactvo::datasets

@@ -3,7 +3,7 @@
 
 /// \file
 /// Workers that take a reader's chunks apart while it reads on. What they make does not depend on how many they are:
-/// every job writes a file of its own.
+/// every job writes a file of its own. One more thread waits for the disk.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -13,6 +13,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <utility>
+
+#include "batch/scribe.h"
 
 namespace exactvo::datasets::batch {
 
@@ -25,19 +28,23 @@ class Crew {
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  /// Runs it soon, perhaps now. Waits, and lends a hand, while too much is under way. Throws what an earlier job threw.
+  /// Runs it soon; now, where enough is waiting for the others, so that nobody stands idle and little is held. Waits
+  /// while more than `most_bytes` are under way. Throws what an earlier job threw, or this one.
   void run(std::function<void()> job, std::uint64_t bytes);
-  /// Until all is done. Throws what a job threw.
+  /// Of a job: has `write`, which holds so many bytes, run soon by the thread that waits for the disk (Scribe).
+  void put_away(std::function<void()> write, std::uint64_t bytes) { scribe_.run(std::move(write), bytes); }
+  /// Until all is done and put away. Throws what a job threw.
   void finish();
 
  private:
+  Scribe scribe_;                ///< first: jobs use it until the end
   tbb::global_control threads_;  ///< as many as asked for, be there fewer processors
   tbb::task_arena arena_;
   tbb::task_group group_;
   std::uint64_t most_bytes_;
   std::size_t most_jobs_;
-  std::uint64_t bytes_ = 0;  ///< handed out since the last wait
-  std::size_t jobs_ = 0;
+  std::atomic<std::uint64_t> bytes_{0};  ///< of jobs handed out and not done
+  std::atomic<std::size_t> jobs_{0};
   std::atomic<bool> failed_{false};
 };
 

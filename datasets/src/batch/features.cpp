@@ -79,7 +79,7 @@ Feature ellipse_feature(const std::string& key, const char* kind, std::int64_t n
   return feature;
 }
 
-void append_facades(const FeatureHead& head, const ObstacleShapes& shapes, std::vector<Feature>& out) {
+void give_facades(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
   std::int64_t number = 0;
   for (const Segment& s : shapes.facades.facades) {
     Feature feature;
@@ -88,28 +88,35 @@ void append_facades(const FeatureHead& head, const ObstacleShapes& shapes, std::
     feature.values = {head.key, number, norm(s.b - s.a)};
     const auto k = static_cast<std::size_t>(number++);
     feature.values.emplace_back(k < shapes.facade_ellipses.size() ? shapes.facade_ellipses[k].clearance : 0.0);
-    out.push_back(std::move(feature));
+    take(feature);
   }
 }
 
-void append_pieces(const FeatureHead& head, const ObstacleShapes& shapes, std::vector<Feature>& out) {
+void give_pieces(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
   std::int64_t number = 0;
   for (const geometry::ConvexShape& piece : shapes.pieces) {
     const auto* segment = std::get_if<Segment>(&piece);
     Ring ring = segment != nullptr ? Ring{segment->a, segment->b} : std::get<ConvexPolygon>(piece).vertices;
-    out.push_back(flat_or_filled(kPieces, std::move(ring)));
-    out.back().values = {head.key, number++};
+    Feature feature = flat_or_filled(kPieces, std::move(ring));
+    feature.values = {head.key, number++};
+    take(feature);
   }
 }
 
-void append_ellipses(const FeatureHead& head, const ObstacleShapes& shapes, std::vector<Feature>& out) {
-  out.push_back(ellipse_feature(head.key, "smallest", 0, shapes.smallest_ellipse, kFinePoints));
+void give_hull(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
+  Feature feature = flat_or_filled(kHulls, shapes.hull.vertices);
+  feature.values = {head.key, shapes.figures.hull_area};
+  take(feature);
+}
+
+void give_ellipses(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
+  take(ellipse_feature(head.key, "smallest", 0, shapes.smallest_ellipse, kFinePoints));
   if (shapes.trap_free.ellipse) {
-    out.push_back(ellipse_feature(head.key, "trap-free", 0, *shapes.trap_free.ellipse, kFinePoints));
+    take(ellipse_feature(head.key, "trap-free", 0, *shapes.trap_free.ellipse, kFinePoints));
   }
   std::int64_t number = 0;
   for (const geometry::FacadeEnclosure& e : shapes.facade_ellipses) {
-    out.push_back(ellipse_feature(head.key, "facade", number++, e.ellipse, kCoarsePoints));
+    take(ellipse_feature(head.key, "facade", number++, e.ellipse, kCoarsePoints));
   }
 }
 
@@ -234,15 +241,12 @@ const std::vector<Layer>& layers() {
   return kLayers;
 }
 
-std::vector<Feature> features_of(const FeatureHead& head, const ObstacleShapes& shapes) {
-  std::vector<Feature> out;
-  out.push_back(obstacle_feature(head, shapes));
-  append_facades(head, shapes, out);
-  append_pieces(head, shapes, out);
-  out.push_back(flat_or_filled(kHulls, shapes.hull.vertices));
-  out.back().values = {head.key, shapes.figures.hull_area};
-  append_ellipses(head, shapes, out);
-  return out;
+void features_of(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
+  take(obstacle_feature(head, shapes));
+  give_facades(head, shapes, take);
+  give_pieces(head, shapes, take);
+  give_hull(head, shapes, take);
+  give_ellipses(head, shapes, take);
 }
 
 std::string to_geojson(const Feature& feature) {

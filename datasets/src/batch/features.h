@@ -5,6 +5,7 @@
 /// What a batch writes of an obstacle for maps: features in layers, the same for GeoPackage and GeoJSON.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -47,9 +48,11 @@ struct FeatureHead {
   std::string outcome;
 };
 
-/// Every feature of one obstacle, layer by layer. Outlines of ellipses are rounded to a 10,000th of their size: for
-/// looking at; the ellipse itself stands in the fields.
-std::vector<Feature> features_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes);
+using TakeFeature = std::function<void(const Feature& feature)>;
+/// Gives every feature of one obstacle, layer by layer; together they would take much more room than what is written of
+/// them. Outlines of ellipses are rounded to a 10,000th of their size: for looking at; the ellipse itself stands in the
+/// fields.
+void features_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes, const TakeFeature& take);
 
 /// A line of GeoJSON, without comma or newline.
 std::string to_geojson(const Feature& feature);

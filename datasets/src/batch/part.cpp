@@ -2,6 +2,7 @@
 #include "batch/part.h"
 
 #include <cstring>
+#include <utility>
 
 #include "batch/half_planes.h"
 #include "batch/picture.h"
@@ -39,13 +40,13 @@ std::string record_of(const FeatureHead& head, const geometry::ObstacleShapes& s
 void append_features(const FeatureHead& head, const geometry::ObstacleShapes& shapes,
                      const BatchConfiguration& configuration, Part& part) {
   if (!configuration.geojson && !configuration.geopackage) return;
-  for (const Feature& feature : features_of(head, shapes)) {
+  features_of(head, shapes, [&](const Feature& feature) {
     if (configuration.geopackage) append_row(part.rows, feature);
-    if (!configuration.geojson) continue;
+    if (!configuration.geojson) return;
     std::string& text = part.features[feature.layer];
     if (!text.empty()) text += ",\n";
     text += to_geojson(feature);
-  }
+  });
 }
 
 geometry::ShapeOptions options_for(const BatchConfiguration& configuration) {
@@ -67,9 +68,16 @@ void append_count(std::string& bytes, std::uint64_t count) {
   bytes.append(raw, sizeof count);
 }
 
-void append_text(std::string& bytes, const std::string& text) {
+/// Takes the text, so that it is not held twice for long.
+void append_text(std::string& bytes, std::string text) {
   append_count(bytes, text.size());
   bytes += text;
+}
+
+std::size_t size_of_texts(const Part& part) {
+  std::size_t size = part.figures.size() + part.rows.size() + part.pictures.size();
+  for (const std::string& layer : part.features) size += layer.size();
+  return size;
 }
 
 class PartReader {
@@ -133,14 +141,16 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
   return part;
 }
 
-std::string to_bytes(const Part& part) {
+std::string to_bytes(Part part) {
   EXACTVO_REQUIRE(part.features.size() == layers().size(), std::to_string(part.features.size()));
+  constexpr std::size_t kRoomForCounts = 256;
   std::string bytes = kMagic;
+  bytes.reserve(size_of_texts(part) + kRoomForCounts);
   for (const std::uint64_t count : {part.obstacles, part.certified, part.vertices}) append_count(bytes, count);
-  append_text(bytes, part.figures);
-  for (const std::string& layer : part.features) append_text(bytes, layer);
-  append_text(bytes, part.rows);
-  append_text(bytes, part.pictures);
+  append_text(bytes, std::move(part.figures));
+  for (std::string& layer : part.features) append_text(bytes, std::move(layer));
+  append_text(bytes, std::move(part.rows));
+  append_text(bytes, std::move(part.pictures));
   return bytes;
 }
 

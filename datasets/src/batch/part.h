@@ -43,7 +43,7 @@ struct Part {
 /// Deterministic: depends on the chunk and the configuration only.
 Part part_of(const Chunk& chunk, const BatchConfiguration& configuration);
 
-std::string to_bytes(const Part& part);
+std::string to_bytes(Part part);
 /// Throws DataError (E_FORMAT_SYNTAX) where the bytes are no part.
 Part parse_part(std::string_view bytes, const std::filesystem::path& path);
 Part read_part(const std::filesystem::path& path);

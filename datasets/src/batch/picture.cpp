@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "batch/features.h"
+#include "exactvo/datasets/markup.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -87,29 +88,6 @@ std::string obstacle_element(const View& view, const geometry::Obstacle& obstacl
 
 }  // namespace
 
-std::string html(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return out;
-}
-
 std::string picture_of(const std::string& id, const geometry::ObstacleShapes& shapes) {
   const Ring smallest = outline_of(shapes.smallest_ellipse, kEllipsePoints);
   Ring free;
@@ -122,7 +100,7 @@ std::string picture_of(const std::string& id, const geometry::ObstacleShapes& sh
     for (const auto& e : shapes.facade_ellipses) text += element(view, outline_of(e.ellipse, 24), "f");
   }
   text += obstacle_element(view, shapes.obstacle);
-  return text + "</svg><figcaption>" + html(id) + "</figcaption></figure>\n";
+  return text + "</svg><figcaption>" + escaped_markup(id) + "</figcaption></figure>\n";
 }
 
 std::string page_name(std::size_t page) {
@@ -138,7 +116,7 @@ std::string page_head(std::size_t page, std::size_t pages, const std::string& su
       ".o{fill:#444;fill-rule:evenodd}.w{fill:none;stroke:#444;stroke-width:2}.h{fill:none;stroke:#e08214;"
       "stroke-dasharray:3 2}.e{fill:#4393c322;stroke:#4393c3}.t{fill:#5aae6122;stroke:#5aae61}"
       ".f{fill:none;stroke:#bbb;stroke-width:.6}\n</style></head><body>\n<h1>Obstacles</h1>\n<p>" +
-      html(summary) +
+      escaped_markup(summary) +
       "</p>\n<p>Dark: the obstacle. Orange: its hull. Blue: the smallest ellipse. Green: the trap-free ellipse. Grey: "
       "the "
       "facades' ellipses. The first " +
@@ -155,7 +133,7 @@ std::string page_head(std::size_t page, std::size_t pages, const std::string& su
 }
 
 std::string input_head(const std::string& file, const std::string& words) {
-  return "<h2>" + html(file) + "</h2><p>" + html(words) + "</p><div>\n";
+  return "<h2>" + escaped_markup(file) + "</h2><p>" + escaped_markup(words) + "</p><div>\n";
 }
 
 std::string input_foot() {
@@ -163,7 +141,7 @@ std::string input_foot() {
 }
 
 std::string page_foot(const std::string& provenance) {
-  return "<!-- provenance: " + html(provenance) + " -->\n</body></html>\n";
+  return "<!-- provenance: " + escaped_markup(provenance) + " -->\n</body></html>\n";
 }
 
 }  // namespace exactvo::datasets::batch

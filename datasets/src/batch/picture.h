@@ -25,7 +25,4 @@ std::string input_head(const std::string& file, const std::string& words);
 std::string input_foot();
 std::string page_foot(const std::string& provenance);
 
-/// Text as HTML shows it.
-std::string html(const std::string& text);
-
 }  // namespace exactvo::datasets::batch

@@ -106,20 +106,23 @@ class Chunker {
   /// The configuration, the ledger and the meter outlive the crew's jobs; the chunk goes with its own.
   template <class Write>
   void give(Write write) {
-    crew_.run([chunk = chunk_, write, &configuration = configuration_,
-               &meter = meter_] { make(*chunk, configuration, meter, write); },
-              kBytesOfVertex * chunk_->vertices);
+    crew_.run(
+        [chunk = chunk_, write, &crew = crew_, &configuration = configuration_, &meter = meter_] {
+          const auto bytes = std::make_shared<const std::string>(make(*chunk, configuration, meter));
+          crew.put_away([bytes, write] { write(*bytes); }, bytes->size());
+        },
+        kBytesOfVertex * chunk_->vertices);
   }
 
-  template <class Write>
-  static void make(const Chunk& chunk, const BatchConfiguration& configuration, Meter& meter, const Write& write) {
+  static std::string make(const Chunk& chunk, const BatchConfiguration& configuration, Meter& meter) {
     const auto start = Clock::now();
-    const Part part = part_of(chunk, configuration);
-    write(to_bytes(part));
+    Part part = part_of(chunk, configuration);
     meter.obstacles += part.obstacles;
     meter.vertices += part.vertices;
+    std::string bytes = to_bytes(std::move(part));
     meter.nanoseconds_of_jobs +=
         static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count());
+    return bytes;
   }
 
   static void let_go(InputWork& work, const Ledger& ledger) {

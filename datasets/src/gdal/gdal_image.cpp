@@ -7,6 +7,9 @@
 namespace exactvo::datasets {
 namespace {
 
+/// So many rows stay with GDAL: 4 MB of the widest that are usual.
+constexpr std::size_t kRowsKept = 128;
+
 const char* const kDrivers[] = {"PNG", "BMP", "JPEG", nullptr};
 
 double brightest_of(GDALRasterBand& band) {
@@ -36,37 +39,51 @@ class Decoder {
   GreyImage decode() {
     image_.brightness.assign(image_.width * image_.height, 0.0F);
     const int bands = data_->GetRasterCount();
-    const int colours = bands >= 3 ? 3 : 1;
-    for (int k = 1; k <= colours; ++k) add_colour(*data_->GetRasterBand(k));
-    for (float& pixel : image_.brightness) pixel /= static_cast<float>(colours);
-    if (bands == 2 || bands == 4) read_alpha(*data_->GetRasterBand(bands));
+    if (bands == 2 || bands == 4) image_.is_transparent.resize(image_.brightness.size());
+    for (std::size_t row = 0; row < image_.height; ++row) {
+      decode_row(row, bands);
+      if (row % kRowsKept == kRowsKept - 1) forget_rows(bands);
+    }
     return std::move(image_);
   }
 
  private:
-  std::vector<float> pixels_of(GDALRasterBand& band) {
-    std::vector<float> pixels(image_.brightness.size());
+  void decode_row(std::size_t row, int bands) {
+    const int colours = bands >= 3 ? 3 : 1;
+    float* const pixels = image_.brightness.data() + row * image_.width;
+    for (int k = 1; k <= colours; ++k) add_colour(*data_->GetRasterBand(k), row, pixels);
+    for (std::size_t x = 0; x < image_.width; ++x) pixels[x] /= static_cast<float>(colours);
+    if (!image_.is_transparent.empty()) read_alpha(*data_->GetRasterBand(bands), row);
+  }
+
+  /// GDAL keeps what it has decoded, up to a 20th of the machine's memory. Whole rows go, of all bands: one that is
+  /// wanted again is decoded from the first on.
+  void forget_rows(int bands) {
+    for (int k = 1; k <= bands; ++k) data_->GetRasterBand(k)->FlushCache();
+  }
+
+  const std::vector<float>& row_of(GDALRasterBand& band, std::size_t row) {
+    row_.resize(image_.width);
     const int width = static_cast<int>(image_.width);
-    const int height = static_cast<int>(image_.height);
-    if (band.RasterIO(GF_Read, 0, 0, width, height, pixels.data(), width, height, GDT_Float32, 0, 0) != CE_None) {
+    if (band.RasterIO(GF_Read, 0, static_cast<int>(row), width, 1, row_.data(), width, 1, GDT_Float32, 0, 0) !=
+        CE_None) {
       refuse("a picture that breaks off");
     }
-    return pixels;
+    return row_;
   }
 
-  void add_colour(GDALRasterBand& band) {
+  void add_colour(GDALRasterBand& band, std::size_t row, float* pixels) {
     const GDALColorTable* palette = band.GetColorTable();
     const auto scale = static_cast<float>(255.0 / brightest_of(band));
-    const std::vector<float> pixels = pixels_of(band);
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      image_.brightness[i] += palette != nullptr ? brightness_of(*palette, pixels[i]) : scale * pixels[i];
+    const std::vector<float>& values = row_of(band, row);
+    for (std::size_t x = 0; x < values.size(); ++x) {
+      pixels[x] += palette != nullptr ? brightness_of(*palette, values[x]) : scale * values[x];
     }
   }
 
-  void read_alpha(GDALRasterBand& band) {
-    const std::vector<float> alpha = pixels_of(band);
-    image_.is_transparent.resize(alpha.size());
-    for (std::size_t i = 0; i < alpha.size(); ++i) image_.is_transparent[i] = alpha[i] <= 0.0F;
+  void read_alpha(GDALRasterBand& band, std::size_t row) {
+    const std::vector<float>& alpha = row_of(band, row);
+    for (std::size_t x = 0; x < alpha.size(); ++x) image_.is_transparent[row * image_.width + x] = alpha[x] <= 0.0F;
   }
 
   [[noreturn]] void refuse(const std::string& found) {
@@ -79,6 +96,7 @@ class Decoder {
   GdalComplaints complaints_;
   std::unique_ptr<GDALDataset> data_;
   GreyImage image_;
+  std::vector<float> row_;
 };
 
 }  // namespace

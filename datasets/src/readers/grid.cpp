@@ -117,6 +117,7 @@ class Tracer {
   struct Component {
     Lattice first;               ///< its lowest left cell
     std::vector<Corners> rings;  ///< the outer one first
+    std::size_t corners = 0;     ///< beyond kMostCorners the rings are not all there
   };
 
   /// Every component, in the order of their lowest left cells.
@@ -137,13 +138,14 @@ class Tracer {
   Component component_from(Lattice first) {
     flood(first);
     std::sort(cells_.begin(), cells_.end());
-    Component component{first, {}};
+    Component component{first, {}, 0};
     for (const std::uint32_t number : cells_) {
       const Lattice cell = cell_of(number);
       const Lattice beyond{cell.x + 1, cell.y + 1};
       if (!grid_.at(cell.x, cell.y - std::size_t{1}) && !has_seen(cell, kBottomWalked))
-        add_walk(cell, kEast, component.rings);
-      if (!grid_.at(cell.x, beyond.y) && !has_seen(cell, kTopWalked)) add_walk(beyond, kWest, component.rings);
+        add_walk(cell, kEast, component);
+      if (!grid_.at(cell.x, beyond.y) && !has_seen(cell, kTopWalked)) add_walk(beyond, kWest, component);
+      if (component.corners > kMostCorners) break;
     }
     return component;
   }
@@ -193,12 +195,12 @@ class Tracer {
   }
 
   /// Keeps the component on the left; where two of its cells meet at a corner only, stays with the nearer one (left).
-  /// Where it starts, and where it turns.
+  /// Where it starts, and where it turns; breaks off beyond kMostCorners.
   std::vector<Turn> walk_from(Lattice start, Direction direction) {
     std::vector<Turn> walk{{start, is_touched(start)}};
     Lattice at = start;
     Direction d = direction;
-    while (true) {
+    while (walk.size() <= kMostCorners) {
       mark(at, d);
       at = step(at, d);
       const Direction left = turned_left(d);
@@ -207,10 +209,15 @@ class Tracer {
       if (next != d) walk.push_back({at, is_touched(at)});
       d = next;
     }
+    return walk;
   }
 
-  void add_walk(Lattice start, Direction direction, std::vector<Corners>& rings) {
-    for (const Corners& ring : cut_at_repeats(walk_from(start, direction))) {
+  void add_walk(Lattice start, Direction direction, Component& component) {
+    const std::vector<Turn> walk = walk_from(start, direction);
+    component.corners += walk.size();
+    if (component.corners > kMostCorners) return;
+    std::vector<Corners>& rings = component.rings;
+    for (const Corners& ring : cut_at_repeats(walk)) {
       const bool is_outer = signed_area(ring) > 0.0;
       rings.insert(is_outer ? rings.begin() : rings.end(), without_straight_corners(ring));
     }
@@ -246,6 +253,11 @@ void add_grid(const Grid& grid, const GridPlacement& placement, Collector& out) 
     raw.id = std::to_string(number++);
     raw.place = "cells from column " + std::to_string(component.first.x) + ", row " +
                 std::to_string(component.first.y) + " from below";
+    if (component.corners > kMostCorners) {
+      return out.reject({DataCode::size, out.file(), raw.place,
+                         "a connected component of more than " + std::to_string(kMostCorners) + " corners",
+                         "smaller ones, or a coarser grid"});
+    }
     for (const Corners& ring : component.rings) raw.rings.push_back(placed(ring, placement));
     out.add(raw);
   });

@@ -40,11 +40,16 @@ inline constexpr double kLatticeError = 4 * 0x1p-53;
 geometry::Vec2 lattice_point(const GridPlacement& placement, std::size_t column, std::size_t row);
 
 /// One polygon a 4-connected component, holes included, in the order of the components' lowest left cells. Every ring
-/// is simple: where a component meets itself at a corner, the ring is cut in two there.
+/// is simple: where a component meets itself at a corner, the ring is cut in two there. A component of more than
+/// kMostCorners is rejected (E_SIZE).
 void add_grid(const Grid& grid, const GridPlacement& placement, Collector& out);
 
-/// 4096 x 4096: a grid and its tracing take 6 bytes a cell, 100 MB, whatever a header claims; the boundaries come on top,
-/// of one component at a time.
+/// 4096 x 4096: a grid and its tracing take 6 bytes a cell, 100 MB, whatever a header claims; the boundaries come on
+/// top, of one component at a time.
 inline constexpr std::size_t kMostCells = std::size_t{1} << 24;
+
+/// Of the boundary of one component. A picture of some kilobytes may hold millions, and each takes 220 bytes until its
+/// polygon is judged: 58 MB.
+inline constexpr std::size_t kMostCorners = std::size_t{1} << 18;
 
 }  // namespace exactvo::datasets

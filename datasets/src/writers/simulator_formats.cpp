@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Obstacles as simulators of crowds and traffic and a triangulator's tests hold them: outlines, mostly without holes.
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/markup.h"
 #include "json_text.h"
 #include "scenarios/scenario_json.h"
 #include "writers/writers.h"
@@ -33,27 +34,6 @@ std::string number(double x) {
   std::string text;
   append_number(text, x);
   return text;
-}
-
-/// A file of XML 1.0 may hold no control character but tab and line ends.
-std::string xml_attribute(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return out;
 }
 
 }  // namespace
@@ -91,7 +71,7 @@ Written to_sumo_poly(const Obstacles& obstacles, const std::string&) {
   for (const formation::SceneObstacle& obstacle : obstacles) {
     const bool is_solid = geometry::has_interior(obstacle.shape);
     const std::vector<geometry::Vec2>& points = outline_of(obstacle.shape);
-    text += "  <poly id=\"" + xml_attribute(obstacle.id) + "\" type=\"obstacle\" color=\"128,128,128\" fill=\"" +
+    text += "  <poly id=\"" + escaped_markup(obstacle.id) + "\" type=\"obstacle\" color=\"128,128,128\" fill=\"" +
             (is_solid ? "1" : "0") + "\" layer=\"0\" shape=\"";
     for (const geometry::Vec2 p : is_solid ? closed(points) : points)
       text += (text.back() == '"' ? "" : " ") + number(p.x) + "," + number(p.y);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "exactvo/geometry/require.h"
-
 namespace exactvo::lp {
 namespace {
 
@@ -217,6 +215,16 @@ bool read_recipe(const std::string& set, Recipe& recipe) {
   return false;
 }
 
+/// For whoever named it: on a bench's command line, as a rule.
+std::string no_such_set(const std::string& set) {
+  std::string families;
+  for (const NamedFamily& family : kFamilies) families += std::string(" ") + family.name + ":E";
+  return "there is no set \"" + set +
+         "\" of linear programs; expected RFm, m lines from 0 on; RIm, m from 3 on; or, with "
+         "a perturbation E from 0 on, one of" +
+         families + "; for example RF10, RI10, far:1e-6";
+}
+
 }  // namespace
 
 std::vector<std::string> adversarial_families() {
@@ -227,7 +235,7 @@ std::vector<std::string> adversarial_families() {
 
 std::vector<Problem> generate(const std::string& set, std::size_t count, std::uint64_t seed, std::size_t first) {
   Recipe recipe;
-  EXACTVO_REQUIRE(read_recipe(set, recipe), "the set " + set);
+  if (!read_recipe(set, recipe)) throw std::logic_error(no_such_set(set));
   const std::uint64_t hash = hash_of(set);
   std::vector<Problem> problems;
   problems.reserve(count);

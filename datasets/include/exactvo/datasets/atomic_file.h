@@ -5,6 +5,7 @@
 /// Files that are there whole or not at all: written beside their place under another name, synced, then renamed. A
 /// reader never sees half a file, and a crash leaves the old one.
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -13,8 +14,8 @@
 
 namespace exactvo::datasets {
 
-/// What a crash of the machine may not take: the content of whatever file stands there, or also that it stands there. (A
-/// crash of the program takes neither.)
+/// What a crash of the machine may not take: the content of whatever file stands there, or also that it stands there.
+/// (A crash of the program takes neither.)
 enum class Durability { content, name };
 
 /// A folder that is not there: made, or a reason not to write. The latter where somebody else may have taken it away.
@@ -36,11 +37,13 @@ class AtomicFile {
 
  private:
   void flush();
+  void put(std::string_view bytes);
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;
   int descriptor_ = -1;
   std::string buffer_;
+  std::size_t unsent_ = 0;  ///< written and not on its way to the disk, bytes
 };
 
 /// Makes renames in a folder durable; where a file system refuses that, they stand all the same.

@@ -101,14 +101,14 @@ struct BatchSummary {
 
 enum class BatchEnd {
   complete,    ///< everything is in `out`
-  incomplete,  ///< this shard is through, others are not
+  incomplete,  ///< this shard, or this rank, is through; others are not
   interrupted  ///< `keep_going` said no; --resume goes on
 };
 
 struct BatchResult {
   BatchEnd end = BatchEnd::complete;
   BatchSummary summary;       ///< of a complete one
-  bool was_complete = false;  ///< there was nothing left to do
+  bool was_complete = false;  ///< nothing was left to do, or another process of the same batch was quicker to end it
 };
 
 /// Called from time to time by one thread; false stops the batch after what is under way.

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A thread that waits for the disk in the workers' stead: one part's fsync takes a tenth of what it takes to make the
+/// part, file systems do one after the other, and two workers that wait themselves lose twice as much by it as one.
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace exactvo::datasets::batch {
+
+class Scribe {
+ public:
+  Scribe();
+  /// Waits; what fails then is not said.
+  ~Scribe();
+  Scribe(const Scribe&) = delete;
+  Scribe& operator=(const Scribe&) = delete;
+
+  /// Runs it soon, in the order given; at once in the caller's thread, where jobs that hold kMostBytesWaiting wait
+  /// already. Throws what an earlier job threw, whereupon none is run any more.
+  void run(std::function<void()> job, std::uint64_t bytes);
+  /// Until nothing waits. Throws what a job threw, each time.
+  void finish();
+
+  static constexpr std::uint64_t kMostBytesWaiting = std::uint64_t{8} << 20;
+
+ private:
+  struct Job {
+    std::function<void()> work;
+    std::uint64_t bytes = 0;
+  };
+  void work_on();
+  void run_next(std::unique_lock<std::mutex>& lock);
+  void rethrow() const;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Job> jobs_;  ///< the first one may be under way
+  std::uint64_t bytes_ = 0;
+  std::exception_ptr failure_;
+  bool ends_ = false;
+  std::thread thread_;  ///< last: it uses all of the above
+};
+
+}  // namespace exactvo::datasets::batch
