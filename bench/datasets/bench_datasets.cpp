@@ -3,10 +3,10 @@
 //
 //   bench_datasets [--stars N] [--sumo FILE] [--folder DIR] [--largest N] [--only-batches]
 //
-// In this order: peak memory of batches of 10^4, 10^5, ... obstacles, each a process of its own; the shapes of N
-// generated obstacles in memory on one core, stage by stage; the naive exact way beside them, after their answers were
-// compared; the same for a file of real polygons; whole batches with one and two workers, and two batches at once that
-// share nothing: no two workers can be quicker than that.
+// In this order: whole batches with one and two workers, and two batches at once that share nothing (no two workers can
+// be quicker than that); peak memory of batches of 10^4, 10^5, ... obstacles, each a process of its own; the shapes of
+// N generated obstacles in memory on one core, stage by stage; the naive exact way beside them, after their answers
+// were compared; the same for a file of real polygons; where a batch spends its time.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -236,7 +236,8 @@ struct BatchSeconds {
 };
 
 BatchSeconds measure_batches(const fs::path& input, const fs::path& folder, bool everything, int rounds) {
-  // In processes of their own, as the program is: none finds memory or threads that an earlier one left.
+  // In processes of their own, as the program is, and forked before this one has done anything: a page of memory that
+  // a child finds used is copied when it is written to.
   const auto seconds_with = [&](int workers) {
     return wall_of(
         [&] { Child([&] { return is_certified_batch(input, folder / "out", workers, everything); }).finish(); });
@@ -346,15 +347,7 @@ std::vector<Polygon> real_polygons(const std::string& path) {
   return polygons;
 }
 
-void show_whole_batches(const Flags& flags, const fs::path& folder) {
-  const fs::path input = folder / "stars.wkt";
-  write_stars(input, flags.stars);
-  std::printf("whole batches of %zu generated obstacles:\n", flags.stars);
-  show_shares(input, folder);
-  show_batches(input, folder, flags.stars);
-}
-
-void show_the_rest(const Flags& flags, const fs::path& folder) {
+void show_the_rest(const Flags& flags, const fs::path& folder, const fs::path& input) {
   show_memory(folder, flags.largest);
   const std::vector<Polygon> generated = stars(flags.stars);
   std::printf("%zu generated obstacles of 3 to 16 corners, one core (to reach: 20000 a second):\n", generated.size());
@@ -368,6 +361,8 @@ void show_the_rest(const Flags& flags, const fs::path& folder) {
   } else {
     std::printf("no real polygons measured: there is no %s (--sumo FILE)\n", flags.sumo.c_str());
   }
+  std::printf("where a whole batch spends its time:\n");
+  show_shares(input, folder);
 }
 
 void run(const Flags& flags) {
@@ -378,8 +373,11 @@ void run(const Flags& flags) {
   }
   const fs::path folder = name;
   std::printf("%s\n", to_json(datasets::make_provenance({}, 0)).c_str());
-  if (!flags.only_batches) show_the_rest(flags, folder);
-  show_whole_batches(flags, folder);
+  const fs::path input = folder / "stars.wkt";
+  Child([&] { return write_stars(input, flags.stars), true; }).finish();
+  std::printf("whole batches of %zu generated obstacles, by the clock:\n", flags.stars);
+  show_batches(input, folder, flags.stars);
+  if (!flags.only_batches) show_the_rest(flags, folder, input);
   if (flags.folder.empty()) fs::remove_all(folder);
 }
 
@@ -392,7 +390,7 @@ int main(int argc, char** argv) {
   app.add_option("--stars", flags.stars, "Generated obstacles")->capture_default_str();
   app.add_option("--largest", flags.largest, "Obstacles of the largest batch whose memory is measured");
   app.add_option("--sumo", flags.sumo, "A file of real polygons")->capture_default_str();
-  app.add_flag("--only-batches", flags.only_batches, "The last of it only: whole batches, by the clock");
+  app.add_flag("--only-batches", flags.only_batches, "The first of it only: whole batches, by the clock");
   app.add_option("--folder", flags.folder, "To work in; a temporary one unless said");
   CLI11_PARSE(app, argc, argv);
   try {
