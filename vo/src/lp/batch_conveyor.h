@@ -68,12 +68,13 @@ class Conveyor {
     M walking;   ///< still on the first walk
     M relaxing;  ///< still on the second walk
     M gone;      ///< handed over: their answers come from elsewhere
+    M answered;  ///< those whose answers have come
     int rounds;
     const T* ahead[3];  ///< x, y and c of a pack to come, one for each of the first rounds
 
     HWY_INLINE void begin(M which) {
       lanes = walking = which;
-      relaxing = gone = pack.none();
+      relaxing = gone = answered = pack.none();
       rounds = 0;
     }
     HWY_INLINE bool busy() const { return !hn::AllFalse(D(), hn::Or(walking, relaxing)); }
@@ -201,8 +202,7 @@ class Conveyor {
     const M odd = hn::AndNot(way.pack.in_range(), way.lanes);
     if (hn::AllFalse(D(), odd)) return;
     way.walking = hn::AndNot(odd, way.walking);
-    way.gone = hn::Or(way.gone, odd);
-    leave(way.pack, odd);
+    leave(way, odd);
   }
 
   static constexpr int kNothing = -1;
@@ -219,8 +219,7 @@ class Conveyor {
     if (++way.rounds < kMostLockstepRounds) return;
     const M old = hn::Or(way.walking, way.relaxing);
     way.walking = way.relaxing = way.pack.none();
-    way.gone = hn::Or(way.gone, old);
-    leave(way.pack, old);
+    leave(way, old);
   }
 
   /// A round of the first walk; the lanes that contradict begin the second.
@@ -336,6 +335,12 @@ class Conveyor {
     }
   }
 
+  void leave(Way& way, M which) {
+    way.gone = hn::Or(way.gone, which);
+    way.answered = hn::Or(way.answered, which);
+    leave(way.pack, which);
+  }
+
   void leave(const Pack<D>& p, M which) {
     if (hn::AllFalse(p.d, which)) return;
     HWY_ALIGN U ids[kLanes];
@@ -346,13 +351,13 @@ class Conveyor {
     }
   }
 
-  /// The answers of a pack in their places, all at once; those of lanes that are gone have come or come later, in which
-  /// case they are written over.
+  /// The answers of a pack in their places, all at once; those of lanes that are gone come later and are written over,
+  /// unless they have come.
   HWY_INLINE void finish(Way& way, std::size_t at) {
     const D d;
     const Pack<D>& p = way.pack;
     const M done = hn::AndNot(way.gone, way.lanes);
-    if (!hn::AllTrue(d, done)) return finish_some(p, done);
+    if (!hn::AllFalse(d, way.answered)) return finish_some(p, done);
     hn::StoreU(p.vx, d, out_.velocity_x + at);
     hn::StoreU(p.vy, d, out_.velocity_y + at);
     hn::StoreU(violation(p), d, out_.violation + at);

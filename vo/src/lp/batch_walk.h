@@ -106,7 +106,7 @@ struct Pack {
     return hn::And(hn::Ge(limit, hn::Set(d, kLeastSquare<T>)), hn::Le(most, hn::Set(d, kMostSquare<T>)));
   }
 
-  /// The optimum of the disc alone.
+  /// The optimum of the disc alone. The first step sets what is in hand.
   HWY_INLINE void start() {
     const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
     const V squared = dot(px, py, px, py);
@@ -121,7 +121,8 @@ struct Pack {
     }
     level = hn::Zero(d);
     relaxing = none();
-    first = second = third = entering = no_line(d);
+    third = no_line(d);
+    entering.index = third.index;
   }
 };
 
@@ -142,7 +143,7 @@ HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead = nullptr)
   const V vx = p.vx, vy = p.vy, one = hn::Set(d, T(1)), hard_count = p.hard_count;
   V most = allowed;
   V ex = zero, ey = zero, ec = zero, number = zero;
-  V index = kIndex ? hn::Set(d, T(kNoLine)) : p.entering.index;
+  V index = hn::Set(d, T(kNoLine));
   const T *nx = rows.x, *ny = rows.y, *c = rows.c;
 #pragma GCC unroll 2
   for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
@@ -163,7 +164,10 @@ HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead = nullptr)
   p.violated = hn::Gt(most, allowed);
   auto with_slack = hn::Not(p.relaxing);
   if (kHard) with_slack = hn::Or(with_slack, hn::Lt(index, hard_count));
-  p.entering = {ex, ey, pick(with_slack, hn::Add(ec, p.slack), ec), index};
+  p.entering.x = ex;
+  p.entering.y = ey;
+  p.entering.c = pick(with_slack, hn::Add(ec, p.slack), ec);
+  if (kIndex) p.entering.index = index;
 }
 
 /// 1 / |n|^2 of a normal of length within 2^-10 of 1, by multiplying: a divider takes one register at a time, and a
@@ -227,9 +231,15 @@ HWY_INLINE hn::Mask<D> step(Pack<D>& p, hn::Mask<D> moving) {
   const M moves = hn::AndNot(empty, moving);
   p.vx = pick(moves, hn::Mul(hn::Sub(hn::Mul(h.x, h.c), hn::Mul(where, h.y)), inverse), p.vx);
   p.vy = pick(moves, hn::Mul(hn::Add(hn::Mul(h.y, h.c), hn::Mul(where, h.x)), inverse), p.vy);
-  LineV<D> kept = no_line(d);
+  const LineV<D> none = no_line(d);
+  if (kKept == 0) {
+    p.second = none;
+    p.first = pick<kIndex>(moves, h, none);
+    return hn::And(moving, empty);
+  }
+  LineV<D> kept = none;
   if (kKept > 1) kept = pick<kIndex>(hn::Eq(where, cut_second), p.second, kept);
-  if (kKept > 0) kept = pick<kIndex>(hn::Eq(where, cut_first), p.first, kept);
+  kept = pick<kIndex>(hn::Eq(where, cut_first), p.first, kept);
   p.second = pick<kIndex>(moves, kept, p.second);
   p.first = pick<kIndex>(moves, h, p.first);
   return hn::And(moving, empty);
