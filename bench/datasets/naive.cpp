@@ -15,6 +15,7 @@
 #include <list>
 
 #include "exactvo/geometry/enclosure.h"
+#include "exactvo/geometry/pi.h"
 
 namespace exactvo::bench {
 namespace {
@@ -25,7 +26,7 @@ using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 using Rational = CGAL::Gmpq;
 using RationalKernel = CGAL::Simple_cartesian<Rational>;
 using MinEllipse = CGAL::Min_ellipse_2<CGAL::Min_ellipse_2_traits_2<RationalKernel>>;
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 
 std::vector<Exact::Point_2> exact_points(const geometry::Ring& ring) {
   std::vector<Exact::Point_2> points;

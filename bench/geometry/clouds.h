@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/vec2.h"
 
 namespace exactvo::bench {
@@ -43,7 +44,7 @@ inline std::vector<geometry::Vec2> convex_ring(int n, std::uint64_t seed) {
   const double turn = stream.uniform();
   std::vector<geometry::Vec2> ring;
   for (int i = 0; i < n; ++i) {
-    const double angle = 2.0 * 3.14159265358979 * (i + 0.8 * stream.uniform()) / n + turn;
+    const double angle = 2.0 * geometry::kPi * (i + 0.8 * stream.uniform()) / n + turn;
     ring.push_back({3.0 * std::cos(angle), 2.0 * std::sin(angle)});
   }
   return ring;

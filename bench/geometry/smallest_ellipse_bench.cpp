@@ -9,6 +9,7 @@
 
 #include "clouds.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "side_by_side.h"
 
@@ -29,7 +30,7 @@ double area_of(const MinEllipse& ellipse) {
   ellipse.ellipse().double_coefficients(r, s, t, u, v, w);
   const double det = 4 * r * s - t * t;
   const double x = (t * v - 2 * s * u) / det, y = (t * u - 2 * r * v) / det;
-  return 2 * 3.14159265358979323846 * std::fabs(r * x * x + s * y * y + t * x * y - w) / std::sqrt(det);
+  return 2 * geometry::kPi * std::fabs(r * x * x + s * y * y + t * x * y - w) / std::sqrt(det);
 }
 
 bool same_answer(const std::vector<geometry::Vec2>& points, const geometry::Ellipse& ours, double exact_area) {

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <utility>
 
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::formation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 
 constexpr std::array<std::pair<Pattern, const char*>, 4> kNames{
     {{Pattern::line, "line"}, {Pattern::wedge, "wedge"}, {Pattern::circle, "circle"}, {Pattern::grid, "grid"}}};

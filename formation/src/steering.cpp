@@ -6,13 +6,15 @@
 #include <cstdio>
 #include <limits>
 
+#include "exactvo/geometry/pi.h"
+
 namespace exactvo::formation::detail {
 namespace {
 
 using geometry::dot;
 using geometry::norm;
 
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 
 double angle_of(Vec2 v) {
   return std::atan2(v.y, v.x);

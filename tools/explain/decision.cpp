@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 
 namespace exactvo::tools {
@@ -18,7 +19,7 @@ using geometry::GrownShape;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 constexpr int kDirections = 4096;  // an arc between two of them strays from its chord by 3e-7 of the radius
 /// A chosen velocity this near the speed bound (relative) is on it: the solver keeps a slack of a few ulps, and a
 /// recording may have passed through text.

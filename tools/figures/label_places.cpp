@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exactvo/geometry/pi.h"
+
 namespace exactvo::tools {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 /// px: half of what six characters in 10 points take.
 constexpr double kHalfWidth = 22.0;
 constexpr double kHalfHeight = 8.0;

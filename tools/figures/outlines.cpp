@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "exactvo/geometry/pi.h"
+
 namespace exactvo::tools {
 
 using geometry::GrownShape;
@@ -11,7 +13,7 @@ using geometry::HalfPlane;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 /// A chord of a circle of 500 px radius drawn with so many corners strays 0.04 px from the arc.
 constexpr int kDirections = 256;
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "exactvo/geometry/pi.h"
 #include "generators/counter_random.h"
 
 namespace exactvo::datasets {
@@ -14,7 +15,7 @@ namespace {
 using formation::Scenario;
 using geometry::Vec2;
 
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 
 using Draws = CounterRandom;
 

@@ -5,10 +5,12 @@
 #include "readers/readers.h"
 #include "text_file.h"
 
+#include "exactvo/geometry/pi.h"
+
 namespace exactvo::datasets {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 /// No laser of these logs has more beams.
 constexpr std::int64_t kMostBeams = 100000;
 

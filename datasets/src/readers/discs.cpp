@@ -3,10 +3,12 @@
 
 #include <cmath>
 
+#include "exactvo/geometry/pi.h"
+
 namespace exactvo::datasets {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using geometry::kPi;
 constexpr int kCorners = 16;
 /// The corners' radius is rounded up by this part, far more than the few roundings of each corner (1e-15 or so).
 constexpr double kOutward = 1e-12;
