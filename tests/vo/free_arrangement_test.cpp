@@ -6,7 +6,10 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 
+#include "exactvo/geometry/hull.h"
 #include "exactvo/vo/free_velocities.h"
 #include "vo/half_plane_audit.h"
 
@@ -238,7 +241,7 @@ TEST(FreeArrangement, ContactLeavesNothing) {
 }
 
 TEST(FreeArrangement, SpeedsAndHorizonsOfEverySize) {
-  for (const double scale : {vo::kLeastMaxSpeed, 1e-9, 1e9, vo::kMostMaxSpeed}) {
+  for (const double scale : {vo::kLeastArrangedNumber, 1e-9, 1e9, vo::kMostArrangedNumber}) {
     const FreeArrangement free({cone_of(Disc{{2.0, 0.0}, 0.75}, 0.25, kInfinity)}, scale);
     ASSERT_EQ(free.pieces().size(), 1u);
     EXPECT_NEAR(free.area().low / (scale * scale), kHalfTurn * 5.0 / 6.0, kRounded);
@@ -257,6 +260,81 @@ TEST(FreeArrangement, MistakesAreNamed) {
   EXPECT_THROW(FreeArrangement({}, 0.0), std::logic_error);
   const std::vector<ShiftedCone> many(vo::kMostCones + 1, cone_of(Disc{{2.0, 0.0}, 0.5}, 0.25, 2.0));
   EXPECT_THROW(FreeArrangement(many, 1.0), std::logic_error);
+}
+
+TEST(FreeArrangement, RefusalsAreNamed) {
+  const ShiftedCone disc = cone_of(Disc{{2.0, 0.0}, 0.5}, 0.25, 2.0);
+  const auto refusal = [&](const ShiftedCone& cone, double speed = 1.0) {
+    const FreeArrangement::Attempt attempt = FreeArrangement::attempt({disc, cone}, speed);
+    EXPECT_EQ(attempt.free.has_value(), attempt.refusal == vo::Refusal::none);
+    return std::string(name(attempt.refusal));
+  };
+  EXPECT_EQ(refusal(disc), "none");
+  EXPECT_EQ(refusal(cone_of(Disc{{1.0, 1.0}, 2.0}, 0.25, 2.0)), "none") << "in contact nothing is free";
+  EXPECT_EQ(refusal(cone_of(geometry::Ellipse{{4.0, 0.0}, 2.0, 0.0, 1.0}, 0.5, 2.0)), "ellipse");
+  EXPECT_EQ(name(FreeArrangement::attempt(std::vector<ShiftedCone>(vo::kMostCones + 1, disc), 1.0).refusal),
+            std::string("cones"));
+  geometry::ConvexPolygon round;
+  for (int k = 0; k < 600; ++k)
+    round.vertices.push_back(geometry::rotated({1.0, 0.0}, 2.0 * kHalfTurn * k / 600.0) + Vec2{4.0, 0.0});
+  EXPECT_EQ(refusal(cone_of(geometry::convex_hull(round.vertices), 0.25, 2.0)), "curves");
+}
+
+TEST(FreeArrangement, NumbersOutOfRangeAreRefusedWhereverTheyStand) {
+  const auto refusal = [](const geometry::ConvexShape& shape, double radius, double tau, Vec2 apex, double speed) {
+    return FreeArrangement::attempt({cone_of(shape, radius, tau, apex)}, speed).refusal;
+  };
+  for (const double x : {1e-300, 1e-19, 0x1p31, 1e30, 1e200}) {
+    EXPECT_EQ(refusal(Disc{{3e300, 3.0}, x}, 0.25, 2.0, {}, 1.0), vo::Refusal::range);
+    EXPECT_EQ(refusal(Segment{{3.0, x}, {x + 4.0, 4.0}}, 0.0, 2.0, {}, 1.0), vo::Refusal::range);
+    EXPECT_EQ(refusal(geometry::ConvexPolygon{{{3.0, 3.0}, {4.0, 3.0}, {4.0, x < 1.0 ? 4.0 : 3.0 + x}}},
+                      x < 1.0 ? x : 0.0, 2.0, {}, 1.0),
+              vo::Refusal::range);
+    EXPECT_EQ(refusal(Disc{{3.0, 3.0}, 1.0}, 0.25, x, {}, 1.0), vo::Refusal::range);
+    EXPECT_EQ(refusal(Disc{{3.0, 3.0}, 1.0}, 0.25, 2.0, {0.0, x}, 1.0), vo::Refusal::range);
+    EXPECT_EQ(refusal(Disc{{3.0, 3.0}, 1.0}, 0.25, 2.0, {}, x), vo::Refusal::range);
+    EXPECT_THROW(FreeArrangement({}, x), std::logic_error);
+    const geometry::ConvexPolygon robot{{{0.0, 0.0}, {1.0, 0.0}, {0.0, x < 1.0 ? x : 1.0}}};
+    const VelocityObstacle seen(Disc{{x < 1.0 ? 3.0 : -3.0 * x, 3.0}, 1.0}, {}, robot, 2.0);
+    EXPECT_EQ(FreeArrangement::attempt({{seen, {}, {}}}, 1.0).refusal, vo::Refusal::range);
+  }
+  EXPECT_EQ(refusal(Disc{{3.0, 3.0}, 1.0}, 0.0, kInfinity, {}, 1.0), vo::Refusal::none);
+  EXPECT_EQ(FreeArrangement::refusal_of({}, std::nan("")), vo::Refusal::range);
+}
+
+TEST(FreeArrangement, HalfPlanesOutOfRangeAreNotJudged) {
+  const FreeArrangement free({cone_of(Disc{{3.0, 0.0}, 0.75}, 0.25, 2.0)}, 2.0);
+  EXPECT_EQ(free.attempt_holds({{{-1.0, 0.0}, -1.0}}), std::optional(true));
+  EXPECT_EQ(free.attempt_holds({}), std::optional(false));
+  EXPECT_EQ(free.attempt_holds({{{-1.0, 1e-40}, -1.0}}), std::optional(false)) << "what rounding leaves of a 0";
+  for (const double x : {1e-300, 1e30, kInfinity, std::nan("")}) {
+    EXPECT_EQ(free.attempt_holds({{{-1.0, x}, -1.0}}), std::nullopt);
+    EXPECT_EQ(free.attempt_holds({{{-1.0, 0.0}, x}}), std::nullopt);
+    EXPECT_THROW(free.holds({{{x, 1.0}, -1.0}}), std::logic_error);
+  }
+}
+
+TEST(FreeArrangement, NumbersOfEverySizeInRangeAreAnswered) {
+  SeededRandom random(seed_of_run(724));
+  const auto number = [&] {
+    return std::ldexp(random.uniform(1.0, 2.0), random.integer(-60, 29)) * (random.integer(0, 1) != 0 ? 1.0 : -1.0);
+  };
+  const auto size = [&] { return std::fabs(number()); };
+  int arranged = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<ShiftedCone> cones;
+    for (int k = 0; k <= i % 3; ++k) {
+      const geometry::ConvexShape shape = k == 1 ? geometry::ConvexShape{Segment{{number(), number()}, {number(), 1.0}}}
+                                                 : geometry::ConvexShape{Disc{{number(), number()}, size()}};
+      const ShiftedCone cone = cone_of(shape, size(), size(), i % 2 == 0 ? Vec2{} : Vec2{number(), number()});
+      if (!cone.cone.overlaps()) cones.push_back(cone);
+    }
+    const FreeArrangement::Attempt attempt = FreeArrangement::attempt(cones, size());
+    ASSERT_TRUE(attempt.refusal == vo::Refusal::none || attempt.refusal == vo::Refusal::numbers_apart);
+    arranged += attempt.free.has_value();
+    if (attempt.free) attempt.free->attempt_holds({{{number(), number()}, number()}});
+  }
+  EXPECT_GT(arranged, 190);
 }
 
 }  // namespace

@@ -1,36 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The verbs `vo` and `audit` as a user runs them.
+// The verb `vo` as a user runs it.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "exactvo/vo/certificate.h"
-#include "exactvo/vo/containment.h"
-#include "tools/run_program.h"
+#include "vo/verb_vo.h"
 
 namespace exactvo::test {
 namespace {
-
-using nlohmann::json;
-
-const std::string kSquare = "POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))";
-
-json json_of(const std::string& arguments) {
-  const Outcome run = Workplace().run("vo " + arguments + " --json");
-  EXPECT_EQ(run.status, 0) << run.err;
-  return json::parse(run.out);
-}
-
-std::string words_of(const std::string& arguments) {
-  const Outcome run = Workplace().run("vo " + arguments);
-  EXPECT_EQ(run.status, 0) << run.err;
-  return run.out;
-}
 
 TEST(VerbVo, PrintsEveryAnswerWithACertificateThatHolds) {
   for (const std::string enclose : {"none", "ellipse"}) {
@@ -181,72 +160,6 @@ TEST(VerbVo, APolygonalRobot) {
   EXPECT_NEAR(out.at("half_plane").at("offset").get<double>(), -1.0 / 3.0, 1e-12) << "rims 1 m apart";
 }
 
-TEST(VerbVo, FreeVelocitiesOfSeveralObstacles) {
-  Workplace place;
-  const std::string scene = "vo --obstacle '" + kSquare + "' --obstacle 'POLYGON((-4 -1, -2 -1, -2 1, -4 1, -4 -1))'" +
-                            " --position 0,0 --velocity 0,1 --radius 0.5 --time-horizon 4";
-  const Outcome run = place.run(scene + " --free --max-speed 1.5 --json --figure free.svg");
-  ASSERT_EQ(run.status, 0) << run.err;
-  const json out = json::parse(run.out);
-  EXPECT_EQ(out.at("obstacles").size(), 2u);
-  EXPECT_TRUE(out.at("velocity_is_free").get<bool>());
-  EXPECT_EQ(out.at("region").at("inside"), "yes");
-  EXPECT_LE(out.at("area")[0], out.at("area")[1]);
-  EXPECT_LT(out.at("region").at("area")[1], out.at("area")[0]);
-  EXPECT_FALSE(out.at("region").at("lost").empty());
-  EXPECT_TRUE(std::filesystem::exists(place.path() / "free.gp"));
-  EXPECT_EQ(place.run(scene + " --json").status, 2) << "several obstacles go with --free";
-  EXPECT_EQ(place.run(scene + " --free --json").status, 2) << "without a speed";
-}
-
-double next_up(double x) {
-  return std::nextafter(x, std::numeric_limits<double>::infinity());
-}
-
-/// That the program reads the certificate and finds it changed.
-void expect_caught(const std::string& text, const std::string& verdict) {
-  EXPECT_TRUE(verdict == "wrong margin" || verdict == "altered") << verdict;
-  const Workplace place;
-  place.write("changed", text + "\n");
-  const Outcome run = place.run("audit --certificate changed --json");
-  EXPECT_EQ(run.status, 1);
-  EXPECT_EQ(json::parse(run.out).at("verdicts"), json::array({verdict}));
-}
-
-/// What `audit` says of JSON, with its exit status in "status".
-json judged(const json& certificates) {
-  const Workplace place;
-  place.write("vo.json", certificates.dump());
-  const Outcome run = place.run("audit --certificate vo.json --json");
-  json out = json::parse(run.out);
-  out["status"] = run.status;
-  return out;
-}
-
-/// Whether the certificate is valid and of the half-plane beside it.
-void expect_proven(const json& cone) {
-  const auto certificate = vo::read_certificate(cone.at("certificate").at("text"));
-  ASSERT_TRUE(certificate);
-  EXPECT_EQ(check(*certificate), vo::Verdict::valid);
-  EXPECT_EQ(certificate->claim.half_plane.offset, cone.at("half_plane").at("offset").get<double>());
-  EXPECT_EQ(certificate->claim.half_plane.normal.x, cone.at("half_plane").at("normal")[0].get<double>());
-}
-
-TEST(VerbVo, TheCertificateIsOfTheHalfPlaneBesideItWhateverTheShare) {
-  const std::string scene =
-      "--obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --alpha 0.5";
-  const json out = json_of(scene);
-  expect_proven(out);
-  EXPECT_NEAR(out.at("half_plane").at("offset").get<double>(), -0.75, 1e-12);
-  const json& shared = out.at("shared_half_plane");
-  EXPECT_NEAR(shared.at("half_plane").at("offset").get<double>(), -0.875, 1e-12);
-  EXPECT_TRUE(shared.at("certificate").is_null());
-  EXPECT_NE(words_of(scene).find("holds only if the other side takes its share"), std::string::npos);
-}
-
-const std::string kCourtyard = "'POLYGON((0 0,10 0,10 10,0 10,0 0),(2 2,2 8,8 8,8 2,2 2))'";
-const std::string kCorner = "'POLYGON((0 0,10 0,10 1,1 1,1 10,0 10,0 0))'";
-
 TEST(VerbVo, AnObstacleThatIsNotConvexIsTakenByItsPieces) {
   const std::string in_court = "--obstacle " + kCourtyard + " --position 5,5 --radius 0.5 --time-horizon 2 ";
   const json rest = json_of(in_court + "--velocity 0,0");
@@ -279,89 +192,6 @@ TEST(VerbVo, TheHullOnRequestSaysSo) {
   EXPECT_NE(words_of(scene).find("touches or overlaps its convex hull"), std::string::npos);
 }
 
-TEST(VerbVo, FreeVelocitiesWithinACourtyard) {
-  const json out = json_of("--obstacle " + kCourtyard +
-                           " --position 5,5 --radius 0.5 --velocity 0.5,0 --time-horizon 2 --free --max-speed 1");
-  EXPECT_GT(out.at("area")[0].get<double>(), 3.14) << "no wall is reached in 2 s";
-  EXPECT_TRUE(out.at("velocity_is_free").get<bool>());
-  EXPECT_EQ(out.at("region").at("inside"), "yes");
-  for (const json& cone : out.at("obstacles")[0].at("cones")) expect_proven(cone);
-}
-
-TEST(VerbVo, FreeOnTheObstacleKeepsNothing) {
-  const std::string scene =
-      "--obstacle '" + kSquare + "' --position 3,0 --radius 0.3 --velocity 1,0 --time-horizon 2 --free --max-speed 1";
-  EXPECT_TRUE(json_of(scene).at("region").is_null());
-  EXPECT_EQ(json_of(scene).at("area")[1].get<double>(), 0.0);
-  EXPECT_NE(words_of(scene).find("nothing is free, nothing is kept"), std::string::npos);
-}
-
-/// Discs of radius 1, one from either side: their fronts, of radius 1 too, are `gap` apart at the velocity 0.
-std::string two_fronts(const std::string& gap) {
-  return "--obstacle 'DISC(3 0, 1)' --obstacle 'DISC(-3 0, 1)' --obstacle-velocity=" + gap +
-         ",0 --obstacle-velocity 2,0 --position 0,0 --velocity 0,1 --radius 0 --time-horizon 1 --free --max-speed 2";
-}
-
-TEST(VerbVo, FrontsThatTouchPartWhatIsFreeExactly) {
-  const json touching = json_of(two_fronts("-2"));
-  const json& exact = touching.at("exact");
-  EXPECT_EQ(exact.at("components"), 2);
-  EXPECT_EQ(exact.at("pieces").size(), 2u);
-  EXPECT_TRUE(touching.at("why_not_exact").is_null());
-  EXPECT_EQ(exact.at("region_inside"), "yes");
-  EXPECT_LE(touching.at("area")[0], exact.at("area")[0]);
-  EXPECT_GE(touching.at("area")[1], exact.at("area")[1]);
-  EXPECT_LT(exact.at("area")[1].get<double>() - exact.at("area")[0].get<double>(), 0x1p-40);
-  EXPECT_EQ(json_of(two_fronts("-1.9999999999999998")).at("exact").at("components"), 1) << "an ulp apart";
-  EXPECT_NE(words_of(two_fronts("-2")).find("(m/s)^2, in 2 pieces; what half-planes keep is free: yes"),
-            std::string::npos);
-}
-
-TEST(VerbVo, TheArcsOfAnExactPieceSayWhoseTheyAreAndJoin) {
-  const json out =
-      json_of("--obstacle " + kCourtyard + " --obstacle 'DISC(6.5 5, 0.25)' --position 5,5 --radius 0.25 " +
-              "--velocity 0,0 --time-horizon 2 --free --max-speed 2");
-  std::string kinds;
-  for (const json& piece : out.at("exact").at("pieces")) {
-    const json& arcs = piece.at("arcs");
-    for (std::size_t k = 0; k < arcs.size(); ++k) {
-      EXPECT_EQ(arcs[k].at("to"), arcs[(k + 1) % arcs.size()].at("from"));
-      const std::string kind = arcs[k].at("kind");
-      EXPECT_EQ(arcs[k].contains("radius"), kind == "front arc" || kind == "speed circle") << kind;
-      EXPECT_EQ(arcs[k].at("cone").is_null(), kind == "speed circle");
-      kinds += kind + " of " + arcs[k].at("obstacle").dump() + ", ";
-    }
-  }
-  EXPECT_NE(kinds.find("offset edge of 0, "), std::string::npos) << kinds;
-  EXPECT_NE(kinds.find("front arc of 1, "), std::string::npos) << kinds;
-  EXPECT_NE(kinds.find("leg of 1, "), std::string::npos) << kinds;
-}
-
-TEST(VerbVo, WhatIsNotExactSaysWhy) {
-  const auto why = [](const std::string& obstacles, const std::string& reason) {
-    const std::string scene =
-        obstacles + " --position 0,0 --velocity 0,0 --radius 0.5 --time-horizon 2 --free --max-speed 1";
-    const json out = json_of(scene);
-    EXPECT_TRUE(out.at("exact").is_null());
-    EXPECT_EQ(out.at("why_not_exact"), reason);
-    EXPECT_NE(words_of(scene).find("exactly           not shown: " + reason), std::string::npos);
-  };
-  why("--obstacle 'DISC(4 0, 1)' --obstacle 'ELLIPSE(-4 0, 2 0 1)'",
-      "obstacle 1 takes part as an ellipse, whose offset has degree eight");
-  why("--obstacle 'DISC(1.5 0, 1)'", "the robot touches or overlaps obstacle 0");
-  std::string many;
-  for (int k = 0; k < 65; ++k) many += "--obstacle 'DISC(4 " + std::to_string(k) + ", 0.25)' ";
-  why(many, "65 convex shapes, more than 64");
-  why("--obstacle 'DISC(3 3, 1e-300)'", "a number of the scene is neither 0 nor between 2^-60 and 2^30");
-  // On a parabola all of whose vertices face the robot: 280 edges, 281 arcs, 2 legs. The text is too long for a file's
-  // name, which is no mistake.
-  std::string parabola;
-  for (int k = -140; k <= 140; ++k)
-    parabola += std::to_string(4.0 + k * k / 32768.0) + " " + std::to_string(k / 64.0) + ", ";
-  why("--obstacle 'POLYGON((" + parabola + parabola.substr(0, parabola.find(',')) + "))'",
-      "563 boundary curves, more than 512");
-}
-
 TEST(VerbVo, BareContactHasAHalfPlaneWithItsProof) {
   const json out =
       json_of("--obstacle '" + kSquare + "' --position 1.5,0 --radius 0.5 --velocity 1,0 --time-horizon 2");
@@ -390,36 +220,6 @@ TEST(VerbVo, DiscsAndEllipsesByTheirNumbers) {
     EXPECT_EQ(run.err.find("exactvo: error: --obstacle: found"), 0u) << run.err;
   }
   EXPECT_EQ(Workplace().run("vo --obstacle 'DISC(4 0, 1)' --enclose ellipse" + rest).status, 2);
-}
-
-TEST(VerbVo, AnEllipseRoundAnObstacleSaysThatItContainsIt) {
-  const std::string scene =
-      "--obstacle '" + kSquare + "' --enclose ellipse --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2";
-  const json taken = json_of(scene).at("taken_as");
-  EXPECT_EQ(taken.at("what"), "smallest ellipse");
-  EXPECT_EQ(taken.at("vertices"), 4);
-  EXPECT_EQ(taken.at("contained"), 4);
-  EXPECT_NE(words_of(scene).find("contains 4 of its 4 vertices exactly, certificate: valid"), std::string::npos);
-  const Workplace place;
-  const std::string text = taken.at("certificate").at("text");
-  place.write("one", text + "\n");
-  EXPECT_EQ(place.run("audit --certificate one").status, 0);
-  place.write("vo.json", place.run("vo " + scene + " --json").out);
-  EXPECT_EQ(json::parse(place.run("audit --certificate vo.json --json").out).at("valid"), 2) << "and the half-plane";
-}
-
-TEST(VerbAuditOfCertificates, AContainmentChangedByAnUlpIsCaught) {
-  const json taken = json_of("--obstacle '" + kSquare +
-                             "' --enclose ellipse --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2")
-                         .at("taken_as");
-  const auto made = vo::read_containment(taken.at("certificate").at("text"));
-  ASSERT_TRUE(made);
-  vo::Containment moved = *made, easier = *made, smaller = *made;
-  moved.points[0].x = next_up(moved.points[0].x);
-  easier.margin = next_up(easier.margin);
-  smaller.ellipse.l11 = std::nextafter(smaller.ellipse.l11, 0.0);
-  for (const vo::Containment& changed : {moved, easier, smaller})
-    expect_caught(write_containment(changed), name(check(changed)));
 }
 
 TEST(VerbVo, WhatWouldBeIgnoredIsRefused) {
@@ -484,130 +284,6 @@ TEST(VerbVo, UIsAChangeOnlyWhereOneIsNeeded) {
   const std::string scene = "--obstacle '" + kSquare + "' --position 0,0 --radius 0.5 --time-horizon 2 --velocity ";
   EXPECT_NE(words_of(scene + "1,0").find("the least change that avoids it"), std::string::npos);
   EXPECT_NE(words_of(scene + "-1,0").find("to that boundary; no change is needed"), std::string::npos);
-}
-
-TEST(VerbAuditOfCertificates, JudgesTextsAndWhatVoPrints) {
-  Workplace place;
-  const std::string vo = "vo --obstacle " + kCourtyard + " --position 5,5 --radius 0.5 --velocity 0,0 --time-horizon 2";
-  const Outcome made = place.run(vo + " --json");
-  ASSERT_EQ(made.status, 0) << made.err;
-  place.write("vo.json", made.out);
-  const Outcome whole = place.run("audit --certificate vo.json --json");
-  EXPECT_EQ(whole.status, 0) << whole.out << whole.err;
-  const std::size_t count = json::parse(made.out).at("cones").size();
-  EXPECT_EQ(json::parse(whole.out).at("valid").get<std::size_t>(), count);
-
-  const std::string text = json::parse(made.out).at("cones")[0].at("certificate").at("text");
-  place.write("one", text + "\n");
-  EXPECT_EQ(place.run("audit --certificate - < one").status, 0);
-  vo::Certificate changed = *vo::read_certificate(text);
-  changed.claim.half_plane.offset = std::nextafter(changed.claim.half_plane.offset, -1.0);
-  place.write("changed", text + "\n" + write_certificate(changed) + "\nhalf-plane-certificat 1\n");
-  const Outcome run = place.run("audit --certificate changed");
-  EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.out.find("2: wrong margin"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("3: not a certificate"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("3 certificates, 1 valid"), std::string::npos) << run.out;
-  place.write("empty", "");
-  for (const std::string bad : {"audit --certificate empty", "audit --certificate nofile", "audit --certificate .",
-                                "audit", "audit --certificate one one"})
-    EXPECT_EQ(place.run(bad).status, 2) << bad;
-}
-
-TEST(VerbAuditOfCertificates, AHalfPlaneChangedByAnUlpIsCaught) {
-  const json out = json_of("--obstacle 'DISC(4 0.5, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2");
-  const auto made = vo::read_certificate(out.at("certificate").at("text"));
-  ASSERT_TRUE(made);
-  vo::Certificate turned = *made, later = *made, easier = *made, digest = *made;
-  turned.claim.half_plane.normal.x = next_up(turned.claim.half_plane.normal.x);
-  later.claim.time_horizon = next_up(later.claim.time_horizon);
-  easier.margin = next_up(easier.margin);
-  digest.digest ^= 1;
-  for (const vo::Certificate& changed : {turned, later, easier, digest})
-    expect_caught(write_certificate(changed), name(check(changed)));
-}
-
-TEST(VerbAuditOfCertificates, InJsonNoneIsPassedOver) {
-  const json whole = json_of("--obstacle '" + kSquare +
-                             "' --enclose ellipse --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2");
-  EXPECT_EQ(judged(whole).at("status"), 0);
-  EXPECT_EQ(judged(whole).at("verdicts"), json({"valid", "valid"}));
-  EXPECT_EQ(judged(whole).at("none"), 0);
-
-  for (const std::string beginning : {"half-plane-certificat3 1", "", "?"}) {
-    json damaged = whole;
-    damaged["certificate"]["text"] = beginning + std::string(whole["certificate"]["text"]).substr(24);
-    EXPECT_EQ(judged(damaged).at("status"), 1) << beginning;
-    EXPECT_EQ(judged(damaged).at("certificates"), 2) << beginning;
-    EXPECT_EQ(judged(damaged).at("valid"), 1) << beginning;
-  }
-  for (const json& no_text : {json(7), json::object(), json({{"text", nullptr}}), json("text")}) {
-    json damaged = whole;
-    damaged["certificate"] = no_text;
-    EXPECT_EQ(judged(damaged).at("status"), 1) << no_text;
-  }
-  json without = whole;
-  without["certificate"] = nullptr;
-  EXPECT_EQ(judged(without).at("none"), 1);
-  EXPECT_EQ(judged(without).at("certificates"), 1);
-  EXPECT_EQ(judged(json::array({whole["certificate"]["text"]})).at("valid"), 1) << "a list of texts";
-}
-
-TEST(VerbAuditOfCertificates, TheEllipseMustBeTheOneBesideIt) {
-  const std::string rest = "' --enclose ellipse --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2";
-  json one = json_of("--obstacle '" + kSquare + rest);
-  const json other = json_of("--obstacle 'POLYGON((2 -1, 4 -1, 4 1.5, 2 1, 2 -1))" + rest);
-  one["certificate"] = other["certificate"];
-  EXPECT_EQ(judged(one).at("status"), 1);
-  EXPECT_EQ(judged(one).at("valid"), 1) << "each is valid for itself";
-  EXPECT_NE(judged(one).dump().find("of another ellipse"), std::string::npos);
-}
-
-TEST(VerbAuditOfCertificates, JsonThatCannotBeReadIsNotValid) {
-  Workplace place;
-  const std::string text =
-      json_of("--obstacle '" + kSquare + "' --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2").dump();
-  const std::string deep(100000, '[');
-  for (const std::string& bad : {text.substr(0, text.size() - 1), text + "]", deep, deep + std::string(100000, ']')}) {
-    place.write("bad.json", bad);
-    const Outcome run = place.run("audit --certificate bad.json");
-    EXPECT_EQ(run.status, 1);
-    EXPECT_EQ(run.out, "1: unreadable JSON\n1 certificate, 0 valid\n");
-  }
-}
-
-class VerbAudit : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const Outcome run = place_.run("simulate " + data_file("paper/A11.json") + " --method ivo --out out --no-figures");
-    ASSERT_EQ(run.status, 0) << run.err;
-  }
-  Workplace place_;
-};
-
-TEST_F(VerbAudit, ARunIsClean) {
-  const Outcome run = place_.run("audit out --json");
-  ASSERT_EQ(run.status, 0) << run.out << run.err;
-  const json out = json::parse(run.out);
-  EXPECT_GT(out.at("half_planes").get<int>(), 0);
-  EXPECT_EQ(out.at("unsafe").get<int>(), 0);
-  EXPECT_GT(out.at("steps").get<int>(), 100);
-  EXPECT_EQ(out.at("collisions").get<int>(), 0);
-}
-
-TEST_F(VerbAudit, ADigitChangedIsCaught) {
-  std::string changed = place_.read("out/recording.jsonl");
-  const std::size_t at = changed.find("\"offset\":-", changed.find('\n'));
-  ASSERT_NE(at, std::string::npos);
-  const std::size_t digit = changed.find_first_of("123456789", at);
-  changed[digit] = changed[digit] == '1' ? '2' : '1';
-  place_.write("out/recording.jsonl", changed);
-  EXPECT_EQ(place_.run("audit out").status, 1);
-}
-
-TEST_F(VerbAudit, AFolderWithoutRecordingsIsAMistake) {
-  std::filesystem::remove(place_.path() / "out/recording.jsonl");
-  EXPECT_EQ(place_.run("audit out").status, 2);
 }
 
 }  // namespace

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <variant>
+#include <utility>
 
 namespace exactvo::tools {
 namespace {
@@ -24,57 +22,29 @@ std::string contact_words(const VoQuestion& question, std::size_t cone) {
   return fmt::format("the robot touches or overlaps obstacle {}", place_of(question, cone).obstacle);
 }
 
-std::string limit_words(const std::vector<ShiftedCone>& cones) {
-  if (cones.size() > vo::kMostCones) return fmt::format("{} convex shapes, more than {}", cones.size(), vo::kMostCones);
+std::string curves_words(const std::vector<ShiftedCone>& cones) {
   std::size_t curves = 0;
   for (const ShiftedCone& cone : cones) curves += FreeArrangement::curves_of(cone);
-  if (curves > vo::kMostCurves) return fmt::format("{} boundary curves, more than {}", curves, vo::kMostCurves);
-  return "";
+  return fmt::format("{} boundary curves, more than {}", curves, vo::kMostCurves);
 }
 
-/// Numbers closer to 0 or larger are not tried: towards the ends of the doubles' range the exact ones take minutes or
-/// stop the program. 2^-60 lets pass what rounding leaves of a 0, 2^30 what maps count in.
-constexpr double kLeastNumber = 0x1p-60;
-constexpr double kMostNumber = 0x1p30;
-
-bool is_moderate(double x) {
-  return x == 0.0 || (std::fabs(x) >= kLeastNumber && std::fabs(x) <= kMostNumber);
-}
-bool is_moderate(Vec2 v) {
-  return is_moderate(v.x) && is_moderate(v.y);
-}
-bool are_moderate(const std::vector<Vec2>& points) {
-  return std::all_of(points.begin(), points.end(), [](Vec2 v) { return is_moderate(v); });
-}
-bool is_moderate(const geometry::ConvexShape& shape) {
-  if (const auto* disc = std::get_if<geometry::Disc>(&shape))
-    return is_moderate(disc->center) && is_moderate(disc->radius);
-  if (const auto* segment = std::get_if<geometry::Segment>(&shape))
-    return is_moderate(segment->a) && is_moderate(segment->b);
-  if (const auto* polygon = std::get_if<geometry::ConvexPolygon>(&shape)) return are_moderate(polygon->vertices);
-  const auto& e = std::get<geometry::Ellipse>(shape);
-  return is_moderate(e.center) && is_moderate(e.l11) && is_moderate(e.l21) && is_moderate(e.l22);
-}
-
-bool is_moderate(const vo::Encounter& e) {
-  const bool horizon = std::isinf(e.time_horizon) || is_moderate(e.time_horizon);
-  const bool robot = e.robot ? are_moderate(e.robot->vertices) : is_moderate(e.radius);
-  return horizon && robot && is_moderate(e.position) && is_moderate(e.obstacle_velocity) && is_moderate(e.obstacle);
-}
-
-bool are_moderate(const VoQuestion& q) {
-  return is_moderate(q.max_speed) &&
-         std::all_of(q.encounters.begin(), q.encounters.end(), [](const vo::Encounter& e) { return is_moderate(e); });
-}
-
-/// Nothing where all can be held.
-std::string obstruction(const std::vector<ShiftedCone>& cones, const VoQuestion& question) {
-  for (std::size_t k = 0; k < cones.size(); ++k) {
-    if (cones[k].cone.overlaps()) return contact_words(question, k);
-    if (!FreeArrangement::can_hold(cones[k])) return ellipse_words(question, k);
+/// REQUIRES: not Refusal::none.
+std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, const VoQuestion& question) {
+  switch (refusal) {
+    case vo::Refusal::ellipse: {
+      const auto held = [](const ShiftedCone& c) { return FreeArrangement::can_hold(c); };
+      const auto first = std::find_if_not(cones.begin(), cones.end(), held);
+      return ellipse_words(question, static_cast<std::size_t>(first - cones.begin()));
+    }
+    case vo::Refusal::cones:
+      return fmt::format("{} convex shapes, more than {}", cones.size(), vo::kMostCones);
+    case vo::Refusal::curves:
+      return curves_words(cones);
+    case vo::Refusal::range:
+      return "a number of the scene is neither 0 nor between 2^-60 and 2^30";
+    default:
+      return "the scene's numbers are too far apart for the exact ones";
   }
-  if (!are_moderate(question)) return "a number of the scene is neither 0 nor between 2^-60 and 2^30";
-  return limit_words(cones);
 }
 
 std::string json(const Bracket& b) {
@@ -120,16 +90,14 @@ std::string inside_json(const std::optional<bool>& inside) {
 
 ExactFree exact_free_of(const std::vector<ShiftedCone>& cones, const VoQuestion& question,
                         const std::vector<geometry::HalfPlane>* half_planes) {
-  // The bounds stand also where the exact numbers give up, which they say by a logic_error.
-  try {
-    ExactFree exact{{}, {}, obstruction(cones, question)};
-    if (!exact.why_not.empty()) return exact;
-    exact.free.emplace(cones, question.max_speed);
-    if (half_planes) exact.region_inside = exact.free->holds(*half_planes);
-    return exact;
-  } catch (const std::logic_error&) {
-    return {{}, {}, "the scene's numbers are too far apart for the exact ones"};
-  }
+  const auto touched = std::find_if(cones.begin(), cones.end(), [](const ShiftedCone& c) { return c.cone.overlaps(); });
+  if (touched != cones.end())
+    return {{}, {}, contact_words(question, static_cast<std::size_t>(touched - cones.begin()))};
+  FreeArrangement::Attempt attempt = FreeArrangement::attempt(cones, question.max_speed);
+  if (!attempt.free) return {{}, {}, words(attempt.refusal, cones, question)};
+  ExactFree exact{std::move(attempt.free), {}, ""};
+  if (half_planes) exact.region_inside = exact.free->attempt_holds(*half_planes);
+  return exact;
 }
 
 std::string exact_free_json(const ExactFree& exact, const VoQuestion& question) {

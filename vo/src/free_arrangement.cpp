@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -10,7 +11,7 @@
 #include "cgal_guard.h"
 #include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/require.h"
-#include "exactvo/vo/free_velocities.h"
+#include "moderate.h"
 
 namespace exactvo::vo {
 namespace {
@@ -26,12 +27,7 @@ bool overlap_any(const std::vector<ShiftedCone>& cones) {
 
 /// The cones' boundaries come last: a stretch that they share with another owner is that one's.
 void add_cones(const std::vector<ShiftedCone>& cones, std::vector<Owner>& owners) {
-  std::size_t curves = 0;
-  for (const ShiftedCone& cone : cones) {
-    owners.push_back(detail::outside_of(cone));
-    curves += owners.back().curves.size();
-    EXACTVO_REQUIRE(curves <= kMostCurves, "curves beyond kMostCurves");
-  }
+  for (const ShiftedCone& cone : cones) owners.push_back(detail::outside_of(cone));
 }
 
 template <class Work>
@@ -44,14 +40,12 @@ auto guarded(const std::vector<ShiftedCone>& cones, Work&& work) {
   return geometry::detail::without_cgal_failures("FreeArrangement", values, std::forward<Work>(work));
 }
 
-void require_in_range(const std::vector<ShiftedCone>& cones, double max_speed) {
-  EXACTVO_REQUIRE(max_speed >= kLeastMaxSpeed && max_speed <= kMostMaxSpeed, std::to_string(max_speed));
-  EXACTVO_REQUIRE(cones.size() <= kMostCones, std::to_string(cones.size()) + " cones");
-  for (const ShiftedCone& cone : cones) {
-    EXACTVO_REQUIRE(FreeArrangement::can_hold(cone), geometry::excerpt(cone.cone.grown().shape));
-    for (const Vec2 m : cone.minus_apex.terms)
-      EXACTVO_REQUIRE(std::fabs(m.x) <= kMostApex && std::fabs(m.y) <= kMostApex, geometry::hex_text(m.x));
-  }
+/// Of cones that can be held. A cone in contact has no curves: it forbids everything.
+bool has_too_many_curves(const std::vector<ShiftedCone>& cones) {
+  std::size_t curves = 0;
+  for (const ShiftedCone& cone : cones)
+    if (!cone.cone.overlaps()) curves += FreeArrangement::curves_of(cone);
+  return curves > kMostCurves;
 }
 
 FreeArc shown(const Arrangement& arrangement, const Stretch& s, double max_speed) {
@@ -107,12 +101,24 @@ std::vector<FreePiece> pieces_of(const Arrangement& arrangement, double max_spee
   return pieces;
 }
 
+bool is_in_range(const HalfPlane& h) {
+  const auto in_range = [](double x) {
+    return x == 0.0 || (std::fabs(x) >= kLeastOfHalfPlane && std::fabs(x) <= kMostArrangedNumber);
+  };
+  return in_range(h.normal.x) && in_range(h.normal.y) && in_range(h.offset);
+}
+
 /// A half-plane without a normal allows everything or nothing.
 bool allows_nothing(const HalfPlane& h) {
   return h.normal == Vec2{} && h.offset > 0.0;
 }
 
 }  // namespace
+
+const char* name(Refusal refusal) {
+  constexpr const char* kNames[] = {"none", "ellipse", "cones", "curves", "range", "numbers apart"};
+  return kNames[static_cast<int>(refusal)];
+}
 
 const char* name(ArcKind kind) {
   switch (kind) {
@@ -137,9 +143,30 @@ std::size_t FreeArrangement::curves_of(const ShiftedCone& cone) {
   return guarded({cone}, [&] { return detail::outside_of(cone).curves.size(); });
 }
 
+Refusal FreeArrangement::refusal_of(const std::vector<ShiftedCone>& cones, double max_speed) {
+  const auto moderate = [](const ShiftedCone& c) { return detail::is_moderate(c); };
+  const bool in_range = max_speed >= kLeastArrangedNumber && max_speed <= kMostArrangedNumber;
+  if (!in_range || !std::all_of(cones.begin(), cones.end(), moderate)) return Refusal::range;
+  if (!std::all_of(cones.begin(), cones.end(), can_hold)) return Refusal::ellipse;
+  if (cones.size() > kMostCones) return Refusal::cones;
+  return has_too_many_curves(cones) ? Refusal::curves : Refusal::none;
+}
+
+// CGAL's failures are what is left to fail where nothing is refused, and `guarded` makes them logic_errors.
+FreeArrangement::Attempt FreeArrangement::attempt(std::vector<ShiftedCone> cones, double max_speed) {
+  try {
+    const Refusal refusal = refusal_of(cones, max_speed);
+    if (refusal != Refusal::none) return {{}, refusal};
+    return {FreeArrangement(std::move(cones), max_speed), Refusal::none};
+  } catch (const std::logic_error&) {
+    return {{}, Refusal::numbers_apart};
+  }
+}
+
 FreeArrangement::FreeArrangement(std::vector<ShiftedCone> cones, double max_speed)
     : cones_(std::move(cones)), max_speed_(max_speed) {
-  require_in_range(cones_, max_speed);
+  const Refusal refusal = refusal_of(cones_, max_speed);
+  EXACTVO_REQUIRE(refusal == Refusal::none, name(refusal));
   if (overlap_any(cones_)) return;
   guarded(cones_, [&] {
     std::vector<Owner> owners{detail::speed_disc(max_speed)};
@@ -164,12 +191,22 @@ Bracket FreeArrangement::area() const {
   return sum;
 }
 
+std::optional<bool> FreeArrangement::attempt_holds(const std::vector<HalfPlane>& half_planes) const {
+  if (!std::all_of(half_planes.begin(), half_planes.end(), is_in_range)) return std::nullopt;
+  try {
+    return holds(half_planes);
+  } catch (const std::logic_error&) {  // of `guarded`
+    return std::nullopt;
+  }
+}
+
 // The half-planes and the disc bound a convex region. Where no cone cuts into it, no cone bounds what is left of it,
 // and something is left.
 bool FreeArrangement::holds(const std::vector<HalfPlane>& half_planes) const {
   std::vector<Owner> region{detail::speed_disc(max_speed_)};
   for (const HalfPlane& h : half_planes) {
-    EXACTVO_REQUIRE(geometry::is_finite(h.normal) && std::isfinite(h.offset), geometry::hex_text(h.offset));
+    EXACTVO_REQUIRE(is_in_range(h), geometry::hex_text(h.normal.x) + " " + geometry::hex_text(h.normal.y) + " " +
+                                        geometry::hex_text(h.offset));
     if (allows_nothing(h)) return true;
     if (h.normal != Vec2{}) region.push_back(detail::allowed_by(h));
   }

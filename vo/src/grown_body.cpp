@@ -141,6 +141,12 @@ int sign_with_roots(const Rational& k, const Rational& b, const Rational& d) {
   return sgn(Rational(4 * b * d - square(rest)));
 }
 
+Given as_given(const VelocityObstacle& obstacle) {
+  const geometry::GrownShape& s = obstacle.grown_;
+  if (!obstacle.polygonal_) return {s.shape, nullptr, s.origin, s.radius};
+  return {obstacle.polygonal_->obstacle, &obstacle.polygonal_->robot, s.origin, 0.0};
+}
+
 GrownBody grown_body(const VelocityObstacle& obstacle) {
   const geometry::GrownShape& s = obstacle.grown_;
   if (!obstacle.polygonal_) return seen_from(s.origin, std::visit(BodyOf{}, s.shape), Rational(s.radius));

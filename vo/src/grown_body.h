@@ -27,6 +27,15 @@ struct GrownBody {
   Body body;
 };
 
+/// What a velocity obstacle was made of, unrounded. It refers to the obstacle.
+struct Given {
+  const geometry::ConvexShape& obstacle;
+  const geometry::ConvexPolygon* robot;  ///< null for a disc
+  Vec2 position;
+  double radius;  ///< 0 for a polygon
+};
+Given as_given(const VelocityObstacle& obstacle);
+
 /// S, unrounded, also where the robot is a polygon.
 GrownBody grown_body(const VelocityObstacle& obstacle);
 

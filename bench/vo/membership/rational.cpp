@@ -15,6 +15,7 @@ using geometry::GrownShape;
 using geometry::Vec2;
 using Q = mpq_class;
 
+// Written out here though the auditor of recordings has such lines: an oracle shares nothing with what it judges.
 struct P {
   Q x, y;
 };

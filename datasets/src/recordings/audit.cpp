@@ -20,7 +20,8 @@ using formation::Step;
 using geometry::Vec2;
 using Rational = mpq_class;
 
-// --- Plane geometry in rationals ---
+// --- Plane geometry in rationals: written out here though others have such lines (vo's exact legs, the benches'
+// oracles), since who checks shares nothing with what is checked ---
 
 struct Point {
   Rational x, y;

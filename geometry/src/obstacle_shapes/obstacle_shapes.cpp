@@ -6,130 +6,39 @@
 #include <limits>
 #include <utility>
 
-#include "division/chain_fit.h"
-#include "exact/exact_number.h"
-#include "exact/running_error.h"
-#include "exact/stages.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "obstacle_shapes/subject.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry {
-namespace {
-
-constexpr const char* kNotInside = "a point lies outside";
-
-/// What must lie in the enclosures, and the course that the facades must keep to.
-struct Subject {
-  std::vector<Vec2> points;                ///< every vertex or hit, finite
-  std::vector<std::vector<Vec2>> courses;  ///< rings and chains
-  bool closed = false;                     ///< courses are rings
-};
-
-/// Runs `action`; a failure inside becomes the verdict's reason.
-template <class Action>
-void attempt(Verdict& verdict, const Action& action) {
-  try {
-    action();
-  } catch (const std::exception& failure) {
-    verdict = {false, failure.what()};
-  }
-}
-
-Verdict verdict(bool holds, const char* reason) {
-  return holds ? Verdict{true, {}} : Verdict{false, reason};
-}
+namespace detail {
 
 bool contains_all(const Ellipse& ellipse, const std::vector<Vec2>& points) {
   return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(ellipse, p); });
 }
 
+Verdict verdict_of(const Ellipse& ellipse, const ObstacleShapes& out) {
+  if (!out.hull_contains.certified) return {false, "no certified hull"};
+  return verdict(contains_all(ellipse, out.hull.vertices), kNotInside);
+}
+
+}  // namespace detail
+
+namespace {
+
+using detail::attempt;
+using detail::divide;
+using detail::enclose_free_of_traps;
+using detail::kNotInside;
+using detail::points_near_facades;
+using detail::split;
+using detail::Subject;
+using detail::verdict;
+using detail::verdict_of;
+
 bool contains_all(const ConvexPolygon& hull, const std::vector<Vec2>& points) {
   return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(hull, p); });
-}
-
-// --- Facades ---
-
-/// Certified: the bound is rounded up.
-bool lies_within(const Segment& facade, Vec2 x, double distance) {
-  if (x == facade.a || x == facade.b) return true;
-  return detail::distance_upper_bound(facade, x, detail::largest_coordinate({facade.a, facade.b, x})) <= distance;
-}
-
-/// Follows one course along its facades, which start at `next` of the list and end where the course does.
-class CourseWalk {
- public:
-  CourseWalk(const std::vector<Vec2>& course, bool closed, const FacadeSet& set) : course_(course), set_(set) {
-    steps_ = closed ? course.size() : course.size() - 1;
-  }
-
-  /// Whether every vertex keeps to its facade; moves `next` past the facades of this course.
-  bool keeps(std::size_t& next) const {
-    if (next >= set_.facades.size()) return false;
-    const auto start = std::find(course_.begin(), course_.end(), set_.facades[next].a);
-    if (start == course_.end()) return false;
-    std::size_t at = static_cast<std::size_t>(start - course_.begin());
-    for (std::size_t step = 0; step < steps_; ++step) {
-      if (next >= set_.facades.size()) return false;
-      const Segment& facade = set_.facades[next];
-      at = (at + 1) % course_.size();
-      if (course_[at] != facade.b) {
-        if (!is_near(facade, course_[at])) return false;
-        continue;
-      }
-      ++next;
-      const bool last = step + 1 == steps_;
-      if (!last && (next >= set_.facades.size() || set_.facades[next].a != facade.b)) return false;
-      if (last) return true;
-    }
-    return steps_ == 0 && course_.size() == 1 && set_.facades[next++].b == course_[0];
-  }
-
- private:
-  bool is_near(const Segment& facade, Vec2 x) const {
-    if (set_.deviation == 0.0) return detail::lies_on(facade, x);
-    return lies_within(facade, x, set_.deviation);
-  }
-
-  const std::vector<Vec2>& course_;
-  const FacadeSet& set_;
-  std::size_t steps_ = 0;
-};
-
-bool facades_follow(const FacadeSet& set, const Subject& subject) {
-  std::size_t next = 0;
-  for (const std::vector<Vec2>& course : subject.courses) {
-    if (!CourseWalk(course, subject.closed, set).keeps(next)) return false;
-  }
-  return next == set.facades.size();
-}
-
-void divide(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out) {
-  attempt(out.facades_follow, [&] {
-    out.facades = divide_into_facades(out.obstacle, options.facades);
-    const bool within = out.facades.deviation <= options.facades.tolerance;
-    out.facades_follow = verdict(within && facades_follow(out.facades, subject), "a facade leaves the boundary");
-  });
-}
-
-// --- Pieces ---
-
-/// A wall's own edges, straight runs merged: what half-planes of pieces keep clear of must not be simplified.
-void split_wall(const Subject& subject, ObstacleShapes& out) {
-  const FacadeSet edges = out.facades.deviation > 0.0 ? divide_into_facades(out.obstacle) : out.facades;
-  out.pieces.assign(edges.facades.begin(), edges.facades.end());
-  out.pieces_cover = verdict(edges.deviation == 0.0 && facades_follow(edges, subject), "an edge is not covered");
-}
-
-void split(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out) {
-  attempt(out.pieces_cover, [&] {
-    if (const auto* polygon = std::get_if<Polygon>(&out.obstacle)) {
-      for (ConvexPolygon& piece : convex_pieces(*polygon, options.partition)) out.pieces.emplace_back(std::move(piece));
-      out.pieces_cover = {true, {}};  // convex_pieces gives no partition that it has not proved
-    } else {
-      split_wall(subject, out);
-    }
-  });
 }
 
 // --- Enclosures ---
@@ -139,12 +48,6 @@ void enclose_hull(const Subject& subject, ObstacleShapes& out) {
     out.hull = convex_hull(subject.points);
     out.hull_contains = verdict(contains_all(out.hull, subject.points), kNotInside);
   });
-}
-
-/// An ellipse holds every point iff it holds the corners of their hull.
-Verdict verdict_of(const Ellipse& ellipse, const ObstacleShapes& out) {
-  if (!out.hull_contains.certified) return {false, "no certified hull"};
-  return verdict(contains_all(ellipse, out.hull.vertices), kNotInside);
 }
 
 void enclose_all(const ShapeOptions& options, ObstacleShapes& out) {
@@ -171,115 +74,6 @@ void enclose_facades(const ShapeOptions& options, ObstacleShapes& out) {
       out.facade_ellipses.push_back({ellipse, clearance_of_equation_8(facade, ellipse, options.robot_radius)});
     }
     out.facade_ellipses_contain = verdict(all, kNotInside);
-  });
-}
-
-// --- The trap-free ellipse ---
-
-/// T^2 and D of 2 T^2 <= 9 D; see `trap_free_for_every_goal`.
-template <class T>
-T excess_of_slenderness(const Ellipse& e) {
-  const T l11(e.l11), l21(e.l21), l22(e.l22);
-  const T trace = l11 * l11 + l21 * l21 + l22 * l22;
-  const T det = l11 * l22;
-  return T(2.0) * (trace * trace) - T(9.0) * (det * det);
-}
-
-/// The ratio of the axes that frees every goal, a little less so that rounding leaves it below sqrt(2).
-constexpr double kFreeRatio = 1.41421356237309504880 * (1.0 - 0x1p-40);
-
-/// Of all ellipses with axes in that ratio along the smallest ellipse's axes, the smallest: the smallest circle round
-/// the points squeezed along the major axis.
-Ellipse smallest_free_ellipse(const std::vector<Vec2>& hull, double angle) {
-  std::vector<Vec2> squeezed;
-  squeezed.reserve(hull.size());
-  const Vec2 middle = hull.front();
-  for (const Vec2 p : hull) {
-    const Vec2 turned = rotated(p - middle, -angle);
-    squeezed.push_back({turned.x / kFreeRatio, turned.y});
-  }
-  const Disc disc = smallest_circle(squeezed);
-  const Vec2 center = middle + rotated({disc.center.x * kFreeRatio, disc.center.y}, angle);
-  return ellipse_from_axes(center, {disc.radius * kFreeRatio, disc.radius, angle});
-}
-
-/// Doubles the step until every point is inside; all three entries grow alike, so the axes keep their ratio.
-std::optional<Ellipse> grown_to_contain(const Ellipse& e, const std::vector<Vec2>& points) {
-  constexpr double kFirstStep = 0x1p-50;
-  for (double step = 0.0; step < 1.0; step = std::max(kFirstStep, 2.0 * step)) {
-    const double f = 1.0 + step;
-    const Ellipse grown{e.center, e.l11 * f, e.l21 * f, e.l22 * f};
-    if (contains_all(grown, points)) return grown;
-  }
-  return std::nullopt;
-}
-
-void free_for_every_goal(ObstacleShapes& out) {
-  std::optional<Ellipse> free = out.smallest_ellipse;
-  if (!out.ellipse_contains.certified || !trap_free_for_every_goal(*free)) {
-    const Ellipse e = smallest_free_ellipse(out.hull.vertices, axes_of(out.smallest_ellipse).angle);
-    free = grown_to_contain(e, out.hull.vertices);
-  }
-  if (free && trap_free_for_every_goal(*free))
-    out.trap_free = {free, EnclosureGrade::trap_free, true, TrapFreeAnswer::found};
-}
-
-ConvexShape shape_of_hull(const ConvexPolygon& hull) {
-  if (hull.vertices.size() > 2) return hull;
-  return Segment{hull.vertices.front(), hull.vertices.back()};
-}
-
-/// Whether the robot at one end is as near to the hull as the options forbid.
-bool leaves_no_room(const ShapeOptions& options, const ConvexPolygon& hull) {
-  const double near = options.robot_radius + options.enclosure.clear_of_ends + options.enclosure.least_margin;
-  const ConvexShape shape = shape_of_hull(hull);
-  const auto is_near = [&](Vec2 x) { return locate({shape, x, near}, {0.0, 0.0}) != Place::outside; };
-  return is_near(options.way->start) || is_near(options.way->goal);
-}
-
-/// Why the fit found none.
-TrapFreeAnswer answer_without(const ShapeOptions& options, const ConvexPolygon& hull) {
-  if (leaves_no_room(options, hull)) return TrapFreeAnswer::no_room;
-  const Way& way = *options.way;
-  EnclosureOptions any_size = options.enclosure;
-  any_size.most_inflation = std::numeric_limits<double>::max();
-  const bool exists = fit_trap_free(hull.vertices, options.robot_radius, way.start, way.goal, any_size).has_value();
-  return exists ? TrapFreeAnswer::too_large : TrapFreeAnswer::failed;
-}
-
-void free_along_way(const ShapeOptions& options, ObstacleShapes& out) {
-  const Way& way = *options.way;
-  const auto fitted = fit_trap_free(out.hull.vertices, options.robot_radius, way.start, way.goal, options.enclosure);
-  if (!fitted) {
-    out.trap_free.answer = answer_without(options, out.hull);
-    return;
-  }
-  const bool for_every_goal = trap_free_for_every_goal(fitted->ellipse);
-  out.trap_free = {fitted->ellipse, fitted->grade, for_every_goal, TrapFreeAnswer::found};
-}
-
-const char* reason_of(TrapFreeAnswer answer) {
-  switch (answer) {
-    case TrapFreeAnswer::no_room:
-      return "the start or the goal lies too near";
-    case TrapFreeAnswer::too_large:
-      return "only larger ellipses than allowed leave the start and the goal outside";
-    case TrapFreeAnswer::found:
-    case TrapFreeAnswer::failed:
-      break;
-  }
-  return "no such ellipse found";
-}
-
-void enclose_free_of_traps(const ShapeOptions& options, ObstacleShapes& out) {
-  attempt(out.trap_free_contains, [&] {
-    if (out.hull.vertices.empty()) {
-      out.trap_free_contains = {false, "no certified hull"};
-      return;
-    }
-    options.way ? free_along_way(options, out) : free_for_every_goal(out);
-    out.trap_free_contains = out.trap_free.ellipse ? verdict_of(*out.trap_free.ellipse, out)
-                                                   : Verdict{false, reason_of(out.trap_free.answer)};
   });
 }
 
@@ -369,17 +163,6 @@ std::vector<Vec2> finite_points(const std::vector<Vec2>& points) {
   return finite;
 }
 
-/// Points stand for walls: every one lies within the deviation of its facade.
-Verdict points_near_facades(const std::vector<Vec2>& points, const DividedPoints& divided) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!is_finite(points[i])) continue;
-    const bool near =
-        divided.facade_of[i] && lies_within(divided.facades[*divided.facade_of[i]], points[i], divided.deviation);
-    if (!near) return {false, "a point lies off its facade"};
-  }
-  return {true, {}};
-}
-
 template <class Divide>
 ObstacleShapes shapes_of_hits(const std::vector<Vec2>& hits, const ShapeOptions& options, const Divide& divide_hits) {
   require_sensible(options);
@@ -434,17 +217,6 @@ ObstacleShapes shapes_of_points(const std::vector<Vec2>& points, const PointOpti
 
 ObstacleShapes shapes_of_scan(const std::vector<Vec2>& hits, const ScanOptions& how, const ShapeOptions& options) {
   return shapes_of_hits(hits, options, [&] { return divide_scan(hits, how); });
-}
-
-bool trap_free_for_every_goal(const Ellipse& ellipse) {
-  EXACTVO_REQUIRE(is_valid(ConvexShape{ellipse}), to_string(ConvexShape{ellipse}));
-  const detail::Tracked approx = excess_of_slenderness<detail::Tracked>(ellipse);
-  if (detail::decided(approx)) {
-    detail::count_filter();
-    return approx.value < 0.0;
-  }
-  detail::count_exact();
-  return detail::sign_of(excess_of_slenderness<detail::Exact>(ellipse)) != Sign::positive;
 }
 
 //   v0 o-----o v1       The fan from v0 is searched for the wedge v0, v[k], v[k+1] that x lies in;

@@ -29,6 +29,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "exactvo/geometry/region.h"
@@ -39,6 +40,26 @@ namespace exactvo::vo {
 /// Cones and curves beyond these are refused: the curves are compared pair by pair.
 inline constexpr std::size_t kMostCones = 64;
 inline constexpr std::size_t kMostCurves = 512;  ///< legs, arcs and edges of the fronts, of all cones together
+
+/// m, s or m/s: every number of a scene is 0 or of a size from the one to the other. 2^-60 lets pass what rounding
+/// leaves of a 0, 2^30 what maps count in. Near the ends of the doubles' range CORE divides by zero.
+inline constexpr double kLeastArrangedNumber = 0x1p-60;
+inline constexpr double kMostArrangedNumber = 0x1p30;
+/// Of half-planes: their normals are computed, and what should be 0 may be what is left of two roundings or three.
+inline constexpr double kLeastOfHalfPlane = 0x1p-200;
+
+/// Why a scene has no FreeArrangement.
+enum class Refusal {
+  none,          ///< it has one
+  ellipse,       ///< an ellipse takes part, not flat and not round
+  cones,         ///< more than kMostCones
+  curves,        ///< more than kMostCurves
+  range,         ///< a number out of the range above
+  numbers_apart  ///< each number is in range, but together they are so many powers of ten apart that CGAL's exact ones
+                 ///< give up (1 and 1e-9 were once in a hundred)
+};
+/// "none", "ellipse" and so on.
+const char* name(Refusal refusal);
 
 enum class ArcKind { speed_circle, front_arc, offset_edge, leg };
 /// "speed circle", "front arc", "offset edge", "leg".
@@ -68,10 +89,16 @@ struct FreePiece {
 
 class FreeArrangement {
  public:
-  /// REQUIRES: max_speed and apices as of FreeVelocities, every cone `can_hold`, at most kMostCones and kMostCurves.
-  /// Cones whose robot overlaps the obstacle forbid everything: F is empty. Where a scene's numbers are many powers of
-  /// ten apart (1 and 1e-9 were once in a hundred), CGAL's may give up: a std::logic_error.
+  /// Cones whose robot overlaps the obstacle forbid everything: F is empty. REQUIRES (std::logic_error otherwise): what
+  /// `attempt` does not refuse.
   FreeArrangement(std::vector<ShiftedCone> cones, double max_speed);
+
+  /// The arrangement, or why there is none: for scenes of any numbers.
+  struct Attempt;
+  static Attempt attempt(std::vector<ShiftedCone> cones, double max_speed);
+
+  /// What is told before anything is computed; `numbers_apart` is not.
+  static Refusal refusal_of(const std::vector<ShiftedCone>& cones, double max_speed);
 
   /// Whether no curve of the cone is worse than a circle: not an ellipse, unless it is a disc or a segment.
   static bool can_hold(const ShiftedCone& cone);
@@ -87,8 +114,12 @@ class FreeArrangement {
   geometry::Bracket area() const;
 
   /// Whether all that |v| <= max_speed and the half-planes allow (equation (13)) is free, up to sets without area.
-  /// Exact, for the doubles of the half-planes. REQUIRES: finite numbers.
+  /// Exact, for the doubles of the half-planes. REQUIRES (std::logic_error otherwise): what `attempt_holds` answers.
   bool holds(const std::vector<HalfPlane>& half_planes) const;
+
+  /// The same, or nothing where a number is neither 0 nor of a size from kLeastOfHalfPlane to kMostArrangedNumber, or
+  /// where CGAL's exact ones give up: for half-planes of any numbers.
+  std::optional<bool> attempt_holds(const std::vector<HalfPlane>& half_planes) const;
 
   const std::vector<ShiftedCone>& cones() const { return cones_; }
   double max_speed() const { return max_speed_; }
@@ -97,6 +128,11 @@ class FreeArrangement {
   std::vector<ShiftedCone> cones_;
   double max_speed_;
   std::vector<FreePiece> pieces_;
+};
+
+struct FreeArrangement::Attempt {
+  std::optional<FreeArrangement> free;
+  Refusal refusal = Refusal::none;  ///< none where `free` is something
 };
 
 }  // namespace exactvo::vo

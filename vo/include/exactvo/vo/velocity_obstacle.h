@@ -50,7 +50,9 @@ using geometry::Vec2;
 class VelocityObstacle;
 namespace detail {
 struct GrownBody;
+struct Given;
 GrownBody grown_body(const VelocityObstacle& obstacle);
+Given as_given(const VelocityObstacle& obstacle);
 }  // namespace detail
 
 /// One side of the cone.
@@ -138,6 +140,7 @@ class VelocityObstacle {
   };
 
   friend detail::GrownBody detail::grown_body(const VelocityObstacle& obstacle);
+  friend detail::Given detail::as_given(const VelocityObstacle& obstacle);
 
   geometry::GrownShape grown_;
   double tau_;
