@@ -275,8 +275,8 @@ TEST(FreeArrangement, RefusalsAreNamed) {
   EXPECT_EQ(name(FreeArrangement::attempt(std::vector<ShiftedCone>(vo::kMostCones + 1, disc), 1.0).refusal),
             std::string("cones"));
   geometry::ConvexPolygon round;
-  for (int k = 0; k < 600; ++k)
-    round.vertices.push_back(geometry::rotated({1.0, 0.0}, 2.0 * kHalfTurn * k / 600.0) + Vec2{4.0, 0.0});
+  for (int k = 0; k < 1200; ++k)
+    round.vertices.push_back(geometry::rotated({1.0, 0.0}, 2.0 * kHalfTurn * k / 1200.0) + Vec2{4.0, 0.0});
   EXPECT_EQ(refusal(cone_of(geometry::convex_hull(round.vertices), 0.25, 2.0)), "curves");
 }
 

@@ -55,7 +55,8 @@ class Region {
   /// Where x lies. Exact. REQUIRES: within kLargestCoordinate.
   Place locate(Vec2 x) const;
 
-  /// The connected pieces; those that touch in a point count apart. Largest first.
+  /// The connected pieces, largest first. Those that touch in a point count as one where one walk round the outside
+  /// goes along both, as round two squares that share a corner.
   struct Piece;
   std::vector<Piece> pieces() const;
 
