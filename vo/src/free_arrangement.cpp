@@ -40,8 +40,16 @@ auto guarded(const std::vector<ShiftedCone>& cones, Work&& work) {
   return geometry::detail::without_cgal_failures("FreeArrangement", values, std::forward<Work>(work));
 }
 
+/// Two legs, and over the front an arc round each centre with an edge between two.
+std::size_t most_curves_of(const std::vector<ShiftedCone>& cones) {
+  std::size_t most = 0;
+  for (const ShiftedCone& cone : cones) most += 2 * detail::grown_body(cone.cone).centres.size() + 1;
+  return most;
+}
+
 /// Of cones that can be held. A cone in contact has no curves: it forbids everything.
 bool has_too_many_curves(const std::vector<ShiftedCone>& cones) {
+  if (most_curves_of(cones) <= kMostCurves) return false;
   std::size_t curves = 0;
   for (const ShiftedCone& cone : cones)
     if (!cone.cone.overlaps()) curves += FreeArrangement::curves_of(cone);
