@@ -145,7 +145,7 @@ HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead = nullptr)
   V ex = zero, ey = zero, ec = zero, number = zero;
   V index = hn::Set(d, T(kNoLine));
   const T *nx = rows.x, *ny = rows.y, *c = rows.c;
-#pragma GCC unroll 2
+#pragma GCC unroll 5
   for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
     if (kAsk) hwy::Prefetch(ahead + k * rows.stride);
     const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
