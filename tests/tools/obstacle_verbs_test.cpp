@@ -3,8 +3,8 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -228,30 +228,40 @@ TEST(Batch, AShardThatIsThroughFirstSaysSo) {
 /// Held as by a process that puts parts together: others wait for it.
 class HeldLock {
  public:
-  explicit HeldLock(const std::filesystem::path& path)
-      : descriptor_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  explicit HeldLock(std::filesystem::path path)
+      : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
     EXPECT_EQ(::flock(descriptor_, LOCK_EX), 0);
   }
   ~HeldLock() { ::close(descriptor_); }
   HeldLock(const HeldLock&) = delete;
   HeldLock& operator=(const HeldLock&) = delete;
 
-  /// Until so many processes wait for it, a minute at most.
-  bool is_awaited_by(int processes) const {
-    struct stat file {};
-    ::fstat(descriptor_, &file);
-    const std::string inode = ":" + std::to_string(file.st_ino) + " ";
+  /// The processes that wait for it, once there are so many, a minute at most.
+  std::vector<pid_t> awaited_by(std::size_t processes) const {
+    std::vector<pid_t> waiting;
     for (int looks = 0; looks < 6000; ++looks, std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
-      std::ifstream locks("/proc/locks");
-      int waiting = 0;
-      for (std::string line; std::getline(locks, line);)
-        waiting += line.find("->") != std::string::npos && line.find(inode) != std::string::npos ? 1 : 0;
-      if (waiting >= processes) return true;
+      waiting = others_with_it_open();
+      if (waiting.size() >= processes) break;
     }
-    return false;
+    return waiting;
   }
 
  private:
+  std::vector<pid_t> others_with_it_open() const {
+    std::vector<pid_t> found;
+    std::error_code gone;
+    for (const auto& process : std::filesystem::directory_iterator("/proc")) {
+      const pid_t pid = std::atoi(process.path().filename().c_str());
+      if (pid <= 0 || pid == ::getpid()) continue;
+      std::filesystem::directory_iterator files(process.path() / "fd", gone);
+      if (gone) continue;
+      for (; files != std::filesystem::directory_iterator(); files.increment(gone))
+        if (std::filesystem::read_symlink(files->path(), gone) == path_) found.push_back(pid);
+    }
+    return found;
+  }
+
+  std::filesystem::path path_;
   int descriptor_;
 };
 
@@ -260,7 +270,7 @@ TEST(Batch, OfTwoAtOnceOnePutsTogetherAndTheOtherReportsTheSame) {
   here.write("a.wkt", kGood);
   here.write("b.wkt", kGood);
   ASSERT_EQ(here.run("batch a.wkt b.wkt --write figures --out out --shard 1/2").status, 0);
-  std::optional<HeldLock> lock(here.path() / "out/.parts/lock");
+  std::optional<HeldLock> lock(std::filesystem::canonical(here.path()) / "out/.parts/lock");
   // In folders of their own, as each leaves its output where it starts.
   const auto resumed = [&here](const std::string& folder) {
     std::filesystem::create_directory(here.path() / folder);
@@ -271,7 +281,7 @@ TEST(Batch, OfTwoAtOnceOnePutsTogetherAndTheOtherReportsTheSame) {
   };
   std::future<int> one = resumed("one");
   std::future<int> other = resumed("other");
-  EXPECT_TRUE(lock->is_awaited_by(2));
+  EXPECT_EQ(lock->awaited_by(2).size(), 2u);
   lock.reset();
   EXPECT_EQ(one.get(), 0);
   EXPECT_EQ(other.get(), 0);
@@ -283,6 +293,23 @@ TEST(Batch, OfTwoAtOnceOnePutsTogetherAndTheOtherReportsTheSame) {
     EXPECT_THAT(here.read(report), HasSubstr("2 obstacles")) << report;
   EXPECT_TRUE(here.has("out/summary.json"));
   EXPECT_FALSE(here.has("out/.parts"));
+}
+
+TEST(Batch, WhoWaitsForAnotherToPutPartsTogetherCanBeStopped) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  here.write("b.wkt", kGood);
+  ASSERT_EQ(here.run("batch a.wkt b.wkt --write figures --out out --shard 1/2").status, 0);
+  const HeldLock lock(std::filesystem::canonical(here.path()) / "out/.parts/lock");
+  std::future<Outcome> run = std::async(
+      std::launch::async, [&here] { return here.run("batch a.wkt b.wkt --write figures --out out --resume"); });
+  const std::vector<pid_t> waiting = lock.awaited_by(1);
+  EXPECT_EQ(waiting.size(), 1u);
+  for (const pid_t pid : waiting) EXPECT_EQ(::kill(pid, SIGTERM), 0);
+  const Outcome outcome = run.get();
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted; --resume goes on"));
+  EXPECT_TRUE(here.has("out/.parts/run.json"));
 }
 
 TEST(Convert, SaysWhatIsLost) {

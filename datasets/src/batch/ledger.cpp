@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
+#include <thread>
 #include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
@@ -24,6 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFinal = "final.";
+
+/// Short to who presses a key, long to a processor.
+constexpr std::chrono::milliseconds kBetweenLooks{20};
 
 std::string number_text(std::size_t number) {
   char text[24];
@@ -189,16 +194,17 @@ void Ledger::write(const fs::path& path, const std::string& bytes) const {
   write_file_atomically(path, bytes, Durability::content);
 }
 
-Ledger::Lock::Lock(const Ledger& ledger) {
+Ledger::Lock::Lock(const Ledger& ledger, const std::function<bool()>& keep_waiting) {
   const fs::path path = ledger.parts_ / "lock";
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0 && ledger.is_open()) throw cannot_write(path, errno);
   if (descriptor_ < 0) return;
-  int failed = 0;
-  do {
-    failed = ::flock(descriptor_, LOCK_EX);
-  } while (failed != 0 && errno == EINTR);
-  is_alone_ = failed == 0;
+  // Asked again and again: a call that waits is resumed after a signal, and the user could not stop it.
+  while (!(is_alone_ = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0)) {
+    if (errno != EWOULDBLOCK && errno != EINTR) return;
+    if ((gave_up_ = !keep_waiting())) return;
+    std::this_thread::sleep_for(kBetweenLooks);
+  }
 }
 
 Ledger::Lock::~Lock() {

@@ -63,17 +63,21 @@ class Ledger {
   /// is the same but for the times; who comes last finds .parts gone (`is_open`), and must not make it anew.
   class Lock {
    public:
-    explicit Lock(const Ledger& ledger);
+    /// Waits as long as `keep_waiting`, asked many times a second, says so.
+    Lock(const Ledger& ledger, const std::function<bool()>& keep_waiting);
     ~Lock();
     Lock(const Lock&) = delete;
     Lock& operator=(const Lock&) = delete;
 
     /// Whether nobody else can be at it.
     bool is_alone() const { return is_alone_; }
+    /// Whether somebody else was still at it when waiting ended.
+    bool gave_up() const { return gave_up_; }
 
    private:
     int descriptor_ = -1;
     bool is_alone_ = false;
+    bool gave_up_ = false;
   };
   /// Whether run.json still stands: no other process has put the parts together meanwhile.
   bool is_open() const;

@@ -150,8 +150,10 @@ BatchResult Session::finish() {
   BatchResult result;
   result.end = BatchEnd::incomplete;
   if (!all_there(ledger_, identity_.inputs.size()) && ledger_.is_open()) return result;
-  const Ledger::Lock lock(ledger_);
+  const Ledger::Lock lock(ledger_,
+                          [this] { return look("waiting for the process that puts the parts together", 1.0); });
   if (!ledger_.is_open()) return result;  // another process was quicker
+  if (lock.gave_up()) return {BatchEnd::interrupted, {}, false};
   look("putting the parts together", 1.0);
   try {
     ledger_.start_final(lock.is_alone());
