@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
@@ -164,6 +165,48 @@ TEST(Certificate, APinchedRegionIsProvenByItsVertex) {
   Certificate moved = *proven.certificate;
   moved.vertex = {};
   EXPECT_EQ(check(problem, moved), Flaw::vertex);
+}
+
+Constraint constraint(Priority priority, Vec2 normal, double offset) {
+  return {{normal, offset}, priority, -1};
+}
+
+bool is_proven_or_silent(const Problem& problem, const Proven& answer) {
+  return is_finite(answer.solution.velocity) &&
+         (!answer.certificate || check(problem, *answer.certificate) == Flaw::none);
+}
+
+TEST(Certificate, NumbersFarApartGiveAProofOrNone) {
+  Problem huge;  // a violation of inf - inf
+  huge.objective = Objective::farthest;
+  huge.bound.disc = 0x1.43fd02a309972p+564;
+  huge.preferred = {0x1.d673761be27a2p+571, -0x1.65fd71901455cp-631};
+  const Vec2 small = {-0x1.5045367855924p-728, -0x1.0e1509644a1ep-631};
+  huge.constraints = {
+      constraint(Priority::soft, small, -0x1.f761fe8addca2p+883),
+      constraint(Priority::soft, -small, 0x1.f761fe8addca2p+883),
+      constraint(Priority::soft, {0x1.f151cfed201a9p+777, 0x1.42dc79a18fcdap+642}, -0x1.8cfd75533f242p+475)};
+  Problem apart;  // a crossing that is no double
+  apart.preferred = {-28417566.017225374, 2.335975029368789e-49};
+  const Vec2 steep = {-1.762205533793969e+75, -1.0129675143987567e-21};
+  apart.constraints = {
+      constraint(Priority::hard, steep, 6.994755766765499e+49),
+      constraint(Priority::soft, {1.9406754535027833e-72, -1.914446205474168e-73}, 1.3162748800126783e+83),
+      constraint(Priority::soft, -steep, -6.994755766765499e+49)};
+  for (const Problem& problem : {huge, apart}) {
+    EXPECT_TRUE(is_finite(solve(problem).velocity));
+    EXPECT_TRUE(is_proven_or_silent(problem, solve_certified(problem)));
+    EXPECT_TRUE(is_proven_or_silent(problem, solve_exact(problem)));
+  }
+}
+
+TEST(Certificate, AnInfiniteViolationIsNotProven) {
+  Problem problem;
+  problem.bound.disc = 1.0;
+  for (const double side : {1.0, -1.0})
+    problem.constraints.push_back(constraint(Priority::soft, {side, 0.0}, std::numeric_limits<double>::max()));
+  EXPECT_FALSE(certify(problem, {{0.0, 0.0}, Status::relaxed, {0, 1}, 2, 0.0}));
+  EXPECT_FALSE(certify(problem, {{std::nan(""), 0.0}, Status::relaxed, {0, 1}, 2, 0.0}));
 }
 
 TEST(Certificate, FlawsHaveNames) {

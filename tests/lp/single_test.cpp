@@ -171,5 +171,19 @@ TEST(SolveKeeping, SaysNoWhereNothingKeepsAllOrOnlyAPointDoes) {
   }
 }
 
+TEST(SolveKeeping, SquaresBeyondDoublesTakeTheLongWay) {
+  Problem p;
+  p.bound.disc = 2.0;
+  p.preferred = {1e160, 0.0};
+  Vec2 v;
+  ASSERT_TRUE(solve_keeping(Arrays(p).problem(), v));
+  EXPECT_NEAR(v.x, 2.0, 1e-12);
+  p.bound.disc = 1e160;
+  p.preferred = {0.0, 0.0};
+  p.constraints.push_back({{{1.0, 0.0}, 1e157}, Priority::hard, -1});
+  ASSERT_TRUE(solve_keeping(Arrays(p).problem(), v));
+  EXPECT_NEAR(v.x, 1e157, 1e146);
+}
+
 }  // namespace
 }  // namespace exactvo::lp

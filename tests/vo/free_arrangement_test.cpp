@@ -285,7 +285,7 @@ TEST(FreeArrangement, NumbersOutOfRangeAreRefusedWhereverTheyStand) {
     return FreeArrangement::attempt({cone_of(shape, radius, tau, apex)}, speed).refusal;
   };
   for (const double x : {1e-300, 1e-19, 0x1p31, 1e30, 1e200}) {
-    EXPECT_EQ(refusal(Disc{{3e300, 3.0}, x}, 0.25, 2.0, {}, 1.0), vo::Refusal::range);
+    EXPECT_EQ(refusal(Disc{{x < 1.0 ? 3.0 : 3.0 * x, 3.0}, x < 1.0 ? x : 1.0}, 0.25, 2.0, {}, 1.0), vo::Refusal::range);
     EXPECT_EQ(refusal(Segment{{3.0, x}, {x + 4.0, 4.0}}, 0.0, 2.0, {}, 1.0), vo::Refusal::range);
     EXPECT_EQ(refusal(geometry::ConvexPolygon{{{3.0, 3.0}, {4.0, 3.0}, {4.0, x < 1.0 ? 4.0 : 3.0 + x}}},
                       x < 1.0 ? x : 0.0, 2.0, {}, 1.0),

@@ -248,6 +248,14 @@ TEST(VerbVo, ObstaclesThatAreNoneAreNamed) {
     return run.err;
   };
   EXPECT_NE(refusal("vo --obstacle nofile.wkt").find("a file that is there"), std::string::npos);
+  for (const char* shape :
+       {"TRIANGLE((3 0,4 0,4 1,3 0))", "LINEARRING(3 0,4 0,4 1,3 0)", "SRID=28992;POLYGON((3 0,4 0,4 1,3 0))"})
+    EXPECT_EQ(
+        Workplace()
+            .run("vo --obstacle '" + std::string(shape) + "' --position 0,0 --velocity 1,0 --radius 1 --time-horizon 2")
+            .status,
+        0)
+        << shape;
   EXPECT_NE(refusal("vo --obstacle 'DISK(3 0, 1)'").find("DISC(x y, r)"), std::string::npos);
   EXPECT_NE(refusal("vo --obstacle 'POINT(3 0)'").find("a point is no obstacle"), std::string::npos);
   const std::string mistyped = refusal("vo --obstcle x");

@@ -117,7 +117,7 @@ bool is_there(const std::string& name) {
 
 /// What begins WKT; EMPTY and Z, M are the reader's to judge.
 bool begins_wkt(const std::string& word) {
-  for (const char* known : {"POLYGON", "LINESTRING", "POINT", "MULTI", "GEOMETRYCOLLECTION", "SRID"})
+  for (const char* known : {"POLYGON", "LINESTRING", "POINT", "MULTI", "GEOMETRYCOLLECTION", "TRIANGLE", "LINEARRING", "SRID"})
     if (word.rfind(known, 0) == 0) return true;
   return false;
 }

@@ -204,7 +204,8 @@ class Search {
 /// What products may lose below the normal range.
 constexpr double kUnderflow = 0x1p-1060;
 
-/// A solver's violation is rounded; the certificate's must not be too small.
+/// A solver's violation is rounded; the certificate's must not be too small. Infinite or no number where a product
+/// leaves the range of double.
 double violation_not_less(const Problem& problem, const Solution& s) {
   const Priority gives = s.status == Status::infeasible ? Priority::hard : Priority::soft;
   double most = 0.0;
@@ -212,15 +213,10 @@ double violation_not_less(const Problem& problem, const Solution& s) {
     if (c.priority != gives) continue;
     const HalfPlane& h = c.half_plane;
     const double terms = std::abs(h.offset) + std::abs(h.normal.x * s.velocity.x) + std::abs(h.normal.y * s.velocity.y);
-    most = std::max(most, geometry::violation(h, s.velocity) + 4.0 * kUnitRoundoff * terms + kUnderflow);
+    const double by = geometry::violation(h, s.velocity) + 4.0 * kUnitRoundoff * terms + kUnderflow;
+    if (!(by <= most)) most = by;  // also where it is no number
   }
   return most;
-}
-
-/// Whether the claim of an answer is one: what must hold holds. What may give is violated by at most the claim's
-/// violation as `violation_not_less` rounds it.
-bool claims_truly(const Problem& problem, const Solution& solution) {
-  return is_finite(solution.velocity) && holds(problem, solution.status, solution.velocity);
 }
 
 std::vector<std::size_t> usable_candidates(const Problem& problem, std::vector<std::size_t> candidates, Scope scope) {
@@ -246,10 +242,11 @@ double widest_gap_of_doubles(const Problem& problem, Status status) {
 std::optional<Certificate> certificate_for(const Problem& problem, const Solution& solution,
                                            const std::vector<std::size_t>& candidates,
                                            const std::vector<Term>& contradiction, double widest_gap) {
-  if (!claims_truly(problem, solution)) return std::nullopt;
+  if (!holds(problem, solution.status, solution.velocity)) return std::nullopt;
   const Scope scope = scope_of(solution.status);
   const bool gives = scope != Scope::all_must_hold;
   const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
+  if (!std::isfinite(claim.violation)) return std::nullopt;
   Search search(problem, scope, claim, widest_gap);
   search.run(usable_candidates(problem, candidates, scope));
   if (!search.found()) return std::nullopt;

@@ -41,18 +41,23 @@ void name_active(const std::vector<std::size_t>& tight, const std::optional<Cert
     for (const std::size_t index : tight) add(index);
 }
 
+/// The optimum as doubles, or 0 where it lies beyond them.
+Vec2 within_doubles(const ExactOptimum& optimum) {
+  return is_finite(optimum.rounded) ? optimum.rounded : Vec2{};
+}
+
 /// The point of all that must hold that is nearest 0 is rational: it proves that there is one.
 Proven pinched(const Problem& problem, const ExactRegion& musts, const ExactOptimum& optimum,
                const std::vector<Term>& contradiction) {
   Proven answer;
   answer.exact_stage = true;
-  answer.solution.velocity = optimum.rounded;
+  const Vec2 velocity = within_doubles(optimum);
+  answer.solution.velocity = velocity;
   answer.solution.status = Status::pinched;
   for (const auto& member : musts.lines)
-    answer.solution.violation =
-        std::max(answer.solution.violation, geometry::violation(member.half_plane, optimum.rounded));
+    answer.solution.violation = std::max(answer.solution.violation, geometry::violation(member.half_plane, velocity));
   const ExactOptimum nearest_zero = exact_best(musts, {}, {});
-  Certificate c{Status::pinched, optimum.rounded, answer.solution.violation, contradiction, {}, 0.0, {}};
+  Certificate c{Status::pinched, velocity, answer.solution.violation, contradiction, {}, 0.0, {}};
   const std::vector<std::size_t>& tight = nearest_zero.tight;
   const auto accepted = [&](std::vector<std::size_t> vertex) {
     c.vertex = std::move(vertex);

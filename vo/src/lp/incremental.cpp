@@ -37,7 +37,8 @@ Region lowered(Region region, double level) {
 
 Solution solution_of(const Problem& problem, const Region& region, const Found& found, Status status) {
   Solution solution;
-  solution.velocity = into_box(found.velocity, problem.bound);
+  // Products of numbers far apart may leave the range of double: then 0, which at least keeps the bound.
+  solution.velocity = is_finite(found.velocity) ? into_box(found.velocity, problem.bound) : Vec2{};
   solution.status = status;
   for (std::size_t k = 0; k < found.basis.size; ++k) {
     const std::size_t m = found.basis.member[k];

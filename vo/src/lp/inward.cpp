@@ -53,7 +53,7 @@ Problem musts_near(const Problem& problem, Status status, Vec2 target) {
 }  // namespace
 
 bool holds(const Problem& problem, Status status, Vec2 v) {
-  if (!within(problem.bound, v)) return false;
+  if (!is_finite(v) || !within(problem.bound, v)) return false;
   for (const Constraint& c : problem.constraints)
     if (must_hold(c, status) && sign_of_violation(c.half_plane, v) > 0) return false;
   return true;

@@ -82,8 +82,14 @@ bool keeps_each(const SingleProblem& p, Vec2 v) {
   return true;
 }
 
+/// Whether the squares of FewLines neither overflow nor lose digits.
+bool squares_are_in_range(const SingleProblem& p) {
+  const double limit = p.disc * p.disc;
+  return limit >= kLeastSquare<double> && std::max(squared_norm(p.preferred), limit) <= kMostSquare<double>;
+}
+
 bool walk(const SingleProblem& problem, Vec2& v) {
-  if (problem.count <= kFewLines) return FewLines(problem).run(v);
+  if (problem.count <= kFewLines && squares_are_in_range(problem)) return FewLines(problem).run(v);
   Solution answer;
   solve_single(problem, answer);
   v = answer.velocity;

@@ -141,7 +141,8 @@ Bounds divided(const Bounds& x, const Bounds& by) {
 
 Bounds plus(const Bounds& a, const Bounds& b) {
   const double low = a.low + b.low, high = a.high + b.high;
-  return {low - kUnit<double> * std::abs(low), high + kUnit<double> * std::abs(high)};
+  // Twice the unit: half of it below a power of two would be rounded away again.
+  return {low - 2.0 * kUnit<double> * std::abs(low), high + 2.0 * kUnit<double> * std::abs(high)};
 }
 
 template <class Number>
