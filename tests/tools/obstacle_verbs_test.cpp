@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/file.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -252,7 +253,8 @@ class HeldLock {
     std::error_code gone;
     for (const auto& process : std::filesystem::directory_iterator("/proc")) {
       const pid_t pid = std::atoi(process.path().filename().c_str());
-      if (pid <= 0 || pid == ::getpid()) continue;
+      // A shell's child holds what this process has open until it becomes the program.
+      if (pid <= 0 || std::filesystem::read_symlink(process.path() / "exe", gone) != program_) continue;
       std::filesystem::directory_iterator files(process.path() / "fd", gone);
       if (gone) continue;
       for (; files != std::filesystem::directory_iterator(); files.increment(gone))
@@ -263,7 +265,21 @@ class HeldLock {
 
   std::filesystem::path path_;
   int descriptor_;
+  std::filesystem::path program_ = std::filesystem::canonical(EXACTVO_PROGRAM);
 };
+
+TEST(Batch, AChildThatIsNotTheProgramYetDoesNotWaitForALock) {
+  const Workplace here;
+  const HeldLock lock(std::filesystem::canonical(here.path()) / "lock");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    while (true) ::pause();
+  }
+  ASSERT_GT(child, 0);
+  EXPECT_THAT(lock.awaited_by(0), IsEmpty());
+  EXPECT_EQ(::kill(child, SIGKILL), 0);
+  EXPECT_EQ(::waitpid(child, nullptr, 0), child);
+}
 
 TEST(Batch, OfTwoAtOnceOnePutsTogetherAndTheOtherReportsTheSame) {
   const Workplace here;

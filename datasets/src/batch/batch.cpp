@@ -57,7 +57,9 @@ BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& r
     const BatchResult result = run_share(session, run);
     if (result.end != BatchEnd::incomplete || !session.ledger().another_finished(session.identity())) return result;
   } catch (const DataError&) {
-    // The same batch in another process may have put everything together under this one.
+    // The same batch in another process may have put everything together under this one, which writes no more parts
+    // when it looks.
+    session.rest();
     if (!session.ledger().another_finished(session.identity())) throw;
   }
   return {BatchEnd::complete, batch::read_summary(run.out), true};

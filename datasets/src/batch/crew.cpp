@@ -2,7 +2,7 @@
 #include "batch/crew.h"
 
 #include <algorithm>
-#include <exception>
+#include <limits>
 #include <utility>
 
 namespace exactvo::datasets::batch {
@@ -15,41 +15,96 @@ constexpr std::size_t kJobsAWorker = 8;
 }  // namespace
 
 Crew::Crew(int workers, std::uint64_t most_bytes)
-    : threads_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(workers, 1))),
-      arena_(std::max(workers, 1)),
-      most_bytes_(most_bytes),
-      most_jobs_(kJobsAWorker * static_cast<std::size_t>(std::max(workers, 1) - 1)) {}
+    : most_bytes_(most_bytes > 0 ? most_bytes : std::numeric_limits<std::uint64_t>::max()),
+      most_jobs_(kJobsAWorker * static_cast<std::size_t>(std::max(workers, 1) - 1)),
+      threads_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(workers, 1))),
+      arena_(std::max(workers, 1)) {}
 
 Crew::~Crew() {
-  try {
-    finish();
-  } catch (const std::exception&) {
-    // Said already, or nobody is left to hear it.
-  }
+  rest();
 }
 
 void Crew::run(std::function<void()> job, std::uint64_t bytes) {
-  if (failed_ || (most_bytes_ > 0 && jobs_ > 0 && bytes_ + bytes > most_bytes_)) finish();
-  if (jobs_ >= most_jobs_) return job();
-  ++jobs_;
+  std::unique_lock<std::mutex> lock(mutex_);
+  make_room(bytes, lock);
+  const bool now = failure_ || under_way_ >= most_jobs_;
+  ++under_way_;
   bytes_ += bytes;
-  arena_.execute([&] {
-    group_.run([this, bytes, work = std::move(job)] {
-      try {
-        work();
-      } catch (...) {
-        failed_ = true;
-        throw;
-      }
-      bytes_ -= bytes;
-      --jobs_;
+  if (now) {
+    carry_out({std::move(job), bytes}, lock);
+  } else {
+    waiting_.push_back({std::move(job), bytes});
+  }
+  const bool failed = failure_ != nullptr;
+  lock.unlock();
+  if (failed) return finish();
+  if (!now) set_to_work();
+}
+
+/// Works itself as long as a job waits: the others may be fewer than asked for, or none.
+void Crew::make_room(std::uint64_t bytes, std::unique_lock<std::mutex>& lock) {
+  const auto has_room = [&] { return failure_ || under_way_ == 0 || bytes_ + bytes <= most_bytes_; };
+  while (!has_room() && !waiting_.empty()) run_next(lock);
+  changed_.wait(lock, has_room);
+}
+
+void Crew::set_to_work() {
+  arena_.execute([this] {
+    group_.run([this] {
+      std::unique_lock<std::mutex> lock(mutex_);
+      run_next(lock);
     });
   });
 }
 
+/// The caller may have been quicker than the task that was to do it.
+void Crew::run_next(std::unique_lock<std::mutex>& lock) {
+  if (waiting_.empty()) return;
+  Job job = std::move(waiting_.front());
+  waiting_.pop_front();
+  carry_out(std::move(job), lock);
+}
+
+/// What follows a failure is dropped.
+void Crew::carry_out(Job job, std::unique_lock<std::mutex>& lock) {
+  const bool drops = failure_ != nullptr;
+  lock.unlock();
+  std::exception_ptr failure;
+  try {
+    if (!drops) job.work();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  job.work = nullptr;  // frees what it holds
+  lock.lock();
+  if (!failure_) failure_ = failure;
+  bytes_ -= job.bytes;
+  --under_way_;
+  changed_.notify_all();
+}
+
 void Crew::finish() {
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!waiting_.empty()) run_next(lock);
+  }
   arena_.execute([this] { group_.wait(); });
-  scribe_.finish();
+  // Whatever failed, nothing is being written any more when it is told.
+  std::exception_ptr failure = failure_;
+  try {
+    scribe_.finish();
+  } catch (...) {
+    if (!failure) failure = std::current_exception();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+void Crew::rest() noexcept {
+  try {
+    finish();
+  } catch (...) {
+    // Said already, or nobody is left to hear it.
+  }
 }
 
 }  // namespace exactvo::datasets::batch

@@ -74,8 +74,13 @@ void append_text(std::string& bytes, std::string text) {
   bytes += text;
 }
 
-std::size_t size_of_texts(const Part& part) {
-  std::size_t size = part.figures.size() + part.rows.size() + part.pictures.size();
+/// To the byte, so that a part is not moved while it grows.
+std::size_t size_of_bytes(const Part& part) {
+  constexpr std::size_t kCounts = 3;
+  constexpr std::size_t kTextsBesideLayers = 3;
+  const std::size_t numbers = kCounts + kTextsBesideLayers + part.features.size();
+  std::size_t size = sizeof kMagic - 1 + numbers * sizeof(std::uint64_t);
+  size += part.figures.size() + part.rows.size() + part.pictures.size();
   for (const std::string& layer : part.features) size += layer.size();
   return size;
 }
@@ -143,9 +148,9 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
 
 std::string to_bytes(Part part) {
   EXACTVO_REQUIRE(part.features.size() == layers().size(), std::to_string(part.features.size()));
-  constexpr std::size_t kRoomForCounts = 256;
-  std::string bytes = kMagic;
-  bytes.reserve(size_of_texts(part) + kRoomForCounts);
+  std::string bytes;
+  bytes.reserve(size_of_bytes(part));
+  bytes += kMagic;
   for (const std::uint64_t count : {part.obstacles, part.certified, part.vertices}) append_count(bytes, count);
   append_text(bytes, std::move(part.figures));
   for (std::string& layer : part.features) append_text(bytes, std::move(layer));

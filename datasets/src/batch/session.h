@@ -44,6 +44,8 @@ class Session {
   void process(std::size_t input);
   /// Until all that was processed is there.
   void wait();
+  /// As `wait`, and says nothing of what failed.
+  void rest() noexcept { crew_.rest(); }
   /// What was taken apart so far, here and by what `count` was told of.
   Counts counted() const;
   /// What another process took apart for this one.
