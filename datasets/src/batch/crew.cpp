@@ -84,13 +84,14 @@ void Crew::carry_out(Job job, std::unique_lock<std::mutex>& lock) {
 }
 
 void Crew::finish() {
-  {
-    std::unique_lock<std::mutex> lock(mutex_);
-    while (!waiting_.empty()) run_next(lock);
-  }
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!waiting_.empty()) run_next(lock);
+  lock.unlock();
   arena_.execute([this] { group_.wait(); });
-  // Whatever failed, nothing is being written any more when it is told.
+  lock.lock();
   std::exception_ptr failure = failure_;
+  lock.unlock();
+  // Whatever failed, nothing is being written any more when it is told.
   try {
     scribe_.finish();
   } catch (...) {
