@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -161,6 +162,23 @@ TEST(Incremental, NamesTheCallersMistakes) {
   unbounded.preferred = {1.0, 0.0};
   unbounded.objective = Objective::farthest;
   EXPECT_THROW(solve(unbounded), std::logic_error);
+}
+
+/// The bounds of the speed among what a solution says binds.
+std::size_t bounds_that_bind(const Solution& s) {
+  return static_cast<std::size_t>(std::count_if(s.active.begin(), s.active.begin() + s.active_count, is_speed_bound));
+}
+
+TEST(Incremental, NamesNoSpeedBoundThatDoesNotBind) {
+  Problem between;  // two walls and no bound at all
+  between.constraints = {{{{1.0, 0.0}, 1.0}, Priority::hard, -1}, {{{-1.0, 0.0}, 1.0}, Priority::soft, -1}};
+  EXPECT_EQ(bounds_that_bind(solve(between)), 0u);
+  Problem beyond;  // a wall outside the box, to be neared as far as the right side lets it be
+  beyond.bound.box_x = beyond.bound.box_y = 1.0;
+  beyond.constraints = {{{{1.0, 0.0}, 10.0}, Priority::hard, -1}};
+  const Solution s = solve(beyond);
+  EXPECT_EQ(bounds_that_bind(s), 1u);
+  EXPECT_EQ(std::count(s.active.begin(), s.active.begin() + s.active_count, kBoxRight), 1);
 }
 
 }  // namespace

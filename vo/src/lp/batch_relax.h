@@ -176,19 +176,16 @@ class Descent {
     M failed;
   };
 
-  /// A contradiction as the first basis: one of its soft lines enters, the others are in hand.
+  /// A contradiction as the first basis. Its third line was found last and enters: the others alone leave velocities
+  /// that violate nothing, so that it binds at the optimum, as a plane or as a wall.
   HWY_INLINE void start(M fresh) {
-    const Line a = p_.first, b = p_.second, c = p_.third;
-    const M soft_c = p_.is_soft(c), soft_a = p_.is_soft(a), soft_b = p_.is_soft(b);
-    const M take_c = hn::And(soft_c, p_.exists(c));
-    const M take_a = hn::AndNot(take_c, hn::And(soft_a, p_.exists(a)));
-    const M take_b = hn::AndNot(hn::Or(take_c, take_a), hn::And(soft_b, p_.exists(b)));
-    p_.entering = pick(fresh, pick(take_c, c, pick(take_a, a, b)), p_.entering);
-    p_.first = pick(hn::And(fresh, take_a), c, p_.first);
-    p_.second = pick(hn::And(fresh, take_b), c, p_.second);
+    const M some_give = hn::Or(gives(p_.first), hn::Or(gives(p_.second), gives(p_.third)));
+    p_.entering = pick(fresh, p_.third, p_.entering);
     p_.third = pick(fresh, no_line(p_.d), p_.third);
-    unsettled = hn::Or(unsettled, hn::AndNot(hn::Or(take_a, hn::Or(take_b, take_c)), fresh));
+    unsettled = hn::Or(unsettled, hn::AndNot(some_give, fresh));
   }
+
+  HWY_INLINE M gives(const Line& line) const { return hn::And(p_.is_soft(line), p_.exists(line)); }
 
   /// `line` as a half-plane on the plane of soft line `top`: where it is violated no more than top.
   HWY_INLINE Line below(const Line& top, const Line& line) const {
@@ -268,7 +265,7 @@ class Descent {
       const Line& plane = lines[k];
       const Lowest at = lowest(plane, wall, lines[(k + 1) % 3], lines[(k + 2) % 3]);
       const V height = excess(plane, at.x, at.y);
-      const M can = hn::And(hn::AndNot(at.failed, p_.is_soft(plane)), p_.exists(plane));
+      const M can = hn::AndNot(at.failed, gives(plane));
       const M better = hn::And(can, hn::Lt(height, level));
       level = pick(better, height, level);
       best.x = pick(better, at.x, best.x);

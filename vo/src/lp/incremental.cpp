@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "active_set.h"
 
@@ -35,6 +36,28 @@ Region lowered(Region region, double level) {
   return region;
 }
 
+/// How far from its bound a velocity may be that the bound holds: the widest slack, put on by the solver, and rounding.
+constexpr double kAtBound = 2.0 * kSlacks[std::size(kSlacks) - 1] * kInwardSlack;
+
+/// False of a bound of the speed that the velocity is clearly away from: a walk may have leant on it on its way.
+bool may_bind(const SpeedBound& bound, double speed, std::size_t index, Vec2 v) {
+  const double near = kAtBound * speed;
+  switch (index) {
+    case kSpeedBound:
+      return norm(v) >= bound.disc - near;
+    case kBoxRight:
+      return v.x >= bound.box_x - near;
+    case kBoxLeft:
+      return -v.x >= bound.box_x - near;
+    case kBoxTop:
+      return v.y >= bound.box_y - near;
+    case kBoxBottom:
+      return -v.y >= bound.box_y - near;
+    default:
+      return true;
+  }
+}
+
 Solution solution_of(const Problem& problem, const Region& region, const Found& found, Status status) {
   Solution solution;
   // Products of numbers far apart may leave the range of double: then 0, which at least keeps the bound.
@@ -42,7 +65,9 @@ Solution solution_of(const Problem& problem, const Region& region, const Found& 
   solution.status = status;
   for (std::size_t k = 0; k < found.basis.size; ++k) {
     const std::size_t m = found.basis.member[k];
-    solution.active[solution.active_count++] = m < region.lines.size() ? region.lines[m].index : kSpeedBound;
+    const std::size_t index = m < region.lines.size() ? region.lines[m].index : kSpeedBound;
+    if (may_bind(problem.bound, region.speed, index, solution.velocity))
+      solution.active[solution.active_count++] = index;
   }
   return solution;
 }
