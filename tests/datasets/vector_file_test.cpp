@@ -136,6 +136,103 @@ TEST_F(VectorFile, CsvWithAColumnOfWkt) {
   EXPECT_EQ(file.counts.passed_over, 1u);
 }
 
+struct Malformed {
+  const char* geometry;
+  const char* place;
+};
+const Malformed kMalformed[] = {
+    {R"({"type": "Polygon", "coordinates": [[5, -3], [6, -3], [6, 3], [5, -3]]})", "/geometry/coordinates/0/0"},
+    {R"({"type": "Polygon", "coordinates": [[[5, -3], [null, 1], [6, 3], [5, -3]]]})", "/geometry/coordinates/0/1"},
+    {R"({"type": "Polygon", "coordinates": [[[5, -3], [1], [6, 3], [5, -3]]]})", "/geometry/coordinates/0/1"},
+    {R"({"type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 0]], [[5, 1], [6, null], [6, 2], [5, 1]]]})",
+     "/geometry/coordinates/1/1"},
+    {R"({"type": "Poligon", "coordinates": [[[5, -3], [6, -3], [6, 3], [5, -3]]]})", "/geometry/type"},
+    {R"({"type": "MultiPolygon", "coordinates": [[[[0, 0], [1, 0], [1, 1], [0, 0]]], [[5, 5], [6, 5], [6, 6]]]})",
+     "/geometry/coordinates/1/0/0"},
+    {R"({"type": "LineString", "coordinates": [0, 0, 1, 1]})", "/geometry/coordinates/0"},
+    {R"({"type": "LineString", "coordinates": [[0, NaN], [1, 1], 7]})", ""},
+    {R"({"type": "GeometryCollection", "geometries": [{"type": "Point", "coordinates": [1, 2]}, {"type": "Wall"}]})",
+     "/geometry/geometries/1/type"}};
+
+std::string feature_place(const std::string& pointer) {
+  return pointer.empty() ? "feature 0" : "feature 0, " + pointer;
+}
+
+// GDAL gives no geometry for these, or one with parts missing, and no word of it.
+TEST_F(VectorFile, MalformedGeoJsonIsRefusedByFeature) {
+  for (const Malformed& bad : kMalformed) {
+    SCOPED_TRACE(bad.geometry);
+    const std::string text = collection("\"units\": \"m\", ", bad.geometry);
+    const DataError error = refusal_of([&] { read("a.geojson", text); });
+    EXPECT_EQ(error.code(), DataCode::format_syntax);
+    EXPECT_EQ(error.place(), feature_place(bad.place));
+  }
+}
+
+TEST_F(VectorFile, MalformedFeaturesAreCountedAndTheOthersRead) {
+  ReadOptions options;
+  options.keep_going = true;
+  const std::string flat = R"({"type": "Feature", "properties": {"name": "caf)"
+                           "\xe9"
+                           R"("}, "geometry": )" +
+                           std::string(kMalformed[0].geometry) + "}";
+  const std::string good = R"({"type": "Feature", "properties": {}, "geometry": )" + std::string(kSquare) + "}";
+  const ObstacleFile file =
+      read("a.geojson", R"({"type": "FeatureCollection", "features": [)" + flat + ", " + good + "]}", options);
+  EXPECT_EQ(file.obstacles.size(), 1u);
+  EXPECT_EQ(file.counts.passed_over, 0u);
+  ASSERT_EQ(file.rejected.size(), 1u);
+  EXPECT_EQ(file.rejected[0].place().rfind("feature 0, /geometry", 0), 0u) << file.rejected[0].what();
+}
+
+TEST_F(VectorFile, AbsentAndEmptyGeometriesArePassedOver) {
+  for (const char* geometry :
+       {"null", R"({"type": "Polygon", "coordinates": []})", R"({"type": "Polygon", "coordinates": [[]]})",
+        R"({"type": "MultiPolygon", "coordinates": []})", R"({"type": "GeometryCollection", "geometries": []})",
+        R"({"type": "Point", "coordinates": [1, 2]})", R"({"type": "Point", "coordinates": []})"}) {
+    SCOPED_TRACE(geometry);
+    const ObstacleFile file = read("a.geojson", collection("\"units\": \"m\", ", geometry));
+    EXPECT_EQ(file.counts.passed_over, 1u);
+    EXPECT_TRUE(file.obstacles.empty());
+  }
+}
+
+TEST_F(VectorFile, AMalformedPartOfAGeometryThatStandsAloneIsRefused) {
+  const std::string parts = R"({"type": "MultiPolygon", "coordinates": [[[[0,0],[1,0],[1,1],[0,0]]], [[5,5],[6,5]]]})";
+  EXPECT_EQ(refusal_of([&] { read("a.geojson", parts); }).code(), DataCode::format_syntax);
+}
+
+TEST_F(VectorFile, MalformedRecordsOfASequenceAreRefused) {
+  const auto record = [](const std::string& geometry) {
+    return R"({"type": "Feature", "properties": {}, "geometry": )" + geometry + "}\n";
+  };
+  ReadOptions options;
+  options.format = "gdal";
+  EXPECT_EQ(read("a.geojsonl", record(kSquare) + record("null"), options).obstacles.size(), 1u);
+  const DataError error =
+      refusal_of([&] { read("b.geojsonl", record(kSquare) + "\n" + record(kMalformed[0].geometry), options); });
+  expect_refusal(error, DataCode::format_syntax, "record 1, /geometry/coordinates/0/0");
+  const std::string other = R"({"type": "Poligon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]})";
+  expect_refusal(refusal_of([&] { read("c.geojsonl", record(kSquare) + other + "\n", options); }),
+                 DataCode::format_syntax, "record 1, /type");
+}
+
+TEST_F(VectorFile, AGeometryAmongFeaturesIsRefused) {
+  const std::string text = R"({"type": "FeatureCollection", "features": [)" + std::string(kSquare) + "]}";
+  expect_refusal(refusal_of([&] { read("a.geojson", text); }), DataCode::format_syntax, "feature 0");
+}
+
+TEST_F(VectorFile, MalformedWktInAColumnIsRefused) {
+  for (const char* header : {"id,WKT\n", "id,geometry\n", "id,_WKTshape\n"}) {
+    for (const char* text : {"\"POLYGON((0 0,1 0,1 1,0 0\"", "garbage", "\"POLYGON((0 0,1 0,x,0 0))\""}) {
+      SCOPED_TRACE(std::string(header) + text);
+      const std::string rows = "1,POLYGON EMPTY\n2,\n3," + std::string(text) + "\n";
+      expect_refusal(refusal_of([&] { read("a.csv", header + rows); }), DataCode::format_syntax, "feature 2");
+    }
+  }
+  EXPECT_EQ(read("a.csv", "id,WKT\n1,POLYGON EMPTY\n2,\n3,\"  \"\n4,POINT(1 2)\n").counts.passed_over, 4u);
+}
+
 TEST_F(VectorFile, ContentGoesBeforeTheName) {
   EXPECT_EQ(read("a.csv", "POLYGON ((0 0, 1 0, 1 1, 0 0))").format, "wkt");
   EXPECT_EQ(read("a.txt", "LINESTRING (0 0, 1 0)").format, "wkt");

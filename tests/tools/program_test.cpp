@@ -133,6 +133,22 @@ INSTANTIATE_TEST_SUITE_P(
                     "nowhere.geojson", "E_FILE_MISSING"}),
     [](const auto& test) { return std::string(test.param.name); });
 
+// GDAL reads no geometry here, and says nothing: the robot drove through the obstacle.
+TEST(Simulate, AMalformedPolygonIsRefusedAndNotValid) {
+  const Workplace here;
+  here.write("flat.geojson", R"({"type": "FeatureCollection", "units": "m", "features": [{"type": "Feature",
+    "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[4, -3], [5, -3], [5, 3], [4, 3], [4, -3]]}}]})");
+  std::string text = kOneRobot;
+  const std::string wall = R"("polyline": [[4, -1], [4, 1]])";
+  text.replace(text.find(wall), wall.size(), R"("file": "flat.geojson")");
+  here.write("s.json", text);
+  const Outcome outcome = here.run("simulate s.json --out out");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("flat.geojson: feature 0, /geometry"), HasSubstr("E_FORMAT_SYNTAX")));
+  EXPECT_FALSE(here.has("out"));
+  EXPECT_EQ(here.run("validate flat.geojson").status, 1);
+}
+
 TEST(Simulate, ABrokenTextIsRefusedWithItsLine) {
   const Workplace here;
   here.write("broken.json", "{\n  \"name\": \"x\",\n  \"robots\": [\n");

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "gdal/gdal_session.h"
+#include "gdal/geojson_shape.h"
 #include "json_text.h"
 #include "readers/readers.h"
 #include "text_file.h"
@@ -85,11 +86,15 @@ double rounded_degrees(double degrees) {
   return std::round(degrees * 1e6) / 1e6;
 }
 
+/// Characters of a text that is no geometry.
+constexpr std::size_t kShownText = 40;
+
 class VectorReader {
  public:
   VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out) {
     data_ = open_vectors(path);
     refuse_complaints("", data_ == nullptr);
+    if (driver() == "GeoJSONSeq") refuse_faulty_records(path);
   }
 
   void read() {
@@ -201,7 +206,8 @@ class VectorReader {
     throw DataError(DataCode::not_an_option, path_.string(), "/units", described(*units), "\"m\" or \"degrees\"");
   }
 
-  bool is_geojson() const { return std::string(data_->GetDriverName()).find("GeoJSON") == 0; }
+  std::string driver() const { return data_->GetDriverName(); }
+  bool is_geojson() const { return driver().find("GeoJSON") == 0; }
 
   void settle_impossible_degrees(Units units) {
     if (units == Units::degrees || !is_geojson()) {
@@ -239,6 +245,7 @@ class VectorReader {
 
   void add(const OGRFeature& feature, std::size_t number) {
     const std::string place = place_of(number);
+    if (const std::optional<DataError> lost = lost_geometry(feature, place)) return out_.reject(*lost);
     const OGRGeometry* shape = feature.GetGeometryRef();
     if (shape == nullptr) return out_.pass_over(place, "a feature without geometry passed over");
     std::size_t part = 0;
@@ -248,6 +255,42 @@ class VectorReader {
       hand_on(number, part++, place, kind, std::move(rings));
     };
     visit(*shape, visitor);
+  }
+
+  /// GDAL says nothing of a geometry that it cannot make out, or of the parts of one.
+  std::optional<DataError> lost_geometry(const OGRFeature& feature, const std::string& place) const {
+    if (driver() == "GeoJSON") return lost_from_geojson(feature, place);
+    return driver() == "CSV" ? lost_from_csv(feature, place) : std::nullopt;
+  }
+
+  /// A geometry that stands alone is the whole file.
+  std::optional<DataError> lost_from_geojson(const OGRFeature& feature, const std::string& place) const {
+    const char* native = feature.GetNativeData();
+    const OGRGeometry* shape = feature.GetGeometryRef();
+    const bool read = shape != nullptr && !shape->IsEmpty();
+    const std::optional<GeoJsonFault> fault = geojson_fault(native != nullptr ? native : read_text_file(path_), read);
+    if (!fault) return std::nullopt;
+    return DataError(DataCode::format_syntax, path_.string(), place + place_within(*fault), fault->found,
+                     fault->expected);
+  }
+
+  std::optional<DataError> lost_from_csv(const OGRFeature& feature, const std::string& place) const {
+    if (feature.GetGeometryRef() != nullptr) return std::nullopt;
+    const std::string text = text_of_geometry(feature);
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    if (begin == std::string::npos) return std::nullopt;
+    return DataError(DataCode::format_syntax, path_.string(), place, excerpt(text, begin, kShownText),
+                     "a geometry as WKT, or nothing");
+  }
+
+  /// What stands in the column that the driver takes geometries from. It calls the geometries of a column X "X" or
+  /// "geom_X", and "" those of a column WKT.
+  static std::string text_of_geometry(const OGRFeature& feature) {
+    if (feature.GetGeomFieldCount() == 0) return "";
+    const std::string name = feature.GetGeomFieldDefnRef(0)->GetNameRef();
+    int column = feature.GetFieldIndex(name.empty() ? "WKT" : name.c_str());
+    if (column < 0 && name.rfind("geom_", 0) == 0) column = feature.GetFieldIndex(name.c_str() + 5);
+    return column < 0 ? "" : feature.GetFieldAsString(column);
   }
 
   std::string place_of(std::size_t number) const {

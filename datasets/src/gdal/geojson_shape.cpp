@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gdal/geojson_shape.h"
+
+#include <cpl_port.h>
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+
+#include "readers/readers.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using Fault = std::optional<GeoJsonFault>;
+
+/// How deep the positions of a type lie below `coordinates`; -1 of collections.
+struct Type {
+  const char* name;
+  int depth;
+};
+constexpr Type kTypes[] = {{"Point", 0},   {"MultiPoint", 1},   {"LineString", 1},         {"MultiLineString", 2},
+                           {"Polygon", 2}, {"MultiPolygon", 3}, {"GeometryCollection", -1}};
+const char* const kTypeNames =
+    "Point, MultiPoint, LineString, MultiLineString, Polygon, MultiPolygon or GeometryCollection";
+
+/// GDAL takes names in any case.
+bool is_name(const Json& value, const char* name) {
+  return value.is_string() && EQUAL(value.get_ref<const std::string&>().c_str(), name);
+}
+
+const Type* type_of(const Json& geometry) {
+  const auto type = geometry.find("type");
+  if (type == geometry.end()) return nullptr;
+  for (const Type& known : kTypes) {
+    if (is_name(*type, known.name)) return &known;
+  }
+  return nullptr;
+}
+
+/// A height may follow; what comes after it has no meaning (RFC 7946, 3.1.1).
+bool is_position(const Json& value) {
+  if (!value.is_array() || value.size() < 2) return false;
+  for (std::size_t k = 0; k < std::min<std::size_t>(value.size(), 3); ++k) {
+    if (!value[k].is_number()) return false;
+  }
+  return true;
+}
+
+Fault fault_of_coordinates(const Json& value, int depth, const std::string& pointer) {
+  if (depth == 0) {
+    if (is_position(value)) return std::nullopt;
+    return GeoJsonFault{pointer, value.dump().substr(0, 40), "a position: [x, y], numbers"};
+  }
+  if (!value.is_array()) {
+    return GeoJsonFault{pointer, described(value), depth == 1 ? "an array of positions" : "an array of arrays"};
+  }
+  for (std::size_t k = 0; k < value.size(); ++k) {
+    if (Fault fault = fault_of_coordinates(value[k], depth - 1, pointer + "/" + std::to_string(k))) return fault;
+  }
+  return std::nullopt;
+}
+
+Fault fault_of_geometry(const Json& geometry, const std::string& pointer, int depth);
+
+Fault fault_of_collection(const Json& geometry, const std::string& pointer, int depth) {
+  const auto parts = geometry.find("geometries");
+  if (parts == geometry.end() || !parts->is_array()) {
+    return GeoJsonFault{pointer + "/geometries", parts == geometry.end() ? "nothing" : described(*parts),
+                        "an array of geometries"};
+  }
+  for (std::size_t k = 0; k < parts->size(); ++k) {
+    const std::string place = pointer + "/geometries/" + std::to_string(k);
+    if (Fault fault = fault_of_geometry((*parts)[k], place, depth + 1)) return fault;
+  }
+  return std::nullopt;
+}
+
+Fault fault_of_geometry(const Json& geometry, const std::string& pointer, int depth) {
+  if (geometry.is_null() || depth > kDeepestCollection) return std::nullopt;
+  if (!geometry.is_object()) return GeoJsonFault{pointer, described(geometry), "a geometry or null"};
+  const Type* type = type_of(geometry);
+  if (type == nullptr) {
+    const auto word = geometry.find("type");
+    return GeoJsonFault{pointer + "/type", word == geometry.end() ? "nothing" : described(*word), kTypeNames};
+  }
+  if (type->depth < 0) return fault_of_collection(geometry, pointer, depth);
+  if (is_name(geometry["type"], "Point") || is_name(geometry["type"], "MultiPoint")) return std::nullopt;
+  const auto coordinates = geometry.find("coordinates");
+  if (coordinates == geometry.end()) return GeoJsonFault{pointer + "/coordinates", "nothing", "an array"};
+  return fault_of_coordinates(*coordinates, type->depth, pointer + "/coordinates");
+}
+
+Fault fault_of_record(const Json& record) {
+  const bool feature = record.is_object() && record.contains("type") && is_name(record["type"], "Feature");
+  if (feature || (record.is_object() && type_of(record) != nullptr)) return geojson_fault(record);
+  const bool named = record.is_object() && record.contains("type");
+  return GeoJsonFault{named ? "/type" : "", described(named ? record["type"] : record), "a feature or a geometry"};
+}
+
+/// GDAL takes attributes in any encoding; the shape needs only ASCII.
+Json parsed(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0x80) != 0; }, '?');
+  return Json::parse(text, nullptr, false);
+}
+
+/// Of a geometry that is no point.
+bool holds_position(const Json& geometry) {
+  const Type* type = type_of(geometry);
+  return type != nullptr && type->depth > 0 && geometry.contains("coordinates") && !geometry["coordinates"].empty();
+}
+
+bool is_blank(const std::string& text) {
+  return text.find_first_not_of(" \t\r\n") == std::string::npos;
+}
+
+}  // namespace
+
+std::optional<GeoJsonFault> geojson_fault(const Json& record) {
+  if (!record.is_object()) return GeoJsonFault{"", described(record), "a feature"};
+  const auto geometry = record.find("geometry");
+  if (geometry != record.end()) return fault_of_geometry(*geometry, "/geometry", 0);
+  const bool stands_alone = record.contains("coordinates") || record.contains("geometries") || type_of(record);
+  return stands_alone ? fault_of_geometry(record, "", 0) : std::nullopt;
+}
+
+std::optional<GeoJsonFault> geojson_fault(const std::string& record, bool read) {
+  const Json json = parsed(record);
+  if (!json.is_discarded()) {
+    const bool bare = !read && json.is_object() && !json.contains("geometry") && holds_position(json);
+    return bare ? GeoJsonFault{"", "a geometry", "a feature"} : geojson_fault(json);
+  }
+  if (read || record.find("\"coordinates\"") == std::string::npos) return std::nullopt;
+  return GeoJsonFault{"", "coordinates that are no JSON", "finite numbers"};
+}
+
+std::string place_within(const GeoJsonFault& fault) {
+  return fault.pointer.empty() ? "" : ", " + fault.pointer;
+}
+
+void refuse_faulty_records(const std::filesystem::path& path) {
+  constexpr char kRecordSeparator = '\x1e';
+  std::ifstream file(path, std::ios::binary);
+  const char end = file.peek() == kRecordSeparator ? kRecordSeparator : '\n';
+  std::string text;
+  for (std::size_t number = 0; std::getline(file, text, end);) {
+    if (is_blank(text)) continue;
+    const Json json = parsed(text);
+    const Fault fault = json.is_discarded() ? std::nullopt : fault_of_record(json);
+    if (fault) {
+      throw DataError(DataCode::format_syntax, path.string(), "record " + std::to_string(number) + place_within(*fault),
+                      fault->found, fault->expected);
+    }
+    ++number;
+  }
+}
+
+}  // namespace exactvo::datasets
