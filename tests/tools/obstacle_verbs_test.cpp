@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The verbs for obstacle files as a user meets them: validate, repair, convert, generate, segment.
+// The verbs for obstacle files as a user meets them: validate, repair, convert, batch, segment.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -194,13 +194,34 @@ TEST(Batch, RejectedFilesAreNamedAndNothingAtAllIsNoSuccess) {
   EXPECT_THAT(some.err, AllOf(HasSubstr("rejected: maps/bad10.wkt: E_"), HasSubstr("rejected: maps/bad29.wkt"),
                               testing::Not(HasSubstr("bad30.wkt")), HasSubstr("and 5 more, see out/summary.json")));
   const Outcome again = here.run("batch maps --out out --write figures");
-  EXPECT_THAT(again.err, HasSubstr("note: replaces the earlier batch in out"));
+  EXPECT_THAT(again.err, HasSubstr("note: replaced the earlier batch in out"));
+  EXPECT_THAT(here.run("batch nowhere --out out").err,
+              AllOf(HasSubstr("E_FILE_MISSING"), testing::Not(HasSubstr("replace"))));
   EXPECT_THAT(here.run("batch maps --out out --write figures --resume").err, HasSubstr("rejected: maps/bad10.wkt"));
   EXPECT_EQ(here.run("batch maps/bad10.wkt --out none --write figures").status, 1);
   std::filesystem::create_directory(here.path() / "empty");
   const Outcome nothing = here.run("batch empty --out zero --write figures");
   EXPECT_EQ(nothing.status, 1);
   EXPECT_THAT(nothing.err, HasSubstr("no file was found"));
+}
+
+TEST(Batch, AnotherProcessJoinsWithResume) {
+  const Workplace here;
+  here.write("a.wkt", kGood);
+  std::filesystem::create_directories(here.path() / "out/.parts");
+  here.write("out/.parts/run.json", "{}");  // as a process at work has it
+  const Outcome refused = here.run("batch a.wkt --out out --write figures");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("E_OTHER_RUN"), HasSubstr("--resume"), HasSubstr("join")));
+  const auto joining = [&] {
+    return std::system(("cd '" + here.path().string() +
+                        "' && " EXACTVO_PROGRAM " batch a.wkt --out both --write figures --resume > /dev/null 2>&1")
+                           .c_str());
+  };
+  std::future<int> other = std::async(std::launch::async, joining);
+  EXPECT_EQ(joining(), 0);
+  EXPECT_EQ(other.get(), 0);
+  EXPECT_TRUE(here.has("both/summary.json"));
 }
 
 TEST(Batch, NumbersOutOfRangeAreSaidInWords) {
@@ -374,20 +395,6 @@ TEST(Convert, AnUnwritablePlaceLeavesNothing) {
   EXPECT_EQ(here.run("convert a.wkt /dev/null/x.wkt").status, 2);
   EXPECT_EQ(here.run("convert a.wkt out.dwg").status, 2);
   EXPECT_EQ(here.files(".").size(), 4u);  // the two above, .stdout, .stderr
-}
-
-TEST(Generate, TheSameSeedGivesTheSameFile) {
-  const Workplace here;
-  EXPECT_THAT(here.run("generate --list").out, AllOf(HasSubstr("maze"), HasSubstr("needle"), HasSubstr("field-open")));
-  EXPECT_EQ(here.run("generate star --seed 5 --count 20 --out a.wkt").status, 0);
-  EXPECT_EQ(here.run("generate star --seed 5 --count 20 --out b.wkt").status, 0);
-  EXPECT_EQ(here.run("generate star --seed 6 --count 20 --out c.wkt").status, 0);
-  EXPECT_EQ(here.read("a.wkt"), here.read("b.wkt"));
-  EXPECT_NE(here.read("a.wkt"), here.read("c.wkt"));
-  EXPECT_EQ(here.run("generate star --count 0 --out d.wkt").status, 2);
-  EXPECT_EQ(here.run("generate star --seed -1 --out d.wkt").status, 2);
-  EXPECT_EQ(here.run("generate star").status, 2);
-  EXPECT_FALSE(here.has("d.wkt"));
 }
 
 TEST(Segment, RecordsFeaturesAndAFigure) {

@@ -373,15 +373,37 @@ TEST(Simulate, AFullStandardOutputIsAnError) {
   }
 }
 
-TEST(Simulate, EmptyNamesAndNegativeSeedsAreRefused) {
+TEST(Simulate, EmptyNamesAndSeedsOutOfRangeAreRefused) {
   const Workplace here;
   here.write("s.json", kOneRobot);
-  for (const char* options : {"--out ''", "--seed -1", "--seed=-1", "--out \"$(printf 'a\\nb')\""}) {
+  for (const char* options :
+       {"--out ''", "--seed -1", "--seed=-1", "--seed 18446744073709551616", "--out \"$(printf 'a\\nb')\""}) {
     const Outcome outcome = here.run(std::string("simulate s.json ") + options);
     EXPECT_EQ(outcome.status, 2) << options;
     EXPECT_THAT(outcome.err, HasSubstr("found '")) << options;
     EXPECT_THAT(outcome.out, IsEmpty()) << options;
   }
+}
+
+TEST(Generate, TheSameSeedGivesTheSameFile) {
+  const Workplace here;
+  EXPECT_THAT(here.run("generate --list").out, AllOf(HasSubstr("maze"), HasSubstr("needle"), HasSubstr("field-open")));
+  EXPECT_EQ(here.run("generate star --seed 5 --count 20 --out a.wkt").status, 0);
+  EXPECT_EQ(here.run("generate star --seed 5 --count 20 --out b.wkt").status, 0);
+  EXPECT_EQ(here.run("generate star --seed 6 --count 20 --out c.wkt").status, 0);
+  EXPECT_EQ(here.read("a.wkt"), here.read("b.wkt"));
+  EXPECT_NE(here.read("a.wkt"), here.read("c.wkt"));
+  EXPECT_EQ(here.run("generate star --count 0 --out d.wkt").status, 2);
+  for (const char* seed : {"-1", "18446744073709551616", "99999999999999999999"}) {
+    const Outcome outcome = here.run(std::string("generate star --out d.wkt --seed ") + seed);
+    EXPECT_EQ(outcome.status, 2) << seed;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("--seed"), HasSubstr(seed)));
+  }
+  EXPECT_FALSE(here.has("d.wkt"));
+  EXPECT_THAT(here.run("generate star --seed 18446744073709551615 --count 1 --out e.wkt").err,
+              HasSubstr("seed 18446744073709551615"));
+  EXPECT_EQ(here.run("generate star").status, 2);
+  EXPECT_FALSE(here.has("d.wkt"));
 }
 
 TEST(Simulate, OptionsOfFormationsAreNotedWhereThereIsNone) {

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <exception>
 #include <optional>
 #include <vector>
@@ -97,11 +99,14 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
 }
 
 void declare_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
-  // The parser would let -1 pass as 2^64 - 1.
-  const auto not_negative = [](const std::string& text) {
-    return text.rfind('-', 0) == 0 ? "found '" + text + "', expected a whole number from 0 on" : std::string();
+  // The parser would let -1 and 2^64 pass as 2^64 - 1.
+  const auto fits = [](const std::string& text) {
+    errno = 0;
+    std::strtoull(text.c_str(), nullptr, 0);
+    const bool is_seed = text.rfind('-', 0) != 0 && errno != ERANGE;
+    return is_seed ? std::string() : "found '" + text + "', expected a whole number from 0 to 18446744073709551615";
   };
-  app.add_option("--seed", seed, help)->capture_default_str()->check(CLI::Validator(not_negative, "", ""));
+  app.add_option("--seed", seed, help)->capture_default_str()->check(CLI::Validator(fits, "", ""));
 }
 
 CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& help) {

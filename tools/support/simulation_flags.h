@@ -26,7 +26,7 @@ struct SimulationFlags {
 /// Declares --out: neither empty nor with control characters.
 CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& help);
 
-/// Declares --seed, which takes no negative number.
+/// Declares --seed: a whole number below 2^64.
 void declare_seed(CLI::App& app, std::uint64_t& seed,
                   const std::string& help = "Noted in the provenance; a run draws no random numbers");
 

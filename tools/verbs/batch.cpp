@@ -255,11 +255,10 @@ void name_rejected(const BatchSummary& summary, const std::string& out) {
   if (all.size() > kMostNamed) message(fmt::format("and {} more, see {}/summary.json", all.size() - kMostNamed, out));
 }
 
-/// What is there already, where this batch does not go on with it.
-void announce(const Flags& flags) {
+/// Whether this batch goes where an earlier one is, and does not go on with it.
+bool goes_over_another(const Flags& flags) {
   std::error_code error;
-  if (!flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error))
-    message("note: replaces the earlier batch in " + flags.out);
+  return !flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error);
 }
 
 /// Nothing of this process's own to tell: the last of several puts the parts together.
@@ -278,7 +277,7 @@ ExitCode batch(const Flags& flags) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is then an error of the write, and said as one
   const BatchConfiguration configuration = configuration_of(flags);
   const BatchRun run = run_of(flags);
-  announce(flags);
+  const bool over_another = goes_over_another(flags);
   Reporter reporter;
   const auto watch = [&](const BatchProgress& progress) {
     reporter.show(progress);
@@ -296,6 +295,7 @@ ExitCode batch(const Flags& flags) {
     return ExitCode::success;
   }
   if (result.was_complete) message("nothing left to do");
+  if (over_another && !result.was_complete) message("note: replaced the earlier batch in " + flags.out);
   print(words_of(result.summary, flags.out, run.shards == 1));
   name_rejected(result.summary, flags.out);
   return verdict(result.summary);
@@ -307,7 +307,8 @@ void declare_run(CLI::App& app, Flags& flags) {
   app.add_option("-j,--jobs", flags.workers,
                  "Workers; as many as there are processors unless said, one a rank under mpirun")
       ->check(CLI::Range(1, 4096));
-  app.add_flag("--resume", flags.resume, "Go on with what a killed batch has left in the folder");
+  app.add_flag("--resume", flags.resume,
+               "Go on with what a killed batch has left in the folder, or join one at work on it");
   app.add_option("--limit-memory", flags.limit_memory, "Bytes for obstacles under way, such as 2GB")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--shard", flags.shard, "i/n: every n-th file from the i-th on; the last shard puts all together");
@@ -347,7 +348,7 @@ Action declare(CLI::App& app) {
 Verb batch_verb() {
   return {"batch", "Every obstacle of every file taken apart, enclosed and certified",
           "  exactvo batch maps --out out/maps -j 4 --repair\n"
-          "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after a kill)\n"
+          "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after a kill, or beside it)\n"
           "    (status 1: something is not certified, or no obstacle came out; rejected files are named)\n"
           "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"
           "  exactvo batch map.yaml --out out/map --time-horizon 3 --radius 0.3 --position 1,2 --position 4,2\n",

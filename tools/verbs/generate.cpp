@@ -9,6 +9,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/generators.h"
 #include "exactvo/datasets/obstacle_write.h"
+#include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct Flags {
   std::string kind;
-  std::int64_t seed = 1;
+  std::uint64_t seed = 1;
   std::int64_t count = 100;
   std::string out, to, figure;
   bool list = false;
@@ -50,7 +51,6 @@ void check_kind(const std::string& kind) {
 
 void check(const Flags& flags) {
   check_kind(flags.kind);
-  if (flags.seed < 0) throw UsageError("--seed", std::to_string(flags.seed), "a whole number from 0 on");
   constexpr std::int64_t kMostItems = 100'000'000;
   if (flags.count < 1 || flags.count > kMostItems)
     throw UsageError("--count", std::to_string(flags.count), "a whole number from 1 to 100000000");
@@ -61,7 +61,7 @@ void check(const Flags& flags) {
 
 std::vector<SceneObstacle> item(const Flags& flags, std::uint64_t k) {
   if (interrupted()) throw Interrupted();
-  return datasets::generated_item(flags.kind, k, static_cast<std::uint64_t>(flags.seed));
+  return datasets::generated_item(flags.kind, k, flags.seed);
 }
 
 std::vector<SceneObstacle> items(const Flags& flags, std::uint64_t count) {
@@ -116,7 +116,7 @@ ExitCode generate(const Flags& flags) {
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("kind", flags->kind, fmt::format("One of {}", fmt::join(datasets::generator_kind_names(), " ")));
-  app.add_option("--seed", flags->seed, "Of the generator; the same seed gives the same bytes on every machine");
+  declare_seed(app, flags->seed, "Of the generator; the same seed gives the same bytes on every machine");
   app.add_option("--count", flags->count, "Items; a maze, a block or a field is one of several obstacles");
   app.add_option("--out", flags->out,
                  "The file to write; its extension says the format. - is stdout (wkt, or as --to says)");

@@ -132,7 +132,9 @@ Ledger::State Ledger::look(const Identity& identity, bool resume) const {
   fs::remove_all(litter(), error);
   if (fs::is_regular_file(run_file(), error)) {
     if (!resume) {
-      throw other_run(out_, "an unfinished batch", "--resume to go on with it; another --out, or an empty one");
+      throw other_run(
+          out_, "an unfinished batch",
+          "--resume to go on with it, or to join the process at work on it; another --out, or an empty one");
     }
     require_same(identity);
     return State::unfinished;
