@@ -158,6 +158,57 @@ TEST(VerbAuditOfCertificates, TheEllipseMustBeTheOneBesideIt) {
   EXPECT_NE(judged(one).dump().find("of another ellipse"), std::string::npos);
 }
 
+TEST(VerbAuditOfCertificates, TheHalfPlaneMustBeTheOneBesideIt) {
+  const std::string rest = " --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2";
+  for (const std::string scene : {"--obstacle 'DISC(4 0.5, 1)'", "--obstacle 'DISC(1.5 0, 1)'"}) {
+    const json whole = json_of(scene + rest);
+    EXPECT_EQ(judged(whole).at("status"), 0);
+    const std::string key = whole.at("half_plane").is_null() ? "contact_half_plane" : "half_plane";
+    json moved = whole, turned = whole, broken = whole;
+    moved[key]["offset"] = std::nextafter(whole[key]["offset"].get<double>(), -3.0);
+    turned[key]["normal"][1] = next_up(whole[key]["normal"][1].get<double>());
+    broken[key] = "none";
+    for (const json& changed : {moved, turned, broken}) {
+      EXPECT_EQ(judged(changed).at("status"), 1) << key;
+      EXPECT_EQ(judged(changed).at("verdicts"), json({"of another half-plane"})) << key;
+    }
+  }
+  json other = json_of("--obstacle '" + kSquare + "' --enclose ellipse" + rest);
+  other["certificate"] = other["taken_as"]["certificate"];
+  EXPECT_EQ(judged(other).at("verdicts"), json({"of another half-plane", "valid"})) << "a containment proves none";
+}
+
+TEST(VerbAuditOfCertificates, AHalfPlaneOfADiscIsOfNoEllipse) {
+  const std::string rest = " --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2";
+  const json disc = json_of("--obstacle 'DISC(4 0, 1)'" + rest);
+  for (const std::string& shape : {kSquare, std::string("LINESTRING(3 -1, 3 1)")}) {
+    json ellipse = json_of("--obstacle '" + shape + "' --enclose ellipse" + rest);
+    EXPECT_EQ(judged(ellipse).at("status"), 0) << shape;
+    for (const char* key : {"half_plane", "certificate"}) ellipse[key] = disc[key];
+    EXPECT_EQ(judged(ellipse).at("status"), 1) << shape;
+    EXPECT_EQ(judged(ellipse).at("verdicts")[0], "of another ellipse") << shape;
+  }
+  const json polygon = json_of("--obstacle '" + kSquare +
+                               "' --enclose ellipse --robot 'POLYGON((-0.1 -0.1, 0.1 -0.1, 0 0.1, -0.1 -0.1))' "
+                               "--position 0,0 --velocity 1,0 --time-horizon 2");
+  EXPECT_EQ(judged(polygon).at("status"), 0) << "the sum of an ellipse and a polygonal robot";
+}
+
+TEST(VerbAuditOfCertificates, JsonThatSaysThatThereIsNoneIsCounted) {
+  const json overlap =
+      json_of("--obstacle 'DISC(0.5 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2");
+  json without = overlap;
+  without["certificate"] = nullptr;
+  EXPECT_EQ(judged(without).at("status"), 0);
+  EXPECT_EQ(judged(without).at("none"), 1);
+  EXPECT_EQ(judged(without).at("certificates"), 0);
+  const Workplace place;
+  place.write("none.json", without.dump());
+  EXPECT_EQ(place.run("audit --certificate none.json").out, "0 certificates, 0 valid, 1 none\n");
+  place.write("nothing.json", "{}");
+  EXPECT_EQ(place.run("audit --certificate nothing.json").status, 2);
+}
+
 TEST(VerbAuditOfCertificates, JsonThatCannotBeReadIsNotValid) {
   Workplace place;
   const std::string text =

@@ -76,6 +76,9 @@ JudgedCertificate judge(const std::string& text) {
 
 using Json = nlohmann::ordered_json;
 
+/// What a certificate beside them is of.
+constexpr const char* kHalfPlanes[] = {"half_plane", "contact_half_plane"};
+
 /// What `exactvo vo` prints is far from so deep, and what walks the tree calls itself.
 constexpr int kDeepest = 100;
 
@@ -109,22 +112,54 @@ std::optional<geometry::Ellipse> contained_in(const Json& object) {
   return containment ? std::optional(containment->ellipse) : std::nullopt;
 }
 
-/// Whether the half-plane is of an ellipse, and not of this one.
-bool is_of_another(const std::string& text, const geometry::Ellipse& ellipse) {
-  const auto c = vo::read_certificate(text);
-  const auto* of = c ? std::get_if<geometry::Ellipse>(&c->claim.shape) : nullptr;
+/// Whether an ellipse stands for the obstacle.
+bool is_taken_as_ellipse(const Json& object) {
+  const auto taken = object.find("taken_as");
+  if (taken == object.end() || !taken->is_object()) return false;
+  const auto what = taken->find("what");
+  return contained_in(object) ||
+         (what != taken->end() && (*what == "smallest ellipse" || *what == "trap-free ellipse"));
+}
+
+/// Whether the half-plane is of a shape that the ellipse beside it does not stand for. A convex polygon may be the sum
+/// of the ellipse and a polygonal robot, which nothing here could tell.
+bool is_of_another_shape(const vo::Certificate& c, const Json& object) {
+  if (!is_taken_as_ellipse(object) || std::holds_alternative<geometry::ConvexPolygon>(c.claim.shape)) return false;
+  const auto* of = std::get_if<geometry::Ellipse>(&c.claim.shape);
   const auto numbers = [](const geometry::Ellipse& e) {
     return std::array{e.center.x, e.center.y, e.l11, e.l21, e.l22};
   };
-  return of && numbers(*of) != numbers(ellipse);
+  const auto contained = contained_in(object);
+  return !of || (contained && numbers(*of) != numbers(*contained));
 }
 
-JudgedCertificate judge_beside(const std::string& text, const std::optional<geometry::Ellipse>& ellipse) {
+bool is_number(const Json& json, double x) {
+  return json.is_number() && json.get<double>() == x;
+}
+
+/// Number by number: what `vo` prints reads back as the same doubles.
+bool is_half_plane(const Json& json, const geometry::HalfPlane& h) {
+  if (!json.is_object() || !json.contains("normal") || !json.contains("offset")) return false;
+  const Json& normal = json["normal"];
+  return normal.is_array() && normal.size() == 2 && is_number(normal[0], h.normal.x) &&
+         is_number(normal[1], h.normal.y) && is_number(json["offset"], h.offset);
+}
+
+/// Whether a half-plane stands beside the certificate that is not its own (of a containment none is).
+bool is_of_another_half_plane(const std::optional<vo::Certificate>& c, const Json& object) {
+  return std::any_of(std::begin(kHalfPlanes), std::end(kHalfPlanes), [&](const char* key) {
+    const auto beside = object.find(key);
+    if (beside == object.end() || beside->is_null()) return false;
+    return !c || !is_half_plane(*beside, c->claim.half_plane);
+  });
+}
+
+JudgedCertificate judge_beside(const std::string& text, const Json& object) {
   JudgedCertificate judged = judge(text);
-  if (judged.valid && ellipse && is_of_another(text, *ellipse)) {
-    judged.verdict = "of another ellipse";
-    judged.valid = false;
-  }
+  if (!judged.valid) return judged;
+  const auto c = vo::read_certificate(text);
+  if (c && is_of_another_shape(*c, object)) return {"of another ellipse", judged.claim, false};
+  if (is_of_another_half_plane(c, object)) return {"of another half-plane", judged.claim, false};
   return judged;
 }
 
@@ -132,7 +167,7 @@ void judge_member(const Json& certificate, const Json& object, JudgedCertificate
   if (certificate.is_null()) {
     ++judged.none;
   } else {
-    judged.all.push_back(judge_beside(text_in(certificate).value_or(""), contained_in(object)));
+    judged.all.push_back(judge_beside(text_in(certificate).value_or(""), object));
   }
 }
 
@@ -181,7 +216,8 @@ JudgedCertificates judge_certificates_in(const std::string& text) {
 
 JudgedCertificates judge_certificates(const std::string& file) {
   JudgedCertificates judged = judge_certificates_in(text_of(file));
-  if (judged.all.empty()) throw UsageError("--certificate", file + ": no certificate", "a certificate a line");
+  if (judged.all.empty() && judged.none == 0)
+    throw UsageError("--certificate", file + ": no certificate", "a certificate a line");
   return judged;
 }
 
@@ -200,7 +236,7 @@ std::string in_words(const JudgedCertificates& judged) {
     if (!judged.all[k].claim.empty()) text += "; " + judged.all[k].claim;
     text += "\n";
   }
-  const std::string none = judged.none > 0 ? fmt::format(", {} null", judged.none) : "";
+  const std::string none = judged.none > 0 ? fmt::format(", {} none", judged.none) : "";
   return text + fmt::format("{} {}, {} valid{}\n", judged.all.size(),
                             judged.all.size() == 1 ? "certificate" : "certificates", count_valid(judged), none);
 }
