@@ -201,6 +201,46 @@ TEST(VerbVo, BareContactHasAHalfPlaneWithItsProof) {
   EXPECT_EQ(out.at("certificate").at("verdict"), "valid");
 }
 
+TEST(VerbVo, InContactNoRuleAllowsOrForbids) {
+  const std::string rest = " --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --variant all";
+  for (const std::string disc : {"--obstacle 'DISC(1.5 0, 1)'", "--obstacle 'DISC(0.5 0, 1)'"}) {
+    const json out = json_of(disc + rest);
+    ASSERT_EQ(out.at("variants").size(), 5u);
+    for (const json& variant : out.at("variants")) EXPECT_TRUE(variant.at("allows_velocity").is_null()) << variant;
+    const std::string words = words_of(disc + rest);
+    EXPECT_NE(words.find("HRVO              no cone: in contact\n"), std::string::npos) << words;
+    EXPECT_EQ(words.find("allows"), std::string::npos) << words;
+  }
+}
+
+TEST(VerbVo, HorizonsOutOfRangeAreRefused) {
+  const auto with = [](const std::string& options) {
+    return Workplace().run("vo --obstacle 'DISC(4 0, 1)' --radius 0.5 " + options);
+  };
+  const std::string here = "--position 0,0 --velocity 1,0 --time-horizon ";
+  for (const std::string& bad : {here + "1e-320", here + "7.8e-31", here + "1.3e30",
+                                 std::string("--position 1e15,0.1 --velocity 1,0 --time-horizon 1e-300"),
+                                 std::string("--position 0,0 --velocity 1e-40,0 --time-horizon paper")}) {
+    EXPECT_EQ(with(bad).status, 2) << bad;
+    EXPECT_NE(with(bad).err.find("a time from 2^-100 s to 2^100 s"), std::string::npos) << with(bad).err;
+  }
+  for (const char* good : {"7.888609052210118e-31", "1.2676506002282294e30", "infinite"}) {
+    const Outcome run = with(here + good + " --json");
+    ASSERT_EQ(run.status, 0) << good << run.err;
+    expect_proven(json::parse(run.out));
+  }
+}
+
+TEST(VerbVo, ItIsSaidWhyThereIsNoCertificate) {
+  const std::string rest = " --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2";
+  const std::string far = "--obstacle 'POLYGON((10 0,1e30 0,1e30 1e30,10 0))'" + rest;
+  EXPECT_TRUE(json_of(far).at("certificate").is_null());
+  EXPECT_EQ(json_of(far).at("why_no_certificate"), "rounding");
+  EXPECT_NE(words_of(far).find("certificate       none: rounding"), std::string::npos);
+  EXPECT_TRUE(json_of("--obstacle 'DISC(4 0, 1)'" + rest).at("why_no_certificate").is_null());
+  EXPECT_EQ(json_of("--obstacle 'DISC(0.5 0, 1)'" + rest).at("why_no_certificate"), "contact");
+}
+
 TEST(VerbVo, DiscsAndEllipsesByTheirNumbers) {
   const std::string rest = " --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2";
   const json disc = json_of("--obstacle 'DISC(4 0, 1)'" + rest);

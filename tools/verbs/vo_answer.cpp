@@ -19,6 +19,21 @@ bool any_contains(const VoAnswer& a) {
   return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& cone) { return cone.contains; });
 }
 
+std::optional<bool> allowed(const vo::Member& m, Vec2 velocity) {
+  if (!m.cone && !m.half_plane) return std::nullopt;
+  return m.allows(velocity);
+}
+
+const char* word_of_allowed(const std::optional<bool>& allowed) {
+  if (!allowed) return "no cone";
+  return *allowed ? "allows" : "forbids";
+}
+
+const char* why_no_certificate(const ConeAnswer& a) {
+  if (a.certificate) return nullptr;
+  return a.overlaps ? "contact" : "rounding";
+}
+
 Place place_of(const VoAnswer& a, const vo::LostPiece& piece) {
   if (a.free->half_planes.empty()) return {};
   return place_of(a.question, a.free->cone_of[piece.half_plane]);
@@ -104,8 +119,10 @@ std::string certificate_json(const ConeAnswer& a) {
 }
 
 std::string half_planes_json(const ConeAnswer& a) {
-  return fmt::format("\"half_plane\": {},\n  \"contact_half_plane\": {},\n  \"certificate\": {}", json(a.half_plane),
-                     json(a.contact), certificate_json(a));
+  const char* why = why_no_certificate(a);
+  return fmt::format(
+      "\"half_plane\": {},\n  \"contact_half_plane\": {},\n  \"certificate\": {},\n  \"why_no_certificate\": {}",
+      json(a.half_plane), json(a.contact), certificate_json(a), why ? fmt::format("\"{}\"", why) : "null");
 }
 
 std::string shared_json(const ConeAnswer& a) {
@@ -117,8 +134,9 @@ std::string shared_json(const ConeAnswer& a) {
 }
 
 std::string member_json(const vo::Member& m, Vec2 velocity) {
+  const auto answer = allowed(m, velocity);
   std::string text =
-      fmt::format("{{\"variant\": \"{}\", \"allows_velocity\": {}", name(m.variant), json(m.allows(velocity)));
+      fmt::format("{{\"variant\": \"{}\", \"allows_velocity\": {}", name(m.variant), answer ? json(*answer) : "null");
   if (m.cone)
     text += fmt::format(", \"apex\": {}, \"time_horizon\": {}", json(m.cone->apex), json(m.cone->cone.time_horizon()));
   if (m.half_plane) text += fmt::format(", \"half_plane\": {}", json(m.half_plane));
@@ -192,7 +210,8 @@ std::string joined(const std::vector<std::string>& items) {
 /// Which fields are what. A certificate's numbers are doubles; what it proves of them is exact.
 constexpr const char* kKindsOfCone =
     "\"kinds\": {\n    \"exact\": [\"shape\", \"taken_as\", \"overlaps\", \"contains_velocity\", \"apex\"],\n"
-    "    \"certified\": [\"half_plane\", \"contact_half_plane\", \"certificate\", \"legs/bracket\"],\n"
+    "    \"certified\": [\"half_plane\", \"contact_half_plane\", \"certificate\", \"why_no_certificate\", "
+    "\"legs/bracket\"],\n"
     "    \"rounded\": [\"legs/direction\", \"legs/touch\", \"nearest_boundary\", \"u\", \"shared_half_plane\", "
     "\"variants\"]},\n  ";
 constexpr const char* kKindsOfFree =

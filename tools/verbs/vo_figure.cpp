@@ -244,7 +244,8 @@ void draw_member(const vo::Member& m, const ConeAnswer& a, Panel& panel) {
 }
 
 std::string member_title(const vo::Member& m, Vec2 velocity) {
-  return fmt::format("{}: {} v", name(m.variant), m.allows(velocity) ? "allows" : "forbids");
+  const auto answer = allowed(m, velocity);
+  return fmt::format("{}: {}{}", name(m.variant), word_of_allowed(answer), answer ? " v" : "");
 }
 
 Figure family_figure(const VoAnswer& answer, const std::string& name) {

@@ -29,6 +29,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Of coordinates and velocities: their squares and those of their sums stay far within doubles.
 constexpr double kLargestNumber = vo::kMostApex;
 
+/// Of horizons, s: lengths over them, and velocities times them, keep their squares within doubles too.
+constexpr double kLeastHorizon = 0x1p-100;
+constexpr double kMostHorizon = 0x1p100;
+constexpr const char* kHorizons = "a time from 2^-100 s to 2^100 s, or infinite, paper or clamped";
+
+bool is_horizon(double seconds) {
+  return seconds >= kLeastHorizon && seconds <= kMostHorizon;
+}
+
 bool is_in_range(Vec2 v) {
   return std::fabs(v.x) <= kLargestNumber && std::fabs(v.y) <= kLargestNumber;
 }
@@ -92,11 +101,11 @@ ConvexPolygon robot_of(const std::string& text, const ReadingFlags& reading) {
 
 // --- The horizon ---
 
-/// The paper's rule gives no horizon to a robot whose distance rounds to nothing.
+/// The paper's rule gives no horizon to a robot whose distance rounds to nothing, and an infinite one at rest.
 double paper_horizon(const vo::VelocityObstacle& cone, Vec2 relative) {
   const double seconds = vo::paper_time_horizon(cone, relative);
-  if (!(seconds > 0.0))
-    throw UsageError("--time-horizon", "paper, which is 0 s so near the obstacle", "a time above 0 s, or clamped");
+  if (!is_horizon(seconds) && seconds != kInfinity)
+    throw UsageError("--time-horizon", fmt::format("paper, which is {:g} s here", std::fabs(seconds)), kHorizons);
   return seconds;
 }
 
@@ -113,8 +122,7 @@ double horizon_in_seconds(const std::string& text) {
   double seconds = 0.0;
   char rest = 0;
   const bool is_number = std::sscanf(text.c_str(), "%lf%c", &seconds, &rest) == 1;
-  if (!is_number || !(seconds > 0.0) || !std::isfinite(seconds))
-    throw UsageError("--time-horizon", text, "a time above 0 s, or infinite, paper or clamped");
+  if (!is_number || !is_horizon(seconds)) throw UsageError("--time-horizon", text, kHorizons);
   return seconds;
 }
 
@@ -267,8 +275,9 @@ void declare_options(CLI::App& app, VoFlags& flags) {
   app.add_option("--radius", flags.radius, "Of the robot, m; required, or --robot in its place");
   app.add_option("--robot", flags.robot,
                  "A robot that is a convex polygon, in place of --radius: WKT round 0,0, its reference point");
-  app.add_option("--time-horizon", flags.time_horizon,
-                 "s; or infinite, paper (distance over speed) or clamped (the same within 0.3 s and 3 s)")
+  app.add_option(
+         "--time-horizon", flags.time_horizon,
+         "s, from 2^-100 to 2^100; or infinite, paper (distance over speed) or clamped (the same within 0.3 s and 3 s)")
       ->required();
   app.add_option("--alpha", flags.alpha,
                  "The share of the change that the robot takes, in (0, 1]. Below 1 a second half-plane is "

@@ -33,8 +33,14 @@ std::string text_of(const HalfPlane& h) {
   return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s", h.normal.x, h.normal.y, h.offset);
 }
 
+const char* why_words(const std::string& why) {
+  return why == "contact" ? "in contact, nothing is proven safe"
+                          : "rounding: so near contact, or with numbers so far apart, doubles prove no half-plane";
+}
+
 std::string half_plane_words(const ConeAnswer& a) {
-  const char* verdict = a.certificate ? name(check(*a.certificate)) : "none";
+  const char* why = why_no_certificate(a);
+  const std::string verdict = why ? fmt::format("none: {}", why_words(why)) : name(check(*a.certificate));
   std::string text;
   if (a.half_plane) text += fmt::format("half-plane        {}\n", text_of(*a.half_plane));
   if (a.contact) text += fmt::format("half-plane        {}, away from the nearest point\n", text_of(*a.contact));
@@ -90,8 +96,12 @@ std::string single_words(const VoAnswer& a) {
                             : "No velocity is proven safe: a piece has no half-plane.\n");
 }
 
-std::string member_words(const vo::Member& m, Vec2 velocity) {
-  return fmt::format("{:<17} {} the velocity\n", name(m.variant), m.allows(velocity) ? "allows" : "forbids");
+/// IVO's ellipse reaches beyond the obstacle, so that the robot may be in contact with it alone.
+std::string member_words(const vo::Member& m, bool overlaps, Vec2 velocity) {
+  const auto answer = allowed(m, velocity);
+  if (answer) return fmt::format("{:<17} {} the velocity\n", name(m.variant), word_of_allowed(answer));
+  const char* ellipse = m.variant == vo::Variant::ivo ? "in contact with its ellipse, or rounding" : "rounding";
+  return fmt::format("{:<17} {}: {}\n", name(m.variant), word_of_allowed(answer), overlaps ? "in contact" : ellipse);
 }
 
 std::string region_words(const VoAnswer& a) {
@@ -129,7 +139,7 @@ std::string free_words(const VoAnswer& a) {
 std::string in_words(const VoAnswer& a) {
   if (!a.free) {
     std::string text = single_words(a);
-    for (const vo::Member& m : a.members) text += member_words(m, a.question.velocity);
+    for (const vo::Member& m : a.members) text += member_words(m, any_overlaps(a), a.question.velocity);
     return text;
   }
   std::string text = free_words(a);
