@@ -219,6 +219,7 @@ constexpr const char* kKindsOfFree =
     "\"velocity_is_free\",\n      \"exact/components\", \"exact/region_inside\", \"exact/pieces/arcs/kind\", "
     "\"exact/pieces/arcs/obstacle\", \"exact/pieces/arcs/cone\", \"exact/pieces/arcs/turn\"],\n"
     "    \"certified\": [\"obstacles/half_plane\", \"obstacles/contact_half_plane\", \"obstacles/certificate\", "
+    "\"obstacles/why_no_certificate\", "
     "\"area\",\n      \"least_components\", \"region/inside\", \"region/area\", \"region/given_away\", "
     "\"region/lost/area\",\n      \"exact/area\", \"exact/pieces/area\", \"exact/pieces/arcs/from\", "
     "\"exact/pieces/arcs/to\"],\n"
