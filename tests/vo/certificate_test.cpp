@@ -126,6 +126,21 @@ TEST(Certificate, CorruptedTextIsRejected) {
   EXPECT_GT(different, 10000);
 }
 
+// The guess at a margin that is found from squares was 0 here, and every double on the way was tried.
+TEST(Certificate, LengthsWhoseSquaresUnderflowAreCertifiedSoon) {
+  for (const double unit : {1e-150, 1e-170, 1e-200, 1e-300}) {
+    HalfPlaneClaim claim;
+    claim.shape = geometry::Disc{{4.0 * unit, 3.0 * unit}, unit};
+    claim.radius = 0.5 * unit;
+    claim.time_horizon = 2.0;
+    claim.half_plane = {{-0.8, -0.6}, -1.7 * unit};  // the disc begins 3.5 away
+    const auto c = certify(claim);
+    ASSERT_TRUE(c) << unit;
+    EXPECT_EQ(check(*c), Verdict::valid) << unit;
+    EXPECT_NEAR(c->margin / unit, 0.1, 1e-9) << unit;
+  }
+}
+
 TEST(Certificate, UnsafeClaimsGetNone) {
   const geometry::Disc disc{{5, 0}, 1};
   HalfPlaneClaim claim{disc, {}, 1.0, 2.0, {}, {{-1, 0}, -1.5}};

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -107,18 +109,38 @@ double approximate_margin(const RootSum& excess) {
   return sum.get_d();
 }
 
-/// The largest double <= the exact margin. Steps away from a guess by ever more ulps, then halves the way back.
+/// Doubles that are not negative, in order: 0, 1, 2 ... as whole numbers.
+double double_of(std::uint64_t bits) {
+  double x = 0.0;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+}
+std::uint64_t bits_of(double x) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
+/// The largest double <= the exact margin, which is not negative. From a guess, however wrong (a root may underflow),
+/// by ever longer strides until it lies between two doubles, then by halves.
 double exact_margin(const RootSum& excess) {
-  double m = std::max(approximate_margin(excess), 0.0);
-  if (!margin_holds(excess, m)) {
-    double step = std::max(m * 0x1p-52, std::numeric_limits<double>::denorm_min());
-    while (m > 0.0 && !margin_holds(excess, m)) {
-      m = std::max(m - step, 0.0);
-      step *= 2.0;
-    }
+  const auto holds = [&](std::uint64_t bits) { return margin_holds(excess, double_of(bits)); };
+  const double guess = std::clamp(approximate_margin(excess), 0.0, std::numeric_limits<double>::max());
+  std::uint64_t low = 0, high = bits_of(kInfinity), stride = 1;
+  if (holds(bits_of(guess))) {
+    low = bits_of(guess);
+    for (; stride < high - low && holds(low + stride); stride *= 2) low += stride;
+    high = std::min(high, low + stride);
+  } else {
+    high = bits_of(guess);
+    for (; stride < high && !holds(high - stride); stride *= 2) high -= stride;
+    low = high - std::min(high, stride);
   }
-  while (std::isfinite(m) && margin_holds(excess, std::nextafter(m, kInfinity))) m = std::nextafter(m, kInfinity);
-  return m;
+  while (high - low > 1) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    (holds(middle) ? low : high) = middle;
+  }
+  return double_of(low);
 }
 
 // --- The digest ---
