@@ -318,7 +318,7 @@ long peak_memory(const fs::path& input, const fs::path& out) {
 void show_memory(const fs::path& folder, std::size_t largest) {
   std::printf("peak memory of a batch from WKT, one worker, figures:\n");
   for (std::size_t count = 10000; count <= largest; count *= 10) {
-    const fs::path input = folder / "stars.wkt";
+    const fs::path input = folder / "many.wkt";
     write_stars(input, count);
     const auto size = static_cast<double>(fs::file_size(input));
     std::printf("  %8zu obstacles, a file of %6.1f MB: %6.1f MB\n", count, 1e-6 * size,
