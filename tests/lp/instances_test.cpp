@@ -80,6 +80,20 @@ TEST(Instances, ABrokenFileNamesThePlace) {
   EXPECT_THROW(read_instances(wrong), InstanceError);
 }
 
+TEST(Instances, BytesAfterTheLastInstanceAreNoneOfTheFiles) {
+  std::stringstream file;
+  write_instances(file, generate("RF10", 2, 1));
+  const std::size_t length = file.str().size();
+  file << 'x';
+  try {
+    read_instances(file);
+    FAIL() << "a byte too many was read";
+  } catch (const InstanceError& e) {
+    EXPECT_EQ(e.place, "byte " + std::to_string(length) + ", after the last instance");
+    EXPECT_EQ(e.found, "more bytes");
+  }
+}
+
 TEST(Instances, RecordedCircleProblemsAreCertified) {
   const std::filesystem::path file = std::filesystem::path(EXACTVO_SOURCE_DIR) / "../shared/data/lp/C10.bin";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recorded instances at " << file;

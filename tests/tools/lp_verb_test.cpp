@@ -57,6 +57,43 @@ TEST(Lp, WhatALineMayNotHoldIsNamedWithItsPlace) {
   }
 }
 
+/// Two instances without a line in binary: m, m_hard, v_max, v_pref.
+std::string two_instances() {
+  const std::string one = std::string(8, '\0') + std::string("\0\0\x80\x3f", 4) + std::string(8, '\0');
+  return std::string("\2\0\0\0", 4) + one + one;
+}
+
+TEST(Lp, WhatIsNeitherJsonNorInstancesIsToldBothFormats) {
+  const Workplace here;
+  const std::pair<std::string, const char*> cases[] = {
+      {"hello\n", "line 1, column 1: found \"hello\""},
+      {"\n\nhi\n", "line 3, column 1: found \"hi\""},
+      {"12\n", "found \"12\""},
+      {"\x89PNG\r\n\x1a\n....", "found \"?PNG\""},
+      {two_instances().substr(0, 40), "byte 0: found a count of 2 and 36 bytes after it"}};
+  for (const auto& [bytes, words] : cases) {
+    here.write("p", bytes);
+    const Outcome outcome = here.run("lp - <p");
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(words), HasSubstr("lines of JSON"), HasSubstr("binary instances"),
+                                   HasSubstr("[E_FORMAT_UNKNOWN]")));
+  }
+  here.write("p", "[1, 2]\n");
+  EXPECT_THAT(here.run("lp p").err, HasSubstr("[E_TYPE]"));
+}
+
+TEST(Lp, BytesAfterTheInstancesAreRefusedWithTheirPlace) {
+  const Workplace here;
+  here.write("whole", two_instances());
+  EXPECT_EQ(here.run("lp whole").status, 0);
+  here.write("longer", two_instances() + "junk");
+  const Outcome outcome = here.run("lp longer");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("byte 44, after the last instance: found more bytes, expected the end"),
+                                 HasSubstr("[E_FORMAT_SYNTAX]")));
+  EXPECT_EQ(outcome.out, "");
+}
+
 TEST(Lp, AFolderAMissingFileAndAFullDiskAreNoDefectsOfTheProgram) {
   const Workplace here;
   here.write("p.jsonl", on_one_line(kGood));

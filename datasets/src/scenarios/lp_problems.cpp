@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/lp_problems.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <optional>
 #include <sstream>
 
 #include "exactvo/vo/lp/instances.h"
 #include "json_text.h"
 #include "scenarios/schema_check.h"
+#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -110,20 +115,51 @@ std::vector<lp::Problem> read_binary(const std::string& bytes, const std::string
   }
 }
 
-/// A line of JSON starts with `{` and a quotation mark or a brace; the count of a binary file does not look like that
-/// below half a million instances.
+constexpr const char* kBothFormats =
+    "lines of JSON, an object each, or binary instances: their count (int32, little endian), then 20 bytes or more "
+    "each";
+
+/// Of a binary file; none where there are no four bytes.
+std::optional<std::int32_t> count_of(const std::string& bytes) {
+  if (bytes.size() < 4) return std::nullopt;
+  std::uint32_t count = 0;
+  for (std::size_t k = 4; k-- > 0;) count = count << 8 | static_cast<unsigned char>(bytes[k]);
+  return static_cast<std::int32_t>(count);
+}
+
+/// Text has no zero byte; a count below 2^24 has one.
+bool begins_as_text(const std::string& bytes) {
+  return bytes.substr(0, 4).find('\0') == std::string::npos;
+}
+
+/// Objects, lists and texts: what is wrong with them has a line and a column.
 bool looks_like_lines(const std::string& bytes) {
-  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return true;
-  if (bytes[first] != '{') return false;
-  const std::size_t second = bytes.find_first_not_of(" \t\r\n", first + 1);
-  return second == std::string::npos || bytes[second] == '"' || bytes[second] == '}';
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return first == std::string::npos || (begins_as_text(bytes) && std::strchr("{[\"", bytes[first]) != nullptr);
+}
+
+bool holds_its_count(const std::string& bytes) {
+  constexpr std::uint64_t kLeastInstance = 20;  // m, m_hard, v_max, v_pref
+  const std::optional<std::int32_t> count = count_of(bytes);
+  return count && *count >= 0 && kLeastInstance * static_cast<std::uint64_t>(*count) <= bytes.size() - 4;
+}
+
+DataError neither_format(const std::string& bytes, const std::string& file) {
+  const bool is_text = begins_as_text(bytes) || bytes.size() < 4;
+  const std::size_t at = is_text ? std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()) : 0;
+  return {DataCode::format_unknown, file, is_text ? line_and_column(bytes, at) : "byte 0",
+          is_text ? excerpt(bytes, at)
+                  : "a count of " + std::to_string(*count_of(bytes)) + " and " + std::to_string(bytes.size() - 4) +
+                        " bytes after it",
+          kBothFormats};
 }
 
 }  // namespace
 
 std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name) {
-  return looks_like_lines(bytes) ? read_lines(bytes, file_name) : read_binary(bytes, file_name);
+  if (looks_like_lines(bytes)) return read_lines(bytes, file_name);
+  if (holds_its_count(bytes)) return read_binary(bytes, file_name);
+  throw neither_format(bytes, file_name);
 }
 
 }  // namespace exactvo::datasets

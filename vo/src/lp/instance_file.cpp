@@ -39,6 +39,13 @@ class Reader {
     return value;
   }
 
+  /// The last word belongs to the last instance.
+  void need_end() {
+    if (in_.peek() == std::istream::traits_type::eof()) return;
+    throw InstanceError("byte " + std::to_string(offset_) + ", after the last instance", "more bytes",
+                        "the end of the file, as the count says");
+  }
+
   std::string place(const char* what) const {
     return "byte " + std::to_string(offset_ < 4 ? 0 : offset_ - 4) + ", " + what;
   }
@@ -122,6 +129,7 @@ std::vector<Problem> read_instances(std::istream& in) {
   if (count < 0) throw InstanceError("byte 0, count", std::to_string(count), "0 or more");
   std::vector<Problem> problems;
   for (std::int32_t k = 0; k < count; ++k) problems.push_back(read_instance(reader));
+  reader.need_end();
   return problems;
 }
 

@@ -44,7 +44,7 @@ class InstanceError : public std::runtime_error {
 /// The binary file (little endian): int32 count; then per instance int32 m, int32 m_hard (the first m_hard lines are
 /// hard), float32 v_max, v_pref x, v_pref y, and m times float32 point x, point y, direction x, direction y; allowed is
 /// the left side of the direction. The normal is the direction turned left, the offset normal . point rounded to
-/// double.
+/// double. Throws InstanceError, also where bytes follow the last instance.
 std::vector<Problem> read_instances(std::istream& in);
 
 /// Hard lines come first in the file, otherwise in order. Rounds to float. REQUIRES: a disc and no box.
