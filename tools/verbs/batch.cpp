@@ -261,6 +261,14 @@ bool goes_over_another(const Flags& flags) {
   return !flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error);
 }
 
+/// Folders that were named or walked and are not read; every rank would say the same.
+void note_earlier_batches(const BatchRun& run) {
+  if (datasets::under_mpi()) return;
+  for (const datasets::EarlierBatch& earlier : datasets::earlier_batches(run))
+    message(fmt::format("note: not read: {} holds an earlier batch ({} files); a file that is named is read",
+                        earlier.folder, earlier.files));
+}
+
 /// Nothing of this process's own to tell: the last of several puts the parts together.
 void say_incomplete(const Flags& flags, const BatchRun& run) {
   if (run.shards > 1) return message(words_of_shard(run));
@@ -278,6 +286,7 @@ ExitCode batch(const Flags& flags) {
   const BatchConfiguration configuration = configuration_of(flags);
   const BatchRun run = run_of(flags);
   const bool over_another = goes_over_another(flags);
+  note_earlier_batches(run);
   Reporter reporter;
   const auto watch = [&](const BatchProgress& progress) {
     reporter.show(progress);
@@ -302,7 +311,9 @@ ExitCode batch(const Flags& flags) {
 }
 
 void declare_run(CLI::App& app, Flags& flags) {
-  app.add_option("paths", flags.paths, "Files, and folders whose files are all read")->required();
+  app.add_option("paths", flags.paths,
+                 "Files, and folders whose files are read; outputs of earlier batches in them are not")
+      ->required();
   declare_out(app, flags.out, "Folder for the results")->required();
   app.add_option("-j,--jobs", flags.workers,
                  "Workers; as many as there are processors unless said, one a rank under mpirun")

@@ -5,11 +5,14 @@
 #include <cctype>
 #include <set>
 
+#include "exactvo/datasets/batch.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "json_text.h"
 #include "readers/readers.h"
+#include "text_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -91,9 +94,45 @@ DataError cannot_walk(const fs::path& folder, const std::error_code& error) {
   return {DataCode::file_unreadable, folder.string(), "", error.message(), "a folder whose files can be listed"};
 }
 
+/// Whether the file is a batch's summary.json or run.json: both hold these members.
+bool is_of_a_batch(const fs::path& file) {
+  if (!is_regular(file)) return false;
+  try {
+    const Json json = parse_json(read_text_file(file), file.string());
+    return json.is_object() && json.contains("configuration_sha256") && json.contains("configuration") &&
+           json.contains("inputs");
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+/// An output, or what a killed batch has left of one.
+bool is_earlier_output(const fs::path& folder) {
+  return is_of_a_batch(folder / "summary.json") || is_of_a_batch(folder / ".parts" / "run.json");
+}
+
+/// Those that are not hidden.
+std::size_t number_of_files(const fs::path& folder) {
+  std::size_t count = 0;
+  std::error_code error;
+  fs::recursive_directory_iterator at(folder, error);
+  while (!error && at != fs::recursive_directory_iterator()) {
+    std::error_code unknown;
+    const bool is_folder = at->is_directory(unknown);
+    const bool is_hidden = at->path().filename().string().rfind('.', 0) == 0;
+    if (is_folder && is_hidden) at.disable_recursion_pending();
+    if (!is_folder && !is_hidden) ++count;
+    at.increment(error);
+  }
+  if (error) throw cannot_walk(folder, error);
+  return count;
+}
+
 class Listing {
  public:
   Listing(const fs::path& out, const std::string& format) : out_(fs::weakly_canonical(out)), format_(format) {}
+
+  const std::vector<EarlierBatch>& earlier() const { return earlier_; }
 
   void add(const fs::path& path) {
     std::error_code error;
@@ -122,6 +161,7 @@ class Listing {
 
  private:
   void add_folder(const fs::path& folder) {
+    if (name_of_file(folder) == out_ || is_left_out_as_earlier(folder)) return;
     std::vector<fs::path> found = files_below(folder);
     std::sort(found.begin(), found.end());
     for (const fs::path& file : found) {
@@ -131,7 +171,7 @@ class Listing {
   }
 
   /// Links to folders are listed as they are, to be counted as what can't be read: they might lead round in circles.
-  std::vector<fs::path> files_below(const fs::path& folder) const {
+  std::vector<fs::path> files_below(const fs::path& folder) {
     std::vector<fs::path> found;
     std::error_code error;
     fs::recursive_directory_iterator at(folder, error);
@@ -141,7 +181,8 @@ class Listing {
       std::error_code unknown;  // what kind of file it is; then it is listed and refused when it is read
       const bool is_link = at->is_symlink(unknown);
       const bool is_folder = at->is_directory(unknown);
-      const bool is_left_out = path.filename().string().rfind('.', 0) == 0 || (is_folder && name_of_file(path) == out_);
+      const bool is_left_out = path.filename().string().rfind('.', 0) == 0 ||
+                               (is_folder && (name_of_file(path) == out_ || is_left_out_as_earlier(path)));
       if (is_left_out && is_folder) at.disable_recursion_pending();
       if (!is_left_out && (is_link || !is_folder)) found.push_back(path);
       at.increment(error);
@@ -150,8 +191,15 @@ class Listing {
     return found;
   }
 
+  bool is_left_out_as_earlier(const fs::path& folder) {
+    if (!is_earlier_output(folder)) return false;
+    earlier_.push_back({folder.generic_string(), number_of_files(folder)});
+    return true;
+  }
+
   fs::path out_;
   std::string format_;
+  std::vector<EarlierBatch> earlier_;
   std::vector<fs::path> files_;
   std::set<fs::path> named_;       ///< by the user: wanted, whatever else needs them
   std::set<fs::path> belongings_;  ///< of files met in a folder
@@ -177,3 +225,13 @@ std::vector<Input> list_inputs(const std::vector<fs::path>& paths, const fs::pat
 }
 
 }  // namespace exactvo::datasets::batch
+
+namespace exactvo::datasets {
+
+std::vector<EarlierBatch> earlier_batches(const BatchRun& run) {
+  batch::Listing listing(run.out, {});
+  for (const std::filesystem::path& path : run.paths) listing.add(path);
+  return listing.earlier();
+}
+
+}  // namespace exactvo::datasets

@@ -20,10 +20,11 @@ struct Input {
 };
 
 /// Files as named, folders walked in order of names. In a folder, hidden files and folders, what belongs to another
-/// file (the tables of a Shapefile, the pictures of ROS maps) and whatever is below `out` are no inputs; a file that is
-/// named is one in any case. Each file once. Links to folders and what is no regular file are inputs without a hash,
-/// never opened here. `format` is that of all files, if it is given. Throws DataError for a path that is not there
-/// (E_FILE_MISSING) and a folder that can't be walked (E_FILE_UNREADABLE).
+/// file (the tables of a Shapefile, the pictures of ROS maps), whatever is below `out` and whatever is below an earlier
+/// batch's output (`earlier_batches`, batch.h) are no inputs; a file that is named is one in any case. Each file once.
+/// Links to folders and what is no regular file are inputs without a hash, never opened here. `format` is that of all
+/// files, if it is given. Throws DataError for a path that is not there (E_FILE_MISSING) and a folder that can't be
+/// walked (E_FILE_UNREADABLE).
 std::vector<Input> list_inputs(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
                                const std::string& format = {});
 

@@ -53,7 +53,7 @@ struct BatchConfiguration {
 
 /// How it is run; none of it changes the results.
 struct BatchRun {
-  std::vector<std::filesystem::path> paths;  ///< files, and folders whose files are all taken
+  std::vector<std::filesystem::path> paths;  ///< files, and folders whose files are taken (`earlier_batches`)
   std::filesystem::path out;
   int workers = 0;        ///< 0: as many as there are processors
   bool resume = false;    ///< go on with what is in `out`
@@ -119,6 +119,17 @@ using BatchWatch = std::function<bool(const BatchProgress&)>;
 /// configuration or another version, or an input that changes under the batch (E_OTHER_RUN). Whatever is thrown, what
 /// was finished stays for a resumption.
 BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {});
+
+/// A folder that holds what a batch has written, whole or not.
+struct EarlierBatch {
+  std::string folder;
+  std::size_t files = 0;  ///< that are not read
+};
+
+/// Among the folders of `run.paths` and below: what they hold are outputs, obstacles that lie elsewhere as well, and no
+/// inputs. A folder is known by the summary.json of a finished batch or the .parts/run.json of an unfinished one.
+/// `run.out` is not listed; nor is it read. Throws DataError as `run_batch` does for paths.
+std::vector<EarlierBatch> earlier_batches(const BatchRun& run);
 
 /// Whether this process is one of several that mpirun has started, in a build with MPI.
 bool under_mpi();

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which files a batch takes: no outputs of earlier batches, wherever they lie.
+#include "batch/inputs.h"
+
+#include <gtest/gtest.h>
+
+#include "batch_files.h"
+#include "exactvo/datasets/batch.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Inputs : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    write_text(folder_ / "in" / "walls.wkt", "LINESTRING (5 5, 6 6)\n");
+    run_batch(plain_, run_to("in/earlier"));
+  }
+
+  BatchRun run_to(const std::string& out) const {
+    BatchRun run;
+    run.paths = {folder_ / "in"};
+    run.out = folder_ / out;
+    run.workers = 1;
+    return run;
+  }
+
+  /// Names below the folder, in order.
+  std::vector<std::string> names(const BatchRun& run) const {
+    std::vector<std::string> found;
+    for (const batch::Input& input : batch::list_inputs(run.paths, run.out))
+      found.push_back(fs::path(input.path).lexically_relative(folder_).generic_string());
+    return found;
+  }
+
+  BatchConfiguration plain_;
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(Inputs, AnEarlierOutputInAWalkedFolderIsNotReadAndNamed) {
+  const BatchRun run = run_to("out");
+  EXPECT_EQ(names(run), Names{"in/walls.wkt"});
+  const std::vector<EarlierBatch> earlier = earlier_batches(run);
+  ASSERT_EQ(earlier.size(), 1u);
+  EXPECT_EQ(earlier[0].folder, (folder_ / "in" / "earlier").generic_string());
+  EXPECT_EQ(earlier[0].files, output_of(folder_ / "in" / "earlier").size());
+  EXPECT_EQ(run_batch(plain_, run).summary.files.read, 1u);
+}
+
+TEST_F(Inputs, AFileOfAnEarlierOutputThatIsNamedIsRead) {
+  BatchRun run = run_to("out");
+  run.paths.push_back(folder_ / "in" / "earlier" / "obstacles.geojson");
+  EXPECT_EQ(names(run), (Names{"in/walls.wkt", "in/earlier/obstacles.geojson"}));
+}
+
+TEST_F(Inputs, AnEarlierOutputThatIsNamedIsNoFolderOfMaps) {
+  BatchRun run = run_to("out");
+  run.paths = {folder_ / "in" / "earlier"};
+  EXPECT_EQ(names(run), Names{});
+  EXPECT_EQ(earlier_batches(run).size(), 1u);
+}
+
+TEST_F(Inputs, TheBatchsOwnOutputIsNeitherReadNorNamed) {
+  const BatchRun run = run_to("in/earlier");
+  EXPECT_EQ(names(run), Names{"in/walls.wkt"});
+  EXPECT_TRUE(earlier_batches(run).empty());
+}
+
+TEST_F(Inputs, WhatAKilledBatchHasLeftIsAnOutput) {
+  fs::create_directories(folder_ / "in" / "earlier" / ".parts");
+  fs::rename(folder_ / "in" / "earlier" / "summary.json", folder_ / "in" / "earlier" / ".parts" / "run.json");
+  EXPECT_EQ(names(run_to("out")), Names{"in/walls.wkt"});
+}
+
+TEST_F(Inputs, AnotherProgramsSummaryHidesNothing) {
+  write_text(folder_ / "in" / "other" / "summary.json", "{\"inputs\": []}\n");
+  write_text(folder_ / "in" / "other" / "walls.wkt", "LINESTRING (5 5, 6 6)\n");
+  write_text(folder_ / "in" / "broken" / "summary.json", "{");
+  EXPECT_EQ(names(run_to("out")),
+            (Names{"in/broken/summary.json", "in/other/summary.json", "in/other/walls.wkt", "in/walls.wkt"}));
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test
