@@ -25,17 +25,24 @@ double doubled_area(const Ring& ring) {
   return sum;
 }
 
+double ring_area(const Ring& ring) {
+  return 0.5 * std::fabs(doubled_area(ring));
+}
+
 std::size_t count_vertices(const Ring& ring) {
   const bool is_closed = ring.size() > 1 && ring.front() == ring.back();
   return ring.size() - (is_closed ? 1 : 0);
 }
 
 RepairFacts facts_of(const std::vector<Ring>& rings) {
-  RepairFacts facts{1, rings.size(), 0, 0.0};
+  RepairFacts facts;
+  facts.polygons = 1;
+  facts.rings = rings.size();
   for (std::size_t k = 0; k < rings.size(); ++k) {
     facts.vertices += count_vertices(rings[k]);
-    facts.area += (k == 0 ? 0.5 : -0.5) * std::fabs(doubled_area(rings[k]));
+    (k == 0 ? facts.outer_area : facts.hole_area) += ring_area(rings[k]);
   }
+  facts.area = facts.outer_area - facts.hole_area;
   return facts;
 }
 
@@ -45,7 +52,11 @@ RepairFacts facts_of(const std::vector<Polygon>& polygons) {
     ++facts.polygons;
     facts.rings += 1 + polygon.holes.size();
     facts.vertices += polygon.outer.size();
-    for (const Ring& hole : polygon.holes) facts.vertices += hole.size();
+    facts.outer_area += ring_area(polygon.outer);
+    for (const Ring& hole : polygon.holes) {
+      facts.vertices += hole.size();
+      facts.hole_area += ring_area(hole);
+    }
     facts.area += area(polygon);
   }
   return facts;
@@ -152,9 +163,9 @@ void mend(const std::vector<Ring>& rings, Repair& repair) {
 }  // namespace
 
 double area(const Polygon& polygon) {
-  double doubled = std::fabs(doubled_area(polygon.outer));
-  for (const Ring& hole : polygon.holes) doubled -= std::fabs(doubled_area(hole));
-  return 0.5 * doubled;
+  double sum = ring_area(polygon.outer);
+  for (const Ring& hole : polygon.holes) sum -= ring_area(hole);
+  return sum;
 }
 
 Repair repair(const std::vector<Ring>& rings) {

@@ -129,6 +129,13 @@ TEST_F(VectorFile, BrokenGeoJsonIsALibrarysWord) {
             DataCode::library);
 }
 
+TEST_F(VectorFile, AMalformedPointHidesNoTruncation) {
+  const std::string cut = R"({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {}, "geometry": {"type": "Point"}},
+    {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coord)";
+  EXPECT_EQ(refusal_of([&] { read("a.geojson", cut); }).code(), DataCode::library);
+}
+
 TEST_F(VectorFile, CsvWithAColumnOfWkt) {
   const ObstacleFile file =
       read("a.csv", "id,WKT\n1,\"POLYGON ((0 0,1 0,1 1,0 0))\"\n2,\"LINESTRING (0 0,5 5)\"\n3,POINT (1 1)\n");
@@ -152,7 +159,17 @@ const Malformed kMalformed[] = {
     {R"({"type": "LineString", "coordinates": [0, 0, 1, 1]})", "/geometry/coordinates/0"},
     {R"({"type": "LineString", "coordinates": [[0, NaN], [1, 1], 7]})", ""},
     {R"({"type": "GeometryCollection", "geometries": [{"type": "Point", "coordinates": [1, 2]}, {"type": "Wall"}]})",
-     "/geometry/geometries/1/type"}};
+     "/geometry/geometries/1/type"},
+    {R"({"type": "Point", "coordinates": [1]})", "/geometry/coordinates"},
+    {R"({"type": "Point", "coordinates": [[1, 2], [3, 4]]})", "/geometry/coordinates"},
+    {R"({"type": "Point", "coordinates": "1 2"})", "/geometry/coordinates"},
+    {R"({"type": "Point"})", "/geometry/coordinates"},
+    {R"({"type": "LineString"})", "/geometry/coordinates"},
+    {R"({"type": "Polygon", "coordinates": [[["5", -3], [6, -3], [6, 3], [5, -3]]]})", "/geometry/coordinates/0/0"},
+    {R"({"type": "MultiPoint", "coordinates": [[1, 2], [null, 3]]})", "/geometry/coordinates/1"},
+    {R"({"type": "MultiPoint", "coordinates": [1, 2]})", "/geometry/coordinates/0"},
+    {R"({"type": "GeometryCollection", "geometries": [{"type": "Point", "coordinates": [1, "2"]}]})",
+     "/geometry/geometries/0/coordinates"}};
 
 std::string feature_place(const std::string& pointer) {
   return pointer.empty() ? "feature 0" : "feature 0, " + pointer;
@@ -189,7 +206,9 @@ TEST_F(VectorFile, AbsentAndEmptyGeometriesArePassedOver) {
   for (const char* geometry :
        {"null", R"({"type": "Polygon", "coordinates": []})", R"({"type": "Polygon", "coordinates": [[]]})",
         R"({"type": "MultiPolygon", "coordinates": []})", R"({"type": "GeometryCollection", "geometries": []})",
-        R"({"type": "Point", "coordinates": [1, 2]})", R"({"type": "Point", "coordinates": []})"}) {
+        R"({"type": "Point", "coordinates": [1, 2]})", R"({"type": "Point", "coordinates": []})",
+        R"({"type": "MultiPoint", "coordinates": []})",
+        R"({"type": "MultiPoint", "coordinates": [[1, 2, 3], [3, 4]]})"}) {
     SCOPED_TRACE(geometry);
     const ObstacleFile file = read("a.geojson", collection("\"units\": \"m\", ", geometry));
     EXPECT_EQ(file.counts.passed_over, 1u);
@@ -202,19 +221,48 @@ TEST_F(VectorFile, AMalformedPartOfAGeometryThatStandsAloneIsRefused) {
   EXPECT_EQ(refusal_of([&] { read("a.geojson", parts); }).code(), DataCode::format_syntax);
 }
 
-TEST_F(VectorFile, MalformedRecordsOfASequenceAreRefused) {
-  const auto record = [](const std::string& geometry) {
-    return R"({"type": "Feature", "properties": {}, "geometry": )" + geometry + "}\n";
-  };
+std::string record(const std::string& geometry) {
+  return R"({"type": "Feature", "properties": {}, "geometry": )" + geometry + "}\n";
+}
+
+TEST_F(VectorFile, SequencesAreReadByTheirNames) {
+  for (const char* name : {"a.geojsonl", "a.geojsons", "a.ndjson", "a.geojsonseq", "a.GeoJSONL"}) {
+    SCOPED_TRACE(name);
+    const ObstacleFile file = read(name, record(kSquare) + record("null") + "\r\n" + std::string(kSquare) + "\n");
+    EXPECT_EQ(file.obstacles.size(), 2u);
+    EXPECT_EQ(file.counts.passed_over, 1u);
+    ASSERT_TRUE(file.origin.has_value());
+    EXPECT_NEAR(file.origin->longitude, 13.001, 1e-9);
+  }
+  EXPECT_EQ(read("one.geojsonl", record(kSquare)).obstacles.size(), 1u);
+  EXPECT_EQ(read("rs.geojsonseq", "\x1e" + record(kSquare) + "\x1e" + record(kSquare)).obstacles.size(), 2u);
+}
+
+TEST_F(VectorFile, MalformedLinesOfASequenceAreToldByLineAndTheOthersRead) {
   ReadOptions options;
-  options.format = "gdal";
-  EXPECT_EQ(read("a.geojsonl", record(kSquare) + record("null"), options).obstacles.size(), 1u);
-  const DataError error =
-      refusal_of([&] { read("b.geojsonl", record(kSquare) + "\n" + record(kMalformed[0].geometry), options); });
-  expect_refusal(error, DataCode::format_syntax, "record 1, /geometry/coordinates/0/0");
-  const std::string other = R"({"type": "Poligon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]})";
-  expect_refusal(refusal_of([&] { read("c.geojsonl", record(kSquare) + other + "\n", options); }),
-                 DataCode::format_syntax, "record 1, /type");
+  options.keep_going = true;
+  const std::string text = record(kMalformed[0].geometry) + record(kSquare) + "\n{\"type\": \"Feature\", \"geom\n" +
+                           R"({"type": "Poligon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]})" + "\n" +
+                           "hello\n[1, 2]\n" + record(kSquare) +
+                           record(R"({"type": "LineString", "coordinates": [[13, NaN], [14, 52], 7]})") +
+                           R"({"type": "FeatureCollection", "features": []})" + "\n";
+  const ObstacleFile file = read("a.ndjson", text, options);
+  EXPECT_EQ(file.obstacles.size(), 2u);
+  EXPECT_EQ(file.counts.read, 9u);
+  const std::pair<const char*, DataCode> refusals[] = {{"line 1, /geometry/coordinates/0/0", DataCode::format_syntax},
+                                                       {"line 4, column 26", DataCode::json_syntax},
+                                                       {"line 5, /type", DataCode::format_syntax},
+                                                       {"line 6, column 1", DataCode::json_syntax},
+                                                       {"line 7", DataCode::format_syntax},
+                                                       {"line 9", DataCode::format_syntax},
+                                                       {"line 10, /type", DataCode::format_syntax}};
+  ASSERT_EQ(file.rejected.size(), std::size(refusals));
+  for (std::size_t k = 0; k < file.rejected.size(); ++k) {
+    EXPECT_EQ(file.rejected[k].place(), refusals[k].first) << file.rejected[k].what();
+    EXPECT_EQ(file.rejected[k].code(), refusals[k].second) << file.rejected[k].what();
+  }
+  expect_refusal(refusal_of([&] { read("b.ndjson", record(kSquare) + "{\n"); }), DataCode::json_syntax,
+                 "line 2, column 2");
 }
 
 TEST_F(VectorFile, AGeometryAmongFeaturesIsRefused) {

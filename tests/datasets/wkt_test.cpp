@@ -87,6 +87,16 @@ TEST(Wkt, WhatCannotBeReadIsPlaced) {
                  "line 1, column 1, ring 0, vertex 0");
 }
 
+TEST(Wkt, CoordinatesGoToTheFarthestAndNoFarther) {
+  // 2^100 in decimal, and the double above it.
+  EXPECT_EQ(parse("LINESTRING (1267650600228229401496703205376 0, 0 -1267650600228229401496703205376)").counts.done,
+            1u);
+  expect_refusal(refused("LINESTRING (0 0, 1267650600228229682971679916032 0)"), DataCode::out_of_range,
+                 "line 1, column 1, ring 0, vertex 1");
+  expect_refusal(refused("POLYGON ((0 0, 1 0, 1 1), (0 0, 0 0, 0 -1e200))"), DataCode::out_of_range,
+                 "line 1, column 1, ring 1, vertex 2");
+}
+
 TEST(Wkt, AnUnderflowIsNoInfinity) {
   const ObstacleFile file = parse("LINESTRING (0 1e-999, 1 1)");
   EXPECT_EQ(std::get<Polyline>(file.obstacles.at(0).shape).points[0], (Vec2{0, 0}));

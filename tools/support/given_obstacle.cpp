@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/given_obstacle.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -96,13 +94,6 @@ std::optional<ConvexShape> shape_of(const Call& call) {
   return std::nullopt;
 }
 
-void check_range(const std::string& option, const geometry::Obstacle& obstacle) {
-  for (const Vec2 v : vertices_of(obstacle)) {
-    if (std::fabs(v.x) <= kLargestGiven && std::fabs(v.y) <= kLargestGiven) continue;
-    throw UsageError(option, fmt::format("{:g} {:g}", v.x, v.y), "coordinates within 2^100 m");
-  }
-}
-
 datasets::ObstacleFile read_file(const std::string& name, const datasets::ReadOptions& options) {
   datasets::ObstacleFile file = datasets::read_obstacles(name, options);
   say_projection(file);
@@ -117,7 +108,8 @@ bool is_there(const std::string& name) {
 
 /// What begins WKT; EMPTY and Z, M are the reader's to judge.
 bool begins_wkt(const std::string& word) {
-  for (const char* known : {"POLYGON", "LINESTRING", "POINT", "MULTI", "GEOMETRYCOLLECTION", "TRIANGLE", "LINEARRING", "SRID"})
+  for (const char* known :
+       {"POLYGON", "LINESTRING", "POINT", "MULTI", "GEOMETRYCOLLECTION", "TRIANGLE", "LINEARRING", "SRID"})
     if (word.rfind(known, 0) == 0) return true;
   return false;
 }
@@ -140,10 +132,7 @@ std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::st
     return {*shape};
   }
   std::vector<GivenObstacle> given;
-  for (auto& obstacle : read(option, text, reading).obstacles) {
-    check_range(option, obstacle.shape);
-    given.emplace_back(std::move(obstacle.shape));
-  }
+  for (auto& obstacle : read(option, text, reading).obstacles) given.emplace_back(std::move(obstacle.shape));
   if (given.empty())
     throw UsageError(option, text, "a polygon or a line (a point is no obstacle, but DISC(x y, 0) is one)");
   return given;

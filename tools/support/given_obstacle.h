@@ -18,7 +18,7 @@ namespace exactvo::tools {
 using GivenObstacle = std::variant<geometry::Obstacle, geometry::ConvexShape>;
 
 /// m: coordinates and lengths go up to here, so that their squares and those of their sums stay far within doubles.
-inline constexpr double kLargestGiven = 0x1p100;
+inline constexpr double kLargestGiven = datasets::kLargestCoordinate;
 
 /// The obstacles in `text`, at least one: a file with some; WKT; `DISC(x y, r)`; `ELLIPSE(cx cy, l11 l21 l22)`, the set
 /// c + L w with |w| <= 1 and L = [l11 0; l21 l22], exactly as given; `ELLIPSE(cx cy, a b, degrees)`, semi-axes and the

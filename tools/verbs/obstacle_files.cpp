@@ -47,6 +47,15 @@ FileAnswer read_one(const std::string& file, const datasets::ReadOptions& option
   }
 }
 
+OrderedJson pair_json(geometry::Vec2 p) {
+  return {json_number(p.x), json_number(p.y)};
+}
+
+/// The place in the file's own numbers, which are metres unless said.
+OrderedJson in_file_json(const RingFinding& f) {
+  return pair_json(f.in_file ? f.in_file->where : f.where);
+}
+
 OrderedJson problem_json(const RingFinding& f) {
   return {{"code", datasets::code_name(f.code)},
           {"place", f.place},
@@ -55,6 +64,8 @@ OrderedJson problem_json(const RingFinding& f) {
           {"vertex", f.vertex},
           {"x", json_number(f.where.x)},
           {"y", json_number(f.where.y)},
+          {"in_file", in_file_json(f)},
+          {"at_vertex", pair_json(f.at_vertex)},
           {"found", datasets::words_of(f)},
           {"mended", f.mended}};
 }
@@ -93,6 +104,13 @@ OrderedJson notes_json(const FileAnswer& answer) {
     if (!note.code) notes.push_back(note.place.empty() ? note.text : note.place + ": " + note.text);
   }
   return notes;
+}
+
+/// Where degrees were projected to metres: round what place.
+OrderedJson origin_json(const FileAnswer& answer) {
+  if (!answer.content || !answer.content->origin) return nullptr;
+  return {{"longitude", json_number(answer.content->origin->longitude)},
+          {"latitude", json_number(answer.content->origin->latitude)}};
 }
 
 OrderedJson code_of(const FileAnswer& answer) {
@@ -182,6 +200,7 @@ OrderedJson json_of(const FileAnswer& answer) {
   json["code"] = code_of(answer);
   json["counts"] = answer.content ? json_of(answer.content->counts) : OrderedJson(nullptr);
   json["problems"] = problems_json(answer);
+  json["origin"] = origin_json(answer);
   json["notes"] = notes_json(answer);
   return json;
 }
@@ -191,7 +210,7 @@ std::string lines_of(const FileAnswer& answer, bool with_mended) {
   std::string text;
   for (const RingFinding& f : answer.content->findings) {
     if (f.mended && !with_mended) continue;
-    text += shown(fmt::format("{}: {}: ({}, {}): {} [{}]{}", answer.file, f.place, f.where.x, f.where.y,
+    text += shown(fmt::format("{}: {}: {}: {} [{}]{}", answer.file, f.place, datasets::words_of_place(f),
                               datasets::words_of(f), datasets::code_name(f.code), f.mended ? ", mended" : "")) +
             "\n";
   }

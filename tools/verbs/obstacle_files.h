@@ -61,11 +61,13 @@ std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const d
 std::string verdict_of(const FileAnswer& answer);
 
 /// {"file", "format", "verdict", "code" (of the first refusal), "counts", "problems": [{"code", "place", "feature",
-/// "ring", "vertex", "x", "y", "found", "mended"}], "notes"}. What is no ring's has "code", "place", "found",
+/// "ring", "vertex", "x", "y", "in_file", "at_vertex", "found", "mended"}], "origin", "notes"}: x and y in metres,
+/// "in_file" the same place in the file's own numbers (longitude, latitude), "at_vertex" the vertex as it is written.
+/// "origin" is round what place degrees were projected, or null. What is no ring's has "code", "place", "found",
 /// "expected" and "mended". A number that is not finite is null.
 OrderedJson json_of(const FileAnswer& answer);
 
-/// A line a problem: "FILE: PLACE: (x, y): what is wrong [E_CODE], mended". `with_mended`: also those.
+/// A line a problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], mended". `with_mended`: also those.
 std::string lines_of(const FileAnswer& answer, bool with_mended);
 
 /// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 passed over, 0 rejected".

@@ -94,7 +94,9 @@ OrderedJson json_of(const RepairFacts& facts) {
   return {{"polygons", facts.polygons},
           {"rings", facts.rings},
           {"vertices", facts.vertices},
-          {"area", json_number(facts.area)}};
+          {"area", facts.area < 0.0 ? OrderedJson(nullptr) : json_number(facts.area)},
+          {"outer_area", json_number(facts.outer_area)},
+          {"hole_area", json_number(facts.hole_area)}};
 }
 
 OrderedJson json_of(const RepairRecord& r) {
@@ -112,20 +114,12 @@ OrderedJson json_of(const RepairRecord& r) {
   return json;
 }
 
-/// Where degrees were projected to metres: round what place.
-OrderedJson origin_json(const FileAnswer& answer) {
-  if (!answer.content || !answer.content->origin) return nullptr;
-  return {{"longitude", json_number(answer.content->origin->longitude)},
-          {"latitude", json_number(answer.content->origin->latitude)}};
-}
-
 std::string to_json(const std::vector<FileAnswer>& answers) {
   OrderedJson json;
   json["mended"] = exit_code(answers) == ExitCode::success;
   json["files"] = OrderedJson::array();
   for (const FileAnswer& answer : answers) {
     OrderedJson file = tools::json_of(answer);
-    file["origin"] = origin_json(answer);
     file["repairs"] = OrderedJson::array();
     if (answer.content) {
       for (const RepairRecord& record : answer.content->repairs) file["repairs"].push_back(json_of(record));
@@ -141,13 +135,31 @@ std::string codes_of(const RepairRecord& r) {
   return text;
 }
 
-std::string words_of(const std::string& file, const RepairRecord& r) {
-  const std::string start = shown(file + ": " + r.place + ": " + codes_of(r));
-  if (r.refused) return fmt::format("{}: not mended: {}\n", start, datasets::code_name(*r.refused));
-  return fmt::format("{}: {} -> {} polygons, {} -> {} rings, {} -> {} vertices, area {:.9g} -> {:.9g} m^2{}\n", start,
-                     r.before.polygons, r.after.polygons, r.before.rings, r.after.rings, r.before.vertices,
-                     r.after.vertices, r.before.area, r.after.area,
-                     r.recombined ? fmt::format(", crossings moved by {:.3g} m", r.moved) : "");
+/// Of the first problem that has more than one right answer.
+std::string words_of_place(const ObstacleFile& file, const RepairRecord& r) {
+  using datasets::DataCode;
+  for (const datasets::RingFinding& f : file.findings) {
+    const bool is_plain =
+        f.code == DataCode::unclosed || f.code == DataCode::repeated_vertex || f.code == DataCode::clockwise;
+    if (f.feature == r.place && !is_plain)
+      return fmt::format("ring {}, vertex {}, {}", f.ring, f.vertex, words_of_place(f));
+  }
+  return "";
+}
+
+std::string words_of_holes(const RepairFacts& before, const RepairFacts& after) {
+  const auto holes = [](const RepairFacts& facts) { return facts.rings - facts.polygons; };
+  if (holes(before) + holes(after) == 0) return "";
+  return fmt::format("; holes {} -> {}, within them {:.9g} -> {:.9g} m^2", holes(before), holes(after),
+                     before.hole_area, after.hole_area);
+}
+
+std::string words_of(const ObstacleFile& file, const RepairRecord& r) {
+  const std::string start = shown(file.file + ": " + r.place + ": " + codes_of(r) + ": " + words_of_place(file, r));
+  return fmt::format("{}: polygons {} -> {}, vertices {} -> {}, within outer rings {:.9g} -> {:.9g} m^2{}{}\n", start,
+                     r.before.polygons, r.after.polygons, r.before.vertices, r.after.vertices, r.before.outer_area,
+                     r.after.outer_area, words_of_holes(r.before, r.after),
+                     r.moved > 0.0 ? fmt::format("; crossings moved by {:.3g} m at most", r.moved) : "");
 }
 
 /// The codes of all repairs with how often each was met: what most people want of a file with thousands.
@@ -159,13 +171,26 @@ std::string tally_of(const ObstacleFile& file) {
   return text;
 }
 
-/// Winding, closure and repeated vertices are told by their number only.
+/// More than its winding, closure and repeated vertices: those are told by their number only.
+bool is_told(const RepairRecord& r) {
+  return !r.refused && (r.recombined || r.before.rings != r.after.rings);
+}
+
+void note_areas(const ObstacleFile& file) {
+  const auto is_cut = [](const RepairRecord& r) { return is_told(r) && r.recombined; };
+  if (std::any_of(file.repairs.begin(), file.repairs.end(), is_cut))
+    message("note: areas before are by the shoelace formula, in which loops of opposite winding cancel");
+}
+
 void print_report(const std::vector<FileAnswer>& answers) {
   for (const FileAnswer& answer : answers) {
     if (!answer.content) continue;  // said as an error
     for (const RepairRecord& record : answer.content->repairs) {
-      if (record.recombined || record.refused) print(words_of(answer.file, record));
+      if (is_told(record)) print(words_of(*answer.content, record));
     }
+    for (const datasets::DataError& error : answer.content->rejected)
+      print("not mended: " + shown(error.what()) + "\n");
+    note_areas(*answer.content);
     const std::string tally = tally_of(*answer.content);
     message(counts_line(answer) + (tally.empty() ? "" : ";" + tally));
   }

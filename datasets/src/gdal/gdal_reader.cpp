@@ -2,11 +2,14 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 
 #include "gdal/gdal_session.h"
+#include "gdal/geojson_sequence.h"
 #include "gdal/geojson_shape.h"
 #include "json_text.h"
 #include "readers/readers.h"
@@ -81,28 +84,45 @@ struct Box {
   }
 };
 
-/// To a millionth of a degree (0.1 m): a centre that people can copy.
-double rounded_degrees(double degrees) {
-  return std::round(degrees * 1e6) / 1e6;
+/// A millionth of a degree (0.1 m): a centre that people can copy. A billionth (0.1 mm): a place to zoom to.
+constexpr double kCentreDecimals = 1e6;
+constexpr double kCrossingDecimals = 1e9;
+
+double rounded_degrees(double degrees, double decimals) {
+  return std::round(degrees * decimals) / decimals;
 }
 
 /// Characters of a text that is no geometry.
 constexpr std::size_t kShownText = 40;
 
+/// A sequence whose first line is malformed is one that GDAL does not know.
+bool is_sequence_name(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const char* const known[] = {".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
+  return std::find(std::begin(known), std::end(known), extension) != std::end(known);
+}
+
 class VectorReader {
  public:
   VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out) {
     data_ = open_vectors(path);
-    refuse_complaints("", data_ == nullptr);
-    if (driver() == "GeoJSONSeq") refuse_faulty_records(path);
+    if (data_ == nullptr ? is_sequence_name(path) : driver() == "GeoJSONSeq") {
+      complaints_.take_failure();  // of the first bad line, which is told by its number
+      data_.reset();
+    } else {
+      set_malformed_aside();
+      refuse_complaints("", data_ == nullptr);
+    }
   }
 
   void read() {
-    for (int k = 0; k < data_->GetLayerCount(); ++k) {
-      layer_ = data_->GetLayer(k);
+    for (int k = 0; k < layers(); ++k) {
+      layer_ = is_sequence() ? nullptr : data_->GetLayer(k);
       settle_coordinates();
-      for_each_feature([this](const OGRFeature& feature, std::size_t number) { add(feature, number); });
+      for_each_feature([this](const Item& item) { add(item); });
     }
+    if (!malformed_.empty() && !has_told_malformed_) refuse_malformed();
     note_extent();
     for (const std::string& words : complaints_.take_warnings()) out_.note("", words);
   }
@@ -116,15 +136,53 @@ class VectorReader {
                     words.empty() ? "a file that no vector driver reads" : words, "a vector file that GDAL reads");
   }
 
+  /// What a layer or a sequence holds, one after the other.
+  struct Item {
+    std::size_t number = 0;
+    std::string place;
+    const OGRGeometry* shape = nullptr;
+    const OGRFeature* feature = nullptr;  ///< none of a sequence
+    const DataError* fault = nullptr;     ///< of a sequence
+  };
+
+  /// GDAL's driver would leave malformed lines out; they are read here.
+  bool is_sequence() const { return data_ == nullptr; }
+  int layers() const { return is_sequence() ? 1 : data_->GetLayerCount(); }
+  std::string layer_name() const { return is_sequence() ? "" : layer_->GetName(); }
+
+  template <class Action>
+  void for_each_record(Action action) {
+    GeoJsonSequence sequence(path_);
+    std::size_t number = 0;
+    while (const std::optional<GeoJsonRecord> record = sequence.next()) {
+      complaints_.take_failure();  // of its parser: the record's fault says it
+      action(Item{number++, record->place, record->shape.get(), nullptr, record->fault ? &*record->fault : nullptr});
+    }
+  }
+
+  /// GeoJSON's malformed geometries are looked at one by one (`lost_geometry`), and GDAL goes on after them.
+  void set_malformed_aside() {
+    if (data_ == nullptr || driver() != "GeoJSON") return;
+    const std::string words = complaints_.take_malformed();
+    if (malformed_.empty()) malformed_ = words;
+  }
+
+  [[noreturn]] void refuse_malformed() const {
+    throw DataError(DataCode::library, path_.string(), "", malformed_, "a vector file that GDAL reads");
+  }
+
   template <class Action>
   void for_each_feature(Action action) {
+    if (is_sequence()) return for_each_record(action);
     layer_->ResetReading();
     std::size_t number = 0;
     while (const std::unique_ptr<OGRFeature> feature{layer_->GetNextFeature()}) {
-      const std::string place = "feature " + std::to_string(number);
-      refuse_complaints(place);
-      action(*feature, number++);
+      set_malformed_aside();
+      refuse_complaints("feature " + std::to_string(number));
+      action(Item{number, place_of(number), feature->GetGeometryRef(), feature.get(), nullptr});
+      ++number;
     }
+    set_malformed_aside();
     refuse_complaints("after feature " + std::to_string(number));
   }
 
@@ -139,8 +197,8 @@ class VectorReader {
         }
       }
     };
-    for_each_feature([&](const OGRFeature& feature, std::size_t) {
-      if (const OGRGeometry* shape = feature.GetGeometryRef()) visit(*shape, visitor);
+    for_each_feature([&](const Item& item) {
+      if (item.shape != nullptr) visit(*item.shape, visitor);
     });
     return box;
   }
@@ -148,8 +206,9 @@ class VectorReader {
   /// What the numbers of this layer mean: sets `scale_` or `to_metres_`.
   void settle_coordinates() {
     to_metres_.reset();
+    from_metres_.reset();
     scale_ = 1.0;
-    const OGRSpatialReference* system = layer_->GetSpatialRef();
+    const OGRSpatialReference* system = is_sequence() ? OGRSpatialReference::GetWGS84SRS() : layer_->GetSpatialRef();
     const Units units = units_of_layer();
     if (units == Units::metres) return note_units("metres: " + reason_);
     if (units == Units::automatic && system == nullptr) return note_units("taken as metres: names no reference system");
@@ -174,9 +233,7 @@ class VectorReader {
     return text;
   }
 
-  void note_units(const std::string& words) {
-    out_.note(data_->GetLayerCount() > 1 ? std::string("layer ") + layer_->GetName() : "", words);
-  }
+  void note_units(const std::string& words) { out_.note(layers() > 1 ? "layer " + layer_name() : "", words); }
 
   void note_extent() {
     if (!out_.extent()) return;
@@ -195,7 +252,7 @@ class VectorReader {
 
   Units units_of_geojson() {
     reason_ = "GeoJSON that says nothing of units (RFC 7946)";
-    const char* native = layer_->GetMetadataItem("NATIVE_DATA", "NATIVE_DATA");
+    const char* native = is_sequence() ? nullptr : layer_->GetMetadataItem("NATIVE_DATA", "NATIVE_DATA");
     if (native == nullptr) return Units::automatic;
     const Json members = parse_json(native, path_.string());
     const auto units = members.find("units");
@@ -206,12 +263,12 @@ class VectorReader {
     throw DataError(DataCode::not_an_option, path_.string(), "/units", described(*units), "\"m\" or \"degrees\"");
   }
 
-  std::string driver() const { return data_->GetDriverName(); }
+  std::string driver() const { return is_sequence() ? "GeoJSONSeq" : data_->GetDriverName(); }
   bool is_geojson() const { return driver().find("GeoJSON") == 0; }
 
   void settle_impossible_degrees(Units units) {
     if (units == Units::degrees || !is_geojson()) {
-      throw DataError(DataCode::projection, path_.string(), layer_->GetName(),
+      throw DataError(DataCode::projection, path_.string(), layer_name(),
                       "coordinates beyond 180 degrees east or 90 north", "longitudes and latitudes");
     }
     note_units("taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
@@ -219,7 +276,8 @@ class VectorReader {
 
   void project_round(const Box& box, OGRSpatialReference from) {
     if (!origin_) {
-      origin_ = {rounded_degrees((box.low.x + box.high.x) / 2), rounded_degrees((box.low.y + box.high.y) / 2)};
+      origin_ = {rounded_degrees((box.low.x + box.high.x) / 2, kCentreDecimals),
+                 rounded_degrees((box.low.y + box.high.y) / 2, kCentreDecimals)};
       out_.set_origin(*origin_);
     }
     from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -227,34 +285,41 @@ class VectorReader {
     local.CopyGeogCSFrom(&from);
     local.SetAE(origin_->latitude, origin_->longitude, 0.0, 0.0);
     to_metres_.reset(OGRCreateCoordinateTransformation(&from, &local));
-    refuse_complaints(layer_->GetName(), to_metres_ == nullptr);
+    refuse_complaints(layer_name(), to_metres_ == nullptr);
   }
 
   void bring_to_metres(geometry::Ring& ring, const std::string& place) {
     for (geometry::Vec2& p : ring) {
       if (!geometry::is_finite(p)) continue;
+      const geometry::Vec2 written = p;
       if (to_metres_ == nullptr) {
         p = scale_ * p;
       } else if (!to_metres_->Transform(1, &p.x, &p.y)) {
         complaints_.take_failure();
-        throw DataError(DataCode::projection, path_.string(), place, "a point that has no place on the local plane",
+        throw DataError(DataCode::projection, path_.string(), place,
+                        "a point that has no place on the local plane: " + number(written.x) + ", " + number(written.y),
                         "coordinates near each other");
       }
     }
   }
 
-  void add(const OGRFeature& feature, std::size_t number) {
-    const std::string place = place_of(number);
-    if (const std::optional<DataError> lost = lost_geometry(feature, place)) return out_.reject(*lost);
-    const OGRGeometry* shape = feature.GetGeometryRef();
-    if (shape == nullptr) return out_.pass_over(place, "a feature without geometry passed over");
+  void add(const Item& item) {
+    const std::string& place = item.place;
+    if (item.fault != nullptr) return out_.reject(*item.fault);
+    if (item.feature != nullptr) {
+      if (const std::optional<DataError> lost = lost_geometry(*item.feature, place)) {
+        has_told_malformed_ = true;
+        return out_.reject(*lost);
+      }
+    }
+    if (item.shape == nullptr) return out_.pass_over(place, "a feature without geometry passed over");
     std::size_t part = 0;
     Visitor visitor;
     visitor.other = [&](const std::string& words) { out_.pass_over(place, words); };
     visitor.shape = [&](RawKind kind, std::vector<geometry::Ring> rings) {
-      hand_on(number, part++, place, kind, std::move(rings));
+      hand_on(item.number, part++, place, kind, std::move(rings));
     };
-    visit(*shape, visitor);
+    visit(*item.shape, visitor);
   }
 
   /// GDAL says nothing of a geometry that it cannot make out, or of the parts of one.
@@ -293,9 +358,25 @@ class VectorReader {
     return column < 0 ? "" : feature.GetFieldAsString(column);
   }
 
+  AsWritten as_written(const std::vector<geometry::Ring>& rings) {
+    if (to_metres_ == nullptr) return {rings, [scale = scale_](geometry::Vec2 p) { return p / scale; }, false};
+    return {rings, [this](geometry::Vec2 p) { return back_to_degrees(p); }, true};
+  }
+
+  /// For people: a crossing that rounding moved.
+  geometry::Vec2 back_to_degrees(geometry::Vec2 p) {
+    if (from_metres_ == nullptr) from_metres_.reset(to_metres_->GetInverse());
+    if (from_metres_ == nullptr || !from_metres_->Transform(1, &p.x, &p.y)) {
+      complaints_.take_failure();
+      constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+      return {kNowhere, kNowhere};
+    }
+    return {rounded_degrees(p.x, kCrossingDecimals), rounded_degrees(p.y, kCrossingDecimals)};
+  }
+
   std::string place_of(std::size_t number) const {
     const std::string feature = "feature " + std::to_string(number);
-    return data_->GetLayerCount() > 1 ? std::string("layer ") + layer_->GetName() + ", " + feature : feature;
+    return layers() > 1 ? "layer " + layer_name() + ", " + feature : feature;
   }
 
   void hand_on(std::size_t number, std::size_t part, const std::string& place, RawKind kind,
@@ -303,9 +384,10 @@ class VectorReader {
     RawGeometry raw;
     raw.kind = kind;
     raw.id = std::to_string(number) + (part > 0 ? "." + std::to_string(part) : "");
-    if (data_->GetLayerCount() > 1) raw.id = std::string(layer_->GetName()) + "/" + raw.id;
+    if (layers() > 1) raw.id = layer_name() + "/" + raw.id;
     raw.place = place + (part > 0 ? ", part " + std::to_string(part) : "");
     raw.rings = std::move(rings);
+    if (to_metres_ != nullptr || scale_ != 1.0) raw.as_written = as_written(raw.rings);
     try {
       for (geometry::Ring& ring : raw.rings) bring_to_metres(ring, raw.place);
     } catch (const DataError& error) {
@@ -317,12 +399,15 @@ class VectorReader {
   std::filesystem::path path_;
   Collector& out_;
   GdalComplaints complaints_;
+  std::string malformed_;            ///< GDAL's words of a geometry of GeoJSON
+  bool has_told_malformed_ = false;  ///< in words of our own, with the feature
   std::unique_ptr<GDALDataset> data_;
   OGRLayer* layer_ = nullptr;
   std::optional<ProjectionOrigin> origin_;  ///< one for all layers
   double scale_ = 1.0;                      ///< m a unit
   std::string reason_;                      ///< why the layer's units are what they are
   std::unique_ptr<OGRCoordinateTransformation> to_metres_;
+  std::unique_ptr<OGRCoordinateTransformation> from_metres_;  ///< made when a place is to be named
 };
 
 /// As our own XML readers do. Entities are declared before the first element; what is hidden behind a longer comment is

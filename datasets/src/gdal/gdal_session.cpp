@@ -4,6 +4,7 @@
 #include <cpl_conv.h>
 
 #include <mutex>
+#include <string_view>
 #include <utility>
 
 #include "exactvo/datasets/obstacle_file.h"
@@ -54,12 +55,21 @@ GdalComplaints::~GdalComplaints() {
 
 void CPL_STDCALL GdalComplaints::hear(CPLErr severity, CPLErrorNum, const char* words) {
   auto& self = *static_cast<GdalComplaints*>(CPLGetErrorHandlerUserData());
-  if (severity == CE_Failure && self.failure_.empty()) self.failure_ = words;
+  if (severity == CE_Failure) {
+    std::string& first = std::string_view(words).rfind("Invalid ", 0) == 0 ? self.malformed_ : self.failure_;
+    if (first.empty()) first = words;
+  }
   if (severity == CE_Warning) self.warnings_.emplace_back(words);
 }
 
 std::string GdalComplaints::take_failure() {
-  return std::exchange(failure_, {});
+  const std::string malformed = take_malformed();
+  const std::string failure = std::exchange(failure_, {});
+  return failure.empty() ? malformed : failure;
+}
+
+std::string GdalComplaints::take_malformed() {
+  return std::exchange(malformed_, {});
 }
 
 std::vector<std::string> GdalComplaints::take_warnings() {

@@ -21,14 +21,17 @@ class GdalComplaints {
   GdalComplaints(const GdalComplaints&) = delete;
   GdalComplaints& operator=(const GdalComplaints&) = delete;
 
-  /// The first failure since the last call, or "".
+  /// The first failure since the last call, or ""; one that a geometry is malformed comes after all others.
   std::string take_failure();
+  /// The first one that a geometry is malformed (GDAL's words begin with "Invalid "), or "". Others stay.
+  std::string take_malformed();
   std::vector<std::string> take_warnings();
 
  private:
   static void CPL_STDCALL hear(CPLErr severity, CPLErrorNum number, const char* words);
 
   std::string failure_;
+  std::string malformed_;
   std::vector<std::string> warnings_;
 };
 

@@ -4,8 +4,6 @@
 #include <cpl_port.h>
 
 #include <algorithm>
-#include <fstream>
-#include <utility>
 
 #include "readers/readers.h"
 
@@ -85,17 +83,11 @@ Fault fault_of_geometry(const Json& geometry, const std::string& pointer, int de
     return GeoJsonFault{pointer + "/type", word == geometry.end() ? "nothing" : described(*word), kTypeNames};
   }
   if (type->depth < 0) return fault_of_collection(geometry, pointer, depth);
-  if (is_name(geometry["type"], "Point") || is_name(geometry["type"], "MultiPoint")) return std::nullopt;
   const auto coordinates = geometry.find("coordinates");
   if (coordinates == geometry.end()) return GeoJsonFault{pointer + "/coordinates", "nothing", "an array"};
+  const bool is_empty_point = type->depth == 0 && coordinates->is_array() && coordinates->empty();
+  if (is_empty_point) return std::nullopt;
   return fault_of_coordinates(*coordinates, type->depth, pointer + "/coordinates");
-}
-
-Fault fault_of_record(const Json& record) {
-  const bool feature = record.is_object() && record.contains("type") && is_name(record["type"], "Feature");
-  if (feature || (record.is_object() && type_of(record) != nullptr)) return geojson_fault(record);
-  const bool named = record.is_object() && record.contains("type");
-  return GeoJsonFault{named ? "/type" : "", described(named ? record["type"] : record), "a feature or a geometry"};
 }
 
 /// GDAL takes attributes in any encoding; the shape needs only ASCII.
@@ -105,14 +97,9 @@ Json parsed(std::string text) {
   return Json::parse(text, nullptr, false);
 }
 
-/// Of a geometry that is no point.
 bool holds_position(const Json& geometry) {
   const Type* type = type_of(geometry);
-  return type != nullptr && type->depth > 0 && geometry.contains("coordinates") && !geometry["coordinates"].empty();
-}
-
-bool is_blank(const std::string& text) {
-  return text.find_first_not_of(" \t\r\n") == std::string::npos;
+  return type != nullptr && type->depth >= 0 && geometry.contains("coordinates") && !geometry["coordinates"].empty();
 }
 
 }  // namespace
@@ -135,25 +122,17 @@ std::optional<GeoJsonFault> geojson_fault(const std::string& record, bool read) 
   return GeoJsonFault{"", "coordinates that are no JSON", "finite numbers"};
 }
 
-std::string place_within(const GeoJsonFault& fault) {
-  return fault.pointer.empty() ? "" : ", " + fault.pointer;
+std::optional<GeoJsonFault> fault_of_record(const std::string& text) {
+  const Json record = parsed(text);
+  if (record.is_discarded()) return std::nullopt;
+  const bool feature = record.is_object() && record.contains("type") && is_name(record["type"], "Feature");
+  if (feature || (record.is_object() && type_of(record) != nullptr)) return geojson_fault(record);
+  const bool named = record.is_object() && record.contains("type");
+  return GeoJsonFault{named ? "/type" : "", described(named ? record["type"] : record), "a feature or a geometry"};
 }
 
-void refuse_faulty_records(const std::filesystem::path& path) {
-  constexpr char kRecordSeparator = '\x1e';
-  std::ifstream file(path, std::ios::binary);
-  const char end = file.peek() == kRecordSeparator ? kRecordSeparator : '\n';
-  std::string text;
-  for (std::size_t number = 0; std::getline(file, text, end);) {
-    if (is_blank(text)) continue;
-    const Json json = parsed(text);
-    const Fault fault = json.is_discarded() ? std::nullopt : fault_of_record(json);
-    if (fault) {
-      throw DataError(DataCode::format_syntax, path.string(), "record " + std::to_string(number) + place_within(*fault),
-                      fault->found, fault->expected);
-    }
-    ++number;
-  }
+std::string place_within(const GeoJsonFault& fault) {
+  return fault.pointer.empty() ? "" : ", " + fault.pointer;
 }
 
 }  // namespace exactvo::datasets

@@ -5,7 +5,6 @@
 /// GDAL gives no geometry, or one with parts missing, where GeoJSON's coordinates are malformed, and says nothing: an
 /// obstacle would vanish. What the text holds is therefore looked at here, by RFC 7946, section 3.1.
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -20,18 +19,17 @@ struct GeoJsonFault {
 };
 
 /// The first fault of a feature's geometry, or of a geometry that stands alone. None where there is no geometry, or an
-/// empty one; points are not looked at: they are no obstacles.
+/// empty one. A point is no obstacle, but a malformed one may have been meant for something else.
 std::optional<GeoJsonFault> geojson_fault(const Json& record);
 
 /// The same of text. What does not parse (GDAL takes NaN and Infinity) is a fault only where coordinates were not
 /// `read`.
 std::optional<GeoJsonFault> geojson_fault(const std::string& record, bool read);
 
+/// The same of a record of a sequence, which is a feature or a geometry. None where the text does not parse.
+std::optional<GeoJsonFault> fault_of_record(const std::string& text);
+
 /// ", /geometry/coordinates/0" or "", to be put behind the record's place.
 std::string place_within(const GeoJsonFault& fault);
-
-/// Throws DataError (E_FORMAT_SYNTAX) for the first faulty record of a file of lines, or of records begun by RS (RFC
-/// 8142), and for a record that is neither feature nor geometry: GDAL leaves those out.
-void refuse_faulty_records(const std::filesystem::path& path);
 
 }  // namespace exactvo::datasets

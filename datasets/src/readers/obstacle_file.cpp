@@ -12,9 +12,9 @@
 namespace exactvo::datasets {
 namespace {
 
-constexpr std::array<const char*, 15> kVectorExtensions{".geojson", ".json", ".shp", ".dbf", ".gpkg",
-                                                        ".fgb",     ".csv",  ".osm", ".pbf", ".dxf",
-                                                        ".kml",     ".gml",  ".gpx", ".tab", ".topojson"};
+constexpr std::array<const char*, 19> kVectorExtensions{
+    ".geojson", ".json", ".shp", ".dbf", ".gpkg",     ".fgb",      ".csv",      ".osm",        ".pbf",   ".dxf",
+    ".kml",     ".gml",  ".gpx", ".tab", ".topojson", ".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
 
 Glimpse glimpse_of(const std::filesystem::path& path) {
   Glimpse glimpse;

@@ -2,6 +2,7 @@
 #include "readers/raw_geometry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "exactvo/geometry/even_odd.h"
@@ -10,12 +11,14 @@
 namespace exactvo::datasets {
 namespace {
 
+std::string number(double value) {
+  std::string text;
+  append_number(text, value);
+  return text;
+}
+
 std::string coordinates(geometry::Vec2 p) {
-  std::string text = "(";
-  append_number(text, p.x);
-  text += ", ";
-  append_number(text, p.y);
-  return text + ")";
+  return "(" + number(p.x) + ", " + number(p.y) + ")";
 }
 
 const char* words_for(DataCode code) {
@@ -34,6 +37,8 @@ const char* words_for(DataCode code) {
       return "a ring without area";
     case DataCode::self_intersection:
       return "a ring that crosses or touches itself";
+    case DataCode::out_of_range:
+      return "a coordinate beyond 2^100 m";
     default:
       return "a hole that is not inside its polygon or meets another ring";
   }
@@ -65,6 +70,8 @@ const char* expectation(DataCode code) {
       return "a ring that encloses some area";
     case DataCode::self_intersection:
       return "a simple ring";
+    case DataCode::out_of_range:
+      return "coordinates within 2^100 m, 1.27e30 m, of (0, 0)";
     default:
       return "holes inside their polygon, apart from each other";
   }
@@ -74,7 +81,7 @@ const char* expectation(DataCode code) {
 std::string words_for_where(const RingFinding& finding) {
   const bool is_pointer = finding.place.rfind('/', 0) == 0;
   const std::string vertex = is_pointer ? "vertex " + std::to_string(finding.vertex) + ", " : "";
-  return " at " + vertex + coordinates(finding.where);
+  return " at " + vertex + words_of_place(finding);
 }
 
 /// A polygon's JSON needs no repeated first point, so its absence is no repair worth a note there.
@@ -108,13 +115,51 @@ DataError repair_refusal(DataCode code, const std::string& file, const std::stri
   }
 }
 
+RingFinding finding_at(DataCode code, const RawGeometry& raw, const geometry::RingProblem& at) {
+  RingFinding finding;
+  finding.code = code;
+  finding.place = place_of_vertex(raw, at.ring, at.vertex);
+  finding.feature = raw.place;
+  finding.where = at.where;
+  finding.ring = at.ring;
+  finding.vertex = at.vertex;
+  finding.mended = at.mended;
+  finding.at_vertex = at.where;
+  const geometry::Ring& ring = raw.rings[at.ring];
+  if (ring.empty()) return finding;
+  const bool is_vertex = !geometry::is_finite(at.where) || at.where == ring.at(at.vertex);
+  finding.at_vertex = raw.as_written ? raw.as_written->rings[at.ring][at.vertex] : ring[at.vertex];
+  if (!raw.as_written) return finding;
+  finding.in_file =
+      PlaceInFile{is_vertex ? finding.at_vertex : raw.as_written->from_metres(at.where), raw.as_written->is_degrees};
+  return finding;
+}
+
 std::vector<RingFinding> findings_of(const std::vector<geometry::RingProblem>& problems, const RawGeometry& raw) {
   std::vector<RingFinding> findings;
   for (const geometry::RingProblem& problem : problems) {
     const DataCode code = data_code(problem.code);
     if (problem.mended && !is_worth_a_note(raw, code)) continue;
-    const std::string place = place_of_vertex(raw, problem.ring, problem.vertex);
-    findings.push_back({code, place, raw.place, problem.where, problem.ring, problem.vertex, problem.mended});
+    findings.push_back(finding_at(code, raw, problem));
+  }
+  return findings;
+}
+
+/// The first coordinate beyond kLargestCoordinate of each ring; what is not finite is another problem.
+std::vector<RingFinding> far_findings(const RawGeometry& raw) {
+  const auto is_far = [](geometry::Vec2 p) {
+    return geometry::is_finite(p) && std::max(std::fabs(p.x), std::fabs(p.y)) > kLargestCoordinate;
+  };
+  std::vector<RingFinding> findings;
+  for (std::size_t k = 0; k < raw.rings.size(); ++k) {
+    const geometry::Ring& ring = raw.rings[k];
+    const auto far = std::find_if(ring.begin(), ring.end(), is_far);
+    if (far == ring.end()) continue;
+    geometry::RingProblem at{};
+    at.ring = k;
+    at.vertex = static_cast<std::size_t>(far - ring.begin());
+    at.where = *far;
+    findings.push_back(finding_at(DataCode::out_of_range, raw, at));
   }
   return findings;
 }
@@ -123,6 +168,18 @@ std::vector<RingFinding> findings_of(const std::vector<geometry::RingProblem>& p
 
 const char* words_of(const RingFinding& finding) {
   return words_for(finding.code);
+}
+
+std::string words_of_place(const RingFinding& finding) {
+  const auto named = [&](geometry::Vec2 p) {
+    if (!finding.in_file || !finding.in_file->is_degrees) return coordinates(p);
+    return "longitude " + number(p.x) + ", latitude " + number(p.y);
+  };
+  const geometry::Vec2 where = finding.in_file ? finding.in_file->where : finding.where;
+  std::string text = named(where);
+  if (finding.in_file) text += " (" + number(finding.where.x) + ", " + number(finding.where.y) + " m)";
+  const bool is_vertex = !geometry::is_finite(where) || where == finding.at_vertex;
+  return is_vertex ? text : text + ", on an edge at vertex " + named(finding.at_vertex);
 }
 
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex) {
@@ -157,6 +214,7 @@ Collector::Collector(std::string file, std::string format, const ReadOptions& op
 }
 
 void Collector::add(const RawGeometry& raw) {
+  if (reject_far(raw)) return;
   if (options_.repair && raw.kind == RawKind::polygon) return add_mended(raw);
   Judgement judgement = judge(raw);
   take_findings(judgement.findings);
@@ -167,6 +225,14 @@ void Collector::add(const RawGeometry& raw) {
   }
   count(judgement.findings);
   keep(raw.id, std::move(judgement.shape), !judgement.findings.empty());
+}
+
+bool Collector::reject_far(const RawGeometry& raw) {
+  const std::vector<RingFinding> findings = far_findings(raw);
+  if (findings.empty()) return false;
+  take_findings(findings);
+  reject(ring_refusal(findings.front(), result_.file));
+  return true;
 }
 
 void Collector::add_mended(const RawGeometry& raw) {

@@ -4,6 +4,8 @@
 /// \file
 /// What a reader hands on: rings as they stand in the file, not yet judged; and the collector that judges them.
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,13 @@ namespace exactvo::datasets {
 
 enum class RawKind { polyline, polygon };
 
+/// The numbers of a file that is not in metres.
+struct AsWritten {
+  std::vector<geometry::Ring> rings;
+  std::function<geometry::Vec2(geometry::Vec2)> from_metres;
+  bool is_degrees = false;
+};
+
 /// One geometry of a file. A polyline has one ring.
 struct RawGeometry {
   RawKind kind = RawKind::polygon;
@@ -20,6 +29,7 @@ struct RawGeometry {
   std::string place;                       ///< "feature 3", "line 12", "/obstacles/4"
   std::vector<geometry::Ring> rings;       ///< closed or not, any winding
   std::vector<std::string> ring_pointers;  ///< JSON pointers of the rings; empty for other formats
+  std::optional<AsWritten> as_written;     ///< none where `rings` stand in the file
 };
 
 /// "feature 3, ring 0, vertex 17", or the ring's pointer "/obstacles/4/polygon": the vertex alone is not at fault.
@@ -62,6 +72,8 @@ class Collector {
   ObstacleFile take() { return std::move(result_); }
 
  private:
+  /// Whether it has a coordinate beyond kLargestCoordinate.
+  bool reject_far(const RawGeometry& raw);
   /// Where `repair` may do more than `judge`.
   void add_mended(const RawGeometry& raw);
   DataError refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const;

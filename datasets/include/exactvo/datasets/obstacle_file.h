@@ -14,7 +14,8 @@
 /// than the millionth that writers round by, is taken as metres. The notes of a file read by GDAL say how its units
 /// were decided, round what centre it was projected, and its extent.
 ///
-/// Heights (Z, M) are dropped. Points are no obstacles: passed over, with a note.
+/// Heights (Z, M) are dropped. Points are no obstacles: passed over, with a note. A coordinate beyond
+/// kLargestCoordinate is refused (E_RANGE), whatever the format.
 
 #include <cstddef>
 #include <filesystem>
@@ -28,6 +29,10 @@
 #include "exactvo/formation/scenario.h"
 
 namespace exactvo::datasets {
+
+/// m: so that squares, areas and what ellipses are made of stay far within doubles. It is that of rings that are cut
+/// (geometry/even_odd.h) and of free velocities (vo/free_velocities.h).
+inline constexpr double kLargestCoordinate = 0x1p100;
 
 enum class Units {
   automatic,  ///< as the file says (above)
@@ -53,6 +58,12 @@ struct DataNote {
   std::string text;              ///< "ring closed", "point passed over"
 };
 
+/// Numbers that stand in a file and are no metres, so that a finding can be searched for there.
+struct PlaceInFile {
+  geometry::Vec2 where;     ///< a vertex as it is written; else brought back from metres, degrees to nine decimals
+  bool is_degrees = false;  ///< longitude, latitude; else units of the file's reference system
+};
+
 /// One problem of one ring, mended or not. Every one that was found, also of obstacles that were refused.
 struct RingFinding {
   DataCode code = DataCode::self_intersection;
@@ -62,10 +73,15 @@ struct RingFinding {
   std::size_t ring = 0;    ///< 0 is the outer one
   std::size_t vertex = 0;  ///< as the file lists them
   bool mended = false;
+  geometry::Vec2 at_vertex;            ///< the vertex as it is written; `where` may lie on an edge from or to it
+  std::optional<PlaceInFile> in_file;  ///< `where`, where the file is not in metres
 };
 
 /// What was found, for people: "a hole that is not inside its polygon or meets another ring".
 const char* words_of(const RingFinding& finding);
+
+/// "(11, 1), on an edge at vertex (10, 0)"; "longitude 13.001, latitude 52.001 (0.5, 2 m)".
+std::string words_of_place(const RingFinding& finding);
 
 /// What `ReadOptions::repair` made of one polygon that had a problem.
 struct RepairRecord {
@@ -135,8 +151,8 @@ struct ObstacleStream {
 };
 
 /// The same, obstacle by obstacle: what comes back holds the counts and what concerns the file as a whole, but no
-/// obstacle and nothing about single ones. Plain WKT, and what GDAL gives feature by feature, takes no more memory for a
-/// longer file. `keep_going` is implied.
+/// obstacle and nothing about single ones. Plain WKT, and what GDAL gives feature by feature, takes no more memory for
+/// a longer file. `keep_going` is implied.
 ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options,
                             const ObstacleStream& stream);
 

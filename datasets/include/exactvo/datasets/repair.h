@@ -6,9 +6,9 @@
 ///
 ///  - a ring that crosses, touches or overlaps itself, spikes, holes that lie outside, in each other, or cross another
 ///    ring: the polygon becomes what an odd number of its rings enclose (geometry/even_odd.h), in as many polygons as
-///    that takes. So a hole outside its polygon is solid, and so is one in a hole. But what a ring winds round twice becomes
-///    free (the middle of a pentagram), and so does what two rings both enclose where they overlap: what is left solid
-///    can be less than the ring goes round. The report gives the area before and after.
+///    that takes. So a hole outside its polygon is solid, and so is one in a hole. But what a ring winds round twice
+///    becomes free (the middle of a pentagram), and so does what two rings both enclose where they overlap: what is
+///    left solid can be less than the ring goes round. The report gives the area before and after.
 ///  - a hole of less than three distinct points or without area is dropped: nothing is in it.
 ///
 /// Not mended, and named: coordinates that are not finite, an outer ring of less than three distinct points or without
@@ -40,9 +40,11 @@ struct RepairFacts {
   std::size_t polygons = 0;
   std::size_t rings = 0;
   std::size_t vertices = 0;  ///< first points not repeated
-  /// m^2, rounded; of the outer rings less the holes. Before: by the shoelace formula, as programs do that take no
-  /// notice of crossings; NaN where a coordinate is.
-  double area = 0.0;
+  /// m^2, rounded. Before: by the shoelace formula, as programs do that take no notice of crossings, so that loops of
+  /// opposite winding cancel; NaN where a coordinate is.
+  double outer_area = 0.0;  ///< of the outer rings, >= 0
+  double hole_area = 0.0;   ///< of the holes, >= 0
+  double area = 0.0;        ///< the difference; below 0 where holes that lie outside are the larger
 };
 
 struct Repair {
