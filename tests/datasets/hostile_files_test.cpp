@@ -131,6 +131,14 @@ std::vector<HostileFile> hostile_files() {
          "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":null,\"geometry\":" +
              repeated("{\"type\":\"GeometryCollection\",\"geometries\":[", kDeep),
          DataCode::library});
+    const std::string point = "{\"type\": \"Point\", \"coordinates\": [1, 2]}\n";
+    files.push_back({"SequenceNesting", "a.ndjson", "",
+                     point + repeated("{\"type\":\"GeometryCollection\",\"geometries\":[", kDeep), DataCode::nesting});
+    files.push_back(
+        {"SequenceDepth", "a.ndjson", "",
+         point + "{\"type\": \"LineString\", \"coordinates\": " + repeated("[", kDeep) + repeated("]", kDeep) + "}\n",
+         DataCode::nesting});
+    files.push_back({"SequenceLine", "a.ndjson", "", point + repeated("x", 20 * kDeep), DataCode::json_syntax});
     files.push_back({"GmlEntities", "a.gml", "", kEntities + "<a>&b;&file;</a>", DataCode::format_syntax});
     files.push_back({"KmlEntities", "a.kml", "", kEntities + "<kml><Document><name>&b;&file;</name></Document></kml>",
                      DataCode::format_syntax});

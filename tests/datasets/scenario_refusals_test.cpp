@@ -195,5 +195,16 @@ TEST_F(ScenarioFiles, WhatIsWrongInAnObstacleFileIsNamedInThatFile) {
   expect_refusal(error, DataCode::self_intersection, "line 1, column 1, ring 0, vertex 0");
 }
 
+// An obstacle of a file that lies farther than the schema lets one lie that stands in the scenario: enclosures failed.
+TEST_F(ScenarioFiles, ObstaclesOfFilesLieWithinTheScenariosBound) {
+  const std::string scenario = with(R"("obstacles": [{"file": "walls.wkt"}])");
+  put("walls.wkt", "LINESTRING (20 0, 21 1)\nLINESTRING (30 -1e9, 30 1e9)\n");
+  EXPECT_NO_THROW(parse_scenario(scenario, "scenario.json", folder_));
+  put("walls.wkt", "LINESTRING (20 0, 21 1)\nLINESTRING (30 -1e20, 30 1e20)\n");
+  const DataError error = refused(scenario, folder_);
+  EXPECT_EQ(error.file(), (folder_ / "walls.wkt").string());
+  expect_refusal(error, DataCode::out_of_range, "obstacle 2");
+}
+
 }  // namespace
 }  // namespace exactvo::datasets::test

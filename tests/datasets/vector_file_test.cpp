@@ -265,6 +265,22 @@ TEST_F(VectorFile, MalformedLinesOfASequenceAreToldByLineAndTheOthersRead) {
                  "line 2, column 2");
 }
 
+// GDAL takes these for GeoJSON of one feature, and says nothing of what follows.
+TEST_F(VectorFile, WhatFollowsTheFirstLineOfASequenceIsNotLost) {
+  ReadOptions options;
+  options.keep_going = true;
+  for (const std::string bad : {"[1, 2]", "x", "[[[[", "\x01{"}) {
+    for (const char* name : {"a.ndjson", "a.geojson"}) {
+      SCOPED_TRACE(bad + " in " + name);
+      const ObstacleFile file = read(name, record(kSquare) + bad + "\n" + record(kSquare), options);
+      EXPECT_EQ(file.obstacles.size(), 2u);
+      ASSERT_EQ(file.rejected.size(), 1u);
+      EXPECT_EQ(file.rejected[0].place().rfind("line 2", 0), 0u) << file.rejected[0].what();
+    }
+  }
+  EXPECT_EQ(read("one.geojson", "\n" + record(kSquare) + "\n \n").counts.read, 1u);
+}
+
 TEST_F(VectorFile, AGeometryAmongFeaturesIsRefused) {
   const std::string text = R"({"type": "FeatureCollection", "features": [)" + std::string(kSquare) + "]}";
   expect_refusal(refusal_of([&] { read("a.geojson", text); }), DataCode::format_syntax, "feature 0");

@@ -261,9 +261,8 @@ bool goes_over_another(const Flags& flags) {
   return !flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error);
 }
 
-/// Folders that were named or walked and are not read; every rank would say the same.
+/// Folders that were named or walked and are not read.
 void note_earlier_batches(const BatchRun& run) {
-  if (datasets::under_mpi()) return;
   for (const datasets::EarlierBatch& earlier : datasets::earlier_batches(run))
     message(fmt::format("note: not read: {} holds an earlier batch ({} files); a file that is named is read",
                         earlier.folder, earlier.files));
@@ -286,7 +285,7 @@ ExitCode batch(const Flags& flags) {
   const BatchConfiguration configuration = configuration_of(flags);
   const BatchRun run = run_of(flags);
   const bool over_another = goes_over_another(flags);
-  note_earlier_batches(run);
+  if (!datasets::under_mpi()) note_earlier_batches(run);
   Reporter reporter;
   const auto watch = [&](const BatchProgress& progress) {
     reporter.show(progress);
@@ -303,6 +302,7 @@ ExitCode batch(const Flags& flags) {
     say_incomplete(flags, run);
     return ExitCode::success;
   }
+  if (datasets::under_mpi()) note_earlier_batches(run);  // one rank comes here; all of them were at the beginning
   if (result.was_complete) message("nothing left to do");
   if (over_another && !result.was_complete) message("note: replaced the earlier batch in " + flags.out);
   print(words_of(result.summary, flags.out, run.shards == 1));

@@ -107,7 +107,7 @@ class VectorReader {
  public:
   VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out) {
     data_ = open_vectors(path);
-    if (data_ == nullptr ? is_sequence_name(path) : driver() == "GeoJSONSeq") {
+    if (is_sequence_file()) {
       complaints_.take_failure();  // of the first bad line, which is told by its number
       data_.reset();
     } else {
@@ -144,6 +144,11 @@ class VectorReader {
     const OGRFeature* feature = nullptr;  ///< none of a sequence
     const DataError* fault = nullptr;     ///< of a sequence
   };
+
+  bool is_sequence_file() const {
+    if (data_ == nullptr) return is_sequence_name(path_);
+    return driver() == "GeoJSONSeq" || (driver() == "GeoJSON" && begins_as_sequence(path_));
+  }
 
   /// GDAL's driver would leave malformed lines out; they are read here.
   bool is_sequence() const { return data_ == nullptr; }

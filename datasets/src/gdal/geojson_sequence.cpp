@@ -47,7 +47,7 @@ GeoJsonRecord record_of(const std::string& text, const std::string& file, std::s
   std::optional<GeoJsonFault> fault = fault_of_record(text);
   if (!fault) {
     record.shape = shape_of(document.GetRoot());
-    fault = geojson_fault(text, record.shape != nullptr && !record.shape->IsEmpty());
+    if (record.shape == nullptr || record.shape->IsEmpty()) fault = geojson_fault(text, false);
   }
   if (!fault) return record;
   const std::string place = record.place + place_within(*fault);
@@ -71,6 +71,14 @@ std::optional<GeoJsonRecord> GeoJsonSequence::next() {
     if (begin < text.size()) return record_of(text, name_, line);
   }
   return std::nullopt;
+}
+
+bool begins_as_sequence(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string first;
+  while (std::getline(file, first) && first.find_first_not_of(kBlanks) == std::string::npos) continue;
+  const bool more_follows = static_cast<bool>(file >> std::ws) && file.peek() != std::ifstream::traits_type::eof();
+  return more_follows && is_record(first);
 }
 
 }  // namespace exactvo::datasets

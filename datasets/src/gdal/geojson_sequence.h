@@ -39,4 +39,8 @@ class GeoJsonSequence {
   std::size_t lines_ = 0;  ///< before the next record
 };
 
+/// Whether the first line is a feature or a geometry by itself, and more follows: GDAL may take such a file for GeoJSON
+/// of one feature, and then says nothing of the rest.
+bool begins_as_sequence(const std::filesystem::path& path);
+
 }  // namespace exactvo::datasets

@@ -102,6 +102,11 @@ bool holds_position(const Json& geometry) {
   return type != nullptr && type->depth >= 0 && geometry.contains("coordinates") && !geometry["coordinates"].empty();
 }
 
+bool is_feature_or_geometry(const Json& json) {
+  if (!json.is_object() || !json.contains("type")) return false;
+  return is_name(json["type"], "Feature") || type_of(json) != nullptr;
+}
+
 }  // namespace
 
 std::optional<GeoJsonFault> geojson_fault(const Json& record) {
@@ -122,11 +127,14 @@ std::optional<GeoJsonFault> geojson_fault(const std::string& record, bool read) 
   return GeoJsonFault{"", "coordinates that are no JSON", "finite numbers"};
 }
 
+bool is_record(const std::string& text) {
+  return is_feature_or_geometry(parsed(text));
+}
+
 std::optional<GeoJsonFault> fault_of_record(const std::string& text) {
   const Json record = parsed(text);
   if (record.is_discarded()) return std::nullopt;
-  const bool feature = record.is_object() && record.contains("type") && is_name(record["type"], "Feature");
-  if (feature || (record.is_object() && type_of(record) != nullptr)) return geojson_fault(record);
+  if (is_feature_or_geometry(record)) return geojson_fault(record);
   const bool named = record.is_object() && record.contains("type");
   return GeoJsonFault{named ? "/type" : "", described(named ? record["type"] : record), "a feature or a geometry"};
 }

@@ -17,6 +17,11 @@ std::string number(double value) {
   return text;
 }
 
+/// A place that was projected: its digits beyond are the projection's rounding. (Adding 0 takes the sign off -0.)
+double to_millimetres(double metres) {
+  return std::round(metres * 1000.0) / 1000.0 + 0.0;
+}
+
 std::string coordinates(geometry::Vec2 p) {
   return "(" + number(p.x) + ", " + number(p.y) + ")";
 }
@@ -171,13 +176,15 @@ const char* words_of(const RingFinding& finding) {
 }
 
 std::string words_of_place(const RingFinding& finding) {
+  const bool is_projected = finding.in_file && finding.in_file->is_degrees;
+  const auto local_metres = [&](double x) { return number(is_projected ? to_millimetres(x) : x); };
   const auto named = [&](geometry::Vec2 p) {
-    if (!finding.in_file || !finding.in_file->is_degrees) return coordinates(p);
+    if (!is_projected) return coordinates(p);
     return "longitude " + number(p.x) + ", latitude " + number(p.y);
   };
   const geometry::Vec2 where = finding.in_file ? finding.in_file->where : finding.where;
   std::string text = named(where);
-  if (finding.in_file) text += " (" + number(finding.where.x) + ", " + number(finding.where.y) + " m)";
+  if (finding.in_file) text += " (" + local_metres(finding.where.x) + ", " + local_metres(finding.where.y) + " m)";
   const bool is_vertex = !geometry::is_finite(where) || where == finding.at_vertex;
   return is_vertex ? text : text + ", on an edge at vertex " + named(finding.at_vertex);
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -57,6 +59,9 @@ Units to_units(const std::string& word) {
   if (word == "metres") return Units::metres;
   return word == "degrees" ? Units::degrees : Units::automatic;
 }
+
+/// m; the schema's bound of what stands in the scenario.
+constexpr double kFarthest = 1e9;
 
 /// Reads one scenario; a class only so that the file's name and folder need not be handed round.
 class Reader {
@@ -121,9 +126,22 @@ class Reader {
     const std::filesystem::path path = base_dir_ / named;
     ObstacleFile file = read_named_file(path, options, pointer);
     add_notes(file);
+    for (const formation::SceneObstacle& obstacle : file.obstacles) refuse_far(obstacle, path);
     if (file.origin) projected_ += (projected_.empty() ? "" : ", ") + named.string();
     for (formation::SceneObstacle& obstacle : file.obstacles) {
       scenario.obstacles.push_back({prefix + "/" + obstacle.id, std::move(obstacle.shape)});
+    }
+  }
+
+  /// A file may go farther than a robot can tell a metre.
+  static void refuse_far(const formation::SceneObstacle& obstacle, const std::filesystem::path& path) {
+    for (const Vec2 p : geometry::vertices_of(obstacle.shape)) {
+      if (std::max(std::fabs(p.x), std::fabs(p.y)) <= kFarthest) continue;
+      std::string found = "a vertex at ";
+      append_number(found, p.x);
+      append_number(found += ", ", p.y);
+      throw DataError(DataCode::out_of_range, path.string(), "obstacle " + obstacle.id, found,
+                      "coordinates within 1e9 m of (0, 0), as in a scenario itself");
     }
   }
 
