@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/part.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -9,12 +10,11 @@
 #include "exactvo/geometry/require.h"
 #include "json_text.h"
 #include "obstacle_record_json.h"
-#include "text_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {
 
-constexpr char kMagic[] = "EXACTVO PART 1\n";
+constexpr char kMagic[] = "EXACTVO PART 2\n";
 
 // --- Making ---
 
@@ -74,15 +74,22 @@ void append_text(std::string& bytes, std::string text) {
   bytes += text;
 }
 
+/// The pictures come first of the texts: they alone are wanted again.
+constexpr std::size_t kCounts = 3;
+constexpr std::size_t kBytesBeforePictures = sizeof kMagic - 1 + (kCounts + 1) * sizeof(std::uint64_t);
+
 /// To the byte, so that a part is not moved while it grows.
 std::size_t size_of_bytes(const Part& part) {
-  constexpr std::size_t kCounts = 3;
   constexpr std::size_t kTextsBesideLayers = 3;
   const std::size_t numbers = kCounts + kTextsBesideLayers + part.features.size();
   std::size_t size = sizeof kMagic - 1 + numbers * sizeof(std::uint64_t);
   size += part.figures.size() + part.rows.size() + part.pictures.size();
   for (const std::string& layer : part.features) size += layer.size();
   return size;
+}
+
+[[noreturn]] void refuse_part(const std::filesystem::path& path) {
+  throw DataError(DataCode::format_syntax, path.string(), "", "no part of a batch", "what a batch has written");
 }
 
 class PartReader {
@@ -100,22 +107,40 @@ class PartReader {
     return value;
   }
 
-  std::string text() {
+  std::string_view text() {
     const std::uint64_t length = count();
     if (bytes_.size() < length) refuse();
-    std::string taken(bytes_.substr(0, length));
+    const std::string_view taken = bytes_.substr(0, length);
     bytes_.remove_prefix(length);
     return taken;
   }
 
  private:
-  [[noreturn]] void refuse() const {
-    throw DataError(DataCode::format_syntax, path_.string(), "", "no part of a batch", "what a batch has written");
-  }
+  [[noreturn]] void refuse() const { refuse_part(path_); }
 
   std::string_view bytes_;
   const std::filesystem::path& path_;
 };
+
+PartCounts counts_of(PartReader& reader) {
+  PartCounts counts;
+  counts.obstacles = reader.count();
+  counts.certified = reader.count();
+  counts.vertices = reader.count();
+  return counts;
+}
+
+/// So many more. A length that is no length must not be believed: what is there is taken bit by bit.
+std::string take_from(std::istream& bytes, std::uint64_t length, const std::filesystem::path& path) {
+  std::string taken;
+  char block[1 << 14];
+  while (taken.size() < length) {
+    const std::uint64_t wanted = std::min<std::uint64_t>(sizeof block, length - taken.size());
+    if (!bytes.read(block, static_cast<std::streamsize>(wanted))) refuse_part(path);
+    taken.append(block, wanted);
+  }
+  return taken;
+}
 
 }  // namespace
 
@@ -133,9 +158,9 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
     const geometry::ObstacleShapes shapes = shapes_of(item.obstacle.shape, options);
     const FeatureHead head{chunk.file, item.obstacle.id, chunk.file + "#" + std::to_string(chunk.first + k),
                            item.repaired ? "repaired" : "done"};
-    ++part.obstacles;
-    part.certified += shapes.certified() ? 1 : 0;
-    part.vertices += shapes.figures.vertices;
+    ++part.counts.obstacles;
+    part.counts.certified += shapes.certified() ? 1 : 0;
+    part.counts.vertices += shapes.figures.vertices;
     part.figures += record_of(head, shapes, configuration) + "\n";
     append_features(head, shapes, configuration, part);
     if (pictures > 0) {
@@ -151,29 +176,31 @@ std::string to_bytes(Part part) {
   std::string bytes;
   bytes.reserve(size_of_bytes(part));
   bytes += kMagic;
-  for (const std::uint64_t count : {part.obstacles, part.certified, part.vertices}) append_count(bytes, count);
+  const PartCounts& counts = part.counts;
+  for (const std::uint64_t count : {counts.obstacles, counts.certified, counts.vertices}) append_count(bytes, count);
+  append_text(bytes, std::move(part.pictures));
   append_text(bytes, std::move(part.figures));
   for (std::string& layer : part.features) append_text(bytes, std::move(layer));
   append_text(bytes, std::move(part.rows));
-  append_text(bytes, std::move(part.pictures));
   return bytes;
 }
 
-Part parse_part(std::string_view bytes, const std::filesystem::path& path) {
+PartView view_of_part(std::string_view bytes, const std::filesystem::path& path) {
   PartReader reader(bytes, path);
-  Part part;
-  part.obstacles = reader.count();
-  part.certified = reader.count();
-  part.vertices = reader.count();
+  PartView part;
+  part.counts = counts_of(reader);
+  part.pictures = reader.text();
   part.figures = reader.text();
   for (std::size_t k = 0; k < layers().size(); ++k) part.features.push_back(reader.text());
   part.rows = reader.text();
-  part.pictures = reader.text();
   return part;
 }
 
-Part read_part(const std::filesystem::path& path) {
-  return parse_part(read_text_file(path), path);
+std::string pictures_at_start(std::istream& bytes, const std::filesystem::path& path) {
+  const std::string head = take_from(bytes, kBytesBeforePictures, path);
+  PartReader reader(head, path);
+  counts_of(reader);
+  return take_from(bytes, reader.count(), path);
 }
 
 }  // namespace exactvo::datasets::batch

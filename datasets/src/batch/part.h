@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,22 +31,36 @@ struct Chunk {
   std::size_t vertices = 0;
 };
 
-struct Part {
+struct PartCounts {
   std::uint64_t obstacles = 0;
   std::uint64_t certified = 0;
   std::uint64_t vertices = 0;
+};
+
+struct Part {
+  PartCounts counts;
+  std::string pictures;               ///< SVG
   std::string figures;                ///< JSON Lines
   std::vector<std::string> features;  ///< a layer each: GeoJSON features, a comma and a newline between them
   std::string rows;                   ///< features.h
-  std::string pictures;               ///< SVG
 };
 
 /// Deterministic: depends on the chunk and the configuration only.
 Part part_of(const Chunk& chunk, const BatchConfiguration& configuration);
 
 std::string to_bytes(Part part);
-/// Throws DataError (E_FORMAT_SYNTAX) where the bytes are no part.
-Part parse_part(std::string_view bytes, const std::filesystem::path& path);
-Part read_part(const std::filesystem::path& path);
+
+/// A part as it stands in its bytes, which it looks into.
+struct PartView {
+  PartCounts counts;
+  std::string_view pictures;
+  std::string_view figures;
+  std::vector<std::string_view> features;
+  std::string_view rows;
+};
+/// Throws DataError (E_FORMAT_SYNTAX) where the bytes are no part; `path` is where they came from.
+PartView view_of_part(std::string_view bytes, const std::filesystem::path& path);
+/// The pictures of the part that `bytes` are about to give, which stand in its beginning. Throws as `view_of_part`.
+std::string pictures_at_start(std::istream& bytes, const std::filesystem::path& path);
 
 }  // namespace exactvo::datasets::batch

@@ -8,10 +8,9 @@
 #include <new>
 #include <utility>
 
+#include "batch/input_record.h"
 #include "batch/inputs.h"
 #include "batch/part.h"
-#include "json_text.h"
-#include "text_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -42,16 +41,9 @@ struct InputWork {
 /// Cuts what a reader gives into chunks and hands them to the crew.
 class Chunker {
  public:
-  Chunker(const Input& input, std::size_t number, const BatchConfiguration& configuration, const Ledger& ledger,
-          Crew& crew, Meter& meter, const InputWatch& watch)
-      : input_(input),
-        number_(number),
-        configuration_(configuration),
-        ledger_(ledger),
-        crew_(crew),
-        meter_(meter),
-        watch_(watch) {
-    work_->facts_path = ledger.input_facts(number);
+  Chunker(const Input& input, std::size_t number, const Workshop& workshop, const InputWatch& watch)
+      : input_(input), number_(number), workshop_(workshop), watch_(watch) {
+    work_->facts_path = workshop.ledger.input_facts(number);
     start_chunk();
   }
 
@@ -69,9 +61,10 @@ class Chunker {
     const bool is_single = next_ == 0 && !chunk_->items.empty() && with_chunks;
     if (!is_single && !chunk_->items.empty()) hand_over();
     facts.chunks = with_chunks ? std::max<std::size_t>(next_, is_single ? 1 : 0) : 0;
+    if (workshop_.binder != nullptr) workshop_.binder->close(number_, facts.chunks);
     work_->facts = to_json(facts) + "\n";
     if (is_single) return hand_over_whole();
-    let_go(*work_, ledger_);
+    let_go(*work_, workshop_.ledger);
   }
 
  private:
@@ -85,44 +78,56 @@ class Chunker {
   void hand_over() {
     if (!watch_(share_)) throw Stopped{};
     first_ += chunk_->items.size();
-    const std::filesystem::path path = ledger_.part(number_, next_);
-    if (!ledger_.is_there(path)) {
+    const std::filesystem::path path = workshop_.ledger.part(number_, next_);
+    if (!workshop_.ledger.is_there(path)) {
       ++work_->open;
-      give([work = work_, path, &ledger = ledger_](const std::string& part) {
+      give([work = work_, path, &ledger = workshop_.ledger](const std::string& part) {
         ledger.write(path, part);
         let_go(*work, ledger);
       });
+    } else if (workshop_.binder != nullptr) {
+      workshop_.binder->found({number_, next_});
     }
     ++next_;
     start_chunk();
   }
 
   void hand_over_whole() {
-    give([work = work_, &ledger = ledger_](const std::string& part) {
+    give([work = work_, &ledger = workshop_.ledger](const std::string& part) {
       ledger.write(work->facts_path, work->facts + part);
     });
   }
 
-  /// The configuration, the ledger and the meter outlive the crew's jobs; the chunk goes with its own.
+  /// The chunk goes with its job.
   template <class Write>
   void give(Write write) {
-    crew_.run(
-        [chunk = chunk_, write, &crew = crew_, &configuration = configuration_, &meter = meter_] {
-          const auto bytes = std::make_shared<const std::string>(make(*chunk, configuration, meter));
-          crew.put_away([bytes, write] { write(*bytes); }, bytes->size());
+    workshop_.crew.run(
+        [chunk = chunk_, write, key = PartKey{number_, next_}, workshop = workshop_] {
+          const auto bytes = std::make_shared<const std::string>(make(*chunk, workshop));
+          put_away(key, bytes, write, workshop);
         },
         kBytesOfVertex * chunk_->vertices);
   }
 
-  static std::string make(const Chunk& chunk, const BatchConfiguration& configuration, Meter& meter) {
+  static std::string make(const Chunk& chunk, const Workshop& workshop) {
     const auto start = Clock::now();
-    Part part = part_of(chunk, configuration);
-    meter.obstacles += part.obstacles;
-    meter.vertices += part.vertices;
+    Part part = part_of(chunk, workshop.configuration);
+    workshop.meter.obstacles += part.counts.obstacles;
+    workshop.meter.vertices += part.counts.vertices;
     std::string bytes = to_bytes(std::move(part));
-    meter.nanoseconds_of_jobs +=
+    workshop.meter.nanoseconds_of_jobs +=
         static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count());
     return bytes;
+  }
+
+  /// On its way to the disk before it is bound. Where the binder does not hold it, the disk does when that is told.
+  template <class Write>
+  static void put_away(PartKey key, const std::shared_ptr<const std::string>& bytes, const Write& write,
+                       const Workshop& workshop) {
+    workshop.crew.put_away([bytes, write] { write(*bytes); }, bytes->size());
+    Binder* const binder = workshop.binder;
+    if (binder == nullptr || binder->take(key, bytes)) return;
+    workshop.crew.put_away([key, binder] { binder->found(key); }, 0);
   }
 
   static void let_go(InputWork& work, const Ledger& ledger) {
@@ -131,10 +136,7 @@ class Chunker {
 
   const Input& input_;
   std::size_t number_;
-  const BatchConfiguration& configuration_;
-  const Ledger& ledger_;
-  Crew& crew_;
-  Meter& meter_;
+  const Workshop& workshop_;
   const InputWatch& watch_;
   std::shared_ptr<InputWork> work_ = std::make_shared<InputWork>();
   std::shared_ptr<Chunk> chunk_;
@@ -250,110 +252,18 @@ void refuse_changed_input(const Input& input, std::size_t number, const std::str
                   "files that stay as they are; another --out, or an empty one");
 }
 
-void append_optional_facts(JsonWriter& json, const InputFacts& facts) {
-  if (facts.origin) {
-    json.key("origin").begin_object().member("longitude", facts.origin->longitude);
-    json.member("latitude", facts.origin->latitude).end_object();
-  }
-  if (facts.extent) {
-    json.key("extent").begin_object().member("low", facts.extent->low).member("high", facts.extent->high).end_object();
-  }
-  if (facts.coverage) {
-    const Coverage& c = *facts.coverage;
-    json.key("coverage").begin_object().member("cells", std::uint64_t{c.cells});
-    json.member("occupied", std::uint64_t{c.occupied}).member("cell_area", c.cell_area).end_object();
-  }
-}
-
-geometry::Vec2 point_of(const Json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>()};
-}
-
-void parse_optional_facts(const Json& json, InputFacts& facts) {
-  if (const auto at = json.find("origin"); at != json.end()) {
-    facts.origin = ProjectionOrigin{at->at("longitude").get<double>(), at->at("latitude").get<double>()};
-  }
-  if (const auto at = json.find("extent"); at != json.end()) {
-    facts.extent = Extent{point_of(at->at("low")), point_of(at->at("high"))};
-  }
-  if (const auto at = json.find("coverage"); at != json.end()) {
-    facts.coverage = Coverage{at->at("cells").get<std::size_t>(), at->at("occupied").get<std::size_t>(),
-                              at->at("cell_area").get<double>()};
-  }
-}
-
 }  // namespace
 
-std::string to_json(const InputFacts& facts) {
-  JsonWriter json(JsonWriter::Layout::compact);
-  json.begin_object().member("outcome", facts.outcome);
-  if (!facts.code.empty()) json.member("code", facts.code).member("message", facts.message);
-  if (!facts.format.empty()) json.member("format", facts.format);
-  json.member("read", facts.tally.read).member("done", facts.tally.done).member("repaired", facts.tally.repaired);
-  json.key("rejected").begin_object();
-  for (const auto& [code, count] : facts.tally.rejected) json.member(code, count);
-  json.end_object();
-  json.member("passed_over", facts.passed_over).member("chunks", facts.chunks);
-  append_optional_facts(json, facts);
-  json.key("notes").begin_array();
-  for (const std::string& note : facts.notes) json.value(note);
-  return json.end_array().end_object().take();
-}
-
-InputFacts parse_facts(std::string_view text, const std::string& file) {
-  const Json json = parse_json(text, file);
-  InputFacts facts;
-  try {
-    json.at("outcome").get_to(facts.outcome);
-    facts.code = json.value("code", "");
-    facts.message = json.value("message", "");
-    facts.format = json.value("format", "");
-    json.at("read").get_to(facts.tally.read);
-    json.at("done").get_to(facts.tally.done);
-    json.at("repaired").get_to(facts.tally.repaired);
-    for (const auto& [code, count] : json.at("rejected").items()) {
-      facts.tally.rejected[code] = count.get<std::uint64_t>();
-    }
-    json.at("passed_over").get_to(facts.passed_over);
-    json.at("chunks").get_to(facts.chunks);
-    parse_optional_facts(json, facts);
-    json.at("notes").get_to(facts.notes);
-  } catch (const nlohmann::detail::exception& error) {
-    throw DataError(DataCode::wrong_type, file, "", error.what(), "facts of an input as a batch writes them");
-  }
-  return facts;
-}
-
-InputRecord read_input_record(const std::filesystem::path& path) {
-  const std::string bytes = read_text_file(path);
-  const std::size_t line = std::min(bytes.find('\n'), bytes.size());
-  InputRecord record;
-  record.facts = parse_facts(std::string_view(bytes).substr(0, line), path.string());
-  if (line + 1 < bytes.size()) record.part = parse_part(std::string_view(bytes).substr(line + 1), path);
-  return record;
-}
-
-bool is_through(const Ledger& ledger, std::size_t number) {
-  const std::filesystem::path path = ledger.input_facts(number);
-  if (!ledger.is_there(path)) return false;
-  const InputRecord record = read_input_record(path);
-  if (record.part) return true;
-  for (std::size_t chunk = 0; chunk < record.facts.chunks; ++chunk) {
-    if (!ledger.is_there(ledger.part(number, chunk))) return false;
-  }
-  return true;
-}
-
-void process_input(const Input& input, std::size_t number, const BatchConfiguration& configuration,
-                   const Ledger& ledger, Crew& crew, Meter& meter, const InputWatch& watch) {
-  Chunker chunker(input, number, configuration, ledger, crew, meter, watch);
+void process_input(const Input& input, std::size_t number, const Workshop& workshop, const InputWatch& watch) {
+  const BatchConfiguration& configuration = workshop.configuration;
+  Chunker chunker(input, number, workshop, watch);
   InputFacts facts;
   try {
     read_input(input, configuration.reading, configuration.memory_limit, chunker, facts);
   } catch (const Failure& failure) {
     std::rethrow_exception(failure.cause);
   }
-  refuse_changed_input(input, number, configuration.reading.format, ledger, crew);
+  refuse_changed_input(input, number, configuration.reading.format, workshop.ledger, workshop.crew);
   // Of a file that turned out to be broken further on nothing is used.
   const bool with_chunks = facts.code.empty() || facts.tally.read > 0;
   chunker.finish(std::move(facts), with_chunks);

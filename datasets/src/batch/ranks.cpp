@@ -11,8 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "batch/assemble.h"
+#include "batch/input_record.h"
 #include "batch/session.h"
+#include "batch/summary.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -29,7 +29,8 @@ class Scribe {
   /// Until nothing waits. Throws what a job threw, each time.
   void finish();
 
-  static constexpr std::uint64_t kMostBytesWaiting = std::uint64_t{8} << 20;
+  /// Two or three parts with everything wanted.
+  static constexpr std::uint64_t kMostBytesWaiting = std::uint64_t{32} << 20;
 
  private:
   struct Job {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "batch/assemble.h"
+#include "batch/input_record.h"
 #include "exactvo/datasets/provenance.h"
 #include "json_text.h"
 
@@ -116,6 +117,21 @@ bool Session::look(const std::string& doing, double share) {
   return watch_(progress_);
 }
 
+void Session::bind_ahead() {
+  binder_.emplace(ledger_, configuration_, provenance_of(identity_, run_));
+}
+
+Workshop Session::workshop() {
+  return {configuration_, ledger_, meter_, crew_, binder_ ? &*binder_ : nullptr};
+}
+
+/// Of an input that another process has finished meanwhile.
+void Session::tell_binder_of(std::size_t input) {
+  const std::uint64_t chunks = read_facts(ledger_, input).chunks;
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) binder_->found({input, chunk});
+  binder_->close(input, chunks);
+}
+
 void Session::process(std::size_t number) {
   const Input& input = identity_.inputs[number];
   if (!is_through(ledger_, number)) {
@@ -124,8 +140,9 @@ void Session::process(std::size_t number) {
       return share_of(bytes_done_ + of_input, bytes_planned_);
     };
     if (!look(input.name, share_now(0.0))) throw Stopped{};
-    process_input(input, number, configuration_, ledger_, crew_, meter_,
-                  [&](double share) { return look(input.name, share_now(share)); });
+    process_input(input, number, workshop(), [&](double share) { return look(input.name, share_now(share)); });
+  } else if (binder_) {
+    tell_binder_of(number);
   }
   ++progress_.inputs_done;
   bytes_done_ += input.size;
@@ -156,14 +173,25 @@ BatchResult Session::finish() {
   if (lock.gave_up()) return {BatchEnd::interrupted, {}, false};
   look("putting the parts together", 1.0);
   try {
-    ledger_.start_final(lock.is_alone());
-    result.summary = assemble(ledger_, identity_, configuration_, run_, times());
+    std::unique_ptr<Outputs> outputs = bound(lock.is_alone());
+    result.summary = finish_outputs(std::move(outputs), ledger_, identity_, configuration_, run_, times());
   } catch (const DataError&) {
     if (ledger_.is_open() || lock.is_alone()) throw;
     return result;  // another process was quicker here as well
   }
   result.end = BatchEnd::complete;
   return result;
+}
+
+/// What was bound while parts were made, if it is all of them; else all, from the disk.
+std::unique_ptr<Outputs> Session::bound(bool is_alone) {
+  if (binder_) {
+    std::unique_ptr<Outputs> outputs = binder_->finish(identity_.inputs.size());
+    if (outputs) return outputs;
+    binder_.reset();
+  }
+  ledger_.start_final(is_alone);
+  return bind_all(ledger_, identity_, configuration_, run_);
 }
 
 Times Session::times() const {

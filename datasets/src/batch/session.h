@@ -5,12 +5,15 @@
 /// One process's part in a batch: what run_batch does alone and run_batch_over_ranks in company.
 
 #include <chrono>
+#include <memory>
+#include <optional>
 #include <string>
 
-#include "batch/assemble.h"
+#include "batch/binder.h"
 #include "batch/crew.h"
 #include "batch/ledger.h"
 #include "batch/process.h"
+#include "batch/summary.h"
 #include "exactvo/datasets/batch.h"
 
 namespace exactvo::datasets::batch {
@@ -40,6 +43,8 @@ class Session {
 
   /// Says which inputs are this process's, for progress.
   void plan(std::vector<std::size_t> inputs);
+  /// Has parts put together while others are made, where all inputs are this process's, in order, and none is there.
+  void bind_ahead();
   /// Reads an input and sets the crew to make what is missing of it. Throws Stopped.
   void process(std::size_t input);
   /// Until all that was processed is there.
@@ -57,6 +62,9 @@ class Session {
 
  private:
   bool look(const std::string& doing, double share);
+  Workshop workshop();
+  void tell_binder_of(std::size_t input);
+  std::unique_ptr<Outputs> bound(bool is_alone);
   Times times() const;
 
   const BatchConfiguration& configuration_;
@@ -65,6 +73,7 @@ class Session {
   BatchWatch watch_;
   Ledger ledger_;
   Meter meter_;
+  std::optional<Binder> binder_;
   Crew crew_;  ///< after what its jobs write to: its destructor waits for them
   int processes_ = 1;
   BatchProgress progress_;

@@ -11,9 +11,9 @@ namespace {
 
 TEST(BatchPart, ItsBytesTakeTheRoomThatWasReckonedAndNoMore) {
   batch::Part part;
-  part.obstacles = 3;
-  part.certified = 2;
-  part.vertices = 17;
+  part.counts.obstacles = 3;
+  part.counts.certified = 2;
+  part.counts.vertices = 17;
   part.figures = std::string(1000, 'f');
   for (std::size_t k = 0; k < batch::layers().size(); ++k) part.features.emplace_back(100 + k, 'l');
   part.rows = std::string(500, 'r');
