@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <sstream>
 #include <string>
 
 namespace exactvo::datasets::test {
@@ -20,14 +22,32 @@ TEST(BatchPart, ItsBytesTakeTheRoomThatWasReckonedAndNoMore) {
   part.pictures = "<svg/>";
   const std::string bytes = batch::to_bytes(part);
   EXPECT_EQ(bytes.capacity(), bytes.size());
-  const batch::Part again = batch::parse_part(bytes, "part");
-  EXPECT_EQ(again.obstacles, part.obstacles);
-  EXPECT_EQ(again.certified, part.certified);
-  EXPECT_EQ(again.vertices, part.vertices);
-  EXPECT_EQ(again.figures, part.figures);
-  EXPECT_EQ(again.features, part.features);
-  EXPECT_EQ(again.rows, part.rows);
+  const batch::PartView again = batch::view_of_part(bytes, "part");
+  EXPECT_EQ(again.counts.obstacles, part.counts.obstacles);
+  EXPECT_EQ(again.counts.certified, part.counts.certified);
+  EXPECT_EQ(again.counts.vertices, part.counts.vertices);
   EXPECT_EQ(again.pictures, part.pictures);
+  EXPECT_EQ(again.figures, part.figures);
+  EXPECT_TRUE(std::equal(again.features.begin(), again.features.end(), part.features.begin(), part.features.end()));
+  EXPECT_EQ(again.rows, part.rows);
+  std::istringstream stream(bytes);
+  EXPECT_EQ(batch::pictures_at_start(stream, "part"), part.pictures);
+}
+
+TEST(BatchPart, ItsBytesCutShortAnywhereAreRefused) {
+  batch::Part part;
+  part.features.resize(batch::layers().size());
+  part.pictures = "<svg/>";
+  part.figures = "{}\n";
+  part.rows = "r";
+  const std::string bytes = batch::to_bytes(part);
+  const std::size_t end_of_pictures = bytes.find("<svg/>") + part.pictures.size();
+  for (std::size_t length = 0; length < bytes.size(); ++length) {
+    EXPECT_THROW(batch::view_of_part(bytes.substr(0, length), "part"), DataError) << length;
+    std::istringstream stream(bytes.substr(0, length));
+    if (length >= end_of_pictures) continue;
+    EXPECT_THROW(batch::pictures_at_start(stream, "part"), DataError) << length;
+  }
 }
 
 }  // namespace

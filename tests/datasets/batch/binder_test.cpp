@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts bound while others are made: in order, whatever order they come in, and nothing of use where that fails.
+#include "batch/binder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <numeric>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "batch/features.h"
+#include "exactvo/datasets/data_error.h"
+#include "temporary_folder.h"
+#include "text_file.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+using batch::Binder;
+using batch::PartKey;
+
+std::shared_ptr<const std::string> part_saying(const std::string& words) {
+  batch::Part part;
+  part.counts.obstacles = 1;
+  part.figures = words + "\n";
+  part.features.resize(batch::layers().size());
+  return std::make_shared<const std::string>(to_bytes(std::move(part)));
+}
+
+std::string words_of(PartKey key) {
+  return std::to_string(key.first) + "/" + std::to_string(key.second);
+}
+
+class BatchBinder : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    plain_.geopackage = plain_.geojson = plain_.pictures = false;
+    ledger_.emplace(folder_ / "out");
+    ledger_->begin({});
+    binder_.emplace(*ledger_, plain_, "{}");
+  }
+  void TearDown() override {
+    binder_.reset();
+    TemporaryFolder::TearDown();
+  }
+
+  bool take(PartKey key) { return binder_->take(key, part_saying(words_of(key))); }
+  void put_on_disk(PartKey key) { ledger_->write(ledger_->part(key.first, key.second), *part_saying(words_of(key))); }
+  /// The lines after that of the provenance; "none" where the binder gives no outputs.
+  std::string bound(std::size_t inputs) {
+    const std::unique_ptr<batch::Outputs> outputs = binder_->finish(inputs);
+    if (!outputs) return "none";
+    outputs->finish();
+    std::string text = read_text_file(ledger_->final_folder() / "figures.jsonl");
+    text.erase(0, text.find('\n') + 1);
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  }
+
+  BatchConfiguration plain_;
+  std::optional<batch::Ledger> ledger_;
+  std::optional<Binder> binder_;
+};
+
+TEST_F(BatchBinder, WhateverOrderPartsComeInTheyAreBoundInTheirs) {
+  const std::vector<std::size_t> chunks{3, 0, 1, 2};
+  std::vector<PartKey> keys;
+  std::string expected;
+  for (std::size_t input = 0; input < chunks.size(); ++input) {
+    for (std::size_t chunk = 0; chunk < chunks[input]; ++chunk) {
+      keys.emplace_back(input, chunk);
+      expected += words_of({input, chunk}) + " ";
+    }
+  }
+  std::mt19937 random(20261121);
+  for (int round = 0; round < 50; ++round) {
+    // Fisher and Yates; a library's shuffle is its own.
+    for (std::size_t k = keys.size(); k > 1; --k) std::swap(keys[k - 1], keys[random() % k]);
+    binder_.reset();
+    binder_.emplace(*ledger_, plain_, "{}");
+    std::vector<std::size_t> not_closed(chunks.size());
+    std::iota(not_closed.begin(), not_closed.end(), std::size_t{0});
+    for (const PartKey& key : keys) {
+      while (!not_closed.empty() && random() % 2 == 0) {
+        binder_->close(not_closed.back(), chunks[not_closed.back()]);
+        not_closed.pop_back();
+      }
+      if (random() % 3 == 0) {
+        put_on_disk(key);
+        binder_->found(key);
+      } else {
+        EXPECT_TRUE(take(key));
+      }
+    }
+    for (const std::size_t input : not_closed) binder_->close(input, chunks[input]);
+    ASSERT_EQ(bound(chunks.size()), expected) << "round " << round;
+  }
+}
+
+TEST_F(BatchBinder, ManyThreadsBringPartsAndNoneIsLost) {
+  constexpr std::size_t kParts = 400;
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> threads;
+  for (int k = 0; k < 4; ++k) {
+    threads.emplace_back([&] {
+      for (std::size_t chunk = next++; chunk < kParts; chunk = next++) take({0, chunk});
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  binder_->close(0, kParts);
+  std::string expected;
+  for (std::size_t chunk = 0; chunk < kParts; ++chunk) expected += words_of({0, chunk}) + " ";
+  EXPECT_EQ(bound(1), expected);
+}
+
+TEST_F(BatchBinder, NothingComesOutWithoutAPart) {
+  take({0, 0});
+  take({0, 2});
+  binder_->close(0, 3);
+  EXPECT_EQ(bound(1), "none");
+}
+
+TEST_F(BatchBinder, NothingComesOutWithoutAnInput) {
+  take({0, 0});
+  binder_->close(0, 1);
+  EXPECT_EQ(bound(2), "none");
+}
+
+TEST_F(BatchBinder, NothingComesOutBeforeAnInputIsClosed) {
+  take({0, 0});
+  EXPECT_EQ(bound(1), "none");
+}
+
+TEST_F(BatchBinder, AnInputBrokenBeforeItsTurnLeavesNothingBehind) {
+  take({1, 0});
+  take({1, 1});
+  binder_->close(1, 0);
+  take({1, 2});  // was under way
+  take({0, 0});
+  binder_->close(0, 1);
+  take({2, 0});
+  binder_->close(2, 1);
+  EXPECT_EQ(bound(3), "0/0 2/0 ");
+}
+
+TEST_F(BatchBinder, AnInputBrokenAfterItsPartsWereBoundSpoilsWhatWasBound) {
+  take({0, 0});
+  binder_->close(0, 0);
+  take({1, 0});
+  binder_->close(1, 1);
+  EXPECT_EQ(bound(2), "none");
+}
+
+TEST_F(BatchBinder, WhatItCannotHoldItFindsOnDisk) {
+  const std::string much(Binder::kMostBytesWaiting / 2, 'x');
+  EXPECT_TRUE(binder_->take({0, 1}, part_saying(much)));
+  EXPECT_FALSE(binder_->take({0, 2}, part_saying(much)));
+  put_on_disk({0, 2});
+  binder_->found({0, 2});
+  EXPECT_TRUE(binder_->take({0, 0}, part_saying(much)));  // its turn, however much waits
+  binder_->close(0, 3);
+  EXPECT_EQ(bound(1), much + " " + much + " 0/2 ");
+}
+
+TEST_F(BatchBinder, WhatAnotherProcessTookAwayIsNotGivenOut) {
+  take({0, 0});
+  binder_->close(0, 1);
+  std::filesystem::remove_all(ledger_->final_folder());
+  EXPECT_EQ(bound(1), "none");
+}
+
+TEST_F(BatchBinder, APartThatIsNoneIsToldAndSpoilsTheRest) {
+  ledger_->write(ledger_->part(0, 0), "no part");
+  binder_->found({0, 0});
+  EXPECT_THROW(take({0, 1}), DataError);
+  binder_->close(0, 2);
+  EXPECT_EQ(bound(1), "none");
+}
+
+TEST_F(BatchBinder, UnfinishedItTakesItsFolderAway) {
+  take({0, 0});
+  EXPECT_TRUE(std::filesystem::exists(ledger_->final_folder()));
+  binder_.reset();
+  EXPECT_FALSE(std::filesystem::exists(ledger_->final_folder()));
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test
