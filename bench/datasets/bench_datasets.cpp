@@ -251,15 +251,16 @@ BatchSeconds measure_batches(const fs::path& input, const fs::path& folder, bool
   return least;
 }
 
-void show_batches(const fs::path& input, const fs::path& folder, std::size_t obstacles) {
+void show_batches(const fs::path& input, const fs::path& folder, std::size_t obstacles, const std::string& what) {
   const auto count = static_cast<double>(obstacles);
+  std::printf("whole batches of %zu %s, by the clock:\n", obstacles, what.c_str());
   for (const bool everything : {false, true}) {
     const int rounds = everything ? 1 : 5;
     const BatchSeconds s = measure_batches(input, folder, everything, rounds);
     const double gain = s.one_worker / s.two_workers;
     const double ceiling = 2.0 * s.one_worker / s.two_apart;
-    const auto show = [&](const char* what, double seconds, double of_it, double times) {
-      std::printf("    %-44s %7.2f s  %8.0f obstacles/s  x%.2f\n", what, seconds, of_it / seconds, times);
+    const auto show = [&](const char* who, double seconds, double of_it, double times) {
+      std::printf("    %-44s %7.2f s  %8.0f obstacles/s  x%.2f\n", who, seconds, of_it / seconds, times);
     };
     std::printf("  %s, the quickest of %d:\n", everything ? "GeoPackage, GeoJSON, pictures, figures" : "figures alone",
                 rounds);
@@ -372,11 +373,15 @@ void run(const Flags& flags) {
     need(::mkdtemp(name.data()) != nullptr, "no folder to work in");
   }
   const fs::path folder = name;
+  fs::create_directories(folder);
   std::printf("%s\n", to_json(datasets::make_provenance({}, 0)).c_str());
   const fs::path input = folder / "stars.wkt";
   Child([&] { return write_stars(input, flags.stars), true; }).finish();
-  std::printf("whole batches of %zu generated obstacles, by the clock:\n", flags.stars);
-  show_batches(input, folder, flags.stars);
+  show_batches(input, folder, flags.stars, "generated obstacles");
+  if (fs::exists(flags.sumo)) {
+    const std::vector<Polygon> real = real_polygons(flags.sumo);
+    show_batches(flags.sumo, folder, real.size(), "polygons of " + flags.sumo);
+  }
   if (!flags.only_batches) show_the_rest(flags, folder, input);
   if (flags.folder.empty()) fs::remove_all(folder);
 }
