@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "exactvo/geometry/seen_by_tsan.h"
+
 namespace exactvo::datasets::batch {
 namespace {
 
@@ -50,7 +52,9 @@ void Crew::make_room(std::uint64_t bytes, std::unique_lock<std::mutex>& lock) {
 
 void Crew::set_to_work() {
   arena_.execute([this] {
+    geometry::gives_tasks();
     group_.run([this] {
+      const geometry::TaskAtWork seen;
       std::unique_lock<std::mutex> lock(mutex_);
       run_next(lock);
     });

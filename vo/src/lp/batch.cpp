@@ -9,6 +9,7 @@
 
 #include "batch_layout.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/seen_by_tsan.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
 #include "inward.h"
@@ -133,10 +134,14 @@ template <class T, class Range>
 BatchCounts in_parallel(const BatchProblems<T>& in, Range solve_range) {
   const auto plus = [](BatchCounts a, BatchCounts b) { return BatchCounts{a.scalar + b.scalar, a.exact + b.exact}; };
   const auto add = [&](const tbb::blocked_range<std::size_t>& range, BatchCounts counts) {
+    const geometry::TaskAtWork seen;
     return plus(counts, solve_range(range.begin() * kGrain, std::min(in.count, range.end() * kGrain)));
   };
   const std::size_t tasks = (in.count + kGrain - 1) / kGrain;
-  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, tasks), BatchCounts{}, add, plus);
+  geometry::gives_tasks();
+  const BatchCounts counts = tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, tasks), BatchCounts{}, add, plus);
+  geometry::has_waited();
+  return counts;
 }
 
 }  // namespace
@@ -172,8 +177,9 @@ bool limit_batch_target(const char* name) {
   hwy::GetChosenTarget().DeInit();
   if (std::strlen(name) == 0) return true;
   const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
-  for (std::int64_t bit = 1; bit != 0 && bit <= supported; bit <<= 1) {
-    if ((supported & bit) == 0 || std::strcmp(hwy::TargetName(bit), name) != 0) continue;
+  for (std::int64_t left = supported; left != 0; left &= left - 1) {
+    const std::int64_t bit = left & -left;
+    if (std::strcmp(hwy::TargetName(bit), name) != 0) continue;
     hwy::SetSupportedTargetsForTest(supported & ~(bit - 1));
     hwy::GetChosenTarget().DeInit();
     return true;

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Tells ThreadSanitizer of an order that it cannot see, since the system's oneTBB is not instrumented: tasks see what
+/// was there when they were handed out, and whoever waits for them sees what they left. Tasks stay unordered among
+/// themselves, so that a race between two of them is reported. Nothing in any other build.
+
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#endif
+
+namespace exactvo::geometry {
+
+#if defined(__SANITIZE_THREAD__)
+/// Addresses to speak of; what stands there says nothing.
+inline char tasks_given, tasks_done;
+inline void gives_tasks() {
+  __tsan_release(&tasks_given);
+}
+inline void has_waited() {
+  __tsan_acquire(&tasks_done);
+}
+/// Lives as long as a task does its work: before it nothing of what was handed over is read.
+struct TaskAtWork {
+  TaskAtWork() { __tsan_acquire(&tasks_given); }
+  ~TaskAtWork() { __tsan_release(&tasks_done); }
+};
+#else
+inline void gives_tasks() {}
+inline void has_waited() {}
+struct TaskAtWork {
+  TaskAtWork() {}  // not `= default`: nobody reads it
+};
+#endif
+
+}  // namespace exactvo::geometry
