@@ -58,6 +58,7 @@ void Crew::set_to_work() {
       std::unique_lock<std::mutex> lock(mutex_);
       run_next(lock);
     });
+    geometry::gives_tasks();  // the task's copy of `this` as well
   });
 }
 

@@ -15,6 +15,7 @@ namespace exactvo::geometry {
 #if defined(__SANITIZE_THREAD__)
 /// Addresses to speak of; what stands there says nothing.
 inline char tasks_given, tasks_done;
+/// Before tasks are handed out; once more after it, where they may wait for long: who wrote what is forgotten.
 inline void gives_tasks() {
   __tsan_release(&tasks_given);
 }
