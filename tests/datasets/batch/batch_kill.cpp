@@ -103,6 +103,7 @@ class Campaign {
     if (child == 0) {
       ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
       ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+      if (plan_.ranks > 1) ::setenv("LSAN_OPTIONS", "detect_leaks=0", 1);  // they are Open MPI's
       if (std::freopen("/dev/null", "w", stdout) == nullptr || std::freopen("/dev/null", "w", stderr) == nullptr) {
         ::_exit(126);
       }
