@@ -146,6 +146,22 @@ TEST_F(ScenarioFiles, AnEmptyScenarioIsCalledSo) {
   EXPECT_EQ(error.found(), "an empty file");
 }
 
+TEST_F(ScenarioFiles, AScenarioThatNamesItselfHasAnEnd) {
+  const auto self = put("self.json", with(R"("obstacles": [{"file": "self.json"}])"));
+  put("a.json", with(R"("obstacles": [{"file": "b.json"}, {"file": "b.json"}])"));
+  put("b.json", with(R"("obstacles": [{"file": "a.json"}, {"file": "a.json"}])"));
+  for (const auto& path : {self, folder_ / "a.json"}) {
+    const DataError error = refusal_of([&] { load_scenario(path); });
+    EXPECT_EQ(error.code(), DataCode::nesting) << error.what();
+  }
+  put("0.json", with(R"("obstacles": [{"polyline": [[3, 3], [5, 3]]}])"));
+  for (int k = 1; k <= 8; ++k) {
+    const std::string below = std::to_string(k - 1) + ".json";
+    put(std::to_string(k) + ".json", with("\"obstacles\": [{\"file\": \"" + below + "\"}]"));
+  }
+  EXPECT_EQ(load_scenario(folder_ / "8.json").obstacles.size(), 1u);
+}
+
 // Scenario, pointer and path: all three are needed to mend it.
 void expect_named(const DataError& error, DataCode code, const std::string& place, const std::filesystem::path& path) {
   EXPECT_EQ(error.file(), "scenario.json") << error.what();

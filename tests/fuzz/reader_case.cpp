@@ -18,17 +18,36 @@ void write(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
-/// Returns the file to read.
+/// Files that stand beside the one that is read: what follows the mark in a case, under each of the names.
+struct Companions {
+  std::string format;
+  std::string mark;
+  std::vector<const char*> names;
+};
+
+const Companions* companions_of(const FuzzedFormat& format) {
+  static const std::vector<Companions> kCompanions{
+      {"ros-map", "\n%picture%\n", {"map.pgm", "map.png", "map.bmp"}},
+      {"scenario", "\n%obstacles%\n", {"obstacles.wkt", "obstacles.geojson", "obstacles.geojsonl", "obstacles.csv"}}};
+  for (const Companions& companions : kCompanions) {
+    if (companions.format == format.name) return &companions;
+  }
+  return nullptr;
+}
+
+/// Returns the file to read. Without a mark there are no companions, nor those of another case.
 fs::path put(const FuzzedFormat& format, const std::string& bytes, const fs::path& folder) {
   const fs::path path = folder / (std::string("case") + format.extension);
-  const std::string mark = "\n%picture%\n";
-  const std::size_t at = std::string(format.name) == "ros-map" ? bytes.find(mark) : std::string::npos;
-  if (at == std::string::npos) {
-    write(path, bytes);
-    return path;
+  const Companions* companions = companions_of(format);
+  const std::size_t at = companions == nullptr ? std::string::npos : bytes.find(companions->mark);
+  write(path, at == std::string::npos ? bytes : bytes.substr(0, at + 1));
+  if (companions == nullptr) return path;
+  for (const char* name : companions->names) {
+    if (at == std::string::npos)
+      fs::remove(folder / name);
+    else
+      write(folder / name, bytes.substr(at + companions->mark.size()));
   }
-  write(path, bytes.substr(0, at + 1));
-  for (const char* picture : {"map.pgm", "map.png", "map.bmp"}) write(folder / picture, bytes.substr(at + mark.size()));
   return path;
 }
 
@@ -60,7 +79,7 @@ std::string read(const FuzzedFormat& format, const fs::path& path, bool with_rep
     return {};
   }
   ReadOptions options;
-  options.format = format.name;
+  options.format = format.reader == nullptr ? format.name : format.reader;
   options.keep_going = true;
   options.repair = with_repair;
   if (options.format == "movingai-scen") read_tasks(path);
@@ -78,12 +97,30 @@ const FuzzedFormat& format_named(const std::string& name) {
 
 const std::vector<FuzzedFormat>& fuzzed_formats() {
   static const std::vector<FuzzedFormat> kFormats{
-      {"wkt", ".wkt"},          {"jupedsim-wkt", ".wkt"},   {"gdal", ".geojson"},   {"ros-map", ".yaml"},
-      {"movingai-map", ".map"}, {"movingai-scen", ".scen"}, {"carmen-log", ".log"}, {"csm-log", ".log"},
-      {"points-csv", ".csv"},   {"jupedsim-xml", ".xml"},   {"menge-xml", ".xml"},  {"sumo-poly", ".poly.xml"},
-      {"barn-world", ".world"}, {"rings-json", ".json"},    {"jts-xml", ".xml"},    {"opentraj-xml", ".xml"},
-      {"graphml", ".graphml"},  {"counted-rings", ".line"}, {"pslg", ".txt"},       {"ompl-circles", ".txt"},
-      {"ompl-grid", ".txt"},    {"scenario", ".json"},
+      {"wkt", ".wkt"},
+      {"jupedsim-wkt", ".wkt"},
+      {"gdal", ".geojson"},
+      {"ros-map", ".yaml"},
+      {"movingai-map", ".map"},
+      {"movingai-scen", ".scen"},
+      {"carmen-log", ".log"},
+      {"csm-log", ".log"},
+      {"points-csv", ".csv"},
+      {"jupedsim-xml", ".xml"},
+      {"menge-xml", ".xml"},
+      {"sumo-poly", ".poly.xml"},
+      {"barn-world", ".world"},
+      {"rings-json", ".json"},
+      {"jts-xml", ".xml"},
+      {"opentraj-xml", ".xml"},
+      {"graphml", ".graphml"},
+      {"counted-rings", ".line"},
+      {"pslg", ".txt"},
+      {"ompl-circles", ".txt"},
+      {"ompl-grid", ".txt"},
+      {"scenario", ".json"},
+      {"geojson-sequence", ".geojsonl", "gdal"},
+      {"gdal-csv", ".csv", "gdal"},
   };
   return kFormats;
 }

@@ -12,13 +12,15 @@ namespace exactvo::datasets::test {
 
 /// The formats that have a target, and the extension of a case.
 struct FuzzedFormat {
-  const char* name;  ///< of `readable_formats()`, or "scenario"
+  const char* name;  ///< of target and corpus; "scenario" reads a scenario, not its obstacles
   const char* extension;
+  const char* reader = nullptr;  ///< of `readable_formats()`; that of `name` where none is said
 };
 const std::vector<FuzzedFormat>& fuzzed_formats();
 
 /// Reads `bytes` from a file in `folder`. A case of "ros-map" is the yaml, a line "%picture%", and the bytes of the
-/// picture, which is named map.pgm, map.png and map.bmp at once. Empty if all is well: obstacles that are valid and
+/// picture, which is named map.pgm, map.png and map.bmp at once; after a line "%obstacles%" of a "scenario" stands what
+/// obstacles.wkt, .geojson, .geojsonl and .csv hold. Empty if all is well: obstacles that are valid and
 /// books that balance, or a DataError with a code; else what went wrong.
 std::string read_case(const std::string& format, const std::string& bytes, const std::filesystem::path& folder);
 

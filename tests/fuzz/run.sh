@@ -23,6 +23,8 @@ for target in "$build"/bin/*_fuzz "$build"/bin/reader_fuzz_*; do
   for seeds in "$here/../corpus/readers/$format" "$build/seeds/$format"; do
     [ ! -d "$seeds" ] || set -- "$@" "$seeds"
   done
+  dictionary=$here/$format.dict
+  [ ! -f "$dictionary" ] || set -- "-dict=$dictionary" "$@"
   targets=$((targets + 1))
   if "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 \
       -artifact_prefix="$found-" -print_final_stats=1 "$@" > "$found.log" 2>&1; then

@@ -20,6 +20,26 @@ RawGeometry to_raw(const formation::SceneObstacle& obstacle) {
   return raw;
 }
 
+/// A scenario may name another as an obstacle file; one that names itself, or one that names it, has no end.
+constexpr int kDeepestScenario = 8;
+
+class Level {
+ public:
+  explicit Level(const std::filesystem::path& path) {
+    if (depth_ == kDeepestScenario)
+      throw DataError(DataCode::nesting, path.string(), "", "a scenario below 8 that name one another",
+                      "obstacle files that end after 8 scenarios");
+    ++depth_;
+  }
+  ~Level() { --depth_; }
+  Level(const Level&) = delete;
+  Level& operator=(const Level&) = delete;
+
+ private:
+  static thread_local int depth_;
+};
+thread_local int Level::depth_ = 0;
+
 }  // namespace
 
 bool looks_like_scenario(const Glimpse& glimpse) {
@@ -30,6 +50,7 @@ bool looks_like_scenario(const Glimpse& glimpse) {
 }
 
 void read_scenario_obstacles(const std::filesystem::path& path, Collector& out) {
+  const Level level(path);
   const LoadedScenario loaded = load_scenario_with_notes(path);
   for (const formation::SceneObstacle& obstacle : loaded.scenario.obstacles) out.add(to_raw(obstacle));
   for (const std::string& note : loaded.notes) out.note("", note);
