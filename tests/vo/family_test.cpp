@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exactvo/geometry/pi.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/reciprocal.h"
 #include "vo/half_plane_audit.h"
@@ -106,6 +107,21 @@ TEST(Family, Property5_OrcaIsAffineInTheShare) {
     ASSERT_TRUE(family_member(Variant::orca, e).half_plane);
     EXPECT_NEAR(offset(0.25), 0.75 * offset(0.0) + 0.25 * offset(1.0), 1e-13);
     EXPECT_NEAR(offset(0.0), dot(family_member(Variant::orca, e).half_plane->normal, e.velocity), 1e-13);
+  }
+}
+
+TEST(Family, InContactNoRuleSaysAnything) {
+  Encounter e;
+  e.radius = 1.0;
+  for (const double centre : {0.5, 1.5, 2.0}) {  // 2: touching
+    e.obstacle = Disc{{centre, 0.0}, 1.0};
+    for (const Variant v : vo::kVariants)
+      EXPECT_EQ(family_member(v, e).allows({-1.0, 0.0}), std::nullopt) << vo::name(v);
+  }
+  e.obstacle = Disc{{3.0, 0.0}, 1.0};
+  for (const Variant v : vo::kVariants) {
+    EXPECT_EQ(family_member(v, e).allows({-1.0, 0.0}), std::optional(true)) << vo::name(v);
+    EXPECT_EQ(family_member(v, e).allows({9.0, 0.0}), std::optional(false)) << vo::name(v);
   }
 }
 
@@ -236,7 +252,7 @@ TEST(InfiniteHorizon, AHalfPlaneThroughTheConeIsNotTrue) {
 ConvexPolygon regular(int sides, double radius) {
   ConvexPolygon p;
   for (int i = 0; i < sides; ++i)
-    p.vertices.push_back(geometry::rotated({radius, 0.0}, 2.0 * 3.14159265358979323846 * i / sides));
+    p.vertices.push_back(geometry::rotated({radius, 0.0}, 2.0 * geometry::kPi * i / sides));
   return p;
 }
 
@@ -253,7 +269,7 @@ TEST(PolygonRobot, ManySidesTendToTheDisc) {
       const Vec2 v{0.3, 0.4};
       const double gap = std::fabs(polygon.nearest().distance - disc.nearest().distance);
       // The sagitta of a side, and what the outer shape adds.
-      const double sagitta = e.radius * (1.0 - std::cos(3.14159265358979323846 / sides));
+      const double sagitta = e.radius * (1.0 - std::cos(geometry::kPi / sides));
       EXPECT_LE(gap, sagitta + polygon.grown_error() + 1e-12) << sides;
       EXPECT_LE(gap, before + polygon.grown_error() + 1e-12);
       before = std::max(gap, 1e-15);

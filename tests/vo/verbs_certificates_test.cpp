@@ -194,6 +194,45 @@ TEST(VerbAuditOfCertificates, AHalfPlaneOfADiscIsOfNoEllipse) {
   EXPECT_EQ(judged(polygon).at("status"), 0) << "the sum of an ellipse and a polygonal robot";
 }
 
+TEST(VerbAuditOfCertificates, ItMustBeOfTheObstacleBesideIt) {
+  const std::string rest = " --position 0,0 --velocity 1,0 --time-horizon 2";
+  const std::string robot = " --robot 'POLYGON((-0.1 -0.1, 0.1 -0.1, 0 0.1, -0.1 -0.1))'";
+  const std::string obstacles[] = {"'DISC(4 0, 1)'", "'ELLIPSE(4 0, 1 0 1)'", "'LINESTRING(4 -1, 4 1)'",
+                                   "'" + kSquare + "'", "'" + kSquare + "' --enclose ellipse"};
+  const json other = json_of("--obstacle 'POLYGON((5 0, 6 -1, 6 1, 5 0))' --radius 0.5" + rest);
+  for (const std::string& obstacle : obstacles) {
+    const bool enclosed = obstacle.find("enclose") != std::string::npos;
+    for (const std::string& grown : {std::string(" --radius 0.5"), robot}) {
+      const json whole = json_of("--obstacle " + obstacle + grown + rest);
+      EXPECT_EQ(judged(whole).at("status"), 0) << obstacle << grown;
+      json mixed = whole, renamed = whole, resized = whole;
+      for (const char* key : {"half_plane", "certificate"}) mixed[key] = other[key];
+      renamed["shape"] = other["shape"];
+      resized["robot"] = "convex_polygon 1 0x1p-2 0x0p+0";
+      for (const json& changed : {mixed, renamed, resized}) {
+        EXPECT_EQ(judged(changed).at("status"), 1) << obstacle << grown;
+        EXPECT_EQ(judged(changed).at("verdicts")[0], enclosed ? "of another ellipse" : "of another obstacle");
+      }
+    }
+  }
+}
+
+TEST(VerbAuditOfCertificates, ObstaclesThatNobodyCanReadAreNotTheirs) {
+  const json whole = json_of("--obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2");
+  for (const json& shape :
+       {json(7), json("disc"), json("disc 0x1p+2 0x0p+0 -0x1p+0"), json("disc inf 0x0p+0 0x1p+0")}) {
+    json changed = whole;
+    changed["shape"] = shape;
+    EXPECT_EQ(judged(changed).at("verdicts"), json({"of another obstacle"})) << shape;
+  }
+  for (const json& robot : {json(nullptr), json("disc 0x0p+0 0x0p+0 0x1p-1"), json("convex_polygon 0"),
+                            json("convex_polygon 1 0x1p+1000 0x0p+0")}) {
+    json changed = whole;
+    changed["robot"] = robot;
+    EXPECT_EQ(judged(changed).at("verdicts"), json({"of another obstacle"})) << robot;
+  }
+}
+
 TEST(VerbAuditOfCertificates, JsonThatSaysThatThereIsNoneIsCounted) {
   const json overlap =
       json_of("--obstacle 'DISC(0.5 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2");

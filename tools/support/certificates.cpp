@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <fstream>
 #include <iostream>
@@ -15,6 +14,8 @@
 #include <utility>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/minkowski.h"
+#include "exactvo/geometry/support.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
 #include "support/usage.h"
@@ -103,6 +104,14 @@ std::optional<std::string> text_in(const Json& certificate) {
   return text->get<std::string>();
 }
 
+/// What `exactvo vo` takes; sums of such stay far from overflow.
+bool is_within_reach(const geometry::ConvexShape& shape) {
+  constexpr double kFarthest = 0x1p100;
+  const geometry::GrownShape s{shape, {}, 0.0};
+  const auto in_reach = [&](geometry::Vec2 n) { return geometry::support(s, n).h <= kFarthest; };
+  return in_reach({1.0, 0.0}) && in_reach({-1.0, 0.0}) && in_reach({0.0, 1.0}) && in_reach({0.0, -1.0});
+}
+
 /// The ellipse that the obstacle beside a half-plane was proven to lie in.
 std::optional<geometry::Ellipse> contained_in(const Json& object) {
   const auto taken = object.find("taken_as");
@@ -121,16 +130,43 @@ bool is_taken_as_ellipse(const Json& object) {
          (what != taken->end() && (*what == "smallest ellipse" || *what == "trap-free ellipse"));
 }
 
-/// Whether the half-plane is of a shape that the ellipse beside it does not stand for. A convex polygon may be the sum
-/// of the ellipse and a polygonal robot, which nothing here could tell.
-bool is_of_another_shape(const vo::Certificate& c, const Json& object) {
-  if (!is_taken_as_ellipse(object) || std::holds_alternative<geometry::ConvexPolygon>(c.claim.shape)) return false;
-  const auto* of = std::get_if<geometry::Ellipse>(&c.claim.shape);
-  const auto numbers = [](const geometry::Ellipse& e) {
-    return std::array{e.center.x, e.center.y, e.l11, e.l21, e.l22};
-  };
+/// The shape that a member names; nothing where there is none that could be read, or that no velocity obstacle has.
+std::optional<geometry::ConvexShape> shape_in(const Json& object, const char* key) {
+  const auto member = object.find(key);
+  if (member == object.end() || !member->is_string()) return std::nullopt;
+  auto shape = vo::read_shape(member->get<std::string>());
+  if (!shape || !geometry::is_valid(*shape) || !is_within_reach(*shape)) return std::nullopt;
+  return shape;
+}
+
+/// Of what a half-plane's certificate beside `shape` must be: that, or its sum with a polygonal robot, which is made
+/// again. Nothing where it names no obstacle that could be read.
+std::optional<geometry::GrownShape> named_by(const Json& object, const vo::HalfPlaneClaim& claim) {
+  const auto shape = shape_in(object, "shape");
+  if (!shape) return std::nullopt;
+  if (!object.contains("robot")) return geometry::GrownShape{*shape, claim.position, claim.radius};
+  const auto robot = shape_in(object, "robot");
+  const auto* polygon = robot ? std::get_if<geometry::ConvexPolygon>(&*robot) : nullptr;
+  if (polygon == nullptr) return std::nullopt;
+  return geometry::grown_by_polygon(*shape, *polygon, claim.position).shape;
+}
+
+/// Number by number.
+bool is_of_another_obstacle(const vo::HalfPlaneClaim& claim, const Json& object) {
+  if (!object.contains("shape")) return false;
+  const auto named = named_by(object, claim);
+  return !named || to_string(named->shape) != to_string(claim.shape) || named->radius != claim.radius;
+}
+
+/// Whether an ellipse that stands for the obstacle is not the one beside it, or none. Without a `shape`, of which a
+/// sum could be, the certificate itself must be of it.
+bool is_of_another_ellipse(const vo::HalfPlaneClaim& claim, const Json& object) {
+  if (!is_taken_as_ellipse(object)) return false;
+  const auto named = object.contains("shape") ? shape_in(object, "shape") : std::optional(claim.shape);
+  const auto* of = named ? std::get_if<geometry::Ellipse>(&*named) : nullptr;
   const auto contained = contained_in(object);
-  return !of || (contained && numbers(*of) != numbers(*contained));
+  return of == nullptr || (contained && to_string(*of) != to_string(*contained)) ||
+         is_of_another_obstacle(claim, object);
 }
 
 bool is_number(const Json& json, double x) {
@@ -158,7 +194,8 @@ JudgedCertificate judge_beside(const std::string& text, const Json& object) {
   JudgedCertificate judged = judge(text);
   if (!judged.valid) return judged;
   const auto c = vo::read_certificate(text);
-  if (c && is_of_another_shape(*c, object)) return {"of another ellipse", judged.claim, false};
+  if (c && is_of_another_ellipse(c->claim, object)) return {"of another ellipse", judged.claim, false};
+  if (c && is_of_another_obstacle(c->claim, object)) return {"of another obstacle", judged.claim, false};
   if (is_of_another_half_plane(c, object)) return {"of another half-plane", judged.claim, false};
   return judged;
 }

@@ -13,7 +13,7 @@ namespace exactvo::tools {
 
 struct JudgedCertificate {
   std::string verdict;  ///< vo::name(Verdict), "not a certificate", "of another half-plane", "of another ellipse",
-                        ///< "unreadable JSON"
+                        ///< "of another obstacle", "unreadable JSON"
   std::string claim;    ///< what is claimed, rounded for people; empty where it is none
   bool valid = false;
 };
@@ -26,9 +26,10 @@ struct JudgedCertificates {
 /// Every certificate of a text: one a line, where blank lines do not count and any other line is "not a certificate".
 /// Of JSON (first letter { or [) the text of every `certificate`, whatever it begins with, and every other string that
 /// begins as one; JSON that cannot be read is one that is not valid. The `half_plane` or `contact_half_plane` beside a
-/// certificate must be the one that it proves, number by number. Beside a `taken_as` that is an ellipse it must be of
-/// an ellipse, and of the same one where that has a certificate of containment (a convex polygon may be the sum with a
-/// polygonal robot and is not compared); in lines, nothing says which belong together, and this is not checked.
+/// certificate must be the one that it proves, number by number, and it must be of the `shape` beside it, or where a
+/// `robot` stands there of their sum, made again by `geometry::grown_by_polygon`. Beside a `taken_as` that is an
+/// ellipse the shape must be an ellipse, and the same one where that has a certificate of containment. In lines,
+/// nothing says which belong together, and this is not checked.
 JudgedCertificates judge_certificates_in(const std::string& text);
 
 /// The same of a file, or of stdin where its name is "-". Throws DataError where it can't be read, UsageError where

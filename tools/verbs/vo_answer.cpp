@@ -19,11 +19,6 @@ bool any_contains(const VoAnswer& a) {
   return std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& cone) { return cone.contains; });
 }
 
-std::optional<bool> allowed(const vo::Member& m, Vec2 velocity) {
-  if (!m.cone && !m.half_plane) return std::nullopt;
-  return m.allows(velocity);
-}
-
 const char* word_of_allowed(const std::optional<bool>& allowed) {
   if (!allowed) return "no cone";
   return *allowed ? "allows" : "forbids";
@@ -134,7 +129,7 @@ std::string shared_json(const ConeAnswer& a) {
 }
 
 std::string member_json(const vo::Member& m, Vec2 velocity) {
-  const auto answer = allowed(m, velocity);
+  const auto answer = m.allows(velocity);
   std::string text =
       fmt::format("{{\"variant\": \"{}\", \"allows_velocity\": {}", name(m.variant), answer ? json(*answer) : "null");
   if (m.cone)
@@ -156,8 +151,12 @@ std::string stages_json() {
   return fmt::format("\"stage_counts\": {{\"filter\": {}, \"exact\": {}}}", counts.filter, counts.exact);
 }
 
+/// Of what the certificate is: the obstacle's convex shape, and a robot that is no disc.
 std::string shape_json(const ConeAnswer& a) {
-  return fmt::format("\"shape\": \"{}\",\n  ", to_string(a.encounter.obstacle));
+  const auto& robot = a.encounter.robot;
+  const std::string grown_by =
+      robot ? fmt::format("\"robot\": \"{}\",\n  ", to_string(geometry::ConvexShape{*robot})) : "";
+  return fmt::format("\"shape\": \"{}\",\n  {}", to_string(a.encounter.obstacle), grown_by);
 }
 
 std::string verdict_json(bool overlaps, bool contains) {
@@ -209,13 +208,15 @@ std::string joined(const std::vector<std::string>& items) {
 
 /// Which fields are what. A certificate's numbers are doubles; what it proves of them is exact.
 constexpr const char* kKindsOfCone =
-    "\"kinds\": {\n    \"exact\": [\"shape\", \"taken_as\", \"overlaps\", \"contains_velocity\", \"apex\"],\n"
+    "\"kinds\": {\n    \"exact\": [\"shape\", \"robot\", \"taken_as\", \"overlaps\", \"contains_velocity\", "
+    "\"apex\"],\n"
     "    \"certified\": [\"half_plane\", \"contact_half_plane\", \"certificate\", \"why_no_certificate\", "
     "\"legs/bracket\"],\n"
     "    \"rounded\": [\"legs/direction\", \"legs/touch\", \"nearest_boundary\", \"u\", \"shared_half_plane\", "
     "\"variants\"]},\n  ";
 constexpr const char* kKindsOfFree =
-    "\"kinds\": {\n    \"exact\": [\"obstacles/shape\", \"obstacles/taken_as\", \"obstacles/overlaps\", "
+    "\"kinds\": {\n    \"exact\": [\"obstacles/shape\", \"obstacles/robot\", \"obstacles/taken_as\", "
+    "\"obstacles/overlaps\", "
     "\"velocity_is_free\",\n      \"exact/components\", \"exact/region_inside\", \"exact/pieces/arcs/kind\", "
     "\"exact/pieces/arcs/obstacle\", \"exact/pieces/arcs/cone\", \"exact/pieces/arcs/turn\"],\n"
     "    \"certified\": [\"obstacles/half_plane\", \"obstacles/contact_half_plane\", \"obstacles/certificate\", "

@@ -65,9 +65,7 @@ VoAnswer answer_of(const VoQuestion& question);
 bool any_overlaps(const VoAnswer& answer);
 bool any_contains(const VoAnswer& answer);
 
-/// Whether the rule allows v; nothing where it has neither a cone nor a half-plane, as in contact.
-std::optional<bool> allowed(const vo::Member& member, Vec2 velocity);
-/// "allows", "forbids" or, of neither, "no cone".
+/// What a rule says of a velocity (`Member::allows`): "allows", "forbids" or "no cone".
 const char* word_of_allowed(const std::optional<bool>& allowed);
 
 /// Why there is no certificate: "contact" or "rounding"; nothing where there is one.

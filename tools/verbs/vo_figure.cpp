@@ -244,7 +244,7 @@ void draw_member(const vo::Member& m, const ConeAnswer& a, Panel& panel) {
 }
 
 std::string member_title(const vo::Member& m, Vec2 velocity) {
-  const auto answer = allowed(m, velocity);
+  const auto answer = m.allows(velocity);
   return fmt::format("{}: {}{}", name(m.variant), word_of_allowed(answer), answer ? " v" : "");
 }
 

@@ -98,7 +98,7 @@ std::string single_words(const VoAnswer& a) {
 
 /// IVO's ellipse reaches beyond the obstacle, so that the robot may be in contact with it alone.
 std::string member_words(const vo::Member& m, bool overlaps, Vec2 velocity) {
-  const auto answer = allowed(m, velocity);
+  const auto answer = m.allows(velocity);
   if (answer) return fmt::format("{:<17} {} the velocity\n", name(m.variant), word_of_allowed(answer));
   const char* ellipse = m.variant == vo::Variant::ivo ? "in contact with its ellipse, or rounding" : "rounding";
   return fmt::format("{:<17} {}: {}\n", name(m.variant), word_of_allowed(answer), overlaps ? "in contact" : ellipse);

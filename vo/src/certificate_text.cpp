@@ -43,6 +43,13 @@ geometry::ConvexShape read_shape(Reader& in) {
 
 }  // namespace
 
+std::optional<geometry::ConvexShape> read_shape(const std::string& text) {
+  Reader in(text);
+  geometry::ConvexShape shape = read_shape(in);
+  if (!in.finished() || to_string(shape) != text) return std::nullopt;
+  return shape;
+}
+
 std::string write_certificate(const Certificate& c) {
   const HalfPlaneClaim& claim = c.claim;
   return "half-plane-certificate 1 " + to_string(claim.shape) + " position " + text(claim.position) + " radius " +

@@ -125,9 +125,10 @@ bool ShiftedCone::contains(Vec2 v) const {
   return cone.contains_sum(VectorSum{{v, minus_apex.terms[0], minus_apex.terms[1]}});
 }
 
-bool Member::allows(Vec2 v) const {
-  if (cone && cone->contains(v)) return false;
-  return !half_plane || violation(*half_plane, v) <= 0.0;
+std::optional<bool> Member::allows(Vec2 v) const {
+  if (cone) return !cone->contains(v);
+  if (half_plane) return violation(*half_plane, v) <= 0.0;
+  return std::nullopt;
 }
 
 Member family_member(Variant variant, const Encounter& e) {

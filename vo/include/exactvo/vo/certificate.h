@@ -62,5 +62,7 @@ const char* name(Verdict verdict);
 std::string write_certificate(const Certificate& certificate);
 /// Nothing where the text is not exactly one certificate.
 std::optional<Certificate> read_certificate(const std::string& text);
+/// A shape as it stands in a certificate (`geometry::to_string`). Nothing where the text is not exactly one.
+std::optional<geometry::ConvexShape> read_shape(const std::string& text);
 
 }  // namespace exactvo::vo

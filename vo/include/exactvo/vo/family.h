@@ -73,8 +73,9 @@ struct Member {
   std::optional<ShiftedCone> cone;      ///< VO, RVO, HRVO: forbidden
   std::optional<HalfPlane> half_plane;  ///< ORCA, IVO: allowed
 
-  /// Whether the rule allows v. Exact for cones; rounded for half-planes. True where there is neither.
-  bool allows(Vec2 v) const;
+  /// Whether the rule allows v. Exact for cones; rounded for half-planes. Nothing where there is neither: in contact no
+  /// rule says anything.
+  std::optional<bool> allows(Vec2 v) const;
 };
 
 /// Neither cone nor half-plane where the robot touches or overlaps the obstacle (IVO: its ellipse). REQUIRES: see
