@@ -160,13 +160,13 @@ Refusal FreeArrangement::refusal_of(const std::vector<ShiftedCone>& cones, doubl
   return has_too_many_curves(cones) ? Refusal::curves : Refusal::none;
 }
 
-// CGAL's failures are what is left to fail where nothing is refused, and `guarded` makes them logic_errors.
+// CGAL's failures alone: a requirement of ours that is broken there is a mistake, no property of the numbers.
 FreeArrangement::Attempt FreeArrangement::attempt(std::vector<ShiftedCone> cones, double max_speed) {
   try {
     const Refusal refusal = refusal_of(cones, max_speed);
     if (refusal != Refusal::none) return {{}, refusal};
     return {FreeArrangement(std::move(cones), max_speed), Refusal::none};
-  } catch (const std::logic_error&) {
+  } catch (const geometry::detail::CgalFailure&) {
     return {{}, Refusal::numbers_apart};
   }
 }
@@ -203,7 +203,7 @@ std::optional<bool> FreeArrangement::attempt_holds(const std::vector<HalfPlane>&
   if (!std::all_of(half_planes.begin(), half_planes.end(), is_in_range)) return std::nullopt;
   try {
     return holds(half_planes);
-  } catch (const std::logic_error&) {  // of `guarded`
+  } catch (const geometry::detail::CgalFailure&) {
     return std::nullopt;
   }
 }

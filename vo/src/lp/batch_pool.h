@@ -15,9 +15,11 @@ namespace exactvo::lp::HWY_NAMESPACE {
 /// Packs that make their rounds together, at most: with fewer a processor waits, more gain nothing.
 inline constexpr std::size_t kPacks = 6;
 
-/// Bytes of lines that are to be under way: as many are asked for ahead and others pass through, and all are meant to
-/// stay in a first cache of 32 to 48 KiB. On recorded sets of 10, 20, 50 and 100 lines less is slower, and more too.
-inline constexpr std::size_t kLinesUnderWay = 45 * 256;
+/// Bytes of lines that are to be under way: those of all packs of ten lines, three numbers each, in registers of 64
+/// bytes; twenty lines then go three packs a round, fifty two. As many are asked for ahead and others pass through, and
+/// all are meant to stay in a first cache of 32 to 48 KiB. With AVX-512, ns a problem in double at half, at these and
+/// at twice as many bytes: twenty random lines 14.2, 13.2, 14.6; fifty 33.2, 29.1, 33.8; ten and a hundred alike.
+inline constexpr std::size_t kLinesUnderWay = kPacks * 10 * 3 * 64;
 
 /// Packs of so many lines that make their rounds together.
 template <class D>
