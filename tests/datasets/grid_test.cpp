@@ -246,6 +246,38 @@ TEST_F(RosMapTest, BadMapsAreNamed) {
   EXPECT_EQ(code("image: m.pgm\n\tx: [\n"), DataCode::format_syntax);
 }
 
+TEST_F(RosMapTest, ThresholdsThatWouldLoseTheWallsAreRefused) {
+  put("m.pgm", pgm(kPixels));
+  struct Refused {
+    const char* lines;
+    const char* place;
+    const char* found;
+    const char* expected;
+  };
+  const char* const kShare = "a number from 0 to 1";
+  const Refused refused[] = {
+      {"occupied_thresh: 65\n", "line 4, key occupied_thresh", "65", kShare},
+      {"negate: 0\nfree_thresh: 19.6\n", "line 5, key free_thresh", "19.6", kShare},
+      {"occupied_thresh: -0.1\n", "line 4, key occupied_thresh", "-0.1", kShare},
+      {"occupied_thresh: .nan\n", "line 4, key occupied_thresh", ".nan", kShare},
+      {"mode: raw\nfree_thresh: .inf\n", "line 5, key free_thresh", ".inf", kShare},
+      {"free_thresh: 0.66\n", "line 4, key free_thresh", "0.66", "at most occupied_thresh, 0.65 where it is left out"},
+      {"occupied_thresh: 0.2\nfree_thresh: 0.65\n", "line 5, key free_thresh", "0.65", "at most occupied_thresh, 0.2"}};
+  for (const Refused& r : refused) {
+    const DataError error = refusal_of([&] { read_map(r.lines); });
+    expect_refusal(error, DataCode::out_of_range, r.place);
+    EXPECT_EQ(error.found(), r.found) << r.lines;
+    EXPECT_EQ(error.expected(), r.expected) << r.lines;
+  }
+}
+
+TEST_F(RosMapTest, ThresholdsAtTheEndsAndOneLeftOutAreTaken) {
+  put("m.pgm", pgm(kPixels));
+  EXPECT_EQ(read_map("occupied_thresh: 1\nfree_thresh: 0\n").coverage->occupied, 0u) << "comparisons are strict";
+  EXPECT_EQ(read_map("occupied_thresh: 0\nfree_thresh: 0\n").coverage->occupied, 4u) << "all but 255";
+  EXPECT_EQ(read_map("occupied_thresh: 0.1\n").coverage->occupied, 3u) << "free_thresh, left out, is no higher";
+}
+
 TEST_F(RosMapTest, HostilePicturesAreNamed) {
   const auto code = [&](const std::string& picture) {
     put("m.pgm", picture);

@@ -55,8 +55,9 @@ class MapYaml {
       refuse("origin", DataCode::wrong_count, std::to_string(origin.size()) + " numbers", "[x, y, yaw]");
     for (std::size_t i = 0; i < 3; ++i) m.origin[i] = finite(origin[i], "origin");
     m.negate = negate();
-    m.occupied_thresh = finite(value<double>("occupied_thresh", m.occupied_thresh, "a number"), "occupied_thresh");
-    m.free_thresh = finite(value<double>("free_thresh", m.free_thresh, "a number"), "free_thresh");
+    m.occupied_thresh = threshold("occupied_thresh", m.occupied_thresh);
+    m.free_thresh = threshold("free_thresh", std::min(m.free_thresh, m.occupied_thresh));
+    if (m.free_thresh > m.occupied_thresh) refuse_order();
     m.mode = mode();
     return m;
   }
@@ -84,6 +85,21 @@ class MapYaml {
     return number;
   }
 
+  /// A share of darkness: 65 where 0.65 was meant would leave no cell occupied, and no wall.
+  double threshold(const char* key, double otherwise) const {
+    const double number = value<double>(key, otherwise, "a number from 0 to 1");
+    if (!(number >= 0.0 && number <= 1.0)) refuse(key, DataCode::out_of_range, word(key), "a number from 0 to 1");
+    return number;
+  }
+
+  /// Only what is written can be at fault: free_thresh, left out, is no higher than the other.
+  [[noreturn]] void refuse_order() const {
+    const std::string occupied = root_["occupied_thresh"] ? word("occupied_thresh") : "0.65 where it is left out";
+    refuse("free_thresh", DataCode::out_of_range, word("free_thresh"), "at most occupied_thresh, " + occupied);
+  }
+
+  std::string word(const char* key) const { return root_[key].Scalar(); }
+
   bool negate() const {
     const std::string word = value<std::string>("negate", "0", "0 or 1");
     if (word == "0" || word == "false") return false;
@@ -101,7 +117,8 @@ class MapYaml {
 
   [[noreturn]] void refuse(const char* key, DataCode code, const std::string& found,
                            const std::string& expected) const {
-    throw DataError(code, file_, std::string("key ") + key, found, expected);
+    throw DataError(code, file_, "line " + std::to_string(root_[key].Mark().line + 1) + ", key " + key, found,
+                    expected);
   }
 
   const std::string& file_;
