@@ -48,12 +48,13 @@ bool all_there(const Ledger& ledger, std::size_t inputs) {
   return true;
 }
 
-std::unique_ptr<Outputs> bind_all(const Ledger& ledger, const Identity& identity,
-                                  const BatchConfiguration& configuration, const BatchRun& run) {
-  auto outputs = std::make_unique<Outputs>(ledger.final_folder(), configuration, provenance_of(identity, run));
-  for (std::size_t input = 0; input < identity.inputs.size(); ++input) {
+std::unique_ptr<Outputs> bind_all(const Ledger& ledger, std::size_t inputs, const BatchConfiguration& configuration,
+                                  const std::string& provenance, const std::function<void()>& before_each) {
+  auto outputs = std::make_unique<Outputs>(ledger.final_folder(), configuration, provenance);
+  for (std::size_t input = 0; input < inputs; ++input) {
     const std::uint64_t chunks = read_facts(ledger, input).chunks;
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+      before_each();
       const std::string bytes = read_part_bytes(ledger, input, chunk);
       outputs->add(view_of_part(bytes, ledger.part(input, chunk)));
     }
@@ -62,7 +63,7 @@ std::unique_ptr<Outputs> bind_all(const Ledger& ledger, const Identity& identity
 }
 
 BatchSummary finish_outputs(std::unique_ptr<Outputs> outputs, const Ledger& ledger, const Identity& identity,
-                            const BatchConfiguration& configuration, const BatchRun& run, Times times) {
+                            const BatchConfiguration& configuration, const std::string& provenance, Times times) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<InputFacts> facts = all_facts(ledger, identity.inputs.size());
   BatchSummary summary = summary_of(identity, facts);
@@ -72,7 +73,6 @@ BatchSummary finish_outputs(std::unique_ptr<Outputs> outputs, const Ledger& ledg
   summary.vertices = outputs->counts().vertices;
   outputs->finish();
   outputs.reset();
-  const std::string provenance = provenance_of(identity, run);
   if (configuration.pictures) {
     const std::string words = words_of(summary.files, "files") + ". " + words_of(summary.obstacles, "obstacles") + ".";
     write_pages(ledger, identity, facts, words, provenance);

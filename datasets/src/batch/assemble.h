@@ -4,6 +4,7 @@
 /// \file
 /// The end of a batch: what was bound and what is left, in order of inputs and chunks; memory holds one part at a time.
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,12 +21,13 @@ std::string provenance_of(const Identity& identity, const BatchRun& run);
 /// Whether every input has its facts.
 bool all_there(const Ledger& ledger, std::size_t inputs);
 
-/// Binds all parts from the disk, in `ledger.final_folder()`, started before.
-std::unique_ptr<Outputs> bind_all(const Ledger& ledger, const Identity& identity,
-                                  const BatchConfiguration& configuration, const BatchRun& run);
+/// Binds all parts of so many inputs from the disk, in `ledger.final_folder()`, started before. What `before_each` part
+/// throws, it throws.
+std::unique_ptr<Outputs> bind_all(const Ledger& ledger, std::size_t inputs, const BatchConfiguration& configuration,
+                                  const std::string& provenance, const std::function<void()>& before_each);
 
 /// Finishes `outputs`, which hold all parts, writes what is missing beside them, and publishes everything.
 BatchSummary finish_outputs(std::unique_ptr<Outputs> outputs, const Ledger& ledger, const Identity& identity,
-                            const BatchConfiguration& configuration, const BatchRun& run, Times times);
+                            const BatchConfiguration& configuration, const std::string& provenance, Times times);
 
 }  // namespace exactvo::datasets::batch

@@ -24,10 +24,11 @@ void require_sensible(const BatchConfiguration& configuration, const BatchRun& r
 
 BatchResult run_share(Session& session, const BatchRun& run) {
   const bool joins = run.resume || run.shards > 1;
-  const Ledger::State state = session.ledger().look(session.identity(), joins);
-  if (state == Ledger::State::complete) return {BatchEnd::complete, batch::read_summary(run.out), true};
+  if (session.ledger().look(session.identity(), joins) == Ledger::State::complete) {
+    return {BatchEnd::complete, batch::read_summary(run.out), true};
+  }
   session.ledger().begin(session.identity());
-  if (state == Ledger::State::fresh && run.shards == 1) session.bind_ahead();
+  if (run.shards == 1) session.bind_ahead();
   std::vector<std::size_t> mine;
   for (std::size_t k = run.shard - 1; k < session.identity().inputs.size(); k += run.shards) mine.push_back(k);
   session.plan(mine);

@@ -2,6 +2,7 @@
 #include "batch/binder.h"
 
 #include <system_error>
+#include <utility>
 
 #include "batch/input_record.h"
 
@@ -18,18 +19,22 @@ PartView view_at(PartKey key, const std::string& bytes, const Ledger& ledger) {
 
 }  // namespace
 
-Binder::Binder(const Ledger& ledger, const BatchConfiguration& configuration, const std::string& provenance)
-    : ledger_(ledger) {
-  ledger.start_final(false);
-  outputs_ = std::make_unique<Outputs>(ledger.final_folder(), configuration, provenance);
+Binder::Folder::Folder(const Ledger& of) : path(of.final_folder()) {
+  of.start_final(Ledger::Holds::claim);
 }
 
-Binder::~Binder() {
-  if (!outputs_) return;
-  outputs_.reset();
+Binder::Folder::~Folder() {
+  if (is_given_out) return;
   std::error_code ignored;
-  std::filesystem::remove_all(ledger_.final_folder(), ignored);
+  std::filesystem::remove_all(path, ignored);
 }
+
+Binder::Binder(const Ledger& ledger, Ledger::FileLock claim, const BatchConfiguration& configuration,
+               const std::string& provenance)
+    : ledger_(ledger),
+      claim_(std::move(claim)),
+      folder_(ledger),
+      outputs_(std::make_unique<Outputs>(ledger.final_folder(), configuration, provenance)) {}
 
 /// Not where its input is through or has ended before it.
 bool Binder::counts(PartKey key) const {
@@ -48,7 +53,7 @@ bool Binder::take(PartKey key, Bytes bytes) {
   const bool holds = key == next_ || bytes_ + bytes->size() <= kMostBytesWaiting;
   if (holds) put(key, std::move(bytes));
   if (is_binding_) return holds;
-  for (int bound = 0; bound < kBoundAtOnce && turn_over(); ++bound) bind_next(lock);
+  for (int bound = 0; bound < kBoundAtOnce && next_waits(); ++bound) bind_next(lock);
   return holds;
 }
 
@@ -66,14 +71,17 @@ void Binder::close(std::size_t input, std::uint64_t chunks) {
   }
 }
 
-/// Goes past inputs that are through. Whether the next part waits.
-bool Binder::turn_over() {
-  for (auto closed = chunks_of_.find(next_.first); closed != chunks_of_.end() && next_.second >= closed->second;
-       closed = chunks_of_.find(next_.first)) {
-    is_spoiled_ = is_spoiled_ || next_.second > closed->second;
-    chunks_of_.erase(closed);
+void Binder::pass_ended_inputs() {
+  for (auto ended = chunks_of_.find(next_.first); ended != chunks_of_.end() && next_.second >= ended->second;
+       ended = chunks_of_.find(next_.first)) {
+    is_spoiled_ = is_spoiled_ || next_.second > ended->second;
+    chunks_of_.erase(ended);
     next_ = {next_.first + 1, 0};
   }
+}
+
+bool Binder::next_waits() {
+  pass_ended_inputs();
   return !is_spoiled_ && waiting_.count(next_) > 0;
 }
 
@@ -100,13 +108,16 @@ void Binder::bind_next(std::unique_lock<std::mutex>& lock) {
   is_binding_ = false;
 }
 
-std::unique_ptr<Outputs> Binder::finish(std::size_t inputs) {
+std::unique_ptr<Outputs> Binder::finish(std::size_t inputs, const std::function<void()>& before_each) {
   std::unique_lock<std::mutex> lock(mutex_);
-  while (turn_over()) bind_next(lock);
+  while (next_waits()) {
+    before_each();
+    bind_next(lock);
+  }
   std::error_code error;
-  const bool is_whole =
-      !is_spoiled_ && next_ == PartKey{inputs, 0} && std::filesystem::is_directory(ledger_.final_folder(), error);
-  return is_whole ? std::move(outputs_) : nullptr;
+  folder_.is_given_out =
+      !is_spoiled_ && next_ == PartKey{inputs, 0} && std::filesystem::is_directory(folder_.path, error);
+  return folder_.is_given_out ? std::move(outputs_) : nullptr;
 }
 
 }  // namespace exactvo::datasets::batch

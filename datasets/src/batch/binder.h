@@ -3,10 +3,12 @@
 
 /// \file
 /// Puts parts together while others are still being made: a part is bound once all before it are, by whichever worker
-/// brings one, so that the outputs grow as fast as the parts and nobody stands idle at the end. What comes too early
-/// waits.
+/// brings one, so that little is left to one thread at the end. What comes too early waits. One process of a batch does
+/// so (`Ledger::claim_binding`), whose inputs are all of them, in order.
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -25,10 +27,12 @@ using PartKey = std::pair<std::size_t, std::size_t>;
 /// bound, which then count for nothing, what was bound is of no use: `finish` says so.
 class Binder {
  public:
-  /// Starts the outputs in `ledger.final_folder()`. `ledger` must outlive it. Throws DataError (E_FILE_UNWRITABLE).
-  Binder(const Ledger& ledger, const BatchConfiguration& configuration, const std::string& provenance);
+  /// Starts the outputs in `ledger.final_folder()`. `claim` is that of the ledger, which must outlive it. Throws
+  /// DataError (E_FILE_UNWRITABLE).
+  Binder(const Ledger& ledger, Ledger::FileLock claim, const BatchConfiguration& configuration,
+         const std::string& provenance);
   /// Takes the outputs away that `finish` did not give out.
-  ~Binder();
+  ~Binder() = default;
   Binder(const Binder&) = delete;
   Binder& operator=(const Binder&) = delete;
 
@@ -41,8 +45,9 @@ class Binder {
   void close(std::size_t input, std::uint64_t chunks);
 
   /// Binds what is left; nobody takes any more. The outputs, not finished themselves, where they hold all parts of so
-  /// many inputs; else none.
-  std::unique_ptr<Outputs> finish(std::size_t inputs);
+  /// many inputs; else none. What `before_each` part throws, it throws.
+  std::unique_ptr<Outputs> finish(
+      std::size_t inputs, const std::function<void()>& before_each = [] {});
 
   /// In memory, of parts that wait for their turn.
   static constexpr std::uint64_t kMostBytesWaiting = std::uint64_t{32} << 20;
@@ -51,10 +56,24 @@ class Binder {
   using Bytes = std::shared_ptr<const std::string>;
   void put(PartKey key, Bytes bytes);
   bool counts(PartKey key) const;
-  bool turn_over();
+  void pass_ended_inputs();
+  bool next_waits();
   void bind_next(std::unique_lock<std::mutex>& lock);
 
+  /// The ledger's final folder, which goes with it unless it was given out.
+  struct Folder {
+    explicit Folder(const Ledger& of);
+    ~Folder();
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+    const std::filesystem::path& path;
+    bool is_given_out = false;
+  };
+
   const Ledger& ledger_;
+  Ledger::FileLock claim_;
+  Folder folder_;  ///< before the outputs, which are closed first
   std::mutex mutex_;
   std::unique_ptr<Outputs> outputs_;                ///< of whoever is binding
   std::map<PartKey, Bytes> waiting_;                ///< null where it is on disk

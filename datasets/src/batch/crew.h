@@ -3,7 +3,7 @@
 
 /// \file
 /// Workers that take a reader's chunks apart while it reads on. What they make does not depend on how many they are:
-/// every job writes a file of its own. One more thread waits for the disk.
+/// every job writes a file of its own, and these are bound in order (binder.h). One more thread waits for the disk.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>

@@ -26,6 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFinal = "final.";
+constexpr const char* kBinder = "binder";
+constexpr const char* kLock = "lock";
 
 /// Short to who presses a key, long to a processor.
 constexpr std::chrono::milliseconds kBetweenLooks{20};
@@ -197,7 +199,7 @@ void Ledger::write(const fs::path& path, const std::string& bytes) const {
 }
 
 Ledger::Lock::Lock(const Ledger& ledger, const std::function<bool()>& keep_waiting) {
-  const fs::path path = ledger.parts_ / "lock";
+  const fs::path path = ledger.parts_ / kLock;
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0 && ledger.is_open()) throw cannot_write(path, errno);
   if (descriptor_ < 0) return;
@@ -213,15 +215,40 @@ Ledger::Lock::~Lock() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void Ledger::start_final(bool is_alone) const {
-  std::error_code error;
-  if (is_alone) {
-    for (const std::string& name : names_in(parts_)) {
-      if (name.rfind(kFinal, 0) == 0) fs::remove_all(parts_ / name, error);
-    }
+Ledger::FileLock Ledger::FileLock::try_on(const fs::path& path) {
+  FileLock lock;
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) return lock;
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+    lock.descriptor_ = descriptor;
+  } else {
+    ::close(descriptor);
   }
-  fs::create_directories(final_, error);
+  return lock;
+}
+
+Ledger::FileLock::~FileLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Ledger::FileLock Ledger::claim_binding() const {
+  return FileLock::try_on(parts_ / kBinder);
+}
+
+void Ledger::start_final(Holds holds) const {
+  const FileLock claim = holds == Holds::claim ? FileLock() : claim_binding();
+  const FileLock lock = holds == Holds::lock ? FileLock() : FileLock::try_on(parts_ / kLock);
+  if ((holds == Holds::claim || claim.is_held()) && (holds == Holds::lock || lock.is_held())) remove_finals();
+  std::error_code error;
+  fs::create_directory(final_, error);
   if (error) throw cannot_write(final_, error.value());
+}
+
+void Ledger::remove_finals() const {
+  std::error_code ignored;
+  for (const std::string& name : names_in(parts_)) {
+    if (name.rfind(kFinal, 0) == 0) fs::remove_all(parts_ / name, ignored);
+  }
 }
 
 void Ledger::publish(const std::string& last, const std::function<bool(const std::string&)>& is_output) const {

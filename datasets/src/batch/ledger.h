@@ -8,6 +8,7 @@
 ///     NNNNNN/KKKKKK     what was made of chunk K of input N
 ///     NNNNNN.input      the input's facts, written when all its chunks are there; an only chunk stands in it
 ///     final.WORD/       the outputs on their way; each process has a folder of its own
+///     binder, lock      files to lock: who binds ahead of the end, who puts everything together at the end
 ///
 /// Every file appears whole (atomic_file.h). When the outputs stand in OUT, summary.json last, .parts is renamed to
 /// .parts.old in one step and removed; what a kill leaves of that, the next look removes.
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "batch/inputs.h"
@@ -58,9 +60,28 @@ class Ledger {
   /// Writes one of the files above. Throws DataError (E_FILE_UNWRITABLE), also where .parts was removed meanwhile.
   void write(const std::filesystem::path& path, const std::string& bytes) const;
 
-  /// Held while the parts are put together; other processes wait. Goes with its process. On a file system that knows no
-  /// locks nobody waits: several may put the parts together at once, each in its own folder, and what they move to OUT
-  /// is the same but for the times; who comes last finds .parts gone (`is_open`), and must not make it anew.
+  /// A lock on a file, which goes with its process. On a file system that knows no locks nobody has any.
+  class FileLock {
+   public:
+    FileLock() = default;
+    /// Makes the file; the lock is held unless another process has it, or the file can't be made.
+    static FileLock try_on(const std::filesystem::path& path);
+    FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    FileLock& operator=(FileLock&&) = delete;
+    ~FileLock();
+
+    bool is_held() const { return descriptor_ >= 0; }
+
+   private:
+    int descriptor_ = -1;
+  };
+  /// Held by the one process that puts parts together while others are being made.
+  FileLock claim_binding() const;
+
+  /// Held while the parts are put together at the end; other processes wait. Goes with its process. On a file system
+  /// that knows no locks nobody waits: several may put the parts together at once, each in its own folder, and what
+  /// they move to OUT is the same but for the times; who comes last finds .parts gone (`is_open`), and must not make it
+  /// anew.
   class Lock {
    public:
     /// Waits as long as `keep_waiting`, asked many times a second, says so.
@@ -69,7 +90,7 @@ class Ledger {
     Lock(const Lock&) = delete;
     Lock& operator=(const Lock&) = delete;
 
-    /// Whether nobody else can be at it.
+    /// Whether nobody else can be at it. (Somebody may be binding ahead of the end: see `claim_binding`.)
     bool is_alone() const { return is_alone_; }
     /// Whether somebody else was still at it when waiting ended.
     bool gave_up() const { return gave_up_; }
@@ -84,13 +105,17 @@ class Ledger {
   /// Whether an output of just this batch stands in OUT and nothing is under way there.
   bool another_finished(const Identity& identity) const;
 
-  /// Makes an empty `final_folder`. Alone, it takes away what killed processes left in theirs.
-  void start_final(bool is_alone) const;
+  /// Makes `final_folder`, where .parts still stands; else throws DataError (E_FILE_UNWRITABLE). What killed processes
+  /// left in theirs is taken away where it is certain that they are dead: where this process has, or can get at once,
+  /// both what binding ahead and what putting together at the end takes.
+  enum class Holds { claim, lock, neither };
+  void start_final(Holds holds) const;
   /// Moves the files of `final_folder` to OUT, takes away those of an earlier output (`is_output` knows their names)
   /// that this one does not have, moves `last`, and takes .parts away.
   void publish(const std::string& last, const std::function<bool(const std::string& name)>& is_output) const;
 
  private:
+  void remove_finals() const;
   std::filesystem::path run_file() const { return parts_ / "run.json"; }
   std::filesystem::path litter() const { return out_ / ".parts.old"; }
 

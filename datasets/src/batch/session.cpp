@@ -97,6 +97,7 @@ Session::Session(const BatchConfiguration& configuration, const BatchRun& run, I
     : configuration_(configuration),
       run_(run),
       identity_(std::move(identity)),
+      provenance_(provenance_of(identity_, run)),
       watch_(std::move(watch)),
       ledger_(run.out),
       crew_(workers_of(run), configuration.memory_limit),
@@ -118,7 +119,8 @@ bool Session::look(const std::string& doing, double share) {
 }
 
 void Session::bind_ahead() {
-  binder_.emplace(ledger_, configuration_, provenance_of(identity_, run_));
+  Ledger::FileLock claim = ledger_.claim_binding();
+  if (claim.is_held()) binder_.emplace(ledger_, std::move(claim), configuration_, provenance_);
 }
 
 Workshop Session::workshop() {
@@ -171,10 +173,10 @@ BatchResult Session::finish() {
                           [this] { return look("waiting for the process that puts the parts together", 1.0); });
   if (!ledger_.is_open()) return result;  // another process was quicker
   if (lock.gave_up()) return {BatchEnd::interrupted, {}, false};
-  look("putting the parts together", 1.0);
   try {
-    std::unique_ptr<Outputs> outputs = bound(lock.is_alone());
-    result.summary = finish_outputs(std::move(outputs), ledger_, identity_, configuration_, run_, times());
+    result.summary = put_together(result, lock.is_alone());
+  } catch (const Stopped&) {
+    return {BatchEnd::interrupted, {}, false};
   } catch (const DataError&) {
     if (ledger_.is_open() || lock.is_alone()) throw;
     return result;  // another process was quicker here as well
@@ -183,15 +185,27 @@ BatchResult Session::finish() {
   return result;
 }
 
+void Session::look_before_a_part() {
+  if (!look("putting the parts together", 1.0)) throw Stopped{};
+}
+
 /// What was bound while parts were made, if it is all of them; else all, from the disk.
-std::unique_ptr<Outputs> Session::bound(bool is_alone) {
+std::unique_ptr<Outputs> Session::bound(BatchResult& result, bool is_alone) {
+  const auto before_each = [this] { look_before_a_part(); };
   if (binder_) {
-    std::unique_ptr<Outputs> outputs = binder_->finish(identity_.inputs.size());
+    std::unique_ptr<Outputs> outputs = binder_->finish(identity_.inputs.size(), before_each);
+    result.was_bound_ahead = outputs != nullptr;
     if (outputs) return outputs;
     binder_.reset();
   }
-  ledger_.start_final(is_alone);
-  return bind_all(ledger_, identity_, configuration_, run_);
+  ledger_.start_final(is_alone ? Ledger::Holds::lock : Ledger::Holds::neither);
+  return bind_all(ledger_, identity_.inputs.size(), configuration_, provenance_, before_each);
+}
+
+BatchSummary Session::put_together(BatchResult& result, bool is_alone) {
+  look_before_a_part();
+  std::unique_ptr<Outputs> outputs = bound(result, is_alone);
+  return finish_outputs(std::move(outputs), ledger_, identity_, configuration_, provenance_, times());
 }
 
 Times Session::times() const {

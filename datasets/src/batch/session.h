@@ -43,7 +43,8 @@ class Session {
 
   /// Says which inputs are this process's, for progress.
   void plan(std::vector<std::size_t> inputs);
-  /// Has parts put together while others are made, where all inputs are this process's, in order, and none is there.
+  /// Has parts put together while others are made, unless another process does so. REQUIRES: all inputs are this
+  /// process's, in order.
   void bind_ahead();
   /// Reads an input and sets the crew to make what is missing of it. Throws Stopped.
   void process(std::size_t input);
@@ -64,12 +65,15 @@ class Session {
   bool look(const std::string& doing, double share);
   Workshop workshop();
   void tell_binder_of(std::size_t input);
-  std::unique_ptr<Outputs> bound(bool is_alone);
+  void look_before_a_part();
+  std::unique_ptr<Outputs> bound(BatchResult& result, bool is_alone);
+  BatchSummary put_together(BatchResult& result, bool is_alone);
   Times times() const;
 
   const BatchConfiguration& configuration_;
   const BatchRun& run_;
   Identity identity_;
+  std::string provenance_;  ///< JSON
   BatchWatch watch_;
   Ledger ledger_;
   Meter meter_;

@@ -15,6 +15,7 @@
 
 #include "batch_files.h"
 #include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/obstacle_write.h"
 #include "temporary_folder.h"
 
 namespace exactvo::datasets::test {
@@ -48,6 +49,15 @@ class Batches : public TemporaryFolder {
     std::vector<Json> records;
     while (std::getline(lines, line)) records.push_back(Json::parse(line));
     return records;
+  }
+
+  /// Where outputs are being put together.
+  std::size_t folders_on_their_way(const std::string& name) const {
+    std::size_t folders = 0;
+    for (const auto& entry : fs::directory_iterator(out(name) / ".parts")) {
+      folders += entry.path().filename().string().rfind("final.", 0) == 0 ? 1 : 0;
+    }
+    return folders;
   }
 
   /// Of a batch that is to throw.
@@ -129,7 +139,7 @@ TEST_F(Batches, WorkersDoNotShowInTheBytes) {
   for (const int workers : {1, 2, 4}) {
     BatchRun run = run_to("w" + std::to_string(workers));
     run.workers = workers;
-    run_batch(plain_, run);
+    EXPECT_TRUE(run_batch(plain_, run).was_bound_ahead);
   }
   EXPECT_EQ(difference(out("w1"), out("w2")), "");
   EXPECT_EQ(difference(out("w1"), out("w4")), "");
@@ -146,6 +156,7 @@ TEST_F(Batches, StoppedAnywhereAndGoneOnWithGivesTheSameBytes) {
     if (result.end == BatchEnd::complete) break;
     EXPECT_EQ(result.end, BatchEnd::interrupted);
     EXPECT_FALSE(fs::exists(out("pieces") / "summary.json"));
+    EXPECT_EQ(folders_on_their_way("pieces"), 0u);
   }
   EXPECT_GT(looks_until_stop, 4);
   EXPECT_EQ(difference(out("whole"), out("pieces")), "");
@@ -160,7 +171,9 @@ TEST_F(Batches, ShardsMakeTheWhole) {
     BatchRun run = run_to("shards");
     run.shards = 3;
     run.shard = shard;
-    EXPECT_EQ(run_batch(plain_, run).end, shard < 3 ? BatchEnd::incomplete : BatchEnd::complete);
+    const BatchResult result = run_batch(plain_, run);
+    EXPECT_EQ(result.end, shard < 3 ? BatchEnd::incomplete : BatchEnd::complete);
+    EXPECT_FALSE(result.was_bound_ahead);
   }
   EXPECT_EQ(difference(out("whole"), out("shards")), "");
 }
@@ -393,6 +406,12 @@ TEST_F(Batches, AFullDiskIsSaidAndLosesNothing) {
   run.workers = 1;  // a child of fork has no threads but its own
   BatchConfiguration configuration;
   configuration.geopackage = false;
+  BatchRun ahead = run_to("ahead");
+  ahead.workers = 1;
+  EXPECT_EQ(status_with_files_up_to(5000000, configuration, ahead), 42) << "the parts fit, an output doesn't";
+  EXPECT_EQ(folders_on_their_way("ahead"), 0u);
+  ahead.resume = true;
+  run_batch(configuration, ahead);
   EXPECT_EQ(status_with_files_up_to(20000, configuration, run), 42) << "a part doesn't fit";
   run.resume = true;
   EXPECT_EQ(status_with_files_up_to(5000000, configuration, run), 42) << "the parts fit, an output doesn't";
@@ -400,6 +419,25 @@ TEST_F(Batches, AFullDiskIsSaidAndLosesNothing) {
   run_batch(configuration, run);
   run_batch(configuration, run_to("whole"));
   EXPECT_EQ(difference(out("whole"), out("out")), "");
+  EXPECT_EQ(difference(out("whole"), out("ahead")), "");
+}
+
+TEST_F(Batches, AFileBrokenAfterPartsOfItWereBoundLeavesNothingOfThem) {
+  if (!built_with_gdal()) GTEST_SKIP() << "a build without GDAL";
+  const fs::path large = folder_ / "in" / "a" / "large.fgb";
+  fs::create_directories(large.parent_path());
+  write_obstacles(large, read_obstacles(folder_ / "in" / "stars.wkt").obstacles);
+  fs::resize_file(large, fs::file_size(large) / 5 * 4);
+  const BatchResult ahead = run_batch(plain_, run_to("ahead"));
+  EXPECT_FALSE(ahead.was_bound_ahead);
+  EXPECT_EQ(ahead.summary.rejected_files.front().path, large.generic_string());
+  for (std::size_t shard = 1; shard <= 2; ++shard) {
+    BatchRun run = run_to("shards");
+    run.shards = 2;
+    run.shard = shard;
+    run_batch(plain_, run);
+  }
+  EXPECT_EQ(difference(out("ahead"), out("shards")), "");
 }
 
 TEST_F(Batches, RepairsAreCountedAndShown) {

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -44,13 +45,17 @@ class BatchBinder : public TemporaryFolder {
     plain_.geopackage = plain_.geojson = plain_.pictures = false;
     ledger_.emplace(folder_ / "out");
     ledger_->begin({});
-    binder_.emplace(*ledger_, plain_, "{}");
+    start();
   }
   void TearDown() override {
     binder_.reset();
     TemporaryFolder::TearDown();
   }
 
+  void start() {
+    binder_.reset();
+    binder_.emplace(*ledger_, ledger_->claim_binding(), plain_, "{}");
+  }
   bool take(PartKey key) { return binder_->take(key, part_saying(words_of(key))); }
   void put_on_disk(PartKey key) { ledger_->write(ledger_->part(key.first, key.second), *part_saying(words_of(key))); }
   /// The lines after that of the provenance; "none" where the binder gives no outputs.
@@ -83,8 +88,7 @@ TEST_F(BatchBinder, WhateverOrderPartsComeInTheyAreBoundInTheirs) {
   for (int round = 0; round < 50; ++round) {
     // Fisher and Yates; a library's shuffle is its own.
     for (std::size_t k = keys.size(); k > 1; --k) std::swap(keys[k - 1], keys[random() % k]);
-    binder_.reset();
-    binder_.emplace(*ledger_, plain_, "{}");
+    start();
     std::vector<std::size_t> not_closed(chunks.size());
     std::iota(not_closed.begin(), not_closed.end(), std::size_t{0});
     for (const PartKey& key : keys) {
@@ -110,11 +114,18 @@ TEST_F(BatchBinder, ManyThreadsBringPartsAndNoneIsLost) {
   std::vector<std::thread> threads;
   for (int k = 0; k < 4; ++k) {
     threads.emplace_back([&] {
-      for (std::size_t chunk = next++; chunk < kParts; chunk = next++) take({0, chunk});
+      for (std::size_t chunk = next++; chunk < kParts; chunk = next++) {
+        if (chunk % 5 == 0) {
+          put_on_disk({0, chunk});
+          binder_->found({0, chunk});
+        } else {
+          EXPECT_TRUE(take({0, chunk}));
+        }
+      }
     });
   }
+  threads.emplace_back([&] { binder_->close(0, kParts); });
   for (std::thread& thread : threads) thread.join();
-  binder_->close(0, kParts);
   std::string expected;
   for (std::size_t chunk = 0; chunk < kParts; ++chunk) expected += words_of({0, chunk}) + " ";
   EXPECT_EQ(bound(1), expected);
@@ -182,6 +193,40 @@ TEST_F(BatchBinder, APartThatIsNoneIsToldAndSpoilsTheRest) {
   EXPECT_THROW(take({0, 1}), DataError);
   binder_->close(0, 2);
   EXPECT_EQ(bound(1), "none");
+}
+
+TEST_F(BatchBinder, WhatIsThrownBeforeAPartEndsIt) {
+  put_on_disk({0, 0});
+  binder_->found({0, 0});
+  binder_->close(0, 1);
+  EXPECT_THROW(binder_->finish(1, [] { throw std::runtime_error("stopped"); }), std::runtime_error);
+}
+
+TEST_F(BatchBinder, OneProcessAtATimeMayBindAheadAndItsFolderIsLeftAlone) {
+  EXPECT_FALSE(ledger_->claim_binding().is_held());
+  const batch::Ledger other(folder_ / "out");
+  EXPECT_FALSE(other.claim_binding().is_held());
+  other.start_final(batch::Ledger::Holds::lock);
+  EXPECT_TRUE(std::filesystem::exists(ledger_->final_folder()));
+  binder_.reset();
+  EXPECT_TRUE(other.claim_binding().is_held());
+}
+
+TEST_F(BatchBinder, WhatTheDeadLeftIsTakenAway) {
+  binder_.reset();
+  const std::filesystem::path left = folder_ / "out" / ".parts" / "final.0123";
+  std::filesystem::create_directories(left);
+  start();
+  EXPECT_FALSE(std::filesystem::exists(left));
+  EXPECT_TRUE(std::filesystem::exists(ledger_->final_folder()));
+}
+
+TEST_F(BatchBinder, WithoutPartsNothingIsStartedNorMade) {
+  binder_.reset();
+  std::filesystem::remove_all(folder_ / "out" / ".parts");
+  EXPECT_FALSE(ledger_->claim_binding().is_held());
+  EXPECT_THROW(ledger_->start_final(batch::Ledger::Holds::neither), DataError);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / ".parts"));
 }
 
 TEST_F(BatchBinder, UnfinishedItTakesItsFolderAway) {

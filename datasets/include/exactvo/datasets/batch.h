@@ -10,8 +10,9 @@
 /// killed and gone on with: the bytes are the same but for the times, which stand on one line of summary.json.
 ///
 /// How: inputs are cut into chunks of obstacles; a chunk's results go to a file of their own under OUT/.parts
-/// (temporary file, fsync, rename), and when all are there they are put together in order. What is there is not made
-/// again. A streaming reader (WKT, and what GDAL reads feature by feature) keeps no more than a few chunks in memory.
+/// (temporary file, fsync, rename), and are put together in order: by one process while others are being made, or when
+/// all are there (docs/adr/0010-bound-while-made.md). What is there is not made again. A streaming reader (WKT, and
+/// what GDAL reads feature by feature) keeps no more than a few chunks in memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -107,8 +108,9 @@ enum class BatchEnd {
 
 struct BatchResult {
   BatchEnd end = BatchEnd::complete;
-  BatchSummary summary;       ///< of a complete one
-  bool was_complete = false;  ///< nothing was left to do, or another process of the same batch was quicker to end it
+  BatchSummary summary;          ///< of a complete one
+  bool was_complete = false;     ///< nothing was left to do, or another process of the same batch was quicker to end it
+  bool was_bound_ahead = false;  ///< the outputs grew while parts were being made
 };
 
 /// Called from time to time by one thread; false stops the batch after what is under way.
