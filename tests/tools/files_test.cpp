@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/metrics_file.h"
 
 namespace exactvo::tools {
 namespace {
@@ -74,8 +75,13 @@ TEST_F(StagedFolderTest, AFolderOfOthersIsNoPlaceForOutput) {
   EXPECT_NO_THROW(check_output_folder(root_)) << "empty";
   write_text(root_ / "thesis.tex", "mine");
   EXPECT_THROW(check_output_folder(root_), datasets::DataError);
-  write_text(root_ / "summary.json", "[]");
+  write_text(root_ / "summary.json", "{\"my\": \"summary\"}");
+  EXPECT_THROW(check_output_folder(root_), datasets::DataError) << "of another program";
+  write_text(root_ / "metrics.json", datasets::metrics_json({}, {}));
   EXPECT_NO_THROW(check_output_folder(root_)) << "an earlier output";
+  fs::remove(root_ / "metrics.json");
+  write_text(root_ / "summary.json", datasets::summary_json({datasets::metrics_json({}, {})}));
+  EXPECT_NO_THROW(check_output_folder(root_)) << "an earlier report";
 }
 
 TEST_F(StagedFolderTest, WritingWhereNothingCanBeNamesThePath) {

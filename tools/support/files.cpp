@@ -37,6 +37,17 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
+/// Whether a file of a name that other programs use as well is one that `simulate` or `paper` wrote: both begin with
+/// the metrics of a run.
+bool holds_metrics(const fs::path& path) {
+  constexpr std::size_t kBeginning = std::size_t{1} << 16;
+  std::string text(kBeginning, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return text.find("\"min_obstacle_clearance\":") != std::string::npos;
+}
+
 }  // namespace
 
 void write_text(const fs::path& path, const std::string& text) {
@@ -56,11 +67,12 @@ void make_folder(const fs::path& path) {
 void check_output_folder(const fs::path& target) {
   std::error_code error;
   if (!fs::is_directory(target, error) || fs::is_empty(target, error) || error) return;
-  for (const char* ours : {"metrics.json", "summary.json", "random/parts", "ablations/parts"}) {
+  if (holds_metrics(target / "metrics.json") || holds_metrics(target / "summary.json")) return;
+  for (const char* ours : {"random/parts", "ablations/parts"}) {
     if (fs::exists(target / ours, error)) return;
   }
   throw datasets::DataError(datasets::DataCode::file_unwritable, target.string(), "",
-                            "a folder with other files in it, and no metrics.json or summary.json",
+                            "a folder with other files in it, and no metrics.json or summary.json of a run",
                             "a folder that does not exist, is empty, or holds an earlier output");
 }
 

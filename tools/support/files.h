@@ -18,7 +18,7 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 void make_folder(const std::filesystem::path& path);
 
 /// Refuses to scatter files: throws datasets::DataError where `target` is a folder that holds something, but neither
-/// metrics.json nor summary.json nor the parts of a campaign, so that it is none of ours. To be asked before the work,
+/// metrics.json nor summary.json of a run nor the parts of a campaign, so that it is none of ours. To be asked before the work,
 /// not after.
 void check_output_folder(const std::filesystem::path& target);
 

@@ -110,6 +110,18 @@ std::vector<std::string> names_in(const fs::path& folder) {
 
 }  // namespace
 
+bool is_of_a_batch(const fs::path& file) {
+  // What stands before this member is counts, a code and two numbers each.
+  constexpr std::size_t kBeginning = std::size_t{1} << 16;
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  try {
+    return read_beginning(file, kBeginning).find("\n  \"configuration_sha256\": \"") != std::string::npos;
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
 std::string to_json(const Identity& identity) {
   JsonWriter json(JsonWriter::Layout::indented);
   json.begin_object().member("version", identity.version).member("commit", identity.commit);
@@ -142,13 +154,14 @@ Ledger::State Ledger::look(const Identity& identity, bool resume) const {
     return State::unfinished;
   }
   const fs::path summary = out_ / "summary.json";
-  if (fs::is_regular_file(summary, error)) {
+  if (is_of_a_batch(summary)) {
     if (!resume) return State::fresh;
     refuse_other_batch(parse_json(read_text_file(summary), summary.string()), identity, summary);
     return State::complete;
   }
   if (holds_nothing_but(out_, parts_)) return State::fresh;
-  throw DataError(DataCode::file_unwritable, out_.string(), "", "a folder with other files in it, and no summary.json",
+  throw DataError(DataCode::file_unwritable, out_.string(), "",
+                  "a folder with other files in it, and no summary.json of a batch",
                   "a folder that does not exist, is empty, or holds an earlier output");
 }
 

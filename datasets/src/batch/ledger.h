@@ -32,6 +32,9 @@ struct Identity {
 };
 std::string to_json(const Identity& identity);
 
+/// Whether the file is a batch's run.json or summary.json, by its beginning: other programs write files of these names.
+bool is_of_a_batch(const std::filesystem::path& file);
+
 class Ledger {
  public:
   explicit Ledger(std::filesystem::path out);

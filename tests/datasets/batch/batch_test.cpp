@@ -301,6 +301,16 @@ TEST_F(Batches, AFolderOfOthersIsLeftAlone) {
   write_text(out("out") / "thesis.tex", "do not touch");
   EXPECT_EQ(refusal(plain_, run_to("out")), DataCode::file_unwritable);
   EXPECT_EQ(output_of(out("out")).size(), 1u);
+  const std::string mine = "{\n  \"my\": \"summary\"\n}\n";
+  write_text(out("mine") / "summary.json", mine);
+  write_text(out("mine") / "index.html", "mine too");
+  BatchRun run = run_to("mine");
+  for (const bool resume : {false, true}) {
+    run.resume = resume;
+    EXPECT_EQ(refusal(plain_, run), DataCode::file_unwritable);
+  }
+  EXPECT_EQ(text_of(out("mine") / "summary.json"), mine);
+  EXPECT_EQ(text_of(out("mine") / "index.html"), "mine too");
 }
 
 TEST_F(Batches, AnotherOutputIntoTheFolderLeavesNothingOfTheLast) {
@@ -428,7 +438,9 @@ TEST_F(Batches, AFileBrokenAfterPartsOfItWereBoundLeavesNothingOfThem) {
   fs::create_directories(large.parent_path());
   write_obstacles(large, read_obstacles(folder_ / "in" / "stars.wkt").obstacles);
   fs::resize_file(large, fs::file_size(large) / 5 * 4);
-  const BatchResult ahead = run_batch(plain_, run_to("ahead"));
+  BatchRun one_worker = run_to("ahead");
+  one_worker.workers = 1;  // who binds a part as soon as it is made
+  const BatchResult ahead = run_batch(plain_, one_worker);
   EXPECT_FALSE(ahead.was_bound_ahead);
   EXPECT_EQ(ahead.summary.rejected_files.front().path, large.generic_string());
   for (std::size_t shard = 1; shard <= 2; ++shard) {
