@@ -8,6 +8,7 @@
 
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/minkowski.h"
+#include "exactvo/geometry/pi.h"
 #include "geometry/random_shapes.h"
 #include "geometry/rational_oracle.h"
 
@@ -17,7 +18,6 @@ namespace {
 using test::Rational;
 using test::SeededRandom;
 
-constexpr double kPi = 3.14159265358979323846;
 const Polygon kSquare = {{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, {}};
 
 TEST(ExactOffset, OfARectangleHasFourSidesAndFourRoundCorners) {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/validity.h"
 #include "geometry/random_shapes.h"
 #include "geometry/rational_oracle.h"
@@ -161,7 +162,7 @@ TEST(Facades, Property3StartOfARingDoesNotMatter) {
 TEST(Facades, AToleranceThinsALongRing) {
   Ring circle;
   for (int i = 0; i < 10000; ++i) {
-    circle.push_back(10.0 * Vec2{std::cos(2e-4 * 3.14159265 * i), std::sin(2e-4 * 3.14159265 * i)});
+    circle.push_back(10.0 * Vec2{std::cos(2e-4 * kPi * i), std::sin(2e-4 * kPi * i)});
   }
   const auto set = divide_into_facades(Polygon{circle, {}}, {0.05});
   // A chord whose ends lie on radius 10 and that sags by 0.05 spans 2 acos(1 - 0.05 / 10) = 0.2 rad, so at least 31.4

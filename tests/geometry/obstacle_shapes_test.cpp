@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "random_shapes.h"
 
@@ -42,7 +43,7 @@ TEST(ObstacleShapes, ARoomWithPillarsHasEverythingCertified) {
   EXPECT_EQ(area_of(shapes.pieces), 43.0);
   EXPECT_EQ(shapes.hull.vertices.size(), 4u);
   EXPECT_EQ(shapes.figures.holes, 2u);
-  EXPECT_NEAR(shapes.figures.ellipse_area, 2.0 * std::atan(1.0) * 48.0, 1e-9) << "pi/2 times the rectangle's area";
+  EXPECT_NEAR(shapes.figures.ellipse_area, 0.5 * kPi * 48.0, 1e-9) << "pi/2 times the rectangle's area";
 }
 
 TEST(ObstacleShapes, HolesThatTouchAreSplitWhereTheyDo) {
@@ -104,7 +105,7 @@ TEST(ObstacleShapes, AStraightWallIsFlatAndStillFreeOfTraps) {
   EXPECT_EQ(shapes.figures.ellipse_area, 0.0);
   EXPECT_TRUE(std::isinf(shapes.figures.trap_free_beyond));
   ASSERT_TRUE(shapes.trap_free.ellipse && shapes.trap_free.for_every_goal);
-  EXPECT_NEAR(shapes.figures.trap_free_area, 4.0 * std::atan(1.0) * 4.0 / std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(shapes.figures.trap_free_area, kPi * 4.0 / std::sqrt(2.0), 1e-6);
 }
 
 TEST(ObstacleShapes, InvalidOnesGiveCodesAndNothingElse) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "exactvo/geometry/pi.h"
 #include "geometry/exact_oracle.h"
 #include "geometry/random_grown.h"
 
@@ -129,7 +130,7 @@ class MeetingWitness {
   }
   /// Coarse to fine over the angle: the gap is the distance at its maximum and has one maximum where it is positive.
   double best_angle(Vec2 q) const {
-    double best = 0.0, step = 3.14159265358979 / 32;
+    double best = 0.0, step = geometry::kPi / 32;
     for (int i = 0; i < 64; ++i)
       if (gap(q, i * step) > gap(q, best)) best = i * step;
     while (step > 1e-17) {

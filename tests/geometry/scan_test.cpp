@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "exactvo/geometry/pi.h"
 #include "geometry/random_shapes.h"
 #include "geometry/rational_oracle.h"
 
@@ -20,7 +21,7 @@ using test::SeededRandom;
 std::vector<Vec2> room_scan(SeededRandom& random, int beams, double noise) {
   std::vector<Vec2> hits;
   for (int i = 0; i < beams; ++i) {
-    const double angle = 2 * 3.14159265358979 * i / beams;
+    const double angle = 2 * kPi * i / beams;
     const double c = std::cos(angle), s = std::sin(angle);
     const double range = std::min(4.0 / std::max(std::fabs(c), 1e-9), 3.0 / std::max(std::fabs(s), 1e-9));
     hits.push_back((range + random.uniform(-noise, noise)) * Vec2{c, s});

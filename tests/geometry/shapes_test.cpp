@@ -9,13 +9,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "exactvo/geometry/pi.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::geometry {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 /// Sines, hypots and a handful of products: a few ulps each.
 constexpr double kFewUlps = 32 * 0x1p-53;
 

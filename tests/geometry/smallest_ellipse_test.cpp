@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "geometry/random_shapes.h"
 #include "geometry/rational_oracle.h"
@@ -79,7 +80,7 @@ double oracle_area(const std::vector<Vec2>& points) {
   const double det = 4 * r * s - t * t;  // r x^2 + s y^2 + t x y + u x + v y + w = 0
   const double x = (t * v - 2 * s * u) / det, y = (t * u - 2 * r * v) / det;
   const double level = r * x * x + s * y * y + t * x * y - w;
-  return 2 * 3.14159265358979323846 * std::fabs(level) / std::sqrt(det);
+  return 2 * kPi * std::fabs(level) / std::sqrt(det);
 }
 
 TEST(SmallestEllipse, AgreesWithCgalsConic) {
@@ -94,13 +95,12 @@ TEST(SmallestEllipse, AgreesWithCgalsConic) {
 }
 
 TEST(SmallestEllipse, KnownOnes) {
-  const double pi = 3.14159265358979323846;
   // Steiner's: the area of the ellipse round a triangle is 4 pi / (3 sqrt 3) of the triangle's.
-  EXPECT_NEAR(area(smallest_ellipse({{0, 0}, {3, 0}, {0, 4}})), 6 * 4 * pi / (3 * std::sqrt(3.0)), 1e-10);
-  EXPECT_NEAR(area(smallest_ellipse({{0, 0}, {2, 0}, {2, 1}, {0, 1}})), pi * 2 / 2, 1e-10);
+  EXPECT_NEAR(area(smallest_ellipse({{0, 0}, {3, 0}, {0, 4}})), 6 * 4 * kPi / (3 * std::sqrt(3.0)), 1e-10);
+  EXPECT_NEAR(area(smallest_ellipse({{0, 0}, {2, 0}, {2, 1}, {0, 1}})), kPi * 2 / 2, 1e-10);
   std::vector<Vec2> circle;
   for (int i = 0; i < 64; ++i) circle.push_back(3.0 * Vec2{std::cos(0.1 * i), std::sin(0.1 * i)});
-  EXPECT_NEAR(area(fast_smallest_ellipse(circle).ellipse), 9 * pi, 1e-9);
+  EXPECT_NEAR(area(fast_smallest_ellipse(circle).ellipse), 9 * kPi, 1e-9);
 }
 
 TEST(SmallestEllipse, PointsAndSegments) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "exactvo/geometry/pi.h"
 #include "geometry/random_shapes.h"
 #include "geometry/rational_oracle.h"
 
@@ -266,7 +267,7 @@ TEST(Normalize, Properties1To3) {
 Ring gear(int n, Vec2 center, double radius) {
   Ring ring;
   for (int i = 0; i < n; ++i) {
-    const double angle = 2 * 3.14159265358979 * i / n;
+    const double angle = 2 * kPi * i / n;
     ring.push_back(center + (radius * (1 + 0.1 * (i % 2))) * Vec2{std::cos(angle), std::sin(angle)});
   }
   return ring;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/vo/free_velocities.h"
 #include "vo/half_plane_audit.h"
 
@@ -17,6 +18,7 @@ namespace exactvo::test {
 namespace {
 
 using geometry::Disc;
+using geometry::kPi;
 using geometry::Segment;
 using geometry::Vec2;
 using vo::ArcKind;
@@ -27,7 +29,6 @@ using vo::Inside;
 using vo::ShiftedCone;
 using vo::VelocityObstacle;
 
-constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Of an area of a few (m/s)^2 whose expected value is made of some ten rounded operations.
 constexpr double kRounded = 1e-14;
@@ -67,18 +68,18 @@ void expect_area(const FreeArrangement& free, double expected) {
 TEST(FreeArrangement, NothingForbidsTheDisc) {
   const FreeArrangement free({}, 2.0);
   ASSERT_EQ(free.pieces().size(), 1u);
-  expect_area(free, 4.0 * kHalfTurn);
+  expect_area(free, 4.0 * kPi);
   EXPECT_TRUE(free.contains({2.0, 0.0}));
   EXPECT_FALSE(free.contains({2.0, 0x1p-30}));
 }
 
 TEST(FreeArrangement, AWedgeAndACutOffOfKnownArea) {
   const FreeArrangement wedge({cone_of(Disc{{2.0, 0.0}, 0.75}, 0.25, kInfinity)}, 1.0);
-  expect_area(wedge, kHalfTurn * 5.0 / 6.0);
+  expect_area(wedge, kPi * 5.0 / 6.0);
   EXPECT_EQ(wedge.pieces().front().boundary.size(), 3u) << "an arc and two legs";
   const double r = 0.25, leg = std::sqrt(0.25 - r * r);
   const FreeArrangement truncated({cone_of(Disc{{2.0, 0.0}, 1.0}, 0.0, 4.0)}, 1.0);
-  expect_area(truncated, kHalfTurn * 5.0 / 6.0 + leg * r - r * r * kHalfTurn / 3.0);
+  expect_area(truncated, kPi * 5.0 / 6.0 + leg * r - r * r * kPi / 3.0);
   EXPECT_EQ(count(truncated, ArcKind::front_arc), 1);
 }
 
@@ -192,11 +193,11 @@ TEST(FreeArrangement, ConesThatShareALeg) {
   const FreeArrangement two({right, left}, 1.0);
   EXPECT_EQ(two.pieces().size(), 1u);
   EXPECT_EQ(count(two, ArcKind::leg), 2) << "the shared one bounds nothing";
-  expect_area(two, kHalfTurn - std::atan2(5.0, 25.0) - std::atan2(5.0, 50.0));
+  expect_area(two, kPi - std::atan2(5.0, 25.0) - std::atan2(5.0, 50.0));
   // The same cone twice, and one within another along the leg.
   const ShiftedCone inner = cone_of(Disc{{40.0 + 3.0, 30.0 - 4.0}, 5.0}, 0.0, kInfinity);
   EXPECT_EQ(count(FreeArrangement({right, right}, 1.0), ArcKind::leg), 2);
-  expect_area(FreeArrangement({right, inner}, 1.0), kHalfTurn - std::atan2(5.0, 25.0));
+  expect_area(FreeArrangement({right, inner}, 1.0), kPi - std::atan2(5.0, 25.0));
   // A horizon each: the shared leg begins at different points of it.
   const FreeArrangement truncated(
       {cone_of(Disc{{23.0, 11.0}, 5.0}, 0.0, 50.0), cone_of(Disc{{37.0, 34.0}, 5.0}, 0.0, 80.0)}, 1.0);
@@ -211,7 +212,7 @@ TEST(FreeArrangement, AConeThatTouchesTheSpeedCircle) {
     const double radius = std::holds_alternative<Disc>(shape) ? 0.0 : 0.5;
     const FreeArrangement free({cone_of(shape, radius, 2.0)}, 1.0);
     EXPECT_EQ(free.pieces().size(), 1u);
-    expect_area(free, kHalfTurn);
+    expect_area(free, kPi);
     EXPECT_FALSE(free.contains({1.0, 0.0}));
   }
   // A front that is the speed's circle itself, bulging outward: the disc lies in the cone.
@@ -226,7 +227,7 @@ TEST(FreeArrangement, ALegAlongATangentOfTheCircle) {
   // The apex at (1, -1), a wall that begins straight ahead: its left leg, x = 1, touches the circle from outside.
   const FreeArrangement free({cone_of(Segment{{0.0, 5.0}, {3.0, 5.0}}, 0.0, kInfinity, {1.0, -1.0})}, 1.0);
   EXPECT_EQ(free.pieces().size(), 1u);
-  expect_area(free, kHalfTurn);
+  expect_area(free, kPi);
 }
 
 TEST(FreeArrangement, ContactLeavesNothing) {
@@ -237,14 +238,14 @@ TEST(FreeArrangement, ContactLeavesNothing) {
   // One ulp from contact the cone is nearly a half-plane.
   const FreeArrangement almost({cone_of(Disc{{2.0, 0.0}, 1.0}, std::nextafter(1.0, 0.0), 2.0)}, 1.0);
   ASSERT_EQ(almost.pieces().size(), 1u);
-  EXPECT_NEAR(almost.area().low, 0.5 * kHalfTurn, 1e-7);
+  EXPECT_NEAR(almost.area().low, 0.5 * kPi, 1e-7);
 }
 
 TEST(FreeArrangement, SpeedsAndHorizonsOfEverySize) {
   for (const double scale : {vo::kLeastArrangedNumber, 1e-9, 1e9, vo::kMostArrangedNumber}) {
     const FreeArrangement free({cone_of(Disc{{2.0, 0.0}, 0.75}, 0.25, kInfinity)}, scale);
     ASSERT_EQ(free.pieces().size(), 1u);
-    EXPECT_NEAR(free.area().low / (scale * scale), kHalfTurn * 5.0 / 6.0, kRounded);
+    EXPECT_NEAR(free.area().low / (scale * scale), kPi * 5.0 / 6.0, kRounded);
   }
   for (const double tau : {1e-9, 1e9}) {
     const FreeArrangement free({cone_of(Disc{{2.0, 0.0}, 1.0}, 0.25, tau)}, 2.0);
@@ -276,7 +277,7 @@ TEST(FreeArrangement, RefusalsAreNamed) {
             std::string("cones"));
   geometry::ConvexPolygon round;
   for (int k = 0; k < 1200; ++k)
-    round.vertices.push_back(geometry::rotated({1.0, 0.0}, 2.0 * kHalfTurn * k / 1200.0) + Vec2{4.0, 0.0});
+    round.vertices.push_back(geometry::rotated({1.0, 0.0}, 2.0 * kPi * k / 1200.0) + Vec2{4.0, 0.0});
   EXPECT_EQ(refusal(cone_of(geometry::convex_hull(round.vertices), 0.25, 2.0)), "curves");
 }
 

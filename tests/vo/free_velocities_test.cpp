@@ -8,12 +8,14 @@
 #include <limits>
 
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pi.h"
 #include "vo/half_plane_audit.h"
 
 namespace exactvo::test {
 namespace {
 
 using geometry::Disc;
+using geometry::kPi;
 using geometry::Place;
 using geometry::Vec2;
 using vo::Encounter;
@@ -23,7 +25,6 @@ using vo::Inside;
 using vo::ShiftedCone;
 using vo::Variant;
 
-constexpr double kHalfTurn = 3.14159265358979323846;
 /// m/s: a hundred times what a shift by velocities below 1 m/s rounds by.
 constexpr double kShiftRounding = 0x1p-44;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -49,8 +50,8 @@ std::vector<ShiftedCone> random_scene_of(SeededRandom& random, int count, int fi
 
 TEST(FreeVelocities, NothingForbidsTheDisc) {
   const FreeVelocities free({}, {2.0, 1e-4});
-  EXPECT_LE(free.area().low, 4.0 * kHalfTurn);
-  EXPECT_GE(free.area().high, 4.0 * kHalfTurn);
+  EXPECT_LE(free.area().low, 4.0 * kPi);
+  EXPECT_GE(free.area().high, 4.0 * kPi);
   EXPECT_LT(free.area().high - free.area().low, 1e-2);
   EXPECT_EQ(free.least_components(), 1u);
   EXPECT_TRUE(free.contains({2.0, 0.0}));
@@ -61,7 +62,7 @@ TEST(FreeVelocities, AWedgeOfKnownArea) {
   // A disc of radius 1 at distance 2 for ever: a wedge of 60 degrees with its corner at 0.
   const Encounter e{Disc{{2.0, 0.0}, 0.75}, {}, {}, {}, 0.25, {}, kInfinity, 0.5, {}};
   const FreeVelocities free({*vo::family_member(Variant::vo, e).cone}, {1.0, 1e-5});
-  const double expected = kHalfTurn * 5.0 / 6.0;
+  const double expected = kPi * 5.0 / 6.0;
   EXPECT_LE(free.area().low, expected);
   EXPECT_GE(free.area().high, expected);
   EXPECT_LT(free.area().high - free.area().low, 1e-3);
@@ -72,9 +73,8 @@ TEST(FreeVelocities, ACutOffOfKnownArea) {
   const Encounter e{Disc{{2.0, 0.0}, 1.0}, {}, {}, {}, 0.0, {}, 4.0, 0.5, {}};
   const FreeVelocities free({*vo::family_member(Variant::vo, e).cone}, {1.0, 1e-5});
   const double r = 0.25, leg = std::sqrt(0.25 - r * r);
-  const double before =
-      leg * r - r * r * kHalfTurn / 3.0;  // the kite to the tangent points minus its sector of 120 deg
-  const double expected = kHalfTurn * 5.0 / 6.0 + before;
+  const double before = leg * r - r * r * kPi / 3.0;  // the kite to the tangent points minus its sector of 120 deg
+  const double expected = kPi * 5.0 / 6.0 + before;
   EXPECT_LE(free.area().low, expected);
   EXPECT_GE(free.area().high, expected);
   EXPECT_LT(free.area().high - free.area().low, 1e-3);
@@ -191,7 +191,7 @@ TEST(FreeVelocities, TheBracketOfAHugeDiscIsNarrow) {
     const double away = radius + 1.0;
     const FreeVelocities free({{vo::VelocityObstacle(Disc{{away, 0.0}, radius}, {}, 0.0, 1.0), {}, {}}}, {2.0, 1e-4});
     EXPECT_LT(width_of(free), 0.01) << radius;
-    EXPECT_LT(free.area().high, 4.0 * kHalfTurn - 1.0) << radius;
+    EXPECT_LT(free.area().high, 4.0 * kPi - 1.0) << radius;
   }
 }
 
@@ -223,8 +223,8 @@ TEST(FreeVelocities, AlmostInContactHalfTheDiscIsFree) {
   for (const geometry::ConvexShape& shape :
        {geometry::ConvexShape{wall}, geometry::ConvexShape{Disc{{2.0, 0.0}, 1.0}}}) {
     const FreeVelocities free({{vo::VelocityObstacle(shape, {}, std::nextafter(1.0, 0.0), 2.0), {}, {}}}, {1.0, 1e-3});
-    EXPECT_NEAR(free.area().low, 0.5 * kHalfTurn, 0.01);
-    EXPECT_NEAR(free.area().high, 0.5 * kHalfTurn, 0.01);
+    EXPECT_NEAR(free.area().low, 0.5 * kPi, 0.01);
+    EXPECT_NEAR(free.area().high, 0.5 * kPi, 0.01);
     EXPECT_EQ(free.least_components(), 1u);
   }
 }

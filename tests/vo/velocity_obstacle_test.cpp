@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "exactvo/geometry/pi.h"
 #include "exactvo/vo/orca_obstacle.h"
 #include "exactvo/vo/reciprocal.h"
 #include "vo/half_plane_audit.h"
@@ -182,7 +183,7 @@ TEST(VelocityObstacle, NearestBoundaryIsTheLeastOverAllDirections) {
     double best = kInfinity;
     constexpr int kDirections = 20000;
     for (int k = 0; k < kDirections; ++k) {
-      const double angle = 2.0 * 3.14159265358979 * k / kDirections;
+      const double angle = 2.0 * geometry::kPi * k / kDirections;
       const Vec2 n{std::cos(angle), std::sin(angle)};
       const double h = support(s, n).h;
       if (h <= 0.0) best = std::min(best, h / tau - dot(n, v));

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/predicates.h"
 #include "vo/differential/tally.h"
 
@@ -23,7 +24,7 @@ using geometry::Vec2;
 double area_round_triangle(const MinEllipse& ellipse) {
   const auto p = ellipse.support_points_begin();
   const double twice = std::fabs(CGAL::to_double(CGAL::determinant(p[1] - p[0], p[2] - p[0])));
-  return 2.0 * 3.14159265358979323846 / (3.0 * std::sqrt(3.0)) * twice;
+  return 2.0 * geometry::kPi / (3.0 * std::sqrt(3.0)) * twice;
 }
 
 double area_of(const MinEllipse& ellipse) {
@@ -32,7 +33,7 @@ double area_of(const MinEllipse& ellipse) {
   ellipse.ellipse().double_coefficients(r, s, t, u, v, w);
   const double det = 4 * r * s - t * t;  // r x^2 + s y^2 + t x y + u x + v y + w = 0
   const double x = (t * v - 2 * s * u) / det, y = (t * u - 2 * r * v) / det;
-  return 2 * 3.14159265358979323846 * std::fabs(r * x * x + s * y * y + t * x * y - w) / std::sqrt(det);
+  return 2 * geometry::kPi * std::fabs(r * x * x + s * y * y + t * x * y - w) / std::sqrt(det);
 }
 
 /// Both of ours hold every point, exactly, and have the area of the exact one.
