@@ -146,5 +146,38 @@ TEST(Lp, WhoAsksForProofsIsToldHowManyThereAreNot) {
   EXPECT_TRUE(summary_of(here.run("lp p.jsonl --json --solver incremental")).at("unproven").is_null());
 }
 
+/// Two soft lines half a metre a second apart: each gives a quarter.
+constexpr const char* kApart = R"({"bound": {"disc": 2}, "preferred": [2, 0], "constraints": [
+ {"normal": [1, 0], "offset": 0.25, "priority": "soft"}, {"normal": [-1, 0], "offset": 0.25, "priority": "soft"}]})";
+/// A hard line that no speed keeps.
+constexpr const char* kTooFast = R"({"bound": {"disc": 1}, "preferred": [0, 0],
+ "constraints": [{"normal": [1, 0], "offset": 1e60}]})";
+
+TEST(Lp, TheWorstViolationIsTheLargestOfTheAnswers) {
+  const Workplace here;
+  const std::pair<std::string, double> cases[] = {
+      {on_one_line(kGood), 0.0}, {on_one_line(kGood) + on_one_line(kApart), 0.25}, {on_one_line(kTooFast), 1e60}};
+  for (const auto& [lines, worst] : cases) {
+    here.write("p.jsonl", lines);
+    for (const char* solver : {"incremental", "batch", "certified", "exact"}) {
+      const json summary = summary_of(here.run(std::string("lp p.jsonl --json --solver ") + solver));
+      EXPECT_NEAR(summary.at("worst_violation"), worst, 1e-12 * worst) << solver << lines;
+      EXPECT_LE(summary.at("worst_breach"), 1e-15) << solver << lines;
+    }
+  }
+  here.write("p.jsonl", on_one_line(kApart));
+  EXPECT_THAT(here.run("lp p.jsonl").out, HasSubstr("worst violation 0.25 m/s; solver alone "));
+}
+
+/// How long is another matter, of the machine.
+TEST(Lp, WhatIsTimedIsSaid) {
+  const Workplace here;
+  EXPECT_THAT(here.run("lp --help").out, AllOf(HasSubstr("the solver alone"), HasSubstr("bench_lp --instances FILE")));
+  here.write("p.jsonl", on_one_line(kGood));
+  EXPECT_GT(summary_of(here.run("lp p.jsonl --json")).at("ns_per_solve"), 0.0);
+  here.write("none.jsonl", "");
+  EXPECT_EQ(summary_of(here.run("lp none.jsonl --json")).at("ns_per_solve"), 0.0);
+}
+
 }  // namespace
 }  // namespace exactvo::test

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "batch_layout.h"
 #include "exact.h"
@@ -31,12 +33,15 @@ class Batch {
     for (std::size_t slot = 0; slot < place_.size(); ++slot) fill(slot, problems[place_[slot]]);
   }
 
-  void solve_into(std::vector<Proven>& answers) {
+  void solve() {
     if (place_.empty()) return;
     const BatchProblems<double> in = {place_.size(), lines_,     kMostLanes, nx_.data(),   ny_.data(),
                                       c_.data(),     px_.data(), py_.data(), disc_.data(), hard_.data()};
     solve_batch(in, {vx_.data(), vy_.data(), violation_.data(), status_.data(), active_.data(), stride_, nullptr}, 0,
                 place_.size());
+  }
+
+  void gather(std::vector<Proven>& answers) const {
     for (std::size_t slot = 0; slot < place_.size(); ++slot) answers[place_[slot]].solution = solution(slot);
   }
 
@@ -101,16 +106,6 @@ class Batch {
   std::vector<std::uint8_t> status_;
 };
 
-std::vector<Proven> solve_in_lanes(const std::vector<Problem>& problems) {
-  std::vector<Proven> answers(problems.size());
-  for (std::size_t i = 0; i < problems.size(); ++i) {
-    require_well_formed(problems[i]);
-    if (!Batch::takes(problems[i])) answers[i].solution = solve(problems[i]);
-  }
-  Batch(problems).solve_into(answers);
-  return answers;
-}
-
 Proven solve_one(Solver solver, const Problem& problem) {
   if (solver == Solver::certified) return solve_certified(problem);
   if (solver == Solver::exact) return solve_exact(problem);
@@ -141,12 +136,39 @@ bool parse(const std::string& text, Solver& solver) {
   return false;
 }
 
-std::vector<Proven> solve_all(Solver solver, const std::vector<Problem>& problems) {
-  if (solver == Solver::batch) return solve_in_lanes(problems);
+struct Solving::State {
+  Solver solver;
+  const std::vector<Problem>& problems;
   std::vector<Proven> answers;
-  answers.reserve(problems.size());
-  for (const Problem& problem : problems) answers.push_back(solve_one(solver, problem));
-  return answers;
+  std::vector<std::size_t> alone;  ///< problems that are solved one by one
+  std::optional<Batch> lanes;
+};
+
+Solving::Solving(Solver solver, const std::vector<Problem>& problems)
+    : state_(new State{solver, problems, std::vector<Proven>(problems.size()), {}, {}}) {
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    require_well_formed(problems[i]);
+    if (solver != Solver::batch || !Batch::takes(problems[i])) state_->alone.push_back(i);
+  }
+  if (solver == Solver::batch) state_->lanes.emplace(problems);
+}
+
+Solving::~Solving() = default;
+
+void Solving::solve() {
+  for (const std::size_t i : state_->alone) state_->answers[i] = solve_one(state_->solver, state_->problems[i]);
+  if (state_->lanes) state_->lanes->solve();
+}
+
+std::vector<Proven> Solving::answers() {
+  if (state_->lanes) state_->lanes->gather(state_->answers);
+  return std::move(state_->answers);
+}
+
+std::vector<Proven> solve_all(Solver solver, const std::vector<Problem>& problems) {
+  Solving solving(solver, problems);
+  solving.solve();
+  return solving.answers();
 }
 
 void prove(const Problem& problem, Proven& answer) {

@@ -4,6 +4,7 @@
 /// \file
 /// The solvers behind one interface, chosen by name.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,25 @@ bool parse(const std::string& text, Solver& solver);
 /// The answers in order. Certificates come with `certified` and `exact` only; for the others see `prove`.
 /// REQUIRES: well-formed problems.
 std::vector<Proven> solve_all(Solver solver, const std::vector<Problem>& problems);
+
+/// The same in steps, for who wants to know what the solver alone takes: `batch` lays problems out for its lanes first,
+/// and gathers their answers afterwards, which takes longer than solving them. The others lay nothing out. Keeps a
+/// reference to `problems`. REQUIRES: well-formed problems.
+class Solving {
+ public:
+  Solving(Solver solver, const std::vector<Problem>& problems);
+  ~Solving();
+  Solving(const Solving&) = delete;
+  Solving& operator=(const Solving&) = delete;
+
+  void solve();
+  /// As from solve_all. REQUIRES: solve() was called, and this was not.
+  std::vector<Proven> answers();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// Adds the certificate; an answer that has none is replaced by the exact one (`exact_stage`).
 void prove(const Problem& problem, Proven& answer);
