@@ -283,6 +283,33 @@ TEST(Stuck, TheThinEllipseNamesItsCurvature) {
   EXPECT_TRUE(std::isfinite(e.radius_of_curvature));
 }
 
+TEST(Stuck, WhoGoesRoundAGoalItCannotReachDoesNotRest) {
+  Scenario s;
+  s.robots.emplace_back();
+  s.robots.front().id = "R1";
+  s.robots.front().position = {0, 0};
+  s.robots.front().goals = {{8, 0.3}};
+  s.obstacles.push_back({"desk", geometry::Polygon{{{6, -2}, {10, -2}, {10, 2}, {6, 2}}, {}}});
+  s.time_limit = 40.0;
+  const Recording recording = simulate(s);
+  const std::vector<StuckReport> reports = explain_stuck(s, recording);
+  ASSERT_EQ(reports.size(), 1u);
+  const StuckReport& r = reports.front();
+  double nearest = r.goal_distance;
+  for (const Step& step : recording.steps) {
+    const double distance = norm(step.robots[0].position - s.robots.front().goals.back());
+    nearest = std::min(nearest, distance);
+    if (step.time == r.nearest_time) {
+      EXPECT_EQ(distance, r.nearest_distance);
+    }
+  }
+  EXPECT_EQ(nearest, r.nearest_distance);
+  const bool rests = r.text.find("rests") != std::string::npos;
+  const bool tells_nearest = r.text.find("it was nearest at") != std::string::npos;
+  EXPECT_TRUE(tells_nearest && !rests) << r.text << r.speed;
+  EXPECT_EQ(r.text.find("on its way"), std::string::npos) << r.text;
+}
+
 TEST(Stuck, WhoArrivedHasNothingToExplain) {
   const Scenario s = paper_scene("A4");
   EXPECT_TRUE(explain_stuck(s, simulate(s)).empty());
