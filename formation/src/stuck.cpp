@@ -73,17 +73,34 @@ std::string source_text(const Scenario& s, const RecordedConstraint& c) {
 /// m/s: a robot that is slower is said to rest. (Between edges it creeps on by its tie-break.)
 constexpr double kAtRest = 0.01;
 
-/// Of a robot that went away from where it wanted to, as one that circles does: when it was nearest.
-std::string nearest_text(const StuckReport& r) {
-  if (r.speed < kAtRest || r.nearest_distance >= r.goal_distance) return "";
-  return printed("; it was nearest at %.4g s, ", r.nearest_time) + length(r.nearest_distance) + " away";
+/// A robot's least distance from its goal, and when that was.
+struct Nearest {
+  double time = 0.0;      ///< s
+  double distance = 0.0;  ///< m
+};
+
+/// A slot moves, so that of a formation's robots only the end counts.
+Nearest nearest_of(const Scenario& s, const Recording& recording, Vec2 target, const StuckReport& r) {
+  Nearest nearest{recording.steps.back().time, r.goal_distance};
+  if (s.formation) return nearest;
+  for (const Step& step : recording.steps) {
+    const double distance = norm(target - step.robots[r.robot].position);
+    if (distance < nearest.distance) nearest = {step.time, distance};
+  }
+  return nearest;
 }
 
-std::string sentence(const Scenario& s, const StuckReport& r) {
+/// Of a robot that went away from where it wanted to, as one that circles does.
+std::string words_of(const Nearest& nearest, const StuckReport& r) {
+  if (r.speed < kAtRest || nearest.distance >= r.goal_distance) return "";
+  return printed("; it was nearest at %.4g s, ", nearest.time) + length(nearest.distance) + " away";
+}
+
+std::string sentence(const Scenario& s, const StuckReport& r, const Nearest& at) {
   const std::string& id = s.robots[r.robot].id;
   std::string text = id + " is " + length(r.goal_distance) + (s.formation ? " from its slot" : " from its goal") +
                      printed(", at (%.3f, %.3f), moving at %.2g m/s", r.position.x, r.position.y, r.speed) + "; ";
-  const std::string nearest = nearest_text(r);
+  const std::string nearest = words_of(at, r);
   if (r.binding.empty()) return text + "nothing binds" + (nearest.empty() ? ": it was on its way" : nearest);
   text += "bound by ";
   for (std::size_t k = 0; k < r.binding.size(); ++k)
@@ -92,19 +109,6 @@ std::string sentence(const Scenario& s, const StuckReport& r) {
   return text + ": the way there is normal to the boundary, whose radius of curvature is " +
          length(r.equilibrium->radius_of_curvature) +
          (r.equilibrium->stable ? ", more than that distance: a stable trap" : ": unstable, it is sliding off");
-}
-
-/// From its goal; a slot moves, so that of a formation's robots only the end counts.
-void find_nearest(const Scenario& s, const Recording& recording, Vec2 target, StuckReport& r) {
-  r.nearest_time = recording.steps.back().time;
-  r.nearest_distance = r.goal_distance;
-  if (s.formation) return;
-  for (const Step& step : recording.steps) {
-    const double distance = norm(target - step.robots[r.robot].position);
-    if (distance >= r.nearest_distance) continue;
-    r.nearest_distance = distance;
-    r.nearest_time = step.time;
-  }
 }
 
 /// Whether standing elsewhere means anything.
@@ -128,12 +132,11 @@ std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording
     r.goal_distance = norm(target - end.position);
     if (r.goal_distance <= scenario.arrival_tolerance) continue;
     r.speed = norm(end.velocity);
-    find_nearest(scenario, recording, target, r);
     if (recording.steps.size() > 1)
       for (const RecordedConstraint& c : recording.steps[recording.steps.size() - 2].robots[i].constraints)
         if (c.active) r.binding.push_back(binding_of(c, end.position));
     if (r.binding.size() == 1) r.equilibrium = resting_on(r.binding.front(), end.position, target);
-    r.text = sentence(scenario, r);
+    r.text = sentence(scenario, r, nearest_of(scenario, recording, target, r));
     reports.push_back(std::move(r));
   }
   return reports;

@@ -336,7 +336,10 @@ TEST(Simulate, AnExistingFolderKeepsWhatIsNotOurs) {
   here.write("s.json", kOneRobot);
   std::filesystem::create_directory(here.path() / "out");
   here.write("out/notes.txt", "mine");
-  here.write("out/metrics.json", "old");
+  here.write("out/metrics.json", "mine too");
+  EXPECT_EQ(here.run("simulate s.json --out out --no-figures").status, 2) << "a folder of somebody else's";
+  EXPECT_EQ(here.read("out/metrics.json"), "mine too");
+  here.write("out/metrics.json", "{\n  \"scenario\": \"old\",\n  \"min_obstacle_clearance\": null\n}\n");
   ASSERT_EQ(here.run("simulate s.json --out out --no-figures").status, 0);
   EXPECT_EQ(here.read("out/notes.txt"), "mine");
   EXPECT_TRUE(json::accept(here.read("out/metrics.json")));

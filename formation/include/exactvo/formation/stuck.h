@@ -24,8 +24,6 @@ struct StuckReport {
   std::size_t robot = 0;
   Vec2 position;                           ///< m, where it ended
   double goal_distance = 0.0;              ///< m, D
-  double nearest_distance = 0.0;           ///< m, that it ever came to its goal; of a formation's robot, D
-  double nearest_time = 0.0;               ///< s, when
   double speed = 0.0;                      ///< m/s, of the last decision
   std::vector<BindingConstraint> binding;  ///< of the last decision
   /// Where one shape binds and the robot rests against it: position, rho, D, stability.
