@@ -32,7 +32,7 @@ constexpr double kApart = 1e-4;
 
 struct Flags {
   std::string sets = "C10,C10f,C10i,C50,RF10,RF20,RI10,RI20,RI50";
-  std::string instances;        ///< file; replaces `sets` by itself, its feasible and its infeasible part
+  std::string instances;        ///< file: the sets "file", "filef", "filei", which are all sets unless some are named
   std::string json;             ///< file for Google Benchmark's compare.py
   std::string warm;             ///< a recorded set: with and without the lines that bound a step before
   std::string target;           ///< widest SIMD target to run on ("AVX3", "AVX2", "SSE4"), "" for the best
@@ -68,10 +68,17 @@ bool is_feasible(const lp::Solution& s) {
   return s.status == lp::Status::optimal || s.status == lp::Status::pinched;
 }
 
+/// The problems of --instances, as a set.
+constexpr const char* kFile = "file";
+
+bool has_parts(const std::string& name) {
+  return name == kFile || is_recorded_set(name);
+}
+
 /// "C10f": the feasible part of "C10"; nothing to do for other names.
 char part_of(std::string& name) {
   const char last = name.empty() ? ' ' : name.back();
-  if ((last != 'f' && last != 'i') || !is_recorded_set(name.substr(0, name.size() - 1))) return ' ';
+  if ((last != 'f' && last != 'i') || !has_parts(name.substr(0, name.size() - 1))) return ' ';
   name.pop_back();
   return last;
 }
@@ -84,39 +91,73 @@ std::vector<lp::Problem> only(const std::vector<lp::Problem>& problems, bool fea
   return kept;
 }
 
-/// Recorded sets are asked for whole and in parts: each is recorded once.
-const std::vector<lp::Problem>& recording(const std::string& name) {
+std::vector<lp::Problem> instances_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("cannot read " + file);
+  return lp::read_instances(in);
+}
+
+/// Recorded sets and the file are asked for whole and in parts: each is recorded, or read, once. With the table the
+/// file takes the place of C10.
+const std::vector<lp::Problem>& recording(const std::string& name, const Flags& flags) {
   static std::map<std::string, std::vector<lp::Problem>> recorded;
-  if (recorded.count(name) == 0) recorded[name] = record(name, kInstances);
-  return recorded[name];
+  if (recorded.count(name) > 0) return recorded[name];
+  const bool is_file = name == kFile || (flags.table && name == "C10" && !flags.instances.empty());
+  return recorded[name] = is_file ? instances_of(flags.instances) : record(name, kInstances);
 }
 
 Set set_named(std::string name, const Flags& flags) {
   const std::string whole_name = name;
   const char part = part_of(name);
   std::vector<lp::Problem> problems =
-      is_recorded_set(name) ? recording(name) : lp::generate(name, kInstances, flags.seed);
+      has_parts(name) ? recording(name, flags) : lp::generate(name, kInstances, flags.seed);
   if (part != ' ') problems = only(problems, part == 'f');
   for (lp::Problem& p : problems) sort_hard_first(p);
   return {whole_name, problems};
 }
 
-/// With a file and the table, the file takes the place of the C10 recorded here.
+/// Before anything is recorded or timed, which takes minutes. Throws std::runtime_error.
+void require_known(std::string name, const Flags& flags) {
+  part_of(name);
+  if (name == kFile && flags.instances.empty()) throw std::runtime_error("the set \"file\" takes --instances FILE");
+  if (has_parts(name)) return;
+  try {
+    lp::generate(name, 0, flags.seed);
+  } catch (const std::logic_error& unknown) {
+    throw std::runtime_error(std::string(unknown.what()) +
+                             "; or recorded here, Cm or Bm, m of 5, 10, 20, 50, 100; or, with --instances, file; of "
+                             "these the feasible or infeasible part, as in C10f, C10i, filef");
+  }
+}
+
+std::vector<std::string> names_of(const Flags& flags) {
+  std::vector<std::string> names;
+  std::stringstream text(flags.sets);
+  for (std::string name; std::getline(text, name, ',');) names.push_back(name);
+  return names;
+}
+
+bool names_the_file(const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(), [](std::string name) {
+    part_of(name);
+    return name == kFile;
+  });
+}
+
+/// Throws std::runtime_error for sets that are none, and for a file that none of them would be taken from.
+void require_known_sets(const Flags& flags) {
+  const std::vector<std::string> names = names_of(flags);
+  if (names.empty()) throw std::runtime_error("--sets names no set");
+  for (const std::string& name : names) require_known(name, flags);
+  if (!flags.instances.empty() && !flags.table && !names_the_file(names))
+    throw std::runtime_error("--sets names none of " + flags.instances +
+                             ": add file, filef or filei, or leave --sets "
+                             "out for these three (C10f and the like are recorded here)");
+}
+
 std::vector<Set> sets_of(const Flags& flags) {
   std::vector<Set> sets;
-  if (!flags.instances.empty()) {
-    std::ifstream in(flags.instances, std::ios::binary);
-    if (!in) throw std::runtime_error("cannot read " + flags.instances);
-    const std::vector<lp::Problem> all = lp::read_instances(in);
-    sets = {{"C10", all}, {"C10f", only(all, true)}, {"C10i", only(all, false)}};
-    if (!flags.table) {
-      for (Set& set : sets) set.name = "file" + set.name.substr(3);
-      return sets;
-    }
-  }
-  std::stringstream names(flags.sets);
-  for (std::string name; std::getline(names, name, ',');)
-    if (sets.empty() || name.substr(0, 3) != "C10" || name == "C100") sets.push_back(set_named(name, flags));
+  for (const std::string& name : names_of(flags)) sets.push_back(set_named(name, flags));
   return sets;
 }
 
@@ -311,6 +352,8 @@ void use_table(Flags& flags) {
 constexpr const char* kUsage =
     "usage: bench_lp [--table | --sets C10f,RF10,...] [--instances FILE] [--target AVX2] [--json FILE] [--seed N]\n"
     "                [--rounds N] [--untimed PASSES]\n"
+    "       (FILE is the sets file, filef, filei, whole and its feasible and infeasible part: all three unless --sets\n"
+    "       names some; with --table it takes the place of C10)\n"
     "       bench_lp --adversarial PROBLEMS [--json FILE] [--seed N]\n"
     "       bench_lp --warm C10\n"
     "Times in thread CPU time; `wrong` counts verdicts that are not the exact ones, `apart` velocities more than 1e-4\n"
@@ -319,6 +362,15 @@ constexpr const char* kUsage =
 
 bool asks_for_help(const std::string& option) {
   return option == "--help" || option == "-h";
+}
+
+/// Of the names that Highway has, those that this build and this machine have.
+[[noreturn]] void refuse_target(const std::string& target) {
+  std::string known;
+  for (const char* name : {"AVX3_SPR", "AVX3_ZEN4", "AVX3_DL", "AVX3", "AVX2", "SSE4", "SSSE3", "SSE2", "SVE2_128",
+                           "SVE_256", "SVE2", "SVE", "NEON", "PPC10", "PPC9", "PPC8", "WASM", "RVV", "EMU128"})
+    if (lp::limit_batch_target(name)) known += std::string(known.empty() ? "" : ", ") + name;
+  throw std::runtime_error("no such target: " + target + "; expected one of " + known);
 }
 
 Flags read_flags(int argc, char** argv) {
@@ -351,8 +403,9 @@ Flags read_flags(int argc, char** argv) {
       throw std::runtime_error("unknown option " + option);
   }
   if (sets_given && flags.table) throw std::runtime_error("--table has its own sets: leave --sets out");
-  if (!lp::limit_batch_target(flags.target.c_str())) throw std::runtime_error("no such target: " + flags.target);
-  if (!flags.instances.empty() && !flags.table) flags.sets.clear();
+  if (!lp::limit_batch_target(flags.target.c_str())) refuse_target(flags.target);
+  if (!flags.instances.empty() && !flags.table && !sets_given) flags.sets = "file,filef,filei";
+  require_known_sets(flags);
   return flags;
 }
 
