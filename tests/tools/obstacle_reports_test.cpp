@@ -113,6 +113,11 @@ TEST(Batch, FoldersOfEarlierBatchesAreNotedAndNotRead) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("note: not read: maps/one holds an earlier batch (2 files)"));
   EXPECT_THAT(outcome.out, HasSubstr("1 files: 1 done"));
+  const Outcome nothing = here.run("batch maps/one --out two --write figures");
+  EXPECT_EQ(nothing.status, 2);
+  EXPECT_THAT(nothing.err, HasSubstr("no file to read; maps/one holds an earlier batch"));
+  EXPECT_THAT(here.run("batch two --out two --write figures").err, HasSubstr("two is where the results go"));
+  EXPECT_THAT(here.run("batch maps --out two --write figures --resume").err, HasSubstr("nothing left to do"));
 }
 
 }  // namespace

@@ -201,8 +201,9 @@ TEST(Batch, RejectedFilesAreNamedAndNothingAtAllIsNoSuccess) {
   EXPECT_EQ(here.run("batch maps/bad10.wkt --out none --write figures").status, 1);
   std::filesystem::create_directory(here.path() / "empty");
   const Outcome nothing = here.run("batch empty --out zero --write figures");
-  EXPECT_EQ(nothing.status, 1);
-  EXPECT_THAT(nothing.err, HasSubstr("no file was found"));
+  EXPECT_EQ(nothing.status, 2);
+  EXPECT_THAT(nothing.err, AllOf(HasSubstr("no file to read"), HasSubstr("E_FILE_MISSING")));
+  EXPECT_FALSE(std::filesystem::exists(here.path() / "zero"));
 }
 
 TEST(Batch, AnotherProcessJoinsWithResume) {

@@ -262,8 +262,8 @@ bool goes_over_another(const Flags& flags) {
 }
 
 /// Folders that were named or walked and are not read.
-void note_earlier_batches(const BatchRun& run) {
-  for (const datasets::EarlierBatch& earlier : datasets::earlier_batches(run))
+void note_earlier_batches(const datasets::BatchResult& result) {
+  for (const datasets::EarlierBatch& earlier : result.earlier)
     message(fmt::format("note: not read: {} holds an earlier batch ({} files); a file that is named is read",
                         earlier.folder, earlier.files));
 }
@@ -276,7 +276,7 @@ void say_incomplete(const Flags& flags, const BatchRun& run) {
 }
 
 ExitCode verdict(const BatchSummary& s) {
-  if (s.obstacles_out == 0) message(s.files.read == 0 ? "warning: no file was found" : "warning: no obstacle came out");
+  if (s.obstacles_out == 0) message("warning: no obstacle came out");
   return s.uncertified == 0 && s.obstacles_out > 0 ? ExitCode::success : ExitCode::negative;
 }
 
@@ -285,7 +285,6 @@ ExitCode batch(const Flags& flags) {
   const BatchConfiguration configuration = configuration_of(flags);
   const BatchRun run = run_of(flags);
   const bool over_another = goes_over_another(flags);
-  if (!datasets::under_mpi()) note_earlier_batches(run);
   Reporter reporter;
   const auto watch = [&](const BatchProgress& progress) {
     reporter.show(progress);
@@ -294,6 +293,7 @@ ExitCode batch(const Flags& flags) {
   const datasets::BatchResult result = datasets::under_mpi() ? datasets::run_batch_over_ranks(configuration, run, watch)
                                                              : datasets::run_batch(configuration, run, watch);
   reporter.clear();
+  note_earlier_batches(result);
   if (result.end == BatchEnd::interrupted) {
     error_message("interrupted; --resume goes on");
     return ExitCode::interrupted;
@@ -302,7 +302,6 @@ ExitCode batch(const Flags& flags) {
     say_incomplete(flags, run);
     return ExitCode::success;
   }
-  if (datasets::under_mpi()) note_earlier_batches(run);  // one rank comes here; all of them were at the beginning
   if (result.was_complete) message("nothing left to do");
   if (over_another && !result.was_complete) message("note: replaced the earlier batch in " + flags.out);
   print(words_of(result.summary, flags.out, run.shards == 1));

@@ -135,16 +135,19 @@ std::string codes_of(const RepairRecord& r) {
   return text;
 }
 
-/// Of the first problem that has more than one right answer.
-std::string words_of_place(const ObstacleFile& file, const RepairRecord& r) {
+/// Where each feature's first problem is that has more than one right answer.
+using FirstProblems = std::map<std::string, std::string>;
+
+FirstProblems first_problems(const ObstacleFile& file) {
   using datasets::DataCode;
+  FirstProblems first;
   for (const datasets::RingFinding& f : file.findings) {
     const bool is_plain =
         f.code == DataCode::unclosed || f.code == DataCode::repeated_vertex || f.code == DataCode::clockwise;
-    if (f.feature == r.place && !is_plain)
-      return fmt::format("ring {}, vertex {}, {}", f.ring, f.vertex, words_of_place(f));
+    if (is_plain || first.count(f.feature) > 0) continue;
+    first[f.feature] = fmt::format("ring {}, vertex {}, {}", f.ring, f.vertex, words_of_place(f));
   }
-  return "";
+  return first;
 }
 
 std::string words_of_holes(const RepairFacts& before, const RepairFacts& after) {
@@ -154,8 +157,10 @@ std::string words_of_holes(const RepairFacts& before, const RepairFacts& after) 
                      before.hole_area, after.hole_area);
 }
 
-std::string words_of(const ObstacleFile& file, const RepairRecord& r) {
-  const std::string start = shown(file.file + ": " + r.place + ": " + codes_of(r) + ": " + words_of_place(file, r));
+std::string words_of(const std::string& file, const RepairRecord& r, const FirstProblems& problems) {
+  const auto problem = problems.find(r.place);
+  const std::string where = problem == problems.end() ? "" : problem->second;
+  const std::string start = shown(file + ": " + r.place + ": " + codes_of(r) + ": " + where);
   return fmt::format("{}: polygons {} -> {}, vertices {} -> {}, within outer rings {:.9g} -> {:.9g} m^2{}{}\n", start,
                      r.before.polygons, r.after.polygons, r.before.vertices, r.after.vertices, r.before.outer_area,
                      r.after.outer_area, words_of_holes(r.before, r.after),
@@ -185,8 +190,9 @@ void note_areas(const ObstacleFile& file) {
 void print_report(const std::vector<FileAnswer>& answers) {
   for (const FileAnswer& answer : answers) {
     if (!answer.content) continue;  // said as an error
+    const FirstProblems problems = first_problems(*answer.content);
     for (const RepairRecord& record : answer.content->repairs) {
-      if (is_told(record)) print(words_of(*answer.content, record));
+      if (is_told(record)) print(words_of(answer.content->file, record, problems));
     }
     for (const datasets::DataError& error : answer.content->rejected)
       print("not mended: " + shown(error.what()) + "\n");
@@ -220,12 +226,23 @@ std::vector<geometry::Vec2> places_of_problems(const ObstacleFile& file, const R
   return places;
 }
 
+std::size_t number_recombined(const std::vector<FileAnswer>& answers) {
+  std::size_t count = 0;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    for (const RepairRecord& r : answer.content->repairs) count += r.recombined ? 1 : 0;
+  }
+  return count;
+}
+
+/// Those that are drawn: each takes a look at all findings and obstacles.
 std::vector<MendedPolygon> recombined(const std::vector<FileAnswer>& answers) {
   std::vector<MendedPolygon> polygons;
   for (const FileAnswer& answer : answers) {
     if (!answer.content) continue;
     for (const RepairRecord& r : answer.content->repairs) {
       if (!r.recombined) continue;
+      if (polygons.size() == kMostMendedDrawn) return polygons;
       const std::string name = std::filesystem::path(answer.file).filename().string();
       polygons.push_back(
           {name + ", " + r.place, r.given, places_of_problems(*answer.content, r), outcome(*answer.content, r)});
@@ -237,8 +254,9 @@ std::vector<MendedPolygon> recombined(const std::vector<FileAnswer>& answers) {
 void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out) {
   const std::vector<MendedPolygon> polygons = recombined(answers);
   if (polygons.empty()) return message("no figure: nothing had to be cut");
-  if (polygons.size() > kMostMendedDrawn)
-    message(fmt::format("the figure shows {} of {} polygons that were cut", kMostMendedDrawn, polygons.size()));
+  const std::size_t number = number_recombined(answers);
+  if (number > polygons.size())
+    message(fmt::format("the figure shows {} of {} polygons that were cut", polygons.size(), number));
   write_figure(repair_figure(polygons, std::filesystem::path(out).stem().string()), out);
 }
 

@@ -41,19 +41,7 @@ BatchResult run_share(Session& session, const BatchRun& run) {
   return session.finish();
 }
 
-}  // namespace
-
-std::uint64_t BatchTally::rejected_in_all() const {
-  std::uint64_t sum = 0;
-  for (const auto& [code, count] : rejected) sum += count;
-  return sum;
-}
-
-BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch) {
-  require_sensible(configuration, run);
-  Session session(
-      configuration, run,
-      batch::identity_of(configuration, batch::list_inputs(run.paths, run.out, configuration.reading.format)), watch);
+BatchResult run_alone(Session& session, const BatchRun& run) {
   try {
     const BatchResult result = run_share(session, run);
     if (result.end != BatchEnd::incomplete || !session.ledger().another_finished(session.identity())) return result;
@@ -64,6 +52,23 @@ BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& r
     if (!session.ledger().another_finished(session.identity())) throw;
   }
   return {BatchEnd::complete, batch::read_summary(run.out), true};
+}
+
+}  // namespace
+
+std::uint64_t BatchTally::rejected_in_all() const {
+  std::uint64_t sum = 0;
+  for (const auto& [code, count] : rejected) sum += count;
+  return sum;
+}
+
+BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch) {
+  require_sensible(configuration, run);
+  batch::Inputs inputs = batch::list_inputs(run.paths, run.out, configuration.reading.format);
+  Session session(configuration, run, batch::identity_of(configuration, std::move(inputs.files)), watch);
+  BatchResult result = run_alone(session, run);
+  result.earlier = std::move(inputs.earlier);
+  return result;
 }
 
 }  // namespace exactvo::datasets

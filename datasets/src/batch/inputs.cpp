@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <utility>
 
-#include "exactvo/datasets/batch.h"
+#include "batch/ledger.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/scenario_file.h"
-#include "json_text.h"
 #include "readers/readers.h"
 #include "text_file.h"
 
@@ -94,28 +94,16 @@ DataError cannot_walk(const fs::path& folder, const std::error_code& error) {
   return {DataCode::file_unreadable, folder.string(), "", error.message(), "a folder whose files can be listed"};
 }
 
-/// Whether the file is a batch's summary.json or run.json: both hold these members.
-bool is_of_a_batch(const fs::path& file) {
-  if (!is_regular(file)) return false;
-  try {
-    const Json json = parse_json(read_text_file(file), file.string());
-    return json.is_object() && json.contains("configuration_sha256") && json.contains("configuration") &&
-           json.contains("inputs");
-  } catch (const DataError&) {
-    return false;
-  }
-}
-
 /// An output, or what a killed batch has left of one.
 bool is_earlier_output(const fs::path& folder) {
   return is_of_a_batch(folder / "summary.json") || is_of_a_batch(folder / ".parts" / "run.json");
 }
 
-/// Those that are not hidden.
+/// Those that are not hidden, as far as they can be counted: none of them is read.
 std::size_t number_of_files(const fs::path& folder) {
   std::size_t count = 0;
   std::error_code error;
-  fs::recursive_directory_iterator at(folder, error);
+  fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error);
   while (!error && at != fs::recursive_directory_iterator()) {
     std::error_code unknown;
     const bool is_folder = at->is_directory(unknown);
@@ -124,15 +112,12 @@ std::size_t number_of_files(const fs::path& folder) {
     if (!is_folder && !is_hidden) ++count;
     at.increment(error);
   }
-  if (error) throw cannot_walk(folder, error);
   return count;
 }
 
 class Listing {
  public:
   Listing(const fs::path& out, const std::string& format) : out_(fs::weakly_canonical(out)), format_(format) {}
-
-  const std::vector<EarlierBatch>& earlier() const { return earlier_; }
 
   void add(const fs::path& path) {
     std::error_code error;
@@ -144,7 +129,8 @@ class Listing {
     named_.insert(name_of_file(path));
   }
 
-  std::vector<Input> take() const {
+  /// Throws DataError if there is nothing to read.
+  Inputs take() const {
     std::set<fs::path> seen;
     std::vector<Input> inputs;
     for (const fs::path& file : files_) {
@@ -156,11 +142,13 @@ class Listing {
       inputs.push_back(
           {file.generic_string(), file, identity_of_input(file, format_), error ? 0 : std::uint64_t{size}});
     }
-    return inputs;
+    if (inputs.empty()) throw nothing_to_read();
+    return {std::move(inputs), earlier_};
   }
 
  private:
   void add_folder(const fs::path& folder) {
+    folders_.push_back(folder);
     if (name_of_file(folder) == out_ || is_left_out_as_earlier(folder)) return;
     std::vector<fs::path> found = files_below(folder);
     std::sort(found.begin(), found.end());
@@ -193,13 +181,27 @@ class Listing {
 
   bool is_left_out_as_earlier(const fs::path& folder) {
     if (!is_earlier_output(folder)) return false;
-    earlier_.push_back({folder.generic_string(), number_of_files(folder)});
+    if (met_.insert(name_of_file(folder)).second)
+      earlier_.push_back({folder.generic_string(), number_of_files(folder)});
     return true;
+  }
+
+  /// Folders alone were named then.
+  DataError nothing_to_read() const {
+    std::string words = "no file to read";
+    for (const EarlierBatch& earlier : earlier_) words += "; " + earlier.folder + " holds an earlier batch";
+    for (const fs::path& folder : folders_) {
+      if (name_of_file(folder) == out_) words += "; " + folder.generic_string() + " is where the results go";
+    }
+    const std::string first = folders_.empty() ? "" : folders_.front().string();
+    return {DataCode::file_missing, first, "", words, "a file, or a folder that holds one"};
   }
 
   fs::path out_;
   std::string format_;
   std::vector<EarlierBatch> earlier_;
+  std::set<fs::path> met_;  ///< earlier batches, whatever way leads to them
+  std::vector<fs::path> folders_;
   std::vector<fs::path> files_;
   std::set<fs::path> named_;       ///< by the user: wanted, whatever else needs them
   std::set<fs::path> belongings_;  ///< of files met in a folder
@@ -218,20 +220,10 @@ std::string identity_of_input(const fs::path& path, const std::string& format) {
   return files.size() == 1 ? own : sha256_of(all);
 }
 
-std::vector<Input> list_inputs(const std::vector<fs::path>& paths, const fs::path& out, const std::string& format) {
+Inputs list_inputs(const std::vector<fs::path>& paths, const fs::path& out, const std::string& format) {
   Listing listing(out, format);
   for (const fs::path& path : paths) listing.add(path);
   return listing.take();
 }
 
 }  // namespace exactvo::datasets::batch
-
-namespace exactvo::datasets {
-
-std::vector<EarlierBatch> earlier_batches(const BatchRun& run) {
-  batch::Listing listing(run.out, {});
-  for (const std::filesystem::path& path : run.paths) listing.add(path);
-  return listing.earlier();
-}
-
-}  // namespace exactvo::datasets

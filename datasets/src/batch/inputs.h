@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/datasets/batch.h"
+
 namespace exactvo::datasets::batch {
 
 struct Input {
@@ -19,14 +21,19 @@ struct Input {
   std::uint64_t size = 0;
 };
 
+struct Inputs {
+  std::vector<Input> files;  ///< at least one
+  std::vector<EarlierBatch> earlier;
+};
+
 /// Files as named, folders walked in order of names. In a folder, hidden files and folders, what belongs to another
 /// file (the tables of a Shapefile, the pictures of ROS maps), whatever is below `out` and whatever is below an earlier
-/// batch's output (`earlier_batches`, batch.h) are no inputs; a file that is named is one in any case. Each file once.
-/// Links to folders and what is no regular file are inputs without a hash, never opened here. `format` is that of all
-/// files, if it is given. Throws DataError for a path that is not there (E_FILE_MISSING) and a folder that can't be
-/// walked (E_FILE_UNREADABLE).
-std::vector<Input> list_inputs(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
-                               const std::string& format = {});
+/// batch's output (`EarlierBatch`) are no inputs; a file that is named is one in any case. Each file once. Links to
+/// folders and what is no regular file are inputs without a hash, never opened here. `format` is that of all files, if
+/// it is given. Throws DataError for a path that is not there or where there is nothing to read (E_FILE_MISSING) and a
+/// folder that can't be walked (E_FILE_UNREADABLE).
+Inputs list_inputs(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
+                   const std::string& format = {});
 
 /// What `Input::sha256` is now.
 std::string identity_of_input(const std::filesystem::path& path, const std::string& format = {});

@@ -277,13 +277,12 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
   if (world.size() == 1) return run_batch(configuration, run, watch);
   const BatchResult nothing{BatchEnd::incomplete, {}, false};
   std::optional<Session> session;
+  batch::Inputs inputs;
   Verdict verdict = kGo;
   const bool opened = all_manage(world, [&] {
     refuse_shards(run, world.size());
-    session.emplace(
-        configuration, run,
-        batch::identity_of(configuration, batch::list_inputs(run.paths, run.out, configuration.reading.format)),
-        BatchWatch{});
+    inputs = batch::list_inputs(run.paths, run.out, configuration.reading.format);
+    session.emplace(configuration, run, batch::identity_of(configuration, std::move(inputs.files)), BatchWatch{});
   });
   if (!opened || !all_manage(world, [&] {
         if (world.rank() == 0) verdict = open_output(*session, run.resume);
@@ -291,11 +290,14 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
     return nothing;
   }
   if (world.broadcast(verdict) == kComplete) {
-    return world.rank() > 0 ? nothing : BatchResult{BatchEnd::complete, batch::read_summary(run.out), true};
+    if (world.rank() > 0) return nothing;
+    return {BatchEnd::complete, batch::read_summary(run.out), true, false, std::move(inputs.earlier)};
   }
   // Work is told by its number, so a rank that sees other files, or another folder, would do another's.
   if (!all_manage(world, [&] { session->ledger().require_same(session->identity()); })) return nothing;
-  return share_out(world, *session, watch);
+  BatchResult result = share_out(world, *session, watch);
+  if (world.rank() == 0) result.earlier = std::move(inputs.earlier);
+  return result;
 }
 
 std::string mpi_release() {

@@ -6,6 +6,7 @@
 
 #include "batch_files.h"
 #include "exactvo/datasets/batch.h"
+#include "refusal.h"
 #include "temporary_folder.h"
 
 namespace exactvo::datasets::test {
@@ -32,9 +33,13 @@ class Inputs : public TemporaryFolder {
   /// Names below the folder, in order.
   std::vector<std::string> names(const BatchRun& run) const {
     std::vector<std::string> found;
-    for (const batch::Input& input : batch::list_inputs(run.paths, run.out))
+    for (const batch::Input& input : batch::list_inputs(run.paths, run.out).files)
       found.push_back(fs::path(input.path).lexically_relative(folder_).generic_string());
     return found;
+  }
+
+  static std::vector<EarlierBatch> earlier(const BatchRun& run) {
+    return batch::list_inputs(run.paths, run.out).earlier;
   }
 
   BatchConfiguration plain_;
@@ -45,11 +50,11 @@ using Names = std::vector<std::string>;
 TEST_F(Inputs, AnEarlierOutputInAWalkedFolderIsNotReadAndNamed) {
   const BatchRun run = run_to("out");
   EXPECT_EQ(names(run), Names{"in/walls.wkt"});
-  const std::vector<EarlierBatch> earlier = earlier_batches(run);
-  ASSERT_EQ(earlier.size(), 1u);
-  EXPECT_EQ(earlier[0].folder, (folder_ / "in" / "earlier").generic_string());
-  EXPECT_EQ(earlier[0].files, output_of(folder_ / "in" / "earlier").size());
-  EXPECT_EQ(run_batch(plain_, run).summary.files.read, 1u);
+  const BatchResult result = run_batch(plain_, run);
+  EXPECT_EQ(result.summary.files.read, 1u);
+  ASSERT_EQ(result.earlier.size(), 1u);
+  EXPECT_EQ(result.earlier[0].folder, (folder_ / "in" / "earlier").generic_string());
+  EXPECT_EQ(result.earlier[0].files, output_of(folder_ / "in" / "earlier").size());
 }
 
 TEST_F(Inputs, AFileOfAnEarlierOutputThatIsNamedIsRead) {
@@ -58,17 +63,38 @@ TEST_F(Inputs, AFileOfAnEarlierOutputThatIsNamedIsRead) {
   EXPECT_EQ(names(run), (Names{"in/walls.wkt", "in/earlier/obstacles.geojson"}));
 }
 
-TEST_F(Inputs, AnEarlierOutputThatIsNamedIsNoFolderOfMaps) {
+TEST_F(Inputs, AnEarlierOutputIsNotedOnceWhateverLeadsToIt) {
   BatchRun run = run_to("out");
+  run.paths.push_back(folder_ / "in" / "earlier");
+  run.paths.push_back(folder_ / "in" / "." / "earlier");
+  EXPECT_EQ(names(run), Names{"in/walls.wkt"});
+  EXPECT_EQ(earlier(run).size(), 1u);
+}
+
+// An empty batch would take the place of a good one.
+TEST_F(Inputs, WhereThereIsNothingToReadTheOutputStands) {
+  BatchRun run = run_to("out");
+  run_batch(plain_, run);
+  const auto good = output_of(folder_ / "out");
+  fs::create_directories(folder_ / "empty");
+  for (const char* path : {"in/earlier", "out", "empty"}) {
+    SCOPED_TRACE(path);
+    run.paths = {folder_ / path};
+    for (const bool resume : {false, true}) {
+      run.resume = resume;
+      expect_refusal(refusal_of([&] { run_batch(plain_, run); }), DataCode::file_missing, "");
+      EXPECT_EQ(output_of(folder_ / "out"), good);
+    }
+  }
   run.paths = {folder_ / "in" / "earlier"};
-  EXPECT_EQ(names(run), Names{});
-  EXPECT_EQ(earlier_batches(run).size(), 1u);
+  EXPECT_NE(std::string(refusal_of([&] { run_batch(plain_, run); }).what()).find("earlier holds an earlier batch"),
+            std::string::npos);
 }
 
 TEST_F(Inputs, TheBatchsOwnOutputIsNeitherReadNorNamed) {
   const BatchRun run = run_to("in/earlier");
   EXPECT_EQ(names(run), Names{"in/walls.wkt"});
-  EXPECT_TRUE(earlier_batches(run).empty());
+  EXPECT_TRUE(earlier(run).empty());
 }
 
 TEST_F(Inputs, WhatAKilledBatchHasLeftIsAnOutput) {

@@ -54,7 +54,7 @@ struct BatchConfiguration {
 
 /// How it is run; none of it changes the results.
 struct BatchRun {
-  std::vector<std::filesystem::path> paths;  ///< files, and folders whose files are taken (`earlier_batches`)
+  std::vector<std::filesystem::path> paths;  ///< files, and folders whose files are taken (`EarlierBatch`)
   std::filesystem::path out;
   int workers = 0;        ///< 0: as many as there are processors
   bool resume = false;    ///< go on with what is in `out`
@@ -106,32 +106,30 @@ enum class BatchEnd {
   interrupted  ///< `keep_going` said no; --resume goes on
 };
 
+/// A folder that holds what a batch has written, whole or not, among the folders of `BatchRun::paths` and below: its
+/// files are outputs, obstacles that lie elsewhere as well, and no inputs. It is known by the summary.json of a
+/// finished batch or the .parts/run.json of an unfinished one. `BatchRun::out` is none of them; nor is it read.
+struct EarlierBatch {
+  std::string folder;
+  std::size_t files = 0;  ///< that are not read, as far as they can be counted
+};
+
 struct BatchResult {
   BatchEnd end = BatchEnd::complete;
   BatchSummary summary;          ///< of a complete one
   bool was_complete = false;     ///< nothing was left to do, or another process of the same batch was quicker to end it
   bool was_bound_ahead = false;  ///< the outputs grew while parts were being made
+  std::vector<EarlierBatch> earlier{};  ///< met on the way to the inputs; of ranks, the first one's
 };
 
 /// Called from time to time by one thread; false stops the batch after what is under way.
 using BatchWatch = std::function<bool(const BatchProgress&)>;
 
-/// Runs it. Throws DataError where something can't be done at all: a path that is not there (E_FILE_MISSING), a place
-/// that can't be written (E_FILE_UNWRITABLE: full, removed under the batch), an output of other inputs, another
-/// configuration or another version, or an input that changes under the batch (E_OTHER_RUN). Whatever is thrown, what
-/// was finished stays for a resumption.
+/// Runs it. Throws DataError where something can't be done at all: a path that is not there, or
+/// nothing to read where all are (E_FILE_MISSING), a place that can't be written (E_FILE_UNWRITABLE: full, removed
+/// under the batch), an output of other inputs, another configuration or another version, or an input that changes
+/// under the batch (E_OTHER_RUN). Whatever is thrown, what was finished stays for a resumption.
 BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {});
-
-/// A folder that holds what a batch has written, whole or not.
-struct EarlierBatch {
-  std::string folder;
-  std::size_t files = 0;  ///< that are not read
-};
-
-/// Among the folders of `run.paths` and below: what they hold are outputs, obstacles that lie elsewhere as well, and no
-/// inputs. A folder is known by the summary.json of a finished batch or the .parts/run.json of an unfinished one.
-/// `run.out` is not listed; nor is it read. Throws DataError as `run_batch` does for paths.
-std::vector<EarlierBatch> earlier_batches(const BatchRun& run);
 
 /// Whether this process is one of several that mpirun has started, in a build with MPI.
 bool under_mpi();
