@@ -29,8 +29,14 @@ std::string in_words(const AskedObstacle& o) {
 
 namespace {
 
+/// Not "-0".
+double unsigned_zero(double x) {
+  return x == 0.0 ? 0.0 : x;
+}
+
 std::string text_of(const HalfPlane& h) {
-  return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s", h.normal.x, h.normal.y, h.offset);
+  return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s", unsigned_zero(h.normal.x), unsigned_zero(h.normal.y),
+                     unsigned_zero(h.offset));
 }
 
 const char* why_words(const std::string& why) {
@@ -58,7 +64,8 @@ std::string nearest_words(const ConeAnswer& a) {
   return fmt::format(
       "nearest boundary  {}, {:.6g} m/s away\n"
       "u                 ({:.6g}, {:.6g}) m/s, {}\n",
-      name(a.nearest->part), std::fabs(a.nearest->signed_distance), a.nearest->u.x, a.nearest->u.y,
+      name(a.nearest->part), std::fabs(a.nearest->signed_distance), unsigned_zero(a.nearest->u.x),
+      unsigned_zero(a.nearest->u.y),
       a.contains ? "the least change that avoids it" : "to that boundary; no change is needed");
 }
 
@@ -69,7 +76,8 @@ std::string cone_words(const ConeAnswer& a) {
 
 std::string verdict_words(bool overlaps, bool contains, const char* what) {
   if (overlaps) return fmt::format("The robot touches or overlaps {}: there is no cone.\n", what);
-  return contains ? "The velocity collides within the horizon.\n" : "The velocity is free within the horizon.\n";
+  return contains ? "The velocity collides within the horizon (to touch is to collide).\n"
+                  : "The velocity is free within the horizon.\n";
 }
 
 std::string taken_words(const VoQuestion& q, const AskedObstacle& o) {
