@@ -62,6 +62,22 @@ void refuse_other_inputs(const Json& there, const Identity& identity, const fs::
   }
 }
 
+/// "/repair false": the first option in which they differ, as it stands in `there`.
+std::string option_that_differs(const Json& there, const Json& now) {
+  const Json changes = Json::diff(there, now);
+  if (changes.empty()) return "";
+  const Json::json_pointer path(changes.front().at("path").get<std::string>());
+  return path.to_string() + " " + (there.contains(path) ? there.at(path).dump() : "not given");
+}
+
+DataError other_options(const Json& there, const Identity& identity, const fs::path& path) {
+  const auto options = there.find("configuration");
+  const std::string differs =
+      options != there.end() ? option_that_differs(*options, parse_json(identity.configuration, path.string())) : "";
+  return other_run(path, "an output of other options" + (differs.empty() ? "" : ": " + differs),
+                   "the same options; another --out, or an empty one");
+}
+
 /// `there` is run.json or summary.json: both hold these members.
 void refuse_other_batch(const Json& there, const Identity& identity, const fs::path& path) {
   const std::string release = text_at(there, "version") + " " + text_at(there, "commit");
@@ -70,7 +86,7 @@ void refuse_other_batch(const Json& there, const Identity& identity, const fs::p
                     "version " + identity.version + " " + identity.commit + "; another --out, or an empty one");
   }
   if (text_at(there, "configuration_sha256") != sha256_of(identity.configuration)) {
-    throw other_run(path, "an output of other options", "the same options; another --out, or an empty one");
+    throw other_options(there, identity, path);
   }
   refuse_other_inputs(there, identity, path);
 }

@@ -61,15 +61,18 @@ class Batches : public TemporaryFolder {
   }
 
   /// Of a batch that is to throw.
-  static DataCode refusal(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {}) {
+  static DataError refused(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {}) {
     try {
       run_batch(configuration, run, watch);
     } catch (const DataError& error) {
       EXPECT_FALSE(error.found().empty());
-      return error.code();
+      return error;
     }
     ADD_FAILURE() << "nothing thrown";
-    return DataCode::library;
+    return {DataCode::library, "", "", "nothing thrown", "a refusal"};
+  }
+  static DataCode refusal(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {}) {
+    return refused(configuration, run, watch).code();
   }
 
   BatchConfiguration plain_;
@@ -187,6 +190,10 @@ TEST_F(Batches, OtherInputsOptionsAndVersionsAreRefused) {
   BatchConfiguration other = plain_;
   other.shapes.facades.tolerance = 0.1;
   EXPECT_EQ(refusal(other, run), DataCode::other_run);
+  EXPECT_EQ(refused(other, run).found(), "an output of other options: /shapes/facade_tolerance 0");
+  BatchConfiguration with_robot = plain_;
+  with_robot.robot = BatchRobot{0.5, 2.0, {0, 0}, {{1, 1}}, std::nullopt};
+  EXPECT_EQ(refused(with_robot, run).found(), "an output of other options: /robot not given");
   BatchConfiguration limited = plain_;
   limited.memory_limit = 1000000;
   EXPECT_EQ(refusal(limited, run), DataCode::other_run) << "it decides what is refused for its size";
