@@ -119,6 +119,31 @@ TEST(Repair, AWallOfTheSameIdDoesNotStopTheFigure) {
   EXPECT_TRUE(here.has("mended.dat"));
 }
 
+/// The colour of a pixel by what gnuplot drew there is not ours to test: what is filled, and in which order, is.
+TEST(Repair, AnIslandInAHoleIsFilledWithNothingPaintedOverIt) {
+  const Workplace here;
+  here.write("island.wkt",
+             "POLYGON((0 0, 400000 0, 400000 400000, 0 400000, 0 0), (50000 50000, 350000 50000, 350000 350000, 50000 "
+             "350000, 50000 50000), (100000 100000, 200000 200000, 200000 100000, 100000 200000, 100000 100000))\n");
+  const Outcome outcome = here.run("repair island.wkt --out mended.wkt --figure mended.svg");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string script = here.read("mended.gp");
+  EXPECT_THAT(script, HasSubstr("title 'after: 3 polygons'"));
+  std::size_t fillings = 0;
+  for (std::size_t at = 0; (at = script.find("filledcurves", at)) != std::string::npos; ++at) ++fillings;
+  EXPECT_EQ(fillings, 3u);
+  EXPECT_THAT(script, Not(HasSubstr("fc rgb 'white'")));
+  EXPECT_THAT(script, HasSubstr("set xtics 100000\n")) << "445000 m in 330 px, a label takes 60";
+}
+
+TEST(Repair, FiguresFarFromTheOriginCountFromAPointNearby) {
+  const Workplace here;
+  here.write("far.wkt", "POLYGON((500010 5500000, 500012 5500002, 500012 5500000, 500010 5500002, 500010 5500000))\n");
+  ASSERT_EQ(here.run("repair far.wkt --out mended.wkt --figure mended.svg").status, 0);
+  EXPECT_THAT(here.read("mended.gp"), AllOf(HasSubstr("after: 2 polygons - (500010, 5500000)'"), HasSubstr("x0 = "),
+                                            HasSubstr("set xtics 0.5\n")));
+}
+
 TEST(Repair, SeveralFilesBecomeOneAndAnUnreadableOneNone) {
   const Workplace here;
   here.write("a.wkt", kGood);

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "exactvo/geometry/require.h"
+#include "figures/local_origin.h"
+#include "figures/outlines.h"
 #include "figures/style.h"
 
 namespace exactvo::tools {
@@ -25,9 +28,24 @@ Box view_of(const MendedPolygon& polygon) {
   return box.grown(std::max(pad * box.diagonal(), 1e-9));
 }
 
+constexpr double kWidthOfPanel = 440.0;  // px, with its margins
+constexpr double kSideOfPlot = 330.0;    // px, the longer one of what the axes enclose
+/// "-1.2e+06", eight characters of 6 px, and a gap of two.
+constexpr double kWidthOfTic = 60.0;  // px
+
+/// The least of 1, 2, 5, 10, ... metres that is as wide as a label.
+double distance_of_tics(const Box& view) {
+  const double least = kWidthOfTic / kSideOfPlot * std::max(view.width(), view.height());
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double digit : {1.0, 2.0, 5.0})
+    if (digit * power >= least) return digit * power;
+  return 10.0 * power;
+}
+
 class Panels {
  public:
   void row(const MendedPolygon& polygon) {
+    LocalOrigin(view_of(polygon)).prepare(data_);
     before(polygon);
     after(polygon);
   }
@@ -44,31 +62,30 @@ class Panels {
 
  private:
   void before(const MendedPolygon& polygon) {
+    const LocalOrigin origin(view_of(polygon));
     PlotCommand plot;
-    plot.data(rings("before: " + polygon.title, polygon.before), "using 1:2 with lines lw 2 lc rgb '#3f444d'");
+    plot.data(rings("before: " + polygon.title, polygon.before),
+              origin.using_columns() + " with lines lw 2 lc rgb '#3f444d'");
     const int marks = data_.begin("problems", "x, y [m]");
     for (const Vec2 p : polygon.problems) data_.row({p.x, p.y});
-    plot.data(marks, "using 1:2 with points pt 6 ps 1.6 lw 2.5 lc rgb '#e00000'");
+    plot.data(marks, origin.using_columns() + " with points pt 6 ps 1.6 lw 2.5 lc rgb '#e00000'");
     panel("before: " + polygon.title, view_of(polygon), plot);
   }
 
+  /// Each polygon with its own holes: what lies in a hole of another keeps its colour.
   void after(const MendedPolygon& polygon) {
+    const LocalOrigin origin(view_of(polygon));
     PlotCommand plot;
-    for (std::size_t k = 0; k < polygon.after.size(); ++k) {
-      const std::string fill = fmt::format(
-          "using 1:2 with filledcurves closed fs transparent solid 0.45 noborder fc rgb '{}'", series_colour(k));
-      plot.data(rings("polygon", {polygon.after[k].outer}), fill);
-    }
-    for (const Polygon& part : polygon.after) {
-      for (const Ring& hole : part.holes)
-        plot.data(rings("hole", {hole}), "using 1:2 with filledcurves closed fs solid noborder fc rgb 'white'");
-    }
     std::vector<Ring> all;
-    for (const Polygon& part : polygon.after) {
+    for (std::size_t k = 0; k < polygon.after.size(); ++k) {
+      const Polygon& part = polygon.after[k];
+      const std::string fill =
+          fmt::format(" with filledcurves closed fs transparent solid 0.45 noborder fc rgb '{}'", series_colour(k));
+      plot.data(rings("polygon, its holes tied to it", {tied_together(part)}), origin.using_columns() + fill);
       all.push_back(part.outer);
       all.insert(all.end(), part.holes.begin(), part.holes.end());
     }
-    plot.data(rings("rings after", all), "using 1:2 with lines lw 1.5 lc rgb '#3f444d'");
+    plot.data(rings("rings after", all), origin.using_columns() + " with lines lw 1.5 lc rgb '#3f444d'");
     const std::size_t n = polygon.after.size();
     panel(n == 0 ? std::string("after: can't be mended") : fmt::format("after: {} polygon{}", n, n == 1 ? "" : "s"),
           view_of(polygon), plot);
@@ -85,10 +102,12 @@ class Panels {
   }
 
   void panel(const std::string& title, const Box& view, const PlotCommand& plot) {
-    const double width_of_panel = 440.0;
-    plots_ += fmt::format("  set title {}\n  set xrange [{:.9g}:{:.9g}]\n  set yrange [{:.9g}:{:.9g}]\n{}",
-                          quoted(shortened(title, characters_in(width_of_panel))), view.low.x, view.high.x, view.low.y,
-                          view.high.y, plot.text());
+    const LocalOrigin origin(view);
+    const std::string from = origin.in_title();
+    const std::size_t room = characters_in(kWidthOfPanel);
+    const std::string shown = shortened(title, room - std::min(from.size(), room / 2)) + from;
+    plots_ += fmt::format("  set title {}\n{}  set xtics {:.9g}\n{}", quoted(shown), origin.ranges(view),
+                          distance_of_tics(view), plot.text());
   }
 
   DataFile data_;
