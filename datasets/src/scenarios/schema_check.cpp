@@ -196,14 +196,15 @@ class Checker {
   /// The alternatives are told apart by their required keys; the one that is meant gives its own words.
   void one_of(const Json& rule, const Json& value, const Json&, const std::string& at) const {
     if (!value.is_object()) refuse(DataCode::wrong_type, at, described(value), "an object");
-    for (const Json& alternative : rule) {
-      if (has_required_keys(value, alternative)) return check(value, alternative, at);
-    }
+    std::vector<const Json*> meant;
     std::string titles;
     for (const Json& alternative : rule) {
+      if (has_required_keys(value, alternative)) meant.push_back(&alternative);
       titles += (titles.empty() ? "" : "; or ") + alternative.at("title").get<std::string>();
     }
-    refuse(DataCode::no_alternative, at, "an object that is none of them", titles);
+    if (meant.size() == 1) return check(value, *meant.front(), at);
+    const std::string how_many = meant.empty() ? "none" : "more than one";
+    refuse(DataCode::no_alternative, at, "an object that is " + how_many + " of them", titles);
   }
 
   static bool has_required_keys(const Json& value, const Json& alternative) {
