@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
@@ -279,6 +283,75 @@ TEST_F(VectorFile, WhatFollowsTheFirstLineOfASequenceIsNotLost) {
     }
   }
   EXPECT_EQ(read("one.geojson", "\n" + record(kSquare) + "\n \n").counts.read, 1u);
+}
+
+std::string on_one_line(std::string text) {
+  text.erase(std::remove(text.begin(), text.end(), '\n'), text.end());
+  return text;
+}
+
+TEST_F(VectorFile, RecordsNeedNoLinesOfTheirOwn) {
+  const std::string one = on_one_line(record(kSquare));
+  const std::string spread =
+      "{\n\"type\": \"Feature\",\n\"properties\": {\"a\": \"}{\\\"\"},\n\"geometry\":\n" + std::string(kSquare) + "\n}";
+  for (const std::string& text :
+       {"\xef\xbb\xbf" + one + "\n" + one + "\n", one + one, one + " \t" + one + "\n", one + "\r" + one + "\r",
+        one + "\r\n" + one, spread + "\n" + spread + "\n", spread + spread, "\xef\xbb\xbf\n" + spread + "\n" + one}) {
+    for (const char* name : {"a.geojson", "a.json", "a.ndjson"}) {
+      SCOPED_TRACE(std::string(name) + ": " + text);
+      const ObstacleFile file = read(name, text);
+      EXPECT_EQ(file.obstacles.size(), 2u);
+      EXPECT_EQ(file.counts.read, 2u);
+    }
+  }
+}
+
+TEST_F(VectorFile, ABadRecordBehindAnotherIsToldByItsColumn) {
+  ReadOptions options;
+  options.keep_going = true;
+  const std::string good = on_one_line(record(kSquare));
+  const std::string column = std::to_string(good.size() + 1);
+  for (const char* bad : {R"({"type": "Poligon", "coordinates": []})", R"({"type": "Point", "coordinates": [1,,2]})"}) {
+    const ObstacleFile file = read("a.geojson", good + bad + good + "\n", options);
+    EXPECT_EQ(file.obstacles.size(), 2u);
+    ASSERT_EQ(file.rejected.size(), 1u);
+    EXPECT_EQ(file.rejected[0].place().rfind("line 1, column " + column, 0), 0u) << file.rejected[0].what();
+  }
+  const ObstacleFile spoilt = read("b.geojson", good + " x\n" + good, options);
+  EXPECT_EQ(spoilt.obstacles.size(), 1u);
+  EXPECT_EQ(spoilt.rejected.size(), 1u);
+}
+
+/// MB; the largest that this process ever was.
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+// Whatever line ends there are, and wherever the collection says what it is.
+TEST_F(VectorFile, MemoryDoesNotGrowWithACollectionOnOneLine) {
+  const std::string feature = on_one_line(record(kSquare));
+  std::size_t read_in_all = 0;
+  const ObstacleStream stream{[&](const formation::SceneObstacle&, bool) { ++read_in_all; }, [](const DataError&) {},
+                              [](double) {}};
+  const auto peak_of = [&](std::size_t features) {
+    {
+      std::ofstream file(folder_ / "a.geojson");
+      file << R"({"units": "m", "features": [)" << feature;
+      for (std::size_t k = 1; k < features; ++k) file << "," << feature;
+      file << R"(], "type": "FeatureCollection"})"
+           << "\n";
+    }
+    read_in_all = 0;
+    read_obstacles(folder_ / "a.geojson", {}, stream);
+    EXPECT_EQ(read_in_all, features);
+    return peak_memory();
+  };
+  const double small = peak_of(2'000);
+  constexpr std::size_t kFeatures = 80'000;
+  const double megabytes = static_cast<double>(kFeatures * feature.size()) / 1048576.0;
+  EXPECT_LT(peak_of(kFeatures) - small, 0.5 * megabytes);
 }
 
 TEST_F(VectorFile, AGeometryAmongFeaturesIsRefused) {

@@ -147,7 +147,7 @@ class VectorReader {
 
   bool is_sequence_file() const {
     if (data_ == nullptr) return is_sequence_name(path_);
-    return driver() == "GeoJSONSeq" || (driver() == "GeoJSON" && begins_as_sequence(path_));
+    return driver() == "GeoJSONSeq" || (driver() == "GeoJSON" && begins_as_sequence(path_, is_sequence_name(path_)));
   }
 
   /// GDAL's driver would leave malformed lines out; they are read here.

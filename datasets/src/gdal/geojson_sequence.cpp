@@ -15,18 +15,90 @@ constexpr char kRecordSeparator = '\x1e';
 constexpr const char* kBlanks = " \t\r\n";
 constexpr const char* kByteOrderMark = "\xef\xbb\xbf";
 
-std::size_t lines_in(const std::string& text) {
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+constexpr int kEnd = std::char_traits<char>::eof();
+
+bool is_blank(int c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
+void skip_byte_order_mark(std::ifstream& file) {
+  char first[3] = {};
+  file.read(first, 3);
+  const bool is_mark = file.gcount() == 3 && std::string(first, 3) == kByteOrderMark;
+  file.clear();
+  if (!is_mark) file.seekg(0);
+}
+
+/// What stands first, with its place, looked at byte by byte.
+class FirstObject {
+ public:
+  explicit FirstObject(std::ifstream& file) : bytes_(*file.rdbuf()) {}
+
+  /// Until the object's end, or until it is known to be none of a sequence and its name does not say so. False where it
+  /// has no end.
+  bool pass(bool whatever_type) {
+    int c = skip_blanks();
+    if (c != '{') return false;
+    for (; c != kEnd; c = bytes_.snextc()) {
+      if (c == '\n' && nesting_.in_string()) return false;  // broken: strings have no line ends
+      spans_lines_ = spans_lines_ || c == '\n';
+      take(static_cast<char>(c));
+      if (!whatever_type && !type_.empty() && !is_type_of_record(type_)) return false;
+      if (nesting_.objects() == 0) break;
+    }
+    return c != kEnd && bytes_.snextc() != kEnd;
+  }
+  bool more_follows() { return skip_blanks() != kEnd; }
+  bool spans_lines() const { return spans_lines_; }
+  const std::string& type() const { return type_; }
+
+ private:
+  int skip_blanks() {
+    int c = bytes_.sgetc();
+    while (is_blank(c)) c = bytes_.snextc();
+    return c;
+  }
+
+  /// Members of the object itself: a string before a colon is a name, the one behind it its value.
+  void take(char c) {
+    const bool was_in_string = nesting_.in_string();
+    nesting_.take(c);
+    if (nesting_.objects() != 1 || nesting_.arrays() != 0) return;
+    if (was_in_string && nesting_.in_string()) {
+      if (text_.size() < kLongestWord) text_ += c;
+    } else if (nesting_.in_string()) {
+      text_.clear();
+    } else if (was_in_string) {
+      if (member_ == "type") type_ = text_;
+    } else if (c == ':') {
+      member_ = text_;
+    } else if (c == ',') {
+      member_.clear();
+    }
+  }
+
+  static constexpr std::size_t kLongestWord = 40;  ///< no type's name is as long
+  std::streambuf& bytes_;
+  JsonNesting nesting_;
+  std::string text_;
+  std::string member_;
+  std::string type_;
+  bool spans_lines_ = false;
+};
+
+std::string words_of(const GeoJsonPlace& place) {
+  const std::string line = "line " + std::to_string(place.line);
+  return place.column > 1 ? line + ", column " + std::to_string(place.column) : line;
 }
 
 /// What GDAL's parser does not take, in the words of ours, which says where.
-DataError syntax_fault(const std::string& text, const std::string& file, std::size_t line) {
+DataError syntax_fault(const std::string& text, const std::string& file, const GeoJsonPlace& place) {
   try {
-    parse_json_line(text, file, line);
+    parse_json_line(text, file, place.line);
   } catch (const DataError& error) {
-    return error;
+    return place.column == 1 ? error : DataError(error.code(), file, words_of(place), error.found(), error.expected());
   }
-  return {DataCode::format_syntax, file, "line " + std::to_string(line), excerpt(text, text.find_first_not_of(kBlanks)),
+  return {DataCode::format_syntax, file, words_of(place), excerpt(text, text.find_first_not_of(kBlanks)),
           "a feature or a geometry that GDAL reads"};
 }
 
@@ -37,11 +109,11 @@ std::unique_ptr<OGRGeometry> shape_of(const CPLJSONObject& record) {
   return std::unique_ptr<OGRGeometry>(OGRGeometryFactory::createFromGeoJson(is_feature ? within : record));
 }
 
-GeoJsonRecord record_of(const std::string& text, const std::string& file, std::size_t line) {
-  GeoJsonRecord record{"line " + std::to_string(line), nullptr, std::nullopt};
+GeoJsonRecord record_of(const std::string& text, const std::string& file, const GeoJsonPlace& place, bool is_spoilt) {
+  GeoJsonRecord record{words_of(place), nullptr, std::nullopt};
   CPLJSONDocument document;
-  if (!document.LoadMemory(text)) {
-    record.fault = syntax_fault(text, file, line);
+  if (is_spoilt || !document.LoadMemory(text)) {
+    record.fault = syntax_fault(text, file, place);
     return record;
   }
   std::optional<GeoJsonFault> fault = fault_of_record(text);
@@ -50,35 +122,95 @@ GeoJsonRecord record_of(const std::string& text, const std::string& file, std::s
     if (record.shape == nullptr || record.shape->IsEmpty()) fault = geojson_fault(text, false);
   }
   if (!fault) return record;
-  const std::string place = record.place + place_within(*fault);
-  record.fault = DataError(DataCode::format_syntax, file, place, fault->found, fault->expected);
+  const std::string within = record.place + place_within(*fault);
+  record.fault = DataError(DataCode::format_syntax, file, within, fault->found, fault->expected);
   return record;
 }
 
 }  // namespace
 
+void JsonNesting::take(char c) {
+  if (in_string_) {
+    if (c == '"' && !is_escaped_) in_string_ = false;
+    is_escaped_ = c == '\\' && !is_escaped_;
+    return;
+  }
+  in_string_ = c == '"';
+  objects_ += c == '{' ? 1 : c == '}' ? -1 : 0;
+  arrays_ += c == '[' ? 1 : c == ']' ? -1 : 0;
+}
+
 GeoJsonSequence::GeoJsonSequence(const std::filesystem::path& path)
     : name_(path.string()), file_(path, std::ios::binary) {
-  if (file_.peek() == kRecordSeparator) separator_ = kRecordSeparator;
+  skip_byte_order_mark(file_);
+  const std::streampos start = file_.tellg();
+  FirstObject first(file_);
+  spans_lines_ = first.pass(false) && first.spans_lines() && is_type_of_record(first.type());
+  file_.clear();
+  file_.seekg(start);
+  has_separators_ = file_.peek() == kRecordSeparator;
+}
+
+/// Whether a line's end is the record's. Within a string it is one in any case: strings have no line ends.
+bool GeoJsonSequence::ends_line(const JsonNesting& nesting) const {
+  if (has_separators_) return false;
+  return !spans_lines_ || nesting.in_string() || nesting.objects() <= 0;
+}
+
+/// The next byte, counted; kEnd at the end.
+int GeoJsonSequence::take_byte() {
+  const int c = file_.rdbuf()->sbumpc();
+  column_ = c == '\n' ? 1 : column_ + 1;
+  line_ += c == '\n' ? 1 : 0;
+  return c;
+}
+
+/// REQUIRES: the byte that was taken last is the record's first one.
+void GeoJsonSequence::begin_record() {
+  const bool is_behind_another = has_begun_ && begin_.line == line_;
+  begin_ = {line_, is_behind_another ? column_ - 1 : 1};
+  has_begun_ = true;
+}
+
+/// Sets `begin_`. Blank at the end. What follows an object on its line is a record of its own if it is an object, and
+/// spoils the record otherwise.
+std::string GeoJsonSequence::next_text() {
+  std::string text;
+  JsonNesting nesting;
+  bool is_begun = false;
+  bool is_complete = false;
+  is_spoilt_ = false;
+  while (has_separators_ || !is_complete || file_.rdbuf()->sgetc() != '{') {
+    const int c = take_byte();
+    const bool is_end = (has_separators_ && c == kRecordSeparator) || (c == '\n' && (!is_begun || ends_line(nesting)));
+    if (c == kEnd || (is_end && is_begun)) break;
+    if (is_end) {
+      text.clear();
+      continue;
+    }
+    if (!is_begun && !is_blank(c)) {
+      begin_record();
+      is_begun = true;
+    }
+    text += static_cast<char>(c);
+    nesting.take(static_cast<char>(c));
+    is_spoilt_ = is_spoilt_ || (is_complete && !is_blank(c));
+    is_complete = !is_spoilt_ && nesting.objects() == 0 && (is_complete || c == '}');
+  }
+  return text;
 }
 
 std::optional<GeoJsonRecord> GeoJsonSequence::next() {
-  for (std::string text; std::getline(file_, text, separator_);) {
-    if (lines_ == 0 && text.rfind(kByteOrderMark, 0) == 0) text.erase(0, 3);
-    const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
-    const std::size_t line = lines_ + 1 + lines_in(text.substr(0, begin));
-    lines_ += lines_in(text) + (separator_ == '\n' ? 1 : 0);
-    if (begin < text.size()) return record_of(text, name_, line);
-  }
-  return std::nullopt;
+  const std::string text = next_text();
+  if (text.find_first_not_of(kBlanks) == std::string::npos) return std::nullopt;
+  return record_of(text, name_, begin_, is_spoilt_);
 }
 
-bool begins_as_sequence(const std::filesystem::path& path) {
+bool begins_as_sequence(const std::filesystem::path& path, bool name_says) {
   std::ifstream file(path, std::ios::binary);
-  std::string first;
-  while (std::getline(file, first) && first.find_first_not_of(kBlanks) == std::string::npos) continue;
-  const bool more_follows = static_cast<bool>(file >> std::ws) && file.peek() != std::ifstream::traits_type::eof();
-  return more_follows && is_record(first);
+  skip_byte_order_mark(file);
+  FirstObject first(file);
+  return first.pass(name_says) && (name_says || is_type_of_record(first.type())) && first.more_follows();
 }
 
 }  // namespace exactvo::datasets

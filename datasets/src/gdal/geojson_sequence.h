@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// A GeoJSON sequence: a feature or a geometry a line, or records begun by RS (RFC 8142). GDAL's driver leaves a
+/// A GeoJSON sequence: features or geometries one after the other, on lines of their own or not, or begun by RS (RFC
+/// 8142). GDAL's driver leaves a
 /// malformed line out, or refuses the whole file for the first one; here each is told by its line, and the others are
 /// read. The geometries themselves are GDAL's to make.
 
@@ -19,9 +20,29 @@
 namespace exactvo::datasets {
 
 struct GeoJsonRecord {
-  std::string place;                   ///< "line 3": where it begins
+  std::string place;                   ///< "line 3", or "line 3, column 70" behind another: where it begins
   std::unique_ptr<OGRGeometry> shape;  ///< none for a feature without one, and for a fault
   std::optional<DataError> fault;      ///< E_JSON_SYNTAX, E_FORMAT_SYNTAX
+};
+
+/// How deep in objects and strings the next byte of a text of JSON stands.
+class JsonNesting {
+ public:
+  void take(char c);
+  long objects() const { return objects_; }
+  long arrays() const { return arrays_; }
+  bool in_string() const { return in_string_; }
+
+ private:
+  long objects_ = 0;
+  long arrays_ = 0;
+  bool in_string_ = false;
+  bool is_escaped_ = false;
+};
+
+struct GeoJsonPlace {
+  std::size_t line = 1;
+  std::size_t column = 1;  ///< beyond 1 only behind another record
 };
 
 class GeoJsonSequence {
@@ -33,14 +54,25 @@ class GeoJsonSequence {
   std::optional<GeoJsonRecord> next();
 
  private:
+  int take_byte();
+  void begin_record();
+  std::string next_text();
+  bool ends_line(const JsonNesting& nesting) const;
+
   std::string name_;
   std::ifstream file_;
-  char separator_ = '\n';
-  std::size_t lines_ = 0;  ///< before the next record
+  bool has_separators_ = false;  ///< RS before each record
+  bool spans_lines_ = false;     ///< the first one does: then only the end of an object ends a record
+  std::size_t line_ = 1;         ///< of the next byte
+  std::size_t column_ = 1;       ///< of the next byte
+  GeoJsonPlace begin_;           ///< of the record that was read last
+  bool is_spoilt_ = false;       ///< more than white space follows its object, which GDAL's parser passes over
+  bool has_begun_ = false;       ///< some record was read
 };
 
-/// Whether the first line is a feature or a geometry by itself, and more follows: GDAL may take such a file for GeoJSON
-/// of one feature, and then says nothing of the rest.
-bool begins_as_sequence(const std::filesystem::path& path);
+/// Whether the first object is complete and more than white space follows it, and it is a feature or a geometry, or
+/// the file's `name_says` that it is a sequence: GDAL may take such a file for GeoJSON of one object, and then says
+/// nothing of the rest. Memory does not grow with the file.
+bool begins_as_sequence(const std::filesystem::path& path, bool name_says);
 
 }  // namespace exactvo::datasets

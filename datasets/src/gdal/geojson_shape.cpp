@@ -127,8 +127,8 @@ std::optional<GeoJsonFault> geojson_fault(const std::string& record, bool read) 
   return GeoJsonFault{"", "coordinates that are no JSON", "finite numbers"};
 }
 
-bool is_record(const std::string& text) {
-  return is_feature_or_geometry(parsed(text));
+bool is_type_of_record(const std::string& type) {
+  return is_feature_or_geometry(Json{{"type", type}});
 }
 
 std::optional<GeoJsonFault> fault_of_record(const std::string& text) {

@@ -26,8 +26,8 @@ std::optional<GeoJsonFault> geojson_fault(const Json& record);
 /// `read`.
 std::optional<GeoJsonFault> geojson_fault(const std::string& record, bool read);
 
-/// Whether the text is a feature or a geometry, well formed or not.
-bool is_record(const std::string& text);
+/// Whether a member "type" says that it is of a feature or a geometry.
+bool is_type_of_record(const std::string& type);
 
 /// The same of a record of a sequence, which is a feature or a geometry. None where the text does not parse.
 std::optional<GeoJsonFault> fault_of_record(const std::string& text);
