@@ -104,8 +104,9 @@ TEST(VerbAuditOfCertificates, JudgesTextsAndWhatVoPrints) {
   EXPECT_NE(run.out.find("3: not a certificate"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("3 certificates, 1 valid"), std::string::npos) << run.out;
   place.write("empty", "");
-  for (const std::string bad : {"audit --certificate empty", "audit --certificate nofile", "audit --certificate .",
-                                "audit", "audit --certificate one one"})
+  place.write("notes", "Half-planes\nare fine.\n");
+  for (const std::string bad : {"audit --certificate empty", "audit --certificate notes", "audit --certificate nofile",
+                                "audit --certificate .", "audit", "audit --certificate one one"})
     EXPECT_EQ(place.run(bad).status, 2) << bad;
 }
 

@@ -239,6 +239,17 @@ JudgedCertificates judge_lines(const std::string& text) {
   return judged;
 }
 
+bool is_json(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string::npos && (text[first] == '{' || text[first] == '[');
+}
+
+/// A picture, say, has none; of a spoilt certificate the first word is most often left.
+bool has_a_line_of_one(const std::string& text) {
+  const std::vector<std::string> lines = lines_of(text);
+  return std::any_of(lines.begin(), lines.end(), begins_as_one);
+}
+
 auto count_valid(const JudgedCertificates& judged) {
   return std::count_if(judged.all.begin(), judged.all.end(), [](const JudgedCertificate& j) { return j.valid; });
 }
@@ -246,14 +257,14 @@ auto count_valid(const JudgedCertificates& judged) {
 }  // namespace
 
 JudgedCertificates judge_certificates_in(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  const bool json = first != std::string::npos && (text[first] == '{' || text[first] == '[');
-  return json ? judge_json(text) : judge_lines(text);
+  return is_json(text) ? judge_json(text) : judge_lines(text);
 }
 
 JudgedCertificates judge_certificates(const std::string& file) {
-  JudgedCertificates judged = judge_certificates_in(text_of(file));
-  if (judged.all.empty() && judged.none == 0)
+  const std::string text = text_of(file);
+  JudgedCertificates judged = judge_certificates_in(text);
+  const bool is_empty = judged.all.empty() && judged.none == 0;
+  if (is_empty || (!is_json(text) && !has_a_line_of_one(text)))
     throw UsageError("--certificate", file + ": no certificate", "a certificate a line");
   return judged;
 }

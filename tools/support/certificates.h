@@ -33,7 +33,7 @@ struct JudgedCertificates {
 JudgedCertificates judge_certificates_in(const std::string& text);
 
 /// The same of a file, or of stdin where its name is "-". Throws DataError where it can't be read, UsageError where
-/// neither a certificate nor a place that says there is none is in it.
+/// neither a certificate nor a place that says there is none is in it: no line begins as one, no JSON has any.
 JudgedCertificates judge_certificates(const std::string& file);
 
 std::string to_json(const JudgedCertificates& judged);
