@@ -354,6 +354,25 @@ TEST_F(VectorFile, MemoryDoesNotGrowWithACollectionOnOneLine) {
   EXPECT_LT(peak_of(kFeatures) - small, 0.5 * megabytes);
 }
 
+TEST_F(VectorFile, EntriesAmongFeaturesThatAreNoObjectsAreCountedAndTold) {
+  ReadOptions options;
+  options.keep_going = true;
+  const std::string good = on_one_line(record(kSquare));
+  const std::string text = R"({"features": [[)" + good + "], " + good + R"(, 5, "x,]{", null, true, -1.5e3, )" + good +
+                           R"(], "type": "FeatureCollection", "more": [1, 2]})";
+  const ObstacleFile file = read("a.geojson", text, options);
+  EXPECT_EQ(file.obstacles.size(), 2u);
+  EXPECT_EQ(file.counts.read, 8u);
+  ASSERT_EQ(file.rejected.size(), 6u);
+  const char* const found[] = {"an array", "a number", "a string", "null", "true or false", "a number"};
+  const char* const places[] = {"0", "2", "3", "4", "5", "6"};
+  for (std::size_t k = 0; k < 6; ++k) {
+    expect_refusal(file.rejected[k], DataCode::format_syntax, std::string("/features/") + places[k]);
+    EXPECT_EQ(file.rejected[k].found(), found[k]);
+  }
+  EXPECT_EQ(read("b.geojson", R"({"type": "FeatureCollection", "features": [ ]})").counts.read, 0u);
+}
+
 TEST_F(VectorFile, AGeometryAmongFeaturesIsRefused) {
   const std::string text = R"({"type": "FeatureCollection", "features": [)" + std::string(kSquare) + "]}";
   expect_refusal(refusal_of([&] { read("a.geojson", text); }), DataCode::format_syntax, "feature 0");

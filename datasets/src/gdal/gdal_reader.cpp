@@ -122,6 +122,7 @@ class VectorReader {
       settle_coordinates();
       for_each_feature([this](const Item& item) { add(item); });
     }
+    if (driver() == "GeoJSON") for_each_stray_entry(path_, [this](const DataError& stray) { out_.reject(stray); });
     if (!malformed_.empty() && !has_told_malformed_) refuse_malformed();
     note_extent();
     for (const std::string& words : complaints_.take_warnings()) out_.note("", words);

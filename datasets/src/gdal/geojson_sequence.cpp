@@ -29,37 +29,9 @@ void skip_byte_order_mark(std::ifstream& file) {
   if (!is_mark) file.seekg(0);
 }
 
-/// What stands first, with its place, looked at byte by byte.
-class FirstObject {
+/// The outermost object, byte by byte: a string before a colon is a member's name, the one behind it its value.
+class MembersOfObject {
  public:
-  explicit FirstObject(std::ifstream& file) : bytes_(*file.rdbuf()) {}
-
-  /// Until the object's end, or until it is known to be none of a sequence and its name does not say so. False where it
-  /// has no end.
-  bool pass(bool whatever_type) {
-    int c = skip_blanks();
-    if (c != '{') return false;
-    for (; c != kEnd; c = bytes_.snextc()) {
-      if (c == '\n' && nesting_.in_string()) return false;  // broken: strings have no line ends
-      spans_lines_ = spans_lines_ || c == '\n';
-      take(static_cast<char>(c));
-      if (!whatever_type && !type_.empty() && !is_type_of_record(type_)) return false;
-      if (nesting_.objects() == 0) break;
-    }
-    return c != kEnd && bytes_.snextc() != kEnd;
-  }
-  bool more_follows() { return skip_blanks() != kEnd; }
-  bool spans_lines() const { return spans_lines_; }
-  const std::string& type() const { return type_; }
-
- private:
-  int skip_blanks() {
-    int c = bytes_.sgetc();
-    while (is_blank(c)) c = bytes_.snextc();
-    return c;
-  }
-
-  /// Members of the object itself: a string before a colon is a name, the one behind it its value.
   void take(char c) {
     const bool was_in_string = nesting_.in_string();
     nesting_.take(c);
@@ -76,13 +48,61 @@ class FirstObject {
       member_.clear();
     }
   }
+  const JsonNesting& nesting() const { return nesting_; }
+  const std::string& type() const { return type_; }
+  /// Between the entries of "features".
+  bool is_among_features() const {
+    return member_ == "features" && nesting_.objects() == 1 && nesting_.arrays() == 1 && !nesting_.in_string();
+  }
 
-  static constexpr std::size_t kLongestWord = 40;  ///< no type's name is as long
-  std::streambuf& bytes_;
+ private:
+  static constexpr std::size_t kLongestWord = 40;  ///< no name that is asked for is as long
   JsonNesting nesting_;
   std::string text_;
   std::string member_;
   std::string type_;
+};
+
+/// What begins so, in words.
+std::string kind_of_value(int c) {
+  if (c == '"') return "a string";
+  if (c == '[') return "an array";
+  if (c == 'n') return "null";
+  return c == 't' || c == 'f' ? "true or false" : "a number";
+}
+
+/// What stands first, with its place, looked at byte by byte.
+class FirstObject {
+ public:
+  explicit FirstObject(std::ifstream& file) : bytes_(*file.rdbuf()) {}
+
+  /// Until the object's end, or until it is known to be none of a sequence and its name does not say so. False where it
+  /// has no end.
+  bool pass(bool whatever_type) {
+    int c = skip_blanks();
+    if (c != '{') return false;
+    for (; c != kEnd; c = bytes_.snextc()) {
+      if (c == '\n' && members_.nesting().in_string()) return false;  // broken: strings have no line ends
+      spans_lines_ = spans_lines_ || c == '\n';
+      members_.take(static_cast<char>(c));
+      if (!whatever_type && !type().empty() && !is_type_of_record(type())) return false;
+      if (members_.nesting().objects() == 0) break;
+    }
+    return c != kEnd && bytes_.snextc() != kEnd;
+  }
+  bool more_follows() { return skip_blanks() != kEnd; }
+  bool spans_lines() const { return spans_lines_; }
+  const std::string& type() const { return members_.type(); }
+
+ private:
+  int skip_blanks() {
+    int c = bytes_.sgetc();
+    while (is_blank(c)) c = bytes_.snextc();
+    return c;
+  }
+
+  std::streambuf& bytes_;
+  MembersOfObject members_;
   bool spans_lines_ = false;
 };
 
@@ -211,6 +231,33 @@ bool begins_as_sequence(const std::filesystem::path& path, bool name_says) {
   skip_byte_order_mark(file);
   FirstObject first(file);
   return first.pass(name_says) && (name_says || is_type_of_record(first.type())) && first.more_follows();
+}
+
+void for_each_stray_entry(const std::filesystem::path& path, const std::function<void(const DataError&)>& action) {
+  std::ifstream file(path, std::ios::binary);
+  skip_byte_order_mark(file);
+  const std::streampos start = file.tellg();
+  FirstObject first(file);
+  first.pass(false);
+  if (!EQUAL(first.type().c_str(), "FeatureCollection")) return;
+  file.clear();
+  file.seekg(start);
+  MembersOfObject members;
+  std::size_t number = 0;
+  bool is_awaited = false;
+  for (int c = file.rdbuf()->sgetc(); c != kEnd; c = file.rdbuf()->snextc()) {
+    const bool is_among = members.is_among_features();
+    members.take(static_cast<char>(c));
+    if (is_awaited && !is_blank(c)) {
+      if (c != '{' && c != ']') {
+        action({DataCode::format_syntax, path.string(), "/features/" + std::to_string(number), kind_of_value(c),
+                "a feature"});
+      }
+      ++number;
+      is_awaited = false;
+    }
+    if (members.is_among_features() && (is_among ? c == ',' : c == '[')) is_awaited = true;
+  }
 }
 
 }  // namespace exactvo::datasets

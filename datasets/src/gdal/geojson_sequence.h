@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -74,5 +75,9 @@ class GeoJsonSequence {
 /// the file's `name_says` that it is a sequence: GDAL may take such a file for GeoJSON of one object, and then says
 /// nothing of the rest. Memory does not grow with the file.
 bool begins_as_sequence(const std::filesystem::path& path, bool name_says);
+
+/// Tells of the entries of a collection's "features" that are no objects, by their JSON pointers: GDAL passes over them
+/// without a word. Memory does not grow with the file.
+void for_each_stray_entry(const std::filesystem::path& path, const std::function<void(const DataError&)>& action);
 
 }  // namespace exactvo::datasets
