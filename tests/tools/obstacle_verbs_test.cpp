@@ -14,6 +14,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <thread>
 
 #include "exactvo/datasets/obstacle_file.h"
@@ -253,12 +254,44 @@ TEST(Batch, AnotherProcessJoinsWithResume) {
 TEST(Batch, NumbersOutOfRangeAreSaidInWords) {
   const Workplace here;
   here.write("good.wkt", kGood);
-  for (const char* option : {"--radius -1", "--tolerance -1", "--cell-size nan", "--time-horizon 0"}) {
+  for (const char* option : {"--radius -1", "--tolerance -1", "--cell-size nan", "--time-horizon 0",
+                             "--time-horizon 7e-31", "--time-horizon 2e30", "--time-horizon inf", "--radius 2e30"}) {
     const Outcome outcome = here.run(std::string("batch good.wkt --out out ") + option);
     EXPECT_EQ(outcome.status, 2) << option;
     EXPECT_THAT(outcome.err, HasSubstr("expected a ")) << option;
     EXPECT_LT(outcome.err.size(), 120u) << outcome.err;
   }
+}
+
+/// Beside the square the robot touches it, which leaves the velocities away from it.
+TEST(Batch, HalfPlanesThatAreNullAreCountedAndSaid) {
+  const Workplace here;
+  here.write("a.wkt", "POLYGON((0 0, 1 0, 1 1, 0 1, 0 0))\n");
+  const std::string robot = " --write figures --out out --time-horizon 2 --radius 1 --position ";
+  const std::pair<const char*, int> cases[] = {
+      {"5,5", 0}, {"2,0.5", 0}, {"1.5,0.5", 1}, {"0.5,0.5 --position 1.5,0.5 --position 5,5", 2}};
+  for (const auto& [positions, nulls] : cases) {
+    const Outcome outcome = here.run("batch a.wkt" + robot + positions);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(json::parse(here.read("out/summary.json")).at("no_half_plane"), nulls) << positions;
+    std::istringstream figures(here.read("out/figures.jsonl"));
+    std::string line;
+    std::getline(figures, line);  // provenance
+    std::getline(figures, line);
+    const json record = json::parse(line);
+    int found = 0;
+    for (const json& at : record.at("half_planes"))
+      for (const json& half_plane : at.at("half_planes")) found += half_plane.is_null() ? 1 : 0;
+    EXPECT_EQ(found, nulls) << line;
+    const std::string note = "note: " + std::to_string(nulls) + " of the half-planes in out/figures.jsonl";
+    if (nulls > 0) {
+      EXPECT_THAT(outcome.err, HasSubstr(note));
+    } else {
+      EXPECT_THAT(outcome.err, Not(HasSubstr("half-planes")));
+    }
+  }
+  EXPECT_THAT(here.run("batch a.wkt" + robot + cases[3].first + " --resume").err, HasSubstr("note: 2 of"))
+      << "told again";
 }
 
 TEST(Batch, AShardThatIsThroughFirstSaysSo) {

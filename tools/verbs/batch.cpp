@@ -16,6 +16,7 @@
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
+#include "verbs/robot_limits.h"
 
 namespace exactvo::tools {
 
@@ -53,8 +54,8 @@ struct Flags {
 Vec2 parse_point(const std::string& option, const std::string& text) {
   Vec2 v;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_finite(v)) {
-    throw UsageError(option, text, "two finite numbers, X,Y");
+  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_in_range(v)) {
+    throw UsageError(option, text, fmt::format("two numbers within {:g}, X,Y", kLargestNumber));
   }
   return v;
 }
@@ -105,10 +106,10 @@ void choose_outputs(const std::string& text, BatchConfiguration& configuration) 
 void check_numbers(const Flags& flags) {
   require_length("--cell-size", flags.cell_size);
   require_length("--tolerance", flags.tolerance);
-  require_length("--radius", flags.radius);
+  if (!is_radius(flags.radius)) throw UsageError("--radius", fmt::format("{}", flags.radius), kRadii);
   const std::optional<double>& horizon = flags.time_horizon;
-  if (horizon && (!(*horizon > 0.0) || std::isinf(*horizon)))
-    throw UsageError("--time-horizon", fmt::format("{}", *horizon), "a time above 0 s");
+  if (horizon && !is_horizon(*horizon))
+    throw UsageError("--time-horizon", fmt::format("{}", *horizon), "a time from 2^-100 s to 2^100 s");
 }
 
 std::optional<datasets::BatchRobot> robot_of(const Flags& flags) {
@@ -275,6 +276,15 @@ void say_incomplete(const Flags& flags, const BatchRun& run) {
     message("another process took the parts of this batch from " + flags.out + " and left no summary");
 }
 
+/// Nothing of them is wrong, and yet whoever takes half-planes from figures.jsonl must know.
+void note_missing_half_planes(const BatchSummary& summary, const std::string& out) {
+  if (summary.no_half_plane == 0) return;
+  message(
+      fmt::format("note: {} of the half-planes in {}/figures.jsonl {} null: the robot overlaps the obstacle at that "
+                  "position, or is too near to prove one",
+                  summary.no_half_plane, out, summary.no_half_plane == 1 ? "is" : "are"));
+}
+
 ExitCode verdict(const BatchSummary& s) {
   if (s.obstacles_out == 0) message("warning: no obstacle came out");
   return s.uncertified == 0 && s.obstacles_out > 0 ? ExitCode::success : ExitCode::negative;
@@ -306,6 +316,7 @@ ExitCode batch(const Flags& flags) {
   if (over_another && !result.was_complete) message("note: replaced the earlier batch in " + flags.out);
   print(words_of(result.summary, flags.out, run.shards == 1));
   name_rejected(result.summary, flags.out);
+  note_missing_half_planes(result.summary, flags.out);
   return verdict(result.summary);
 }
 

@@ -15,6 +15,7 @@
 #include "exactvo/geometry/pieces.h"
 #include "exactvo/vo/free_velocities.h"
 #include "support/usage.h"
+#include "verbs/robot_limits.h"
 
 namespace exactvo::tools {
 
@@ -26,21 +27,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Of coordinates and velocities: their squares and those of their sums stay far within doubles.
-constexpr double kLargestNumber = vo::kMostApex;
-
-/// Of horizons, s: lengths over them, and velocities times them, keep their squares within doubles too.
-constexpr double kLeastHorizon = 0x1p-100;
-constexpr double kMostHorizon = 0x1p100;
 constexpr const char* kHorizons = "a time from 2^-100 s to 2^100 s, or infinite, paper or clamped";
-
-bool is_horizon(double seconds) {
-  return seconds >= kLeastHorizon && seconds <= kMostHorizon;
-}
-
-bool is_in_range(Vec2 v) {
-  return std::fabs(v.x) <= kLargestNumber && std::fabs(v.y) <= kLargestNumber;
-}
 
 Vec2 parse_point(const std::string& option, const std::string& text) {
   Vec2 v;
@@ -180,8 +167,7 @@ void check_words(const VoFlags& flags) {
 
 void check_numbers(const VoFlags& flags) {
   const double radius = flags.radius.value_or(0.0), speed = flags.max_speed.value_or(vo::kLeastMaxSpeed);
-  require(radius >= 0.0 && radius <= kLargestNumber, "--radius", fmt::format("{}", radius),
-          "a length from 0 m to 2^100 m");
+  require(is_radius(radius), "--radius", fmt::format("{}", radius), kRadii);
   require(flags.alpha > 0.0 && flags.alpha <= 1.0, "--alpha", fmt::format("{}", flags.alpha), "a number in (0, 1]");
   require(speed >= vo::kLeastMaxSpeed && speed <= vo::kMostMaxSpeed, "--max-speed", fmt::format("{}", speed),
           "a speed from 2^-60 to 2^60 m/s, with --free");

@@ -71,6 +71,7 @@ BatchSummary finish_outputs(std::unique_ptr<Outputs> outputs, const Ledger& ledg
   summary.certified = outputs->counts().certified;
   summary.uncertified = outputs->counts().obstacles - outputs->counts().certified;
   summary.vertices = outputs->counts().vertices;
+  summary.no_half_plane = outputs->counts().no_half_plane;
   outputs->finish();
   outputs.reset();
   if (configuration.pictures) {

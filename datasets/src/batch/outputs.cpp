@@ -75,6 +75,7 @@ void Outputs::add(const PartView& part) {
   inside_->counts.obstacles += part.counts.obstacles;
   inside_->counts.certified += part.counts.certified;
   inside_->counts.vertices += part.counts.vertices;
+  inside_->counts.no_half_plane += part.counts.no_half_plane;
 }
 
 void Outputs::finish() {

@@ -14,7 +14,7 @@
 namespace exactvo::datasets::batch {
 namespace {
 
-constexpr char kMagic[] = "EXACTVO PART 2\n";
+constexpr char kMagic[] = "EXACTVO PART 3\n";
 
 // --- Making ---
 
@@ -27,13 +27,13 @@ void append_rejection(const Chunk& chunk, const ChunkItem& item, Part& part) {
 }
 
 std::string record_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes,
-                      const BatchConfiguration& configuration) {
+                      const BatchConfiguration& configuration, PartCounts& counts) {
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object().member("file", head.file).member("id", head.id).member("key", head.key);
   json.member("outcome", head.outcome);
   append_figures(json, shapes);
   append_verdicts(json, shapes);
-  if (configuration.robot) append_half_planes(json, shapes, *configuration.robot);
+  if (configuration.robot) counts.no_half_plane += append_half_planes(json, shapes, *configuration.robot);
   return json.end_object().take();
 }
 
@@ -60,7 +60,7 @@ geometry::ShapeOptions options_for(const BatchConfiguration& configuration) {
   return options;
 }
 
-// --- Bytes: the magic line, three counts, then every text after its length ---
+// --- Bytes: the magic line, four counts, then every text after its length ---
 
 void append_count(std::string& bytes, std::uint64_t count) {
   char raw[sizeof count];
@@ -75,7 +75,7 @@ void append_text(std::string& bytes, std::string text) {
 }
 
 /// The pictures come first of the texts: they alone are wanted again.
-constexpr std::size_t kCounts = 3;
+constexpr std::size_t kCounts = 4;
 constexpr std::size_t kBytesBeforePictures = sizeof kMagic - 1 + (kCounts + 1) * sizeof(std::uint64_t);
 
 /// To the byte, so that a part is not moved while it grows.
@@ -127,6 +127,7 @@ PartCounts counts_of(PartReader& reader) {
   counts.obstacles = reader.count();
   counts.certified = reader.count();
   counts.vertices = reader.count();
+  counts.no_half_plane = reader.count();
   return counts;
 }
 
@@ -161,7 +162,7 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
     ++part.counts.obstacles;
     part.counts.certified += shapes.certified() ? 1 : 0;
     part.counts.vertices += shapes.figures.vertices;
-    part.figures += record_of(head, shapes, configuration) + "\n";
+    part.figures += record_of(head, shapes, configuration, part.counts) + "\n";
     append_features(head, shapes, configuration, part);
     if (pictures > 0) {
       part.pictures += picture_of(head.id, shapes);
@@ -177,7 +178,8 @@ std::string to_bytes(Part part) {
   bytes.reserve(size_of_bytes(part));
   bytes += kMagic;
   const PartCounts& counts = part.counts;
-  for (const std::uint64_t count : {counts.obstacles, counts.certified, counts.vertices}) append_count(bytes, count);
+  for (const std::uint64_t count : {counts.obstacles, counts.certified, counts.vertices, counts.no_half_plane})
+    append_count(bytes, count);
   append_text(bytes, std::move(part.pictures));
   append_text(bytes, std::move(part.figures));
   for (std::string& layer : part.features) append_text(bytes, std::move(layer));

@@ -35,6 +35,7 @@ struct PartCounts {
   std::uint64_t obstacles = 0;
   std::uint64_t certified = 0;
   std::uint64_t vertices = 0;
+  std::uint64_t no_half_plane = 0;  ///< null among the half-planes of the robot
 };
 
 struct Part {

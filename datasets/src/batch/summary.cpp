@@ -90,7 +90,7 @@ std::string to_json(const BatchSummary& summary, const Identity& identity, const
   append_tally(json, summary.obstacles);
   json.member("passed_over", summary.passed_over).member("obstacles", summary.obstacles_out);
   json.member("certified", summary.certified).member("uncertified", summary.uncertified);
-  json.member("vertices", summary.vertices);
+  json.member("vertices", summary.vertices).member("no_half_plane", summary.no_half_plane);
   json.key("files").begin_inline_object();
   append_tally(json, summary.files);
   json.end_object();
@@ -133,6 +133,7 @@ BatchSummary read_summary(const fs::path& out) {
     json.at("certified").get_to(summary.certified);
     json.at("uncertified").get_to(summary.uncertified);
     json.at("vertices").get_to(summary.vertices);
+    json.at("no_half_plane").get_to(summary.no_half_plane);
     for (const Json& input : json.at("inputs")) {
       const Json& facts = input.at("facts");
       if (facts.at("outcome") == kRejected)

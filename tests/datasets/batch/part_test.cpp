@@ -16,6 +16,7 @@ TEST(BatchPart, ItsBytesTakeTheRoomThatWasReckonedAndNoMore) {
   part.counts.obstacles = 3;
   part.counts.certified = 2;
   part.counts.vertices = 17;
+  part.counts.no_half_plane = 5;
   part.figures = std::string(1000, 'f');
   for (std::size_t k = 0; k < batch::layers().size(); ++k) part.features.emplace_back(100 + k, 'l');
   part.rows = std::string(500, 'r');
@@ -26,6 +27,7 @@ TEST(BatchPart, ItsBytesTakeTheRoomThatWasReckonedAndNoMore) {
   EXPECT_EQ(again.counts.obstacles, part.counts.obstacles);
   EXPECT_EQ(again.counts.certified, part.counts.certified);
   EXPECT_EQ(again.counts.vertices, part.counts.vertices);
+  EXPECT_EQ(again.counts.no_half_plane, part.counts.no_half_plane);
   EXPECT_EQ(again.pictures, part.pictures);
   EXPECT_EQ(again.figures, part.figures);
   EXPECT_TRUE(std::equal(again.features.begin(), again.features.end(), part.features.begin(), part.features.end()));

@@ -95,6 +95,7 @@ struct BatchSummary {
   std::uint64_t certified = 0;      ///< of them
   std::uint64_t uncertified = 0;
   std::uint64_t vertices = 0;
+  std::uint64_t no_half_plane = 0;  ///< null among the robot's half-planes: it overlaps the shape
   double seconds = 0.0;             ///< of this run
   std::uint64_t obstacles_now = 0;  ///< taken apart in this run; less than all after a resumption
   std::uint64_t vertices_now = 0;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What the numbers of a robot may be wherever velocity obstacles are asked for: within these, squares and the squares
+/// of sums stay far within doubles.
+
+#include <cmath>
+
+#include "exactvo/geometry/vec2.h"
+#include "exactvo/vo/free_velocities.h"
+
+namespace exactvo::tools {
+
+/// Of coordinates, velocities and radii: m, m/s.
+inline constexpr double kLargestNumber = vo::kMostApex;
+
+/// Of horizons, s: lengths over them, and velocities times them, keep their squares within doubles too.
+inline constexpr double kLeastHorizon = 0x1p-100;
+inline constexpr double kMostHorizon = 0x1p100;
+
+inline bool is_horizon(double seconds) {
+  return seconds >= kLeastHorizon && seconds <= kMostHorizon;
+}
+
+inline bool is_radius(double metres) {
+  return metres >= 0.0 && metres <= kLargestNumber;
+}
+
+inline bool is_in_range(geometry::Vec2 v) {
+  return std::fabs(v.x) <= kLargestNumber && std::fabs(v.y) <= kLargestNumber;
+}
+
+inline constexpr const char* kRadii = "a length from 0 m to 2^100 m";
+
+}  // namespace exactvo::tools
