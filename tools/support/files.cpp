@@ -68,8 +68,10 @@ void check_output_folder(const fs::path& target) {
   std::error_code error;
   if (!fs::is_directory(target, error) || fs::is_empty(target, error) || error) return;
   if (holds_metrics(target / "metrics.json") || holds_metrics(target / "summary.json")) return;
-  for (const char* ours : {"random/parts", "ablations/parts"}) {
-    if (fs::exists(target / ours, error)) return;
+  // Beside a campaign's folder summary.json is read before anything is written, and judged there.
+  for (const char* campaign : {"random", "ablations"}) {
+    const bool has_both = fs::is_directory(target / campaign, error) && fs::exists(target / "summary.json", error);
+    if (has_both || fs::exists(target / campaign / "parts", error)) return;
   }
   throw datasets::DataError(datasets::DataCode::file_unwritable, target.string(), "",
                             "a folder with other files in it, and no metrics.json or summary.json of a run",

@@ -18,8 +18,8 @@ void write_text(const std::filesystem::path& path, const std::string& text);
 void make_folder(const std::filesystem::path& path);
 
 /// Refuses to scatter files: throws datasets::DataError where `target` is a folder that holds something, but neither
-/// metrics.json nor summary.json of a run nor the parts of a campaign, so that it is none of ours. To be asked before the work,
-/// not after.
+/// metrics.json nor summary.json of a run nor the folder of a campaign, so that it is none of ours. To be asked before
+/// the work, not after.
 void check_output_folder(const std::filesystem::path& target);
 
 /// Takes an earlier output's pictures away, which would show another run than the one that is put there without any.
