@@ -3,10 +3,11 @@
 //
 //   bench_datasets [--stars N] [--sumo FILE] [--folder DIR] [--largest N] [--only-batches]
 //
-// In this order: whole batches with one and two workers, and two batches at once that share nothing (no two workers can
-// be quicker than that); peak memory of batches of 10^4, 10^5, ... obstacles, each a process of its own; the shapes of
-// N generated obstacles in memory on one core, stage by stage; the naive exact way beside them, after their answers
-// were compared; the same for a file of real polygons; where a batch spends its time.
+// In this order: whole batches of N generated obstacles with one and two workers, and two batches at once that share
+// nothing (no two workers can be quicker than that); peak memory of batches of 10^4, 10^5, ... obstacles, each a
+// process of its own; whole batches of a file of real polygons; the shapes of the generated ones in memory on one core,
+// stage by stage; the naive exact way beside them, after their answers were compared; the same for the real polygons;
+// where a batch spends its time.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -349,7 +350,6 @@ std::vector<Polygon> real_polygons(const std::string& path) {
 }
 
 void show_the_rest(const Flags& flags, const fs::path& folder, const fs::path& input) {
-  show_memory(folder, flags.largest);
   const std::vector<Polygon> generated = stars(flags.stars);
   std::printf("%zu generated obstacles of 3 to 16 corners, one core (to reach: 20000 a second):\n", generated.size());
   show_rate("validity, shapes, all certified", generated, seconds_for_shapes(generated));
@@ -378,6 +378,8 @@ void run(const Flags& flags) {
   const fs::path input = folder / "stars.wkt";
   Child([&] { return write_stars(input, flags.stars), true; }).finish();
   show_batches(input, folder, flags.stars, "generated obstacles");
+  // Before this process takes memory, which its children would have as well.
+  if (!flags.only_batches) show_memory(folder, flags.largest);
   if (fs::exists(flags.sumo)) {
     const std::vector<Polygon> real = real_polygons(flags.sumo);
     show_batches(flags.sumo, folder, real.size(), "polygons of " + flags.sumo);

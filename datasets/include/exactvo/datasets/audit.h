@@ -7,8 +7,9 @@
 /// from one row to the next kept clear of obstacles and of the other robots' straight ways. Exact.
 ///
 /// A robot's reciprocal half-plane promises nothing alone and is not counted. Where a run did not move in straight
-/// lines
-/// (`formation::MotionLaw`), the straight way between two rows is still what is audited.
+/// lines (`formation::MotionLaw`), the straight way between two rows is still what is audited. Not asked: whether a
+/// half-plane is of the scenario's obstacles and robots, whether any is missing, whether a choice keeps them and leads
+/// to the next row. The seal has no key: it shows damage, not forgery.
 
 #include <cstddef>
 #include <filesystem>
