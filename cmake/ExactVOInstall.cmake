@@ -15,7 +15,7 @@ function(exactvo_package_dependencies out)
   set(text "")
   foreach(dependency
       "Boost::|Boost" "Eigen3::|Eigen3 CONFIG" "TBB::|TBB CONFIG" "hwy::|HWY CONFIG" "CGAL::|CGAL"
-      "nlohmann_json::|nlohmann_json CONFIG" "fmt::|fmt CONFIG" "GDAL::|GDAL" "SQLite::|SQLite3" "MPI::|MPI COMPONENTS CXX"
+      "nlohmann_json::|nlohmann_json CONFIG" "fmt::|fmt CONFIG" "OpenSSL::|OpenSSL" "GDAL::|GDAL" "SQLite::|SQLite3" "MPI::|MPI COMPONENTS CXX"
       "yaml-cpp|yaml-cpp CONFIG" "pugixml|pugixml CONFIG" "Threads::|Threads")
     string(REPLACE "|" ";" pair "${dependency}")
     list(GET pair 0 prefix)

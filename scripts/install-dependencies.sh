@@ -9,10 +9,11 @@ packages=(
   g++ cmake ninja-build ccache git ca-certificates                  # to build
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev                  # exact geometry, linear algebra
   libboost-dev libboost-graph-dev libtbb-dev libhwy-dev             # ODE, graphs, threads, SIMD
-  libcli11-dev nlohmann-json3-dev libvalijson-dev libfmt-dev        # command line, JSON, text
+  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev             # command line, JSON, text, SHA-256
   libgdal-dev libsqlite3-dev libyaml-cpp-dev libpugixml-dev         # files in and out
   libopenmpi-dev openmpi-bin                                        # a batch over several machines
-  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev      # tests, benchmarks
+  libgtest-dev libgmock-dev librapidcheck-dev libvalijson-dev       # tests
+  libbenchmark-dev                                                  # benchmarks
   gnuplot-nox fonts-dejavu-core                                     # figures
 )
 

@@ -1,35 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SHA-256 by the processor's instructions and without them: what one machine has written another must know again.
+// SHA-256 in pieces of any length: what one machine has written another must know again.
 #include "sha256.h"
 
 #include <gtest/gtest.h>
 
-#include <iostream>
-
-#include "support/seeded_random.h"
-
 namespace exactvo::datasets::test {
 namespace {
 
-std::string digest(Sha256::Way way, const std::string& bytes, std::size_t piece) {
-  Sha256 hash(way);
+std::string digest(const std::string& bytes, std::size_t piece) {
+  Sha256 hash;
   for (std::size_t at = 0; at < bytes.size(); at += piece) hash.add(std::string_view(bytes).substr(at, piece));
   return hash.digest();
 }
 
-/// Says what ran: without the instructions both ways are the portable one.
-class Sha256Answers : public ::testing::TestWithParam<Sha256::Way> {
- protected:
-  void SetUp() override {
-    const bool by_instructions = GetParam() == Sha256::Way::quickest && has_sha256_instructions();
-    const char* ran = by_instructions ? "by instructions" : "portable";
-    RecordProperty("ran", ran);
-    std::cout << "[   ran    ] " << ran << '\n';
-  }
-};
-
 /// FIPS 180-4's examples of one and two blocks, NIST's of 896 bits, and the empty message.
-TEST_P(Sha256Answers, AreThePublishedOnes) {
+TEST(Sha256, AnswersArePublishedOnes) {
   const std::pair<const char*, const char*> known[] = {
       {"", "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"},
       {"abc", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
@@ -40,42 +25,26 @@ TEST_P(Sha256Answers, AreThePublishedOnes) {
        "cf5b16a778af8380036ce59e7b0492370b249b11e8f07a51afac45037afee9d1"}};
   for (const auto& [message, answer] : known)
     for (const std::size_t piece : {std::size_t{1}, std::size_t{63}, std::size_t{1000}})
-      EXPECT_EQ(digest(GetParam(), message, piece), answer) << message;
+      EXPECT_EQ(digest(message, piece), answer) << message;
 }
 
-TEST_P(Sha256Answers, AreThePublishedOneOfAMillionLetters) {
+TEST(Sha256, AnswersThePublishedOneOfAMillionLetters) {
   const std::string letters(1000000, 'a');
   for (const std::size_t piece : {std::size_t{997}, letters.size()})
-    EXPECT_EQ(digest(GetParam(), letters, piece), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+    EXPECT_EQ(digest(letters, piece), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-/// Of all lengths across three ends of blocks, told by the digest of their digests. By Python's hashlib:
+/// Of all lengths across three ends of blocks, as the digest of their digests. By Python's hashlib:
 ///   t = bytes((k*k + 7*k) % 256 for k in range(200)); h = lambda b: hashlib.sha256(b).hexdigest()
 ///   h("".join(h(t[:n]) for n in range(201)).encode())
-TEST_P(Sha256Answers, OfEveryLengthAreThoseOfAnotherImplementation) {
+TEST(Sha256, OfEveryLengthIsThatOfAnotherImplementation) {
   std::string bytes;
   std::string digests;
   for (int k = 0; k <= 200; ++k) {
-    digests += digest(GetParam(), bytes, 1000);
+    digests += digest(bytes, 1000);
     bytes += static_cast<char>((k * k + 7 * k) % 256);
   }
-  EXPECT_EQ(digest(GetParam(), digests, digests.size()),
-            "736112a80d49cdbba8c36c630fea09e0ef66dc1a7e5bda51bcd596b786a389a3");
-}
-
-INSTANTIATE_TEST_SUITE_P(Ways, Sha256Answers, ::testing::Values(Sha256::Way::portable, Sha256::Way::quickest),
-                         [](const auto& each) {
-                           return each.param == Sha256::Way::portable ? "Portable" : "Quickest";
-                         });
-
-TEST(Sha256, IsTheSameBothWaysAndInPieces) {
-  exactvo::test::SeededRandom random(exactvo::test::seed_of_run(41));
-  std::string bytes;
-  for (int length = 0; length < 300; ++length) {
-    for (const std::size_t piece : {std::size_t{1}, std::size_t{63}, std::size_t{1000}})
-      ASSERT_EQ(digest(Sha256::Way::portable, bytes, piece), digest(Sha256::Way::quickest, bytes, 1000)) << length;
-    bytes += static_cast<char>(random.integer(0, 255));
-  }
+  EXPECT_EQ(digest(digests, digests.size()), "736112a80d49cdbba8c36c630fea09e0ef66dc1a7e5bda51bcd596b786a389a3");
 }
 
 }  // namespace
