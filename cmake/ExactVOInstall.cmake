@@ -1,36 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` puts where: libraries and headers for find_package(ExactVO), the program, its data and schemas.
 include(CMakePackageConfigHelpers)
-get_property(modules GLOBAL PROPERTY EXACTVO_MODULES)
 set(EXACTVO_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ExactVO)
 
-# A static library drags its private ones to the consumer's link line. The package looks for those that the modules
-# really link, so that a consumer needs no more than that.
-function(exactvo_package_dependencies out)
-  set(linked "")
-  foreach(module ${modules})
-    get_target_property(libraries ${module} LINK_LIBRARIES)
-    string(APPEND linked ";${libraries}")
-  endforeach()
+# exactvo_needs_of(<component> <out>): a static library drags its private ones to the consumer's link line. The package
+# looks for those that the component really links, so that a consumer needs no more than that. (Of libraries that are
+# headers alone nothing is left: they are linked in $<BUILD_INTERFACE:...>.)
+function(exactvo_needs_of component out)
+  get_target_property(linked exactvo_${component} LINK_LIBRARIES)
   set(text "")
   foreach(dependency
-      "Boost::|Boost" "Eigen3::|Eigen3 CONFIG" "TBB::|TBB CONFIG" "hwy::|HWY CONFIG" "CGAL::|CGAL"
-      "nlohmann_json::|nlohmann_json CONFIG" "fmt::|fmt CONFIG" "OpenSSL::|OpenSSL" "GDAL::|GDAL" "SQLite::|SQLite3" "MPI::|MPI COMPONENTS CXX"
-      "yaml-cpp|yaml-cpp CONFIG" "pugixml|pugixml CONFIG" "Threads::|Threads")
+      "TBB::|libtbb-dev TBB CONFIG" "hwy::|libhwy-dev HWY CONFIG" "GDAL::|libgdal-dev GDAL"
+      "SQLite::|libsqlite3-dev SQLite3" "MPI::|libopenmpi-dev MPI COMPONENTS CXX"
+      "yaml-cpp|libyaml-cpp-dev yaml-cpp CONFIG" "pugixml|libpugixml-dev pugixml CONFIG" "OpenSSL::|libssl-dev OpenSSL")
     string(REPLACE "|" ";" pair "${dependency}")
     list(GET pair 0 prefix)
-    list(GET pair 1 package)
+    list(GET pair 1 arguments)
     if(linked MATCHES "(^|;)${prefix}")
-      string(APPEND text "find_dependency(${package})\n")
+      string(APPEND text "  _exactvo_need(${component} ${arguments})\n")
     endif()
   endforeach()
   set(${out} "${text}" PARENT_SCOPE)
 endfunction()
-exactvo_package_dependencies(EXACTVO_PACKAGE_DEPENDENCIES)
 
-install(TARGETS ${modules} EXPORT ExactVOTargets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT ExactVOTargets NAMESPACE exactvo:: DESTINATION ${EXACTVO_PACKAGE_DIR})
+set(EXACTVO_NEEDS "")
+foreach(component IN LISTS EXACTVO_BUILT_COMPONENTS)
+  exactvo_needs_of(${component} needs)
+  string(APPEND EXACTVO_NEEDS "${needs}")
+  # A file each, so that a consumer of one component meets no target of another one's libraries.
+  install(EXPORT ExactVO-${component} FILE ExactVO-${component}.cmake NAMESPACE exactvo::
+    DESTINATION ${EXACTVO_PACKAGE_DIR})
+endforeach()
+string(REGEX REPLACE "\n$" "" EXACTVO_NEEDS "${EXACTVO_NEEDS}")
 configure_package_config_file(cmake/ExactVOConfig.cmake.in ExactVOConfig.cmake
   INSTALL_DESTINATION ${EXACTVO_PACKAGE_DIR})
 write_basic_package_version_file(ExactVOConfigVersion.cmake COMPATIBILITY SameMinorVersion)

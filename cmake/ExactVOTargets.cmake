@@ -20,7 +20,8 @@ function(exactvo_add_module name)
   if(arg_CGAL_SOURCES)
     set_source_files_properties(${arg_CGAL_SOURCES} PROPERTIES COMPILE_OPTIONS "-frounding-math;-Wno-conversion;-Wno-shadow")
   endif()
-  set_property(GLOBAL APPEND PROPERTY EXACTVO_MODULES ${target})
+  install(TARGETS ${target} EXPORT ExactVO-${name}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
