@@ -47,9 +47,9 @@ class Line {
     lp::SpeedBound bound;
     if (object.contains("disc")) bound.disc = object.at("disc").get<double>();
     if (!object.contains("box")) return bound;
-    const Vec2 box = to_vector(object.at("box"));
-    bound.box_x = box.x;
-    bound.box_y = box.y;
+    const Json& box = object.at("box");
+    if (!box[0].is_null()) bound.box_x = box[0].get<double>();
+    if (!box[1].is_null()) bound.box_y = box[1].get<double>();
     return bound;
   }
 
@@ -71,8 +71,10 @@ class Line {
     const lp::SpeedBound& b = problem.bound;
     if (problem.preferred == Vec2{})
       refuse(DataCode::out_of_range, "/preferred", "[0, 0]", "a direction that is not 0");
-    if (std::isinf(b.disc) && std::isinf(b.box_x))
-      refuse(DataCode::no_alternative, "/bound", "no bound", "a disc or a box, for the objective farthest");
+    if (std::isfinite(b.disc) || (std::isfinite(b.box_x) && std::isfinite(b.box_y))) return;
+    const bool half = std::isfinite(b.box_x) || std::isfinite(b.box_y);
+    refuse(DataCode::no_alternative, "/bound", half ? "a box with one side" : "no bound",
+           "a disc or a box, for the objective farthest");
   }
 
   [[noreturn]] void refuse(DataCode code, const std::string& at, const std::string& found,

@@ -57,6 +57,7 @@ class Checker {
     if (type == "string") return value.is_string();
     if (type == "number") return value.is_number();
     if (type == "boolean") return value.is_boolean();
+    if (type == "null") return value.is_null();
     throw std::logic_error("schema type not supported: " + type);
   }
 
@@ -65,13 +66,19 @@ class Checker {
     if (type == "array") return "a list";
     if (type == "string") return "text in quotes";
     if (type == "boolean") return "true or false";
+    if (type == "null") return "null";
     return "a " + type;
   }
 
   void type(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
-    const std::string wanted = rule.get<std::string>();
-    if (is_of_type(value, wanted)) return;
-    refuse(DataCode::wrong_type, at, described(value), with_description(name_of_type(wanted), rules));
+    const Json alternatives = rule.is_array() ? rule : Json::array({rule});
+    std::string expected;
+    for (const Json& alternative : alternatives) {
+      const std::string wanted = alternative.get<std::string>();
+      if (is_of_type(value, wanted)) return;
+      expected += (expected.empty() ? "" : " or ") + name_of_type(wanted);
+    }
+    refuse(DataCode::wrong_type, at, described(value), with_description(expected, rules));
   }
 
   void one_of_words(const Json& rule, const Json& value, const Json&, const std::string& at) const {

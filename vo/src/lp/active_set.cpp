@@ -97,13 +97,13 @@ Vec2 onto_disc(Vec2 v, double disc) {
   return disc * normalized(v);
 }
 
-/// The optimum over the disc alone (for a linear objective over an infinite disc: over the box's circumscribed circle).
+/// The optimum over the disc alone. REQUIRES: for a linear objective a finite disc.
 Found start_of(const Region& region, Objective objective, Vec2 preferred) {
   Found found;
   found.feasible = true;
   if (objective == Objective::farthest) {
-    found.velocity = onto_disc(preferred, std::min(region.disc, 2.0 * region.speed));
-    if (std::isfinite(region.disc)) found.basis.add(kSpeedBound);
+    found.velocity = onto_disc(preferred, region.disc);
+    found.basis.add(kSpeedBound);
     return found;
   }
   found.velocity = preferred;
@@ -142,9 +142,14 @@ Members members_of(const Basis& basis, const Region& region) {
   return members;
 }
 
-}  // namespace
+/// `region` within a disc of that radius where it has none.
+Region within_disc(const Region& region, double radius) {
+  Region bounded = region;
+  if (std::isinf(bounded.disc)) bounded.disc = radius;
+  return bounded;
+}
 
-Found best_velocity(const Region& region, Objective objective, Vec2 preferred) {
+Found walk_to_best(const Region& region, Objective objective, Vec2 preferred) {
   Found found = start_of(region, objective, preferred);
   for (int round = 0; round < kMostRounds; ++round) {
     const std::size_t entering = most_violated(region, found.velocity, 0.0, found.basis);
@@ -155,6 +160,15 @@ Found best_velocity(const Region& region, Objective objective, Vec2 preferred) {
     if (!found.feasible) return found;
   }
   return found;
+}
+
+}  // namespace
+
+Found best_velocity(const Region& region, Objective objective, Vec2 preferred) {
+  if (objective == Objective::nearest || std::isfinite(region.disc))
+    return walk_to_best(region, objective, preferred);
+  // On a line alone a linear objective has no optimum: a disc beyond the corners of the box stands for what bounds it.
+  return walk_to_best(within_disc(region, 2.0 * region.speed), objective, preferred);
 }
 
 // The least violation: lines of the space (v_x, v_y, t), where a soft line is the plane t = offset - normal . v. The
@@ -263,16 +277,10 @@ Level lowest_on_wall(std::size_t wall, const Basis& basis, const Region& region)
   return best;
 }
 
-Region with_finite_disc(const Region& region) {
-  Region bounded = region;
-  if (std::isinf(bounded.disc)) bounded.disc = kFarAway * region.speed;
-  return bounded;
-}
-
 }  // namespace
 
 Found least_violation(const Region& given) {
-  const Region region = with_finite_disc(given);
+  const Region region = within_disc(given, kFarAway * given.speed);
   Level now;
   now.found.feasible = true;
   for (int round = 0; round < kMostRounds; ++round) {

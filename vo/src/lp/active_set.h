@@ -19,7 +19,8 @@ struct Found {
   Basis basis;  ///< of the optimum, or a witness of the contradiction
 };
 
-/// The optimum of `objective` over the lines (hard and soft alike) and the disc of `region`.
+/// The optimum of `objective` over the lines (hard and soft alike) and the disc of `region`. REQUIRES: for a linear
+/// objective a finite disc, or lines that leave only speeds up to `region.speed`.
 Found best_velocity(const Region& region, Objective objective, Vec2 preferred);
 
 /// The velocity that keeps the hard lines and the disc and violates the soft ones least. `feasible` is false where the

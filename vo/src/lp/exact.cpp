@@ -37,8 +37,9 @@ void name_active(const std::vector<std::size_t>& tight, const std::optional<Cert
   };
   if (certificate)
     for (const Term& term : certificate->bound) add(term.constraint);
-  if (!certificate || s.status != Status::optimal || s.active_count == 0)
-    for (const std::size_t index : tight) add(index);
+  const bool terms_tell = certificate && s.status == Status::optimal && s.active_count > 0;
+  for (const std::size_t index : tight)
+    if (!terms_tell || index == kSpeedBound) add(index);  // the disc of a linear objective is in no term
 }
 
 /// The optimum as doubles, or 0 where it lies beyond them.

@@ -60,8 +60,7 @@ bool may_bind(const SpeedBound& bound, double speed, std::size_t index, Vec2 v) 
 
 Solution solution_of(const Problem& problem, const Region& region, const Found& found, Status status) {
   Solution solution;
-  // Products of numbers far apart may leave the range of double: then 0, which at least keeps the bound.
-  solution.velocity = is_finite(found.velocity) ? into_box(found.velocity, problem.bound) : Vec2{};
+  solution.velocity = into_box(found.velocity, problem.bound);
   solution.status = status;
   for (std::size_t k = 0; k < found.basis.size; ++k) {
     const std::size_t m = found.basis.member[k];
@@ -100,8 +99,19 @@ Found least_violation_nearest(const Problem& problem, const Region& region) {
   return nearest.feasible ? Found{true, nearest.velocity, least.basis} : least;
 }
 
+/// Products of numbers far apart may leave the range of double. Then nothing was found: 0 keeps the bound, and no claim
+/// is made of it.
+Solution without_answer(const Problem& problem) {
+  Solution s;
+  s.status = Status::pinched;
+  s.violation = violation_that_counts(problem, s.status, s.velocity);
+  return s;
+}
+
 Solution relaxed(const Problem& problem, const Region& region) {
-  Solution s = solution_of(problem, region, least_violation_nearest(problem, region), Status::relaxed);
+  const Found least = least_violation_nearest(problem, region);
+  if (!is_finite(least.velocity)) return without_answer(problem);
+  Solution s = solution_of(problem, region, least, Status::relaxed);
   s.violation = violation_that_counts(problem, Status::relaxed, s.velocity);
   if (!holds(problem, Status::relaxed, s.velocity)) s.status = Status::pinched;
   if (s.status == Status::relaxed && s.violation == 0.0 && holds(problem, Status::optimal, s.velocity))
@@ -111,7 +121,9 @@ Solution relaxed(const Problem& problem, const Region& region) {
 
 Solution infeasible(const Problem& problem, const Region& hard) {
   const Region soft = softened(hard);
-  Solution s = solution_of(problem, soft, least_violation_nearest(problem, soft), Status::infeasible);
+  const Found least = least_violation_nearest(problem, soft);
+  if (!is_finite(least.velocity)) return without_answer(problem);
+  Solution s = solution_of(problem, soft, least, Status::infeasible);
   s.violation = violation_that_counts(problem, Status::infeasible, s.velocity);
   if (holds(problem, Status::relaxed, s.velocity)) {
     s.status = holds(problem, Status::optimal, s.velocity) ? Status::optimal : Status::relaxed;
@@ -124,6 +136,7 @@ Solution solve_with_slack(const Problem& problem, double slack) {
   const Region region = region_of(problem, slack);
   const Found best = best_velocity(region, problem.objective, problem.preferred);
   if (best.feasible) {
+    if (!is_finite(best.velocity)) return without_answer(problem);
     Solution s = solution_of(problem, region, best, Status::optimal);
     if (holds(problem, Status::optimal, s.velocity)) return s;
     s.status = Status::pinched;

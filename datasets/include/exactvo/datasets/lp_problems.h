@@ -7,7 +7,8 @@
 ///   {"bound": {"disc": 2, "box": [1, 1]}, "preferred": [1, 0], "objective": "nearest",
 ///    "constraints": [{"normal": [1, 0], "offset": 0.5, "priority": "soft", "label": 3}]}
 ///
-/// `bound`, `disc`, `box`, `objective`, `priority` ("hard") and `label` (-1) may be left out. A line is held against
+/// `bound`, `disc`, `box`, `objective`, `priority` ("hard") and `label` (-1) may be left out; null in `box` leaves a
+/// coordinate unbounded. A line is held against
 /// the published schema, datasets/schema/lp.schema.json: an unknown key, a number beyond 1e90 and the like are refused
 /// with the line and the JSON pointer of what is wrong, as in scenarios.
 
