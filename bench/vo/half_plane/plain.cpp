@@ -6,9 +6,9 @@
 #include <limits>
 #include <string>
 
-#include "direction_search.h"
+#include "cone/direction_search.h"
 #include "exactvo/geometry/require.h"
-#include "tangents.h"
+#include "cone/tangents.h"
 
 namespace exactvo::bench {
 namespace {

@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "curves.h"
+#include "free/curves.h"
 
 namespace exactvo::vo::detail {
 

@@ -7,8 +7,8 @@
 
 #include <optional>
 
+#include "cone/tangents.h"
 #include "exactvo/vo/velocity_obstacle.h"
-#include "tangents.h"
 
 namespace exactvo::vo::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "grown_body.h"
+#include "exact/grown_body.h"
 
 namespace exactvo::vo::detail {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string_view>
 
-#include "certificate_words.h"
 #include "exactvo/vo/certificate.h"
+#include "proof/certificate_words.h"
 
 namespace exactvo::vo {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "algebraic_root.h"
+#include "exact/algebraic_root.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cone_bounds.h"
+#include "free/cone_bounds.h"
 
 #include <algorithm>
 #include <cmath>

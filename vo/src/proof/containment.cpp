@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "certificate_words.h"
+#include "proof/certificate_words.h"
 
 namespace exactvo::vo {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "curves.h"
+#include "free/curves.h"
 
 #include <algorithm>
 #include <cmath>

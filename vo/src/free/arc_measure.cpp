@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arc_measure.h"
+#include "free/arc_measure.h"
 
 #include <mpfr.h>
 

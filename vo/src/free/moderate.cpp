@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "moderate.h"
+#include "free/moderate.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "grown_body.h"
+#include "exact/grown_body.h"
 
 namespace exactvo::vo::detail {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
-#include "arc_measure.h"
 #include "cgal_guard.h"
 #include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/require.h"
-#include "moderate.h"
+#include "free/arc_measure.h"
+#include "free/moderate.h"
 
 namespace exactvo::vo {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "direction_search.h"
+#include "cone/direction_search.h"
 
 #include <algorithm>
 #include <cmath>

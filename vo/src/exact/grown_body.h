@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "algebraic_value.h"
+#include "exact/algebraic_value.h"
 #include "exactvo/vo/velocity_obstacle.h"
 
 namespace exactvo::vo::detail {

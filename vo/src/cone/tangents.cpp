@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tangents.h"
+#include "cone/tangents.h"
 
 #include <cmath>
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <utility>
 
+#include "cone/separation.h"
 #include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/minkowski.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
-#include "separation.h"
 
 namespace exactvo::vo {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "algebraic_root.h"
+#include "exact/algebraic_root.h"
 #include "exactvo/vo/algebraic_direction.h"
 
 namespace exactvo::vo::detail {

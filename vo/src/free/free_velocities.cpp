@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "cone_bounds.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/certificate.h"
+#include "free/cone_bounds.h"
 
 namespace exactvo::vo {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "algebraic_value.h"
+#include "exact/algebraic_value.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/shapes.h"
 

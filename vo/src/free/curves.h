@@ -12,8 +12,8 @@
 
 #include <vector>
 
+#include "exact/grown_body.h"
 #include "exactvo/vo/free_arrangement.h"
-#include "grown_body.h"
 
 namespace exactvo::vo::detail {
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "certificate_words.h"
+#include "proof/certificate_words.h"
 
 namespace exactvo::vo {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "separation.h"
+#include "cone/separation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "direction_search.h"
+#include "cone/direction_search.h"
 #include "exactvo/geometry/predicates.h"
 
 namespace exactvo::vo::detail {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrangement.h"
+#include "free/arrangement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
+#include "cone/separation.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/support.h"
 #include "exactvo/vo/velocity_obstacle.h"
-#include "separation.h"
 
 namespace exactvo::vo {
 namespace {

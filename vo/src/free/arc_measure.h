@@ -4,7 +4,7 @@
 /// \file
 /// Certified numbers of walks: boxes round their points, brackets of their areas. MPFR does the arcs.
 
-#include "arrangement.h"
+#include "free/arrangement.h"
 
 namespace exactvo::vo::detail {
 
