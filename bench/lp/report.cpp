@@ -4,7 +4,6 @@
 // perturbation, and a performance profile (Dolan and More 2002). A solver has one colour and dash in every picture.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -12,6 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
+
+#include "figures/figure.h"
+#include "figures/gnuplot.h"
 
 namespace exactvo::bench {
 namespace {
@@ -115,22 +117,20 @@ struct Curve {
 };
 
 void draw(const fs::path& folder, const std::string& name, const std::string& setup, const std::vector<Curve>& curves) {
-  std::ofstream data = open(folder / (name + ".dat"));
-  std::ofstream script = open(folder / (name + ".gp"));
-  script << "set terminal svg size 900,520 font 'sans,13' background 'white'\nset output '" << name << ".svg'\n"
-         << "set key outside right\nset grid lc rgb '#dddddd'\n"
-         << setup << "plot";
+  tools::Figure figure{name, "", "The arena of the linear program: " + name + ".", {900, 520}, ""};
+  tools::PlotCommand plot;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const Look look = look_of(curves[i].label);
-    data << "# " << curves[i].label << '\n' << curves[i].points << "\n\n";
-    script << (i == 0 ? " " : ", ") << "'" << name << ".dat' index " << i << " with linespoints pt " << 4 + i % 9
-           << " ps 0.7 lw 2 lc rgb '" << look.colour << "'" << look.dash << " title '" << curves[i].label << "'";
+    figure.data += "# " + tools::commented(curves[i].label) + '\n' + curves[i].points + "\n\n";
+    plot.data(
+        static_cast<int>(i),
+        "with linespoints pt " + std::to_string(4 + i % 9) + " ps 0.7 lw 2 lc rgb '" + look.colour + "'" + look.dash,
+        curves[i].label);
   }
-  script << '\n';
-  script.close();
-  data.close();
-  const std::string command = "cd '" + folder.string() + "' && gnuplot " + name + ".gp";
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("gnuplot failed on " + name + ".gp");
+  figure.body = "set key outside right\nset grid lc rgb '#dddddd'\n" + setup + plot.text();
+  const tools::RenderResult result = tools::render({tools::write_sources(figure, folder)});
+  if (result.outcome == tools::Rendering::no_gnuplot) throw std::runtime_error("gnuplot is not installed");
+  if (result.outcome == tools::Rendering::failed) throw std::runtime_error("gnuplot failed: " + result.message);
 }
 
 /// The set "<kind><m>" with the smallest and larger m.

@@ -39,3 +39,18 @@ foreach(picture time-C profile accuracy)
     message(FATAL_ERROR "${picture}: a solver has another colour than elsewhere:\n${script}")
   endif()
 endforeach()
+
+# Neither a folder nor a solver is a command, for the shell, for gnuplot or for a reader of the page.
+set(folder "${WORK}/a'$(touch ${WORK}/pwned)'`touch ${WORK}/pwned`")
+set(solver "'.system('touch ${WORK}/pwned').'<script>")
+string(REPLACE "usual" "${solver}" rows "${rows}")
+file(WRITE ${WORK}/arena.json "{\"benchmarks\": [${rows}], \"context\": {}}")
+execute_process(COMMAND ${LP_REPORT} ${WORK}/arena.json ${WORK}/adversarial.json ${folder}
+                RESULT_VARIABLE status ERROR_VARIABLE words)
+if(NOT status EQUAL 0 OR NOT EXISTS ${folder}/time-C.png OR EXISTS ${WORK}/pwned)
+  message(FATAL_ERROR "a folder or a solver is taken for a command: status ${status}, ${words}")
+endif()
+file(READ ${folder}/report.html page)
+if(page MATCHES "<script>")
+  message(FATAL_ERROR "a solver's name is markup in the page")
+endif()

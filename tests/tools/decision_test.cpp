@@ -101,12 +101,12 @@ TEST(Explanation, NamesBindingConstraintsAndTheirPush) {
 }
 
 TEST(VelocitySpace, DrawsEveryLayerOnce) {
-  const Figure figure = velocity_space_figure(with_two_walls(), "space");
+  const Figure figure = velocity_space_figure(with_two_walls());
   for (const char* layer : {"allowed velocities", "velocity obstacle of an obstacle", "its legs", "its cut-off",
                             "half-plane, binding", "speed bound", "preferred velocity", "chosen velocity"}) {
-    EXPECT_THAT(figure.script, HasSubstr(std::string("title '") + (layer[0] == 'i' ? "  " : "") + layer)) << layer;
+    EXPECT_THAT(figure.body, HasSubstr(std::string("title '") + (layer[0] == 'i' ? "  " : "") + layer)) << layer;
   }
-  EXPECT_THAT(figure.script, HasSubstr("set size ratio -1"));
+  EXPECT_THAT(figure.body, HasSubstr("set size ratio -1"));
   EXPECT_THAT(figure.data, testing::Not(HasSubstr("nan")));
 }
 

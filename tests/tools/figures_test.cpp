@@ -56,7 +56,7 @@ TEST(PathsFigure, WhatStandsInAHoleIsNotPaintedOver) {
   datasets::RecordingFile run = short_run();
   run.scenario.obstacles.push_back({"shelf", geometry::Polygon{{{4.2, 1.2}, {4.8, 1.2}, {4.8, 1.8}, {4.2, 1.8}}, {}}});
   const Figure figure = paths_figure(run);
-  EXPECT_THAT(figure.script, Not(HasSubstr("white' fs solid")));
+  EXPECT_THAT(figure.body, Not(HasSubstr("white' fs solid")));
   EXPECT_THAT(figure.data, HasSubstr("3 0\n4 1\n"));  // the bridge to the hole
   EXPECT_THAT(figure.data, HasSubstr("4.2 1.2"));
 }
@@ -77,13 +77,13 @@ datasets::RecordingFile moved(datasets::RecordingFile run, geometry::Vec2 by) {
 
 TEST(PathsFigure, FarFromTheOriginAxesCountFromARoundPointNearby) {
   const Figure here = paths_figure(short_run());
-  EXPECT_THAT(here.script, HasSubstr("set xlabel 'x [m]'"));
-  EXPECT_THAT(here.script, HasSubstr("using 1:2 with lines"));
+  EXPECT_THAT(here.body, HasSubstr("set xlabel 'x [m]'"));
+  EXPECT_THAT(here.body, HasSubstr("using 1:2 with lines"));
   const Figure far = paths_figure(moved(short_run(), {1e9, 5.5e6}));
-  EXPECT_THAT(far.script, HasSubstr("set xlabel 'x - 1000000000 [m]'"));
-  EXPECT_THAT(far.script, HasSubstr("set ylabel 'y - 5500000 [m]'"));
-  EXPECT_THAT(far.script, HasSubstr("using ($1 - x0):($2 - y0) with lines"));
-  EXPECT_THAT(far.script, Not(HasSubstr("using 1:2 ")));
+  EXPECT_THAT(far.body, HasSubstr("set xlabel 'x - 1000000000 [m]'"));
+  EXPECT_THAT(far.body, HasSubstr("set ylabel 'y - 5500000 [m]'"));
+  EXPECT_THAT(far.body, HasSubstr("using ($1 - x0):($2 - y0) with lines"));
+  EXPECT_THAT(far.body, Not(HasSubstr("using 1:2 ")));
   EXPECT_THAT(far.data, HasSubstr("\n1000000000.1 5500000 0.1\n"));  // the way, a tenth of a metre later
 }
 
@@ -110,7 +110,8 @@ TEST(DataFile, NumbersItsDataSetsAsGnuplotDoes) {
 
 TEST(Quoted, LeavesNoQuoteOpen) {
   EXPECT_EQ(quoted("plain"), "'plain'");
-  EXPECT_EQ(quoted("R'1"), "'R''1'");
+  EXPECT_EQ(quoted("R'1"), R"("R'1")");
+  EXPECT_EQ(quoted("'a\"`b`\\"), R"("'a\"\140b\140\\")");
 }
 
 TEST(RunFigures, AreThoseThatApply) {
@@ -125,18 +126,18 @@ TEST(RunFigures, AreThoseThatApply) {
 
 TEST(RunFigures, HaveUnitsAndLegendsAndNameTheirOwnFiles) {
   for (const Figure& figure : run_figures(short_run())) {
-    EXPECT_THAT(figure.script, HasSubstr("data = '" + figure.name + ".dat'"));
-    EXPECT_THAT(figure.script, HasSubstr("set output '" + figure.name + ".' . format"));
-    EXPECT_THAT(figure.script, HasSubstr("set key outside"));
-    EXPECT_THAT(figure.script, HasSubstr("[m"));
+    EXPECT_THAT(script_text(figure), HasSubstr("data = '" + figure.name + ".dat'"));
+    EXPECT_THAT(script_text(figure), HasSubstr("set output '" + figure.name + ".' . format"));
+    EXPECT_THAT(figure.body, HasSubstr("set key outside"));
+    EXPECT_THAT(figure.body, HasSubstr("[m"));
     EXPECT_THAT(figure.data, Not(HasSubstr("nan")));
   }
 }
 
 TEST(PathsFigure, HasEqualAxesObstaclesHolesAndQuotedNames) {
   const Figure figure = paths_figure(short_run());
-  EXPECT_THAT(figure.script, HasSubstr("set size ratio -1"));
-  EXPECT_THAT(figure.script, HasSubstr("title 'R''1'"));
+  EXPECT_THAT(figure.body, HasSubstr("set size ratio -1"));
+  EXPECT_THAT(figure.body, HasSubstr("title \"R'1\""));
   EXPECT_THAT(figure.data, HasSubstr("obstacles with an inside"));
   EXPECT_THAT(figure.data, HasSubstr("\n3 0\n4 1\n4 2\n"));
 }
@@ -169,7 +170,7 @@ TEST(DataFile, EveryDataSetCounts) {
 }
 
 TEST(Quoted, ShowsWhatWouldEndALine) {
-  EXPECT_EQ(quoted("a\nb\x1b[31m'"), "'a\\nb\\x1b[31m'''");
+  EXPECT_EQ(quoted("a\nb\x1b[31m'"), R"("a\\nb\\x1b[31m'")");
   EXPECT_EQ(commented("a`b`\nc\\"), "a'b'\\nc\\ ");
   DataFile data;
   data.begin("a\nsystem('b')", "x");
@@ -185,10 +186,10 @@ TEST(Shortened, KeepsHeadAndTailAndCountsCharacters) {
 
 TEST(PathsFigure, MarksWhereARobotWasDeepestInAnObstacle) {
   datasets::RecordingFile run = short_run();
-  EXPECT_THAT(paths_figure(run).script, Not(HasSubstr("collision")));
+  EXPECT_THAT(paths_figure(run).body, Not(HasSubstr("collision")));
   run.scenario.obstacles.push_back({"wall", geometry::Polyline{{{0.5, -1.0}, {0.5, 1.0}}}});
   const Figure figure = paths_figure(run);
-  EXPECT_THAT(figure.script, HasSubstr("title 'collision'"));
+  EXPECT_THAT(figure.body, HasSubstr("title 'collision'"));
   EXPECT_THAT(figure.data, HasSubstr("collisions: where they were deepest\n# x [m], y [m]\n0.5 0\n"));
 }
 
@@ -198,13 +199,13 @@ TEST(PathsFigure, TheLastPlaceIsThereWithItsTime) {
 
 TEST(PathsFigure, DrawsWhatMovesAtEveryTimeMark) {
   datasets::RecordingFile run = short_run();
-  EXPECT_THAT(paths_figure(run).script, Not(HasSubstr("moving obstacle")));
+  EXPECT_THAT(paths_figure(run).body, Not(HasSubstr("moving obstacle")));
   formation::MovingObstacle cart;
   cart.shape = geometry::Polygon{{{3, 4}, {4, 4}, {4, 5}}, {}};
   cart.motion = {{{0, 0}, {0, 9}}, 2.0};
   run.scenario.moving_obstacles = {cart};
   const Figure figure = paths_figure(run);
-  EXPECT_THAT(figure.script, HasSubstr("title 'moving obstacle'"));
+  EXPECT_THAT(figure.body, HasSubstr("title 'moving obstacle'"));
   EXPECT_THAT(figure.data, HasSubstr("moving obstacles at the time marks\n# x [m], y [m]\n3 4\n4 4\n4 5\n3 4\n"));
   EXPECT_THAT(figure.data, HasSubstr("3 5.8\n4 5.8\n4 6.8\n"));  // at 0.9 s, when the last robot stops
 }
@@ -236,7 +237,7 @@ TEST(LyapunovFigure, HasEveryTermAndTheTableToo) {
   const Figure figure = lyapunov_figure(run);
   for (const char* term : {"'kinetic'", "'consensus'", "'pinning'", "'integral'", "'V of (18)'", "'claimed by (20)'",
                            "'slots'", "'tracking'", "'intervention'", "'bound'"})
-    EXPECT_THAT(figure.script, HasSubstr(std::string("title ") + term));
+    EXPECT_THAT(figure.body, HasSubstr(std::string("title ") + term));
   EXPECT_THAT(figure.data, HasSubstr("0.625"));
   const std::string table = lyapunov_csv(run.lyapunov);
   EXPECT_EQ(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')), run.lyapunov.size() + 1);
@@ -247,7 +248,7 @@ TEST(SeriesFigures, ARunThatIsOverAtOnceHasAxes) {
   datasets::RecordingFile run = short_run();
   run.recording.steps.resize(1);
   run.recording.steps[0].robots[0].velocity = run.recording.steps[0].robots[1].velocity = {};
-  for (const Figure& figure : run_figures(run)) EXPECT_THAT(figure.script, Not(HasSubstr("[0:0]"))) << figure.name;
+  for (const Figure& figure : run_figures(run)) EXPECT_THAT(figure.body, Not(HasSubstr("[0:0]"))) << figure.name;
 }
 
 }  // namespace

@@ -5,15 +5,66 @@
 
 #include <algorithm>
 
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/geometry/require.h"
 #include "support/escape.h"
 #include "support/files.h"
 
 namespace exactvo::tools {
 
+namespace {
+
+/// Bytes from 0x80 on are those of letters beyond ASCII.
+bool is_plain(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  const bool is_letter = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') || byte >= 0x80;
+  return is_letter || (byte >= '0' && byte <= '9') || byte == '_' || byte == '-' || byte == '.' || byte == ' ';
+}
+
+bool is_plain(const std::string& name) {
+  const auto is_plain_byte = [](char c) { return is_plain(c); };
+  return !name.empty() && name[0] != ' ' && name[0] != '-' && std::all_of(name.begin(), name.end(), is_plain_byte) &&
+         !has_control_characters(name);
+}
+
+}  // namespace
+
+std::string plain_name(const std::string& name) {
+  if (is_plain(name)) return name;
+  const std::size_t most = 40;  // of what is kept of the name: enough to recognise it by
+  std::string kept;
+  for (const char c : name.substr(0, most)) kept += is_plain(c) && static_cast<unsigned char>(c) < 0x80 ? c : '_';
+  return "figure-" + kept + "-" + datasets::sha256_of(name).substr(0, 8);
+}
+
+std::string script_text(const Figure& figure) {
+  EXACTVO_REQUIRE(is_plain(figure.name), "the name of a figure is plain: " + shown(figure.name));
+  const double png_scale = 1.5;
+  return fmt::format(
+      "# {shows}\n"
+      "# Draw again with: gnuplot '{name}.gp'\n"
+      "set encoding utf8\n"
+      "data = '{name}.dat'\n"
+      "do for [format in 'svg png'] {{\n"
+      "  if (format eq 'svg') {{\n"
+      "    set terminal svg size {w},{h} noenhanced font 'DejaVu Sans,13' background rgb 'white'\n"
+      "  }} else {{\n"
+      "    set terminal pngcairo size {pw:.0f},{ph:.0f} noenhanced font 'DejaVu Sans,13' fontscale 0.75 * {s} \\\n"
+      "      linewidth {s} pointscale {s}\n"
+      "  }}\n"
+      "  set output '{name}.' . format\n"
+      "{body}"
+      "  set output\n"
+      "}}\n",
+      fmt::arg("shows", commented(figure.shows)), fmt::arg("name", figure.name), fmt::arg("w", figure.canvas.width),
+      fmt::arg("h", figure.canvas.height), fmt::arg("pw", png_scale * figure.canvas.width),
+      fmt::arg("ph", png_scale * figure.canvas.height), fmt::arg("s", png_scale), fmt::arg("body", figure.body));
+}
+
 std::filesystem::path write_sources(const Figure& figure, const std::filesystem::path& folder) {
   write_text(folder / (figure.name + ".dat"), figure.data);
   std::filesystem::path script = folder / (figure.name + ".gp");
-  write_text(script, figure.script);
+  write_text(script, script_text(figure));
   return script;
 }
 
@@ -72,9 +123,18 @@ std::string PlotCommand::text() const {
 }
 
 std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : shown(text)) result += c == '\'' ? std::string("''") : std::string(1, c);
-  return result + "'";
+  const std::string line = shown(text);
+  if (line.find('\'') == std::string::npos) return "'" + line + "'";
+  // A string in single quotes cannot begin with one, even doubled.
+  std::string result;
+  for (const char c : line) {
+    if (c == '`') {
+      result += "\\140";  // what stands between two of them would be run
+    } else {
+      result += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    }
+  }
+  return '"' + result + '"';
 }
 
 std::string commented(const std::string& text) {
@@ -104,30 +164,6 @@ std::string shortened(const std::string& text, std::size_t most) {
 std::size_t characters_in(double pixels) {
   const double widest = 8.4;  // px: the mean of DejaVu Sans at 13 px is 7.8
   return static_cast<std::size_t>(std::max(pixels / widest, 8.0));
-}
-
-std::string script_text(const std::string& name, const std::string& shows, Canvas canvas, const std::string& body) {
-  const double png_scale = 1.5;
-  return fmt::format(
-      "# {shows}\n"
-      "# Draw again with: gnuplot {name}.gp\n"
-      "set encoding utf8\n"
-      "data = {dat}\n"
-      "do for [format in 'svg png'] {{\n"
-      "  if (format eq 'svg') {{\n"
-      "    set terminal svg size {w},{h} noenhanced font 'DejaVu Sans,13' background rgb 'white'\n"
-      "  }} else {{\n"
-      "    set terminal pngcairo size {pw:.0f},{ph:.0f} noenhanced font 'DejaVu Sans,13' fontscale 0.75 * {s} \\\n"
-      "      linewidth {s} pointscale {s}\n"
-      "  }}\n"
-      "  set output {stem} . format\n"
-      "{body}"
-      "  set output\n"
-      "}}\n",
-      fmt::arg("shows", commented(shows)), fmt::arg("name", commented(name)), fmt::arg("dat", quoted(name + ".dat")),
-      fmt::arg("stem", quoted(name + ".")), fmt::arg("w", canvas.width), fmt::arg("h", canvas.height),
-      fmt::arg("pw", png_scale * canvas.width), fmt::arg("ph", png_scale * canvas.height), fmt::arg("s", png_scale),
-      fmt::arg("body", body));
 }
 
 }  // namespace exactvo::tools

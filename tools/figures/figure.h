@@ -6,6 +6,9 @@
 /// NAME.svg and NAME.png in one folder. The first two are meant to be read and edited: `gnuplot NAME.gp` in that folder
 /// draws the pictures again.
 ///
+/// gnuplot runs what stands in the name of a file behind `<` or `|`. So a script names plain files only (`plain_name`),
+/// and whoever was asked for another name renames the pictures once they are drawn (verbs/figure_file.h).
+///
 /// Neighbours: gnuplot.h runs the scripts; style.h has the colours; run_figures.h and velocity_space.h make figures.
 
 #include <cstddef>
@@ -16,14 +19,29 @@
 
 namespace exactvo::tools {
 
-struct Figure {
-  std::string name;    ///< the stem of every file
-  std::string data;    ///< text of NAME.dat
-  std::string script;  ///< text of NAME.gp
+struct Canvas {
+  int width = 960;   ///< px of the SVG; the PNG has half as many again
+  int height = 600;  ///< px
 };
 
+struct Figure {
+  std::string name;   ///< the stem of every file; plain
+  std::string data;   ///< text of NAME.dat
+  std::string shows;  ///< in a sentence; the first line of the script
+  Canvas canvas;
+  std::string body;  ///< of the script: settings and plot commands, which name the data file as `data`
+};
+
+/// The text of NAME.gp: what the figure shows, then its body drawn once for each format.
+/// REQUIRES: a plain name.
+std::string script_text(const Figure& figure);
+
+/// `name` where it is plain: letters and digits of any script, `_`, `-`, `.` and spaces, the first one neither a space
+/// nor `-`. Else a plain one made of it, different for different names.
+std::string plain_name(const std::string& name);
+
 /// Writes NAME.dat and NAME.gp into `folder`, which must exist, and returns the path of the script.
-/// Throws datasets::DataError where it cannot.
+/// Throws datasets::DataError where it cannot. REQUIRES: a plain name.
 std::filesystem::path write_sources(const Figure& figure, const std::filesystem::path& folder);
 
 /// The text of a gnuplot data file: numbered data sets, each with a title and its columns in a comment.
@@ -69,7 +87,7 @@ class PlotCommand {
   std::vector<std::string> items_;
 };
 
-/// `text` as a gnuplot string: in single quotes, none left open, control characters shown (support/escape.h). Every
+/// `text` as a gnuplot string: no quote left open, nothing of it run, control characters shown (support/escape.h). Every
 /// word from outside enters a script through here; the scripts' terminals are `noenhanced`, so that @ { } ^ _ are
 /// letters.
 std::string quoted(const std::string& text);
@@ -82,14 +100,5 @@ std::string shortened(const std::string& text, std::size_t most);
 
 /// How many characters of a title go into so many pixels of the SVG.
 std::size_t characters_in(double pixels);
-
-struct Canvas {
-  int width = 960;   ///< px of the SVG; the PNG has half as many again
-  int height = 600;  ///< px
-};
-
-/// The whole script: a comment that says what the figure shows, then `body` (settings and plot commands, which name
-/// the data file as `data`) drawn once for each format.
-std::string script_text(const std::string& name, const std::string& shows, Canvas canvas, const std::string& body);
 
 }  // namespace exactvo::tools

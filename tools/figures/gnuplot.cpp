@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "figures/gnuplot.h"
 
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 
@@ -9,9 +10,6 @@
 #include <cstdio>
 #include <memory>
 #include <system_error>
-
-#include "figures/figure.h"
-
 namespace exactvo::tools {
 
 namespace fs = std::filesystem;
@@ -26,11 +24,20 @@ TemporaryFile temporary_file() {
   return file;
 }
 
+/// A gnuplot string of exactly these bytes, each by its octal number: a folder may be called anything, and gnuplot runs
+/// what stands between backticks.
+std::string exact_string(const std::string& bytes) {
+  std::string text;
+  for (const char c : bytes) text += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+  return '"' + text + '"';
+}
+
+/// Absolute folders begin with a slash and scripts have plain names: neither is taken for a command.
 std::string driver_text(const std::vector<fs::path>& scripts) {
   std::string text;
   for (const fs::path& script : scripts) {
-    text += "reset session\ncd " + quoted(fs::absolute(script).parent_path().string()) + "\nload " +
-            quoted(script.filename().string()) + "\n";
+    text += "reset session\ncd " + exact_string(fs::absolute(script).parent_path().string()) + "\nload " +
+            exact_string(script.filename().string()) + "\n";
   }
   return text;
 }
@@ -51,7 +58,8 @@ int spawn_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
   posix_spawn_file_actions_adddup2(&actions, fileno(messages), 1);
   posix_spawn_file_actions_adddup2(&actions, fileno(messages), 2);
   char program[] = "gnuplot";
-  char* arguments[] = {program, nullptr};
+  char defaults[] = "-d";  // the settings of the user's own ~/.gnuplot are left alone
+  char* arguments[] = {program, defaults, nullptr};
   const int error = posix_spawnp(&pid, program, &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
   return error;

@@ -123,8 +123,7 @@ Figure lyapunov_figure(const datasets::RecordingFile& run) {
       panel(kSoundRates, moving, "its derivative, and its bound near obstacles (the tallest spikes cut)", "V' [m²/s³]",
             Axis::rates, data) +
       "  unset multiplot\n";
-  return {"lyapunov", data.text(),
-          script_text("lyapunov", "Both Lyapunov functions along " + title + ", term by term.", kCanvas, body)};
+  return {"lyapunov", data.text(), "Both Lyapunov functions along " + title + ", term by term.", kCanvas, body};
 }
 
 std::string lyapunov_csv(const std::vector<LyapunovRow>& rows) {

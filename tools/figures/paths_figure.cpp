@@ -457,7 +457,7 @@ Figure paths_figure(const RecordingFile& run) {
       quoted(fitted_title(run, view)), panel.origin().ranges(view), panel.origin().x_label(), panel.origin().y_label(),
       panel.plot());
   const std::string shows = "Ways of the robots of " + run_title(run) + "; circles are the robots to scale.";
-  return {"paths", data.text(), script_text("paths", shows, canvas_for(view, longest_key(run)), body)};
+  return {"paths", data.text(), shows, canvas_for(view, longest_key(run)), body};
 }
 
 Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns) {
@@ -480,7 +480,7 @@ Figure paths_sheet(const std::string& name, const std::string& title, const std:
   body += "  unset multiplot\n";
   const int panel_width = 300;
   const int panel_height = static_cast<int>(250.0 * std::min(tallest, 1.2)) + 55;
-  return {name, data.text(), script_text(name, title + ".", {panel_width * columns, panel_height * rows + 40}, body)};
+  return {name, data.text(), title + ".", {panel_width * columns, panel_height * rows + 40}, body};
 }
 
 }  // namespace exactvo::tools

@@ -115,7 +115,7 @@ Figure distance_figure(const RecordingFile& run, const std::string& name, const 
   plot.item("0 with lines lw 1.5 dt (5,4) lc rgb 'black'", "contact");
   const std::string title = run_title(run) + ": " + what;
   const std::string body = axes(run, title, "distance [m]") + value_range(all) + plot.text();
-  return {name, data.text(), script_text(name, title + ". Below zero they overlap.", kCanvas, body)};
+  return {name, data.text(), title + ". Below zero they overlap.", kCanvas, body};
 }
 
 std::vector<Series> pair_distances(const RecordingFile& run) {
@@ -200,9 +200,8 @@ Figure velocity_figure(const RecordingFile& run) {
                            velocity_panel(
                                run, "", "v_y [m/s]", [](Vec2 v) { return v.y; }, data) +
                            "  unset multiplot\n";
-  return {
-      "velocity", data.text(),
-      script_text("velocity", "Components of the robots' velocities in " + run_title(run) + ".", kTallCanvas, body)};
+  return {"velocity", data.text(), "Components of the robots' velocities in " + run_title(run) + ".", kTallCanvas,
+          body};
 }
 
 Figure formation_error_figure(const RecordingFile& run) {
@@ -217,7 +216,7 @@ Figure formation_error_figure(const RecordingFile& run) {
   const std::string title = run_title(run) + ": distance of each robot from its slot";
   const std::string body =
       axes(run, title, "|x_i - x_L - Δ_i| [m]") + "  set logscale y\n  set format y '%.0e'\n" + plot.text();
-  return {"formation_error", data.text(), script_text("formation_error", title + ", logarithmic.", kCanvas, body)};
+  return {"formation_error", data.text(), title + ", logarithmic.", kCanvas, body};
 }
 
 }  // namespace exactvo::tools

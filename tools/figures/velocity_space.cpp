@@ -334,7 +334,7 @@ class VelocitySpace {
 
 }  // namespace
 
-Figure velocity_space_figure(const Decision& decision, const std::string& name) {
+Figure velocity_space_figure(const Decision& decision) {
   const VelocitySpace space(decision);
   const std::string title =
       fmt::format("{}: velocity space of {} at t = {:.2f} s, {}", shortened(decision.scenario.name, kNameLength),
@@ -352,7 +352,7 @@ Figure velocity_space_figure(const Decision& decision, const std::string& name) 
       "{}",
       quoted(shortened(title, characters_in(kTitleRoom))), space.box().low.x, space.box().high.x, space.box().low.y,
       space.box().high.y, space.plot());
-  return {name, space.data(), script_text(name, title + ".", {1060, 740}, body)};
+  return {"velocity_space", space.data(), title + ".", {1060, 740}, body};
 }
 
 }  // namespace exactvo::tools

@@ -5,14 +5,11 @@
 /// One robot's velocity space at one moment: each truncated velocity obstacle with its legs and cut-off, the
 /// half-planes with their forbidden side hatched, the speed bound, what was preferred and what was chosen.
 
-#include <string>
-
 #include "explain/decision.h"
 #include "figures/figure.h"
 
 namespace exactvo::tools {
 
-/// The figure's files are named `name`.*.
-Figure velocity_space_figure(const Decision& decision, const std::string& name);
+Figure velocity_space_figure(const Decision& decision);
 
 }  // namespace exactvo::tools

@@ -142,8 +142,7 @@ Figure counts_figure(const std::vector<VariantResult>& results, const CampaignOp
       quoted(title), 1.12 * static_cast<double>(options.fields), n + 0.7,
       n - static_cast<double>(formation::remedy_ladder().size()) + 0.5,
       n - static_cast<double>(formation::remedy_ladder().size()) + 0.5);
-  return {"remedies", data.text(),
-          script_text("remedies", title + ": the ladder above, the ablations below.", {960, 620}, body + plot.text())};
+  return {"remedies", data.text(), title + ": the ladder above, the ablations below.", {960, 620}, body + plot.text()};
 }
 
 /// J in B1 and B3 for every set, logarithmic.
@@ -167,7 +166,7 @@ Figure jitter_figure(const std::vector<VariantResult>& results, const std::vecto
       "  set title {}\n  set logscale x\n  set format x '10^%T'\n  set yrange [0.3:{}]\n  set xlabel 'J [m/s^2]'\n"
       "  set lmargin 20\n  set grid lc rgb '#dcdcdc'\n  set key outside right top\n",
       quoted(title), n + 0.7);
-  return {"remedies_jitter", data.text(), script_text("remedies_jitter", title, {960, 620}, body + plot.text())};
+  return {"remedies_jitter", data.text(), title + ".", {960, 620}, body + plot.text()};
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ class Experiments {
       row += arrival_cell(finished.metrics);
       clearances = fmt::format("   {}, {}", number_or_dash(finished.metrics.min_obstacle_clearance, "{:.3f}"),
                                number_or_dash(finished.metrics.min_robot_clearance, "{:.3f}"));
-      keep_avoidance(std::move(finished), method);
+      keep_avoidance(scenario, std::move(finished), method);
     }
     print(row + clearances + "\n");
   }
@@ -139,28 +139,29 @@ class Experiments {
           number_or_dash(m.formation_position_error, "{:.2g}"), number_or_dash(m.formation_velocity_error, "{:.2g}"),
           number_or_dash(m.min_obstacle_clearance, "{:.3f}"), number_or_dash(m.min_robot_clearance, "{:.3f}"), m.jitter,
           touched(m) ? '!' : ' ', diverged ? "diverged" : ""));
-      keep_formation(std::move(finished), controller);
+      keep_formation(scenario, std::move(finished), controller);
     }
   }
 
   /// Fig. 5 has the usual method, Fig. 6 the improved one: the paper's own, which verdicts are on, and the default.
-  void keep_avoidance(FinishedRun finished, Method method) {
+  void keep_avoidance(const std::string& scenario, FinishedRun finished, Method method) {
     if (flags_.no_figures) return;
-    if (method == Method::orca) add_figures(finished, "fig5-orca");
-    if (method == Method::ivo_edge) add_figures(finished, "fig6-ivo-edge");
-    if (method == Method::ivo) add_figures(finished, "fig6-ivo");
+    if (method == Method::orca) add_figures(scenario, finished, "fig5-orca");
+    if (method == Method::ivo_edge) add_figures(scenario, finished, "fig6-ivo-edge");
+    if (method == Method::ivo) add_figures(scenario, finished, "fig6-ivo");
     avoidance_[static_cast<std::size_t>(method)].push_back(std::move(finished.file));
   }
 
-  void keep_formation(FinishedRun finished, Controller controller) {
+  void keep_formation(const std::string& scenario, FinishedRun finished, Controller controller) {
     if (flags_.no_figures) return;
-    if (controller == Controller::standard) add_figures(finished, "fig8-formation");
-    if (controller == Controller::paper_signs) add_figures(finished, "fig8-paper-signs");
+    if (controller == Controller::standard) add_figures(scenario, finished, "fig8-formation");
+    if (controller == Controller::paper_signs) add_figures(scenario, finished, "fig8-paper-signs");
     formation_.push_back(std::move(finished.file));
   }
 
-  void add_figures(const FinishedRun& finished, const std::string& folder) {
-    const fs::path target = out_ / "figures" / folder / finished.file.info.scenario;
+  /// `scenario` is the name of its file: the one within it may be anything, a way out of the folder too.
+  void add_figures(const std::string& scenario, const FinishedRun& finished, const std::string& folder) {
+    const fs::path target = out_ / "figures" / folder / scenario;
     const std::vector<fs::path> scripts = write_figures(finished, target);
     scripts_.insert(scripts_.end(), scripts.begin(), scripts.end());
   }
@@ -205,8 +206,7 @@ class Experiments {
         "\n  set logscale y\n  set format y '10^%T'\n  set yrange [100:2e6]\n  set xrange [-0.6:3.6]\n"
         "  set ylabel 'J [m/s^2]'\n  set grid y lc rgb '#dcdcdc'\n  set key outside right top\n" +
         plot.text();
-    scripts_.push_back(
-        write_sources({"jitter", data.text(), script_text("jitter", title, {860, 460}, body)}, out_ / "figures"));
+    scripts_.push_back(write_sources({"jitter", data.text(), title + ".", {860, 460}, body}, out_ / "figures"));
   }
 
   void add_comparison() {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <stdexcept>
 
@@ -11,16 +10,15 @@
 #include "explain/explanation.h"
 #include "figures/velocity_space.h"
 #include "support/escape.h"
-#include "support/files.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
+#include "verbs/figure_file.h"
 
 namespace exactvo::tools {
 
-namespace fs = std::filesystem;
 using formation::Scenario;
 
 namespace {
@@ -95,35 +93,9 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
           remarks_on(scenario, recording, robot)};
 }
 
-constexpr const char* kFigureFiles[] = {".dat", ".gp", ".png", ".svg"};
-
-/// Found before anything is drawn, so that none of the four files appears without the others.
-void refuse_folders_in_the_way(const fs::path& out) {
-  for (const char* extension : kFigureFiles) {
-    const fs::path file = fs::path(out).replace_extension(extension);
-    if (fs::is_directory(file)) throw UsageError("--out", file.string() + ", a folder", "names that are free or files");
-  }
-}
-
-/// The four files appear beside FILE.svg together, after gnuplot is done with them.
-void write_figure(const Decision& decision, const fs::path& out) {
-  refuse_folders_in_the_way(out);
-  const fs::path parent = fs::absolute(out).parent_path();
-  make_folder(parent);
-  StagedFolder folder(parent / ("." + out.stem().string() + ".figure"));
-  draw({write_sources(velocity_space_figure(decision, out.stem().string()), folder.path())});
-  for (const char* extension : kFigureFiles) {
-    const std::string file = out.stem().string() + extension;
-    if (fs::exists(folder.path() / file)) fs::rename(folder.path() / file, parent / file);
-  }
-  message("wrote " + out.string());
-}
-
 void check(const Flags& flags) {
   if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time from 0 s on");
-  if (!flags.out.empty() && fs::path(flags.out).extension() != ".svg") {
-    throw UsageError("--out", flags.out, "a name that ends in .svg");
-  }
+  check_figure_name("--out", flags.out);
 }
 
 ExitCode explain(const Flags& flags) {
@@ -133,7 +105,7 @@ ExitCode explain(const Flags& flags) {
   const Explained explained = decide(flags, scenario);
   print(shown_lines(explanation(explained.decision)));
   for (const std::string& remark : explained.remarks) print(shown(remark) + "\n");
-  if (!flags.out.empty()) write_figure(explained.decision, flags.out);
+  if (!flags.out.empty()) write_figure(velocity_space_figure(explained.decision), flags.out);
   return ExitCode::success;
 }
 

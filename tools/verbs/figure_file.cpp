@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verbs/figure_file.h"
 
+#include <vector>
+
+#include "support/escape.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/terminal.h"
@@ -10,19 +13,41 @@ namespace exactvo::tools {
 
 namespace fs = std::filesystem;
 
-void check_figure_name(const std::string& name) {
-  if (!name.empty() && fs::path(name).extension() != ".svg")
-    throw UsageError("--figure", name, "a name that ends in .svg");
+namespace {
+
+/// One file of a figure: what it is called where it is drawn, and what in the end.
+struct FigureFile {
+  std::string drawn, asked;
+};
+
+std::vector<FigureFile> files_of(const fs::path& out) {
+  const std::string stem = out.stem().string(), plain = plain_name(stem);
+  std::vector<FigureFile> files;
+  for (const char* source : {".dat", ".gp"}) files.push_back({plain + source, plain + source});
+  for (const char* picture : {".png", ".svg"}) files.push_back({plain + picture, stem + picture});
+  return files;
 }
 
-void write_figure(const Figure& figure, const fs::path& out) {
+}  // namespace
+
+void check_figure_name(const std::string& option, const std::string& name) {
+  if (name.empty()) return;
+  if (has_control_characters(name)) throw UsageError(option, name, "a name without control characters");
+  if (fs::path(name).extension() != ".svg") throw UsageError(option, name, "a name that ends in .svg");
+  for (const FigureFile& file : files_of(name)) {
+    const fs::path path = fs::path(name).parent_path() / file.asked;
+    if (fs::is_directory(path)) throw UsageError(option, path.string() + ", a folder", "names that are free or files");
+  }
+}
+
+void write_figure(Figure figure, const fs::path& out) {
+  figure.name = plain_name(out.stem().string());
   const fs::path parent = fs::absolute(out).parent_path();
   make_folder(parent);
-  StagedFolder folder(parent / ("." + figure.name + ".figure"), out);
+  StagedFolder folder(parent / "exactvo-figure", out);
   draw({write_sources(figure, folder.path())});
-  for (const char* extension : {".dat", ".gp", ".png", ".svg"}) {
-    const std::string name = figure.name + extension;
-    if (fs::exists(folder.path() / name)) fs::rename(folder.path() / name, parent / name);
+  for (const FigureFile& file : files_of(out)) {
+    if (fs::exists(folder.path() / file.drawn)) fs::rename(folder.path() / file.drawn, parent / file.asked);
   }
   message("wrote " + out.string());
 }

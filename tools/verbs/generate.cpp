@@ -56,7 +56,7 @@ void check(const Flags& flags) {
     throw UsageError("--count", std::to_string(flags.count), "a whole number from 1 to 100000000");
   if (flags.out.empty()) throw UsageError("--out", "", "a file to write");
   check_format("--to", flags.to, datasets::writable_formats());
-  check_figure_name(flags.figure);
+  check_figure_name("--figure", flags.figure);
 }
 
 std::vector<SceneObstacle> item(const Flags& flags, std::uint64_t k) {
@@ -98,8 +98,7 @@ void draw_figure(const Flags& flags, std::uint64_t count) {
   const std::uint64_t drawn = std::min(count, kMostItemsDrawn);
   if (drawn < count) message(fmt::format("the figure shows the first {} of {} items", drawn, count));
   const std::string title = fmt::format("{}, seed {}, {} items", flags.kind, flags.seed, drawn);
-  write_figure(map_figure(items(flags, drawn), title, std::filesystem::path(flags.figure).stem().string()),
-               flags.figure);
+  write_figure(map_figure(items(flags, drawn), title), flags.figure);
 }
 
 ExitCode generate(const Flags& flags) {

@@ -28,7 +28,7 @@ class Map {
       for (const Vec2 p : curve) view_.add(p);
   }
 
-  Figure figure(const std::string& title, const std::string& name) const {
+  Figure figure(const std::string& title) const {
     const Box shown = axes();
     const LocalOrigin origin(shown);
     DataFile data;
@@ -42,7 +42,7 @@ class Map {
         "  set grid lc rgb '#e9e9e9'\n  set key outside right top reverse Left samplen 3\n{}",
         quoted(shortened(title, characters_in(width_of_title))), origin.ranges(shown), origin.x_label(),
         origin.y_label(), plot.text());
-    return {name, data.text(), script_text(name, title + ".", {1000, 720}, body)};
+    return {"map", data.text(), title + ".", {1000, 720}, body};
   }
 
  private:
@@ -137,16 +137,15 @@ std::vector<Points> gathered(const std::vector<ObstacleShapes>& obstacles, const
 
 }  // namespace
 
-Figure map_figure(const std::vector<formation::SceneObstacle>& obstacles, const std::string& title,
-                  const std::string& name) {
+Figure map_figure(const std::vector<formation::SceneObstacle>& obstacles, const std::string& title) {
   Map map;
   Outlines outlines;
   for (const formation::SceneObstacle& o : obstacles) outlines.add(o.shape);
   draw_obstacles(outlines, true, map);
-  return map.figure(title, name);
+  return map.figure(title);
 }
 
-Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::string& title, const std::string& name) {
+Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::string& title) {
   Map map;
   Outlines outlines;
   for (const ObstacleShapes& shapes : obstacles) outlines.add(shapes.obstacle);
@@ -180,7 +179,7 @@ Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::st
                         for (const geometry::Segment& f : s.facades.facades) out.push_back({f.a, f.b});
                       }),
              crowded ? line(1.0, "#D55E00") : "with linespoints lw 2.2 pt 7 ps 0.35 lc rgb '#D55E00'", false);
-  return map.figure(title, name);
+  return map.figure(title);
 }
 
 }  // namespace exactvo::tools

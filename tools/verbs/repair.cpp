@@ -257,7 +257,7 @@ void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out)
   const std::size_t number = number_recombined(answers);
   if (number > polygons.size())
     message(fmt::format("the figure shows {} of {} polygons that were cut", polygons.size(), number));
-  write_figure(repair_figure(polygons, std::filesystem::path(out).stem().string()), out);
+  write_figure(repair_figure(polygons), out);
 }
 
 // --- The verb ---
@@ -265,7 +265,7 @@ void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out)
 ExitCode repair(const Flags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading);
   options.repair = true;
-  check_figure_name(flags.figure);
+  check_figure_name("--figure", flags.figure);
   if (flags.out == "-") throw UsageError("--out", "-", "a file: stdout has the report");
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = datasets::format_to_write(flags.out, flags.to);

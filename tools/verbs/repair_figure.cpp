@@ -49,7 +49,7 @@ class Panels {
     before(polygon);
     after(polygon);
   }
-  Figure figure(const std::string& name, std::size_t rows) const {
+  Figure figure(std::size_t rows) const {
     const std::string shows = "Polygons before and after a repair.";
     const Canvas canvas{1000, 60 + 420 * static_cast<int>(rows)};
     const std::string body = fmt::format(
@@ -57,7 +57,7 @@ class Panels {
         "',10'\n{}"
         "  unset multiplot\n",
         rows, plots_);
-    return {name, data_.text(), script_text(name, shows, canvas, body)};
+    return {"repair", data_.text(), shows, canvas, body};
   }
 
  private:
@@ -116,12 +116,12 @@ class Panels {
 
 }  // namespace
 
-Figure repair_figure(const std::vector<MendedPolygon>& polygons, const std::string& name) {
+Figure repair_figure(const std::vector<MendedPolygon>& polygons) {
   EXACTVO_REQUIRE(!polygons.empty(), std::string("no polygon"));
   Panels panels;
   const std::size_t rows = std::min(polygons.size(), kMostMendedDrawn);
   for (std::size_t k = 0; k < rows; ++k) panels.row(polygons[k]);
-  return panels.figure(name, rows);
+  return panels.figure(rows);
 }
 
 }  // namespace exactvo::tools

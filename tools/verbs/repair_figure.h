@@ -25,6 +25,6 @@ struct MendedPolygon {
 inline constexpr std::size_t kMostMendedDrawn = 6;
 
 /// REQUIRES: at least one.
-Figure repair_figure(const std::vector<MendedPolygon>& polygons, const std::string& name);
+Figure repair_figure(const std::vector<MendedPolygon>& polygons);
 
 }  // namespace exactvo::tools

@@ -47,7 +47,7 @@ void check(const Flags& flags) {
   require_length("--tolerance", flags.tolerance);
   require_length("--radius", flags.radius);
   require_length("--facade-margin", flags.facade_margin);
-  check_figure_name(flags.figure);
+  check_figure_name("--figure", flags.figure);
   const std::string extension = std::filesystem::path(flags.out).extension().string();
   if (!flags.out.empty() && extension != ".jsonl" && extension != ".geojson")
     throw UsageError("--out", flags.out, "a name that ends in .jsonl or .geojson");
@@ -181,9 +181,7 @@ void draw_figure(const std::vector<TakenApart>& all, const Flags& flags) {
   if (all.empty()) return message("no figure: no obstacle");
   std::vector<ObstacleShapes> shapes;
   for (const TakenApart& t : all) shapes.push_back(t.shapes);
-  write_figure(
-      shapes_figure(shapes, title_of(flags.files, all.size()), std::filesystem::path(flags.figure).stem().string()),
-      flags.figure);
+  write_figure(shapes_figure(shapes, title_of(flags.files, all.size())), flags.figure);
 }
 
 // --- The verb ---

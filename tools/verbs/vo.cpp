@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // exactvo vo: velocity obstacles, their answers and certificates; the family; the free velocities.
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "verb.h"
@@ -14,8 +13,7 @@ namespace {
 
 ExitCode show(const VoFlags& flags) {
   const VoAnswer answer = answer_of(question_of(flags));
-  if (!flags.figure.empty())
-    write_figure(vo_figure(answer, std::filesystem::path(flags.figure).stem().string()), flags.figure);
+  if (!flags.figure.empty()) write_figure(vo_figure(answer), flags.figure);
   const std::string text = flags.json ? to_json(answer) : in_words(answer);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return ExitCode::success;

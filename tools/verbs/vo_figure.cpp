@@ -213,7 +213,7 @@ void draw_change(const std::vector<ConeAnswer>& cones, Panel& panel) {
   panel.arrow(a.contains ? "least change u" : "u, to the boundary", a.encounter.velocity, a.nearest->u, "#D55E00");
 }
 
-Figure cone_figure(const VoAnswer& answer, const std::string& name) {
+Figure cone_figure(const VoAnswer& answer) {
   const ConeAnswer& a = answer.cones.front();
   DataFile data;
   Panel panel(data, view_of(answer.cones));
@@ -226,7 +226,7 @@ Figure cone_figure(const VoAnswer& answer, const std::string& name) {
   draw_change(answer.cones, panel);
   const std::string title = "Velocity obstacle, " + horizon_text(a.encounter.time_horizon);
   const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
-  return {name, data.text(), script_text(name, title + ".", {900, 640}, body)};
+  return {"cone", data.text(), title + ".", {900, 640}, body};
 }
 
 // --- The family ---
@@ -248,7 +248,7 @@ std::string member_title(const vo::Member& m, Vec2 velocity) {
   return fmt::format("{}: {}{}", name(m.variant), word_of_allowed(answer), answer ? " v" : "");
 }
 
-Figure family_figure(const VoAnswer& answer, const std::string& name) {
+Figure family_figure(const VoAnswer& answer) {
   const ConeAnswer& a = answer.cones.front();
   DataFile data;
   const int count = static_cast<int>(answer.members.size());
@@ -263,7 +263,7 @@ Figure family_figure(const VoAnswer& answer, const std::string& name) {
   }
   body += "  unset multiplot\n";
   const Canvas canvas{60 + 360 * columns, 60 + 360 * rows};
-  return {name, data.text(), script_text(name, "What different rules forbid in one encounter.", canvas, body)};
+  return {"family", data.text(), "What different rules forbid in one encounter.", canvas, body};
 }
 
 // --- The free velocities ---
@@ -281,7 +281,7 @@ std::vector<Points> hole_rings(const geometry::Region& region) {
   return rings;
 }
 
-Figure free_figure(const VoAnswer& answer, const std::string& name) {
+Figure free_figure(const VoAnswer& answer) {
   const FreeAnswer& f = *answer.free;
   DataFile data;
   Box box;
@@ -305,15 +305,15 @@ Figure free_figure(const VoAnswer& answer, const std::string& name) {
   const std::string title =
       fmt::format("{:.4g} (m/s)^2 are free, {:.4g} are kept", f.free.area().low, f.report ? f.report->area.low : 0.0);
   const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
-  return {name, data.text(), script_text(name, "The free velocities of a scene.", {960, 640}, body)};
+  return {"free", data.text(), "The free velocities of a scene.", {960, 640}, body};
 }
 
 }  // namespace
 
-Figure vo_figure(const VoAnswer& answer, const std::string& name) {
-  if (answer.free) return free_figure(answer, name);
-  if (!answer.members.empty()) return family_figure(answer, name);
-  return cone_figure(answer, name);
+Figure vo_figure(const VoAnswer& answer) {
+  if (answer.free) return free_figure(answer);
+  if (!answer.members.empty()) return family_figure(answer);
+  return cone_figure(answer);
 }
 
 }  // namespace exactvo::tools

@@ -4,13 +4,11 @@
 /// \file
 /// The pictures of `exactvo vo`: one cone with its half-plane; the family side by side; the free velocities.
 
-#include <string>
-
 #include "figures/figure.h"
 #include "verbs/vo_answer.h"
 
 namespace exactvo::tools {
 
-Figure vo_figure(const VoAnswer& answer, const std::string& name);
+Figure vo_figure(const VoAnswer& answer);
 
 }  // namespace exactvo::tools

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <optional>
 
@@ -15,11 +14,11 @@
 #include "exactvo/geometry/pieces.h"
 #include "exactvo/vo/free_velocities.h"
 #include "support/usage.h"
+#include "verbs/figure_file.h"
 #include "verbs/robot_limits.h"
 
 namespace exactvo::tools {
 
-namespace fs = std::filesystem;
 using geometry::ConvexPolygon;
 using geometry::ConvexShape;
 
@@ -161,8 +160,7 @@ void check_words(const VoFlags& flags) {
   require(flags.pieces.empty() || flags.pieces == "convex" || flags.pieces == "hull", "--pieces", flags.pieces,
           "one of convex hull");
   require(flags.pieces.empty() || flags.enclose == "none", "--pieces", "--pieces beside --enclose", "one of the two");
-  require(flags.figure.empty() || fs::path(flags.figure).extension() == ".svg", "--figure", flags.figure,
-          "a name that ends in .svg");
+  check_figure_name("--figure", flags.figure);
 }
 
 void check_numbers(const VoFlags& flags) {
