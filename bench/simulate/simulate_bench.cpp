@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many robot steps a second does `simulate` take, and how many with the metrics of the run? The label is the
+// beginning of a digest over every position and chosen velocity: two builds with the same labels drive the same runs.
+// Before anything is timed each scene is run twice, and the digests compared.
+//
+//   bench_simulate --benchmark_filter=ivo/willow
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/simulation.h"
+#include "scenes.h"
+
+namespace exactvo::bench {
+namespace {
+
+using formation::Method;
+using formation::Recording;
+using formation::Scenario;
+using formation::SimulationOptions;
+
+std::string digest_of(const Recording& recording) {
+  std::string bytes;
+  for (const formation::Step& row : recording.steps)
+    for (const formation::RobotStep& r : row.robots)
+      for (const geometry::Vec2 v : {r.position, r.chosen}) {
+        char raw[sizeof v];
+        std::memcpy(raw, &v, sizeof v);
+        bytes.append(raw, sizeof raw);
+      }
+  return datasets::sha256_of(bytes).substr(0, 12);
+}
+
+double robot_steps(const Recording& recording) {
+  return static_cast<double>((recording.steps.size() - 1) * recording.steps.front().robots.size());
+}
+
+struct Case {
+  Scenario scenario;
+  SimulationOptions options;
+  bool measured = false;  ///< with the metrics
+};
+
+void run_case(benchmark::State& state, const Case& c) {
+  const std::string digest = digest_of(simulate(c.scenario, c.options));
+  double steps = 0.0;
+  for (auto _ : state) {
+    const Recording recording = simulate(c.scenario, c.options);
+    if (c.measured) benchmark::DoNotOptimize(measure(c.scenario, recording));
+    steps += robot_steps(recording);
+    state.PauseTiming();
+    if (digest_of(recording) != digest) state.SkipWithError("two runs of one scene differ");
+    state.ResumeTiming();
+  }
+  state.SetLabel(digest);
+  state.counters["robot_steps"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+}
+
+void add(const Scenario& scenario, Method method) {
+  for (const bool measured : {false, true}) {
+    Case c{scenario, {}, measured};
+    c.options.method = method;
+    const std::string title = std::string(name(method)) + "/" + scenario.name + (measured ? "/measured" : "");
+    benchmark::RegisterBenchmark(title.c_str(), run_case, c)->Unit(benchmark::kMillisecond);
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::bench
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
+  using namespace exactvo;
+  for (const auto& scenes : {bench::generated_scenes(), bench::public_scenes(), bench::project_scenes()})
+    for (const formation::Scenario& scene : scenes)
+      for (const auto method : {formation::Method::ivo, formation::Method::orca}) bench::add(scene, method);
+  benchmark::RunSpecifiedBenchmarks();
+  return EXIT_SUCCESS;
+}
