@@ -6,9 +6,13 @@
 #include <limits>
 
 #include "exactvo/geometry/require.h"
+#include "shapes/edge_crossing.h"
 
 namespace exactvo::geometry {
 namespace {
+
+using detail::Crossing;
+using detail::crossing;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -29,14 +33,6 @@ double length(Vec2 d) {
 constexpr double kRoundingOfDistance = 128 * 0x1p-53;
 // Products and quotients that underflow are off by less than this in all.
 constexpr double kUnderflowOfDistance = 0x1p-1020;
-
-bool between(double low_or_high, double high_or_low, double x) {
-  return std::min(low_or_high, high_or_low) <= x && x <= std::max(low_or_high, high_or_low);
-}
-
-bool in_bounding_box(const Segment& s, Vec2 x) {
-  return between(s.a.x, s.b.x, x.x) && between(s.a.y, s.b.y, x.y);
-}
 
 bool boxes_are_apart(const Segment& s, const Segment& t) {
   return std::max(s.a.x, s.b.x) < std::min(t.a.x, t.b.x) || std::max(t.a.x, t.b.x) < std::min(s.a.x, s.b.x) ||
@@ -87,20 +83,6 @@ bool is_inside(const Obstacle& obstacle, Vec2 x) {
 double signed_distance(const Obstacle& obstacle, Vec2 x, bool inside) {
   const double d = edge_distance(obstacle, x);
   return inside ? -d : d;
-}
-
-enum class Crossing { none, right, on_edge };
-
-// Whether the ray from x towards +x crosses the edge; the upper end does not count, so a vertex counts once.
-Crossing crossing(const Segment& edge, Vec2 x) {
-  const bool upward = edge.a.y <= x.y && x.y < edge.b.y;
-  const bool downward = edge.b.y <= x.y && x.y < edge.a.y;
-  const bool near = in_bounding_box(edge, x);
-  if (!upward && !downward && !near) return Crossing::none;
-  const Sign turn = orientation(edge.a, edge.b, x);
-  if (turn == Sign::zero && near) return Crossing::on_edge;
-  const bool right = (upward && turn == Sign::positive) || (downward && turn == Sign::negative);
-  return right ? Crossing::right : Crossing::none;
 }
 
 }  // namespace

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Upright boxes round shapes: what is looked up by place. Never too small, at most a few ulps too large.
+
+#include <algorithm>
+#include <limits>
+
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::geometry {
+
+/// { x : low <= x <= high }, both coordinates; empty as it begins.
+struct Box {
+  Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Vec2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+  /// Grows to hold p.
+  void add(Vec2 p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  void add(const Box& b) {
+    add(b.low);
+    add(b.high);
+  }
+  bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
+};
+
+/// Holds the shape: exact for segments and polygons, rounded outward for discs and ellipses.
+Box box_of(const ConvexShape& shape);
+
+/// The least distance from x to the box, m: 0 inside. Rounded down: never more than the true one.
+double distance_below(const Box& box, Vec2 x);
+
+}  // namespace exactvo::geometry

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/geometry/box_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "exactvo/geometry/require.h"
+
+namespace exactvo::geometry {
+namespace {
+
+constexpr double kMostCellsABox = 64.0;   // a box of more stands in a list of its own
+constexpr double kMostColumns = 32768.0;  // of a scene that is a line of many boxes
+
+}  // namespace
+
+BoxGrid::BoxGrid(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
+  if (boxes_.empty()) return;
+  for (const Box& b : boxes_) {
+    EXACTVO_REQUIRE(!b.is_empty() && is_finite(b.low) && is_finite(b.high), "a box that is empty or not finite");
+    extent_.add(b);
+  }
+  // About one cell a box, as nearly square as the columns allow.
+  const Vec2 size = extent_.high - extent_.low;
+  const double count = static_cast<double>(boxes_.size());
+  side_ = std::max(std::sqrt(size.x * size.y / count), std::max(size.x, size.y) / std::min(2.0 * count, kMostColumns));
+  if (!(side_ > 0.0) || !std::isfinite(side_)) side_ = 1.0;
+  columns_ = static_cast<std::int32_t>(std::min(std::floor(size.x / side_), kMostColumns)) + 1;
+  rows_ = static_cast<std::int32_t>(std::min(std::floor(size.y / side_), kMostColumns)) + 1;
+  const auto cells = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+
+  std::vector<bool> is_large(boxes_.size());
+  start_.assign(cells + 1, 0);
+  const auto for_each_cell = [&](const Cells& c, const auto& visit) {
+    for (std::int32_t y = c.first_y; y <= c.last_y; ++y)
+      for (std::int32_t x = c.first_x; x <= c.last_x; ++x)
+        visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x));
+  };
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const Cells c = cells_.emplace_back(cells_of(boxes_[i]));
+    const double covered = (1.0 + c.last_x - c.first_x) * (1.0 + c.last_y - c.first_y);
+    is_large[i] = covered > kMostCellsABox;
+    if (is_large[i])
+      large_.push_back(static_cast<std::uint32_t>(i));
+    else
+      for_each_cell(c, [&](std::size_t cell) { ++start_[cell + 1]; });
+  }
+  for (std::size_t cell = 0; cell < cells; ++cell) start_[cell + 1] += start_[cell];
+  item_.resize(start_.back());
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  for (std::size_t i = 0; i < boxes_.size(); ++i)
+    if (!is_large[i])
+      for_each_cell(cells_[i], [&](std::size_t cell) { item_[next[cell]++] = static_cast<std::uint32_t>(i); });
+}
+
+// The same rounding for boxes and windows, and monotone: what meets has a cell in common.
+BoxGrid::Cells BoxGrid::cells_of(const Box& box) const {
+  const auto index = [&](double x, double low, std::int32_t count) {
+    return static_cast<std::int32_t>(std::clamp(std::floor((x - low) / side_), 0.0, static_cast<double>(count - 1)));
+  };
+  if (boxes_.empty()) return {};
+  return {index(box.low.x, extent_.low.x, columns_), index(box.low.y, extent_.low.y, rows_),
+          index(box.high.x, extent_.low.x, columns_), index(box.high.y, extent_.low.y, rows_)};
+}
+
+}  // namespace exactvo::geometry

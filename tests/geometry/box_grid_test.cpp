@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is looked up by place is what looking at everything finds; sums rounded up are not below the exact ones.
+#include "exactvo/geometry/box_grid.h"
+
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "exactvo/geometry/obstacle_index.h"
+#include "exactvo/geometry/rounding.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::geometry {
+namespace {
+
+using test::seed_of_run;
+using test::SeededRandom;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Mostly small, some of them long, some points.
+Box random_box(SeededRandom& random) {
+  Box box;
+  box.add(random.in_box(20.0));
+  const double size = random.integer(0, 9) == 0 ? 30.0 : random.uniform(0.0, 1.0);
+  if (random.integer(0, 4) != 0) box.add(box.low + random.in_box(size));
+  return box;
+}
+
+TEST(BoxGrid, FindsWhatLookingAtEveryBoxFinds) {
+  SeededRandom random(seed_of_run(11));
+  for (const int count : {0, 1, 2, 17, 300}) {
+    std::vector<Box> boxes;
+    for (int i = 0; i < count; ++i) boxes.push_back(random_box(random));
+    const BoxGrid grid(boxes);
+    for (int k = 0; k < 400; ++k) {
+      const Vec2 x = random.in_box(k % 5 == 0 ? 200.0 : 25.0);
+      const double reach = k % 7 == 0 ? kInfinity : random.uniform(0.0, 10.0);
+      std::vector<std::size_t> found, all;
+      grid.for_each_within(x, reach, [&](std::size_t i) { found.push_back(i); });
+      for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (distance_below(boxes[i], x) <= reach) all.push_back(i);
+      std::sort(found.begin(), found.end());
+      ASSERT_EQ(found, all) << count << " boxes, query " << k;
+    }
+  }
+}
+
+TEST(BoxGrid, ASceneOnALineHasCellsToo) {
+  std::vector<Box> boxes(100);
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].add(Vec2{static_cast<double>(i), 3.0});
+  const BoxGrid grid(boxes);
+  std::size_t found = 0;
+  grid.for_each_within({50.0, 3.0}, 2.0, [&](std::size_t) { ++found; });
+  EXPECT_EQ(found, 5u);
+}
+
+TEST(Box, HoldsItsShapeAndIsNotMuchLarger) {
+  SeededRandom random(seed_of_run(12));
+  for (int k = 0; k < 2000; ++k) {
+    const Vec2 c = random.in_box(100.0);
+    const double a = random.uniform(0.0, 5.0);
+    for (const ConvexShape& shape :
+         {ConvexShape{Disc{c, a}}, ConvexShape{Ellipse{c, a, random.uniform(-3, 3), random.uniform(0, 3)}},
+          ConvexShape{Segment{c, c + random.in_box(3)}}}) {
+      const Box box = box_of(shape);
+      for (const Vec2 n : {Vec2{1, 0}, Vec2{-1, 0}, Vec2{0, 1}, Vec2{0, -1}}) {
+        const double reach = n.x > 0 ? box.high.x : n.x < 0 ? -box.low.x : n.y > 0 ? box.high.y : -box.low.y;
+        const GrownShape s{shape, {}, 0.0};
+        EXPECT_NE(sign_of_support(s, n, 1.0, reach), Sign::positive) << to_string(shape);
+        EXPECT_LT(reach - support(s, n).h, 1e-12 * (1.0 + std::fabs(reach)));
+      }
+    }
+  }
+}
+
+/// Rectangles with a hole, walls and triangles.
+std::vector<Obstacle> scene(SeededRandom& random) {
+  std::vector<Obstacle> all;
+  for (int i = 0; i < 12; ++i) {
+    const Vec2 c = random.in_box(12.0);
+    const double w = random.uniform(0.5, 3.0);
+    switch (i % 3) {
+      case 0:
+        all.push_back(Polygon{{c, c + Vec2{w, 0}, c + Vec2{w, w}, c + Vec2{0, w}},
+                              {{c + Vec2{0.2 * w, 0.2 * w}, c + Vec2{0.2 * w, 0.8 * w}, c + Vec2{0.8 * w, 0.5 * w}}}});
+        break;
+      case 1:
+        all.push_back(Polyline{{c, c + random.in_box(3), c + random.in_box(3)}});
+        break;
+      default:
+        all.push_back(Polygon{{c, c + Vec2{w, 0}, c + Vec2{0, w}}, {}});
+    }
+  }
+  return all;
+}
+
+TEST(ObstacleIndex, GivesTheDistanceOfTheNearestObstacleBitForBit) {
+  SeededRandom random(seed_of_run(13));
+  for (int k = 0; k < 40; ++k) {
+    const std::vector<Obstacle> obstacles = scene(random);
+    ObstacleIndex index;
+    for (const Obstacle& o : obstacles) index.add(o);
+    index.build();
+    for (int q = 0; q < 100; ++q) {
+      const Vec2 from = random.in_box(q % 10 == 0 ? 60.0 : 14.0);
+      const Segment path{from, q % 9 == 0 ? from : from + random.in_box(q % 4 == 0 ? 8.0 : 0.3)};
+      double least = kInfinity;
+      for (const Obstacle& o : obstacles) least = std::min(least, swept_distance(o, path));
+      ASSERT_EQ(index.swept_distance(path, kInfinity), least) << to_string(ConvexShape{path});
+      const double enough = random.uniform(0.0, 4.0);
+      const double within = index.swept_distance(path, enough);
+      if (least < enough) {
+        ASSERT_EQ(within, least);
+      } else {
+        ASSERT_GE(within, enough);
+      }
+    }
+  }
+}
+
+TEST(ObstacleIndex, ASceneWithoutObstaclesIsInfinitelyFar) {
+  ObstacleIndex index;
+  index.build();
+  EXPECT_EQ(index.swept_distance({{0, 0}, {1, 0}}, kInfinity), kInfinity);
+}
+
+TEST(RoundedUpSum, IsNotBelowTheExactSum) {
+  SeededRandom random(seed_of_run(14));
+  for (int k = 0; k < 20000; ++k) {
+    const double scale = std::ldexp(1.0, random.integer(-1060, 900));
+    const Vec2 n = random.direction(), v = scale * random.in_box(1.0);
+    const double c = scale * random.uniform(-1.0, 1.0) * (k % 3 == 0 ? 1e-16 : 1.0);
+    const double up = rounded_up_sum(c + dot(n, v), product_magnitude(1.0, c) + dot_magnitude(n, v), 4.0);
+    const mpq_class exact = mpq_class(c) + mpq_class(n.x) * mpq_class(v.x) + mpq_class(n.y) * mpq_class(v.y);
+    ASSERT_GE(mpq_class(up), exact) << hex_text(c) << " " << hex_text(v.x) << " " << hex_text(v.y);
+  }
+}
+
+TEST(RoundedUpSum, AddsNothingToZero) {
+  EXPECT_EQ(rounded_up_sum(0.0, dot_magnitude({1, 0}, {0, 5}), 4.0), 0.0);
+  // A product that underflows is seen to be there.
+  EXPECT_GT(rounded_up_sum(0.0, dot_magnitude({0x1p-600, 0}, {0x1p-600, 0}), 4.0), 0.0);
+}
+
+}  // namespace
+}  // namespace exactvo::geometry
