@@ -3,10 +3,13 @@
 #include "exactvo/geometry/enclosure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/facades.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/pi.h"
@@ -16,15 +19,51 @@
 namespace exactvo::geometry {
 namespace {
 
-/// Whether the two shapes, each grown by `radius`, may meet: no sampled direction separates them. Errs towards yes.
-bool may_meet(const ConvexShape& a, const ConvexShape& b, double radius) {
-  constexpr int kDirections = 180;
-  const GrownShape grown_a{a, {}, radius};
-  const GrownShape grown_b{b, {}, radius};
-  for (int i = 0; i < kDirections; ++i) {
-    const double angle = 2.0 * kPi * i / kDirections;
-    const Vec2 n{std::cos(angle), std::sin(angle)};
-    if (support(grown_a, n).h + support(grown_b, -n).h < 0.0) return false;
+constexpr int kDirections = 180;
+
+/// Unit vectors all round.
+const std::array<Vec2, kDirections>& directions() {
+  static const std::array<Vec2, kDirections> all = [] {
+    std::array<Vec2, kDirections> n;
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * kPi * i / kDirections;
+      n[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle)};
+    }
+    return n;
+  }();
+  return all;
+}
+
+/// A shape grown by `radius`, its box, and how far it reaches against every direction.
+struct Silhouette {
+  Box box;  ///< of the shape alone
+  double radius = 0.0;
+  GrownShape grown;
+  std::array<double, kDirections> against{};
+
+  Silhouette(const ConvexShape& shape, double r) : box(box_of(shape)), radius(r), grown{shape, {}, r} {
+    for (std::size_t i = 0; i < against.size(); ++i) against[i] = support(grown, -directions()[i]).h;
+  }
+};
+
+/// Whether one of the directions along the axes, which are among those below, separates the grown shapes beyond doubt.
+bool boxes_are_apart(const Box& a, const Box& b, double radii) {
+  const auto apart = [radii](double high, double low) {
+    constexpr double kRounding = 1e-9;
+    return low - high > radii + kRounding * (1.0 + radii + std::fabs(low) + std::fabs(high));
+  };
+  return apart(a.high.x, b.low.x) || apart(b.high.x, a.low.x) || apart(a.high.y, b.low.y) || apart(b.high.y, a.low.y);
+}
+
+/// Whether the two shapes, each grown by its radius, may meet: no sampled direction separates them. Errs towards yes.
+/// `separating` is where to begin to look, and becomes the direction that was found.
+bool may_meet(const GrownShape& a, const Silhouette& b, std::size_t& separating) {
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const std::size_t i = (separating + k) % kDirections;
+    if (support(a, directions()[i]).h + b.against[i] < 0.0) {
+      separating = i;
+      return false;
+    }
   }
   return true;
 }
@@ -32,6 +71,7 @@ bool may_meet(const ConvexShape& a, const ConvexShape& b, double radius) {
 struct Cluster {
   std::vector<std::size_t> obstacles;  ///< ascending
   std::optional<FittedEllipse> fitted;
+  std::optional<Silhouette> grown;  ///< of the ellipse, by the robot
 };
 
 std::vector<Vec2> points_of(const std::vector<ObstacleParts>& obstacles, const std::vector<std::size_t>& which) {
@@ -56,28 +96,35 @@ class Clustering {
  public:
   Clustering(const std::vector<ObstacleParts>& obstacles, double robot_radius, Vec2 start, Vec2 goal,
              const EnclosureOptions& options)
-      : obstacles_(obstacles), robot_radius_(robot_radius), start_(start), goal_(goal), options_(options) {}
+      : obstacles_(obstacles), robot_radius_(robot_radius), start_(start), goal_(goal), options_(options) {
+    boxes_.reserve(obstacles.size());
+    for (const ObstacleParts& parts : obstacles) {
+      Box& box = boxes_.emplace_back();
+      for (const ConvexShape& piece : parts.pieces) box.add(box_of(piece));
+    }
+    taken_.resize(obstacles.size());
+  }
 
   /// Encloses what the straight way meets, then what the detours round those enclosures meet, until nothing new does.
   void run() {
     for (std::vector<std::size_t> met = newly_met(); !met.empty(); met = newly_met()) {
-      for (std::size_t i : met) clusters_.push_back(cluster({i}));
+      for (std::size_t i : met) {
+        clusters_.push_back(cluster({i}));
+        taken_[i] = true;
+      }
       while (merge_one()) {
       }
     }
   }
 
   const std::vector<Cluster>& clusters() const { return clusters_; }
-  bool in_the_way(std::size_t obstacle) const {
-    return std::any_of(clusters_.begin(), clusters_.end(), [obstacle](const Cluster& c) {
-      return std::binary_search(c.obstacles.begin(), c.obstacles.end(), obstacle);
-    });
-  }
+  bool in_the_way(std::size_t obstacle) const { return taken_[obstacle]; }
 
  private:
   Cluster cluster(std::vector<std::size_t> which) const {
-    Cluster c{std::move(which), {}};
+    Cluster c{std::move(which), {}, {}};
     c.fitted = fit_trap_free(points_of(obstacles_, c.obstacles), robot_radius_, start_, goal_, options_);
+    if (c.fitted) c.grown.emplace(c.fitted->ellipse, robot_radius_);
     return c;
   }
 
@@ -96,17 +143,27 @@ class Clustering {
   }
 
   std::vector<std::size_t> newly_met() const {
-    const ConvexPolygon way = passage();
     // Each side of `may_meet` is grown by half of what the robot keeps clear of the obstacle itself.
     const double clearance = 0.5 * (robot_radius_ + options_.margin);
+    const Silhouette way(passage(), clearance);
+    std::size_t separating = 0;
+    const auto meets_way = [&](const ConvexShape& piece) {
+      if (boxes_are_apart(box_of(piece), way.box, 2.0 * clearance)) return false;
+      return may_meet({piece, {}, clearance}, way, separating);
+    };
     std::vector<std::size_t> met;
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-      if (in_the_way(i)) continue;
+      if (taken_[i] || boxes_are_apart(boxes_[i], way.box, 2.0 * clearance)) continue;
       const std::vector<ConvexShape>& pieces = obstacles_[i].pieces;
-      if (std::any_of(pieces.begin(), pieces.end(), [&](const auto& piece) { return may_meet(piece, way, clearance); }))
-        met.push_back(i);
+      if (std::any_of(pieces.begin(), pieces.end(), meets_way)) met.push_back(i);
     }
     return met;
+  }
+
+  bool ellipses_may_meet(const Cluster& a, const Cluster& b) const {
+    if (boxes_are_apart(a.grown->box, b.grown->box, 2.0 * robot_radius_)) return false;
+    std::size_t separating = 0;
+    return may_meet(a.grown->grown, *b.grown, separating);
   }
 
   bool was_refused(const std::vector<std::size_t>& which) const {
@@ -118,7 +175,7 @@ class Clustering {
     for (std::size_t i = 0; i < clusters_.size(); ++i) {
       for (std::size_t j = i + 1; j < clusters_.size(); ++j) {
         if (!clusters_[i].fitted || !clusters_[j].fitted) continue;
-        if (!may_meet(clusters_[i].fitted->ellipse, clusters_[j].fitted->ellipse, robot_radius_)) continue;
+        if (!ellipses_may_meet(clusters_[i], clusters_[j])) continue;
         std::vector<std::size_t> which = merged(clusters_[i].obstacles, clusters_[j].obstacles);
         if (was_refused(which)) continue;
         Cluster both = cluster(which);
@@ -138,6 +195,8 @@ class Clustering {
   double robot_radius_;
   Vec2 start_, goal_;
   const EnclosureOptions& options_;
+  std::vector<Box> boxes_;   ///< of the obstacles
+  std::vector<bool> taken_;  ///< whether an obstacle is in a cluster
   std::vector<Cluster> clusters_;
   std::vector<std::vector<std::size_t>> refused_;  ///< unions that can't be enclosed
 };
