@@ -53,7 +53,7 @@ Scenario circle() {
 
 vo::OrcaChain block(double x, double y) {
   constexpr double kSide = 30.0;  // m
-  return {{{x, y}, {x + kSide, y}, {x + kSide, y + kSide}, {x, y + kSide}}, {true, true, true, true}};
+  return vo::orca_chains(geometry::Polygon{{{x, y}, {x + kSide, y}, {x + kSide, y + kSide}, {x, y + kSide}}, {}}).front();
 }
 
 Scenario blocks() {

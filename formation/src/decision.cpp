@@ -11,20 +11,18 @@ namespace {
 
 using geometry::norm;
 
-RobotConstraint record(const geometry::HalfPlane& h, bool certified, std::size_t other, const vo::MovingDisc& self,
-                       const vo::MovingDisc& them, double tau) {
-  RobotConstraint c;
-  c.distance = norm(them.position - self.position);
-  c.recorded.half_plane = h;
-  c.recorded.source = ConstraintSource::robot;
-  c.recorded.index = other;
-  c.recorded.certified = certified;
-  c.recorded.hard = false;
-  c.recorded.shape = geometry::Disc{them.position, them.radius};
-  c.recorded.position = self.position;
-  c.recorded.radius = self.radius;
-  c.recorded.tau = tau;
-  c.recorded.shape_velocity = them.velocity;
+Constraint against_robot(const geometry::HalfPlane& h, bool certified, std::size_t other, const Scene& scene,
+                         const vo::MovingDisc& self, const vo::MovingDisc& them, double tau) {
+  Constraint c;
+  c.half_plane = h;
+  c.body = scene.robot(other);
+  c.priority = lp::Priority::soft;
+  c.proof = certified ? vo::Proof::pair : vo::Proof::none;
+  const Vec2 apart = self.position - them.position;
+  c.clearance = norm(apart) - (self.radius + them.radius);
+  c.normal = geometry::normalized(apart);
+  c.time_horizon = tau;
+  c.index = other;
   return c;
 }
 
@@ -34,13 +32,26 @@ bool is_active(const lp::Solution& solution, std::size_t index) {
   return false;
 }
 
+/// By the distance of the centres; of robots equally near, by their numbers.
+void sort_by_distance(const std::vector<Anchor>& anchors, std::size_t self, std::vector<Constraint>& mine) {
+  const auto distance = [&](const Constraint& c) { return norm(anchors[c.index].position - anchors[self].position); };
+  std::sort(mine.begin(), mine.end(), [&](const Constraint& x, const Constraint& y) {
+    const double dx = distance(x), dy = distance(y);
+    return dx != dy ? dx < dy : x.index < y.index;
+  });
+}
+
 }  // namespace
 
-std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scenario, const SimulationOptions& options,
-                                                            const std::vector<Vec2>& positions,
-                                                            const std::vector<Vec2>& velocities) {
+void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
+                       Scene& scene, std::vector<std::vector<Constraint>>& out) {
   const std::size_t n = scenario.robots.size();
-  std::vector<std::vector<RobotConstraint>> out(n);
+  out.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    out[i].clear();
+    scene.bodies().move(scene.robot(i), geometry::Disc{anchors[i].position, scenario.robots[i].radius},
+                        anchors[i].velocity);
+  }
   vo::ReciprocalOptions pair_options;
   const bool baseline = options.method == Method::orca;
   pair_options.time_horizon = baseline ? scenario.horizons.orca : scenario.horizons.robots;
@@ -48,19 +59,18 @@ std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scen
   pair_options.margin = baseline ? 0.0 : scenario.margins.robot;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
-      if (norm(positions[i] - positions[j]) > scenario.neighbour_distance) continue;
-      const vo::MovingDisc a{positions[i], velocities[i], scenario.robots[i].radius};
-      const vo::MovingDisc b{positions[j], velocities[j], scenario.robots[j].radius};
+      if (norm(anchors[i].position - anchors[j].position) > scenario.neighbour_distance) continue;
+      const vo::MovingDisc a{anchors[i].position, anchors[i].velocity, scenario.robots[i].radius};
+      const vo::MovingDisc b{anchors[j].position, anchors[j].velocity, scenario.robots[j].radius};
       const bool a_yields = scenario.robots[i].cooperates, b_yields = scenario.robots[j].cooperates;
       pair_options.share_of_a = a_yields == b_yields ? 0.5 : (a_yields ? 1.0 : 0.0);
       const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a, b, pair_options);
-      if (a_yields) out[i].push_back(record(pair.a, pair.certified, j, a, b, pair_options.time_horizon));
-      if (b_yields) out[j].push_back(record(pair.b, pair.certified, i, b, a, pair_options.time_horizon));
+      const double tau = pair_options.time_horizon;
+      if (a_yields) out[i].push_back(against_robot(pair.a, pair.certified, j, scene, a, b, tau));
+      if (b_yields) out[j].push_back(against_robot(pair.b, pair.certified, i, scene, b, a, tau));
     }
   }
-  for (auto& mine : out)
-    std::stable_sort(mine.begin(), mine.end(), [](const auto& x, const auto& y) { return x.distance < y.distance; });
-  return out;
+  for (std::size_t i = 0; i < n; ++i) sort_by_distance(anchors, i, out[i]);
 }
 
 double contact_time(const Scenario& scenario) {
@@ -77,26 +87,46 @@ lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {
   return bound;
 }
 
-void decide(const Scenario& scenario, const DecisionInput& in, RobotStep& step) {
-  lp::Problem problem;
-  problem.bound = speed_bound(scenario, in.max_speed);
-  problem.preferred = in.preferred;
-  std::vector<RecordedConstraint> all;
-  for (const StaticConstraint& c : *in.statics) all.push_back(c.recorded);
-  for (const RobotConstraint& c : *in.robots) all.push_back(c.recorded);
-  for (const RecordedConstraint& c : all)
-    problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
-  const lp::Solution solution = lp::solve(problem);
+RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from, bool active) const {
+  const vo::Body& body = (*bodies_)[c.body];
+  RecordedConstraint r;
+  r.half_plane = c.half_plane;
+  r.source = body.kind;
+  r.body = c.body;
+  r.index = c.index;
+  r.piece = c.piece;
+  r.certified = c.proof != vo::Proof::none;
+  r.hard = c.priority == lp::Priority::hard;
+  r.active = active;
+  r.shape = body.shape;
+  r.position = from.position;
+  r.radius = from.radius;
+  r.tau = c.time_horizon;
+  r.shape_velocity = body.velocity;
+  r.clearance = c.clearance;
+  return r;
+}
+
+void Decider::decide(const DecisionInput& in, RobotStep& step) {
+  problem_.bound = speed_bound(*scenario_, in.from.max_speed);
+  problem_.preferred = in.preferred;
+  problem_.constraints.clear();
+  for (const std::vector<Constraint>* some : {in.statics, in.others})
+    for (const Constraint& c : *some) problem_.constraints.push_back({c.half_plane, c.priority});
+  const lp::Solution solution = lp::solve(problem_);
   step.preferred = in.preferred;
   step.chosen = solution.velocity;
   step.status = solution.status;
   step.violation = solution.violation;
   step.uncertified = 0;
   step.constraints.clear();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i].active = is_active(solution, i);
-    if (!all[i].certified) ++step.uncertified;
-    if (in.keep_all || all[i].active) step.constraints.push_back(std::move(all[i]));
+  std::size_t number = 0;
+  for (const std::vector<Constraint>* some : {in.statics, in.others}) {
+    for (const Constraint& c : *some) {
+      const bool active = is_active(solution, number++);
+      if (c.proof == vo::Proof::none) ++step.uncertified;
+      if (in.keep_all || active) step.constraints.push_back(recorded(c, in.from, active));
+    }
   }
 }
 

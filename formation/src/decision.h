@@ -10,18 +10,17 @@
 
 namespace exactvo::formation::detail {
 
-/// A half-plane against another robot, already this robot's half of the pair.
-struct RobotConstraint {
-  RecordedConstraint recorded;
-  double distance = 0.0;  ///< m, between the centres
+/// A robot that half-planes are built for: its brake point in a formation, else itself.
+struct Anchor {
+  Vec2 position;  ///< m
+  Vec2 velocity;  ///< m/s
 };
 
 /// All half-planes of every robot against every other within `neighbour_distance`, nearest first: entry i belongs to
-/// robot i. `positions` and `velocities` are those the pairs are built at; both halves of a pair share their normal bit
-/// for bit. A robot that does not cooperate gets none, and who meets it takes the whole avoiding.
-std::vector<std::vector<RobotConstraint>> robot_constraints(const Scenario& scenario, const SimulationOptions& options,
-                                                            const std::vector<Vec2>& positions,
-                                                            const std::vector<Vec2>& velocities);
+/// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who
+/// meets it takes the whole avoiding. Moves the robots' bodies to their anchors.
+void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
+                       Scene& scene, std::vector<std::vector<Constraint>>& out);
 
 /// s: within this a robot in contact is asked to part: never less than a step.
 double contact_time(const Scenario& scenario);
@@ -29,15 +28,28 @@ double contact_time(const Scenario& scenario);
 lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed);
 
 struct DecisionInput {
-  Vec2 preferred;        ///< m/s
-  double max_speed = 0;  ///< m/s
-  const std::vector<StaticConstraint>* statics = nullptr;
-  const std::vector<RobotConstraint>* robots = nullptr;
+  Vec2 preferred;  ///< m/s
+  Viewpoint from;
+  const std::vector<Constraint>* statics = nullptr;
+  const std::vector<Constraint>* others = nullptr;  ///< robots and moving obstacles
   bool keep_all = false;
 };
 
-/// Fills `chosen`, `status`, `violation`, `constraints` and `uncertified` of the step; the other fields are the
-/// caller's.
-void decide(const Scenario& scenario, const DecisionInput& in, RobotStep& step);
+/// Makes decisions one after the other in memory of its own.
+class Decider {
+ public:
+  Decider(const Scenario& scenario, const vo::BodyTable& bodies) : scenario_(&scenario), bodies_(&bodies) {}
+
+  /// Fills `chosen`, `status`, `violation`, `constraints` and `uncertified` of the step; the other fields are the
+  /// caller's.
+  void decide(const DecisionInput& in, RobotStep& step);
+
+ private:
+  RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, bool active) const;
+
+  const Scenario* scenario_;
+  const vo::BodyTable* bodies_;
+  lp::Problem problem_;
+};
 
 }  // namespace exactvo::formation::detail

@@ -48,8 +48,9 @@ class FormationRun {
         scenario_(with_margins(scenario, remedies_)),
         spec_(*scenario_.formation),
         options_(options),
-        library_(scenario_),
+        scene_(scenario_, options),
         clock_(scenario_, options),
+        decider_(scenario_, scene_.bodies()),
         offsets_(offsets_in_use(spec_, remedies_)) {
     const HorizonRule rule = remedies_.tau_clamp ? HorizonRule::clamped : HorizonRule::literal;
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
@@ -57,7 +58,7 @@ class FormationRun {
       const Vec2 slot = spec_.leader.path.back() + offsets_[i];
       robots_.push_back({{r.position, r.velocity},
                          r.velocity,
-                         StaticField(library_, scenario_, options, r.radius, r.position, slot, rule),
+                         StaticField(scene_, scenario_, options, r.radius, r.position, slot, rule),
                          {},
                          {}});
     }
@@ -102,34 +103,31 @@ class FormationRun {
     Step row = state_row(time);
     const LeaderState leader{row.leader_position, row.leader_velocity};
     const RelativeState relative = relative_to(leader);
-    std::vector<Vec2> anchors, velocities;
-    for (std::size_t i = 0; i < robots_.size(); ++i) {
-      anchors.push_back(anchor(i));
-      velocities.push_back(anchor_velocity(i));
-    }
-    auto robot_lines = robot_constraints(scenario_, options_, anchors, velocities);
-    for (std::size_t i = 0; i < robots_.size(); ++i)
-      decide_one(i, time, leader, relative, robot_lines[i], row.robots[i]);
+    anchors_.clear();
+    for (std::size_t i = 0; i < robots_.size(); ++i) anchors_.push_back({anchor(i), anchor_velocity(i)});
+    robot_constraints(scenario_, options_, anchors_, scene_, others_);
+    move_obstacles(scenario_, time, scene_);
+    for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, relative, row.robots[i]);
     return row;
   }
 
   void decide_one(std::size_t i, double time, const LeaderState& leader, const RelativeState& relative,
-                  std::vector<RobotConstraint>& robot_lines, RobotStep& step) {
+                  RobotStep& step) {
     const Robot& spec = scenario_.robots[i];
     const Viewpoint here{anchor(i), anchor_velocity(i), spec.radius, spec.max_speed};
-    const std::vector<StaticConstraint> statics = robots_[i].field.constraints(here);
-    for (RobotConstraint& c : moving_constraints(scenario_, here, time)) robot_lines.push_back(std::move(c));
+    robots_[i].field.constraints(here, statics_);
+    add_moving_constraints(scenario_, here, scene_, others_[i]);
     const Vec2 wanted = wanted_velocity(i, leader, relative);
     const SlotFollower::Situation situation{
         time,  norm(relative.position[i]), scenario_.arrival_tolerance, spec_.catch_up_speed, leader.velocity == Vec2{},
         wanted};
-    DecisionInput in{steered(i, situation, statics, robot_lines, step), spec.max_speed, &statics, &robot_lines,
+    DecisionInput in{steered(i, situation, statics_, others_[i], step), here, &statics_, &others_[i],
                      clock_.keeps_all(time)};
-    decide(scenario_, in, step);
+    decider_.decide(in, step);
     if (!remedies_.smoothing) return;
     // Math: v_pref <- (v_pref + 4 w_prev) / 5, projected.
     in.preferred = (in.preferred + 4.0 * robots_[i].tracked) / 5.0;
-    decide(scenario_, in, step);
+    decider_.decide(in, step);
   }
 
   /// The preference, with the consensus term in it where the filter comes last.
@@ -140,8 +138,8 @@ class FormationRun {
     return slotwards + consensus_input(spec_, relative, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
   }
 
-  Vec2 steered(std::size_t i, SlotFollower::Situation situation, const std::vector<StaticConstraint>& statics,
-               const std::vector<RobotConstraint>& robot_lines, RobotStep& step) {
+  Vec2 steered(std::size_t i, SlotFollower::Situation situation, const std::vector<Constraint>& statics,
+               const std::vector<Constraint>& others, RobotStep& step) {
     const Vec2 wanted = situation.preferred;
     if (!remedies_.side_commitment) return wanted;
     const double speed = std::min(norm(wanted), scenario_.robots[i].max_speed);
@@ -149,7 +147,7 @@ class FormationRun {
     step.side = answer.side;
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
-    const Follower::Answer round = robots_[i].slot.steer(situation, statics, robot_lines);
+    const Follower::Answer round = robots_[i].slot.steer(situation, statics, others);
     step.note = joined_notes(answer.note, round.note);
     if (round.mode != Mode::following) return answer.preferred;
     step.mode = Mode::following;
@@ -232,10 +230,15 @@ class FormationRun {
   Scenario scenario_;
   const FormationSpec& spec_;
   const SimulationOptions& options_;
-  ObstacleLibrary library_;
+  Scene scene_;
   RunClock clock_;
+  Decider decider_;
   std::vector<Vec2> offsets_;
   std::vector<FormationRobot> robots_;
+  // Memory that a step leaves to the next.
+  std::vector<Anchor> anchors_;
+  std::vector<Constraint> statics_;
+  std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
 };
 
 }  // namespace

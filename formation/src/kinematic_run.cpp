@@ -29,7 +29,12 @@ struct KinematicRobot {
 class KinematicRun {
  public:
   KinematicRun(const Scenario& scenario, const SimulationOptions& options)
-      : scenario_(scenario), options_(options), library_(scenario), clock_(scenario, options) {
+      : scenario_(scenario),
+        options_(options),
+        scene_(scenario, options),
+        clock_(scenario, options),
+        decider_(scenario, scene_.bodies()),
+        anchors_(scenario.robots.size()) {
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       robots_.push_back({scenario.robots[i].position, scenario.robots[i].velocity, 0, std::nullopt, {}, false, {}});
       look_at_goal(i);
@@ -55,7 +60,7 @@ class KinematicRun {
 
   void look_at_goal(std::size_t i) {
     const Robot& spec = scenario_.robots[i];
-    robots_[i].field.emplace(library_, scenario_, options_, spec.radius, robots_[i].position, goal_of(i),
+    robots_[i].field.emplace(scene_, scenario_, options_, spec.radius, robots_[i].position, goal_of(i),
                              HorizonRule::clamped);
     robots_[i].follower.reset();
   }
@@ -80,36 +85,35 @@ class KinematicRun {
     look_at_goal(i);
     robots_[i].note = "goal " + std::to_string(robots_[i].goal) + " passed: heads for the next";
     Outlook outlook{time, i, robots_[i].goal, {}};
-    for (const geometry::Enclosure& e : robots_[i].field->enclosures()) outlook.enclosures.push_back(e.shape);
+    for (const vo::BodyTable::Number body : robots_[i].field->shapes())
+      outlook.enclosures.push_back(scene_.bodies()[body].shape);
     later_outlooks_.push_back(std::move(outlook));
   }
 
   Step decide_all(double time) {
-    std::vector<Vec2> positions, velocities;
-    for (const KinematicRobot& r : robots_) {
-      positions.push_back(r.position);
-      velocities.push_back(r.velocity);
-    }
-    auto robot_lines = robot_constraints(scenario_, options_, positions, velocities);
+    for (std::size_t i = 0; i < robots_.size(); ++i) anchors_[i] = {robots_[i].position, robots_[i].velocity};
+    robot_constraints(scenario_, options_, anchors_, scene_, others_);
+    move_obstacles(scenario_, time, scene_);
     Step row;
     row.time = time;
-    for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time, robot_lines[i]));
+    row.robots.reserve(robots_.size());
+    for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time));
     return row;
   }
 
-  RobotStep decide_one(std::size_t i, double time, std::vector<RobotConstraint>& robot_lines) {
+  RobotStep decide_one(std::size_t i, double time) {
     pass_waypoint(i, time);
     const Robot& spec = scenario_.robots[i];
     KinematicRobot& r = robots_[i];
     const Viewpoint here{r.position, r.velocity, spec.radius, spec.max_speed};
-    const std::vector<StaticConstraint> statics = r.field->constraints(here);
-    for (RobotConstraint& c : moving_constraints(scenario_, here, time)) robot_lines.push_back(std::move(c));
+    r.field->constraints(here, statics_);
+    add_moving_constraints(scenario_, here, scene_, others_[i]);
     RobotStep step;
     step.position = r.position;
     step.velocity = r.velocity;
     step.note = std::exchange(r.note, {});
-    const Vec2 preferred = steer(i, time, statics, step);
-    decide(scenario_, {preferred, spec.max_speed, &statics, &robot_lines, clock_.keeps_all(time)}, step);
+    const Vec2 preferred = steer(i, time, statics_, step);
+    decider_.decide({preferred, here, &statics_, &others_[i], clock_.keeps_all(time)}, step);
     return step;
   }
 
@@ -119,13 +123,13 @@ class KinematicRun {
     return speed * geometry::normalized(to_goal);
   }
 
-  Vec2 steer(std::size_t i, double time, const std::vector<StaticConstraint>& statics, RobotStep& step) {
+  Vec2 steer(std::size_t i, double time, const std::vector<Constraint>& statics, RobotStep& step) {
     const Vec2 preferred = straight_for_goal(i);
     if (at_goal(i)) {
       step.mode = Mode::arrived;
       return preferred;
     }
-    const bool in_contact = !statics.empty() && statics.front().distance < 0.0;
+    const bool in_contact = !statics.empty() && statics.front().clearance < 0.0;
     if (in_contact) step.mode = Mode::pushing_out;
     if (options_.method == Method::orca) return preferred;
     if (options_.method != Method::ivo) return ties_broken(i, statics, preferred, step);
@@ -146,7 +150,7 @@ class KinematicRun {
   }
 
   /// Says so when a tie begins.
-  Vec2 ties_broken(std::size_t i, const std::vector<StaticConstraint>& statics, Vec2 preferred, RobotStep& step) {
+  Vec2 ties_broken(std::size_t i, const std::vector<Constraint>& statics, Vec2 preferred, RobotStep& step) {
     const Vec2 turned = with_tie_broken(statics, preferred);
     const bool tied = !(turned == preferred);
     if (tied && !robots_[i].tied) step.note = joined_notes(step.note, "head-on: the tie between the sides goes left");
@@ -196,10 +200,15 @@ class KinematicRun {
 
   const Scenario& scenario_;
   const SimulationOptions& options_;
-  ObstacleLibrary library_;
+  Scene scene_;
   RunClock clock_;
+  Decider decider_;
   std::vector<KinematicRobot> robots_;
   std::vector<Outlook> later_outlooks_;
+  // Memory that a step leaves to the next.
+  std::vector<Anchor> anchors_;
+  std::vector<Constraint> statics_;
+  std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
 };
 
 }  // namespace

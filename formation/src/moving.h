@@ -7,14 +7,24 @@
 
 #include <vector>
 
-#include "decision.h"
+#include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/shapes.h"
 
 namespace exactvo::formation::detail {
+
+struct Constraint;
+struct Viewpoint;
+class Scene;
 
 /// The convex hull of the obstacle as it stands at `time`.
 geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time);
 
-/// Half-planes against every moving obstacle, soft, certified while the obstacle keeps its velocity.
-std::vector<RobotConstraint> moving_constraints(const Scenario& scenario, const Viewpoint& from, double time);
+/// Brings the bodies of moving obstacles to where they are at `time`.
+void move_obstacles(const Scenario& scenario, double time, Scene& scene);
+
+/// Appends half-planes against every moving obstacle, soft, certified while the obstacle keeps its velocity. REQUIRES:
+/// `move_obstacles` for this time.
+void add_moving_constraints(const Scenario& scenario, const Viewpoint& from, Scene& scene,
+                            std::vector<Constraint>& out);
 
 }  // namespace exactvo::formation::detail

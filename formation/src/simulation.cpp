@@ -57,11 +57,11 @@ std::vector<geometry::ConvexShape> enclosures_for(const Scenario& scenario, cons
                                                   std::size_t robot) {
   EXACTVO_REQUIRE(robot < scenario.robots.size(), std::to_string(robot));
   const Robot& r = scenario.robots[robot];
-  const ObstacleLibrary library(scenario);
+  Scene scene(scenario, options);
   const Vec2 goal = first_goal(scenario, options, robot);
-  const StaticField field(library, scenario, options, r.radius, r.position, goal, HorizonRule::clamped);
+  const StaticField field(scene, scenario, options, r.radius, r.position, goal, HorizonRule::clamped);
   std::vector<geometry::ConvexShape> shapes;
-  for (const geometry::Enclosure& e : field.enclosures()) shapes.push_back(e.shape);
+  for (const vo::BodyTable::Number body : field.shapes()) shapes.push_back(scene.bodies()[body].shape);
   return shapes;
 }
 

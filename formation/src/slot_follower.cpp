@@ -13,15 +13,9 @@ constexpr double kLeaveGain = 0.05;  // m
 constexpr double kLeastShare = 0.1;
 
 /// Robots as walls: those that the turn has to respect.
-std::vector<StaticConstraint> all_lines(const std::vector<StaticConstraint>& statics,
-                                        const std::vector<RobotConstraint>& robots) {
-  std::vector<StaticConstraint> lines = statics;
-  for (const RobotConstraint& r : robots) {
-    StaticConstraint c;
-    c.recorded = r.recorded;
-    c.distance = r.distance;
-    lines.push_back(c);
-  }
+std::vector<Constraint> all_lines(const std::vector<Constraint>& statics, const std::vector<Constraint>& others) {
+  std::vector<Constraint> lines = statics;
+  lines.insert(lines.end(), others.begin(), others.end());
   return lines;
 }
 
@@ -35,15 +29,15 @@ bool SlotFollower::stalled(const Situation& s) {
   return s.time - best_time_ > kStallTime && s.distance > s.tolerance;
 }
 
-Follower::Answer SlotFollower::steer(const Situation& s, const std::vector<StaticConstraint>& statics,
-                                     const std::vector<RobotConstraint>& robots) {
+Follower::Answer SlotFollower::steer(const Situation& s, const std::vector<Constraint>& statics,
+                                     const std::vector<Constraint>& others) {
   Follower::Answer answer{s.preferred, Mode::direct, 0, ""};
   if (!s.target_rests) {
     *this = SlotFollower{};
     return answer;
   }
   if (!following_ && !stalled(s)) return answer;
-  const std::vector<StaticConstraint> lines = all_lines(statics, robots);
+  const std::vector<Constraint> lines = all_lines(statics, others);
   const bool free = !blocked(lines, s.preferred);
   if (following_ && free && s.distance < hit_distance_ - kLeaveGain) {
     *this = SlotFollower{};

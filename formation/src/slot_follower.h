@@ -23,8 +23,8 @@ class SlotFollower {
     Vec2 preferred;             ///< m/s
   };
   /// Mode::following with the turned preference while going round; Mode::direct otherwise.
-  Follower::Answer steer(const Situation& s, const std::vector<StaticConstraint>& statics,
-                         const std::vector<RobotConstraint>& robots);
+  Follower::Answer steer(const Situation& s, const std::vector<Constraint>& statics,
+                         const std::vector<Constraint>& others);
 
  private:
   bool stalled(const Situation& s);

@@ -3,18 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "exactvo/geometry/distance.h"
-#include "exactvo/vo/velocity_obstacle.h"
+#include "exactvo/geometry/predicates.h"
+#include "moving.h"
 
 namespace exactvo::formation::detail {
 namespace {
 
-using geometry::ConvexShape;
 using geometry::Enclosure;
 using geometry::EnclosureGrade;
-using geometry::GrownShape;
-using vo::VelocityObstacle;
+using vo::BodyKind;
+using vo::BodyTable;
 
 /// m. Half-planes are built for a robot this much larger and certified for the robot as it is: a robot that presses
 /// against a wall for minutes closes the gap by a constant factor a step, and without a skin it would end within
@@ -28,16 +29,6 @@ constexpr double kPushOutShare = 0.3;  // of max_speed
 
 constexpr double kLiteralHorizonAtRest = 1e6;  // s: the printed tau divides by |v| = 0
 
-std::vector<Enclosure> facade_enclosures(const std::vector<geometry::ObstacleParts>& parts,
-                                         const SimulationOptions& options, double margin) {
-  std::vector<Enclosure> out;
-  const geometry::FacadeEllipseOptions ellipse{options.facade_minor_to_major, options.facade_fixed_minor, margin};
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    for (const geometry::Segment& facade : parts[i].facades)
-      out.push_back({geometry::facade_ellipse(facade, ellipse), {i}, EnclosureGrade::containing});
-  return out;
-}
-
 geometry::EnclosureOptions enclosure_options(const Scenario& scenario) {
   geometry::EnclosureOptions options;
   options.margin = scenario.margins.obstacle;
@@ -45,26 +36,129 @@ geometry::EnclosureOptions enclosure_options(const Scenario& scenario) {
   return options;
 }
 
+/// Nearest first; of shapes equally near, the order of their names.
+void sort_by_clearance(std::vector<Constraint>& lines) {
+  std::sort(lines.begin(), lines.end(), [](const Constraint& a, const Constraint& b) {
+    return std::tie(a.clearance, a.index, a.piece) < std::tie(b.clearance, b.index, b.piece);
+  });
+}
+
+/// The farthest velocity of a box bound is sqrt 2 times its side.
+bool is_beyond_reach(double clearance, const Viewpoint& from, double tau) {
+  return clearance > std::sqrt(2.0) * from.max_speed * tau;
+}
+
 }  // namespace
 
-ObstacleLibrary::ObstacleLibrary(const Scenario& scenario) {
-  for (const SceneObstacle& obstacle : scenario.obstacles) {
-    first_piece_.push_back(parts_.empty() ? 0 : first_piece_.back() + parts_.back().pieces.size());
-    parts_.push_back(geometry::parts_of(obstacle.shape));
-    for (vo::OrcaChain& chain : vo::orca_chains(obstacle.shape)) {
-      // A closed chain has an edge a vertex, an open one an edge less: counting vertices numbers both apart.
-      first_edge_.push_back(chains_.empty() ? 0 : first_edge_.back() + chains_.back().vertices.size());
+// --- The scene ---
+
+Scene::Scene(const Scenario& scenario, const SimulationOptions& options) {
+  if (options.method == Method::orca)
+    add_chains(scenario);
+  else
+    add_pieces(scenario);
+  if (options.method == Method::ivo_edge) add_facade_ellipses(scenario, options);
+  first_robot_ = bodies_.size();
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const Robot& r = scenario.robots[i];
+    bodies_.add({BodyKind::robot, geometry::Disc{r.position, r.radius}, r.velocity, {i}});
+  }
+  first_moving_ = bodies_.size();
+  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k)
+    bodies_.add({BodyKind::moving_obstacle, shape_at(scenario.moving_obstacles[k], 0.0), {}, {k}});
+}
+
+geometry::BoxGrid Scene::by_place(const std::vector<BodyTable::Number>& some) const {
+  std::vector<geometry::Box> boxes;
+  boxes.reserve(some.size());
+  for (const BodyTable::Number body : some) boxes.push_back(bodies_.box(body));
+  return geometry::BoxGrid(std::move(boxes));
+}
+
+void Scene::add_pieces(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
+    first_piece_.push_back(pieces_.size());
+    parts_.push_back(geometry::parts_of(scenario.obstacles[i].shape));
+    for (const geometry::ConvexShape& piece : parts_.back().pieces)
+      pieces_.push_back(bodies_.add({BodyKind::enclosure, piece, {}, {i}}));
+  }
+  first_piece_.push_back(pieces_.size());
+  pieces_by_place_ = by_place(pieces_);
+}
+
+void Scene::add_facade_ellipses(const Scenario& scenario, const SimulationOptions& options) {
+  const geometry::FacadeEllipseOptions ellipse{options.facade_minor_to_major, options.facade_fixed_minor,
+                                               scenario.margins.obstacle};
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    for (const geometry::Segment& facade : parts_[i].facades)
+      facade_ellipses_.push_back(
+          bodies_.add({BodyKind::enclosure, geometry::facade_ellipse(facade, ellipse), {}, {i}}));
+  facade_ellipses_by_place_ = by_place(facade_ellipses_);
+}
+
+void Scene::add_chains(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
+    for (vo::OrcaChain& chain : vo::orca_chains(scenario.obstacles[i].shape)) {
+      // A closed chain has an edge a vertex, an open one is walked there and back: an edge begins at every vertex.
+      first_edge_.push_back(edges_.size());
+      const std::size_t n = chain.vertices.size();
+      for (std::size_t k = 0; k < n; ++k) {
+        const geometry::Segment edge{chain.vertices[k], chain.vertices[(k + 1) % n]};
+        edges_.push_back(bodies_.add({BodyKind::obstacle_edge, edge, {}, {i}}));
+        chain_of_.push_back(chains_.size());
+      }
       chains_.push_back(std::move(chain));
     }
   }
+  edges_by_place_ = by_place(edges_);
 }
 
-StaticField::StaticField(const ObstacleLibrary& library, const Scenario& scenario, const SimulationOptions& options,
-                         double radius, Vec2 start, Vec2 goal, HorizonRule rule)
-    : library_(&library), scenario_(&scenario), method_(options.method), rule_(rule) {
-  if (method_ == Method::ivo_edge) enclosures_ = facade_enclosures(library.parts(), options, scenario.margins.obstacle);
+// --- What one robot sees of it ---
+
+StaticField::StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius,
+                         Vec2 start, Vec2 goal, HorizonRule rule)
+    : scene_(&scene), scenario_(&scenario), method_(options.method), rule_(rule) {
   if (method_ == Method::ivo_cluster || method_ == Method::ivo)
-    enclosures_ = geometry::enclose(library.parts(), radius, start, goal, enclosure_options(scenario));
+    take_enclosures(geometry::enclose(scene.parts(), radius, start, goal, enclosure_options(scenario)));
+}
+
+/// Ellipses become bodies; what stands as its pieces is the scene's already. Of an obstacle either all pieces come, one
+/// after the other, or none.
+void StaticField::take_enclosures(const std::vector<Enclosure>& enclosures) {
+  tight_index_.assign(scene_->pieces_by_place().size(), kEnclosed);
+  for (std::size_t i = 0; i < enclosures.size(); ++i) {
+    const Enclosure& e = enclosures[i];
+    if (e.grade != EnclosureGrade::tight) {
+      enclosures_.push_back({scene_->bodies().add({BodyKind::enclosure, e.shape, {}, e.obstacles}), i, e.grade});
+      continue;
+    }
+    std::size_t piece = scene_->first_piece(e.obstacles.front());
+    while (tight_index_[piece] != kEnclosed) ++piece;
+    tight_index_[piece] = static_cast<std::uint32_t>(i);
+  }
+}
+
+std::vector<BodyTable::Number> StaticField::shapes() const {
+  std::vector<BodyTable::Number> all;
+  for (std::size_t k = 0; method_ == Method::ivo_edge && k < scene_->facade_ellipses_by_place().size(); ++k)
+    all.push_back(scene_->facade_ellipse(k));
+  const auto put = [&](std::size_t index, BodyTable::Number body) {
+    if (all.size() <= index) all.resize(index + 1);
+    all[index] = body;
+  };
+  for (const Shape& e : enclosures_) put(e.index, e.body);
+  for (std::size_t piece = 0; piece < tight_index_.size(); ++piece)
+    if (tight_index_[piece] != kEnclosed) put(tight_index_[piece], scene_->piece(piece));
+  return all;
+}
+
+std::vector<Enclosure> StaticField::enclosures() const {
+  const EnclosureGrade usual = method_ == Method::ivo_edge ? EnclosureGrade::containing : EnclosureGrade::tight;
+  std::vector<Enclosure> all;
+  for (const BodyTable::Number body : shapes())
+    all.push_back({scene_->bodies()[body].shape, scene_->bodies()[body].owners, usual});
+  for (const Shape& e : enclosures_) all[e.index].grade = e.grade;
+  return all;
 }
 
 double StaticField::horizon(double distance, const Viewpoint& from) const {
@@ -76,92 +170,123 @@ double StaticField::horizon(double distance, const Viewpoint& from) const {
   return std::clamp(tau, std::max(h.least, 2.0 * scenario_->time_step), h.most);
 }
 
-std::vector<StaticConstraint> StaticField::constraints(const Viewpoint& from) const {
-  std::vector<StaticConstraint> out;
-  if (method_ == Method::orca) add_orca(from, out);
-  for (std::size_t i = 0; i < enclosures_.size(); ++i) add_enclosure(enclosures_[i], i, from, out);
-  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
-  return out;
+/// m, from the centre: what is farther is beyond reach at the longest horizon, whatever the rounding of its distance.
+double StaticField::farthest_that_matters(const Viewpoint& from) const {
+  constexpr double kRounding = 1.0 + 1e-9;
+  const Horizons& h = scenario_->horizons;
+  if (method_ != Method::orca && rule_ == HorizonRule::literal) return kEverywhere;
+  const double tau = method_ == Method::orca ? h.orca : h.most;
+  return kRounding * (std::sqrt(2.0) * from.max_speed * tau + from.radius + kContactSkin);
 }
 
-void StaticField::add_enclosure(const Enclosure& e, std::size_t index, const Viewpoint& from,
-                                std::vector<StaticConstraint>& out) const {
-  const VelocityObstacle grown(e.shape, from.position, from.radius, scenario_->horizons.most);
-  const bool inside = e.grade != EnclosureGrade::tight && grown.overlaps();
-  if (!inside) return add_shape(e.shape, {index, 0, index, e.grade}, from, out);
+void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach) const {
+  out.clear();
+  constexpr double kRounding = 1.0 + 1e-9;
+  const double within = std::min(farthest_that_matters(from), kRounding * (reach + from.radius + kContactSkin));
+  if (method_ == Method::orca) return add_edges(from, within, out);
+  for_each_shape_within(from.position, within, [&](const Shape& s) { add_shape(s, from, within, out); });
+  sort_by_clearance(out);
+}
+
+template <class Visit>
+void StaticField::for_each_shape_within(Vec2 x, double reach, const Visit& visit) const {
+  if (method_ == Method::ivo_edge) {
+    scene_->facade_ellipses_by_place().for_each_within(x, reach, [&](std::size_t k) {
+      visit(Shape{scene_->facade_ellipse(k), k, EnclosureGrade::containing});
+    });
+    return;
+  }
+  for (const Shape& e : enclosures_)
+    if (distance_below(scene_->bodies().box(e.body), x) <= reach) visit(e);
+  scene_->pieces_by_place().for_each_within(x, reach, [&](std::size_t k) {
+    if (tight_index_[k] != kEnclosed) visit(Shape{scene_->piece(k), tight_index_[k], EnclosureGrade::tight});
+  });
+}
+
+void StaticField::add_shape(const Shape& shape, const Viewpoint& from, double reach,
+                            std::vector<Constraint>& out) const {
+  BodyTable& bodies = scene_->bodies();
+  const bool inside = shape.grade != EnclosureGrade::tight &&
+                      locate(bodies.seen(shape.body, from.position, from.radius), Vec2{}) != geometry::Place::outside;
+  if (!inside) return add_body(shape.body, {shape.index, 0, shape.grade}, from, out);
   // The enclosure gives way to what it encloses.
-  std::size_t piece_number = 0;
-  for (std::size_t obstacle : e.obstacles) {
-    std::size_t shape = enclosures_.size() + library_->first_piece(obstacle);
-    for (const ConvexShape& piece : library_->parts()[obstacle].pieces)
-      add_shape(piece, {index, ++piece_number, shape++, EnclosureGrade::tight}, from, out);
-  }
-}
-
-void StaticField::add_shape(const ConvexShape& shape, const Name& name, const Viewpoint& from,
-                            std::vector<StaticConstraint>& out) const {
-  const VelocityObstacle probe(shape, from.position, from.radius, scenario_->horizons.most);
-  const VelocityObstacle::Nearest nearest = probe.nearest();
-  const double tau = horizon(nearest.distance, from);
-  // The farthest velocity of a box bound is sqrt 2 times its side.
-  if (nearest.distance > std::sqrt(2.0) * from.max_speed * tau) return;
-  StaticConstraint c;
-  c.distance = nearest.distance;
-  c.away = nearest.normal;
-  c.shape = name.shape;
-  c.trap_free = name.grade == EnclosureGrade::trap_free || name.grade == EnclosureGrade::trap_free_thin;
-  RecordedConstraint& r = c.recorded;
-  r.source = ConstraintSource::enclosure;
-  r.index = name.enclosure;
-  r.piece = name.piece;
-  r.shape = shape;
-  r.position = from.position;
-  r.radius = from.radius;
-  r.tau = tau;
-  std::optional<geometry::HalfPlane> h;
-  // An ellipse has its margin inside; a bare piece gets it here.
-  const double skin = name.grade == EnclosureGrade::tight ? scenario_->margins.obstacle + kContactSkin : kContactSkin;
-  const VelocityObstacle with_skin(shape, from.position, from.radius + skin, tau);
-  if (!with_skin.overlaps()) h = with_skin.half_plane(from.velocity);
-  if (!h && !probe.overlaps()) h = probe.contact_half_plane();
-  r.certified = h.has_value();
-  const double depth = std::max(-nearest.distance, 0.0);
-  r.half_plane =
-      h ? *h : geometry::HalfPlane{nearest.normal, std::min(depth / kPushOutTime, kPushOutShare * from.max_speed)};
-  out.push_back(std::move(c));
-}
-
-void StaticField::add_orca(const Viewpoint& from, std::vector<StaticConstraint>& out) const {
-  const double tau = scenario_->horizons.orca;
-  for (std::size_t k = 0; k < library_->chains().size(); ++k) {
-    const vo::OrcaChain& chain = library_->chains()[k];
-    for (const vo::OrcaHalfPlane& found :
-         vo::orca_half_planes(chain, from.position, from.velocity, from.radius + kContactSkin, tau)) {
-      const geometry::Segment edge{chain.vertices[found.edge],
-                                   chain.vertices[(found.edge + 1) % chain.vertices.size()]};
-      const double distance = geometry::distance(edge, from.position) - from.radius;
-      if (distance > std::sqrt(2.0) * from.max_speed * tau) continue;
-      StaticConstraint c;
-      c.distance = distance;
-      c.away = geometry::normalized(from.position - geometry::nearest_point(edge, from.position));
-      RecordedConstraint& r = c.recorded;
-      r.half_plane = found.half_plane;
-      r.source = ConstraintSource::obstacle_edge;
-      r.index = library_->first_edge(k) + found.edge;
-      r.certified = found.certified;
-      r.shape = edge;
-      r.position = from.position;
-      r.radius = from.radius;
-      r.tau = tau;
-      if (!r.certified) {  // within the skin: the robot itself may still be clear
-        const VelocityObstacle bare(edge, from.position, from.radius, tau);
-        const auto h = bare.overlaps() ? std::nullopt : bare.contact_half_plane();
-        if (h) r.half_plane = *h;
-        r.certified = h.has_value();
-      }
-      out.push_back(std::move(c));
+  std::size_t number = 0;
+  for (const std::size_t obstacle : bodies[shape.body].owners)
+    for (std::size_t k = scene_->first_piece(obstacle); k < scene_->first_piece(obstacle + 1); ++k) {
+      ++number;
+      if (distance_below(bodies.box(scene_->piece(k)), from.position) <= reach)
+        add_body(scene_->piece(k), {shape.index, number, EnclosureGrade::tight}, from, out);
     }
+}
+
+void StaticField::add_body(BodyTable::Number body, const Name& name, const Viewpoint& from,
+                           std::vector<Constraint>& out) const {
+  geometry::GrownShape& seen = scene_->bodies().seen(body, from.position, from.radius);
+  const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);
+  vo::ClearancePolicy policy;
+  policy.time_horizon = horizon(nearest.distance, from);
+  if (is_beyond_reach(nearest.distance, from, policy.time_horizon)) return;
+  // An ellipse has its margin inside; a bare piece gets it here.
+  policy.room = name.grade == EnclosureGrade::tight ? scenario_->margins.obstacle + kContactSkin : kContactSkin;
+  policy.push_out_time = kPushOutTime;
+  policy.push_out_speed = kPushOutShare * from.max_speed;
+  const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity, policy);
+  Constraint& c = out.emplace_back();
+  c.half_plane = found.half_plane;
+  c.proof = found.proof;
+  c.body = body;
+  c.clearance = nearest.distance;
+  c.normal = nearest.normal;
+  c.time_horizon = policy.time_horizon;
+  c.index = name.index;
+  c.piece = name.piece;
+  c.trap_free = name.grade == EnclosureGrade::trap_free || name.grade == EnclosureGrade::trap_free_thin;
+}
+
+/// The baseline's rule walks each chain from its nearest edge; edges beyond `reach` take no part in it, since they
+/// cover none that is nearer.
+void StaticField::add_edges(const Viewpoint& from, double reach, std::vector<Constraint>& out) const {
+  std::vector<std::size_t> near, of_chain;
+  scene_->edges_by_place().for_each_within(from.position, reach, [&](std::size_t edge) { near.push_back(edge); });
+  std::sort(near.begin(), near.end());
+  for (std::size_t first = 0; first < near.size();) {
+    const std::size_t chain = scene_->chain_of(near[first]);
+    of_chain.clear();
+    for (; first < near.size() && scene_->chain_of(near[first]) == chain; ++first)
+      of_chain.push_back(near[first] - scene_->first_edge(chain));
+    for (const vo::OrcaHalfPlane& found :
+         vo::orca_half_planes(scene_->chains()[chain], of_chain, from.position, from.velocity,
+                              from.radius + kContactSkin, scenario_->horizons.orca))
+      add_edge(chain, found, from, out);
   }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Constraint& a, const Constraint& b) { return a.clearance < b.clearance; });
+}
+
+void StaticField::add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, const Viewpoint& from,
+                           std::vector<Constraint>& out) const {
+  const double tau = scenario_->horizons.orca;
+  const std::size_t number = scene_->first_edge(chain) + found.edge;
+  const BodyTable::Number body = scene_->edge(number);
+  const auto& edge = std::get<geometry::Segment>(scene_->bodies()[body].shape);
+  const Vec2 nearest = geometry::nearest_point(edge, from.position);
+  const double clearance = geometry::distance(edge, from.position) - from.radius;
+  if (is_beyond_reach(clearance, from, tau)) return;
+  Constraint& c = out.emplace_back();
+  c.half_plane = found.half_plane;
+  c.proof = found.certified ? vo::Proof::alone : vo::Proof::none;
+  c.body = body;
+  c.clearance = clearance;
+  c.normal = geometry::normalized(from.position - nearest);
+  c.time_horizon = tau;
+  c.index = number;
+  if (found.certified) return;
+  // Within the skin: the robot itself may still be clear.
+  const geometry::GrownShape& seen = scene_->bodies().seen(body, from.position, from.radius);
+  const vo::ProvenHalfPlane bare = vo::contact_or_push_out(seen, vo::clearance_of(seen), {tau});
+  if (bare.proof == vo::Proof::none) return;
+  c.half_plane = bare.half_plane;
+  c.proof = bare.proof;
 }
 
 }  // namespace exactvo::formation::detail

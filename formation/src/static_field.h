@@ -3,23 +3,24 @@
 
 /// \file
 /// The static obstacles as one robot sees them: shapes for its method and goal, and the certified half-planes they
-/// give.
+/// give. Shapes are bodies of one table, looked up by place; a step copies none.
 
+#include <cstdint>
 #include <vector>
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/enclosure.h"
+#include "exactvo/vo/constraint.h"
 #include "exactvo/vo/orca_obstacle.h"
 
 namespace exactvo::formation::detail {
 
-/// A static half-plane with what steering wants to know of it.
-struct StaticConstraint {
-  RecordedConstraint recorded;
-  double distance = 0.0;   ///< m, robot's rim to the shape; negative in contact
-  Vec2 away;               ///< unit, from the nearest point of the shape to the robot
-  std::size_t shape = 0;   ///< who it is: the same number is the same shape at every step of a run
+/// A half-plane of a decision under the names that recordings use.
+struct Constraint : vo::Constraint {
+  std::size_t index = 0;   ///< of the enclosure, edge, robot or moving obstacle
+  std::size_t piece = 0;   ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
   bool trap_free = false;  ///< the shape carries the certificate for this robot's goal
 };
 
@@ -31,22 +32,54 @@ struct Viewpoint {
   double max_speed = 0;  ///< m/s
 };
 
-/// Obstacles in parts, shared by all robots of a run.
-class ObstacleLibrary {
+/// The bodies of a run: convex pieces or edges of the obstacles, robots, moving obstacles, and the enclosures that
+/// fields add for their robots. Shared by all robots of a run, and for one thread.
+class Scene {
  public:
-  explicit ObstacleLibrary(const Scenario& scenario);
+  Scene(const Scenario& scenario, const SimulationOptions& options);
+
+  const vo::BodyTable& bodies() const { return bodies_; }
+  vo::BodyTable& bodies() { return bodies_; }
+
+  /// The obstacles' facades and pieces; none for Method::orca, which needs neither.
   const std::vector<geometry::ObstacleParts>& parts() const { return parts_; }
-  const std::vector<vo::OrcaChain>& chains() const { return chains_; }
-  /// How many pieces the obstacles before this one have: a number for each piece of the scene.
+  /// Pieces of the whole scene are counted through: those of an obstacle begin here, and end where the next begin.
   std::size_t first_piece(std::size_t obstacle) const { return first_piece_[obstacle]; }
-  /// How many edges the chains before this one have: a number for each edge of the scene.
+  vo::BodyTable::Number piece(std::size_t number) const { return pieces_[number]; }
+  const geometry::BoxGrid& pieces_by_place() const { return pieces_by_place_; }
+
+  /// Method::ivo_edge: the ellipses round the facades, the same for every robot.
+  vo::BodyTable::Number facade_ellipse(std::size_t number) const { return facade_ellipses_[number]; }
+  const geometry::BoxGrid& facade_ellipses_by_place() const { return facade_ellipses_by_place_; }
+
+  /// Method::orca: chains of edges, which are counted over the scene by their vertices.
+  const std::vector<vo::OrcaChain>& chains() const { return chains_; }
   std::size_t first_edge(std::size_t chain) const { return first_edge_[chain]; }
+  std::size_t chain_of(std::size_t edge) const { return chain_of_[edge]; }
+  vo::BodyTable::Number edge(std::size_t number) const { return edges_[number]; }
+  const geometry::BoxGrid& edges_by_place() const { return edges_by_place_; }
+
+  vo::BodyTable::Number robot(std::size_t i) const { return first_robot_ + i; }
+  vo::BodyTable::Number moving_obstacle(std::size_t k) const { return first_moving_ + k; }
 
  private:
+  void add_pieces(const Scenario& scenario);
+  void add_facade_ellipses(const Scenario& scenario, const SimulationOptions& options);
+  void add_chains(const Scenario& scenario);
+  geometry::BoxGrid by_place(const std::vector<vo::BodyTable::Number>& some) const;
+
+  vo::BodyTable bodies_;
   std::vector<geometry::ObstacleParts> parts_;
   std::vector<std::size_t> first_piece_;
-  std::vector<std::size_t> first_edge_;
+  std::vector<vo::BodyTable::Number> pieces_;
+  geometry::BoxGrid pieces_by_place_;
+  std::vector<vo::BodyTable::Number> facade_ellipses_;
+  geometry::BoxGrid facade_ellipses_by_place_;
   std::vector<vo::OrcaChain> chains_;
+  std::vector<std::size_t> first_edge_, chain_of_;
+  std::vector<vo::BodyTable::Number> edges_;
+  geometry::BoxGrid edges_by_place_;
+  std::size_t first_robot_ = 0, first_moving_ = 0;
 };
 
 /// What the literal paper does instead of clamping tau.
@@ -54,35 +87,53 @@ enum class HorizonRule { clamped, literal };
 
 class StaticField {
  public:
+  static constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+
   /// Shapes for a robot of `radius` going from `start` to `goal`.
-  StaticField(const ObstacleLibrary& library, const Scenario& scenario, const SimulationOptions& options, double radius,
-              Vec2 start, Vec2 goal, HorizonRule rule);
+  StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius, Vec2 start,
+              Vec2 goal, HorizonRule rule);
 
-  /// Half-planes of every shape within reach, nearest first.
-  std::vector<StaticConstraint> constraints(const Viewpoint& from) const;
+  /// Half-planes of every shape that could matter to a robot of that speed, nearest first; of those farther than
+  /// `reach` (m, from the rim) only some.
+  void constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach = kEverywhere) const;
 
-  const std::vector<geometry::Enclosure>& enclosures() const { return enclosures_; }
+  /// The shapes by their number in this field, as bodies: `Constraint::index` counts them.
+  std::vector<vo::BodyTable::Number> shapes() const;
+  /// The same with what they are.
+  std::vector<geometry::Enclosure> enclosures() const;
 
  private:
-  double horizon(double distance, const Viewpoint& from) const;
-  void add_enclosure(const geometry::Enclosure& e, std::size_t index, const Viewpoint& from,
-                     std::vector<StaticConstraint>& out) const;
-  /// What a half-plane is named by: the enclosure it stands for, the shape it is built on, and that one's grade.
+  struct Shape {
+    vo::BodyTable::Number body = 0;
+    std::size_t index = 0;
+    geometry::EnclosureGrade grade = geometry::EnclosureGrade::tight;
+  };
   struct Name {
-    std::size_t enclosure;
+    std::size_t index;
     std::size_t piece;
-    std::size_t shape;
     geometry::EnclosureGrade grade;
   };
-  void add_shape(const geometry::ConvexShape& shape, const Name& name, const Viewpoint& from,
-                 std::vector<StaticConstraint>& out) const;
-  void add_orca(const Viewpoint& from, std::vector<StaticConstraint>& out) const;
 
-  const ObstacleLibrary* library_;
+  void take_enclosures(const std::vector<geometry::Enclosure>& enclosures);
+  template <class Visit>
+  void for_each_shape_within(Vec2 x, double reach, const Visit& visit) const;
+  double horizon(double distance, const Viewpoint& from) const;
+  double farthest_that_matters(const Viewpoint& from) const;
+  void add_shape(const Shape& shape, const Viewpoint& from, double reach, std::vector<Constraint>& out) const;
+  void add_body(vo::BodyTable::Number body, const Name& name, const Viewpoint& from,
+                std::vector<Constraint>& out) const;
+  void add_edges(const Viewpoint& from, double reach, std::vector<Constraint>& out) const;
+  void add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, const Viewpoint& from,
+                std::vector<Constraint>& out) const;
+
+  static constexpr std::uint32_t kEnclosed = static_cast<std::uint32_t>(-1);
+
+  Scene* scene_;
   const Scenario* scenario_;
   Method method_;
   HorizonRule rule_;
-  std::vector<geometry::Enclosure> enclosures_;
+  std::vector<Shape> enclosures_;           ///< fitted for this robot; method ivo_edge has the scene's
+  std::vector<std::uint32_t> tight_index_;  ///< of each piece of the scene, its number here; kEnclosed: an enclosure's
 };
 
 }  // namespace exactvo::formation::detail

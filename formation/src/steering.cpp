@@ -47,11 +47,11 @@ bool violates(const geometry::HalfPlane& h, Vec2 v) {
 
 }  // namespace
 
-bool blocked(const std::vector<StaticConstraint>& lines, Vec2 v) {
-  return std::any_of(lines.begin(), lines.end(), [v](const auto& c) { return violates(c.recorded.half_plane, v); });
+bool blocked(const std::vector<Constraint>& lines, Vec2 v) {
+  return std::any_of(lines.begin(), lines.end(), [v](const auto& c) { return violates(c.half_plane, v); });
 }
 
-std::optional<Sweep> sweep(const std::vector<StaticConstraint>& lines, Vec2 start, double side, double speed) {
+std::optional<Sweep> sweep(const std::vector<Constraint>& lines, Vec2 start, double side, double speed) {
   Sweep out;
   const double first = angle_of(start);
   // Each turn enters one line's allowed arc; after a full circle there is none.
@@ -60,7 +60,7 @@ std::optional<Sweep> sweep(const std::vector<StaticConstraint>& lines, Vec2 star
     out.velocity = at_angle(angle, speed);
     bool turned = false;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const geometry::HalfPlane& h = lines[i].recorded.half_plane;
+      const geometry::HalfPlane& h = lines[i].half_plane;
       if (!violates(h, out.velocity)) continue;
       const double half = allowed_half_angle(h, speed);
       if (half < 0.0) return std::nullopt;
@@ -77,11 +77,11 @@ std::optional<Sweep> sweep(const std::vector<StaticConstraint>& lines, Vec2 star
 
 namespace {
 
-const StaticConstraint* most_violated(const std::vector<StaticConstraint>& lines, Vec2 v) {
-  const StaticConstraint* worst = nullptr;
+const Constraint* most_violated(const std::vector<Constraint>& lines, Vec2 v) {
+  const Constraint* worst = nullptr;
   double most = 0.0;
-  for (const StaticConstraint& c : lines) {
-    const double by = geometry::violation(c.recorded.half_plane, v) / norm(c.recorded.half_plane.normal);
+  for (const Constraint& c : lines) {
+    const double by = geometry::violation(c.half_plane, v) / norm(c.half_plane.normal);
     if (!(by > most)) continue;
     most = by;
     worst = &c;
@@ -91,10 +91,10 @@ const StaticConstraint* most_violated(const std::vector<StaticConstraint>& lines
 
 }  // namespace
 
-std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v) {
-  const StaticConstraint* worst = most_violated(lines, v);
+std::optional<Vec2> boosted(const std::vector<Constraint>& lines, Vec2 v) {
+  const Constraint* worst = most_violated(lines, v);
   if (!worst || !worst->trap_free) return std::nullopt;
-  const geometry::HalfPlane& h = worst->recorded.half_plane;
+  const geometry::HalfPlane& h = worst->half_plane;
   const double speed = norm(v);
   const double half = allowed_half_angle(h, speed);
   if (half < 0.0) return std::nullopt;
@@ -103,10 +103,10 @@ std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v) 
   return at_angle(angle_of(h.normal) - side * half, speed);
 }
 
-Vec2 with_tie_broken(const std::vector<StaticConstraint>& lines, Vec2 v) {
-  const StaticConstraint* worst = most_violated(lines, v);
+Vec2 with_tie_broken(const std::vector<Constraint>& lines, Vec2 v) {
+  const Constraint* worst = most_violated(lines, v);
   if (!worst) return v;
-  const Vec2 n = worst->recorded.half_plane.normal;
+  const Vec2 n = worst->half_plane.normal;
   const bool head_on = std::fabs(geometry::cross(-n, v)) < kTieAngle * norm(n) * norm(v);
   return head_on ? geometry::rotated(v, kTieAngle) : v;
 }
@@ -145,21 +145,21 @@ bool Follower::stalled(const Situation& s) {
 namespace {
 
 /// A far shape's half-plane grazes every fast velocity towards it (tau = dist / |v|); only near ones block.
-std::vector<StaticConstraint> within(const std::vector<StaticConstraint>& lines, double reach) {
-  std::vector<StaticConstraint> near;
-  for (const StaticConstraint& c : lines)
-    if (c.distance <= reach) near.push_back(c);
+std::vector<Constraint> within(const std::vector<Constraint>& lines, double reach) {
+  std::vector<Constraint> near;
+  for (const Constraint& c : lines)
+    if (c.clearance <= reach) near.push_back(c);
   return near;
 }
 
 }  // namespace
 
-bool Follower::may_leave(const Situation& s, const std::vector<StaticConstraint>& near) const {
+bool Follower::may_leave(const Situation& s, const std::vector<Constraint>& near) const {
   return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !blocked(near, s.preferred);
 }
 
-Follower::Answer Follower::steer(const Situation& s, const std::vector<StaticConstraint>& lines) {
-  const std::vector<StaticConstraint> near = within(lines, s.reach);
+Follower::Answer Follower::steer(const Situation& s, const std::vector<Constraint>& lines) {
+  const std::vector<Constraint> near = within(lines, s.reach);
   if (!following_) {
     if (!stalled(s) || !blocked(near, s.preferred)) return {s.preferred, Mode::direct, 0, ""};
     return begin(s, near);
@@ -185,11 +185,13 @@ void Follower::commit(const Situation& s, int side, std::size_t followed) {
 double Follower::rehearse(Situation s) const {
   constexpr double kHorizon = 60.0;  // s: a boundary longer than that ranks by how far the goal is then
   Follower actor = *this;
+  std::vector<Constraint> seen;
   const double start = s.time;
   for (; s.time - start < kHorizon; s.time += s.time_step) {
     const Vec2 to_goal = s.goal - s.robot.position;
     s.preferred = s.robot.max_speed * geometry::normalized(to_goal);
-    const std::vector<StaticConstraint> near = within(s.field->constraints(s.robot), s.reach);
+    s.field->constraints(s.robot, seen, s.reach);
+    const std::vector<Constraint> near = within(seen, s.reach);
     if (actor.may_leave(s, near)) break;
     s.robot.velocity = actor.follow(s, near).preferred;
     if (actor.circled_) return std::numeric_limits<double>::infinity();
@@ -213,15 +215,15 @@ std::string side_words(bool left, double left_time, double right_time) {
 
 }  // namespace
 
-Follower::Answer Follower::begin(const Situation& s, const std::vector<StaticConstraint>& near) {
+Follower::Answer Follower::begin(const Situation& s, const std::vector<Constraint>& near) {
   const std::optional<Sweep> left = sweep(near, s.preferred, 1.0, s.robot.max_speed);
   const std::optional<Sweep> right = sweep(near, s.preferred, -1.0, s.robot.max_speed);
   // At full speed nothing may stand in the way of what a slower preference violates: then there is no boundary.
   const bool met = left && right && left->last != Sweep::kNone && right->last != Sweep::kNone;
   if (!met) return {s.preferred, Mode::direct, 0, ""};
   Follower to_left, to_right;
-  to_left.commit(s, 1, near[left->last].shape);
-  to_right.commit(s, -1, near[right->last].shape);
+  to_left.commit(s, 1, near[left->last].body);
+  to_right.commit(s, -1, near[right->last].body);
   const double left_time = to_left.rehearse(s), right_time = to_right.rehearse(s);
   const bool go_left = left_time <= right_time + s.time_step;
   *this = go_left ? to_left : to_right;
@@ -229,19 +231,19 @@ Follower::Answer Follower::begin(const Situation& s, const std::vector<StaticCon
           "stalled: follows the boundary, turning " + side_words(go_left, left_time, right_time)};
 }
 
-Follower::Answer Follower::follow(const Situation& s, const std::vector<StaticConstraint>& near) {
+Follower::Answer Follower::follow(const Situation& s, const std::vector<Constraint>& near) {
   walked_ += norm(s.robot.position - last_position_);
   last_position_ = s.robot.position;
   Answer answer{s.preferred, Mode::following, side_, ""};
   // Start the turn at the followed shape itself, so that the boundary is hugged round its corners.
-  const auto same = [&](const StaticConstraint& c) { return c.shape == followed_; };
+  const auto same = [&](const Constraint& c) { return c.body == followed_; };
   const auto followed = std::find_if(near.begin(), near.end(), same);
-  const Vec2 start = followed == near.end() ? s.preferred : -followed->away;
+  const Vec2 start = followed == near.end() ? s.preferred : -followed->normal;
   for (double speed = s.robot.max_speed; speed > kLeastFollowing * s.robot.max_speed; speed *= 0.5) {
     const std::optional<Sweep> found = sweep(near, start, side_, speed);
     if (!found) continue;
     answer.preferred = found->velocity;
-    if (found->last != Sweep::kNone) followed_ = near[found->last].shape;
+    if (found->last != Sweep::kNone) followed_ = near[found->last].body;
     break;
   }
   if (!circled_ && walked_ > 4.0 * kCircleReach && norm(s.robot.position - hit_) < kCircleReach) {
@@ -253,7 +255,7 @@ Follower::Answer Follower::follow(const Situation& s, const std::vector<StaticCo
 
 // --- Side commitment ---
 
-SideCommitment::Answer SideCommitment::steer(Vec2 preferred, double speed, const std::vector<StaticConstraint>& lines) {
+SideCommitment::Answer SideCommitment::steer(Vec2 preferred, double speed, const std::vector<Constraint>& lines) {
   if (!blocked(lines, preferred)) {
     const bool kept_one = side_ != 0;
     side_ = 0;

@@ -23,14 +23,14 @@ struct Sweep {
   std::size_t last = kNone;  ///< the constraint that stopped the turn last
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 };
-std::optional<Sweep> sweep(const std::vector<StaticConstraint>& lines, Vec2 start, double side, double speed);
+std::optional<Sweep> sweep(const std::vector<Constraint>& lines, Vec2 start, double side, double speed);
 
 /// Whether v violates a static half-plane.
-bool blocked(const std::vector<StaticConstraint>& lines, Vec2 v);
+bool blocked(const std::vector<Constraint>& lines, Vec2 v);
 
 /// Boost: v turned at its own speed onto the tangent of the static half-plane it violates most, where that one's
 /// enclosure is certified trap-free; nothing otherwise.
-std::optional<Vec2> boosted(const std::vector<StaticConstraint>& lines, Vec2 v);
+std::optional<Vec2> boosted(const std::vector<Constraint>& lines, Vec2 v);
 
 /// rad: a preference that meets its most violated half-plane this nearly head-on is a tie between the sides.
 inline constexpr double kTieAngle = 1e-3;
@@ -41,7 +41,7 @@ inline constexpr double kTieAngle = 1e-3;
 /// What it costs the theorem of equation (12): the optimum w over a convex set that holds 0 has w.v >= |w|^2, so with
 /// v straight for the goal |p - g| never grows. With v turned by e = kTieAngle it grows by at most
 /// |w| sin e - |w|^2 / (2 |v|) <= |v| e^2 / 2, that is 1.5e-6 m/s at 3 m/s, and only while the tie lasts.
-Vec2 with_tie_broken(const std::vector<StaticConstraint>& lines, Vec2 v);
+Vec2 with_tie_broken(const std::vector<Constraint>& lines, Vec2 v);
 
 /// Follows a boundary after a stall: state of one robot. The side is the one on which a rehearsal of the static scene
 /// leaves the boundary with the shorter way to go; ties go left.
@@ -63,7 +63,7 @@ class Follower {
     Vec2 preferred;                      ///< m/s, straight for the goal
     const StaticField* field = nullptr;  ///< for the rehearsal
   };
-  Answer steer(const Situation& s, const std::vector<StaticConstraint>& lines);
+  Answer steer(const Situation& s, const std::vector<Constraint>& lines);
 
   /// A new goal: whatever was followed is forgotten.
   void reset();
@@ -73,11 +73,11 @@ class Follower {
 
  private:
   bool stalled(const Situation& s);
-  Answer begin(const Situation& s, const std::vector<StaticConstraint>& near);
-  Answer follow(const Situation& s, const std::vector<StaticConstraint>& near);
+  Answer begin(const Situation& s, const std::vector<Constraint>& near);
+  Answer follow(const Situation& s, const std::vector<Constraint>& near);
   void commit(const Situation& s, int side, std::size_t followed);
   double rehearse(Situation s) const;
-  bool may_leave(const Situation& s, const std::vector<StaticConstraint>& near) const;
+  bool may_leave(const Situation& s, const std::vector<Constraint>& near) const;
 
   bool following_ = false;
   int side_ = 0;
@@ -104,7 +104,7 @@ class SideCommitment {
     int side = 0;
     std::string note;  ///< when a side is chosen or given up
   };
-  Answer steer(Vec2 preferred, double speed, const std::vector<StaticConstraint>& lines);
+  Answer steer(Vec2 preferred, double speed, const std::vector<Constraint>& lines);
 
  private:
   int side_ = 0;

@@ -243,13 +243,13 @@ double evolute_margin(const Ellipse& ellipse, Vec2 goal) {
 
 std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOptions& options) {
   EXACTVO_REQUIRE(validate(scenario).empty(), validate(scenario).front().pointer);
-  const detail::ObstacleLibrary library(scenario);
+  detail::Scene scene(scenario, options);
   const std::vector<Facade> facades = options.method == Method::orca ? facades_of(scenario) : std::vector<Facade>{};
   std::vector<TrapFinding> findings;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const Robot& robot = scenario.robots[i];
     const Vec2 goal = detail::first_goal(scenario, options, i);
-    const detail::StaticField field(library, scenario, options, robot.radius, robot.position, goal,
+    const detail::StaticField field(scene, scenario, options, robot.radius, robot.position, goal,
                                     detail::HorizonRule::clamped);
     for (const Facade& facade : facades) {
       findings.push_back(examine(facade, facades, robot, goal));

@@ -7,6 +7,7 @@
 
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/pi.h"
+#include "exactvo/geometry/rounding.h"
 
 namespace exactvo::vo::detail {
 namespace {
@@ -134,16 +135,15 @@ class Cutoff {
 
 // --- From outside: certified half-planes ---
 
-/// n.v <= c + n.apex for all v of the cone, rounded up past the error of its terms; as the half-plane that keeps them.
+/// n.v <= c + n.apex for all v of the cone, rounded up; as the half-plane that keeps them. A term passes at most 8
+/// roundings: the apex is a sum of three vectors at most.
 geometry::HalfPlane keeping(Vec2 n, double c, const ShiftedCone& cone, const Window& window) {
-  double value = c, terms = std::fabs(c);
+  double value = c, magnitude = geometry::product_magnitude(1.0, c);
   for (const Vec2 m : cone.minus_apex.terms) {
     value -= dot(n, m);
-    terms += std::fabs(n.x * m.x) + std::fabs(n.y * m.y);
+    magnitude += geometry::dot_magnitude(n, m);
   }
-  constexpr double kRoundings = 16.0;  // at most 5 u of each term, thrice that for the bound's own rounding
-  constexpr double kUnderflow = 0x1p-1060;
-  return within_reach({-n, -(value + (kRoundings * kUnitRoundoff * terms + kUnderflow))}, window);
+  return within_reach({-n, -geometry::rounded_up_sum(value, magnitude, 8.0)}, window);
 }
 
 /// h_S(n) <= h_up <= 0 makes n.w <= h_up / tau on the relative cone.

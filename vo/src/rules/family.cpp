@@ -9,6 +9,7 @@
 
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/rounding.h"
 
 namespace exactvo::vo {
 namespace {
@@ -70,18 +71,15 @@ std::optional<ShiftedCone> cone_of_hrvo(const Encounter& e) {
   return cone;
 }
 
-/// n.v' >= n.v + share (c - n.(v - u)), rounded up past the error of its terms.
+/// n.v' >= n.v + share (c - n.(v - u)), rounded up: a term passes at most 8 roundings.
 HalfPlane shared(const HalfPlane& relative, const Encounter& e, double share) {
   const Vec2 n = relative.normal;
+  if (e.obstacle_velocity == Vec2{} && share == 1.0) return relative;
   const double at_v = dot(n, e.velocity), at_u = dot(n, e.obstacle_velocity);
   const double value = (1.0 - share) * at_v + share * (relative.offset + at_u);
-  const double terms = std::fabs(n.x * e.velocity.x) + std::fabs(n.y * e.velocity.y) +
-                       std::fabs(n.x * e.obstacle_velocity.x) + std::fabs(n.y * e.obstacle_velocity.y) +
-                       std::fabs(relative.offset);
-  constexpr double kRoundings = 16.0;  // at most 8 u of each term, twice that for the bound's own rounding
-  constexpr double kUnderflow = 0x1p-1060;
-  const bool at_rest = e.obstacle_velocity == Vec2{} && share == 1.0;
-  return {n, at_rest ? relative.offset : value + (kRoundings * kUnitRoundoff * terms + kUnderflow)};
+  const double magnitude = geometry::dot_magnitude(n, e.velocity) + geometry::dot_magnitude(n, e.obstacle_velocity) +
+                           geometry::product_magnitude(1.0, relative.offset);
+  return {n, geometry::rounded_up_sum(value, magnitude, 8.0)};
 }
 
 std::optional<HalfPlane> half_plane_of(const VelocityObstacle& obstacle, const Encounter& e, double share) {

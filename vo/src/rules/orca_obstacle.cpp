@@ -11,6 +11,7 @@
 #include "cone/separation.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/rounding.h"
 #include "exactvo/geometry/support.h"
 #include "exactvo/vo/velocity_obstacle.h"
 
@@ -33,12 +34,13 @@ std::vector<Vec2> without_repeats(std::vector<Vec2> vertices) {
 }
 
 OrcaChain with_turns(std::vector<Vec2> vertices) {
-  OrcaChain chain{without_repeats(std::move(vertices)), {}};
+  OrcaChain chain{without_repeats(std::move(vertices)), {}, {}};
   const std::size_t n = chain.vertices.size();
   for (std::size_t i = 0; i < n; ++i) {
     const geometry::Sign turn =
         geometry::orientation(chain.vertices[(i + n - 1) % n], chain.vertices[i], chain.vertices[(i + 1) % n]);
     chain.convex.push_back(turn != geometry::Sign::negative);
+    chain.directions.push_back(normalized(chain.vertices[(i + 1) % n] - chain.vertices[i]));
   }
   return chain;
 }
@@ -138,7 +140,7 @@ OrcaHalfPlane certified_half_plane(const VelocityObstacle& obstacle, Vec2 n, dou
   }
   if (normal) {
     const double c = geometry::support_upper_bound(s, *normal) / tau;
-    return {{*normal, std::min(0.0, c + 4.0 * geometry::kUnitRoundoff * std::fabs(c))}, 0, true};
+    return {{*normal, std::min(0.0, geometry::rounded_up_sum(c, std::fabs(c), 2.0))}, 0, true};
   }
   const auto contact = obstacle.contact_half_plane();
   return contact ? OrcaHalfPlane{*contact, 0, true} : OrcaHalfPlane{{n0.normal, 0.0}, 0, false};
@@ -154,24 +156,31 @@ bool covered(const std::vector<OrcaHalfPlane>& found, const geometry::GrownShape
 Edge edge_at(const OrcaChain& chain, std::size_t i, Vec2 position) {
   const std::size_t n = chain.vertices.size();
   const auto vertex = [&](std::size_t k) { return chain.vertices[k % n]; };
-  const auto direction = [&](std::size_t k) { return normalized(vertex(k + 1) - vertex(k)); };
+  const auto direction = [&](std::size_t k) { return chain.directions[k % n]; };
   return {vertex(i) - position,      vertex(i + 1) - position, direction(i),    chain.convex[i],
           chain.convex[(i + 1) % n], direction(i + n - 1),     direction(i + 1)};
 }
 
-std::vector<std::size_t> nearest_first(const OrcaChain& chain, Vec2 position) {
+/// Of edges equally near the one that is listed first.
+std::vector<std::size_t> nearest_first(const OrcaChain& chain, const std::vector<std::size_t>& edges, Vec2 position) {
+  struct Near {
+    double distance;
+    std::size_t edge;
+  };
+  std::vector<Near> order;
+  order.reserve(edges.size());
   const std::size_t n = chain.vertices.size();
-  std::vector<double> distance(n);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (const std::size_t i : edges) {
     const Vec2 a = chain.vertices[i];
     const Vec2 e = chain.vertices[(i + 1) % n] - a;
     const double t = std::clamp(dot(position - a, e) / squared_norm(e), 0.0, 1.0);
-    distance[i] = norm(position - (a + t * e));
+    order.push_back({norm(position - (a + t * e)), i});
   }
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return distance[i] < distance[j]; });
-  return order;
+  std::stable_sort(order.begin(), order.end(), [](const Near& x, const Near& y) { return x.distance < y.distance; });
+  std::vector<std::size_t> sorted;
+  sorted.reserve(order.size());
+  for (const Near& near : order) sorted.push_back(near.edge);
+  return sorted;
 }
 
 }  // namespace
@@ -192,10 +201,17 @@ std::vector<OrcaChain> orca_chains(const geometry::Obstacle& obstacle) {
 
 std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, Vec2 position, Vec2 velocity, double radius,
                                             double time_horizon) {
+  std::vector<std::size_t> all(chain.vertices.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return orca_half_planes(chain, all, position, velocity, radius, time_horizon);
+}
+
+std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, const std::vector<std::size_t>& edges,
+                                            Vec2 position, Vec2 velocity, double radius, double time_horizon) {
   EXACTVO_REQUIRE(radius >= 0.0 && time_horizon > 0.0, std::to_string(radius) + ", " + std::to_string(time_horizon));
   EXACTVO_REQUIRE(geometry::is_finite(position) && geometry::is_finite(velocity), "a vector that is not finite");
   std::vector<OrcaHalfPlane> found;
-  for (std::size_t i : nearest_first(chain, position)) {
+  for (const std::size_t i : nearest_first(chain, edges, position)) {
     const Edge edge = edge_at(chain, i, position);
     // The free side is on the right: from the left of an edge another edge is in front of it.
     if (cross(edge.direction, -edge.left) > 0.0) continue;

@@ -5,16 +5,14 @@
 #include <string>
 #include <tuple>
 
-#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
-#include "exactvo/geometry/support.h"
-#include "exactvo/vo/velocity_obstacle.h"
+#include "exactvo/geometry/rounding.h"
+#include "exactvo/vo/constraint.h"
 
 namespace exactvo::vo {
 namespace {
 
 using geometry::dot;
-using geometry::kUnitRoundoff;
 
 /// n.(v_A' - v_B') >= offset.
 struct Joint {
@@ -25,28 +23,23 @@ struct Joint {
 
 /// The half-plane of the relative velocity, by the static construction around b seen from a.
 Joint relative_half_plane(const MovingDisc& a, const MovingDisc& b, const ReciprocalOptions& options) {
-  const geometry::Disc other{b.position, b.radius};
-  const VelocityObstacle kept_apart(other, a.position, a.radius + options.margin, options.time_horizon);
-  if (!kept_apart.overlaps()) {
-    if (const auto h = kept_apart.half_plane(a.velocity - b.velocity)) return {h->normal, h->offset, true};
-  }
-  // Within the margin: part at the pace that restores it. An offset >= 0 is safe wherever the normal is.
-  const VelocityObstacle::Nearest n0 = kept_apart.nearest();
-  const Joint parting{n0.normal, std::fmax(-n0.distance, 0.0) / options.contact_time, false};
-  const geometry::GrownShape bare{other, a.position, a.radius};
-  const bool safe = half_plane_is_safe(bare, options.time_horizon, {parting.normal, parting.offset});
-  return {parting.normal, parting.offset, safe};
+  geometry::GrownShape seen{geometry::Disc{b.position, b.radius}, a.position, a.radius};
+  ClearancePolicy policy;
+  policy.time_horizon = options.time_horizon;
+  policy.room = options.margin;
+  policy.restore_within = options.contact_time;
+  const ProvenHalfPlane found = half_plane_against(seen, {}, a.velocity - b.velocity, policy);
+  return {found.half_plane.normal, found.half_plane.offset, found.proof == Proof::alone};
 }
 
-/// share (c - n.(v_A - v_B)) + n.v, rounded up past the error of its terms: two products a dot, four sums.
+/// share (c - n.(v_A - v_B)) + n.v, rounded up: a term passes at most 8 roundings.
 double half_offset(double share, double c, Vec2 n, Vec2 own, Vec2 other) {
   const double at_own = dot(n, own);
   const double at_other = dot(n, other);
   const double value = at_own + share * (c - (at_own - at_other));
-  const double terms = std::fabs(n.x * own.x) + std::fabs(n.y * own.y) + std::fabs(n.x * other.x) +
-                       std::fabs(n.y * other.y) + std::fabs(c);
-  constexpr double kRoundings = 16.0;  // at most 8 u of each term, twice that for the bound's own rounding
-  return value + kRoundings * kUnitRoundoff * terms;
+  const double magnitude =
+      geometry::dot_magnitude(n, own) + geometry::dot_magnitude(n, other) + geometry::product_magnitude(1.0, c);
+  return geometry::rounded_up_sum(value, magnitude, 8.0);
 }
 
 bool comes_first(const MovingDisc& a, const MovingDisc& b) {
@@ -67,6 +60,10 @@ ReciprocalHalfPlanes ordered(const MovingDisc& a, const MovingDisc& b, const Rec
 ReciprocalHalfPlanes reciprocal_half_planes(const MovingDisc& a, const MovingDisc& b,
                                             const ReciprocalOptions& options) {
   EXACTVO_REQUIRE(geometry::is_finite(a.velocity) && geometry::is_finite(b.velocity), "a velocity that is not finite");
+  EXACTVO_REQUIRE(geometry::is_finite(a.position) && geometry::is_finite(b.position), "a position that is not finite");
+  EXACTVO_REQUIRE(a.radius >= 0.0 && b.radius >= 0.0 && std::isfinite(a.radius) && std::isfinite(b.radius),
+                  std::to_string(a.radius) + ", " + std::to_string(b.radius));
+  EXACTVO_REQUIRE(options.time_horizon > 0.0, std::to_string(options.time_horizon));
   EXACTVO_REQUIRE(options.margin >= 0.0 && std::isfinite(options.margin), std::to_string(options.margin));
   EXACTVO_REQUIRE(options.contact_time > 0.0, std::to_string(options.contact_time));
   EXACTVO_REQUIRE(options.share_of_a >= 0.0 && options.share_of_a <= 1.0, std::to_string(options.share_of_a));

@@ -9,12 +9,13 @@
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/half_plane.h"
+#include "exactvo/vo/constraint.h"
 #include "exactvo/vo/lp/solution.h"
 
 namespace exactvo::formation {
 
 /// Where a half-plane comes from.
-enum class ConstraintSource { enclosure, obstacle_edge, robot, moving_obstacle };
+using ConstraintSource = vo::BodyKind;
 
 /// One half-plane of a decision, with enough beside it to prove it again: the convex shape (grown by `radius`, seen
 /// from `position`, horizon `tau`) whose velocity obstacle it excludes.
@@ -33,6 +34,8 @@ struct RecordedConstraint {
   double radius = 0.0;  ///< m
   double tau = 0.0;     ///< s
   Vec2 shape_velocity;  ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
+  std::size_t body = 0;    ///< of the run's bodies
+  double clearance = 0.0;  ///< m, robot's rim to the body; negative in overlap. Rounded
 };
 
 /// How the preferred velocity was formed.

@@ -24,7 +24,8 @@ using geometry::Vec2;
 /// hole clockwise, a wall walked there and back.
 struct OrcaChain {
   std::vector<Vec2> vertices;
-  std::vector<bool> convex;  ///< whether the chain turns left (or straight back) at the vertex
+  std::vector<bool> convex;      ///< whether the chain turns left (or straight back) at the vertex
+  std::vector<Vec2> directions;  ///< unit, of the edge that begins at the vertex
 };
 
 /// The chains of an obstacle.
@@ -35,6 +36,12 @@ struct OrcaHalfPlane {
   std::size_t edge = 0;    ///< from vertex `edge` to the next
   bool certified = false;  ///< false only where the robot overlaps the edge
 };
+
+/// The same of some of its edges alone, by number, ascending: those within `d` of the robot decide about half-planes
+/// nearer than d as all do, since none is covered by a farther one.
+/// REQUIRES: radius >= 0, time_horizon > 0, finite numbers.
+std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, const std::vector<std::size_t>& edges,
+                                            Vec2 position, Vec2 velocity, double radius, double time_horizon);
 
 /// REQUIRES: radius >= 0, time_horizon > 0, finite numbers.
 std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, Vec2 position, Vec2 velocity, double radius,
