@@ -230,6 +230,42 @@ TEST(FreeArrangement, ALegAlongATangentOfTheCircle) {
   expect_area(free, kPi);
 }
 
+TEST(FreeArrangement, AWallSeenEndOnIsASlitWithTwoSides) {
+  const ShiftedCone wall = cone_of(Segment{{2.0, 0.0}, {3.0, 0.0}}, 0.0, 4.0);
+  const FreeArrangement free({wall}, 1.0);
+  ASSERT_EQ(free.pieces().size(), 1u);
+  EXPECT_EQ(count(free, ArcKind::leg), 2);
+  expect_area(free, kPi);
+  EXPECT_FALSE(free.contains({0.75, 0.0}));
+  EXPECT_TRUE(free.contains({0.25, 0.0}));
+  EXPECT_TRUE(free.holds({{{0.0, 1.0}, -2.0}})) << "it takes no area away";
+  // Of walls one behind the other the nearer one's slit is all there is.
+  const FreeArrangement two({wall, cone_of(Segment{{3.0, 0.0}, {5.0, 0.0}}, 0.0, 4.0)}, 1.0);
+  EXPECT_EQ(count(two, ArcKind::leg), 4) << "two stretches, each with two sides";
+  expect_area(two, kPi);
+}
+
+TEST(FreeArrangement, SlitsThatMeetPartThePieces) {
+  const auto slit = [](double side) { return cone_of(Segment{{3.0 * side, 0.0}, {4.0 * side, 0.0}}, 0.0, kInfinity); };
+  EXPECT_EQ(FreeArrangement({slit(1.0)}, 1.0).pieces().size(), 1u);
+  const FreeArrangement both({slit(1.0), slit(-1.0)}, 1.0);
+  EXPECT_EQ(both.pieces().size(), 2u) << "they share nothing but the apex, which is no way through";
+  expect_area(both, kPi);
+  const FreeArrangement opposite({cone_of(Segment{{3.0, 0.0}, {4.0, 0.0}}, 0.0, 4.0), slit(-1.0)}, 1.0);
+  EXPECT_EQ(opposite.pieces().size(), 1u);
+  EXPECT_EQ(count(opposite, ArcKind::leg), 4);
+}
+
+TEST(FreeArrangement, ASlitAlongAnotherConesLegBoundsNothing) {
+  // The triangle's right leg runs along x = 0: from the robot to (0, 4) and on.
+  const ShiftedCone triangle = cone_of(geometry::ConvexPolygon{{{0.0, 4.0}, {0.0, 6.0}, {-4.0, 4.0}}}, 0.0, kInfinity);
+  const ShiftedCone wall = cone_of(Segment{{0.0, 5.0}, {0.0, 7.0}}, 0.0, 5.0);
+  for (const FreeArrangement& free : {FreeArrangement({triangle, wall}, 2.0), FreeArrangement({wall, triangle}, 2.0)}) {
+    EXPECT_EQ(free.pieces().size(), 1u);
+    expect_area(free, 4.0 * kPi - 0.5 * kPi);
+  }
+}
+
 TEST(FreeArrangement, ContactLeavesNothing) {
   const FreeArrangement free({cone_of(Disc{{2.0, 0.0}, 1.0}, 1.0, 2.0)}, 1.0);
   EXPECT_TRUE(free.pieces().empty());

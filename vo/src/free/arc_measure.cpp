@@ -15,14 +15,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Bits that an answer has beyond the speed (or its square): what is stated is 2^-48.
 constexpr int kBits = 56;
 
-/// Within 2^-bits.
-Rational approximate(const Number& x, int bits) {
-  x.approx(CORE::extLong::getPosInfty(), CORE::extLong(bits));
-  return Rational(x.BigRatValue().get_mp());
-}
-
+/// Each coordinate within 2^-bits.
 RationalVector approximate(const Point& x, int bits) {
-  return {approximate(x.x, bits), approximate(x.y, bits)};
+  return {x.x.approximate(bits), x.y.approximate(bits)};
 }
 
 Rational power_of_two(int exponent) {

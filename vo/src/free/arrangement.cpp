@@ -15,20 +15,25 @@ namespace {
 constexpr double kFarApart = 0x1p-30;
 
 Vec2 rounded(const Point& x) {
-  return {x.x.doubleValue(), x.y.doubleValue()};
+  return {x.x.rounded(), x.y.rounded()};
 }
 
-/// Where a direction lies on the way clockwise from another one: ahead of it, before, at or after the half turn.
-int quarter_clockwise(const Point& base, const Point& d) {
-  const int side = cross(base, d).sign();
+/// Where a stretch leaves a point, clockwise of the way back: 0 just beside it, 1 within half a turn, 2 at half a turn,
+/// 3 within the other half, 4 just before a whole turn. Of tangent ones the curvature tells; one along the way back
+/// itself, the other side of a ray, comes last.
+int place_clockwise(const Departure& back, const Departure& d) {
+  const int side = cross(back.heading, d.heading).sign();
   if (side != 0) return side < 0 ? 1 : 3;
-  return dot(base, d).sign() > 0 ? 0 : 2;
+  if (dot(back.heading, d.heading).sign() < 0) return 2;
+  return d.curvature < back.curvature ? 0 : 4;
 }
 
-/// Whether a comes before b on the way clockwise from `base`.
-bool comes_first(const Point& base, const Point& a, const Point& b) {
-  const int of_a = quarter_clockwise(base, a), of_b = quarter_clockwise(base, b);
-  return of_a != of_b ? of_a < of_b : cross(a, b).sign() < 0;
+/// Whether a comes before b on the way clockwise from the way back.
+bool comes_first(const Departure& back, const Departure& a, const Departure& b) {
+  const int of_a = place_clockwise(back, a), of_b = place_clockwise(back, b);
+  if (of_a != of_b) return of_a < of_b;
+  const int turn = cross(a.heading, b.heading).sign();
+  return turn != 0 ? turn < 0 : a.curvature > b.curvature;
 }
 
 }  // namespace
@@ -150,19 +155,23 @@ Point Arrangement::middle_of(const Stretch& s) const {
   const Point &from = points_[s.from], &to = points_[s.to];
   if (!c.is_arc) return Number(0.5) * (from + to);
   const Point left = perp(to - from), out = c.is_counter_clockwise ? Number(-1) * left : left;
-  return detail::point(c.circle.centre) + quotient(number(c.circle.radius), root_of(dot(out, out))) * out;
+  return detail::point(c.circle.centre) + quotient(Number(c.circle.radius), root_of(dot(out, out))) * out;
 }
 
+// Where the owner's boundary runs along the stretch, it allows the stretch's left side if some curve of its runs the
+// same way: a ray has curves both ways there. The stretch then counts for the first owner that it bounds on this side.
 bool Arrangement::passes(std::size_t owner, const Stretch& s, const Point& middle) const {
   const Curve& own = curves_[s.curve];
+  bool runs_along = false;
   for (const std::size_t k : coinciding_[s.curve]) {
     const Curve& other = curves_[k];
     if (other.owner != owner || !other.reaches(middle)) continue;
+    runs_along = true;
     const bool same_side = own.is_arc ? own.is_counter_clockwise == other.is_counter_clockwise
                                       : dot(own.direction, other.direction).sign() > 0;
-    return same_side && own.owner < owner;
+    if (same_side) return own.owner < owner;
   }
-  return owners_[owner].allows(middle);
+  return !runs_along && owners_[owner].allows(middle);
 }
 
 bool Arrangement::is_boundary(const Stretch& s) const {
@@ -172,6 +181,17 @@ bool Arrangement::is_boundary(const Stretch& s) const {
   for (std::size_t o = 0; o < owners_.size(); ++o)
     if (o != curves_[s.curve].owner && !passes(o, s, middle)) return false;
   return true;
+}
+
+Departure Arrangement::leaving(const Stretch& s) const {
+  const Curve& c = curves_[s.curve];
+  return {heading(s, s.from), c.curvature()};
+}
+
+// Seen the other way, what bends to the left bends to the right.
+Departure Arrangement::way_back(const Stretch& s) const {
+  const Curve& c = curves_[s.curve];
+  return {Number(-1) * heading(s, s.to), Rational(-c.curvature())};
 }
 
 /// The direction of the stretch at one of its ends.
@@ -189,16 +209,16 @@ Point Arrangement::heading(const Stretch& s, std::size_t at) const {
 //             \  .--->  /
 //     --------->o -----'  next
 void Arrangement::walk_all(const std::vector<Stretch>& stretches) {
-  std::vector<std::vector<std::size_t>> leaving(points_.size());
-  for (std::size_t i = 0; i < stretches.size(); ++i) leaving[stretches[i].from].push_back(i);
+  std::vector<std::vector<std::size_t>> starting(points_.size());
+  for (std::size_t i = 0; i < stretches.size(); ++i) starting[stretches[i].from].push_back(i);
   const auto next_of = [&](std::size_t i) {
-    const std::size_t at = stretches[i].to;
-    EXACTVO_REQUIRE(!leaving[at].empty(), "a boundary that ends");
-    const Point back = leaving[at].size() > 1 ? Number(-1) * heading(stretches[i], at) : Point{};
-    std::size_t first = leaving[at].front();
-    for (const std::size_t k : leaving[at])
-      if (k != first && comes_first(back, heading(stretches[k], at), heading(stretches[first], at))) first = k;
-    return first;
+    const std::vector<std::size_t>& choices = starting[stretches[i].to];
+    EXACTVO_REQUIRE(!choices.empty(), "a boundary that ends");
+    if (choices.size() == 1) return choices.front();
+    const Departure back = way_back(stretches[i]);
+    return *std::min_element(choices.begin(), choices.end(), [&](std::size_t a, std::size_t b) {
+      return a != b && comes_first(back, leaving(stretches[a]), leaving(stretches[b]));
+    });
   };
   std::vector<bool> walked(stretches.size(), false);
   for (std::size_t i = 0; i < stretches.size(); ++i) {

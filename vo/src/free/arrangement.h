@@ -22,6 +22,12 @@ struct Stretch {
   std::size_t from = 0, to = 0;  ///< points
 };
 
+/// How a stretch leaves a point: its direction there, and how it bends, positive to the left.
+struct Departure {
+  Point heading;
+  Rational curvature;
+};
+
 /// An owner in doubles: enough to see that a point is forbidden far from its boundary.
 class RoundedOwner {
  public:
@@ -63,6 +69,8 @@ class Arrangement {
   Point middle_of(const Stretch& s) const;
   bool is_boundary(const Stretch& s) const;
   bool passes(std::size_t owner, const Stretch& s, const Point& middle) const;
+  Departure leaving(const Stretch& s) const;
+  Departure way_back(const Stretch& s) const;
   Point heading(const Stretch& s, std::size_t at) const;
   void walk_all(const std::vector<Stretch>& stretches);
 

@@ -3,15 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace exactvo::vo::detail {
 namespace {
-
-/// What no filter accepts.
-const CORE::filteredFp kUnfiltered(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                                   1);
 
 Rational square(const Rational& x) {
   return x * x;
@@ -99,15 +94,16 @@ std::vector<RationalVector> front_of(const std::vector<RationalVector>& hull, co
 /// The exact root of a polynomial of degree 1 or 2: of the two the one in the interval.
 Number number_of(const Root& given) {
   const Root root = settled(given);
-  if (root.is_settled()) return number(root.low);
+  if (root.is_settled()) return Number(root.low);
   const Rational c(root.f[0]), b(root.f[1]), a(root.f[2]);  // a > 0, so that the sign at the upper end tells which
-  const Number half(number(Rational(b / (2 * a)))), rest = root_of(number(Rational(square(b / (2 * a)) - c / a)));
+  const Number half(Rational(b / (2 * a))), rest = root_of(Number(Rational(square(b / (2 * a)) - c / a)));
   return sign_at(root.f, root.high) > 0 ? rest - half : -rest - half;
 }
 
 Point vector_of(const AlgebraicDirection& d) {
   const Number t = number_of(value_of(d).slope);
-  const Point all[] = {{1, t}, {-t, 1}, {-1, -t}, {t, -1}};
+  const Number one(1.0);
+  const Point all[] = {{one, t}, {-t, one}, {-one, -t}, {t, -one}};
   return all[d.quarter_turns()];
 }
 
@@ -144,14 +140,14 @@ class ConeCurves {
   /// Where the leg touches the disc round a corner: the corner's foot on it.
   Point touch(const Point& direction, const RationalVector& corner) const {
     const Point v = point(corner);
-    return point(apex_) + quotient(number(scale_) * dot(v, direction), dot(direction, direction)) * direction;
+    return point(apex_) + quotient(Number(scale_) * dot(v, direction), dot(direction, direction)) * direction;
   }
   /// The corner, moved out along the normal of an edge.
   Point offset(const RationalVector& corner, const RationalVector& from, const RationalVector& to) const {
     const RationalVector normal = outward_normal(from, to);
     const Point centre = point(moved(apex_, scale_, corner));
     if (sgn(radius_) == 0) return centre;
-    return centre + quotient(number(Rational(scale_ * radius_)), root_of(number(dot(normal, normal)))) * point(normal);
+    return centre + quotient(Number(Rational(scale_ * radius_)), root_of(Number(dot(normal, normal)))) * point(normal);
   }
   Curve leg(const Point& direction, const Point& touch, bool inward) const {
     Curve out = line_through(ArcKind::leg, point(apex_), direction);
@@ -189,14 +185,14 @@ std::vector<Point> of_circles(const Circle& a, const Circle& b) {
   if (sgn(height2) < 0) return {};
   const Point foot = point(moved(a.centre, along, between));
   if (sgn(height2) == 0) return {foot};
-  const Point across = root_of(number(height2)) * perp(point(between));
+  const Point across = root_of(Number(height2)) * perp(point(between));
   return {foot - across, foot + across};
 }
 
 std::vector<Point> of_line_and_circle(const Curve& line, const Circle& circle) {
   const Point to_line = line.anchor - point(circle.centre);
   const Number a = dot(line.direction, line.direction), b = dot(to_line, line.direction);
-  const Number rest = b * b - a * (dot(to_line, to_line) - number(square(circle.radius)));
+  const Number rest = b * b - a * (dot(to_line, to_line) - Number(square(circle.radius)));
   const int sign = rest.sign();
   if (sign < 0) return {};
   if (sign == 0) return {line.anchor + quotient(-b, a) * line.direction};
@@ -206,24 +202,8 @@ std::vector<Point> of_line_and_circle(const Curve& line, const Circle& circle) {
 
 }  // namespace
 
-Number number(const Rational& x) {
-  const double rounded = x.get_d();
-  if (Rational(rounded) == x) return Number(rounded);
-  return Number(CORE::BigRat(x.get_mpq_t()));
-}
-
-Number quotient(const Number& a, const Number& b) {
-  if (b.Rep()->ffVal.getValue() == 0.0) b.Rep()->ffVal = kUnfiltered;
-  return a / b;
-}
-
-Number root_of(const Number& x) {
-  if (x.Rep()->ffVal.getValue() < 0.0) x.Rep()->ffVal = kUnfiltered;
-  return sqrt(x);
-}
-
 Point point(const RationalVector& v) {
-  return {number(v.x), number(v.y)};
+  return {Number(v.x), Number(v.y)};
 }
 
 bool Curve::reaches(const Point& x) const {
@@ -232,13 +212,19 @@ bool Curve::reaches(const Point& x) const {
   return !has_to || position(x) <= position(to);
 }
 
+Rational Curve::curvature() const {
+  if (!is_arc) return 0;
+  return Rational(is_counter_clockwise ? 1 : -1) / circle.radius;
+}
+
 bool Owner::allows(const Point& x) const {
   const auto within = [&x](const Circle& circle) {
     const Point from_centre = x - point(circle.centre);
-    return (dot(from_centre, from_centre) - number(square(circle.radius))).sign() < 0;
+    return (dot(from_centre, from_centre) - Number(square(circle.radius))).sign() < 0;
   };
   if (kind == Kind::disc) return within(disc);
   if (kind == Kind::half_plane) return curves.front().side(x) > 0;
+  if (kind == Kind::ray) return true;
   // A cone is what lies on the right of all its lines and chords, and the discs beyond the chords.
   return std::any_of(curves.begin(), curves.end(),
                      [&](const Curve& c) { return c.side(x) > 0 && !(c.is_arc && within(c.circle)); });
@@ -264,7 +250,9 @@ Owner allowed_by(const HalfPlane& h) {
 
 Owner outside_of(const ShiftedCone& cone) {
   const GrownBody body = grown_body(cone.cone);
-  return {Owner::Kind::cone, {}, ConeCurves(cone, body).all(legs_of(body))};
+  const ExactLegs legs = legs_of(body);
+  const bool is_ray = compare(legs.left, legs.right) == geometry::Sign::zero;
+  return {is_ray ? Owner::Kind::ray : Owner::Kind::cone, {}, ConeCurves(cone, body).all(legs)};
 }
 
 bool coincide(const Curve& a, const Curve& b) {

@@ -3,21 +3,18 @@
 
 /// \file
 /// The curves that bound what is allowed: circles, lines and stretches of them over exact algebraic numbers
-/// (CORE::Expr: rationals, sums, products, quotients and square roots, whose signs are exact).
+/// (number.h).
 ///
 /// A curve runs so that what its owner allows lies on its left: the speed's circle counter-clockwise, a cone's front
 /// clockwise, from its right leg, inward, over the front to its left leg, outward.
-
-#include <CGAL/CORE_Expr.h>
 
 #include <vector>
 
 #include "exact/grown_body.h"
 #include "exactvo/vo/free_arrangement.h"
+#include "free/number.h"
 
 namespace exactvo::vo::detail {
-
-using Number = CORE::Expr;
 
 struct Point {
   Number x, y;
@@ -42,13 +39,6 @@ inline Point perp(const Point& a) {
   return {-a.y, a.x};
 }
 
-Number number(const Rational& x);
-
-/// a / b and the square root, exactly. CORE's filter writes a file where it sees a divisor that rounds to zero or a
-/// root of less: here such numbers go past the filter. REQUIRES: b not zero; x >= 0.
-Number quotient(const Number& a, const Number& b);
-Number root_of(const Number& x);
-
 Point point(const RationalVector& v);
 
 struct Circle {
@@ -69,15 +59,18 @@ struct Curve {
 
   /// Grows along the curve. REQUIRES: x on the curve.
   Number position(const Point& x) const { return dot(x - anchor, direction); }
+  /// Positive where the curve bends to its left.
+  Rational curvature() const;
   /// The sign of how far x lies on the left of the line, or of the chord.
   int side(const Point& x) const { return cross(direction, x - anchor).sign(); }
   /// Whether a point of the whole line or circle is one of the stretch, its ends included.
   bool reaches(const Point& x) const;
 };
 
-/// A part of what is allowed: inside the disc, on the left of a line, outside a cone.
+/// A part of what is allowed: inside the disc, on the left of a line, outside a cone. A ray is a cone without area: a
+/// wall or a point that a robot without extent sees end on. Both its legs lie on it, in opposite directions.
 struct Owner {
-  enum class Kind { disc, half_plane, cone } kind = Kind::disc;
+  enum class Kind { disc, half_plane, cone, ray } kind = Kind::disc;
   Circle disc;
   std::vector<Curve> curves;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -56,15 +57,27 @@ bool has_too_many_curves(const std::vector<ShiftedCone>& cones) {
   return curves > kMostCurves;
 }
 
-FreeArc shown(const Arrangement& arrangement, const Stretch& s, double max_speed) {
+/// The brackets of an arrangement's points, each computed once: the arcs that meet in a point show the same numbers, in
+/// every piece. (A number that was approximated more closely in between would be rounded otherwise.)
+class ShownPoints {
+ public:
+  ShownPoints(const Arrangement& arrangement, double max_speed) : arrangement_(arrangement), max_speed_(max_speed) {}
+
+  const PointBracket& at(std::size_t point) {
+    const auto known = brackets_.find(point);
+    if (known != brackets_.end()) return known->second;
+    return brackets_.emplace(point, detail::bracket_of(arrangement_.point(point), max_speed_)).first->second;
+  }
+
+ private:
+  const Arrangement& arrangement_;
+  double max_speed_;
+  std::map<std::size_t, PointBracket> brackets_;
+};
+
+FreeArc shown(const Arrangement& arrangement, const Stretch& s, ShownPoints& points) {
   const detail::Curve& c = arrangement.curve(s);
-  FreeArc out{c.kind,
-              c.owner == 0 ? 0 : c.owner - 1,
-              detail::bracket_of(arrangement.point(s.from), max_speed),
-              detail::bracket_of(arrangement.point(s.to), max_speed),
-              {},
-              0.0,
-              0};
+  FreeArc out{c.kind, c.owner == 0 ? 0 : c.owner - 1, points.at(s.from), points.at(s.to), {}, 0.0, 0};
   if (!c.is_arc) return out;
   out.center = {c.circle.centre.x.get_d(), c.circle.centre.y.get_d()};
   out.radius = c.circle.radius.get_d();
@@ -99,9 +112,10 @@ std::vector<Stretch> merged(const Arrangement& arrangement, std::vector<Stretch>
 
 std::vector<FreePiece> pieces_of(const Arrangement& arrangement, double max_speed) {
   std::vector<FreePiece> pieces;
+  ShownPoints points(arrangement, max_speed);
   for (const std::vector<Stretch>& walk : arrangement.walks()) {
     FreePiece piece{{}, detail::area_of(arrangement, walk, max_speed)};
-    for (const Stretch& s : merged(arrangement, walk)) piece.boundary.push_back(shown(arrangement, s, max_speed));
+    for (const Stretch& s : merged(arrangement, walk)) piece.boundary.push_back(shown(arrangement, s, points));
     pieces.push_back(std::move(piece));
   }
   std::stable_sort(pieces.begin(), pieces.end(),
@@ -114,6 +128,10 @@ bool is_in_range(const HalfPlane& h) {
     return x == 0.0 || (std::fabs(x) >= kLeastOfHalfPlane && std::fabs(x) <= kMostArrangedNumber);
   };
   return in_range(h.normal.x) && in_range(h.normal.y) && in_range(h.offset);
+}
+
+bool is_ray(const Owner& owner) {
+  return owner.kind == Owner::Kind::ray;
 }
 
 /// A half-plane without a normal allows everything or nothing.
@@ -223,6 +241,8 @@ bool FreeArrangement::holds(const std::vector<HalfPlane>& half_planes) const {
     if (overlap_any(cones_)) return false;
     const std::size_t first_cone = region.size();
     add_cones(cones_, region);
+    // A ray takes no area away.
+    region.erase(std::remove_if(region.begin(), region.end(), is_ray), region.end());
     const Arrangement left(std::move(region), max_speed_);
     const auto is_cone = [&](const Stretch& s) { return left.curve(s).owner >= first_cone; };
     return !left.walks().empty() && std::none_of(left.walks().begin(), left.walks().end(), [&](const auto& walk) {

@@ -12,7 +12,8 @@
 /// the numbers that show the answer are rounded, as certified brackets.
 ///
 /// Every cone is convex and reaches beyond the disc, so that no piece has a hole: a piece is one closed walk, and the
-/// number of walks is the number of components.
+/// number of walks is the number of components. Pieces that meet in a point, also in the apex of an infinite cone, are
+/// two. A wall or a point that a robot without extent sees end on forbids a ray: a slit, whose two sides are two arcs.
 ///
 /// Robots are discs or polygons, horizons finite or infinite, cones moved to any apex. Ellipses are not taken (their
 /// offset has degree eight): free_velocities.h holds them, and everything else faster, between two bounds.
@@ -24,7 +25,7 @@
 ///  (1) `area` lies within the bracket of FreeVelocities;
 ///  (2) there are at least as many components as FreeVelocities::least_components;
 ///  (3) one cone more never enlarges the area;
-///  (4) each arc of a piece begins where the one before it ends;
+///  (4) each arc of a piece begins where the one before it ends, and shows the same doubles there;
 ///  (5) what FreeVelocities::compare proves of half-planes, `yes` or `no`, `holds` says too.
 
 #include <cstddef>
