@@ -50,13 +50,13 @@ bool violation_understated(const Problem&, Certificate& c) {
 
 bool bound_by_another(const Problem& problem, Certificate& c) {
   if (c.bound.empty()) return false;
-  c.bound.front().constraint = problem.constraints.size() + 5;  // beyond the sides of the box and the disc
+  c.bound.front().binding = lp::constraint_at(problem.constraints.size());
   return true;
 }
 
 bool another_vertex(const Problem& problem, Certificate& c) {
   if (c.status != lp::Status::pinched) return false;
-  c.vertex.assign(1, problem.constraints.size() + 5);
+  c.vertex.assign(1, lp::constraint_at(problem.constraints.size()));
   return true;
 }
 

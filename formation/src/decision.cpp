@@ -28,7 +28,7 @@ Constraint against_robot(const geometry::HalfPlane& h, bool certified, std::size
 
 bool is_active(const lp::Solution& solution, std::size_t index) {
   for (std::size_t k = 0; k < solution.active_count; ++k)
-    if (solution.active[k] == index) return true;
+    if (solution.active[k].binding == lp::constraint_at(index)) return true;
   return false;
 }
 

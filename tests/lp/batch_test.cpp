@@ -53,8 +53,8 @@ class Batch {
     s.violation = static_cast<double>(violation[i]);
     for (std::size_t slot = 0; slot < 3; ++slot)
       if (active[slot * stride_ + i] != kNoLine)
-        s.active[s.active_count++] = static_cast<std::size_t>(active[slot * stride_ + i]);
-    if (s.active_count < 3) s.active[s.active_count++] = kSpeedBound;
+        s.active[s.active_count++].binding = constraint_at(static_cast<std::size_t>(active[slot * stride_ + i]));
+    if (s.active_count < 3) s.active[s.active_count++].binding = kDisc;
     return s;
   }
 
@@ -116,8 +116,8 @@ TEST_P(Kinds, VerdictsAndCertificatesAreThoseOfTheCertifiedSolver) {
     const Solution s = batch.solution(i);
     ASSERT_STREQ(name(s.status), name(solve_certified(problem).solution.status)) << text_of(problem);
     const auto certificate = certify(problem, s);
-    ASSERT_TRUE(certificate.has_value()) << i << ' ' << name(s.status) << " active " << s.active[0] << ' '
-                                         << s.active[1] << ' ' << s.active[2] << '\n'
+    ASSERT_TRUE(certificate.has_value()) << i << ' ' << name(s.status) << " active " << s.active[0].binding.index << ' '
+                                         << s.active[1].binding.index << ' ' << s.active[2].binding.index << '\n'
                                          << text_of(problem);
     ASSERT_EQ(check(problem, *certificate), Flaw::none);
   }

@@ -69,7 +69,7 @@ bool multiplier_not_a_number(const Problem&, Certificate& c) {
 
 bool constraint_out_of_range(const Problem& problem, Certificate& c) {
   if (c.bound.empty()) return false;
-  c.bound.front().constraint = problem.constraints.size();
+  c.bound.front().binding = constraint_at(problem.constraints.size());
   return true;
 }
 
@@ -205,8 +205,9 @@ TEST(Certificate, AnInfiniteViolationIsNotProven) {
   problem.bound.disc = 1.0;
   for (const double side : {1.0, -1.0})
     problem.constraints.push_back(constraint(Priority::soft, {side, 0.0}, std::numeric_limits<double>::max()));
-  EXPECT_FALSE(certify(problem, {{0.0, 0.0}, Status::relaxed, {0, 1}, 2, 0.0}));
-  EXPECT_FALSE(certify(problem, {{std::nan(""), 0.0}, Status::relaxed, {0, 1}, 2, 0.0}));
+  const std::array<ActiveConstraint, 3> both = {{{constraint_at(0), 1.0}, {constraint_at(1), 1.0}, {}}};
+  EXPECT_FALSE(certify(problem, {{0.0, 0.0}, Status::relaxed, both, 2, 0.0}));
+  EXPECT_FALSE(certify(problem, {{std::nan(""), 0.0}, Status::relaxed, both, 2, 0.0}));
 }
 
 TEST(Certificate, FlawsHaveNames) {

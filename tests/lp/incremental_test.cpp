@@ -39,7 +39,7 @@ TEST(Incremental, WithoutConstraintsReturnsThePreferredVelocityItself) {
 TEST(Incremental, ProjectsOntoTheDisc) {
   const Solution s = solve(in_disc(2.0, {3.0, 4.0}));
   expect_at(s, Status::optimal, {1.2, 1.6});
-  EXPECT_EQ(s.active[0], kSpeedBound);
+  EXPECT_EQ(s.active[0].binding, kDisc);
 }
 
 TEST(Incremental, ProjectsOntoALine) {
@@ -166,7 +166,8 @@ TEST(Incremental, NamesTheCallersMistakes) {
 
 /// The bounds of the speed among what a solution says binds.
 std::size_t bounds_that_bind(const Solution& s) {
-  return static_cast<std::size_t>(std::count_if(s.active.begin(), s.active.begin() + s.active_count, is_speed_bound));
+  return static_cast<std::size_t>(std::count_if(s.active.begin(), s.active.begin() + s.active_count,
+                                                [](const auto& a) { return is_speed_bound(a.binding); }));
 }
 
 TEST(Incremental, NamesNoSpeedBoundThatDoesNotBind) {
@@ -178,7 +179,9 @@ TEST(Incremental, NamesNoSpeedBoundThatDoesNotBind) {
   beyond.constraints = {{{{1.0, 0.0}, 10.0}, Priority::hard, -1}};
   const Solution s = solve(beyond);
   EXPECT_EQ(bounds_that_bind(s), 1u);
-  EXPECT_EQ(std::count(s.active.begin(), s.active.begin() + s.active_count, kBoxRight), 1);
+  EXPECT_EQ(std::count_if(s.active.begin(), s.active.begin() + s.active_count,
+                          [](const auto& a) { return a.binding.kind == BindingKind::box_right; }),
+            1);
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ TEST(Properties, RemovingAWitnessMakesTheRestFeasibleWhenItIsAlone) {
     ASSERT_LE(proven.certificate->contradiction.size(), 3u);
     ++contradictions;
     Problem fewer = problem;
-    fewer.constraints.erase(fewer.constraints.begin() + proven.certificate->contradiction.front().constraint);
+    fewer.constraints.erase(fewer.constraints.begin() + proven.certificate->contradiction.front().binding.index);
     if (solve_certified(fewer).solution.status == Status::relaxed) {
       EXPECT_LT(solve_certified(fewer).solution.violation, proven.solution.violation) << text_of(problem);
     }
@@ -117,7 +117,7 @@ TEST(Properties, TheWitnessAloneContradicts) {
     Problem witness = problem;
     witness.constraints.clear();
     for (const Term& term : proven.certificate->contradiction)
-      if (!is_speed_bound(term.constraint)) witness.constraints.push_back(problem.constraints[term.constraint]);
+      if (!is_speed_bound(term.binding)) witness.constraints.push_back(problem.constraints[term.binding.index]);
     EXPECT_EQ(solve_certified(witness).solution.status, Status::relaxed) << text_of(problem);
     if (witness.constraints.size() < 3) continue;
     for (std::size_t k = 0; k < 3; ++k) {  // three lines whose normals balance: any two of them leave room far away

@@ -34,7 +34,7 @@ TEST(LpRegion, LinesAreMovedInwardByTheSlackOfTheSpeed) {
     EXPECT_EQ(line.offset, 0.25 + line.slack);
     EXPECT_NEAR(line.squared_length, 1.0, 1e-15);
     EXPECT_TRUE(line.soft);
-    EXPECT_EQ(line.index, 0U);
+    EXPECT_EQ(line.binding, constraint_at(0));
     EXPECT_LT(region.disc, 2.0);
     EXPECT_GE(region.disc, 2.0 * (1.0 - units * kInwardSlack));
   }
@@ -48,7 +48,7 @@ TEST(LpRegion, APointThatKeepsAMovedLineKeepsTheGivenOne) {
       const Vec2 v = ((line.offset - kNoise * region.speed) / line.squared_length) * line.normal;
       if (norm(v) > region.speed) continue;
       ASSERT_LE(excess(line, v), 2.0 * kNoise * region.speed);
-      ASSERT_LE(sign_of_violation(p.constraints[line.index].half_plane, v), 0);
+      ASSERT_LE(sign_of_violation(p.constraints[line.binding.index].half_plane, v), 0);
     }
   }
 }
@@ -62,11 +62,10 @@ TEST(LpRegion, SidesOfTheBoxAreLinesWithoutSlack) {
   ASSERT_EQ(region.lines.size(), 5U);
   EXPECT_EQ(region.speed, 5.0) << "the corner's";
   EXPECT_TRUE(std::isinf(region.disc));
-  const std::size_t sides[] = {kBoxRight, kBoxLeft, kBoxTop, kBoxBottom};
   const Vec2 on_side[] = {{3.0, 1.0}, {-3.0, 1.0}, {1.0, 4.0}, {1.0, -4.0}};
   for (std::size_t k = 0; k < 4; ++k) {
     const Line& side = region.lines[k + 1];
-    EXPECT_EQ(side.index, sides[k]);
+    EXPECT_EQ(side.binding, kBoxSides[k]);
     EXPECT_EQ(side.slack, 0.0);
     EXPECT_FALSE(side.soft);
     EXPECT_EQ(excess(side, on_side[k]), 0.0);
@@ -89,9 +88,9 @@ TEST(LpRegion, ABasisKnowsItsMembers) {
   Basis basis;
   EXPECT_FALSE(basis.has(0));
   basis.add(4);
-  basis.add(kSpeedBound);
+  basis.add(kDiscPosition);
   EXPECT_TRUE(basis.has(4));
-  EXPECT_TRUE(basis.has(kSpeedBound));
+  EXPECT_TRUE(basis.has(kDiscPosition));
   EXPECT_FALSE(basis.has(0)) << "what stands in a free place is no member";
 }
 

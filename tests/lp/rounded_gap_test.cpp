@@ -95,7 +95,7 @@ std::vector<Case> cases() {
       const auto certificate = solve_certified(problem).certificate;
       if (!certificate || !is_plain(*certificate)) continue;
       Case c{problem, {}, scope_of(certificate->status), {certificate->velocity, certificate->violation}};
-      for (const Term& term : certificate->bound) c.multipliers.add(term.constraint, term.multiplier.front());
+      for (const Term& term : certificate->bound) c.multipliers.add(term.binding, term.multiplier.front());
       all.push_back(c);
     }
   }
@@ -105,7 +105,7 @@ std::vector<Case> cases() {
 Combination combination_of(const Case& c) {
   std::vector<Term> terms;
   for (std::size_t k = 0; k < c.multipliers.count; ++k)
-    terms.push_back({c.multipliers.constraint[k], {c.multipliers.value[k]}});
+    terms.push_back({c.multipliers.binding[k], {c.multipliers.value[k]}});
   return combine(c.problem, terms, c.scope);
 }
 

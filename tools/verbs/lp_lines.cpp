@@ -4,27 +4,14 @@
 namespace exactvo::tools {
 namespace {
 
-nlohmann::ordered_json name_of(std::size_t index) {
-  switch (index) {
-    case lp::kSpeedBound:
-      return "disc";
-    case lp::kBoxRight:
-      return "box-right";
-    case lp::kBoxLeft:
-      return "box-left";
-    case lp::kBoxTop:
-      return "box-top";
-    case lp::kBoxBottom:
-      return "box-bottom";
-    default:
-      return index;
-  }
+nlohmann::ordered_json name_of(const lp::Binding& binding) {
+  return is_speed_bound(binding) ? nlohmann::ordered_json(name(binding.kind)) : nlohmann::ordered_json(binding.index);
 }
 
 nlohmann::ordered_json terms_json(const std::vector<lp::Term>& terms) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const lp::Term& term : terms)
-    list.push_back({{"constraint", name_of(term.constraint)}, {"multiplier", term.multiplier}});
+    list.push_back({{"constraint", name_of(term.binding)}, {"multiplier", term.multiplier}});
   return list;
 }
 
@@ -33,7 +20,7 @@ nlohmann::ordered_json certificate_json(const lp::Certificate& c) {
       {"bound", terms_json(c.bound)}, {"contradiction", terms_json(c.contradiction)}, {"gap", c.gap}};
   if (c.status != lp::Status::pinched) return out;
   out["vertex"] = nlohmann::ordered_json::array();
-  for (const std::size_t index : c.vertex) out["vertex"].push_back(name_of(index));
+  for (const lp::Binding& binding : c.vertex) out["vertex"].push_back(name_of(binding));
   return out;
 }
 
@@ -46,7 +33,9 @@ nlohmann::ordered_json result_line(std::size_t index, const lp::Proven& answer) 
                                 {"velocity", {s.velocity.x, s.velocity.y}},
                                 {"violation", s.violation},
                                 {"active", nlohmann::ordered_json::array()}};
-  for (std::size_t k = 0; k < s.active_count; ++k) out["active"].push_back(name_of(s.active[k]));
+  for (std::size_t k = 0; k < s.active_count; ++k) out["active"].push_back(name_of(s.active[k].binding));
+  out["multipliers"] = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < s.active_count; ++k) out["multipliers"].push_back(s.active[k].multiplier);
   out["certificate"] = answer.certificate ? certificate_json(*answer.certificate) : nlohmann::ordered_json();
   return out;
 }

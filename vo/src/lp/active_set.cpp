@@ -8,7 +8,6 @@ namespace exactvo::lp {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kNone = kBoxBottom - 1;
 
 /// Where the objective would like to be on the line q + s d: at the foot of `preferred`, or at one of its ends.
 double wish_on(Vec2 d, double squared_length, Objective objective, Vec2 preferred) {
@@ -20,7 +19,7 @@ double wish_on(Vec2 d, double squared_length, Objective objective, Vec2 preferre
 /// The part of a line that is left, and what cut it off.
 struct Stretch {
   double low = -kInfinity, high = kInfinity;
-  std::size_t low_owner = kNone, high_owner = kNone;
+  std::size_t low_owner = kNoPosition, high_owner = kNoPosition;
   bool empty = false;
 
   void keep_above(double s, std::size_t owner) {
@@ -38,12 +37,12 @@ Stretch inside_disc(const Line& line, double disc) {
   if (room < 0.0) {
     stretch.empty = line.offset > 0.0;
     if (!stretch.empty) return stretch;
-    stretch.low_owner = kSpeedBound;
+    stretch.low_owner = kDiscPosition;
     return stretch;
   }
   const double reach = std::sqrt(room / line.squared_length);
-  stretch.keep_above(-reach, kSpeedBound);
-  stretch.keep_below(reach, kSpeedBound);
+  stretch.keep_above(-reach, kDiscPosition);
+  stretch.keep_below(reach, kDiscPosition);
   return stretch;
 }
 
@@ -56,7 +55,7 @@ void cut(Stretch& stretch, Vec2 q, Vec2 d, const Line& other, std::size_t owner,
   } else if (slope < 0.0) {
     stretch.keep_below(missing / slope, owner);
   } else if (missing > kNoise * speed * std::sqrt(other.squared_length)) {
-    stretch = {0.0, 0.0, owner, kNone, true};
+    stretch = {0.0, 0.0, owner, kNoPosition, true};
   }
 }
 
@@ -64,8 +63,8 @@ Found contradiction(std::size_t line, const Stretch& stretch, Vec2 at) {
   Found found;
   found.velocity = at;
   found.basis.add(line);
-  if (stretch.low_owner != kNone) found.basis.add(stretch.low_owner);
-  if (stretch.high_owner != kNone && stretch.high_owner != stretch.low_owner) found.basis.add(stretch.high_owner);
+  if (stretch.low_owner != kNoPosition) found.basis.add(stretch.low_owner);
+  if (stretch.high_owner != kNoPosition && stretch.high_owner != stretch.low_owner) found.basis.add(stretch.high_owner);
   return found;
 }
 
@@ -103,19 +102,19 @@ Found start_of(const Region& region, Objective objective, Vec2 preferred) {
   found.feasible = true;
   if (objective == Objective::farthest) {
     found.velocity = onto_disc(preferred, region.disc);
-    found.basis.add(kSpeedBound);
+    found.basis.add(kDiscPosition);
     return found;
   }
   found.velocity = preferred;
   if (norm(preferred) <= region.disc) return found;
   found.velocity = onto_disc(preferred, region.disc);
-  found.basis.add(kSpeedBound);
+  found.basis.add(kDiscPosition);
   return found;
 }
 
 /// The position of the line violated most at v beyond rounding, `level` being what soft lines may be violated by.
 std::size_t most_violated(const Region& region, Vec2 v, double level, const Basis& basis) {
-  std::size_t worst = kNone;
+  std::size_t worst = kNoPosition;
   double most = kNoise * region.speed;
   for (std::size_t k = 0; k < region.lines.size(); ++k) {
     const Line& line = region.lines[k];
@@ -153,7 +152,7 @@ Found walk_to_best(const Region& region, Objective objective, Vec2 preferred) {
   Found found = start_of(region, objective, preferred);
   for (int round = 0; round < kMostRounds; ++round) {
     const std::size_t entering = most_violated(region, found.velocity, 0.0, found.basis);
-    if (entering == kNone) return found;
+    if (entering == kNoPosition) return found;
     const Members kept = members_of(found.basis, region);
     found = best_on_line(region.lines[entering], entering, kept.lines.data(), kept.positions.data(), kept.count, region,
                          objective, preferred);
@@ -165,8 +164,7 @@ Found walk_to_best(const Region& region, Objective objective, Vec2 preferred) {
 }  // namespace
 
 Found best_velocity(const Region& region, Objective objective, Vec2 preferred) {
-  if (objective == Objective::nearest || std::isfinite(region.disc))
-    return walk_to_best(region, objective, preferred);
+  if (objective == Objective::nearest || std::isfinite(region.disc)) return walk_to_best(region, objective, preferred);
   // On a line alone a linear objective has no optimum: a disc beyond the corners of the box stands for what bounds it.
   return walk_to_best(within_disc(region, 2.0 * region.speed), objective, preferred);
 }
@@ -206,7 +204,7 @@ Level lowest_on_plane(std::size_t top, const Basis& basis, const Region& region)
   Found found;
   found.feasible = true;
   found.velocity = onto_disc(plane.normal, region.disc);
-  found.basis.add(kSpeedBound);
+  found.basis.add(kDiscPosition);
   for (std::size_t k = 0; k < members.count && found.feasible; ++k) {
     projected[count] = below(plane, *members.lines[k]);
     const Line& line = projected[count];
@@ -257,7 +255,7 @@ Level lowest_on_wall(std::size_t wall, const Basis& basis, const Region& region)
     best = {{true, q + s * d, {}}, height};
     best.found.basis.add(wall);
     best.found.basis.add(members.positions[highest]);
-    if (owner != kNone && owner != members.positions[highest]) best.found.basis.add(owner);
+    if (owner != kNoPosition && owner != members.positions[highest]) best.found.basis.add(owner);
   };
   consider(stretch.low, stretch.low_owner);
   consider(stretch.high, stretch.high_owner);
@@ -285,7 +283,7 @@ Found least_violation(const Region& given) {
   now.found.feasible = true;
   for (int round = 0; round < kMostRounds; ++round) {
     const std::size_t entering = most_violated(region, now.found.velocity, now.level, now.found.basis);
-    if (entering == kNone) return now.found;
+    if (entering == kNoPosition) return now.found;
     const bool soft = region.lines[entering].soft;
     const Level next =
         soft ? lowest_on_plane(entering, now.found.basis, region) : lowest_on_wall(entering, now.found.basis, region);

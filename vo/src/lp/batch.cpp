@@ -96,8 +96,8 @@ void put(const Solution& s, const BatchAnswers<T>& out, std::size_t i) {
   out.violation[i] = static_cast<T>(s.violation);
   out.status[i] = static_cast<std::uint8_t>(s.status);
   for (std::size_t slot = 0; out.active && slot < 3; ++slot) {
-    const bool line = slot < s.active_count && !is_speed_bound(s.active[slot]);
-    out.active[slot * out.stride + i] = line ? static_cast<std::int32_t>(s.active[slot]) : kNoLine;
+    const bool line = slot < s.active_count && !is_speed_bound(s.active[slot].binding);
+    out.active[slot * out.stride + i] = line ? static_cast<std::int32_t>(s.active[slot].binding.index) : kNoLine;
   }
 }
 

@@ -9,18 +9,12 @@
 #include "duality.h"
 #include "exact_sign.h"
 #include "inward.h"
+#include "multipliers.h"
 #include "region.h"
 #include "rounded_gap.h"
 
 namespace exactvo::lp {
 namespace {
-
-/// Up to three of the candidates.
-struct Chosen {
-  std::array<std::size_t, 3> index{};
-  std::size_t count = 0;
-  std::size_t operator[](std::size_t k) const { return index[k]; }
-};
 
 bool usable(const Multipliers& m) {
   return std::all_of(m.value.begin(), m.value.begin() + m.count, [](double x) { return std::isfinite(x) && x >= 0.0; });
@@ -29,71 +23,16 @@ bool usable(const Multipliers& m) {
 std::vector<Term> terms_of(const Multipliers& m) {
   std::vector<Term> terms;
   for (std::size_t k = 0; k < m.count; ++k)
-    if (m.value[k] > 0.0) terms.push_back({m.constraint[k], {m.value[k]}});
+    if (m.value[k] > 0.0) terms.push_back({m.binding[k], {m.value[k]}});
   return terms;
 }
 
-/// Least (a, b) with a x + b y = sum; rounded.
-std::array<double, 2> solve_pair(Vec2 x, Vec2 y, Vec2 sum) {
-  const double determinant = cross(x, y);
-  return {cross(sum, y) / determinant, cross(x, sum) / determinant};
-}
-
-/// Stationarity at the optimum: what the normals (and for the disc -v) must add up to.
-Vec2 pull(const Problem& problem, Vec2 v) {
-  return problem.objective == Objective::nearest ? v - problem.preferred : -problem.preferred;
-}
-
-Vec2 column(const Problem& problem, std::size_t index, Vec2 v) {
-  return index == kSpeedBound ? -v : half_plane_at(problem, index).normal;
-}
-
-/// nu of (4), |p|/|v| - 1 where the disc binds alone. Beyond 1/u a larger one moves the bound by less than u |p|^2, the
-/// least gap anyway; a disc of 0, or one whose square underflows, has no other.
-double multiplier_of_disc(Vec2 sum, Vec2 towards_centre) {
-  constexpr double kMost = 1.0 / kUnitRoundoff;
-  const double nu = dot(sum, towards_centre) / squared_norm(towards_centre);
-  return nu < kMost ? std::max(0.0, nu) : kMost;  // also where nu is 0/0
-}
-
 /// The disc's multiplier is part of the proof for the nearest velocity only.
-void add_unless_implied(const Problem& problem, std::size_t index, double value, Multipliers& m) {
-  if (index != kSpeedBound || problem.objective == Objective::nearest) m.add(index, value);
-}
-
-Multipliers of_optimum(const Problem& problem, Vec2 v, const Chosen& chosen) {
+Multipliers without_implied_disc(const Problem& problem, const Multipliers& all) {
+  if (problem.objective == Objective::nearest) return all;
   Multipliers m;
-  const Vec2 sum = pull(problem, v);
-  if (chosen.count == 1) {
-    const Vec2 x = column(problem, chosen[0], v);
-    const bool is_disc = chosen[0] == kSpeedBound;
-    const double multiplier = is_disc ? multiplier_of_disc(sum, x) : std::max(0.0, dot(sum, x) / squared_norm(x));
-    add_unless_implied(problem, chosen[0], multiplier, m);
-  } else if (chosen.count == 2) {
-    const auto pair = solve_pair(column(problem, chosen[0], v), column(problem, chosen[1], v), sum);
-    add_unless_implied(problem, chosen[0], std::max(0.0, pair[0]), m);
-    add_unless_implied(problem, chosen[1], std::max(0.0, pair[1]), m);
-  }
-  return m;
-}
-
-/// Weights whose sum of normals vanishes, or where the disc binds points along v.
-Multipliers of_least_violation(const Problem& problem, Vec2 v, const Chosen& chosen, bool on_disc) {
-  Multipliers m;
-  const auto normal = [&](std::size_t k) { return half_plane_at(problem, chosen[k]).normal; };
-  if (chosen.count == 1) {
-    m.add(chosen[0], 1.0);
-  } else if (chosen.count == 2) {
-    const Vec2 a = normal(0), b = normal(1);
-    const double turn = std::copysign(1.0, cross(a, b));
-    m.add(chosen[0], on_disc ? turn * cross(v, b) : norm(b));
-    m.add(chosen[1], on_disc ? turn * cross(a, v) : norm(a));
-  } else if (chosen.count == 3) {
-    const Vec2 a = normal(0), b = normal(1), c = normal(2);
-    const std::array<double, 3> w = {cross(b, c), cross(c, a), cross(a, b)};
-    const double turn = std::copysign(1.0, w[0] + w[1] + w[2]);
-    for (std::size_t k = 0; k < 3; ++k) m.add(chosen[k], turn * w[k]);
-  }
+  for (std::size_t k = 0; k < all.count; ++k)
+    if (all.binding[k] != kDisc) m.add(all.binding[k], all.value[k]);
   return m;
 }
 
@@ -120,9 +59,10 @@ class Search {
   Search(const Problem& problem, Scope scope, const Claim& claim, double widest)
       : problem_(problem), scope_(scope), claim_(claim), widest_(widest), least_(least_gap(problem, scope)) {}
 
-  /// Tries every choice of at most three candidates.
-  void run(const std::vector<std::size_t>& candidates) {
-    attempt({}, 0);
+  /// Tries the solution's own multipliers, then every choice of at most three candidates.
+  void run(const Multipliers& own, const std::vector<Binding>& candidates) {
+    if (own.count > 0) consider(own);
+    if (!settled()) attempt({}, 0);
     for (std::size_t i = 0; i < candidates.size() && !settled(); ++i) {
       attempt({candidates[i]}, 1);
       for (std::size_t j = i + 1; j < candidates.size() && !settled(); ++j) {
@@ -140,16 +80,16 @@ class Search {
  private:
   bool settled() const { return found_ && gap_ <= 64.0 * least_; }
 
-  void attempt(const std::array<std::size_t, 3>& candidates, std::size_t count) {
+  void attempt(const std::array<Binding, 3>& candidates, std::size_t count) {
     Chosen chosen;
     if (scope_ == Scope::all_must_hold) {
       chosen = {candidates, count};
-      return consider(of_optimum(problem_, claim_.velocity, chosen));
+      return consider(without_implied_disc(problem_, multipliers_of_optimum(problem_, claim_.velocity, chosen)));
     }
     for (std::size_t k = 0; k < count; ++k)
-      if (candidates[k] != kSpeedBound) chosen.index[chosen.count++] = candidates[k];
-    consider(of_least_violation(problem_, claim_.velocity, chosen, false));
-    if (chosen.count == 2) consider(of_least_violation(problem_, claim_.velocity, chosen, true));
+      if (candidates[k] != kDisc) chosen.binding[chosen.count++] = candidates[k];
+    consider(weights_of_lines(problem_, claim_.velocity, chosen, false));
+    if (chosen.count == 2) consider(weights_of_lines(problem_, claim_.velocity, chosen, true));
   }
 
   void consider(const Multipliers& m) {
@@ -219,10 +159,22 @@ double violation_not_less(const Problem& problem, const Solution& s) {
   return most;
 }
 
-std::vector<std::size_t> usable_candidates(const Problem& problem, std::vector<std::size_t> candidates, Scope scope) {
-  const auto unusable = [&](std::size_t k) { return !can_be_used(problem, k, scope); };
+std::vector<Binding> usable_candidates(const Problem& problem, std::vector<Binding> candidates, Scope scope) {
+  const auto unusable = [&](const Binding& b) { return !can_be_used(problem, b, scope); };
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(), unusable), candidates.end());
   return candidates;
+}
+
+/// Those that count in (2), (3) or (4); none where one can't be used.
+Multipliers own_multipliers(const Problem& problem, const Solution& s, Scope scope) {
+  const bool disc_counts = scope == Scope::all_must_hold && problem.objective == Objective::nearest;
+  Multipliers m;
+  for (std::size_t k = 0; k < s.active_count; ++k) {
+    const ActiveConstraint& a = s.active[k];
+    if (!can_be_used(problem, a.binding, scope)) return {};
+    if (a.multiplier > 0.0 && (disc_counts || a.binding != kDisc)) m.add(a.binding, a.multiplier);
+  }
+  return m;
 }
 
 bool proves_contradiction(const Problem& problem, const Multipliers& m, Scope scope) {
@@ -240,7 +192,7 @@ double widest_gap_of_doubles(const Problem& problem, Status status) {
 }
 
 std::optional<Certificate> certificate_for(const Problem& problem, const Solution& solution,
-                                           const std::vector<std::size_t>& candidates,
+                                           const std::vector<Binding>& candidates,
                                            const std::vector<Term>& contradiction, double widest_gap) {
   if (!holds(problem, solution.status, solution.velocity)) return std::nullopt;
   const Scope scope = scope_of(solution.status);
@@ -248,7 +200,7 @@ std::optional<Certificate> certificate_for(const Problem& problem, const Solutio
   const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
   if (!std::isfinite(claim.violation)) return std::nullopt;
   Search search(problem, scope, claim, widest_gap);
-  search.run(usable_candidates(problem, candidates, scope));
+  search.run(own_multipliers(problem, solution, scope), usable_candidates(problem, candidates, scope));
   if (!search.found()) return std::nullopt;
   Certificate c{solution.status, claim.velocity, claim.violation, {}, terms_of(search.best()), search.gap(), {}};
   if (!gives) return c;
@@ -258,11 +210,32 @@ std::optional<Certificate> certificate_for(const Problem& problem, const Solutio
   return c;
 }
 
+std::vector<Binding> active_bindings(const Solution& solution) {
+  std::vector<Binding> bindings;
+  for (std::size_t k = 0; k < solution.active_count; ++k) bindings.push_back(solution.active[k].binding);
+  return bindings;
+}
+
+Certificate claim_of(const Problem& problem, const Solution& solution) {
+  require_well_formed(problem);
+  Certificate claim;
+  claim.status = solution.status;
+  claim.velocity = solution.velocity;
+  if (solution.status == Status::pinched) return claim;
+  const bool gives = solution.status != Status::optimal;
+  claim.bound = terms_of(own_multipliers(problem, solution, scope_of(solution.status)));
+  claim.gap = widest_gap_of_doubles(problem, solution.status);
+  if (!gives) return claim;
+  claim.violation = violation_not_less(problem, solution);
+  claim.contradiction = claim.bound;
+  return claim;
+}
+
 std::optional<Certificate> certify(const Problem& problem, const Solution& solution) {
   require_well_formed(problem);
   if (solution.status == Status::pinched || !is_finite(solution.velocity)) return std::nullopt;
-  const std::vector<std::size_t> active(solution.active.begin(), solution.active.begin() + solution.active_count);
-  return certificate_for(problem, solution, active, {}, widest_gap_of_doubles(problem, solution.status));
+  return certificate_for(problem, solution, active_bindings(solution), {},
+                         widest_gap_of_doubles(problem, solution.status));
 }
 
 }  // namespace exactvo::lp

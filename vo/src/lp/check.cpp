@@ -39,10 +39,10 @@ bool has_finite_numbers(const Certificate& c) {
 }
 
 /// The point nearest 0 on the boundaries named (homogeneous): 0 itself, the foot on one, the crossing of two.
-bool vertex_point(const Problem& problem, const std::vector<std::size_t>& vertex, ExactPoint& point) {
-  for (const std::size_t index : vertex) {
-    if (index == kSpeedBound || (!is_speed_bound(index) && index >= problem.constraints.size())) return false;
-    if (!std::isfinite(half_plane_at(problem, index).offset)) return false;
+bool vertex_point(const Problem& problem, const std::vector<Binding>& vertex, ExactPoint& point) {
+  for (const Binding b : vertex) {
+    if (b == kDisc || (!is_speed_bound(b) && b.index >= problem.constraints.size())) return false;
+    if (!std::isfinite(half_plane_at(problem, b).offset)) return false;
   }
   if (vertex.empty()) {
     point = {0, 0, 0, 0, 1, 0};
@@ -66,7 +66,7 @@ bool vertex_point(const Problem& problem, const std::vector<std::size_t>& vertex
 }
 
 bool within_bound(const Problem& problem, const ExactPoint& point) {
-  for (const std::size_t side : {kBoxRight, kBoxLeft, kBoxTop, kBoxBottom}) {
+  for (const Binding side : kBoxSides) {
     const HalfPlane h = half_plane_at(problem, side);
     if (std::isfinite(h.offset) && sign_of_violation(exact(h), point) > 0) return false;
   }

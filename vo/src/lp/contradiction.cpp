@@ -11,7 +11,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Weighted {
-  std::size_t constraint;
+  Binding binding;
   Exact multiplier;
 };
 
@@ -48,8 +48,8 @@ std::vector<Term> proven(const Problem& problem, std::vector<Weighted> exact_ter
   for (const Weighted& t : exact_terms) {
     if (sign_of(t.multiplier) < 0) return {};
     if (sign_of(t.multiplier) == 0) continue;
-    rounded.push_back({t.constraint, {t.multiplier.to_double()}});
-    whole.push_back({t.constraint, parts_of(t.multiplier)});
+    rounded.push_back({t.binding, {t.multiplier.to_double()}});
+    whole.push_back({t.binding, parts_of(t.multiplier)});
   }
   for (const std::vector<Term>& terms : {rounded, whole}) {
     const Combination sum = combine(problem, terms, Scope::soft_may_give);
@@ -58,12 +58,12 @@ std::vector<Term> proven(const Problem& problem, std::vector<Weighted> exact_ter
   return {};
 }
 
-std::vector<Term> of_one(const Problem& problem, std::size_t a) {
+std::vector<Term> of_one(const Problem& problem, Binding a) {
   return proven(problem, {{a, Exact(1)}});
 }
 
 /// Two opposite lines: the sum of normals cancels.
-std::vector<Term> of_opposite(const Problem& problem, std::size_t a, std::size_t b) {
+std::vector<Term> of_opposite(const Problem& problem, Binding a, Binding b) {
   const Vec2 na = half_plane_at(problem, a).normal;
   const Vec2 nb = half_plane_at(problem, b).normal;
   const bool by_x = std::abs(na.x) > std::abs(na.y);
@@ -71,7 +71,7 @@ std::vector<Term> of_opposite(const Problem& problem, std::size_t a, std::size_t
 }
 
 /// Two lines and the disc: the multipliers that make their sum point from 0 to where they cross.
-std::vector<Term> of_crossing(const Problem& problem, std::size_t a, std::size_t b) {
+std::vector<Term> of_crossing(const Problem& problem, Binding a, Binding b) {
   const ExactLine la = exact(half_plane_at(problem, a));
   const ExactLine lb = exact(half_plane_at(problem, b));
   const Exact between = dot(la.normal, lb.normal);
@@ -80,7 +80,7 @@ std::vector<Term> of_crossing(const Problem& problem, std::size_t a, std::size_t
 }
 
 /// Three lines: the sum of normals cancels.
-std::vector<Term> of_three(const Problem& problem, std::size_t a, std::size_t b, std::size_t c) {
+std::vector<Term> of_three(const Problem& problem, Binding a, Binding b, Binding c) {
   const ExactVector na = exact(half_plane_at(problem, a).normal);
   const ExactVector nb = exact(half_plane_at(problem, b).normal);
   const ExactVector nc = exact(half_plane_at(problem, c).normal);
@@ -89,18 +89,18 @@ std::vector<Term> of_three(const Problem& problem, std::size_t a, std::size_t b,
   return proven(problem, {{a, sign * wa}, {b, sign * wb}, {c, sign * wc}});
 }
 
-std::vector<Term> of_two(const Problem& problem, std::size_t a, std::size_t b) {
+std::vector<Term> of_two(const Problem& problem, Binding a, Binding b) {
   std::vector<Term> terms = of_opposite(problem, a, b);
   return terms.empty() ? of_crossing(problem, a, b) : terms;
 }
 
 }  // namespace
 
-std::vector<Term> contradiction_of(const Problem& problem, const std::vector<std::size_t>& constraints) {
-  std::vector<std::size_t> lines;
-  for (const std::size_t k : constraints)
-    if (k != kSpeedBound) lines.push_back(k);
-  for (const std::size_t a : lines) {
+std::vector<Term> contradiction_of(const Problem& problem, const std::vector<Binding>& bindings) {
+  std::vector<Binding> lines;
+  for (const Binding b : bindings)
+    if (b != kDisc) lines.push_back(b);
+  for (const Binding a : lines) {
     const std::vector<Term> terms = of_one(problem, a);
     if (!terms.empty()) return terms;
   }

@@ -3,22 +3,10 @@
 
 #include <cmath>
 
+#include "region.h"
+
 namespace exactvo::lp {
 namespace {
-
-/// Side of the box as a unit half-plane n.v >= -width.
-HalfPlane side_of_box(const SpeedBound& bound, std::size_t index) {
-  switch (index) {
-    case kBoxRight:
-      return {{-1.0, 0.0}, -bound.box_x};
-    case kBoxLeft:
-      return {{1.0, 0.0}, -bound.box_x};
-    case kBoxTop:
-      return {{0.0, -1.0}, -bound.box_y};
-    default:
-      return {{0.0, 1.0}, -bound.box_y};
-  }
-}
 
 bool sum_exactly(const std::vector<double>& parts, Exact& sum) {
   for (const double part : parts) {
@@ -30,17 +18,17 @@ bool sum_exactly(const std::vector<double>& parts, Exact& sum) {
 
 bool add_term(const Problem& problem, const Term& term, Scope scope, Combination& sum) {
   Exact multiplier = 0;
-  if (!can_be_used(problem, term.constraint, scope) || !sum_exactly(term.multiplier, multiplier)) return false;
+  if (!can_be_used(problem, term.binding, scope) || !sum_exactly(term.multiplier, multiplier)) return false;
   if (sign_of(multiplier) < 0) return false;
-  if (term.constraint == kSpeedBound) {
+  if (term.binding == kDisc) {
     sum.disc = sum.disc + multiplier;
     return true;
   }
-  const ExactLine line = exact(half_plane_at(problem, term.constraint));
+  const ExactLine line = exact(half_plane_at(problem, term.binding));
   sum.normal.x = sum.normal.x + multiplier * line.normal.x;
   sum.normal.y = sum.normal.y + multiplier * line.normal.y;
   sum.offset = sum.offset + multiplier * line.offset;
-  if (may_give(problem, term.constraint, scope)) sum.giving = sum.giving + multiplier;
+  if (may_give(problem, term.binding, scope)) sum.giving = sum.giving + multiplier;
   return true;
 }
 
@@ -66,20 +54,21 @@ bool bounds_farthest(const Problem& problem, const Combination& sum, Vec2 veloci
 
 }  // namespace
 
-bool can_be_used(const Problem& problem, std::size_t index, Scope scope) {
-  if (index == kSpeedBound) return std::isfinite(problem.bound.disc);
-  if (is_speed_bound(index)) return std::isfinite(half_plane_at(problem, index).offset);
-  if (index >= problem.constraints.size()) return false;
-  return scope != Scope::hard_may_give || problem.constraints[index].priority == Priority::hard;
+bool can_be_used(const Problem& problem, Binding binding, Scope scope) {
+  if (binding == kDisc) return std::isfinite(problem.bound.disc);
+  if (is_speed_bound(binding)) return std::isfinite(half_plane_at(problem, binding).offset);
+  if (binding.index >= problem.constraints.size()) return false;
+  return scope != Scope::hard_may_give || problem.constraints[binding.index].priority == Priority::hard;
 }
 
-bool may_give(const Problem& problem, std::size_t index, Scope scope) {
-  if (is_speed_bound(index) || scope == Scope::all_must_hold) return false;
-  return scope == Scope::hard_may_give || problem.constraints[index].priority == Priority::soft;
+bool may_give(const Problem& problem, Binding binding, Scope scope) {
+  if (is_speed_bound(binding) || scope == Scope::all_must_hold) return false;
+  return scope == Scope::hard_may_give || problem.constraints[binding.index].priority == Priority::soft;
 }
 
-HalfPlane half_plane_at(const Problem& problem, std::size_t index) {
-  return is_speed_bound(index) ? side_of_box(problem.bound, index) : problem.constraints[index].half_plane;
+HalfPlane half_plane_at(const Problem& problem, Binding binding) {
+  return is_speed_bound(binding) ? side_of_box(problem.bound, binding.kind)
+                                 : problem.constraints[binding.index].half_plane;
 }
 
 Combination combine(const Problem& problem, const std::vector<Term>& terms, Scope scope) {

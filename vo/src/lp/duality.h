@@ -30,15 +30,15 @@ enum class Scope {
 
 /// Whether it names a constraint, a finite side of the box or a finite disc, and not a soft one where soft ones are
 /// out.
-bool can_be_used(const Problem& problem, std::size_t index, Scope scope);
+bool can_be_used(const Problem& problem, Binding binding, Scope scope);
 
 /// Whether it may be violated. REQUIRES: it can be used.
-bool may_give(const Problem& problem, std::size_t index, Scope scope);
+bool may_give(const Problem& problem, Binding binding, Scope scope);
 
 Combination combine(const Problem& problem, const std::vector<Term>& terms, Scope scope);
 
 /// The half-plane of a constraint or of a side of the box.
-HalfPlane half_plane_at(const Problem& problem, std::size_t index);
+HalfPlane half_plane_at(const Problem& problem, Binding binding);
 
 /// Whether sigma(w) < limit (strict) or sigma(w) <= limit.
 bool reaches_less(const SpeedBound& bound, const ExactVector& w, const Exact& limit, bool strict);

@@ -9,37 +9,46 @@
 #include "duality.h"
 #include "exact_search.h"
 #include "inward.h"
+#include "multipliers.h"
 
 namespace exactvo::lp {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::vector<std::size_t> indices_of(const ExactRegion& region, const ExactOptimum& o) {
-  std::vector<std::size_t> indices;
-  for (const std::size_t k : o.tight) indices.push_back(region.lines[k].index);
-  if (o.on_disc) indices.push_back(kSpeedBound);
-  return indices;
+std::vector<Binding> bindings_of(const ExactRegion& region, const ExactOptimum& o) {
+  std::vector<Binding> bindings;
+  for (const std::size_t k : o.tight) bindings.push_back(region.lines[k].binding);
+  if (o.on_disc) bindings.push_back(kDisc);
+  return bindings;
 }
 
-std::vector<std::size_t> positions_of(const ExactRegion& region, const std::vector<std::size_t>& indices) {
+std::vector<std::size_t> positions_of(const ExactRegion& region, const std::vector<Binding>& bindings) {
   std::vector<std::size_t> positions;
   for (std::size_t k = 0; k < region.lines.size(); ++k)
-    if (std::find(indices.begin(), indices.end(), region.lines[k].index) != indices.end()) positions.push_back(k);
+    if (std::find(bindings.begin(), bindings.end(), region.lines[k].binding) != bindings.end()) positions.push_back(k);
   return positions;
 }
 
-void name_active(const std::vector<std::size_t>& tight, const std::optional<Certificate>& certificate, Solution& s) {
+/// The first of `bindings` that fit: two where optimal, else three.
+void name_active(const std::vector<Binding>& bindings, Solution& s) {
   const std::size_t most = s.status == Status::optimal ? 2 : 3;
-  const auto add = [&](std::size_t index) {
+  s.active = {};
+  s.active_count = 0;
+  for (const Binding binding : bindings) {
     const auto end = s.active.begin() + s.active_count;
-    if (s.active_count < most && std::find(s.active.begin(), end, index) == end) s.active[s.active_count++] = index;
-  };
-  if (certificate)
-    for (const Term& term : certificate->bound) add(term.constraint);
-  const bool terms_tell = certificate && s.status == Status::optimal && s.active_count > 0;
-  for (const std::size_t index : tight)
-    if (!terms_tell || index == kSpeedBound) add(index);  // the disc of a linear objective is in no term
+    const bool known = std::any_of(s.active.begin(), end, [&](const auto& a) { return a.binding == binding; });
+    if (s.active_count < most && !known) s.active[s.active_count++].binding = binding;
+  }
+}
+
+/// What the certificate names, then what else is tight: ties leave more of that than bind.
+void take_from(const Certificate& certificate, const Problem& problem, const std::vector<Binding>& tight, Solution& s) {
+  std::vector<Binding> bindings;
+  for (const Term& term : certificate.bound) bindings.push_back(term.binding);
+  bindings.insert(bindings.end(), tight.begin(), tight.end());
+  name_active(bindings, s);
+  set_multipliers(problem, certificate, s);
 }
 
 /// The optimum as doubles, or 0 where it lies beyond them.
@@ -60,15 +69,15 @@ Proven pinched(const Problem& problem, const ExactRegion& musts, const ExactOpti
   const ExactOptimum nearest_zero = exact_best(musts, {}, {});
   Certificate c{Status::pinched, velocity, answer.solution.violation, contradiction, {}, 0.0, {}};
   const std::vector<std::size_t>& tight = nearest_zero.tight;
-  const auto accepted = [&](std::vector<std::size_t> vertex) {
+  const auto accepted = [&](std::vector<Binding> vertex) {
     c.vertex = std::move(vertex);
     return check(problem, c) == Flaw::none;
   };
   bool proven = accepted({});
   for (std::size_t i = 0; i < tight.size() && !proven; ++i) {
-    proven = accepted({musts.lines[tight[i]].index});
+    proven = accepted({musts.lines[tight[i]].binding});
     for (std::size_t j = i + 1; j < tight.size() && !proven; ++j)
-      proven = accepted({musts.lines[tight[i]].index, musts.lines[tight[j]].index});
+      proven = accepted({musts.lines[tight[i]].binding, musts.lines[tight[j]].binding});
   }
   if (proven) answer.certificate = c;
   return answer;
@@ -83,15 +92,20 @@ Proven rounded_inward(const Problem& problem, Status status, const ExactRegion& 
   answer.solution.velocity = *velocity;
   answer.solution.status = status;
   answer.solution.violation = violation_that_counts(problem, status, *velocity);
-  const std::vector<std::size_t> tight = indices_of(region, optimum);
+  const std::vector<Binding> tight = bindings_of(region, optimum);
+  name_active(tight, answer.solution);
+  set_multipliers(problem, answer.solution);
   answer.certificate = certificate_for(problem, answer.solution, tight, contradiction, kInfinity);
-  name_active(tight, answer.certificate, answer.solution);
+  const auto& certificate = answer.certificate;
+  const bool tells = certificate && certificate->gap <= widest_gap_of_doubles(problem, status);
+  if (tells && !has_multipliers_of(*certificate, answer.solution))
+    take_from(*certificate, problem, tight, answer.solution);
   return answer;
 }
 
 }  // namespace
 
-Proven solve_exactly(const Problem& problem, const std::vector<std::size_t>& guess) {
+Proven solve_exactly(const Problem& problem, const std::vector<Binding>& guess) {
   const ExactRegion region = exact_region(problem);
   const Aim aim = aim_of(problem);
   const ExactOptimum best = exact_best(region, aim, positions_of(region, guess));
@@ -100,11 +114,11 @@ Proven solve_exactly(const Problem& problem, const std::vector<std::size_t>& gue
   const ExactRegion hard = hard_part(region);
   const ExactOptimum kept = exact_best(hard, {}, positions_of(hard, guess));
   if (kept.feasible) {
-    const std::vector<Term> contradiction = contradiction_of(problem, indices_of(region, best));
+    const std::vector<Term> contradiction = contradiction_of(problem, bindings_of(region, best));
     const ExactOptimum least = exact_least_violation(region, aim, positions_of(region, guess));
     return rounded_inward(problem, Status::relaxed, region, hard, least, contradiction);
   }
-  const std::vector<Term> contradiction = contradiction_of(problem, indices_of(hard, kept));
+  const std::vector<Term> contradiction = contradiction_of(problem, bindings_of(hard, kept));
   const ExactRegion soft = softened(hard);
   const ExactOptimum least = exact_least_violation(soft, aim, positions_of(soft, guess));
   return rounded_inward(problem, Status::infeasible, soft, soft, least, contradiction);

@@ -11,6 +11,6 @@
 namespace exactvo::lp {
 
 /// The exact answer, rounded, with its certificate; `guess` names constraints that may bind (changes the cost only).
-Proven solve_exactly(const Problem& problem, const std::vector<std::size_t>& guess);
+Proven solve_exactly(const Problem& problem, const std::vector<Binding>& guess);
 
 }  // namespace exactvo::lp

@@ -11,9 +11,9 @@ ExactRegion exact_region(const Problem& problem) {
   region.lines.reserve(problem.constraints.size() + 4);
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     const Constraint& c = problem.constraints[k];
-    region.lines.push_back({c.half_plane, k, c.priority == Priority::soft});
+    region.lines.push_back({c.half_plane, constraint_at(k), c.priority == Priority::soft});
   }
-  for (const std::size_t side : {kBoxRight, kBoxLeft, kBoxTop, kBoxBottom}) {
+  for (const Binding side : kBoxSides) {
     const HalfPlane h = half_plane_at(problem, side);
     if (std::isfinite(h.offset)) region.lines.push_back({h, side, false});
   }
@@ -32,7 +32,7 @@ ExactRegion hard_part(const ExactRegion& region) {
 }
 
 ExactRegion softened(ExactRegion region) {
-  for (auto& member : region.lines) member.soft = !is_speed_bound(member.index);
+  for (auto& member : region.lines) member.soft = !is_speed_bound(member.binding);
   return region;
 }
 

@@ -316,7 +316,7 @@ ExactRegion bounded_by(ExactRegion region, const Exact& radius) {
 Exact around_box(const ExactRegion& region) {
   Exact radius = 0;
   for (const auto& member : region.lines)
-    if (is_speed_bound(member.index)) radius = radius - Exact(member.half_plane.offset);
+    if (is_speed_bound(member.binding)) radius = radius - Exact(member.half_plane.offset);
   return radius;
 }
 

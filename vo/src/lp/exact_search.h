@@ -20,7 +20,7 @@ namespace exactvo::lp {
 struct ExactRegion {
   struct Member {
     HalfPlane half_plane;
-    std::size_t index = 0;  ///< of the constraint, or a side of the box
+    Binding binding;  ///< the constraint, or a side of the box
     bool soft = false;
   };
   std::vector<Member> lines;

@@ -7,6 +7,7 @@
 
 #include "exactvo/vo/lp/solve.h"
 #include "inward.h"
+#include "multipliers.h"
 
 namespace exactvo::lp {
 namespace {
@@ -25,7 +26,7 @@ Region hard_only(Region region) {
 
 /// The constraints may give, the sides of the box may not.
 Region softened(Region region) {
-  for (Line& line : region.lines) line.soft = !is_speed_bound(line.index);
+  for (Line& line : region.lines) line.soft = !is_speed_bound(line.binding);
   return region;
 }
 
@@ -40,22 +41,12 @@ Region lowered(Region region, double level) {
 constexpr double kAtBound = 2.0 * kSlacks[std::size(kSlacks) - 1] * kInwardSlack;
 
 /// False of a bound of the speed that the velocity is clearly away from: a walk may have leant on it on its way.
-bool may_bind(const SpeedBound& bound, double speed, std::size_t index, Vec2 v) {
+bool may_bind(const SpeedBound& bound, double speed, Binding binding, Vec2 v) {
+  if (!is_speed_bound(binding)) return true;
   const double near = kAtBound * speed;
-  switch (index) {
-    case kSpeedBound:
-      return norm(v) >= bound.disc - near;
-    case kBoxRight:
-      return v.x >= bound.box_x - near;
-    case kBoxLeft:
-      return -v.x >= bound.box_x - near;
-    case kBoxTop:
-      return v.y >= bound.box_y - near;
-    case kBoxBottom:
-      return -v.y >= bound.box_y - near;
-    default:
-      return true;
-  }
+  if (binding == kDisc) return norm(v) >= bound.disc - near;
+  const HalfPlane side = side_of_box(bound, binding.kind);
+  return dot(side.normal, v) <= side.offset + near;
 }
 
 Solution solution_of(const Problem& problem, const Region& region, const Found& found, Status status) {
@@ -64,9 +55,9 @@ Solution solution_of(const Problem& problem, const Region& region, const Found& 
   solution.status = status;
   for (std::size_t k = 0; k < found.basis.size; ++k) {
     const std::size_t m = found.basis.member[k];
-    const std::size_t index = m < region.lines.size() ? region.lines[m].index : kSpeedBound;
-    if (may_bind(problem.bound, region.speed, index, solution.velocity))
-      solution.active[solution.active_count++] = index;
+    const Binding binding = m < region.lines.size() ? region.lines[m].binding : kDisc;
+    if (may_bind(problem.bound, region.speed, binding, solution.velocity))
+      solution.active[solution.active_count++].binding = binding;
   }
   return solution;
 }
@@ -162,7 +153,9 @@ Solution solve(const Problem& problem) {
   Solution s = first;
   for (std::size_t k = 1; k < std::size(kSlacks) && s.status == Status::pinched; ++k)
     s = solve_with_slack(problem, kSlacks[k]);
-  return s.status == Status::optimal || s.status == Status::relaxed ? s : first;
+  if (s.status != Status::optimal && s.status != Status::relaxed) s = first;
+  set_multipliers(problem, s);
+  return s;
 }
 
 }  // namespace exactvo::lp

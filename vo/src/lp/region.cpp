@@ -27,19 +27,16 @@ std::string words(std::size_t index, const HalfPlane& h) {
          std::to_string(h.offset);
 }
 
-Line line_of(const HalfPlane& h, double slack_of_unit, std::size_t index, bool soft) {
+Line line_of(const HalfPlane& h, double slack_of_unit, Binding binding, bool soft) {
   const double slack = slack_of_unit * (std::abs(h.normal.x) + std::abs(h.normal.y));
-  return {h.normal, h.offset + slack, squared_norm(h.normal), slack, index, soft};
+  return {h.normal, h.offset + slack, squared_norm(h.normal), slack, binding, soft};
 }
 
 void add_box(const SpeedBound& b, Region& region) {
-  const auto side = [&](Vec2 normal, double width, std::size_t index) {
-    if (std::isfinite(width)) region.lines.push_back({normal, -width, 1.0, 0.0, index, false});
-  };
-  side({-1.0, 0.0}, b.box_x, kBoxRight);
-  side({1.0, 0.0}, b.box_x, kBoxLeft);
-  side({0.0, -1.0}, b.box_y, kBoxTop);
-  side({0.0, 1.0}, b.box_y, kBoxBottom);
+  for (const Binding side : kBoxSides) {
+    const HalfPlane h = side_of_box(b, side.kind);
+    if (std::isfinite(h.offset)) region.lines.push_back({h.normal, h.offset, 1.0, 0.0, side, false});
+  }
 }
 
 }  // namespace
@@ -57,6 +54,24 @@ void require_well_formed(const Problem& problem) {
   if (problem.objective == Objective::nearest) return;
   EXACTVO_REQUIRE(bound_is_finite(b), "no finite speed bound for a linear objective");
   EXACTVO_REQUIRE(p != Vec2{}, "direction " + words(p.x, p.y));
+}
+
+const char* name(BindingKind kind) {
+  constexpr const char* kNames[] = {"constraint", "disc", "box-right", "box-left", "box-top", "box-bottom"};
+  return kNames[static_cast<int>(kind)];
+}
+
+HalfPlane side_of_box(const SpeedBound& bound, BindingKind side) {
+  switch (side) {
+    case BindingKind::box_right:
+      return {{-1.0, 0.0}, -bound.box_x};
+    case BindingKind::box_left:
+      return {{1.0, 0.0}, -bound.box_x};
+    case BindingKind::box_top:
+      return {{0.0, -1.0}, -bound.box_y};
+    default:
+      return {{0.0, 1.0}, -bound.box_y};
+  }
 }
 
 const char* name(Status status) {
@@ -82,7 +97,7 @@ Region region_of(const Problem& problem, double slack_units) {
   const double slack = slack_units * kInwardSlack * region.speed;
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
     const Constraint& c = problem.constraints[i];
-    region.lines.push_back(line_of(c.half_plane, slack, i, c.priority == Priority::soft));
+    region.lines.push_back(line_of(c.half_plane, slack, constraint_at(i), c.priority == Priority::soft));
   }
   add_box(problem.bound, region);
   return region;

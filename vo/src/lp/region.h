@@ -35,7 +35,7 @@ struct Line {
   double offset = 0.0;
   double squared_length = 1.0;  ///< |normal|^2
   double slack = 0.0;           ///< by how much `offset` exceeds the one given
-  std::size_t index = 0;        ///< of the constraint, or a side of the box
+  Binding binding;              ///< the constraint, or a side of the box
   bool soft = false;
 };
 
@@ -44,6 +44,9 @@ struct Region {
   double disc = std::numeric_limits<double>::infinity();  ///< m/s, already rounded inward
   double speed = 1.0;                                     ///< V: the largest speed in play, m/s
 };
+
+/// A side of the box as a unit half-plane n.v >= -width. REQUIRES: a side of the box.
+HalfPlane side_of_box(const SpeedBound& bound, BindingKind side);
 
 /// The largest speed that can matter, m/s: the bound's where there is one, else that of the data.
 double largest_speed(const Problem& problem);
@@ -56,7 +59,11 @@ inline double excess(const Line& line, Vec2 v) {
   return line.offset - dot(line.normal, v);
 }
 
-/// What a point is the optimum of: up to three lines (positions in the region) or kSpeedBound.
+/// In the place of a line's position: the disc, and nothing.
+inline constexpr std::size_t kDiscPosition = static_cast<std::size_t>(-1);
+inline constexpr std::size_t kNoPosition = static_cast<std::size_t>(-2);
+
+/// What a point is the optimum of: up to three lines (positions in the region) or kDiscPosition.
 struct Basis {
   std::array<std::size_t, 3> member{};
   std::size_t size = 0;

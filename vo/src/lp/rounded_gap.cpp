@@ -38,8 +38,8 @@ bool in_range(const Problem& problem, const Multipliers& m, const Claim& claim) 
              in_range(claim.violation);
   for (std::size_t k = 0; k < m.count && all; ++k) {
     all = in_range(m.value[k]);
-    if (m.constraint[k] == kSpeedBound) continue;
-    const HalfPlane h = half_plane_at(problem, m.constraint[k]);
+    if (m.binding[k] == kDisc) continue;
+    const HalfPlane h = half_plane_at(problem, m.binding[k]);
     all = all && in_range(h.normal.x) && in_range(h.normal.y) && in_range(h.offset);
   }
   return all;
@@ -85,15 +85,15 @@ Combined<Number> combined(const Problem& problem, const Multipliers& m, Scope sc
   Combined<Number> sum;
   for (std::size_t k = 0; k < m.count; ++k) {
     const Sum<Number> multiplier(m.value[k]);
-    if (m.constraint[k] == kSpeedBound) {
+    if (m.binding[k] == kDisc) {
       sum.disc = sum.disc + multiplier;
       continue;
     }
-    const HalfPlane h = half_plane_at(problem, m.constraint[k]);
+    const HalfPlane h = half_plane_at(problem, m.binding[k]);
     sum.x = sum.x + multiplier * h.normal.x;
     sum.y = sum.y + multiplier * h.normal.y;
     sum.offset = sum.offset + multiplier * h.offset;
-    if (may_give(problem, m.constraint[k], scope)) sum.giving = sum.giving + multiplier;
+    if (may_give(problem, m.binding[k], scope)) sum.giving = sum.giving + multiplier;
   }
   return sum;
 }

@@ -17,11 +17,11 @@ namespace exactvo::lp {
 
 /// At most three constraints, sides of the box or the disc, and a multiplier each.
 struct Multipliers {
-  std::array<std::size_t, 3> constraint{};
+  std::array<Binding, 3> binding{};
   std::array<double, 3> value{};  ///< finite, 0 or more
   std::size_t count = 0;
-  void add(std::size_t index, double multiplier) {
-    constraint[count] = index;
+  void add(Binding b, double multiplier) {
+    binding[count] = b;
     value[count++] = multiplier;
   }
 };

@@ -10,6 +10,7 @@
 #include "batch_layout.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/solve.h"
+#include "multipliers.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lp/single.cpp"
@@ -211,10 +212,15 @@ class SingleWalk : private Allowance {
     s.violation = status == Status::relaxed ? std::max(level_, 0.0) : 0.0;
     s.active = {};
     s.active_count = 0;
-    for (const Line* line : {&first_, &second_, &third_})
-      if (line->exists()) s.active[s.active_count++] = static_cast<std::size_t>(line->index);
+    Normals normals{};
+    for (const Line* line : {&first_, &second_, &third_}) {
+      if (!line->exists()) continue;
+      normals[s.active_count] = {line->x, line->y};
+      s.active[s.active_count++].binding = constraint_at(static_cast<std::size_t>(line->index));
+    }
     const bool on_disc = x_ * x_ + y_ * y_ > p_.disc * p_.disc * (1.0 - kOnDisc);
-    if (on_disc && s.active_count < (status == Status::optimal ? 2U : 3U)) s.active[s.active_count++] = kSpeedBound;
+    if (on_disc && s.active_count < (status == Status::optimal ? 2U : 3U)) s.active[s.active_count++].binding = kDisc;
+    set_multipliers(normals, Objective::nearest, p_.preferred, s);
   }
 
   const SingleProblem& p_;
@@ -323,11 +329,16 @@ class Slide : private Allowance {
       const bool at_low = where == low, at_disc = (at_low & (low > left.low)) | (!at_low & (high < left.high));
       const std::ptrdiff_t end = at_disc ? -1 : left.line_at(at_low);
       const Line g = end < 0 ? Line{-x, -y, 0.0, -1} : given(p_, end);
-      const double pull = (x - p_.preferred.x) * g.y - (y - p_.preferred.y) * g.x;
-      const double shares[2] = {pull * cross(h, g), 0.0};  // of h, and where only h binds: looked up, not branched on
+      const double pull_x = x - p_.preferred.x, pull_y = y - p_.preferred.y;
+      const double pull = pull_x * g.y - pull_y * g.x, turn = cross(h, g);
+      const double shares[2] = {pull * turn, 0.0};  // of h, and where only h binds: looked up, not branched on
       if (shares[where == wish] >= 0.0) {
         s.velocity = {x, y};
         optimum(h.index, end, where != wish, s);
+        const double of_both[2] = {pull / turn, (h.x * pull_y - h.y * pull_x) / turn};
+        const double of_one = (h.x * pull_x + h.y * pull_y) * inverse;
+        s.active[0].multiplier = where == wish ? of_one : of_both[0];
+        s.active[1].multiplier = where == wish ? 0.0 : std::max(0.0, of_both[1]);
         return true;
       }
       if (end < 0) return false;
@@ -338,9 +349,11 @@ class Slide : private Allowance {
 
   HWY_INLINE void optimum(std::ptrdiff_t line, std::ptrdiff_t end, bool binds, Solution& s) const {
     s.status = Status::optimal;
-    s.active[0] = static_cast<std::size_t>(line);
-    s.active[1] = static_cast<std::size_t>(end) & (std::size_t{0} - std::size_t{binds});
-    s.active[2] = 0;
+    const bool second_is_line = binds & (end >= 0);
+    s.active[0].binding = constraint_at(static_cast<std::size_t>(line));
+    s.active[1].binding.kind = binds & (end < 0) ? BindingKind::disc : BindingKind::constraint;
+    s.active[1].binding.index = static_cast<std::size_t>(end) & (std::size_t{0} - std::size_t{second_is_line});
+    s.active[2] = {};
     s.active_count = 1 + std::size_t{binds};
     s.violation = 0.0;
   }

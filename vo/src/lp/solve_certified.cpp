@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "certify.h"
 #include "exact.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
+#include "multipliers.h"
 
 namespace exactvo::lp {
 
@@ -9,9 +11,10 @@ Proven solve_certified(const Problem& problem) {
   Proven answer;
   answer.solution = solve(problem);
   answer.certificate = certify(problem, answer.solution);
-  if (answer.certificate) return answer;
-  const Solution& s = answer.solution;
-  return solve_exactly(problem, {s.active.begin(), s.active.begin() + s.active_count});
+  if (!answer.certificate) return solve_exactly(problem, active_bindings(answer.solution));
+  if (!has_multipliers_of(*answer.certificate, answer.solution))
+    set_multipliers(problem, *answer.certificate, answer.solution);
+  return answer;
 }
 
 Proven solve_exact(const Problem& problem) {

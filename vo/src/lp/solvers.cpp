@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "batch_layout.h"
+#include "certify.h"
 #include "exact.h"
 #include "exactvo/vo/lp/solve.h"
+#include "multipliers.h"
 
 namespace exactvo::lp {
 namespace {
@@ -41,8 +43,11 @@ class Batch {
                 place_.size());
   }
 
-  void gather(std::vector<Proven>& answers) const {
-    for (std::size_t slot = 0; slot < place_.size(); ++slot) answers[place_[slot]].solution = solution(slot);
+  void gather(const std::vector<Problem>& problems, std::vector<Proven>& answers) const {
+    for (std::size_t slot = 0; slot < place_.size(); ++slot) {
+      answers[place_[slot]].solution = solution(slot);
+      set_multipliers(problems[place_[slot]], answers[place_[slot]].solution);
+    }
   }
 
   static bool takes(const Problem& p) {
@@ -92,10 +97,11 @@ class Batch {
     s.violation = violation_[slot];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t line = active_[k * stride_ + slot];
-      if (line != kNoLine) s.active[s.active_count++] = order_[slot * lines_ + static_cast<std::size_t>(line)];
+      if (line == kNoLine) continue;
+      s.active[s.active_count++].binding = constraint_at(order_[slot * lines_ + static_cast<std::size_t>(line)]);
     }
     const bool room = s.active_count < (s.status == Status::optimal ? 2U : 3U);
-    if (room && norm(s.velocity) > disc_[slot] * (1.0 - kOnDisc)) s.active[s.active_count++] = kSpeedBound;
+    if (room && norm(s.velocity) > disc_[slot] * (1.0 - kOnDisc)) s.active[s.active_count++].binding = kDisc;
     return s;
   }
 
@@ -161,7 +167,7 @@ void Solving::solve() {
 }
 
 std::vector<Proven> Solving::answers() {
-  if (state_->lanes) state_->lanes->gather(state_->answers);
+  if (state_->lanes) state_->lanes->gather(state_->problems, state_->answers);
   return std::move(state_->answers);
 }
 
@@ -174,8 +180,10 @@ std::vector<Proven> solve_all(Solver solver, const std::vector<Problem>& problem
 void prove(const Problem& problem, Proven& answer) {
   if (answer.certificate) return;
   answer.certificate = certify(problem, answer.solution);
-  const Solution& s = answer.solution;
-  if (!answer.certificate) answer = solve_exactly(problem, {s.active.begin(), s.active.begin() + s.active_count});
+  if (!answer.certificate)
+    answer = solve_exactly(problem, active_bindings(answer.solution));
+  else if (!has_multipliers_of(*answer.certificate, answer.solution))
+    set_multipliers(problem, *answer.certificate, answer.solution);
 }
 
 }  // namespace exactvo::lp

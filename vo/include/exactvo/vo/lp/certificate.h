@@ -28,7 +28,7 @@ namespace exactvo::lp {
 
 /// A constraint, a side of the box or the disc, and its multiplier: the exact sum of `multiplier`, mostly one double.
 struct Term {
-  std::size_t constraint = 0;
+  Binding binding;
   std::vector<double> multiplier;  ///< dimensionless
 };
 
@@ -43,7 +43,7 @@ struct Certificate {
   double gap = 0.0;
   /// pinched: at most two constraints or sides of the box; the point of their boundaries that is nearest 0 keeps
   /// everything (the hard ones only, where there is a contradiction), exactly.
-  std::vector<std::size_t> vertex;
+  std::vector<Binding> vertex;
 };
 
 enum class Flaw {
@@ -65,6 +65,12 @@ Flaw check(const Problem& problem, const Certificate& certificate);
 /// A certificate that `check` accepts for this solution, or nothing where the solution is not right, or is right and
 /// its active set does not show why. REQUIRES: a well-formed problem.
 std::optional<Certificate> certify(const Problem& problem, const Solution& solution);
+
+/// What the multipliers of a solution claim, as a certificate: its terms are the active constraints, of a relaxed or
+/// infeasible answer they are the contradiction too, and the gap is the widest that a double answer may have
+/// (kWidestGap). `check` says whether it holds: it does of every answer that `certify` proves, so that a decision
+/// recorded with its multipliers carries its proof. REQUIRES: a well-formed problem.
+Certificate claim_of(const Problem& problem, const Solution& solution);
 
 /// The gap up to which a double answer passes: this share of V^2 (optimal) or V (relaxed), V the speed bound or, where
 /// there is none, the largest speed of the data. The tables ask for violations of at most 1e-12; 2^-40 is 9e-13.

@@ -7,6 +7,7 @@
 /// Neighbours: solve.h finds the answer, solution.h says what it is, certificate.h proves it.
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -47,17 +48,41 @@ struct Problem {
   Objective objective = Objective::nearest;
 };
 
-/// What can bind besides the constraints, in the place of a constraint's index.
-inline constexpr std::size_t kSpeedBound = static_cast<std::size_t>(-1);  ///< the disc
-inline constexpr std::size_t kBoxRight = static_cast<std::size_t>(-2);    ///< v_x <= box_x
-inline constexpr std::size_t kBoxLeft = static_cast<std::size_t>(-3);     ///< v_x >= -box_x
-inline constexpr std::size_t kBoxTop = static_cast<std::size_t>(-4);      ///< v_y <= box_y
-inline constexpr std::size_t kBoxBottom = static_cast<std::size_t>(-5);   ///< v_y >= -box_y
+enum class BindingKind : std::uint8_t {
+  constraint,
+  disc,       ///< |v| <= disc
+  box_right,  ///< v_x <= box_x
+  box_left,   ///< v_x >= -box_x
+  box_top,    ///< v_y <= box_y
+  box_bottom  ///< v_y >= -box_y
+};
 
-/// Whether `index` names the disc or a side of the box rather than a constraint.
-constexpr bool is_speed_bound(std::size_t index) {
-  return index >= kBoxBottom;
+/// What can bind: a constraint of the problem, or a part of the speed bound.
+struct Binding {
+  BindingKind kind = BindingKind::constraint;
+  std::size_t index = 0;  ///< of the constraint in Problem::constraints; 0 for a part of the speed bound
+
+  friend constexpr bool operator==(const Binding& a, const Binding& b) {
+    return a.kind == b.kind && (a.index == b.index || a.kind != BindingKind::constraint);
+  }
+  friend constexpr bool operator!=(const Binding& a, const Binding& b) { return !(a == b); }
+};
+
+inline constexpr Binding kDisc{BindingKind::disc, 0};
+inline constexpr Binding kBoxSides[] = {
+    {BindingKind::box_right, 0}, {BindingKind::box_left, 0}, {BindingKind::box_top, 0}, {BindingKind::box_bottom, 0}};
+
+constexpr Binding constraint_at(std::size_t index) {
+  return {BindingKind::constraint, index};
 }
+
+/// Whether it is the disc or a side of the box rather than a constraint.
+constexpr bool is_speed_bound(const Binding& binding) {
+  return binding.kind != BindingKind::constraint;
+}
+
+/// "constraint", "disc", "box-right", "box-left", "box-top", "box-bottom".
+const char* name(BindingKind kind);
 
 /// REQUIRES (std::logic_error otherwise, naming the constraint): finite numbers, normals not zero, a speed bound that
 /// is not empty, and for Objective::farthest a finite bound and a direction that is not zero.

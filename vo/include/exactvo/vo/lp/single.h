@@ -39,8 +39,8 @@ bool keeps(const SingleProblem& problem, geometry::Vec2 v);
 /// For who wants an answer that keeps everything or none: true where `velocity` is one that `keeps`, the nearest to the
 /// preferred one up to rounding inward as `solve_single` does. False, and no more is said, where no velocity keeps
 /// everything or so few do that there is no room to round inward (of a disc below 2^-200 m/s, none do). Up to 16 lines
-/// nothing is relaxed or allocated on the way; of more, it is as `solve_single`. A robot among obstacles that stand still
-/// can then stop: v = 0 keeps all their half-planes. REQUIRES: as `solve_single`.
+/// nothing is relaxed or allocated on the way; of more, it is as `solve_single`. A robot among obstacles that stand
+/// still can then stop: v = 0 keeps all their half-planes. REQUIRES: as `solve_single`.
 bool solve_keeping(const SingleProblem& problem, geometry::Vec2& velocity);
 
 }  // namespace exactvo::lp

@@ -22,11 +22,29 @@ enum class Status {
 /// "optimal", "relaxed", "infeasible", "pinched".
 const char* name(Status status);
 
+/// What binds, and how strongly.
+struct ActiveConstraint {
+  Binding binding;
+  double multiplier = 0.0;  ///< lambda, or nu of the disc; 0 or more, see Solution
+};
+
+/// With n_i the normals of what is active (of the side v_x <= X of the box: (-1, 0)), lambda_i their multipliers and nu
+/// that of the disc, the velocity v is stationary, up to rounding:
+///
+///     sum of lambda_i n_i - nu v  =  v - preferred   optimal, Objective::nearest
+///                                    -preferred      optimal, Objective::farthest
+///                                    0               relaxed, infeasible: weights, of which only the ratios count
+///
+/// These are the terms of Certificate::bound and, of a contradiction that doubles can show, its witness: a proven
+/// answer
+/// (`solve_certified`) can be checked from its problem and these numbers alone (inequalities (1) to (4) of
+/// certificate.h). In a plain answer (`solve`, `solve_single`) they are rounded, and proven by `certify`. A `pinched`
+/// answer has none (all 0).
 struct Solution {
   geometry::Vec2 velocity;  ///< m/s
   Status status = Status::optimal;
-  std::array<std::size_t, 3> active{};  ///< what binds: constraint indices, kSpeedBound or a side of the box
-  std::size_t active_count = 0;         ///< at most 2 where optimal, at most 3 elsewhere
+  std::array<ActiveConstraint, 3> active{};
+  std::size_t active_count = 0;  ///< at most 2 where optimal, at most 3 elsewhere
   /// m/s. relaxed: the largest of a soft constraint; infeasible: the largest of a hard one; pinched: the largest of
   /// any, about a rounding error; 0 where optimal. In units of the constraint's own |normal|, rounded.
   double violation = 0.0;

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a solution says of itself: what binds, how strongly, and that this proves it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/single.h"
+#include "exactvo/vo/lp/solve.h"
+#include "problem_kinds.h"
+#include "problem_text.h"
+
+namespace exactvo::lp {
+namespace {
+
+using test::SeededRandom;
+
+constexpr int kPerKind = 100;
+
+/// Vertices as sharp as 10^-4 rad make multipliers of 10^4, and a slack of 10^-15 that much larger.
+constexpr double kStationary = 1e-7;
+
+Vec2 side_normal(BindingKind side) {
+  switch (side) {
+    case BindingKind::box_right:
+      return {-1.0, 0.0};
+    case BindingKind::box_left:
+      return {1.0, 0.0};
+    case BindingKind::box_top:
+      return {0.0, -1.0};
+    default:
+      return {0.0, 1.0};
+  }
+}
+
+Vec2 pull_of(const Problem& problem, const Solution& s, const ActiveConstraint& a) {
+  if (a.binding == kDisc) return -a.multiplier * s.velocity;
+  return a.multiplier * (is_speed_bound(a.binding) ? side_normal(a.binding.kind)
+                                                   : problem.constraints[a.binding.index].half_plane.normal);
+}
+
+/// By how much the equation of solution.h is missed, as a share of its largest term and at least of 1.
+double missed(const Problem& problem, const Solution& s) {
+  Vec2 sum;
+  double largest = 1.0;
+  for (std::size_t k = 0; k < s.active_count; ++k) {
+    const Vec2 pull = pull_of(problem, s, s.active[k]);
+    sum = sum + pull;
+    largest = std::max(largest, norm(pull));
+  }
+  if (s.status == Status::optimal)
+    sum = sum - (problem.objective == Objective::nearest ? s.velocity - problem.preferred : -problem.preferred);
+  return norm(sum) / largest;
+}
+
+template <class Check>
+void for_each_kind(std::uint64_t seed, Check check) {
+  SeededRandom random(test::seed_of_run(seed));
+  for (const ProblemKind& kind : well_formed_kinds())
+    for (int k = 0; k < kPerKind; ++k) check(random_problem(kind, random));
+}
+
+TEST(Multipliers, MakeTheVelocityStationaryForEveryKind) {
+  for_each_kind(81, [](const Problem& problem) {
+    for (const Solver solver : {Solver::incremental, Solver::batch, Solver::certified, Solver::exact}) {
+      const Solution s = solve_all(solver, {problem}).front().solution;
+      EXPECT_LE(missed(problem, s), kStationary) << name(solver) << ' ' << name(s.status) << '\n' << text_of(problem);
+      for (std::size_t k = 0; k < s.active_count; ++k) EXPECT_GE(s.active[k].multiplier, 0.0) << text_of(problem);
+    }
+  });
+}
+
+TEST(Multipliers, OfARelaxedAnswerHaveAWeightOnWhatGives) {
+  for_each_kind(82, [](const Problem& problem) {
+    const Solution s = solve(problem);
+    if (s.status == Status::optimal) return;
+    double giving = 0.0;
+    for (std::size_t k = 0; k < s.active_count; ++k)
+      if (!is_speed_bound(s.active[k].binding)) giving += s.active[k].multiplier;
+    EXPECT_GT(giving, 0.0) << text_of(problem);
+  });
+}
+
+TEST(Multipliers, OfAProvenAnswerAreThoseOfItsCertificate) {
+  for_each_kind(83, [](const Problem& problem) {
+    const Proven proven = solve_certified(problem);
+    ASSERT_TRUE(proven.certificate.has_value()) << text_of(problem);
+    for (const Term& term : proven.certificate->bound) {
+      const auto& active = proven.solution.active;
+      const auto same = std::find_if(active.begin(), active.begin() + proven.solution.active_count,
+                                     [&](const ActiveConstraint& a) { return a.binding == term.binding; });
+      ASSERT_NE(same, active.begin() + proven.solution.active_count) << text_of(problem);
+      double sum = 0.0;
+      for (const double part : term.multiplier) sum += part;
+      EXPECT_EQ(same->multiplier, sum);
+    }
+  });
+}
+
+TEST(Multipliers, AloneProveTheAnswer) {
+  std::size_t proven = 0, problems = 0;
+  for_each_kind(84, [&](const Problem& problem) {
+    const Proven answer = solve_certified(problem);
+    if (answer.exact_stage) return;  // these may need a witness of their own, which the certificate holds
+    ++problems;
+    const Certificate claim = claim_of(problem, answer.solution);
+    EXPECT_STREQ(name(check(problem, claim)), "none") << name(claim.status) << '\n' << text_of(problem);
+    proven += check(problem, claim_of(problem, solve(problem))) == Flaw::none;
+  });
+  EXPECT_GT(problems, 90U * well_formed_kinds().size());
+  EXPECT_GE(1000 * proven, 999 * problems) << "plain answers: their multipliers are rounded, not chosen";
+}
+
+TEST(Multipliers, OfAnotherVelocityProveNothing) {
+  for_each_kind(85, [](const Problem& problem) {
+    Solution s = solve_certified(problem).solution;
+    if (s.status != Status::optimal || s.active_count == 0) return;
+    s.velocity = 0.5 * s.velocity;
+    if (why_worse(problem, s, solve_exact(problem).solution, 1e-6).empty()) return;
+    EXPECT_NE(check(problem, claim_of(problem, s)), Flaw::none) << text_of(problem);
+  });
+}
+
+TEST(Multipliers, OfOneProblemInArraysAreThoseOfSolve) {
+  SeededRandom random(test::seed_of_run(86));
+  for (int k = 0; k < 5000; ++k) {
+    Problem p = random_problem({BoundKind::disc, Objective::nearest, PriorityKind::soft}, random);
+    std::vector<double> x(kSinglePadding * 2), y(x), c(x);
+    for (std::size_t j = 0; j < p.constraints.size(); ++j) {
+      HalfPlane& h = p.constraints[j].half_plane;
+      h.normal = normalized(h.normal);
+      x[j] = h.normal.x, y[j] = h.normal.y, c[j] = h.offset;
+    }
+    const Solution s = solve_single({x.data(), y.data(), c.data(), p.constraints.size(), 0, p.preferred, p.bound.disc});
+    EXPECT_LE(missed(p, s), kStationary) << text_of(p);
+    EXPECT_EQ(check(p, claim_of(p, s)), Flaw::none) << name(s.status) << '\n' << text_of(p);
+  }
+}
+
+TEST(Multipliers, OfWhatIsPushedAsidePullItThere) {
+  Problem p;
+  p.bound.disc = 2.0;
+  p.preferred = {1.0, 1.0};
+  p.constraints.push_back({{{-1.0, 0.0}, -0.5}, Priority::hard, -1});
+  p.constraints.push_back({{{0.0, -1.0}, -0.25}, Priority::hard, -1});
+  const Solution s = solve(p);
+  ASSERT_EQ(s.active_count, 2U);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_NEAR(s.active[k].multiplier, s.active[k].binding == constraint_at(0) ? 0.5 : 0.75, 1e-12);
+}
+
+TEST(Binding, IsNamedAndComparedByWhatItIs) {
+  EXPECT_STREQ(name(kDisc.kind), "disc");
+  EXPECT_STREQ(name(kBoxSides[3].kind), "box-bottom");
+  EXPECT_EQ(constraint_at(2), (Binding{BindingKind::constraint, 2}));
+  EXPECT_NE(constraint_at(2), constraint_at(3));
+  EXPECT_NE(constraint_at(0), kDisc);
+  EXPECT_EQ((Binding{BindingKind::disc, 7}), kDisc) << "a bound has no number";
+}
+
+}  // namespace
+}  // namespace exactvo::lp
