@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One way to declare a module, a test, a benchmark and an example.
+# One way to declare a module, a test, a refusal of arguments, a benchmark and an example.
 include(GNUInstallDirs)
 include(GoogleTest)
 
@@ -38,6 +38,13 @@ function(exactvo_add_test name)
   target_link_libraries(${name} PRIVATE ${arg_LIBS} exactvo_test_support GTest::gtest GTest::gmock GTest::gtest_main exactvo_build_flags)
   target_compile_definitions(${name} PRIVATE EXACTVO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
+endfunction()
+
+# exactvo_add_refusal(<test> <words> <program> <argument>...): the program refuses its arguments, by its name and in
+# these words (a regular expression).
+function(exactvo_add_refusal name words program)
+  add_test(NAME ${name} COMMAND ${program} ${ARGN})
+  set_tests_properties(${name} PROPERTIES LABELS unit PASS_REGULAR_EXPRESSION "^${program}: error: ${words}")
 endfunction()
 
 # exactvo_add_bench(<name> SOURCES ... [LIBS ...])

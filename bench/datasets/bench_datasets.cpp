@@ -12,7 +12,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -28,6 +27,7 @@
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/validity.h"
 #include "naive.h"
+#include "options/program_options.h"
 #include "stars.h"
 
 namespace exactvo::bench {
@@ -392,19 +392,16 @@ void run(const Flags& flags) {
 }  // namespace exactvo::bench
 
 int main(int argc, char** argv) {
-  exactvo::bench::Flags flags;
-  CLI::App app("How quick a batch is, and how much memory it takes.");
-  app.add_option("--stars", flags.stars, "Generated obstacles")->capture_default_str();
-  app.add_option("--largest", flags.largest, "Obstacles of the largest batch whose memory is measured");
-  app.add_option("--sumo", flags.sumo, "A file of real polygons")->capture_default_str();
-  app.add_flag("--only-batches", flags.only_batches, "The first of it only: whole batches, by the clock");
-  app.add_option("--folder", flags.folder, "To work in; a temporary one unless said");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    exactvo::bench::run(flags);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench_datasets: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  using namespace exactvo;
+  return tools::run_program("bench_datasets", [&] {
+    bench::Flags flags;
+    tools::ProgramOptions options("bench_datasets", "How fast a batch is, and how much memory it takes.");
+    options.whole_number("--stars", flags.stars, 1, "Generated obstacles");
+    options.whole_number("--largest", flags.largest, 1, "Obstacles of the largest batch whose memory is measured");
+    options.text("--sumo", flags.sumo, "A file of real polygons");
+    options.flag("--only-batches", flags.only_batches, "Whole batches only, by the clock");
+    options.text("--folder", flags.folder, "To work in; a temporary one unless given");
+    if (options.parse(argc, argv)) bench::run(flags);
+    return 0;
+  });
 }

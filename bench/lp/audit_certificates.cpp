@@ -4,17 +4,15 @@
 // to accept each certificate, to refuse it once it was tampered with, and the three to agree on what can be kept. Exit
 // status 1 otherwise.
 #include <algorithm>
-#include <cctype>
+#include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <exception>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "exactvo/vo/lp/instances.h"
 #include "exactvo/vo/lp/solvers.h"
+#include "options/program_options.h"
+#include "problem_file.h"
 
 namespace exactvo::bench {
 namespace {
@@ -130,8 +128,7 @@ int run(unsigned long wanted, unsigned long seed, const std::vector<std::string>
     say(set, counts);
   }
   for (const std::string& file : files) {
-    std::ifstream in(file, std::ios::binary);
-    audit(lp::read_instances(in), counts);
+    audit(read_problems(file), counts);
     say(file, counts);
   }
   std::printf("problems %lu\naccepted %lu\nunproven %lu\nrefused %lu\napart %lu\ntampered %lu\noverlooked %lu\n",
@@ -140,35 +137,18 @@ int run(unsigned long wanted, unsigned long seed, const std::vector<std::string>
   return counts.is_clean() ? 0 : 1;
 }
 
-constexpr const char* kUsage =
-    "usage: audit_certificates [N = 1000000] [SEED = 1] [INSTANCES.bin...]    checks certificates in rationals\n";
-
-/// A word that is no number above 0 would audit nothing, and find nothing wrong.
-unsigned long number(const char* text) {
-  char* end = nullptr;
-  const unsigned long value = std::strtoul(text, &end, 10);
-  if (std::isdigit(static_cast<unsigned char>(*text)) && *end == '\0' && value > 0) return value;
-  std::fprintf(stderr, "audit_certificates: %s is no number above 0\n%s", text, kUsage);
-  std::exit(2);
-}
-
 }  // namespace
 }  // namespace exactvo::bench
 
 int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  if (!words.empty() && (words[0] == "--help" || words[0] == "-h")) {
-    std::fputs(exactvo::bench::kUsage, stdout);
-    return 0;
-  }
-  const unsigned long wanted = words.empty() ? 1000000 : exactvo::bench::number(words[0].c_str());
-  const unsigned long seed = words.size() < 2 ? 1 : exactvo::bench::number(words[1].c_str());
-  const std::vector<std::string> files(words.begin() + std::min<std::ptrdiff_t>(2, argc - 1), words.end());
-  try {
-    return exactvo::bench::run(wanted, seed, files);
-  } catch (const exactvo::lp::InstanceError& error) {
-    std::fprintf(stderr, "audit_certificates: %s: found %s, expected %s\n", error.place.c_str(), error.found.c_str(),
-                 error.expected.c_str());
-    return 2;
-  }
+  using namespace exactvo;
+  return tools::run_program("audit_certificates", [&] {
+    std::uint64_t problems = 1000000, seed = 1;
+    std::vector<std::string> files;
+    tools::ProgramOptions options("audit_certificates", "Checks certificates of every solver in rationals.");
+    options.whole_number("PROBLEMS", problems, 1, "Of all generated sets together");
+    options.whole_number("SEED", seed, 1, "Of the generated sets");
+    options.texts("FILE", files, "Problems, as `exactvo lp` reads them");
+    return options.parse(argc, argv) ? bench::run(problems, seed, files) : 0;
+  });
 }

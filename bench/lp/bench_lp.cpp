@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -17,6 +16,8 @@
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
 #include "exactvo_commit.h"
+#include "options/program_options.h"
+#include "problem_file.h"
 #include "recorded.h"
 #include "results.h"
 #include "violation.h"
@@ -92,9 +93,9 @@ std::vector<lp::Problem> only(const std::vector<lp::Problem>& problems, bool fea
 }
 
 std::vector<lp::Problem> instances_of(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot read " + file);
-  return lp::read_instances(in);
+  std::vector<lp::Problem> problems = read_problems(file);
+  make_comparable(problems, file);
+  return problems;
 }
 
 /// Recorded sets and the file are asked for whole and in parts: each is recorded, or read, once. With the table the
@@ -349,20 +350,15 @@ void use_table(Flags& flags) {
   for (const std::string& set : sets_of_figures()) flags.sets += (flags.sets.empty() ? "" : ",") + set;
 }
 
-constexpr const char* kUsage =
-    "usage: bench_lp [--table | --sets C10f,RF10,...] [--instances FILE] [--target AVX2] [--json FILE] [--seed N]\n"
-    "                [--rounds N] [--untimed PASSES]\n"
-    "       (FILE is the sets file, filef, filei, whole and its feasible and infeasible part: all three unless --sets\n"
-    "       names some; with --table it takes the place of C10)\n"
-    "       bench_lp --adversarial PROBLEMS [--json FILE] [--seed N]\n"
-    "       bench_lp --warm C10\n"
+constexpr const char* kFooter =
+    "FILE holds lines of JSON or binary instances, as `exactvo lp` reads them, of problems with a disc. It is the "
+    "sets\n"
+    "file, filef, filei: whole, and its feasible and infeasible part; all three are run unless --sets names some. "
+    "With\n"
+    "--table it takes the place of C10.\n"
     "Times in thread CPU time; `wrong` counts verdicts that are not the exact ones, `apart` velocities more than 1e-4\n"
-    "m/s from the exact one, `violation` is the worst of a feasible answer, in exact arithmetic. docs/guide/\n"
-    "linear-program.md says what the sets and solvers are.\n";
-
-bool asks_for_help(const std::string& option) {
-  return option == "--help" || option == "-h";
-}
+    "m/s from the exact one, `violation` is the worst of a feasible answer, in exact arithmetic.\n"
+    "docs/guide/linear-program.md says what the sets and solvers are.";
 
 /// Of the names that Highway has, those that this build and this machine have.
 [[noreturn]] void refuse_target(const std::string& target) {
@@ -373,53 +369,37 @@ bool asks_for_help(const std::string& option) {
   throw std::runtime_error("no such target: " + target + "; expected one of " + known);
 }
 
-Flags read_flags(int argc, char** argv) {
-  Flags flags;
-  bool sets_given = false;
-  const std::map<std::string, std::string*> texts = {{"--sets", &flags.sets},
-                                                     {"--instances", &flags.instances},
-                                                     {"--json", &flags.json},
-                                                     {"--target", &flags.target},
-                                                     {"--warm", &flags.warm}};
-  for (int k = 1; k < argc; ++k) {
-    const std::string option = argv[k];
-    if (option == "--table") {
-      use_table(flags);
-      continue;
-    }
-    sets_given = sets_given || option == "--sets";
-    if (++k == argc) throw std::runtime_error(option + " takes a value");
-    if (texts.count(option) != 0)
-      *texts.at(option) = argv[k];
-    else if (option == "--seed")
-      flags.seed = std::stoull(argv[k]);
-    else if (option == "--rounds")
-      flags.rounds = std::max(1, std::stoi(argv[k]));
-    else if (option == "--untimed")
-      flags.untimed = std::max(0, std::stoi(argv[k]));
-    else if (option == "--adversarial")
-      flags.adversarial = std::stoull(argv[k]);
-    else
-      throw std::runtime_error("unknown option " + option);
-  }
-  if (sets_given && flags.table) throw std::runtime_error("--table has its own sets: leave --sets out");
+/// False where help was asked for.
+bool read_flags(int argc, char** argv, Flags& flags) {
+  tools::ProgramOptions options("bench_lp", "Which solver of the small linear program is right, and which is fast?",
+                                kFooter);
+  bool table = false;
+  options.flag("--table", table, "The figures to reach and what was measured, from the sets they need");
+  options.text("--sets", flags.sets, "Names of sets, with commas between");
+  options.text("--instances", flags.instances, "A file of problems");
+  options.text("--target", flags.target, "The widest SIMD target to run on (AVX3, AVX2, SSE4)");
+  options.text("--json", flags.json, "A file for the results");
+  options.text("--warm", flags.warm, "A recorded set: with and without the lines that bound a step before");
+  options.whole_number("--adversarial", flags.adversarial, 1, "Problems per family and perturbation; nothing is timed");
+  options.whole_number("--seed", flags.seed, 0, "Of the generated sets");
+  options.whole_number("--rounds", flags.rounds, 1, "Timed passes over a set");
+  options.whole_number("--untimed", flags.untimed, 0, "Passes before each that is timed");
+  if (!options.parse(argc, argv)) return false;
+  const bool sets_given = options.given("--sets");
+  if (sets_given && table) throw std::runtime_error("--table has its own sets: leave --sets out");
+  if (table) use_table(flags);
   if (!lp::limit_batch_target(flags.target.c_str())) refuse_target(flags.target);
-  if (!flags.instances.empty() && !flags.table && !sets_given) flags.sets = "file,filef,filei";
+  if (!flags.instances.empty() && !table && !sets_given) flags.sets = "file,filef,filei";
   require_known_sets(flags);
-  return flags;
+  return true;
 }
 
 }  // namespace
 }  // namespace exactvo::bench
 
-int main(int argc, char** argv) try {
-  using namespace exactvo::bench;
-  if (std::any_of(argv + 1, argv + argc, asks_for_help)) {
-    std::cout << kUsage;
-    return 0;
-  }
-  return arena(read_flags(argc, argv));
-} catch (const std::exception& e) {
-  std::cerr << "bench_lp: " << e.what() << '\n' << exactvo::bench::kUsage;
-  return 2;
+int main(int argc, char** argv) {
+  return exactvo::tools::run_program("bench_lp", [&] {
+    exactvo::bench::Flags flags;
+    return exactvo::bench::read_flags(argc, argv, flags) ? exactvo::bench::arena(flags) : 0;
+  });
 }

@@ -8,6 +8,7 @@
 
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
+#include "options/program_options.h"
 #include "sets.h"
 
 namespace exactvo::bench {
@@ -77,28 +78,25 @@ void mine_family(const std::string& family, const Flags& flags, std::ostream& ou
   std::cerr << family << ": " << wrong << " of " << looked_at << '\n';
 }
 
-Flags read_flags(int argc, char** argv) {
-  Flags flags;
-  for (int k = 1; k + 1 < argc; k += 2) {
-    const std::string option = argv[k];
-    if (option == "--out") flags.out = argv[k + 1];
-    if (option == "--seed") flags.seed = std::stoull(argv[k + 1]);
-    if (option == "--count") flags.count = std::stoull(argv[k + 1]);
-    if (option == "--most") flags.most = std::stoull(argv[k + 1]);
-  }
-  if (flags.out.empty()) throw std::runtime_error("--out FILE is missing");
-  return flags;
+int mine(const Flags& flags) {
+  std::ofstream out(flags.out);
+  if (!out) throw std::runtime_error("--out: found '" + flags.out + "', expected a file that can be written");
+  for (const std::string& family : lp::adversarial_families()) mine_family(family, flags, out);
+  return out.flush() ? 0 : 2;
 }
 
 }  // namespace
 }  // namespace exactvo::bench
 
-int main(int argc, char** argv) try {
-  const auto flags = exactvo::bench::read_flags(argc, argv);
-  std::ofstream out(flags.out);
-  for (const std::string& family : exactvo::lp::adversarial_families()) exactvo::bench::mine_family(family, flags, out);
-  return out ? 0 : 2;
-} catch (const std::exception& e) {
-  std::cerr << "mine_lp: " << e.what() << "\nusage: mine_lp --out FILE.jsonl [--seed N] [--count N] [--most N]\n";
-  return 2;
+int main(int argc, char** argv) {
+  using namespace exactvo;
+  return tools::run_program("mine_lp", [&] {
+    bench::Flags flags;
+    tools::ProgramOptions options("mine_lp", "On which adversarial problems is the textbook's float solver wrong?");
+    options.text("--out", flags.out, "A file for the problems, a line of JSON each", true);
+    options.whole_number("--seed", flags.seed, 0, "Of the problems");
+    options.whole_number("--count", flags.count, 1, "Problems per family and perturbation");
+    options.whole_number("--most", flags.most, 1, "Problems written per family and perturbation");
+    return options.parse(argc, argv) ? bench::mine(flags) : 0;
+  });
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +13,7 @@
 
 #include "figures/figure.h"
 #include "figures/gnuplot.h"
+#include "options/program_options.h"
 
 namespace exactvo::bench {
 namespace {
@@ -35,14 +35,18 @@ const std::set<std::string> kPartial = {"cgal-qp-Gmpzf", "glpk"};
 /// A logarithmic axis has no zero: shares of wrong verdicts below this are drawn here.
 constexpr double kLeastShare = 1e-6;
 
-json read(const char* file) {
+json read(const std::string& file) {
   std::ifstream in(file);
-  if (!in) throw std::runtime_error(std::string("cannot read ") + file);
-  return json::parse(in);
+  if (!in) throw std::runtime_error(file + ": found no file that can be read, expected one");
+  try {
+    return json::parse(in);
+  } catch (const json::exception& error) {
+    throw std::runtime_error(file + ": found no JSON (" + error.what() + "), expected results of bench_lp");
+  }
 }
 
 /// Refuses a file without a list that `bench_lp` writes, with words about which file is in whose place.
-void require_list(const json& file, const char* key, const char* name, const char* command) {
+void require_list(const json& file, const char* key, const std::string& name, const char* command) {
   if (file.is_object() && file.contains(key) && file.at(key).is_array()) return;
   throw std::runtime_error(std::string(name) + ": found no list \"" + key + "\", expected what `" + command +
                            "` writes (ARENA.json comes before ADVERSARIAL.json)");
@@ -330,22 +334,12 @@ void write_page(const fs::path& folder, const json& arena, const Times& times) {
   page << "</body></html>\n";
 }
 
-}  // namespace
-}  // namespace exactvo::bench
-
-int main(int argc, char** argv) try {
-  using namespace exactvo::bench;
-  if (argc == 2 && (std::string(argv[1]) == "--help" || std::string(argv[1]) == "-h")) {
-    std::cout << "usage: lp_report ARENA.json ADVERSARIAL.json FOLDER\nThe files are those of `bench_lp --json` and "
-                 "`bench_lp --adversarial N --json`; the folder gets report.html and its pictures.\n";
-    return 0;
-  }
-  if (argc != 4) throw std::runtime_error("usage: lp_report ARENA.json ADVERSARIAL.json FOLDER");
-  const json arena = read(argv[1]);
-  const json adversarial = read(argv[2]);
-  require_list(arena, "benchmarks", argv[1], "bench_lp --json");
-  require_list(adversarial, "adversarial", argv[2], "bench_lp --adversarial N --json");
-  const std::filesystem::path folder = argv[3];
+int write_report(const std::string& arena_file, const std::string& adversarial_file,
+                 const std::filesystem::path& folder) {
+  const json arena = read(arena_file);
+  const json adversarial = read(adversarial_file);
+  require_list(arena, "benchmarks", arena_file, "bench_lp --json");
+  require_list(adversarial, "adversarial", adversarial_file, "bench_lp --adversarial N --json");
   std::filesystem::create_directories(folder);
   const Times times = times_of(arena);
   for (const char* kind : {"C", "B", "RF", "RI"}) draw_times(folder, times, kind);
@@ -353,7 +347,19 @@ int main(int argc, char** argv) try {
   draw_accuracy(folder, adversarial);
   write_page(folder, arena, times);
   return 0;
-} catch (const std::exception& e) {
-  std::cerr << "lp_report: " << e.what() << '\n';
-  return 2;
+}
+
+}  // namespace
+}  // namespace exactvo::bench
+
+int main(int argc, char** argv) {
+  using namespace exactvo;
+  return tools::run_program("lp_report", [&] {
+    std::string arena, adversarial, folder;
+    tools::ProgramOptions options("lp_report", "The results of bench_lp as a page with pictures.");
+    options.text("ARENA", arena, "What bench_lp --json wrote", true);
+    options.text("ADVERSARIAL", adversarial, "What bench_lp --adversarial N --json wrote", true);
+    options.text("FOLDER", folder, "Gets report.html and its pictures", true);
+    return options.parse(argc, argv) ? bench::write_report(arena, adversarial, folder) : 0;
+  });
 }

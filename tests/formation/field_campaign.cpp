@@ -4,10 +4,12 @@
 // each field that is not reached and safe, then the counts.
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
+#include <tuple>
 
 #include "field_verdict.h"
+#include "options/program_options.h"
+#include "support/usage.h"
 
 namespace {
 
@@ -21,23 +23,19 @@ bool parse_remedies(const std::string& text, formation::SimulationOptions& optio
   return options.remedies.has_value();
 }
 
-int usage() {
-  std::fputs("usage: formation_field_campaign KIND METHOD|CONTROLLER|REMEDIES [FIRST [COUNT [SEED]]]\n", stderr);
-  return 2;
-}
+struct Fields {
+  std::string kind, method;
+  std::uint64_t first = 0, count = 1000, seed = datasets::kFieldSeed;
+};
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int count_fields(const Fields& fields) {
   datasets::FieldKind kind{};
   formation::SimulationOptions options;
-  if (argc < 3 || !datasets::parse(argv[1], kind)) return usage();
-  if (!parse(argv[2], options.method) && !parse(argv[2], options.controller) && !parse_remedies(argv[2], options))
-    return usage();
-  const auto number = [&](int at, std::uint64_t fallback) {
-    return argc > at ? std::strtoull(argv[at], nullptr, 10) : fallback;
-  };
-  const std::uint64_t first = number(3, 0), count = number(4, 1000), seed = number(5, datasets::kFieldSeed);
+  if (!datasets::parse(fields.kind, kind)) throw tools::UsageError("KIND", fields.kind, "a kind of random field");
+  if (!parse(fields.method, options.method) && !parse(fields.method, options.controller) &&
+      !parse_remedies(fields.method, options))
+    throw tools::UsageError("METHOD", fields.method, "a method, a controller or a set of remedies");
+  const auto [first, count, seed] = std::tuple(fields.first, fields.count, fields.seed);
   std::uint64_t good = 0, reached = 0;
   double latest = 0.0, wall = 0.0;
   for (std::uint64_t k = first; k < first + count; ++k) {
@@ -49,8 +47,25 @@ int main(int argc, char** argv) {
     if (!v.good()) std::printf("%s\n", v.text().c_str());
   }
   std::printf("%s %s seed %llu fields %llu-%llu: reached and safe %llu, reached %llu of %llu; latest %.2f s; %.1f s\n",
-              argv[1], argv[2], static_cast<unsigned long long>(seed), static_cast<unsigned long long>(first),
-              static_cast<unsigned long long>(first + count - 1), static_cast<unsigned long long>(good),
-              static_cast<unsigned long long>(reached), static_cast<unsigned long long>(count), latest, wall);
+              fields.kind.c_str(), fields.method.c_str(), static_cast<unsigned long long>(seed),
+              static_cast<unsigned long long>(first), static_cast<unsigned long long>(first + count - 1),
+              static_cast<unsigned long long>(good), static_cast<unsigned long long>(reached),
+              static_cast<unsigned long long>(count), latest, wall);
   return good == count ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tools::run_program("formation_field_campaign", [&] {
+    Fields fields;
+    tools::ProgramOptions options("formation_field_campaign", "Counts random fields that are reached and safe.",
+                                  "Prints a line per field that is not. Exit status 1: there was one.");
+    options.text("KIND", fields.kind, "Of random_fields.h", true);
+    options.text("METHOD", fields.method, "Of simulation.h; of formations a controller, or a set of remedies", true);
+    options.whole_number("FIRST", fields.first, 0, "The first field");
+    options.whole_number("COUNT", fields.count, 1, "Fields");
+    options.whole_number("SEED", fields.seed, 0, "Of the fields");
+    return options.parse(argc, argv) ? count_fields(fields) : 0;
+  });
 }

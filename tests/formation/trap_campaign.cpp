@@ -2,15 +2,15 @@
 // The trap test against simulation: formation_trap_campaign [COUNT [SEED]]. A line for each disagreement, then the
 // counts.
 #include <cstdio>
-#include <cstdlib>
 
 #include "exactvo/formation/stuck.h"
+#include "options/program_options.h"
 #include "trap_cases.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+int compare(unsigned long long count, unsigned long long seed) {
   using namespace exactvo;
-  const unsigned long long count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 3000;
-  const unsigned long long seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
   test::SeededRandom random(seed);
   unsigned long long agreed = 0, traps = 0;
   for (unsigned long long k = 0; k < count; ++k) {
@@ -28,4 +28,18 @@ int main(int argc, char** argv) {
   }
   std::printf("seed %llu: %llu of %llu agree, %llu of them traps\n", seed, agreed, count, traps);
   return agreed == count ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace exactvo;
+  return tools::run_program("formation_trap_campaign", [&] {
+    unsigned long long count = 3000, seed = 1;
+    tools::ProgramOptions options("formation_trap_campaign", "Compares the trap test with simulation.",
+                                  "Prints a line per disagreement. Exit status 1: there was one.");
+    options.whole_number("COUNT", count, 1, "Cases");
+    options.whole_number("SEED", seed, 0, "Of the cases");
+    return options.parse(argc, argv) ? compare(count, seed) : 0;
+  });
 }

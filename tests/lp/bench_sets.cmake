@@ -26,3 +26,24 @@ endforeach()
 if(NOT table MATCHES "file: 2 problems, 1 feasible.*filef: 1 problems, 1 feasible.*filei: 1 problems, 0 feasible")
   message(FATAL_ERROR "parts: ${table}")
 endif()
+
+# The lines of JSON that `exactvo lp` reads are the same problems; a normal may have any length.
+set(lines ${WORK}/two_instances.jsonl)
+file(WRITE ${lines} "{\"bound\": {\"disc\": 1}, \"preferred\": [1, 0], \"constraints\": [{\"normal\": [-2, 0], \"offset\": -1}]}
+{\"bound\": {\"disc\": 1}, \"preferred\": [1, 0], \"constraints\": [{\"normal\": [-1, 0], \"offset\": 2, \"priority\": \"soft\"}]}
+")
+execute_process(COMMAND ${BENCH_LP} --instances ${lines} --rounds 1
+                RESULT_VARIABLE status OUTPUT_VARIABLE table ERROR_VARIABLE words)
+if(READS_LINES AND (NOT status EQUAL 0 OR NOT table MATCHES "file: 2 problems, 1 feasible.*filei: 1 problems, 0 feasible"))
+  message(FATAL_ERROR "lines of JSON: status ${status}, ${table} ${words}")
+endif()
+if(NOT READS_LINES AND NOT words MATCHES "lines of JSON are read where datasets is built")
+  message(FATAL_ERROR "lines of JSON without datasets: ${words}")
+endif()
+
+# What not every solver here takes is refused by its number.
+file(APPEND ${lines} "{\"bound\": {\"box\": [1, 1]}, \"preferred\": [1, 0], \"constraints\": []}\n")
+execute_process(COMMAND ${BENCH_LP} --instances ${lines} --rounds 1 RESULT_VARIABLE status ERROR_VARIABLE words OUTPUT_QUIET)
+if(READS_LINES AND (NOT status EQUAL 2 OR NOT words MATCHES "problem 3: found a box, expected a disc"))
+  message(FATAL_ERROR "a box: status ${status}, ${words}")
+endif()

@@ -3,10 +3,8 @@
 // how many were unsafe, certified and plain; exit status 1 where a certified one is unsafe.
 // `audit_half_planes ulps N [SEED]` prints for N discs by how many ulps the two cut-offs clear the velocity obstacle
 // (below 0: they cut into it): the data of docs/images/plain-is-unsafe.gp.
-#include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
 #include "exactvo/geometry/hull.h"
@@ -14,6 +12,7 @@
 #include "exactvo/vo/velocity_obstacle.h"
 #include "half_plane/plain.h"
 #include "instances.h"
+#include "options/program_options.h"
 
 namespace exactvo::bench {
 namespace {
@@ -124,30 +123,22 @@ int print_ulps(unsigned long wanted, unsigned long seed) {
   return 0;
 }
 
-constexpr const char* kUsage =
-    "usage: audit_half_planes [N = 10000000] [SEED = 1]    audits N half-planes in rationals\n"
-    "       audit_half_planes ulps [N = 800] [SEED = 1]    by how much cut-offs of discs clear their obstacle\n";
-
-/// A word that is no number above 0 would audit nothing, and find nothing wrong.
-unsigned long number(int argc, char** argv, int index, unsigned long fallback) {
-  if (argc <= index) return fallback;
-  char* end = nullptr;
-  const unsigned long value = std::strtoul(argv[index], &end, 10);
-  if (std::isdigit(static_cast<unsigned char>(argv[index][0])) && *end == '\0' && value > 0) return value;
-  std::fprintf(stderr, "audit_half_planes: %s is no number above 0\n%s", argv[index], kUsage);
-  std::exit(2);
-}
-
 }  // namespace
 }  // namespace exactvo::bench
 
 int main(int argc, char** argv) {
-  if (argc > 1 && (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0)) {
-    std::fputs(exactvo::bench::kUsage, stdout);
-    return 0;
-  }
-  if (argc > 1 && std::strcmp(argv[1], "ulps") == 0)
-    return exactvo::bench::print_ulps(exactvo::bench::number(argc, argv, 2, 800),
-                                      exactvo::bench::number(argc, argv, 3, 1));
-  return exactvo::bench::run(exactvo::bench::number(argc, argv, 1, 10000000), exactvo::bench::number(argc, argv, 2, 1));
+  using namespace exactvo;
+  return tools::run_program("audit_half_planes", [&] {
+    std::uint64_t count = 0, seed = 1;
+    const bool ulps = argc > 1 && std::strcmp(argv[1], "ulps") == 0;
+    count = ulps ? 800 : 10000000;
+    tools::ProgramOptions options(
+        "audit_half_planes",
+        "Audits half-planes in rationals. `audit_half_planes ulps [N] [SEED]` says instead by "
+        "how many ulps cut-offs of discs clear their obstacle.");
+    options.whole_number("N", count, 1, "Half-planes");
+    options.whole_number("SEED", seed, 1, "Of the half-planes");
+    if (!options.parse(argc - ulps, argv + ulps)) return 0;
+    return ulps ? bench::print_ulps(count, seed) : bench::run(count, seed);
+  });
 }

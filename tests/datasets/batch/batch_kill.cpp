@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "batch_files.h"
+#include "options/program_options.h"
 
 namespace {
 
@@ -171,15 +172,17 @@ class Campaign {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "datasets_batch_kill PROGRAM [KILLS [SEED [RANKS [STARS]]]]\n");
-    return 2;
-  }
-  Plan plan;
-  plan.program = argv[1];
-  if (argc > 2) plan.kills = std::atoi(argv[2]);
-  if (argc > 3) plan.seed = std::strtoull(argv[3], nullptr, 10);
-  if (argc > 4) plan.ranks = std::atoi(argv[4]);
-  if (argc > 5) plan.stars = std::atoi(argv[5]);
-  return Campaign(plan).run() ? 0 : 1;
+  using namespace exactvo;
+  return tools::run_program("datasets_batch_kill", [&] {
+    Plan plan;
+    tools::ProgramOptions options("datasets_batch_kill", "Kills batches at random moments and resumes them.",
+                                  "Exit status 1: an output differs from that of an undisturbed run.");
+    options.text("PROGRAM", plan.program, "The program exactvo", true);
+    options.whole_number("KILLS", plan.kills, 1, "That must strike a running batch");
+    options.whole_number("SEED", plan.seed, 0, "Of the moments");
+    options.whole_number("RANKS", plan.ranks, 1, "Above 1: under mpirun, one rank killed at a time");
+    options.whole_number("STARS", plan.stars, 1, "Obstacles of a batch");
+    if (!options.parse(argc, argv)) return 0;
+    return Campaign(plan).run() ? 0 : 1;
+  });
 }

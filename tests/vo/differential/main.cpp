@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // differential_cgal [TOPIC|all] [RANDOM] [CONSTRUCTED] [SEED]: compares the library with CGAL's exact parts.
 // The whole numbers: differential_cgal all 100000 10000. Exit status 1 where anything differs.
-#include <cstdlib>
-#include <cstring>
 #include <ctime>
+#include <string>
+#include <vector>
 
+#include "options/program_options.h"
 #include "vo/differential/tally.h"
 
 namespace exactvo::test {
@@ -18,11 +19,10 @@ constexpr Topic kTopics[] = {{"distances", compare_distances}, {"offsets", compa
                              {"conics", compare_conics},       {"legs", compare_legs},
                              {"ellipses", compare_ellipses},   {"sums", compare_sums}};
 
-int run(const char* wanted, const Asked& asked) {
-  bool known = false, same = true;
+int run(const std::string& wanted, const Asked& asked) {
+  bool same = true;
   for (const Topic& topic : kTopics) {
-    if (std::strcmp(wanted, "all") != 0 && std::strcmp(wanted, topic.name) != 0) continue;
-    known = true;
+    if (wanted != "all" && wanted != topic.name) continue;
     const std::clock_t start = std::clock();
     const Tally tally = topic.compare(asked);
     std::printf("%-9s  random %ld  constructed %ld  contacts %ld  given up %ld  mismatches %ld  (%.1f s)\n", topic.name,
@@ -31,15 +31,25 @@ int run(const char* wanted, const Asked& asked) {
     std::fflush(stdout);
     same = same && tally.mismatches() == 0;
   }
-  if (!known) std::fprintf(stderr, "topics: all distances offsets conics legs ellipses sums\n");
-  return known && same ? 0 : 1;
+  return same ? 0 : 1;
 }
 
 }  // namespace
 }  // namespace exactvo::test
 
 int main(int argc, char** argv) {
-  const auto number = [&](int k, long fallback) { return argc > k ? std::atol(argv[k]) : fallback; };
-  return exactvo::test::run(argc > 1 ? argv[1] : "all",
-                            {number(2, 100000), number(3, 10000), static_cast<std::uint64_t>(number(4, 1))});
+  using namespace exactvo;
+  return tools::run_program("differential_cgal", [&] {
+    std::string topic = "all";
+    test::Asked asked{100000, 10000, 1};
+    std::vector<std::string> topics = {"all"};
+    for (const test::Topic& known : test::kTopics) topics.emplace_back(known.name);
+    tools::ProgramOptions options("differential_cgal", "Compares the library with CGAL's exact parts.",
+                                  "Exit status 1: something differs.");
+    options.word("TOPIC", topic, topics, "all, or one of distances offsets conics legs ellipses sums");
+    options.whole_number("RANDOM", asked.random, 0, "Random cases per topic");
+    options.whole_number("CONSTRUCTED", asked.constructed, 0, "Constructed cases per topic");
+    options.whole_number("SEED", asked.seed, 0, "Of both");
+    return options.parse(argc, argv) ? test::run(topic, asked) : 0;
+  });
 }
