@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/hull.h"
 #include "leader.h"
 
 namespace exactvo::formation::detail {
@@ -67,6 +69,82 @@ void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
   out.push_back(std::string("the leader reaches the end of its path ") + (std::isfinite(arrival) ? when : "never"));
 }
 
+std::string rounded(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
+double top_speed(const Leader& motion) {
+  if (length_of(motion.path) == 0.0) return 0.0;
+  double top = motion.profile.empty() ? motion.speed : 0.0;
+  for (const SpeedKnot& knot : motion.profile) top = std::max(top, knot.speed);
+  return top;
+}
+
+/// How much of the leader's speed the bound of a robot counts: all of it, or the larger component on the worst leg.
+double worst_share(const Scenario& s, const std::vector<Vec2>& path) {
+  if (s.speed_bound == SpeedBoundKind::disc) return 1.0;
+  double worst = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vec2 d = geometry::normalized(path[i] - path[i - 1]);
+    worst = std::max({worst, std::fabs(d.x), std::fabs(d.y)});
+  }
+  return worst;
+}
+
+void warn_of_fast_leader(const Scenario& s, std::vector<std::string>& out) {
+  // Share of a speed: a leader exactly as fast as its robots is none that outruns them, however the legs round.
+  constexpr double kRounding = 1e-12;
+  const Leader& leader = s.formation->leader;
+  const double asked = top_speed(leader) * worst_share(s, leader.path);
+  for (const Robot& robot : s.robots) {
+    if (!(asked > robot.max_speed * (1.0 + kRounding))) continue;
+    out.push_back("the leader moves at up to " + rounded(top_speed(leader)) + " m/s, faster than " + robot.id +
+                  " can (max_speed " + rounded(robot.max_speed) + " m/s): the formation falls behind");
+    return;
+  }
+}
+
+void warn_of_fast_start(const Scenario& s, const Robot& robot, std::vector<std::string>& out) {
+  const Vec2 v = robot.velocity;
+  const double speed = s.speed_bound == SpeedBoundKind::disc ? norm(v) : std::max(std::fabs(v.x), std::fabs(v.y));
+  if (speed > robot.max_speed)
+    out.push_back(robot.id + " starts at " + rounded(speed) + " m/s, beyond its max_speed of " +
+                  rounded(robot.max_speed) + " m/s");
+}
+
+/// Moving obstacles are avoided by their convex hulls, and only by robots that can get away.
+void warn_of_moving(const Scenario& s, const MovingObstacle& o, std::vector<std::string>& out) {
+  const geometry::Obstacle hull = geometry::Polygon{geometry::convex_hull(geometry::vertices_of(o.shape)).vertices, {}};
+  const bool has_inside = std::get<geometry::Polygon>(hull).outer.size() > 2;
+  for (const Robot& robot : s.robots) {
+    if (has_inside && geometry::signed_distance(hull, robot.position) < robot.radius)
+      out.push_back(robot.id + " starts inside the convex hull of moving obstacle '" + o.id +
+                    "', as which it is avoided: the run begins in contact");
+  }
+  const double speed = top_speed(o.motion);
+  for (const Robot& robot : s.robots) {
+    if (!(speed > robot.max_speed)) continue;
+    out.push_back("moving obstacle '" + o.id + "' moves at up to " + rounded(speed) + " m/s, faster than " + robot.id +
+                  " (max_speed " + rounded(robot.max_speed) + " m/s): it can be run over");
+    return;
+  }
+}
+
+/// Goals that a moving obstacle covers for good where it comes to rest, or never leaves.
+void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, std::vector<std::string>& out) {
+  for (const MovingObstacle& o : s.moving_obstacles) {
+    const double arrival = leader_arrival(o.motion);
+    const bool stays = top_speed(o.motion) == 0.0;
+    if (!stays && !(arrival <= s.time_limit)) continue;
+    const Vec2 moved = stays ? Vec2{} : o.motion.path.back() - o.motion.path.front();
+    if (geometry::signed_distance(o.shape, last.place - moved) + last.reach >= robot.radius) continue;
+    out.push_back(last.name + ", lies where moving obstacle '" + o.id + "' comes to rest" +
+                  (stays ? "" : " after " + rounded(arrival) + " s") + ": from then on it cannot be reached");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> forewarnings(const Scenario& scenario, const std::vector<Vec2>& offsets) {
@@ -75,10 +153,15 @@ std::vector<std::string> forewarnings(const Scenario& scenario, const std::vecto
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::vector<Target> targets = targets_of(scenario, offsets, i);
     for (const Target& t : targets) warn_of_obstacles(scenario, scenario.robots[i], t, out);
+    warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
+    warn_of_fast_start(scenario, scenario.robots[i], out);
     last.push_back(targets.back());
   }
   warn_of_pairs(scenario, last, out);
-  if (scenario.formation) warn_of_leader(scenario, out);
+  for (const MovingObstacle& o : scenario.moving_obstacles) warn_of_moving(scenario, o, out);
+  if (!scenario.formation) return out;
+  warn_of_leader(scenario, out);
+  warn_of_fast_leader(scenario, out);
   return out;
 }
 

@@ -8,10 +8,12 @@
 
 namespace exactvo::formation::detail {
 
-/// What a scenario asks for that nothing can reach, in words, a line each: goals, or slots at the leader's end, inside
-/// obstacles or nearer to them than the robot's radius allows, pairs of them nearer than two robots fit, and a leader
-/// whose end lies beyond the time limit. `offsets` are those in use; empty without a formation. Sufficient, not
-/// necessary: a goal in a closed room is not found so.
+/// What a scenario asks for that cannot be had, in words, one line each: goals, or slots at the leader's end, inside
+/// obstacles or nearer to them than the robot's radius allows, or where a moving obstacle comes to rest; pairs of them
+/// nearer than two robots fit; a leader whose end lies beyond the time limit, or that is faster than a robot; a robot
+/// that starts faster than it may go, or inside the hull of a moving obstacle; a moving obstacle faster than a robot.
+/// `offsets` are those in use; empty without a formation. Sufficient, not necessary: a goal in a closed room is not
+/// found so.
 std::vector<std::string> forewarnings(const Scenario& scenario, const std::vector<Vec2>& offsets);
 
 }  // namespace exactvo::formation::detail

@@ -61,14 +61,28 @@ void check_robots(const Scenario& s, Checker& c) {
   }
 }
 
-void check_obstacles(const Scenario& s, Checker& c) {
+/// Moving obstacles stand at t = 0 as their shapes say.
+void check_starts(const Scenario& s, Checker& c) {
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
-    for (const SceneObstacle& o : s.obstacles) {
-      const double gap = geometry::signed_distance(o.shape, s.robots[i].position) - s.robots[i].radius;
+    const auto require_clear = [&](const geometry::Obstacle& shape, const std::string& name) {
+      const double gap = geometry::signed_distance(shape, s.robots[i].position) - s.robots[i].radius;
       c.require(!(gap < 0.0), "/robots/" + std::to_string(i) + "/position",
-                show(s.robots[i].position) + ", " + show(-gap) + " m inside obstacle '" + o.id + "'",
+                show(s.robots[i].position) + ", " + show(-gap) + " m inside " + name,
                 "a start that is clear of every obstacle");
-    }
+    };
+    for (const SceneObstacle& o : s.obstacles) require_clear(o.shape, "obstacle '" + o.id + "'");
+    for (const MovingObstacle& o : s.moving_obstacles) require_clear(o.shape, "moving obstacle '" + o.id + "'");
+  }
+}
+
+void check_profile(const Leader& leader, const std::string& at, Checker& c) {
+  for (std::size_t k = 0; k < leader.profile.size(); ++k) {
+    const SpeedKnot& knot = leader.profile[k];
+    const std::string pointer = at + "/profile/" + std::to_string(k);
+    c.not_negative(knot.time, pointer + "/0", "s");
+    c.not_negative(knot.speed, pointer + "/1", "m/s");
+    c.require(k == 0 || !(knot.time < leader.profile[k - 1].time), pointer + "/0", show(knot.time),
+              "times that do not fall");
   }
 }
 
@@ -81,6 +95,7 @@ void check_moving(const Scenario& s, Checker& c) {
     c.require(!o.motion.path.empty(), at + "/path", "no points", "at least one point");
     for (Vec2 p : o.motion.path) c.finite(p, at + "/path");
     c.not_negative(o.motion.speed, at + "/speed", "m/s");
+    check_profile(o.motion, at, c);
   }
 }
 
@@ -141,17 +156,6 @@ void check_topology(const Topology& t, std::size_t n, Checker& c) {
             "every robot connected to one with pinning > 0");
 }
 
-void check_profile(const Leader& leader, const std::string& at, Checker& c) {
-  for (std::size_t k = 0; k < leader.profile.size(); ++k) {
-    const SpeedKnot& knot = leader.profile[k];
-    const std::string pointer = at + "/profile/" + std::to_string(k);
-    c.not_negative(knot.time, pointer + "/0", "s");
-    c.not_negative(knot.speed, pointer + "/1", "m/s");
-    c.require(k == 0 || !(knot.time < leader.profile[k - 1].time), pointer + "/0", show(knot.time),
-              "times that do not fall");
-  }
-}
-
 void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
   check_topology(f.topology, n, c);
   c.require(f.offsets.size() == n, "/formation/offsets", std::to_string(f.offsets.size()) + " offsets",
@@ -177,7 +181,7 @@ std::vector<ScenarioProblem> validate(const Scenario& scenario) {
   check_moving(scenario, c);
   check_times(scenario, c);
   if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
-  if (c.problems.empty()) check_obstacles(scenario, c);
+  if (c.problems.empty()) check_starts(scenario, c);
   return std::move(c.problems);
 }
 

@@ -57,6 +57,84 @@ TEST(BadInput, AStartInsideAnObstacleIsRefused) {
   expect_refused(s, "/robots/0/position");
 }
 
+Scenario with_cart(Leader motion) {
+  Scenario s = paper_scene("A0");
+  s.obstacles.clear();
+  const Vec2 start = s.robots[0].position;
+  s.moving_obstacles = {
+      {"cart",
+       geometry::Polygon{{start + Vec2{1, -1}, start + Vec2{3, -1}, start + Vec2{3, 1}, start + Vec2{1, 1}}, {}},
+       std::move(motion)}};
+  return s;
+}
+
+TEST(BadInput, AStartInsideAMovingObstacleIsRefused) {
+  Scenario s = with_cart({{{0, 0}, {20, 0}}, 1.0});
+  EXPECT_TRUE(validate(s).empty());
+  s.robots[0].position.x += 2.0;
+  expect_refused(s, "/robots/0/position");
+  EXPECT_THAT(validate(s).front().found, HasSubstr("inside moving obstacle 'cart'"));
+  s.robots[0].position.x -= 1.2;  // outside, but nearer than its radius
+  expect_refused(s, "/robots/0/position");
+}
+
+TEST(BadInput, AProfileOfAMovingObstacleIsCheckedAsALeadersIs) {
+  Scenario s = with_cart({{{0, 0}, {20, 0}}, 1.0, {{1, 2}, {0, 2}}});
+  ASSERT_FALSE(validate(s).empty());
+  EXPECT_EQ(validate(s).front().pointer, "/moving_obstacles/0/profile/1/0");
+  s.moving_obstacles[0].motion.profile = {{0, -2}};
+  EXPECT_EQ(validate(s).front().pointer, "/moving_obstacles/0/profile/0/1");
+}
+
+std::string warnings_of(const Scenario& s) {
+  std::string all;
+  for (const std::string& w : warnings_before(s, {})) all += w + "\n";
+  return all;
+}
+
+TEST(BadInput, WhatMovesFasterThanARobotIsSaidBeforeTheRun) {
+  EXPECT_EQ(warnings_of(paper_scene("B1")), "");
+  Scenario s = paper_scene("B1");
+  s.robots[1].max_speed = 4.0;  // the leader goes at 4.24 m/s
+  EXPECT_THAT(warnings_of(s), HasSubstr("the leader moves at up to 4.24264 m/s, faster than R2 can (max_speed 4 m/s)"));
+  s.speed_bound = SpeedBoundKind::box;  // at 45 degrees each component is 3 m/s
+  EXPECT_EQ(warnings_of(s), "");
+  s.robots[1].max_speed = 2.0;
+  EXPECT_THAT(warnings_of(s), HasSubstr("faster than R2 can"));
+  s = paper_scene("B1");
+  s.formation->leader.profile = {{0, 1}, {3, 7}, {4, 1}};
+  EXPECT_THAT(warnings_of(s), HasSubstr("the leader moves at up to 7 m/s, faster than R1 can"));
+  EXPECT_THAT(warnings_of(with_cart({{{0, 0}, {20, 0}}, 9.0})),
+              HasSubstr("moving obstacle 'cart' moves at up to 9 m/s, faster than R1"));
+  EXPECT_EQ(warnings_of(with_cart({{{0, 0}}, 9.0})), "") << "it has nowhere to go";
+}
+
+TEST(BadInput, AStartBeyondTheSpeedLimitIsSaidBeforeTheRun) {
+  Scenario s = paper_scene("A0");
+  s.robots[0].velocity = {s.robots[0].max_speed + 1.0, 0.0};
+  EXPECT_THAT(warnings_of(s), HasSubstr("beyond its max_speed"));
+}
+
+TEST(BadInput, AGoalWhereAMovingObstacleComesToRestIsSaidBeforeTheRun) {
+  Scenario s = with_cart({{{0, 0}, {20, 0}}, 1.0});
+  const Vec2 start = s.robots[0].position;
+  s.robots[0].goals = {start + Vec2{22.0, 0.0}};
+  EXPECT_THAT(warnings_of(s), HasSubstr("lies where moving obstacle 'cart' comes to rest after 20 s"));
+  s.robots[0].goals = {start + Vec2{2.0, 0.0}};
+  EXPECT_EQ(warnings_of(s), "") << "it leaves";
+  s.moving_obstacles[0].motion.speed = 0.0;
+  EXPECT_THAT(warnings_of(s), HasSubstr("comes to rest: from then on it cannot be reached"));
+}
+
+TEST(BadInput, AStartInTheHullOfAMovingObstacleIsSaidBeforeTheRun) {
+  Scenario s = with_cart({{{0, 0}, {20, 0}}, 1.0});
+  const Vec2 start = s.robots[0].position;
+  s.moving_obstacles[0].shape =
+      geometry::Polyline{{start + Vec2{-2, -2}, start + Vec2{2, -2}, start + Vec2{2, 2}, start + Vec2{-2, 2}}};
+  EXPECT_TRUE(validate(s).empty());
+  EXPECT_THAT(warnings_of(s), HasSubstr("starts inside the convex hull of moving obstacle 'cart'"));
+}
+
 TEST(BadInput, GainsOfZeroOrBelowAreRefused) {
   double Gains::*const gains[] = {&Gains::k1, &Gains::k2, &Gains::k3, &Gains::kappa};
   const char* const names[] = {"k1", "k2", "k3", "kappa"};

@@ -34,6 +34,28 @@ TEST(ScenarioKeys, AMovingObstacleNeedsItsPath) {
   EXPECT_THROW(datasets::parse_scenario(text, "cart.json", "."), datasets::DataError);
 }
 
+TEST(ScenarioKeys, AMovingObstacleMayHaveASpeedProfile) {
+  const std::string text = R"({ "name": "x", "robots": [ { "id": "R1", "position": [0, 0], "goal": [9, 0] } ],
+    "moving_obstacles": [ { "polygon": [[4, 4], [5, 4], [5, 5]], "path": [[0, 0], [9, 0]], "speed": 1,
+                            "profile": { "knots": [[0, 0.5], [2, 3], [2, 1]] } } ] })";
+  const formation::Scenario s = datasets::parse_scenario(text, "cart.json", ".");
+  const std::vector<formation::SpeedKnot>& profile = s.moving_obstacles[0].motion.profile;
+  ASSERT_EQ(profile.size(), 3u);
+  EXPECT_EQ(profile[1].time, 2.0);
+  EXPECT_EQ(profile[1].speed, 3.0);
+  const std::string once = datasets::write_scenario(s);
+  EXPECT_EQ(datasets::parse_scenario(once, "again.json", ".").moving_obstacles[0].motion.profile.size(), 3u)
+      << "a recording that loses it is audited against another motion";
+}
+
+TEST(ScenarioKeys, MovingObstaclesHaveIdsOfTheirOwn) {
+  const std::string cart = R"({ "id": "cart", "polygon": [[4, 4], [5, 4], [5, 5]], "path": [[0, 0]], "speed": 1 })";
+  const std::string text = R"({ "name": "x", "robots": [ { "id": "R1", "position": [0, 0], "goal": [9, 0] } ],
+    "moving_obstacles": [ )" +
+                           cart + ", " + cart + " ] }";
+  EXPECT_THROW(datasets::parse_scenario(text, "cart.json", "."), datasets::DataError);
+}
+
 /// A formation of five with `extra` in it.
 std::string five(const std::string& extra) {
   return R"({ "name": "five", "time_step": 0.02, "robots": [

@@ -72,26 +72,9 @@ class FormationReader {
     formation::Leader leader;
     leader.path = to_points(object.at("path"));
     take(object, "speed", leader.speed);
-    if (object.contains("profile")) leader.profile = to_profile(object.at("profile"), leader.path);
+    if (object.contains("profile"))
+      leader.profile = to_profile(object.at("profile"), leader.path, file_, "/formation/leader/profile");
     return leader;
-  }
-
-  std::vector<formation::SpeedKnot> to_profile(const Json& object, const std::vector<Vec2>& path) const {
-    if (object.contains("trapezoid")) {
-      const Json& t = object.at("trapezoid");
-      return formation::trapezoid(path, t.at("speed").get<double>(), t.at("acceleration").get<double>());
-    }
-    if (object.contains("legs")) return of_legs(object.at("legs").get<std::vector<double>>(), path);
-    std::vector<formation::SpeedKnot> knots;
-    for (const Json& pair : object.at("knots")) knots.push_back({pair[0].get<double>(), pair[1].get<double>()});
-    return knots;
-  }
-
-  std::vector<formation::SpeedKnot> of_legs(const std::vector<double>& speeds, const std::vector<Vec2>& path) const {
-    if (speeds.size() + 1 != path.size())
-      refuse("/leader/profile/legs", std::to_string(speeds.size()) + " speeds",
-             "one a leg of the path: " + std::to_string(path.size() - 1));
-    return formation::speed_of_legs(path, speeds);
   }
 
   static formation::RemedySwitches to_switches(const Json& object) {
@@ -107,6 +90,24 @@ class FormationReader {
 };
 
 }  // namespace
+
+std::vector<formation::SpeedKnot> to_profile(const Json& object, const std::vector<Vec2>& path, const std::string& file,
+                                             const std::string& pointer) {
+  if (object.contains("trapezoid")) {
+    const Json& t = object.at("trapezoid");
+    return formation::trapezoid(path, t.at("speed").get<double>(), t.at("acceleration").get<double>());
+  }
+  if (object.contains("legs")) {
+    const auto speeds = object.at("legs").get<std::vector<double>>();
+    if (speeds.size() + 1 != path.size())
+      throw DataError(DataCode::scenario, file, pointer + "/legs", std::to_string(speeds.size()) + " speeds",
+                      "one a leg of the path: " + std::to_string(path.size() - 1));
+    return formation::speed_of_legs(path, speeds);
+  }
+  std::vector<formation::SpeedKnot> knots;
+  for (const Json& pair : object.at("knots")) knots.push_back({pair[0].get<double>(), pair[1].get<double>()});
+  return knots;
+}
 
 FormationSpec to_formation(const Json& object, const std::vector<Robot>& robots, const std::string& file) {
   return FormationReader(robots, file).read(object);

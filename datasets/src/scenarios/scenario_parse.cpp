@@ -112,8 +112,10 @@ class Reader {
       const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
       Judgement judgement = judge(to_raw(list[k], id, pointer));
       refuse_unmended(judgement, file_);
-      scenario.moving_obstacles.push_back(
-          {id, std::move(judgement.shape), {to_points(list[k].at("path")), list[k].at("speed").get<double>()}});
+      formation::Leader motion{to_points(list[k].at("path")), list[k].at("speed").get<double>()};
+      if (list[k].contains("profile"))
+        motion.profile = to_profile(list[k].at("profile"), motion.path, file_, pointer + "/profile");
+      scenario.moving_obstacles.push_back({id, std::move(judgement.shape), std::move(motion)});
     }
   }
 
@@ -205,6 +207,11 @@ class Reader {
       const Origin& origin = origin_of_[k];
       const std::string found = origin.is_named ? "\"" + id + "\"" : "no id, so \"" + id + "\",";
       if (!seen.insert(id).second) refuse(origin.pointer + (origin.is_named ? "/id" : ""), found + " a second time");
+    }
+    seen.clear();
+    for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
+      const std::string& id = scenario.moving_obstacles[k].id;
+      if (!seen.insert(id).second) refuse("/moving_obstacles/" + std::to_string(k), "\"" + id + "\" a second time");
     }
   }
 

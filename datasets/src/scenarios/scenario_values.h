@@ -33,4 +33,8 @@ inline std::vector<geometry::Vec2> to_points(const Json& list) {
 formation::FormationSpec to_formation(const Json& object, const std::vector<formation::Robot>& robots,
                                       const std::string& file);
 
+/// A member `profile` of something that follows `path`; `pointer` is its place, for messages.
+std::vector<formation::SpeedKnot> to_profile(const Json& object, const std::vector<geometry::Vec2>& path,
+                                             const std::string& file, const std::string& pointer);
+
 }  // namespace exactvo::datasets

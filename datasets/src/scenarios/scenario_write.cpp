@@ -37,12 +37,29 @@ void append_obstacle(JsonWriter& json, const formation::SceneObstacle& obstacle)
   json.end_object();
 }
 
+void append_profile(JsonWriter& json, const std::vector<formation::SpeedKnot>& profile) {
+  json.key("profile").begin_object().key("knots").begin_inline_array();
+  for (const formation::SpeedKnot& knot : profile) json.value(geometry::Vec2{knot.time, knot.speed});
+  json.end_array().end_object();
+}
+
+/// Where there is a profile, `speed` has no meaning.
+void append_speed(JsonWriter& json, const formation::Leader& leader) {
+  if (leader.profile.empty()) {
+    json.member("speed", leader.speed);
+  } else {
+    append_profile(json, leader.profile);
+  }
+}
+
 void append_moving(JsonWriter& json, const formation::MovingObstacle& obstacle) {
   json.begin_object().member("id", obstacle.id);
   std::visit([&](const auto& shape) { append_shape(json, shape); }, obstacle.shape);
   json.key("path");
   append_points(json, obstacle.motion.path);
-  json.member("speed", obstacle.motion.speed).end_object();
+  json.member("speed", obstacle.motion.speed);
+  if (!obstacle.motion.profile.empty()) append_profile(json, obstacle.motion.profile);
+  json.end_object();
 }
 
 void append_numbers(JsonWriter& json, const std::vector<double>& numbers) {
@@ -59,17 +76,6 @@ void append_topology(JsonWriter& json, const formation::Topology& topology) {
   json.key("pinning");
   append_numbers(json, topology.pinning);
   json.end_object();
-}
-
-/// Where there is a profile, `speed` has no meaning.
-void append_speed(JsonWriter& json, const formation::Leader& leader) {
-  if (leader.profile.empty()) {
-    json.member("speed", leader.speed);
-    return;
-  }
-  json.key("profile").begin_object().key("knots").begin_inline_array();
-  for (const formation::SpeedKnot& knot : leader.profile) json.value(geometry::Vec2{knot.time, knot.speed});
-  json.end_array().end_object();
 }
 
 /// Only what is asked for.
