@@ -7,142 +7,30 @@
 #include <tuple>
 #include <utility>
 
+#include "clearances.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/formation/stuck.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/require.h"
 #include "leader.h"
-#include "motion.h"
+#include "outcome_words.h"
 
 namespace exactvo::formation {
 namespace {
 
-using detail::Motion;
 using geometry::norm;
-using geometry::Segment;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Motion motion_of(const Recording& recording, std::size_t step, std::size_t robot) {
-  const RobotStep& from = recording.steps[step].robots[robot];
-  const RobotStep& to = recording.steps[step + 1].robots[robot];
-  return {recording.motion, recording.time_step, recording.tracking_gain, from.position, from.velocity,
-          to.position,      to.velocity};
-}
-
-double largest(Vec2 v) {
-  return std::max(std::fabs(v.x), std::fabs(v.y));
-}
-double largest(const Segment& s) {
-  return std::max(largest(s.a), largest(s.b));
-}
-
-/// The greatest coordinate of the scene's obstacles.
-double largest_coordinate(const Scenario& scenario) {
-  double most = 0.0;
-  for (const SceneObstacle& o : scenario.obstacles)
-    for (Vec2 p : geometry::vertices_of(o.shape)) most = std::max(most, largest(p));
-  for (const MovingObstacle& o : scenario.moving_obstacles)
-    for (Vec2 p : geometry::vertices_of(o.shape)) most = std::max(most, largest(p));
-  return most;
-}
-
-/// m: what a swept clearance may be off by. The distance's own bound, and as much again for the chords' ends, the
-/// displacement, the sagitta and the radii: fewer than 64 roundings of at most the coordinates between them, and the
-/// bound is 128 units of them.
-double rounding(double scene, const Segment& chord, double others) {
-  return 2.0 * geometry::rounding_of_distance(std::max(scene, largest(chord)) + others);
-}
-
-/// The least clearance of one robot over one step, certified against the chord's error and all roundings.
-double swept_obstacle_clearance(const Scenario& scenario, double scene, const Motion& motion, double radius) {
-  double least = kInfinity;
-  motion.for_each_chord([&](const Segment& chord, double sagitta) {
-    const double off = sagitta + rounding(scene, chord, radius + motion.reach());
-    for (const SceneObstacle& o : scenario.obstacles)
-      least = std::min(least, geometry::swept_distance(o.shape, chord) - off - radius);
-  });
-  return least;
-}
-
-double swept_robot_clearance(const Motion& a, const Motion& b, double radii) {
-  double least = kInfinity;
-  detail::for_each_chord_pair(a, b, [&](const Segment& chord_a, const Segment& chord_b, double sagitta) {
-    const double off = sagitta + rounding(largest(chord_a), chord_b, radii + a.reach() + b.reach());
-    least = std::min(least, geometry::swept_distance(chord_a, chord_b) - off - radii);
-  });
-  return least;
-}
-
-/// The same against what moves: by definition straight and uniformly from where it is at one row to the next.
-double swept_moving_clearance(const Scenario& scenario, double scene, const Motion& motion, double time,
-                              double radius) {
-  double least = kInfinity;
-  for (const MovingObstacle& o : scenario.moving_obstacles) {
-    const Vec2 before = displacement_at(o, time), after = displacement_at(o, time + motion.duration);
-    motion.for_each_chord_in_time([&](const Segment& chord, double from, double to, double sagitta) {
-      const Segment seen{chord.a - before - from * (after - before), chord.b - before - to * (after - before)};
-      const double off = sagitta + rounding(scene + largest(chord), seen, radius + motion.reach());
-      least = std::min(least, geometry::swept_distance(o.shape, seen) - off - radius);
-    });
-  }
-  return least;
-}
-
-double swept_clearance(const Scenario& scenario, double scene, const Recording& recording, std::size_t step,
-                       std::size_t robot) {
-  const Motion motion = motion_of(recording, step, robot);
-  const double radius = scenario.robots[robot].radius;
-  return std::min(swept_obstacle_clearance(scenario, scene, motion, radius),
-                  swept_moving_clearance(scenario, scene, motion, recording.steps[step].time, radius));
-}
-
-void measure_obstacles(const Scenario& scenario, const Recording& recording, Metrics& m) {
-  if (scenario.obstacles.empty() && scenario.moving_obstacles.empty()) return;
-  double least = kInfinity;
-  const double scene = largest_coordinate(scenario);
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-    double mine = kInfinity;
-    for (std::size_t k = 0; k + 1 < recording.steps.size(); ++k)
-      mine = std::min(mine, swept_clearance(scenario, scene, recording, k, i));
-    if (!std::isfinite(mine)) continue;
+void measure_clearances(const Scenario& scenario, const Recording& recording, Metrics& m) {
+  detail::Clearances clearances = detail::swept_clearances(scenario, recording);
+  for (std::size_t i = 0; i < m.robots.size(); ++i) {
+    const std::optional<double>& mine = clearances.to_obstacles[i];
     m.robots[i].min_obstacle_clearance = mine;
-    least = std::min(least, mine);
+    if (mine) m.min_obstacle_clearance = std::min(*mine, m.min_obstacle_clearance.value_or(kInfinity));
   }
-  if (std::isfinite(least)) m.min_obstacle_clearance = least;
-}
-
-/// A step of every robot, with how far it gets from where it starts.
-struct Moved {
-  Motion motion;
-  double strays;  ///< m
-};
-std::vector<Moved> motions_of(const Scenario& scenario, const Recording& recording, std::size_t step) {
-  std::vector<Moved> all;
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-    const Motion motion = motion_of(recording, step, i);
-    all.push_back({motion, norm(motion.to - motion.from) + motion.sagitta_of(1)});
-  }
-  return all;
-}
-
-/// Pairs that stay farther apart than the least so far are passed over: twice their ways would not bring them nearer.
-void lower_by_step(const Scenario& scenario, const std::vector<Moved>& all, double& least) {
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    for (std::size_t j = i + 1; j < all.size(); ++j) {
-      const double radii = scenario.robots[i].radius + scenario.robots[j].radius;
-      const double apart = norm(all[i].motion.from - all[j].motion.from) - radii;
-      if (apart > least + 2.0 * (all[i].strays + all[j].strays)) continue;
-      least = std::min(least, swept_robot_clearance(all[i].motion, all[j].motion, radii));
-    }
-  }
-}
-
-void measure_robots(const Scenario& scenario, const Recording& recording, Metrics& m) {
-  double least = kInfinity;
-  for (std::size_t k = 0; k + 1 < recording.steps.size(); ++k)
-    lower_by_step(scenario, motions_of(scenario, recording, k), least);
-  if (std::isfinite(least)) m.min_robot_clearance = least;
+  m.min_robot_clearance = clearances.between_robots;
+  m.collisions = std::move(clearances.collisions);
 }
 
 void measure_paths(const Recording& recording, Metrics& m) {
@@ -213,6 +101,55 @@ void measure_formation(const Scenario& scenario, const Recording& recording, Met
   }
   m.formation_position_error = position;
   m.formation_velocity_error = velocity;
+}
+
+/// Whom the formation lost, and since when it holds.
+void measure_course(const Scenario& scenario, const Recording& recording, Metrics& m) {
+  if (!scenario.formation) return;
+  FormationCourse& course = m.formation_course.emplace();
+  const auto worst = [&](std::size_t k) {
+    double error = 0.0;
+    for (std::size_t i = 0; i < m.robots.size(); ++i) error = std::max(error, slot_error(recording, k, i));
+    return error;
+  };
+  for (std::size_t i = 0; i < m.robots.size(); ++i) {
+    double& mine = m.robots[i].largest_slot_error.emplace(0.0);
+    for (std::size_t k = 1; k < recording.steps.size(); ++k) {
+      const double error = slot_error(recording, k, i);
+      mine = std::max(mine, error);
+      if (!(error > course.largest_error)) continue;
+      course.largest_error = error;
+      course.largest_error_at = recording.steps[k].time;
+      course.largest_error_of = m.robots[i].id;
+    }
+  }
+  for (std::size_t k = 0; k < recording.steps.size() && !course.first_formed; ++k)
+    if (worst(k) <= scenario.arrival_tolerance) course.first_formed = recording.steps[k].time;
+  course.formed_since = settled_since(recording, scenario.arrival_tolerance, worst);
+}
+
+/// m: from a robot's start to its goals, or to its slot and on with the leader.
+double direct_way(const Scenario& scenario, const Recording& recording, std::size_t i) {
+  if (scenario.formation) {
+    double way = slot_error(recording, 0, i);
+    for (std::size_t k = 1; k < recording.steps.size(); ++k)
+      way += norm(recording.steps[k].leader_position - recording.steps[k - 1].leader_position);
+    return way;
+  }
+  double way = 0.0;
+  Vec2 here = scenario.robots[i].position;
+  for (Vec2 goal : scenario.robots[i].goals) {
+    way += norm(goal - here);
+    here = goal;
+  }
+  return way;
+}
+
+void measure_detours(const Scenario& scenario, const Recording& recording, Metrics& m) {
+  for (std::size_t i = 0; i < m.robots.size(); ++i) {
+    if (!scenario.formation && !m.robots[i].arrived) continue;
+    m.robots[i].detour = std::max(0.0, m.robots[i].path_length - direct_way(scenario, recording, i));
+  }
 }
 
 Vec2 acceleration(const Recording& recording, std::size_t k, std::size_t i) {
@@ -288,19 +225,20 @@ std::vector<std::string> stuck_words(const Scenario& scenario, const Recording& 
 Metrics measure(const Scenario& scenario, const Recording& recording) {
   EXACTVO_REQUIRE(!recording.steps.empty(), "an empty recording");
   Metrics m;
-  for (const Robot& r : scenario.robots) m.robots.push_back({r.id, false, std::nullopt, 0.0, std::nullopt});
+  for (const Robot& r : scenario.robots) m.robots.emplace_back().id = r.id;
   measure_formation(scenario, recording, m);
   measure_arrival(scenario, recording, m);
-  measure_obstacles(scenario, recording, m);
-  measure_robots(scenario, recording, m);
+  measure_clearances(scenario, recording, m);
   measure_paths(recording, m);
+  measure_course(scenario, recording, m);
+  measure_detours(scenario, recording, m);
   measure_jitter(recording, m);
   count_decisions(recording, m);
   m.wall_time = recording.wall_time;
-  m.outcome = recording.outcome;
   m.warnings = recording.warnings;
   m.stuck = stuck_words(scenario, recording);
   if (scenario.formation) m.lyapunov = summary_of(lyapunov_along(scenario, recording), recording);
+  m.outcome = detail::outcome_words(m, recording.outcome);
   return m;
 }
 
@@ -321,8 +259,11 @@ std::vector<double> obstacle_distance_series(const Scenario& scenario, const Rec
   std::vector<double> series;
   for (const Step& row : recording.steps) {
     double least = kInfinity;
+    const Vec2 place = row.robots[robot].position;
     for (const SceneObstacle& o : scenario.obstacles)
-      least = std::min(least, geometry::signed_distance(o.shape, row.robots[robot].position));
+      least = std::min(least, geometry::signed_distance(o.shape, place));
+    for (const MovingObstacle& o : scenario.moving_obstacles)
+      least = std::min(least, geometry::signed_distance(o.shape, place - displacement_at(o, row.time)));
     series.push_back(least - scenario.robots[robot].radius);
   }
   return series;

@@ -2,12 +2,11 @@
 #pragma once
 
 /// \file
-/// The continuous motion between two rows of a recording, as chords with a certified bound of how far the path strays
-/// from each: the ground of every swept clearance.
+/// The continuous motion of a robot between two rows of a recording, with a certified bound of how far it strays from
+/// its chords, and the search for a least clearance along it: the ground of every swept clearance.
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/geometry/shapes.h"
@@ -34,6 +33,8 @@ struct Motion {
     return from;
   }
 
+  geometry::Segment chord(double start, double end) const { return {at(start), at(end)}; }
+
   /// m: the greatest length met in computing where the robot is: what its coordinates are rounded in proportion to.
   double reach() const {
     return law == MotionLaw::exponential ? duration * norm(tracked()) : duration * norm(to_velocity);
@@ -52,32 +53,12 @@ struct Motion {
     return 0.0;
   }
 
-  /// Calls f(chord, sagitta): a chord of duration d strays at most |x''| d^2 / 8 from the path.
-  template <typename F>
-  void for_each_chord(const F& f) const {
-    for_each_chord_in_time([&f](const geometry::Segment& chord, double, double, double sagitta) { f(chord, sagitta); });
-  }
+  /// A bound of |x'| over the step, m/s: somewhere it is the mean, and nowhere does it change faster than |x''|.
+  double speed_bound() const { return norm(to - from) / duration + acceleration_bound() * duration; }
 
-  /// The same with the shares of the step between which the chord runs: f(chord, start, end, sagitta).
-  template <typename F>
-  void for_each_chord_in_time(const F& f) const {
-    const std::size_t chords = chord_count();
-    const double n = static_cast<double>(chords), sagitta = sagitta_of(chords);
-    for (std::size_t k = 0; k < chords; ++k) {
-      const double start = static_cast<double>(k) / n, end = static_cast<double>(k + 1) / n;
-      f(geometry::Segment{at(start), at(end)}, start, end, sagitta);
-    }
-  }
-
-  /// Enough for the sagitta to be below 0.01 mm, at most 64.
-  std::size_t chord_count() const {
-    constexpr double kSagitta = 1e-5;
-    constexpr double kMost = 64.0;
-    return static_cast<std::size_t>(std::clamp(std::ceil(std::sqrt(sagitta_of(1) / kSagitta)), 1.0, kMost));
-  }
-
-  double sagitta_of(std::size_t chords) const {
-    const double d = duration / static_cast<double>(chords);
+  /// m: how far the path strays at most from a chord over this share of the step, at equal times: |x''| d^2 / 8.
+  double stray(double share) const {
+    const double d = share * duration;
     return acceleration_bound() * d * d / 8.0;
   }
 
@@ -99,16 +80,43 @@ struct Motion {
   }
 };
 
-/// Both motions cut alike, with the sum of their sagittas.
-template <typename F>
-void for_each_chord_pair(const Motion& a, const Motion& b, const F& f) {
-  const std::size_t chords = std::max(a.chord_count(), b.chord_count());
-  const double n = static_cast<double>(chords);
-  const double sagitta = a.sagitta_of(chords) + b.sagitta_of(chords);
-  for (std::size_t k = 0; k < chords; ++k) {
-    const double s = static_cast<double>(k) / n, e = static_cast<double>(k + 1) / n;
-    f(geometry::Segment{a.at(s), a.at(e)}, geometry::Segment{b.at(s), b.at(e)}, sagitta);
-  }
+/// a as seen from b: every law is linear in the states, so it is a motion of the same law. REQUIRES: the same law,
+/// duration and gain, which the robots of a recording have.
+inline Motion relative(const Motion& a, const Motion& b) {
+  return {a.law,
+          a.duration,
+          a.gain,
+          a.from - b.from,
+          a.from_velocity - b.from_velocity,
+          a.to - b.to,
+          a.to_velocity - b.to_velocity};
+}
+
+/// What a chord says of the clearance over its share of the step.
+struct ChordClearance {
+  double clearance;  ///< m, of the chord; roundings taken off
+  double stray;      ///< m, how far the motion strays from the chord
+};
+
+/// m: chords are halved until they stray by at most this share of their clearance, but no less than the finest and no
+/// more than the coarsest: near contact a clearance is sharp, and far from it cheap.
+inline constexpr double kStrayShare = 1.25e-4;
+inline constexpr double kFinestStray = 1e-10;
+inline constexpr double kCoarsestStray = 1e-5;
+/// 2^16 chords a step stray 2^-32 of what the whole step does.ep's.
+inline constexpr int kMostHalvings = 16;
+
+/// A certified lower bound of the clearance over the shares [start, end] of a step; `look(start, end)` gives the
+/// ChordClearance of one chord. Stretches that cannot come below `enough` are not looked at more closely.
+template <typename Look>
+double least_clearance(const Look& look, double start, double end, double enough, int halvings = kMostHalvings) {
+  const ChordClearance c = look(start, end);
+  const double least = c.clearance - c.stray;
+  const double fine = std::clamp(kStrayShare * std::fabs(c.clearance), kFinestStray, kCoarsestStray);
+  if (least >= enough || c.stray <= fine || halvings == 0) return least;
+  const double middle = 0.5 * (start + end);
+  const double first = least_clearance(look, start, middle, enough, halvings - 1);
+  return std::min(first, least_clearance(look, middle, end, std::min(enough, first), halvings - 1));
 }
 
 }  // namespace exactvo::formation::detail

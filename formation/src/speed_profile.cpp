@@ -7,31 +7,15 @@
 #include <string>
 
 #include "exactvo/geometry/require.h"
+#include "speed_stretches.h"
 
 namespace exactvo::formation {
 namespace {
 
+using detail::for_each_stretch;
+using Stretch = detail::SpeedStretch;
+
 constexpr double kForever = std::numeric_limits<double>::infinity();
-
-/// Between two knots, or after the last one: speed changes at a constant rate.
-struct Stretch {
-  double start, duration;  ///< s
-  double speed, rate;      ///< m/s, m/s^2
-  double distance(double t) const { return t * (speed + 0.5 * rate * t); }
-};
-
-/// Every stretch of the profile in turn, from t = 0 on, until `take` says that it has seen enough.
-template <typename Take>
-void for_each_stretch(const std::vector<SpeedKnot>& profile, const Take& take) {
-  if (take(Stretch{0.0, profile.front().time, profile.front().speed, 0.0})) return;
-  for (std::size_t k = 1; k < profile.size(); ++k) {
-    const SpeedKnot& a = profile[k - 1];
-    const double duration = profile[k].time - a.time;
-    const double rate = duration > 0.0 ? (profile[k].speed - a.speed) / duration : 0.0;
-    if (take(Stretch{a.time, duration, a.speed, rate})) return;
-  }
-  take(Stretch{profile.back().time, kForever, profile.back().speed, 0.0});
-}
 
 }  // namespace
 

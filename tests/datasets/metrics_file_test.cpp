@@ -40,9 +40,11 @@ TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
                                                      "last_arrival_time",
                                                      "min_obstacle_clearance",
                                                      "min_robot_clearance",
+                                                     "collisions",
                                                      "formation_position_error",
                                                      "formation_velocity_error",
                                                      "leader_arrival_time",
+                                                     "formation_course",
                                                      "jitter",
                                                      "velocity_variation",
                                                      "peak_acceleration",
@@ -59,7 +61,26 @@ TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
                                                      "robots",
                                                      "provenance"}));
   EXPECT_EQ(keys_of(tree["robots"][0]),
-            (std::vector<std::string>{"id", "arrived", "arrival_time", "path_length", "min_obstacle_clearance"}));
+            (std::vector<std::string>{"id", "arrived", "arrival_time", "path_length", "min_obstacle_clearance",
+                                      "detour", "largest_slot_error"}));
+}
+
+TEST(MetricsFile, ACollisionSaysWithWhomWhenAndHowDeep) {
+  formation::Metrics m = metrics();
+  m.collisions = {{"R1", formation::CollisionKind::moving_obstacle, "cart", 1.75, 3.25, 2.5, 1.5, {2.0, -1.0}, true}};
+  const Json c = Json::parse(metrics_json(info(), m))["collisions"][0];
+  EXPECT_EQ(c.dump(),
+            R"({"robot":"R1","kind":"moving-obstacle","with":"cart","from":1.75,"until":3.25,"deepest_at":2.5,)"
+            R"("depth":1.5,"place":[2,-1],"relaxed":true})");
+  EXPECT_EQ(Json::parse(metrics_json(info(), metrics()))["collisions"].size(), 0u);
+}
+
+TEST(MetricsFile, AFormationHasACourse) {
+  formation::Metrics m = metrics();
+  m.formation_course = formation::FormationCourse{4.0, 3.0, "R2", 1.0, std::nullopt};
+  EXPECT_EQ(Json::parse(metrics_json(info(), m))["formation_course"].dump(),
+            R"({"largest_error":4,"largest_error_at":3,"largest_error_of":"R2","first_formed":1,"formed_since":null})");
+  EXPECT_TRUE(Json::parse(metrics_json(info(), metrics()))["formation_course"].is_null());
 }
 
 TEST(MetricsFile, WhatDoesNotApplyIsNull) {

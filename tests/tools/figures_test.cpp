@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "exactvo/formation/metrics.h"
 #include "figures/label_places.h"
 #include "figures/local_origin.h"
 #include "figures/lyapunov_figure.h"
@@ -188,9 +189,27 @@ TEST(PathsFigure, MarksWhereARobotWasDeepestInAnObstacle) {
   datasets::RecordingFile run = short_run();
   EXPECT_THAT(paths_figure(run).body, Not(HasSubstr("collision")));
   run.scenario.obstacles.push_back({"wall", geometry::Polyline{{{0.5, -1.0}, {0.5, 1.0}}}});
+  run.collisions = measure(run.scenario, run.recording).collisions;
   const Figure figure = paths_figure(run);
   EXPECT_THAT(figure.body, HasSubstr("title 'collision'"));
   EXPECT_THAT(figure.data, HasSubstr("collisions: where they were deepest\n# x [m], y [m]\n0.5 0\n"));
+}
+
+TEST(PathsFigure, MarksACollisionWithWhatMovesBetweenTwoRows) {
+  datasets::RecordingFile run = short_run();
+  formation::MovingObstacle cart;
+  run.scenario.obstacles.clear();
+  cart.id = "cart";
+  cart.shape = geometry::Polygon{{{0.4, 4}, {0.6, 4}, {0.6, 4.2}, {0.4, 4.2}}, {}};
+  const double there_and_back = 10.0 / run.recording.time_step;
+  cart.motion = {{{0, 0}, {0, -5}, {0, 0}}, there_and_back};
+  run.scenario.moving_obstacles = {cart};
+  run.collisions = measure(run.scenario, run.recording).collisions;
+  ASSERT_FALSE(run.collisions.empty());
+  EXPECT_THAT(paths_figure(run).script, HasSubstr("title 'collision'"));
+  bool has_distances = false;
+  for (const Figure& figure : run_figures(run)) has_distances |= figure.name == "obstacle_distance";
+  EXPECT_TRUE(has_distances) << "with moving obstacles alone";
 }
 
 TEST(PathsFigure, TheLastPlaceIsThereWithItsTime) {

@@ -164,11 +164,27 @@ TEST(Simulate, JsonHasEveryKey) {
   const Outcome outcome = here.run("simulate s.json --json --seed 7");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json metrics = json::parse(outcome.out);
-  for (const char* key :
-       {"scenario", "method", "controller", "all_arrived", "last_arrival_time", "min_obstacle_clearance",
-        "min_robot_clearance", "formation_position_error", "formation_velocity_error", "leader_arrival_time", "jitter",
-        "heading_reversals", "active_set_switches", "relaxed_steps", "uncertified_half_planes", "steps", "wall_time",
-        "robots", "provenance"}) {
+  for (const char* key : {"scenario",
+                          "method",
+                          "controller",
+                          "all_arrived",
+                          "last_arrival_time",
+                          "min_obstacle_clearance",
+                          "min_robot_clearance",
+                          "collisions",
+                          "formation_position_error",
+                          "formation_velocity_error",
+                          "leader_arrival_time",
+                          "formation_course",
+                          "jitter",
+                          "heading_reversals",
+                          "active_set_switches",
+                          "relaxed_steps",
+                          "uncertified_half_planes",
+                          "steps",
+                          "wall_time",
+                          "robots",
+                          "provenance"}) {
     EXPECT_TRUE(metrics.contains(key)) << key;
   }
   for (const char* key : {"id", "arrived", "arrival_time", "path_length", "min_obstacle_clearance"}) {
@@ -241,8 +257,82 @@ TEST(Simulate, WithoutFiguresNoneOfAnEarlierRunStay) {
   const Workplace here;
   ASSERT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --out out", "PATH=/nowhere").status, 0);
   ASSERT_TRUE(here.has("out/figures/paths.gp"));
-  ASSERT_EQ(here.run("simulate " + data_file("paper/A3.json") + " --out out --no-figures").status, 0);
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --out out --no-figures").status, 0);
   EXPECT_FALSE(here.has("out/figures"));
+}
+
+TEST(Simulate, AnEarlierRunOfAnotherKindIsReplacedOnlyByForce) {
+  const Workplace here;
+  const std::string a1 = "simulate " + data_file("paper/A1.json") + " --out out --no-figures";
+  EXPECT_THAT(here.run(a1).err, Not(HasSubstr("in place of")));
+  const Outcome again = here.run(a1);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("wrote out, in place of an earlier run of A1, method ivo"));
+  for (const std::string& other :
+       {"simulate " + data_file("paper/A3.json") + " --out out --no-figures", a1 + " --method orca"}) {
+    const Outcome refused = here.run(other);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.err,
+                AllOf(HasSubstr("E_OTHER_RUN"), HasSubstr("an earlier run of A1, method ivo"), HasSubstr("--force")));
+    EXPECT_EQ(json::parse(here.read("out/metrics.json"))["method"], "ivo");
+    EXPECT_EQ(json::parse(here.read("out/metrics.json"))["scenario"], "A1");
+  }
+  EXPECT_EQ(here.run(a1 + " --method orca --force").status, 0);
+  EXPECT_EQ(json::parse(here.read("out/metrics.json"))["method"], "orca");
+}
+
+/// A slow robot before a fast cart.
+const char* const kRunOver = R"({ "name": "run over", "time_limit": 100,
+  "robots": [ { "id": "slow", "position": [0, 0], "goal": [40, 0], "max_speed": 0.5 } ],
+  "moving_obstacles": [ { "id": "cart", "polygon": [[-10, -1], [-8, -1], [-8, 1], [-10, 1]],
+                          "path": [[0, 0], [60, 0]], "speed": 4 } ] })";
+
+TEST(Simulate, ACollisionIsSaidToMachines) {
+  const Workplace here;
+  here.write("cart.json", kRunOver);
+  const Outcome outcome = here.run("simulate cart.json --out out --fail-on-collision");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("moving obstacle 'cart' moves at up to 4 m/s, faster than slow"));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("COLLISION: slow overlapped moving obstacle cart by "),
+                                 HasSubstr("  collision    slow with moving obstacle cart from ")));
+  const json metrics = json::parse(here.read("out/metrics.json"));
+  ASSERT_GE(metrics["collisions"].size(), 1u);
+  EXPECT_EQ(metrics["collisions"][0]["robot"], "slow");
+  EXPECT_EQ(metrics["collisions"][0]["with"], "cart");
+  EXPECT_GT(metrics["collisions"][0]["depth"].get<double>(), 0.1);
+  EXPECT_THAT(metrics["outcome"].get<std::string>(), testing::StartsWith("COLLISION: "));
+  const std::string text = here.read("out/recording.jsonl");
+  const json header = json::parse(text.substr(0, text.find('\n')));
+  EXPECT_EQ(header["outcome"], metrics["outcome"]);
+  EXPECT_EQ(header["collisions"], metrics["collisions"]);
+  EXPECT_THAT(here.read("out/figures/paths.gp"), HasSubstr("title 'collision'"));
+  EXPECT_TRUE(here.has("out/figures/obstacle_distance.svg"));
+  EXPECT_EQ(here.run("simulate cart.json").status, 0) << "only where asked for";
+  const std::string clear = "simulate " + data_file("paper/A1.json") + " --fail-on-collision";
+  EXPECT_EQ(here.run(clear).status, 0);
+}
+
+TEST(Audit, AnObstacleThatMovesIsOne) {
+  const Workplace here;
+  here.write("cart.json", kRunOver);
+  ASSERT_EQ(here.run("simulate cart.json --out out --no-figures").status, 0);
+  const Outcome outcome = here.run("audit out --json");
+  EXPECT_EQ(outcome.status, 1);
+  const json report = json::parse(outcome.out);
+  EXPECT_GT(report["collisions"], 0);
+  EXPECT_EQ(report["proved"]["against_moving_obstacles"], report["steps"]);
+  EXPECT_FALSE(report["not_audited"].empty());
+}
+
+TEST(Audit, TheCurvesOfAFormationAreProven) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/B1.json") + " --out out --no-figures").status, 0);
+  const Outcome outcome = here.run("audit out --json");
+  EXPECT_EQ(outcome.status, 0) << outcome.out;
+  const json report = json::parse(outcome.out);
+  EXPECT_EQ(report["proved"]["curved_steps"], report["steps"]);
+  EXPECT_EQ(report["proved"]["clear_steps"], report["steps"]);
+  EXPECT_GT(report["proved"]["largest_bulge"], 0.0);
 }
 
 TEST(Paper, WhatAnInterruptedCampaignLeavesIsSaidAsItIs) {
@@ -340,7 +430,7 @@ TEST(Simulate, AnExistingFolderKeepsWhatIsNotOurs) {
   EXPECT_EQ(here.run("simulate s.json --out out --no-figures").status, 2) << "a folder of somebody else's";
   EXPECT_EQ(here.read("out/metrics.json"), "mine too");
   here.write("out/metrics.json", "{\n  \"scenario\": \"old\",\n  \"min_obstacle_clearance\": null\n}\n");
-  ASSERT_EQ(here.run("simulate s.json --out out --no-figures").status, 0);
+  ASSERT_EQ(here.run("simulate s.json --out out --no-figures --force").status, 0);
   EXPECT_EQ(here.read("out/notes.txt"), "mine");
   EXPECT_TRUE(json::accept(here.read("out/metrics.json")));
 }

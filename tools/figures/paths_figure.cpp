@@ -322,26 +322,10 @@ class PathsPanel {
     return {*place, fmt::format("{:.3g} s", time)};
   }
 
-  /// The row at which the series is least, where that is below zero.
-  std::optional<std::size_t> deepest(const std::vector<double>& distances) const {
-    const auto least = std::min_element(distances.begin(), distances.end());
-    if (least == distances.end() || !(*least < 0.0)) return std::nullopt;
-    return static_cast<std::size_t>(least - distances.begin());
-  }
-
-  void mark(std::size_t robot, std::optional<std::size_t> row, Points& marks) const {
-    if (row && *row < run_.recording.steps.size()) marks.push_back(run_.recording.steps[*row].robots[robot].position);
-  }
-
   void add_collisions() {
-    const formation::Scenario& scenario = run_.scenario;
-    const formation::Recording& recording = run_.recording;
     Points marks;
-    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-      mark(i, deepest(obstacle_distance_series(scenario, recording, i)), marks);
-      for (std::size_t j = i + 1; j < scenario.robots.size(); ++j)
-        mark(i, deepest(robot_distance_series(scenario, recording, i, j)), marks);
-    }
+    for (const formation::Collision& c : run_.collisions)
+      if (is_drawable(c.place)) marks.push_back(c.place);
     if (marks.empty()) return;
     const int index = data_.begin("collisions: where they were deepest", "x [m], y [m]");
     for (const Vec2 p : marks) data_.row({p.x, p.y});

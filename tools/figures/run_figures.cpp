@@ -9,7 +9,8 @@ namespace exactvo::tools {
 
 std::vector<Figure> run_figures(const datasets::RecordingFile& run) {
   std::vector<Figure> figures = {paths_figure(run)};
-  if (!run.scenario.obstacles.empty()) figures.push_back(obstacle_distance_figure(run));
+  if (!run.scenario.obstacles.empty() || !run.scenario.moving_obstacles.empty())
+    figures.push_back(obstacle_distance_figure(run));
   if (run.scenario.robots.size() > 1) figures.push_back(robot_distance_figure(run));
   figures.push_back(velocity_figure(run));
   if (run.scenario.formation) figures.push_back(formation_error_figure(run));

@@ -12,7 +12,6 @@
 #include "figures/paths_figure.h"
 #include "figures/style.h"
 #include "support/files.h"
-#include "support/outcome.h"
 #include "support/run.h"
 #include "support/terminal.h"
 
@@ -100,7 +99,6 @@ class Experiments {
     line_.show(static_cast<double>(metrics_.size()), scenario_name + " " + name(method));
     FinishedRun finished = run(datasets::load_scenario(file), options, provenance);
     metrics_.push_back(finished.metrics_json());
-    finished.file.recording.outcome = outcome_words(finished);  // what a panel's title says
     return finished;
   }
 
@@ -168,11 +166,15 @@ class Experiments {
 
   static std::string panel_title(const datasets::RecordingFile& run) {
     const std::string& outcome = run.recording.outcome;
+    const bool collided = outcome.rfind("COLLISION", 0) == 0;
     // A panel is narrow, and all runs have the same limit.
-    if (!run.scenario.formation)
-      return run.info.scenario + ": " + outcome.substr(0, outcome.find(" within the time limit"));
+    if (!run.scenario.formation) {
+      const std::size_t end = collided ? outcome.find("; ") + 2 : 0;
+      return run.info.scenario + ": " + (collided ? "collision; " : "") +
+             outcome.substr(end, outcome.find(" within the time limit", end) - end);
+    }
     return run.info.scenario + ", " + *run.info.controller + (run.recording.diverged ? ": diverged" : "") +
-           (outcome.rfind("COLLISION", 0) == 0 ? ", collision" : "");
+           (collided ? ", collision" : "");
   }
 
   void add_sheets() {

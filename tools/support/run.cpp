@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/run.h"
 
+#include <fstream>
 #include <iostream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
+#include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "figures/gnuplot.h"
@@ -60,12 +63,48 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
   if (interrupted()) throw Interrupted();
   FinishedRun finished;
   finished.metrics = measure(scenario, recording);
-  finished.file = {
-      run_info(scenario, options, provenance), scenario, enclosures(scenario, options), std::move(recording), {}, {}};
+  finished.file = {run_info(scenario, options, provenance),
+                   scenario,
+                   enclosures(scenario, options),
+                   std::move(recording),
+                   {},
+                   {},
+                   {}};
+  finished.file.recording.outcome = finished.metrics.outcome;  // with collisions and detours
+  finished.file.collisions = finished.metrics.collisions;
   const formation::Recording& kept = finished.file.recording;
   if (scenario.formation) finished.file.lyapunov = lyapunov_along(scenario, kept);
   finished.file.stuck = explain_stuck(scenario, kept);
   return finished;
+}
+
+RunName name_of(const Scenario& scenario, const SimulationOptions& options) {
+  const datasets::RunInfo info = run_info(scenario, options, {});
+  return {info.scenario, info.method, info.controller};
+}
+
+std::string in_words(const RunName& run) {
+  return run.scenario + ", method " + run.method + (run.controller ? ", controller " + *run.controller : "");
+}
+
+std::optional<RunName> run_in(const fs::path& folder) {
+  std::ifstream file(folder / "metrics.json");
+  const auto metrics = nlohmann::json::parse(file, nullptr, false);
+  if (!metrics.is_object()) return std::nullopt;
+  const auto text = [&](const char* key) -> std::optional<std::string> {
+    const auto found = metrics.find(key);
+    if (found == metrics.end() || !found->is_string()) return std::nullopt;
+    return found->get<std::string>();
+  };
+  return RunName{text("scenario").value_or(""), text("method").value_or(""), text("controller")};
+}
+
+void check_same_run(const fs::path& folder, const RunName& run) {
+  const std::optional<RunName> earlier = run_in(folder);
+  if (!earlier || *earlier == run) return;
+  throw datasets::DataError(datasets::DataCode::other_run, folder.string(), "",
+                            "an earlier run of " + in_words(*earlier),
+                            "an earlier run of " + in_words(run) + ", another folder, or --force to replace it");
 }
 
 void write_results(const FinishedRun& run, const fs::path& folder) {

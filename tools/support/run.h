@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,24 @@ struct FinishedRun {
 /// Runs the scenario and measures it. Throws Interrupted where the user stopped it.
 FinishedRun run(const formation::Scenario& scenario, formation::SimulationOptions options,
                 const datasets::Provenance& provenance, const std::function<void(double)>& progress = {});
+
+/// What tells one run from another in a folder.
+struct RunName {
+  std::string scenario, method;
+  std::optional<std::string> controller;
+  bool operator==(const RunName& other) const {
+    return scenario == other.scenario && method == other.method && controller == other.controller;
+  }
+};
+RunName name_of(const formation::Scenario& scenario, const formation::SimulationOptions& options);
+/// "A2, method ivo, controller default".
+std::string in_words(const RunName& run);
+
+/// The run whose metrics.json stands in the folder, if any.
+std::optional<RunName> run_in(const std::filesystem::path& folder);
+
+/// Throws datasets::DataError (E_OTHER_RUN) if the folder holds an earlier run of another name.
+void check_same_run(const std::filesystem::path& folder, const RunName& run);
 
 /// recording.jsonl, trajectory.csv and metrics.json in `folder`, which must exist.
 void write_results(const FinishedRun& run, const std::filesystem::path& folder);

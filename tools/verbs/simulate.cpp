@@ -2,13 +2,13 @@
 // exactvo simulate: one scenario, one method, its metrics, recording and figures.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
 #include "exactvo/formation/stability.h"
 #include "support/escape.h"
 #include "support/files.h"
-#include "support/outcome.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
@@ -25,6 +25,8 @@ struct Flags {
   bool record_all = false;
   bool json = false;
   bool no_figures = false;
+  bool fail_on_collision = false;
+  bool force = false;
 };
 
 std::string or_dash(const std::optional<double>& value, const char* unit) {
@@ -35,15 +37,35 @@ std::string or_dash(const std::optional<double>& value, const char* unit) {
 std::string robot_line(const formation::RobotMetrics& robot, bool has_goal) {
   std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") + ", " : "did not arrive, ";
   if (!has_goal) arrival.clear();
-  return fmt::format("  {:<12} {}way {:.4g} m, least clearance to obstacles {}{}\n", shown(robot.id), arrival,
-                     robot.path_length, or_dash(robot.min_obstacle_clearance, "m"),
-                     formation::touched(robot.min_obstacle_clearance) ? ": touched an obstacle" : "");
+  const std::string detour = robot.detour ? fmt::format(" ({:.3g} m of it a detour)", *robot.detour) : "";
+  const std::string slot =
+      robot.largest_slot_error ? fmt::format(", up to {:.3g} m from its slot", *robot.largest_slot_error) : "";
+  return fmt::format("  {:<12} {}path length {:.4g} m{}{}, minimum clearance to obstacles {}{}\n", shown(robot.id),
+                     arrival, robot.path_length, detour, slot, or_dash(robot.min_obstacle_clearance, "m"),
+                     formation::touched(robot.min_obstacle_clearance) ? ": overlapped an obstacle" : "");
+}
+
+/// The first of them; metrics.json has all.
+std::string collision_lines(const std::vector<formation::Collision>& all) {
+  constexpr std::size_t kMost = 10;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(all.size(), kMost); ++k) {
+    const formation::Collision& c = all[k];
+    text += fmt::format("  collision    {} with {} {} from {:.4g} s to {:.4g} s, {:.3g} m deep at {:.4g} s\n",
+                        shown(c.robot), name(c.kind), shown(c.with), c.from, c.until, c.depth, c.deepest_at);
+  }
+  if (all.size() > kMost) text += fmt::format("  collision    and {} more: see metrics.json\n", all.size() - kMost);
+  return text;
 }
 
 std::string formation_lines(const formation::Metrics& m) {
-  return fmt::format("  formation    position error {}, velocity error {} at the end; leader arrived at {}\n",
-                     or_dash(m.formation_position_error, "m"), or_dash(m.formation_velocity_error, "m/s"),
-                     or_dash(m.leader_arrival_time, "s"));
+  const formation::FormationCourse& course = *m.formation_course;
+  return fmt::format(
+      "  formation    position error {}, velocity error {} at the end; leader arrived at {}\n"
+      "  formation    largest error {:.3g} m, of {} at {:.4g} s; first formed at {}, holds since {}\n",
+      or_dash(m.formation_position_error, "m"), or_dash(m.formation_velocity_error, "m/s"),
+      or_dash(m.leader_arrival_time, "s"), course.largest_error, shown(course.largest_error_of),
+      course.largest_error_at, or_dash(course.first_formed, "s"), or_dash(course.formed_since, "s"));
 }
 
 std::string course_words(const formation::LyapunovCourse& c) {
@@ -60,7 +82,7 @@ std::string summary(const FinishedRun& run) {
   const formation::Metrics& m = run.metrics;
   std::string text = fmt::format("{}, method {}", shown(run.file.info.scenario), run.file.info.method);
   if (run.file.info.controller) text += fmt::format(", controller {}", *run.file.info.controller);
-  text += ": " + outcome_words(run) + "\n";
+  text += ": " + shown(m.outcome) + "\n" + collision_lines(m.collisions);
   for (const auto& robot : m.robots) text += robot_line(robot, !run.file.scenario.formation);
   if (run.file.scenario.formation) text += formation_lines(m) + lyapunov_lines(*m.lyapunov);
   for (const std::string& words : m.stuck) text += fmt::format("  stuck        {}\n", shown(words));
@@ -99,6 +121,7 @@ void print_results(const Flags& flags, const FinishedRun& finished) {
 
 /// Printed before it is published: where stdout takes no more, nothing is written at all.
 void print_and_write(const Flags& flags, const FinishedRun& finished) {
+  const std::optional<RunName> replaced = run_in(flags.out);
   StagedFolder folder(flags.out);
   write_results(finished, folder.path());
   if (!flags.no_figures) draw(write_figures(finished, folder.path() / "figures"));
@@ -106,7 +129,7 @@ void print_and_write(const Flags& flags, const FinishedRun& finished) {
   print_results(flags, finished);
   if (flags.no_figures) remove_figures(flags.out);
   folder.publish("metrics.json");
-  message("wrote " + flags.out);
+  message("wrote " + flags.out + (replaced ? ", in place of an earlier run of " + in_words(*replaced) : ""));
 }
 
 ExitCode simulate(const Flags& flags) {
@@ -114,11 +137,15 @@ ExitCode simulate(const Flags& flags) {
   options.record_all = flags.record_all;
   const formation::Scenario scenario = read_scenario(flags.scenario);
   note_unused(flags.simulation, scenario);
-  if (!flags.out.empty()) check_output_folder(flags.out);
+  if (!flags.out.empty()) {
+    check_output_folder(flags.out);
+    if (!flags.force) check_same_run(flags.out, name_of(scenario, options));
+  }
   announce(scenario, options);
   const FinishedRun finished = run_with_progress(flags, scenario, options);
   flags.out.empty() ? print_results(flags, finished) : print_and_write(flags, finished);
-  return ExitCode::success;
+  const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
+  return failed ? ExitCode::negative : ExitCode::success;
 }
 
 Action declare(CLI::App& app) {
@@ -133,6 +160,8 @@ Action declare(CLI::App& app) {
                "Keep every half-plane of every decision, so that `audit` proves the whole run");
   app.add_flag("--json", flags->json, "Print the metrics as JSON");
   app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");
+  app.add_flag("--fail-on-collision", flags->fail_on_collision, "Exit status 1 if a robot overlaps anything");
+  app.add_flag("--force", flags->force, "Let --out replace an earlier run of another scenario, method or controller");
   return [flags] { return simulate(*flags); };
 }
 

@@ -2,6 +2,7 @@
 #include "exactvo/datasets/metrics_file.h"
 
 #include "json_text.h"
+#include "recordings/recording_extras.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -10,7 +11,19 @@ void append_robot(JsonWriter& json, const formation::RobotMetrics& robot) {
   json.begin_inline_object();
   json.member("id", robot.id).member("arrived", robot.arrived).member("arrival_time", robot.arrival_time);
   json.member("path_length", robot.path_length).member("min_obstacle_clearance", robot.min_obstacle_clearance);
+  json.member("detour", robot.detour).member("largest_slot_error", robot.largest_slot_error);
   json.end_object();
+}
+
+void append_course(JsonWriter& json, const std::optional<formation::FormationCourse>& course) {
+  json.key("formation_course");
+  if (!course) {
+    json.null();
+    return;
+  }
+  json.begin_inline_object().member("largest_error", course->largest_error);
+  json.member("largest_error_at", course->largest_error_at).member("largest_error_of", course->largest_error_of);
+  json.member("first_formed", course->first_formed).member("formed_since", course->formed_since).end_object();
 }
 
 void append_texts(JsonWriter& json, const char* key, const std::vector<std::string>& texts) {
@@ -55,9 +68,12 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.member("scenario", info.scenario).member("method", info.method).member("controller", info.controller);
   json.member("all_arrived", m.all_arrived).member("last_arrival_time", m.last_arrival_time);
   json.member("min_obstacle_clearance", m.min_obstacle_clearance).member("min_robot_clearance", m.min_robot_clearance);
+  append_collisions(json, m.collisions);
   json.member("formation_position_error", m.formation_position_error);
   json.member("formation_velocity_error", m.formation_velocity_error);
-  json.member("leader_arrival_time", m.leader_arrival_time).member("jitter", m.jitter);
+  json.member("leader_arrival_time", m.leader_arrival_time);
+  append_course(json, m.formation_course);
+  json.member("jitter", m.jitter);
   json.member("velocity_variation", m.velocity_variation).member("peak_acceleration", m.peak_acceleration);
   json.member("heading_reversals", m.heading_reversals).member("active_set_switches", m.active_set_switches);
   json.member("relaxed_steps", m.relaxed_steps).member("uncertified_half_planes", m.uncertified_half_planes);

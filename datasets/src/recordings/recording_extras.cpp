@@ -116,6 +116,27 @@ LyapunovRow to_lyapunov(const JsonCursor& at, double time) {
   return row;
 }
 
+void append_collisions(JsonWriter& json, const std::vector<formation::Collision>& all) {
+  json.key("collisions").begin_array();
+  for (const formation::Collision& c : all) {
+    json.begin_inline_object().member("robot", c.robot).member("kind", word_for(c.kind)).member("with", c.with);
+    json.member("from", c.from).member("until", c.until).member("deepest_at", c.deepest_at).member("depth", c.depth);
+    json.member("place", c.place).member("relaxed", c.relaxed).end_object();
+  }
+  json.end_array();
+}
+
+std::vector<formation::Collision> to_collisions(const JsonCursor& at) {
+  std::vector<formation::Collision> all;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const JsonCursor c = at.at(k);
+    all.push_back({c.at("robot").text(), enumerator<formation::CollisionKind>(c.at("kind")), c.at("with").text(),
+                   c.at("from").number(), c.at("until").number(), c.at("deepest_at").number(), c.at("depth").number(),
+                   c.at("place").point(), c.at("relaxed").truth()});
+  }
+  return all;
+}
+
 void append_stuck(JsonWriter& json, const RecordingFile& file) {
   json.key("stuck").begin_array();
   for (const StuckReport& report : file.stuck) append_report(json, report);

@@ -41,4 +41,13 @@ const std::vector<Word<formation::MotionLaw>>& words() {
   return kWords;
 }
 
+template <>
+const std::vector<Word<formation::CollisionKind>>& words() {
+  using formation::CollisionKind;
+  static const std::vector<Word<CollisionKind>> table = {{CollisionKind::obstacle, "obstacle"},
+                                                         {CollisionKind::moving_obstacle, "moving-obstacle"},
+                                                         {CollisionKind::robot, "robot"}};
+  return table;
+}
+
 }  // namespace exactvo::datasets

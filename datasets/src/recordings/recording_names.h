@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/metrics.h"
 #include "exactvo/formation/recording.h"
 #include "json_cursor.h"
 
@@ -30,6 +31,8 @@ template <>
 const std::vector<Word<formation::ConstraintSource>>& words();
 template <>
 const std::vector<Word<formation::MotionLaw>>& words();
+template <>
+const std::vector<Word<formation::CollisionKind>>& words();
 
 template <class E>
 const char* word_for(E value) {

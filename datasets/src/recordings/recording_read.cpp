@@ -132,6 +132,7 @@ std::size_t read_header(const JsonCursor& at, const std::string& name, Recording
   recording.wall_time = at.at("wall_time").number();
   if (at.has("all_half_planes")) recording.all_half_planes = at.at("all_half_planes").truth();
   if (at.has("stuck")) read_stuck(at.at("stuck"), file);
+  if (at.has("collisions")) file.collisions = to_collisions(at.at("collisions"));
   read_enclosures(at.at("enclosures"), file);
   if (at.has("later_enclosures")) read_later_enclosures(at.at("later_enclosures"), recording);
   return at.at("rows").count();

@@ -122,6 +122,7 @@ void append_header(JsonWriter& json, const RecordingFile& file, const std::strin
   for (const std::string& warning : recording.warnings) json.value(warning);
   json.end_array();
   append_stuck(json, file);
+  append_collisions(json, file.collisions);
   json.member("all_half_planes", recording.all_half_planes);
   json.member("rows_sha256", rows_digest);
   json.member("wall_time", recording.wall_time);

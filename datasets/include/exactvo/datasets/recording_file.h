@@ -18,6 +18,7 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/run_info.h"
 #include "exactvo/formation/lyapunov.h"
+#include "exactvo/formation/metrics.h"
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/stuck.h"
 
@@ -30,6 +31,7 @@ struct RecordingFile {
   formation::Recording recording;
   std::vector<formation::LyapunovRow> lyapunov = {};  ///< a row for every row, of a formation; else empty
   std::vector<formation::StuckReport> stuck = {};     ///< who stopped elsewhere; of what binds, the names only
+  std::vector<formation::Collision> collisions = {};  ///< as the metrics have them
 };
 
 /// Whole or not at all (atomic_file.h). Throws DataError where it can't be written.

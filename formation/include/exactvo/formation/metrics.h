@@ -5,8 +5,9 @@
 /// Figures of a run, from its recording alone. SI units. Nothing where a value does not apply.
 ///
 /// Clearances are swept and certified: lower bounds over the continuous motion between rows (of the cubic through both
-/// ends, where the integrator has no closed form), with all roundings taken off. Where a robot overlaps an obstacle
-/// they are at most 0, and not its depth.
+/// ends, where the integrator has no closed form) and of what moves beside the robot, round its corners and through
+/// its changes of speed, with all roundings taken off. Where a robot overlaps an obstacle they are at most 0, and not
+/// its depth.
 
 #include <cstddef>
 #include <optional>
@@ -18,12 +19,41 @@
 
 namespace exactvo::formation {
 
+enum class CollisionKind { obstacle, moving_obstacle, robot };
+
+/// Consecutive steps in which a robot overlaps one and the same obstacle or robot. A pair of robots is named once, by
+/// the one that comes first in the scenario.
+struct Collision {
+  std::string robot;
+  CollisionKind kind = CollisionKind::obstacle;
+  std::string with;         ///< the obstacle's or the other robot's id
+  double from = 0.0;        ///< s, start of the first of the steps
+  double until = 0.0;       ///< s, end of the last
+  double deepest_at = 0.0;  ///< s, to a sixty-fourth of a step
+  double depth = 0.0;       ///< m, how far the rims overlap then
+  Vec2 place;               ///< m, where the robot is then
+  bool relaxed = false;     ///< a decision of one of the two robots could not keep every half-plane before or meanwhile
+};
+
 struct RobotMetrics {
   std::string id;
   bool arrived = false;
   std::optional<double> arrival_time;            ///< s
   double path_length = 0.0;                      ///< m
   std::optional<double> min_obstacle_clearance;  ///< m, swept: to the robot's rim, negative is penetration
+  /// m, how much longer its path is than the direct way: from its start straight to its goals, of a robot that arrived;
+  /// in a formation from its start to its slot and on with the leader. Never below 0.
+  std::optional<double> detour = std::nullopt;
+  std::optional<double> largest_slot_error = std::nullopt;  ///< m, in a formation, from the second row on
+};
+
+/// A formation's error over time: the largest distance of a robot from its slot.
+struct FormationCourse {
+  double largest_error = 0.0;          ///< m, from the second row on: the first is where it was put
+  double largest_error_at = 0.0;       ///< s
+  std::string largest_error_of;        ///< the robot's id
+  std::optional<double> first_formed;  ///< s: when all were first within the scenario's arrival tolerance
+  std::optional<double> formed_since;  ///< s: since when they are to the end
 };
 
 struct Metrics {
@@ -44,10 +74,12 @@ struct Metrics {
   std::size_t steps = 0;
   double wall_time = 0.0;  ///< s
   std::vector<RobotMetrics> robots;
-  std::optional<LyapunovSummary> lyapunov;  ///< of a formation
-  std::string outcome;                      ///< the recording's
-  std::vector<std::string> warnings;        ///< the recording's
-  std::vector<std::string> stuck;           ///< a sentence for each robot that stopped elsewhere (stuck.h)
+  std::optional<LyapunovSummary> lyapunov;          ///< of a formation
+  std::optional<FormationCourse> formation_course;  ///< of a formation
+  std::vector<Collision> collisions;                ///< in the order of their beginnings
+  std::string outcome;  ///< how it ended, in words: collisions first, then what the recording says, then long detours
+  std::vector<std::string> warnings;  ///< the recording's
+  std::vector<std::string> stuck;     ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };
 
 Metrics measure(const Scenario& scenario, const Recording& recording);
@@ -56,7 +88,7 @@ Metrics measure(const Scenario& scenario, const Recording& recording);
 /// from the origin (four times 2^-46 of the coordinates), so two robots that keep exactly their distance do not touch.
 inline constexpr double kContactDepth = 1e-9;
 
-/// Whether a clearance is a contact; nothing is what there was nothing to touch for.
+/// Whether a clearance is a contact; an empty one, of a scene without anything to touch, is none.
 bool touched(const std::optional<double>& clearance);
 /// An obstacle or another robot was touched, by the swept clearances.
 bool touched(const Metrics& metrics);
@@ -68,7 +100,13 @@ inline constexpr double kFormed = 1e-6;
 /// leaves out what rounding alone could explain.
 bool is_safe(const Metrics& metrics);
 
-/// One series a robot or pair, sampled at the recording's rows: for figures.
+/// A detour that is worth a word in the outcome of a formation: longer than 1 m and than this share of the direct way.
+inline constexpr double kLongDetour = 0.25;
+
+/// "obstacle", "moving obstacle" or "robot".
+const char* name(CollisionKind kind);
+
+/// One series per robot or pair, sampled at the recording's rows, for figures. Obstacles include moving ones.
 std::vector<double> obstacle_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot);
 std::vector<double> robot_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot_a,
                                           std::size_t robot_b);

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Clearances to obstacles that turn and change their speed within a step, and what is said of collisions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/speed_profile.h"
+#include "exactvo/geometry/distance.h"
+#include "motion.h"
+#include "moving_way.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::formation {
+namespace {
+
+using exactvo::test::SeededRandom;
+
+MovingObstacle square(const std::string& id, Vec2 middle, double half, Leader motion) {
+  return {id,
+          geometry::Polygon{{middle + Vec2{-half, -half}, middle + Vec2{half, -half}, middle + Vec2{half, half},
+                             middle + Vec2{-half, half}},
+                            {}},
+          std::move(motion)};
+}
+
+Robot robot(const std::string& id, Vec2 position, Vec2 goal) {
+  Robot r;
+  r.id = id;
+  r.position = position;
+  r.goals = {goal};
+  return r;
+}
+
+/// Robots that keep their places for `steps` steps.
+Recording resting(const Scenario& s, std::size_t steps) {
+  Recording rec;
+  rec.time_step = s.time_step;
+  for (std::size_t k = 0; k <= steps; ++k) {
+    Step& row = rec.steps.emplace_back();
+    row.time = static_cast<double>(k) * s.time_step;
+    for (const Robot& r : s.robots) row.robots.emplace_back().position = r.position;
+  }
+  rec.outcome = "the robot arrived";
+  return rec;
+}
+
+/// Over and over: (0, 0) -> (-1, 0) -> (10, 0) -> (0, 0), 22 m a round.
+Leader shuttle(double speed, int rounds) {
+  Leader motion{{{0, 0}}, speed};
+  for (int k = 0; k < rounds; ++k) {
+    for (const Vec2 p : {Vec2{-1, 0}, Vec2{10, 0}, Vec2{0, 0}}) motion.path.push_back(p);
+  }
+  return motion;
+}
+
+TEST(MovingClearance, AnObstacleThatGoesThroughARobotAndBackWithinAStepIsSeen) {
+  // At 44 m/s a round takes one step of 0.5 s: at every row the square stands where it began.
+  Scenario s;
+  s.time_step = 0.5;
+  s.robots = {robot("R1", {5.0, 0.0}, {5.0, 0.0})};
+  s.moving_obstacles = {square("shuttle", {0, 0}, 0.5, shuttle(44.0, 20))};
+  const Metrics m = measure(s, resting(s, 10));
+  EXPECT_LE(m.min_obstacle_clearance.value(), -0.5);
+  ASSERT_EQ(m.collisions.size(), 1u) << "ten steps one after the other are one collision";
+  EXPECT_EQ(m.collisions[0].with, "shuttle");
+  EXPECT_FALSE(is_safe(m));
+}
+
+TEST(MovingClearance, TheCornerOfAPathIsNotCutOff) {
+  // The square turns back 0.1 m before the robot, in the middle of a step.
+  Scenario s;
+  s.time_step = 0.3;
+  s.robots = {robot("R1", {5.0, 0.0}, {5.0, 0.0})};
+  s.moving_obstacles = {square("shuttle", {0, 0}, 0.5, {{{0, 0}, {3.9, 0}, {0, 0}}, 1.0})};
+  const Metrics m = measure(s, resting(s, 30));
+  EXPECT_LE(m.min_obstacle_clearance.value(), 0.1);
+  EXPECT_NEAR(m.min_obstacle_clearance.value(), 0.1, 1e-9);
+  EXPECT_TRUE(m.collisions.empty());
+}
+
+TEST(MovingClearance, AChangeOfSpeedWithinAStepIsFollowed) {
+  // The robot runs ahead of the square at 1 m/s; within one step of 4 s the square makes up 1 m and loses it again.
+  Scenario s;
+  s.time_step = 4.0;
+  s.robots = {robot("R1", {2.0, 0.0}, {6.0, 0.0})};
+  s.moving_obstacles = {
+      square("hasty", {0, 0}, 0.5, {{{0, 0}, {100, 0}}, 0.0, {{0, 1}, {1, 2}, {2, 1}, {3, 0}, {4, 1}}})};
+  Recording rec = resting(s, 1);
+  rec.steps[1].robots[0].position = {6.0, 0.0};
+  // Rims 1 m apart at first; the square's lead over 1 m/s is the area of a triangle of 2 s by 1 m/s: 1 m at t = 2 s.
+  EXPECT_NEAR(measure(s, rec).min_obstacle_clearance.value(), 0.0, 1e-9);
+  EXPECT_LE(measure(s, rec).min_obstacle_clearance.value(), 0.0);
+}
+
+/// A path of random legs, some of which go back, repeat a point or are very short.
+Leader random_motion(SeededRandom& random) {
+  Leader motion{{random.in_box(5)}, random.uniform(0.0, 9.0)};
+  const int legs = random.integer(0, 8);
+  for (int k = 0; k < legs; ++k) {
+    const int kind = random.integer(0, 5);
+    const Vec2 last = motion.path.back();
+    if (kind == 0) {
+      motion.path.push_back(last);
+    } else if (kind == 1) {
+      motion.path.push_back(last + random.in_box(1e-9));
+    } else if (kind == 2) {
+      motion.path.push_back(motion.path[motion.path.size() / 2]);
+    } else {
+      motion.path.push_back(random.in_box(8));
+    }
+  }
+  double time = 0.0;
+  for (int knots = random.integer(0, 6); knots > 0; --knots) {
+    time += random.integer(0, 3) == 0 ? 0.0 : random.uniform(0.0, 1.0);
+    motion.profile.push_back({time, random.integer(0, 4) == 0 ? 0.0 : random.uniform(0.0, 9.0)});
+  }
+  return motion;
+}
+
+TEST(MovingWay, ThePiecesAreTheWay) {
+  SeededRandom random(exactvo::test::seed_of_run(91));
+  for (int round = 0; round < 500; ++round) {
+    const Leader motion = random_motion(random);
+    const std::vector<detail::WayPiece> way = detail::way_of(motion, 10.0);
+    const MovingObstacle obstacle{"", geometry::Polyline{{{0, 0}, {1, 0}}}, motion};
+    for (int k = 0; k <= 200; ++k) {
+      const double time = 0.05 * k;
+      const std::size_t at = detail::piece_at(way, time);
+      ASSERT_LT(at, way.size());
+      const Vec2 expected = displacement_at(obstacle, time);
+      // The rounded way rests from 1e-12 of its length before its end on.
+      EXPECT_LE(norm(way[at].at(time) - expected), way[at].error + 1e-9) << round << " at " << time;
+      EXPECT_LE(way[at].error, 1e-12) << round << " at " << time;
+    }
+  }
+}
+
+Vec2 position_at(const Recording& rec, double share) {
+  const RobotStep& a = rec.steps[0].robots[0];
+  const RobotStep& b = rec.steps[1].robots[0];
+  return detail::Motion{rec.motion, rec.time_step, rec.tracking_gain, a.position, a.velocity, b.position, b.velocity}
+      .at(share);
+}
+
+TEST(MovingClearance, IsBelowEverySampleAndNotFarBelow) {
+  SeededRandom random(exactvo::test::seed_of_run(92));
+  for (int round = 0; round < 300; ++round) {
+    Scenario s;
+    s.time_step = random.uniform(0.05, 2.0);
+    s.robots = {robot("R1", random.in_box(9), {0, 0})};
+    s.moving_obstacles = {square("box", random.in_box(6), random.uniform(0.1, 1.0), random_motion(random))};
+    Recording rec = resting(s, 1);
+    const double start = random.uniform(0.0, 3.0);
+    rec.steps[0].time = start;
+    rec.steps[1].time = start + s.time_step;
+    rec.motion = static_cast<MotionLaw>(round % 3);
+    rec.tracking_gain = random.uniform(0.5, 40.0);
+    rec.steps[0].robots[0].velocity = random.in_box(3);
+    rec.steps[1].robots[0].velocity = random.in_box(3);
+    rec.steps[1].robots[0].position += random.in_box(2);
+    if (rec.motion == MotionLaw::exponential) {
+      const double k = rec.tracking_gain, decayed = std::exp(-k * s.time_step);
+      const Vec2 v0 = rec.steps[0].robots[0].velocity, v1 = rec.steps[1].robots[0].velocity;
+      const Vec2 w = (v1 - decayed * v0) / (1.0 - decayed);
+      rec.steps[1].robots[0].position =
+          rec.steps[0].robots[0].position + s.time_step * w + ((1.0 - decayed) / k) * (v0 - w);
+    }
+    const double certified = measure(s, rec).min_obstacle_clearance.value();
+    double sampled = std::numeric_limits<double>::infinity();
+    constexpr int kSamples = 4000;
+    for (int m = 0; m <= kSamples; ++m) {
+      const double share = static_cast<double>(m) / kSamples;
+      const Vec2 moved = displacement_at(s.moving_obstacles[0], start + share * s.time_step);
+      const Vec2 place = position_at(rec, share);
+      sampled = std::min(sampled, geometry::signed_distance(s.moving_obstacles[0].shape, place - moved) - 0.5);
+    }
+    EXPECT_LE(certified, std::max(sampled, 0.0)) << round;
+    // Between samples the two come nearer by at most 25 m/s over half a sample, and chords stray by 1e-5 m.
+    if (sampled > 0.0) {
+      EXPECT_GE(certified, sampled - 25.0 * s.time_step / kSamples - 1.1e-5) << round;
+    }
+  }
+}
+
+TEST(Collisions, ACartThatRunsARobotOverIsNamedWithTimeAndDepth) {
+  // Its front is at 2 t - 4; the robot's disc spans from -0.5 to 0.5, so contact is from 1.75 s on.
+  Scenario s;
+  s.time_step = 0.25;
+  s.robots = {robot("R1", {0, 0}, {0, 0})};
+  s.moving_obstacles = {square("cart", {-5, 0}, 1.0, {{{0, 0}, {20, 0}}, 2.0})};
+  const Metrics m = measure(s, resting(s, 40));
+  ASSERT_EQ(m.collisions.size(), 1u);
+  const Collision& c = m.collisions[0];
+  EXPECT_EQ(c.robot, "R1");
+  EXPECT_EQ(c.kind, CollisionKind::moving_obstacle);
+  EXPECT_EQ(c.with, "cart");
+  EXPECT_DOUBLE_EQ(c.from, 1.75);
+  EXPECT_DOUBLE_EQ(c.until, 3.25);
+  EXPECT_NEAR(c.deepest_at, 2.5, 0.01);
+  EXPECT_NEAR(c.depth, 1.5, 0.02) << "its middle on the robot's: a side's half and the radius";
+  EXPECT_EQ(m.outcome, "COLLISION: R1 overlapped moving obstacle cart by 1.5 m at 2.5 s; the robot arrived");
+}
+
+TEST(Collisions, EachStretchOfContactIsOne) {
+  Scenario s;
+  s.time_step = 0.5;
+  s.robots = {robot("R1", {5.0, 0.0}, {5.0, 0.0})};
+  s.moving_obstacles = {square("shuttle", {0, 0}, 0.5, {{{0, 0}, {5, 0}, {0, 0}, {5, 0}}, 1.0})};
+  const Metrics m = measure(s, resting(s, 30));
+  ASSERT_EQ(m.collisions.size(), 2u);
+  EXPECT_LT(m.collisions[0].until, m.collisions[1].from);
+  EXPECT_EQ(m.outcome.rfind("COLLISION: R1 overlapped moving obstacle shuttle by 1 m at ", 0), 0u) << m.outcome;
+  EXPECT_NE(m.outcome.find(", the deepest of 2 collisions"), std::string::npos) << m.outcome;
+}
+
+TEST(Collisions, RobotsThatOverlapInRelaxedDecisionsAreSaidTo) {
+  Scenario s;
+  s.time_step = 1.0;
+  s.robots = {robot("R1", {0, 0}, {0, 0}), robot("R2", {2, 0}, {2, 0})};
+  Recording rec = resting(s, 3);
+  rec.outcome = "all robots arrived";
+  rec.steps[2].robots[1].position = {0.986, 0};
+  rec.steps[1].robots[1].status = lp::Status::relaxed;
+  const Metrics m = measure(s, rec);
+  ASSERT_EQ(m.collisions.size(), 1u);
+  EXPECT_TRUE(m.collisions[0].relaxed);
+  EXPECT_EQ(m.collisions[0].kind, CollisionKind::robot);
+  EXPECT_NEAR(m.collisions[0].depth, 0.014, 1e-9);
+  EXPECT_EQ(m.outcome,
+            "COLLISION: R1 overlapped robot R2 by 0.014 m at 2 s, in a relaxed decision (no velocity kept every "
+            "half-plane); all robots arrived");
+}
+
+TEST(Collisions, NoneIsSaidWhereRimsOnlyMeet) {
+  Scenario s;
+  s.time_step = 1.0;
+  s.robots = {robot("R1", {0, 0}, {0, 0}), robot("R2", {1, 0}, {1, 0})};
+  const Metrics m = measure(s, resting(s, 2));
+  EXPECT_TRUE(m.collisions.empty());
+  EXPECT_EQ(m.outcome, "the robot arrived");
+}
+
+TEST(Collisions, ACurveNearAWallIsMeasuredNotPresumed) {
+  // v' = -k (v - w) along a wall: the rim keeps 1e-7 m off it while the speed changes; chords that stray by 1e-5 m say
+  // otherwise.
+  Scenario s;
+  s.time_step = 0.5;
+  s.robots = {robot("R1", {0, 0.5 + 1e-7}, {4, 0.5})};
+  s.obstacles = {{"wall", geometry::Polyline{{{-9, 0}, {9, 0}}}}};
+  Recording rec = resting(s, 1);
+  rec.motion = MotionLaw::exponential;
+  rec.tracking_gain = 4.0;
+  const double decayed = std::exp(-2.0);
+  rec.steps[1].robots[0].velocity = {3.0 * (1.0 - decayed), 0.0};
+  rec.steps[1].robots[0].position += Vec2{3.0 * 0.5 - 3.0 * (1.0 - decayed) / 4.0, 0.0};
+  const Metrics m = measure(s, rec);
+  EXPECT_TRUE(m.collisions.empty()) << m.outcome;
+  EXPECT_LE(m.min_obstacle_clearance.value(), 1e-7);
+  EXPECT_GT(m.min_obstacle_clearance.value(), -1e-7);
+}
+
+TEST(FormationCourse, TheLargestErrorAndWhenTheFormationHoldsAgain) {
+  Scenario s;
+  s.time_step = 1.0;
+  for (const char* id : {"R1", "R2"}) {
+    s.robots.push_back(robot(id, {0, 0}, {0, 0}));
+    s.robots.back().radius = 0.1;
+    s.robots.back().goals.clear();
+  }
+  s.formation.emplace();
+  s.formation->leader = {{{0, 0}, {6, 0}}, 1.0};
+  s.formation->topology = {{{0, 1}, {1, 0}}, {1, 1}};
+  Recording rec;
+  rec.time_step = 1.0;
+  rec.offsets = {{0, 1}, {0, -1}};
+  rec.outcome = "formation error 0 m at the end";
+  const double aside[] = {3.0, 0.0, 2.0, 4.0, 0.05, 0.0, 0.0};
+  for (std::size_t k = 0; k < 7; ++k) {
+    Step& row = rec.steps.emplace_back();
+    row.time = static_cast<double>(k);
+    row.leader_position = {row.time, 0.0};
+    row.robots.resize(2);
+    row.robots[0].position = row.leader_position + rec.offsets[0];
+    row.robots[1].position = row.leader_position + rec.offsets[1] - Vec2{0.0, aside[k]};
+  }
+  const Metrics m = measure(s, rec);
+  ASSERT_TRUE(m.formation_course.has_value());
+  EXPECT_DOUBLE_EQ(m.formation_course->largest_error, 4.0) << "not the 3 m at which it was put";
+  EXPECT_EQ(m.formation_course->largest_error_at, 3.0);
+  EXPECT_EQ(m.formation_course->largest_error_of, "R2");
+  EXPECT_EQ(m.formation_course->first_formed.value(), 1.0);
+  EXPECT_EQ(m.formation_course->formed_since.value(), 4.0);
+  EXPECT_DOUBLE_EQ(m.robots[0].largest_slot_error.value(), 0.0);
+  EXPECT_NEAR(m.robots[0].detour.value(), 0.0, 1e-12);
+  // The slot's way is 6 m and the start 3 m from it; the robot drove hypot(1, 3) + 2 hypot(1, 2) + hypot(1, 3.95) + ...
+  const double path = m.robots[1].path_length;
+  EXPECT_NEAR(m.robots[1].detour.value(), path - 9.0, 1e-12);
+  EXPECT_GT(path - 9.0, 0.25 * 9.0);
+  EXPECT_NE(m.outcome.find("; R2 went a detour of "), std::string::npos) << m.outcome;
+  EXPECT_NE(m.outcome.find(" m, up to 4 m from its slot; the formation holds since 4 s"), std::string::npos)
+      << m.outcome;
+}
+
+TEST(DistanceSeries, MovingObstaclesCount) {
+  Scenario s;
+  s.time_step = 1.0;
+  s.robots = {robot("R1", {0, 0}, {0, 0})};
+  s.moving_obstacles = {square("cart", {-5, 0}, 1.0, {{{0, 0}, {20, 0}}, 2.0})};
+  const std::vector<double> series = obstacle_distance_series(s, resting(s, 3), 0);
+  ASSERT_EQ(series.size(), 4u);
+  EXPECT_DOUBLE_EQ(series[0], 3.5);
+  EXPECT_DOUBLE_EQ(series[1], 1.5);
+  EXPECT_DOUBLE_EQ(series[2], -0.5);
+}
+
+}  // namespace
+}  // namespace exactvo::formation
