@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// exactvo audit: proves recordings again, in rationals.
+// exactvo audit: verifies recordings in exact rational arithmetic.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,9 +40,12 @@ std::vector<fs::path> recordings_in(const std::string& path) {
 }
 
 std::string summary(const datasets::AuditReport& report) {
-  std::string text =
-      fmt::format("{} half-planes, {} unsafe\n{} steps, {} collisions\n{} inconsistencies\n", report.half_planes,
-                  report.unsafe, report.steps, report.collisions, report.inconsistencies);
+  std::string text = fmt::format(
+      "{} half-planes, {} unsafe\n{} steps, {} collisions, {} not proven\n{} inconsistencies\n", report.half_planes,
+      report.unsafe, report.steps, report.collisions, report.unproven, report.inconsistencies);
+  if (report.curved_steps > 0)
+    text += fmt::format("{} of the steps are curves, up to {:.2g} m off the straight way: the curves were checked\n",
+                        report.curved_steps, report.largest_bulge);
   for (const std::string& finding : report.findings) text += "  " + finding + "\n";
   return text;
 }
@@ -90,7 +93,8 @@ Action declare(CLI::App& app) {
 
 Verb audit_verb() {
   return {
-      "audit", "Prove recordings again in rationals: every half-plane, every step (exit status 1 where one fails)",
+      "audit",
+      "Verify recordings in exact rational arithmetic: every half-plane, every step (exit status 1 if one fails)",
       "  exactvo audit out --json\n"
       "  exactvo vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --json \\\n"
       "      | exactvo audit --certificate -\n",

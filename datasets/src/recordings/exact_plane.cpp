@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recordings/exact_plane.h"
+
+#include <cmath>
+#include <limits>
+
+namespace exactvo::datasets::exact {
+namespace {
+
+/// Numbers are rounded outward to multiples of 2^-kGrid where they would grow without end.
+constexpr unsigned kGrid = 256;
+
+Rational grid_step() {
+  return Rational(1) / Rational(mpz_class(1) << kGrid);
+}
+
+Rational down(const Rational& x) {
+  mpz_class scaled;
+  const mpz_class up = x.get_num() << kGrid;
+  mpz_fdiv_q(scaled.get_mpz_t(), up.get_mpz_t(), x.get_den_mpz_t());
+  Rational rounded(scaled, mpz_class(1) << kGrid);
+  rounded.canonicalize();
+  return rounded;
+}
+Rational up(const Rational& x) {
+  return -down(-x);
+}
+
+bool cross_properly(const Straight& a, const Straight& b) {
+  const Point e = a.to - a.from, f = b.to - b.from;
+  return sgn(cross(e, b.from - a.from)) * sgn(cross(e, b.to - a.from)) < 0 &&
+         sgn(cross(f, a.from - b.from)) * sgn(cross(f, a.to - b.from)) < 0;
+}
+
+/// Whether the boxes of the two are at least r apart along x or y: then so are they.
+bool boxes_are_apart(const Straight& a, const Straight& b, const Rational& r) {
+  const auto apart = [&](const Rational& a0, const Rational& a1, const Rational& b0, const Rational& b1) {
+    return std::max(a0, a1) + r <= std::min(b0, b1) || std::max(b0, b1) + r <= std::min(a0, a1);
+  };
+  return apart(a.from.x, a.to.x, b.from.x, b.to.x) || apart(a.from.y, a.to.y, b.from.y, b.to.y);
+}
+
+bool crosses_ray(const Point& p, const Point& a, const Point& b) {
+  if ((a.y > p.y) == (b.y > p.y)) return false;
+  const int side = sgn(cross(b - a, p - a));
+  return b.y > a.y ? side > 0 : side < 0;
+}
+
+/// e^-z for 0 <= z <= 1/2, z on the grid. The terms fall by half at least, so what is left out is below the last one;
+/// each term is rounded down by less than a step of the grid.
+Interval decay_of_little(const Rational& z) {
+  const Rational step = grid_step();
+  Rational sum(1), term(1);
+  unsigned n = 0;
+  while (term > step) {
+    term = down(term * z / ++n);
+    sum += n % 2 == 1 ? Rational(-term) : term;
+  }
+  const Rational off = Rational(n + 2) * step + term;
+  return {Rational(sum - off), Rational(sum + off)};
+}
+
+}  // namespace
+
+Rational squared_distance(const Point& p, const Straight& s) {
+  const Point e = s.to - s.from, d = p - s.from;
+  const Rational length2 = dot(e, e);
+  Rational t = sgn(length2) > 0 ? Rational(dot(d, e) / length2) : Rational(0);
+  t = std::min(std::max(t, Rational(0)), Rational(1));
+  const Point rest{Rational(d.x - t * e.x), Rational(d.y - t * e.y)};
+  return dot(rest, rest);
+}
+
+bool come_nearer_than(const Straight& a, const Straight& b, const Rational& r) {
+  if (boxes_are_apart(a, b, r)) return false;
+  if (cross_properly(a, b)) return true;
+  const Rational r2 = r * r;
+  return squared_distance(a.from, b) < r2 || squared_distance(a.to, b) < r2 || squared_distance(b.from, a) < r2 ||
+         squared_distance(b.to, a) < r2;
+}
+
+bool is_inside(const Point& p, const geometry::Obstacle& obstacle) {
+  if (!geometry::has_interior(obstacle)) return false;
+  bool inside = false;
+  for (const geometry::Segment& edge : edges_of(obstacle))
+    if (crosses_ray(p, exactly(edge.a), exactly(edge.b))) inside = !inside;
+  return inside;
+}
+
+Interval operator+(const Interval& a, const Interval& b) {
+  return {Rational(a.low + b.low), Rational(a.high + b.high)};
+}
+Interval operator-(const Interval& a, const Interval& b) {
+  return {Rational(a.low - b.high), Rational(a.high - b.low)};
+}
+Interval operator/(const Interval& a, const Interval& b) {
+  return {Rational(a.low / (sgn(a.low) >= 0 ? b.high : b.low)), Rational(a.high / (sgn(a.high) >= 0 ? b.low : b.high))};
+}
+
+Interval root(const Rational& x) {
+  // sqrt(n / d) = sqrt(n d) / d.
+  constexpr unsigned kBits = 200;
+  const mpz_class product = x.get_num() * x.get_den();
+  if (mpz_perfect_square_p(product.get_mpz_t()) != 0) {
+    Rational exact(sqrt(product), x.get_den());
+    exact.canonicalize();
+    return {exact, exact};
+  }
+  const mpz_class scaled = sqrt(mpz_class(product << (2 * kBits)));
+  const mpz_class scale = mpz_class(x.get_den() << kBits);
+  Rational low(scaled, scale), high(mpz_class(scaled + 1), scale);
+  low.canonicalize();
+  high.canonicalize();
+  return {low, high};
+}
+
+Interval decay(const Rational& x) {
+  // e^-x = (e^-(x / 2^m))^(2^m); beyond 2^10 it is below 2^-1000.
+  if (x > 1024) return {Rational(0), grid_step()};
+  unsigned halvings = 0;
+  Rational z = x;
+  while (z > Rational(1, 2)) {
+    z /= 2;
+    ++halvings;
+  }
+  const Rational lower = down(z);
+  Interval e = decay_of_little(lower);
+  if (lower != z) e.low -= grid_step();  // the slope is at most 1
+  for (; halvings > 0; --halvings) {
+    e.low = std::max(e.low, Rational(0));
+    e = {down(e.low * e.low), up(e.high * e.high)};
+  }
+  return e;
+}
+
+double at_least(const Rational& x) {
+  return std::nextafter(x.get_d(), std::numeric_limits<double>::infinity());  // get_d rounds towards zero
+}
+double at_most(const Rational& x) {
+  return std::nextafter(x.get_d(), -std::numeric_limits<double>::infinity());
+}
+
+}  // namespace exactvo::datasets::exact
