@@ -134,10 +134,12 @@ Interval decay(const Rational& x) {
 }
 
 double at_least(const Rational& x) {
-  return std::nextafter(x.get_d(), std::numeric_limits<double>::infinity());  // get_d rounds towards zero
+  const double near = x.get_d();  // rounded towards zero
+  return Rational(near) >= x ? near : std::nextafter(near, std::numeric_limits<double>::infinity());
 }
 double at_most(const Rational& x) {
-  return std::nextafter(x.get_d(), -std::numeric_limits<double>::infinity());
+  const double near = x.get_d();
+  return Rational(near) <= x ? near : std::nextafter(near, -std::numeric_limits<double>::infinity());
 }
 
 }  // namespace exactvo::datasets::exact
