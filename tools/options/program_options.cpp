@@ -119,13 +119,13 @@ bool ProgramOptions::given(const std::string& name) const {
 
 bool ProgramOptions::parse(int argc, const char* const* argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
-  const bool asks_for_help = std::any_of(words.begin(), words.end(), [](const auto& word) { return word == "--help"; });
-  if (!asks_for_help) parser_->check_words(words);
+  if (std::any_of(words.begin(), words.end(), [](const auto& word) { return word == "--help" || word == "-h"; })) {
+    std::fputs(parser_->app.help().c_str(), stdout);
+    return false;
+  }
+  parser_->check_words(words);
   try {
     parser_->app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& help) {
-    parser_->app.exit(help);
-    return false;
   } catch (const CLI::RequiredError& missing) {
     const std::string text = missing.what();
     throw std::runtime_error(text.substr(0, text.find(' ')) + " is missing");
