@@ -6,13 +6,19 @@
 #include "verb.h"
 #include "verbs/figure_file.h"
 #include "verbs/vo_figure.h"
+#include "verbs/vo_velocities.h"
 
 namespace exactvo::tools {
 
 namespace {
 
 ExitCode show(const VoFlags& flags) {
-  const VoAnswer answer = answer_of(question_of(flags));
+  const VoQuestion question = question_of(flags);
+  if (!flags.velocities.empty()) {
+    answer_velocities(question, flags.velocities, flags.json);
+    return ExitCode::success;
+  }
+  const VoAnswer answer = answer_of(question);
   if (!flags.figure.empty()) write_figure(vo_figure(answer), flags.figure);
   const std::string text = flags.json ? to_json(answer) : in_words(answer);
   std::fwrite(text.data(), 1, text.size(), stdout);
@@ -36,7 +42,9 @@ Verb vo_verb() {
           "      --figure out/family.svg\n"
           "  exactvo vo --obstacle 'POLYGON((2 -1, 3 -1, 3 1, 2 1, 2 -1))' --free \\\n"
           "      --obstacle 'LINESTRING(-1 2, 0 2)' --max-speed 1.5 --position 0,0 \\\n"
-          "      --velocity 1,0.2 --radius 0.5 --time-horizon 2 --figure out/free.svg\n",
+          "      --velocity 1,0.2 --radius 0.5 --time-horizon 2 --figure out/free.svg\n"
+          "  printf '1,0.2\\n0,1\\n' | exactvo vo --obstacle 'DISC(4 0, 1)' --velocities - --position 0,0 \\\n"
+          "      --radius 0.5 --time-horizon 2\n",
           declare};
 }
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
@@ -141,6 +142,18 @@ void require(bool ok, const char* option, const std::string& found, const char* 
   if (!ok) throw UsageError(option, found, expected);
 }
 
+/// Many velocities are answered by whether they collide, and by nothing else.
+void check_company_of_velocities(const VoFlags& flags) {
+  const bool by_rule = flags.time_horizon == "paper" || flags.time_horizon == "clamped";
+  require(!by_rule, "--time-horizon", flags.time_horizon + " beside --velocities",
+          "a time in s, or infinite: the rule gives each velocity its own");
+  const std::pair<bool, const char*> others[] = {
+      {!flags.velocity.empty(), "--velocity"}, {flags.free, "--free"},          {flags.exact_legs, "--exact-legs"},
+      {!flags.variants.empty(), "--variant"},  {flags.alpha != 1.0, "--alpha"}, {!flags.figure.empty(), "--figure"}};
+  for (const auto& [is_there, option] : others)
+    require(!is_there, "--velocities", fmt::format("--velocities beside {}", option), "one of the two");
+}
+
 /// What goes with what, and what would be ignored.
 void check_company(const VoFlags& flags) {
   require(flags.radius || !flags.robot.empty(), "--radius", "nothing", "the robot's radius in m (or --robot WKT)");
@@ -150,6 +163,9 @@ void check_company(const VoFlags& flags) {
   require(flags.goal.empty() || flags.enclose == "trap-free", "--goal", flags.goal, "--enclose trap-free beside it");
   require(flags.enclose != "trap-free" || flags.robot.empty(), "--robot", "--robot beside --enclose trap-free",
           "--radius, which the enclosure is fitted for");
+  require(!flags.velocity.empty() || !flags.velocities.empty(), "--velocity", "nothing",
+          "X,Y in m/s, or --velocities FILE for many");
+  if (!flags.velocities.empty()) check_company_of_velocities(flags);
   require(flags.alpha == 1.0 || !flags.free, "--alpha", "--alpha beside --free", "one of the two");
   require(flags.variants.empty() || !flags.free, "--variant", "--variant beside --free", "one of the two");
 }
@@ -175,7 +191,7 @@ void check_numbers(const VoFlags& flags) {
 vo::Encounter robot_alone(const VoFlags& flags) {
   vo::Encounter e;
   e.position = parse_point("--position", flags.position);
-  e.velocity = parse_point("--velocity", flags.velocity);
+  if (flags.velocities.empty()) e.velocity = parse_point("--velocity", flags.velocity);
   e.radius = flags.radius.value_or(0.0);
   e.share = flags.alpha;
   if (!flags.robot.empty()) e.robot = robot_of(flags.robot, flags.reading);
@@ -198,9 +214,9 @@ void add_obstacle(const GivenObstacle& given, vo::Encounter e, const VoFlags& fl
 }
 
 void check_obstacles(const VoFlags& flags, const VoQuestion& q) {
-  if (q.obstacles.size() != 1 && !q.free)
+  if (q.obstacles.size() != 1 && !q.free && flags.velocities.empty())
     throw UsageError("--obstacle", fmt::format("{} obstacles", q.obstacles.size()),
-                     "one obstacle (several go with --free)");
+                     "one obstacle (several go with --free and --velocities)");
   if (q.encounters.size() != 1 && !q.variants.empty())
     throw UsageError("--variant", fmt::format("an obstacle of {} convex pieces", q.encounters.size()),
                      "a convex shape: add --pieces hull or --enclose ellipse");
@@ -244,7 +260,7 @@ VoQuestion question_of(const VoFlags& flags) {
 void declare_options(CLI::App& app, VoFlags& flags) {
   app.add_option("--obstacle", flags.obstacles,
                  "WKT; a file with one obstacle; 'DISC(x y, r)'; 'ELLIPSE(cx cy, l11 l21 l22)', the image of the unit "
-                 "disc under [l11 0; l21 l22]; 'ELLIPSE(cx cy, a b, degrees)'. Several with --free")
+                 "disc under [l11 0; l21 l22]; 'ELLIPSE(cx cy, a b, degrees)'. Several with --free and --velocities")
       ->required()
       ->allow_extra_args(false);
   declare_reading_flags(app, flags.reading);
@@ -255,7 +271,10 @@ void declare_options(CLI::App& app, VoFlags& flags) {
                  "Of an obstacle that is not convex: convex (the default: all of its convex pieces) or hull");
   app.add_option("--enclose", flags.enclose, "none, ellipse (the smallest) or trap-free (needs --goal)");
   app.add_option("--position", flags.position, "Of the robot, X,Y in m")->required();
-  app.add_option("--velocity", flags.velocity, "X,Y in m/s")->required();
+  app.add_option("--velocity", flags.velocity, "X,Y in m/s; required, or --velocities in its place");
+  app.add_option("--velocities", flags.velocities,
+                 "FILE, or - for stdin: which of many velocities collide, one line of answer each (with --json JSON "
+                 "Lines). The file: vx,vy on each line, CSV with columns vx and vy, or JSON Lines");
   app.add_option("--radius", flags.radius, "Of the robot, m; required, or --robot in its place");
   app.add_option("--robot", flags.robot,
                  "A robot that is a convex polygon, in place of --radius: WKT round 0,0, its reference point");

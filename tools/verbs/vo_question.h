@@ -26,6 +26,7 @@ struct VoFlags {
   std::string pieces;
   ReadingFlags reading;  ///< of obstacles that are files
   std::string position, velocity, goal, robot;
+  std::string velocities;  ///< a file, or "-"
   std::optional<double> radius;
   std::string time_horizon;
   double alpha = 1.0;
@@ -57,7 +58,7 @@ struct AskedObstacle {
 };
 
 /// The same as values, checked. `encounters` are with convex shapes: one an obstacle, or one a piece of it. Without
-/// --free there is exactly one obstacle.
+/// --free and --velocities there is exactly one obstacle.
 struct VoQuestion {
   std::vector<AskedObstacle> obstacles;
   std::vector<vo::Encounter> encounters;
@@ -66,7 +67,7 @@ struct VoQuestion {
   bool exact_legs = false;
   bool free = false;
   double max_speed = 0.0;  ///< m/s, of --free
-  Vec2 velocity;
+  Vec2 velocity;           ///< (0, 0) where many are asked for by --velocities
 };
 
 /// The obstacle, and which of its encounters.

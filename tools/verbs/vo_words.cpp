@@ -69,8 +69,20 @@ std::string nearest_words(const ConeAnswer& a) {
       a.contains ? "the least change that avoids it" : "to that boundary; no change is needed");
 }
 
+/// Directions from the apex, which is the obstacle's velocity.
+std::string legs_words(const ConeAnswer& a) {
+  const auto legs = a.overlaps ? std::nullopt : a.cone.legs();
+  if (!legs) return "";
+  const auto words = [](const char* side, const vo::Leg& leg) {
+    return fmt::format("{:<17} direction ({:.6g}, {:.6g}), touches at ({:.6g}, {:.6g}) m\n", side,
+                       unsigned_zero(leg.direction.x), unsigned_zero(leg.direction.y), unsigned_zero(leg.touch.x),
+                       unsigned_zero(leg.touch.y));
+  };
+  return words("left leg", legs->left) + words("right leg", legs->right);
+}
+
 std::string cone_words(const ConeAnswer& a) {
-  return (a.nearest ? nearest_words(a) : "") + half_plane_words(a) +
+  return legs_words(a) + (a.nearest ? nearest_words(a) : "") + half_plane_words(a) +
          (a.exact_legs ? exact_legs_words(*a.exact_legs) : "");
 }
 

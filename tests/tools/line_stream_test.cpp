@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/line_stream.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+
+namespace exactvo::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Lines : public testing::Test {
+ protected:
+  ~Lines() override { fs::remove(path_); }
+
+  std::vector<std::string> lines_of(const std::string& text) const {
+    std::ofstream(path_, std::ios::binary) << text;
+    LineStream stream(path_);
+    std::vector<std::string> lines;
+    while (stream.next()) {
+      lines.emplace_back(stream.line());
+      EXPECT_EQ(stream.number(), lines.size());
+    }
+    EXPECT_FALSE(stream.next()) << "the end stays the end";
+    return lines;
+  }
+
+  const std::string path_ =
+      (fs::temp_directory_path() /
+       ("exactvo_lines_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
+        std::to_string(testing::UnitTest::GetInstance()->random_seed()) +
+        std::to_string(reinterpret_cast<std::uintptr_t>(this))))
+          .string();
+};
+
+using Strings = std::vector<std::string>;
+
+TEST_F(Lines, EndsInEveryWayThatTextEnds) {
+  EXPECT_EQ(lines_of(""), Strings{});
+  EXPECT_EQ(lines_of("a"), Strings{"a"});
+  EXPECT_EQ(lines_of("a\n"), Strings{"a"});
+  EXPECT_EQ(lines_of("\n\na\r\n\r\nb"), (Strings{"", "", "a", "", "b"}));
+}
+
+TEST_F(Lines, AcrossBlocksAsGetline) {
+  std::string text;
+  for (std::size_t k = 0; k < 5000; ++k) text += std::string(k * 7919 % 211, 'x') + std::to_string(k) + "\n";
+  Strings expected;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) expected.push_back(line);
+  EXPECT_GT(text.size(), 4 * LineStream::kLongestLine);
+  EXPECT_EQ(lines_of(text), expected);
+}
+
+TEST_F(Lines, ALineMayBeAsLongAsTheLimitAndNoLonger) {
+  const std::string longest(LineStream::kLongestLine, 'x');
+  EXPECT_EQ(lines_of("a\n" + longest + "\nb\n"), (Strings{"a", longest, "b"}));
+  EXPECT_EQ(lines_of("a\n" + longest), (Strings{"a", longest}));
+  for (const std::string end : {"\nb\n", "", "xxxx\n"}) {
+    try {
+      lines_of("a\n" + longest + "x" + end);
+      ADD_FAILURE() << "a line beyond the limit was given";
+    } catch (const datasets::DataError& error) {
+      EXPECT_EQ(error.code(), datasets::DataCode::size);
+      EXPECT_EQ(error.place(), "line 2");
+    }
+  }
+}
+
+TEST_F(Lines, AFileThatIsNotThereOrAFolderIsRefused) {
+  for (const auto& [file, code] :
+       {std::pair{path_ + ".missing", datasets::DataCode::file_missing},
+        std::pair{fs::temp_directory_path().string(), datasets::DataCode::file_unreadable}}) {
+    try {
+      const LineStream stream(file);
+      ADD_FAILURE() << file;
+    } catch (const datasets::DataError& error) {
+      EXPECT_EQ(error.code(), code);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::tools
