@@ -8,6 +8,11 @@ set(EXACTVO_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ExactVO)
 # headers alone nothing is left: they are linked in $<BUILD_INTERFACE:...>.)
 function(exactvo_needs_of component out)
   get_target_property(linked exactvo_${component} LINK_LIBRARIES)
+  get_property(parts GLOBAL PROPERTY EXACTVO_PARTS_OF_${component})
+  foreach(part IN LISTS parts)
+    get_target_property(libraries exactvo_${component}_${part} LINK_LIBRARIES)
+    list(APPEND linked ${libraries})
+  endforeach()
   set(text "")
   foreach(dependency
       "TBB::|libtbb-dev TBB CONFIG" "hwy::|libhwy-dev HWY CONFIG" "GDAL::|libgdal-dev GDAL"

@@ -3,13 +3,17 @@
 include(GNUInstallDirs)
 include(GoogleTest)
 
-# exactvo_add_module(<name> SOURCES ... [CGAL_SOURCES ...] [PUBLIC targets...] [PRIVATE targets...])
+# exactvo_add_module(<name> [STATIC] SOURCES ... [CGAL_SOURCES ...] [PUBLIC targets...] [PRIVATE targets...])
 # The library exactvo::<name>, headers under <name>/include. CGAL_SOURCES are compiled with CGAL's own flags
 # (-frounding-math), which the plain and vectorised sources must not get.
 function(exactvo_add_module name)
-  cmake_parse_arguments(arg "" "" "SOURCES;CGAL_SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "STATIC" "" "SOURCES;CGAL_SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target exactvo_${name})
-  add_library(${target} ${arg_SOURCES} ${arg_CGAL_SOURCES})
+  set(type "")
+  if(arg_STATIC)
+    set(type STATIC)
+  endif()
+  add_library(${target} ${type} ${arg_SOURCES} ${arg_CGAL_SOURCES})
   add_library(exactvo::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target}
@@ -23,6 +27,22 @@ function(exactvo_add_module name)
   install(TARGETS ${target} EXPORT ExactVO-${name}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+# exactvo_add_part(<module> <name> SOURCES ... [PRIVATE targets...])
+# What only a library behind <module>'s own needs: a static library that is linked with the module, but for programs with
+# the property EXACTVO_LOADS_PARTS.
+function(exactvo_add_part module name)
+  cmake_parse_arguments(arg "" "" "SOURCES;PRIVATE" ${ARGN})
+  set(target exactvo_${module}_${name})
+  add_library(${target} STATIC ${arg_SOURCES})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${module}_${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  target_link_libraries(${target} PRIVATE exactvo_${module} ${arg_PRIVATE} $<BUILD_INTERFACE:exactvo_build_flags>)
+  target_link_libraries(exactvo_${module}
+    INTERFACE $<$<NOT:$<BOOL:$<TARGET_PROPERTY:EXACTVO_LOADS_PARTS>>>:$<TARGET_NAME:${target}>>)
+  set_property(GLOBAL APPEND PROPERTY EXACTVO_PARTS_OF_${module} ${name})
+  install(TARGETS ${target} EXPORT ExactVO-${module} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
 # exactvo_add_test(<name> SOURCES ... [LIBS ...] [LABELS ...] [TIMEOUT s])

@@ -186,50 +186,44 @@ void sync_file(const std::filesystem::path& path) {
   if (failed != 0) throw cannot_write(path, failed);
 }
 
-}  // namespace
-
-struct GeoPackage::Inside {
-  explicit Inside(const std::filesystem::path& place) : path(place), file(place) {}
-
-  void begin() {
+class WrittenGeoPackage final : public GeoPackage {
+ public:
+  /// `path` holds the schema.
+  explicit WrittenGeoPackage(const std::filesystem::path& path) : path_(path), file_(path) {
     // 16 MB of pages in memory.
-    file.run("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA cache_size = -16384; BEGIN");
-    triggers = take_triggers(file);
-    for (const Layer& layer : layers()) tables.push_back(std::make_unique<LayerTable>(file, layer));
+    file_.run("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA cache_size = -16384; BEGIN");
+    triggers_ = take_triggers(file_);
+    for (const Layer& layer : layers()) tables_.push_back(std::make_unique<LayerTable>(file_, layer));
   }
 
-  void finish() {
-    for (const auto& table : tables) table->finish(file);
-    tables.clear();
-    for (const std::string& trigger : triggers) file.run(trigger);
-    file.run("COMMIT");
-    file.close();
-    sync_file(path);
+  void add(std::string_view rows) override {
+    while (!rows.empty()) {
+      const Row row = read_row(rows);
+      tables_[row.layer]->add(row);
+    }
   }
 
-  std::filesystem::path path;
-  SqliteFile file;
-  std::vector<std::string> triggers;
-  std::vector<std::unique_ptr<LayerTable>> tables;
+  void finish() override {
+    for (const auto& table : tables_) table->finish(file_);
+    tables_.clear();
+    for (const std::string& trigger : triggers_) file_.run(trigger);
+    file_.run("COMMIT");
+    file_.close();
+    sync_file(path_);
+  }
+
+ private:
+  std::filesystem::path path_;
+  SqliteFile file_;
+  std::vector<std::string> triggers_;
+  std::vector<std::unique_ptr<LayerTable>> tables_;
 };
 
-GeoPackage::GeoPackage(const std::filesystem::path& path, const std::string& provenance) {
+}  // namespace
+
+std::unique_ptr<GeoPackage> make_geopackage(const std::filesystem::path& path, const std::string& provenance) {
   write_file(path, empty_package(provenance, path));
-  inside_ = std::make_unique<Inside>(path);
-  inside_->begin();
-}
-
-GeoPackage::~GeoPackage() = default;
-
-void GeoPackage::add(std::string_view rows) {
-  while (!rows.empty()) {
-    const Row row = read_row(rows);
-    inside_->tables[row.layer]->add(row);
-  }
-}
-
-void GeoPackage::finish() {
-  inside_->finish();
+  return std::make_unique<WrittenGeoPackage>(path);
 }
 
 }  // namespace exactvo::datasets::batch

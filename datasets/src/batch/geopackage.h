@@ -14,20 +14,19 @@ namespace exactvo::datasets::batch {
 
 class GeoPackage {
  public:
-  /// Throws DataError (E_FILE_UNWRITABLE; E_FORMAT_UNAVAILABLE in a build without GDAL), as the others do.
-  GeoPackage(const std::filesystem::path& path, const std::string& provenance);
-  ~GeoPackage();
+  GeoPackage() = default;
+  virtual ~GeoPackage() = default;
   GeoPackage(const GeoPackage&) = delete;
   GeoPackage& operator=(const GeoPackage&) = delete;
 
   /// Rows as `append_row` (features.h) wrote them.
-  void add(std::string_view rows);
+  virtual void add(std::string_view rows) = 0;
   /// Closes and syncs.
-  void finish();
-
- private:
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
+  virtual void finish() = 0;
 };
+
+/// Throws DataError (E_FILE_UNWRITABLE; E_FORMAT_UNAVAILABLE in a build without GDAL), as `add` and `finish` do.
+/// Called through vector_library.h, except by tests.
+std::unique_ptr<GeoPackage> make_geopackage(const std::filesystem::path& path, const std::string& provenance);
 
 }  // namespace exactvo::datasets::batch

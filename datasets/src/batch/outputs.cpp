@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "batch/features.h"
-#include "batch/geopackage.h"
+#include "gdal/vector_library.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -54,7 +54,7 @@ struct Outputs::Inside {
       : figures(output_file(folder / "figures.jsonl")) {
     figures->write("{\"provenance\":" + provenance + "}\n");
     if (configuration.geojson) geojson.emplace(folder, provenance);
-    if (configuration.geopackage) geopackage = std::make_unique<GeoPackage>(folder / "obstacles.gpkg", provenance);
+    if (configuration.geopackage) geopackage = vector_library().make_geopackage(folder / "obstacles.gpkg", provenance);
   }
 
   PartCounts counts;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A batch over MPI ranks: the first hands out inputs, largest first, so that a slow map does not hold up the rest.
-#include <mpi.h>
-
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <exception>
 #include <numeric>
@@ -14,6 +13,7 @@
 #include "batch/input_record.h"
 #include "batch/session.h"
 #include "batch/summary.h"
+#include "mpi/rank_library.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -34,39 +34,24 @@ struct Report {
   long nanoseconds_of_jobs = 0;
 };
 constexpr int kLongsOfReport = 4;
-static_assert(sizeof(Report) == kLongsOfReport * sizeof(long));
 
 /// MPI lives as long as the object; a failure in one rank ends all of them, as a scheduler expects.
 class World {
  public:
-  World() {
-    int provided = 0;
-    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
-    MPI_Comm_size(MPI_COMM_WORLD, &size_);
-  }
-  ~World() { MPI_Finalize(); }
+  World() : mpi_(rank_library()) { mpi_.join(); }
+  ~World() { mpi_.leave(); }
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  int rank() const { return rank_; }
-  int size() const { return size_; }
-
+  int rank() const { return mpi_.rank(); }
+  int size() const { return mpi_.size(); }
   /// From the first rank to all.
-  long broadcast(long value) const {
-    MPI_Bcast(&value, 1, MPI_LONG, 0, MPI_COMM_WORLD);
-    return value;
-  }
+  long broadcast(long value) const { return mpi_.broadcast(value); }
   /// The least that any rank gives, to all.
-  long least(long value) const {
-    long least = value;
-    MPI_Allreduce(&value, &least, 1, MPI_LONG, MPI_MIN, MPI_COMM_WORLD);
-    return least;
-  }
+  long least(long value) const { return mpi_.least(value); }
 
  private:
-  int rank_ = 0;
-  int size_ = 1;
+  const RankLibrary& mpi_;
 };
 
 /// Whether `step` went well in every rank. The first rank in which it did not throws what it threw there; the others
@@ -85,25 +70,25 @@ bool all_manage(const World& world, const Step& step) {
 }
 
 void send_work(long input, int to) {
-  MPI_Send(&input, 1, MPI_LONG, to, kWork, MPI_COMM_WORLD);
+  rank_library().send(&input, 1, to, kWork);
 }
 
 long receive_work() {
   long input = 0;
-  MPI_Recv(&input, 1, MPI_LONG, 0, kWork, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  rank_library().receive(&input, 1, kWork);
   return input;
 }
 
 void send_report(const Report& report) {
-  MPI_Send(&report, kLongsOfReport, MPI_LONG, 0, kAsk, MPI_COMM_WORLD);
+  const std::array<long, kLongsOfReport> values{report.said, report.obstacles, report.vertices,
+                                                report.nanoseconds_of_jobs};
+  rank_library().send(values.data(), kLongsOfReport, 0, kAsk);
 }
 
 Report receive_report(int& sender) {
-  Report report;
-  MPI_Status status;
-  MPI_Recv(&report, kLongsOfReport, MPI_LONG, MPI_ANY_SOURCE, kAsk, MPI_COMM_WORLD, &status);
-  sender = status.MPI_SOURCE;
-  return report;
+  std::array<long, kLongsOfReport> values{};
+  sender = rank_library().receive(values.data(), kLongsOfReport, kAsk);
+  return {values[0], values[1], values[2], values[3]};
 }
 
 std::vector<std::size_t> largest_first(const std::vector<batch::Input>& inputs) {
@@ -301,10 +286,7 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
 }
 
 std::string mpi_release() {
-  int major = 0;
-  int minor = 0;
-  MPI_Get_version(&major, &minor);
-  return "MPI " + std::to_string(major) + "." + std::to_string(minor);
+  return EXACTVO_MPI_RELEASE;
 }
 
 }  // namespace exactvo::datasets

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "gdal/gdal_facts.h"
+#include "batch/geopackage.h"
+#include "exactvo/datasets/data_error.h"
 #include "readers/grey_image.h"
 #include "readers/readers.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
-
-std::string gdal_release() {
-  return "none";
-}
-
-bool built_with_gdal() {
-  return false;
-}
 
 void read_vector_file(const std::filesystem::path& path, Collector&) {
   throw DataError(DataCode::format_unavailable, path.string(), "",
@@ -28,6 +21,11 @@ std::string to_gdal_file(const Obstacles&, const std::string& driver, const std:
 GreyImage read_gdal_image(const std::filesystem::path& path) {
   throw DataError(DataCode::format_unavailable, path.string(), "", "a picture that needs GDAL",
                   "a build with EXACTVO_WITH_GDAL=ON, or PGM");
+}
+
+std::unique_ptr<batch::GeoPackage> batch::make_geopackage(const std::filesystem::path& path, const std::string&) {
+  throw DataError(DataCode::format_unavailable, path.string(), "", "a GeoPackage to write",
+                  "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON alone");
 }
 
 }  // namespace exactvo::datasets

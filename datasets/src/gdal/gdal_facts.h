@@ -5,7 +5,7 @@
 
 namespace exactvo::datasets {
 
-/// "3.6.2", or "none" in a build without GDAL.
+/// The release that this was built with, "3.6.2", or "none". Known without loading GDAL.
 std::string gdal_release();
 
 }  // namespace exactvo::datasets

@@ -7,9 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "exactvo/datasets/obstacle_file.h"
-#include "gdal/gdal_facts.h"
-
 namespace exactvo::datasets {
 namespace {
 
@@ -35,14 +32,6 @@ const char* const* options_for(GDALDriverH driver) {
 void register_gdal_once() {
   static std::once_flag done;
   std::call_once(done, [] { GDALAllRegister(); });
-}
-
-std::string gdal_release() {
-  return GDALVersionInfo("RELEASE_NAME");
-}
-
-bool built_with_gdal() {
-  return true;
 }
 
 GdalComplaints::GdalComplaints() {

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "exactvo/datasets/data_error.h"
+#include "gdal/vector_library.h"
 #include "readers/grid.h"
 #include "readers/png_chunks.h"
 #include "text_file.h"
@@ -101,7 +102,7 @@ GreyImage read_image(const std::filesystem::path& path) {
   }
   if (!is_pgm(read_beginning(path, 3))) {
     require_whole_png_chunks(path);
-    return read_gdal_image(path);
+    return vector_library().read_gdal_image(path);
   }
   return read_pgm(read_text_file(path), path.string());
 }

@@ -23,6 +23,7 @@ GreyImage read_image(const std::filesystem::path& path);
 
 // One per kind, for read_image.
 GreyImage read_pgm(const std::string& bytes, const std::string& file);
-GreyImage read_gdal_image(const std::filesystem::path& path);  // gdal_image.cpp, or gdal_absent.cpp
+/// gdal_image.cpp, or gdal_absent.cpp; called through vector_library.h.
+GreyImage read_gdal_image(const std::filesystem::path& path);
 
 }  // namespace exactvo::datasets

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "exactvo/geometry/require.h"
+#include "gdal/vector_library.h"
 #include "readers/readers.h"
 #include "text_file.h"
 
@@ -15,6 +16,10 @@ namespace {
 constexpr std::array<const char*, 19> kVectorExtensions{
     ".geojson", ".json", ".shp", ".dbf", ".gpkg",     ".fgb",      ".csv",      ".osm",        ".pbf",   ".dxf",
     ".kml",     ".gml",  ".gpx", ".tab", ".topojson", ".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
+
+void read_with_gdal(const std::filesystem::path& path, Collector& out) {
+  vector_library().read_vector_file(path, out);
+}
 
 Glimpse glimpse_of(const std::filesystem::path& path) {
   Glimpse glimpse;
@@ -87,7 +92,7 @@ const std::vector<Reader>& readers() {
       {"scenario", looks_like_scenario, read_scenario_obstacles},
       {"rings-json", looks_like_rings_json, read_rings_json},
       {"points-csv", looks_like_points_csv, read_points_csv},
-      {"gdal", looks_like_vector_file, read_vector_file},
+      {"gdal", looks_like_vector_file, read_with_gdal},
   };
   return kReaders;
 }

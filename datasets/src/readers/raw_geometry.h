@@ -48,24 +48,28 @@ DataError ring_refusal(const RingFinding& finding, const std::string& file);
 /// Throws DataError for the first finding that was not mended.
 void refuse_unmended(const Judgement& judgement, const std::string& file);
 
-/// Gathers a file's geometries into an ObstacleFile and keeps the books.
+/// Gathers a file's geometries into an ObstacleFile and keeps the books. Virtual, so that a reader in a module that is
+/// loaded (vector_library.h) runs the program's copy of the geometry behind it, not one of its own.
 class Collector {
  public:
   /// With a stream nothing is kept of single obstacles; it must outlive the collector.
   Collector(std::string file, std::string format, const ReadOptions& options, const ObstacleStream* stream = nullptr);
+  virtual ~Collector() = default;
+  Collector(const Collector&) = delete;
+  Collector& operator=(const Collector&) = delete;
 
-  void add(const RawGeometry& raw);
-  void pass_over(std::string place, std::string text);
-  void note(std::string place, std::string text);
+  virtual void add(const RawGeometry& raw);
+  virtual void pass_over(std::string place, std::string text);
+  virtual void note(std::string place, std::string text);
   /// Counts it, and throws it unless reading goes on.
-  void reject(DataError error);
+  virtual void reject(DataError error);
   void set_origin(ProjectionOrigin origin) { result_.origin = origin; }
   /// Grows the file's extent.
-  void extend(const geometry::Obstacle& shape);
+  virtual void extend(const geometry::Obstacle& shape);
   const std::optional<Extent>& extent() const { return result_.extent; }
   void set_coverage(Coverage coverage) { result_.coverage = coverage; }
   /// How much of the file is read, 0 to 1.
-  void progress(double share) const;
+  virtual void progress(double share) const;
 
   const std::string& file() const { return result_.file; }
   const ReadOptions& options() const { return options_; }

@@ -104,7 +104,7 @@ void read_jupedsim_xml(const std::filesystem::path& path, Collector& out);
 bool looks_like_barn_world(const Glimpse& glimpse);
 void read_barn_world(const std::filesystem::path& path, Collector& out);
 
-// obstacle_file.cpp; gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL
+// obstacle_file.cpp; gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL, called through vector_library.h
 bool looks_like_vector_file(const Glimpse& glimpse);
 void read_vector_file(const std::filesystem::path& path, Collector& out);
 

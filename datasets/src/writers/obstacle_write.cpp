@@ -7,6 +7,7 @@
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/obstacle_file.h"
+#include "gdal/vector_library.h"
 #include "json_text.h"
 #include "scenarios/scenario_json.h"
 #include "writers/writers.h"
@@ -78,11 +79,11 @@ Written csv(const Obstacles& obstacles, const std::string&) {
 }
 
 Written geopackage(const Obstacles& obstacles, const std::string& file) {
-  return {to_gdal_file(obstacles, "GPKG", file), {}};
+  return {vector_library().to_gdal_file(obstacles, "GPKG", file), {}};
 }
 
 Written flatgeobuf(const Obstacles& obstacles, const std::string& file) {
-  return {to_gdal_file(obstacles, "FlatGeobuf", file), {}};
+  return {vector_library().to_gdal_file(obstacles, "FlatGeobuf", file), {}};
 }
 
 struct Writer {

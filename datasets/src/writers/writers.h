@@ -28,7 +28,7 @@ Written to_rings_json(const Obstacles& obstacles, const std::string& file);
 Written to_menge_xml(const Obstacles& obstacles, const std::string& file);
 Written to_sumo_poly(const Obstacles& obstacles, const std::string& file);
 
-// gdal_writer.cpp, or gdal_absent.cpp in a build without GDAL. `driver`: GDAL's name.
+// gdal_writer.cpp, or gdal_absent.cpp in a build without GDAL; called through vector_library.h. `driver`: GDAL's name.
 std::string to_gdal_file(const Obstacles& obstacles, const std::string& driver, const std::string& file);
 
 }  // namespace exactvo::datasets

@@ -153,9 +153,9 @@ class Packages : public TemporaryFolder {
  protected:
   /// Whether the package takes a row of the first layer with this geometry.
   bool takes(std::string_view wkb) const {
-    batch::GeoPackage package(folder_ / "rows.gpkg", "{}");
+    const auto package = batch::make_geopackage(folder_ / "rows.gpkg", "{}");
     try {
-      package.add(row_with(wkb));
+      package->add(row_with(wkb));
     } catch (const std::logic_error&) {
       return false;
     }

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The parts of this component as modules in the library folder beside a program's, and the code that loads them.
+# A path from one folder to the other, so that a build tree and every prefix look alike.
+file(RELATIVE_PATH EXACTVO_MODULE_FOLDER ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/exactvo)
+set(EXACTVO_MODULE_FOLDER ${EXACTVO_MODULE_FOLDER} CACHE INTERNAL "Modules, seen from the program's folder")
+set(build "EXACTVO_VERSION=\"${PROJECT_VERSION}\"")
+
+add_library(exactvo_datasets_loader STATIC src/modules/loader.cpp)
+target_include_directories(exactvo_datasets_loader PRIVATE src ${EXACTVO_PROVENANCE_DIR})
+target_compile_definitions(exactvo_datasets_loader PRIVATE ${build} EXACTVO_MODULE_FOLDER="${EXACTVO_MODULE_FOLDER}")
+target_link_libraries(exactvo_datasets_loader PUBLIC exactvo_datasets PRIVATE ${CMAKE_DL_LIBS} exactvo_build_flags)
+add_dependencies(exactvo_datasets_loader exactvo_provenance)
+
+get_property(parts GLOBAL PROPERTY EXACTVO_PARTS_OF_datasets)
+foreach(part IN LISTS parts)
+  set(module exactvo_${part}_module)
+  add_library(${module} MODULE src/modules/${part}_module.cpp)
+  target_include_directories(${module} PRIVATE src ${EXACTVO_PROVENANCE_DIR})
+  target_compile_definitions(${module} PRIVATE ${build})
+  target_link_libraries(${module} PRIVATE exactvo_datasets_${part} exactvo_datasets exactvo_build_flags)
+  # What it holds of this library stays its own; nothing may be missing but what sanitizers bring.
+  target_link_options(${module} PRIVATE LINKER:--exclude-libs,ALL
+    $<$<STREQUAL:${EXACTVO_SANITIZE},>:LINKER:--no-undefined>)
+  set_target_properties(${module} PROPERTIES PREFIX "" OUTPUT_NAME exactvo_${part} CXX_VISIBILITY_PRESET hidden
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin/${EXACTVO_MODULE_FOLDER})
+  add_dependencies(${module} exactvo_provenance)
+  add_dependencies(exactvo_datasets_loader ${module})
+  string(TOUPPER ${part} upper)
+  target_compile_definitions(exactvo_datasets_loader PRIVATE EXACTVO_LOADS_${upper})
+  install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/exactvo)
+endforeach()

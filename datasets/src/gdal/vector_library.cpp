@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The functions that are linked: with GDAL, or those that say that there is none.
+#include "gdal/vector_library.h"
+
+namespace exactvo::datasets {
+
+const VectorLibrary& vector_library() {
+  static constexpr VectorLibrary kLibrary{read_vector_file, to_gdal_file, read_gdal_image, batch::make_geopackage};
+  return kLibrary;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// GDAL, SQLite and MPI as modules beside the program, loaded when they are first needed: PREFIX/bin/PROGRAM finds them
+// in the library folder of PREFIX, and nowhere else.
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "exactvo/datasets/data_error.h"
+#include "gdal/vector_library.h"
+#include "modules/module.h"
+#include "mpi/rank_library.h"
+
+namespace exactvo::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path module_path(const std::string& name) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return (program.parent_path() / EXACTVO_MODULE_FOLDER / (name + ".so")).lexically_normal();
+}
+
+[[noreturn]] void refuse(const fs::path& module, const std::string& purpose, const std::string& found) {
+  throw DataError(DataCode::format_unavailable, module.string(), "", found,
+                  "the module for " + purpose + ", installed with this program");
+}
+
+/// Never unloaded: what it registers with the process stays.
+const void* load(const std::string& name, const std::string& purpose, int visibility) {
+  const fs::path path = module_path("exactvo_" + name);
+  void* const module = ::dlopen(path.c_str(), RTLD_NOW | visibility);
+  if (module == nullptr) {
+    std::string words = ::dlerror();
+    const std::string prefix = path.string() + ": ";  // of its own file it is said already
+    if (words.rfind(prefix, 0) == 0) words.erase(0, prefix.size());
+    refuse(path, purpose, "a module that cannot be loaded: " + words);
+  }
+  auto* const entry = reinterpret_cast<ModuleFunction*>(::dlsym(module, kModuleFunction));
+  if (entry == nullptr) refuse(path, purpose, "a library that is no module of ExactVO");
+  const ModuleEntry given = entry();
+  if (std::string_view(given.build) != kBuild)
+    refuse(path, purpose, "the module of another build (" + std::string(given.build) + ")");
+  if (given.name != name) refuse(path, purpose, "another module, that of " + std::string(given.name));
+  return given.library;
+}
+
+}  // namespace
+
+#ifdef EXACTVO_LOADS_GDAL
+const VectorLibrary& vector_library() {
+  static const void* const library = load("gdal", "vector files, pictures and GeoPackages (GDAL)", RTLD_LOCAL);
+  return *static_cast<const VectorLibrary*>(library);
+}
+#endif
+
+#ifdef EXACTVO_LOADS_MPI
+const RankLibrary& rank_library() {
+  // Open MPI loads plugins of its own, which look for its names among those of the whole process.
+  static const void* const library = load("mpi", "batches over ranks (MPI)", RTLD_GLOBAL);
+  return *static_cast<const RankLibrary*>(library);
+}
+#endif
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What is done with MPI, as one table of functions on whole numbers: a program either links them or loads them when it
+/// runs in ranks (modules/loader.cpp). A failure in one rank ends all of them, as a scheduler expects.
+
+namespace exactvo::datasets {
+
+struct RankLibrary {
+  /// Joins the other ranks; `leave` before the process ends.
+  void (*join)();
+  void (*leave)();
+  int (*rank)();
+  int (*size)();
+  /// From the first rank to all.
+  long (*broadcast)(long value);
+  /// The least that any rank gives, to all.
+  long (*least)(long value);
+  void (*send)(const long* values, int count, int to, int tag);
+  /// From any rank; returns which.
+  int (*receive)(long* values, int count, int tag);
+};
+
+/// Throws DataError (E_FORMAT_UNAVAILABLE) where a program loads it and cannot.
+const RankLibrary& rank_library();
+
+}  // namespace exactvo::datasets
