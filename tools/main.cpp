@@ -11,6 +11,7 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/provenance.h"
+#include "support/parse_errors.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -21,13 +22,15 @@ namespace {
 
 std::vector<std::string> words;
 
+constexpr const char* kHelp = "help";  // a word in the place of a verb
+
 constexpr const char* kExitCodes =
     "Exit status:\n"
-    "  0    done\n"
-    "  1    done, and the answer is no (of verbs that judge)\n"
-    "  2    a file, an option or a place to write to is wrong; nothing was written\n"
+    "  0    completed\n"
+    "  1    completed; the check failed (verbs that check something)\n"
+    "  2    a file, an option or an output location is wrong; nothing was written\n"
     "  3    a defect of the program\n"
-    "  130  interrupted; nothing was written (a batch keeps what it has for --resume)\n"
+    "  130  interrupted; nothing was written (a batch keeps its progress for --resume)\n"
     "\n"
     "Results go to stdout, messages to stderr. SI units: metres, seconds, radians.";
 
@@ -51,7 +54,8 @@ std::vector<std::string> verb_names() {
 
 /// Refuses an unknown verb before the parser does, to suggest a known one.
 void check_verb() {
-  const std::vector<std::string> names = verb_names();
+  std::vector<std::string> names = verb_names();
+  names.push_back(kHelp);
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (words[i].rfind('-', 0) == 0) continue;
     if (std::find(names.begin(), names.end(), words[i]) != names.end()) return;
@@ -59,34 +63,24 @@ void check_verb() {
   }
 }
 
-std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
-  return names;
+/// What the parser is given: `help VERB` is `VERB --help`.
+std::vector<std::string> parsed_words() {
+  std::vector<std::string> out(words.begin(), words.end());
+  const auto help = std::find_if(out.begin() + 1, out.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
+  if (help == out.end() || *help != kHelp) return out;
+  const std::vector<std::string> names = verb_names();
+  const std::string verb = help + 1 == out.end() ? "" : *(help + 1);
+  if (verb.empty()) return {out.front(), "--help"};
+  if (std::find(names.begin(), names.end(), verb) == names.end())
+    throw UsageError("help", verb, fmt::format("one of {}{}", fmt::join(names, " "), suggestion(verb, names)));
+  return {out.front(), verb, "--help"};
 }
 
-/// The mistyped option with the nearest known one, where there is one; the parser may complain of what it lacks
-/// instead.
-std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) {
-  std::vector<std::string> known = option_names(app);
-  for (const CLI::App* verb : app.get_subcommands()) {
-    for (const std::string& name : option_names(*verb)) known.push_back(name);
-  }
-  for (const std::string& word : words) {
-    const std::string option = word.substr(0, word.find('='));
-    const bool unknown = option.rfind("--", 0) == 0 && std::find(known.begin(), known.end(), option) == known.end();
-    if (unknown) return option + " means nothing" + suggestion(option, known);
-  }
-  return error.what();
-}
-
-ExitCode parse_and_run(int argc, char** argv) {
+ExitCode parse_and_run() {
   CLI::App app("Velocity obstacles with exact geometry; formations among polyhedral obstacles.", "exactvo");
   bool quiet = false;
   app.add_flag("--quiet,-q", quiet, "Only errors on stderr");
-  app.set_version_flag("--version", version_text, "Version and how it was built");
+  app.set_version_flag("--version,-V", version_text, "Version and how it was built");
   app.footer(all_examples() + "\n" + kExitCodes);
   app.require_subcommand(1);
 
@@ -97,18 +91,21 @@ ExitCode parse_and_run(int argc, char** argv) {
     sub->footer("Examples:\n" + verb.examples + "\n" + kExitCodes);
     actions[sub] = verb.declare(*sub);
   }
-  if (argc == 1) {
+  std::vector<std::string> given = parsed_words();
+  if (given.size() == 1) {
     std::fputs(app.help().c_str(), stderr);
     return ExitCode::bad_input;
   }
+  given.erase(given.begin());
+  std::reverse(given.begin(), given.end());  // as the parser takes them
   try {
-    app.parse(argc, argv);
+    app.parse(given);
   } catch (const CLI::Success& help_or_version) {
     const auto code = static_cast<ExitCode>(app.exit(help_or_version));
     check_stdout();
     return code;
   } catch (const CLI::ParseError& error) {
-    error_message(parse_error_text(app, error) + " (exactvo --help)");
+    error_message(parse_error_text(app, error, words));
     return ExitCode::bad_input;
   }
   set_quiet(quiet);
@@ -117,10 +114,10 @@ ExitCode parse_and_run(int argc, char** argv) {
   return code;
 }
 
-ExitCode guarded(int argc, char** argv) {
+ExitCode guarded() {
   try {
     check_verb();
-    return parse_and_run(argc, argv);
+    return parse_and_run();
   } catch (const UsageError& error) {
     error_message(error.what());
     return ExitCode::bad_input;
@@ -148,5 +145,5 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // A reader that leaves early must not kill the run that writes files.
   exactvo::tools::words.assign(argv, argv + argc);
   exactvo::tools::note_interrupts();
-  return static_cast<int>(exactvo::tools::guarded(argc, argv));
+  return static_cast<int>(exactvo::tools::guarded());
 }

@@ -89,8 +89,8 @@ TEST(Repair, TellsWhatItCannotReadOrMendAndWhatItDropped) {
              "POLYGON ((0 0, 4 x, 4 4, 0 0))\nPOLYGON ((0 0, 1 0, 0 0))\n"
              "POLYGON ((0 0, 4 0, 4 4, 0 0), (1 1, 2 1, 1 1))\n");
   EXPECT_THAT(here.run("repair bad.wkt --out m.wkt").out,
-              AllOf(HasSubstr("not mended: bad.wkt: line 1, column 18: found"), HasSubstr("[E_NUMBER]"),
-                    HasSubstr("not mended: bad.wkt: line 2, column 1, ring 0, vertex 0: found too few"),
+              AllOf(HasSubstr("not repaired: bad.wkt: line 1, column 18: found"), HasSubstr("[E_NUMBER]"),
+                    HasSubstr("not repaired: bad.wkt: line 2, column 1, ring 0, vertex 0: found too few"),
                     HasSubstr("line 3, column 1: E_TOO_FEW_POINTS: ring 1, vertex 0, (1, 1): polygons 1 -> 1"),
                     HasSubstr("holes 1 -> 0, within them 0 -> 0 m^2")));
 }

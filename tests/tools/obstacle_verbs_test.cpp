@@ -196,7 +196,7 @@ TEST(ObstacleVerbs, DegreesThatBecameMetresAreSaid) {
        {std::string("validate unit.geojson"), std::string("segment unit.geojson"),
         std::string("repair unit.geojson --out u.wkt"), std::string("convert unit.geojson u.wkt"), vo,
         std::string("simulate unit.json")})
-    EXPECT_THAT(here.run(arguments).err, HasSubstr("degrees became metres")) << arguments;
+    EXPECT_THAT(here.run(arguments).err, HasSubstr("projected from degrees to metres")) << arguments;
   for (const std::string& arguments : {std::string("validate unit.geojson --units metres"), vo + " --units metres"})
     EXPECT_THAT(here.run(arguments).err, testing::Not(HasSubstr("degrees"))) << arguments;
   EXPECT_THAT(here.run(vo + " --units metres").out, HasSubstr("nearest boundary"));

@@ -286,6 +286,119 @@ TEST(Report, SaysWhereAPromiseIsNotKept) {
   EXPECT_THAT(row("A1"), HasSubstr("| X / X | X / arrives DIFFERS | X / arrives DIFFERS | X / below 18 DIFFERS |"));
 }
 
+/// The lines of the report that begin a table's row with these cells.
+std::string line_of(const std::string& report, const std::string& head, const std::string& after) {
+  const std::size_t at = report.find(head, report.find(after));
+  return at == std::string::npos ? "" : report.substr(at, report.find('\n', at) - at);
+}
+
+json& run_in(json& summary, const std::string& scenario, const std::string& word) {
+  for (json& run : summary)
+    if (run["scenario"] == scenario && (run["controller"] == word || run["method"] == word)) return run;
+  throw std::logic_error(scenario + " " + word);
+}
+
+TEST(Report, EveryRowOfSectionBIsCompared) {
+  json summary = rosy_summary();
+  const auto row = [&](const std::string& scene, const std::string& controller) {
+    return line_of(report_of(summary), "| " + scene + " | " + controller + " |", "Section V.B: three");
+  };
+  run_in(summary, "B3", "paper-signs")["formation_position_error"] = 0.093;
+  run_in(summary, "B2", "paper-signs")["formation_position_error"] = 0.2;
+  run_in(summary, "B1", "paper-literal")["formation_position_error"] = 1e7;
+  run_in(summary, "B2", "paper-literal")["formation_position_error"] = "inf";
+  run_in(summary, "B1", "default")["formation_velocity_error"] = 1e-3;
+  run_in(summary, "B2", "default")["min_obstacle_clearance"] = -0.5;
+  run_in(summary, "B3", "default")["formation_position_error"] = nullptr;
+  EXPECT_THAT(row("B3", "paper-signs"), HasSubstr("| 0.093 | 0.1 to 0.4 DIFFERS | 1e-12 | - |"));
+  EXPECT_THAT(row("B2", "paper-signs"), HasSubstr("| 0.2 | 0.1 to 0.4 | 1e-12 | - |"));
+  EXPECT_THAT(row("B0", "paper-literal"), HasSubstr("| above 100 (diverges) DIFFERS |"));
+  EXPECT_THAT(row("B1", "paper-literal"), HasSubstr("| 1e+07 | above 100 (diverges) |"));
+  EXPECT_THAT(row("B2", "paper-literal"), HasSubstr("| above 100 (diverges) |"));
+  EXPECT_THAT(row("B0", "default"), HasSubstr("| 1e-12 | below 1e-9 | 1e-12 | below 1e-09 | 0.100 | 0.200 |"));
+  EXPECT_THAT(row("B1", "default"), HasSubstr("| 1e-12 | below 1e-9 | 0.001 | below 1e-09 DIFFERS |"));
+  EXPECT_THAT(row("B2", "default"), HasSubstr("| -0.500 DIFFERS | 0.200 |"));
+  EXPECT_THAT(row("B3", "default"), HasSubstr("| - | below 1e-9 DIFFERS |"));
+}
+
+TEST(Report, ARunThatTouchedSomethingIsNotAsExpected) {
+  json summary = rosy_summary();
+  for (const char* method : {"orca", "ivo-edge", "ivo-cluster", "ivo"})
+    run_in(summary, "A13", method)["min_obstacle_clearance"] = -0.1;
+  EXPECT_THAT(line_of(report_of(summary), "| A13 |", "Section V.A: robots"),
+              HasSubstr("| 12.0! / 11.5 +- 0.5 | 12.0! / arrives DIFFERS | 12.0! / arrives DIFFERS | "
+                        "12.0! / below 18 DIFFERS |"));
+}
+
+TEST(Report, WhatIsSaidOfTheOptimaIsWhatTheRunsRecord) {
+  json summary = rosy_summary();
+  const auto row = [&] { return line_of(report_of(summary), "| (12) |", "Equations"); };
+  EXPECT_THAT(row(), HasSubstr("no certificate of optimality is recorded"));
+  EXPECT_THAT(row(), Not(HasSubstr("with a certificate for every optimum")));
+  for (json& run : summary) run["uncertified_optima"] = 0;
+  EXPECT_THAT(row(), HasSubstr("every optimum of these runs has a certificate"));
+  summary[3]["uncertified_optima"] = 7;
+  EXPECT_THAT(row(), HasSubstr("7 optima of these runs have no certificate"));
+  summary[3].erase("uncertified_optima");
+  EXPECT_THAT(row(), HasSubstr("no certificate of optimality is recorded"));
+}
+
+TEST(Report, CountsOfHalfPlanesAreThoseOfTheRuns) {
+  json summary = rosy_summary();
+  summary[2]["uncertified_half_planes"] = 5;
+  summary[4]["relaxed_steps"] = 6;
+  EXPECT_THAT(line_of(report_of(summary), "| (10) |", "Equations"), HasSubstr("5 half-planes are not certified"));
+  EXPECT_THAT(line_of(report_of(summary), "| (13) |", "Equations"), HasSubstr("6 decisions gave way"));
+}
+
+TEST(Report, RandomFieldsOfTheDefaultAreCompared) {
+  const auto row = [](int reached) {
+    const Workplace here;
+    here.write("summary.json", rosy_summary().dump());
+    std::filesystem::create_directories(here.path() / "random");
+    json rows = json::array();
+    for (const char* variant : {"orca", "ivo-edge", "ivo-cluster", "ivo"})
+      rows.push_back(
+          {{"kind", "convex"}, {"variant", variant}, {"fields", 10}, {"reached_and_safe", reached}, {"reached", 10}});
+    const json random{{"kind", "exactvo-random-fields"},
+                      {"seed", 1},
+                      {"fields", 10},
+                      {"program", {{"version", "1"}, {"commit", "c"}, {"compiler", "g"}}},
+                      {"rows", rows}};
+    here.write("random/random.json", random.dump());
+    return line_of(
+        markdown(reproduction_report(ReportData(here.path(), here.path(), kSources / "datasets/data/paper"))),
+        "| convex |", "Random fields");
+  };
+  EXPECT_THAT(row(10), HasSubstr("| 10 of 10 | 10 of 10 | 10 of 10 | 10 of 10 |"));
+  EXPECT_THAT(row(9), HasSubstr("| 9 of 10 | 9 of 10 | 9 of 10 | 9 of 10 DIFFERS |"));
+}
+
+TEST(Report, InitialStatesAreComparedWithThePapers) {
+  const Workplace here;
+  here.write("summary.json", rosy_summary().dump());
+  const auto report = [&](const std::filesystem::path& scenarios) {
+    const std::string text = markdown(reproduction_report(ReportData(here.path(), here.path(), scenarios)));
+    const std::size_t from = text.find("Table I:");
+    return text.substr(from, text.find("Section V.A: robots") - from);
+  };
+  EXPECT_THAT(report(kSources / "datasets/data/paper"), Not(HasSubstr("DIFFERS")));
+  for (const char* name : {"A1.json", "B1.json"}) {
+    json scenario = json::parse(text_of(kSources / "datasets/data/paper" / name));
+    scenario["robots"][0]["radius"] = 0.4;
+    scenario["robots"][1]["position"] = {24, 13};
+    if (scenario.contains("formation")) {
+      scenario["formation"]["leader"]["speed"] = 3.0;
+      scenario["formation"]["gains"]["k1"] = 0.5;
+    }
+    here.write(name, scenario.dump());
+  }
+  const std::string changed = report(here.path());
+  for (const char* words :
+       {"| 0.4 DIFFERS |", "| (24, 13) DIFFERS |", "0.5, 0.45, 37.5 DIFFERS", "at 3.0000 m/s = |(3, 3)| DIFFERS"})
+    EXPECT_THAT(changed, HasSubstr(words)) << changed;
+}
+
 TEST(Report, IsOneFileWithThePicturesInIt) {
   const Workplace here;
   here.write("summary.json", rosy_summary().dump());
@@ -297,7 +410,7 @@ TEST(Report, IsOneFileWithThePicturesInIt) {
   EXPECT_THAT(page, Not(HasSubstr("src=\"figures")));
   EXPECT_THAT(page, Not(HasSubstr("http")));
   for (const char* heading :
-       {"Claims", "Equations", "Table I:", "Table II:", "Section V.A", "Section V.B", "Random fields", "ladder"})
+       {"Claims", "Equations", "Table I:", "Table II:", "Section V.A", "Section V.B", "Random fields", "Ablations"})
     EXPECT_THAT(page, HasSubstr(heading));
   EXPECT_THAT(here.read("report.md"), HasSubstr("](figures/all-ivo.png)"));
 }

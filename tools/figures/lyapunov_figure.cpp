@@ -44,7 +44,7 @@ const std::vector<Curve> kSound{
     {"kinetic", [](const LyapunovRow& r) { return r.sound.kinetic; }},
     {"consensus", [](const LyapunovRow& r) { return r.sound.consensus; }},
     {"slots", [](const LyapunovRow& r) { return r.sound.slots; }},
-    {"V that holds", [](const LyapunovRow& r) { return r.sound.value(); }, true},
+    {"valid V", [](const LyapunovRow& r) { return r.sound.value(); }, true},
 };
 const std::vector<Curve> kSoundRates{
     {"consensus", [](const LyapunovRow& r) { return r.sound_rates.consensus; }},

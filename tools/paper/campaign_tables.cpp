@@ -142,7 +142,7 @@ Figure counts_figure(const std::vector<VariantResult>& results, const CampaignOp
       quoted(title), 1.12 * static_cast<double>(options.fields), n + 0.7,
       n - static_cast<double>(formation::remedy_ladder().size()) + 0.5,
       n - static_cast<double>(formation::remedy_ladder().size()) + 0.5);
-  return {"remedies", data.text(), title + ": the ladder above, the ablations below.", {960, 620}, body + plot.text()};
+  return {"remedies", data.text(), title + ": options added one by one above, ablations below.", {960, 620}, body + plot.text()};
 }
 
 /// J in B1 and B3 for every set, logarithmic.
@@ -161,7 +161,7 @@ Figure jitter_figure(const std::vector<VariantResult>& results, const std::vecto
         fmt::format("using 2:1:yticlabels(3) with points pt {} ps 1.3 lw 2 lc rgb '{}'", 4 + 2 * s, series_colour(s)),
         kFormationScenes[s]);
   }
-  const std::string title = "Jitter J by remedies: the sum of |a_{k+1} - a_k|";
+  const std::string title = "Jitter J by controller options: the sum of |a_{k+1} - a_k|";
   const std::string body = fmt::format(
       "  set title {}\n  set logscale x\n  set format x '10^%T'\n  set yrange [0.3:{}]\n  set xlabel 'J [m/s^2]'\n"
       "  set lmargin 20\n  set grid lc rgb '#dcdcdc'\n  set key outside right top\n",

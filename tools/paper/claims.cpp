@@ -147,7 +147,7 @@ Claim distances_stay_positive(const ReportData& data) {
   return {"Fig. 6(b), (c)",
           "The minimum distances from obstacles and between robots are both greater than 0.",
           judged(paper, untouched),
-          fmt::format("Least clearance over A1-A15, swept over the motion: {} m with ivo-edge, {} m with ivo.",
+          fmt::format("Minimum clearance over A1-A15, swept over the motion: {} m with ivo-edge, {} m with ivo.",
                       shown(least(paper, least_clearance), "{:.4f}"), shown(least(ours, least_clearance), "{:.4f}")),
           "figures/fig6-ivo-edge/A2/obstacle_distance.png",
           "ivo-edge"};
@@ -159,7 +159,7 @@ Claim dynamic_obstacles(const ReportData& data) {
   return {"Section V.A",
           "It can avoid dynamic obstacles while avoiding polyhedral obstacles.",
           judged({&paper}, bypassed),
-          fmt::format("A7, four robots and a wall: least distance between robots {} m with ivo-edge, {} m with ivo.",
+          fmt::format("A7, four robots and a wall: minimum distance between robots {} m with ivo-edge, {} m with ivo.",
                       shown(value_of(paper, "min_robot_clearance"), "{:.4f}"),
                       shown(value_of(ours, "min_robot_clearance"), "{:.4f}")),
           "figures/fig6-ivo-edge/A7/paths.png",
@@ -189,7 +189,7 @@ Claim theorem_one(const ReportData& data) {
   return {"Theorem 1, Section IV.B",
           "The cooperative formation with obstacle avoidance can be achieved with the control protocol in (15).",
           judged(signs, [](const Json& r) { return formed(r) && untouched(r); }),
-          fmt::format("Position error at the end, B0-B3: as printed {} m at least; signs mended {} to {} m, "
+          fmt::format("Position error at the end, B0-B3: as printed {} m at least; signs corrected {} to {} m, "
                       "something touched in {}; default {} m at most, nothing touched in {}.",
                       shown(least(literal, error), "{:.3g}"), shown(least(signs, error), "{:.2g}"),
                       shown(most(signs, error), "{:.2g}"), names(signs, no(untouched)),
@@ -219,8 +219,8 @@ Claim lyapunov_falls(const ReportData& data) {
           proves ? Verdict::holds : Verdict::fails,
           fmt::format("V falls, but not towards the formation. With a constant relative V_IVO = 0.1 m/s on robot 1 it "
                       "falls to {:.3f}, below zero, while robot 1 settles {:.2f} m from its slot. In B0-B3 with the "
-                      "signs mended it falls to {} (greatest rise in a step {}) while the formation ends {} to {} m "
-                      "from its slots. The function that holds is in every recording beside it.",
+                      "signs corrected it falls to {} (greatest rise in a step {}) while the formation ends {} to {} m "
+                      "from its slots. A valid Lyapunov function is recorded beside it in every run.",
                       course.least, lost, shown(least(signs, of_paper_function("least")), "{:.0f}"),
                       shown(most(signs, of_paper_function("largest_rise")), "{:.2g}"),
                       shown(least(signs, error), "{:.2g}"), shown(most(signs, error), "{:.2g}")),
@@ -234,7 +234,7 @@ Claim velocities_converge(const ReportData& data) {
   return {"Fig. 8(c)",
           "The velocity components converge to the desired velocity.",
           judged(signs, [&](const Json& r) { return below(error(r), formation::kFormed); }),
-          fmt::format("Velocity error at the end: signs mended {} to {} m/s; default {} m/s at most.",
+          fmt::format("Velocity error at the end: signs corrected {} to {} m/s; default {} m/s at most.",
                       shown(least(signs, error), "{:.2g}"), shown(most(signs, error), "{:.2g}"),
                       shown(most(ours, error), "{:.1e}")),
           "figures/fig8-paper-signs/B3/velocity.png",
@@ -256,7 +256,7 @@ std::optional<double> ablated_jitter(const ReportData& data, const std::string& 
 std::string preference_words(const ReportData& data) {
   const auto standard = ablated_jitter(data, "default"), constant = ablated_jitter(data, "constant |v_pref|");
   if (!standard || !constant || !(*standard > 0.0))
-    return "Robots avoid each other in B0 too; what would tell causes apart, the ablations, was not run.";
+    return "Robots avoid each other in B0 too; the ablations, which separate the causes, were not run.";
   return fmt::format(
       "Robots avoid each other in B0 too; by the ablations, which leave the avoidance as it is, a preference of "
       "constant size alone makes the default's J in B0 {:.0f} times as much.",
@@ -284,7 +284,7 @@ Claim spacing_stays_positive(const ReportData& data) {
   return {"Fig. 8(d)",
           "The spacing between robots is always greater than 0.",
           judged(signs, apart),
-          fmt::format("Least distance between rims, B0-B3: signs mended {} m, default {} m.",
+          fmt::format("Minimum distance between rims, B0-B3: signs corrected {} m, default {} m.",
                       shown(least(signs, spacing), "{:.3f}"), shown(least(ours, spacing), "{:.3f}")),
           "figures/fig8-paper-signs/B3/robot_distance.png",
           "paper-signs"};
@@ -298,14 +298,14 @@ Claim converges_quickly(const ReportData& data) {
       judged(signs, bypassed),
       fmt::format(
           "Every robot within the scene's arrival tolerance of its slot once the leader rests, and nothing touched: "
-          "signs mended {}; default {}, the last at {} s, the leader at {} s.",
+          "signs corrected {}; default {}, the last at {} s, the leader at {} s.",
           tally(signs, bypassed), tally(ours, bypassed), shown(most(ours, number("last_arrival_time")), "{:.2f}"),
           shown(most(ours, number("leader_arrival_time")), "{:.2f}")),
       "figures/fig8-paper-signs/B3/paths.png",
       "paper-signs"};
 }
 
-/// How many times more the mended signs jitter than the default; nothing where either was not run.
+/// How many times more the corrected signs jitter than the default; nothing where either was not run.
 std::optional<double> jitter_ratio(const ReportData& data, const char* scene) {
   const auto before = value_of(data.run(scene, "ivo", "paper-signs"), "jitter");
   const auto after = value_of(data.run(scene, "ivo", "default"), "jitter");
@@ -318,13 +318,14 @@ Claim open_problem(const ReportData& data) {
   const Verdict verdict = !b1 || !b3                      ? Verdict::not_run
                           : std::min(*b1, *b3) >= kSolved ? Verdict::solved
                                                           : Verdict::not_solved;
-  return {"Section VI",
-          "The jitter problem will be considered in the future.",
-          verdict,
-          fmt::format("J with the signs mended is {} times the default's in B1, {} times in B3; solved from {:.0f} on.",
-                      shown(b1, "{:.0f}"), shown(b3, "{:.0f}"), kSolved),
-          "figures/jitter.png",
-          "default"};
+  return {
+      "Section VI",
+      "The jitter problem will be considered in the future.",
+      verdict,
+      fmt::format("J with the signs corrected is {} times the default's in B1, {} times in B3; solved from {:.0f} on.",
+                  shown(b1, "{:.0f}"), shown(b3, "{:.0f}"), kSolved),
+      "figures/jitter.png",
+      "default"};
 }
 
 }  // namespace

@@ -60,7 +60,9 @@ const std::vector<Equation> kVelocityObstacles{
      "IVOA = { v : (v - (v_opt + alpha u)).n >= 0 }",
      "\"O = 1\", \"robot O\"; n is undefined at u = 0 and where v_opt is outside",
      "n: the outward unit normal of the velocity obstacle at its boundary point nearest v_opt; n.v >= h_S(n) / tau; "
-     "alpha = 1 against obstacles and robots that do not cooperate, 1/2 between robots; certified",
+     "alpha = 1 against obstacles and robots that do not cooperate, 1/2 between robots; each is certified to exclude "
+     "the "
+     "velocity obstacle",
      {{"vo/include/exactvo/vo/velocity_obstacle.h", "half_plane"},
       {"vo/include/exactvo/vo/reciprocal.h", "reciprocal_half_planes"}}},
     {"(11)",
@@ -71,12 +73,14 @@ const std::vector<Equation> kVelocityObstacles{
     {"(12)",
      "v_new = argmin over IVOA of |v - v_pref|",
      "called a linear program; it is the closest point of a convex set, a small quadratic program",
-     "solved with a certificate for every optimum",
+     "solved in double precision by an incremental method, the constraints moved inward by the rounding; whether it is "
+     "feasible is decided heuristically",
      {{"vo/include/exactvo/vo/lp/solve.h", "solve"}}},
     {"(13)",
      "IVOA+ = IVOA cut by every ORCA half-plane against another robot",
      "can be infeasible",
-     "static lines stay hard, the robots' lines give by the least possible, with a certificate of infeasibility",
+     "static half-planes are hard; the largest violation of those of robots and moving obstacles is made as small as "
+     "possible",
      {{"formation/src/decision.cpp", "robot_constraints"}}},
 };
 

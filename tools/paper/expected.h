@@ -2,12 +2,15 @@
 #pragma once
 
 /// \file
-/// What is promised of Section V.A's scenarios: the report prints it beside what was seen, and
-/// tests/formation/paper_table_test.cpp holds the runs to it.
+/// What is expected of Section V's runs: the report prints it beside what was seen and says where it differs, and
+/// tests/formation/{paper,formation}_table_test.cpp hold the runs to it.
+
+#include <limits>
 
 namespace exactvo::tools {
 
-/// A row: when the last robot arrives by ORCA, and which of the others arrive at all. Their times are not promised.
+/// A row of Section V.A: when the last robot arrives by ORCA, and which of the others arrive at all. Their times are
+/// not promised.
 struct Expected {
   const char* scenario;
   double orca;         ///< s; kStuck
@@ -30,5 +33,22 @@ inline constexpr Expected kExpected[] = {
 
 inline constexpr double kLatest = 18.0;        ///< s: the default method arrives everywhere before it
 inline constexpr double kOrcaTolerance = 0.5;  ///< s: between two implementations of the same rule
+
+/// A controller of Section V.B: the worst position error of a robot at the end, m, from `least` to `most`.
+struct ExpectedFormation {
+  const char* controller;
+  double least, most;  ///< m
+  const char* words;
+  double most_velocity_error;  ///< m/s; infinite where nothing is expected
+  bool untouched;              ///< nothing is touched
+};
+inline constexpr double kAnything = std::numeric_limits<double>::infinity();
+inline constexpr double kFormationLost = 100.0;  ///< m
+inline constexpr double kFormationKept = 1e-9;   ///< m and m/s
+
+inline constexpr ExpectedFormation kExpectedFormations[] = {
+    {"paper-literal", kFormationLost, kAnything, "above 100 (diverges)", kAnything, false},
+    {"paper-signs", 0.1, 0.4, "0.1 to 0.4", kAnything, false},
+    {"default", 0.0, kFormationKept, "below 1e-9", kFormationKept, true}};
 
 }  // namespace exactvo::tools

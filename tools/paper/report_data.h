@@ -33,6 +33,9 @@ class ReportData {
   /// The metrics of one run; `controller` is empty without a formation. Null where it was not run.
   const Json& run(const std::string& scenario, const std::string& method, const std::string& controller = "") const;
 
+  /// All of them, an array.
+  const Json& runs() const { return summary_; }
+
   /// A row of random.json or ablations.json; null where there is none.
   const Json& random(const std::string& kind, const std::string& variant) const;
   const Json& random() const { return random_; }

@@ -64,7 +64,7 @@ class Experiments {
   static std::string avoidance_head() {
     std::string text = fmt::format("Section V.A: last arrival [s], X where a robot never arrives\n{:<5}", "");
     for (const Method m : kMethods) text += fmt::format("{:>13}", name(m));
-    return text + "   least clearance of ivo [m]: obstacles, robots\n";
+    return text + "   minimum clearance of ivo [m]: obstacles, robots\n";
   }
 
   static std::string formation_head() {
@@ -74,7 +74,7 @@ class Experiments {
         "", "controller", "position error [m]", "velocity error [m/s]", "obstacles", "robots", "jitter");
   }
 
-  /// The paper's open problem: how many times less the default jitters than the mended signs alone.
+  /// The paper's open problem: how many times less the default jitters than the corrected signs alone.
   void print_jitter_ratios() {
     std::string text = "\nJitter, paper-signs over default:";
     for (int i = 0; i < kFormationScenarios; ++i) {
@@ -86,7 +86,7 @@ class Experiments {
 
   void print_footnotes() {
     print(
-        "\n!  touched an obstacle or another robot on the way. Errors are those at the end, clearances the least "
+        "\n!  touched an obstacle or another robot on the way. Errors are final values, clearances minima "
         "[m].\n");
   }
 
@@ -185,12 +185,12 @@ class Experiments {
     }
     std::vector<Panel> panels;
     for (const auto& run : formation_) panels.push_back({panel_title(run), &run});
-    add_sheet("all-formation", "Section V.B, method ivo: a column a controller", panels, 3);
+    add_sheet("all-formation", "Section V.B, method ivo: one column per controller", panels, 3);
     add_comparison();
     add_jitter();
   }
 
-  /// J of the mended signs and of the default, side by side.
+  /// J of the corrected signs and of the default, side by side.
   void add_jitter() {
     DataFile data;
     const int index = data.begin("jitter J [m/s^2]", "place, paper-signs, default, scenario");

@@ -9,8 +9,8 @@ namespace exactvo::tools {
 
 std::string projection_line(const datasets::ObstacleFile& file) {
   if (!file.origin) return "";
-  return fmt::format("{}: degrees became metres round longitude {}, latitude {}", file.file, file.origin->longitude,
-                     file.origin->latitude);
+  return fmt::format("{}: projected from degrees to metres, centred on longitude {}, latitude {}", file.file,
+                     file.origin->longitude, file.origin->latitude);
 }
 
 void say_projection(const datasets::ObstacleFile& file) {

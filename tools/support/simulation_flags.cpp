@@ -40,7 +40,7 @@ double bound_of(const std::string& option, const std::string& text) {
     read = 0;
   }
   if (read == 0 || read != text.size() || !(bound >= 0.0) || !std::isfinite(bound))
-    throw UsageError("--remedy", option, "a number of m/s^2 from 0 on");
+    throw UsageError("--remedy", option, "a number of m/s^2, at least 0");
   return bound;
 }
 
@@ -81,18 +81,18 @@ std::optional<formation::Remedies> remedies_of(const SimulationFlags& flags, for
 }  // namespace
 
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
-  app.add_option("--method,-m", flags.method, help("How robots avoid", formation::method_names()))
+  app.add_option("--method,-m", flags.method, help("Avoidance method", formation::method_names()))
       ->capture_default_str();
   flags.of_formations = {
-      app.add_option("--controller,-c", flags.controller, help("Of a formation", formation::controller_names()))
+      app.add_option("--controller,-c", flags.controller, help("Formation controller", formation::controller_names()))
           ->capture_default_str(),
-      app.add_option("--integrator", flags.integrator, help("Of a formation", formation::integrator_names()))
+      app.add_option("--integrator", flags.integrator, help("Formation integrator", formation::integrator_names()))
           ->capture_default_str(),
       app.add_option(
           "--remedies", flags.remedies,
-          help("Instead of the controller, a rung of the ladder or an ablation", formation::remedy_set_names())),
+          help("Instead of the controller, a named set of controller options", formation::remedy_set_names())),
       app.add_option("--remedy", flags.switches,
-                     fmt::format("NAME=on or NAME=off, as often as needed, beside the controller or --remedies: {}; "
+                     fmt::format("Switch a controller option: NAME=on or NAME=off, repeatable: {}; "
                                  "acceleration_bound=8 (m/s^2)",
                                  fmt::join(switch_names(), ", ")))};
   declare_seed(app, flags.seed);
@@ -122,7 +122,7 @@ void note_unused(const SimulationFlags& flags, const formation::Scenario& scenar
   if (scenario.formation) return;
   for (const CLI::Option* option : flags.of_formations) {
     if (option->count() > 0) {
-      message("note: --" + option->get_lnames().front() + " does nothing here: the scenario has no formation");
+      message("note: --" + option->get_lnames().front() + " has no effect: the scenario has no formation");
     }
   }
 }

@@ -15,7 +15,7 @@ UsageError::UsageError(const std::string& where, const std::string& found, const
 
 void require_length(const std::string& option, double value) {
   if (!(value >= 0.0) || std::isinf(value))
-    throw UsageError(option, fmt::format("{}", value), "a length in m, from 0 on");
+    throw UsageError(option, fmt::format("{}", value), "a length in m, at least 0");
 }
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {

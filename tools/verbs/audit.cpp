@@ -35,7 +35,7 @@ std::vector<fs::path> recordings_in(const std::string& path) {
     if (entry.is_regular_file() && entry.path().filename() == "recording.jsonl") found.push_back(entry.path());
   }
   std::sort(found.begin(), found.end());
-  if (found.empty()) throw UsageError("path", path, "a folder with a recording.jsonl in it or below");
+  if (found.empty()) throw UsageError("path", path, "a folder that contains a recording.jsonl");
   return found;
 }
 
@@ -76,16 +76,17 @@ ExitCode audit_certificates(const Flags& flags) {
 
 ExitCode audit(const Flags& flags) {
   if (flags.path.empty() == flags.certificates.empty())
-    throw UsageError("audit", flags.path.empty() ? "nothing" : "path and --certificate", "one of the two");
+    throw UsageError("audit", flags.path.empty() ? "neither a path nor --certificate" : "a path and --certificate",
+                     "one of the two: a recording (or a folder of them), or --certificate FILE");
   return flags.path.empty() ? audit_certificates(flags) : audit_recordings(flags);
 }
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("path", flags->path, "A recording.jsonl, or a folder with some in it or below");
+  app.add_option("path", flags->path, "A recording.jsonl, or a folder searched for them");
   app.add_option("--certificate", flags->certificates,
-                 "FILE with a certificate a line, or with what vo --json printed; - for stdin");
-  app.add_flag("--json", flags->json, "The counts and findings, or a verdict a certificate, as JSON on stdout");
+                 "FILE with one certificate per line, or the output of vo --json; - for stdin");
+  app.add_flag("--json", flags->json, "Counts and findings, or one verdict per certificate, as JSON on stdout");
   return [flags] { return audit(*flags); };
 }
 

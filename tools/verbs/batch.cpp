@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 
+#include "support/parse_errors.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -231,7 +232,7 @@ std::string words_of(const BatchTally& tally, const char* what) {
 /// Of a shard only what the last one did is known, and how long that took: no rate of the whole.
 std::string words_of(const BatchSummary& s, const std::string& out, bool with_rates) {
   std::string text = words_of(s.files, "files") + "\n" + words_of(s.obstacles, "obstacles");
-  text += fmt::format("\n{} points and empty geometries passed over\n", s.passed_over);
+  text += fmt::format("\n{} points and empty geometries skipped\n", s.passed_over);
   text += fmt::format("{} obstacles in {}: {} certified, {} uncertified, {} vertices\n", s.obstacles_out, out,
                       s.certified, s.uncertified, s.vertices);
   if (with_rates && s.obstacles_now > 0 && s.seconds > 0.0) {
@@ -321,39 +322,42 @@ ExitCode batch(const Flags& flags) {
 }
 
 void declare_run(CLI::App& app, Flags& flags) {
-  app.add_option("paths", flags.paths,
-                 "Files, and folders whose files are read; outputs of earlier batches in them are not")
+  app.add_option("paths", flags.paths, "Files and folders; outputs of earlier batches inside the folders are ignored")
       ->required();
   declare_out(app, flags.out, "Folder for the results")->required();
   app.add_option("-j,--jobs", flags.workers,
-                 "Workers; as many as there are processors unless said, one a rank under mpirun")
-      ->check(CLI::Range(1, 4096));
-  app.add_flag("--resume", flags.resume,
-               "Go on with what a killed batch has left in the folder, or join one at work on it");
-  app.add_option("--limit-memory", flags.limit_memory, "Bytes for obstacles under way, such as 2GB")
+                 "Worker threads; by default one per processor, or one per rank under mpirun")
+      ->check(whole_number(1, 4096));
+  app.add_flag("--resume", flags.resume, "Continue an interrupted batch in the folder, or join one that is running");
+  app.add_option("--limit-memory", flags.limit_memory, "Memory for obstacles being processed, such as 2GB")
       ->transform(CLI::AsSizeValue(false));
-  app.add_option("--shard", flags.shard, "i/n: every n-th file from the i-th on; the last shard puts all together");
-  app.add_option("--write", flags.write, "Of geopackage, geojson, pictures, figures (always)")->capture_default_str();
+  app.add_option("--shard", flags.shard,
+                 "i/n: every n-th file from the i-th on; the last shard to finish merges the results");
+  app.add_option("--write", flags.write, "Outputs, from geopackage, geojson, pictures, figures (figures: always)")
+      ->capture_default_str();
 }
 
 void declare_reading(CLI::App& app, Flags& flags) {
-  app.add_flag("--repair", flags.repair, "Mend what can be mended: self-crossings, overlaps, holes out of place");
-  app.add_option("--format", flags.format, "Of all files; told by content and name unless said");
+  app.add_flag("--repair", flags.repair, "Repair invalid geometry: self-crossings, overlaps, misplaced holes");
+  app.add_option("--format", flags.format, "Format of all files; by default detected from content and name");
   app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
   app.add_option("--cell-size", flags.cell_size, "m; of grids without a scale (1) and of scans (0.05)");
   app.add_option("--partition", flags.partition,
                  "Of polygons into convex pieces: triangles (quick), automatic (fewest up to 32 vertices), greene, "
                  "approximate, optimal")
       ->capture_default_str();
-  app.add_option("--tolerance", flags.tolerance, "m; by which facades may leave the obstacle")->capture_default_str();
+  app.add_option("--tolerance", flags.tolerance, "Largest distance of a facade from its obstacle, m")
+      ->capture_default_str();
 }
 
 void declare_robot(CLI::App& app, Flags& flags) {
-  app.add_option("--time-horizon", flags.time_horizon, "s; of a robot's velocity obstacles");
-  app.add_option("--radius", flags.radius, "m; of the robot");
+  app.add_option("--time-horizon", flags.time_horizon, "s; horizon of the velocity obstacles");
+  app.add_option("--radius", flags.radius, "Radius of the robot, m");
   app.add_option("--position", flags.positions, "X,Y of the robot, m; may be repeated")->allow_extra_args(false);
-  app.add_option("--velocity", flags.velocity, "X,Y, m/s; half-planes are the nearest to it")->capture_default_str();
-  app.add_option("--goal", flags.goal, "X,Y, m; trap-free ellipses are made for the way there from the first position");
+  app.add_option("--velocity", flags.velocity, "X,Y, m/s; half-planes are nearest to this velocity")
+      ->capture_default_str();
+  app.add_option("--goal", flags.goal,
+                 "X,Y, m; trap-free ellipses are fitted for a robot going there from the first position");
 }
 
 Action declare(CLI::App& app) {
@@ -367,10 +371,11 @@ Action declare(CLI::App& app) {
 }  // namespace
 
 Verb batch_verb() {
-  return {"batch", "Every obstacle of every file taken apart, enclosed and certified",
+  return {"batch", "Decompose, enclose and certify every obstacle of every file",
           "  exactvo batch maps --out out/maps -j 4 --repair\n"
-          "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after a kill, or beside it)\n"
-          "    (status 1: something is not certified, or no obstacle came out; rejected files are named)\n"
+          "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after an interruption, or beside a running "
+          "batch)\n"
+          "    (status 1: a result is not certified, or no obstacle was produced; rejected files are listed)\n"
           "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"
           "  exactvo batch map.yaml --out out/map --time-horizon 3 --radius 0.3 --position 1,2 --position 4,2\n",
           declare};

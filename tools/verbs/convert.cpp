@@ -28,7 +28,7 @@ void say_what_was_read(const datasets::ObstacleFile& file) {
                         file.coverage->occupied, file.coverage->cells, file.obstacles.size()));
   }
   if (file.origin) message(projection_line(file) + "; the output does not hold that centre");
-  if (file.counts.repaired > 0) message(fmt::format("{}: {} obstacles put right", file.file, file.counts.repaired));
+  if (file.counts.repaired > 0) message(fmt::format("{}: {} obstacles repaired", file.file, file.counts.repaired));
   if (file.counts.passed_over > 0)
     message(fmt::format("{}: lost {} inputs that are no obstacles (points, empty geometries)", file.file,
                         file.counts.passed_over));
@@ -43,7 +43,7 @@ datasets::ObstacleFile read(const Flags& flags) {
   } catch (const datasets::DataError& error) {
     const std::string place = error.place();
     if (place.find("ring") != std::string::npos && !flags.repair)
-      message("--repair mends most such problems, --skip leaves such obstacles out");
+      message("--repair repairs most such problems, --skip omits such obstacles");
     throw;
   }
 }
@@ -75,15 +75,15 @@ Action declare(CLI::App& app) {
       ->required();
   declare_reading_flags(app, flags->reading, "--from");
   app.add_option("--to", flags->to, "What to write:" + listed(datasets::writable_formats()));
-  app.add_flag("--repair", flags->repair, "Mend what can be mended (exactvo repair says what was)");
-  app.add_flag("--skip", flags->skip, "Leave out obstacles that can't be used, and end with status 1");
+  app.add_flag("--repair", flags->repair, "Repair invalid geometry (exactvo repair lists the changes)");
+  app.add_flag("--skip", flags->skip, "Omit invalid obstacles, and end with status 1");
   return [flags] { return convert(*flags); };
 }
 
 }  // namespace
 
 Verb convert_verb() {
-  return {"convert", "Bring obstacles from one file format to another",
+  return {"convert", "Convert obstacles from one file format to another",
           "  exactvo convert map.yaml map.geojson\n"
           "  exactvo convert city.osm city.gpkg --repair --skip\n",
           declare};

@@ -51,7 +51,7 @@ std::size_t find_robot(const Scenario& scenario, const std::string& text) {
 /// The last row in which a decision was taken: the final row of a recording has none.
 const formation::Step& last_decision(const formation::Recording& recording, double time) {
   if (recording.steps.size() < 2)
-    throw UsageError("--time", fmt::format("{}", time), "a time at which the run goes on");
+    throw UsageError("--time", fmt::format("{}", time), "a time before the end of the run");
   const formation::Step& step = recording.steps[recording.steps.size() - 2];
   const double end = recording.steps.back().time;
   if (time > end + 0.5 * recording.time_step) {
@@ -94,7 +94,7 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
 }
 
 void check(const Flags& flags) {
-  if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time from 0 s on");
+  if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time of at least 0 s");
   check_figure_name("--out", flags.out);
 }
 
@@ -112,8 +112,8 @@ ExitCode explain(const Flags& flags) {
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
-  app.add_option("--time,-t", flags->time, "Of the decision, s")->required();
-  app.add_option("--robot,-r", flags->robot, "Its id, or its number counted from 0")->required();
+  app.add_option("--time,-t", flags->time, "Time of the decision, s")->required();
+  app.add_option("--robot,-r", flags->robot, "The robot: its id, or its index from 0")->required();
   declare_out(app, flags->out, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
   declare_simulation_flags(app, flags->simulation);
   return [flags] { return explain(*flags); };
@@ -122,7 +122,7 @@ Action declare(CLI::App& app) {
 }  // namespace
 
 Verb explain_verb() {
-  return {"explain", "Draw one robot's velocity space at one moment, and say which constraints bind and why",
+  return {"explain", "Draw one robot's velocity space at one moment and explain which constraints are binding",
           "  exactvo explain datasets/data/paper/A1.json --method orca --time 10 --robot R1 --out out/stuck.svg\n",
           declare};
 }

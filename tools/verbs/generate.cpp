@@ -116,10 +116,10 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("kind", flags->kind, fmt::format("One of {}", fmt::join(datasets::generator_kind_names(), " ")));
   declare_seed(app, flags->seed, "Of the generator; the same seed gives the same bytes on every machine");
-  app.add_option("--count", flags->count, "Items; a maze, a block or a field is one of several obstacles");
+  app.add_option("--count", flags->count, "Number of items; one maze, block or field consists of several obstacles");
   app.add_option("--out", flags->out,
                  "The file to write; its extension says the format. - is stdout (wkt, or as --to says)");
-  app.add_option("--to", flags->to, "The format of --out, where its extension does not say it");
+  app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
   app.add_option("--figure", flags->figure, "FILE.svg of the first 400 items");
   app.add_flag("--list", flags->list, "Print the kinds");
   return [flags] { return generate(*flags); };
@@ -128,7 +128,7 @@ Action declare(CLI::App& app) {
 }  // namespace
 
 Verb generate_verb() {
-  return {"generate", "Make obstacles by seed: polygons, stars, walls, mazes, blocks, floors, needles, fields",
+  return {"generate", "Generate obstacles from a seed: polygons, stars, walls, mazes, blocks, floors, needles, fields",
           "  exactvo generate --list\n"
           "  exactvo generate maze --seed 7 --count 4 --out mazes.geojson --figure mazes.svg\n",
           declare};

@@ -127,6 +127,8 @@ class Output {
 
 void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
   Output out;
+  out.add(fmt::format("{:>8} {:<11}{:>22}{:>24}{:>12}  {}\n", "problem", "status", "v_x [m/s]", "v_y [m/s]",
+                      "violation", "certificate"));
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const lp::Solution& a = answers[k].solution;
     const char* without = s.unproven ? "NOT proven" : "";
@@ -136,8 +138,8 @@ void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
   out.add(fmt::format(
       "{} problems: {} optimal, {} relaxed, {} infeasible, {} pinched; {} proven, {} by the exact stage\n", s.problems,
       s.by_status[0], s.by_status[1], s.by_status[2], s.by_status[3], s.certified, s.exact_fallbacks));
-  out.add(
-      fmt::format("worst violation {:.4g} m/s; solver alone {:.4g} ns a problem\n", s.worst_violation, s.ns_per_solve));
+  out.add(fmt::format("worst violation {:.4g} m/s; solver alone {:.4g} ns per problem\n", s.worst_violation,
+                      s.ns_per_solve));
   out.flush();
 }
 
@@ -176,10 +178,10 @@ ExitCode run(const Flags& flags) {
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("file", flags->file, "Problems: lines of JSON or a binary instance file, - for stdin")->required();
+  app.add_option("file", flags->file, "Problems: JSON Lines or a binary instance file; - for stdin")->required();
   app.add_option("--solver", flags->solver, "incremental, batch, certified or exact")->capture_default_str();
-  app.add_flag("--certify", flags->certify, "Prove every answer; what can't be proven is solved exactly");
-  app.add_flag("--json", flags->json, "A result a line, then a summary");
+  app.add_flag("--certify", flags->certify, "Certify every answer; those that cannot be certified are solved exactly");
+  app.add_flag("--json", flags->json, "One JSON result per line, then a summary");
   return [flags] { return run(*flags); };
 }
 
@@ -187,10 +189,11 @@ Action declare(CLI::App& app) {
 
 Verb lp_verb() {
   return {
-      "lp", "Solve the small linear programs that turn half-planes into a velocity, with proofs",
+      "lp", "Solve the small optimisation problems that turn half-planes into a velocity, with certificates",
       "  echo '{\"bound\": {\"disc\": 2}, \"preferred\": [2, 0], \"constraints\": [{\"normal\": [-1, 0], \"offset\": "
       "-0.5}]}' | exactvo lp - --json\n"
-      "    (status 1: an answer has no proof where proofs were asked for, by `certified`, `exact` or --certify. The "
+      "    (status 1: an answer has no certificate although one was requested by `certified`, `exact` or --certify. "
+      "The "
       "lines:\n"
       "    docs/guide/linear-program.md. ns_per_solve is the thread's processor time of the solver alone, one pass "
       "over\n"

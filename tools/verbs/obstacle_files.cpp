@@ -122,10 +122,11 @@ OrderedJson code_of(const FileAnswer& answer) {
 }  // namespace
 
 void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string& format_name) {
-  app.add_option(format_name, flags.format,
-                 "What the input is:" + listed(datasets::readable_formats()) + "; else told by content, then by name");
-  app.add_option("--units", flags.units, "What the numbers mean: automatic, metres or degrees");
-  app.add_option("--cell-size", flags.cell_size, "Side of a cell of grids without a scale and of scans, m");
+  app.add_option(
+      format_name, flags.format,
+      "Input format:" + listed(datasets::readable_formats()) + "; by default detected from content, then name");
+  app.add_option("--units", flags.units, "Units of coordinates: automatic, metres or degrees");
+  app.add_option("--cell-size", flags.cell_size, "Cell size of scans, point lists and grids without a scale, m");
 }
 
 void check_format(const std::string& option, const std::string& format, const std::vector<std::string>& known) {
@@ -136,7 +137,7 @@ datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::stri
   check_format(format_name, flags.format, datasets::readable_formats());
   check_word("--units", flags.units, kUnits);
   if (!(flags.cell_size >= 0.0) || std::isinf(flags.cell_size))
-    throw UsageError("--cell-size", fmt::format("{}", flags.cell_size), "a length in m, or 0 for the usual one");
+    throw UsageError("--cell-size", fmt::format("{}", flags.cell_size), "a length in m, or 0 for the default");
   datasets::ReadOptions options;
   options.format = flags.format;
   if (flags.units == "metres") options.units = datasets::Units::metres;
@@ -211,7 +212,7 @@ std::string lines_of(const FileAnswer& answer, bool with_mended) {
   for (const RingFinding& f : answer.content->findings) {
     if (f.mended && !with_mended) continue;
     text += shown(fmt::format("{}: {}: {}: {} [{}]{}", answer.file, f.place, datasets::words_of_place(f),
-                              datasets::words_of(f), datasets::code_name(f.code), f.mended ? ", mended" : "")) +
+                              datasets::words_of(f), datasets::code_name(f.code), f.mended ? ", repaired" : "")) +
             "\n";
   }
   for (const DataError& error : answer.content->rejected) {
@@ -223,7 +224,7 @@ std::string lines_of(const FileAnswer& answer, bool with_mended) {
 std::string counts_line(const FileAnswer& answer) {
   if (!answer.content) return shown(answer.file) + ": refused";
   const datasets::ReadCounts& n = answer.content->counts;
-  return fmt::format("{}: {}, {} read: {} done, {} repaired, {} passed over, {} rejected", shown(answer.file),
+  return fmt::format("{}: {}, {} read: {} valid, {} repaired, {} skipped, {} rejected", shown(answer.file),
                      answer.content->format, n.read, n.done, n.repaired, n.passed_over, n.rejected);
 }
 

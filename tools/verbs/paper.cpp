@@ -12,6 +12,7 @@
 #include "paper/section_five.h"
 #include "support/data_folder.h"
 #include "support/files.h"
+#include "support/parse_errors.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "verb.h"
@@ -136,24 +137,25 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   declare_out(app, flags->out, "Folder for summary.json, report.html, report.md and figures/; random/ or ablations/")
       ->required();
-  app.add_option("--data", flags->data, "Folder that holds paper/A1.json and so on; the program's own by default");
+  app.add_option("--data", flags->data,
+                 "Folder that contains paper/A1.json and so on; by default the one installed with the program");
   app.add_option(
          "--random", flags->random,
-         "Instead of Section V: count how many of so many random fields of each kind each method reaches safely")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+         "Instead of Section V: run this many random fields of each kind and count those each method crosses safely")
+      ->check(whole_number(1, 1000000));
   app.add_flag("--ablations", flags->ablations,
-               "Instead of Section V: the ladder of remedies and the default less one at a time");
+               "Instead of Section V: the controller options added one by one, and the default less one at a time");
   flags->fields_given =
-      app.add_option("--fields", flags->fields, "Random formations for each set of remedies of --ablations")
+      app.add_option("--fields", flags->fields, "Random formations for each set of controller options of --ablations")
           ->capture_default_str()
-          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+          ->check(whole_number(1, 1000000));
   flags->jobs_given =
       app.add_option("--jobs,-j", flags->jobs,
-                     "Threads for --random and --ablations, one a processor by default; results do not depend on it")
-          ->check(CLI::Range(1u, 1024u));
-  declare_seed(app, flags->seed, "Of the random fields; noted in the provenance");
+                     "Threads for --random and --ablations, by default one per processor; results do not depend on it")
+          ->check(whole_number(1, 1024));
+  declare_seed(app, flags->seed, "Seed of the random fields; recorded in the provenance");
   app.add_flag("--json", flags->json, "Print the JSON instead of the tables");
-  app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");
+  app.add_flag("--no-figures", flags->no_figures, "Write no figures");
   return [flags] { return paper(*flags); };
 }
 

@@ -76,8 +76,8 @@ void refuse_several_planes(const std::vector<FileAnswer>& answers) {
     if (!answer.content || answer.content->obstacles.empty()) continue;
     if (first == nullptr) first = &*answer.content;
     if (same_origin(*first, *answer.content)) continue;
-    throw UsageError("files", words_of_origin(*first) + " beside " + words_of_origin(*answer.content),
-                     "files of one plane for one --out: one of degrees at a time, or all in metres");
+    throw UsageError("files", words_of_origin(*first) + " and " + words_of_origin(*answer.content),
+                     "one projection: cannot write one output from files in different projections");
   }
 }
 
@@ -195,7 +195,7 @@ void print_report(const std::vector<FileAnswer>& answers) {
       if (is_told(record)) print(words_of(answer.content->file, record, problems));
     }
     for (const datasets::DataError& error : answer.content->rejected)
-      print("not mended: " + shown(error.what()) + "\n");
+      print("not repaired: " + shown(error.what()) + "\n");
     note_areas(*answer.content);
     const std::string tally = tally_of(*answer.content);
     message(counts_line(answer) + (tally.empty() ? "" : ";" + tally));
@@ -293,20 +293,22 @@ ExitCode repair(const Flags& flags) {
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
-  app.add_option("--out", flags->out, "The mended obstacles, of all files; the extension says the format")->required();
-  app.add_option("--to", flags->to, "The format of --out, where its extension does not say it");
+  app.add_option("--out", flags->out,
+                 "Output file for the repaired obstacles of all inputs; its extension selects the format")
+      ->required();
+  app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
   declare_reading_flags(app, flags->reading);
   app.add_flag("--json", flags->json, "The report as JSON on stdout");
-  app.add_option("--figure", flags->figure, "FILE.svg: before and after of what was cut");
+  app.add_option("--figure", flags->figure, "FILE.svg: before and after of every changed polygon");
   return [flags] { return repair(*flags); };
 }
 
 }  // namespace
 
 Verb repair_verb() {
-  return {"repair", "Mend obstacle files: winding, closure, spikes, self-crossings, overlaps",
-          "  exactvo repair countries.geojson --out mended.geojson --figure mended.svg\n"
-          "    (status 1: some obstacles can't be mended; the others are written)\n",
+  return {"repair", "Repair invalid obstacle files: winding, closure, spikes, self-crossings, overlaps",
+          "  exactvo repair countries.geojson --out repaired.geojson --figure repaired.svg\n"
+          "    (status 1: some obstacles cannot be repaired; the others are written)\n",
           declare};
 }
 

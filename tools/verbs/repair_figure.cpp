@@ -87,7 +87,7 @@ class Panels {
     }
     plot.data(rings("rings after", all), origin.using_columns() + " with lines lw 1.5 lc rgb '#3f444d'");
     const std::size_t n = polygon.after.size();
-    panel(n == 0 ? std::string("after: can't be mended") : fmt::format("after: {} polygon{}", n, n == 1 ? "" : "s"),
+    panel(n == 0 ? std::string("after: cannot be repaired") : fmt::format("after: {} polygon{}", n, n == 1 ? "" : "s"),
           view_of(polygon), plot);
   }
 

@@ -221,13 +221,13 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
   declare_reading_flags(app, flags->reading);
-  app.add_option("--tolerance", flags->tolerance, "Facades may stray from the obstacle by this much, m");
+  app.add_option("--tolerance", flags->tolerance, "Largest distance of a facade from its obstacle, m");
   app.add_option("--radius", flags->radius, "Of the robot, for clearances by equation (8), m");
   app.add_option("--facade-margin", flags->facade_margin,
-                 "How deep a facade lies at least in its ellipse, m; choose less for obstacles of millimetres")
+                 "Least depth of a facade inside its ellipse, m; choose a smaller value for obstacles of millimetres")
       ->capture_default_str();
-  app.add_flag("--repair", flags->repair, "Mend what can be mended first");
-  app.add_flag("--json", flags->json, "One record an obstacle on stdout, a line each");
+  app.add_flag("--repair", flags->repair, "Repair invalid geometry first");
+  app.add_flag("--json", flags->json, "One JSON record per obstacle and line on stdout");
   app.add_option("--out", flags->out, "FILE.jsonl: the records; FILE.geojson: every shape as a feature");
   app.add_option("--figure", flags->figure, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
   return [flags] { return segment(*flags); };
@@ -236,10 +236,10 @@ Action declare(CLI::App& app) {
 }  // namespace
 
 Verb segment_verb() {
-  return {"segment", "Take obstacles apart: facades, convex pieces, hulls, ellipses, with certificates",
+  return {"segment", "Decompose obstacles: facades, convex pieces, hulls, ellipses, with certificates",
           "  exactvo segment floor.geojson --figure floor.svg\n"
           "  exactvo segment city.gpkg --repair --tolerance 0.1 --out city.jsonl\n"
-          "    (status 1: an obstacle could not be used, or something is not certified)\n",
+          "    (status 1: an obstacle is invalid, or a result is not certified)\n",
           declare};
 }
 

@@ -70,12 +70,12 @@ std::string formation_lines(const formation::Metrics& m) {
 
 std::string course_words(const formation::LyapunovCourse& c) {
   const std::string rise =
-      c.largest_rise > 0.0 ? fmt::format("rises by up to {:.3g} a step", c.largest_rise) : std::string("never rises");
-  return fmt::format("{:.4g} -> {:.4g}, least {:.4g}, {}", c.first, c.last, c.least, rise);
+      c.largest_rise > 0.0 ? fmt::format("rises by up to {:.3g} per step", c.largest_rise) : std::string("never rises");
+  return fmt::format("{:.4g} -> {:.4g}, minimum {:.4g}, {}", c.first, c.last, c.least, rise);
 }
 
 std::string lyapunov_lines(const formation::LyapunovSummary& s) {
-  return fmt::format("  V of (18)    {}\n  V that holds {}\n", course_words(s.paper), course_words(s.sound));
+  return fmt::format("  V of (18)    {}\n  valid V      {}\n", course_words(s.paper), course_words(s.sound));
 }
 
 std::string summary(const FinishedRun& run) {
@@ -157,9 +157,9 @@ Action declare(CLI::App& app) {
       "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations) and figures/; whole or "
       "not at all");
   app.add_flag("--record-all", flags->record_all,
-               "Keep every half-plane of every decision, so that `audit` proves the whole run");
+               "Keep every half-plane of every decision, so that `audit` verifies the whole run");
   app.add_flag("--json", flags->json, "Print the metrics as JSON");
-  app.add_flag("--no-figures", flags->no_figures, "Leave the figures out");
+  app.add_flag("--no-figures", flags->no_figures, "Write no figures");
   app.add_flag("--fail-on-collision", flags->fail_on_collision, "Exit status 1 if a robot overlaps anything");
   app.add_flag("--force", flags->force, "Let --out replace an earlier run of another scenario, method or controller");
   return [flags] { return simulate(*flags); };

@@ -63,17 +63,17 @@ Action declare(CLI::App& app) {
   declare_reading_flags(app, flags->reading);
   app.add_flag("--json", flags->json, "Everything as JSON on stdout");
   app.add_flag("--strict", flags->strict,
-               "Status 1 also for what has one right answer: winding, closure, repeated vertices");
+               "Status 1 also for what is repaired silently: winding, closure, repeated vertices");
   return [flags] { return validate(*flags); };
 }
 
 }  // namespace
 
 Verb validate_verb() {
-  return {"validate", "Name every problem of obstacle files: place, code, coordinates",
+  return {"validate", "List every problem of obstacle files with place, code and coordinates",
           "  exactvo validate buildings.geojson walls.wkt\n"
           "  exactvo validate --json --strict maps/*.yaml\n"
-          "    (status 0: every obstacle can be used; 1: some can't; 2: a file can't be read. Codes: "
+          "    (status 0: every obstacle can be used; 1: some cannot; 2: a file cannot be read. Codes: "
           "docs/guide/codes.md)\n",
           declare};
 }

@@ -43,7 +43,7 @@ std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, co
     case vo::Refusal::range:
       return "a number of the scene is neither 0 nor between 2^-60 and 2^30";
     default:
-      return "the scene's numbers are too far apart for the exact ones";
+      return "the scene's magnitudes are too different for exact results";
   }
 }
 

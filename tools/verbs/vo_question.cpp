@@ -268,14 +268,14 @@ void declare_options(CLI::App& app, VoFlags& flags) {
                  "X,Y in m/s, one an --obstacle; at rest where missing")
       ->allow_extra_args(false);
   app.add_option("--pieces", flags.pieces,
-                 "Of an obstacle that is not convex: convex (the default: all of its convex pieces) or hull");
+                 "For a non-convex obstacle: convex (default: all of its convex pieces) or hull");
   app.add_option("--enclose", flags.enclose, "none, ellipse (the smallest) or trap-free (needs --goal)");
-  app.add_option("--position", flags.position, "Of the robot, X,Y in m")->required();
-  app.add_option("--velocity", flags.velocity, "X,Y in m/s; required, or --velocities in its place");
+  app.add_option("--position", flags.position, "Position of the robot, X,Y in m")->required();
+  app.add_option("--velocity", flags.velocity, "X,Y in m/s; required unless --velocities is given");
   app.add_option("--velocities", flags.velocities,
                  "FILE, or - for stdin: which of many velocities collide, one line of answer each (with --json JSON "
                  "Lines). The file: vx,vy on each line, CSV with columns vx and vy, or JSON Lines");
-  app.add_option("--radius", flags.radius, "Of the robot, m; required, or --robot in its place");
+  app.add_option("--radius", flags.radius, "Radius of the robot, m; required unless --robot is given");
   app.add_option("--robot", flags.robot,
                  "A robot that is a convex polygon, in place of --radius: WKT round 0,0, its reference point");
   app.add_option(

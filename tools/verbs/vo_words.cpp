@@ -40,8 +40,9 @@ std::string text_of(const HalfPlane& h) {
 }
 
 const char* why_words(const std::string& why) {
-  return why == "contact" ? "in contact, nothing is proven safe"
-                          : "rounding: so near contact, or with numbers so far apart, doubles prove no half-plane";
+  return why == "contact"
+             ? "in contact, no velocity is certified safe"
+             : "rounding: too near contact, or magnitudes too different, to certify a half-plane in doubles";
 }
 
 std::string half_plane_words(const ConeAnswer& a) {
@@ -88,7 +89,7 @@ std::string cone_words(const ConeAnswer& a) {
 
 std::string verdict_words(bool overlaps, bool contains, const char* what) {
   if (overlaps) return fmt::format("The robot touches or overlaps {}: there is no cone.\n", what);
-  return contains ? "The velocity collides within the horizon (to touch is to collide).\n"
+  return contains ? "The velocity collides within the horizon (contact counts as a collision).\n"
                   : "The velocity is free within the horizon.\n";
 }
 

@@ -43,13 +43,20 @@ const Reader& reader_named(const std::string& name, const std::filesystem::path&
   throw DataError(DataCode::not_an_option, path.string(), "format", "\"" + name + "\"", "one of " + all_names());
 }
 
+/// What would help with a file that no reader takes by itself.
+std::string hint_for(const Glimpse& glimpse) {
+  for (const char* image : {".pgm", ".png", ".pnm", ".bmp", ".tif"})
+    if (glimpse.extension == image) return "; of a ROS map give the .yaml that names its image";
+  return "; if its format is one of these, name it with --format (convert: --from): " + all_names();
+}
+
 const Reader& reader_for(const std::filesystem::path& path) {
   const Glimpse glimpse = glimpse_of(path);
   for (const Reader& reader : readers()) {
     if (reader.recognises(glimpse)) return reader;
   }
   throw DataError(DataCode::format_unknown, path.string(), "", excerpt(glimpse.beginning, 0),
-                  "a file of obstacles; a format given by name is not guessed: " + all_names());
+                  "a file of obstacles" + hint_for(glimpse));
 }
 
 /// Missing and unreadable files are named before any reader is asked; an empty one holds nothing in any format.

@@ -2,6 +2,7 @@
 #include "scenarios/schema_check.h"
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 namespace exactvo::datasets {
@@ -45,10 +46,22 @@ class Checker {
     throw DataError(code, file_, at, found, expected);
   }
 
-  /// "a number (m)": the rule's own words, where it has any.
-  static std::string with_description(const std::string& text, const Json& rules) {
+  /// The unit or the shape that a description begins or ends with: "m" of "m; robots farther apart ignore each other.",
+  /// "[x, y], m". The rest of it is for those who read the schema.
+  static std::string unit_in(const std::string& description) {
+    static const std::set<std::string> kUnits{"m", "s", "m/s", "m/s^2", "1/s", "1/s^2"};
+    const std::string head = description.substr(0, description.find(';'));
+    if (kUnits.count(head) > 0 || (head.front() == '[' && head.find("], ") != std::string::npos)) return head;
+    const std::string tail = head.substr(head.find_last_of(" ,") + 1);
+    return kUnits.count(tail) > 0 ? tail : "";
+  }
+
+  /// "a number (m)".
+  static std::string with_unit(const std::string& text, const Json& rules) {
     const auto words = rules.find("description");
-    return words == rules.end() ? text : text + " (" + words->get<std::string>() + ")";
+    if (words == rules.end()) return text;
+    const std::string unit = unit_in(words->get<std::string>());
+    return unit.empty() ? text : text + " (" + unit + ")";
   }
 
   static bool is_of_type(const Json& value, const std::string& type) {
@@ -78,7 +91,7 @@ class Checker {
       if (is_of_type(value, wanted)) return;
       expected += (expected.empty() ? "" : " or ") + name_of_type(wanted);
     }
-    refuse(DataCode::wrong_type, at, described(value), with_description(expected, rules));
+    refuse(DataCode::wrong_type, at, described(value), with_unit(expected, rules));
   }
 
   void one_of_words(const Json& rule, const Json& value, const Json&, const std::string& at) const {
@@ -145,13 +158,12 @@ class Checker {
   void min_items(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
     if (!value.is_array() || value.size() >= rule.get<std::size_t>()) return;
     refuse(DataCode::wrong_count, at, described(value),
-           with_description(counted("at least", rule, "entry", "entries"), rules));
+           with_unit(counted("at least", rule, "entry", "entries"), rules));
   }
 
   void max_items(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
     if (!value.is_array() || value.size() <= rule.get<std::size_t>()) return;
-    refuse(DataCode::wrong_count, at, described(value),
-           with_description(counted("at most", rule, "entry", "entries"), rules));
+    refuse(DataCode::wrong_count, at, described(value), with_unit(counted("at most", rule, "entry", "entries"), rules));
   }
 
   void min_length(const Json& rule, const Json& value, const Json&, const std::string& at) const {
@@ -171,7 +183,7 @@ class Checker {
   }
 
   void bound(bool holds, const std::string& words, const Json& value, const Json& rules, const std::string& at) const {
-    if (!holds) refuse(DataCode::out_of_range, at, described(value), with_description(words, rules));
+    if (!holds) refuse(DataCode::out_of_range, at, described(value), with_unit(words, rules));
   }
   void minimum(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
     if (value.is_number()) bound(value >= rule, "a number >= " + rule.dump(), value, rules, at);
@@ -204,14 +216,21 @@ class Checker {
   void one_of(const Json& rule, const Json& value, const Json&, const std::string& at) const {
     if (!value.is_object()) refuse(DataCode::wrong_type, at, described(value), "an object");
     std::vector<const Json*> meant;
-    std::string titles;
+    std::string keys;
     for (const Json& alternative : rule) {
       if (has_required_keys(value, alternative)) meant.push_back(&alternative);
-      titles += (titles.empty() ? "" : "; or ") + alternative.at("title").get<std::string>();
+      keys += (keys.empty() ? "" : ", or ") + listed_keys(alternative);
     }
     if (meant.size() == 1) return check(value, *meant.front(), at);
-    const std::string how_many = meant.empty() ? "none" : "more than one";
-    refuse(DataCode::no_alternative, at, "an object that is " + how_many + " of them", titles);
+    refuse(DataCode::no_alternative, at, meant.empty() ? "none of these keys" : "the keys of more than one kind", keys);
+  }
+
+  /// "\"polyline\" with \"path\" and \"speed\"".
+  static std::string listed_keys(const Json& alternative) {
+    std::string words;
+    const Json& keys = alternative.at("required");
+    for (std::size_t i = 0; i < keys.size(); ++i) words += (i == 0 ? "" : i == 1 ? " with " : " and ") + keys[i].dump();
+    return words;
   }
 
   static bool has_required_keys(const Json& value, const Json& alternative) {

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mistyped commands: what is wrong, in the program's own words, and where to look it up.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr const char* kScenario = R"({"name": "one", "robots": [{"id": "R1", "position": [0, 0], "goal": [8, 0]}]})";
+constexpr const char* kSquare = "POLYGON((4 0, 5 0, 5 1, 4 0))\n";
+
+Workplace& place() {
+  static Workplace here;
+  here.write("s.json", kScenario);
+  here.write("p.wkt", kSquare);
+  return here;
+}
+
+struct Mistake {
+  const char* command;
+  const char* message;
+};
+
+class Mistyped : public testing::TestWithParam<Mistake> {};
+
+TEST_P(Mistyped, IsAnsweredInPlainWords) {
+  const Outcome outcome = place().run(GetParam().command);
+  EXPECT_EQ(outcome.status, 2) << outcome.err;
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, HasSubstr(GetParam().message));
+  // Those of the option library.
+  for (const char* foreign : {"Could not convert", "not expected", "is required", "TEXT", "UINT", "FLOAT",
+                              "INT:", "not in range", "subcommand", "means nothing", "internal"})
+    EXPECT_THAT(outcome.err, Not(HasSubstr(foreign)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Runs, Mistyped,
+    testing::Values(
+        Mistake{"simulate", "missing argument scenario: JSON file, or - for stdin (see 'exactvo simulate --help')"},
+        Mistake{"simulate s.json --metod ivo", "unknown option '--metod'; did you mean '--method'?"},
+        Mistake{"simulate s.json --method", "--method: no value given"},
+        Mistake{"simulate s.json -m", "--method: no value given"}, Mistake{"simulate s.json -z", "unknown option '-z'"},
+        Mistake{"simulate s.json t.json", "unexpected argument 't.json'"},
+        Mistake{"simulate s.json --no-figures 0", "unexpected argument '0': --no-figures takes no value"},
+        Mistake{"simulate s.json --record-all=maybe", "--record-all: found 'maybe', expected no value"},
+        Mistake{"simulate s.json --seed abc", "--seed: found 'abc', expected a whole number from 0"},
+        Mistake{"simulate s.json --seed=-1", "--seed: found '-1', expected a whole number from 0"},
+        Mistake{"explain s.json", "missing option --time: "},
+        Mistake{"explain s.json --time abc --robot R1", "--time: found 'abc', expected a number"},
+        Mistake{"explain s.json --time 3s --robot R1", "--time: found '3s', expected a number"},
+        Mistake{"trap s.json s.json", "unexpected argument 's.json'"},
+        Mistake{"paper --out o --random", "--random: no value given"},
+        Mistake{"paper --out o --random abc", "--random: found 'abc', expected a whole number from 1 to 1000000"},
+        Mistake{"paper --out o --random 0", "--random: found '0', expected a whole number from 1 to 1000000"},
+        Mistake{"paper --out o --ablations --jobs 2000",
+                "--jobs: found '2000', expected a whole number from 1 to 1024"},
+        Mistake{"paper", "missing option --out: "}, Mistake{"audit", "found 'neither a path nor --certificate'"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Obstacles, Mistyped,
+    testing::Values(
+        Mistake{"validate", "missing argument files: Obstacle files"},
+        Mistake{"validate p.wkt --fromat wkt", "unknown option '--fromat'; did you mean '--format'?"},
+        Mistake{"validate p.wkt --strict yes.wkt --format", "--format: no value given"},
+        Mistake{"validate p.wkt --cell-size wide", "--cell-size: found 'wide', expected a number"},
+        Mistake{"repair p.wkt", "missing option --out: "}, Mistake{"repair p.wkt --out", "--out: no value given"},
+        Mistake{"convert p.wkt", "missing argument out: "},
+        Mistake{"convert p.wkt o.wkt extra", "unexpected argument 'extra'"},
+        Mistake{"convert p.wkt o.wkt --skip 1", "unexpected argument '1': --skip takes no value"},
+        Mistake{"generate star --seed abc --out a.wkt", "--seed: found 'abc', expected a whole number"},
+        Mistake{"generate star --count 3.5 --out a.wkt", "--count: found '3.5', expected a whole number"},
+        Mistake{"generate star --count many --out a.wkt", "--count: found 'many', expected a whole number"},
+        Mistake{"segment", "missing argument files"},
+        Mistake{"segment p.wkt --radius x", "--radius: found 'x', expected a number"},
+        Mistake{"segment p.wkt --tolrance 1", "did you mean '--tolerance'?"},
+        Mistake{"batch", "missing argument paths"}, Mistake{"batch p.wkt", "missing option --out"},
+        Mistake{"batch p.wkt --out o --jobs 0", "--jobs: found '0', expected a whole number from 1 to 4096"},
+        Mistake{"batch p.wkt --out o --jobs x", "--jobs: found 'x', expected a whole number from 1 to 4096"},
+        Mistake{"batch p.wkt --out o --limit-memory much", "--limit-memory: found 'much', expected "}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Velocities, Mistyped,
+    testing::Values(Mistake{"vo", "missing option --obstacle: "},
+                    Mistake{"vo --obstacle", "--obstacle: no value given"},
+                    Mistake{"vo --obstacle 'DISC(4 0, 1)'", "missing option --position: "},
+                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --radius x", "--radius: found 'x', expected a number"},
+                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --alpha half", "--alpha: found 'half', expected a number"},
+                    Mistake{"vo --obstacle 'DISC(4 0, 1)' --raduis 1", "did you mean '--radius'?"},
+                    Mistake{"lp", "missing argument file: "},
+                    Mistake{"lp s.json t.json", "unexpected argument 't.json'"},
+                    Mistake{"lp s.json --certfy", "did you mean '--certify'?"},
+                    Mistake{"audit o --certificate", "--certificate: no value given"},
+                    Mistake{"audit o p", "unexpected argument 'p'"}, Mistake{"--verison", "did you mean '--version'?"},
+                    Mistake{"-x", "unknown option '-x'"}, Mistake{"--quiet", "no verb was given"},
+                    Mistake{"help simulte", "help: found 'simulte'"}));
+
+TEST(Help, OfAVerbComesEitherWay) {
+  const Outcome help = place().run("help simulate"), option = place().run("simulate --help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.out, option.out);
+  EXPECT_EQ(place().run("help").out, place().run("--help").out);
+  EXPECT_EQ(place().run("-V").out, place().run("--version").out);
+}
+
+TEST(Messages, AScenarioErrorDoesNotQuoteTheSchema) {
+  place().write("bad.json", R"({"name": "a", "robots": [], "time_step": 0.1})");
+  EXPECT_THAT(place().run("simulate bad.json").err,
+              AllOf(HasSubstr("/robots: found a list of 0, expected at least 1 entry [E_COUNT]")));
+  place().write("bad.json",
+                R"({"name": "a", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}], "time_step": -1})");
+  EXPECT_THAT(place().run("simulate bad.json").err, HasSubstr("found -1, expected a number > 0 (s) [E_RANGE]"));
+  place().write("bad.json", R"({"name": "a", "robots": [{"id": "R", "position": [0], "goal": [9, 0]}]})");
+  EXPECT_THAT(place().run("simulate bad.json").err, HasSubstr("expected at least 2 entries ([x, y], m) [E_COUNT]"));
+  place().write("bad.json", R"({"name": "a", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}],
+                               "obstacles": [{"id": "U", "disc": [1, 2]}]})");
+  EXPECT_THAT(
+      place().run("simulate bad.json").err,
+      HasSubstr(R"(found none of these keys, expected "polyline", or "polygon", or "file" [E_NO_ALTERNATIVE])"));
+}
+
+TEST(Messages, AnImageIsReferredToItsMap) {
+  place().write("room.pgm", "P2\n2 2\n255\n0 0 0 0\n");
+  EXPECT_THAT(place().run("validate room.pgm").out, HasSubstr("of a ROS map give the .yaml that names its image"));
+  place().write("mystery.xyz", "abc\n");
+  EXPECT_THAT(place().run("validate mystery.xyz").out, HasSubstr("name it with --format (convert: --from)"));
+}
+
+TEST(Messages, ColumnsOfAnswersHaveAHeader) {
+  place().write("p.jsonl", R"({"bound": {"disc": 2}, "preferred": [2, 0], "constraints": []})");
+  EXPECT_THAT(place().run("lp p.jsonl").out, testing::StartsWith(" problem status "));
+}
+
+}  // namespace
+}  // namespace exactvo::test

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/parse_errors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+
+#include "support/usage.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+const CLI::App* verb_of(const CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  return parsed.empty() ? nullptr : parsed.front();
+}
+
+std::vector<const CLI::Option*> options_of(const CLI::App& app) {
+  std::vector<const CLI::Option*> all = app.get_options();
+  if (const CLI::App* verb = verb_of(app)) {
+    const std::vector<const CLI::Option*> more = static_cast<const CLI::App*>(verb)->get_options();
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+
+std::vector<std::string> long_names(const std::vector<const CLI::Option*>& options) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options)
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+bool is_flag(const CLI::Option& option) {
+  return !option.get_positional() && option.get_expected_max() == 0;
+}
+
+/// The option with this name, "--out" or "-o"; null where there is none.
+const CLI::Option* option_named(const std::vector<const CLI::Option*>& options, const std::string& word) {
+  for (const CLI::Option* option : options)
+    if (word.size() > 1 && word[0] == '-' && option->check_name(word)) return option;
+  return nullptr;
+}
+
+/// The option that the library's message is about: the longest name that stands in it as a word.
+const CLI::Option* subject_of(const std::vector<const CLI::Option*>& options, const std::string& message) {
+  const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-'; };
+  const CLI::Option* found = nullptr;
+  for (const CLI::Option* option : options) {
+    const std::string name = option->get_name();
+    const std::size_t at = message.find(name);
+    if (name.empty() || at == std::string::npos || (at > 0 && is_part(message[at - 1]))) continue;
+    if (at + name.size() < message.size() && is_part(message[at + name.size()])) continue;
+    if (!found || name.size() > found->get_name().size()) found = option;
+  }
+  return found;
+}
+
+/// An option whose name is not known: what it was, and the nearest one.
+std::string unknown_option(const std::vector<const CLI::Option*>& options, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    const bool is_long = name.rfind("--", 0) == 0 && name.size() > 2;
+    if (is_long && !option_named(options, name))
+      return fmt::format("unknown option '{}'{}", name, suggestion(name, long_names(options)));
+  }
+  return "";
+}
+
+/// The value without the option, as it was given.
+std::string value_of(const CLI::Option& option) {
+  return fmt::format("{}", fmt::join(option.results(), " "));
+}
+
+std::string kind_of_value(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  if (is_flag(option)) return "no value, since it is a switch";
+  if (type.rfind("FLOAT", 0) == 0) return "a number";
+  if (type.rfind("UINT", 0) == 0) return "a whole number from 0 on";
+  if (type.rfind("INT", 0) == 0) return "a whole number";
+  return "a value: " + option.get_description();
+}
+
+std::string surplus_words(const std::vector<const CLI::Option*>& options, const std::vector<std::string>& words,
+                          const std::vector<std::string>& surplus) {
+  if (surplus.empty()) return "an argument was not expected";
+  const std::string& word = surplus.front();
+  if (word.size() > 1 && word[0] == '-')
+    return fmt::format("unknown option '{}'{}", word, suggestion(word, long_names(options)));
+  const auto at = std::find(words.begin(), words.end(), word);
+  const CLI::Option* before = at == words.begin() || at == words.end() ? nullptr : option_named(options, *(at - 1));
+  if (before && is_flag(*before)) return fmt::format("unexpected argument '{}': {} takes no value", word, *(at - 1));
+  return fmt::format("unexpected argument '{}'", word);
+}
+
+std::string missing_words(const CLI::Option* option) {
+  if (!option) return "no verb was given";
+  return fmt::format("missing {} {}: {}", option->get_positional() ? "argument" : "option", option->get_name(),
+                     option->get_description());
+}
+
+std::string words_of(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
+  const std::vector<const CLI::Option*> options = options_of(app);
+  const std::string unknown = unknown_option(options, words);
+  if (!unknown.empty()) return unknown;
+  const std::string message = error.what();
+  const CLI::Option* option = subject_of(options, message);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) return surplus_words(options, words, app.remaining(true));
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing_words(option);
+  if (!option) return "the command line could not be understood";
+  const std::string name = option->get_name();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->results().empty())
+    return fmt::format("{}: no value given, expected {}", name, kind_of_value(*option));
+  // Checks of our own say what they found and what they expected.
+  if (message.find("found '") != std::string::npos) return message;
+  return fmt::format("{}: found '{}', expected {}", name, value_of(*option), kind_of_value(*option));
+}
+
+}  // namespace
+
+std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
+  const CLI::App* verb = verb_of(app);
+  return words_of(app, error, words) + " (see 'exactvo " + (verb ? verb->get_name() + " " : "") + "--help')";
+}
+
+CLI::Validator whole_number(unsigned long long least, unsigned long long most) {
+  const auto fits = [=](const std::string& text) {
+    char* end = nullptr;
+    errno = 0;
+    const unsigned long long number = std::strtoull(text.c_str(), &end, 10);
+    const bool is_number = !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) != 0 && *end == '\0';
+    const bool holds = is_number && errno == 0 && number >= least && number <= most;
+    return holds ? std::string() : fmt::format("found '{}', expected a whole number from {} to {}", text, least, most);
+  };
+  return CLI::Validator(fits, "", "");
+}
+
+}  // namespace exactvo::tools
