@@ -9,7 +9,7 @@
 namespace exactvo::formation::detail {
 namespace {
 
-std::vector<geometry::Segment> flat_edges(const geometry::ConvexShape& shape) {
+std::vector<geometry::Segment> edges_round(const geometry::ConvexShape& shape) {
   if (const geometry::Segment* s = std::get_if<geometry::Segment>(&shape)) return {{s->a, s->b}, {s->b, s->a}};
   std::vector<geometry::Segment> edges;
   if (const geometry::ConvexPolygon* polygon = std::get_if<geometry::ConvexPolygon>(&shape)) {
@@ -34,7 +34,7 @@ double ellipse_curvature_radius(const geometry::Ellipse& e, Vec2 n) {
 }  // namespace
 
 Boundary::Boundary(geometry::ConvexShape shape, double radius)
-    : grown_{std::move(shape), {}, radius}, edges_(flat_edges(grown_.shape)) {}
+    : grown_{std::move(shape), {}, radius}, edges_(edges_round(grown_.shape)) {}
 
 double Boundary::radius_of_curvature(Vec2 n) const {
   // rad: a normal this near an edge's is that edge's, beyond the rounding of both.

@@ -30,6 +30,9 @@ class Boundary {
   /// Whether the radius of curvature is finite everywhere: an ellipse or a disc.
   bool smooth() const { return edges_.empty(); }
 
+  /// The flat parts of the shape, not grown, interior on their left, once round it.
+  const std::vector<geometry::Segment>& flat_edges() const { return edges_; }
+
   /// rho at a normal; infinite exactly on a flat edge's normal.
   double radius_of_curvature(Vec2 normal) const;
 

@@ -183,7 +183,7 @@ class KinematicRun {
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!at_goal(i) && robots_[i].follower.circled())
         text += "; " + scenario_.robots[i].id +
-                " came full circle along what stands in its way and found no way to its goal";
+                " completed a full circuit of the obstacle without finding a way to its goal";
     return text;
   }
 

@@ -8,8 +8,9 @@
 #include "consensus.h"
 #include "exactvo/formation/stability.h"
 #include "exactvo/geometry/require.h"
-#include "forewarnings.h"
+
 #include "goals.h"
+#include "preflight.h"
 #include "remedies.h"
 #include "runs.h"
 #include "static_field.h"
@@ -35,7 +36,7 @@ std::vector<Vec2> offsets_of(const Scenario& scenario, const SimulationOptions& 
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {
   std::vector<std::string> warnings;
   if (scenario.formation) warnings = step_warnings(*scenario.formation, options.integrator, scenario.time_step);
-  for (std::string& warning : forewarnings(scenario, offsets_of(scenario, options)))
+  for (std::string& warning : preflight_warnings(scenario, offsets_of(scenario, options)))
     warnings.push_back(std::move(warning));
   return warnings;
 }

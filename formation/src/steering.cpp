@@ -248,7 +248,7 @@ Follower::Answer Follower::follow(const Situation& s, const std::vector<Constrai
   }
   if (!circled_ && walked_ > 4.0 * kCircleReach && norm(s.robot.position - hit_) < kCircleReach) {
     circled_ = true;
-    answer.note = "came full circle: no way to the goal along this boundary";
+    answer.note = "completed a full circuit: no way to the goal along this boundary";
   }
   return answer;
 }

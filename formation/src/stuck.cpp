@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/stuck.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "boundary.h"
+#include "exactvo/formation/constraint_name.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/velocity_obstacle.h"
 #include "leader.h"
@@ -19,6 +21,18 @@ Vec2 target_of(const Scenario& s, const Recording& recording, std::size_t i) {
   return recording.steps.back().leader_position + recording.offsets[i];
 }
 
+/// The row of the last decision: the final one has none. Nothing where no decision was taken.
+const RobotStep* last_decision(const Recording& recording, std::size_t robot) {
+  if (recording.steps.size() < 2) return nullptr;
+  return &recording.steps[recording.steps.size() - 2].robots[robot];
+}
+
+bool is_static(const RecordedConstraint& c) {
+  return c.source == ConstraintSource::enclosure || c.source == ConstraintSource::obstacle_edge;
+}
+
+// --- What blocks ---
+
 BindingConstraint binding_of(const RecordedConstraint& c, Vec2 robot) {
   const vo::VelocityObstacle vo(c.shape, robot, c.radius, c.tau > 0.0 ? c.tau : 1.0);
   const vo::VelocityObstacle::Nearest nearest = vo.nearest();
@@ -26,12 +40,53 @@ BindingConstraint binding_of(const RecordedConstraint& c, Vec2 robot) {
   return {c, nearest.normal, nearest.distance, rho};
 }
 
+/// Of the push: a share below it explains nothing.
+constexpr double kLeastShare = 1e-3;
+
+/// The half-planes that push the preferred velocity to the chosen one: chosen - preferred is a combination of their
+/// normals with positive factors. One where one is enough, else two. All of them where the decision was a compromise
+/// between half-planes that contradict each other.
+void mark_pressing(const RobotStep& decision, std::vector<BindingConstraint>& binding) {
+  const Vec2 push = decision.chosen - decision.preferred;
+  if (decision.status != lp::Status::optimal) {
+    for (BindingConstraint& b : binding) b.pressing = true;
+    return;
+  }
+  const auto normal = [&](std::size_t k) { return geometry::normalized(binding[k].constraint.half_plane.normal); };
+  const double least = kLeastShare * norm(push);
+  if (least == 0.0) return;
+  for (std::size_t i = 0; i < binding.size(); ++i) {
+    if (!(dot(push, normal(i)) > 0.0) || std::fabs(cross(push, normal(i))) > least) continue;
+    binding[i].pressing = true;
+    return;
+  }
+  for (std::size_t i = 0; i < binding.size(); ++i) {
+    for (std::size_t j = i + 1; j < binding.size(); ++j) {
+      const double det = cross(normal(i), normal(j));
+      if (det == 0.0) continue;
+      if (cross(push, normal(j)) / det < least || cross(normal(i), push) / det < least) continue;
+      binding[i].pressing = binding[j].pressing = true;
+      return;
+    }
+  }
+}
+
+std::vector<RecordedConstraint> pressing_of(const StuckReport& r) {
+  std::vector<RecordedConstraint> out;
+  for (const BindingConstraint& b : r.binding)
+    if (b.pressing) out.push_back(b.constraint);
+  return out;
+}
+
 /// rad: the way to the goal counts as normal to the boundary within this angle. A robot that has nearly come to rest on
 /// a flat trap still creeps towards its foot; the tie-break keeps it about 1e-3 off.
 constexpr double kHeadOn = 0.05;
+/// m: a robot is at a boundary within this distance; farther off the half-plane only slows it down.
+constexpr double kAtBoundary = 0.1;
 
-std::optional<Equilibrium> resting_on(const BindingConstraint& b, Vec2 robot, Vec2 target) {
+std::optional<Equilibrium> equilibrium_at(const BindingConstraint& b, Vec2 robot, Vec2 target) {
   const Vec2 ahead = geometry::normalized(target - robot);
+  if (!is_static(b.constraint) || b.clearance > kAtBoundary) return std::nullopt;
   if (dot(ahead, b.normal) >= 0.0 || std::fabs(cross(ahead, b.normal)) > kHeadOn) return std::nullopt;
   Equilibrium e;
   e.position = robot;
@@ -42,36 +97,25 @@ std::optional<Equilibrium> resting_on(const BindingConstraint& b, Vec2 robot, Ve
   return e;
 }
 
-std::string printed(const char* format, double a, double b = 0.0, double c = 0.0) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, a, b, c);
-  return text;
-}
-
-std::string length(double x) {
-  return std::isfinite(x) ? printed("%.3g m", x) : "infinite (a flat edge)";
-}
-
-std::string source_text(const Scenario& s, const RecordedConstraint& c) {
-  switch (c.source) {
-    case ConstraintSource::enclosure:
-      return "enclosure " + std::to_string(c.index) + (c.piece > 0 ? ", piece " + std::to_string(c.piece) : "");
-    case ConstraintSource::obstacle_edge: {
-      const geometry::Segment* edge = std::get_if<geometry::Segment>(&c.shape);
-      return edge ? printed("the edge (%.3g, %.3g)", edge->a.x, edge->a.y) +
-                        printed("-(%.3g, %.3g)", edge->b.x, edge->b.y)
-                  : "edge " + std::to_string(c.index);
-    }
-    case ConstraintSource::robot:
-      return "robot " + s.robots.at(c.index).id;
-    case ConstraintSource::moving_obstacle:
-      return "moving obstacle " + s.moving_obstacles.at(c.index).id;
+std::optional<Equilibrium> equilibrium_of(const StuckReport& r, Vec2 target) {
+  const BindingConstraint* only = nullptr;
+  for (const BindingConstraint& b : r.binding) {
+    if (!b.pressing) continue;
+    if (only) return std::nullopt;
+    only = &b;
   }
-  return "";
+  return only ? equilibrium_at(*only, r.position, target) : std::nullopt;
 }
 
-/// m/s: a robot that is slower is said to rest. (Between edges it creeps on by its tie-break.)
-constexpr double kAtRest = 0.01;
+// --- How it moved ---
+
+/// s; how long the robot had been slower than kAtRest when the run ended.
+double rest_time_of(const Recording& recording, std::size_t robot) {
+  const std::vector<Step>& steps = recording.steps;
+  std::size_t first = steps.size();
+  while (first > 0 && norm(steps[first - 1].robots[robot].velocity) < kAtRest) --first;
+  return first == steps.size() ? 0.0 : steps.back().time - steps[first].time;
+}
 
 /// A robot's least distance from its goal, and when that was.
 struct Nearest {
@@ -90,31 +134,131 @@ Nearest nearest_of(const Scenario& s, const Recording& recording, Vec2 target, c
   return nearest;
 }
 
+// --- Words ---
+
+std::string printed(const char* format, double a, double b = 0.0) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+std::string length(double x) {
+  return std::isfinite(x) ? printed("%.3g m", x) : "infinite (a flat edge)";
+}
+
+std::string motion_words(const Scenario& s, const Recording& recording, const StuckReport& r) {
+  const std::string speed = printed("%.2g m/s", r.speed);
+  if (r.speed < kAtRest)
+    return "at rest" + (r.rest_time > 0.0 ? printed(" for %.3g s", r.rest_time) : "") + " (" + speed + ")";
+  const double end = recording.steps.back().time;
+  const bool ran_out = end + 0.5 * recording.time_step >= s.time_limit;
+  return ran_out ? "still moving when time ran out (" + speed + ")"
+                 : printed("moving at %.4g s", end) + " (" + speed + ")";
+}
+
 /// Of a robot that went away from where it wanted to, as one that circles does.
-std::string words_of(const Nearest& nearest, const StuckReport& r) {
+std::string nearest_words(const Nearest& nearest, const StuckReport& r) {
   if (r.speed < kAtRest || nearest.distance >= r.goal_distance) return "";
   return printed("; it was nearest at %.4g s, ", nearest.time) + length(nearest.distance) + " away";
 }
 
-std::string sentence(const Scenario& s, const StuckReport& r, const Nearest& at) {
-  const std::string& id = s.robots[r.robot].id;
-  std::string text = id + " is " + length(r.goal_distance) + (s.formation ? " from its slot" : " from its goal") +
-                     printed(", at (%.3f, %.3f), moving at %.2g m/s", r.position.x, r.position.y, r.speed) + "; ";
-  const std::string nearest = words_of(at, r);
-  if (r.binding.empty()) return text + "nothing binds" + (nearest.empty() ? ": it was on its way" : nearest);
-  text += "bound by ";
-  for (std::size_t k = 0; k < r.binding.size(); ++k)
-    text += (k ? " and " : "") + source_text(s, r.binding[k].constraint);
-  if (!r.equilibrium) return text + (r.binding.size() > 1 && r.speed < kAtRest ? ", between which it rests" : nearest);
-  return text + ": the way there is normal to the boundary, whose radius of curvature is " +
-         length(r.equilibrium->radius_of_curvature) +
-         (r.equilibrium->stable ? ", more than that distance: a stable trap" : ": unstable, it is sliding off");
+std::string curvature_words(const Equilibrium& e) {
+  return "(the goal lies straight behind the boundary, whose radius of curvature there is " +
+         length(e.radius_of_curvature) + (e.stable ? ", more" : ", less") + " than the distance to the goal)";
+}
+
+std::string equilibrium_words(const StuckReport& r) {
+  const bool rests = r.speed < kAtRest;
+  const Equilibrium& e = *r.equilibrium;
+  if (e.stable) return (rests ? ": a stable trap " : ", heading into a stable trap ") + curvature_words(e);
+  return (rests ? ": an unstable equilibrium " : ", sliding off an unstable equilibrium ") + curvature_words(e);
+}
+
+bool is_pressed_by(const Recording& recording, std::size_t robot, std::size_t other) {
+  const RobotStep* decision = last_decision(recording, robot);
+  return decision && std::any_of(decision->constraints.begin(), decision->constraints.end(), [&](const auto& c) {
+           return c.active && c.source == ConstraintSource::robot && c.index == other;
+         });
+}
+
+/// What the one robot that is in the way does itself.
+std::string other_words(const Scenario& s, const Recording& recording, const StuckReport& r,
+                        const RecordedConstraint& by) {
+  const RobotStep& other = recording.steps.back().robots.at(by.index);
+  if (norm(target_of(s, recording, by.index) - other.position) <= s.arrival_tolerance)
+    return s.formation ? ", which is at its slot" : ", which is at its goal";
+  if (norm(other.velocity) >= kAtRest) return ", which is moving";
+  return is_pressed_by(recording, by.index, r.robot) ? ": each stands in the other's way" : ", which is at rest";
+}
+
+std::string blocked_words(const Scenario& s, const Recording& recording, const StuckReport& r) {
+  const std::vector<RecordedConstraint> by = pressing_of(r);
+  const bool walls = by.size() > 1 && std::all_of(by.begin(), by.end(), is_static);
+  std::string text = (walls ? "blocked between " : "blocked by ") + name_of(by, s);
+  if (by.size() == 1 && by.front().source == ConstraintSource::robot) text += other_words(s, recording, r, by.front());
+  if (r.equilibrium) text += equilibrium_words(r);
+  return text;
+}
+
+std::string moving_words(const Scenario& s, const RobotStep& decision, const StuckReport& r) {
+  const std::vector<RecordedConstraint> by = pressing_of(r);
+  if (decision.mode == Mode::following) {
+    std::vector<RecordedConstraint> all;
+    for (const BindingConstraint& b : r.binding) all.push_back(b.constraint);
+    return all.empty() ? "following a boundary" : "following the boundary of " + name_of(all, s);
+  }
+  if (by.empty()) return "no active constraint changes its velocity";
+  return "its velocity is limited by " + name_of(by, s) + (r.equilibrium ? equilibrium_words(r) : "");
+}
+
+std::string cause_words(const Scenario& s, const Recording& recording, const StuckReport& r) {
+  const RobotStep* decision = last_decision(recording, r.robot);
+  if (!decision) return "no decision was taken";
+  std::string text;
+  if (r.speed >= kAtRest) {
+    text =
+        r.binding.empty() && decision->mode != Mode::following ? "no active constraint" : moving_words(s, *decision, r);
+  } else if (r.binding.empty()) {
+    text = "no active constraint";
+  } else if (pressing_of(r).empty()) {
+    text = "no active constraint changes its velocity";
+  } else {
+    text = blocked_words(s, recording, r);
+  }
+  if (decision->status != lp::Status::optimal && decision->violation > 0.0)
+    text += printed("; the half-planes contradict each other by %.2g m/s", decision->violation);
+  if (decision->mode == Mode::pushing_out) text += "; it is in contact with an obstacle";
+  return text;
+}
+
+std::string sentence(const Scenario& s, const Recording& recording, const StuckReport& r, const Nearest& nearest) {
+  return s.robots[r.robot].id + " is " + length(r.goal_distance) + (s.formation ? " from its slot" : " from its goal") +
+         printed(", at (%.3f, %.3f), ", r.position.x, r.position.y) + motion_words(s, recording, r) + "; " +
+         cause_words(s, recording, r) + nearest_words(nearest, r);
 }
 
 /// Whether standing elsewhere means anything.
 bool is_settled(const Scenario& scenario, const Recording& recording) {
   if (!scenario.formation) return true;
   return !recording.diverged && detail::leader_arrival(scenario.formation->leader) <= recording.steps.back().time;
+}
+
+StuckReport report_on(const Scenario& scenario, const Recording& recording, std::size_t robot, Vec2 target) {
+  const RobotStep& end = recording.steps.back().robots[robot];
+  StuckReport r;
+  r.robot = robot;
+  r.position = end.position;
+  r.goal_distance = norm(target - end.position);
+  r.speed = norm(end.velocity);
+  r.rest_time = rest_time_of(recording, robot);
+  if (const RobotStep* decision = last_decision(recording, robot)) {
+    for (const RecordedConstraint& c : decision->constraints)
+      if (c.active) r.binding.push_back(binding_of(c, end.position));
+    mark_pressing(*decision, r.binding);
+  }
+  r.equilibrium = equilibrium_of(r, target);
+  r.text = sentence(scenario, recording, r, nearest_of(scenario, recording, target, r));
+  return r;
 }
 
 }  // namespace
@@ -124,20 +268,9 @@ std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording
   std::vector<StuckReport> reports;
   if (!is_settled(scenario, recording)) return reports;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-    const RobotStep& end = recording.steps.back().robots[i];
     const Vec2 target = target_of(scenario, recording, i);
-    StuckReport r;
-    r.robot = i;
-    r.position = end.position;
-    r.goal_distance = norm(target - end.position);
-    if (r.goal_distance <= scenario.arrival_tolerance) continue;
-    r.speed = norm(end.velocity);
-    if (recording.steps.size() > 1)
-      for (const RecordedConstraint& c : recording.steps[recording.steps.size() - 2].robots[i].constraints)
-        if (c.active) r.binding.push_back(binding_of(c, end.position));
-    if (r.binding.size() == 1) r.equilibrium = resting_on(r.binding.front(), end.position, target);
-    r.text = sentence(scenario, r, nearest_of(scenario, recording, target, r));
-    reports.push_back(std::move(r));
+    if (norm(target - recording.steps.back().robots[i].position) <= scenario.arrival_tolerance) continue;
+    reports.push_back(report_on(scenario, recording, i, target));
   }
   return reports;
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "boundary.h"
+#include "concave_vertex.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/orca_obstacle.h"
@@ -173,10 +174,11 @@ std::vector<Equilibrium> rests_at(const Facade& f, const std::vector<Facade>& al
   return rests;
 }
 
-TrapFinding examine(const Facade& f, const std::vector<Facade>& all, const Robot& robot, Vec2 goal) {
+TrapFinding examine(const Facade& f, std::size_t number, const std::vector<Facade>& all, const Robot& robot,
+                    Vec2 goal) {
   TrapFinding finding;
   finding.goal = goal;
-  finding.enclosure = {f.edge, {f.obstacle}, geometry::EnclosureGrade::tight};
+  finding.place = {{f.edge, {f.obstacle}, geometry::EnclosureGrade::tight}, number, f.edge};
   finding.start_clear = clear_of(f.edge, robot.radius, robot.position);
   finding.goal_clear = clear_of(f.edge, robot.radius, goal);
   finding.equilibria = rests_at(f, all, robot.radius, goal);
@@ -186,21 +188,112 @@ TrapFinding examine(const Facade& f, const std::vector<Facade>& all, const Robot
 
 // --- Enclosures ---
 
-TrapFinding examine(const geometry::Enclosure& enclosure, const Robot& robot, Vec2 goal) {
-  TrapFinding f;
-  f.goal = goal;
-  f.enclosure = enclosure;
-  f.start_clear = clear_of(enclosure.shape, robot.radius, robot.position);
-  f.goal_clear = clear_of(enclosure.shape, robot.radius, goal);
-  f.stall_possible = stall_possible(enclosure.shape, goal);
-  if (const Ellipse* e = std::get_if<Ellipse>(&enclosure.shape)) f.margin = evolute_margin(*e, goal);
-  if (!f.goal_clear) return f;
-  f.equilibria = equilibria(enclosure.shape, robot.radius, goal);
-  const detail::Boundary boundary(enclosure.shape, robot.radius);
-  if (!f.start_clear || !boundary.smooth()) return f;
-  if (const auto hit = first_hit(boundary, robot.position, goal))
-    f.slide_time = slide(boundary, *hit, goal, robot.max_speed);
-  return f;
+std::vector<Equilibrium> equilibria_of(const detail::Boundary& boundary, Vec2 goal) {
+  std::vector<Equilibrium> found;
+  for (double turn : boundary.facing_away(goal)) found.push_back(equilibrium_at(boundary, turn, goal));
+  return found;
+}
+
+/// One robot among its enclosures.
+class Examination {
+ public:
+  Examination(const Scenario& scenario, const std::vector<TrapPlace>& places, std::size_t robot, Vec2 goal)
+      : scenario_(scenario), places_(places), robot_(robot), goal_(goal) {
+    for (const TrapPlace& place : places) grown_.push_back({place.enclosure.shape, {}, radius_at(place)});
+  }
+
+  void run(std::vector<TrapFinding>& out) const {
+    for (const TrapPlace& place : places_) out.push_back(alone(place));
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      for (std::size_t j = i + 1; j < places_.size(); ++j)
+        if (detail::boxes_meet(grown_[i], grown_[j])) add_pair(i, j, out);
+  }
+
+ private:
+  const Robot& robot() const { return scenario_.robots[robot_]; }
+
+  /// m; how near the robot comes to the shape: a bare piece is kept off by the margin that an ellipse has inside.
+  double radius_at(const TrapPlace& place) const {
+    const bool tight = place.enclosure.grade == geometry::EnclosureGrade::tight;
+    return robot().radius + (tight ? scenario_.margins.obstacle : 0.0);
+  }
+
+  TrapFinding about(const TrapPlace& place) const {
+    TrapFinding f;
+    f.robot = robot_;
+    f.goal = goal_;
+    f.place = place;
+    f.start_clear = clear_of(place.enclosure.shape, robot().radius, robot().position);
+    f.goal_clear = clear_of(place.enclosure.shape, robot().radius, goal_);
+    return f;
+  }
+
+  /// Inside the grown enclosure by more than the robot may stay away from its goal.
+  bool goal_is_shut_in(const ConvexShape& shape) const {
+    return !clear_of(shape, robot().radius, goal_) &&
+           detail::distance_to({shape, {}, robot().radius}, goal_) < -scenario_.arrival_tolerance;
+  }
+
+  TrapFinding alone(const TrapPlace& place) const {
+    const ConvexShape& shape = place.enclosure.shape;
+    TrapFinding f = about(place);
+    f.stall_possible = stall_possible(shape, goal_) || goal_is_shut_in(shape);
+    if (const Ellipse* e = std::get_if<Ellipse>(&shape)) f.margin = evolute_margin(*e, goal_);
+    const detail::Boundary boundary(shape, robot().radius);
+    f.equilibria = equilibria_of(boundary, goal_);
+    if (!f.goal_clear || !f.start_clear || !boundary.smooth()) return f;
+    if (const auto hit = first_hit(boundary, robot().position, goal_))
+      f.slide_time = slide(boundary, *hit, goal_, robot().max_speed);
+    return f;
+  }
+
+  void add_pair(std::size_t i, std::size_t j, std::vector<TrapFinding>& out) const {
+    const std::vector<detail::Crossing> vertices = detail::crossings(grown_[i], grown_[j]);
+    if (vertices.empty()) return;
+    TrapFinding f = about(places_[i]);
+    const TrapFinding other = about(places_[j]);
+    f.overlapping = places_[j];
+    f.start_clear = f.start_clear && other.start_clear;
+    f.goal_clear = f.goal_clear && other.goal_clear;
+    for (const detail::Crossing& vertex : vertices) {
+      const auto rest = detail::rest_at(vertex, goal_);
+      if (!rest || rest->equilibrium.distance <= scenario_.arrival_tolerance) continue;
+      if (is_covered(rest->equilibrium.position, i, j)) continue;
+      f.equilibria.push_back(rest->equilibrium);
+      f.margin = std::min(f.margin.value_or(0.0), -rest->depth);
+    }
+    f.stall_possible = !f.equilibria.empty();
+    out.push_back(std::move(f));
+  }
+
+  /// Whether a third enclosure keeps the robot from getting there. One that it starts in gives way to its pieces.
+  bool is_covered(Vec2 place, std::size_t i, std::size_t j) const {
+    constexpr double kDeep = 1e-6;  // m, beyond rounding
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      if (k == i || k == j || clear_of(places_[k].enclosure.shape, robot().radius, place)) continue;
+      if (clear_of(places_[k].enclosure.shape, robot().radius, robot().position) &&
+          detail::distance_to(grown_[k], place) < -kDeep)
+        return true;
+    }
+    return false;
+  }
+
+  const Scenario& scenario_;
+  const std::vector<TrapPlace>& places_;
+  std::size_t robot_;
+  Vec2 goal_;
+  std::vector<geometry::GrownShape> grown_;
+};
+
+/// The enclosures of one robot with their numbers, and of the method ivo-edge the facades they stand on.
+std::vector<TrapPlace> places_of(const detail::StaticField& field, const detail::Scene& scene, Method method) {
+  std::vector<TrapPlace> places;
+  for (const geometry::Enclosure& e : field.enclosures()) places.push_back({e, places.size(), std::nullopt});
+  if (method != Method::ivo_edge) return places;
+  std::size_t number = 0;
+  for (const geometry::ObstacleParts& parts : scene.parts())
+    for (const geometry::Segment& facade : parts.facades) places.at(number++).facade = facade;
+  return places;
 }
 
 }  // namespace
@@ -211,10 +304,7 @@ double Equilibrium::rate_at(double max_speed) const {
 
 std::vector<Equilibrium> equilibria(const ConvexShape& shape, double robot_radius, Vec2 goal) {
   EXACTVO_REQUIRE(clear_of(shape, robot_radius, goal), geometry::to_string(shape));
-  const detail::Boundary boundary(shape, robot_radius);
-  std::vector<Equilibrium> found;
-  for (double turn : boundary.facing_away(goal)) found.push_back(equilibrium_at(boundary, turn, goal));
-  return found;
+  return equilibria_of(detail::Boundary(shape, robot_radius), goal);
 }
 
 double escape_time(const Equilibrium& e, double max_speed, double s0, double s1) {
@@ -251,14 +341,12 @@ std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOpt
     const Vec2 goal = detail::first_goal(scenario, options, i);
     const detail::StaticField field(scene, scenario, options, robot.radius, robot.position, goal,
                                     detail::HorizonRule::clamped);
-    for (const Facade& facade : facades) {
-      findings.push_back(examine(facade, facades, robot, goal));
+    for (std::size_t k = 0; k < facades.size(); ++k) {
+      findings.push_back(examine(facades[k], k, facades, robot, goal));
       findings.back().robot = i;
     }
-    for (const geometry::Enclosure& enclosure : field.enclosures()) {
-      findings.push_back(examine(enclosure, robot, goal));
-      findings.back().robot = i;
-    }
+    const std::vector<TrapPlace> places = places_of(field, scene, options.method);
+    Examination(scenario, places, i, goal).run(findings);
   }
   return findings;
 }

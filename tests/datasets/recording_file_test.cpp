@@ -140,7 +140,8 @@ RecordingFile sample(bool with_formation) {
   file.recording.wall_time = 0.125;
   file.recording.all_half_planes = file.recording.relative_frame = with_formation;
   if (!with_formation) file.recording.later_outlooks = {{0.1, 2, 1, {shape_number(1, random)}}, {0.2, 0, 1, {}}};
-  file.stuck = {{1, random.in_box(5), 3.5, 0.25, {binding(random)}, std::nullopt, "bound \"here\""}};
+  file.stuck = {{1, random.in_box(5), 3.5, 0.25, {binding(random)}, std::nullopt, "bound \"here\"", 12.5}};
+  file.stuck.front().binding.front().pressing = true;
   if (with_formation) file.stuck.front().equilibrium = formation::Equilibrium{random.in_box(1), {1, 0}, 2.5, 1.5, true};
   for (int k = 0; k < 20; ++k) {
     formation::Step step;
@@ -188,7 +189,9 @@ void expect_same_reports(const formation::StuckReport& a, const formation::Stuck
   EXPECT_EQ(a.robot, b.robot);
   EXPECT_EQ(a.text, b.text);
   EXPECT_TRUE(same_bits(a.position, b.position));
+  EXPECT_TRUE(same_bits(a.rest_time, b.rest_time));
   ASSERT_EQ(a.binding.size(), b.binding.size());
+  EXPECT_EQ(a.binding[0].pressing, b.binding[0].pressing);
   EXPECT_EQ(a.binding[0].constraint.source, b.binding[0].constraint.source);
   EXPECT_EQ(a.binding[0].constraint.piece, b.binding[0].constraint.piece);
   EXPECT_TRUE(same_bits(a.binding[0].radius_of_curvature, b.binding[0].radius_of_curvature));

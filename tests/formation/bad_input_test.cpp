@@ -214,7 +214,7 @@ TEST(BadInput, AGoalInAClosedRoomEndsWithTheFullCircleStated) {
   const test::FinishedRun r = test::run(s, {});
   EXPECT_FALSE(r.metrics.all_arrived);
   EXPECT_THAT(r.recording.outcome, HasSubstr("the robot did not arrive"));
-  EXPECT_THAT(r.recording.outcome, HasSubstr("R1 came full circle"));
+  EXPECT_THAT(r.recording.outcome, HasSubstr("R1 completed a full circuit"));
   EXPECT_GT(r.metrics.min_obstacle_clearance.value(), 0.0);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Remedies, stability, Lyapunov functions, patterns, and who stands in the way.
+// Remedies, stability, Lyapunov functions, patterns, moving obstacles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,6 @@
 #include "exactvo/formation/lyapunov.h"
 #include "exactvo/formation/patterns.h"
 #include "exactvo/formation/stability.h"
-#include "exactvo/formation/stuck.h"
 #include "paper_scenes.h"
 
 namespace exactvo::formation {
@@ -260,57 +259,6 @@ TEST(Patterns, NeighbourTopologyIsConnectedAlongAGrid) {
   EXPECT_TRUE(validate(s).empty());
   s.formation->topology = neighbour_topology(offsets, 1.9, {0});
   EXPECT_FALSE(validate(s).empty());
-}
-
-TEST(Stuck, OrcaAtAFlatWallIsAStableTrap) {
-  const Scenario s = paper_scene("A11");
-  const std::vector<StuckReport> reports = explain_stuck(s, simulate(s, test::with_method(Method::orca)));
-  ASSERT_EQ(reports.size(), 1u);
-  ASSERT_TRUE(reports[0].equilibrium.has_value()) << reports[0].text;
-  EXPECT_TRUE(reports[0].equilibrium->stable);
-  EXPECT_NE(reports[0].text.find("stable trap"), std::string::npos) << reports[0].text;
-}
-
-TEST(Stuck, TheThinEllipseNamesItsCurvature) {
-  const Scenario s = paper_scene("A11");
-  SimulationOptions options = test::with_method(Method::ivo_edge);
-  options.facade_fixed_minor = 0.1;
-  const std::vector<StuckReport> reports = explain_stuck(s, simulate(s, options));
-  ASSERT_EQ(reports.size(), 1u);
-  ASSERT_TRUE(reports[0].equilibrium.has_value()) << reports[0].text;
-  const Equilibrium& e = *reports[0].equilibrium;
-  EXPECT_GT(e.radius_of_curvature, e.distance);
-  EXPECT_TRUE(std::isfinite(e.radius_of_curvature));
-}
-
-TEST(Stuck, WhoGoesRoundAGoalItCannotReachDoesNotRest) {
-  Scenario s;
-  s.robots.emplace_back();
-  s.robots.front().id = "R1";
-  s.robots.front().position = {0, 0};
-  s.robots.front().goals = {{8, 0.3}};
-  s.obstacles.push_back({"desk", geometry::Polygon{{{6, -2}, {10, -2}, {10, 2}, {6, 2}}, {}}});
-  s.time_limit = 40.0;
-  const Recording recording = simulate(s);
-  const std::vector<StuckReport> reports = explain_stuck(s, recording);
-  ASSERT_EQ(reports.size(), 1u);
-  const StuckReport& r = reports.front();
-  double nearest = r.goal_distance;
-  for (const Step& step : recording.steps) {
-    nearest = std::min(nearest, norm(step.robots[0].position - s.robots.front().goals.back()));
-  }
-  ASSERT_LT(nearest, r.goal_distance);
-  char words[80];
-  std::snprintf(words, sizeof words, " s, %.3g m away", nearest);
-  EXPECT_NE(r.text.find("it was nearest at"), std::string::npos) << r.text;
-  EXPECT_NE(r.text.find(words), std::string::npos) << r.text;
-  EXPECT_EQ(r.text.find("rests"), std::string::npos) << r.text;
-  EXPECT_EQ(r.text.find("on its way"), std::string::npos) << r.text;
-}
-
-TEST(Stuck, WhoArrivedHasNothingToExplain) {
-  const Scenario s = paper_scene("A4");
-  EXPECT_TRUE(explain_stuck(s, simulate(s)).empty());
 }
 
 TEST(Moving, AnObstacleThatCrossesTheWayIsAvoided) {

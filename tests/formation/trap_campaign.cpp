@@ -1,13 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The trap test against simulation: formation_trap_campaign [COUNT [SEED]]. A line for each disagreement, then the
-// counts.
+// The trap test against simulation: formation_trap_campaign [COUNT [SEED [PAIRS]]]. A line for each disagreement,
+// then the counts. With PAIRS 1, random pairs of facades whose enclosures overlap.
 #include <cstdio>
 
-#include "exactvo/formation/stuck.h"
 #include "options/program_options.h"
 #include "trap_cases.h"
 
 namespace {
+
+int pairs(unsigned long long count, unsigned long long seed) {
+  using namespace exactvo;
+  test::SeededRandom random(seed);
+  unsigned long long runs = 0, stalls = 0, between = 0, wrong = 0, vertices = 0, left = 0;
+  while (runs < count) {
+    const auto pair = test::random_pair(random);
+    if (!pair) continue;
+    const test::PairOutcome o = test::outcome_of(*pair);
+    ++runs;
+    stalls += !o.arrived;
+    between += !o.arrived && o.between;
+    wrong += !o.agrees();
+    if (!o.agrees()) std::printf("run %llu stalls where nothing was said: %s\n", runs, o.words.c_str());
+    for (const test::VertexOutcome& v : test::vertex_outcomes(*pair)) {
+      ++vertices;
+      if (v.distance < 0.05) continue;
+      ++left;
+      std::printf("run %llu leaves a vertex said to stop it: %s\n", runs, v.words.c_str());
+    }
+  }
+  std::printf(
+      "seed %llu: %llu of %llu runs stall, %llu between two enclosures, %llu where nothing was said; "
+      "%llu of %llu vertices said to stop a robot do not\n",
+      seed, stalls, runs, between, wrong, left, vertices);
+  return wrong + left == 0 ? 0 : 1;
+}
 
 int compare(unsigned long long count, unsigned long long seed) {
   using namespace exactvo;
@@ -19,9 +45,7 @@ int compare(unsigned long long count, unsigned long long seed) {
     agreed += right;
     traps += formation::stall_possible(c.ellipse, c.goal);
     if (right) continue;
-    for (const formation::StuckReport& r :
-         formation::explain_stuck(c.scenario, formation::simulate(c.scenario, c.options)))
-      std::printf("%s\n", r.text.c_str());
+    std::printf("%s\n", test::report_of(c.scenario, formation::simulate(c.scenario, c.options)).c_str());
     std::printf("case %llu: margin %.4f, predicted %s; start (%a, %a) goal (%a, %a) %s\n", k, c.margin,
                 formation::stall_possible(c.ellipse, c.goal) ? "a stall" : "none", c.scenario.robots[0].position.x,
                 c.scenario.robots[0].position.y, c.goal.x, c.goal.y, geometry::to_string(c.ellipse).c_str());
@@ -40,6 +64,9 @@ int main(int argc, char** argv) {
                                   "Prints a line per disagreement. Exit status 1: there was one.");
     options.whole_number("COUNT", count, 1, "Cases");
     options.whole_number("SEED", seed, 0, "Of the cases");
-    return options.parse(argc, argv) ? compare(count, seed) : 0;
+    unsigned long long pairs_asked = 0;
+    options.whole_number("PAIRS", pairs_asked, 0, "1: pairs of facades whose enclosures overlap");
+    if (!options.parse(argc, argv)) return 0;
+    return pairs_asked > 0 ? pairs(count, seed) : compare(count, seed);
   });
 }

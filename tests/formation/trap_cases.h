@@ -2,10 +2,17 @@
 #pragma once
 
 /// \file
-/// Random (wall, enclosure, goal) cases: the trap test against the simulation of what it predicts.
+/// Random (wall, enclosure, goal) cases, and pairs of walls whose enclosures overlap: the trap test against the
+/// simulation of what it predicts.
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
+#include "exactvo/formation/stuck.h"
 #include "exactvo/formation/trap.h"
 #include "exactvo/geometry/predicates.h"
 #include "support/seeded_random.h"
@@ -83,6 +90,97 @@ inline bool arrives(const TrapCase& c) {
 /// The test is right where it predicts what the simulation does.
 inline bool agrees(const TrapCase& c) {
   return formation::stall_possible(c.ellipse, c.goal) == !arrives(c);
+}
+
+// --- Two enclosures that overlap ---
+
+/// m; how far the place is from the nearest one at which a robot is said to rest.
+inline double distance_to_rests(const std::vector<formation::TrapFinding>& findings, Vec2 place) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const formation::TrapFinding& f : findings)
+    for (const formation::Equilibrium& e : f.equilibria)
+      if (e.stable) least = std::min(least, norm(e.position - place));
+  return least;
+}
+
+inline formation::SimulationOptions pair_options() {
+  formation::SimulationOptions options;
+  options.method = formation::Method::ivo_edge;
+  return options;
+}
+
+/// Whether start and goal are clear of every enclosure and the goal lies outside the band round each evolute.
+inline bool is_clear_cut(const std::vector<formation::TrapFinding>& findings) {
+  return std::all_of(findings.begin(), findings.end(), [](const formation::TrapFinding& f) {
+    return f.start_clear && f.goal_clear && (f.overlapping || !f.margin || std::fabs(*f.margin) >= kBand);
+  });
+}
+
+/// A robot and two facades whose grown ellipses overlap; nothing where the drawing gives none that can be judged.
+inline std::optional<formation::Scenario> random_pair(SeededRandom& random) {
+  formation::Scenario s;
+  formation::Robot robot;
+  robot.id = "R1";
+  robot.goals = {random.in_box(8.0)};
+  robot.position = -1.0 * robot.goals[0] + random.in_box(3.0);
+  s.robots = {robot};
+  s.time_limit = 60.0;
+  for (const char* id : {"a", "b"}) {
+    const Vec2 middle = random.in_box(2.5), half = random.uniform(0.8, 3.0) * random.direction();
+    s.obstacles.push_back({id, geometry::Polyline{{middle - half, middle + half}}});
+  }
+  if (!formation::validate(s).empty()) return std::nullopt;
+  const auto findings = formation::trap_test(s, pair_options());
+  if (findings.size() < 3 || !is_clear_cut(findings)) return std::nullopt;
+  return s;
+}
+
+inline std::string report_of(const formation::Scenario& s, const formation::Recording& run) {
+  const auto reports = formation::explain_stuck(s, run);
+  return reports.empty() ? "arrived" : reports[0].text;
+}
+
+/// What a run showed, beside what was said of it.
+struct PairOutcome {
+  bool arrived = false;
+  bool foretold = false;  ///< it rests where something was said to be
+  bool between = false;   ///< at a vertex
+  std::string words;
+  bool agrees() const { return arrived || foretold; }
+};
+
+inline PairOutcome outcome_of(const formation::Scenario& s) {
+  constexpr double kSame = 0.1;  // m
+  const auto findings = formation::trap_test(s, pair_options());
+  const formation::Recording run = formation::simulate(s, pair_options());
+  const Vec2 end = run.steps.back().robots[0].position;
+  PairOutcome o;
+  o.arrived = norm(end - s.robots[0].goals[0]) <= s.arrival_tolerance;
+  o.foretold = distance_to_rests(findings, end) < kSame;
+  o.between = findings.back().overlapping && distance_to_rests({findings.back()}, end) < kSame;
+  o.words = report_of(s, run);
+  return o;
+}
+
+/// A robot that starts 5 cm before a vertex at which it is said to rest.
+struct VertexOutcome {
+  double distance = 0.0;  ///< m, from the vertex to where it ended
+  std::string words;
+};
+
+/// Of every vertex that is said to stop the robot, but those where the way to the goal runs along the edge of the cone
+/// of rest: there it is as likely to slide out.
+inline std::vector<VertexOutcome> vertex_outcomes(formation::Scenario s) {
+  std::vector<VertexOutcome> out;
+  for (const formation::TrapFinding& f : formation::trap_test(s, pair_options())) {
+    if (!f.overlapping || f.equilibria.size() != 1 || *f.margin > -kBand) continue;
+    const formation::Equilibrium& e = f.equilibria[0];
+    s.robots[0].position = e.position + 0.05 * e.normal;
+    if (!formation::validate(s).empty() || !is_clear_cut(formation::trap_test(s, pair_options()))) continue;
+    const formation::Recording run = formation::simulate(s, pair_options());
+    out.push_back({norm(run.steps.back().robots[0].position - e.position), report_of(s, run)});
+  }
+  return out;
 }
 
 }  // namespace exactvo::test

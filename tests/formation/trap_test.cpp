@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "paper_scenes.h"
 #include "trap_cases.h"
@@ -135,7 +137,7 @@ TEST(Trap, FindingsOfTheScenesSayWhatTheRunsShow) {
   SimulationOptions options;
   options.method = Method::ivo_cluster;
   for (const TrapFinding& f : trap_test(test::paper_scene("A4"), options)) {
-    if (!f.enclosure.trap_free()) continue;
+    if (!f.place.enclosure.trap_free()) continue;
     EXPECT_FALSE(f.stall_possible);
     EXPECT_TRUE(f.start_clear);
     EXPECT_GT(f.margin.value(), 0.0);
@@ -268,6 +270,100 @@ TEST(Trap, WithoutEnclosuresNoSceneThatStopsIsCleared) {
   for (const std::string name : {"A1", "A4", "A11"}) {
     const Scenario scene = test::paper_scene(name);
     EXPECT_FALSE(rests_without_enclosures(scene).empty()) << name;
+  }
+}
+
+// --- Two enclosures that overlap ---
+
+SimulationOptions with_facade_ellipses() {
+  SimulationOptions options;
+  options.method = Method::ivo_edge;
+  return options;
+}
+
+/// A U that opens towards the robot, its goal beyond a corner: every facade alone lets the robot pass.
+Scenario before_a_u() {
+  Scenario s =
+      one_robot(geometry::Polygon{{{4, -4}, {10, -4}, {10, 4}, {4, 4}, {4, 3.5}, {9, 3.5}, {9, -3.5}, {4, -3.5}}, {}});
+  s.robots[0].goals = {{12.0, 6.0}};
+  s.time_limit = 40.0;
+  return s;
+}
+
+Vec2 end_of(const Recording& run) {
+  return run.steps.back().robots[0].position;
+}
+
+TEST(Trap, TheVertexBetweenTwoEnclosuresOfAUIsAStall) {
+  const Scenario u = before_a_u();
+  const auto findings = trap_test(u, with_facade_ellipses());
+  const Vec2 end = end_of(simulate(u, with_facade_ellipses()));
+  ASSERT_GT(norm(end - u.robots[0].goals[0]), 1.0) << "it stalls";
+  const TrapFinding* between = nullptr;
+  for (const TrapFinding& f : findings)
+    if (f.overlapping && f.place.number == 4 && f.overlapping->number == 5) between = &f;
+  ASSERT_NE(between, nullptr);
+  EXPECT_TRUE(between->stall_possible);
+  ASSERT_EQ(between->equilibria.size(), 1u);
+  EXPECT_LT(norm(between->equilibria[0].position - end), 0.05);
+}
+
+TEST(Trap, AFindingNamesItsFacade) {
+  const auto findings = trap_test(before_a_u(), with_facade_ellipses());
+  std::size_t alone = 0;
+  for (const TrapFinding& f : findings) {
+    if (f.overlapping) continue;
+    EXPECT_EQ(f.place.number, alone++);
+    ASSERT_TRUE(f.place.facade.has_value());
+    const auto& ellipse = std::get<geometry::Ellipse>(f.place.enclosure.shape);
+    EXPECT_LT(norm(0.5 * (f.place.facade->a + f.place.facade->b) - ellipse.center), 1e-9);
+  }
+  EXPECT_EQ(alone, 8u);
+}
+
+TEST(Trap, AGoalInsideAnEnclosureIsAStall) {
+  // 0.8 m behind the wall, where the robot itself has room, but inside the wall's ellipse grown by the robot.
+  Scenario s = one_robot(geometry::Polyline{{{4.0, -3.0}, {4.0, 3.0}}});
+  s.robots[0].goals = {{4.8, 2.0}};
+  s.robots[0].position = {-2.0, 4.0};
+  s.time_limit = 30.0;
+  const auto findings = trap_test(s, with_facade_ellipses());
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_FALSE(findings[0].goal_clear);
+  EXPECT_TRUE(findings[0].stall_possible);
+  const Vec2 end = end_of(simulate(s, with_facade_ellipses()));
+  EXPECT_GT(norm(end - s.robots[0].goals[0]), s.arrival_tolerance);
+  EXPECT_LT(test::distance_to_rests(findings, end), 0.05);
+}
+
+TEST(Trap, OverlappingFacadesAgreeWithSimulation) {
+  test::SeededRandom random(test::seed_of_run(14));
+  int stalls = 0, between = 0, passed = 0;
+  for (int k = 0; stalls + passed < 60; ++k) {
+    ASSERT_LT(k, 5000);
+    const auto pair = test::random_pair(random);
+    if (!pair) continue;
+    const test::PairOutcome outcome = test::outcome_of(*pair);
+    EXPECT_TRUE(outcome.agrees()) << "case " << k << ": " << outcome.words;
+    stalls += !outcome.arrived;
+    passed += outcome.arrived;
+    between += !outcome.arrived && outcome.between;
+  }
+  EXPECT_GT(between, 3);
+  EXPECT_GT(passed, 20);
+}
+
+TEST(Trap, ARobotThatStartsBeforeAVertexSaidToTrapRestsThere) {
+  test::SeededRandom random(test::seed_of_run(15));
+  int judged = 0;
+  for (int k = 0; judged < 40; ++k) {
+    ASSERT_LT(k, 5000);
+    const auto pair = test::random_pair(random);
+    if (!pair) continue;
+    for (const test::VertexOutcome& vertex : test::vertex_outcomes(*pair)) {
+      EXPECT_LT(vertex.distance, 0.05) << "case " << k << ": " << vertex.words;
+      ++judged;
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "exactvo/formation/constraint_name.h"
 #include "explain/explanation.h"
 #include "figures/velocity_space.h"
 
@@ -83,21 +84,54 @@ TEST(Decision, DistanceAndTimeToContact) {
 
 TEST(Decision, NamesWhatAConstraintStandsFor) {
   const Decision d = with_two_walls();
-  EXPECT_EQ(name_of(d.step.constraints[0], d.scenario), "the edge (1.5, -2)-(1.5, 2) of east");
+  EXPECT_EQ(formation::name_of(d.step.constraints[0], d.scenario), "the edge (1.5, -2)-(1.5, 2) of obstacle east");
   RecordedConstraint enclosure = d.step.constraints[0];
   enclosure.source = ConstraintSource::enclosure;
   enclosure.shape = geometry::ellipse_from_axes({0.0, 1.5}, {2.5, 0.2, 0.0});
-  EXPECT_EQ(name_of(enclosure, d.scenario), "enclosure 0 of north");
+  EXPECT_EQ(formation::name_of(enclosure, d.scenario), "enclosure 0 of obstacle north");
   RecordedConstraint robot = d.step.constraints[0];
   robot.source = ConstraintSource::robot;
-  EXPECT_EQ(name_of(robot, d.scenario), "robot R1");
+  EXPECT_EQ(formation::name_of(robot, d.scenario), "robot R1");
 }
 
 TEST(Explanation, NamesBindingConstraintsAndTheirPush) {
   const std::string words = explanation(with_two_walls());
-  EXPECT_THAT(words, HasSubstr("2 half-planes, of which 2 bind"));
+  EXPECT_THAT(words, HasSubstr("2 half-planes: 2 binding (the chosen velocity lies on their lines)"));
   EXPECT_THAT(words, HasSubstr("1.50 n[1] + 0.50 n[2]"));
   EXPECT_THAT(words, HasSubstr("1.00 m from the robot's rim, reached in 0.50 s"));
+}
+
+/// A cart drives at the robot: the half-planes of both, soft, contradict each other, and the velocity that violates
+/// them least lies 2.85 m/s on the forbidden side.
+Decision before_a_cart() {
+  Decision d = with_two_walls();
+  d.scenario.moving_obstacles = {{"cart", geometry::Polyline{{{2.0, -1.0}, {2.0, 1.0}}}, {{{0, 0}, {-8, 0}}, 4.0}}};
+  RecordedConstraint cart = d.step.constraints[0];
+  cart.source = ConstraintSource::moving_obstacle;
+  cart.index = 0;
+  cart.hard = false;
+  cart.half_plane = {{-1.0, 0.0}, 3.35};
+  RecordedConstraint satisfied = d.step.constraints[1];
+  satisfied.active = false;
+  d.step.constraints = {cart, satisfied};
+  d.step.chosen = {-0.5, 0.0};
+  d.step.status = lp::Status::relaxed;
+  d.step.violation = 2.85;
+  return d;
+}
+
+TEST(Explanation, AViolatedLineIsNotCalledBinding) {
+  const std::string words = explanation(before_a_cart());
+  EXPECT_THAT(words, HasSubstr("2 half-planes: 0 binding, 1 violated"));
+  EXPECT_THAT(words, HasSubstr("[1] moving obstacle cart, violated by 2.85 m/s"));
+  EXPECT_THAT(words, HasSubstr("[2] the edge (-2, 1.5)-(2, 1.5) of obstacle north, slack"));
+  EXPECT_THAT(words, testing::Not(HasSubstr("lies on")));
+}
+
+TEST(Explanation, TheSourceOfWhatIsViolatedIsNamed) {
+  const std::string words = explanation(before_a_cart());
+  EXPECT_THAT(words, HasSubstr("violated by at most 2.85 m/s, the least possible: moving obstacle cart\n"));
+  EXPECT_THAT(words, testing::Not(HasSubstr("robots")));
 }
 
 TEST(VelocitySpace, DrawsEveryLayerOnce) {
@@ -117,9 +151,9 @@ TEST(Decision, NamesAtMostThreeObstacles) {
   RecordedConstraint all = d.step.constraints[0];
   all.source = ConstraintSource::enclosure;
   all.shape = geometry::ellipse_from_axes({0.0, 0.0}, {9.0, 9.0, 0.0});
-  EXPECT_EQ(name_of(all, d.scenario), "enclosure 0 of east, north, a and 2 more");
+  EXPECT_EQ(formation::name_of(all, d.scenario), "enclosure 0 of obstacles east, north, a and 2 more");
   all.shape = geometry::ConvexPolygon{{{1.0, -3.0}, {2.0, -3.0}, {2.0, 3.0}, {1.0, 3.0}}};
-  EXPECT_EQ(name_of(all, d.scenario), "enclosure 0 of east and north");
+  EXPECT_EQ(formation::name_of(all, d.scenario), "enclosure 0 of obstacles east and north");
 }
 
 TEST(Explanation, SaysThatBoostHadTurnedWhatIsAllowedAsItStands) {
@@ -128,9 +162,9 @@ TEST(Explanation, SaysThatBoostHadTurnedWhatIsAllowedAsItStands) {
   d.step.mode = formation::Mode::boost;
   d.step.constraints[1].active = false;
   const std::string words = explanation(d);
-  EXPECT_THAT(words, HasSubstr("boost had turned"));
+  EXPECT_THAT(words, HasSubstr("boost turned"));
   EXPECT_THAT(words, HasSubstr("lies on the line of [1]"));
-  EXPECT_THAT(words, testing::Not(HasSubstr("nothing stands in the way")));
+  EXPECT_THAT(words, testing::Not(HasSubstr("no constraint forbids")));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "explain/decision.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,9 +10,7 @@
 
 namespace exactvo::tools {
 
-using formation::ConstraintSource;
 using formation::RecordedConstraint;
-using formation::Scenario;
 using geometry::GrownShape;
 
 namespace {
@@ -24,81 +20,10 @@ constexpr int kDirections = 4096;  // an arc between two of them strays from its
 /// A chosen velocity this near the speed bound (relative) is on it: the solver keeps a slack of a few ulps, and a
 /// recording may have passed through text.
 constexpr double kOnBound = 1e-6;
-/// m: a point this near a shape lies on it, for naming; far above the sampling's error, far below any gap between
-/// obstacles that matters.
-constexpr double kSamePlace = 1e-5;
-constexpr std::size_t kMostNames = 3;
 
 Vec2 direction(int i) {
   const double angle = 2.0 * kPi * i / kDirections;
   return {std::cos(angle), std::sin(angle)};
-}
-
-bool has_vertex_in(const geometry::Obstacle& obstacle, const geometry::Ellipse& ellipse) {
-  const auto vertices = vertices_of(obstacle);
-  return std::any_of(vertices.begin(), vertices.end(), [&](Vec2 p) { return contains(ellipse, p); });
-}
-
-bool has_edge(const geometry::Obstacle& obstacle, const geometry::Segment& edge) {
-  const auto edges = edges_of(obstacle);
-  return std::any_of(edges.begin(), edges.end(), [&](const geometry::Segment& e) {
-    return (e.a == edge.a && e.b == edge.b) || (e.a == edge.b && e.b == edge.a);
-  });
-}
-
-bool belongs_to(const geometry::ConvexShape& shape, const geometry::Obstacle& obstacle) {
-  if (const auto* ellipse = std::get_if<geometry::Ellipse>(&shape)) return has_vertex_in(obstacle, *ellipse);
-  if (const auto* segment = std::get_if<geometry::Segment>(&shape)) return has_edge(obstacle, *segment);
-  return false;
-}
-
-/// Where nothing is exactly the same (a convex piece, a hull, a shortened facade): a vertex in the shape or on it.
-bool touches(const geometry::ConvexShape& shape, const geometry::Obstacle& obstacle) {
-  const auto vertices = vertices_of(obstacle);
-  return std::any_of(vertices.begin(), vertices.end(), [&](Vec2 p) {
-    return distance_to({shape, p, 0.0}) <= kSamePlace;
-  });
-}
-
-std::vector<std::string> ids_where(bool (*holds)(const geometry::ConvexShape&, const geometry::Obstacle&),
-                                   const geometry::ConvexShape& shape, const Scenario& scenario) {
-  std::vector<std::string> ids;
-  for (const auto& obstacle : scenario.obstacles) {
-    if (holds(shape, obstacle.shape)) ids.push_back(obstacle.id);
-  }
-  return ids;
-}
-
-/// "a", "a and b", "a, b and c", "a, b, c and 2 more".
-std::string listed(std::vector<std::string> ids) {
-  if (ids.size() > kMostNames) {
-    const std::size_t more = ids.size() - kMostNames;
-    ids.resize(kMostNames);
-    ids.push_back(fmt::format("{} more", more));
-  }
-  if (ids.size() < 2) return fmt::format("{}", fmt::join(ids, ""));
-  return fmt::format("{} and {}", fmt::join(ids.begin(), ids.end() - 1, ", "), ids.back());
-}
-
-/// The ids of the obstacles that the shape stands for: "wall and desk 3".
-std::string owners_of(const geometry::ConvexShape& shape, const Scenario& scenario) {
-  std::vector<std::string> ids = ids_where(belongs_to, shape, scenario);
-  if (ids.empty()) ids = ids_where(touches, shape, scenario);
-  return listed(ids);
-}
-
-std::string ends_of(const geometry::Segment& s) {
-  return fmt::format("({:.3g}, {:.3g})-({:.3g}, {:.3g})", s.a.x, s.a.y, s.b.x, s.b.y);
-}
-
-std::string static_name(const RecordedConstraint& constraint, const Scenario& scenario) {
-  const std::string owners = owners_of(constraint.shape, scenario);
-  const std::string of = owners.empty() ? "" : " of " + owners;
-  if (const auto* segment = std::get_if<geometry::Segment>(&constraint.shape)) {
-    return "the edge " + ends_of(*segment) + of;
-  }
-  return constraint.source == ConstraintSource::enclosure ? fmt::format("enclosure {}{}", constraint.index, of)
-                                                          : fmt::format("obstacle {}{}", constraint.index, of);
 }
 
 using Force = Balance::Force;
@@ -156,17 +81,12 @@ void try_two(Fit& best, Force a, Force b, Vec2 push) {
 
 }  // namespace
 
-GrownShape grown_shape(const RecordedConstraint& constraint) {
-  return {constraint.shape, constraint.position, constraint.radius};
+double violation_of(const RecordedConstraint& constraint, Vec2 v) {
+  return geometry::violation(constraint.half_plane, v) / norm(constraint.half_plane.normal);
 }
 
-std::string name_of(const RecordedConstraint& constraint, const Scenario& scenario) {
-  if (constraint.source == ConstraintSource::moving_obstacle && constraint.index < scenario.moving_obstacles.size()) {
-    return "moving obstacle " + scenario.moving_obstacles[constraint.index].id;
-  }
-  if (constraint.source != ConstraintSource::robot) return static_name(constraint, scenario);
-  return "robot " + (constraint.index < scenario.robots.size() ? scenario.robots[constraint.index].id
-                                                               : std::to_string(constraint.index));
+GrownShape grown_shape(const RecordedConstraint& constraint) {
+  return {constraint.shape, constraint.position, constraint.radius};
 }
 
 double distance_to(const GrownShape& s) {

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// One robot's choice of a velocity at one moment, taken apart: what each half-plane stands for and what it did.
+/// One robot's choice of a velocity at one moment, in detail: what each half-plane stands for and what it did.
 /// Rounded, for readers; the proofs are elsewhere (geometry/predicates.h).
 ///
 /// Neighbours: explanation.h says it in words, figures/velocity_space.h draws it.
@@ -33,9 +33,8 @@ struct Decision {
 /// The convex set that the robot must not reach, seen from it.
 geometry::GrownShape grown_shape(const formation::RecordedConstraint& constraint);
 
-/// "enclosure 1 of wall", "robot R2", "the edge (1, 2)-(3, 4) of wall", "moving obstacle cart"; of more than three
-/// obstacles "a, b, c and 2 more".
-std::string name_of(const formation::RecordedConstraint& constraint, const formation::Scenario& scenario);
+/// m/s by which v lies on the forbidden side of the half-plane's line; negative on the allowed side.
+double violation_of(const formation::RecordedConstraint& constraint, Vec2 v);
 
 /// From the robot's rim to the shape, m, to about a thousandth of its size; negative inside.
 double distance_to(const geometry::GrownShape& s);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/simulation.h"
 
 namespace exactvo::tools {
@@ -35,18 +36,45 @@ std::string velocity(Vec2 v) {
   return fmt::format("{} m/s, speed {}", vector(v), number(norm(v)));
 }
 
+/// What the chosen velocity does to a half-plane. That an LP counts it as active says nothing of the line itself: where
+/// half-planes contradict each other, the active ones are those that are violated most.
+enum class Effect { slack, binding, violated };
+
+Effect effect_of(const Decision& d, const RecordedConstraint& c) {
+  const double violation = violation_of(c, d.step.chosen);
+  if (violation > kNotSeen) return Effect::violated;
+  return c.active && violation >= -kNotSeen ? Effect::binding : Effect::slack;
+}
+
+/// "[1] and [3]".
+std::string numbers_of(const Decision& d, Effect effect) {
+  std::vector<std::string> numbers;
+  for (std::size_t i = 0; i < d.step.constraints.size(); ++i)
+    if (effect_of(d, d.step.constraints[i]) == effect) numbers.push_back(fmt::format("[{}]", i + 1));
+  return formation::enumerated(numbers);
+}
+
+std::string violated_words(const Decision& d) {
+  std::vector<RecordedConstraint> violated;
+  for (const RecordedConstraint& c : d.step.constraints)
+    if (effect_of(d, c) == Effect::violated) violated.push_back(c);
+  return violated.empty() ? "" : ": " + formation::name_of(violated, d.scenario);
+}
+
 std::string status_words(const Decision& d) {
+  const std::string by = number(d.step.violation);
   switch (d.step.status) {
     case lp::Status::optimal:
-      return "every constraint holds";
+      return "every constraint is satisfied";
     case lp::Status::relaxed:
-      return fmt::format("the constraints contradict each other; those of robots give by {} m/s, the least possible",
-                         number(d.step.violation));
+      return fmt::format(
+          "the constraints contradict each other; the soft ones are violated by at most {} m/s, the least possible{}",
+          by, violated_words(d));
     case lp::Status::infeasible:
-      return fmt::format("the constraints of obstacles contradict each other or the speed bound by {} m/s",
-                         number(d.step.violation));
+      return fmt::format("the hard constraints contradict each other or the speed bound by {} m/s{}", by,
+                         violated_words(d));
     case lp::Status::pinched:
-      return "what must hold leaves no room for rounding";
+      return "the hard constraints leave no room for rounding";
   }
   return "";
 }
@@ -93,19 +121,33 @@ std::string line_words(const RecordedConstraint& c) {
                      c.half_plane.offset, c.hard ? "hard" : "soft", proof_words(c));
 }
 
+std::string effect_words(const Decision& d, const RecordedConstraint& c) {
+  switch (effect_of(d, c)) {
+    case Effect::binding:
+      return "binding";
+    case Effect::slack:
+      return "slack";
+    case Effect::violated:
+      return "violated by " + number(violation_of(c, d.step.chosen)) + " m/s";
+  }
+  return "";
+}
+
 std::string constraint_words(const Decision& d, std::size_t i) {
   const RecordedConstraint& c = d.step.constraints[i];
-  return fmt::format("  [{}] {} {}: {}\n      {}\n", i + 1, c.active ? "binds " : "slack ", name_of(c, d.scenario),
+  return fmt::format("  [{}] {}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario), effect_words(d, c),
                      contact_words(c, d.step.preferred), line_words(c));
 }
 
 std::string constraints_words(const Decision& d) {
   const auto& all = d.step.constraints;
-  const auto active = std::count_if(all.begin(), all.end(), [](const RecordedConstraint& c) { return c.active; });
-  const bool one = active == 1;
-  std::string text = fmt::format("{} half-plane{}, of which {} bind{}", all.size(), all.size() == 1 ? "" : "s", active,
-                                 one ? "s" : "");
-  if (active > 0) text += fmt::format(" (the chosen velocity lies on {})", one ? "its line" : "their lines");
+  const auto count = [&](Effect effect) {
+    return std::count_if(all.begin(), all.end(), [&](const auto& c) { return effect_of(d, c) == effect; });
+  };
+  const auto binding = count(Effect::binding), violated = count(Effect::violated);
+  std::string text = fmt::format("{} half-plane{}: {} binding", all.size(), all.size() == 1 ? "" : "s", binding);
+  if (binding > 0) text += fmt::format(" (the chosen velocity lies on {})", binding == 1 ? "its line" : "their lines");
+  if (violated > 0) text += fmt::format(", {} violated", violated);
   text += "\n";
   for (std::size_t i = 0; i < all.size(); ++i) text += constraint_words(d, i);
   return text;
@@ -131,22 +173,21 @@ bool is_held(const Decision& d) {
 }
 
 std::string held_words(const Decision& d, const Balance& b) {
-  std::string by;
-  for (const auto& force : b.forces) {
-    if (!force.constraint) continue;
-    by += (by.empty() ? "" : " and ") + name_of(d.step.constraints[*force.constraint], d.scenario);
-  }
+  std::vector<RecordedConstraint> by;
+  for (const auto& force : b.forces)
+    if (force.constraint) by.push_back(d.step.constraints[*force.constraint]);
   if (by.empty()) return "";
-  return fmt::format("The robot is held by {}: no allowed velocity has a component towards the preferred one.\n", by);
+  return fmt::format("The robot is held by {}: no allowed velocity has a component towards the preferred one.\n",
+                     formation::name_of(by, d.scenario));
 }
 
 /// How the preferred velocity came about, where it is not simply straight for the goal.
 std::string turned_words(const Decision& d) {
   switch (d.step.mode) {
     case formation::Mode::boost:
-      return "boost had turned the preferred velocity onto the tangent of what is in the way";
+      return "boost turned the preferred velocity onto the tangent of the enclosure in the way";
     case formation::Mode::following:
-      return "following the boundary after a stall had given the preferred velocity";
+      return "the preferred velocity follows the boundary, after a stall";
     case formation::Mode::pushing_out:
       return "the robot is in contact, and the preferred velocity leads away from it";
     default:
@@ -154,24 +195,24 @@ std::string turned_words(const Decision& d) {
   }
 }
 
-/// "[1]", "[1] and [3]": those that bind, but push nothing.
+/// Those that are binding, but push nothing.
 std::string idle_words(const Decision& d, const Balance& b) {
   std::vector<std::string> idle;
   for (std::size_t i = 0; i < d.step.constraints.size(); ++i) {
     const bool pushes = std::any_of(b.forces.begin(), b.forces.end(),
                                     [&](const Balance::Force& f) { return f.constraint == i && f.factor >= kNotSeen; });
-    if (d.step.constraints[i].active && !pushes) idle.push_back(fmt::format("[{}]", i + 1));
+    if (effect_of(d, d.step.constraints[i]) == Effect::binding && !pushes) idle.push_back(fmt::format("[{}]", i + 1));
   }
   if (idle.empty()) return "";
-  return fmt::format("     It lies on the line{} of {}, which need{} not push it.\n", idle.size() == 1 ? "" : "s",
-                     fmt::join(idle, " and "), idle.size() == 1 ? "s" : "");
+  return fmt::format("     It lies on the line{} of {}, which {} not change it.\n", idle.size() == 1 ? "" : "s",
+                     formation::enumerated(idle), idle.size() == 1 ? "does" : "do");
 }
 
 std::string unmoved_words(const Decision& d) {
   const std::string turned = turned_words(d);
-  if (turned.empty() && idle_words(d, {}).empty()) return "Why: nothing stands in the way.\n";
+  if (turned.empty() && idle_words(d, {}).empty()) return "Why: no constraint forbids the preferred velocity.\n";
   const std::string reason = turned.empty() ? "the preferred velocity" : turned + "; it";
-  return "Why: " + reason + " is allowed as it stands.\n" + idle_words(d, {});
+  return "Why: " + reason + " is allowed.\n" + idle_words(d, {});
 }
 
 std::string moved_words(const Decision& d) {
@@ -183,6 +224,10 @@ std::string moved_words(const Decision& d) {
 }
 
 std::string why(const Decision& d) {
+  if (d.step.status == lp::Status::relaxed)
+    return fmt::format(
+        "Why: no velocity satisfies all half-planes; the chosen one has the least greatest violation ({}).\n",
+        numbers_of(d, Effect::violated));
   if (d.step.status != lp::Status::optimal) return "";
   return norm(d.step.chosen - d.step.preferred) < kNotSeen ? unmoved_words(d) : moved_words(d);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// exactvo trap: for every robot and enclosure, whether a stall is possible and where, before anything moves.
+// exactvo trap: for every robot and enclosure, and every two that overlap, whether a stall is possible and where.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/trap.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
@@ -18,6 +19,7 @@ namespace {
 
 using formation::Equilibrium;
 using formation::TrapFinding;
+using formation::TrapPlace;
 
 struct Flags {
   std::string scenario;
@@ -52,10 +54,17 @@ std::string json_of(const Equilibrium& e, double max_speed) {
       number(e.rate_at(max_speed)));
 }
 
-std::string list_of_obstacles(const formation::Scenario& scenario, const TrapFinding& f, const char* between) {
+std::string ids_of(const formation::Scenario& scenario, const TrapPlace& place, const char* between) {
   std::string text;
-  for (std::size_t k : f.enclosure.obstacles) text += (text.empty() ? "" : between) + quoted(scenario.obstacles[k].id);
+  for (std::size_t k : place.enclosure.obstacles)
+    text += (text.empty() ? "" : between) + quoted(scenario.obstacles[k].id);
   return text;
+}
+
+std::string json_of(const formation::Scenario& scenario, const TrapPlace& place) {
+  return fmt::format("\"enclosure\": {}, \"obstacles\": [{}], \"grade\": \"{}\", \"shape\": {}", place.number,
+                     ids_of(scenario, place, ", "), name(place.enclosure.grade),
+                     quoted(geometry::to_string(place.enclosure.shape)));
 }
 
 std::string json_of(const formation::Scenario& scenario, const TrapFinding& f) {
@@ -63,13 +72,14 @@ std::string json_of(const formation::Scenario& scenario, const TrapFinding& f) {
   std::string equilibria;
   for (const Equilibrium& e : f.equilibria)
     equilibria += (equilibria.empty() ? "" : ", ") + json_of(e, robot.max_speed);
+  const std::string other = f.overlapping ? "{ " + json_of(scenario, *f.overlapping) + " }" : "null";
   return fmt::format(
-      "  {{ \"robot\": {}, \"goal\": [{}, {}], \"obstacles\": [{}], \"grade\": \"{}\", \"shape\": {},\n"
+      "  {{ \"robot\": {}, \"goal\": [{}, {}], {},\n"
+      "    \"overlapping\": {},\n"
       "    \"stall_possible\": {}, \"margin\": {}, \"start_clear\": {}, \"goal_clear\": {}, \"slide_time\": {},\n"
       "    \"equilibria\": [{}] }}",
-      quoted(robot.id), f.goal.x, f.goal.y, list_of_obstacles(scenario, f, ", "), name(f.enclosure.grade),
-      quoted(geometry::to_string(f.enclosure.shape)), f.stall_possible, number(f.margin), f.start_clear, f.goal_clear,
-      number(f.slide_time), equilibria);
+      quoted(robot.id), f.goal.x, f.goal.y, json_of(scenario, f.place), other, f.stall_possible, number(f.margin),
+      f.start_clear, f.goal_clear, number(f.slide_time), equilibria);
 }
 
 std::string json_of(const formation::Scenario& scenario, const std::vector<TrapFinding>& findings) {
@@ -79,27 +89,55 @@ std::string json_of(const formation::Scenario& scenario, const std::vector<TrapF
 }
 
 std::string curvature_words(double radius) {
-  return std::isfinite(radius) ? fmt::format("radius of curvature {:.4g} m", radius) : "flat or hollow";
+  return std::isfinite(radius) ? fmt::format("radius of curvature {:.4g} m", radius) : "flat or concave";
 }
 
-/// The edges of an obstacle have one name: theirs is told.
-std::string place_words(const TrapFinding& f) {
-  const auto* edge = std::get_if<geometry::Segment>(&f.enclosure.shape);
-  if (!edge) return "";
-  return fmt::format(", edge ({:.4g}, {:.4g})-({:.4g}, {:.4g})", edge->a.x, edge->a.y, edge->b.x, edge->b.y);
+std::string ends_of(const geometry::Segment& s) {
+  return fmt::format("({:.4g}, {:.4g})-({:.4g}, {:.4g})", s.a.x, s.a.y, s.b.x, s.b.y);
 }
 
-std::string words_of(const formation::Scenario& scenario, const TrapFinding& f) {
-  std::string text =
-      fmt::format("{} round {}{}: {} ({})", scenario.robots[f.robot].id, list_of_obstacles(scenario, f, " and "),
-                  place_words(f), f.stall_possible ? "a stall is possible" : "no stall", name(f.enclosure.grade));
+std::string owners_of(const formation::Scenario& scenario, const TrapPlace& place) {
+  std::vector<std::string> ids;
+  for (std::size_t k : place.enclosure.obstacles) ids.push_back(scenario.obstacles[k].id);
+  return (ids.size() > 1 ? "obstacles " : "obstacle ") + formation::abridged(ids);
+}
+
+/// Where the enclosure is, in the words in which a run's report names it.
+std::string place_words(const formation::Scenario& scenario, const TrapPlace& place, bool orca) {
+  const std::string of = " of " + owners_of(scenario, place);
+  if (orca) return "edge " + ends_of(*place.facade) + of;
+  const std::string number = fmt::format("enclosure {}", place.number);
+  if (place.facade) return number + ", facade " + ends_of(*place.facade) + of;
+  return number + of;
+}
+
+std::string subject_words(const formation::Scenario& scenario, const TrapFinding& f, bool orca) {
+  if (!f.overlapping) return place_words(scenario, f.place, orca);
+  const std::string first = owners_of(scenario, f.place), second = owners_of(scenario, *f.overlapping);
+  if (first == second)
+    return fmt::format("between enclosures {} and {} of {}", f.place.number, f.overlapping->number, first);
+  return fmt::format("between enclosure {} of {} and enclosure {} of {}", f.place.number, first, f.overlapping->number,
+                     second);
+}
+
+std::string rest_words(const TrapFinding& f, const Equilibrium& e) {
+  const std::string at = fmt::format("at ({:.4g}, {:.4g})", e.position.x, e.position.y);
+  if (f.overlapping) return fmt::format("rests {} in their concave vertex, goal {:.4g} m away", at, e.distance);
+  return fmt::format("{} {}: {}, goal {:.4g} m away", e.stable ? "rests" : "may balance", at,
+                     curvature_words(e.radius_of_curvature), e.distance);
+}
+
+std::string words_of(const formation::Scenario& scenario, const TrapFinding& f, bool orca) {
+  const std::string grade = f.overlapping ? "overlapping, heuristic" : name(f.place.enclosure.grade);
+  std::string text = fmt::format("{}, {}: {} ({})", scenario.robots[f.robot].id, subject_words(scenario, f, orca),
+                                 f.stall_possible ? "a stall is possible" : "no stall", grade);
   if (f.margin && std::isfinite(*f.margin)) text += fmt::format(", margin {:.3g}", *f.margin);
   if (!f.start_clear) text += "; the start is not clear of it";
+  if (!f.start_clear && !f.overlapping && f.place.enclosure.grade != geometry::EnclosureGrade::tight)
+    text += " (while the robot is inside, its pieces stand for it; they are not judged)";
   if (!f.goal_clear) text += "; the goal is not clear of it";
   if (f.slide_time) text += fmt::format("; slides {:.3g} s", *f.slide_time);
-  for (const Equilibrium& e : f.equilibria)
-    text += fmt::format("\n    {} at ({:.4g}, {:.4g}): {}, goal {:.4g} m away", e.stable ? "rests" : "may balance",
-                        e.position.x, e.position.y, curvature_words(e.radius_of_curvature), e.distance);
+  for (const Equilibrium& e : f.equilibria) text += "\n    " + rest_words(f, e);
   return text + "\n";
 }
 
@@ -110,7 +148,8 @@ ExitCode trap(const Flags& flags) {
   if (flags.json) {
     text = json_of(scenario, findings);
   } else {
-    for (const TrapFinding& f : findings) text += words_of(scenario, f);
+    const bool orca = flags.simulation.method == formation::name(formation::Method::orca);
+    for (const TrapFinding& f : findings) text += words_of(scenario, f, orca);
     if (findings.empty()) text = "no obstacles: nothing to stall at\n";
   }
   std::fwrite(text.data(), 1, text.size(), stdout);
@@ -121,14 +160,14 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags->simulation);
-  app.add_flag("--json", flags->json, "Print the findings as JSON; infinity and what does not apply are null");
+  app.add_flag("--json", flags->json, "Print the findings as JSON; infinite and inapplicable values are null");
   return [flags] { return trap(*flags); };
 }
 
 }  // namespace
 
 Verb trap_verb() {
-  return {"trap", "Say where a robot may stall, before it moves",
+  return {"trap", "Find where a robot may stall, before any run",
           "  exactvo trap datasets/data/paper/A4.json\n"
           "  exactvo trap datasets/data/paper/A11.json --method ivo-edge --json\n",
           declare};

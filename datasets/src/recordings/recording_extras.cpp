@@ -41,7 +41,7 @@ bool is_rate(const std::string& group) {
 void append_binding(JsonWriter& json, const BindingConstraint& b) {
   json.begin_object().member("source", word_for(b.constraint.source)).member("index", b.constraint.index);
   json.member("piece", b.constraint.piece).member("normal", b.normal).member("clearance", b.clearance);
-  json.member("radius_of_curvature", b.radius_of_curvature).end_object();
+  json.member("radius_of_curvature", b.radius_of_curvature).member("pressing", b.pressing).end_object();
 }
 
 void append_equilibrium(JsonWriter& json, const formation::Equilibrium& e) {
@@ -57,7 +57,7 @@ void append_report(JsonWriter& json, const StuckReport& r) {
   for (const BindingConstraint& b : r.binding) append_binding(json, b);
   json.end_array().key("equilibrium");
   r.equilibrium ? append_equilibrium(json, *r.equilibrium) : void(json.null());
-  json.member("text", r.text).end_object();
+  json.member("text", r.text).member("rest_time", r.rest_time).end_object();
 }
 
 BindingConstraint to_binding(const JsonCursor& at) {
@@ -68,6 +68,7 @@ BindingConstraint to_binding(const JsonCursor& at) {
   b.normal = at.at("normal").point();
   b.clearance = at.at("clearance").number();
   b.radius_of_curvature = at.at("radius_of_curvature").number();
+  if (at.has("pressing")) b.pressing = at.at("pressing").truth();
   return b;
 }
 
@@ -86,6 +87,7 @@ StuckReport to_report(const JsonCursor& at) {
   for (std::size_t k = 0; k < binding.size(); ++k) r.binding.push_back(to_binding(binding.at(k)));
   if (!at.at("equilibrium").is_null()) r.equilibrium = to_equilibrium(at.at("equilibrium"));
   r.text = at.at("text").text();
+  if (at.has("rest_time")) r.rest_time = at.at("rest_time").number();
   return r;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// Why a robot did not arrive: what binds at the end of its run, and, where that is one shape, the equilibrium it rests
-/// on (trap.h). Rounded.
+/// Why a robot did not arrive, from what its run recorded: whether it stood or moved at the end, for how long, what
+/// blocked it, and, where that is one static shape, the equilibrium it rests at (trap.h). Rounded.
 
 #include <optional>
 #include <string>
@@ -13,22 +13,30 @@
 
 namespace exactvo::formation {
 
+/// m/s: a slower robot counts as at rest. (In a flat trap or a corner the tie-break leaves it a creeping speed.)
+inline constexpr double kAtRest = 0.01;
+
 struct BindingConstraint {
   RecordedConstraint constraint;
   Vec2 normal;                     ///< unit, out of the shape at the point nearest the robot
   double clearance = 0.0;          ///< m, rim to shape
   double radius_of_curvature = 0;  ///< m, of the shape grown by the robot, at that normal; infinite on a flat edge
+  /// Whether its push is needed to explain why the robot did not take its preferred velocity: its multiplier in the
+  /// Karush-Kuhn-Tucker conditions is positive. One that is active without pushing blocks nothing.
+  bool pressing = false;
 };
 
 struct StuckReport {
   std::size_t robot = 0;
   Vec2 position;                           ///< m, where it ended
   double goal_distance = 0.0;              ///< m, D
-  double speed = 0.0;                      ///< m/s, of the last decision
-  std::vector<BindingConstraint> binding;  ///< of the last decision
-  /// Where one shape binds and the robot rests against it: position, rho, D, stability.
+  double speed = 0.0;                      ///< m/s, in the last row
+  std::vector<BindingConstraint> binding;  ///< the active ones of the last decision
+  /// Where one static shape presses, the goal lies straight behind it and the robot is at its boundary: position, rho,
+  /// D, stability. Nothing against robots and moving obstacles: what moves has no boundary to slide along.
   std::optional<Equilibrium> equilibrium;
-  std::string text;  ///< all of it in a sentence or two
+  std::string text;        ///< all of it in a sentence or two
+  double rest_time = 0.0;  ///< s, for how long it had been slower than kAtRest when the run ended; 0 while it moves
 };
 
 /// A report for every robot that is not at its goal or slot in the last row; none of a formation that diverged or whose

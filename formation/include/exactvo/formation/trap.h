@@ -7,8 +7,8 @@
 /// the boundary and the goal lies nearer than the centre of curvature (D < rho).
 ///
 /// Exact: `stall_possible` of an ellipse or disc (predicate F: the goal on or inside the evolute), `start_clear` and
-/// `goal_clear`. Rounded: everything with a length in it. For polygons and segments the sign is rounded too: a flat
-/// edge traps wherever the goal's foot lies within it.
+/// `goal_clear`. Rounded: everything with a length in it, and where two enclosures overlap. For polygons and segments
+/// the sign is rounded too: a flat edge traps wherever the goal's foot lies within it.
 
 #include <optional>
 #include <vector>
@@ -44,26 +44,45 @@ bool stall_possible(const geometry::ConvexShape& shape, Vec2 goal);
 /// negative inside, infinite for a circle. Rounded; 0 crossing decided by `stall_possible`.
 double evolute_margin(const geometry::Ellipse& ellipse, Vec2 goal);
 
+/// An enclosure as one robot sees it.
+struct TrapPlace {
+  geometry::Enclosure enclosure;
+  /// Counts the enclosures of the robot's first goal, as `index` of its recorded half-planes does; with the method
+  /// `orca` the edges of the scene.
+  std::size_t number = 0;
+  std::optional<geometry::Segment> facade;  ///< m; the one facade that the enclosure was built on (ivo-edge), or edge
+};
+
 struct TrapFinding {
   std::size_t robot = 0;
   Vec2 goal;  ///< m
-  geometry::Enclosure enclosure;
-  bool start_clear = false;  ///< the start lies outside the grown enclosure
+  TrapPlace place;
+  /// Where the finding is about two enclosures that overlap once they are grown by the robot: the other one. Their
+  /// boundaries cross at concave vertices, where a robot can rest although neither enclosure alone would stop it.
+  std::optional<TrapPlace> overlapping;
+  bool start_clear = false;  ///< the start lies outside the grown enclosure (of two: outside both)
   bool goal_clear = false;   ///< so does the goal
   bool stall_possible = false;
-  std::optional<double> margin;         ///< evolute margin of an ellipse
-  std::vector<Equilibrium> equilibria;  ///< where the goal is clear
+  /// Evolute margin of an ellipse. Of two enclosures, where a robot rests: minus the sine of the angle by which the way
+  /// to the goal lies inside the cone of rest, at the vertex where that is most; near 0 the verdict is close.
+  std::optional<double> margin;
+  std::vector<Equilibrium> equilibria;  ///< of two enclosures: the vertices at which a robot rests
   /// s; for a robot that goes straight from the start and meets the boundary: how long it slides before the way is
   /// free. Nothing where it misses the shape, or would come to rest.
   std::optional<double> slide_time;
 };
 
-/// Every robot against every enclosure that the method builds for it. The method `orca` builds none: there each edge of
-/// each obstacle stands for itself, seen from its free side, together with the corner at its end where that is a
-/// concave one; a robot may rest on the edge over the goal's foot, or in the corner where it touches both edges and
-/// nothing else of the obstacle. With `orca` that is rounded, and heuristic: an edge knows nothing of the rest of its
-/// obstacle, nor where the robot comes from. Passages too narrow between two obstacles, and slots within one, are
-/// judged by no method. REQUIRES: a valid scenario.
+/// Every robot against every enclosure that the method builds for it, then every two of them that overlap once they are
+/// grown by the robot. Exact for one ellipse or disc, heuristic for two (see `TrapFinding::overlapping`): the crossings
+/// of two boundaries are rounded, and a pair of them closer together than a hundredth of the radius can be missed.
+/// A goal inside a grown enclosure, by more than the arrival tolerance, is a stall: the robot stops at the boundary.
+/// Not judged: the pieces that an enclosure gives way to while the robot is inside it (`start_clear` is false there).
+///
+/// The method `orca` builds no enclosures: there each edge of each obstacle stands for itself, seen from its free side,
+/// together with the corner at its end where that is a concave one; a robot may rest on the edge over the goal's foot,
+/// or in the corner where it touches both edges and nothing else of the obstacle. With `orca` that is rounded, and
+/// heuristic: an edge knows nothing of the rest of its obstacle, nor where the robot comes from. Passages too narrow
+/// between two obstacles, and slots within one, are not judged there. REQUIRES: a valid scenario.
 std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOptions& options = {});
 
 }  // namespace exactvo::formation

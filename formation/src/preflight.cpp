@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "forewarnings.h"
+#include "preflight.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
+#include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/hull.h"
 #include "leader.h"
+#include "walled_in.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -42,13 +45,47 @@ std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offse
   return targets;
 }
 
+bool is_blocked(const SceneObstacle& o, const Robot& robot, const Target& t) {
+  return geometry::signed_distance(o.shape, t.place) + t.reach < robot.radius;
+}
+
 void warn_of_obstacles(const Scenario& s, const Robot& robot, const Target& t, std::vector<std::string>& out) {
   for (const SceneObstacle& o : s.obstacles) {
-    const double distance = geometry::signed_distance(o.shape, t.place);
-    if (distance + t.reach >= robot.radius) continue;
-    out.push_back(t.name + (distance < 0.0 ? ", lies inside obstacle '" : ", is too near to obstacle '") + o.id +
+    if (!is_blocked(o, robot, t)) continue;
+    const bool inside = geometry::signed_distance(o.shape, t.place) < 0.0;
+    out.push_back(t.name + (inside ? ", lies inside obstacle '" : ", is too near to obstacle '") + o.id +
                   "' for the robot's radius: it cannot be reached");
   }
+}
+
+std::string metres(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g m", x);
+  return text;
+}
+
+/// "obstacle 'room' encloses it", "obstacles 'a' and 'b' enclose it with gaps of at most 0.4 m".
+std::string chain_words(const Scenario& s, const Enclosing& e, const Robot& robot) {
+  std::vector<std::string> ids;
+  for (const std::size_t k : e.obstacles) ids.push_back("'" + s.obstacles[k].id + "'");
+  const bool one = ids.size() == 1;
+  std::string text = (one ? "obstacle " : "obstacles ") + abridged(ids) + (one ? " encloses " : " enclose ") +
+                     (e.around_goal ? "it" : "the start");
+  if (e.widest_gap > 0.0)
+    text += ", with gaps of at most " + metres(e.widest_gap) + " for a robot " + metres(2.0 * robot.radius) + " wide";
+  return text;
+}
+
+/// By radius: most robots of a scene are of one size.
+using WallsByRadius = std::map<double, Walls>;
+
+void warn_of_walls(const Scenario& s, const Robot& robot, const Target& t, WallsByRadius& walls,
+                   std::vector<std::string>& out) {
+  const auto blocks = [&](const SceneObstacle& o) { return is_blocked(o, robot, t); };
+  if (std::any_of(s.obstacles.begin(), s.obstacles.end(), blocks)) return;
+  const Walls& of_robot = walls.try_emplace(robot.radius, s.obstacles, robot.radius).first->second;
+  if (const auto found = of_robot.between({robot.position, 0.0}, {t.place, t.reach}))
+    out.push_back(t.name + ", cannot be reached: " + chain_words(s, *found, robot));
 }
 
 void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
@@ -147,12 +184,16 @@ void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, st
 
 }  // namespace
 
-std::vector<std::string> forewarnings(const Scenario& scenario, const std::vector<Vec2>& offsets) {
+std::vector<std::string> preflight_warnings(const Scenario& scenario, const std::vector<Vec2>& offsets) {
   std::vector<std::string> out;
   std::vector<Target> last;
+  WallsByRadius walls;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::vector<Target> targets = targets_of(scenario, offsets, i);
-    for (const Target& t : targets) warn_of_obstacles(scenario, scenario.robots[i], t, out);
+    for (const Target& t : targets) {
+      warn_of_obstacles(scenario, scenario.robots[i], t, out);
+      warn_of_walls(scenario, scenario.robots[i], t, walls, out);
+    }
     warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
     warn_of_fast_start(scenario, scenario.robots[i], out);
     last.push_back(targets.back());

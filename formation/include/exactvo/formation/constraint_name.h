@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What a recorded half-plane stands for, in words for people: "enclosure 4 of obstacle U", "robot R2".
+///
+/// A recording keeps the shape of a half-plane and not the obstacle it was built for, so the obstacle is found again
+/// from the shape. Heuristic where obstacles lie inside each other's enclosures.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/recording.h"
+#include "exactvo/formation/scenario.h"
+
+namespace exactvo::formation {
+
+/// The ids of the obstacles that a shape stands for, in the order of the scenario: those with a facade that the ellipse
+/// was built on, else those wholly inside it, else those with an edge inside it; the owner of an edge; what a convex
+/// piece touches.
+std::vector<std::string> obstacles_behind(const geometry::ConvexShape& shape, const Scenario& scenario);
+
+/// "enclosure 1 of obstacle wall", "enclosure 1, piece 2, of obstacles wall and desk", "robot R2", "the edge
+/// (1, 2)-(3, 4) of obstacle wall", "moving obstacle cart"; of more than three obstacles "a, b, c and 2 more".
+std::string name_of(const RecordedConstraint& constraint, const Scenario& scenario);
+
+/// The same of several, those of one kind and obstacle together: "enclosures 4 and 5 of obstacle U and robot R2".
+std::string name_of(const std::vector<RecordedConstraint>& constraints, const Scenario& scenario);
+
+/// "a", "a and b", "a, b and c".
+std::string enumerated(const std::vector<std::string>& words);
+
+/// The same, and "a, b, c and 2 more" of more than three.
+std::string abridged(std::vector<std::string> words);
+
+}  // namespace exactvo::formation

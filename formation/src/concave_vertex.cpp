@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "concave_vertex.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "boundary.h"
+#include "exactvo/vo/velocity_obstacle.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::GrownShape;
+using geometry::norm;
+
+constexpr double kMostTurn = 0.1;  // rad, of one stretch of a curved boundary
+/// An arc that turns by less than kMostTurn is at most this many times as long as its chord: 1 / cos(turn / 2).
+constexpr double kArcToChord = 1.002;
+/// Of the robot's radius: stretches are not divided further.
+constexpr double kFinest = 0.01;
+/// Normals this near to parallel: the boundaries run along each other, and no vertex is there.
+constexpr double kParallel = 1e-3;
+
+vo::VelocityObstacle::Nearest nearest_of(const GrownShape& s, Vec2 p) {
+  return vo::VelocityObstacle(s.shape, p + s.origin, s.radius, 1.0).nearest();
+}
+
+/// A stretch of the boundary: straight, or the part whose normals turn from one angle to another.
+struct Stretch {
+  bool straight = false;
+  Vec2 from, to;                  ///< m, where straight
+  Vec2 normal;                    ///< where straight
+  double begin = 0.0, end = 0.0;  ///< rad, where curved
+};
+
+void add_arc(double begin, double end, std::vector<Stretch>& out) {
+  const int parts = std::max(1, static_cast<int>(std::ceil((end - begin) / kMostTurn)));
+  for (int k = 0; k < parts; ++k) {
+    Stretch s;
+    s.begin = begin + (end - begin) * k / parts;
+    s.end = begin + (end - begin) * (k + 1) / parts;
+    out.push_back(s);
+  }
+}
+
+/// Once round the boundary, counter-clockwise: the flat edges moved outward, and the arcs between them.
+std::vector<Stretch> stretches_of(const Boundary& boundary, double radius) {
+  std::vector<Stretch> out;
+  const std::vector<geometry::Segment>& edges = boundary.flat_edges();
+  if (edges.empty()) add_arc(0.0, kFullTurn, out);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Vec2 normal = -geometry::perp(geometry::normalized(edges[i].b - edges[i].a));
+    const geometry::Segment& next = edges[(i + 1) % edges.size()];
+    const Vec2 turned = -geometry::perp(geometry::normalized(next.b - next.a));
+    out.push_back({true, edges[i].a + radius * normal, edges[i].b + radius * normal, normal, 0.0, 0.0});
+    const double begin = std::atan2(normal.y, normal.x);
+    double turn = std::atan2(turned.y, turned.x) - begin;
+    if (turn < 0.0) turn += kFullTurn;
+    if (turn > 0.0) add_arc(begin, begin + turn, out);
+  }
+  return out;
+}
+
+class CrossingSearch {
+ public:
+  CrossingSearch(const GrownShape& a, const GrownShape& b)
+      : boundary_(a.shape, a.radius), b_(b), finest_(kFinest * a.radius) {
+    for (const Stretch& s : stretches_of(boundary_, a.radius)) {
+      const Sample first = sample(s, 0.0), last = sample(s, 1.0);
+      search(s, first, last);
+    }
+  }
+
+  std::vector<Crossing> found;
+
+ private:
+  struct Sample {
+    double share = 0.0;     ///< of the stretch
+    Vec2 position;          ///< m
+    double distance = 0.0;  ///< m, to the other shape
+    bool inside() const { return distance <= 0.0; }
+  };
+
+  Sample sample(const Stretch& s, double share) const {
+    const Vec2 p =
+        s.straight ? s.from + share * (s.to - s.from) : boundary_.at(s.begin + share * (s.end - s.begin)).position;
+    return {share, p, distance_to(b_, p)};
+  }
+
+  Sample between(const Stretch& s, const Sample& a, const Sample& b) const {
+    return sample(s, 0.5 * (a.share + b.share));
+  }
+
+  /// The distance changes by no more than the way along the boundary, so that far from the other one nothing crosses.
+  void search(const Stretch& s, const Sample& first, const Sample& last) {
+    const double chord = norm(last.position - first.position);
+    const bool changes = first.inside() != last.inside();
+    if (!changes && std::fabs(first.distance) + std::fabs(last.distance) > kArcToChord * chord) return;
+    if (chord > finest_) {
+      const Sample middle = between(s, first, last);
+      search(s, first, middle);
+      search(s, middle, last);
+      return;
+    }
+    if (changes) add(s, first, last);
+  }
+
+  void add(const Stretch& s, Sample first, Sample last) {
+    constexpr int kBisections = 40;  // of a centimetre: far below rounding
+    for (int k = 0; k < kBisections; ++k) {
+      const Sample middle = between(s, first, last);
+      (middle.inside() == first.inside() ? first : last) = middle;
+    }
+    const double angle = s.begin + first.share * (s.end - s.begin);
+    const Vec2 normal = s.straight ? s.normal : Vec2{std::cos(angle), std::sin(angle)};
+    const Vec2 other = nearest_of(b_, first.position).normal;
+    if (std::fabs(cross(normal, other)) < kParallel) return;
+    found.push_back({first.position, normal, other});
+  }
+
+  Boundary boundary_;
+  GrownShape b_;
+  double finest_;  ///< m
+};
+
+struct Box {
+  Vec2 low, high;
+};
+
+Box box_of(const GrownShape& s) {
+  const auto reach = [&](Vec2 n) { return dot(geometry::support_point(s, n), n); };
+  return {{-reach({-1.0, 0.0}), -reach({0.0, -1.0})}, {reach({1.0, 0.0}), reach({0.0, 1.0})}};
+}
+
+}  // namespace
+
+double distance_to(const GrownShape& shape, Vec2 p) {
+  return nearest_of(shape, p).distance;
+}
+
+bool boxes_meet(const GrownShape& a, const GrownShape& b) {
+  const Box x = box_of(a), y = box_of(b);
+  return x.low.x <= y.high.x && y.low.x <= x.high.x && x.low.y <= y.high.y && y.low.y <= x.high.y;
+}
+
+std::vector<Crossing> crossings(const GrownShape& a, const GrownShape& b) {
+  return CrossingSearch(a, b).found;
+}
+
+std::optional<VertexRest> rest_at(const Crossing& c, Vec2 goal) {
+  const Vec2 way = goal - c.position, ahead = geometry::normalized(way);
+  const double turn = cross(c.normal_a, c.normal_b);
+  const double share_a = -cross(way, c.normal_b) / turn, share_b = -cross(c.normal_a, way) / turn;
+  if (way == Vec2{} || !(share_a >= 0.0) || !(share_b >= 0.0)) return std::nullopt;
+  const Vec2 out = geometry::normalized(c.normal_a + c.normal_b);
+  const double depth = std::min(std::fabs(cross(ahead, c.normal_a)), std::fabs(cross(ahead, c.normal_b)));
+  return VertexRest{{c.position, out, std::numeric_limits<double>::infinity(), norm(way), true}, depth};
+}
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is said before a run about goals that obstacles shut off, against constructed rooms and a flooded grid.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/distance.h"
+#include "support/seeded_random.h"
+#include "walled_in.h"
+
+namespace exactvo::formation {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kRadius = 0.5;  // m
+
+Scenario scene(Vec2 start, std::vector<Vec2> goals, std::vector<SceneObstacle> obstacles) {
+  Scenario s;
+  Robot r;
+  r.id = "R1";
+  r.radius = kRadius;
+  r.position = start;
+  r.goals = std::move(goals);
+  s.robots = {r};
+  s.obstacles = std::move(obstacles);
+  return s;
+}
+
+/// A room of 6 m with a door of this width on its right.
+geometry::Polyline room(double door) {
+  return {{{3, 0.5 * door}, {3, 3}, {-3, 3}, {-3, -3}, {3, -3}, {3, -0.5 * door}}};
+}
+
+TEST(Preflight, AGoalInARoomWithANarrowDoorCannotBeReached) {
+  const auto warnings = warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(0.9)}}));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0],
+              HasSubstr("goal of R1, (0, 0), cannot be reached: obstacle 'room' encloses it, with gaps of at "
+                        "most 0.9 m for a robot 1 m wide"));
+  EXPECT_TRUE(warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(1.1)}})).empty());
+  EXPECT_EQ(warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(0.0)}})).size(), 1u);
+}
+
+TEST(Preflight, AStartThatIsShutInIsSaidToBe) {
+  const auto warnings = warnings_before(scene({0, 0}, {{8, 0}}, {{"room", room(0.9)}}));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("'room' encloses the start"));
+  EXPECT_TRUE(warnings_before(scene({0, 0}, {{1, 1}}, {{"room", room(0.9)}})).empty()) << "both are inside";
+}
+
+TEST(Preflight, EveryWaypointIsJudged) {
+  const auto warnings = warnings_before(scene({8, 0}, {{0, 0}, {8, 5}}, {{"room", room(0.9)}}));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("goal 1 of R1"));
+}
+
+TEST(Preflight, AChainOfSeveralObstaclesIsNamed) {
+  // Two halves of a ring that come within 0.6 m of each other, and something that does not matter.
+  const std::vector<SceneObstacle> halves{{"north", geometry::Polyline{{{-3, 0.3}, {-3, 3}, {3, 3}, {3, 0.3}}}},
+                                          {"south", geometry::Polyline{{{-3, -0.3}, {-3, -3}, {3, -3}, {3, -0.3}}}},
+                                          {"far", geometry::Polyline{{{9, 9}, {12, 12}}}}};
+  const auto warnings = warnings_before(scene({8, 0}, {{0, 0}}, halves));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("obstacles 'north' and 'south' enclose it, with gaps of at most 0.6 m"));
+}
+
+TEST(Preflight, WallsThatCrossOrTouchCloseARoom) {
+  std::vector<SceneObstacle> bars{{"a", geometry::Polyline{{{-4, 3}, {4, 3}}}},
+                                  {"b", geometry::Polyline{{{-4, -3}, {4, -3}}}},
+                                  {"c", geometry::Polyline{{{3, -4}, {3, 4}}}},
+                                  {"d", geometry::Polyline{{{-3, -3}, {-3, 3}}}}};
+  const auto warnings = warnings_before(scene({8, 0}, {{0, 0}}, bars));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("obstacles 'a', 'b', 'c' and 1 more enclose it"));
+  bars.pop_back();
+  EXPECT_TRUE(warnings_before(scene({8, 0}, {{0, 0}}, bars)).empty());
+}
+
+TEST(Preflight, ACourtyardIsClosed) {
+  const geometry::Polygon house{{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}, {{{-3, -3}, {-3, 3}, {3, 3}, {3, -3}}}};
+  EXPECT_EQ(warnings_before(scene({8, 0}, {{0, 0}}, {{"house", house}})).size(), 1u);
+  EXPECT_TRUE(warnings_before(scene({-1, 0}, {{1, 0}}, {{"house", house}})).empty());
+}
+
+TEST(Preflight, AGoalWithinReachOverTheWallIsNotShutOff) {
+  // The robot may stay 2 m away from its goal, so that it need not enter.
+  Scenario s = scene({8, 0}, {{2, 0}}, {{"room", room(0.9)}});
+  EXPECT_EQ(warnings_before(s).size(), 1u);
+  s.arrival_tolerance = 2.0;
+  EXPECT_TRUE(warnings_before(s).empty());
+}
+
+/// Which cells of a grid a robot's centre can be in, and which of them hang together.
+class Flood {
+ public:
+  /// `slack` m is added to the robot's radius: > 0 leaves out cells that are not certainly free.
+  Flood(const Scenario& s, double slack) {
+    for (int i = 0; i < kCells * kCells; ++i) {
+      double least = kRadius + 1.0;
+      for (const SceneObstacle& o : s.obstacles)
+        least = std::min(least, std::fabs(geometry::signed_distance(o.shape, at(i))));
+      free_.push_back(least >= kRadius + slack);
+    }
+  }
+  static int cell(Vec2 p) { return index(p.x) + kCells * index(p.y); }
+  bool is_free(Vec2 p) const { return free_[static_cast<std::size_t>(cell(p))]; }
+
+  bool connects(Vec2 from, Vec2 to) const {
+    std::vector<char> seen(free_.size(), 0);
+    std::vector<int> queue{cell(from)};
+    seen[static_cast<std::size_t>(queue[0])] = 1;
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+      const int x = queue[head] % kCells, y = queue[head] / kCells;
+      for (int dx = -1; dx <= 1; ++dx)
+        for (int dy = -1; dy <= 1; ++dy) {
+          const int u = x + dx, v = y + dy;
+          if (u < 0 || v < 0 || u >= kCells || v >= kCells) continue;
+          const auto next = static_cast<std::size_t>(u + kCells * v);
+          if (seen[next] || !free_[next]) continue;
+          seen[next] = 1;
+          queue.push_back(u + kCells * v);
+        }
+    }
+    return seen[static_cast<std::size_t>(cell(to))] != 0;
+  }
+
+  static constexpr double kCell = 0.1;  // m
+
+ private:
+  static constexpr int kCells = 156;
+  static constexpr double kLow = -7.8;  // m
+  static int index(double x) { return static_cast<int>((x - kLow) / kCell); }
+  static Vec2 at(int i) { return {kLow + kCell * (i % kCells + 0.5), kLow + kCell * (i / kCells + 0.5)}; }
+
+  std::vector<bool> free_;
+};
+
+/// Parts of a ring, turned, shifted and with gaps round the diameter, and some walls across.
+Scenario random_scene(test::SeededRandom& random) {
+  std::vector<SceneObstacle> obstacles;
+  const int parts = static_cast<int>(random.uniform(2.0, 6.0));
+  const double ring = random.uniform(2.0, 4.5);
+  const double narrow = random.uniform(0.4, 1.4);  // m, about
+  double angle = random.uniform(0.0, 6.28);
+  for (int k = 0; k < parts; ++k) {
+    const double gap = (narrow + random.uniform(-0.1, 0.1)) / ring, span = 6.283 / parts - gap;
+    geometry::Polyline arc;
+    for (int j = 0; j <= 4; ++j)
+      arc.points.push_back(geometry::rotated({ring + random.uniform(-0.15, 0.15), 0.0}, angle + span * j / 4));
+    obstacles.push_back({"arc" + std::to_string(k), arc});
+    angle += 6.283 / parts;
+  }
+  const Vec2 middle = random.in_box(3.0), half = random.uniform(0.3, 2.0) * random.direction();
+  obstacles.push_back({"wall", geometry::Polyline{{middle - half, middle + half}}});
+  return scene(random.in_box(6.0), {random.in_box(2.0)}, obstacles);
+}
+
+TEST(Preflight, AgreesWithAFloodedGrid) {
+  test::SeededRandom random(test::seed_of_run(16));
+  constexpr double kDiagonal = 0.7072 * Flood::kCell;  // m: from a cell's middle to its corner
+  int separated = 0, joined = 0, open = 0;
+  for (int k = 0; k < 60; ++k) {
+    const Scenario s = random_scene(random);
+    const Vec2 start = s.robots[0].position, goal = s.robots[0].goals[0];
+    const Flood certain(s, kDiagonal);
+    if (!certain.is_free(start) || !certain.is_free(goal)) continue;
+    const bool shut = detail::Walls(s.obstacles, kRadius).between({start, 0.0}, {goal, 0.0}).has_value();
+    if (certain.connects(start, goal)) {
+      EXPECT_FALSE(shut) << "case " << k << ": a way exists";
+      ++joined;
+    } else if (!Flood(s, -kDiagonal).connects(start, goal)) {
+      EXPECT_TRUE(shut) << "case " << k << ": no way exists";
+      ++separated;
+    } else {
+      ++open;  // too near to call on this grid
+    }
+  }
+  EXPECT_GT(separated, 5);
+  EXPECT_GT(joined, 5);
+  EXPECT_LT(open, 25);
+}
+
+}  // namespace
+}  // namespace exactvo::formation

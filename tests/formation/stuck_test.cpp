@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is said of a robot that did not arrive, against runs whose end is known.
+#include "exactvo/formation/stuck.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "paper_scenes.h"
+
+namespace exactvo::formation {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Stuck, OrcaAtAFlatWallIsAStableTrap) {
+  const Scenario s = test::paper_scene("A11");
+  const std::vector<StuckReport> reports = explain_stuck(s, simulate(s, test::with_method(Method::orca)));
+  ASSERT_EQ(reports.size(), 1u);
+  ASSERT_TRUE(reports[0].equilibrium.has_value()) << reports[0].text;
+  EXPECT_TRUE(reports[0].equilibrium->stable);
+  EXPECT_NE(reports[0].text.find("stable trap"), std::string::npos) << reports[0].text;
+}
+
+TEST(Stuck, TheThinEllipseNamesItsCurvature) {
+  const Scenario s = test::paper_scene("A11");
+  SimulationOptions options = test::with_method(Method::ivo_edge);
+  options.facade_fixed_minor = 0.1;
+  const std::vector<StuckReport> reports = explain_stuck(s, simulate(s, options));
+  ASSERT_EQ(reports.size(), 1u);
+  ASSERT_TRUE(reports[0].equilibrium.has_value()) << reports[0].text;
+  const Equilibrium& e = *reports[0].equilibrium;
+  EXPECT_GT(e.radius_of_curvature, e.distance);
+  EXPECT_TRUE(std::isfinite(e.radius_of_curvature));
+}
+
+TEST(Stuck, ARobotThatCirclesAnUnreachableGoalIsNotAtRest) {
+  Scenario s;
+  s.robots.emplace_back();
+  s.robots.front().id = "R1";
+  s.robots.front().position = {0, 0};
+  s.robots.front().goals = {{8, 0.3}};
+  s.obstacles.push_back({"desk", geometry::Polygon{{{6, -2}, {10, -2}, {10, 2}, {6, 2}}, {}}});
+  s.time_limit = 40.0;
+  const Recording recording = simulate(s);
+  const std::vector<StuckReport> reports = explain_stuck(s, recording);
+  ASSERT_EQ(reports.size(), 1u);
+  const StuckReport& r = reports.front();
+  double nearest = r.goal_distance;
+  for (const Step& step : recording.steps) {
+    nearest = std::min(nearest, norm(step.robots[0].position - s.robots.front().goals.back()));
+  }
+  ASSERT_LT(nearest, r.goal_distance);
+  char words[80];
+  std::snprintf(words, sizeof words, " s, %.3g m away", nearest);
+  EXPECT_NE(r.text.find("it was nearest at"), std::string::npos) << r.text;
+  EXPECT_NE(r.text.find(words), std::string::npos) << r.text;
+  EXPECT_EQ(r.text.find("at rest"), std::string::npos) << r.text;
+}
+
+TEST(Stuck, ARobotThatArrivedHasNoReport) {
+  const Scenario s = test::paper_scene("A4");
+  EXPECT_TRUE(explain_stuck(s, simulate(s)).empty());
+}
+
+// --- Recordings made by hand: what is said follows from what was recorded alone ---
+
+constexpr double kStep = 0.05;   // s
+constexpr double kEnd = 55.0;    // s
+constexpr double kRadius = 0.5;  // m
+
+struct End {
+  Vec2 position;
+  Vec2 goal;
+  Vec2 velocity;
+  Vec2 preferred;
+  std::vector<RecordedConstraint> constraints;
+  Mode mode = Mode::direct;
+  lp::Status status = lp::Status::optimal;
+  double violation = 0.0;
+};
+
+Scenario scene_of(const std::vector<End>& ends) {
+  Scenario s;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    Robot r;
+    r.id = "R" + std::to_string(i + 1);
+    r.position = ends[i].position;
+    r.radius = kRadius;
+    r.goals = {ends[i].goal};
+    s.robots.push_back(r);
+  }
+  s.time_limit = kEnd;
+  return s;
+}
+
+/// Every robot at one place with one velocity, from 0 s to the end.
+Recording unchanged(const std::vector<End>& ends) {
+  Recording r;
+  r.time_step = kStep;
+  Step row;
+  for (const End& end : ends) {
+    RobotStep step;
+    step.position = end.position;
+    step.velocity = step.chosen = end.velocity;
+    step.preferred = end.preferred;
+    step.constraints = end.constraints;
+    step.mode = end.mode;
+    step.status = end.status;
+    step.violation = end.violation;
+    row.robots.push_back(step);
+  }
+  for (const double time : {0.0, kEnd - kStep, kEnd}) {
+    row.time = time;
+    r.steps.push_back(row);
+  }
+  for (RobotStep& step : r.steps.back().robots) step.constraints.clear();
+  return r;
+}
+
+RecordedConstraint constraint(ConstraintSource source, std::size_t index, geometry::ConvexShape shape, Vec2 normal) {
+  RecordedConstraint c;
+  c.source = source;
+  c.index = index;
+  c.shape = std::move(shape);
+  c.half_plane = {normal, 0.0};
+  c.radius = kRadius;
+  c.tau = 2.0;
+  c.hard = source == ConstraintSource::enclosure || source == ConstraintSource::obstacle_edge;
+  c.active = true;
+  return c;
+}
+
+std::string text_of(const Scenario& s, const Recording& recording, std::size_t robot = 0) {
+  for (const StuckReport& r : explain_stuck(s, recording))
+    if (r.robot == robot) return r.text;
+  return "";
+}
+
+/// Two robots that face each other on the x axis, 1.04 m apart, and hardly move.
+std::vector<End> head_on() {
+  const Vec2 left{5.48, 0.0}, right{6.52, 0.0};
+  const auto robot = [](std::size_t i, Vec2 at, double nx) {
+    return constraint(ConstraintSource::robot, i, geometry::Disc{at, kRadius}, {nx, 0.0});
+  };
+  return {{left, {12, 0}, {1.5e-13, 0}, {3, 0}, {robot(1, right, -1.0)}},
+          {right, {0, 0}, {-1.5e-13, 0}, {-3, 0}, {robot(0, left, 1.0)}}};
+}
+
+TEST(Stuck, RobotsThatStandHeadOnAreNotSlidingOffABoundary) {
+  const auto ends = head_on();
+  const auto reports = explain_stuck(scene_of(ends), unchanged(ends));
+  ASSERT_EQ(reports.size(), 2u);
+  for (const StuckReport& r : reports) {
+    EXPECT_FALSE(r.equilibrium.has_value());
+    EXPECT_DOUBLE_EQ(r.rest_time, kEnd);
+    EXPECT_THAT(r.text, HasSubstr("at rest for 55 s (1.5e-13 m/s)"));
+    EXPECT_THAT(r.text, HasSubstr(std::string("blocked by robot R") + (r.robot == 0 ? "2" : "1") +
+                                  ": each stands in the other's way"));
+    for (const char* untrue : {"unstable", "sliding", "curvature", "trap"}) EXPECT_THAT(r.text, Not(HasSubstr(untrue)));
+  }
+}
+
+TEST(Stuck, WhatTheRobotInTheWayDoesIsSaid) {
+  auto ends = head_on();
+  ends[1].constraints.clear();
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("blocked by robot R2, which is at rest"));
+  ends[1].goal = ends[1].position;
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("blocked by robot R2, which is at its goal"));
+  ends[1].goal = {0, 0};
+  ends[1].velocity = {0, 1};
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("blocked by robot R2, which is moving"));
+}
+
+TEST(Stuck, AMovingObstacleHasNoEquilibrium) {
+  auto ends = head_on();
+  ends.resize(1);
+  ends[0].constraints[0].source = ConstraintSource::moving_obstacle;
+  ends[0].constraints[0].index = 0;
+  Scenario s = scene_of(ends);
+  s.moving_obstacles = {{"cart", geometry::Polyline{{{6, -1}, {6, 1}}}, {{{0, 0}}, 0.0}}};
+  const std::string text = text_of(s, unchanged(ends));
+  EXPECT_THAT(text, HasSubstr("blocked by moving obstacle cart"));
+  EXPECT_THAT(text, Not(HasSubstr("curvature")));
+}
+
+/// A robot at a round enclosure (radius 2) straight before its goal 8 m behind: an unstable equilibrium.
+End at_a_round_enclosure(Vec2 velocity) {
+  const geometry::Ellipse round = geometry::ellipse_from_axes({0, 0}, {2, 2, 0});
+  return {{-2.5, 0.0}, {8, 0}, velocity, {3, velocity.y}, {constraint(ConstraintSource::enclosure, 0, round, {-1, 0})}};
+}
+
+TEST(Stuck, OnlyARobotThatMovesIsSlidingOff) {
+  const std::vector<End> standing{at_a_round_enclosure({0, 1e-9})}, moving{at_a_round_enclosure({0, 0.05})};
+  const std::string rests = text_of(scene_of(standing), unchanged(standing));
+  EXPECT_THAT(rests, HasSubstr("at rest for 55 s"));
+  EXPECT_THAT(rests, HasSubstr("an unstable equilibrium"));
+  EXPECT_THAT(rests, HasSubstr("less than the distance to the goal"));
+  EXPECT_THAT(rests, Not(HasSubstr("sliding")));
+  const std::string slides = text_of(scene_of(moving), unchanged(moving));
+  EXPECT_THAT(slides, HasSubstr("still moving when time ran out (0.05 m/s)"));
+  EXPECT_THAT(slides, HasSubstr("sliding off an unstable equilibrium"));
+}
+
+TEST(Stuck, FarFromABoundaryThereIsNoEquilibrium) {
+  std::vector<End> ends{at_a_round_enclosure({1, 0})};
+  ends[0].position.x = -4.0;
+  const auto reports = explain_stuck(scene_of(ends), unchanged(ends));
+  EXPECT_FALSE(reports.at(0).equilibrium.has_value());
+  EXPECT_THAT(reports[0].text, HasSubstr("its velocity is limited by enclosure 0"));
+}
+
+TEST(Stuck, WhatIsActiveWithoutPushingBlocksNothing) {
+  const geometry::Segment front{{1, -2}, {1, 2}}, beside{{-2, 0.5}, {1, 0.5}};
+  const auto edge = [](std::size_t i, geometry::Segment s, Vec2 n) {
+    return constraint(ConstraintSource::obstacle_edge, i, s, n);
+  };
+  std::vector<End> ends{{{0.5, 0}, {8, 0}, {0, 0}, {3, 0}, {edge(1, beside, {0, -1}), edge(0, front, {-1, 0})}}};
+  Scenario s = scene_of(ends);
+  s.obstacles = {{"front", geometry::Polyline{{front.a, front.b}}},
+                 {"beside", geometry::Polyline{{beside.a, beside.b}}}};
+  const auto reports = explain_stuck(s, unchanged(ends));
+  EXPECT_THAT(reports.at(0).text, HasSubstr("blocked by the edge (1, -2)-(1, 2) of obstacle front: a stable trap"));
+  EXPECT_THAT(reports[0].text, Not(HasSubstr("beside")));
+  EXPECT_FALSE(reports[0].binding[0].pressing);
+  EXPECT_TRUE(reports[0].binding[1].pressing);
+  // The goal behind both: each of them is needed.
+  ends[0].goal = {8, 8};
+  ends[0].preferred = {2, 2};
+  s.robots[0].goals = {ends[0].goal};
+  EXPECT_THAT(text_of(s, unchanged(ends)),
+              HasSubstr("blocked between the edge (-2, 0.5)-(1, 0.5) of obstacle beside and "
+                        "the edge (1, -2)-(1, 2) of obstacle front"));
+}
+
+TEST(Stuck, ADecisionThatIsACompromiseSaysByHowMuch) {
+  auto ends = head_on();
+  ends[0].status = lp::Status::relaxed;
+  ends[0].violation = 0.4;
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("the half-planes contradict each other by 0.4 m/s"));
+}
+
+TEST(Stuck, ARobotInContactSaysSo) {
+  auto ends = head_on();
+  ends[0].mode = Mode::pushing_out;
+  EXPECT_THAT(text_of(scene_of(ends), unchanged(ends)), HasSubstr("in contact with an obstacle"));
+}
+
+TEST(Stuck, ARestThatBeganLateIsCountedFromThere) {
+  auto ends = head_on();
+  Recording r = unchanged(ends);
+  r.steps[0].robots[0].velocity = {1, 0};
+  EXPECT_NEAR(explain_stuck(scene_of(ends), r).at(0).rest_time, kStep, 1e-12);
+  r.steps[2].robots[0].velocity = {1, 0};
+  EXPECT_EQ(explain_stuck(scene_of(ends), r).at(0).rest_time, 0.0);
+}
+
+// --- Runs ---
+
+Scenario one_robot(Vec2 goal) {
+  Scenario s;
+  Robot r;
+  r.id = "R1";
+  r.goals = {goal};
+  s.robots = {r};
+  return s;
+}
+
+TEST(Stuck, ARobotInOpenSpaceRanOutOfTime) {
+  Scenario s = one_robot({100, 0});
+  s.time_limit = 2.0;
+  EXPECT_THAT(text_of(s, simulate(s)), HasSubstr("still moving when time ran out (3 m/s); no active constraint"));
+  s.time_limit = 120.0;
+  SimulationOptions options;
+  options.stop_at = 2.0;
+  EXPECT_THAT(text_of(s, simulate(s, options)), HasSubstr("moving at 2.05 s (3 m/s); no active constraint"));
+}
+
+/// A U that opens towards the robot, wide enough to drive in: the ellipses of its corner overlap.
+Scenario before_a_u() {
+  Scenario s = one_robot({14, 0});
+  s.obstacles = {
+      {"U", geometry::Polygon{{{4, -4}, {10, -4}, {10, 4}, {4, 4}, {4, 3.5}, {9, 3.5}, {9, -3.5}, {4, -3.5}}, {}}}};
+  s.time_limit = 40.0;
+  return s;
+}
+
+TEST(Stuck, BetweenEnclosuresOfOneObstacle) {
+  Scenario s = before_a_u();
+  s.robots[0].goals = {{12, 6}};
+  const auto reports = explain_stuck(s, simulate(s, test::with_method(Method::ivo_edge)));
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_THAT(reports[0].text, HasSubstr("at rest for"));
+  EXPECT_THAT(reports[0].text, HasSubstr("blocked between enclosures 4 and 5 of obstacle U"));
+}
+
+}  // namespace
+}  // namespace exactvo::formation
