@@ -133,6 +133,16 @@ TEST(Messages, AnImageIsReferredToItsMap) {
   EXPECT_THAT(place().run("validate mystery.xyz").out, HasSubstr("name it with --format (convert: --from)"));
 }
 
+TEST(Messages, AGoalThatIsWalledInIsSaidBeforeTheRun) {
+  place().write("room.json",
+                R"({"name": "room", "robots": [{"id": "R1", "position": [8, 0], "goal": [0, 0]}], "time_limit": 1,
+    "obstacles": [{"id": "room", "polyline": [[3, 0.4], [3, 3], [-3, 3], [-3, -3], [3, -3], [3, -0.4]]}]})");
+  EXPECT_THAT(
+      place().run("simulate room.json").err,
+      HasSubstr("goal of R1, (0, 0), cannot be reached: obstacle 'room' encloses it, with gaps of at most 0.8 m for "
+                "a robot 1 m wide"));
+}
+
 TEST(Messages, ColumnsOfAnswersHaveAHeader) {
   place().write("p.jsonl", R"({"bound": {"disc": 2}, "preferred": [2, 0], "constraints": []})");
   EXPECT_THAT(place().run("lp p.jsonl").out, testing::StartsWith(" problem status "));

@@ -66,6 +66,32 @@ TEST(Program, TrapJudgesAMethodWithoutEnclosures) {
   EXPECT_THAT(here.run("trap empty.json --method orca").out, HasSubstr("no obstacles"));
 }
 
+/// A U that opens towards the robot, which stalls between the ellipses of its right wall and its roof.
+constexpr const char* kBeforeAU =
+    R"({"name": "U", "robots": [{"id": "R1", "position": [0, 0], "goal": [12, 6]}], "time_limit": 40,
+  "obstacles": [{"id": "U", "polygon": [[4, -4], [10, -4], [10, 4], [4, 4], [4, 3.5], [9, 3.5], [9, -3.5], [4, -3.5]]}]})";
+
+TEST(Program, TrapAndSimulateNameTheSameEnclosures) {
+  const Workplace here;
+  here.write("u.json", kBeforeAU);
+  const Outcome trap = here.run("trap u.json --method ivo-edge");
+  EXPECT_THAT(trap.out,
+              AllOf(HasSubstr("R1, enclosure 4, facade (4, 3.5)-(9, 3.5) of obstacle U: no stall"),
+                    HasSubstr("R1, between enclosures 4 and 5 of obstacle U: a stall is possible (overlapping, "
+                              "heuristic)"),
+                    HasSubstr("in their concave vertex")));
+  EXPECT_THAT(here.run("simulate u.json --method ivo-edge").out,
+              HasSubstr("blocked between enclosures 4 and 5 of obstacle U"));
+  const json findings = json::parse(here.run("trap u.json --method ivo-edge --json").out);
+  EXPECT_EQ(findings[4].at("enclosure"), 4);
+  EXPECT_TRUE(findings[4].at("overlapping").is_null());
+  bool found = false;
+  for (const json& f : findings)
+    found = found || (!f.at("overlapping").is_null() && f.at("enclosure") == 4 &&
+                      f.at("overlapping").at("enclosure") == 5 && f.at("stall_possible") == true);
+  EXPECT_TRUE(found);
+}
+
 TEST(Program, MistypedWordsAreAnsweredWithTheNearest) {
   const Workplace here;
   here.write("s.json", kOneRobot);
@@ -552,8 +578,9 @@ TEST(Explain, SaysWhatHoldsARobotAndDrawsIt) {
   here.write("s.json", kOneRobot);
   const Outcome outcome = here.run("explain s.json --method orca --time 10 --robot R1 --out stuck.svg");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("R1 of one at t = 10.00 s"), HasSubstr("[1] binds"), HasSubstr("of wall"),
-                                 HasSubstr("The robot is held by"), HasSubstr("Karush")));
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("R1 of one at t = 10.00 s"), HasSubstr("[1] the edge "),
+                    HasSubstr("of obstacle wall, binding: "), HasSubstr("The robot is held by"), HasSubstr("Karush")));
   for (const char* name : {"stuck.svg", "stuck.png", "stuck.dat", "stuck.gp"}) EXPECT_TRUE(here.has(name)) << name;
 }
 
