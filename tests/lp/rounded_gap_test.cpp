@@ -194,7 +194,7 @@ TEST(RoundedGap, SaysNothingOfNumbersOutOfRange) {
     EXPECT_FALSE(rounded_gap(other.problem, other.multipliers, other.scope, other.claim, Digits::twice)) << odd;
     other = c;
     other.problem.constraints[3].half_plane.offset = odd;
-    other.multipliers.add(3, 1.0);
+    other.multipliers.add(constraint_at(3), 1.0);
     EXPECT_FALSE(rounded_gap(other.problem, other.multipliers, other.scope, other.claim, Digits::twice)) << odd;
   }
 }
