@@ -65,20 +65,29 @@ std::string unknown_option(const std::vector<const CLI::Option*>& options, const
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
     const bool is_long = name.rfind("--", 0) == 0 && name.size() > 2;
-    if (is_long && !option_named(options, name))
+    const bool is_short = name.size() == 2 && name[0] == '-' && std::isalpha(static_cast<unsigned char>(name[1])) != 0;
+    if ((is_long || is_short) && !option_named(options, name))
       return fmt::format("unknown option '{}'{}", name, suggestion(name, long_names(options)));
   }
   return "";
 }
 
-/// The value without the option, as it was given.
-std::string value_of(const CLI::Option& option) {
-  return fmt::format("{}", fmt::join(option.results(), " "));
+/// The value without the option, as it was given. A check that also changes a value leaves none behind where it fails.
+std::string value_of(const CLI::Option& option, const std::vector<std::string>& words) {
+  if (!option.results().empty()) return fmt::format("{}", fmt::join(option.results(), " "));
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::size_t equals = words[i].find('=');
+    if (words[i].empty() || words[i][0] != '-' || !option.check_name(words[i].substr(0, equals))) continue;
+    if (equals != std::string::npos) return words[i].substr(equals + 1);
+    if (i + 1 < words.size()) return words[i + 1];
+  }
+  return "";
 }
 
 std::string kind_of_value(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   if (is_flag(option)) return "no value, since it is a switch";
+  if (type.find("SIZE") != std::string::npos) return "a number of bytes, such as 2GB";
   if (type.rfind("FLOAT", 0) == 0) return "a number";
   if (type.rfind("UINT", 0) == 0) return "a whole number from 0 on";
   if (type.rfind("INT", 0) == 0) return "a whole number";
@@ -117,7 +126,7 @@ std::string words_of(const CLI::App& app, const CLI::ParseError& error, const st
     return fmt::format("{}: no value given, expected {}", name, kind_of_value(*option));
   // Checks of our own say what they found and what they expected.
   if (message.find("found '") != std::string::npos) return message;
-  return fmt::format("{}: found '{}', expected {}", name, value_of(*option), kind_of_value(*option));
+  return fmt::format("{}: found '{}', expected {}", name, value_of(*option, words), kind_of_value(*option));
 }
 
 }  // namespace
