@@ -206,7 +206,7 @@ TEST(PathsFigure, MarksACollisionWithWhatMovesBetweenTwoRows) {
   run.scenario.moving_obstacles = {cart};
   run.collisions = measure(run.scenario, run.recording).collisions;
   ASSERT_FALSE(run.collisions.empty());
-  EXPECT_THAT(paths_figure(run).script, HasSubstr("title 'collision'"));
+  EXPECT_THAT(paths_figure(run).body, HasSubstr("title 'collision'"));
   bool has_distances = false;
   for (const Figure& figure : run_figures(run)) has_distances |= figure.name == "obstacle_distance";
   EXPECT_TRUE(has_distances) << "with moving obstacles alone";

@@ -46,7 +46,7 @@ TEST(StartUp, LoadsNoLibraryThatIsNotNeeded) {
   const Workplace here;
   here.write("square.wkt", "POLYGON((0 0, 1 0, 1 1, 0 1, 0 0))");
   here.write("problem.jsonl", R"({"bound": {"disc": 2}, "preferred": [1, 0], "constraints": []})");
-  for (const std::string arguments :
+  for (const std::string& arguments :
        {std::string("--version"), std::string("--help"), std::string(kVo) + " --json", std::string("lp problem.jsonl"),
         std::string("validate square.wkt"), std::string("convert square.wkt square.geojson"),
         "simulate '" + data_file("paper/A10.json") + "' --json"}) {
