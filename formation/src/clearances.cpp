@@ -149,7 +149,8 @@ class Sweep {
     // Shares of the step become times, and times shares: 8 roundings of the time, which both spend moving.
     constexpr double kRoundingOfTime = 8 * 0x1p-53;
     const double end = time + motion.duration;
-    const double late = kRoundingOfTime * end * (motion.speed_bound() + 2.0 * piece.speed_bound(end));
+    const double late =
+        kRoundingOfTime * end * (motion.speed_bound() + 2.0 * piece.speed_bound(std::min(end, piece.to)));
     const double radius = scenario_.robots[robot].radius, off = radius + late + piece.error;
     const geometry::Obstacle& shape = scenario_.moving_obstacles[obstacle].shape;
     return least_clearance(

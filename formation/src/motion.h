@@ -103,7 +103,7 @@ struct ChordClearance {
 inline constexpr double kStrayShare = 1.25e-4;
 inline constexpr double kFinestStray = 1e-10;
 inline constexpr double kCoarsestStray = 1e-5;
-/// 2^16 chords a step stray 2^-32 of what the whole step does.ep's.
+/// 2^16 chords a step stray 2^-32 of what the whole step does.
 inline constexpr int kMostHalvings = 16;
 
 /// A certified lower bound of the clearance over the shares [start, end] of a step; `look(start, end)` gives the

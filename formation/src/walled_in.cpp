@@ -45,7 +45,7 @@ Vec2 common_point(const Segment& s, const Segment& t) {
 Segment connector(const Segment& s, const Segment& t) {
   if (geometry::intersect(s, t)) {
     const Vec2 p = common_point(s, t);
-    return {geometry::nearest_point(s, p), geometry::nearest_point(t, p)};
+    return {p, p};  // no gap: the point stands for one of both
   }
   const Segment choices[] = {{geometry::nearest_point(s, t.a), t.a},
                              {geometry::nearest_point(s, t.b), t.b},

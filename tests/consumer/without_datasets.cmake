@@ -30,7 +30,11 @@ configure(geometry "${of_datasets};${of_tests};nlohmann_json;benchmark;TBB;HWY" 
 if(failed)
   message(FATAL_ERROR "geometry alone: status ${failed}\n${text}")
 endif()
-configure(vo_with_tests "${of_datasets}" -DEXACTVO_COMPONENTS=vo -DEXACTVO_BENCH=OFF)
+# The programs among the tests take options, as the benches do.
+set(of_options fmt CLI11)
+set(needless_for_tests ${of_datasets})
+list(REMOVE_ITEM needless_for_tests ${of_options})
+configure(vo_with_tests "${needless_for_tests}" -DEXACTVO_COMPONENTS=vo -DEXACTVO_BENCH=OFF)
 if(failed OR asked_for_valijson)
   message(FATAL_ERROR "vo with its tests: status ${failed}, valijson '${asked_for_valijson}'\n${text}")
 endif()

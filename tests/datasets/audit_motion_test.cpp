@@ -207,6 +207,7 @@ TEST(AuditMotion, RobotsThatDriveTheSameCurveSideBySideKeepTheirDistanceExactly)
 TEST(AuditMotion, TheCubicOfTheGeneralIntegratorsIsDecidedToo) {
   RecordingFile file = curve(2.0, 1.0, {0, 0}, {0, 4}, {0, 0});
   file.recording.motion = MotionLaw::hermite;
+  file.info.integrator = "rk4";
   file.recording.steps[1].robots[0].position = {1, 0};
   file.recording.steps[1].robots[0].velocity = {0, -4};
   // y = 4 s (1 - s): 1 m high in the middle.
@@ -263,6 +264,21 @@ TEST(AuditMotion, NumbersThatAreNoneAreInconsistent) {
       [&](auto& r) { r.tracking_gain = 0.0; },
       [&](auto& r) { r.tracking_gain = inf; },
       [&](auto& r) { r.steps[0].time = -5.0; },
+      [&](auto& r) {
+        for (formation::Step& step : r.steps) step.time += 100.0;
+      },
+      [&](auto& r) {
+        for (formation::Step& step : r.steps) step.time -= 100.0;
+      },
+      [&](auto& r) { r.steps.back().time = 1e-9; },
+      [&](auto& r) { r.motion = formation::MotionLaw::hermite; },
+      [&](auto& r) { r.motion = formation::MotionLaw::straight; },
+      [&](auto& r) {
+        r.steps[1].robots[0].position = {1.7e308, 1.7e308};
+      },
+      [&](auto& r) {
+        r.steps[1].robots[0].velocity = {-1.7e308, 1.7e308};
+      },
       [&](auto& r) { r.steps.clear(); },
       [&](auto& r) { r.steps[1].robots[0].position.y = -inf; },
   };

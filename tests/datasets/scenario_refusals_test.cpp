@@ -116,7 +116,7 @@ TEST(ScenarioRefusals, MessagesAreSentences) {
   EXPECT_NE(message(with_robot(R"("goal": [1, 2], "goals": [])"))
                 .find("found both \"goal\" and \"goals\", expected goal or goals, not both"),
             std::string::npos);
-  EXPECT_NE(message(R"({"name": "n", "robots": []})").find("expected at least 1 entry ("), std::string::npos);
+  EXPECT_NE(message(R"({"name": "n", "robots": []})").find("expected at least 1 entry ["), std::string::npos);
   EXPECT_NE(message(R"({"name": "", "robots": []})").find("expected at least 1 character ["), std::string::npos);
   EXPECT_NE(message(with(R"("obstacles": [{"polyline": [[1, 1]]}])")).find("expected at least 2 entries"),
             std::string::npos);

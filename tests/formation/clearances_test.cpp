@@ -96,6 +96,18 @@ TEST(MovingClearance, AChangeOfSpeedWithinAStepIsFollowed) {
   EXPECT_LE(measure(s, rec).min_obstacle_clearance.value(), 0.0);
 }
 
+TEST(MovingClearance, AShortRampOfSpeedIsNotCarriedOnToTheEndOfTheStep) {
+  // The square stands 1 mm from the rim, and drives away from t = 2 s on: its speed rises within 1e-13 s.
+  Scenario s;
+  s.time_step = 0.5;
+  s.robots = {robot("R1", {0.0, 0.0}, {0.0, 0.0})};
+  s.moving_obstacles = {
+      square("cart", {1.001, 0.0}, 0.5, {{{0, 0}, {100, 0}}, 0.0, {{2.0, 0.0}, {2.0000000000001, 1.0}}})};
+  const Metrics m = measure(s, resting(s, 10));
+  EXPECT_TRUE(m.collisions.empty());
+  EXPECT_NEAR(m.min_obstacle_clearance.value(), 0.001, 1e-9);
+}
+
 /// A path of random legs, some of which go back, repeat a point or are very short.
 Leader random_motion(SeededRandom& random) {
   Leader motion{{random.in_box(5)}, random.uniform(0.0, 9.0)};

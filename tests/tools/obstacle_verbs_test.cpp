@@ -106,7 +106,7 @@ TEST(Repair, WritesWhatIsMendedAndNamesWhatIsNot) {
   EXPECT_TRUE(here.has("mended.gp"));
   const Outcome again = here.run("validate --strict mended.wkt");
   EXPECT_EQ(again.status, 0) << again.out;
-  EXPECT_THAT(again.err, HasSubstr("3 done"));
+  EXPECT_THAT(again.err, HasSubstr("3 valid"));
 }
 
 TEST(Repair, AWallOfTheSameIdDoesNotStopTheFigure) {

@@ -74,7 +74,8 @@ std::string unknown_option(const std::vector<const CLI::Option*>& options, const
 
 /// The value without the option, as it was given. A check that also changes a value leaves none behind where it fails.
 std::string value_of(const CLI::Option& option, const std::vector<std::string>& words) {
-  if (!option.results().empty()) return fmt::format("{}", fmt::join(option.results(), " "));
+  const std::string parsed = fmt::format("{}", fmt::join(option.results(), " "));
+  if (!parsed.empty()) return parsed;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::size_t equals = words[i].find('=');
     if (words[i].empty() || words[i][0] != '-' || !option.check_name(words[i].substr(0, equals))) continue;

@@ -137,7 +137,7 @@ Verdict decide(const Over& over, const Test& test, const Rational& start, const 
     const Verdict verdict = test(over(part.from, part.to));
     if (verdict == Verdict::meets) return verdict;
     if (verdict == Verdict::clear) continue;
-    if (used == kMostChords || part.halvings == kMostHalvings) return Verdict::unknown;
+    if (used >= kMostChords || part.halvings == kMostHalvings) return Verdict::unknown;
     const Rational middle = (part.from + part.to) / 2;
     open.push_back({middle, part.to, part.halvings + 1});
     open.push_back({part.from, middle, part.halvings + 1});

@@ -231,7 +231,7 @@ class Reader {
   /// Numbers that were no degrees are the likeliest reason why robots and obstacles do not fit together.
   std::string words_of_projection() const {
     if (projected_.empty()) return "";
-    return " (" + projected_ + ": degrees became metres; \"units\": \"metres\" takes its numbers as they stand)";
+    return " (" + projected_ + ": projected from degrees to metres; \"units\": \"metres\" takes its numbers as they stand)";
   }
 
   /// Problems name obstacles by their place in the scenario; in the text one entry may stand for a file of many.
@@ -252,7 +252,7 @@ class Reader {
   };
   std::vector<Origin> origin_of_;  ///< per obstacle of the scenario
   std::vector<std::string> notes_;
-  std::string projected_;  ///< files whose degrees became metres, with commas between
+  std::string projected_;  ///< files that were projected from degrees to metres, with commas between
 };
 
 }  // namespace
