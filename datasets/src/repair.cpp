@@ -7,6 +7,7 @@
 
 #include "exactvo/geometry/even_odd.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/too_many_contacts.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -79,15 +80,15 @@ std::optional<DataCode> hopeless(const std::vector<RingProblem>& problems) {
 /// The rings that enclose something, and where each stood.
 struct Kept {
   std::vector<Ring> rings;
-  std::vector<std::size_t> source;
+  std::vector<std::size_t> source;  ///< ascending
 };
 
 Kept without_empty_holes(const std::vector<Ring>& rings, const std::vector<RingProblem>& problems) {
   Kept kept;
+  std::vector<bool> is_empty(rings.size());
+  for (const RingProblem& p : problems) is_empty[p.ring] = is_empty[p.ring] || encloses_nothing(p);
   for (std::size_t k = 0; k < rings.size(); ++k) {
-    const bool is_empty = std::any_of(problems.begin(), problems.end(),
-                                      [&](const RingProblem& p) { return p.ring == k && encloses_nothing(p); });
-    if (is_empty) continue;
+    if (is_empty[k]) continue;
     kept.rings.push_back(rings[k]);
     kept.source.push_back(k);
   }
@@ -101,7 +102,7 @@ NormalizedPolygon normalized_without(const Kept& kept, std::vector<RingProblem>&
   for (RingProblem& problem : normal.problems) problem.ring = kept.source[problem.ring];
   std::vector<RingProblem> all;
   std::copy_if(problems.begin(), problems.end(), std::back_inserter(all), [&](const RingProblem& p) {
-    return std::find(kept.source.begin(), kept.source.end(), p.ring) == kept.source.end();
+    return !std::binary_search(kept.source.begin(), kept.source.end(), p.ring);
   });
   all.insert(all.end(), normal.problems.begin(), normal.problems.end());
   std::stable_sort(all.begin(), all.end(), [](const RingProblem& a, const RingProblem& b) { return a.ring < b.ring; });
@@ -172,7 +173,11 @@ Repair repair(const std::vector<Ring>& rings) {
   EXACTVO_REQUIRE(!rings.empty(), std::string("no ring"));
   Repair result;
   result.before = facts_of(rings);
-  mend(rings, result);
+  try {
+    mend(rings, result);
+  } catch (const geometry::TooManyContacts&) {
+    result.refused = DataCode::size;
+  }
   if (!result.ok()) return result;
   for (RingProblem& problem : result.problems) problem.mended = true;
   result.after = facts_of(result.polygons);

@@ -88,8 +88,48 @@ const std::string kEntities =
     "<?xml version=\"1.0\"?><!DOCTYPE x [<!ENTITY a \"1111111111\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;\">"
     "<!ENTITY file SYSTEM \"file:///etc/passwd\">]>";
 
+const std::string kShell = "POLYGON ((0 0, 10 0, 10 10, 0 10, 0 0)";
+constexpr const char* kHole = ", (1 1, 1 3, 3 3, 3 1, 1 1)";
+
+/// Each a little smaller than the one before.
+std::string nested_holes(int count) {
+  std::string all;
+  for (int k = 0; k < count; ++k) {
+    const std::string low = std::to_string(1.0 + 1e-6 * k);
+    all += ", (" + low + " " + low + ", " + low + " 3, 3 3, 3 " + low + ", " + low + " " + low + ")";
+  }
+  return all;
+}
+
+/// Beside one another, each a triangle.
+std::string many_holes(int side) {
+  std::string all;
+  for (int k = 0; k < side * side; ++k) {
+    const std::string x = std::to_string(1 + 2 * (k % side));
+    const std::string y = std::to_string(1 + 2 * (k / side));
+    all += ", (" + x + " " + y + ", " + x + " " + y + ".5, " + x + ".5 " + y + ", " + x + " " + y + ")";
+  }
+  return all;
+}
+
+/// A ring round `many_holes` with a vertex a metre.
+std::string long_shell(int side) {
+  std::string all = "POLYGON ((0 0";
+  for (int k = 1; k <= 2 * side; ++k) all += ", " + std::to_string(k) + " " + (k % 2 == 0 ? "0" : "-0.5");
+  for (int k = 1; k <= 2 * side; ++k) all += ", " + std::to_string(2 * side + k % 2) + " " + std::to_string(k);
+  for (int k = 1; k <= 2 * side; ++k)
+    all += ", " + std::to_string(2 * side - k) + " " + std::to_string(2 * side + k % 2);
+  for (int k = 1; k <= 2 * side; ++k) all += ", " + std::to_string(-(k % 2)) + " " + std::to_string(2 * side - k);
+  return all + ")";
+}
+
 std::vector<HostileFile> hostile_files() {
   std::vector<HostileFile> files{
+      {"EqualHoles", "a.wkt", "", kShell + repeated(kHole, 1600) + ")\n", DataCode::size},
+      {"ManyEqualHoles", "a.wkt", "", kShell + repeated(kHole, 40'000) + ")\n", DataCode::size},
+      {"NestedHoles", "a.wkt", "", kShell + nested_holes(1600) + ")\n", DataCode::size},
+      {"ManyHoles", "a.wkt", "", long_shell(150) + many_holes(150) + ")\n", std::nullopt},
+      {"EmptyHoles", "a.wkt", "", kShell + repeated(", (1 1, 1 1, 1 1)", 40'000) + ")\n", std::nullopt},
       {"MapHeader", "a.map", "movingai-map", "type octile\nheight 2147483648\nwidth 2147483648\nmap\n..\n",
        DataCode::size},
       {"MapHeaderBeyond64Bits", "a.map", "", "type octile\nheight 99999999999999999999\nwidth 2\nmap\n..\n",

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exactvo/geometry/even_odd.h"
+#include "exactvo/geometry/too_many_contacts.h"
 #include "json_text.h"
 
 namespace exactvo::datasets {
@@ -44,6 +45,8 @@ const char* words_for(DataCode code) {
       return "a ring that crosses or touches itself";
     case DataCode::out_of_range:
       return "a coordinate beyond 2^100 m";
+    case DataCode::size:
+      return "rings that touch or cross too often";
     default:
       return "a hole that is not inside its polygon or meets another ring";
   }
@@ -77,6 +80,8 @@ const char* expectation(DataCode code) {
       return "a simple ring";
     case DataCode::out_of_range:
       return "coordinates within 2^100 m, 1.27e30 m, of (0, 0)";
+    case DataCode::size:
+      return "rings whose edges' boxes meet in at most 2^26 pairs, and fewer or smaller holes";
     default:
       return "holes inside their polygon, apart from each other";
   }
@@ -199,8 +204,14 @@ Judgement judge(const RawGeometry& raw) {
     geometry::NormalizedPolyline normal = geometry::normalize_polyline(raw.rings.at(0));
     return {std::move(normal.polyline), findings_of(normal.problems, raw)};
   }
-  geometry::NormalizedPolygon normal = geometry::normalize(raw.rings);
-  return {std::move(normal.polygon), findings_of(normal.problems, raw)};
+  try {
+    geometry::NormalizedPolygon normal = geometry::normalize(raw.rings);
+    return {std::move(normal.polygon), findings_of(normal.problems, raw)};
+  } catch (const geometry::TooManyContacts&) {
+    geometry::RingProblem at{};
+    at.where = raw.rings[0].empty() ? geometry::Vec2{} : raw.rings[0].front();
+    return {geometry::Polygon{}, {finding_at(DataCode::size, raw, at)}};
+  }
 }
 
 DataError ring_refusal(const RingFinding& finding, const std::string& file) {

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/too_many_contacts.h"
 #include "rings/ring_contacts.h"
 
 namespace exactvo::geometry::detail {
@@ -105,32 +109,112 @@ std::size_t edge_under(const Ring& ring, Vec2 x) {
   return i;
 }
 
-// Whether `inner` lies in the area bounded by `around`, of two rings that do not cross: any vertex off the other ring
-// tells; if all lie on it, the way on from the first one does.
-bool lies_within(const Ring& inner, const Ring& around, bool around_is_clockwise) {
-  const Polygon area = {around, {}};
-  for (const Vec2 p : inner) {
-    const Place place = locate(area, p);
-    if (place != Place::boundary) return place == Place::inside;
-  }
-  const Passage passage = passage_through(around, edge_under(around, inner[0]), inner[0]);
-  return points_left(passage, inner[1]) != around_is_clockwise;
-}
-
-class Placement {
+// A simple ring on the lookout for points: from some size on its edges are sorted into slabs of equal height, so that a
+// point is held against those of its own slab alone.
+class PointLocator {
  public:
-  explicit Placement(const std::vector<const Ring*>& rings) : rings_(rings), found_(rings.size()) {
+  explicit PointLocator(const Ring& ring) : ring_(ring), box_(box_of(ring)) {
+    constexpr std::size_t kFewEdges = 64;
+    constexpr std::size_t kEdgesOfSlab = 8;
+    if (ring.size() < kFewEdges) return;
+    slabs_.resize(ring.size() / kEdgesOfSlab);
+    std::size_t entries = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const auto [low, high] = std::minmax(ring[i].y, ring[(i + 1) % ring.size()].y);
+      const std::size_t last = slab_of(high);
+      for (std::size_t slab = slab_of(low); slab <= last; ++slab) slabs_[slab].push_back(i);
+      entries += last - slab_of(low) + 1;
+      if (entries > 8 * ring.size()) {  // long edges: every slab would hold most of them
+        slabs_.clear();
+        return;
+      }
+    }
+  }
+
+  // By the even-odd rule. Exact.
+  Place locate(Vec2 p) const {
+    if (!slabs_.empty() && (p.y < box_.y_low || p.y > box_.y_high)) return Place::outside;
+    bool odd = false;
+    bool on_edge = false;
+    for_each_candidate(p.y, [&](std::size_t i) {
+      const Segment edge = {ring_[i], ring_[(i + 1) % ring_.size()]};
+      on_edge = on_edge || lies_on(edge, p);
+      if ((edge.a.y <= p.y) == (edge.b.y <= p.y)) return;
+      const Sign side = orientation(edge.a, edge.b, p);
+      odd = odd != (side == (edge.a.y < edge.b.y ? Sign::positive : Sign::negative));
+    });
+    if (on_edge) return Place::boundary;
+    return odd ? Place::inside : Place::outside;
+  }
+
+  // Edges that `locate` looks at.
+  std::size_t cost(Vec2 p) const { return slabs_.empty() ? ring_.size() : slabs_[slab_of(p.y)].size(); }
+
+ private:
+  std::size_t slab_of(double y) const {
+    const double share = (y - box_.y_low) / (box_.y_high - box_.y_low);
+    const auto last = static_cast<double>(slabs_.size() - 1);
+    return static_cast<std::size_t>(std::min(std::max(share, 0.0) * static_cast<double>(slabs_.size()), last));
+  }
+  template <class Action>
+  void for_each_candidate(double y, const Action& action) const {
+    if (slabs_.empty()) {
+      for (std::size_t i = 0; i < ring_.size(); ++i) action(i);
+    } else {
+      for (const std::size_t i : slabs_[slab_of(y)]) action(i);
+    }
+  }
+
+  const Ring& ring_;
+  Box box_;
+  std::vector<std::vector<std::size_t>> slabs_;
+};
+
+// The ring's vertices from the lexicographically least one on, which no two equal rings of one winding differ in.
+class FromLeast {
+ public:
+  explicit FromLeast(const Ring& ring) : ring_(&ring) {
+    const auto least = std::min_element(ring.begin(), ring.end(), lexicographically_less);
+    start_ = static_cast<std::size_t>(least - ring.begin());
+  }
+  std::size_t start() const { return start_; }
+  bool operator<(const FromLeast& other) const { return compare(other) < 0; }
+  bool operator==(const FromLeast& other) const { return compare(other) == 0; }
+
+ private:
+  int compare(const FromLeast& other) const {
+    const std::size_t n = ring_->size();
+    if (n != other.ring_->size()) return n < other.ring_->size() ? -1 : 1;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec2 a = (*ring_)[(start_ + i) % n];
+      const Vec2 b = (*other.ring_)[(other.start_ + i) % n];
+      if (a != b) return lexicographically_less(a, b) ? -1 : 1;
+    }
+    return 0;
+  }
+
+  const Ring* ring_;
+  std::size_t start_ = 0;
+};
+
+class Search {
+ public:
+  explicit Search(const std::vector<const Ring*>& rings)
+      : rings_(rings), found_(rings.size()), locators_(rings.size()) {
     for (const Ring* ring : rings) boxes_.push_back(box_of(*ring));
   }
 
   std::vector<Misplacement> run() {
+    report_equal_holes();
     report_crossings();
-    for (std::size_t i = 1; i < rings_.size(); ++i) report_wrong_side(i);
-    std::vector<Misplacement> out;
-    for (const auto& m : found_) {
-      if (m) out.push_back(*m);
+    for (const std::size_t i : different_) {
+      if (i > 0 && !found_[i]) report_wrong_side(i);
     }
-    return out;
+    std::vector<Misplacement> misplaced;
+    for (const auto& m : found_) {
+      if (m) misplaced.push_back(*m);
+    }
+    return misplaced;
   }
 
  private:
@@ -138,35 +222,89 @@ class Placement {
     if (!found_[ring]) found_[ring] = Misplacement{ring, vertex, where};
   }
 
-  // The sweep answers the common case (no two rings touch) alone.
+  // Each lies within the other. One of them, the first, stays among the rings that are `different_`.
+  void report_equal_holes() {
+    std::vector<std::pair<FromLeast, std::size_t>> holes;
+    for (std::size_t i = 1; i < rings_.size(); ++i) holes.emplace_back(FromLeast(*rings_[i]), i);
+    std::sort(holes.begin(), holes.end());
+    different_.push_back(0);
+    for (std::size_t k = 0; k < holes.size(); ++k) {
+      const bool is_repeated = k > 0 && holes[k].first == holes[k - 1].first;
+      if (!is_repeated) different_.push_back(holes[k].second);
+      if (is_repeated || (k + 1 < holes.size() && holes[k].first == holes[k + 1].first)) report_at_start(holes[k]);
+    }
+    std::sort(different_.begin(), different_.end());
+  }
+
+  void report_at_start(const std::pair<FromLeast, std::size_t>& hole) {
+    report(hole.second, hole.first.start(), (*rings_[hole.second])[hole.first.start()]);
+  }
+
+  // The sweep answers the common case (no two rings touch) alone. Of each ring the first crossing is reported, by ring
+  // and edge of the other and its own edge.
   void report_crossings() {
     std::vector<Chain> chains;
-    for (const Ring* ring : rings_) chains.push_back({ring});
+    for (const std::size_t i : different_) chains.push_back({rings_[i]});
     if (!find_contact(chains)) return;
-    for (const Contact& c : all_contacts_between(chains)) {
-      const Ring& a = *rings_[c.first.chain];
-      const Ring& b = *rings_[c.second.chain];
-      if (is_crossing(a, c.first.edge, b, c.second.edge)) report(c.second.chain, c.second.edge, c.where);
+    using Key = std::tuple<std::size_t, std::size_t, std::size_t>;
+    std::vector<std::optional<Key>> first_crossing(chains.size());
+    const bool is_complete = for_each_box_pair(chains, kMostContactPairs, [&](EdgeId first, EdgeId second) {
+      std::optional<Key>& best = first_crossing[second.chain];
+      const Key key{first.chain, first.edge, second.edge};
+      if (best && *best < key) return;
+      if (!intersect(chains[first.chain].edge(first.edge), chains[second.chain].edge(second.edge))) return;
+      if (is_crossing(*chains[first.chain].points, first.edge, *chains[second.chain].points, second.edge)) best = key;
+    });
+    for (std::size_t k = 0; k < chains.size(); ++k) {
+      if (!first_crossing[k]) continue;
+      const auto [chain, edge, own_edge] = *first_crossing[k];
+      report(different_[k], own_edge, common_point(chains[chain].edge(edge), chains[k].edge(own_edge)));
     }
+    if (!is_complete) throw TooManyContacts();
   }
 
   void report_wrong_side(std::size_t i) {
     const Ring& hole = *rings_[i];
-    if (!boxes_[0].contains(boxes_[i]) || !lies_within(hole, *rings_[0], false)) report(i, 0, hole[0]);
-    for (std::size_t j = 1; j < rings_.size() && !found_[i]; ++j) {
-      if (j != i && boxes_[j].contains(boxes_[i]) && lies_within(hole, *rings_[j], true)) report(i, 0, hole[0]);
+    if (!boxes_[0].contains(boxes_[i]) || !lies_within(hole, 0)) report(i, 0, hole[0]);
+    for (const std::size_t j : different_) {
+      if (found_[i]) return;
+      if (j > 0 && j != i && boxes_[j].contains(boxes_[i]) && lies_within(hole, j)) report(i, 0, hole[0]);
     }
+  }
+
+  // Whether `inner` lies in the area bounded by ring number `around`, of two rings that do not cross: any vertex off
+  // the other ring tells; if all lie on it, the way on from the first one does.
+  bool lies_within(const Ring& inner, std::size_t around) {
+    const PointLocator& locator = locator_of(around);
+    for (const Vec2 p : inner) {
+      edge_tests_ += locator.cost(p);
+      if (edge_tests_ > kMostEdgeTests) throw TooManyContacts();
+      const Place place = locator.locate(p);
+      if (place != Place::boundary) return place == Place::inside;
+    }
+    const Ring& ring = *rings_[around];
+    const Passage passage = passage_through(ring, edge_under(ring, inner[0]), inner[0]);
+    const bool is_clockwise = around > 0;
+    return points_left(passage, inner[1]) != is_clockwise;
+  }
+
+  const PointLocator& locator_of(std::size_t ring) {
+    if (!locators_[ring]) locators_[ring] = std::make_unique<PointLocator>(*rings_[ring]);
+    return *locators_[ring];
   }
 
   const std::vector<const Ring*>& rings_;
   std::vector<Box> boxes_;
   std::vector<std::optional<Misplacement>> found_;
+  std::vector<std::size_t> different_;  ///< numbers of rings, ascending; of equal holes the first
+  std::vector<std::unique_ptr<PointLocator>> locators_;
+  std::size_t edge_tests_ = 0;
 };
 
 }  // namespace
 
 std::vector<Misplacement> misplaced_holes(const std::vector<const Ring*>& rings) {
-  return Placement(rings).run();
+  return Search(rings).run();
 }
 
 }  // namespace exactvo::geometry::detail

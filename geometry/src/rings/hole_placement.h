@@ -20,7 +20,11 @@ struct Misplacement {
 };
 
 /// One misplacement at most a hole, in order. REQUIRES: every ring simple, rings[0] counter-clockwise, others
-/// clockwise.
+/// clockwise. Throws TooManyContacts beyond the limits below.
 std::vector<Misplacement> misplaced_holes(const std::vector<const Ring*>& rings);
+
+/// Pairs of edges whose boxes meet, and tests of a vertex against an edge: two to five seconds each.
+inline constexpr std::size_t kMostContactPairs = std::size_t{1} << 26;
+inline constexpr std::size_t kMostEdgeTests = std::size_t{1} << 29;
 
 }  // namespace exactvo::geometry::detail

@@ -5,6 +5,7 @@
 #include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "cgal_guard.h"
@@ -61,23 +62,36 @@ auto key(const Contact& c) {
 
 }  // namespace
 
-std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains) {
-  std::vector<Contact> contacts;
+bool for_each_box_pair(const std::vector<Chain>& chains, std::size_t most,
+                       const std::function<void(EdgeId first, EdgeId second)>& take) {
+  std::size_t pairs = 0;
   const auto report = [&](const Box& a, const Box& b) {
+    if (++pairs > most) throw TooMany{};
     EdgeId first = a.info();
     EdgeId second = b.info();
     if (second.chain < first.chain) std::swap(first, second);
-    if (first.chain == second.chain) return;
+    if (first.chain != second.chain) take(first, second);
+  };
+  try {
+    without_cgal_failures(
+        "for_each_box_pair", [&] { return std::to_string(chains.size()) + " chains"; },
+        [&] {
+          std::vector<Box> boxes = boxes_of(chains);
+          CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), report);
+        });
+  } catch (const TooMany&) {
+    return false;
+  }
+  return true;
+}
+
+std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains) {
+  std::vector<Contact> contacts;
+  for_each_box_pair(chains, std::numeric_limits<std::size_t>::max(), [&](EdgeId first, EdgeId second) {
     const Segment s = chains[first.chain].edge(first.edge);
     const Segment t = chains[second.chain].edge(second.edge);
     if (intersect(s, t)) contacts.push_back({first, second, common_point(s, t)});
-  };
-  without_cgal_failures(
-      "all_contacts_between", [&] { return std::to_string(chains.size()) + " chains"; },
-      [&] {
-        std::vector<Box> boxes = boxes_of(chains);
-        CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), report);
-      });
+  });
   std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return key(a) < key(b); });
   return contacts;
 }

@@ -5,6 +5,7 @@
 /// Where chains of edges meet. Exact: orientation tests and comparisons of coordinates only.
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -38,6 +39,11 @@ struct Contact {
 /// Shamos and Hoey (Geometric intersection problems, 1976) in lexicographic order, so verticals need no special case.
 /// REQUIRES: no two consecutive vertices equal; closed chains have at least three.
 std::optional<Contact> find_contact(const std::vector<Chain>& chains);
+
+/// Gives pairs of edges of different chains whose boxes meet, the one of the earlier chain first, in no order to rely
+/// on. False where there are more than `most`: the others are not given. O(n log^2 n + pairs) (CGAL).
+bool for_each_box_pair(const std::vector<Chain>& chains, std::size_t most,
+                       const std::function<void(EdgeId first, EdgeId second)>& take);
 
 /// Every contact between edges of different chains, ordered. O(n log^2 n + candidates), by the edges' boxes (CGAL).
 std::vector<Contact> all_contacts_between(const std::vector<Chain>& chains);

@@ -31,10 +31,19 @@ bool report_not_finite(const std::vector<Vec2>& points, std::size_t ring, Proble
   return problems.size() != before;
 }
 
+std::size_t count_repeats(const std::vector<Vec2>& points) {
+  std::size_t repeats = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) repeats += points[i] == points[i - 1] ? 1 : 0;
+  return repeats;
+}
+
+// Millions of points may be one and the same: no more memory is taken than they need.
 CleanRing without_repeats(const std::vector<Vec2>& points, std::size_t ring, Problems& problems) {
+  const std::size_t repeats = count_repeats(points);
+  if (repeats > 1) problems.reserve(problems.size() + repeats);
   CleanRing clean;
-  clean.points.reserve(points.size());
-  clean.source.reserve(points.size());
+  clean.points.reserve(points.size() - repeats);
+  clean.source.reserve(points.size() - repeats);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!clean.points.empty() && clean.points.back() == points[i]) {
       problems.push_back({RingProblemCode::repeated_vertex, ring, i, points[i], true});
