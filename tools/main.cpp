@@ -8,6 +8,7 @@
 #include <exception>
 #include <iostream>
 #include <map>
+#include <new>
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/provenance.h"
@@ -30,7 +31,7 @@ constexpr const char* kExitCodes =
     "  1    completed; the check failed (verbs that check something)\n"
     "  2    a file, an option or an output location is wrong; nothing was written\n"
     "  3    a defect of the program\n"
-    "  130  interrupted; nothing was written (a batch keeps its progress for --resume)\n"
+    "  130  interrupted by Ctrl-C, 143 by SIGTERM; nothing was written (a batch keeps its progress for --resume)\n"
     "\n"
     "Results go to stdout, messages to stderr. SI units: metres, seconds, radians.";
 
@@ -114,6 +115,11 @@ ExitCode parse_and_run() {
   return code;
 }
 
+ExitCode say_interrupted() {
+  error_message("interrupted; nothing was written");
+  return ExitCode::interrupted;
+}
+
 ExitCode guarded() {
   try {
     check_verb();
@@ -122,11 +128,14 @@ ExitCode guarded() {
     error_message(error.what());
     return ExitCode::bad_input;
   } catch (const datasets::DataError& error) {
+    if (interrupted()) return say_interrupted();  // what a library made of a call that the signal ended
     error_message(error.what());
     return ExitCode::bad_input;
   } catch (const Interrupted&) {
-    error_message("interrupted; nothing was written");
-    return ExitCode::interrupted;
+    return say_interrupted();
+  } catch (const std::bad_alloc&) {
+    error_message("more memory wanted than there is [E_SIZE]");
+    return ExitCode::bad_input;
   } catch (const std::exception& error) {
     error_message(std::string("internal: ") + error.what());
     return ExitCode::internal_error;
@@ -145,5 +154,6 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // A reader that leaves early must not kill the run that writes files.
   exactvo::tools::words.assign(argv, argv + argc);
   exactvo::tools::note_interrupts();
-  return static_cast<int>(exactvo::tools::guarded());
+  const exactvo::tools::ExitCode code = exactvo::tools::guarded();
+  return code == exactvo::tools::ExitCode::interrupted ? exactvo::tools::interrupted_status() : static_cast<int>(code);
 }

@@ -26,6 +26,15 @@ void make_directories(const std::filesystem::path& directory) {
   if (error) throw cannot_write(directory, error.value());
 }
 
+/// The rename would put a file in the place of a pipe or a device: /dev/null would be one from then on.
+void refuse_irregular(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
+  const char* found = std::filesystem::is_directory(status) ? "a directory" : "a pipe, a socket or a device";
+  throw DataError(DataCode::file_unwritable, path.string(), "", found, "the name of a file");
+}
+
 void write_fully(const std::filesystem::path& path, int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
@@ -38,6 +47,7 @@ void write_fully(const std::filesystem::path& path, int descriptor, std::string_
 }  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing) : path_(std::move(path)) {
+  refuse_irregular(path_);
   if (missing == MissingFolder::is_made) make_directories(path_.parent_path());
   // A name of its own keeps programs that write the same file apart, on whatever machines; the later rename wins,
   // whole.

@@ -16,6 +16,7 @@
 #include "json_text.h"
 #include "sha256.h"
 #include "system_error.h"
+#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -49,6 +50,7 @@ std::string sha256_of(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {
+  read_beginning(path, 0);  // refuses what is missing and what is no regular file: a pipe would be waited for
   struct Close {
     void operator()(std::FILE* f) const { std::fclose(f); }
   };
@@ -73,7 +75,10 @@ Provenance make_provenance(std::vector<std::string> command_line, std::uint64_t 
   facts.gdal = gdal_release();
   facts.seed = seed;
   facts.command_line = std::move(command_line);
-  for (const std::filesystem::path& input : inputs) facts.inputs.push_back({input.string(), sha256_of_file(input)});
+  for (const std::filesystem::path& input : inputs) {
+    // What came through a pipe can't be read again.
+    facts.inputs.push_back({input.string(), is_pipe(input) ? std::string() : sha256_of_file(input)});
+  }
   facts.written_at = utc(time_of_writing());
   return facts;
 }

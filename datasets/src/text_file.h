@@ -9,12 +9,14 @@
 #include <string>
 #include <string_view>
 
+#include "exactvo/datasets/input_text.h"
+
 namespace exactvo::datasets {
 
-/// The bytes of a regular file. Throws DataError (missing, unreadable, a directory).
-std::string read_text_file(const std::filesystem::path& path);
+/// Whether `path` is a pipe, named or not. False where that can't be found out.
+bool is_pipe(const std::filesystem::path& path);
 
-/// The first `count` bytes, or all.
+/// The first `count` bytes of a regular file, or all. Refuses a pipe as well: what was read of it would be lost.
 std::string read_beginning(const std::filesystem::path& path, std::size_t count);
 
 /// "line 3, column 7", both from 1; columns count bytes.

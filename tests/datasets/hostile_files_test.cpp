@@ -130,6 +130,16 @@ std::vector<HostileFile> hostile_files() {
       {"NestedHoles", "a.wkt", "", kShell + nested_holes(1600) + ")\n", DataCode::size},
       {"ManyHoles", "a.wkt", "", long_shell(150) + many_holes(150) + ")\n", std::nullopt},
       {"EmptyHoles", "a.wkt", "", kShell + repeated(", (1 1, 1 1, 1 1)", 40'000) + ")\n", std::nullopt},
+      {"OnePointRepeatedInWkt", "a.wkt", "", "LINESTRING (2 2" + repeated(",1 1", 1'000'000) + ")\n", std::nullopt},
+      {"OnePointRepeatedInSumo", "a.poly.xml", "",
+       "<additional><poly id='a' shape='" + repeated("1,1 ", 1'000'000) + "'/></additional>", DataCode::too_few_points},
+      {"EveryPointTwiceInSumo", "a.poly.xml", "",
+       "<additional><poly id='a' shape='" + repeated("1,1 1,1 2,1 2,1 2,2 2,2 ", 150'000) + "'/></additional>",
+       std::nullopt},
+      {"OnePointRepeatedInRings", "a.json", "rings-json", "[[[1,1]" + repeated(",[1,1]", 500'000) + "]]",
+       DataCode::too_few_points},
+      {"ZeroBytesBehindXml", "a.poly.xml", "", "<additional></additional>" + std::string(100'000, '\0'),
+       DataCode::format_syntax},
       {"MapHeader", "a.map", "movingai-map", "type octile\nheight 2147483648\nwidth 2147483648\nmap\n..\n",
        DataCode::size},
       {"MapHeaderBeyond64Bits", "a.map", "", "type octile\nheight 99999999999999999999\nwidth 2\nmap\n..\n",
@@ -166,6 +176,9 @@ std::vector<HostileFile> hostile_files() {
        "<shapes>" + repeated("<poly id='p' shape='0,0 x,1'/>\n", 20'000) + "</shapes>", DataCode::number},
   };
   if (built_with_gdal()) {
+    files.push_back({"OnePointRepeatedInGeoJson", "a.geojson", "",
+                     "{\"type\":\"Polygon\",\"coordinates\":[[[1,1]" + repeated(",[1,1]", 300'000) + "]]}",
+                     DataCode::too_few_points});
     files.push_back(
         {"GeoJsonNesting", "a.geojson", "",
          "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":null,\"geometry\":" +
@@ -188,6 +201,50 @@ std::vector<HostileFile> hostile_files() {
 
 INSTANTIATE_TEST_SUITE_P(Files, Hostile, ::testing::ValuesIn(hostile_files()),
                          [](const auto& each) { return std::string(each.param.name); });
+
+using SparseFiles = TemporaryFolder;
+
+/// 4 GB that take no room on the disk: what is read whole is refused by its size, before memory is asked for.
+TEST_F(SparseFiles, AreRefusedInEveryFormat) {
+  for (const std::string& format : readable_formats()) {
+    const auto path = put("sparse.poly.xml", "<additional>");
+    std::filesystem::resize_file(path, std::uint64_t{4} << 30);
+    ReadOptions options;
+    options.format = format;
+    const double before = peak_memory();
+    try {
+      read_obstacles(path, options);
+      ADD_FAILURE() << format << " took it";
+    } catch (const DataError& error) {
+      // GDAL's own refusal has the code of libraries; of our readers it would hide what is wrong.
+      EXPECT_EQ(error.code() == DataCode::library, format == "gdal") << format << ": " << error.what();
+    }
+    EXPECT_LT(peak_memory() - before, 200.0) << format;
+  }
+}
+
+TEST_F(SparseFiles, AreRefusedAsScenariosRecordingsAndProblems) {
+  const auto path = put("sparse.json", "{");
+  std::filesystem::resize_file(path, std::uint64_t{4} << 30);
+  try {
+    load_scenario(path);
+    FAIL() << "nothing was refused";
+  } catch (const DataError& error) {
+    EXPECT_EQ(error.code(), DataCode::size);
+  }
+}
+
+/// What is not listed is counted.
+TEST(Findings, BeyondTheMostThatAreListedAreCounted) {
+  ReadOptions options;
+  options.keep_going = true;
+  const std::size_t repeats = kMostFindings + 1234;
+  const ObstacleFile file = parse_wkt("LINESTRING (2 2, 1 1" + repeated(",1 1", repeats) + ")\n", "t.wkt", options);
+  EXPECT_EQ(file.counts.repaired, 1u);
+  EXPECT_EQ(file.findings.size(), kMostFindings);
+  ASSERT_EQ(file.unlisted.count(DataCode::repeated_vertex), 1u);
+  EXPECT_EQ(file.unlisted.at(DataCode::repeated_vertex), repeats - kMostFindings);
+}
 
 using HostileTasks = TemporaryFolder;
 

@@ -71,7 +71,10 @@ TEST_P(EveryFormat, Property1_ReadsBackBitForBit) {
   if (!can_be_tested()) GTEST_SKIP() << "built without GDAL";
   const std::vector<SceneObstacle> obstacles = fitting();
   const std::filesystem::path path = folder_ / GetParam().file;
-  for (const std::string& loss : write_obstacles(path, obstacles, GetParam().name))
+  WriteOptions options;
+  options.format = GetParam().name;
+  options.metres = true;  // through degrees: obstacle_write_test.cpp
+  for (const std::string& loss : write_obstacles(path, obstacles, options))
     EXPECT_EQ(loss.find("hole"), std::string::npos) << loss;
   const ObstacleFile file = read_obstacles(path);
   ASSERT_EQ(file.obstacles.size(), obstacles.size());
@@ -85,7 +88,7 @@ TEST_P(EveryFormat, Property2_LossesAreNamed) {
   std::vector<SceneObstacle> obstacles = some_obstacles(false, true);
   if (!GetParam().several) obstacles.resize(1);
   std::string all;
-  for (const std::string& loss : write_obstacles(folder_ / GetParam().file, obstacles, GetParam().name)) all += loss;
+  for (const std::string& loss : write_obstacles(folder_ / GetParam().file, obstacles, {GetParam().name})) all += loss;
   EXPECT_EQ(all.find("12 holes filled") != std::string::npos, !GetParam().holes) << all;
 }
 
@@ -93,8 +96,8 @@ TEST_P(EveryFormat, Property3_TheSameObstaclesAreTheSameBytes) {
   if (!can_be_tested()) GTEST_SKIP() << "built without GDAL";
   const std::vector<SceneObstacle> obstacles = fitting();
   const std::string name = GetParam().file;
-  write_obstacles(folder_ / ("1" + name), obstacles, GetParam().name);
-  write_obstacles(folder_ / ("2" + name), obstacles, GetParam().name);
+  write_obstacles(folder_ / ("1" + name), obstacles, {GetParam().name});
+  write_obstacles(folder_ / ("2" + name), obstacles, {GetParam().name});
   EXPECT_EQ(content_of(folder_ / ("1" + name)), content_of(folder_ / ("2" + name)));
   EXPECT_FALSE(content_of(folder_ / ("1" + name)).empty());
 }
@@ -125,9 +128,9 @@ TEST_F(ObstacleFormats, TheExtensionSaysTheFormatWhateverItsCase) {
 
 TEST_F(ObstacleFormats, RingsJsonHoldsOnePolygonAndNothingIsHalfWritten) {
   const auto obstacles = some_obstacles(true, true);
-  EXPECT_EQ(refusal_of([&] { write_obstacles(folder_ / "a.json", obstacles, "rings-json"); }).code(),
+  EXPECT_EQ(refusal_of([&] { write_obstacles(folder_ / "a.json", obstacles, {"rings-json"}); }).code(),
             DataCode::wrong_count);
-  EXPECT_EQ(refusal_of([&] { write_obstacles(folder_ / "no.json/b.json", obstacles, "sumo-poli"); }).code(),
+  EXPECT_EQ(refusal_of([&] { write_obstacles(folder_ / "no.json/b.json", obstacles, {"sumo-poli"}); }).code(),
             DataCode::not_an_option);
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
@@ -135,10 +138,10 @@ TEST_F(ObstacleFormats, RingsJsonHoldsOnePolygonAndNothingIsHalfWritten) {
 TEST_F(ObstacleFormats, NothingAtAllIsAFileOfEveryFormatThatHoldsSeveral) {
   for (const std::string& format : writable_formats()) {
     if (format == "rings-json" || format == "fgb") {
-      EXPECT_EQ(refusal_of([&] { write_obstacles(folder_ / "none", {}, format); }).code(), DataCode::wrong_count);
+      EXPECT_EQ(refusal_of([&] { write_obstacles(folder_ / "none", {}, {format}); }).code(), DataCode::wrong_count);
       continue;
     }
-    write_obstacles(folder_ / "empty", {}, format);
+    write_obstacles(folder_ / "empty", {}, {format});
     EXPECT_FALSE(content_of(folder_ / "empty").empty() && format != "wkt") << format;
   }
 }

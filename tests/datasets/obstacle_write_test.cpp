@@ -2,6 +2,9 @@
 #include "exactvo/datasets/obstacle_write.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "refusal.h"
@@ -40,10 +43,67 @@ TEST_F(ObstacleWrite, Property1_WktReadsBackBitForBit) {
     EXPECT_TRUE(same_bits(file.obstacles[k].shape, obstacles[k].shape)) << k;
 }
 
-TEST_F(ObstacleWrite, Property1_GeoJsonReadsBackBitForBit) {
+/// The largest distance between corners, m; NaN where the shapes have other numbers of them.
+double largest_move(const formation::SceneObstacle& a, const formation::SceneObstacle& b) {
+  const std::vector<geometry::Vec2> from = geometry::vertices_of(a.shape);
+  const std::vector<geometry::Vec2> to = geometry::vertices_of(b.shape);
+  if (from.size() != to.size()) return std::numeric_limits<double>::quiet_NaN();
+  double largest = 0.0;
+  for (std::size_t k = 0; k < from.size(); ++k) largest = std::max(largest, norm(from[k] - to[k]));
+  return largest;
+}
+
+TEST_F(ObstacleWrite, Property1_GeoJsonInDegreesReadsBackWithinTwentyNanometres) {
+  if (!built_with_gdal()) GTEST_SKIP() << "built without GDAL";
+  std::vector<formation::SceneObstacle> obstacles = some_obstacles();
+  for (const geometry::Vec2 far : {geometry::Vec2{9e4, 0}, geometry::Vec2{0, -9e4}, geometry::Vec2{-6e4, 6e4}}) {
+    geometry::Polyline line = std::get<geometry::Polyline>(obstacles[0].shape);
+    for (geometry::Vec2& p : line.points) p = p + far;
+    obstacles.push_back({"far", line});
+  }
+  for (const std::optional<ProjectionOrigin>& origin :
+       {std::optional<ProjectionOrigin>(), std::optional<ProjectionOrigin>(ProjectionOrigin{13.4, 52.5}),
+        std::optional<ProjectionOrigin>(ProjectionOrigin{-70.9, -41.25})}) {
+    WriteOptions options;
+    options.plane.origin = origin;
+    write_obstacles(folder_ / "a.geojson", obstacles, options);
+    const ObstacleFile file = read_obstacles(folder_ / "a.geojson");
+    ASSERT_EQ(file.obstacles.size(), obstacles.size());
+    EXPECT_EQ(file.origin.has_value(), origin.has_value());
+    for (std::size_t k = 0; k < obstacles.size(); ++k)
+      EXPECT_LT(largest_move(file.obstacles[k], obstacles[k]), 20e-9) << k;
+  }
+}
+
+TEST_F(ObstacleWrite, Property1_GeoJsonInDegreesReadsBackBitForBitWhereMetresHaveFewDecimals) {
+  if (!built_with_gdal()) GTEST_SKIP() << "built without GDAL";
+  exactvo::test::SeededRandom random(exactvo::test::seed_of_run(31));
+  for (const double places : {1.0, 10.0, 1e3, 1e6}) {
+    std::vector<formation::SceneObstacle> obstacles;
+    for (int k = 0; k < 40; ++k) {
+      const auto rounded = [&](double x) { return std::round(x * places) / places; };
+      geometry::Polyline line;
+      for (int i = 0; i < 3; ++i) {
+        const geometry::Vec2 p = random.in_box(2000.0);
+        line.points.push_back({rounded(p.x), rounded(p.y) + 5.0 * i});
+      }
+      for (geometry::Vec2& p : line.points) p = {rounded(p.x), rounded(p.y)};
+      obstacles.push_back({std::to_string(k), line});
+    }
+    write_obstacles(folder_ / "a.geojson", obstacles);
+    const ObstacleFile file = read_obstacles(folder_ / "a.geojson");
+    ASSERT_EQ(file.obstacles.size(), obstacles.size());
+    for (std::size_t k = 0; k < obstacles.size(); ++k)
+      EXPECT_TRUE(same_bits(file.obstacles[k].shape, obstacles[k].shape)) << places << " " << k;
+  }
+}
+
+TEST_F(ObstacleWrite, Property1_GeoJsonInMetresReadsBackBitForBit) {
   if (!built_with_gdal()) GTEST_SKIP() << "built without GDAL";
   const auto obstacles = some_obstacles();
-  write_obstacles(folder_ / "a.geojson", obstacles);
+  WriteOptions options;
+  options.metres = true;
+  write_obstacles(folder_ / "a.geojson", obstacles, options);
   const ObstacleFile file = read_obstacles(folder_ / "a.geojson");
   ASSERT_EQ(file.obstacles.size(), obstacles.size());
   EXPECT_FALSE(file.origin.has_value());

@@ -81,6 +81,7 @@ std::string read(const FuzzedFormat& format, const fs::path& path, bool with_rep
   ReadOptions options;
   options.format = format.reader == nullptr ? format.name : format.reader;
   options.keep_going = true;
+  options.keep_properties = true;
   options.repair = with_repair;
   if (options.format == "movingai-scen") read_tasks(path);
   return judged(read_obstacles(path, options));

@@ -48,7 +48,7 @@ TEST(StartUp, LoadsNoLibraryThatIsNotNeeded) {
   here.write("problem.jsonl", R"({"bound": {"disc": 2}, "preferred": [1, 0], "constraints": []})");
   for (const std::string& arguments :
        {std::string("--version"), std::string("--help"), std::string(kVo) + " --json", std::string("lp problem.jsonl"),
-        std::string("validate square.wkt"), std::string("convert square.wkt square.geojson"),
+        std::string("validate square.wkt"), std::string("convert square.wkt square.sumo.xml --to sumo-poly"),
         "simulate '" + data_file("paper/A10.json") + "' --json"}) {
     EXPECT_EQ(loaded_by(here, arguments), std::set<std::string>{}) << arguments;
   }

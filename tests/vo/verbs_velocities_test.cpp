@@ -195,7 +195,7 @@ TEST(VerbVo, VelocitiesGoWithNothingThatWouldBeIgnored) {
 TEST(VerbVo, ASignalEndsTheWaitForAPipe) {
   const Workplace here;
   ASSERT_EQ(std::system(("mkfifo '" + (here.path() / "pipe").string() + "'").c_str()), 0);
-  EXPECT_EQ(here.run(kSquareAhead + "--velocities pipe", "timeout --preserve-status -s TERM 0.5").status, 130);
+  EXPECT_EQ(here.run(kSquareAhead + "--velocities pipe", "timeout --preserve-status -s TERM 0.5").status, 143);
 }
 
 }  // namespace

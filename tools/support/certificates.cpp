@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/input_text.h"
 #include "exactvo/geometry/minkowski.h"
 #include "exactvo/geometry/support.h"
 #include "exactvo/vo/certificate.h"
@@ -27,14 +28,7 @@ namespace {
 constexpr const char* kFirstWords[] = {"half-plane-certificate ", "containment-certificate "};
 
 std::string text_of(const std::string& file) {
-  if (file == "-") return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  // A folder opens; only reading it fails.
-  if (!in || (in.peek() != std::ifstream::traits_type::eof() && !(text << in.rdbuf())) || in.bad())
-    throw datasets::DataError(datasets::DataCode::file_unreadable, file, "", "no file that can be read",
-                              "lines of certificates");
-  return text.str();
+  return file == "-" ? datasets::read_standard_input() : datasets::read_text_file(file);
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

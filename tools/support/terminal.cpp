@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/input_text.h"
 #include "support/escape.h"
 
 namespace exactvo::tools {
@@ -22,8 +23,31 @@ bool quiet = false;
 bool reader_left = false;
 volatile std::sig_atomic_t interrupt_seen = 0;
 
-extern "C" void on_interrupt(int) {
-  interrupt_seen = 1;
+/// Seconds that a program has to end by itself.
+constexpr unsigned kGrace = 10;
+
+extern "C" void on_interrupt(int signal) {
+  interrupt_seen = signal;
+  ::alarm(kGrace);
+}
+
+/// Something does not look at `interrupted`: a library, or a long computation. Nothing half-written stands under a name
+/// of its own at any time, so that the program may end anywhere.
+extern "C" void on_end_of_grace(int) {
+  constexpr char kWords[] = "exactvo: error: interrupted\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kWords, sizeof kWords - 1);
+  ::_exit(128 + interrupt_seen);
+}
+
+void throw_if_interrupted() {
+  if (interrupted()) throw Interrupted();
+}
+
+/// Without SA_RESTART: a call that waits, in whatever library, returns.
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  ::sigaction(signal, &action, nullptr);
 }
 
 void put(const std::string& text) {
@@ -41,13 +65,17 @@ void set_quiet(bool value) {
 void print(const std::string& text) {
   errno = 0;
   // What is longer than the buffer is written here, not at the flush.
-  if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size() && errno == EPIPE) reader_left = true;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size()) {
+    if (errno == EPIPE) reader_left = true;
+    if (errno == EINTR) throw_if_interrupted();
+  }
   check_stdout();
 }
 
 void check_stdout() {
   errno = 0;
   const bool flushed = std::fflush(stdout) == 0 && std::cout.flush().good();
+  if (!flushed && errno == EINTR) throw_if_interrupted();
   if (errno == EPIPE) reader_left = true;
   if (reader_left || (flushed && std::ferror(stdout) == 0)) return;
   const int error = errno != 0 ? errno : EIO;
@@ -65,8 +93,14 @@ void error_message(const std::string& text) {
 }
 
 void note_interrupts() {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  handle(SIGALRM, on_end_of_grace);
+  handle(SIGINT, on_interrupt);
+  handle(SIGTERM, on_interrupt);
+  datasets::set_wait_hook(throw_if_interrupted);
+}
+
+int interrupted_status() {
+  return 128 + (interrupt_seen != 0 ? interrupt_seen : SIGINT);
 }
 
 bool interrupted() {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "exactvo/datasets/obstacle_write.h"
 #include "support/projection.h"
@@ -20,6 +21,7 @@ struct Flags {
   ReadingFlags reading;
   bool repair = false;
   bool skip = false;
+  bool metres = false;
 };
 
 void say_what_was_read(const datasets::ObstacleFile& file) {
@@ -27,7 +29,7 @@ void say_what_was_read(const datasets::ObstacleFile& file) {
     message(fmt::format("{}: {} of {} cells are occupied; they became {} polygons that hold exactly those", file.file,
                         file.coverage->occupied, file.coverage->cells, file.obstacles.size()));
   }
-  if (file.origin) message(projection_line(file) + "; the output does not hold that centre");
+  if (file.origin) message(projection_line(file));
   if (file.counts.repaired > 0) message(fmt::format("{}: {} obstacles repaired", file.file, file.counts.repaired));
   if (file.counts.passed_over > 0)
     message(fmt::format("{}: lost {} inputs that are no obstacles (points, empty geometries)", file.file,
@@ -38,6 +40,7 @@ datasets::ObstacleFile read(const Flags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading, "--from");
   options.repair = flags.repair;
   options.keep_going = flags.skip;
+  options.keep_properties = true;
   try {
     return datasets::read_obstacles(flags.in, options);
   } catch (const datasets::DataError& error) {
@@ -51,11 +54,11 @@ datasets::ObstacleFile read(const Flags& flags) {
 ExitCode convert(const Flags& flags) {
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = output_format(flags.out, flags.to);
-  const datasets::ObstacleFile file = read(flags);
+  refuse_input_as_output(flags.in, "out", flags.out);
+  datasets::ObstacleFile file = read(flags);
   for (const datasets::DataError& error : file.rejected) message(std::string("left out: ") + error.what());
   say_what_was_read(file);
-  note_replaced_input(flags.in, flags.out);
-  write_or_print(flags.out, file.obstacles, to);
+  write_or_print(flags.out, file.obstacles, {to, file.plane, flags.metres, std::move(file.properties)});
   message(
       fmt::format("{} ({}) -> {} ({}): {} obstacles", file.file, file.format, flags.out, to, file.obstacles.size()));
   return file.rejected.empty() ? ExitCode::success : ExitCode::negative;
@@ -75,6 +78,7 @@ Action declare(CLI::App& app) {
       ->required();
   declare_reading_flags(app, flags->reading, "--from");
   app.add_option("--to", flags->to, "What to write:" + listed(datasets::writable_formats()));
+  declare_metres(app, flags->metres);
   app.add_flag("--repair", flags->repair, "Repair invalid geometry (exactvo repair lists the changes)");
   app.add_flag("--skip", flags->skip, "Omit invalid obstacles, and end with status 1");
   return [flags] { return convert(*flags); };

@@ -29,6 +29,7 @@ struct Flags {
   std::int64_t count = 100;
   std::string out, to, figure;
   bool list = false;
+  bool metres = false;
 };
 
 constexpr std::uint64_t kMostItemsDrawn = 400;
@@ -90,7 +91,7 @@ std::size_t write(const Flags& flags, std::uint64_t count) {
   const std::string to = output_format(flags.out, flags.to);
   if (to == "wkt") return stream_wkt(flags, count);
   const std::vector<SceneObstacle> all = items(flags, count);
-  write_or_print(flags.out, all, to);
+  write_or_print(flags.out, all, {to, {}, flags.metres, {}});
   return all.size();
 }
 
@@ -120,6 +121,7 @@ Action declare(CLI::App& app) {
   app.add_option("--out", flags->out,
                  "The file to write; its extension says the format. - is stdout (wkt, or as --to says)");
   app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
+  declare_metres(app, flags->metres);
   app.add_option("--figure", flags->figure, "FILE.svg of the first 400 items");
   app.add_flag("--list", flags->list, "Print the kinds");
   return [flags] { return generate(*flags); };

@@ -5,16 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
-#include <system_error>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/lp_problems.h"
 #include "exactvo/vo/lp/solvers.h"
 #include "support/terminal.h"
@@ -34,20 +29,7 @@ struct Flags {
 
 /// A file, a pipe or stdin.
 std::string read_all(const std::string& file) {
-  if (file == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
-  using datasets::DataCode;
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error))
-    throw datasets::DataError(DataCode::file_unreadable, file, "", "a folder", "a file that can be read");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
-    const bool missing = errno == ENOENT || errno == ENOTDIR;
-    throw datasets::DataError(missing ? DataCode::file_missing : DataCode::file_unreadable, file, "",
-                              missing ? "no such file" : std::generic_category().message(errno),
-                              "a file that can be read");
-  }
-  return {std::istreambuf_iterator<char>(in), {}};
+  return file == "-" ? datasets::read_standard_input() : datasets::read_text_file(file);
 }
 
 double thread_nanoseconds() {

@@ -8,6 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <string_view>
+#include <utility>
 
 #include "exactvo/datasets/obstacle_write.h"
 #include "support/escape.h"
@@ -79,11 +82,17 @@ OrderedJson problem_json(const DataError& error) {
           {"mended", false}};
 }
 
-/// Refused rings are findings as well; what else was refused is not.
-bool is_a_finding(const DataError& error, const ObstacleFile& content) {
-  return std::any_of(content.findings.begin(), content.findings.end(), [&](const RingFinding& f) {
-    return !f.mended && f.code == error.code() && f.place == error.place();
-  });
+/// What was refused and is no ring's finding.
+std::vector<const DataError*> other_refusals(const ObstacleFile& content) {
+  std::set<std::pair<datasets::DataCode, std::string_view>> of_rings;
+  for (const RingFinding& f : content.findings) {
+    if (!f.mended) of_rings.emplace(f.code, f.place);
+  }
+  std::vector<const DataError*> others;
+  for (const DataError& error : content.rejected) {
+    if (of_rings.count({error.code(), error.place()}) == 0) others.push_back(&error);
+  }
+  return others;
 }
 
 OrderedJson problems_json(const FileAnswer& answer) {
@@ -91,10 +100,15 @@ OrderedJson problems_json(const FileAnswer& answer) {
   if (answer.error) problems.push_back(problem_json(*answer.error));
   if (!answer.content) return problems;
   for (const RingFinding& f : answer.content->findings) problems.push_back(problem_json(f));
-  for (const DataError& error : answer.content->rejected) {
-    if (!is_a_finding(error, *answer.content)) problems.push_back(problem_json(error));
-  }
+  for (const DataError* error : other_refusals(*answer.content)) problems.push_back(problem_json(*error));
   return problems;
+}
+
+OrderedJson unlisted_json(const FileAnswer& answer) {
+  OrderedJson counts = OrderedJson::object();
+  if (!answer.content) return counts;
+  for (const auto& [code, count] : answer.content->unlisted) counts[datasets::code_name(code)] = count;
+  return counts;
 }
 
 OrderedJson notes_json(const FileAnswer& answer) {
@@ -147,9 +161,19 @@ datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::stri
   return options;
 }
 
-void note_replaced_input(const std::string& in, const std::string& out) {
+void refuse_input_as_output(const std::string& in, const std::string& option, const std::string& out) {
   std::error_code error;
-  if (std::filesystem::equivalent(in, out, error)) message("note: " + out + " is replaced, which was the input");
+  if (std::filesystem::equivalent(in, out, error)) throw UsageError(option, out, "another file than the input " + in);
+}
+
+void declare_metres(CLI::App& app, bool& metres) {
+  app.add_flag("--metres", metres,
+               "GeoJSON in metres, which other programs take for degrees; without it longitude and latitude");
+}
+
+void note_place_on_earth(const datasets::LocalPlane& plane) {
+  if (plane.is_placed()) return;
+  message("note: no place on earth is known: the GeoJSON lies round longitude 0, latitude 0; --metres writes metres");
 }
 
 std::string output_format(const std::string& out, const std::string& to) {
@@ -157,14 +181,15 @@ std::string output_format(const std::string& out, const std::string& to) {
 }
 
 void write_or_print(const std::string& out, const std::vector<formation::SceneObstacle>& obstacles,
-                    const std::string& to) {
-  if (out != "-") {
-    for (const std::string& loss : datasets::write_obstacles(out, obstacles, to)) message("lost: " + loss);
-    return;
-  }
+                    const datasets::WriteOptions& options) {
+  if (options.format == "geojson" && !options.metres) note_place_on_earth(options.plane);
+  const auto write = [&](const std::filesystem::path& file) {
+    for (const std::string& loss : datasets::write_obstacles(file, obstacles, options)) message("lost: " + loss);
+  };
+  if (out != "-") return write(out);
   const StagedFolder folder(std::filesystem::temp_directory_path() / "exactvo");
-  const std::filesystem::path file = folder.path() / ("obstacles." + to);
-  for (const std::string& loss : datasets::write_obstacles(file, obstacles, to)) message("lost: " + loss);
+  const std::filesystem::path file = folder.path() / ("obstacles." + options.format);
+  write(file);
   std::ifstream written(file, std::ios::binary);
   print({std::istreambuf_iterator<char>(written), std::istreambuf_iterator<char>()});
 }
@@ -175,6 +200,7 @@ std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const d
     if (interrupted()) throw Interrupted();
     answers.push_back(read_one(file, options));
   }
+  if (interrupted()) throw Interrupted();
   return answers;
 }
 
@@ -201,6 +227,7 @@ OrderedJson json_of(const FileAnswer& answer) {
   json["code"] = code_of(answer);
   json["counts"] = answer.content ? json_of(answer.content->counts) : OrderedJson(nullptr);
   json["problems"] = problems_json(answer);
+  json["unlisted"] = unlisted_json(answer);
   json["origin"] = origin_json(answer);
   json["notes"] = notes_json(answer);
   return json;
@@ -215,9 +242,9 @@ std::string lines_of(const FileAnswer& answer, bool with_mended) {
                               datasets::words_of(f), datasets::code_name(f.code), f.mended ? ", repaired" : "")) +
             "\n";
   }
-  for (const DataError& error : answer.content->rejected) {
-    if (!is_a_finding(error, *answer.content)) text += shown(error.what()) + "\n";
-  }
+  for (const DataError* error : other_refusals(*answer.content)) text += shown(error->what()) + "\n";
+  for (const auto& [code, count] : answer.content->unlisted)
+    text += shown(fmt::format("{}: {} more, not listed [{}]", answer.file, count, datasets::code_name(code))) + "\n";
   return text;
 }
 

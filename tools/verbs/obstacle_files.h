@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/formation/scenario.h"
 
 namespace exactvo::tools {
@@ -43,13 +44,19 @@ struct FileAnswer {
   bool is_whole() const { return content && content->counts.rejected == 0; }
 };
 
-/// A note where `out` is `in`, which is about to be replaced.
-void note_replaced_input(const std::string& in, const std::string& out);
+/// Throws UsageError where `out` is the file `in`, by whatever name or link.
+void refuse_input_as_output(const std::string& in, const std::string& option, const std::string& out);
 
-/// Writes obstacles to a file, or to stdout where `out` is "-" (`to` then names the format, wkt if empty). Says what
-/// was lost.
+/// --metres, of verbs that write GeoJSON.
+void declare_metres(CLI::App& app, bool& metres);
+
+/// Says so where GeoJSON is written in degrees and no place on earth is known.
+void note_place_on_earth(const datasets::LocalPlane& plane);
+
+/// Writes obstacles to a file, or to stdout where `out` is "-". Says what was lost. `options.format` as `output_format`
+/// gives it.
 void write_or_print(const std::string& out, const std::vector<formation::SceneObstacle>& obstacles,
-                    const std::string& to);
+                    const datasets::WriteOptions& options);
 
 /// The format to write: `to`, or as the extension of `out` says; wkt for "-". Throws DataError.
 std::string output_format(const std::string& out, const std::string& to);

@@ -31,6 +31,7 @@ struct Flags {
   ReadingFlags reading;
   std::string out, to, figure;
   bool json = false;
+  bool metres = false;
 };
 
 // --- What comes out ---
@@ -59,6 +60,21 @@ std::vector<SceneObstacle> all_obstacles(const std::vector<FileAnswer>& answers)
   return all;
 }
 
+/// Beside `all_obstacles`; none where no file has any.
+std::vector<datasets::FeatureProperties> all_properties(const std::vector<FileAnswer>& answers) {
+  std::vector<datasets::FeatureProperties> all;
+  bool any = false;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    const ObstacleFile& file = *answer.content;
+    any = any || !file.properties.empty();
+    all.insert(all.end(), file.properties.begin(), file.properties.end());
+    if (file.properties.empty()) all.resize(all.size() + file.obstacles.size());
+  }
+  if (!any) all.clear();
+  return all;
+}
+
 bool same_origin(const ObstacleFile& a, const ObstacleFile& b) {
   if (!a.origin || !b.origin) return !a.origin && !b.origin;
   return a.origin->longitude == b.origin->longitude && a.origin->latitude == b.origin->latitude;
@@ -79,6 +95,18 @@ void refuse_several_planes(const std::vector<FileAnswer>& answers) {
     throw UsageError("files", words_of_origin(*first) + " and " + words_of_origin(*answer.content),
                      "one projection: cannot write one output from files in different projections");
   }
+}
+
+/// That of all files with obstacles; nowhere on earth where they lie on several.
+datasets::LocalPlane common_plane(const std::vector<FileAnswer>& answers) {
+  const ObstacleFile* first = nullptr;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content || answer.content->obstacles.empty()) continue;
+    if (first == nullptr) first = &*answer.content;
+    const datasets::LocalPlane& plane = answer.content->plane;
+    if (plane.reference_system != first->plane.reference_system || plane.offset != first->plane.offset) return {};
+  }
+  return first == nullptr ? datasets::LocalPlane{} : first->plane;
 }
 
 ExitCode exit_code(const std::vector<FileAnswer>& answers) {
@@ -169,7 +197,7 @@ std::string words_of(const std::string& file, const RepairRecord& r, const First
 
 /// The codes of all repairs with how often each was met: what most people want of a file with thousands.
 std::string tally_of(const ObstacleFile& file) {
-  std::map<datasets::DataCode, std::size_t> counts;
+  std::map<datasets::DataCode, std::size_t> counts = file.unlisted;
   for (const datasets::RingFinding& f : file.findings) ++counts[f.code];
   std::string text;
   for (const auto& [code, count] : counts) text += fmt::format(" {} x {}", count, datasets::code_name(code));
@@ -265,10 +293,12 @@ void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out)
 ExitCode repair(const Flags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading);
   options.repair = true;
+  options.keep_properties = true;
   check_figure_name("--figure", flags.figure);
   if (flags.out == "-") throw UsageError("--out", "-", "a file: stdout has the report");
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = datasets::format_to_write(flags.out, flags.to);
+  for (const std::string& file : flags.files) refuse_input_as_output(file, "--out", flags.out);
   const std::vector<FileAnswer> answers = read_each(flags.files, options);
   const ExitCode code = exit_code(answers);
   if (flags.json) {
@@ -283,8 +313,7 @@ ExitCode repair(const Flags& flags) {
     return code;
   }
   refuse_several_planes(answers);
-  for (const std::string& file : flags.files) note_replaced_input(file, flags.out);
-  write_or_print(flags.out, all_obstacles(answers), to);
+  write_or_print(flags.out, all_obstacles(answers), {to, common_plane(answers), flags.metres, all_properties(answers)});
   message("wrote " + flags.out);
   if (!flags.figure.empty()) draw_figure(answers, flags.figure);
   return code;
@@ -298,6 +327,7 @@ Action declare(CLI::App& app) {
       ->required();
   app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
   declare_reading_flags(app, flags->reading);
+  declare_metres(app, flags->metres);
   app.add_flag("--json", flags->json, "The report as JSON on stdout");
   app.add_option("--figure", flags->figure, "FILE.svg: before and after of every changed polygon");
   return [flags] { return repair(*flags); };

@@ -33,12 +33,14 @@ struct Flags {
   double facade_margin = geometry::FacadeEllipseOptions{}.margin;
   bool repair = false;
   bool json = false;
+  bool metres = false;
   std::string out, figure;
 };
 
 struct TakenApart {
   datasets::RecordHead head;
   ObstacleShapes shapes;
+  const datasets::ObstacleFile* file = nullptr;
 };
 
 // --- The work ---
@@ -64,7 +66,7 @@ std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const
     if (!answer.content) continue;
     for (const formation::SceneObstacle& o : answer.content->obstacles) {
       if (interrupted()) throw Interrupted();
-      all.push_back({{answer.file, o.id, ""}, geometry::shapes_of(o.shape, options)});
+      all.push_back({{answer.file, o.id, ""}, geometry::shapes_of(o.shape, options), &*answer.content});
     }
   }
   return all;
@@ -84,30 +86,55 @@ OrderedJson positions(const Points& points) {
   return list;
 }
 
-OrderedJson ring_geometry(Points ring) {
+/// Of points that are metres or degrees already.
+OrderedJson ring_geometry(const Points& ring) {
   if (ring.size() == 1) return {{"type", "Point"}, {"coordinates", positions(ring)[0]}};
   if (ring.size() == 2) return {{"type", "LineString"}, {"coordinates", positions(ring)}};
-  ring.push_back(ring.front());
-  return {{"type", "Polygon"}, {"coordinates", OrderedJson::array({positions(ring)})}};
+  Points closed = ring;
+  closed.push_back(ring.front());
+  return {{"type", "Polygon"}, {"coordinates", OrderedJson::array({positions(closed)})}};
 }
 
+/// In degrees each file's obstacles lie where its plane does.
 class Features {
  public:
+  explicit Features(bool metres) : metres_(metres) {}
+
   void add(const TakenApart& t) {
+    choose_plane(*t.file);
     const ObstacleShapes& s = t.shapes;
-    for (const geometry::Segment& f : s.facades.facades)
-      feature(t, "facade", s.facades_follow, {{"type", "LineString"}, {"coordinates", positions({f.a, f.b})}});
-    for (const geometry::ConvexShape& piece : s.pieces)
-      feature(t, "piece", s.pieces_cover, ring_geometry(outline(piece)));
-    feature(t, "hull", s.hull_contains, ring_geometry(s.hull.vertices));
+    for (const geometry::Segment& f : s.facades.facades) feature(t, "facade", s.facades_follow, {f.a, f.b});
+    for (const geometry::ConvexShape& piece : s.pieces) feature(t, "piece", s.pieces_cover, outline(piece));
+    feature(t, "hull", s.hull_contains, s.hull.vertices);
     ellipse(t, "smallest ellipse", s.ellipse_contains, s.smallest_ellipse);
     for (const geometry::FacadeEnclosure& e : s.facade_ellipses)
       ellipse(t, "facade ellipse", s.facade_ellipses_contain, e.ellipse);
     if (s.trap_free.ellipse) ellipse(t, "trap-free ellipse", s.trap_free_contains, *s.trap_free.ellipse);
   }
-  std::string text() const { return text_of({{"type", "FeatureCollection"}, {"units", "m"}, {"features", features_}}); }
+
+  /// "local_metres" stands there where all lie on one plane.
+  std::string text() const {
+    OrderedJson collection{{"type", "FeatureCollection"}};
+    if (metres_) {
+      collection["units"] = "m";
+    } else if (planes_ == 1) {
+      collection["local_metres"] = OrderedJson::parse(datasets::local_metres_member(plane_, -1));
+    }
+    collection["features"] = features_;
+    return text_of(collection);
+  }
 
  private:
+  void choose_plane(const datasets::ObstacleFile& file) {
+    if (metres_ || file_ == &file) return;
+    file_ = &file;
+    ++planes_;
+    plane_ = file.plane;
+    if (!plane_.is_placed() && file.extent) plane_.offset = datasets::offset_for(file.extent->low, file.extent->high);
+    note_place_on_earth(plane_);
+    to_degrees_ = std::make_unique<datasets::MetresToDegrees>(plane_, file.file);
+  }
+
   static OrderedJson head(const TakenApart& t, const char* what) {
     OrderedJson properties;
     properties["file"] = t.head.file;
@@ -116,22 +143,22 @@ class Features {
     return properties;
   }
 
-  void add(OrderedJson properties, OrderedJson shape) {
+  void add(OrderedJson properties, const Points& points) {
     OrderedJson feature;
     feature["type"] = "Feature";
     feature["properties"] = std::move(properties);
-    feature["geometry"] = std::move(shape);
+    feature["geometry"] = ring_geometry(to_degrees_ ? (*to_degrees_)(points) : points);
     features_.push_back(std::move(feature));
   }
 
-  void feature(const TakenApart& t, const char* what, const geometry::Verdict& verdict, OrderedJson shape) {
+  void feature(const TakenApart& t, const char* what, const geometry::Verdict& verdict, const Points& points) {
     OrderedJson properties = head(t, what);
     properties["certified"] = verdict.certified;
-    add(std::move(properties), std::move(shape));
+    add(std::move(properties), points);
   }
 
   /// The drawn outline has its corners on the ellipse and so lies within it: the certificate is the ellipse's, whose
-  /// numbers stand beside it.
+  /// numbers, m, stand beside it.
   void ellipse(const TakenApart& t, const char* what, const geometry::Verdict& verdict, const geometry::Ellipse& e) {
     OrderedJson properties = head(t, what);
     properties["ellipse_certified"] = verdict.certified;
@@ -140,15 +167,21 @@ class Features {
     properties["l11"] = e.l11;
     properties["l21"] = e.l21;
     properties["l22"] = e.l22;
-    add(std::move(properties), ring_geometry(outline(e)));
+    add(std::move(properties), outline(e));
   }
 
+  bool metres_;
+  const datasets::ObstacleFile* file_ = nullptr;  ///< of the obstacle before
+  datasets::LocalPlane plane_;
+  int planes_ = 0;
+  std::unique_ptr<datasets::MetresToDegrees> to_degrees_;
   OrderedJson features_ = OrderedJson::array();
 };
 
-void write_out(const std::vector<TakenApart>& all, const std::string& out) {
+void write_out(const std::vector<TakenApart>& all, const Flags& flags) {
+  const std::string& out = flags.out;
   if (std::filesystem::path(out).extension() == ".jsonl") return datasets::write_file_atomically(out, records(all));
-  Features features;
+  Features features(flags.metres);
   for (const TakenApart& t : all) features.add(t);
   datasets::write_file_atomically(out, features.text());
 }
@@ -196,6 +229,7 @@ ExitCode segment(const Flags& flags) {
   check(flags);
   datasets::ReadOptions reading = reading_options(flags.reading);
   reading.repair = flags.repair;
+  for (const std::string& file : flags.files) refuse_input_as_output(file, "--out", flags.out);
   const std::vector<FileAnswer> answers = read_each(flags.files, reading);
   for (const FileAnswer& answer : answers) {
     if (answer.error) throw datasets::DataError(*answer.error);
@@ -206,7 +240,7 @@ ExitCode segment(const Flags& flags) {
     if (answer.content->obstacles.empty()) message("no obstacle in " + counts_line(answer));
   }
   if (!flags.out.empty()) {
-    write_out(all, flags.out);
+    write_out(all, flags);
     message("wrote " + flags.out);
   }
   if (!flags.figure.empty()) draw_figure(all, flags);
@@ -228,6 +262,7 @@ Action declare(CLI::App& app) {
       ->capture_default_str();
   app.add_flag("--repair", flags->repair, "Repair invalid geometry first");
   app.add_flag("--json", flags->json, "One JSON record per obstacle and line on stdout");
+  declare_metres(app, flags->metres);
   app.add_option("--out", flags->out, "FILE.jsonl: the records; FILE.geojson: every shape as a feature");
   app.add_option("--figure", flags->figure, "FILE.svg; FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
   return [flags] { return segment(*flags); };

@@ -3,14 +3,14 @@
 
 #include <utility>
 
+#include "batch/merge/summary.h"
 #include "batch/session.h"
-#include "batch/summary.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::datasets {
 namespace {
 
-using batch::Ledger;
+using batch::Journal;
 using batch::Session;
 
 void require_sensible(const BatchConfiguration& configuration, const BatchRun& run) {
@@ -24,11 +24,11 @@ void require_sensible(const BatchConfiguration& configuration, const BatchRun& r
 
 BatchResult run_share(Session& session, const BatchRun& run) {
   const bool joins = run.resume || run.shards > 1;
-  if (session.ledger().look(session.identity(), joins) == Ledger::State::complete) {
+  if (session.journal().look(session.identity(), joins) == Journal::State::complete) {
     return {BatchEnd::complete, batch::read_summary(run.out), true};
   }
-  session.ledger().begin(session.identity());
-  if (run.shards == 1) session.bind_ahead();
+  session.journal().begin(session.identity());
+  if (run.shards == 1) session.merge_ahead();
   std::vector<std::size_t> mine;
   for (std::size_t k = run.shard - 1; k < session.identity().inputs.size(); k += run.shards) mine.push_back(k);
   session.plan(mine);
@@ -44,12 +44,12 @@ BatchResult run_share(Session& session, const BatchRun& run) {
 BatchResult run_alone(Session& session, const BatchRun& run) {
   try {
     const BatchResult result = run_share(session, run);
-    if (result.end != BatchEnd::incomplete || !session.ledger().another_finished(session.identity())) return result;
+    if (result.end != BatchEnd::incomplete || !session.journal().another_finished(session.identity())) return result;
   } catch (const DataError&) {
     // The same batch in another process may have put everything together under this one, which writes no more parts
     // when it looks.
     session.rest();
-    if (!session.ledger().another_finished(session.identity())) throw;
+    if (!session.journal().another_finished(session.identity())) throw;
   }
   return {BatchEnd::complete, batch::read_summary(run.out), true};
 }

@@ -10,15 +10,15 @@
 #include <utility>
 #include <vector>
 
-#include "batch/input_record.h"
+#include "batch/merge/summary.h"
+#include "batch/plan/input_record.h"
 #include "batch/session.h"
-#include "batch/summary.h"
 #include "mpi/rank_library.h"
 
 namespace exactvo::datasets {
 namespace {
 
-using batch::Ledger;
+using batch::Journal;
 using batch::Session;
 
 /// What ranks tell each other: a rank asks for work (and says what became of the last), the first answers.
@@ -26,7 +26,7 @@ enum Tag : int { kAsk = 1, kWork = 2 };
 enum Said : long { kReady = 0, kDone = 1, kStopped = 2, kFailed = 3 };
 constexpr long kNoMore = -1;
 
-/// A rank's word on its last input, and what it has taken apart since the word before.
+/// A rank's report on its last input, and what it has processed since the report before.
 struct Report {
   long said = kReady;
   long obstacles = 0;
@@ -100,14 +100,14 @@ std::vector<std::size_t> largest_first(const std::vector<batch::Input>& inputs) 
 }
 
 /// The first rank: answers whoever asks until all is handed out and every rank has been told so.
-class Foreman {
+class Coordinator {
  public:
-  Foreman(Session& session, int ranks, BatchWatch watch)
+  Coordinator(Session& session, int ranks, BatchWatch watch)
       : session_(session), watch_(std::move(watch)), at_work_(ranks - 1), last_(static_cast<std::size_t>(ranks)) {}
 
-  /// False where the watch, or a rank, stopped it. A failure of its own is thrown once every rank was sent home.
+  /// False where the watch, or a rank, stopped it. A failure of its own is thrown once every rank was told to stop.
   bool hand_out() {
-    try_to([&] { line_up(); });
+    try_to([&] { queue_inputs(); });
     while (at_work_ > 0) {
       int rank = 0;
       hear(receive_report(rank), rank);
@@ -132,12 +132,13 @@ class Foreman {
   }
 
   /// What is through already is nobody's work.
-  void line_up() {
+  void queue_inputs() {
     order_ = largest_first(inputs());
-    const auto is_there = [&](std::size_t k) { return is_through(session_.ledger(), k); };
+    const auto is_there = [&](std::size_t k) { return is_through(session_.journal(), k); };
     order_.erase(std::remove_if(order_.begin(), order_.end(), is_there), order_.end());
     progress_.inputs = order_.size();
     for (const std::size_t k : order_) bytes_planned_ += inputs()[k].size;
+    progress_.input_bytes = bytes_planned_;
   }
 
   void hear(const Report& report, int rank) {
@@ -221,8 +222,8 @@ enum Verdict : long { kGo, kComplete };
 
 /// Opens the output, in the first rank.
 Verdict open_output(const Session& session, bool resume) {
-  if (session.ledger().look(session.identity(), resume) == Ledger::State::complete) return kComplete;
-  session.ledger().begin(session.identity());
+  if (session.journal().look(session.identity(), resume) == Journal::State::complete) return kComplete;
+  session.journal().begin(session.identity());
   return kGo;
 }
 
@@ -234,9 +235,9 @@ BatchResult share_out(const World& world, Session& session, const BatchWatch& wa
     return nothing;
   }
   session.joined_by(world.size() - 1);
-  Foreman foreman(session, world.size(), watch);
-  if (foreman.hand_out()) return session.finish();
-  return foreman.a_rank_failed() ? nothing : BatchResult{BatchEnd::interrupted, {}, false};
+  Coordinator coordinator(session, world.size(), watch);
+  if (coordinator.hand_out()) return session.finish();
+  return coordinator.a_rank_failed() ? nothing : BatchResult{BatchEnd::interrupted, {}, false};
 }
 
 void refuse_shards(const BatchRun& run, int ranks) {
@@ -279,7 +280,7 @@ BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const 
     return {BatchEnd::complete, batch::read_summary(run.out), true, false, std::move(inputs.earlier)};
   }
   // Work is told by its number, so a rank that sees other files, or another folder, would do another's.
-  if (!all_manage(world, [&] { session->ledger().require_same(session->identity()); })) return nothing;
+  if (!all_manage(world, [&] { session->journal().require_same(session->identity()); })) return nothing;
   BatchResult result = share_out(world, *session, watch);
   if (world.rank() == 0) result.earlier = std::move(inputs.earlier);
   return result;

@@ -5,8 +5,8 @@
 #include <thread>
 #include <utility>
 
-#include "batch/assemble.h"
-#include "batch/input_record.h"
+#include "batch/merge/assemble.h"
+#include "batch/plan/input_record.h"
 #include "exactvo/datasets/provenance.h"
 #include "json_text.h"
 
@@ -66,9 +66,11 @@ void append_robot(JsonWriter& json, const BatchRobot& robot) {
 
 /// Said before the work, not after.
 void refuse_the_unavailable(const BatchConfiguration& configuration, const BatchRun& run) {
-  if (!configuration.geopackage || built_with_gdal()) return;
-  throw DataError(DataCode::format_unavailable, run.out.string(), "", "a GeoPackage to write, and a build without GDAL",
-                  "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON alone");
+  const bool in_degrees = configuration.geojson && !configuration.geojson_in_metres;
+  if (built_with_gdal() || !(configuration.geopackage || in_degrees)) return;
+  throw DataError(DataCode::format_unavailable, run.out.string(), "",
+                  "a GeoPackage or GeoJSON in degrees to write, and a build without GDAL",
+                  "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON in metres");
 }
 
 }  // namespace
@@ -84,7 +86,8 @@ std::string to_json(const BatchConfiguration& c) {
   json.member("memory_limit", c.memory_limit);
   append_shape_options(json, c.shapes);
   if (c.robot) append_robot(json, *c.robot);
-  json.member("geopackage", c.geopackage).member("geojson", c.geojson).member("pictures", c.pictures);
+  json.member("geopackage", c.geopackage).member("geojson", c.geojson);
+  json.member("geojson_in_metres", c.geojson_in_metres).member("pictures", c.pictures);
   return json.end_object().take();
 }
 
@@ -99,8 +102,8 @@ Session::Session(const BatchConfiguration& configuration, const BatchRun& run, I
       identity_(std::move(identity)),
       provenance_(provenance_of(identity_, run)),
       watch_(std::move(watch)),
-      ledger_(run.out),
-      crew_(workers_of(run), configuration.memory_limit),
+      journal_(run.out),
+      pool_(workers_of(run), configuration.memory_limit),
       start_(std::chrono::steady_clock::now()) {
   refuse_the_unavailable(configuration, run);
 }
@@ -108,77 +111,78 @@ Session::Session(const BatchConfiguration& configuration, const BatchRun& run, I
 void Session::plan(std::vector<std::size_t> inputs) {
   progress_.inputs = inputs.size();
   for (const std::size_t k : inputs) bytes_planned_ += identity_.inputs[k].size;
+  progress_.input_bytes = bytes_planned_;
 }
 
 bool Session::look(const std::string& doing, double share) {
   if (!watch_) return true;
   progress_.doing = doing;
-  progress_.obstacles = meter_.obstacles;
+  progress_.obstacles = counters_.obstacles;
   progress_.share_done = share;
   return watch_(progress_);
 }
 
-void Session::bind_ahead() {
-  Ledger::FileLock claim = ledger_.claim_binding();
-  if (claim.is_held()) binder_.emplace(ledger_, std::move(claim), configuration_, provenance_);
+void Session::merge_ahead() {
+  FileLock claim = journal_.claim_merge();
+  if (claim.is_held()) merge_.emplace(journal_, std::move(claim), configuration_, provenance_);
 }
 
-Workshop Session::workshop() {
-  return {configuration_, ledger_, meter_, crew_, binder_ ? &*binder_ : nullptr};
+WorkContext Session::context() {
+  return {configuration_, journal_, counters_, pool_, merge_ ? &*merge_ : nullptr};
 }
 
 /// Of an input that another process has finished meanwhile.
-void Session::tell_binder_of(std::size_t input) {
-  const std::uint64_t chunks = read_facts(ledger_, input).chunks;
-  for (std::size_t chunk = 0; chunk < chunks; ++chunk) binder_->found({input, chunk});
-  binder_->close(input, chunks);
+void Session::tell_merge_of(std::size_t input) {
+  const std::uint64_t chunks = read_facts(journal_, input).chunks;
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) merge_->found({input, chunk});
+  merge_->close(input, chunks);
 }
 
 void Session::process(std::size_t number) {
   const Input& input = identity_.inputs[number];
-  if (!is_through(ledger_, number)) {
+  if (!is_through(journal_, number)) {
     const auto share_now = [&](double share) {
       const auto of_input = static_cast<std::uint64_t>(share * static_cast<double>(input.size));
       return share_of(bytes_done_ + of_input, bytes_planned_);
     };
     if (!look(input.name, share_now(0.0))) throw Stopped{};
-    process_input(input, number, workshop(), [&](double share) { return look(input.name, share_now(share)); });
-  } else if (binder_) {
-    tell_binder_of(number);
+    process_input(input, number, context(), [&](double share) { return look(input.name, share_now(share)); });
+  } else if (merge_) {
+    tell_merge_of(number);
   }
   ++progress_.inputs_done;
   bytes_done_ += input.size;
 }
 
 void Session::wait() {
-  crew_.finish();
+  pool_.finish();
 }
 
 Counts Session::counted() const {
-  return {meter_.obstacles, meter_.vertices, meter_.nanoseconds_of_jobs};
+  return {counters_.obstacles, counters_.vertices, counters_.nanoseconds_of_jobs};
 }
 
 void Session::count(const Counts& more) {
-  meter_.obstacles += more.obstacles;
-  meter_.vertices += more.vertices;
-  meter_.nanoseconds_of_jobs += more.nanoseconds_of_jobs;
+  counters_.obstacles += more.obstacles;
+  counters_.vertices += more.vertices;
+  counters_.nanoseconds_of_jobs += more.nanoseconds_of_jobs;
 }
 
 BatchResult Session::finish() {
-  crew_.finish();
+  pool_.finish();
   BatchResult result;
   result.end = BatchEnd::incomplete;
-  if (!all_there(ledger_, identity_.inputs.size()) && ledger_.is_open()) return result;
-  const Ledger::Lock lock(ledger_,
-                          [this] { return look("waiting for the process that puts the parts together", 1.0); });
-  if (!ledger_.is_open()) return result;  // another process was quicker
-  if (lock.gave_up()) return {BatchEnd::interrupted, {}, false};
+  if (!all_there(journal_, identity_.inputs.size()) && journal_.is_open()) return result;
+  const FileLock lock =
+      journal_.lock_end([this] { return look("waiting for the process that merges the parts", 1.0); });
+  if (!journal_.is_open()) return result;  // another process was quicker
+  if (lock.state() == FileLock::State::taken) return {BatchEnd::interrupted, {}, false};
   try {
-    result.summary = put_together(result, lock.is_alone());
+    result.summary = put_together(result, lock.is_held());
   } catch (const Stopped&) {
     return {BatchEnd::interrupted, {}, false};
   } catch (const DataError&) {
-    if (ledger_.is_open() || lock.is_alone()) throw;
+    if (journal_.is_open() || lock.is_held()) throw;
     return result;  // another process was quicker here as well
   }
   result.end = BatchEnd::complete;
@@ -189,31 +193,31 @@ void Session::look_before_a_part() {
   if (!look("putting the parts together", 1.0)) throw Stopped{};
 }
 
-/// What was bound while parts were made, if it is all of them; else all, from the disk.
-std::unique_ptr<Outputs> Session::bound(BatchResult& result, bool is_alone) {
+/// What was merged while parts were made, if it is all of them; else all, from the disk.
+std::unique_ptr<Outputs> Session::merged(BatchResult& result, bool is_alone) {
   const auto before_each = [this] { look_before_a_part(); };
-  if (binder_) {
-    std::unique_ptr<Outputs> outputs = binder_->finish(identity_.inputs.size(), before_each);
-    result.was_bound_ahead = outputs != nullptr;
+  if (merge_) {
+    std::unique_ptr<Outputs> outputs = merge_->finish(identity_.inputs.size(), before_each);
+    result.was_merged_ahead = outputs != nullptr;
     if (outputs) return outputs;
-    binder_.reset();
+    merge_.reset();
   }
-  ledger_.start_final(is_alone ? Ledger::Holds::lock : Ledger::Holds::neither);
-  return bind_all(ledger_, identity_.inputs.size(), configuration_, provenance_, before_each);
+  journal_.start_final(is_alone ? Journal::LockState::end : Journal::LockState::neither);
+  return merge_all(journal_, identity_.inputs.size(), configuration_, provenance_, before_each);
 }
 
 BatchSummary Session::put_together(BatchResult& result, bool is_alone) {
   look_before_a_part();
-  std::unique_ptr<Outputs> outputs = bound(result, is_alone);
-  return finish_outputs(std::move(outputs), ledger_, identity_, configuration_, provenance_, times());
+  std::unique_ptr<Outputs> outputs = merged(result, is_alone);
+  return finish_outputs(std::move(outputs), journal_, identity_, configuration_, provenance_, times());
 }
 
 Times Session::times() const {
   Times times;
   times.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  times.seconds_of_jobs = 1e-9 * static_cast<double>(meter_.nanoseconds_of_jobs);
-  times.obstacles = meter_.obstacles;
-  times.vertices = meter_.vertices;
+  times.seconds_of_jobs = 1e-9 * static_cast<double>(counters_.nanoseconds_of_jobs);
+  times.obstacles = counters_.obstacles;
+  times.vertices = counters_.vertices;
   times.workers = processes_ * workers_of(run_);
   times.has_rates = run_.shards == 1;
   return times;

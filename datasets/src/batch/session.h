@@ -9,11 +9,11 @@
 #include <optional>
 #include <string>
 
-#include "batch/binder.h"
-#include "batch/crew.h"
-#include "batch/ledger.h"
-#include "batch/process.h"
-#include "batch/summary.h"
+#include "batch/merge/ordered_merge.h"
+#include "batch/merge/summary.h"
+#include "batch/plan/journal.h"
+#include "batch/work/process.h"
+#include "batch/work/thread_pool.h"
 #include "exactvo/datasets/batch.h"
 
 namespace exactvo::datasets::batch {
@@ -26,7 +26,7 @@ Identity identity_of(const BatchConfiguration& configuration, std::vector<Input>
 /// `part` of `whole`; of nothing, all.
 double share_of(std::uint64_t part, std::uint64_t whole);
 
-/// What was taken apart.
+/// What was processed.
 struct Counts {
   std::uint64_t obstacles = 0;
   std::uint64_t vertices = 0;
@@ -38,35 +38,35 @@ class Session {
   /// `run` and `configuration` must outlive it.
   Session(const BatchConfiguration& configuration, const BatchRun& run, Identity identity, BatchWatch watch);
 
-  const Ledger& ledger() const { return ledger_; }
+  const Journal& journal() const { return journal_; }
   const Identity& identity() const { return identity_; }
 
   /// Says which inputs are this process's, for progress.
   void plan(std::vector<std::size_t> inputs);
-  /// Has parts put together while others are made, unless another process does so. REQUIRES: all inputs are this
+  /// Has parts merged while others are made, unless another process does so. REQUIRES: all inputs are this
   /// process's, in order.
-  void bind_ahead();
-  /// Reads an input and sets the crew to make what is missing of it. Throws Stopped.
+  void merge_ahead();
+  /// Reads an input and sets the pool to make what is missing of it. Throws Stopped.
   void process(std::size_t input);
   /// Until all that was processed is there.
   void wait();
   /// As `wait`, and says nothing of what failed.
-  void rest() noexcept { crew_.rest(); }
-  /// What was taken apart so far, here and by what `count` was told of.
+  void rest() noexcept { pool_.rest(); }
+  /// What was processed so far, here and by what `count` added.
   Counts counted() const;
-  /// What another process took apart for this one.
+  /// What another process processed for this one.
   void count(const Counts& more);
-  /// Says that so many processes do the work in this one's stead.
+  /// Says how many processes do the work instead of this one.
   void joined_by(int processes) { processes_ = processes; }
   /// Puts everything together if all is there and no other process has.
   BatchResult finish();
 
  private:
   bool look(const std::string& doing, double share);
-  Workshop workshop();
-  void tell_binder_of(std::size_t input);
+  WorkContext context();
+  void tell_merge_of(std::size_t input);
   void look_before_a_part();
-  std::unique_ptr<Outputs> bound(BatchResult& result, bool is_alone);
+  std::unique_ptr<Outputs> merged(BatchResult& result, bool is_alone);
   BatchSummary put_together(BatchResult& result, bool is_alone);
   Times times() const;
 
@@ -75,10 +75,10 @@ class Session {
   Identity identity_;
   std::string provenance_;  ///< JSON
   BatchWatch watch_;
-  Ledger ledger_;
-  Meter meter_;
-  std::optional<Binder> binder_;
-  Crew crew_;  ///< after what its jobs write to: its destructor waits for them
+  Journal journal_;
+  Counters counters_;
+  std::optional<OrderedMerge> merge_;
+  ThreadPool pool_;  ///< after what its jobs write to: its destructor waits for them
   int processes_ = 1;
   BatchProgress progress_;
   std::uint64_t bytes_planned_ = 0;

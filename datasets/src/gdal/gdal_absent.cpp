@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "batch/geopackage.h"
+#include "batch/formats/geopackage.h"
 #include "exactvo/datasets/data_error.h"
+#include "gdal/plane_transform.h"
 #include "readers/grey_image.h"
 #include "readers/readers.h"
 #include "writers/writers.h"
@@ -13,9 +14,15 @@ void read_vector_file(const std::filesystem::path& path, Collector&) {
                   "a build with EXACTVO_WITH_GDAL=ON, or plain WKT");
 }
 
-std::string to_gdal_file(const Obstacles&, const std::string& driver, const std::string& file) {
+Written to_gdal_file(const Obstacles&, const WriteOptions&, const std::string& driver, const std::string& file) {
   throw DataError(DataCode::format_unavailable, file, "", "a file that needs GDAL's driver " + driver,
                   "a build with EXACTVO_WITH_GDAL=ON, or another format");
+}
+
+PlaneTransform make_plane_transform(LocalPlane, std::string file) {
+  throw DataError(DataCode::format_unavailable, file, "",
+                  "metres to be brought to longitude and latitude, without GDAL",
+                  "a build with EXACTVO_WITH_GDAL=ON, another format, or GeoJSON in metres");
 }
 
 GreyImage read_gdal_image(const std::filesystem::path& path) {

@@ -11,6 +11,8 @@
 #include "gdal/gdal_session.h"
 #include "gdal/geojson_sequence.h"
 #include "gdal/geojson_shape.h"
+#include "gdal/plane_system.h"
+#include "gdal/properties.h"
 #include "json_text.h"
 #include "readers/readers.h"
 #include "text_file.h"
@@ -144,6 +146,7 @@ class VectorReader {
     const OGRGeometry* shape = nullptr;
     const OGRFeature* feature = nullptr;  ///< none of a sequence
     const DataError* fault = nullptr;     ///< of a sequence
+    std::string_view text{};              ///< of a sequence: the record
   };
 
   bool is_sequence_file() const {
@@ -162,7 +165,8 @@ class VectorReader {
     std::size_t number = 0;
     while (const std::optional<GeoJsonRecord> record = sequence.next()) {
       complaints_.take_failure();  // of its parser: the record's fault says it
-      action(Item{number++, record->place, record->shape.get(), nullptr, record->fault ? &*record->fault : nullptr});
+      action(Item{number++, record->place, record->shape.get(), nullptr, record->fault ? &*record->fault : nullptr,
+                  record->text});
     }
   }
 
@@ -214,21 +218,37 @@ class VectorReader {
     to_metres_.reset();
     from_metres_.reset();
     scale_ = 1.0;
+    given_ = GivenPlane{};
     const OGRSpatialReference* system = is_sequence() ? OGRSpatialReference::GetWGS84SRS() : layer_->GetSpatialRef();
     const Units units = units_of_layer();
-    if (units == Units::metres) return note_units("metres: " + reason_);
-    if (units == Units::automatic && system == nullptr) return note_units("taken as metres: names no reference system");
+    if (units == Units::metres) return settle_metres("metres: " + reason_);
+    if (units == Units::automatic && system == nullptr)
+      return settle_metres("taken as metres: names no reference system");
     if (units == Units::automatic && !system->IsGeographic()) return settle_projected(*system);
     const Box box = bounding_box();
     if (box.empty()) return;
     if (!box.is_longitude_latitude()) return settle_impossible_degrees(units);
     project_round(box, system != nullptr && system->IsGeographic() ? *system : *OGRSpatialReference::GetWGS84SRS());
-    note_units("degrees: " + reason_ + "; brought to metres round longitude " + number(origin_->longitude) +
-               ", latitude " + number(origin_->latitude));
+    const std::string where = given_.plane.reference_system.empty() ? "round longitude " + number(origin_->longitude) +
+                                                                          ", latitude " + number(origin_->latitude)
+                                                                    : "of the reference system that it names";
+    note_units("degrees: " + reason_ + "; brought to metres " + where);
+  }
+
+  void settle_metres(const std::string& words) {
+    out_.set_plane({});
+    note_units(words);
   }
 
   void settle_projected(const OGRSpatialReference& system) {
     scale_ = system.GetLinearUnits();
+    LocalPlane plane;
+    if (system.IsProjected()) {
+      OGRSpatialReference in_metres = system;
+      if (scale_ != 1.0) in_metres.SetLinearUnitsAndUpdateParameters("metre", 1.0);
+      plane.reference_system = wkt_of(in_metres);
+    }
+    out_.set_plane(plane);
     const char* name = system.GetName();
     note_units(number(scale_) + " m a unit: by its reference system " + (name != nullptr ? name : "without a name"));
   }
@@ -261,6 +281,7 @@ class VectorReader {
     const char* native = is_sequence() ? nullptr : layer_->GetMetadataItem("NATIVE_DATA", "NATIVE_DATA");
     if (native == nullptr) return Units::automatic;
     const Json members = parse_json(native, path_.string());
+    given_ = given_plane(members, path_.string());
     const auto units = members.find("units");
     if (units == members.end()) return Units::automatic;
     reason_ = "by its member \"units\"";
@@ -277,21 +298,41 @@ class VectorReader {
       throw DataError(DataCode::projection, path_.string(), layer_name(),
                       "coordinates beyond 180 degrees east or 90 north", "longitudes and latitudes");
     }
-    note_units("taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
+    settle_metres("taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
   }
 
+  /// To the plane that the file names, else to one of its own, round the middle of its box.
   void project_round(const Box& box, OGRSpatialReference from) {
-    if (!origin_) {
-      origin_ = {rounded_degrees((box.low.x + box.high.x) / 2, kCentreDecimals),
-                 rounded_degrees((box.low.y + box.high.y) / 2, kCentreDecimals)};
-      out_.set_origin(*origin_);
-    }
     from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    LocalPlane plane = given_.plane;
     OGRSpatialReference local;
-    local.CopyGeogCSFrom(&from);
-    local.SetAE(origin_->latitude, origin_->longitude, 0.0, 0.0);
+    if (!plane.reference_system.empty()) {
+      const char* const without_files[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+      const bool known = local.SetFromUserInput(plane.reference_system.c_str(), without_files) == OGRERR_NONE &&
+                         local.IsProjected() && local.GetLinearUnits() == 1.0;
+      complaints_.take_failure();
+      if (!known) {
+        throw DataError(DataCode::projection, path_.string(), "/local_metres/reference_system",
+                        excerpt(plane.reference_system, 0, kShownText),
+                        "a projected reference system in metres, as WKT");
+      }
+      local.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+      plane.reference_system = wkt_of(local);
+    } else {
+      if (!origin_) {
+        origin_ =
+            plane.origin.value_or(ProjectionOrigin{rounded_degrees((box.low.x + box.high.x) / 2, kCentreDecimals),
+                                                   rounded_degrees((box.low.y + box.high.y) / 2, kCentreDecimals)});
+        if (given_.is_placed) out_.set_origin(*origin_);
+      }
+      local = plane_round(from, *origin_);
+      plane.origin = origin_;
+      if (from.IsSameGeogCS(OGRSpatialReference::GetWGS84SRS()) == FALSE)
+        plane = {std::nullopt, wkt_of(local), plane.offset};
+    }
     to_metres_.reset(OGRCreateCoordinateTransformation(&from, &local));
     refuse_complaints(layer_name(), to_metres_ == nullptr);
+    out_.set_plane(given_.is_placed ? plane : LocalPlane{});
   }
 
   void bring_to_metres(geometry::Ring& ring, const std::string& place) {
@@ -305,6 +346,8 @@ class VectorReader {
         throw DataError(DataCode::projection, path_.string(), place,
                         "a point that has no place on the local plane: " + number(written.x) + ", " + number(written.y),
                         "coordinates near each other");
+      } else {
+        p = given_.rounded(p + given_.plane.offset);
       }
     }
   }
@@ -319,13 +362,22 @@ class VectorReader {
       }
     }
     if (item.shape == nullptr) return out_.pass_over(place, "a feature without geometry passed over");
+    const FeatureProperties properties = properties_of(item);
     std::size_t part = 0;
     Visitor visitor;
     visitor.other = [&](const std::string& words) { out_.pass_over(place, words); };
     visitor.shape = [&](RawKind kind, std::vector<geometry::Ring> rings) {
-      hand_on(item.number, part++, place, kind, std::move(rings));
+      hand_on(item.number, part++, place, kind, std::move(rings), properties);
     };
     visit(*item.shape, visitor);
+  }
+
+  FeatureProperties properties_of(const Item& item) const {
+    if (!out_.options().keep_properties) return {};
+    if (item.feature == nullptr) return properties_of_geojson(item.text);
+    const char* native = driver() == "GeoJSON" ? item.feature->GetNativeData() : nullptr;
+    return native != nullptr ? properties_of_geojson(native)
+                             : datasets::properties_of(*item.feature, driver() == "GPKG");
   }
 
   /// GDAL says nothing of a geometry that it cannot make out, or of the parts of one.
@@ -371,6 +423,7 @@ class VectorReader {
 
   /// For people: a crossing that rounding moved.
   geometry::Vec2 back_to_degrees(geometry::Vec2 p) {
+    p = p - given_.plane.offset;
     if (from_metres_ == nullptr) from_metres_.reset(to_metres_->GetInverse());
     if (from_metres_ == nullptr || !from_metres_->Transform(1, &p.x, &p.y)) {
       complaints_.take_failure();
@@ -386,8 +439,9 @@ class VectorReader {
   }
 
   void hand_on(std::size_t number, std::size_t part, const std::string& place, RawKind kind,
-               std::vector<geometry::Ring> rings) {
+               std::vector<geometry::Ring> rings, const FeatureProperties& properties) {
     RawGeometry raw;
+    raw.properties = properties;
     raw.kind = kind;
     raw.id = std::to_string(number) + (part > 0 ? "." + std::to_string(part) : "");
     if (layers() > 1) raw.id = layer_name() + "/" + raw.id;
@@ -410,6 +464,7 @@ class VectorReader {
   std::unique_ptr<GDALDataset> data_;
   OGRLayer* layer_ = nullptr;
   std::optional<ProjectionOrigin> origin_;  ///< one for all layers
+  GivenPlane given_;                        ///< by GeoJSON's member "local_metres"
   double scale_ = 1.0;                      ///< m a unit
   std::string reason_;                      ///< why the layer's units are what they are
   std::unique_ptr<OGRCoordinateTransformation> to_metres_;
@@ -427,9 +482,25 @@ void refuse_entities(const std::filesystem::path& path) {
                   "XML without entities of its own: they are not expanded");
 }
 
+/// GDAL opens them beside the file, and would wait for a pipe for ever.
+void refuse_irregular_companions(const std::filesystem::path& path) {
+  for (const char* extension :
+       {".shp", ".shx", ".dbf", ".prj",  ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".idm", ".ind", ".tab", ".dat", ".map",
+        ".id",  ".mid", ".mif", ".csvt", ".xsd", ".gfs", ".SHX", ".DBF", ".PRJ", ".CPG", ".DAT", ".MAP", ".ID"}) {
+    const std::filesystem::path companion = std::filesystem::path(path).replace_extension(extension);
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(companion, error);
+    if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) continue;
+    if (std::filesystem::is_directory(status)) continue;
+    throw DataError(DataCode::file_unreadable, companion.string(), "", "a pipe, a socket or a device",
+                    "a regular file");
+  }
+}
+
 }  // namespace
 
 void read_vector_file(const std::filesystem::path& path, Collector& out) {
+  refuse_irregular_companions(path);
   refuse_entities(path);
   VectorReader(path, out).read();
 }

@@ -4,10 +4,13 @@
 #include <cpl_vsi.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "exactvo/datasets/data_error.h"
 #include "gdal/gdal_session.h"
+#include "gdal/plane_system.h"
+#include "writers/property_table.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
@@ -66,11 +69,12 @@ class MemoryFile {
 
 class LayerWriter {
  public:
-  LayerWriter(const std::string& driver, const std::string& file) : driver_(driver), file_(file) {
+  LayerWriter(const std::string& driver, const std::string& file, const WriteOptions& options)
+      : driver_(driver), file_(file), options_(options), table_(options.properties, {"id", "fid", "geom", kFeatureId}) {
     register_gdal_once();
   }
 
-  std::string write(const Obstacles& obstacles) {
+  Written write(const Obstacles& obstacles) {
     const FixedDate date;
     const MemoryFile memory(driver_ == "GPKG" ? ".gpkg" : ".fgb");
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_.c_str());
@@ -82,16 +86,57 @@ class LayerWriter {
     refuse_unless(true);
     std::string bytes = memory.bytes();
     if (bytes.empty()) throw DataError(DataCode::wrong_count, file_, "", "no obstacles", "one at least: " + driver_);
-    return bytes;
+    return {std::move(bytes), table_.renamed()};
   }
 
  private:
-  /// A plane of metres with no place on earth: without it GeoPackage takes numbers for degrees.
-  static OGRSpatialReference local_metres() {
+  /// The column of feature ids that are no numbers, or not of a GeoPackage.
+  static constexpr const char* kFeatureId = "feature_id";
+
+  /// That of the plane. One without a place on earth has a system of its own: without it GeoPackage takes numbers for
+  /// degrees.
+  OGRSpatialReference local_metres() const {
     OGRSpatialReference system;
-    system.SetLocalCS("local metres");
-    system.SetLinearUnits(SRS_UL_METER, 1.0);
+    const LocalPlane& plane = options_.plane;
+    const bool is_shifted = plane.offset != geometry::Vec2{};
+    if (!plane.reference_system.empty() && !is_shifted) {
+      system.importFromWkt(plane.reference_system.c_str());
+    } else if (plane.origin && plane.reference_system.empty() && !is_shifted) {
+      system = plane_round(*OGRSpatialReference::GetWGS84SRS(), *plane.origin);
+      system.SetProjCS("local metres");
+    } else {
+      system.SetLocalCS("local metres");
+      system.SetLinearUnits(SRS_UL_METER, 1.0);
+    }
     return system;
+  }
+
+  static OGRFieldType type_of(PropertyTable::Type type) {
+    switch (type) {
+      case PropertyTable::Type::boolean:
+        return OFTInteger;
+      case PropertyTable::Type::integer:
+        return OFTInteger64;
+      case PropertyTable::Type::real:
+        return OFTReal;
+      case PropertyTable::Type::text:
+        break;
+    }
+    return OFTString;
+  }
+
+  void create_fields(OGRLayer& layer) {
+    OGRFieldDefn id("id", OFTString);
+    refuse_unless(layer.CreateField(&id) == OGRERR_NONE);
+    const std::vector<FeatureProperties>& all = options_.properties;
+    has_ids_ = std::any_of(all.begin(), all.end(), [](const FeatureProperties& p) { return !p.id.empty(); });
+    OGRFieldDefn feature_id(kFeatureId, OFTString);
+    if (has_ids_) refuse_unless(layer.CreateField(&feature_id) == OGRERR_NONE);
+    for (const PropertyTable::Column& column : table_.columns()) {
+      OGRFieldDefn field(column.name.c_str(), type_of(column.type));
+      if (column.type == PropertyTable::Type::boolean) field.SetSubType(OFSTBoolean);
+      refuse_unless(layer.CreateField(&field) == OGRERR_NONE);
+    }
   }
 
   void fill(GDALDataset& data, const Obstacles& obstacles) {
@@ -101,18 +146,39 @@ class LayerWriter {
     OGRLayer* layer = data.CreateLayer("obstacles", &system, wkbUnknown,
                                        driver_ == "FlatGeobuf" ? const_cast<char**>(in_order) : nullptr);
     refuse_unless(layer != nullptr);
-    OGRFieldDefn id("id", OFTString);
-    refuse_unless(layer->CreateField(&id) == OGRERR_NONE);
+    create_fields(*layer);
     refuse_unless(layer->StartTransaction() == OGRERR_NONE);
-    for (const formation::SceneObstacle& obstacle : obstacles) add(*layer, obstacle);
+    for (std::size_t k = 0; k < obstacles.size(); ++k) add(*layer, obstacles[k], k);
     refuse_unless(layer->CommitTransaction() == OGRERR_NONE);
   }
 
-  void add(OGRLayer& layer, const formation::SceneObstacle& obstacle) {
+  void add(OGRLayer& layer, const formation::SceneObstacle& obstacle, std::size_t number) {
     OGRFeature feature(layer.GetLayerDefn());
-    feature.SetField("id", obstacle.id.c_str());
+    const Json row = table_.row(number);
+    feature.SetField("id", PropertyTable::id_of(row, obstacle.id).c_str());
+    if (has_ids_ && !options_.properties[number].id.empty())
+      feature.SetField(kFeatureId, PropertyTable::text_of(Json::parse(options_.properties[number].id)).c_str());
+    const int first = feature.GetFieldCount() - static_cast<int>(table_.columns().size());
+    for (std::size_t k = 0; k < table_.columns().size(); ++k) {
+      const PropertyTable::Column& column = table_.columns()[k];
+      const Json* value = PropertyTable::value_in(row, column);
+      if (value != nullptr) set_field(feature, first + static_cast<int>(k), column.type, *value);
+    }
     feature.SetGeometryDirectly(ogr_of(obstacle.shape).release());
     refuse_unless(layer.CreateFeature(&feature) == OGRERR_NONE);
+  }
+
+  static void set_field(OGRFeature& feature, int field, PropertyTable::Type type, const Json& value) {
+    switch (type) {
+      case PropertyTable::Type::boolean:
+        return feature.SetField(field, value.get<bool>() ? 1 : 0);
+      case PropertyTable::Type::integer:
+        return feature.SetField(field, static_cast<GIntBig>(value.get<std::int64_t>()));
+      case PropertyTable::Type::real:
+        return feature.SetField(field, value.get<double>());
+      case PropertyTable::Type::text:
+        return feature.SetField(field, PropertyTable::text_of(value).c_str());
+    }
   }
 
   void refuse_unless(bool worked) {
@@ -124,13 +190,17 @@ class LayerWriter {
 
   std::string driver_;
   std::string file_;
+  const WriteOptions& options_;
+  PropertyTable table_;
+  bool has_ids_ = false;
   GdalComplaints complaints_;
 };
 
 }  // namespace
 
-std::string to_gdal_file(const Obstacles& obstacles, const std::string& driver, const std::string& file) {
-  return LayerWriter(driver, file).write(obstacles);
+Written to_gdal_file(const Obstacles& obstacles, const WriteOptions& options, const std::string& driver,
+                     const std::string& file) {
+  return LayerWriter(driver, file, options).write(obstacles);
 }
 
 }  // namespace exactvo::datasets

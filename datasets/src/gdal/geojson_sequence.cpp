@@ -223,7 +223,9 @@ std::string GeoJsonSequence::next_text() {
 std::optional<GeoJsonRecord> GeoJsonSequence::next() {
   const std::string text = next_text();
   if (text.find_first_not_of(kBlanks) == std::string::npos) return std::nullopt;
-  return record_of(text, name_, begin_, is_spoilt_);
+  GeoJsonRecord record = record_of(text, name_, begin_, is_spoilt_);
+  record.text = text;
+  return record;
 }
 
 bool begins_as_sequence(const std::filesystem::path& path, bool name_says) {

@@ -24,6 +24,7 @@ struct GeoJsonRecord {
   std::string place;                   ///< "line 3", or "line 3, column 70" behind another: where it begins
   std::unique_ptr<OGRGeometry> shape;  ///< none for a feature without one, and for a fault
   std::optional<DataError> fault;      ///< E_JSON_SYNTAX, E_FORMAT_SYNTAX
+  std::string text{};                  ///< as it stands in the file
 };
 
 /// How deep in objects and strings the next byte of a text of JSON stands.

@@ -5,7 +5,8 @@
 namespace exactvo::datasets {
 
 const VectorLibrary& vector_library() {
-  static constexpr VectorLibrary kLibrary{read_vector_file, to_gdal_file, read_gdal_image, batch::make_geopackage};
+  static constexpr VectorLibrary kLibrary{read_vector_file, to_gdal_file, read_gdal_image, batch::make_geopackage,
+                                          make_plane_transform};
   return kLibrary;
 }
 

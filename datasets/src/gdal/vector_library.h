@@ -6,7 +6,8 @@
 /// longer to load than most questions to answer: a program either links the functions or loads them when it first needs
 /// them (modules/loader.cpp), and the rest of the library calls them through this table alone.
 
-#include "batch/geopackage.h"
+#include "batch/formats/geopackage.h"
+#include "gdal/plane_transform.h"
 #include "readers/grey_image.h"
 #include "readers/readers.h"
 #include "writers/writers.h"
@@ -18,6 +19,7 @@ struct VectorLibrary {
   decltype(&datasets::to_gdal_file) to_gdal_file;
   decltype(&datasets::read_gdal_image) read_gdal_image;
   decltype(&batch::make_geopackage) make_geopackage;
+  decltype(&datasets::make_plane_transform) make_plane_transform;
 };
 
 /// Throws DataError (E_FORMAT_UNAVAILABLE) where a program loads it and cannot.

@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstdlib>
+#include <new>
 
+#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/geometry/require.h"
 #include "gdal/vector_library.h"
 #include "readers/readers.h"
+#include "system_error.h"
 #include "text_file.h"
 
 namespace exactvo::datasets {
@@ -66,12 +71,52 @@ void refuse_nothing(const std::filesystem::path& path, const ReadOptions& option
   throw DataError(code, path.string(), "", "an empty file", "a file of obstacles");
 }
 
+/// What came through a pipe as a file of the same name, gone with the object: readers look at a file more than once.
+class CopyOfPipe {
+ public:
+  explicit CopyOfPipe(const std::filesystem::path& pipe) {
+    const std::string bytes = read_text_file(pipe);
+    std::string folder = (std::filesystem::temp_directory_path() / "exactvo-XXXXXX").string();
+    if (::mkdtemp(folder.data()) == nullptr) throw cannot_write(folder, errno);
+    folder_ = folder;
+    path_ = folder_ / pipe.filename();
+    write_file_atomically(path_, bytes, Durability::content);
+  }
+  ~CopyOfPipe() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  CopyOfPipe(const CopyOfPipe&) = delete;
+  CopyOfPipe& operator=(const CopyOfPipe&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path path_;
+};
+
+/// `name` is what messages call the file.
+ObstacleFile read_regular(const std::filesystem::path& path, const std::string& name, const ReadOptions& options,
+                          const ObstacleStream* stream) {
+  try {
+    refuse_nothing(path, options);
+    const Reader& reader = options.format.empty() ? reader_for(path) : reader_named(options.format, path);
+    Collector out(name, reader.name, options, stream);
+    reader.read(path, out);
+    return out.take();
+  } catch (const DataError& error) {
+    if (error.file() != path.string() || name == path.string()) throw;
+    throw DataError(error.code(), name, error.place(), error.found(), error.expected());
+  } catch (const std::bad_alloc&) {
+    throw DataError(DataCode::size, name, "", "more than fits into memory", "a smaller file, or a machine with more");
+  }
+}
+
 ObstacleFile read_into(const std::filesystem::path& path, const ReadOptions& options, const ObstacleStream* stream) {
-  refuse_nothing(path, options);
-  const Reader& reader = options.format.empty() ? reader_for(path) : reader_named(options.format, path);
-  Collector out(path.string(), reader.name, options, stream);
-  reader.read(path, out);
-  return out.take();
+  if (!is_pipe(path)) return read_regular(path, path.string(), options, stream);
+  const CopyOfPipe copy(path);
+  return read_regular(copy.path(), path.string(), options, stream);
 }
 
 }  // namespace

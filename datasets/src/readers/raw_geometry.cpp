@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "exactvo/datasets/input_text.h"
 #include "exactvo/geometry/even_odd.h"
 #include "exactvo/geometry/too_many_contacts.h"
 #include "json_text.h"
@@ -111,7 +112,7 @@ std::vector<DataCode> codes_of(const std::vector<RingFinding>& findings) {
 DataError repair_refusal(DataCode code, const std::string& file, const std::string& place) {
   switch (code) {
     case DataCode::size:
-      return {code, file, place, "too many crossings of edges",
+      return {code, file, place, "too many contacts of edges",
               "at most " + std::to_string(geometry::most_crossings(0)) + " and two an edge"};
     case DataCode::out_of_range:
       return {code, file, place, "rings that cross and have a coordinate beyond 2^100 m", "nearer ones"};
@@ -145,14 +146,21 @@ RingFinding finding_at(DataCode code, const RawGeometry& raw, const geometry::Ri
   return finding;
 }
 
-std::vector<RingFinding> findings_of(const std::vector<geometry::RingProblem>& problems, const RawGeometry& raw) {
-  std::vector<RingFinding> findings;
+Judgement judged(geometry::Obstacle shape, const std::vector<geometry::RingProblem>& problems, const RawGeometry& raw) {
+  Judgement judgement{std::move(shape), {}, {}};
+  bool is_refused = false;
   for (const geometry::RingProblem& problem : problems) {
     const DataCode code = data_code(problem.code);
     if (problem.mended && !is_worth_a_note(raw, code)) continue;
-    findings.push_back(finding_at(code, raw, problem));
+    const bool first_refusal = !problem.mended && !is_refused;
+    is_refused = is_refused || !problem.mended;
+    if (judgement.findings.size() < kMostFindings || first_refusal) {
+      judgement.findings.push_back(finding_at(code, raw, problem));
+    } else {
+      ++judgement.unlisted[code];
+    }
   }
-  return findings;
+  return judgement;
 }
 
 /// The first coordinate beyond kLargestCoordinate of each ring; what is not finite is another problem.
@@ -202,15 +210,15 @@ std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_
 Judgement judge(const RawGeometry& raw) {
   if (raw.kind == RawKind::polyline) {
     geometry::NormalizedPolyline normal = geometry::normalize_polyline(raw.rings.at(0));
-    return {std::move(normal.polyline), findings_of(normal.problems, raw)};
+    return judged(std::move(normal.polyline), normal.problems, raw);
   }
   try {
     geometry::NormalizedPolygon normal = geometry::normalize(raw.rings);
-    return {std::move(normal.polygon), findings_of(normal.problems, raw)};
+    return judged(std::move(normal.polygon), normal.problems, raw);
   } catch (const geometry::TooManyContacts&) {
     geometry::RingProblem at{};
     at.where = raw.rings[0].empty() ? geometry::Vec2{} : raw.rings[0].front();
-    return {geometry::Polygon{}, {finding_at(DataCode::size, raw, at)}};
+    return {geometry::Polygon{}, {finding_at(DataCode::size, raw, at)}, {}};
   }
 }
 
@@ -232,17 +240,18 @@ Collector::Collector(std::string file, std::string format, const ReadOptions& op
 }
 
 void Collector::add(const RawGeometry& raw) {
+  call_wait_hook();
   if (reject_far(raw)) return;
   if (options_.repair && raw.kind == RawKind::polygon) return add_mended(raw);
   Judgement judgement = judge(raw);
-  take_findings(judgement.findings);
+  take_findings(judgement.findings, judgement.unlisted);
   try {
     refuse_unmended(judgement, result_.file);
   } catch (const DataError& error) {
     return reject(error);
   }
   count(judgement.findings);
-  keep(raw.id, std::move(judgement.shape), !judgement.findings.empty());
+  keep(raw, raw.id, std::move(judgement.shape), !judgement.findings.empty());
 }
 
 bool Collector::reject_far(const RawGeometry& raw) {
@@ -255,8 +264,8 @@ bool Collector::reject_far(const RawGeometry& raw) {
 
 void Collector::add_mended(const RawGeometry& raw) {
   Repair mended = repair(raw.rings);
-  const Judgement judgement{geometry::Polygon{}, findings_of(mended.problems, raw)};
-  take_findings(judgement.findings);
+  const Judgement judgement = judged(geometry::Polygon{}, mended.problems, raw);
+  take_findings(judgement.findings, judgement.unlisted);
   if (mended.changed() && stream_ == nullptr) {
     result_.repairs.push_back({raw.place, raw.id, codes_of(judgement.findings), mended.refused, mended.recombined,
                                mended.moved, mended.recombined ? raw.rings : std::vector<geometry::Ring>{},
@@ -265,7 +274,7 @@ void Collector::add_mended(const RawGeometry& raw) {
   if (!mended.ok()) return reject(refusal_of(*mended.refused, judgement, raw.place));
   count(judgement.findings);
   for (std::size_t k = 0; k < mended.polygons.size(); ++k) {
-    keep(k == 0 ? raw.id : raw.id + "-" + std::to_string(k + 1), std::move(mended.polygons[k]),
+    keep(raw, k == 0 ? raw.id : raw.id + "-" + std::to_string(k + 1), std::move(mended.polygons[k]),
          !judgement.findings.empty());
   }
 }
@@ -277,9 +286,14 @@ DataError Collector::refusal_of(DataCode reason, const Judgement& judgement, con
   return repair_refusal(reason, result_.file, place);
 }
 
-void Collector::take_findings(const std::vector<RingFinding>& findings) {
+void Collector::take_findings(const std::vector<RingFinding>& findings,
+                              const std::map<DataCode, std::size_t>& unlisted) {
   if (stream_ != nullptr) return;
-  result_.findings.insert(result_.findings.end(), findings.begin(), findings.end());
+  for (const auto& [code, count] : unlisted) result_.unlisted[code] += count;
+  const std::size_t room = kMostFindings - result_.findings.size();
+  const auto end = findings.begin() + static_cast<std::ptrdiff_t>(std::min(room, findings.size()));
+  result_.findings.insert(result_.findings.end(), findings.begin(), end);
+  for (auto left_out = end; left_out != findings.end(); ++left_out) ++result_.unlisted[left_out->code];
 }
 
 /// Of an input that can be used.
@@ -288,17 +302,35 @@ void Collector::count(const std::vector<RingFinding>& findings) {
   ++(findings.empty() ? result_.counts.done : result_.counts.repaired);
   if (stream_ != nullptr) return;
   for (const RingFinding& mended : findings) {
+    if (notes_of_findings_++ >= kMostFindings) return;
     result_.notes.push_back({mended.code, mended.place, words_for_mending(mended.code)});
   }
 }
 
-void Collector::keep(std::string id, geometry::Obstacle shape, bool repaired) {
+void Collector::keep(const RawGeometry& raw, std::string id, geometry::Obstacle shape, bool repaired) {
   extend(shape);
   if (stream_ != nullptr) return stream_->obstacle({std::move(id), std::move(shape)}, repaired);
   std::vector<formation::SceneObstacle>& kept = result_.obstacles;
   // By quarters: a million polygons in a vector that doubles take twice the room, and thrice while it grows.
   if (kept.size() == kept.capacity()) kept.reserve(kept.size() + kept.size() / 4 + 16);
   kept.push_back({std::move(id), std::move(shape)});
+  if (!options_.keep_properties) return;
+  const bool is_first = result_.properties.empty() && (!raw.properties.id.empty() || !raw.properties.members.empty());
+  if (!is_first && result_.properties.empty()) return;
+  result_.properties.resize(kept.size() - 1);  // of those before the first that has any
+  result_.properties.push_back(raw.properties);
+}
+
+void Collector::set_plane(const LocalPlane& plane) {
+  const LocalPlane& before = result_.plane;
+  const bool same_origin = before.origin.has_value() == plane.origin.has_value() &&
+                           (!plane.origin || (before.origin->longitude == plane.origin->longitude &&
+                                              before.origin->latitude == plane.origin->latitude));
+  const bool is_same =
+      same_origin && before.reference_system == plane.reference_system && before.offset == plane.offset;
+  result_.plane = !has_plane_ || is_same ? plane : LocalPlane{};
+  has_plane_ = true;
+  if (stream_ != nullptr && stream_->plane) stream_->plane(plane);
 }
 
 void Collector::extend(const geometry::Obstacle& shape) {
@@ -311,6 +343,7 @@ void Collector::extend(const geometry::Obstacle& shape) {
 }
 
 void Collector::pass_over(std::string place, std::string text) {
+  call_wait_hook();
   ++result_.counts.read;
   ++result_.counts.passed_over;
   note(std::move(place), std::move(text));

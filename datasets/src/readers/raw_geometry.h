@@ -5,6 +5,7 @@
 /// What a reader hands on: rings as they stand in the file, not yet judged; and the collector that judges them.
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,7 @@ struct RawGeometry {
   std::vector<geometry::Ring> rings;       ///< closed or not, any winding
   std::vector<std::string> ring_pointers;  ///< JSON pointers of the rings; empty for other formats
   std::optional<AsWritten> as_written;     ///< none where `rings` stand in the file
+  FeatureProperties properties;            ///< only where `ReadOptions::keep_properties` asks for them
 };
 
 /// "feature 3, ring 0, vertex 17", or the ring's pointer "/obstacles/4/polygon": the vertex alone is not at fault.
@@ -38,7 +40,8 @@ std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_
 /// The shape put in order, and what was found in it; to be used only if all of that was mended.
 struct Judgement {
   geometry::Obstacle shape;
-  std::vector<RingFinding> findings;
+  std::vector<RingFinding> findings;         ///< kMostFindings at most, the first that was not mended among them
+  std::map<DataCode, std::size_t> unlisted;  ///< the others
 };
 Judgement judge(const RawGeometry& raw);
 
@@ -64,6 +67,8 @@ class Collector {
   /// Counts it, and throws it unless reading goes on.
   virtual void reject(DataError error);
   void set_origin(ProjectionOrigin origin) { result_.origin = origin; }
+  /// Of what is added from now on.
+  void set_plane(const LocalPlane& plane);
   /// Grows the file's extent.
   virtual void extend(const geometry::Obstacle& shape);
   const std::optional<Extent>& extent() const { return result_.extent; }
@@ -81,13 +86,15 @@ class Collector {
   /// Where `repair` may do more than `judge`.
   void add_mended(const RawGeometry& raw);
   DataError refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const;
-  void take_findings(const std::vector<RingFinding>& findings);
+  void take_findings(const std::vector<RingFinding>& findings, const std::map<DataCode, std::size_t>& unlisted = {});
   void count(const std::vector<RingFinding>& findings);
-  void keep(std::string id, geometry::Obstacle shape, bool repaired);
+  void keep(const RawGeometry& raw, std::string id, geometry::Obstacle shape, bool repaired);
 
   ObstacleFile result_;
   ReadOptions options_;
   const ObstacleStream* stream_;
+  std::size_t notes_of_findings_ = 0;
+  bool has_plane_ = false;
 };
 
 }  // namespace exactvo::datasets

@@ -23,6 +23,11 @@ bool WktBlocks::read_more() {
   buffer_.resize(before + got);
   read_ += got;
   if (std::ferror(file_.get()) != 0) throw cannot_read(path_, errno);
+  // No text holds one, and a file full of them would be taken for one geometry that does not end.
+  const std::size_t zero = buffer_.find('\0', before);
+  if (zero != std::string::npos)
+    throw DataError(DataCode::format_syntax, path_.string(), "byte " + std::to_string(read_ - got + zero - before),
+                    "a zero byte", "text");
   return got > 0;
 }
 

@@ -13,6 +13,7 @@ namespace exactvo::datasets {
 XmlFile::XmlFile(const std::filesystem::path& path, const std::string& file)
     : file_(file), text_(read_text_file(path)) {
   refuse_entities();
+  refuse_zero_bytes();
   const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
   if (result) return;
   const auto byte = static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0));
@@ -26,6 +27,13 @@ void XmlFile::refuse_entities() const {
   if (at == std::string::npos) return;
   throw DataError(DataCode::format_syntax, file_, line_and_column(text_, at), excerpt(text_, at),
                   "XML without entities of its own: they are not expanded");
+}
+
+/// pugixml takes one for the end, whatever follows.
+void XmlFile::refuse_zero_bytes() const {
+  const std::size_t at = text_.find('\0');
+  if (at == std::string::npos) return;
+  throw DataError(DataCode::format_syntax, file_, line_and_column(text_, at), "a zero byte", "XML, which has none");
 }
 
 std::string XmlFile::place_of(const pugi::xml_node& node) const {

@@ -26,6 +26,7 @@ class XmlFile {
 
  private:
   void refuse_entities() const;
+  void refuse_zero_bytes() const;
   void index_lines() const;
 
   const std::string& file_;

@@ -140,7 +140,7 @@ class Auditor {
 
  private:
   void find(std::size_t& counter, std::size_t row, const std::string& what) {
-    if (counter++ == 0 || report_.findings.size() < kMostFindings)
+    if (counter++ == 0 || report_.findings.size() < kMostAuditFindings)
       report_.findings.push_back("row " + std::to_string(row) + ": " + what);
   }
 

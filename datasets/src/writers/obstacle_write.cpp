@@ -4,12 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/geometry/require.h"
 #include "gdal/vector_library.h"
 #include "json_text.h"
 #include "scenarios/scenario_json.h"
+#include "writers/property_table.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
@@ -37,23 +43,80 @@ std::string wkt_text(const geometry::Polygon& polygon) {
   return text + ")";
 }
 
-void append_geometry(JsonWriter& json, const geometry::Polyline& line) {
+// --- GeoJSON ---
+
+using Points = std::vector<geometry::Vec2>;
+/// What is written of points: the same, or degrees.
+using Place = std::function<Points(Points)>;
+
+void append_geometry(JsonWriter& json, const geometry::Polyline& line, const Place& place) {
   json.member("type", "LineString").key("coordinates");
-  append_points(json, line.points);
+  append_points(json, place(line.points));
 }
 
-void append_geometry(JsonWriter& json, const geometry::Polygon& polygon) {
+void append_geometry(JsonWriter& json, const geometry::Polygon& polygon, const Place& place) {
   json.member("type", "Polygon").key("coordinates").begin_array();
-  for (const geometry::Ring& ring : closed_rings_of(polygon)) append_points(json, ring);
+  for (const geometry::Ring& ring : closed_rings_of(polygon)) append_points(json, place(ring));
   json.end_array();
 }
 
-void append_feature(JsonWriter& json, const formation::SceneObstacle& obstacle) {
+/// Those of the input, and `id` where none of them is called so.
+std::string members_of(const formation::SceneObstacle& obstacle, const FeatureProperties& properties) {
+  Json members = properties.members.empty() ? Json::object() : Json::parse(properties.members, nullptr, false);
+  if (!members.is_object()) members = Json::object();
+  if (!members.contains("id")) members["id"] = obstacle.id;
+  return members.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void append_feature(JsonWriter& json, const formation::SceneObstacle& obstacle, const FeatureProperties& properties,
+                    const Place& place) {
   json.begin_inline_object().member("type", "Feature");
-  json.key("properties").begin_object().member("id", obstacle.id).end_object();
+  if (!properties.id.empty()) json.key("id").raw(properties.id);
+  json.key("properties").raw(members_of(obstacle, properties));
   json.key("geometry").begin_object();
-  std::visit([&](const auto& shape) { append_geometry(json, shape); }, obstacle.shape);
+  std::visit([&](const auto& shape) { append_geometry(json, shape, place); }, obstacle.shape);
   json.end_object().end_object();
+}
+
+/// The fewest decimals, of at most six, that all coordinates have; -1 where some has more.
+int decimals_of(const Obstacles& obstacles) {
+  constexpr int kMost = 6;
+  int decimals = 0;
+  const auto has = [](double x, int places) {
+    const double factor = std::pow(10.0, places);
+    return std::round(x * factor) / factor == x;
+  };
+  for (const formation::SceneObstacle& obstacle : obstacles) {
+    for (const geometry::Vec2 p : geometry::vertices_of(obstacle.shape)) {
+      while (!(has(p.x, decimals) && has(p.y, decimals))) {
+        if (++decimals > kMost) return -1;
+      }
+    }
+  }
+  return decimals;
+}
+
+/// One without a place on earth is moved near (0, 0), which is laid where the equator meets the first meridian.
+LocalPlane plane_for(const Obstacles& obstacles, const LocalPlane& given) {
+  if (given.is_placed()) return given;
+  std::optional<Extent> extent;
+  for (const formation::SceneObstacle& obstacle : obstacles) {
+    for (const geometry::Vec2 p : geometry::vertices_of(obstacle.shape)) {
+      if (!extent) extent = Extent{p, p};
+      extent->low = {std::min(extent->low.x, p.x), std::min(extent->low.y, p.y)};
+      extent->high = {std::max(extent->high.x, p.x), std::max(extent->high.y, p.y)};
+    }
+  }
+  LocalPlane plane;
+  if (extent) plane.offset = offset_for(extent->low, extent->high);
+  return plane;
+}
+
+// --- Properties of other formats ---
+
+const FeatureProperties& properties_of(const WriteOptions& options, std::size_t obstacle) {
+  static const FeatureProperties kNone;
+  return obstacle < options.properties.size() ? options.properties[obstacle] : kNone;
 }
 
 /// RFC 4180: quoted, quotes doubled.
@@ -63,34 +126,54 @@ std::string csv_field(const std::string& text) {
   return field + "\"";
 }
 
-Written wkt(const Obstacles& obstacles, const std::string&) {
-  return {to_wkt(obstacles), {"ids: WKT has no place for them"}};
+Written wkt(const Obstacles& obstacles, const WriteOptions& options, const std::string&) {
+  Written written{to_wkt(obstacles), losses_beside_shapes(options, "WKT")};
+  written.losses.emplace_back("ids: WKT has no place for them");
+  return written;
 }
 
-Written geojson(const Obstacles& obstacles, const std::string&) {
-  return {to_geojson(obstacles), {}};
+Written geojson(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
+  return {to_geojson(obstacles, options, file), {}};
 }
 
-Written csv(const Obstacles& obstacles, const std::string&) {
-  std::string text = "id,WKT\r\n";
-  for (const formation::SceneObstacle& o : obstacles)
-    text += csv_field(o.id) + "," + csv_field(wkt_of(o.shape)) + "\r\n";
-  return {text, {}};
+Written csv(const Obstacles& obstacles, const WriteOptions& options, const std::string&) {
+  const PropertyTable table(options.properties, {"id", "WKT", "feature_id"});
+  const auto& all = options.properties;
+  const bool has_ids = std::any_of(all.begin(), all.end(), [](const FeatureProperties& p) { return !p.id.empty(); });
+  std::string text = has_ids ? "id,WKT,feature_id" : "id,WKT";
+  for (const PropertyTable::Column& column : table.columns()) text += "," + csv_field(column.name);
+  text += "\r\n";
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const formation::SceneObstacle& o = obstacles[k];
+    const Json row = table.row(k);
+    text += csv_field(PropertyTable::id_of(row, o.id)) + "," + csv_field(wkt_of(o.shape));
+    const std::string& id = properties_of(options, k).id;
+    if (has_ids) text += "," + (id.empty() ? id : csv_field(PropertyTable::text_of(Json::parse(id))));
+    for (const PropertyTable::Column& column : table.columns()) {
+      const Json* value = PropertyTable::value_in(row, column);
+      text += "," + (value == nullptr ? std::string() : csv_field(PropertyTable::text_of(*value)));
+    }
+    text += "\r\n";
+  }
+  Written written{text, table.renamed()};
+  const std::vector<std::string> of_plane = plane_losses(options, "CSV");
+  written.losses.insert(written.losses.end(), of_plane.begin(), of_plane.end());
+  return written;
 }
 
-Written geopackage(const Obstacles& obstacles, const std::string& file) {
-  return {vector_library().to_gdal_file(obstacles, "GPKG", file), {}};
+Written geopackage(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
+  return vector_library().to_gdal_file(obstacles, options, "GPKG", file);
 }
 
-Written flatgeobuf(const Obstacles& obstacles, const std::string& file) {
-  return {vector_library().to_gdal_file(obstacles, "FlatGeobuf", file), {}};
+Written flatgeobuf(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
+  return vector_library().to_gdal_file(obstacles, options, "FlatGeobuf", file);
 }
 
 struct Writer {
   const char* name;
   std::vector<const char*> endings;  ///< lower case; the longest that fits is meant
   bool needs_gdal;
-  Written (*write)(const Obstacles& obstacles, const std::string& file);
+  Written (*write)(const Obstacles& obstacles, const WriteOptions& options, const std::string& file);
 };
 
 const std::vector<Writer>& writers() {
@@ -176,11 +259,36 @@ std::string to_wkt(const Obstacles& obstacles) {
   return text;
 }
 
-std::string to_geojson(const Obstacles& obstacles) {
+std::string local_metres_member(const LocalPlane& plane, int decimals) {
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_object();
+  if (plane.reference_system.empty()) {
+    const ProjectionOrigin centre = plane.origin.value_or(ProjectionOrigin{});
+    json.member("centre", geometry::Vec2{centre.longitude, centre.latitude});
+  } else {
+    json.member("reference_system", plane.reference_system);
+  }
+  json.member("offset", plane.offset);
+  if (decimals >= 0) json.member("decimals", decimals);
+  json.member("is_placed", plane.is_placed());
+  return json.end_object().take();
+}
+
+std::string to_geojson(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
+  const LocalPlane plane = plane_for(obstacles, options.plane);
+  std::optional<MetresToDegrees> to_degrees;
+  if (!options.metres) to_degrees.emplace(plane, file);
+  const Place place = [&](Points points) { return to_degrees ? (*to_degrees)(std::move(points)) : points; };
   JsonWriter json(JsonWriter::Layout::indented);
-  json.begin_object().member("type", "FeatureCollection").member("units", "m");
+  json.begin_object().member("type", "FeatureCollection");
+  if (options.metres) {
+    json.member("units", "m");
+  } else {
+    json.key("local_metres").raw(local_metres_member(plane, decimals_of(obstacles)));
+  }
   json.key("features").begin_array();
-  for (const formation::SceneObstacle& obstacle : obstacles) append_feature(json, obstacle);
+  for (std::size_t k = 0; k < obstacles.size(); ++k)
+    append_feature(json, obstacles[k], properties_of(options, k), place);
   json.end_array();
   return json.end_object().take() + "\n";
 }
@@ -198,8 +306,10 @@ std::string format_to_write(const std::filesystem::path& path, const std::string
 }
 
 std::vector<std::string> write_obstacles(const std::filesystem::path& path, const Obstacles& obstacles,
-                                         const std::string& format) {
-  Written written = writer_for(path, format).write(obstacles, path.string());
+                                         const WriteOptions& options) {
+  EXACTVO_REQUIRE(options.properties.empty() || options.properties.size() == obstacles.size(),
+                  std::to_string(options.properties.size()));
+  Written written = writer_for(path, options.format).write(obstacles, options, path.string());
   write_file_atomically(path, written.bytes);
   return std::move(written.losses);
 }

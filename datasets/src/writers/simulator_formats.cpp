@@ -30,6 +30,10 @@ const std::vector<geometry::Vec2>& outline_of(const geometry::Obstacle& shape) {
   return std::get<geometry::Polyline>(shape).points;
 }
 
+void append(std::vector<std::string>& list, const std::vector<std::string>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
 std::string number(double x) {
   std::string text;
   append_number(text, x);
@@ -38,7 +42,7 @@ std::string number(double x) {
 
 }  // namespace
 
-Written to_rings_json(const Obstacles& obstacles, const std::string& file) {
+Written to_rings_json(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
   const auto* polygon = obstacles.size() == 1 ? std::get_if<geometry::Polygon>(&obstacles.front().shape) : nullptr;
   if (polygon == nullptr) {
     throw DataError(DataCode::wrong_count, file, "", std::to_string(obstacles.size()) + " obstacles",
@@ -48,10 +52,12 @@ Written to_rings_json(const Obstacles& obstacles, const std::string& file) {
   json.begin_array();
   append_points(json, polygon->outer);
   for (const geometry::Ring& hole : polygon->holes) append_points(json, hole);
-  return {json.end_array().take() + "\n", {"the id: rings-json has no place for it"}};
+  Written written{json.end_array().take() + "\n", losses_beside_shapes(options, "rings-json")};
+  written.losses.emplace_back("the id: rings-json has no place for it");
+  return written;
 }
 
-Written to_menge_xml(const Obstacles& obstacles, const std::string&) {
+Written to_menge_xml(const Obstacles& obstacles, const WriteOptions& options, const std::string&) {
   std::string text =
       "<?xml version=\"1.0\"?>\n<Experiment version=\"2.0\">\n"
       "  <ObstacleSet type=\"explicit\" class=\"1\">\n";
@@ -62,11 +68,12 @@ Written to_menge_xml(const Obstacles& obstacles, const std::string&) {
     text += "    </Obstacle>\n";
   }
   Written written{text + "  </ObstacleSet>\n</Experiment>\n", hole_losses(obstacles, "Menge")};
+  append(written.losses, losses_beside_shapes(options, "Menge"));
   written.losses.emplace_back("ids: Menge has no place for them");
   return written;
 }
 
-Written to_sumo_poly(const Obstacles& obstacles, const std::string&) {
+Written to_sumo_poly(const Obstacles& obstacles, const WriteOptions& options, const std::string&) {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<additional>\n";
   for (const formation::SceneObstacle& obstacle : obstacles) {
     const bool is_solid = geometry::has_interior(obstacle.shape);
@@ -77,7 +84,9 @@ Written to_sumo_poly(const Obstacles& obstacles, const std::string&) {
       text += (text.back() == '"' ? "" : " ") + number(p.x) + "," + number(p.y);
     text += "\"/>\n";
   }
-  return {text + "</additional>\n", hole_losses(obstacles, "SUMO")};
+  Written written{text + "</additional>\n", hole_losses(obstacles, "SUMO")};
+  append(written.losses, losses_beside_shapes(options, "SUMO"));
+  return written;
 }
 
 }  // namespace exactvo::datasets

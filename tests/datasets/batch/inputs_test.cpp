@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which files a batch takes: no outputs of earlier batches, wherever they lie.
-#include "batch/inputs.h"
+#include "batch/plan/inputs.h"
 
 #include <gtest/gtest.h>
 

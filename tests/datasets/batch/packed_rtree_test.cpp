@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packed spatial indices: SQLite finds in them what is there, and nothing wrong with them.
-#include "batch/packed_rtree.h"
+#include "batch/formats/packed_rtree.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "batch/features.h"
-#include "batch/geopackage.h"
+#include "batch/formats/features.h"
+#include "batch/formats/geopackage.h"
 #include "support/seeded_random.h"
 #include "temporary_folder.h"
 

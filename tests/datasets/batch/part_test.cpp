@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A part as bytes: nothing lost, and no more room than they take.
-#include "batch/part.h"
+#include "batch/work/part.h"
 
 #include <gtest/gtest.h>
 

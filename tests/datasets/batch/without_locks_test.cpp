@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "batch/ledger.h"
+#include "batch/plan/journal.h"
 #include "batch_files.h"
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/batch.h"
@@ -64,12 +64,12 @@ class WithoutLocks : public TemporaryFolder {
 };
 
 TEST_F(WithoutLocks, OneProcessWritesTheSame) {
-  EXPECT_TRUE(run_batch(plain_, run_to("whole")).was_bound_ahead);
+  EXPECT_TRUE(run_batch(plain_, run_to("whole")).was_merged_ahead);
   const int asked_with_locks = locks_asked_for;
   locks_are_known = false;
   const BatchResult result = run_batch(plain_, run_to("out"));
   EXPECT_EQ(result.end, BatchEnd::complete);
-  EXPECT_FALSE(result.was_bound_ahead) << "nobody knows who else would";
+  EXPECT_FALSE(result.was_merged_ahead) << "nobody knows who else would";
   EXPECT_GT(locks_asked_for, asked_with_locks);
   EXPECT_EQ(difference_from_whole("out"), "");
 }
@@ -136,12 +136,12 @@ TEST_F(WithoutLocks, ThreeProcessesPutTheSamePartsTogetherAtOnce) {
 TEST_F(WithoutLocks, WhoComesLastTakesNothingAway) {
   locks_are_known = false;
   const fs::path out = folder_ / "out";
-  batch::Ledger first(out);
-  batch::Ledger last(out);
+  batch::Journal first(out);
+  batch::Journal last(out);
   first.begin({});
-  for (const batch::Ledger* ledger : {&first, &last}) {
-    ledger->start_final(batch::Ledger::Holds::neither);
-    AtomicFile file(ledger->final_folder() / "figures.jsonl", MissingFolder::is_refused);
+  for (const batch::Journal* journal : {&first, &last}) {
+    journal->start_final(batch::Journal::LockState::neither);
+    AtomicFile file(journal->final_folder() / "figures.jsonl", MissingFolder::is_refused);
     file.commit();
   }
   write_file_atomically(first.final_folder() / "summary.json", "{}");

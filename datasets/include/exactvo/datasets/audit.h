@@ -36,7 +36,7 @@ struct AuditReport {
   std::size_t collisions = 0;         ///< of these, nearer to an obstacle or another robot than the radii allow
   std::size_t unproven = 0;           ///< of these, neither a collision nor proven to be none
   std::size_t inconsistencies = 0;    ///< rows that do not follow one another, a seal that does not fit the rows
-  std::vector<std::string> findings;  ///< the first of each kind, in words; at most kMostFindings
+  std::vector<std::string> findings;  ///< the first of each kind, in words; at most kMostAuditFindings
 
   std::size_t curved_steps = 0;        ///< of the steps, those that were not driven in a straight line
   std::size_t obstacle_questions = 0;  ///< pairs of a step and an obstacle, a moving obstacle, another robot
@@ -46,7 +46,7 @@ struct AuditReport {
 
   bool clean() const { return unsafe == 0 && collisions == 0 && unproven == 0 && inconsistencies == 0; }
 };
-inline constexpr std::size_t kMostFindings = 20;
+inline constexpr std::size_t kMostAuditFindings = 20;
 
 /// REQUIRES: a recording that read_recording gave, or one like it.
 AuditReport audit(const RecordingFile& file);

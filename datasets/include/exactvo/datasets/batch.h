@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// A folder of maps in one go: every obstacle of every file read, judged, mended if asked, taken apart and enclosed
+/// A folder of maps in one go: every obstacle of every file read, judged, repaired if asked, decomposed and enclosed
 /// (geometry/obstacle_shapes.h), with a verdict on every shape (docs/guide/batch.md).
 ///
 /// Every file and every obstacle ends in exactly one of done, repaired and rejected with a code; a bad one never stops
@@ -10,7 +10,7 @@
 /// killed and gone on with: the bytes are the same but for the times, which stand on one line of summary.json.
 ///
 /// How: inputs are cut into chunks of obstacles; a chunk's results go to a file of their own under OUT/.parts
-/// (temporary file, fsync, rename), and are put together in order: by one process while others are being made, or when
+/// (temporary file, fsync, rename), and are merged in order: by one process while others are being made, or when
 /// all are there (docs/adr/0010-bound-while-made.md). What is there is not made again. A streaming reader (WKT, and
 /// what GDAL reads feature by feature) keeps no more than a few chunks in memory.
 
@@ -48,8 +48,9 @@ struct BatchConfiguration {
   std::uint64_t memory_limit = 0;
   std::optional<BatchRobot> robot;
   bool geopackage = built_with_gdal();  ///< obstacles.gpkg; E_FORMAT_UNAVAILABLE in a build without GDAL
-  bool geojson = true;                  ///< obstacles.geojson, facades.geojson, ...
-  bool pictures = true;                 ///< index.html
+  bool geojson = true;             ///< obstacles.geojson, facades.geojson, ...; E_FORMAT_UNAVAILABLE as well, unless
+  bool geojson_in_metres = false;  ///< which other programs take for degrees
+  bool pictures = true;            ///< index.html
 };
 
 /// How it is run; none of it changes the results.
@@ -64,7 +65,8 @@ struct BatchRun {
 };
 
 struct BatchProgress {
-  std::size_t inputs = 0;  ///< of this process
+  std::size_t inputs = 0;         ///< of this process
+  std::uint64_t input_bytes = 0;  ///< of them
   std::size_t inputs_done = 0;
   double share_done = 0.0;      ///< 0 to 1, by size of the inputs
   std::uint64_t obstacles = 0;  ///< so far, in this run
@@ -97,7 +99,7 @@ struct BatchSummary {
   std::uint64_t vertices = 0;
   std::uint64_t no_half_plane = 0;  ///< null among the robot's half-planes: it overlaps the shape
   double seconds = 0.0;             ///< of this run
-  std::uint64_t obstacles_now = 0;  ///< taken apart in this run; less than all after a resumption
+  std::uint64_t obstacles_now = 0;  ///< processed in this run; less than all after a resumption
   std::uint64_t vertices_now = 0;
 };
 
@@ -117,9 +119,9 @@ struct EarlierBatch {
 
 struct BatchResult {
   BatchEnd end = BatchEnd::complete;
-  BatchSummary summary;          ///< of a complete one
-  bool was_complete = false;     ///< nothing was left to do, or another process of the same batch was quicker to end it
-  bool was_bound_ahead = false;  ///< the outputs grew while parts were being made
+  BatchSummary summary;       ///< of a complete one
+  bool was_complete = false;  ///< nothing was left to do, or another process of the same batch was quicker to end it
+  bool was_merged_ahead = false;        ///< the outputs grew while parts were being made
   std::vector<EarlierBatch> earlier{};  ///< met on the way to the inputs; of ranks, the first one's
 };
 
@@ -135,8 +137,8 @@ BatchResult run_batch(const BatchConfiguration& configuration, const BatchRun& r
 /// Whether this process is one of several that mpirun has started, in a build with MPI.
 bool under_mpi();
 
-/// The same over all ranks: the first hands out inputs one by one and puts the parts together, the others take them
-/// apart. The result is that of the first rank; the others' is `incomplete`. REQUIRES: under_mpi().
+/// The same over all ranks: the first hands out inputs one by one and merges the parts, the others process them. The
+/// result is that of the first rank; the others' is `incomplete`. REQUIRES: under_mpi().
 BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const BatchRun& run,
                                  const BatchWatch& watch = {});
 

@@ -10,9 +10,10 @@
 /// degrees (a geographic reference system; GeoJSON unless told otherwise, RFC 7946) is brought to local metres by the
 /// azimuthal equidistant projection on its ellipsoid round the middle of its bounding box; that centre is recorded. A
 /// GeoJSON file says that it is in metres by a top-level member `"units": "m"`; a caller says so by
-/// `ReadOptions::units`. A GeoJSON file that says nothing and has a coordinate beyond +-180 or +-90 degrees, by more
-/// than the millionth that writers round by, is taken as metres. The notes of a file read by GDAL say how its units
-/// were decided, round what centre it was projected, and its extent.
+/// `ReadOptions::units`. One that `write_obstacles` wrote in degrees names its plane in `"local_metres"`
+/// (obstacle_write.h) and is brought to that. A GeoJSON file that says nothing and has a coordinate beyond +-180 or
+/// +-90 degrees, by more than the millionth that writers round by, is taken as metres. The notes of a file read by GDAL
+/// say how its units were decided, round what centre it was projected, and its extent.
 ///
 /// Heights (Z, M) are dropped. Points are no obstacles: passed over, with a note. A coordinate beyond
 /// kLargestCoordinate is refused (E_RANGE), whatever the format.
@@ -20,11 +21,13 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/local_plane.h"
 #include "exactvo/datasets/repair.h"
 #include "exactvo/formation/scenario.h"
 
@@ -47,6 +50,8 @@ struct ReadOptions {
       0.0;  ///< m, >= 0: side of a grid's or scan's cell; 0: 1 m for grids without a scale, 0.05 m for scans
   /// False: the first obstacle that can't be used throws. True: it is put into `rejected` and reading goes on.
   bool keep_going = false;
+  /// True: `ObstacleFile::properties` are kept.
+  bool keep_properties = false;
   /// True: what `repair` (repair.h) mends is no refusal. A polygon may become several obstacles: "7", "7-2", "7-3".
   bool repair = false;
 };
@@ -64,7 +69,11 @@ struct PlaceInFile {
   bool is_degrees = false;  ///< longitude, latitude; else units of the file's reference system
 };
 
-/// One problem of one ring, mended or not. Every one that was found, also of obstacles that were refused.
+/// Of a file so many findings are listed, the others counted (`ObstacleFile::unlisted`): what is said of a file must
+/// not take a hundred times its size.
+inline constexpr std::size_t kMostFindings = 100'000;
+
+/// One problem of one ring, mended or not; also of obstacles that were refused.
 struct RingFinding {
   DataCode code = DataCode::self_intersection;
   std::string place;       ///< "feature 3, ring 0, vertex 17"
@@ -96,10 +105,10 @@ struct RepairRecord {
   RepairFacts after;
 };
 
-/// Longitude and latitude that became (0, 0), degrees.
-struct ProjectionOrigin {
-  double longitude = 0.0;
-  double latitude = 0.0;
+/// What a file says of a feature beside its shape, as JSON texts.
+struct FeatureProperties {
+  std::string id;       ///< a number or a string, as the file gives it; empty where it gives none
+  std::string members;  ///< an object; empty where there are none
 };
 
 /// The box of all vertices of the obstacles that were taken, m.
@@ -129,13 +138,17 @@ struct ObstacleFile {
   std::string file;
   std::string format;  ///< the one that was used
   std::vector<formation::SceneObstacle> obstacles;
+  std::vector<FeatureProperties>
+      properties;    ///< with `keep_properties`: one an obstacle; empty where no feature has any
+  LocalPlane plane;  ///< of the obstacles' coordinates; unplaced where layers lie on several
   std::vector<DataNote> notes;
-  std::vector<RingFinding> findings;       ///< in the order of the file
-  std::vector<DataError> rejected;         ///< only with `keep_going`
-  std::vector<RepairRecord> repairs;       ///< only with `repair`: of every polygon that had a problem
-  std::optional<ProjectionOrigin> origin;  ///< where degrees were projected
-  std::optional<Extent> extent;            ///< none without obstacles
-  std::optional<Coverage> coverage;        ///< of grids and scans
+  std::vector<RingFinding> findings;         ///< in the order of the file; kMostFindings at most
+  std::map<DataCode, std::size_t> unlisted;  ///< findings that are not listed, by code
+  std::vector<DataError> rejected;           ///< only with `keep_going`
+  std::vector<RepairRecord> repairs;         ///< only with `repair`: of every polygon that had a problem
+  std::optional<ProjectionOrigin> origin;    ///< where degrees were projected
+  std::optional<Extent> extent;              ///< none without obstacles
+  std::optional<Coverage> coverage;          ///< of grids and scans
   ReadCounts counts;
 };
 
@@ -148,6 +161,7 @@ struct ObstacleStream {
   std::function<void(formation::SceneObstacle obstacle, bool repaired)> obstacle;
   std::function<void(DataError error)> rejected;
   std::function<void(double share)> progress;  ///< of the file that is read, 0 to 1; only where a reader knows
+  std::function<void(const LocalPlane& plane)> plane{};  ///< of the obstacles that follow; only where a reader knows
 };
 
 /// The same, obstacle by obstacle: what comes back holds the counts and what concerns the file as a whole, but no

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Text from files, pipes and standard input, and how a program stops a reader that waits for the other end of a pipe
+/// or reads a long file.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace exactvo::datasets {
+
+/// `hook` is called at least ten times a second while a reader waits, and once for every geometry it reads; what it
+/// throws ends the reading and comes out of it. One hook for the whole process, called from whatever thread reads; null
+/// takes it away.
+void set_wait_hook(void (*hook)());
+
+/// Calls the hook, if there is one.
+void call_wait_hook();
+
+/// Bytes: what is read whole must fit into memory several times.
+inline constexpr std::uint64_t kLargestWholeFile = std::uint64_t{1} << 31;
+
+/// The bytes of a regular file or a pipe; a pipe is waited for. Throws DataError: E_FILE_MISSING, E_FILE_UNREADABLE
+/// (also a directory, a device, a socket), E_SIZE beyond kLargestWholeFile.
+std::string read_text_file(const std::filesystem::path& path);
+
+/// Standard input to its end, whatever it is.
+std::string read_standard_input();
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What a batch writes of an obstacle for maps: features in layers, the same for GeoPackage and GeoJSON.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "exactvo/geometry/obstacle_shapes.h"
+
+namespace exactvo::datasets::batch {
+
+enum class FieldType { text, real, integer };
+
+struct Field {
+  const char* name;
+  FieldType type;
+};
+
+struct Layer {
+  const char* name;
+  std::vector<Field> fields;
+};
+
+/// obstacles, facades, pieces, hulls, ellipses.
+const std::vector<Layer>& layers();
+
+using Value = std::variant<std::string, double, std::int64_t>;
+
+/// A polygon has rings (not closed here), a line has one and is open.
+struct Feature {
+  std::size_t layer = 0;
+  bool is_polygon = false;
+  std::vector<geometry::Ring> rings;
+  std::vector<Value> values;  ///< in the order of the layer's fields
+};
+
+/// Who the obstacle is.
+struct FeatureHead {
+  std::string file;
+  std::string id;
+  std::string key;  ///< "FILE#NUMBER": what the rows of all layers have in common
+  std::string outcome;
+};
+
+using TakeFeature = std::function<void(const Feature& feature)>;
+/// Gives every feature of one obstacle, layer by layer; together they would take much more room than what is written of
+/// them. Outlines of ellipses are rounded to a 10,000th of their size: for looking at; the ellipse itself stands in the
+/// fields.
+void features_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes, const TakeFeature& take);
+
+/// A line of GeoJSON, without comma or newline. `place` says what is written of a ring's or a line's points; where it
+/// throws DataError they have no place on earth, and the geometry is null.
+std::string to_geojson(const Feature& feature, const std::function<geometry::Ring(geometry::Ring)>& place);
+
+/// Appends the feature to `bytes` for `read_row`.
+void append_row(std::string& bytes, const Feature& feature);
+/// Takes the next one off the front. The geometry comes as well-known binary. REQUIRES: what append_row wrote.
+struct Row {
+  std::size_t layer = 0;
+  std::string_view wkb;
+  std::vector<Value> values;
+};
+Row read_row(std::string_view& bytes);
+
+/// Points of the boundary for drawing.
+geometry::Ring outline_of(const geometry::Ellipse& ellipse, int points);
+
+}  // namespace exactvo::datasets::batch

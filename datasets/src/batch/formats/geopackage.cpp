@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch/formats/geopackage.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "batch/formats/features.h"
+#include "batch/formats/package_schema.h"
+#include "batch/formats/packed_rtree.h"
+#include "batch/formats/sqlite_file.h"
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/require.h"
+#include "system_error.h"
+
+namespace exactvo::datasets::batch {
+namespace {
+
+// --- Geometries ---
+
+/// As the machines are that this runs on; the same number in well-known binary and in a GeoPackage's flags.
+constexpr char kLittleEndian = 1;
+
+struct Extent {
+  double min_x = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity();
+  double min_y = std::numeric_limits<double>::infinity();
+  double max_y = -std::numeric_limits<double>::infinity();
+
+  void add(double x, double y) {
+    min_x = std::min(min_x, x);
+    max_x = std::max(max_x, x);
+    min_y = std::min(min_y, y);
+    max_y = std::max(max_y, y);
+  }
+  void add(const Extent& other) {
+    add(other.min_x, other.min_y);
+    add(other.max_x, other.max_y);
+  }
+  Box box() const { return {rounded_down(min_x), rounded_up(max_x), rounded_down(min_y), rounded_up(max_y)}; }
+};
+
+template <class T>
+T take(std::string_view& bytes) {
+  EXACTVO_REQUIRE(bytes.size() >= sizeof(T), std::to_string(bytes.size()) + " bytes left of a geometry");
+  T value;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  bytes.remove_prefix(sizeof value);
+  return value;
+}
+
+/// Of the line, or of the first ring, which goes round the others. REQUIRES: a point in it, the byte order of `take`.
+Extent extent_of(std::string_view wkb) {
+  constexpr std::uint32_t kPolygon = 3;
+  const int order = take<char>(wkb);
+  EXACTVO_REQUIRE(order == kLittleEndian, "byte order " + std::to_string(order));
+  if (take<std::uint32_t>(wkb) == kPolygon) wkb.remove_prefix(sizeof(std::uint32_t));
+  Extent extent;
+  for (auto points = take<std::uint32_t>(wkb); points > 0; --points) {
+    const auto x = take<double>(wkb);
+    extent.add(x, take<double>(wkb));
+  }
+  EXACTVO_REQUIRE(extent.min_x <= extent.max_x && extent.min_y <= extent.max_y, "a geometry without a point");
+  return extent;
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+  char raw[sizeof value];
+  std::memcpy(raw, &value, sizeof value);
+  bytes.append(raw, sizeof value);
+}
+
+/// OGC 12-128, 2.1.3: "GP", a version, flags, the reference system, the extent, well-known binary.
+void write_geometry(const Row& row, std::int32_t reference, const Extent& extent, std::string& bytes) {
+  constexpr char kVersion = 0;
+  constexpr char kExtentOfTwoDimensions = 1 << 1;
+  bytes = {'G', 'P', kVersion, kLittleEndian | kExtentOfTwoDimensions};
+  append(bytes, reference);
+  for (const double side : {extent.min_x, extent.max_x, extent.min_y, extent.max_y}) append(bytes, side);
+  bytes += row.wkb;
+}
+
+// --- Tables ---
+
+std::string insertion_into(const Layer& layer) {
+  std::string columns = "INSERT INTO " + sql_name(layer.name) + " (fid, geom";
+  std::string values = ") VALUES (?, ?";
+  for (const Field& field : layer.fields) {
+    columns += ", " + sql_name(field.name);
+    values += ", ?";
+  }
+  return columns + values + ")";
+}
+
+std::int32_t reference_of(SqliteFile& file, const Layer& layer) {
+  SqliteStatement find(file, "SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = ?");
+  const bool is_there = find.bind_text(0, layer.name).step();
+  EXACTVO_REQUIRE(is_there, std::string("no geometries of ") + layer.name + " in the schema");
+  return static_cast<std::int32_t>(find.integer(0));
+}
+
+class LayerTable {
+ public:
+  LayerTable(SqliteFile& file, const Layer& layer)
+      : name_(layer.name),
+        insert_(file, insertion_into(layer)),
+        index_(file, "rtree_" + name_ + "_geom"),
+        reference_(reference_of(file, layer)) {}
+
+  void add(const Row& row) {
+    const Extent extent = extent_of(row.wkb);
+    write_geometry(row, reference_, extent, geometry_);
+    insert_.bind(0, ++rows_).bind_bytes(1, geometry_);
+    for (std::size_t k = 0; k < row.values.size(); ++k) bind(static_cast<int>(k) + 2, row.values[k]);
+    insert_.run();
+    index_.add(rows_, extent.box());
+    extent_.add(extent);
+  }
+
+  void finish(SqliteFile& file) {
+    index_.finish();
+    SqliteStatement count(file, "UPDATE gpkg_ogr_contents SET feature_count = ? WHERE table_name = ?");
+    count.bind(0, rows_).bind_text(1, name_).run();
+    if (rows_ == 0) return;
+    SqliteStatement place(file,
+                          "UPDATE gpkg_contents SET min_x = ?, max_x = ?, min_y = ?, max_y = ? WHERE table_name = ?");
+    place.bind(0, extent_.min_x).bind(1, extent_.max_x).bind(2, extent_.min_y).bind(3, extent_.max_y);
+    place.bind_text(4, name_).run();
+  }
+
+ private:
+  void bind(int column, const Value& value) {
+    if (const auto* number = std::get_if<std::int64_t>(&value)) {
+      insert_.bind(column, *number);
+    } else if (const auto* real = std::get_if<double>(&value)) {
+      insert_.bind(column, *real);
+    } else {
+      insert_.bind_text(column, std::get<std::string>(value));
+    }
+  }
+
+  std::string name_;
+  SqliteStatement insert_;
+  PackedRtree index_;
+  std::int32_t reference_;
+  std::int64_t rows_ = 0;
+  Extent extent_;
+  std::string geometry_;
+};
+
+/// What keeps counts and indices up to date row by row is set aside while all rows come: each would cost as much as its
+/// row, and they call functions that GDAL has and SQLite has not.
+std::vector<std::string> take_triggers(SqliteFile& file) {
+  std::vector<std::string> names;
+  std::vector<std::string> definitions;
+  SqliteStatement triggers(file, "SELECT name, sql FROM sqlite_master WHERE type = 'trigger' ORDER BY rowid");
+  while (triggers.step()) {
+    names.push_back(triggers.text(0));
+    definitions.push_back(triggers.text(1));
+  }
+  for (const std::string& name : names) file.run("DROP TRIGGER " + sql_name(name));
+  return definitions;
+}
+
+void write_file(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << bytes << std::flush;
+  if (!file) throw cannot_write(path, errno);
+}
+
+void sync_file(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) throw cannot_write(path, errno);
+  const int failed = ::fsync(descriptor) != 0 ? errno : 0;
+  ::close(descriptor);
+  if (failed != 0) throw cannot_write(path, failed);
+}
+
+class WrittenGeoPackage final : public GeoPackage {
+ public:
+  /// `path` holds the schema.
+  explicit WrittenGeoPackage(const std::filesystem::path& path) : path_(path), file_(path) {
+    // 16 MB of pages in memory.
+    file_.run("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; PRAGMA cache_size = -16384; BEGIN");
+    triggers_ = take_triggers(file_);
+    for (const Layer& layer : layers()) tables_.push_back(std::make_unique<LayerTable>(file_, layer));
+  }
+
+  void add(std::string_view rows) override {
+    while (!rows.empty()) {
+      const Row row = read_row(rows);
+      tables_[row.layer]->add(row);
+    }
+  }
+
+  void finish() override {
+    for (const auto& table : tables_) table->finish(file_);
+    tables_.clear();
+    for (const std::string& trigger : triggers_) file_.run(trigger);
+    file_.run("COMMIT");
+    file_.close();
+    sync_file(path_);
+  }
+
+ private:
+  std::filesystem::path path_;
+  SqliteFile file_;
+  std::vector<std::string> triggers_;
+  std::vector<std::unique_ptr<LayerTable>> tables_;
+};
+
+}  // namespace
+
+std::unique_ptr<GeoPackage> make_geopackage(const std::filesystem::path& path, const std::string& provenance) {
+  write_file(path, empty_package(provenance, path));
+  return std::make_unique<WrittenGeoPackage>(path);
+}
+
+}  // namespace exactvo::datasets::batch

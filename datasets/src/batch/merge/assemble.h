@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The end of a batch: what was merged and what is left, in order of inputs and chunks; memory holds one part at a
+/// time.
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "batch/merge/outputs.h"
+#include "batch/merge/summary.h"
+#include "batch/plan/journal.h"
+#include "exactvo/datasets/batch.h"
+
+namespace exactvo::datasets::batch {
+
+/// JSON; the same in every output and at any time.
+std::string provenance_of(const Identity& identity, const BatchRun& run);
+
+/// Whether every input has its facts.
+bool all_there(const Journal& journal, std::size_t inputs);
+
+/// Merges all parts of so many inputs from the disk, in `journal.final_folder()`, started before. What `before_each`
+/// part throws, it throws.
+std::unique_ptr<Outputs> merge_all(const Journal& journal, std::size_t inputs, const BatchConfiguration& configuration,
+                                   const std::string& provenance, const std::function<void()>& before_each);
+
+/// Finishes `outputs`, which hold all parts, writes what is missing beside them, and publishes everything.
+BatchSummary finish_outputs(std::unique_ptr<Outputs> outputs, const Journal& journal, const Identity& identity,
+                            const BatchConfiguration& configuration, const std::string& provenance, Times times);
+
+}  // namespace exactvo::datasets::batch

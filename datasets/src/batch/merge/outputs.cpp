@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch/merge/outputs.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "batch/formats/features.h"
+#include "gdal/vector_library.h"
+
+namespace exactvo::datasets::batch {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// obstacles.geojson and so on.
+class GeoJsonLayers {
+ public:
+  GeoJsonLayers(const fs::path& folder, bool in_metres, const std::string& provenance) {
+    const std::string units = in_metres ? ",\"units\":\"m\"" : "";
+    for (const Layer& layer : layers()) {
+      files_.push_back({output_file(folder / (std::string(layer.name) + ".geojson")), true});
+      files_.back().file->write("{\"type\":\"FeatureCollection\",\"name\":\"" + std::string(layer.name) + "\"" + units +
+                                ",\"provenance\":" + provenance + ",\"features\":[\n");
+    }
+  }
+
+  void add(const PartView& part) {
+    for (std::size_t k = 0; k < files_.size(); ++k) {
+      if (part.features[k].empty()) continue;
+      if (!std::exchange(files_[k].empty, false)) files_[k].file->write(",\n");
+      files_[k].file->write(part.features[k]);
+    }
+  }
+
+  void finish() {
+    for (Open& open : files_) {
+      open.file->write("\n]}\n");
+      open.file->commit();
+    }
+  }
+
+ private:
+  struct Open {
+    std::unique_ptr<AtomicFile> file;
+    bool empty = true;
+  };
+  std::vector<Open> files_;
+};
+
+}  // namespace
+
+struct Outputs::Inside {
+  Inside(const fs::path& folder, const BatchConfiguration& configuration, const std::string& provenance)
+      : figures(output_file(folder / "figures.jsonl")) {
+    figures->write("{\"provenance\":" + provenance + "}\n");
+    if (configuration.geojson) geojson.emplace(folder, configuration.geojson_in_metres, provenance);
+    if (configuration.geopackage) geopackage = vector_library().make_geopackage(folder / "obstacles.gpkg", provenance);
+  }
+
+  PartCounts counts;
+  std::unique_ptr<AtomicFile> figures;
+  std::optional<GeoJsonLayers> geojson;
+  std::unique_ptr<GeoPackage> geopackage;
+};
+
+Outputs::Outputs(const fs::path& folder, const BatchConfiguration& configuration, const std::string& provenance)
+    : inside_(std::make_unique<Inside>(folder, configuration, provenance)) {}
+
+Outputs::~Outputs() = default;
+
+void Outputs::add(const PartView& part) {
+  inside_->figures->write(part.figures);
+  if (inside_->geojson) inside_->geojson->add(part);
+  if (inside_->geopackage) inside_->geopackage->add(part.rows);
+  inside_->counts.obstacles += part.counts.obstacles;
+  inside_->counts.certified += part.counts.certified;
+  inside_->counts.vertices += part.counts.vertices;
+  inside_->counts.no_half_plane += part.counts.no_half_plane;
+}
+
+void Outputs::finish() {
+  inside_->figures->commit();
+  if (inside_->geojson) inside_->geojson->finish();
+  if (inside_->geopackage) inside_->geopackage->finish();
+}
+
+const PartCounts& Outputs::counts() const {
+  return inside_->counts;
+}
+
+std::unique_ptr<AtomicFile> output_file(const fs::path& path) {
+  return std::make_unique<AtomicFile>(path, MissingFolder::is_refused);
+}
+
+}  // namespace exactvo::datasets::batch

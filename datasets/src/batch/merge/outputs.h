@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The files of a batch that grow part by part: figures.jsonl, the GeoJSON layers, the GeoPackage. The same parts in
+/// the same order give the same bytes. (What tells how all ended, the pictures' pages and the summary, comes last:
+/// pages.h, summary.h.)
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "batch/work/part.h"
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/batch.h"
+
+namespace exactvo::datasets::batch {
+
+class Outputs {
+ public:
+  /// Starts them in `folder`, which must be there. Throws DataError (E_FILE_UNWRITABLE), as the others do.
+  Outputs(const std::filesystem::path& folder, const BatchConfiguration& configuration, const std::string& provenance);
+  ~Outputs();
+  Outputs(const Outputs&) = delete;
+  Outputs& operator=(const Outputs&) = delete;
+
+  /// From one thread at a time.
+  void add(const PartView& part);
+  /// Syncs and names them.
+  void finish();
+
+  /// Of the parts added.
+  const PartCounts& counts() const;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+/// On a file system without locks another process may be through first and take the folder away. Made anew it would
+/// hold some of the outputs only, and `Journal::publish` takes the others for an earlier batch's.
+std::unique_ptr<AtomicFile> output_file(const std::filesystem::path& path);
+
+}  // namespace exactvo::datasets::batch

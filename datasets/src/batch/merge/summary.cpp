@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch/merge/summary.h"
+
+#include <optional>
+
+#include "exactvo/datasets/provenance.h"
+#include "json_text.h"
+#include "text_file.h"
+
+namespace exactvo::datasets::batch {
+namespace {
+
+namespace fs = std::filesystem;
+
+// --- Counting ---
+
+void add(BatchTally& sum, const BatchTally& one) {
+  sum.read += one.read;
+  sum.done += one.done;
+  sum.repaired += one.repaired;
+  for (const auto& [code, count] : one.rejected) sum.rejected[code] += count;
+}
+
+constexpr const char* kRejected = "rejected";
+
+void count_file(BatchTally& files, const InputFacts& facts) {
+  ++files.read;
+  if (facts.outcome == kRejected) {
+    ++files.rejected[facts.code];
+  } else {
+    ++(facts.outcome == "repaired" ? files.repaired : files.done);
+  }
+}
+
+// --- Writing ---
+
+void append_tally(JsonWriter& json, const BatchTally& tally) {
+  json.member("read", tally.read).member("done", tally.done).member("repaired", tally.repaired);
+  json.key("rejected").begin_object();
+  for (const auto& [code, count] : tally.rejected) json.member(code, count);
+  json.end_object();
+}
+
+std::optional<double> rate(std::uint64_t count, const Times& times) {
+  if (!times.has_rates || count == 0 || !(times.seconds > 0.0)) return std::nullopt;
+  return static_cast<double>(count) / times.seconds;
+}
+
+void append_times(JsonWriter& json, const Times& times) {
+  json.key("times").begin_inline_object().member("written_at", times.written_at);
+  json.member("seconds", times.seconds).member("seconds_of_jobs", times.seconds_of_jobs);
+  json.member("workers", times.workers).member("obstacles", times.obstacles).member("vertices", times.vertices);
+  json.member("obstacles_per_second", rate(times.obstacles, times));
+  json.member("vertices_per_second", rate(times.vertices, times)).end_object();
+}
+
+// --- Reading ---
+
+std::uint64_t sum_of(const Json& rejected, std::map<std::string, std::uint64_t>& out) {
+  std::uint64_t sum = 0;
+  for (const auto& [code, count] : rejected.items()) sum += out[code] = count.get<std::uint64_t>();
+  return sum;
+}
+
+void parse_tally(const Json& json, BatchTally& tally) {
+  json.at("read").get_to(tally.read);
+  json.at("done").get_to(tally.done);
+  json.at("repaired").get_to(tally.repaired);
+  sum_of(json.at("rejected"), tally.rejected);
+}
+
+}  // namespace
+
+BatchSummary summary_of(const Identity& identity, const std::vector<InputFacts>& facts) {
+  BatchSummary summary;
+  for (std::size_t k = 0; k < facts.size(); ++k) {
+    const InputFacts& one = facts[k];
+    count_file(summary.files, one);
+    if (one.outcome == kRejected) summary.rejected_files.push_back({identity.inputs[k].name, one.code});
+    add(summary.obstacles, one.tally);
+    summary.passed_over += one.passed_over;
+  }
+  return summary;
+}
+
+std::string to_json(const BatchSummary& summary, const Identity& identity, const std::string& provenance,
+                    const std::vector<InputFacts>& facts, const Times& times) {
+  JsonWriter json(JsonWriter::Layout::indented);
+  json.begin_object();
+  append_tally(json, summary.obstacles);
+  json.member("passed_over", summary.passed_over).member("obstacles", summary.obstacles_out);
+  json.member("certified", summary.certified).member("uncertified", summary.uncertified);
+  json.member("vertices", summary.vertices).member("no_half_plane", summary.no_half_plane);
+  json.key("files").begin_inline_object();
+  append_tally(json, summary.files);
+  json.end_object();
+  json.member("version", identity.version).member("commit", identity.commit);
+  json.member("configuration_sha256", sha256_of(identity.configuration));
+  json.key("configuration").raw(identity.configuration);
+  json.key("inputs").begin_array();
+  for (std::size_t k = 0; k < facts.size(); ++k) {
+    json.begin_inline_object().member("path", identity.inputs[k].name).member("sha256", identity.inputs[k].sha256);
+    json.key("facts").raw(to_json(facts[k])).end_object();
+  }
+  json.end_array();
+  json.key("provenance").raw(provenance);
+  append_times(json, times);
+  return json.end_object().take() + "\n";
+}
+
+std::string words_of(const BatchTally& tally, const char* what) {
+  std::string text = std::to_string(tally.read) + " " + what + ": " + std::to_string(tally.done) + " done, " +
+                     std::to_string(tally.repaired) + " repaired, " + std::to_string(tally.rejected_in_all()) +
+                     " rejected";
+  for (const auto& [code, count] : tally.rejected) text += ", " + code + " " + std::to_string(count);
+  return text;
+}
+
+std::string words_of(const InputFacts& facts) {
+  if (!facts.message.empty()) return facts.message;
+  return facts.outcome + "; " + words_of(facts.tally, "obstacles");
+}
+
+BatchSummary read_summary(const fs::path& out) {
+  const fs::path path = out / "summary.json";
+  const Json json = parse_json(read_text_file(path), path.string());
+  BatchSummary summary;
+  try {
+    parse_tally(json, summary.obstacles);
+    parse_tally(json.at("files"), summary.files);
+    json.at("passed_over").get_to(summary.passed_over);
+    json.at("obstacles").get_to(summary.obstacles_out);
+    json.at("certified").get_to(summary.certified);
+    json.at("uncertified").get_to(summary.uncertified);
+    json.at("vertices").get_to(summary.vertices);
+    json.at("no_half_plane").get_to(summary.no_half_plane);
+    for (const Json& input : json.at("inputs")) {
+      const Json& facts = input.at("facts");
+      if (facts.at("outcome") == kRejected)
+        summary.rejected_files.push_back({input.at("path").get<std::string>(), facts.at("code").get<std::string>()});
+    }
+  } catch (const nlohmann::detail::exception& error) {
+    throw DataError(DataCode::wrong_type, path.string(), "", error.what(), "a summary as a batch writes it");
+  }
+  return summary;
+}
+
+}  // namespace exactvo::datasets::batch

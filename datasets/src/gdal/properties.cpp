@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gdal/properties.h"
+
+#include <cmath>
+
+#include "json_cursor.h"
+
+namespace exactvo::datasets {
+namespace {
+
+void append_list(JsonWriter& json, const OGRFeature& feature, int field) {
+  json.begin_array();
+  int count = 0;
+  switch (feature.GetFieldDefnRef(field)->GetType()) {
+    case OFTIntegerList: {
+      const int* numbers = feature.GetFieldAsIntegerList(field, &count);
+      for (int k = 0; k < count; ++k) json.value(numbers[k]);
+      break;
+    }
+    case OFTInteger64List: {
+      const GIntBig* numbers = feature.GetFieldAsInteger64List(field, &count);
+      for (int k = 0; k < count; ++k) json.raw(std::to_string(numbers[k]));
+      break;
+    }
+    case OFTRealList: {
+      const double* numbers = feature.GetFieldAsDoubleList(field, &count);
+      for (int k = 0; k < count; ++k) json.value(numbers[k]);
+      break;
+    }
+    default: {
+      char** texts = feature.GetFieldAsStringList(field);
+      for (; texts != nullptr && *texts != nullptr; ++texts) json.value(*texts);
+    }
+  }
+  json.end_array();
+}
+
+void append_value(JsonWriter& json, const OGRFeature& feature, int field) {
+  const OGRFieldDefn& definition = *feature.GetFieldDefnRef(field);
+  if (feature.IsFieldNull(field)) {
+    json.null();
+    return;
+  }
+  switch (definition.GetType()) {
+    case OFTInteger:
+      if (definition.GetSubType() == OFSTBoolean) {
+        json.value(feature.GetFieldAsInteger(field) != 0);
+      } else {
+        json.value(feature.GetFieldAsInteger(field));
+      }
+      break;
+    case OFTInteger64:
+      json.raw(std::to_string(feature.GetFieldAsInteger64(field)));
+      break;
+    case OFTReal:
+      json.value(feature.GetFieldAsDouble(field));
+      break;
+    case OFTIntegerList:
+    case OFTInteger64List:
+    case OFTRealList:
+    case OFTStringList:
+      append_list(json, feature, field);
+      break;
+    default:
+      json.value(feature.GetFieldAsString(field));
+  }
+}
+
+/// The driver calls the geometries of a CSV's column X "X" or "geom_X", and "" those of a column WKT.
+bool is_column_of_geometry(const OGRFeature& feature, const std::string& field) {
+  if (feature.GetGeomFieldCount() == 0) return false;
+  const std::string name = feature.GetGeomFieldDefnRef(0)->GetNameRef();
+  return field == name || "geom_" + field == name || (name.empty() && EQUAL(field.c_str(), "WKT"));
+}
+
+double bounded(const JsonCursor& at, double largest) {
+  const double number = at.number();
+  if (!(std::fabs(number) <= largest)) at.refuse("a number within " + std::to_string(largest), DataCode::out_of_range);
+  return number;
+}
+
+}  // namespace
+
+FeatureProperties properties_of_geojson(std::string_view record) {
+  const Json feature = Json::parse(record, nullptr, false);
+  FeatureProperties properties;
+  if (!feature.is_object()) return properties;
+  const auto members = feature.find("properties");
+  const auto id = feature.find("id");
+  if (members != feature.end() && members->is_object() && !members->empty()) properties.members = members->dump();
+  if (id != feature.end() && (id->is_string() || id->is_number())) properties.id = id->dump();
+  return properties;
+}
+
+FeatureProperties properties_of(const OGRFeature& feature, bool with_id) {
+  FeatureProperties properties;
+  if (with_id && feature.GetFID() != OGRNullFID) properties.id = std::to_string(feature.GetFID());
+  JsonWriter json(JsonWriter::Layout::compact);
+  json.begin_object();
+  bool any = false;
+  for (int k = 0; k < feature.GetFieldCount(); ++k) {
+    const std::string name = feature.GetFieldDefnRef(k)->GetNameRef();
+    if (!feature.IsFieldSet(k) || is_column_of_geometry(feature, name)) continue;
+    json.key(name);
+    append_value(json, feature, k);
+    any = true;
+  }
+  json.end_object();
+  if (any) properties.members = json.take();
+  return properties;
+}
+
+geometry::Vec2 GivenPlane::rounded(geometry::Vec2 p) const {
+  if (decimals < 0) return p;
+  const double places = std::pow(10.0, decimals);
+  return {std::round(p.x * places) / places + 0.0, std::round(p.y * places) / places + 0.0};
+}
+
+GivenPlane given_plane(const Json& collection, const std::string& file) {
+  GivenPlane given;
+  const auto member = collection.find("local_metres");
+  if (member == collection.end()) return given;
+  const JsonCursor at = JsonCursor(collection, file, "").at("local_metres");
+  if (at.has("reference_system")) {
+    given.plane.reference_system = at.at("reference_system").text();
+  } else {
+    const JsonCursor centre = at.at("centre");
+    if (centre.size() != 2) centre.refuse("[longitude, latitude]", DataCode::wrong_count);
+    given.plane.origin = ProjectionOrigin{bounded(centre.at(std::size_t{0}), 180.0), bounded(centre.at(1), 90.0)};
+  }
+  if (at.has("offset")) {
+    const JsonCursor offset = at.at("offset");
+    if (offset.size() != 2) offset.refuse("[x, y], m", DataCode::wrong_count);
+    given.plane.offset = {bounded(offset.at(std::size_t{0}), kLargestCoordinate),
+                          bounded(offset.at(1), kLargestCoordinate)};
+  }
+  if (at.has("is_placed")) given.is_placed = at.at("is_placed").truth();
+  if (at.has("decimals")) given.decimals = static_cast<int>(bounded(at.at("decimals"), 9.0));
+  return given;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What a feature has beside its shape, and what a GeoJSON file that we wrote says of its plane.
+
+#include <ogr_feature.h>
+
+#include <string>
+#include <string_view>
+
+#include "exactvo/datasets/obstacle_file.h"
+#include "json_text.h"
+
+namespace exactvo::datasets {
+
+/// Of a feature's text, byte for byte but for white space; nothing of what is no feature or no JSON.
+FeatureProperties properties_of_geojson(std::string_view record);
+
+/// Of the feature's fields, but for the column that its geometry was read from. `with_id`: the feature's number counts.
+FeatureProperties properties_of(const OGRFeature& feature, bool with_id);
+
+/// GeoJSON's top-level member "local_metres" (obstacle_write.h).
+struct GivenPlane {
+  LocalPlane plane;  ///< its origin is that of the projection, also where it is no place on earth
+  bool is_placed = true;
+  int decimals = -1;  ///< of the metres; below 0: not known
+
+  geometry::Vec2 rounded(geometry::Vec2 p) const;
+};
+
+/// Throws DataError (E_TYPE, E_RANGE) where it is not as we write it. Without the member: nothing.
+GivenPlane given_plane(const Json& collection, const std::string& file);
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inputs that are no regular files: pipes are read, and every wait for one ends at a signal; devices, folders and
+// sockets are refused, as inputs and as outputs.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSquare = "POLYGON ((0 0, 6 0, 6 4, 0 4, 0 0))\n";
+
+void make_pipe(const Workplace& here, const std::string& name) {
+  ASSERT_EQ(::mkfifo((here.path() / name).c_str(), 0600), 0) << std::strerror(errno);
+}
+
+/// The program in the background, with its stdin at the reading end of a pipe that nobody writes to.
+class Running {
+ public:
+  Running(const Workplace& here, std::vector<std::string> words) {
+    words.insert(words.begin(), EXACTVO_PROGRAM);
+    int ends[2];
+    EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+    stdin_ = ends[1];
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      ::dup2(ends[0], STDIN_FILENO);
+      const std::string err = (here.path() / "err").string();
+      const int messages = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+      ::dup2(messages, STDERR_FILENO);
+      ::dup2(messages, STDOUT_FILENO);
+      std::vector<char*> argv;
+      for (std::string& word : words) argv.push_back(word.data());
+      argv.push_back(nullptr);
+      if (::chdir(here.path().c_str()) == 0) ::execv(EXACTVO_PROGRAM, argv.data());
+      ::_exit(127);
+    }
+    ::close(ends[0]);
+  }
+  ~Running() { ::close(stdin_); }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  /// Sleeping and having used no processor for a while: it waits.
+  void await_rest() const {
+    std::string before;
+    for (int equal = 0; equal < 5; std::this_thread::sleep_for(std::chrono::milliseconds(100))) {
+      const std::string now = switches_and_state();
+      if (now.empty() || now.front() == 'Z') return;  // it has ended, which its status will say
+      equal = now == before && now.front() == 'S' ? equal + 1 : 0;
+      before = now;
+    }
+  }
+
+  int status_after(int signal) const {
+    await_rest();
+    EXPECT_EQ(::kill(pid_, signal), 0);
+    return status();
+  }
+  int status() const {
+    int status = 0;
+    EXPECT_EQ(::waitpid(pid_, &status, 0), pid_);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  /// State and processor time of /proc/PID/stat, fields 3, 14 and 15.
+  std::string switches_and_state() const {
+    std::FILE* file = std::fopen(("/proc/" + std::to_string(pid_) + "/stat").c_str(), "r");
+    if (file == nullptr) return "S gone";
+    char state = '?';
+    unsigned long user = 0;
+    unsigned long system = 0;
+    const int read =
+        std::fscanf(file, "%*d %*s %c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &state, &user, &system);
+    std::fclose(file);
+    return read == 3 ? std::string(1, state) + " " + std::to_string(user) + " " + std::to_string(system) : "";
+  }
+
+  pid_t pid_ = -1;
+  int stdin_ = -1;
+};
+
+TEST(Pipes, AWaitForAWriterEndsAtASignalInEveryVerb) {
+  const Workplace here;
+  make_pipe(here, "p.wkt");
+  make_pipe(here, "p.geojson");
+  make_pipe(here, "p.json");
+  const std::vector<std::vector<std::string>> commands{
+      {"validate", "p.wkt"},
+      {"validate", "p.geojson"},
+      {"validate", "--format", "gdal", "p.wkt"},
+      {"repair", "p.wkt", "--out", "o.wkt"},
+      {"convert", "p.wkt", "o.wkt"},
+      {"segment", "p.geojson"},
+      {"simulate", "p.json", "--out", "out"},
+      {"trap", "p.json"},
+      {"explain", "p.json", "--time", "1", "--robot", "0", "--out", "o.svg"},
+      {"lp", "p.json"},
+      {"lp", "-"},
+      {"vo", "--obstacle", "p.wkt", "--position", "9,9", "--velocity", "1,0", "--radius", "0.5", "--time-horizon", "2"},
+      {"audit", "--certificate", "p.json"},
+      {"audit", "--certificate", "-"}};
+  for (std::size_t k = 0; k < commands.size(); ++k) {
+    const int signal = k % 2 == 0 ? SIGTERM : SIGINT;
+    const Running program(here, commands[k]);
+    EXPECT_EQ(program.status_after(signal), 128 + signal) << testing::PrintToString(commands[k]) << here.read("err");
+    EXPECT_THAT(here.read("err"), HasSubstr("interrupted"));
+  }
+  EXPECT_FALSE(here.has("o.wkt"));
+  EXPECT_FALSE(here.has("out"));
+}
+
+TEST(Pipes, AWaitForTheRestEndsAtASignal) {
+  const Workplace here;
+  make_pipe(here, "p.wkt");
+  const Running program(here, {"validate", "p.wkt"});
+  const int writer = ::open((here.path() / "p.wkt").c_str(), O_WRONLY);
+  ASSERT_GE(writer, 0);
+  ASSERT_GT(::write(writer, "POLYGON ((", 10), 0);
+  EXPECT_EQ(program.status_after(SIGTERM), 143);
+  ::close(writer);
+}
+
+TEST(Pipes, WhatComesThroughOneIsReadWhateverReadsIt) {
+  const Workplace here;
+  here.write("a.wkt", kSquare);
+  here.write("b.geojson", R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]})");
+  here.write("empty.wkt", "");
+  for (const std::string name : {"a.wkt", "b.geojson"}) {
+    make_pipe(here, "p-" + name);
+    const std::string copy = "cp " + name + " p-" + name + " & ";
+    const std::string program = "'" EXACTVO_PROGRAM "' validate p-" + name + " 2>err";
+    EXPECT_EQ(std::system(("cd '" + here.path().string() + "'; " + copy + program).c_str()), 0) << here.read("err");
+    EXPECT_THAT(here.read("err"), HasSubstr("p-" + name + ": "));
+    EXPECT_THAT(here.read("err"), HasSubstr("1 read: 1 valid"));
+  }
+  const Outcome nameless = here.run("validate /dev/stdin --format wkt", "cat a.wkt | ");
+  EXPECT_THAT(nameless.err, AllOf(HasSubstr("/dev/stdin: wkt, 1 read"))) << nameless.out;
+  const Outcome nothing = here.run("validate /dev/stdin --format wkt", "cat empty.wkt | ");
+  EXPECT_EQ(nothing.status, 2);
+  EXPECT_THAT(nothing.out, AllOf(HasSubstr("/dev/stdin"), HasSubstr("an empty file")));
+}
+
+TEST(Pipes, DevicesFoldersAndSocketsAreRefused) {
+  const Workplace here;
+  fs::create_directory(here.path() / "folder.wkt");
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, (here.path() / "s.wkt").c_str(), sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(socket, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  for (const std::string input : {"/dev/zero", "/dev/full", "folder.wkt", "s.wkt"}) {
+    for (const std::string verb : {"validate ", "segment ", "simulate --out out ", "lp ", "audit --certificate "}) {
+      const Outcome outcome = here.run(verb + input);
+      EXPECT_EQ(outcome.status, 2) << verb << input;
+      EXPECT_THAT(outcome.err + outcome.out, HasSubstr("E_FILE_UNREADABLE")) << verb << input;
+    }
+  }
+  ::close(socket);
+}
+
+TEST(Pipes, APipeBesideAShapefileIsRefused) {
+  const Workplace here;
+  here.write("a.shp", std::string("\0\0\x27\x0a no shapes", 14));
+  make_pipe(here, "a.dbf");
+  const Outcome outcome = here.run("validate a.shp");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("a.dbf"), HasSubstr("E_FILE_UNREADABLE")));
+}
+
+TEST(Pipes, APictureThatIsOneIsRefused) {
+  const Workplace here;
+  here.write("m.yaml", "image: m.png\nresolution: 1\norigin: [0, 0, 0]\n");
+  make_pipe(here, "m.png");
+  const Outcome outcome = here.run("validate m.yaml");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.out, HasSubstr("m.png"));
+}
+
+TEST(Pipes, NoOutputTakesThePlaceOfAPipeOrADevice) {
+  const Workplace here;
+  here.write("a.wkt", kSquare);
+  make_pipe(here, "p.wkt");
+  fs::create_symlink("/dev/null", here.path() / "null.wkt");
+  for (const std::string arguments :
+       {"convert a.wkt p.wkt", "convert a.wkt null.wkt", "repair a.wkt --out p.wkt", "generate star --out p.wkt"}) {
+    const Outcome outcome = here.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr("E_FILE_UNWRITABLE")) << arguments;
+  }
+  EXPECT_TRUE(fs::is_fifo(here.path() / "p.wkt"));
+  EXPECT_TRUE(fs::is_symlink(here.path() / "null.wkt"));
+}
+
+}  // namespace
+}  // namespace exactvo::test
