@@ -26,10 +26,11 @@ Constraint against_robot(const geometry::HalfPlane& h, bool certified, std::size
   return c;
 }
 
-bool is_active(const lp::Solution& solution, std::size_t index) {
+/// What binds at that constraint; nothing where it does not.
+const lp::ActiveConstraint* active_at(const lp::Solution& solution, std::size_t index) {
   for (std::size_t k = 0; k < solution.active_count; ++k)
-    if (solution.active[k].binding == lp::constraint_at(index)) return true;
-  return false;
+    if (solution.active[k].binding == lp::constraint_at(index)) return &solution.active[k];
+  return nullptr;
 }
 
 /// By the distance of the centres; of robots equally near, by their numbers.
@@ -87,7 +88,8 @@ lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {
   return bound;
 }
 
-RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from, bool active) const {
+RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from,
+                                     const lp::ActiveConstraint* active) const {
   const vo::Body& body = (*bodies_)[c.body];
   RecordedConstraint r;
   r.half_plane = c.half_plane;
@@ -97,7 +99,8 @@ RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from,
   r.piece = c.piece;
   r.certified = c.proof != vo::Proof::none;
   r.hard = c.priority == lp::Priority::hard;
-  r.active = active;
+  r.active = active != nullptr;
+  r.multiplier = active ? active->multiplier : 0.0;
   r.shape = body.shape;
   r.position = from.position;
   r.radius = from.radius;
@@ -118,12 +121,15 @@ void Decider::decide(const DecisionInput& in, RobotStep& step) {
   step.chosen = solution.velocity;
   step.status = solution.status;
   step.violation = solution.violation;
+  step.bound.clear();
+  for (std::size_t k = 0; k < solution.active_count; ++k)
+    if (lp::is_speed_bound(solution.active[k].binding)) step.bound.push_back(solution.active[k]);
   step.uncertified = 0;
   step.constraints.clear();
   std::size_t number = 0;
   for (const std::vector<Constraint>* some : {in.statics, in.others}) {
     for (const Constraint& c : *some) {
-      const bool active = is_active(solution, number++);
+      const lp::ActiveConstraint* active = active_at(solution, number++);
       if (c.proof == vo::Proof::none) ++step.uncertified;
       if (in.keep_all || active) step.constraints.push_back(recorded(c, in.from, active));
     }

@@ -45,7 +45,7 @@ class Decider {
   void decide(const DecisionInput& in, RobotStep& step);
 
  private:
-  RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, bool active) const;
+  RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, const lp::ActiveConstraint* active) const;
 
   const Scenario* scenario_;
   const vo::BodyTable* bodies_;

@@ -76,6 +76,9 @@ class FormationRun {
       move(recording.steps.back());
     }
     recording.steps.push_back(state_row(clock_.time(recording.steps.size())));
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      recording.outlooks.push_back({0.0, i, 0, robots_[i].field.shapes()});
+    recording.bodies = scene_.copied_bodies();
     judge(recording);
     return recording;
   }
@@ -106,7 +109,7 @@ class FormationRun {
     anchors_.clear();
     for (std::size_t i = 0; i < robots_.size(); ++i) anchors_.push_back({anchor(i), anchor_velocity(i)});
     robot_constraints(scenario_, options_, anchors_, scene_, others_);
-    move_obstacles(scenario_, time, scene_);
+    move_obstacles(scenario_, time, scene_, row.moving);
     for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, relative, row.robots[i]);
     return row;
   }
@@ -115,6 +118,8 @@ class FormationRun {
                   RobotStep& step) {
     const Robot& spec = scenario_.robots[i];
     const Viewpoint here{anchor(i), anchor_velocity(i), spec.radius, spec.max_speed};
+    step.anchor = here.position;
+    step.anchor_velocity = here.velocity;
     robots_[i].field.constraints(here, statics_);
     add_moving_constraints(scenario_, here, scene_, others_[i]);
     const Vec2 wanted = wanted_velocity(i, leader, relative);
@@ -192,6 +197,8 @@ class FormationRun {
       RobotStep step;
       step.position = r.body.position;
       step.velocity = r.body.velocity;
+      step.anchor = step.position;
+      step.anchor_velocity = step.velocity;
       row.robots.push_back(step);
     }
     return row;

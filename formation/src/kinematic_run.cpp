@@ -37,7 +37,7 @@ class KinematicRun {
         anchors_(scenario.robots.size()) {
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       robots_.push_back({scenario.robots[i].position, scenario.robots[i].velocity, 0, std::nullopt, {}, false, {}});
-      look_at_goal(i);
+      look_at_goal(i, 0.0);
     }
   }
 
@@ -51,18 +51,20 @@ class KinematicRun {
     }
     recording.steps.push_back(final_row(clock_.time(recording.steps.size())));
     recording.outcome = outcome();
-    recording.later_outlooks = std::move(later_outlooks_);
+    recording.outlooks = std::move(outlooks_);
+    recording.bodies = scene_.copied_bodies();
     return recording;
   }
 
  private:
   Vec2 goal_of(std::size_t i) const { return scenario_.robots[i].goals[robots_[i].goal]; }
 
-  void look_at_goal(std::size_t i) {
+  void look_at_goal(std::size_t i, double time) {
     const Robot& spec = scenario_.robots[i];
     robots_[i].field.emplace(scene_, scenario_, options_, spec.radius, robots_[i].position, goal_of(i),
                              HorizonRule::clamped);
     robots_[i].follower.reset();
+    outlooks_.push_back({time, i, robots_[i].goal, robots_[i].field->shapes()});
   }
 
   bool at_goal(std::size_t i) const {
@@ -82,20 +84,16 @@ class KinematicRun {
     const double reach = std::max(scenario_.arrival_tolerance, spec.radius);
     if (robots_[i].goal + 1 >= spec.goals.size() || norm(goal_of(i) - robots_[i].position) > reach) return;
     ++robots_[i].goal;
-    look_at_goal(i);
+    look_at_goal(i, time);
     robots_[i].note = "goal " + std::to_string(robots_[i].goal) + " passed: heads for the next";
-    Outlook outlook{time, i, robots_[i].goal, {}};
-    for (const vo::BodyTable::Number body : robots_[i].field->shapes())
-      outlook.enclosures.push_back(scene_.bodies()[body].shape);
-    later_outlooks_.push_back(std::move(outlook));
   }
 
   Step decide_all(double time) {
     for (std::size_t i = 0; i < robots_.size(); ++i) anchors_[i] = {robots_[i].position, robots_[i].velocity};
     robot_constraints(scenario_, options_, anchors_, scene_, others_);
-    move_obstacles(scenario_, time, scene_);
     Step row;
     row.time = time;
+    move_obstacles(scenario_, time, scene_, row.moving);
     row.robots.reserve(robots_.size());
     for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time));
     return row;
@@ -111,6 +109,8 @@ class KinematicRun {
     RobotStep step;
     step.position = r.position;
     step.velocity = r.velocity;
+    step.anchor = here.position;
+    step.anchor_velocity = here.velocity;
     step.note = std::exchange(r.note, {});
     const Vec2 preferred = steer(i, time, statics_, step);
     decider_.decide({preferred, here, &statics_, &others_[i], clock_.keeps_all(time)}, step);
@@ -172,6 +172,8 @@ class KinematicRun {
       RobotStep step;
       step.position = robots_[i].position;
       step.velocity = robots_[i].velocity;
+      step.anchor = step.position;
+      step.anchor_velocity = step.velocity;
       if (at_goal(i)) step.mode = Mode::arrived;
       row.robots.push_back(step);
     }
@@ -204,7 +206,7 @@ class KinematicRun {
   RunClock clock_;
   Decider decider_;
   std::vector<KinematicRobot> robots_;
-  std::vector<Outlook> later_outlooks_;
+  std::vector<Outlook> outlooks_;
   // Memory that a step leaves to the next.
   std::vector<Anchor> anchors_;
   std::vector<Constraint> statics_;

@@ -9,16 +9,15 @@
 namespace exactvo::formation::detail {
 
 geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time) {
-  const Vec2 moved = displacement_at(obstacle, time);
-  std::vector<Vec2> points = geometry::vertices_of(obstacle.shape);
-  for (Vec2& p : points) p += moved;
-  return geometry::convex_hull(points);
+  return hull_of(obstacle, displacement_at(obstacle, time));
 }
 
-void move_obstacles(const Scenario& scenario, double time, Scene& scene) {
+void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved) {
   for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
     const MovingObstacle& obstacle = scenario.moving_obstacles[k];
-    scene.bodies().move(scene.moving_obstacle(k), shape_at(obstacle, time), leader_at(obstacle.motion, time).velocity);
+    const MovedObstacle& at =
+        moved.emplace_back(MovedObstacle{displacement_at(obstacle, time), leader_at(obstacle.motion, time).velocity});
+    scene.bodies().move(scene.moving_obstacle(k), hull_of(obstacle, at.displacement), at.velocity);
   }
 }
 
@@ -50,6 +49,12 @@ void add_moving_constraints(const Scenario& scenario, const Viewpoint& from, Sce
 }  // namespace exactvo::formation::detail
 
 namespace exactvo::formation {
+
+geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement) {
+  std::vector<Vec2> points = geometry::vertices_of(obstacle.shape);
+  for (Vec2& p : points) p += displacement;
+  return geometry::convex_hull(points);
+}
 
 Vec2 displacement_at(const MovingObstacle& obstacle, double time) {
   return detail::leader_at(obstacle.motion, time).position - obstacle.motion.path.front();

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "exactvo/formation/recording.h"
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/shapes.h"
 
@@ -19,8 +20,8 @@ class Scene;
 /// The convex hull of the obstacle as it stands at `time`.
 geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time);
 
-/// Brings the bodies of moving obstacles to where they are at `time`.
-void move_obstacles(const Scenario& scenario, double time, Scene& scene);
+/// Brings the bodies of moving obstacles to where they are at `time`, and says where that is.
+void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved);
 
 /// Appends half-planes against every moving obstacle, soft, certified while the obstacle keeps its velocity. REQUIRES:
 /// `move_obstacles` for this time.

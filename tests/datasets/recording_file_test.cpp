@@ -30,20 +30,46 @@ geometry::ConvexShape shape_number(int k, SeededRandom& random) {
   }
 }
 
+/// Bodies of every kind and shape: three robots, a moving obstacle and what stands still.
+std::vector<vo::Body> bodies(SeededRandom& random) {
+  std::vector<vo::Body> all;
+  for (int k = 0; k < 5; ++k)
+    all.push_back({k % 2 ? vo::BodyKind::obstacle_edge : vo::BodyKind::enclosure, shape_number(k, random), {}, {0}});
+  for (std::size_t i = 0; i < 3; ++i) all.push_back({vo::BodyKind::robot, {}, {}, {i}});
+  all.push_back({vo::BodyKind::moving_obstacle, {}, {}, {0}});
+  return all;
+}
+
+/// What a reader makes of a half-plane's body and of its row.
+void place(const RecordingFile& file, const formation::Step& row, std::size_t robot, RecordedConstraint& c) {
+  const vo::Body& body = file.recording.bodies[c.body];
+  c.source = body.kind;
+  c.position = row.robots[robot].anchor;
+  c.radius = file.scenario.robots[robot].radius;
+  c.shape = body.shape;
+  c.shape_velocity = {};
+  if (body.kind == vo::BodyKind::robot) {
+    const std::size_t other = body.owners.front();
+    c.shape = geometry::Disc{row.robots[other].anchor, file.scenario.robots[other].radius};
+    c.shape_velocity = row.robots[other].anchor_velocity;
+  } else if (body.kind == vo::BodyKind::moving_obstacle) {
+    c.shape = hull_of(file.scenario.moving_obstacles[0], row.moving[0].displacement);
+    c.shape_velocity = row.moving[0].velocity;
+  }
+}
+
 RecordedConstraint constraint_number(int k, SeededRandom& random) {
   RecordedConstraint c;
   c.half_plane = {random.direction(), random.uniform(-1e-9, 1e9)};
-  c.source = static_cast<formation::ConstraintSource>(k % 3);
+  c.body = static_cast<std::size_t>(k % 9);
   c.index = static_cast<std::size_t>(k);
   c.piece = static_cast<std::size_t>(k % 2);
   c.certified = k % 2 == 0;
   c.hard = k % 3 == 0;
   c.active = k % 5 == 0;
-  c.shape = shape_number(k, random);
-  c.position = random.in_box(1e6);
-  c.radius = random.uniform(0, 1);
+  c.multiplier = k % 5 == 0 ? random.uniform(0, 3) : 0.0;
+  c.clearance = random.uniform(-1, 9);
   c.tau = random.uniform(0, 3);
-  c.shape_velocity = random.in_box(1);
   return c;
 }
 
@@ -51,10 +77,14 @@ RobotStep robot_step(int k, SeededRandom& random) {
   RobotStep robot;
   robot.position = random.in_box(100);
   robot.velocity = {-0.0, 5e-324};
+  robot.anchor = k % 2 ? random.in_box(100) : robot.position;
+  robot.anchor_velocity = k % 3 ? Vec2{0.0, 5e-324} : robot.velocity;
   robot.preferred = random.in_box(3);
   robot.chosen = k == 7 ? Vec2{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}
                         : random.in_box(3);
   robot.status = static_cast<lp::Status>(k % 3);
+  if (k % 6 == 0) robot.bound = {{lp::kDisc, random.uniform(0, 2)}};
+  if (k % 6 == 1) robot.bound = {{lp::kBoxSides[0], 0.25}, {lp::kBoxSides[3], random.uniform(0, 2)}};
   robot.violation = k % 3 == 1 ? random.uniform(0, 1) : 0.0;
   robot.mode = static_cast<formation::Mode>(k % 5);
   robot.side = k % 3 - 1;
@@ -131,7 +161,10 @@ RecordingFile sample(bool with_formation) {
     file.recording.offsets = {random.in_box(2), random.in_box(2), random.in_box(2)};
     for (formation::Robot& robot : file.scenario.robots) robot.goals.clear();
   }
-  file.enclosures = {{shape_number(0, random), shape_number(3, random)}, {}, {shape_number(2, random)}};
+  file.scenario.obstacles = {{"wall", geometry::Polyline{{{-5, -5}, {-5, -9}}}}};
+  file.scenario.moving_obstacles = {{"cart", geometry::Polygon{{{90, 90}, {91, 90}, {90, 91}}, {}}, {{{0, 0}}, 0.0}}};
+  file.recording.bodies = bodies(random);
+  file.recording.outlooks = {{0.0, 0, 0, {0, 3}}, {0.0, 1, 0, {}}, {0.0, 2, 0, {2}}};
   file.recording.motion = with_formation ? formation::MotionLaw::exponential : formation::MotionLaw::straight;
   file.recording.time_step = 0.02;
   file.recording.tracking_gain = 37.5;
@@ -139,7 +172,10 @@ RecordingFile sample(bool with_formation) {
   file.recording.warnings = {"a step of 0.5 s is beyond euler's limit", "\"quoted\""};
   file.recording.wall_time = 0.125;
   file.recording.all_half_planes = file.recording.relative_frame = with_formation;
-  if (!with_formation) file.recording.later_outlooks = {{0.1, 2, 1, {shape_number(1, random)}}, {0.2, 0, 1, {}}};
+  if (!with_formation) {
+    file.recording.outlooks.push_back({0.1, 2, 1, {4}});
+    file.recording.outlooks.push_back({0.2, 0, 1, {}});
+  }
   file.stuck = {{1, random.in_box(5), 3.5, 0.25, {binding(random)}, std::nullopt, "bound \"here\"", 12.5}};
   file.stuck.front().binding.front().pressing = true;
   if (with_formation) file.stuck.front().equilibrium = formation::Equilibrium{random.in_box(1), {1, 0}, 2.5, 1.5, true};
@@ -148,6 +184,9 @@ RecordingFile sample(bool with_formation) {
     step.time = 0.02 * k;
     for (int i = 0; i < 3; ++i) step.robots.push_back(robot_step(k + i, random));
     if (with_formation) step.leader_position = random.in_box(9), step.leader_velocity = random.in_box(3);
+    step.moving = {{random.in_box(9), random.in_box(1)}};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (RecordedConstraint& c : step.robots[i].constraints) place(file, step, i, c);
     file.recording.steps.push_back(step);
     if (with_formation) file.lyapunov.push_back(lyapunov_row(step.time, random));
   }
@@ -168,15 +207,25 @@ void expect_same_constraint(const RecordedConstraint& a, const RecordedConstrain
   EXPECT_TRUE(same_bits(a.radius, b.radius));
   EXPECT_TRUE(same_bits(a.tau, b.tau));
   EXPECT_TRUE(same_bits(a.shape_velocity, b.shape_velocity));
+  EXPECT_EQ(a.body, b.body);
+  EXPECT_TRUE(same_bits(a.clearance, b.clearance));
+  EXPECT_TRUE(same_bits(a.multiplier, b.multiplier));
 }
 
 void expect_same_step(const RobotStep& a, const RobotStep& b) {
   EXPECT_TRUE(same_bits(a.position, b.position));
   EXPECT_TRUE(same_bits(a.velocity, b.velocity));
+  EXPECT_TRUE(same_bits(a.anchor, b.anchor));
+  EXPECT_TRUE(same_bits(a.anchor_velocity, b.anchor_velocity));
   EXPECT_TRUE(same_bits(a.preferred, b.preferred));
   EXPECT_TRUE(same_bits(a.chosen, b.chosen));
   EXPECT_EQ(a.status, b.status);
   EXPECT_TRUE(same_bits(a.violation, b.violation));
+  ASSERT_EQ(a.bound.size(), b.bound.size());
+  for (std::size_t i = 0; i < a.bound.size(); ++i) {
+    EXPECT_EQ(a.bound[i].binding, b.bound[i].binding);
+    EXPECT_TRUE(same_bits(a.bound[i].multiplier, b.bound[i].multiplier));
+  }
   EXPECT_EQ(a.mode, b.mode);
   EXPECT_EQ(a.side, b.side);
   EXPECT_EQ(a.note, b.note);
@@ -205,10 +254,12 @@ void expect_same_reports(const formation::StuckReport& a, const formation::Stuck
 void expect_same_extras(const RecordingFile& a, const RecordingFile& b) {
   EXPECT_EQ(a.recording.all_half_planes, b.recording.all_half_planes);
   EXPECT_EQ(a.recording.relative_frame, b.recording.relative_frame);
-  ASSERT_EQ(a.recording.later_outlooks.size(), b.recording.later_outlooks.size());
-  for (std::size_t i = 0; i < a.recording.later_outlooks.size(); ++i) {
-    EXPECT_EQ(a.recording.later_outlooks[i].robot, b.recording.later_outlooks[i].robot);
-    EXPECT_TRUE(same_bits(a.recording.later_outlooks[i].enclosures, b.recording.later_outlooks[i].enclosures));
+  ASSERT_EQ(a.recording.outlooks.size(), b.recording.outlooks.size());
+  for (std::size_t i = 0; i < a.recording.outlooks.size(); ++i) {
+    EXPECT_EQ(a.recording.outlooks[i].robot, b.recording.outlooks[i].robot);
+    EXPECT_EQ(a.recording.outlooks[i].goal, b.recording.outlooks[i].goal);
+    EXPECT_TRUE(same_bits(a.recording.outlooks[i].time, b.recording.outlooks[i].time));
+    EXPECT_EQ(a.recording.outlooks[i].bodies, b.recording.outlooks[i].bodies);
   }
   ASSERT_EQ(a.stuck.size(), b.stuck.size());
   for (std::size_t i = 0; i < a.stuck.size(); ++i) expect_same_reports(a.stuck[i], b.stuck[i]);
@@ -229,8 +280,6 @@ TEST_F(RecordingFileTest, Property1_EveryBitComesBack) {
     EXPECT_EQ(a.info.controller, b.info.controller);
     EXPECT_EQ(a.info.integrator, b.info.integrator);
     EXPECT_EQ(to_json(a.info.provenance), to_json(b.info.provenance));
-    ASSERT_EQ(a.enclosures.size(), b.enclosures.size());
-    for (std::size_t i = 0; i < a.enclosures.size(); ++i) EXPECT_TRUE(same_bits(a.enclosures[i], b.enclosures[i]));
     EXPECT_EQ(a.recording.motion, b.recording.motion);
     EXPECT_EQ(a.recording.outcome, b.recording.outcome);
     EXPECT_EQ(a.recording.warnings, b.recording.warnings);
@@ -252,34 +301,78 @@ TEST_F(RecordingFileTest, Property1_EveryBitComesBack) {
   }
 }
 
-TEST_F(RecordingFileTest, AHeaderThenARowAStep) {
+std::size_t count_of(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(RecordingFileTest, AHeaderThenBodiesOnceAndARowAStepThenTheEnd) {
   write_recording(folder_ / "r.jsonl", sample(false));
   const std::string text = content_of(folder_ / "r.jsonl");
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 21);
-  EXPECT_EQ(text.substr(0, 28), "{\"kind\":\"exactvo-recording\",");
+  EXPECT_EQ(text.substr(0, 58), "{\"header\":{\"kind\":\"exactvo-recording\",\"format_version\":2,\"");
+  EXPECT_EQ(count_of(text, "\n{\"row\":"), 20u);
+  EXPECT_EQ(count_of(text, "\n{\"outlook\":"), 5u);
+  EXPECT_EQ(count_of(text, "\n{\"body\":"), 9u) << "each once, though many rows name it";
+  EXPECT_EQ(text.compare(text.rfind('\n', text.size() - 2) + 1, 8, "{\"end\":{"), 0);
+  // A body stands before the first line that names it.
+  EXPECT_LT(text.find("{\"body\":{\"number\":7,"), text.find("{\"body\":7,"));
+}
+
+TEST_F(RecordingFileTest, WhatIsWrittenAsItIsMadeIsWhatIsWrittenAtOnce) {
+  const RecordingFile whole = sample(true);
+  write_recording(folder_ / "at_once.jsonl", whole);
+  RecordingFile about = whole;  // before the run nothing is known of how it goes
+  about.recording.steps.clear();
+  about.recording.outcome.clear();
+  about.stuck.clear();
+  RecordingWriter writer(folder_ / "as_made.jsonl", about);
+  for (const formation::Outlook& outlook : whole.recording.outlooks) writer.add(outlook, whole.recording.bodies);
+  for (std::size_t k = 0; k < whole.recording.steps.size(); ++k)
+    writer.add(whole.recording.steps[k], whole.recording.bodies, &whole.lyapunov[k]);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "as_made.jsonl")) << "whole or not at all";
+  writer.finish(whole);
+  EXPECT_EQ(content_of(folder_ / "as_made.jsonl"), content_of(folder_ / "at_once.jsonl"));
 }
 
 TEST_F(RecordingFileTest, WhatIsWrongIsPlacedByLineAndPointer) {
   write_recording(folder_ / "r.jsonl", sample(false));
   const std::string good = content_of(folder_ / "r.jsonl");
-  const auto refused = [&](const std::string& from, const std::string& to) {
+  const std::size_t first_row = good.find("\n{\"row\":") + 1;
+  const std::string line = "line " + std::to_string(1 + std::count(good.begin(), good.begin() + first_row, '\n'));
+  const auto refused = [&](const std::string& from, const std::string& to, std::size_t after) {
     std::string bad = good;
-    const std::size_t at = bad.find(from, bad.find('\n'));
+    const std::size_t at = bad.find(from, after);
     return refusal_of([&] { read_recording(put("bad.jsonl", bad.replace(at, from.size(), to))); });
   };
-  expect_refusal(refused("\"status\":\"optimal\"", "\"status\":\"fine\""), DataCode::not_an_option,
-                 "line 2, /robots/0/status");
-  expect_refusal(refused("\"position\":[", "\"position\":[1,"), DataCode::wrong_count, "line 2, /robots/0/position");
-  expect_refusal(refused("\"chosen\"", "\"choosen\""), DataCode::key_missing, "line 2, /robots/0");
-  expect_refusal(refused("{\"time\":0,", "{\"time\":oops,"), DataCode::json_syntax, "line 2, column 9");
+  expect_refusal(refused("\"status\":\"optimal\"", "\"status\":\"fine\"", first_row), DataCode::not_an_option,
+                 line + ", /row/robots/0/status");
+  expect_refusal(refused("\"position\":[", "\"position\":[1,", first_row), DataCode::wrong_count,
+                 line + ", /row/robots/0/position");
+  expect_refusal(refused("\"chosen\"", "\"choosen\"", first_row), DataCode::key_missing, line + ", /row/robots/0");
+  expect_refusal(refused("{\"time\":0,", "{\"time\":oops,", first_row), DataCode::json_syntax, line + ", column 16");
+  expect_refusal(refused("\"bodies\":[0,3]", "\"bodies\":[0,8]", 0), DataCode::out_of_range,
+                 "line 4, /outlook/bodies/1");
+  expect_refusal(refused("\"owners\":[0]", "\"owners\":[7]", 0), DataCode::out_of_range, "line 2, /body/owners/0");
+  expect_refusal(refused("\"rows\":20", "\"rows\":21", first_row), DataCode::wrong_count,
+                 "line " + std::to_string(std::count(good.begin(), good.end(), '\n')) + ", /end/rows");
+  expect_refusal(refused("\"number\":3", "\"number\":300000000", 0), DataCode::out_of_range, "line 3, /body/number");
+}
+
+TEST_F(RecordingFileTest, ARecordingOfFormat1IsRefused) {
+  const std::string header = "{\"kind\":\"exactvo-recording\",\"format_version\":1,\"method\":\"ivo\"}\n";
+  const DataError error = refusal_of([&] { read_recording(put("old.jsonl", header)); });
+  expect_refusal(error, DataCode::out_of_range, "line 1, /format_version");
 }
 
 TEST_F(RecordingFileTest, ARecordingCutShortIsNotTakenForAWholeOne) {
   write_recording(folder_ / "r.jsonl", sample(false));
   const std::string text = content_of(folder_ / "r.jsonl");
-  const std::size_t last_row = text.rfind('\n', text.size() - 2) + 1;
-  const DataError error = refusal_of([&] { read_recording(put("cut.jsonl", text.substr(0, last_row))); });
-  expect_refusal(error, DataCode::wrong_count, "line 1, /rows");
+  const std::size_t end = text.rfind('\n', text.size() - 2) + 1;
+  const DataError error = refusal_of([&] { read_recording(put("cut.jsonl", text.substr(0, end))); });
+  expect_refusal(
+      error, DataCode::wrong_count,
+      "line " + std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n')));
 }
 
 TEST_F(RecordingFileTest, TheTrajectoryHasARowARobotAndStep) {

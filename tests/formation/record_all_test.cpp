@@ -61,6 +61,58 @@ TEST(RecordAllKept, HoldsEverythingThatAnOrdinaryRecordingHolds) {
   EXPECT_GT(more, whole.steps.size());
 }
 
+TEST(Bodies, AConstraintNamesTheShapeItWasBuiltOn) {
+  for (const char* scene : {"A2", "A4", "B1"}) {
+    const Scenario s = test::paper_scene(scene);
+    for (const Method method : {Method::orca, Method::ivo_edge, Method::ivo}) {
+      SimulationOptions options = test::with_method(method);
+      options.record_all = true;
+      const Recording rec = simulate(s, options);
+      std::size_t named = 0;
+      for (const Step& row : rec.steps)
+        for (std::size_t i = 0; i < row.robots.size(); ++i)
+          for (const RecordedConstraint& c : row.robots[i].constraints) {
+            const vo::Body& body = rec.bodies.at(c.body);
+            ASSERT_EQ(body.kind, c.source);
+            ASSERT_EQ(c.position, row.robots[i].anchor);
+            if (c.source == ConstraintSource::robot) {
+              ASSERT_EQ(body.owners, std::vector<std::size_t>{c.index});
+              ASSERT_EQ(std::get<geometry::Disc>(c.shape).center, row.robots[c.index].anchor);
+              ASSERT_EQ(c.shape_velocity, row.robots[c.index].anchor_velocity);
+            } else {
+              ASSERT_EQ(geometry::to_string(body.shape), geometry::to_string(c.shape));
+            }
+            ++named;
+          }
+      EXPECT_GT(named, 100u) << scene << " " << name(method);
+    }
+  }
+}
+
+TEST(Multipliers, BalanceTheChoiceAgainstThePreferredVelocity) {
+  constexpr double kRounding = 1e-9;  // m/s
+  std::size_t balanced = 0;
+  for (const char* scene : {"A2", "A4", "A7", "B1"}) {
+    const Scenario s = test::paper_scene(scene);
+    for (const Step& row : simulate(s).steps)
+      for (const RobotStep& r : row.robots) {
+        if (r.status != lp::Status::optimal) continue;
+        Vec2 sum{};
+        for (const RecordedConstraint& c : r.constraints) {
+          ASSERT_GE(c.multiplier, 0.0);
+          sum += c.multiplier * c.half_plane.normal;
+        }
+        for (const lp::ActiveConstraint& part : r.bound) {
+          ASSERT_EQ(part.binding.kind, lp::BindingKind::disc);
+          sum -= part.multiplier * r.chosen;
+        }
+        ASSERT_LT(norm(sum - (r.chosen - r.preferred)), kRounding) << scene << " at " << row.time;
+        balanced += !r.constraints.empty() || !r.bound.empty();
+      }
+  }
+  EXPECT_GT(balanced, 200u);
+}
+
 TEST(Outlooks, EveryGoalsEnclosuresAreKept) {
   Scenario s;
   Robot r;
@@ -69,10 +121,15 @@ TEST(Outlooks, EveryGoalsEnclosuresAreKept) {
   s.robots = {r};
   s.obstacles = {{"first", geometry::Polyline{{{5, -2}, {5, 2}}}}, {"second", geometry::Polyline{{{15, -2}, {15, 2}}}}};
   const Recording rec = simulate(s);
-  ASSERT_EQ(rec.later_outlooks.size(), 1u);
-  EXPECT_EQ(rec.later_outlooks[0].goal, 1u);
-  EXPECT_FALSE(rec.later_outlooks[0].enclosures.empty());
-  EXPECT_GT(rec.later_outlooks[0].time, 3.0);
+  ASSERT_EQ(rec.outlooks.size(), 2u);
+  EXPECT_EQ(rec.outlooks[0].goal, 0u);
+  EXPECT_EQ(rec.outlooks[0].time, 0.0);
+  EXPECT_EQ(rec.outlooks[1].goal, 1u);
+  EXPECT_GT(rec.outlooks[1].time, 3.0);
+  for (const Outlook& outlook : rec.outlooks) {
+    ASSERT_EQ(outlook.bodies.size(), 2u);
+    for (const std::size_t body : outlook.bodies) EXPECT_EQ(rec.bodies.at(body).owners.size(), 1u);
+  }
   std::set<std::string> notes;
   for (const Step& row : rec.steps) notes.insert(row.robots[0].note);
   EXPECT_EQ(notes.count("goal 1 passed: heads for the next"), 1u);

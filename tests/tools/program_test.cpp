@@ -272,10 +272,10 @@ TEST(Simulate, SaysWhatAFormationIsBeforeAndWhyARobotStopped) {
   EXPECT_THAT(formation.out, AllOf(HasSubstr("V of (18)"), HasSubstr("valid V"), HasSubstr("peak acceleration")));
   const Outcome stuck = here.run("simulate " + data_file("paper/A11.json") + " --method orca --out out --no-figures");
   EXPECT_THAT(stuck.out, AllOf(HasSubstr("stuck        R1 is 11.5 m from its goal"), HasSubstr("a stable trap")));
-  const json header =
-      json::parse(here.read("out/recording.jsonl").substr(0, here.read("out/recording.jsonl").find('\n')));
-  ASSERT_EQ(header["stuck"].size(), 1u);
-  EXPECT_EQ(header["stuck"][0]["equilibrium"]["stable"], true);
+  const std::string recording = here.read("out/recording.jsonl");
+  const json end = json::parse(recording.substr(recording.rfind('\n', recording.size() - 2) + 1))["end"];
+  ASSERT_EQ(end["stuck"].size(), 1u);
+  EXPECT_EQ(end["stuck"][0]["equilibrium"]["stable"], true);
   EXPECT_EQ(json::parse(here.read("out/metrics.json"))["stuck"].size(), 1u);
 }
 
@@ -328,9 +328,9 @@ TEST(Simulate, ACollisionIsSaidToMachines) {
   EXPECT_GT(metrics["collisions"][0]["depth"].get<double>(), 0.1);
   EXPECT_THAT(metrics["outcome"].get<std::string>(), testing::StartsWith("COLLISION: "));
   const std::string text = here.read("out/recording.jsonl");
-  const json header = json::parse(text.substr(0, text.find('\n')));
-  EXPECT_EQ(header["outcome"], metrics["outcome"]);
-  EXPECT_EQ(header["collisions"], metrics["collisions"]);
+  const json end = json::parse(text.substr(text.rfind("\n{") + 1))["end"];
+  EXPECT_EQ(end["outcome"], metrics["outcome"]);
+  EXPECT_EQ(end["collisions"], metrics["collisions"]);
   EXPECT_THAT(here.read("out/figures/paths.gp"), HasSubstr("title 'collision'"));
   EXPECT_TRUE(here.has("out/figures/obstacle_distance.svg"));
   EXPECT_EQ(here.run("simulate cart.json").status, 0) << "only where asked for";
@@ -377,12 +377,13 @@ TEST(Paper, OptionsOfCampaignsAreNotedWhereThereIsNone) {
 TEST(Simulate, TheLastRowHasNoDerivatives) {
   const Workplace here;
   ASSERT_EQ(here.run("simulate " + data_file("paper/B0.json") + " --out out --no-figures").status, 0);
-  const auto last_line = [&](const std::string& file) {
-    const std::string text = here.read(file);
+  const auto line_from_last = [&](const std::string& file, int before) {
+    std::string text = here.read(file);
+    for (; before > 0; --before) text.resize(text.rfind('\n', text.size() - 2) + 1);
     return text.substr(text.rfind('\n', text.size() - 2) + 1);
   };
-  EXPECT_THAT(last_line("out/lyapunov.csv"), testing::EndsWith(",,,,\n"));
-  const json row = json::parse(last_line("out/recording.jsonl"));
+  EXPECT_THAT(line_from_last("out/lyapunov.csv", 0), testing::EndsWith(",,,,\n"));
+  const json row = json::parse(line_from_last("out/recording.jsonl", 1))["row"];
   EXPECT_TRUE(row["lyapunov"].contains("paper"));
   EXPECT_FALSE(row["lyapunov"].contains("paper_rates"));
   EXPECT_EQ(here.run("audit out").status, 0);

@@ -146,8 +146,9 @@ TEST_F(AuditOfAFile, AHalfPlaneShiftedByAnUlpInwardIsCaught) {
         c.half_plane.offset = std::nextafter(c.half_plane.offset, -std::numeric_limits<double>::infinity());
         write_recording(path_, file);
         const std::string bad = text();
-        // The tampered rows under the old header: only its wall of digits tells.
-        rewrite(good.substr(0, good.find('\n')) + bad.substr(bad.find('\n')));
+        // The tampered rows above the old end: only its wall of digits tells.
+        const auto end_of = [](const std::string& text) { return text.rfind('\n', text.size() - 2) + 1; };
+        rewrite(bad.substr(0, end_of(bad)) + good.substr(end_of(good)));
         EXPECT_FALSE(datasets::audit_recording(path_).clean());
         return;
       }
@@ -158,10 +159,10 @@ TEST_F(AuditOfAFile, AHalfPlaneShiftedByAnUlpInwardIsCaught) {
 
 TEST_F(AuditOfAFile, ARemovedRowIsCaught) {
   const std::string good = text();
-  const std::size_t begin = good.find('\n', good.find('\n') + 1) + 1;
+  const std::size_t begin = good.find("\n{\"row\"", good.size() / 2) + 1;
   const std::string without = good.substr(0, begin) + good.substr(good.find('\n', begin) + 1);
   rewrite(without);
-  EXPECT_THROW(datasets::audit_recording(path_), datasets::DataError) << "the header counts the rows";
+  EXPECT_THROW(datasets::audit_recording(path_), datasets::DataError) << "the end counts the rows";
 }
 
 }  // namespace

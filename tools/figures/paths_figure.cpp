@@ -195,20 +195,21 @@ class PathsPanel {
   /// Ellipses only: a facade that stands for itself would be drawn over the obstacle.
   void add_enclosures() {
     bool any = false;
-    for (std::size_t i = 0; i < run_.enclosures.size(); ++i) any |= add_enclosures_of(i);
+    for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) any |= add_enclosures_of(i);
     if (any) plot_.item("keyentry with lines lw 1.2 dt (6,5) lc rgb '#222222'", "enclosures");
+  }
+
+  void add_ellipses(const formation::Outlook& outlook, std::vector<Points>& rings) const {
+    for (const std::size_t body : outlook.bodies) {
+      const geometry::ConvexShape& shape = run_.recording.bodies[body].shape;
+      if (std::holds_alternative<geometry::Ellipse>(shape)) rings.push_back(outline(shape));
+    }
   }
 
   bool add_enclosures_of(std::size_t i) {
     std::vector<Points> rings;
-    for (const auto& shape : run_.enclosures[i]) {
-      if (std::holds_alternative<geometry::Ellipse>(shape)) rings.push_back(outline(shape));
-    }
-    for (const formation::Outlook& later : run_.recording.later_outlooks) {
-      if (later.robot != i) continue;
-      for (const auto& shape : later.enclosures)
-        if (std::holds_alternative<geometry::Ellipse>(shape)) rings.push_back(outline(shape));
-    }
+    for (const formation::Outlook& outlook : run_.recording.outlooks)
+      if (outlook.robot == i) add_ellipses(outlook, rings);
     if (rings.empty()) return false;
     const int index = data_.begin("enclosures seen by " + run_.scenario.robots[i].id, "x [m], y [m]");
     for (const Points& ring : rings) add_ring(ring);
@@ -294,9 +295,10 @@ class PathsPanel {
   void note_lines() {
     for (const auto& obstacle : run_.scenario.obstacles)
       for (const geometry::Segment& edge : edges_of(obstacle.shape)) times_.keep_off({edge.a, edge.b}, false);
-    for (const auto& of_robot : run_.enclosures)
-      for (const auto& shape : of_robot)
-        if (std::holds_alternative<geometry::Ellipse>(shape)) times_.keep_off(outline(shape), true);
+    std::vector<Points> rings;
+    for (const formation::Outlook& outlook : run_.recording.outlooks)
+      if (outlook.goal == 0) add_ellipses(outlook, rings);
+    for (const Points& ring : rings) times_.keep_off(ring, true);
     for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) {
       Points way;
       for (const Step& step : run_.recording.steps)

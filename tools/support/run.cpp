@@ -35,12 +35,6 @@ datasets::RunInfo run_info(const Scenario& scenario, const SimulationOptions& op
   return info;
 }
 
-std::vector<std::vector<geometry::ConvexShape>> enclosures(const Scenario& scenario, const SimulationOptions& options) {
-  std::vector<std::vector<geometry::ConvexShape>> all;
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i) all.push_back(enclosures_for(scenario, options, i));
-  return all;
-}
-
 datasets::LoadedScenario load(const std::string& path) {
   if (path != "-") return datasets::load_scenario_with_notes(path);
   const std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
@@ -63,13 +57,7 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
   if (interrupted()) throw Interrupted();
   FinishedRun finished;
   finished.metrics = measure(scenario, recording);
-  finished.file = {run_info(scenario, options, provenance),
-                   scenario,
-                   enclosures(scenario, options),
-                   std::move(recording),
-                   {},
-                   {},
-                   {}};
+  finished.file = {run_info(scenario, options, provenance), scenario, std::move(recording), {}, {}, {}};
   finished.file.recording.outcome = finished.metrics.outcome;  // with collisions and detours
   finished.file.collisions = finished.metrics.collisions;
   const formation::Recording& kept = finished.file.recording;

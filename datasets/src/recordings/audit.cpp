@@ -349,15 +349,17 @@ void check_header(const RecordingFile& file, AuditReport& report) {
             "the header's tracking gain is not the scenario's k3");
 }
 
-/// The seal in the header against the rows below it.
+/// The seal in the last line against all above it.
 void check_seal(const std::string& text, AuditReport& report) {
-  const std::size_t end = text.find('\n');
-  const Json header = Json::parse(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(end, text.size())));
+  const std::size_t end = text.find_last_not_of('\n');
+  const std::size_t before = text.rfind('\n', end);
+  const std::size_t last_line = before == std::string::npos ? 0 : before + 1;
   Sha256 hash;
-  if (end != std::string::npos) hash.add(std::string_view(text).substr(end + 1));
-  if (header.value("rows_sha256", "") == hash.digest()) return;
+  hash.add(std::string_view(text).substr(0, last_line));
+  const Json last = Json::parse(text.begin() + static_cast<std::ptrdiff_t>(last_line), text.end());
+  if (last.contains("end") && last["end"].value("sha256", "") == hash.digest()) return;
   ++report.inconsistencies;
-  report.findings.push_back("the rows are not those that the header's rows_sha256 was made of");
+  report.findings.push_back("the lines are not those that the sha256 of the last one was made of");
 }
 
 }  // namespace

@@ -13,6 +13,17 @@ const std::vector<Word<lp::Status>>& words() {
 }
 
 template <>
+const std::vector<Word<lp::BindingKind>>& words() {
+  using lp::BindingKind;
+  static const std::vector<Word<BindingKind>> kWords{{BindingKind::disc, "disc"},
+                                                     {BindingKind::box_right, "right"},
+                                                     {BindingKind::box_left, "left"},
+                                                     {BindingKind::box_top, "top"},
+                                                     {BindingKind::box_bottom, "bottom"}};
+  return kWords;
+}
+
+template <>
 const std::vector<Word<formation::Mode>>& words() {
   using formation::Mode;
   static const std::vector<Word<Mode>> kWords{{Mode::direct, "direct"},

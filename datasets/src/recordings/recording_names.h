@@ -26,6 +26,8 @@ const std::vector<Word<E>>& words();
 template <>
 const std::vector<Word<lp::Status>>& words();
 template <>
+const std::vector<Word<lp::BindingKind>>& words();
+template <>
 const std::vector<Word<formation::Mode>>& words();
 template <>
 const std::vector<Word<formation::ConstraintSource>>& words();

@@ -4,6 +4,7 @@
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "json_cursor.h"
+#include "recordings/codec.h"
 #include "recordings/recording_extras.h"
 #include "recordings/recording_names.h"
 #include "text_file.h"
@@ -17,72 +18,10 @@ using formation::Step;
 
 constexpr std::string_view kKind = "exactvo-recording";
 
-geometry::ConvexShape to_shape(const JsonCursor& at) {
-  if (at.has("disc")) return geometry::Disc{at.at("disc").at("center").point(), at.at("disc").at("radius").number()};
-  if (at.has("segment")) {
-    const std::vector<geometry::Vec2> ends = at.at("segment").points();
-    if (ends.size() != 2) at.at("segment").refuse("two points", DataCode::wrong_count);
-    return geometry::Segment{ends[0], ends[1]};
-  }
-  if (at.has("polygon")) return geometry::ConvexPolygon{at.at("polygon").points()};
-  const JsonCursor e = at.at("ellipse");
-  return geometry::Ellipse{e.at("center").point(), e.at("l11").number(), e.at("l21").number(), e.at("l22").number()};
-}
-
 std::vector<std::string> to_texts(const JsonCursor& at) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < at.size(); ++i) texts.push_back(at.at(i).text());
   return texts;
-}
-
-RecordedConstraint to_constraint(const JsonCursor& at) {
-  RecordedConstraint c;
-  c.half_plane = {at.at("normal").point(), at.at("offset").number()};
-  c.source = enumerator<formation::ConstraintSource>(at.at("source"));
-  c.index = at.at("index").count();
-  if (at.has("piece")) c.piece = at.at("piece").count();
-  c.certified = at.at("certified").truth();
-  c.hard = at.at("hard").truth();
-  c.active = at.at("active").truth();
-  c.shape = to_shape(at.at("shape"));
-  c.position = at.at("position").point();
-  c.radius = at.at("radius").number();
-  c.tau = at.at("tau").number();
-  c.shape_velocity = at.at("shape_velocity").point();
-  return c;
-}
-
-RobotStep to_robot_step(const JsonCursor& at) {
-  RobotStep robot;
-  robot.position = at.at("position").point();
-  robot.velocity = at.at("velocity").point();
-  robot.preferred = at.at("preferred").point();
-  robot.chosen = at.at("chosen").point();
-  robot.status = enumerator<lp::Status>(at.at("status"));
-  robot.mode = enumerator<formation::Mode>(at.at("mode"));
-  if (at.has("violation")) robot.violation = at.at("violation").number();
-  if (at.has("side")) robot.side = at.at("side").integer();
-  if (at.has("note")) robot.note = at.at("note").text();
-  if (at.has("uncertified")) robot.uncertified = at.at("uncertified").count();
-  if (!at.has("constraints")) return robot;
-  const JsonCursor list = at.at("constraints");
-  for (std::size_t i = 0; i < list.size(); ++i) robot.constraints.push_back(to_constraint(list.at(i)));
-  return robot;
-}
-
-Step to_step(const JsonCursor& at, const formation::Scenario& scenario) {
-  Step step;
-  step.time = at.at("time").number();
-  if (scenario.formation) {
-    step.leader_position = at.at("leader").at("position").point();
-    step.leader_velocity = at.at("leader").at("velocity").point();
-  }
-  const JsonCursor robots = at.at("robots");
-  if (robots.size() != scenario.robots.size()) {
-    robots.refuse(std::to_string(scenario.robots.size()) + " robots, as the scenario has", DataCode::wrong_count);
-  }
-  for (std::size_t i = 0; i < robots.size(); ++i) step.robots.push_back(to_robot_step(robots.at(i)));
-  return step;
 }
 
 std::optional<std::string> optional_text(const JsonCursor& at) {
@@ -90,27 +29,10 @@ std::optional<std::string> optional_text(const JsonCursor& at) {
   return at.text();
 }
 
-void read_enclosures(const JsonCursor& at, RecordingFile& file) {
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    std::vector<geometry::ConvexShape>& of_robot = file.enclosures.emplace_back();
-    for (std::size_t k = 0; k < at.at(i).size(); ++k) of_robot.push_back(to_shape(at.at(i).at(k)));
-  }
-}
-
-void read_later_enclosures(const JsonCursor& at, formation::Recording& recording) {
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const JsonCursor one = at.at(i);
-    formation::Outlook o{one.at("time").number(), one.at("robot").count(), one.at("goal").count(), {}};
-    const JsonCursor shapes = one.at("shapes");
-    for (std::size_t k = 0; k < shapes.size(); ++k) o.enclosures.push_back(to_shape(shapes.at(k)));
-    recording.later_outlooks.push_back(std::move(o));
-  }
-}
-
-/// Fills everything but the rows; says how many of these there should be.
-std::size_t read_header(const JsonCursor& at, const std::string& name, RecordingFile& file) {
+void read_header(const JsonCursor& at, const std::string& name, RecordingFile& file) {
   if (at.at("kind").text() != kKind) at.at("kind").refuse("\"exactvo-recording\"", DataCode::not_an_option);
-  if (at.at("format_version").integer() != 1) at.at("format_version").refuse("1", DataCode::out_of_range);
+  if (at.at("format_version").integer() != kRecordingFormat)
+    at.at("format_version").refuse(std::to_string(kRecordingFormat), DataCode::out_of_range);
   file.scenario = parse_scenario(at.at("scenario").json().dump(), name, {});
   file.info.scenario = file.scenario.name;
   file.info.method = at.at("method").text();
@@ -121,22 +43,140 @@ std::size_t read_header(const JsonCursor& at, const std::string& name, Recording
   recording.time_step = at.at("time_step").number();
   recording.motion = enumerator<formation::MotionLaw>(at.at("motion"));
   recording.tracking_gain = at.at("tracking_gain").number();
-  if (at.has("relative_frame")) recording.relative_frame = at.at("relative_frame").truth();
+  recording.relative_frame = at.at("relative_frame").truth();
   recording.offsets = at.at("offsets").points();
   const std::size_t slots = file.scenario.formation ? file.scenario.robots.size() : 0;
   if (recording.offsets.size() != slots)
     at.at("offsets").refuse(std::to_string(slots) + " offsets, one a robot of a formation", DataCode::wrong_count);
+  recording.all_half_planes = at.at("all_half_planes").truth();
+}
+
+void read_end(const JsonCursor& at, RecordingFile& file) {
+  formation::Recording& recording = file.recording;
+  if (at.at("rows").count() != recording.steps.size())
+    at.at("rows").refuse(std::to_string(recording.steps.size()) + ", the rows above", DataCode::wrong_count);
   recording.diverged = at.at("diverged").truth();
   recording.outcome = at.at("outcome").text();
-  if (at.has("warnings")) recording.warnings = to_texts(at.at("warnings"));
+  recording.warnings = to_texts(at.at("warnings"));
+  read_stuck(at.at("stuck"), file);
   recording.wall_time = at.at("wall_time").number();
-  if (at.has("all_half_planes")) recording.all_half_planes = at.at("all_half_planes").truth();
-  if (at.has("stuck")) read_stuck(at.at("stuck"), file);
   if (at.has("collisions")) file.collisions = to_collisions(at.at("collisions"));
-  read_enclosures(at.at("enclosures"), file);
-  if (at.has("later_enclosures")) read_later_enclosures(at.at("later_enclosures"), recording);
-  return at.at("rows").count();
+  at.at("sha256").text();
 }
+
+/// Reads the lines after the header.
+class LineReader {
+ public:
+  explicit LineReader(RecordingFile& file) : file_(file), bodies_(file.recording.bodies) {}
+
+  bool is_at_end() const { return at_end_; }
+
+  void read(const JsonCursor& at) {
+    if (at_end_) at.refuse("nothing after the end", DataCode::wrong_count);
+    if (at.has("body")) return read_body(at.at("body"));
+    if (at.has("outlook")) return read_outlook(at.at("outlook"));
+    if (at.has("row")) return read_row(at.at("row"));
+    read_end(at.at("end"), file_);
+    at_end_ = true;
+  }
+
+ private:
+  void read_body(const JsonCursor& at) {
+    constexpr std::size_t kMostBodies = std::size_t{1} << 28;
+    const std::size_t number = at.at("number").count();
+    if (number >= kMostBodies) at.at("number").refuse("a smaller number", DataCode::out_of_range);
+    // Numbers may be left out, but no file of a few lines asks for much memory.
+    if (number >= bodies_.size() + kMostBodies / 256)
+      at.at("number").refuse("a smaller number", DataCode::out_of_range);
+    if (number >= bodies_.size()) {
+      bodies_.resize(number + 1);
+      known_.resize(number + 1);
+    }
+    bodies_[number] = to_body(at);
+    require_owners(at.at("owners"), bodies_[number]);
+    if (bodies_[number].kind == vo::BodyKind::robot) {
+      const formation::Robot& robot = file_.scenario.robots[bodies_[number].owners.front()];
+      bodies_[number].shape = geometry::Disc{robot.position, robot.radius};
+    }
+    known_[number] = true;
+  }
+
+  void require_owners(const JsonCursor& at, const vo::Body& body) const {
+    const formation::Scenario& s = file_.scenario;
+    const std::size_t all = body.kind == vo::BodyKind::robot             ? s.robots.size()
+                            : body.kind == vo::BodyKind::moving_obstacle ? s.moving_obstacles.size()
+                                                                         : s.obstacles.size();
+    for (std::size_t k = 0; k < body.owners.size(); ++k)
+      if (body.owners[k] >= all) at.at(k).refuse("a number below " + std::to_string(all), DataCode::out_of_range);
+  }
+
+  std::size_t known_body(const JsonCursor& at) const {
+    const std::size_t number = at.count();
+    if (number >= bodies_.size() || !known_[number]) at.refuse("a body of a line above", DataCode::out_of_range);
+    return number;
+  }
+
+  void read_outlook(const JsonCursor& at) {
+    formation::Outlook outlook{at.at("time").number(), at.at("robot").count(), at.at("goal").count(), {}};
+    if (outlook.robot >= file_.scenario.robots.size())
+      at.at("robot").refuse("a robot of the scenario", DataCode::out_of_range);
+    const JsonCursor list = at.at("bodies");
+    for (std::size_t k = 0; k < list.size(); ++k) outlook.bodies.push_back(known_body(list.at(k)));
+    file_.recording.outlooks.push_back(std::move(outlook));
+  }
+
+  void read_row(const JsonCursor& at) {
+    Step step;
+    step.time = at.at("time").number();
+    if (file_.scenario.formation) {
+      step.leader_position = at.at("leader").at("position").point();
+      step.leader_velocity = at.at("leader").at("velocity").point();
+    }
+    if (at.has("moving")) read_moving(at.at("moving"), step);
+    const JsonCursor robots = at.at("robots");
+    if (robots.size() != file_.scenario.robots.size())
+      robots.refuse(std::to_string(file_.scenario.robots.size()) + " robots, as the scenario has",
+                    DataCode::wrong_count);
+    for (std::size_t i = 0; i < robots.size(); ++i) step.robots.push_back(to_robot(robots.at(i)));
+    for (std::size_t i = 0; i < robots.size(); ++i)
+      for (std::size_t k = 0; k < step.robots[i].constraints.size(); ++k)
+        place(robots.at(i).at("constraints").at(k), i, step, step.robots[i].constraints[k]);
+    if (at.has("lyapunov")) file_.lyapunov.push_back(to_lyapunov(at.at("lyapunov"), step.time));
+    file_.recording.steps.push_back(std::move(step));
+  }
+
+  void read_moving(const JsonCursor& at, Step& step) const {
+    if (at.size() != file_.scenario.moving_obstacles.size())
+      at.refuse("a place for every moving obstacle", DataCode::wrong_count);
+    for (std::size_t k = 0; k < at.size(); ++k)
+      step.moving.push_back({at.at(k).at("displacement").point(), at.at(k).at("velocity").point()});
+  }
+
+  /// What a half-plane shares with others: its body's shape, and who was where in this row.
+  void place(const JsonCursor& at, std::size_t robot, const Step& step, RecordedConstraint& c) const {
+    const vo::Body& body = bodies_[known_body(at.at("body"))];
+    c.source = body.kind;
+    c.position = step.robots[robot].anchor;
+    c.radius = file_.scenario.robots[robot].radius;
+    c.shape = body.shape;
+    if (body.kind == vo::BodyKind::robot) {
+      const RobotStep& other = step.robots[body.owners.front()];
+      c.shape = geometry::Disc{other.anchor, file_.scenario.robots[body.owners.front()].radius};
+      c.shape_velocity = other.anchor_velocity;
+    }
+    if (body.kind == vo::BodyKind::moving_obstacle) {
+      if (step.moving.empty()) at.refuse("no half-plane against what moves in a row without its place");
+      const std::size_t obstacle = body.owners.front();
+      c.shape = hull_of(file_.scenario.moving_obstacles[obstacle], step.moving[obstacle].displacement);
+      c.shape_velocity = step.moving[obstacle].velocity;
+    }
+  }
+
+  RecordingFile& file_;
+  std::vector<vo::Body>& bodies_;
+  std::vector<bool> known_;
+  bool at_end_ = false;
+};
 
 /// Takes the next line off `text`.
 std::string_view next_line(std::string_view& text) {
@@ -161,16 +201,18 @@ RecordingFile read_recording(const std::filesystem::path& path) {
   std::string_view rest = text;
   RecordingFile file;
   const Json header = parse_json_line(next_line(rest), name, 1);
-  const std::size_t rows = read_header(JsonCursor(header, name, "line 1"), name, file);
-  for (std::size_t number = 2; !rest.empty(); ++number) {
-    const Json row = parse_json_line(next_line(rest), name, number);
-    const JsonCursor at(row, name, "line " + std::to_string(number));
-    file.recording.steps.push_back(to_step(at, file.scenario));
-    if (at.has("lyapunov")) file.lyapunov.push_back(to_lyapunov(at.at("lyapunov"), file.recording.steps.back().time));
+  const JsonCursor first(header, name, "line 1");
+  // A header of format 1 has no name: its version is what is wrong with it.
+  read_header(first.has("header") ? first.at("header") : first, name, file);
+  LineReader reader(file);
+  std::size_t number = 2;
+  for (; !rest.empty(); ++number) {
+    const Json line = parse_json_line(next_line(rest), name, number);
+    reader.read(JsonCursor(line, name, "line " + std::to_string(number)));
   }
-  if (file.recording.steps.size() != rows) {
-    throw DataError(DataCode::wrong_count, name, "line 1, /rows", std::to_string(file.recording.steps.size()) + " rows",
-                    std::to_string(rows) + " rows");
+  if (!reader.is_at_end()) {
+    throw DataError(DataCode::wrong_count, name, "line " + std::to_string(number), "the end of the file",
+                    "a last line \"end\": the recording was cut off");
   }
   return file;
 }

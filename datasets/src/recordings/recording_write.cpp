@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/recording_file.h"
+#include "exactvo/geometry/require.h"
+#include "recordings/codec.h"
 #include "recordings/recording_extras.h"
 #include "recordings/recording_names.h"
 #include "scenarios/scenario_json.h"
@@ -9,153 +13,143 @@
 namespace exactvo::datasets {
 namespace {
 
+using formation::Outlook;
 using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
 
-void append_shape(JsonWriter& json, const geometry::Disc& disc) {
-  json.key("disc").begin_object().member("center", disc.center).member("radius", disc.radius).end_object();
-}
-
-void append_shape(JsonWriter& json, const geometry::Segment& segment) {
-  json.key("segment").begin_array().value(segment.a).value(segment.b).end_array();
-}
-
-void append_shape(JsonWriter& json, const geometry::ConvexPolygon& polygon) {
-  json.key("polygon");
-  append_points(json, polygon.vertices);
-}
-
-void append_shape(JsonWriter& json, const geometry::Ellipse& ellipse) {
-  json.key("ellipse").begin_object().member("center", ellipse.center);
-  json.member("l11", ellipse.l11).member("l21", ellipse.l21).member("l22", ellipse.l22).end_object();
-}
-
-void append_convex(JsonWriter& json, const geometry::ConvexShape& shape) {
-  json.begin_object();
-  std::visit([&](const auto& kind) { append_shape(json, kind); }, shape);
+void append_header(JsonWriter& json, const RecordingFile& file) {
+  const formation::Recording& recording = file.recording;
+  json.begin_object().member("kind", "exactvo-recording").member("format_version", kRecordingFormat);
+  json.member("method", file.info.method).member("controller", file.info.controller);
+  json.member("integrator", file.info.integrator);
+  json.member("time_step", recording.time_step).member("motion", word_for(recording.motion));
+  json.member("tracking_gain", recording.tracking_gain).member("relative_frame", recording.relative_frame);
+  json.key("offsets");
+  append_points(json, recording.offsets);
+  json.member("all_half_planes", recording.all_half_planes);
+  json.key("provenance").raw(to_json(file.info.provenance));
+  json.key("scenario");
+  append_scenario(json, file.scenario);
   json.end_object();
 }
 
-void append_constraint(JsonWriter& json, const RecordedConstraint& c) {
-  json.begin_object();
-  json.member("normal", c.half_plane.normal).member("offset", c.half_plane.offset);
-  json.member("source", word_for(c.source)).member("index", c.index);
-  if (c.piece != 0) json.member("piece", c.piece);
-  json.member("certified", c.certified).member("hard", c.hard).member("active", c.active);
-  json.key("shape");
-  append_convex(json, c.shape);
-  json.member("position", c.position).member("radius", c.radius).member("tau", c.tau);
-  json.member("shape_velocity", c.shape_velocity);
-  json.end_object();
+void append_outlook(JsonWriter& json, const Outlook& outlook) {
+  json.begin_object().member("time", outlook.time).member("robot", outlook.robot).member("goal", outlook.goal);
+  json.key("bodies").begin_array();
+  for (const std::size_t body : outlook.bodies) json.value(body);
+  json.end_array().end_object();
 }
 
-/// What is empty or zero in nearly every row is left out of it.
-void append_robot(JsonWriter& json, const RobotStep& robot) {
-  json.begin_object();
-  json.member("position", robot.position).member("velocity", robot.velocity);
-  json.member("preferred", robot.preferred).member("chosen", robot.chosen);
-  json.member("status", word_for(robot.status));
-  if (robot.violation != 0.0) json.member("violation", robot.violation);
-  json.member("mode", word_for(robot.mode));
-  if (robot.side != 0) json.member("side", robot.side);
-  if (!robot.note.empty()) json.member("note", robot.note);
-  if (robot.uncertified != 0) json.member("uncertified", robot.uncertified);
-  if (!robot.constraints.empty()) {
-    json.key("constraints").begin_array();
-    for (const RecordedConstraint& constraint : robot.constraints) append_constraint(json, constraint);
-    json.end_array();
-  }
-  json.end_object();
-}
-
-void append_step(JsonWriter& json, const RecordingFile& file, std::size_t k) {
-  const Step& step = file.recording.steps[k];
-  const bool has_leader = file.scenario.formation.has_value();
+void append_row(JsonWriter& json, const Step& step, bool has_leader, const formation::LyapunovRow* lyapunov) {
   json.begin_object().member("time", step.time);
   if (has_leader) {
     json.key("leader").begin_object();
     json.member("position", step.leader_position).member("velocity", step.leader_velocity).end_object();
   }
+  if (!step.moving.empty()) {
+    json.key("moving").begin_array();
+    for (const formation::MovedObstacle& o : step.moving)
+      json.begin_object().member("displacement", o.displacement).member("velocity", o.velocity).end_object();
+    json.end_array();
+  }
   json.key("robots").begin_array();
   for (const RobotStep& robot : step.robots) append_robot(json, robot);
   json.end_array();
-  if (k < file.lyapunov.size()) append_lyapunov(json, file.lyapunov[k]);
+  if (lyapunov) append_lyapunov(json, *lyapunov);
   json.end_object();
 }
 
-void append_enclosures(JsonWriter& json, const std::vector<std::vector<geometry::ConvexShape>>& enclosures) {
-  json.key("enclosures").begin_array();
-  for (const std::vector<geometry::ConvexShape>& of_robot : enclosures) {
-    json.begin_array();
-    for (const geometry::ConvexShape& shape : of_robot) append_convex(json, shape);
-    json.end_array();
-  }
-  json.end_array();
-}
-
-/// Only where a robot had more than one goal.
-void append_later_enclosures(JsonWriter& json, const std::vector<formation::Outlook>& outlooks) {
-  if (outlooks.empty()) return;
-  json.key("later_enclosures").begin_array();
-  for (const formation::Outlook& o : outlooks) {
-    json.begin_object().member("time", o.time).member("robot", o.robot).member("goal", o.goal);
-    json.key("shapes").begin_array();
-    for (const geometry::ConvexShape& shape : o.enclosures) append_convex(json, shape);
-    json.end_array().end_object();
-  }
-  json.end_array();
-}
-
-void append_header(JsonWriter& json, const RecordingFile& file, const std::string& rows_digest) {
+void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, const std::string& digest) {
   const formation::Recording& recording = file.recording;
-  json.begin_object().member("kind", "exactvo-recording").member("format_version", 1);
-  json.member("method", file.info.method).member("controller", file.info.controller);
-  json.member("integrator", file.info.integrator);
-  json.member("time_step", recording.time_step).member("motion", word_for(recording.motion));
-  json.member("tracking_gain", recording.tracking_gain).member("diverged", recording.diverged);
-  json.member("relative_frame", recording.relative_frame);
-  json.key("offsets");
-  append_points(json, recording.offsets);
-  json.member("outcome", recording.outcome).member("rows", recording.steps.size());
+  json.begin_object().member("rows", rows).member("diverged", recording.diverged);
+  json.member("outcome", recording.outcome);
   json.key("warnings").begin_array();
   for (const std::string& warning : recording.warnings) json.value(warning);
   json.end_array();
   append_stuck(json, file);
   append_collisions(json, file.collisions);
-  json.member("all_half_planes", recording.all_half_planes);
-  json.member("rows_sha256", rows_digest);
-  json.member("wall_time", recording.wall_time);
-  json.key("provenance").raw(to_json(file.info.provenance));
-  json.key("scenario");
-  append_scenario(json, file.scenario);
-  append_enclosures(json, file.enclosures);
-  append_later_enclosures(json, recording.later_outlooks);
+  json.member("wall_time", recording.wall_time).member("sha256", digest);
   json.end_object();
-}
-
-/// Every row with its newline, one after the other: a run of any length needs no more than a row of memory.
-template <class Take>
-void for_each_row(const RecordingFile& file, const Take& take) {
-  JsonWriter json(JsonWriter::Layout::compact);
-  for (std::size_t k = 0; k < file.recording.steps.size(); ++k) {
-    append_step(json, file, k);
-    take(json.text() + "\n");
-    json.clear();
-  }
 }
 
 }  // namespace
 
+struct RecordingWriter::State {
+  explicit State(const std::filesystem::path& path) : out(path) {}
+
+  /// Writes {"name": what was appended}.
+  template <class Append>
+  void line(const char* name, const Append& append) {
+    json.clear();
+    json.begin_object().key(name);
+    append();
+    json.end_object();
+    const std::string text = json.text() + "\n";
+    hash.add(text);
+    out.write(text);
+  }
+
+  void name_body(std::size_t number, const std::vector<vo::Body>& bodies) {
+    EXACTVO_REQUIRE(number < bodies.size(), "body " + std::to_string(number));
+    if (number >= named.size()) named.resize(bodies.size());
+    if (named[number]) return;
+    named[number] = true;
+    line("body", [&] { append_body(json, number, bodies[number]); });
+  }
+
+  AtomicFile out;
+  JsonWriter json{JsonWriter::Layout::compact};
+  Sha256 hash;
+  std::vector<bool> named;  ///< of the bodies
+  std::size_t rows = 0;
+  bool has_leader = false;
+};
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingFile& about)
+    : state_(std::make_unique<State>(path)) {
+  state_->has_leader = about.scenario.formation.has_value();
+  state_->line("header", [&] { append_header(state_->json, about); });
+}
+
+RecordingWriter::~RecordingWriter() = default;
+
+void RecordingWriter::add(const Outlook& outlook, const std::vector<vo::Body>& bodies) {
+  for (const std::size_t body : outlook.bodies) state_->name_body(body, bodies);
+  state_->line("outlook", [&] { append_outlook(state_->json, outlook); });
+}
+
+void RecordingWriter::add(const Step& row, const std::vector<vo::Body>& bodies,
+                          const formation::LyapunovRow* lyapunov) {
+  for (const RobotStep& robot : row.robots)
+    for (const RecordedConstraint& c : robot.constraints) state_->name_body(c.body, bodies);
+  state_->line("row", [&] { append_row(state_->json, row, state_->has_leader, lyapunov); });
+  ++state_->rows;
+}
+
+void RecordingWriter::finish(const RecordingFile& about) {
+  const std::string digest = state_->hash.digest();
+  state_->json.clear();
+  state_->json.begin_object().key("end");
+  append_end(state_->json, about, state_->rows, digest);
+  state_->json.end_object();
+  state_->out.write(state_->json.text() + "\n");
+  state_->out.commit();
+}
+
 void write_recording(const std::filesystem::path& path, const RecordingFile& file) {
-  Sha256 rows;
-  for_each_row(file, [&](const std::string& row) { rows.add(row); });
-  AtomicFile out(path);
-  JsonWriter json(JsonWriter::Layout::compact);
-  append_header(json, file, rows.digest());
-  out.write(json.text() + "\n");
-  for_each_row(file, [&](const std::string& row) { out.write(row); });
-  out.commit();
+  RecordingWriter writer(path, file);
+  const formation::Recording& recording = file.recording;
+  std::size_t outlooks = 0;
+  for (std::size_t k = 0; k < recording.steps.size(); ++k) {
+    const bool last = k + 1 == recording.steps.size();
+    for (;
+         outlooks < recording.outlooks.size() && (last || recording.outlooks[outlooks].time <= recording.steps[k].time);
+         ++outlooks)
+      writer.add(recording.outlooks[outlooks], recording.bodies);
+    writer.add(recording.steps[k], recording.bodies, k < file.lyapunov.size() ? &file.lyapunov[k] : nullptr);
+  }
+  writer.finish(file);
 }
 
 }  // namespace exactvo::datasets

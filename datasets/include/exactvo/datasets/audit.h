@@ -51,7 +51,7 @@ inline constexpr std::size_t kMostAuditFindings = 20;
 /// REQUIRES: a recording that read_recording gave, or one like it.
 AuditReport audit(const RecordingFile& file);
 
-/// The same for a file, with its seal: the digest of its rows in its header (recording_file.h), so that a row that was
+/// The same for a file, with its seal: the digest of all lines in the last one (recording_file.h), so that a row that was
 /// altered in a way that is still safe, an ulp inward, is found too. Throws DataError where it can't be read.
 AuditReport audit_recording(const std::filesystem::path& path);
 

@@ -2,16 +2,21 @@
 #pragma once
 
 /// \file
-/// Recordings as JSON Lines: a header (what was run, the whole scenario, the enclosures, provenance), then a row a
-/// step. Enough stands in a row to prove its half-planes again without the program that wrote it: beside each
-/// half-plane its convex shape, the robot's position and radius, the horizon and the shape's velocity.
+/// Recordings as JSON Lines (format 2): each line an object with one member that says what it is. First the `header`
+/// (what was run, the whole scenario, provenance); then, in the order in which they came up, every `body` (a convex
+/// shape with a number and the obstacles that it stands for) before the first line that names it, every `outlook` (the
+/// enclosures of a robot for a goal) and a `row` a step; last the `end` (how the run went, and the digest of all before
+/// it). Nothing is said twice, and nothing is known late: a run of any length is written in constant memory as it is
+/// made. A file without an end was cut off and is refused; so is one of format 1.
 ///
-/// The header's `rows_sha256` is the digest of all that follows it: audit.h finds by it what was altered since.
+/// Enough stands there to prove half-planes again without the program that wrote them: beside each its body, clearance
+/// and horizon, and in its row where robots and moving obstacles were. The end's `sha256` shows what was altered since.
 ///
 /// Property (1): read_recording gives back every double bit for bit. Numbers are the shortest that do so; the
 /// non-finite ones, which JSON has no word for, are the strings "nan", "inf" and "-inf".
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,14 +29,36 @@
 
 namespace exactvo::datasets {
 
+/// What `format_version` says. Another one is refused (E_RANGE).
+inline constexpr int kRecordingFormat = 2;
+
 struct RecordingFile {
   RunInfo info;
   formation::Scenario scenario;
-  std::vector<std::vector<geometry::ConvexShape>> enclosures;  ///< per robot; empty where the method has none
   formation::Recording recording;
   std::vector<formation::LyapunovRow> lyapunov = {};  ///< a row for every row, of a formation; else empty
   std::vector<formation::StuckReport> stuck = {};     ///< who stopped elsewhere; of what binds, the names only
   std::vector<formation::Collision> collisions = {};  ///< as the metrics have them
+};
+
+/// A recording that is written as the run is made, in constant memory. Whole or not at all (atomic_file.h): nothing
+/// stands there before `finish`. Throws DataError where it can't be written.
+class RecordingWriter {
+ public:
+  /// Of `about` only what is known before a run: the scenario, the info, and of the recording `motion`, `time_step`,
+  /// `tracking_gain`, `relative_frame`, `offsets` and `all_half_planes`.
+  RecordingWriter(const std::filesystem::path& path, const RecordingFile& about);
+  ~RecordingWriter();
+  /// `bodies` are the run's so far.
+  void add(const formation::Outlook& outlook, const std::vector<vo::Body>& bodies);
+  void add(const formation::Step& row, const std::vector<vo::Body>& bodies,
+           const formation::LyapunovRow* lyapunov = nullptr);
+  /// Of `about` the rest: outcome, warnings, who was stuck, the time it took.
+  void finish(const RecordingFile& about);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /// Whole or not at all (atomic_file.h). Throws DataError where it can't be written.

@@ -18,7 +18,8 @@ namespace exactvo::formation {
 using ConstraintSource = vo::BodyKind;
 
 /// One half-plane of a decision, with enough beside it to prove it again: the convex shape (grown by `radius`, seen
-/// from `position`, horizon `tau`) whose velocity obstacle it excludes.
+/// from `position`, horizon `tau`) whose velocity obstacle it excludes. In a file the shape stands once, as a body, and
+/// place and velocity in the row.
 struct RecordedConstraint {
   geometry::HalfPlane half_plane;
   ConstraintSource source = ConstraintSource::enclosure;
@@ -31,11 +32,13 @@ struct RecordedConstraint {
   bool active = false;  ///< binds the chosen velocity
   geometry::ConvexShape shape;
   Vec2 position;
-  double radius = 0.0;  ///< m
-  double tau = 0.0;     ///< s
-  Vec2 shape_velocity;  ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
-  std::size_t body = 0;    ///< of the run's bodies
+  double radius = 0.0;     ///< m
+  double tau = 0.0;        ///< s
+  Vec2 shape_velocity;     ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
+  std::size_t body = 0;    ///< of `Recording::bodies`
   double clearance = 0.0;  ///< m, robot's rim to the body; negative in overlap. Rounded
+  /// Of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 where it does not bind. Rounded.
+  double multiplier = 0.0;
 };
 
 /// How the preferred velocity was formed.
@@ -48,10 +51,17 @@ enum class Mode {
 };
 
 struct RobotStep {
-  Vec2 position;   ///< m, at the step's start
-  Vec2 velocity;   ///< m/s, at the step's start
-  Vec2 preferred;  ///< m/s
-  Vec2 chosen;     ///< m/s: the LP's optimum; what a kinematic robot does, what a second-order one tracks
+  Vec2 position;  ///< m, at the step's start
+  Vec2 velocity;  ///< m/s, at the step's start
+  /// Where half-planes are built, and round which velocity: the robot's own, or the brake point x + v / k3 and what the
+  /// robot tracked before.
+  Vec2 anchor;           ///< m
+  Vec2 anchor_velocity;  ///< m/s
+  Vec2 preferred;        ///< m/s
+  /// What of the speed bound binds, with its multiplier: chosen - preferred is the sum of multiplier times normal over
+  /// these and the active half-planes (of the disc: the normal is -chosen, of length |chosen|). Up to rounding.
+  std::vector<lp::ActiveConstraint> bound;
+  Vec2 chosen;  ///< m/s: the LP's optimum; what a kinematic robot does, what a second-order one tracks
   lp::Status status = lp::Status::optimal;
   double violation = 0.0;  ///< m/s, of the soft half-planes
   Mode mode = Mode::direct;
@@ -61,11 +71,18 @@ struct RobotStep {
   std::size_t uncertified = 0;                  ///< half-planes of this decision that could not be certified
 };
 
+/// Where a moving obstacle is, from where it was at t = 0, and how it moves.
+struct MovedObstacle {
+  Vec2 displacement;  ///< m
+  Vec2 velocity;      ///< m/s
+};
+
 struct Step {
   double time = 0.0;  ///< s
   std::vector<RobotStep> robots;
   Vec2 leader_position;
   Vec2 leader_velocity;
+  std::vector<MovedObstacle> moving;  ///< of the scenario's moving obstacles; empty in the last row
 };
 
 /// How a robot moved between two rows; decides what "swept" means.
@@ -75,12 +92,15 @@ enum class MotionLaw {
   hermite       ///< the cubic through both end states (the general integrators)
 };
 
+/// The convex hull of a moving obstacle that was carried so far: the shape that robots keep clear of.
+geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement);
+
 /// The shapes that one robot saw on its way to one of its goals.
 struct Outlook {
   double time = 0.0;  ///< s, from then on
   std::size_t robot = 0;
-  std::size_t goal = 0;  ///< which of its goals, from 0
-  std::vector<geometry::ConvexShape> enclosures;
+  std::size_t goal = 0;             ///< which of its goals, from 0
+  std::vector<std::size_t> bodies;  ///< of `Recording::bodies`; `RecordedConstraint::index` counts them
 };
 
 struct Recording {
@@ -95,10 +115,11 @@ struct Recording {
   std::string outcome;        ///< in words, for people
   /// What could be said before the run: a step beyond the integrator's limit, a goal inside an obstacle.
   std::vector<std::string> warnings;
-  std::vector<Outlook>
-      later_outlooks;            ///< of goals after the first, as they came up; those of the first see the scenario
-  bool all_half_planes = false;  ///< every half-plane of every decision was kept
-  double wall_time = 0.0;        ///< s
+  /// What half-planes were built on, by number. Of robots and moving obstacles the shape is as at the end of the run.
+  std::vector<vo::Body> bodies;
+  std::vector<Outlook> outlooks;  ///< in order of time: of every robot's first goal, then of others as they came up
+  bool all_half_planes = false;   ///< every half-plane of every decision was kept
+  double wall_time = 0.0;         ///< s
 };
 
 }  // namespace exactvo::formation
