@@ -5,7 +5,8 @@ file(RELATIVE_PATH EXACTVO_MODULE_FOLDER ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_IN
 set(EXACTVO_MODULE_FOLDER ${EXACTVO_MODULE_FOLDER} CACHE INTERNAL "Modules, seen from the program's folder")
 set(build "EXACTVO_VERSION=\"${PROJECT_VERSION}\"")
 
-add_library(exactvo_datasets_loader STATIC src/modules/loader.cpp)
+# Objects, not an archive: the datasets library refers back to it, and a linker reads an archive once.
+add_library(exactvo_datasets_loader OBJECT src/modules/loader.cpp)
 target_include_directories(exactvo_datasets_loader PRIVATE src ${EXACTVO_PROVENANCE_DIR})
 target_compile_definitions(exactvo_datasets_loader PRIVATE ${build} EXACTVO_MODULE_FOLDER="${EXACTVO_MODULE_FOLDER}")
 target_link_libraries(exactvo_datasets_loader PUBLIC exactvo_datasets PRIVATE ${CMAKE_DL_LIBS} exactvo_build_flags)
