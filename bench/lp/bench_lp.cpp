@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The arena: every solver on every set. First each answer is compared with the certified one, then all are timed,
-// interleaved, in thread CPU time; the table gives ns a solve and the ratio to `usual`.
+// interleaved, in thread CPU time; the table gives ns a solve and the ratio to `textbook`.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -218,20 +218,20 @@ void print(const Set& set, const Truth& truth, const std::vector<Run>& runs) {
   const auto feasible = std::count_if(truth.solutions.begin(), truth.solutions.end(), is_feasible);
   std::printf("\n%s: %zu problems, %td feasible, %zu by the exact stage\n", set.name.c_str(), set.problems.size(),
               feasible, truth.exact_stage);
-  std::printf("  %-20s %10s %16s %9s %7s %7s %11s\n", "solver", "ns/solve", "p10-p90", "x usual", "wrong", "apart",
+  std::printf("  %-20s %10s %16s %9s %7s %7s %11s\n", "solver", "ns/solve", "p10-p90", "x textbook", "wrong", "apart",
               "violation");
-  const double usual = quantile(runs.front().times, 0.5);
+  const double textbook = quantile(runs.front().times, 0.5);
   for (const Run& run : runs) {
     const double median = quantile(run.times, 0.5);
     std::printf("  %-20s %10.1f %7.1f-%8.1f %9.2f %7zu %7zu %11.2g\n", run.entry.name.c_str(), median,
-                quantile(run.times, 0.1), quantile(run.times, 0.9), usual / median, run.wrong, run.apart,
+                quantile(run.times, 0.1), quantile(run.times, 0.9), textbook / median, run.wrong, run.apart,
                 run.worst_violation);
   }
   std::fflush(stdout);
 }
 
 void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out) {
-  const double usual = quantile(runs.front().times, 0.5);
+  const double textbook = quantile(runs.front().times, 0.5);
   for (const Run& run : runs) {
     const double median = quantile(run.times, 0.5);
     out["benchmarks"].push_back({{"name", set.name + "/" + run.entry.name},
@@ -246,7 +246,7 @@ void add_json(const Set& set, const std::vector<Run>& runs, nlohmann::json& out)
                                  {"time_unit", "ns"},
                                  {"p10", quantile(run.times, 0.1)},
                                  {"p90", quantile(run.times, 0.9)},
-                                 {"ratio_to_usual", usual / median},
+                                 {"ratio_to_textbook", textbook / median},
                                  {"problems", run.competitor->count()},
                                  {"wrong_verdicts", run.wrong},
                                  {"apart", run.apart},

@@ -36,7 +36,7 @@ struct Entry {
   std::function<std::unique_ptr<Competitor>(const std::vector<lp::Problem>&)> build;
 };
 
-/// Every solver and every competitor, `usual` first.
+/// Every solver and every competitor, `textbook` first.
 std::vector<Entry> entries();
 
 std::unique_ptr<Competitor> make_cgal_qp(const std::vector<lp::Problem>& problems);

@@ -11,22 +11,23 @@
 namespace exactvo::bench {
 namespace {
 
-class Usual : public Competitor {
+class Textbook : public Competitor {
  public:
-  explicit Usual(const std::vector<lp::Problem>& problems) : set_(problems), answers_(problems.size()) {}
+  explicit Textbook(const std::vector<lp::Problem>& problems) : set_(problems), answers_(problems.size()) {}
   std::size_t count() const override { return answers_.size(); }
   Answer answer(std::size_t i) const override {
     return {{static_cast<double>(answers_[i].x), static_cast<double>(answers_[i].y)}, answers_[i].feasible};
   }
   void run() override {
     for (std::size_t i = 0; i < answers_.size(); ++i)
-      answers_[i] = solve_usual(set_.lines.data() + set_.first[i], static_cast<int>(set_.first[i + 1] - set_.first[i]),
-                                set_.hard[i], set_.speed[i], set_.preferred_x[i], set_.preferred_y[i]);
+      answers_[i] =
+          solve_textbook(set_.lines.data() + set_.first[i], static_cast<int>(set_.first[i + 1] - set_.first[i]),
+                         set_.hard[i], set_.speed[i], set_.preferred_x[i], set_.preferred_y[i]);
   }
 
  private:
-  UsualSet set_;
-  std::vector<UsualVelocity> answers_;
+  TextbookSet set_;
+  std::vector<TextbookVelocity> answers_;
 };
 
 template <class T>
@@ -51,6 +52,7 @@ bool feasible(const lp::Solution& s) {
 }
 
 /// One problem after the other, each as arrays.
+template <bool kProve>
 class Single : public Competitor {
  public:
   explicit Single(const std::vector<lp::Problem>& problems) : answers_(problems.size()) {
@@ -72,7 +74,12 @@ class Single : public Competitor {
   std::size_t count() const override { return answers_.size(); }
   Answer answer(std::size_t i) const override { return {answers_[i].velocity, feasible(answers_[i])}; }
   void run() override {
-    for (std::size_t i = 0; i < problems_.size(); ++i) lp::solve_single(problems_[i], answers_[i]);
+    for (std::size_t i = 0; i < problems_.size(); ++i) {
+      if (kProve)
+        lp::solve_single_certified(problems_[i], answers_[i]);
+      else
+        lp::solve_single(problems_[i], answers_[i]);
+    }
   }
 
  private:
@@ -123,13 +130,15 @@ Entry batch_entry(std::string name, std::string target, bool prove = false) {
 
 std::vector<Entry> entries() {
   std::vector<Entry> all;
-  all.push_back({"usual", false, false, kAll, "", [](const auto& p) { return std::make_unique<Usual>(p); }});
+  all.push_back({"textbook", false, false, kAll, "", [](const auto& p) { return std::make_unique<Textbook>(p); }});
   all.push_back(batch_entry<double>("batch-double", ""));
   all.push_back(batch_entry<double>("batch-certified", "", true));
   all.push_back(batch_entry<float>("batch-float", ""));
   all.push_back(batch_entry<double>("batch-double-AVX2", "AVX2"));
   all.push_back(batch_entry<float>("batch-float-AVX2", "AVX2"));
-  all.push_back({"single", false, false, kAll, "", [](const auto& p) { return std::make_unique<Single>(p); }});
+  all.push_back({"single", false, false, kAll, "", [](const auto& p) { return std::make_unique<Single<false>>(p); }});
+  all.push_back(
+      {"single-certified", false, true, kAll, "", [](const auto& p) { return std::make_unique<Single<true>>(p); }});
   all.push_back({"incremental", false, false, kAll, "",
                  [](const auto& p) { return one_by_one(p, [](const lp::Problem& q) { return lp::solve(q); }); }});
   all.push_back({"certified", false, true, kSome, "", [](const auto& p) {

@@ -32,7 +32,7 @@ bool feasible_when_shifted(lp::Problem problem, double by) {
   return status == lp::Status::optimal || status == lp::Status::pinched;
 }
 
-double worst_violation(const lp::Problem& problem, const UsualVelocity& answer) {
+double worst_violation(const lp::Problem& problem, const TextbookVelocity& answer) {
   double worst = 0.0;
   for (const lp::Constraint& c : problem.constraints)
     worst = std::max(worst,
@@ -42,9 +42,9 @@ double worst_violation(const lp::Problem& problem, const UsualVelocity& answer) 
 
 /// Nothing, or what is wrong, in words.
 std::string disagreement(const lp::Problem& problem) {
-  const UsualSet one({problem});
-  const UsualVelocity answer = solve_usual(one.lines.data(), static_cast<int>(one.lines.size()), one.hard[0],
-                                           one.speed[0], one.preferred_x[0], one.preferred_y[0]);
+  const TextbookSet one({problem});
+  const TextbookVelocity answer = solve_textbook(one.lines.data(), static_cast<int>(one.lines.size()), one.hard[0],
+                                                 one.speed[0], one.preferred_x[0], one.preferred_y[0]);
   if (answer.feasible && !feasible_when_shifted(problem, -kInexcusable)) return "called feasible";
   if (answer.feasible && worst_violation(problem, answer) > kInexcusable) return "feasible, but its velocity is not";
   if (!answer.feasible && feasible_when_shifted(problem, kInexcusable)) return "called infeasible";

@@ -20,7 +20,7 @@ constexpr double kSpeed = 2.0;     // m/s
 constexpr double kHorizon = 10.0;  // s
 constexpr double kStep = 0.25;     // s
 constexpr double kArrived = kRadius;
-constexpr int kMostSteps = 3000;  // the usual implementation arrives after some 1000
+constexpr int kMostSteps = 3000;  // the textbook implementation arrives after some 1000
 /// Robots that block each other before a wall for good would only repeat one decision.
 constexpr int kMostStepsBetweenBlocks = 2000;
 
@@ -53,7 +53,8 @@ Scenario circle() {
 
 vo::OrcaChain block(double x, double y) {
   constexpr double kSide = 30.0;  // m
-  return vo::orca_chains(geometry::Polygon{{{x, y}, {x + kSide, y}, {x + kSide, y + kSide}, {x, y + kSide}}, {}}).front();
+  return vo::orca_chains(geometry::Polygon{{{x, y}, {x + kSide, y}, {x + kSide, y + kSide}, {x, y + kSide}}, {}})
+      .front();
 }
 
 Scenario blocks() {

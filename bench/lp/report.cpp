@@ -93,7 +93,7 @@ struct Look {
   const char* dash;
 };
 constexpr Look kLooks[] = {
-    {"usual", "#555555", ""},           {"batch-double", "#0072B2", ""},     {"batch-double-AVX2", "#0072B2", " dt 2"},
+    {"textbook", "#555555", ""},        {"batch-double", "#0072B2", ""},     {"batch-double-AVX2", "#0072B2", " dt 2"},
     {"batch-certified", "#009E73", ""}, {"batch-float", "#E69F00", ""},      {"batch-float-AVX2", "#E69F00", " dt 2"},
     {"single", "#56B4E9", ""},          {"incremental", "#56B4E9", " dt 2"}, {"certified", "#CC79A7", ""},
     {"exact", "#CC79A7", " dt 2"},      {"cgal-qp-Gmpzf", "#D55E00", ""},    {"glpk", "#D55E00", " dt 2"}};
@@ -235,7 +235,7 @@ void write_figures(std::ostream& page, const json& arena) {
     page << "<p>Without the figures to reach: <code>bench_lp --table --json</code> writes them.</p>\n";
     return;
   }
-  page << "<h2>Figures to reach</h2>\n<p>Times as fast as the usual float solver, where nothing else is said.</p>\n"
+  page << "<h2>Figures to reach</h2>\n<p>Times as fast as the textbook float solver, where nothing else is said.</p>\n"
        << "<table><tr><th class=\"words\">figure</th><th>reach</th><th>measured</th><th></th></tr>\n";
   for (const json& row : arena.at("figures")) {
     const bool reached = row.at("reached");
@@ -256,7 +256,8 @@ std::string header_of(const std::vector<std::string>& solvers) {
 }
 
 void write_times(std::ostream& page, const Times& times, const std::vector<std::string>& solvers) {
-  page << "<h2>Nanoseconds a solve (times as fast as the usual solver)</h2>\n<p>Fast is not right: the next table says "
+  page << "<h2>Nanoseconds a solve (times as fast as the textbook solver)</h2>\n<p>Fast is not right: the next table "
+          "says "
           "how often each is wrong on the same sets.</p>\n<table>"
        << header_of(solvers);
   for (const auto& [set, row] : times) {
@@ -265,7 +266,7 @@ void write_times(std::ostream& page, const Times& times, const std::vector<std::
       page << "<td>";
       if (row.count(solver) != 0) {
         page << number("%.3g", row.at(solver));
-        if (row.count("usual") != 0) page << number(" (%.2f)", row.at("usual") / row.at(solver));
+        if (row.count("textbook") != 0) page << number(" (%.2f)", row.at("textbook") / row.at(solver));
       }
       page << "</td>";
     }

@@ -18,7 +18,7 @@ std::size_t longest(const std::vector<lp::Problem>& problems) {
   return lines;
 }
 
-UsualLine usual_line(const lp::HalfPlane& h) {
+TextbookLine textbook_line(const lp::HalfPlane& h) {
   const double squared = squared_norm(h.normal);
   const lp::Vec2 foot = (h.offset / squared) * h.normal;
   const double inverse = 1.0 / std::sqrt(squared);
@@ -97,12 +97,12 @@ lp::BatchAnswers<T> Arrays<T>::answers(bool prove) {
 template struct Arrays<float>;
 template struct Arrays<double>;
 
-UsualSet::UsualSet(const std::vector<lp::Problem>& problems) {
+TextbookSet::TextbookSet(const std::vector<lp::Problem>& problems) {
   first.push_back(0);
   for (const lp::Problem& p : problems) {
     int hard_lines = 0;
     for (const lp::Constraint& c : p.constraints) {
-      lines.push_back(usual_line(c.half_plane));
+      lines.push_back(textbook_line(c.half_plane));
       hard_lines += c.priority == lp::Priority::hard;
     }
     first.push_back(lines.size());

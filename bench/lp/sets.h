@@ -10,7 +10,7 @@
 
 #include "exactvo/vo/lp/batch.h"
 #include "exactvo/vo/lp/problem.h"
-#include "usual.h"
+#include "textbook.h"
 
 namespace exactvo::bench {
 
@@ -56,10 +56,10 @@ struct Arrays {
   std::vector<std::uint8_t> status, proven;
 };
 
-/// A set as the usual solver wants it: hard lines first.
-struct UsualSet {
-  explicit UsualSet(const std::vector<lp::Problem>& problems);
-  std::vector<UsualLine> lines;
+/// A set as the textbook solver wants it: hard lines first.
+struct TextbookSet {
+  explicit TextbookSet(const std::vector<lp::Problem>& problems);
+  std::vector<TextbookLine> lines;
   std::vector<std::size_t> first;  ///< of problem i; count + 1 entries
   std::vector<int> hard;
   std::vector<float> speed, preferred_x, preferred_y;

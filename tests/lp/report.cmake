@@ -5,7 +5,7 @@ file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 set(rows "")
 foreach(set C5 C10)
-  foreach(solver usual batch-float exact)
+  foreach(solver textbook batch-float exact)
     string(APPEND rows "{\"name\": \"${set}/${solver}\", \"cpu_time\": 40, \"wrong_verdicts\": 10, \"apart\": 28, \"worst_violation\": 0},")
   endforeach()
 endforeach()
@@ -13,7 +13,7 @@ string(REGEX REPLACE ",$" "" rows "${rows}")
 file(WRITE ${WORK}/arena.json "{\"context\": {\"cpu\": \"a processor\"}, \"benchmarks\": [${rows}],
   \"figures\": [{\"what\": \"C10, double\", \"reach\": 4, \"measured\": 2, \"at_most\": false, \"reached\": false}]}")
 file(WRITE ${WORK}/adversarial.json "{\"adversarial\": [{\"perturbation\": \"1e-3\", \"solver\": \"exact\",
-  \"false_infeasible\": 0, \"false_feasible\": 0, \"problems\": 10}, {\"perturbation\": \"1e-3\", \"solver\": \"usual\",
+  \"false_infeasible\": 0, \"false_feasible\": 0, \"problems\": 10}, {\"perturbation\": \"1e-3\", \"solver\": \"textbook\",
   \"false_infeasible\": 1, \"false_feasible\": 0, \"problems\": 10}]}")
 
 execute_process(COMMAND ${LP_REPORT} ${WORK}/adversarial.json ${WORK}/arena.json ${WORK}/page
@@ -35,7 +35,7 @@ foreach(text "10 / 28 / 0" "a processor" "Figures to reach" ">short<" "Where and
 endforeach()
 foreach(picture time-C profile accuracy)
   file(READ ${WORK}/page/${picture}.gp script)
-  if(NOT script MATCHES "lc rgb '#CC79A7' dt 2 title 'exact'" OR NOT script MATCHES "lc rgb '#555555' title 'usual'")
+  if(NOT script MATCHES "lc rgb '#CC79A7' dt 2 title 'exact'" OR NOT script MATCHES "lc rgb '#555555' title 'textbook'")
     message(FATAL_ERROR "${picture}: a solver has another colour than elsewhere:\n${script}")
   endif()
 endforeach()
@@ -43,7 +43,7 @@ endforeach()
 # Neither a folder nor a solver is a command, for the shell, for gnuplot or for a reader of the page.
 set(folder "${WORK}/a'$(touch ${WORK}/pwned)'`touch ${WORK}/pwned`")
 set(solver "'.system('touch ${WORK}/pwned').'<script>")
-string(REPLACE "usual" "${solver}" rows "${rows}")
+string(REPLACE "textbook" "${solver}" rows "${rows}")
 file(WRITE ${WORK}/arena.json "{\"benchmarks\": [${rows}], \"context\": {}}")
 execute_process(COMMAND ${LP_REPORT} ${WORK}/arena.json ${WORK}/adversarial.json ${folder}
                 RESULT_VARIABLE status ERROR_VARIABLE words)

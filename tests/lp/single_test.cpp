@@ -63,6 +63,56 @@ TEST(Single, VerdictsAndCertificatesAreThoseOfTheCertifiedSolver) {
   }
 }
 
+/// Contradictions of which up to four lines are hard, as obstacles in a crowd are, and feasible problems with as many.
+std::vector<Problem> among_walls() {
+  std::vector<Problem> problems = generate("RI10", 1500, 33);
+  for (const Problem& p : generate("RF10", 500, 34)) problems.push_back(p);
+  for (std::size_t k = 0; k < problems.size(); ++k)
+    for (std::size_t j = 0; j < k % 5; ++j) problems[k].constraints[j].priority = Priority::hard;
+  return problems;
+}
+
+TEST(Single, AmongWallsNothingViolatesTheSoftLinesLess) {
+  std::size_t relaxed = 0;
+  for (const Problem& problem : among_walls()) {
+    const Solution s = Arrays(problem).solve(), right = solve_certified(problem).solution;
+    ASSERT_STREQ(name(s.status), name(right.status)) << text_of(problem);
+    ASSERT_TRUE(certify(problem, s).has_value()) << text_of(problem);
+    if (s.status != Status::relaxed) continue;
+    ++relaxed;
+    ASSERT_NEAR(s.violation, right.violation, 1e-11) << text_of(problem);
+  }
+  EXPECT_GT(relaxed, 1000U);
+}
+
+TEST(SingleCertified, AnswersAreProvenAndCarryTheirProof) {
+  std::vector<Problem> problems = mixture();
+  for (const Problem& p : among_walls()) problems.push_back(p);
+  std::size_t by_own_multipliers = 0;
+  for (const Problem& problem : problems) {
+    const Arrays arrays(problem);
+    Solution s;
+    ASSERT_TRUE(solve_single_certified(arrays.problem(), s)) << text_of(problem);
+    ASSERT_STREQ(name(s.status), name(solve_exact(problem).solution.status)) << text_of(problem);
+    ASSERT_TRUE(s.status != Status::optimal || keeps(arrays.problem(), s.velocity)) << text_of(problem);
+    by_own_multipliers += check(problem, claim_of(problem, s)) == Flaw::none;
+  }
+  EXPECT_GE(1000 * by_own_multipliers, 999 * problems.size());
+}
+
+TEST(SingleCertified, AdversarialVerdictsAreRight) {
+  for (const std::string& family : adversarial_families()) {
+    for (const char* perturbation : {"1e-6", "1e-9", "1e-12", "1e-15", "1e-17", "0"}) {
+      for (const Problem& problem : generate(family + ":" + perturbation, 100, 8)) {
+        Solution s;
+        ASSERT_TRUE(solve_single_certified(Arrays(problem).problem(), s)) << text_of(problem);
+        EXPECT_EQ(s.status == Status::relaxed, solve_exact(problem).solution.status == Status::relaxed)
+            << text_of(problem);  // all soft: optimal and pinched both say feasible
+      }
+    }
+  }
+}
+
 TEST(Single, EveryTargetGivesTheSameBits) {
   std::vector<Solution> widest;
   for (const Problem& problem : mixture()) widest.push_back(Arrays(problem).solve());

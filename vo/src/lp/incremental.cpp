@@ -146,6 +146,36 @@ bool preferred_is_allowed(const Problem& problem) {
 
 }  // namespace
 
+// A dual active-set method (Goldfarb and Idnani 1983) in the plane: the working set holds at most two lines, each pivot
+// is the one-dimensional problem of Seidel's incremental algorithm (1991; de Berg et al., chapter 4). What cannot all
+// hold is relaxed in the minimax sense, as van den Berg et al. (2011) do, by the same steps one dimension higher.
+//
+//    preferred velocity allowed?  --yes-->  optimal, nothing binds
+//           | no
+//    FEASIBILITY PHASE
+//           v
+//    the optimum of the speed bound alone
+//           v
+//    pricing: the line violated most  --none is-->  optimal
+//           |                      ^
+//           | it enters            | next pivot
+//           v                      |
+//    pivot: the optimum on its boundary, inside the working set
+//           |
+//           | nothing is left there: a contradiction of at most three
+//           v
+//    do the hard constraints hold alone?  --no-->  the hard ones may give, and soft ones do not count
+//           | yes: the soft ones may give             |
+//    RELAXATION PHASE, in (v_x, v_y, violation t)     |
+//           v                                         v
+//    pricing and pivots as above: the lowest point above a plane t = c - n.v for each constraint
+//    that may give, inside a wall for each that may not
+//           |                                         |
+//           v                                         v
+//        relaxed                                  infeasible
+//
+// Lines carry an inward slack. The velocity is then held exactly against the constraints as they were given; where it
+// breaks one, all is repeated with more slack, and where no slack helps the answer is `pinched`.
 Solution solve(const Problem& problem) {
   require_well_formed(problem);
   if (preferred_is_allowed(problem)) return {problem.preferred, Status::optimal, {}, 0, 0.0};

@@ -8,7 +8,9 @@
 #include <limits>
 
 #include "batch_layout.h"
+#include "exact_sign.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
 #include "multipliers.h"
 
@@ -17,10 +19,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "batch_proof.h"
+#include "batch_relax.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<double, kSinglePadding>;
 using V = hn::Vec<D>;
@@ -94,148 +97,152 @@ HWY_INLINE std::ptrdiff_t most_violated(const SingleProblem& p, double x, double
   return best > nothing ? static_cast<std::ptrdiff_t>(digits % kMostNumbered) : -1;
 }
 
-/// The walk of batch_walk.h and batch_relax.h for one problem: what lanes decide by masks is decided by branches here.
-class SingleWalk : private Allowance {
+/// A register of one problem.
+using One = hn::CappedTag<double, 1>;
+
+HWY_INLINE LineV<One> in_lane(const Line& line) {
+  const One d;
+  return {hn::Set(d, line.x), hn::Set(d, line.y), hn::Set(d, line.c), hn::Set(d, static_cast<double>(line.index))};
+}
+
+/// Every line of the problem in turn, for the pricing of lanes.
+HWY_INLINE Rows<double> rows_of(const SingleProblem& p) {
+  return {p.normal_x, p.normal_y, p.offset, 1, p.count};
+}
+
+HWY_INLINE void ask(const SingleProblem& problem, Pack<One>& pack) {
+  const One d;
+  pack.px = hn::Set(d, problem.preferred.x);
+  pack.py = hn::Set(d, problem.preferred.y);
+  pack.speed = hn::Set(d, problem.disc);
+  pack.hard_count = hn::Set(d, static_cast<double>(problem.hard));
+  pack.derive();
+}
+
+/// The walk of batch_walk.h and batch_relax.h for one problem: a register of one lane. Its lines are priced a register
+/// at a time, except where hard lines stand beside soft ones that give.
+template <bool kHard>
+class LoneWalk {
  public:
-  explicit SingleWalk(const SingleProblem& problem) : Allowance(problem.disc), p_(problem) {}
+  explicit HWY_INLINE LoneWalk(const SingleProblem& problem) : p_(problem) {
+    ask(problem, pack_);
+    pack_.start();
+    pack_.first = pack_.second = no_line(One());
+    every_ = hn::Not(pack_.none());
+  }
 
   /// False where the walk cannot tell: for `solve`.
   bool run(Solution& s) {
-    start();
     for (int round = 0; round < kMostLockstepRounds; ++round) {
-      const std::ptrdiff_t line = most_violated(p_, x_, y_, noise - slack);
-      if (line < 0) {
-        answer(Status::optimal, s);
-        return true;
-      }
-      entering_ = given(p_, line);
-      entering_.c += slack;
-      if (!step()) return second_.exists() && relax(entering_, first_, second_, s);
+      if (!look()) return answer(s);
+      if (relaxing_ ? !pivot_on() : !step_on(round)) return descend(s);
     }
     return false;
   }
 
-  /// From a contradiction of three lines that carry the slack. Only three soft planes at a time.
-  bool relax(Line a, Line b, Line c, Solution& s) {
-    if (p_.hard > 0) return false;
-    first_ = a;
-    second_ = b;
-    third_ = c;
-    for (Line* line : {&first_, &second_, &third_}) line->c -= slack;
-    if (cross(first_, second_) < 0.0) std::swap(first_, second_);
-    if (!(cross(first_, second_) > 0.0 && cross(second_, third_) > 0.0 && cross(third_, first_) > 0.0)) return false;
-    if (!meet(first_, second_, third_)) return false;
-    for (int round = 0; round < kMostLockstepRounds; ++round) {
-      const std::ptrdiff_t line = most_violated(p_, x_, y_, level_ + noise);
-      if (line < 0) {
-        answer(Status::relaxed, s);
-        return true;
-      }
-      if (!pivot(given(p_, line))) return false;
-    }
-    return false;
+  /// From a contradiction of three lines that carry the slack.
+  bool relax(const Line& a, const Line& b, const Line& c, Solution& s) {
+    pack_.first = in_lane(a);
+    pack_.second = in_lane(b);
+    pack_.third = in_lane(c);
+    if (!start_of_relaxation()) return descend(s);
+    return run(s);
+  }
+
+  /// Whether the optimum or the least violation is proven (batch_proof.h).
+  bool is_proven() const {
+    const Proof<One> proof(pack_);
+    return hn::AllTrue(One(), relaxing_ ? proof.relaxation() : proof.optimum());
   }
 
  private:
-  HWY_INLINE void start() {
-    const double squared = p_.preferred.x * p_.preferred.x + p_.preferred.y * p_.preferred.y;
-    const double shrink = squared <= p_.disc * p_.disc * (1.0 - kDiscUnits * 0x1p-53) ? 1.0 : disc / std::sqrt(squared);
-    x_ = p_.preferred.x * shrink;
-    y_ = p_.preferred.y * shrink;
-  }
+  static HWY_INLINE bool any(hn::Mask<One> m) { return !hn::AllFalse(One(), m); }
 
-  /// Where `other` cuts the boundary of `line` off, in the unit of `step`.
-  HWY_INLINE double cut_off(const Line& line, double squared, const Line& other, double& low, double& high) const {
-    const double slope = cross(line, other) + kParallel<double>;
-    const double cut = (other.c * squared - (line.x * other.x + line.y * other.y) * line.c) / slope;
-    if (slope > 0.0)
-      low = std::max(low, cut);
-    else
-      high = std::min(high, cut);
-    return cut;
-  }
-
-  /// The optimum on the boundary of `entering_`; false where nothing is left of it.
-  HWY_INLINE bool step() {
-    const Line h = entering_;
-    const double squared = h.x * h.x + h.y * h.y, inverse = 1.0 / squared;
-    double low = -HUGE_VAL, high = HUGE_VAL, first = 0.0, second = 0.0;
-    if (first_.exists()) first = cut_off(h, squared, first_, low, high);
-    if (second_.exists()) second = cut_off(h, squared, second_, low, high);
-    const double wish = h.x * p_.preferred.y - h.y * p_.preferred.x;
-    double where = std::min(std::max(wish, low), high);
-    if (h.c * h.c + where * where > disc_squared * squared) {
-      const double room = disc_squared * squared - h.c * h.c;
-      if (room < 0.0) return false;
-      low = std::max(low, -std::sqrt(room));
-      high = std::min(high, std::sqrt(room));
-      where = std::min(std::max(wish, low), high);
+  /// Pricing: the line that enters; false where none is violated.
+  HWY_INLINE bool look() {
+    if (kHard && relaxing_) {
+      price<kHard, true, false>(rows_of(p_), pack_);
+      return any(pack_.violated);
     }
-    if (low > high) return false;
-    x_ = (h.x * h.c - where * h.y) * inverse;
-    y_ = (h.y * h.c + where * h.x) * inverse;
-    if (first_.exists() && where == first)
-      second_ = first_;
-    else if (!(second_.exists() && where == second))
-      second_ = Line();
-    first_ = h;
+    const double noise = hn::GetLane(pack_.noise), slack = hn::GetLane(pack_.slack);
+    const double allowed = relaxing_ ? hn::GetLane(pack_.level) + noise : noise - slack;
+    const std::ptrdiff_t line = most_violated(p_, hn::GetLane(pack_.vx), hn::GetLane(pack_.vy), allowed);
+    if (line < 0) return false;
+    Line enters = given(p_, line);
+    if (!relaxing_) enters.c += slack;
+    pack_.entering = in_lane(enters);
     return true;
   }
 
-  /// See batch_relax.h.
-  HWY_INLINE bool pivot(const Line& a) {
-    const double by_first = cross(a, first_), by_second = cross(a, second_), by_third = cross(a, third_);
-    const bool from_first = by_first > 0.0 && !(by_second > 0.0), from_second = by_second > 0.0 && !(by_third > 0.0);
-    const Line b = from_first ? first_ : from_second ? second_ : third_;
-    const Line c = from_first ? second_ : from_second ? third_ : first_;
-    if (!((from_first || from_second || by_third > 0.0) && cross(a, c) < 0.0)) return false;
-    first_ = a;
-    second_ = b;
-    third_ = c;
-    return meet(a, b, c);
+  /// A pivot of the feasibility phase; false where the relaxation has to be any basis's.
+  HWY_INLINE bool step_on(int round) {
+    const auto contradict = round == 0   ? step<0, true>(pack_, every_)
+                            : round == 1 ? step<1, true>(pack_, every_)
+                                         : step<2, true>(pack_, every_);
+    if (!any(contradict)) return true;
+    pack_.third = pack_.entering;
+    return start_of_relaxation();
   }
 
-  /// Goes to where three planes meet; false where that is outside the disc.
-  HWY_INLINE bool meet(const Line& a, const Line& b, const Line& c) {
-    const double bx = a.x - b.x, by = a.y - b.y, bc = a.c - b.c, cx = a.x - c.x, cy = a.y - c.y, cc = a.c - c.c;
-    const double inverse = 1.0 / (bx * cy - by * cx);
-    x_ = (bc * cy - by * cc) * inverse;
-    y_ = (bx * cc - bc * cx) * inverse;
-    level_ = a.c - (a.x * x_ + a.y * y_);
-    return x_ * x_ + y_ * y_ <= disc_squared;
+  /// False where the contradiction is not of three soft planes that surround 0, or where they meet outside the disc.
+  HWY_INLINE bool start_of_relaxation() {
+    start_relaxing<kHard, true>(pack_, every_);
+    relaxing_ = any(surround_zero<kHard>(pack_));
+    if (!relaxing_) return false;
+    pack_.relaxing = every_;
+    return pivot_on();
   }
 
-  /// The disc is not told of by the walk; it may bind wherever a slot is free.
-  HWY_INLINE void answer(Status status, Solution& s) const {
-    s.velocity = {x_, y_};
-    s.status = status;
-    s.violation = status == Status::relaxed ? std::max(level_, 0.0) : 0.0;
+  HWY_INLINE bool pivot_on() { return !any(pivot<kHard, true>(pack_, every_)); }
+
+  /// Any basis: soft planes, walls, the disc.
+  HWY_NOINLINE bool descend(Solution& s) {
+    const One d;
+    pack_.vx = pack_.vy = pack_.level = hn::Zero(d);
+    pack_.violated = pack_.none();
+    pack_.relaxing = every_;
+    relaxing_ = true;
+    Descent<One> descent(pack_);
+    descent.template run<kHard, true>(rows_of(p_), every_);
+    return !any(descent.unsettled) && answer(s);
+  }
+
+  /// The walk does not keep the disc in its basis; it may bind wherever a slot is free.
+  HWY_INLINE bool answer(Solution& s) const {
+    const double x = hn::GetLane(pack_.vx), y = hn::GetLane(pack_.vy);
+    s.velocity = {x, y};
+    s.status = relaxing_ ? Status::relaxed : Status::optimal;
+    s.violation = relaxing_ ? std::max(hn::GetLane(pack_.level), 0.0) : 0.0;
     s.active = {};
     s.active_count = 0;
     Normals normals{};
-    for (const Line* line : {&first_, &second_, &third_}) {
-      if (!line->exists()) continue;
-      normals[s.active_count] = {line->x, line->y};
-      s.active[s.active_count++].binding = constraint_at(static_cast<std::size_t>(line->index));
+    for (const LineV<One>* line : {&pack_.first, &pack_.second, &pack_.third}) {
+      const double index = hn::GetLane(line->index);
+      if (!(index >= 0.0) || !any(pack_.exists(*line))) continue;
+      normals[s.active_count] = {hn::GetLane(line->x), hn::GetLane(line->y)};
+      s.active[s.active_count++].binding = constraint_at(static_cast<std::size_t>(index));
     }
-    const bool on_disc = x_ * x_ + y_ * y_ > p_.disc * p_.disc * (1.0 - kOnDisc);
-    if (on_disc && s.active_count < (status == Status::optimal ? 2U : 3U)) s.active[s.active_count++].binding = kDisc;
+    const bool on_disc = x * x + y * y > p_.disc * p_.disc * (1.0 - kOnDisc);
+    if (on_disc && s.active_count < (relaxing_ ? 3U : 2U)) s.active[s.active_count++].binding = kDisc;
     set_multipliers(normals, Objective::nearest, p_.preferred, s);
+    return true;
   }
 
   const SingleProblem& p_;
-  double x_ = 0.0, y_ = 0.0, level_ = 0.0;
-  Line first_, second_, third_, entering_;
+  Pack<One> pack_;
+  hn::Mask<One> every_;
+  bool relaxing_ = false;
 };
 
 /// One problem, its lines a register at a time. A problem alone is bound by latency, so chains are kept short: where
 /// the walk goes to a vertex line by line, here all lines cut the boundary of one at once, and multipliers tell whether
-/// the optimum is found. What that does not settle is left to SingleWalk.
+/// the optimum is found. What that does not settle is left to LoneWalk.
+template <bool kProve>
 class Slide : private Allowance {
  public:
   explicit HWY_INLINE Slide(const SingleProblem& problem) : Allowance(problem.disc), p_(problem) {}
 
-  /// False where the walk has to tell.
+  /// False where the walk has to tell, or the answer is not proven.
   HWY_INLINE bool run(Solution& s) const {
     const double px = p_.preferred.x, py = p_.preferred.y;
     const std::ptrdiff_t line = most_violated(p_, px, py, noise - slack);
@@ -339,7 +346,7 @@ class Slide : private Allowance {
         const double of_one = (h.x * pull_x + h.y * pull_y) * inverse;
         s.active[0].multiplier = where == wish ? of_one : of_both[0];
         s.active[1].multiplier = where == wish ? 0.0 : std::max(0.0, of_both[1]);
-        return true;
+        return !kProve || (all_hold(x, y) && keeps_disc(x, y) && is_proven(h, g, x, y, s));
       }
       if (end < 0) return false;
       h = g;
@@ -370,7 +377,63 @@ class Slide : private Allowance {
     Line low = given(p_, left.line_at(true)), high = given(p_, left.line_at(false));
     low.c += slack;
     high.c += slack;
-    return SingleWalk(p_).relax(line, low, high, s);
+    return p_.hard > 0 ? relax<true>(line, low, high, s) : relax<false>(line, low, high, s);
+  }
+
+  template <bool kHard>
+  HWY_INLINE bool relax(const Line& line, const Line& low, const Line& high, Solution& s) const {
+    LoneWalk<kHard> walk(p_);
+    return walk.relax(line, low, high, s) && (!kProve || walk.is_proven());
+  }
+
+  /// Whether every line holds by more than the rounding of its sum (exact_sign.h).
+  HWY_INLINE bool all_hold(double x, double y) const {
+    const D d;
+    const V vx = hn::Set(d, x), vy = hn::Set(d, y), share = hn::Set(d, kSignError), least = hn::Set(d, kSignUnderflow);
+    M doubtful = hn::MaskFromVec(hn::Zero(d));
+    for_registers(p_.count, [&](std::size_t k, auto lines) {
+      const V along = hn::Mul(hn::LoadU(d, p_.normal_x + k), vx), across = hn::Mul(hn::LoadU(d, p_.normal_y + k), vy);
+      const V c = hn::LoadU(d, p_.offset + k);
+      const V terms = hn::Add(hn::Add(hn::Abs(along), hn::Abs(across)), hn::Abs(c));
+      const V error = hn::Add(hn::Mul(share, terms), least);
+      doubtful = hn::Or(doubtful, among(lines, hn::Le(hn::Sub(hn::Add(along, across), c), error)));
+    });
+    return hn::AllFalse(d, doubtful);
+  }
+
+  /// Whether the multipliers of two lines, the first with its slack, or of one and the disc prove (x, y) the optimum.
+  HWY_INLINE bool is_proven(const Line& h, const Line& g, double x, double y, const Solution& s) const {
+    if (s.active_count == 2 && !g.exists()) return is_proven_on_disc(h, x, y);
+    return gap_is_narrow(h, g, s.active[0].multiplier, s.active[1].multiplier, x, y);
+  }
+
+  HWY_INLINE bool keeps_disc(double x, double y) const {
+    return x * x + y * y <= p_.disc * p_.disc * (1.0 - 4 * 0x1p-53);  // a product and a sum, three units of each side
+  }
+
+  /// Inequality (4) of certificate.h, the disc out of it, in rounded arithmetic; its error as in batch_proof.h.
+  HWY_INLINE bool gap_is_narrow(const Line& h, const Line& g, double a, double b, double x, double y) const {
+    const double px = p_.preferred.x, py = p_.preferred.y, own = px * px + py * py, limit = p_.disc * p_.disc;
+    const double pull_x = x - px, pull_y = y - py;
+    const double gx = px + (a * h.x + b * g.x), gy = py + (a * h.y + b * g.y), pulled = gx * gx + gy * gy;
+    const double c = h.c - slack, offsets = a * c + b * g.c;
+    const double gap = (pull_x * pull_x + pull_y * pull_y) - ((own + (offsets + offsets)) - pulled);
+    const double spread = (std::fabs(px) + std::fabs(py)) + (a + b);
+    const double turned = ((std::fabs(gx) + std::fabs(gy)) + kSecondOrder * spread) * spread;
+    const double terms = (own + (pulled + turned)) + (limit + (a * std::fabs(c) + b * std::fabs(g.c)));
+    return a >= 0.0 && gap + kProofError * 0x1p-53 * terms <= kWidestGap * (limit + own);  // b is 0 or more
+  }
+
+  HWY_NOINLINE bool is_proven_on_disc(const Line& h, double x, double y) const {
+    const One d;
+    Pack<One> pack;
+    ask(p_, pack);
+    pack.vx = hn::Set(d, x);
+    pack.vy = hn::Set(d, y);
+    pack.level = hn::Zero(d);
+    pack.first = in_lane(h);
+    pack.second = pack.third = no_line(d);
+    return hn::AllTrue(d, Proof<One>(pack).optimum());
   }
 
   /// Which of the two lines to go on with: the one that cuts more off.
@@ -384,14 +447,29 @@ class Slide : private Allowance {
   const SingleProblem& p_;
 };
 
+template <bool kProve, bool kHard>
+HWY_INLINE bool walk_alone(const SingleProblem& p, Solution& s) {
+  LoneWalk<kHard> walk(p);
+  return walk.run(s) && (!kProve || walk.is_proven());
+}
+
 /// Preferred velocities inside the disc, squares in range (Pack::in_range) and lines that can be numbered: the rest
 /// takes a longer way.
-bool run_single(const SingleProblem& p, Solution& s) {
+template <bool kProve>
+HWY_INLINE bool run(const SingleProblem& p, Solution& s) {
   const double limit = p.disc * p.disc, squared = p.preferred.x * p.preferred.x + p.preferred.y * p.preferred.y;
   const double most = std::max(squared, limit);
   if (!(limit >= kLeastSquare<double> && most <= kMostSquare<double> && p.count <= kMostNumbered)) return false;
-  if (squared <= limit * (1.0 - kDiscUnits * 0x1p-53) && Slide(p).run(s)) return true;
-  return SingleWalk(p).run(s);
+  if (squared <= limit * (1.0 - kDiscUnits * 0x1p-53) && Slide<kProve>(p).run(s)) return true;
+  return p.hard > 0 ? walk_alone<kProve, true>(p, s) : walk_alone<kProve, false>(p, s);
+}
+
+bool run_single(const SingleProblem& p, Solution& s) {
+  return run<false>(p, s);
+}
+
+bool run_single_proven(const SingleProblem& p, Solution& s) {
+  return run<true>(p, s);
 }
 
 }  // namespace exactvo::lp::HWY_NAMESPACE
@@ -401,6 +479,7 @@ HWY_AFTER_NAMESPACE();
 namespace exactvo::lp {
 
 HWY_EXPORT(run_single);
+HWY_EXPORT(run_single_proven);
 
 namespace {
 
@@ -420,10 +499,20 @@ HWY_NOINLINE void solve_copied(const SingleProblem& problem, Solution& answer) {
   answer = solve(problem_of(problem));
 }
 
+HWY_NOINLINE bool certify_copied(const SingleProblem& problem, Solution& answer) {
+  const Proven proven = solve_certified(problem_of(problem));
+  answer = proven.solution;
+  return proven.certificate.has_value();
+}
+
 }  // namespace
 
 void solve_single(const SingleProblem& problem, Solution& answer) {
   if (!HWY_DYNAMIC_DISPATCH(run_single)(problem, answer)) solve_copied(problem, answer);
+}
+
+bool solve_single_certified(const SingleProblem& problem, Solution& answer) {
+  return HWY_DYNAMIC_DISPATCH(run_single_proven)(problem, answer) || certify_copied(problem, answer);
 }
 
 Solution solve_single(const SingleProblem& problem) {

@@ -32,6 +32,11 @@ Solution solve_single(const SingleProblem& problem);
 /// The same into a place of the caller's, which saves copying what has just been written.
 void solve_single(const SingleProblem& problem, Solution& answer);
 
+/// The same with what `solve_certified` promises: `optimal` and `relaxed` hold exactly, and no velocity is better by more
+/// than kWidestGap of certificate.h. Certified: the multipliers are proven in doubles with their rounding errors, and
+/// what these cannot show goes to `solve_certified`, which allocates. False where there is no proof either.
+bool solve_single_certified(const SingleProblem& problem, Solution& answer);
+
 /// Whether v keeps every line, hard or soft, and the disc. Exact. With certified half-planes of velocity obstacles this
 /// is the proof that v lies in the interior of none. REQUIRES: finite numbers.
 bool keeps(const SingleProblem& problem, geometry::Vec2 v);

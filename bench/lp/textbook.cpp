@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "usual.h"
+#include "textbook.h"
 
 #include <cmath>
 
@@ -18,10 +18,10 @@ inline float dot(Vector a, Vector b) {
 inline float det(Vector a, Vector b) {
   return a.x * b.y - a.y * b.x;
 }
-inline Vector point(const UsualLine& l) {
+inline Vector point(const TextbookLine& l) {
   return {l.point_x, l.point_y};
 }
-inline Vector direction(const UsualLine& l) {
+inline Vector direction(const TextbookLine& l) {
   return {l.direction_x, l.direction_y};
 }
 inline Vector minus(Vector a, Vector b) {
@@ -29,12 +29,12 @@ inline Vector minus(Vector a, Vector b) {
 }
 
 /// Positive where v lies right of the line: outside.
-inline float outside(const UsualLine& l, Vector v) {
+inline float outside(const TextbookLine& l, Vector v) {
   return det(direction(l), minus(point(l), v));
 }
 
 /// The optimum on line `k` inside lines 0 .. k - 1 and the disc.
-inline bool on_line(const UsualLine* lines, int k, float speed, Vector wish, bool along_wish, Vector& v) {
+inline bool on_line(const TextbookLine* lines, int k, float speed, Vector wish, bool along_wish, Vector& v) {
   const Vector p = point(lines[k]), d = direction(lines[k]);
   const float pd = dot(p, d);
   const float discriminant = pd * pd + speed * speed - dot(p, p);
@@ -67,7 +67,7 @@ inline bool on_line(const UsualLine* lines, int k, float speed, Vector wish, boo
 }
 
 /// The number of lines kept; less than `count` where the next one contradicts.
-inline int incremental(const UsualLine* lines, int count, float speed, Vector wish, bool along_wish, Vector& v) {
+inline int incremental(const TextbookLine* lines, int count, float speed, Vector wish, bool along_wish, Vector& v) {
   if (along_wish) {
     v = {wish.x * speed, wish.y * speed};
   } else {
@@ -86,7 +86,7 @@ inline int incremental(const UsualLine* lines, int count, float speed, Vector wi
 }
 
 /// Line `i` as seen on the plane of equal violation with line `k`; false where both are the same.
-inline bool equally_violated(const UsualLine& k, const UsualLine& i, UsualLine& out) {
+inline bool equally_violated(const TextbookLine& k, const TextbookLine& i, TextbookLine& out) {
   const float determinant = det(direction(k), direction(i));
   if (std::fabs(determinant) <= kParallel) {
     if (dot(direction(k), direction(i)) > 0.0F) return false;
@@ -104,9 +104,9 @@ inline bool equally_violated(const UsualLine& k, const UsualLine& i, UsualLine& 
   return true;
 }
 
-void relax(const UsualLine* lines, int count, int hard, int first, float speed, Vector& v) {
+void relax(const TextbookLine* lines, int count, int hard, int first, float speed, Vector& v) {
   float level = 0.0F;
-  UsualLine projected[kMostUsualLines];
+  TextbookLine projected[kMostTextbookLines];
   for (int k = 0; k < hard; ++k) projected[k] = lines[k];
   for (int k = first; k < count; ++k) {
     if (outside(lines[k], v) <= level) continue;
@@ -121,8 +121,8 @@ void relax(const UsualLine* lines, int count, int hard, int first, float speed, 
 
 }  // namespace
 
-UsualVelocity solve_usual(const UsualLine* lines, int count, int hard, float speed, float preferred_x,
-                          float preferred_y) {
+TextbookVelocity solve_textbook(const TextbookLine* lines, int count, int hard, float speed, float preferred_x,
+                                float preferred_y) {
   Vector v{};
   const int kept = incremental(lines, count, speed, {preferred_x, preferred_y}, false, v);
   if (kept < count) relax(lines, count, hard, kept, speed, v);

@@ -11,19 +11,19 @@
 
 namespace exactvo::bench {
 
-struct UsualLine {
+struct TextbookLine {
   float point_x, point_y, direction_x, direction_y;
 };
 
-struct UsualVelocity {
+struct TextbookVelocity {
   float x, y;
   bool feasible;
 };
 
-inline constexpr int kMostUsualLines = 512;
+inline constexpr int kMostTextbookLines = 512;
 
-/// The first `hard` lines are not relaxed. REQUIRES: count <= kMostUsualLines.
-UsualVelocity solve_usual(const UsualLine* lines, int count, int hard, float speed, float preferred_x,
-                          float preferred_y);
+/// The first `hard` lines are not relaxed. REQUIRES: count <= kMostTextbookLines.
+TextbookVelocity solve_textbook(const TextbookLine* lines, int count, int hard, float speed, float preferred_x,
+                                float preferred_y);
 
 }  // namespace exactvo::bench
