@@ -12,6 +12,8 @@ target_compile_definitions(exactvo_datasets_loader PRIVATE ${build} EXACTVO_MODU
 target_link_libraries(exactvo_datasets_loader PUBLIC exactvo_datasets PRIVATE ${CMAKE_DL_LIBS} exactvo_build_flags)
 add_dependencies(exactvo_datasets_loader exactvo_provenance)
 
+# What a program that loads them depends on: objects bring no targets of theirs along.
+add_custom_target(exactvo_datasets_modules)
 get_property(parts GLOBAL PROPERTY EXACTVO_PARTS_OF_datasets)
 foreach(part IN LISTS parts)
   set(module exactvo_${part}_module)
@@ -25,7 +27,7 @@ foreach(part IN LISTS parts)
   set_target_properties(${module} PROPERTIES PREFIX "" OUTPUT_NAME exactvo_${part} CXX_VISIBILITY_PRESET hidden
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin/${EXACTVO_MODULE_FOLDER})
   add_dependencies(${module} exactvo_provenance)
-  add_dependencies(exactvo_datasets_loader ${module})
+  add_dependencies(exactvo_datasets_modules ${module})
   string(TOUPPER ${part} upper)
   target_compile_definitions(exactvo_datasets_loader PRIVATE EXACTVO_LOADS_${upper})
   install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/exactvo)

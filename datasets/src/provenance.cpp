@@ -98,7 +98,7 @@ std::string to_json(const Provenance& provenance) {
     json.begin_object().member("path", input.path).member("sha256", input.sha256).end_object();
   }
   json.end_array();
-  json.member("written_at", provenance.written_at);
+  if (!provenance.written_at.empty()) json.member("written_at", provenance.written_at);
   return json.end_object().take();
 }
 
@@ -118,7 +118,7 @@ Provenance parse_provenance(const std::string& json, const std::string& file_nam
     for (const Json& input : tree.at("inputs")) {
       facts.inputs.push_back({input.at("path").get<std::string>(), input.at("sha256").get<std::string>()});
     }
-    tree.at("written_at").get_to(facts.written_at);
+    facts.written_at = tree.value("written_at", "");
     return facts;
   } catch (const nlohmann::detail::exception& error) {
     throw DataError(DataCode::wrong_type, file_name, "/provenance", error.what(), "provenance as ExactVO writes it");

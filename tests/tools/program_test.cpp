@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -446,6 +448,21 @@ TEST(Simulate, TwoRunsGiveTheSameBytesButForTimes) {
     ASSERT_EQ(b.count(name), 1u) << name;
     EXPECT_TRUE(without_times(text) == without_times(b.at(name))) << name << " differs";
   }
+}
+
+TEST(Simulate, EqualRunsHaveEqualDigestsWhateverTheTime) {
+  const Workplace here, there;
+  const std::string digest = "\"sha256\":\"[0-9a-f]{64}\"[}]}\n$";
+  std::vector<std::string> ends;
+  for (const auto& [place, time] : {std::pair(&here, "1700000000"), std::pair(&there, "1700000001")}) {
+    const std::string command = "simulate " + data_file("paper/A2.json") + " --out out --no-figures";
+    ASSERT_EQ(place->run(command, std::string("SOURCE_DATE_EPOCH=") + time).status, 0);
+    std::smatch found;
+    const std::string text = place->read("out/recording.jsonl");
+    ASSERT_TRUE(std::regex_search(text, found, std::regex(digest))) << text.substr(text.size() - 300);
+    ends.push_back(found.str());
+  }
+  EXPECT_EQ(ends[0], ends[1]);
 }
 
 TEST(Simulate, AnExistingFolderKeepsWhatIsNotOurs) {

@@ -60,6 +60,7 @@ void read_end(const JsonCursor& at, RecordingFile& file) {
   recording.warnings = to_texts(at.at("warnings"));
   read_stuck(at.at("stuck"), file);
   recording.wall_time = at.at("wall_time").number();
+  file.info.provenance.written_at = at.at("written_at").text();
   if (at.has("collisions")) file.collisions = to_collisions(at.at("collisions"));
   at.at("sha256").text();
 }

@@ -28,7 +28,9 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.key("offsets");
   append_points(json, recording.offsets);
   json.member("all_half_planes", recording.all_half_planes);
-  json.key("provenance").raw(to_json(file.info.provenance));
+  Provenance timeless = file.info.provenance;
+  timeless.written_at.clear();  // in the last line, which the digest leaves out: equal runs have equal digests
+  json.key("provenance").raw(to_json(timeless));
   json.key("scenario");
   append_scenario(json, file.scenario);
   json.end_object();
@@ -69,7 +71,8 @@ void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, c
   json.end_array();
   append_stuck(json, file);
   append_collisions(json, file.collisions);
-  json.member("wall_time", recording.wall_time).member("sha256", digest);
+  json.member("wall_time", recording.wall_time).member("written_at", file.info.provenance.written_at);
+  json.member("sha256", digest);
   json.end_object();
 }
 

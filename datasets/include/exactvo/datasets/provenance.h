@@ -32,6 +32,7 @@ struct Provenance {
   std::vector<std::string> command_line;
   std::vector<InputFile> inputs;
   /// The only field that is not the same from run to run: UTC, "2024-05-01T12:00:00Z"; SOURCE_DATE_EPOCH is obeyed.
+  /// Left out of the JSON where empty.
   std::string written_at;
 };
 
