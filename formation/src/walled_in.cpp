@@ -61,7 +61,8 @@ bool is_left(const Segment& line, Vec2 p) {
 
 /// Whether the path crosses the segment an odd number of times. A point on the segment's line counts as left of it, so
 /// that the crossings of a closed path add up. Exact. REQUIRES: neither end of the segment on the path.
-bool crosses_oddly(const std::vector<Vec2>& path, const Segment& segment) {
+template <class Path>
+bool crosses_oddly(const Path& path, const Segment& segment) {
   bool odd = false;
   for (std::size_t k = 1; k < path.size(); ++k) {
     if (is_left(segment, path[k - 1]) == is_left(segment, path[k])) continue;
@@ -71,7 +72,8 @@ bool crosses_oddly(const std::vector<Vec2>& path, const Segment& segment) {
   return odd;
 }
 
-bool comes_near(const std::vector<Vec2>& path, const Place& place) {
+template <class Path>
+bool comes_near(const Path& path, const Place& place) {
   for (std::size_t k = 1; k < path.size(); ++k)
     if (geometry::distance(Segment{path[k - 1], path[k]}, place.point) <= place.reach) return true;
   return false;
@@ -83,17 +85,23 @@ Walls::Walls(const std::vector<SceneObstacle>& obstacles, double robot_radius) {
   for (std::size_t k = 0; k < obstacles.size(); ++k)
     for (const Segment& s : geometry::edges_of(obstacles[k].shape)) edges_.push_back({s, k, {}});
   add_links(robot_radius);
+  std::vector<geometry::Box> boxes;
+  for (const Link& link : links_) {
+    geometry::Box& box = boxes.emplace_back();
+    for (const Vec2 p : link.path) box.add(p);
+  }
+  links_by_place_ = geometry::BoxGrid(std::move(boxes));
+  number_parts();
 }
 
 void Walls::add_links(double robot_radius) {
-  double largest = 0.0;  // m
   std::vector<BoxedEdge> boxes;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const Segment& s = edges_[i].segment;
-    for (const double x : {s.a.x, s.a.y, s.b.x, s.b.y}) largest = std::max(largest, std::fabs(x));
+    for (const double x : {s.a.x, s.a.y, s.b.x, s.b.y}) largest_ = std::max(largest_, std::fabs(x));
     boxes.emplace_back(box_of(s, 0.0), i);
   }
-  const double narrow = 2.0 * robot_radius - kSlack - 2.0 * geometry::rounding_of_distance(largest);
+  const double narrow = 2.0 * robot_radius - kSlack - 2.0 * geometry::rounding_of_distance(largest_);
   const bg::index::rtree<BoxedEdge, bg::index::rstar<16>> tree(boxes);
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const auto within = bg::index::intersects(box_of(edges_[i].segment, 2.0 * robot_radius));
@@ -110,25 +118,69 @@ void Walls::add_links(double robot_radius) {
   }
 }
 
-/// Spans every connected part of the graph by a tree, breadth first, with the parity of the crossings of the way to the
-/// root at each edge. A link that contradicts the parities closes a chain that separates the places.
-std::optional<Enclosing> Walls::between(const Place& start, const Place& goal) const {
+/// Numbers the connected parts of the graph.
+void Walls::number_parts() {
+  constexpr std::size_t kUnseen = std::numeric_limits<std::size_t>::max();
+  part_.assign(edges_.size(), kUnseen);
+  std::vector<std::size_t> queue;
+  for (std::size_t root = 0; root < edges_.size(); ++root) {
+    if (part_[root] != kUnseen) continue;
+    part_[root] = root;
+    queue.assign(1, root);
+    while (!queue.empty()) {
+      const std::size_t i = queue.back();
+      queue.pop_back();
+      for (const std::size_t l : edges_[i].links) {
+        const std::size_t j = links_[l].from == i ? links_[l].to : links_[l].from;
+        if (part_[j] != kUnseen) continue;
+        part_[j] = root;
+        queue.push_back(j);
+      }
+    }
+  }
+}
+
+/// Only links whose boxes meet the way can cross it, and only those within reach of a place come near it.
+std::vector<Walls::Use> Walls::uses_for(const Place& start, const Place& goal) const {
+  std::vector<Use> uses(links_.size());
+  for (const Place& place : {start, goal}) {
+    const double largest = std::max({largest_, std::fabs(place.point.x), std::fabs(place.point.y)});
+    const double reach = place.reach + 2.0 * geometry::rounding_of_distance(largest);
+    links_by_place_.for_each_within(place.point, reach,
+                                    [&](std::size_t l) { uses[l].is_taken |= comes_near(links_[l].path, place); });
+  }
   const Segment way{start.point, goal.point};
+  geometry::Box box;
+  box.add(way.a);
+  box.add(way.b);
+  links_by_place_.for_each_meeting(box, [&](std::size_t l) {
+    if (!uses[l].is_taken) uses[l].is_odd = crosses_oddly(links_[l].path, way);
+  });
+  return uses;
+}
+
+/// Spans every connected part of the graph by a tree, breadth first, with the parity of the crossings of the way to the
+/// root at each edge. A link that contradicts the parities closes a chain that separates the places. In a part where no
+/// link crosses oddly none does.
+std::optional<Enclosing> Walls::between(const Place& start, const Place& goal) const {
+  const std::vector<Use> uses = uses_for(start, goal);
+  std::vector<char> is_crossed(edges_.size(), 0);  // of parts
+  for (std::size_t l = 0; l < links_.size(); ++l)
+    if (uses[l].is_odd) is_crossed[part_[links_[l].from]] = 1;
   constexpr std::size_t kUnseen = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> by(edges_.size(), kUnseen), parent(edges_.size()), depth(edges_.size(), 0);
   std::vector<char> odd(edges_.size(), 0), seen(edges_.size(), 0);
   std::vector<std::size_t> queue;
   for (std::size_t root = 0; root < edges_.size(); ++root) {
-    if (seen[root]) continue;
+    if (seen[root] || !is_crossed[part_[root]]) continue;
     seen[root] = 1;
     queue.assign(1, root);
     for (std::size_t head = 0; head < queue.size(); ++head) {
       const std::size_t i = queue[head];
       for (const std::size_t l : edges_[i].links) {
-        const Link& link = links_[l];
-        if (l == by[i] || comes_near(link.path, start) || comes_near(link.path, goal)) continue;
-        const std::size_t j = link.from == i ? link.to : link.from;
-        const bool parity = (odd[i] != 0) != crosses_oddly(link.path, way);
+        if (l == by[i] || uses[l].is_taken) continue;
+        const std::size_t j = links_[l].from == i ? links_[l].to : links_[l].from;
+        const bool parity = (odd[i] != 0) != uses[l].is_odd;
         if (!seen[j]) {
           seen[j] = 1;
           by[j] = l;
@@ -158,7 +210,7 @@ Enclosing Walls::enclosing(const std::vector<std::size_t>& chain, Vec2 goal) con
     for (const Vec2 p : links_[l].path) outside.x = std::max(outside.x, p.x + 1.0 + std::fabs(p.x));
   for (const std::size_t l : chain) {
     const Link& link = links_[l];
-    e.around_goal = e.around_goal != crosses_oddly(link.path, {goal, outside});
+    e.around_goal = e.around_goal != crosses_oddly(link.path, Segment{goal, outside});
     e.widest_gap = std::max(e.widest_gap, link.gap);
     for (const std::size_t i : {link.from, link.to}) e.obstacles.push_back(edges_[i].obstacle);
   }

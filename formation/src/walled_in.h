@@ -19,11 +19,13 @@
 /// diameter and for chains that come nearer to the start or the goal than the robot may stay away from it. Moving
 /// obstacles and other robots are not considered, nor the margins that a method keeps.
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/box_grid.h"
 
 namespace exactvo::formation::detail {
 
@@ -56,15 +58,25 @@ class Walls {
   /// Two edges that touch, or that no robot fits between.
   struct Link {
     std::size_t from = 0, to = 0;  ///< edges
-    std::vector<Vec2> path;  ///< m, from the beginning of the one to that of the other: along them and the connector
-    double gap = 0.0;        ///< m, the connector's length
+    std::array<Vec2, 4> path;  ///< m, from the beginning of the one to that of the other: along them and the connector
+    double gap = 0.0;          ///< m, the connector's length
+  };
+  /// What one question makes of a link.
+  struct Use {
+    bool is_taken = false;  ///< it comes near a place, so that the place is no side of it
+    bool is_odd = false;    ///< it crosses the straight way between the places an odd number of times
   };
 
   void add_links(double robot_radius);
+  void number_parts();
+  std::vector<Use> uses_for(const Place& start, const Place& goal) const;
   Enclosing enclosing(const std::vector<std::size_t>& chain, Vec2 goal) const;
 
   std::vector<Edge> edges_;
   std::vector<Link> links_;
+  geometry::BoxGrid links_by_place_;
+  std::vector<std::size_t> part_;  ///< of the graph, of each edge
+  double largest_ = 0.0;           ///< m, coordinate
 };
 
 }  // namespace exactvo::formation::detail

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "enclosure/trap_free_fit.h"
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/facades.h"
 #include "exactvo/geometry/hull.h"
@@ -18,6 +19,8 @@
 
 namespace exactvo::geometry {
 namespace {
+
+using detail::TrapFreeFit;
 
 constexpr int kDirections = 180;
 
@@ -70,17 +73,24 @@ bool may_meet(const GrownShape& a, const Silhouette& b, std::size_t& separating)
 
 struct Cluster {
   std::vector<std::size_t> obstacles;  ///< ascending
+  std::vector<Vec2> hull;              ///< of their points
   std::optional<FittedEllipse> fitted;
   std::optional<Silhouette> grown;  ///< of the ellipse, by the robot
+  std::size_t number = 0;           ///< in the order of making
+  std::vector<bool> settled;        ///< by number: with whom it neither meets nor can be enclosed
+
+  bool is_settled_with(const Cluster& later) const { return later.number < settled.size() && settled[later.number]; }
+  void settle_with(const Cluster& later) {
+    if (later.number >= settled.size()) settled.resize(later.number + 1);
+    settled[later.number] = true;
+  }
 };
 
-std::vector<Vec2> points_of(const std::vector<ObstacleParts>& obstacles, const std::vector<std::size_t>& which) {
+std::vector<Vec2> ends_of(const std::vector<Segment>& facades) {
   std::vector<Vec2> points;
-  for (std::size_t i : which) {
-    for (const Segment& s : obstacles[i].facades) {
-      points.push_back(s.a);
-      points.push_back(s.b);
-    }
+  for (const Segment& s : facades) {
+    points.push_back(s.a);
+    points.push_back(s.b);
   }
   return points;
 }
@@ -109,7 +119,7 @@ class Clustering {
   void run() {
     for (std::vector<std::size_t> met = newly_met(); !met.empty(); met = newly_met()) {
       for (std::size_t i : met) {
-        clusters_.push_back(cluster({i}));
+        clusters_.push_back(cluster({i}, convex_hull(ends_of(obstacles_[i].facades)).vertices));
         taken_[i] = true;
       }
       while (merge_one()) {
@@ -121,11 +131,17 @@ class Clustering {
   bool in_the_way(std::size_t obstacle) const { return taken_[obstacle]; }
 
  private:
-  Cluster cluster(std::vector<std::size_t> which) const {
-    Cluster c{std::move(which), {}, {}};
-    c.fitted = fit_trap_free(points_of(obstacles_, c.obstacles), robot_radius_, start_, goal_, options_);
+  Cluster cluster(std::vector<std::size_t> which, std::vector<Vec2> hull) {
+    Cluster c{std::move(which), std::move(hull), {}, {}, made_++, {}};
+    c.fitted = fit_(c.hull, robot_radius_, start_, goal_, options_);
     if (c.fitted) c.grown.emplace(c.fitted->ellipse, robot_radius_);
     return c;
+  }
+
+  Cluster union_of(const Cluster& a, const Cluster& b) {
+    std::vector<Vec2> corners = a.hull;
+    corners.insert(corners.end(), b.hull.begin(), b.hull.end());
+    return cluster(merged(a.obstacles, b.obstacles), convex_hull(corners).vertices);
   }
 
   /// The hull of start, goal and every enclosure grown by the robot: where the robot may pass.
@@ -166,26 +182,22 @@ class Clustering {
     return may_meet(a.grown->grown, *b.grown, separating);
   }
 
-  bool was_refused(const std::vector<std::size_t>& which) const {
-    return std::find(refused_.begin(), refused_.end(), which) != refused_.end();
-  }
-
-  /// Merges the first pair that meets and whose union can be enclosed; false when there is none left.
+  /// Merges the first pair that meets and whose union can be enclosed; false when there is none left. Clusters only
+  /// grow, so that what is settled of a pair stays so.
   bool merge_one() {
     for (std::size_t i = 0; i < clusters_.size(); ++i) {
       for (std::size_t j = i + 1; j < clusters_.size(); ++j) {
         if (!clusters_[i].fitted || !clusters_[j].fitted) continue;
-        if (!ellipses_may_meet(clusters_[i], clusters_[j])) continue;
-        std::vector<std::size_t> which = merged(clusters_[i].obstacles, clusters_[j].obstacles);
-        if (was_refused(which)) continue;
-        Cluster both = cluster(which);
-        if (!both.fitted) {
-          refused_.push_back(std::move(which));
-          continue;
+        if (clusters_[i].is_settled_with(clusters_[j])) continue;
+        if (ellipses_may_meet(clusters_[i], clusters_[j])) {
+          Cluster both = union_of(clusters_[i], clusters_[j]);
+          if (both.fitted) {
+            clusters_[i] = std::move(both);
+            clusters_.erase(clusters_.begin() + static_cast<std::ptrdiff_t>(j));
+            return true;
+          }
         }
-        clusters_[i] = std::move(both);
-        clusters_.erase(clusters_.begin() + static_cast<std::ptrdiff_t>(j));
-        return true;
+        clusters_[i].settle_with(clusters_[j]);
       }
     }
     return false;
@@ -198,7 +210,8 @@ class Clustering {
   std::vector<Box> boxes_;   ///< of the obstacles
   std::vector<bool> taken_;  ///< whether an obstacle is in a cluster
   std::vector<Cluster> clusters_;
-  std::vector<std::vector<std::size_t>> refused_;  ///< unions that can't be enclosed
+  TrapFreeFit fit_;
+  std::size_t made_ = 0;  ///< clusters
 };
 
 void add_tight(const std::vector<ObstacleParts>& obstacles, std::size_t i, std::vector<Enclosure>& out) {

@@ -8,6 +8,9 @@
 #include <optional>
 
 #include "enclosure/inflate.h"
+#include "enclosure/least_axis.h"
+#include "enclosure/trap_free_fit.h"
+#include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/pi.h"
@@ -17,7 +20,13 @@
 namespace exactvo::geometry {
 namespace {
 
+using detail::AreaLimit;
+using detail::AxisAnswer;
+using detail::Frame;
 using detail::inflate_to_contain;
+using detail::MajorFit;
+using detail::PairView;
+using detail::Touching;
 
 struct FitGoal {
   double robot_radius;
@@ -25,7 +34,8 @@ struct FitGoal {
   double margin;
   std::optional<double> slack;  ///< none: the evolute condition is dropped
   double clear;
-  double most_area = 0.0;  ///< m^2 / pi: a larger ellipse shuts more ways than it opens
+  double most_area = 0.0;       ///< m^2 / pi: a larger ellipse shuts more ways than it opens
+  bool is_last_margin = false;  ///< no other margin will be tried
 };
 
 /// A candidate in a frame turned by `angle`: the centre lies `offset` across the middle of the points, `minor` is b -
@@ -42,246 +52,141 @@ struct Scored {
   double area = std::numeric_limits<double>::infinity();
 };
 
-struct Frame {
-  std::vector<double> x, y;  ///< of the points, turned by -angle
-  double middle = 0.0;       ///< of the y extent
-  double half_height = 0.0;
-  double left = 0.0, right = 0.0;  ///< the x extent
-};
-
-void turn(const std::vector<Vec2>& points, double angle, Frame& f) {
-  f.x.clear();
-  f.y.clear();
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  f.left = low;
-  f.right = high;
-  for (Vec2 p : points) {
-    const Vec2 q = rotated(p, -angle);
-    f.x.push_back(q.x);
-    f.y.push_back(q.y);
-    low = std::min(low, q.y);
-    high = std::max(high, q.y);
-    f.left = std::min(f.left, q.x);
-    f.right = std::max(f.right, q.x);
-  }
-  f.middle = 0.5 * (low + high);
-  f.half_height = 0.5 * (high - low);
-}
-
-/// The centres x for which all points lie in the ellipse with semi-axes (major, w_i from the minor axis), and the
-/// points that bound them.
-struct Centres {
-  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-  std::size_t at_low = 0, at_high = 0;
-  bool is_empty() const { return !(low <= high); }
-};
-
-Centres centres_for(const Frame& f, const std::vector<double>& width, double major) {
-  Centres range;
-  for (std::size_t i = 0; i < f.x.size(); ++i) {
-    const double low = f.x[i] - major * width[i], high = f.x[i] + major * width[i];
-    if (low > range.low) range.low = low, range.at_low = i;
-    if (high < range.high) range.high = high, range.at_high = i;
-  }
-  return range;
-}
-
-/// Whether there are any.
-bool has_centre(const Frame& f, const std::vector<double>& width, double major) {
-  double low = -std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t i = 0; i < f.x.size(); ++i) {
-    const double reach = major * width[i];
-    low = std::max(low, f.x[i] - reach);
-    high = std::min(high, f.x[i] + reach);
-  }
-  return low <= high;
-}
-
-/// Whether a major axis is long enough. It is so from some double on, rounding and all, since every operation of
-/// `centres_for` is monotone in it: what is known of one axis answers for others.
-class LongEnough {
- public:
-  LongEnough(const Frame& f, const std::vector<double>& width) : f_(f), width_(width) {}
-
-  bool operator()(double major) {
-    if (major >= long_enough_) return true;
-    if (major <= too_short_) return false;
-    const bool is = has_centre(f_, width_, major);
-    (is ? long_enough_ : too_short_) = major;
-    return is;
-  }
-
-  /// Draws what is known together round the least one: the gap between two points' centres is linear in the axis, so
-  /// Newton's method climbs to it from `at`, which is hardly longer, in a few steps.
-  void approach(double at) {
-    constexpr int kSteps = 8;
-    constexpr double kRounding = 1e-14;  // relative: a few roundings beyond a root
-    at = std::max({too_short_, at, 0.0});
-    for (int i = 0; i < kSteps && at < long_enough_; ++i) {
-      const Centres c = centres_for(f_, width_, at);
-      if (!c.is_empty()) {
-        long_enough_ = at;
-        return;
-      }
-      too_short_ = std::max(too_short_, at);
-      const double next = (f_.x[c.at_low] - f_.x[c.at_high]) / (width_[c.at_low] + width_[c.at_high]);
-      at = std::max(next, at) * (1.0 + kRounding);
-    }
-  }
-
- private:
-  const Frame& f_;
-  const std::vector<double>& width_;
-  double too_short_ = -1.0;
-  double long_enough_ = std::numeric_limits<double>::infinity();
-};
-
-/// The least semi-major axis and its centre.
-struct MajorFit {
-  double major = 0.0, centre = 0.0;
-};
-
-enum class Fitted { yes, too_long, never };
-
-/// By bisection. `never` where a point lies beyond the minor axis; `too_long` where the answer is seen to be: a
-/// condition that holds for every axis longer than one for which it holds, from about `longest` m on.
-template <class TooLong>
-Fitted least_major(const Frame& f, double centre_y, double minor, double longest, const TooLong& too_long,
-                   std::vector<double>& width, MajorFit& out) {
-  // No ellipse is shorter than half of what it encloses, up to the rounding of coordinates.
-  const double rounding = 8.0 * kUnitRoundoff * (std::fabs(f.left) + std::fabs(f.right));
-  const double half = 0.5 * (f.right - f.left) - rounding;
-  if (too_long(half)) return Fitted::too_long;
-  width.clear();
-  double narrowest = 1.0;
-  for (const double y : f.y) {
-    const double t = (y - centre_y) / minor;
-    if (!(std::fabs(t) < 1.0)) return Fitted::never;
-    width.push_back(std::sqrt(1.0 - t * t));
-    narrowest = std::min(narrowest, width.back());
-  }
-  double extent = 0.0;
-  for (const double x : f.x) extent = std::max(extent, std::fabs(x - f.x.front()));
-  double low = 0.0;
-  double high = extent / narrowest;
-  LongEnough long_enough(f, width);
-  if (longest < high && too_long(longest) && !long_enough(longest)) return Fitted::too_long;
-  long_enough.approach(half);
-  constexpr int kBisections = 40;  // leaves 2^-40 of the extent, far below any margin
-  for (int i = 0; i < kBisections; ++i) {
-    const double mid = 0.5 * (low + high);
-    (long_enough(mid) ? high : low) = mid;
-  }
-  const Centres range = centres_for(f, width, high);
-  out = {high, 0.5 * (range.low + range.high)};
-  return Fitted::yes;
-}
-
 bool admissible(const Ellipse& e, const FitGoal& want) {
   const GrownShape kept_clear{e, {}, want.robot_radius + want.clear};
   if (locate(kept_clear, want.goal) != Place::outside || locate(kept_clear, want.start) != Place::outside) return false;
   return !want.slack || goal_outside_evolute(e, want.goal, *want.slack);
 }
 
-std::vector<double> coarse_angles(const std::vector<Vec2>& hull) {
+constexpr double kMinorShares[] = {0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.8};
+constexpr double kOffsetShares[] = {0.0, -0.25, 0.25, -0.5, 0.5, -0.9, 0.9};
+constexpr std::size_t kMinors = std::size(kMinorShares), kOffsets = std::size(kOffsetShares);
+
+/// What is known of a candidate whatever its margin and slack.
+struct Known {
+  enum class State : unsigned char {
+    nothing,
+    fitted,   ///< `major` is known
+    hopeless  ///< no ellipse, or one that the start or the goal lies in
+  };
+  State state = State::nothing;
+  MajorFit major;
+};
+
+/// Start and goal, drawn towards the points by a little less than they must stay clear: an ellipse that holds such a
+/// place does not leave the end itself outside. NaN where nothing follows from it.
+struct Ends {
+  Vec2 start, goal;
+};
+
+/// The points in one orientation, and what it was last like there.
+struct Orientation {
+  Frame frame;
+  Ends ends;                ///< in the frame
+  Touching pair[kOffsets];  ///< what touched last at each offset
+
+  void turn_to(double angle, const std::vector<Vec2>& points, const Ends& from) {
+    turn(points, angle, frame);
+    ends = {rotated(from.start, -angle), rotated(from.goal, -angle)};
+    for (Touching& p : pair) p = {frame.rightmost, frame.leftmost};
+  }
+};
+
+/// Whether every ellipse of a candidate holds a place, or is too long: two of the points say so from both sides. One on
+/// the right at x, whose half chord is a w, has the centre no farther left than x - a w; the place is within its own
+/// half chord (a + margin) w' of that for all axes a from `shortest` to `longest` if it is for these two.
+class Holds {
+ public:
+  Holds(const Orientation& o, const Candidate& c, double margin, const Touching& pair, const PairView& view,
+        double longest)
+      : f_(o.frame),
+        pair_(pair),
+        view_(view),
+        centre_y_(f_.middle + c.offset),
+        minor_(c.minor + margin),
+        margin_(margin),
+        longest_(longest) {
+    shortest_ = std::max(f_.half_width, (1.0 - kDoubt) * view.least_major());
+  }
+
+  bool operator()(Vec2 place) const {
+    const double t = (place.y - centre_y_) / minor_;
+    if (!(t * t < 1.0 - kLeastWidth * kLeastWidth)) return false;
+    const double w = std::sqrt(1.0 - t * t) - kDoubt;
+    const double spare = margin_ * w - kDoubt * (shortest_ + std::fabs(place.x) + std::fabs(place.y));
+    return reaches(place.x - f_.x[pair_.right] - spare, w - view_.right_width()) &&
+           reaches(f_.x[pair_.left] - place.x - spare, w - view_.left_width());
+  }
+
+ private:
+  /// Far above any rounding here, far below what an end is drawn in by.
+  static constexpr double kDoubt = 1e-8;
+  /// Where the chord is a smaller share of the axis, the rounding of its height is seen in it.
+  static constexpr double kLeastWidth = 0.01;
+
+  bool reaches(double beyond, double wider) const { return beyond <= (wider > 0.0 ? shortest_ : longest_) * wider; }
+
+  const Frame& f_;
+  const Touching& pair_;
+  const PairView& view_;
+  double centre_y_, minor_, margin_;
+  double shortest_ = 0.0, longest_;  ///< m: between these the major axis is, or it is too long
+};
+
+/// Whether an ellipse holds a place beyond doubt, in its frame.
+bool surely_holds(Vec2 centre, double major, double minor, Vec2 place) {
+  constexpr double kDoubt = 1e-6;
+  const double x = (place.x - centre.x) / major, y = (place.y - centre.y) / minor;
+  return x * x + y * y < 1.0 - kDoubt;
+}
+
+/// What a fit leaves to the next: memory.
+struct FitMemory {
+  std::vector<Vec2> points;    ///< the hull's corners from the first of them
+  std::vector<double> angles;  ///< of the coarse search
+  std::vector<Orientation> orientations;
+  std::vector<Known> known;  ///< orientation x semi-minor axis x offset across
+  Orientation here, aside;   ///< of the pattern search
+  std::vector<double> width;
+};
+
+void set_coarse_angles(const std::vector<Vec2>& hull, std::vector<double>& angles) {
   constexpr int kAngles = 18;
-  std::vector<double> angles;
+  angles.clear();
   for (int i = 0; i < kAngles; ++i) angles.push_back(kPi * i / kAngles);
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Vec2 e = hull[(i + 1) % hull.size()] - hull[i];
     if (e != Vec2{}) angles.push_back(std::atan2(e.y, e.x));
   }
-  return angles;
 }
 
-constexpr double kMinorShares[] = {0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.8};
-constexpr double kOffsetShares[] = {0.0, -0.25, 0.25, -0.5, 0.5, -0.9, 0.9};
-
-/// The candidates of the coarse search round some points: orientation x semi-minor axis x offset across. With what is
-/// known of each whatever its margin and goal.
-class CoarseGrid {
- public:
-  struct Item {
-    Candidate candidate;
-    std::optional<Fitted> fitted;  ///< `yes` or `never`; nothing where it was not asked yet
-    MajorFit major;
-  };
-
-  CoarseGrid(const std::vector<Vec2>& points, double size) {
-    for (const double angle : coarse_angles(points)) {
-      turn(points, angle, frames_.emplace_back());
-      for (const double minor_share : kMinorShares) {
-        for (const double offset_share : kOffsetShares) {
-          const double room = minor_share * size;
-          items_.push_back({{angle, offset_share * room, frames_.back().half_height + room}, {}, {}});
-        }
-      }
-    }
-  }
-
-  std::size_t size() const { return items_.size(); }
-  Item& operator[](std::size_t i) { return items_[i]; }
-  const Frame& frame(std::size_t i) const { return frames_[i / kAnAngle]; }
-  /// Those in the middle are near the best ones.
-  static bool is_central(std::size_t i) { return i % std::size(kOffsetShares) == 0; }
-
- private:
-  static constexpr std::size_t kAnAngle = std::size(kMinorShares) * std::size(kOffsetShares);
-  std::vector<Item> items_;
-  std::vector<Frame> frames_;
-};
+/// m, of the candidate's number in an orientation.
+Candidate coarse_candidate(const Frame& f, double size, std::size_t minor, std::size_t offset) {
+  const double room = kMinorShares[minor] * size;
+  return {f.angle, kOffsetShares[offset] * room, f.half_height + room};
+}
 
 /// Tries candidates on one set of points; keeps the smallest that will do.
 class Search {
  public:
-  Search(const std::vector<Vec2>& points, const FitGoal& want) : points_(points), want_(want) {}
+  Search(const FitGoal& want, std::vector<double>& width) : want_(want), width_(width) {}
 
-  /// The smallest of the grid, of equals the first. Central ones are tried first, so that most others are seen at once
-  /// to be larger.
-  void sweep(CoarseGrid& grid) {
-    std::size_t best = grid.size();
-    for (const bool central : {true, false}) {
-      for (std::size_t i = 0; i < grid.size(); ++i) {
-        if (CoarseGrid::is_central(i) != central) continue;
-        or_equal_ = i < best;
-        if (improves(grid[i], grid.frame(i))) best = i;
-      }
-    }
-    or_equal_ = false;
+  /// Whether the ellipse of a candidate of that minor axis is larger than the best, whatever else it is.
+  bool is_too_large(const Frame& f, double minor, bool or_equal) const {
+    return limit(minor, or_equal).is_too_long(f.half_width);
   }
 
-  /// Whether it is smaller than the best so far and will do: then it is the best.
-  bool improves(const Candidate& c) {
-    if (!turned_ || c.angle != angle_) turn(points_, c.angle, frame_);
-    turned_ = true;
-    angle_ = c.angle;
-    CoarseGrid::Item item{c, {}, {}};
-    return improves(item, frame_);
-  }
-
-  const Scored& best() const { return best_; }
-
- private:
-  bool improves(CoarseGrid::Item& item, const Frame& f) {
-    if (item.fitted == Fitted::never) return false;
-    const Candidate& c = item.candidate;
-    const double centre_y = f.middle + c.offset;
-    const double b = c.minor + want_.margin;
-    const auto too_long = [&](double major) {
-      const double area = (major + want_.margin) * b;
-      return !(area <= want_.most_area && (area < best_.area || (or_equal_ && area == best_.area)));
-    };
-    if (!item.fitted) {
-      constexpr double kRounding = 1.0 + 1e-14;
-      const double longest = kRounding * (std::min(want_.most_area, best_.area) / b) - want_.margin;
-      const Fitted fitted = least_major(f, centre_y, c.minor, longest, too_long, width_, item.major);
-      if (fitted != Fitted::too_long) item.fitted = fitted;
-      if (fitted != Fitted::yes) return false;
-    }
-    if (too_long(item.major.major)) return false;
-    const double a = item.major.major + want_.margin;
-    const Vec2 centre = rotated({item.major.centre, centre_y}, c.angle);
+  /// Whether it is smaller than the best so far (`or_equal`: or as large) and will do: then it is the best. `pair` is
+  /// where to look first, and is kept up.
+  bool improves(const Orientation& o, const Candidate& c, bool or_equal, Known& known, Touching& pair) {
+    if (known.state == Known::State::hopeless) return false;
+    const AreaLimit area = limit(c.minor, or_equal);
+    if (known.state == Known::State::nothing && !is_fitted(o, c, area, known, pair)) return false;
+    if (area.is_too_long(known.major.major)) return false;
+    const double a = known.major.major + want_.margin, b = area.minor;
+    const Vec2 turned_centre{known.major.centre, o.frame.middle + c.offset};
+    if (surely_holds(turned_centre, a, b, o.ends.start) || surely_holds(turned_centre, a, b, o.ends.goal)) return false;
+    const Vec2 centre = rotated(turned_centre, c.angle);
     const bool upright = a >= b;
     const Ellipse ellipse =
         ellipse_from_axes(centre, {std::max(a, b), std::min(a, b), upright ? c.angle : c.angle + 0.5 * kPi});
@@ -290,40 +195,140 @@ class Search {
     return true;
   }
 
-  const std::vector<Vec2>& points_;
+  const Scored& best() const { return best_; }
+
+ private:
+  AreaLimit limit(double minor, bool or_equal) const {
+    return {minor + want_.margin, want_.margin, want_.most_area, best_.area, or_equal};
+  }
+
+  /// Two points tell of most candidates that they are too long or hold an end.
+  bool is_ruled_out(const Orientation& o, const Candidate& c, const AreaLimit& area, const Touching& pair,
+                    Known& known) const {
+    const PairView view(o.frame, o.frame.middle + c.offset, c.minor, pair);
+    if (const double longest = area.longest(); view.asks_for_more_than(longest) && area.is_too_long(longest))
+      return true;
+    const double longest_of_any = want_.most_area / c.minor;
+    const Holds holds(o, c, want_.margin, pair, view, longest_of_any);
+    if (!holds(o.ends.start) && !holds(o.ends.goal)) return false;
+    if (want_.is_last_margin) known.state = Known::State::hopeless;
+    return true;
+  }
+
+  bool is_fitted(const Orientation& o, const Candidate& c, const AreaLimit& area, Known& known, Touching& pair) {
+    const Frame& f = o.frame;
+    if (area.is_too_long(f.half_width) || is_ruled_out(o, c, area, pair, known)) return false;
+    if (recent_ != pair && is_ruled_out(o, c, area, recent_, known)) {
+      pair = recent_;
+      return false;
+    }
+    const double centre_y = f.middle + c.offset;
+    const AxisAnswer answer = least_major(f, centre_y, c.minor, area, pair, width_, known.major);
+    recent_ = pair;
+    switch (answer) {
+      case AxisAnswer::too_long:
+        return false;
+      case AxisAnswer::never:
+        known.state = Known::State::hopeless;
+        return false;
+      case AxisAnswer::fits:
+        known.state = Known::State::fitted;
+        return true;
+    }
+    return false;
+  }
+
   const FitGoal& want_;
+  std::vector<double>& width_;
   Scored best_;
-  bool or_equal_ = false;  ///< an ellipse as large as the best takes its place
-  Frame frame_;
-  double angle_ = 0.0;
-  bool turned_ = false;
-  std::vector<double> width_;
+  Touching recent_;  ///< what touched last
+};
+
+/// The candidates of one fit's coarse search, tried with one margin and slack after the other.
+class CoarseSearch {
+ public:
+  CoarseSearch(FitMemory& memory, double size, const Ends& ends) : memory_(memory), size_(size) {
+    set_coarse_angles(memory.points, memory.angles);
+    if (memory.orientations.size() < memory.angles.size()) memory.orientations.resize(memory.angles.size());
+    for (std::size_t k = 0; k < memory.angles.size(); ++k)
+      memory.orientations[k].turn_to(memory.angles[k], memory.points, ends);
+    memory.known.assign(memory.angles.size() * kMinors * kOffsets, {});
+  }
+
+  /// The smallest of all, of equals the first. Central ones are tried first, so that most others are seen at once to be
+  /// larger.
+  void run(Search& search) {
+    best_ = memory_.known.size();
+    for (std::size_t k = 0; k < memory_.angles.size(); ++k) try_orientation(k, 0, 1, search);
+    for (std::size_t k = 0; k < memory_.angles.size(); ++k) try_orientation(k, 1, kOffsets, search);
+  }
+
+ private:
+  /// From the smallest minor axis up: once the points' own extent makes too large an ellipse, it does so for all
+  /// others.
+  void try_orientation(std::size_t k, std::size_t first_offset, std::size_t last_offset, Search& search) {
+    Orientation& o = memory_.orientations[k];
+    for (std::size_t m = 0; m < kMinors; ++m) {
+      const std::size_t number = (k * kMinors + m) * kOffsets;
+      const double minor = coarse_candidate(o.frame, size_, m, 0).minor;
+      if (search.is_too_large(o.frame, minor, number + first_offset < best_)) return;
+      for (std::size_t i = first_offset; i < last_offset; ++i) {
+        const Candidate c = coarse_candidate(o.frame, size_, m, i);
+        if (search.improves(o, c, number + i < best_, memory_.known[number + i], o.pair[i])) best_ = number + i;
+      }
+    }
+  }
+
+  FitMemory& memory_;
+  double size_;
+  std::size_t best_ = 0;
 };
 
 /// A pattern search from the best of a coarse one.
-void refine(double size, Search& search) {
-  double angle_step = kPi / 36.0;
-  double length_step = 0.1 * size;
-  constexpr int kRounds = 60;
-  constexpr double kLeastStep = 1e-3;  // of the size: finer changes the area by less than a per mille
-  for (int round = 0; round < kRounds && length_step > kLeastStep * size; ++round) {
-    const Candidate c = search.best().candidate;
-    const Candidate moves[] = {{c.angle + angle_step, c.offset, c.minor},
-                               {c.angle - angle_step, c.offset, c.minor},
-                               {c.angle, c.offset + length_step, c.minor},
-                               {c.angle, c.offset - length_step, c.minor},
-                               {c.angle, c.offset, c.minor + length_step},
-                               {c.angle, c.offset, c.minor - length_step},
-                               {c.angle, c.offset + length_step, c.minor + length_step},
-                               {c.angle, c.offset - length_step, c.minor + length_step}};
-    bool better = false;
-    for (const Candidate& move : moves)
-      if (move.minor > 0.0 && search.improves(move)) better = true;
-    if (better) continue;
-    angle_step *= 0.5;
-    length_step *= 0.5;
+class Refinement {
+ public:
+  Refinement(FitMemory& memory, double size, const Ends& ends) : memory_(memory), size_(size), ends_(ends) {}
+
+  void run(Search& search) {
+    double angle_step = kPi / 36.0;
+    double length_step = 0.1 * size_;
+    constexpr int kRounds = 60;
+    constexpr double kLeastStep = 1e-3;  // of the size: finer changes the area by less than a per mille
+    constexpr std::size_t kMoves = 8;
+    Touching pair[kMoves];
+    memory_.here.frame.angle = memory_.aside.frame.angle = std::numeric_limits<double>::quiet_NaN();
+    for (int round = 0; round < kRounds && length_step > kLeastStep * size_; ++round) {
+      const Candidate c = search.best().candidate;
+      if (memory_.aside.frame.angle == c.angle) std::swap(memory_.here, memory_.aside);
+      const Candidate moves[kMoves] = {{c.angle + angle_step, c.offset, c.minor},
+                                       {c.angle - angle_step, c.offset, c.minor},
+                                       {c.angle, c.offset + length_step, c.minor},
+                                       {c.angle, c.offset - length_step, c.minor},
+                                       {c.angle, c.offset, c.minor + length_step},
+                                       {c.angle, c.offset, c.minor - length_step},
+                                       {c.angle, c.offset + length_step, c.minor + length_step},
+                                       {c.angle, c.offset - length_step, c.minor + length_step}};
+      bool better = false;
+      for (std::size_t k = 0; k < kMoves; ++k)
+        if (moves[k].minor > 0.0 && improves(moves[k], c.angle, pair[k], search)) better = true;
+      if (better) continue;
+      angle_step *= 0.5;
+      length_step *= 0.5;
+    }
   }
-}
+
+ private:
+  bool improves(const Candidate& c, double present_angle, Touching& pair, Search& search) {
+    Orientation& o = c.angle == present_angle ? memory_.here : memory_.aside;
+    if (o.frame.angle != c.angle) o.turn_to(c.angle, memory_.points, ends_);
+    Known known;
+    return search.improves(o, c, false, known, pair);
+  }
+
+  FitMemory& memory_;
+  double size_;
+  Ends ends_;
+};
 
 /// Whether `end` lies so near the hull that no ellipse round it with a margin can be clear of it.
 bool is_too_near(const std::vector<Vec2>& hull, const FitGoal& want, double size, Vec2 end) {
@@ -333,46 +338,11 @@ bool is_too_near(const std::vector<Vec2>& hull, const FitGoal& want, double size
   return locate({ConvexPolygon{hull}, {}, std::max(reach, 0.0)}, end) != Place::outside;
 }
 
-std::vector<Vec2> seen_from(Vec2 origin, std::vector<Vec2> points) {
-  for (Vec2& p : points) p = p - origin;
-  return points;
-}
-
 FitGoal seen_from(Vec2 origin, FitGoal want) {
   want.start = want.start - origin;
   want.goal = want.goal - origin;
   return want;
 }
-
-/// Searched for from the first corner: of ellipses as good as each other the same one is taken wherever the scene lies.
-class LocalFit {
- public:
-  LocalFit(const std::vector<Vec2>& hull, double size)
-      : hull_(hull), local_(seen_from(hull.front(), hull)), size_(size) {}
-
-  std::optional<Ellipse> operator()(const FitGoal& want) {
-    const FitGoal local_want = seen_from(hull_.front(), want);
-    if (is_too_near(local_, local_want, size_, local_want.start) ||
-        is_too_near(local_, local_want, size_, local_want.goal))
-      return std::nullopt;
-    if (!grid_) grid_.emplace(local_, size_);
-    Search search(local_, local_want);
-    search.sweep(*grid_);
-    if (!std::isfinite(search.best().area)) return std::nullopt;
-    refine(size_, search);
-    Ellipse e = search.best().ellipse;
-    e.center = e.center + hull_.front();
-    e = inflate_to_contain(e, hull_);
-    if (!admissible(e, want)) return std::nullopt;
-    return e;
-  }
-
- private:
-  const std::vector<Vec2>& hull_;
-  std::vector<Vec2> local_;
-  double size_;
-  std::optional<CoarseGrid> grid_;
-};
 
 /// The area of hull (+) D(0, r): A + P r + pi r^2.
 double grown_area(const std::vector<Vec2>& hull, double r) {
@@ -394,6 +364,56 @@ double size_of(const std::vector<Vec2>& points) {
   return std::max(size, kLeastSize);
 }
 
+/// An end drawn towards the hull by a little less than the robot must stay clear of it.
+Vec2 drawn_in(const std::vector<Vec2>& hull, Vec2 end, double clear) {
+  constexpr double kLess = 1.0 - 1e-6;
+  Vec2 nearest = hull.front();
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vec2 p = nearest_point({hull[i], hull[(i + 1) % hull.size()]}, end);
+    if (norm(p - end) < norm(nearest - end)) nearest = p;
+  }
+  const double distance = norm(nearest - end);
+  if (distance <= clear) return Vec2{} / 0.0;  // this near, the rounding of a hull decides
+  return end + (kLess * clear / distance) * (nearest - end);
+}
+
+/// Searched for from the first corner: of ellipses as good as each other the same one is taken wherever the scene lies.
+class LocalFit {
+ public:
+  LocalFit(FitMemory& memory, const std::vector<Vec2>& hull) : memory_(memory), hull_(hull) {
+    memory.points.clear();
+    for (const Vec2 p : hull) memory.points.push_back(p - hull.front());
+    size_ = size_of(memory.points);
+  }
+
+  std::optional<Ellipse> operator()(const FitGoal& want) {
+    const FitGoal local = seen_from(hull_.front(), want);
+    if (is_too_near(memory_.points, local, size_, local.start) || is_too_near(memory_.points, local, size_, local.goal))
+      return std::nullopt;
+    if (!coarse_) {
+      const double clear = want.robot_radius + want.clear;
+      ends_ = {drawn_in(memory_.points, local.start, clear), drawn_in(memory_.points, local.goal, clear)};
+      coarse_.emplace(memory_, size_, ends_);
+    }
+    Search search(local, memory_.width);
+    coarse_->run(search);
+    if (!std::isfinite(search.best().area)) return std::nullopt;
+    Refinement(memory_, size_, ends_).run(search);
+    Ellipse e = search.best().ellipse;
+    e.center = e.center + hull_.front();
+    e = inflate_to_contain(e, hull_);
+    if (!admissible(e, want)) return std::nullopt;
+    return e;
+  }
+
+ private:
+  FitMemory& memory_;
+  const std::vector<Vec2>& hull_;
+  double size_ = 0.0;
+  Ends ends_;  ///< the same whatever margin and slack
+  std::optional<CoarseSearch> coarse_;
+};
+
 }  // namespace
 
 const char* name(EnclosureGrade grade) {
@@ -410,21 +430,33 @@ const char* name(EnclosureGrade grade) {
   return "tight";
 }
 
-std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
-                                           const EnclosureOptions& options) {
-  EXACTVO_REQUIRE(!points.empty(), "no points");
-  const std::vector<Vec2> hull = convex_hull(points).vertices;
-  const double size = size_of(hull);
+namespace detail {
+
+struct TrapFreeFit::Memory : FitMemory {};
+
+TrapFreeFit::TrapFreeFit() : memory_(std::make_unique<Memory>()) {}
+TrapFreeFit::~TrapFreeFit() = default;
+
+std::optional<FittedEllipse> TrapFreeFit::operator()(const std::vector<Vec2>& hull, double robot_radius, Vec2 start,
+                                                     Vec2 goal, const EnclosureOptions& options) {
   const double most = options.most_inflation * grown_area(hull, robot_radius + options.margin) / kPi;
   const double clear = options.clear_of_ends;
-  const FitGoal full{robot_radius, start, goal, options.margin, options.slack, clear, most};
-  const FitGoal thin{robot_radius, start, goal, options.least_margin, options.least_slack, clear, most};
-  const FitGoal bare{robot_radius, start, goal, options.least_margin, std::nullopt, clear, most};
-  LocalFit fit(hull, size);
+  const FitGoal full{robot_radius, start, goal, options.margin, options.slack, clear, most, false};
+  const FitGoal thin{robot_radius, start, goal, options.least_margin, options.least_slack, clear, most, true};
+  const FitGoal bare{robot_radius, start, goal, options.least_margin, std::nullopt, clear, most, true};
+  LocalFit fit(*memory_, hull);
   if (auto e = fit(full)) return FittedEllipse{*e, EnclosureGrade::trap_free};
   if (auto e = fit(thin)) return FittedEllipse{*e, EnclosureGrade::trap_free_thin};
   if (auto e = fit(bare)) return FittedEllipse{*e, EnclosureGrade::containing};
   return std::nullopt;
+}
+
+}  // namespace detail
+
+std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
+                                           const EnclosureOptions& options) {
+  EXACTVO_REQUIRE(!points.empty(), "no points");
+  return detail::TrapFreeFit()(convex_hull(points).vertices, robot_radius, start, goal, options);
 }
 
 }  // namespace exactvo::geometry
