@@ -20,7 +20,7 @@ say "Six robots cross an office floor"
 "$exactvo" simulate datasets/data/office/office.json --method ivo --out out/office
 
 say "Figures"
-echo "Every figure is .png and .svg, with its data (.dat) and gnuplot script (.gp) beside it."
+echo "Every figure is .png, .svg and .pdf, with its data (.dat) and gnuplot script (.gp) beside it."
 ls out/paper/figures/*.png
 echo "out/paper/report.html: equations, claims with their verdicts, tables and pictures, in one file"
 echo "out/paper/figures/{fig5-orca,fig6-ivo}/A0..A15/ and fig8-formation/B0..B3/: paths, distances, velocities, errors"

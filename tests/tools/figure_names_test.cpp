@@ -85,13 +85,13 @@ TEST_P(FigureNames, RunNothingAndAreThoseAskedFor) {
     const Outcome outcome = work_.run(GetParam().command + " " + shell_word(figure + ".svg"));
     EXPECT_EQ(outcome.status, 0) << figure << "\n" << outcome.err;
     EXPECT_EQ(traces(), 0u) << figure;
-    for (const char* picture : {".svg", ".png"}) {
+    for (const char* picture : {".svg", ".png", ".pdf"}) {
       ASSERT_TRUE(work_.has(figure + picture)) << figure << picture;
       EXPECT_GT(fs::file_size(work_.path() / (figure + picture)), 1000u);
     }
     for (const char* source : {".gp", ".dat"})
       EXPECT_TRUE(work_.has(folder + "/" + tools::plain_name(stem) + source)) << figure << source;
-    EXPECT_EQ(work_.files("out").size(), 4u) << figure << ": nothing else is left";
+    EXPECT_EQ(work_.files("out").size(), 5u) << figure << ": nothing else is left";
     fs::remove_all(work_.path() / "out");
   }
 }

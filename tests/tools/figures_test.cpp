@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "exactvo/formation/metrics.h"
@@ -15,6 +17,8 @@
 #include "figures/lyapunov_figure.h"
 #include "figures/paths_figure.h"
 #include "figures/run_figures.h"
+#include "figures/series_figures.h"
+#include "figures/template.h"
 
 namespace exactvo::tools {
 namespace {
@@ -112,7 +116,10 @@ TEST(DataFile, NumbersItsDataSetsAsGnuplotDoes) {
 TEST(Quoted, LeavesNoQuoteOpen) {
   EXPECT_EQ(quoted("plain"), "'plain'");
   EXPECT_EQ(quoted("R'1"), R"("R'1")");
-  EXPECT_EQ(quoted("'a\"`b`\\"), R"("'a\"\140b\140\\")");
+  EXPECT_EQ(quoted("'a\"`b`\\"), R"("'a\"\140b\140\\\\")");
+  EXPECT_EQ(quoted("a_{k}@^&~\\"), R"('a\_\{k\}\@\^\&\~\\')");
+  EXPECT_EQ(markup("{/:Italic a}_{k+1}"), "'{/:Italic a}_{k+1}'");
+  EXPECT_EQ(markup("the robot's v_x"), "\"the robot's v_x\"");
 }
 
 TEST(RunFigures, AreThoseThatApply) {
@@ -129,7 +136,7 @@ TEST(RunFigures, HaveUnitsAndLegendsAndNameTheirOwnFiles) {
   for (const Figure& figure : run_figures(short_run())) {
     EXPECT_THAT(script_text(figure), HasSubstr("data = '" + figure.name + ".dat'"));
     EXPECT_THAT(script_text(figure), HasSubstr("set output '" + figure.name + ".' . format"));
-    EXPECT_THAT(figure.body, HasSubstr("set key outside"));
+    EXPECT_THAT(script_text(figure), HasSubstr("set key outside"));
     EXPECT_THAT(figure.body, HasSubstr("[m"));
     EXPECT_THAT(figure.data, Not(HasSubstr("nan")));
   }
@@ -171,7 +178,7 @@ TEST(DataFile, EveryDataSetCounts) {
 }
 
 TEST(Quoted, ShowsWhatWouldEndALine) {
-  EXPECT_EQ(quoted("a\nb\x1b[31m'"), R"("a\\nb\\x1b[31m'")");
+  EXPECT_EQ(quoted("a\nb\x1b[31m'"), R"("a\\\\nb\\\\x1b[31m'")");
   EXPECT_EQ(commented("a`b`\nc\\"), "a'b'\\nc\\ ");
   DataFile data;
   data.begin("a\nsystem('b')", "x");
@@ -261,6 +268,64 @@ TEST(LyapunovFigure, HasEveryTermAndTheTableToo) {
   const std::string table = lyapunov_csv(run.lyapunov);
   EXPECT_EQ(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')), run.lyapunov.size() + 1);
   EXPECT_THAT(table, HasSubstr(",0.625,"));
+}
+
+TEST(Template, EveryPlaceIsFilledOnceAndNoOther) {
+  EXPECT_EQ(filled_text("a @b@ c@d@\n", {{"b", "@d@"}, {"d", "x"}}), "a @d@ cx\n");
+  EXPECT_THROW(filled_text("@b@", {}), std::logic_error);
+  EXPECT_THROW(filled_text("@b", {{"b", ""}}), std::logic_error);
+  EXPECT_THROW(filled_text("nothing", {{"b", ""}}), std::logic_error);
+  EXPECT_THROW(filled("no such template", {}), std::logic_error);
+  EXPECT_EQ(embedded_templates().count("frame"), 1u);
+}
+
+/// The numbers of every "set NAME [low:high]" of a script.
+std::vector<double> extents(const std::string& script, const std::string& name) {
+  std::vector<double> all;
+  const std::string setting = "set " + name + " [";
+  for (std::size_t at = script.find(setting); at != std::string::npos; at = script.find(setting, at + 1)) {
+    double low = 0.0, high = 0.0;
+    std::sscanf(script.c_str() + at + setting.size(), "%lf:%lf", &low, &high);
+    all.push_back(high - low);
+  }
+  return all;
+}
+
+TEST(PathsSheet, HasOneScaleLettersLabelsAndALegend) {
+  const datasets::RecordingFile small = short_run();
+  datasets::RecordingFile large = moved(short_run(), {30.0, 0.0});
+  large.scenario.robots[0].goals = {{60.0, 20.0}};
+  large.scenario.robots[1].id = "other";
+  const Figure sheet = paths_sheet("sheet", "Two runs", {{"small", &small}, {"large", &large}, {"again", &small}}, 2);
+  for (const char* axis : {"xrange", "yrange"}) {
+    std::vector<double> all = extents(sheet.body, axis);
+    ASSERT_EQ(all.size(), 4u) << axis << ": three panels and the legend";
+    EXPECT_NEAR(all[0], all[1], 1e-6 * all[0]) << axis;
+    EXPECT_NEAR(all[0], all[2], 1e-6 * all[0]) << axis;
+  }
+  for (const char* words : {"'(a) small'", "'(b) large'", "'(c) again'", "xlabel 'x [m]'", "ylabel 'y [m]'",
+                            "title \"R'1\"", "title 'robot 2'", "title 'obstacle'", "title 'goal'"})
+    EXPECT_THAT(sheet.body, HasSubstr(words));
+  EXPECT_THAT(sheet.body, Not(HasSubstr("title 'collision'")));
+}
+
+TEST(PathsSheet, ARunThatDivergesShrinksNoPanel) {
+  const datasets::RecordingFile calm = short_run();
+  datasets::RecordingFile wild = short_run();
+  for (int k = 1; k <= 20; ++k) wild.recording.steps[static_cast<std::size_t>(k)].robots[0].position = {3.0 * k, 0.0};
+  const Figure alone = paths_sheet("sheet", "One run", {{"calm", &calm}}, 1);
+  const Figure both = paths_sheet("sheet", "Two runs", {{"calm", &calm}, {"wild", &wild}}, 2);
+  EXPECT_LT(extents(both.body, "xrange")[0], 1.6 * extents(alone.body, "xrange")[0]);
+}
+
+TEST(RunFigures, ShowNoMarkupAsItIs) {
+  datasets::RecordingFile run = short_run();
+  run.lyapunov.resize(run.recording.steps.size());
+  for (const Figure& figure : {velocity_figure(run), lyapunov_figure(run)}) {
+    EXPECT_THAT(script_text(figure), Not(HasSubstr("noenhanced"))) << figure.name;
+    EXPECT_THAT(figure.body, Not(HasSubstr("'v_x"))) << figure.name;
+    EXPECT_THAT(figure.body, Not(HasSubstr("10^%T"))) << figure.name;
+  }
 }
 
 TEST(SeriesFigures, ARunThatIsOverAtOnceHasAxes) {

@@ -45,6 +45,7 @@ TEST(Paper, EveryRunIsInTheSummaryAndEveryFigureIsDrawnTwiceTheSame) {
   for (const char* picture : {"fig5-orca/A1/paths", "fig5-orca/A15/obstacle_distance", "fig6-ivo/A1/robot_distance",
                               "fig8-formation/B3/velocity", "fig8-formation/B0/formation_error", "all-ivo"}) {
     EXPECT_EQ(a.count(std::string("figures/") + picture + ".svg"), 1u) << picture;
+    EXPECT_EQ(a.count(std::string("figures/") + picture + ".pdf"), 1u) << picture;
     EXPECT_EQ(a.count(std::string("figures/") + picture + ".png"), 1u) << picture;
   }
 }

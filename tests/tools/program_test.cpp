@@ -255,7 +255,7 @@ TEST(Simulate, OutputIsComplete) {
     EXPECT_EQ(files.count(name), 1u) << name;
   for (const char* figure :
        {"paths", "obstacle_distance", "robot_distance", "velocity", "formation_error", "lyapunov"}) {
-    for (const char* extension : {".dat", ".gp", ".svg", ".png"}) {
+    for (const char* extension : {".dat", ".gp", ".svg", ".png", ".pdf"}) {
       const std::string name = std::string("figures/") + figure + extension;
       ASSERT_EQ(files.count(name), 1u) << name;
       EXPECT_GT(files.at(name).size(), 100u) << name;
@@ -599,7 +599,8 @@ TEST(Explain, SaysWhatHoldsARobotAndDrawsIt) {
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("R1 of one at t = 10.00 s"), HasSubstr("[1] the edge "),
                     HasSubstr("of obstacle wall, binding: "), HasSubstr("The robot is held by"), HasSubstr("Karush")));
-  for (const char* name : {"stuck.svg", "stuck.png", "stuck.dat", "stuck.gp"}) EXPECT_TRUE(here.has(name)) << name;
+  for (const char* name : {"stuck.svg", "stuck.png", "stuck.pdf", "stuck.dat", "stuck.gp"})
+    EXPECT_TRUE(here.has(name)) << name;
 }
 
 TEST(Explain, ARobotGoesByNumberToo) {

@@ -326,7 +326,9 @@ TEST(VerbVo, FiguresShowTheVelocityBesideALongConeAndWhatAnEllipseEncloses) {
   ASSERT_EQ(std::sscanf(script.c_str() + range, "set xrange [%lf:%lf]", &low, &high), 2);
   EXPECT_LT(high - low, 10.0) << "a velocity of 1 m/s is to be seen";
   ASSERT_EQ(place.run("vo --obstacle '" + kSquare + "' --enclose ellipse" + rest + "ellipse.svg").status, 0);
-  EXPECT_NE(place.read("ellipse.gp").find("the obstacle / tau, not grown"), std::string::npos);
+  EXPECT_NE(place.read("ellipse.gp").find("obstacle / τ, not grown"), std::string::npos);
+  for (const char* figure : {"needle.gp", "ellipse.gp"})
+    EXPECT_NE(place.read(figure).find("hatched side: forbidden"), std::string::npos) << figure;
 }
 
 TEST(VerbVo, UIsAChangeOnlyWhereOneIsNeeded) {

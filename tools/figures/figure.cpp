@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/geometry/require.h"
+#include "figures/template.h"
 #include "support/escape.h"
 #include "support/files.h"
 
@@ -27,6 +29,15 @@ bool is_plain(const std::string& name) {
          !has_control_characters(name);
 }
 
+/// Every line a step to the right, and empty ones left out.
+std::string indented(const std::string& text) {
+  std::string result;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) result += (result.empty() ? "  " : "\n  ") + line;
+  return result;
+}
+
 }  // namespace
 
 std::string plain_name(const std::string& name) {
@@ -39,26 +50,11 @@ std::string plain_name(const std::string& name) {
 
 std::string script_text(const Figure& figure) {
   EXACTVO_REQUIRE(is_plain(figure.name), "the name of a figure is plain: " + shown(figure.name));
-  const double png_scale = 1.5;
-  return fmt::format(
-      "# {shows}\n"
-      "# Draw again with: gnuplot '{name}.gp'\n"
-      "set encoding utf8\n"
-      "data = '{name}.dat'\n"
-      "do for [format in 'svg png'] {{\n"
-      "  if (format eq 'svg') {{\n"
-      "    set terminal svg size {w},{h} noenhanced font 'DejaVu Sans,13' background rgb 'white'\n"
-      "  }} else {{\n"
-      "    set terminal pngcairo size {pw:.0f},{ph:.0f} noenhanced font 'DejaVu Sans,13' fontscale 0.75 * {s} \\\n"
-      "      linewidth {s} pointscale {s}\n"
-      "  }}\n"
-      "  set output '{name}.' . format\n"
-      "{body}"
-      "  set output\n"
-      "}}\n",
-      fmt::arg("shows", commented(figure.shows)), fmt::arg("name", figure.name), fmt::arg("w", figure.canvas.width),
-      fmt::arg("h", figure.canvas.height), fmt::arg("pw", png_scale * figure.canvas.width),
-      fmt::arg("ph", png_scale * figure.canvas.height), fmt::arg("s", png_scale), fmt::arg("body", figure.body));
+  return filled("frame", {{"shows", commented(figure.shows)},
+                          {"name", figure.name},
+                          {"width", std::to_string(figure.canvas.width)},
+                          {"height", std::to_string(figure.canvas.height)},
+                          {"body", indented(figure.body)}});
 }
 
 std::filesystem::path write_sources(const Figure& figure, const std::filesystem::path& folder) {
@@ -119,15 +115,23 @@ void PlotCommand::item(const std::string& what, const std::string& title) {
 }
 
 std::string PlotCommand::text() const {
-  return fmt::format("  plot {}\n", fmt::join(items_, ", \\\n       "));
+  return fmt::format("plot {}\n", fmt::join(items_, ", \\\n     "));
 }
 
 std::string quoted(const std::string& text) {
-  const std::string line = shown(text);
-  if (line.find('\'') == std::string::npos) return "'" + line + "'";
+  std::string plain;
+  for (const char c : shown(text)) {
+    if (std::string("\\^_{}@&~").find(c) != std::string::npos) plain += '\\';
+    plain += c;
+  }
+  return markup(plain);
+}
+
+std::string markup(const std::string& text) {
+  if (text.find('\'') == std::string::npos) return "'" + text + "'";
   // A string in single quotes cannot begin with one, even doubled.
   std::string result;
-  for (const char c : line) {
+  for (const char c : text) {
     if (c == '`') {
       result += "\\140";  // what stands between two of them would be run
     } else {

@@ -3,13 +3,14 @@
 
 /// \file
 /// A figure is a data file, the gnuplot script that draws it, and what gnuplot made of the two: NAME.dat, NAME.gp,
-/// NAME.svg and NAME.png in one folder. The first two are meant to be read and edited: `gnuplot NAME.gp` in that folder
-/// draws the pictures again.
+/// NAME.svg, NAME.png and NAME.pdf in one folder. The first two are meant to be read and edited: `gnuplot NAME.gp` in
+/// that folder draws the pictures again.
 ///
 /// gnuplot runs what stands in the name of a file behind `<` or `|`. So a script names plain files only (`plain_name`),
 /// and whoever was asked for another name renames the pictures once they are drawn (verbs/figure_file.h).
 ///
-/// Neighbours: gnuplot.h runs the scripts; style.h has the colours; run_figures.h and velocity_space.h make figures.
+/// Neighbours: template.h has the scripts as files to edit; gnuplot.h runs them; style.h has the colours; run_figures.h
+/// and velocity_space.h make figures.
 
 #include <cstddef>
 #include <filesystem>
@@ -20,8 +21,8 @@
 namespace exactvo::tools {
 
 struct Canvas {
-  int width = 960;   ///< px of the SVG; the PNG has half as many again
-  int height = 600;  ///< px
+  int width = 960;   ///< px of the SVG, 1/96 inch of the PDF; the PNG has half as many again
+  int height = 600;  ///< the same
 };
 
 struct Figure {
@@ -55,7 +56,7 @@ class DataFile {
   /// One line of the current data set.
   void row(std::initializer_list<double> values);
   void row(const std::vector<double>& values);
-  /// One line of numbers and a closing word, for labels.
+  /// One line of numbers and a closing word of the program's own, for labels; gnuplot's markup works in it.
   void labelled_row(std::initializer_list<double> values, const std::string& label);
   /// Lifts the pen: the next row starts a new curve or polygon of the same data set. Lifted twice is lifted once.
   void gap();
@@ -87,10 +88,13 @@ class PlotCommand {
   std::vector<std::string> items_;
 };
 
-/// `text` as a gnuplot string: no quote left open, nothing of it run, control characters shown (support/escape.h). Every
-/// word from outside enters a script through here; the scripts' terminals are `noenhanced`, so that @ { } ^ _ are
-/// letters.
+/// `text` as a gnuplot string that is drawn as it stands: no quote left open, nothing of it run, control characters
+/// shown (support/escape.h), and @ { } ^ _ & ~ \ letters rather than markup. Every word from outside enters a script
+/// through here.
 std::string quoted(const std::string& text);
+
+/// `text` of the program's own as a gnuplot string with gnuplot's markup: "{/:Italic a}_{k+1}".
+std::string markup(const std::string& text);
 
 /// `text` as a gnuplot comment or the rest of one: one line, which neither continues nor runs anything.
 std::string commented(const std::string& text);

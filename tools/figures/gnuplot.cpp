@@ -8,6 +8,8 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <system_error>
 namespace exactvo::tools {
@@ -60,7 +62,12 @@ int spawn_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
   char program[] = "gnuplot";
   char defaults[] = "-d";  // the settings of the user's own ~/.gnuplot are left alone
   char* arguments[] = {program, defaults, nullptr};
-  const int error = posix_spawnp(&pid, program, &actions, nullptr, arguments, environ);
+  std::vector<char*> environment;
+  char utc[] = "TZ=UTC";  // of the date that is in a PDF: one length everywhere (undate)
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (std::string(*variable).rfind("TZ=", 0) != 0) environment.push_back(*variable);
+  environment.insert(environment.end(), {utc, nullptr});
+  const int error = posix_spawnp(&pid, program, &actions, nullptr, arguments, environment.data());
   posix_spawn_file_actions_destroy(&actions);
   return error;
 }
@@ -71,6 +78,18 @@ bool succeeded(pid_t pid) {
     if (errno != EINTR) return false;
   }
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// Cairo writes the time into a PDF. The same input gives the same bytes: it becomes the beginning of 1970.
+void undate(const fs::path& pdf) {
+  const std::string key = "/CreationDate (D:", none = "19700101000000Z";
+  std::fstream file(pdf, std::ios::in | std::ios::out | std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::size_t at = bytes.rfind(key);
+  if (at == std::string::npos || bytes.compare(at + key.size() + none.size(), 1, ")") != 0) return;
+  file.clear();
+  file.seekp(static_cast<std::streamoff>(at + key.size()));
+  file << none;
 }
 
 }  // namespace
@@ -88,6 +107,7 @@ RenderResult render(const std::vector<fs::path>& scripts) {
   if (error == ENOENT) return {Rendering::no_gnuplot, ""};
   if (error != 0) return {Rendering::failed, std::generic_category().message(error)};
   if (!succeeded(pid)) return {Rendering::failed, contents(messages.get())};
+  for (const fs::path& script : scripts) undate(fs::path(script).replace_extension(".pdf"));
   return {};
 }
 

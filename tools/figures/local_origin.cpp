@@ -41,8 +41,8 @@ std::string LocalOrigin::using_columns(int x, int y, const std::string& more) co
 }
 
 std::string LocalOrigin::ranges(const Box& view) const {
-  const std::string settings = is_far() ? fmt::format("  x0 = {:#}\n  y0 = {:#}\n", x_.value, y_.value) : "";
-  return settings + fmt::format("  set xrange [{:.9g}:{:.9g}]\n  set yrange [{:.9g}:{:.9g}]\n", view.low.x - x_.value,
+  const std::string settings = is_far() ? fmt::format("x0 = {:#}\ny0 = {:#}\n", x_.value, y_.value) : "";
+  return settings + fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]", view.low.x - x_.value,
                                 view.high.x - x_.value, view.low.y - y_.value, view.high.y - y_.value);
 }
 

@@ -9,6 +9,7 @@
 
 #include "figures/paths_figure.h"
 #include "figures/style.h"
+#include "figures/template.h"
 
 namespace exactvo::tools {
 
@@ -38,7 +39,7 @@ const std::vector<Curve> kPaperRates{
     {"pinning", [](const LyapunovRow& r) { return r.paper_rates.pinning; }},
     {"integral", [](const LyapunovRow& r) { return r.paper_rates.integral; }},
     {"claimed by (20)", [](const LyapunovRow& r) { return r.paper_rate; }},
-    {"V' of (18)", [](const LyapunovRow& r) { return r.paper_rates.value(); }, true},
+    {"derivative of V", [](const LyapunovRow& r) { return r.paper_rates.value(); }, true},
 };
 const std::vector<Curve> kSound{
     {"kinetic", [](const LyapunovRow& r) { return r.sound.kinetic; }},
@@ -51,7 +52,7 @@ const std::vector<Curve> kSoundRates{
     {"tracking", [](const LyapunovRow& r) { return r.sound_rates.tracking; }},
     {"intervention", [](const LyapunovRow& r) { return r.sound_rates.intervention; }},
     {"bound", [](const LyapunovRow& r) { return r.rate_bound; }},
-    {"V' that holds", [](const LyapunovRow& r) { return r.sound_rates.value(); }, true},
+    {"derivative of V", [](const LyapunovRow& r) { return r.sound_rates.value(); }, true},
 };
 
 enum class Axis { linear, logarithmic, rates };
@@ -79,11 +80,11 @@ std::string range_of_rates(const std::vector<Curve>& curves, const std::vector<L
   for (const Curve& curve : curves)
     for (const LyapunovRow& row : rows)
       if (std::isfinite(curve.value(row))) sizes.push_back(std::fabs(curve.value(row)));
-  if (sizes.empty()) return "  set autoscale y\n";
+  if (sizes.empty()) return "set autoscale y";
   std::sort(sizes.begin(), sizes.end());
   const double most =
       std::max(1.5 * sizes[static_cast<std::size_t>(kShare * static_cast<double>(sizes.size() - 1))], 1e-6);
-  return fmt::format("  set yrange [{:.4g}:{:.4g}]\n", -most, most);
+  return fmt::format("set yrange [{:.4g}:{:.4g}]", -most, most);
 }
 
 std::string panel(const std::vector<Curve>& curves, const std::vector<LyapunovRow>& rows, const std::string& title,
@@ -92,9 +93,12 @@ std::string panel(const std::vector<Curve>& curves, const std::vector<LyapunovRo
   PlotCommand plot;
   const double floor = logarithmic ? kLeastShown : -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < curves.size(); ++i) add_curve(curves[i], i, rows, floor, data, plot);
-  return fmt::format("  set title {}\n  set ylabel {}\n  {}\n", quoted(title), quoted(y_label),
-                     logarithmic ? "set logscale y\n  set format y '10^%T'" : "unset logscale y\n  set format y '%g'") +
-         (axis == Axis::rates ? range_of_rates(curves, rows) : "  set autoscale y\n") + plot.text();
+  const std::string range = axis == Axis::rates ? range_of_rates(curves, rows) : std::string("set autoscale y");
+  const std::string scale =
+      logarithmic ? "set logscale y\nset format y '10^{%T}'\n" : "unset logscale y\nset format y '%g'\n";
+  return filled(
+      "lyapunov_panel",
+      {{"title", quoted(title)}, {"y_label", markup(y_label)}, {"y_axis", scale + range}, {"plot", plot.text()}});
 }
 
 std::vector<LyapunovRow> without_the_last(std::vector<LyapunovRow> rows) {
@@ -110,20 +114,17 @@ Figure lyapunov_figure(const datasets::RecordingFile& run) {
   const std::vector<LyapunovRow> moving = without_the_last(rows);
   const double end = rows.empty() ? 1.0 : std::max(rows.back().time, 1.0);
   const std::string title = run_title(run);
-  const std::string body =
-      fmt::format(
-          "  set multiplot layout 4,1\n  set xlabel 'time [s]'\n  set xrange [0:{:.6g}]\n  set lmargin 12\n  set "
-          "rmargin at screen 0.77\n"
-          "  set grid lc rgb '#dcdcdc'\n  set key outside right top reverse Left width 2\n",
-          end) +
-      panel(kPaper, rows, title + ": the paper's function (18)", "V [m²/s²]", Axis::linear, data) +
-      panel(kPaperRates, moving, "its derivative (19), and what (20) says it is (the tallest spikes cut)", "V' [m²/s³]",
-            Axis::rates, data) +
-      panel(kSound, rows, "the function that holds", "V [m²/s²]", Axis::logarithmic, data) +
-      panel(kSoundRates, moving, "its derivative, and its bound near obstacles (the tallest spikes cut)", "V' [m²/s³]",
-            Axis::rates, data) +
-      "  unset multiplot\n";
-  return {"lyapunov", data.text(), "Both Lyapunov functions along " + title + ", term by term.", kCanvas, body};
+  // One after the other: their data sets are numbered.
+  std::string panels =
+      panel(kPaper, rows, "(a) " + title + ": function (18) of the paper", "{/:Italic V} [m²/s²]", Axis::linear, data);
+  panels += panel(kPaperRates, moving, "(b) its derivative (19), and what (20) claims it is (tallest spikes cut off)",
+                  "d{/:Italic V}/d{/:Italic t} [m²/s³]", Axis::rates, data);
+  panels +=
+      panel(kSound, rows, "(c) a Lyapunov function that is valid", "{/:Italic V} [m²/s²]", Axis::logarithmic, data);
+  panels += panel(kSoundRates, moving, "(d) its derivative, and the bound near obstacles (tallest spikes cut off)",
+                  "d{/:Italic V}/d{/:Italic t} [m²/s³]", Axis::rates, data);
+  return {"lyapunov", data.text(), "Both Lyapunov functions along " + title + ", term by term.", kCanvas,
+          filled("lyapunov", {{"end", fmt::format("{:.6g}", end)}, {"panels", panels}})};
 }
 
 std::string lyapunov_csv(const std::vector<LyapunovRow>& rows) {

@@ -125,6 +125,42 @@ Points clipped_to(const Points& ring, const Box& keep) {
   return clipped(kept, HalfPlane{{0.0, -1.0}, -keep.high.y});
 }
 
+/// Cut by the four sides of the box in turn.
+Points segment_within(const Box& box, Vec2 a, Vec2 b) {
+  const HalfPlane sides[] = {
+      {{1.0, 0.0}, box.low.x}, {{-1.0, 0.0}, -box.high.x}, {{0.0, 1.0}, box.low.y}, {{0.0, -1.0}, -box.high.y}};
+  for (const HalfPlane& side : sides) {
+    const double out_a = violation(side, a);
+    const double out_b = violation(side, b);
+    if (out_a > 0.0 && out_b > 0.0) return {};
+    const Vec2 cut = out_a == out_b ? a : a + (out_a / (out_a - out_b)) * (b - a);
+    if (out_a > 0.0) a = cut;
+    if (out_b > 0.0) b = cut;
+  }
+  return {a, b};
+}
+
+Points boundary_within(const Box& box, const HalfPlane& half_plane) {
+  const Points kept = clipped(corners(box), half_plane);
+  const double along = 4.0 * box.diagonal();
+  const Vec2 n = normalized(half_plane.normal);
+  const Vec2 foot = (half_plane.offset / norm(half_plane.normal)) * n;
+  if (kept.empty() || !box.grown(along).contains(foot)) return {};
+  return segment_within(box, foot - along * perp(n), foot + along * perp(n));
+}
+
+std::vector<Points> hatching(const Points& boundary, Vec2 normal, double gap) {
+  const Vec2 along = normalized(boundary[1] - boundary[0]);
+  const Vec2 stroke = -0.9 * gap * normalized(normal) + 0.6 * gap * along;
+  const int count = static_cast<int>(norm(boundary[1] - boundary[0]) / gap);
+  std::vector<Points> strokes;
+  for (int i = 0; i < count; ++i) {
+    const Vec2 foot = boundary[0] + (i + 0.5) * gap * along;
+    strokes.push_back({foot, foot + stroke});
+  }
+  return strokes;
+}
+
 std::optional<LegNormals> leg_normals(const GrownShape& s) {
   const std::optional<Arc> arc = negative_arc(s);
   if (!arc) return std::nullopt;

@@ -36,6 +36,15 @@ Points clipped(const Points& convex_ring, const geometry::HalfPlane& keep);
 /// sides: right for filling, wrong for an outline.
 Points clipped_to(const Points& ring, const Box& keep);
 
+/// The stretch of a segment that lies in the box; empty where none does.
+Points segment_within(const Box& box, Vec2 a, Vec2 b);
+
+/// The stretch of a half-plane's boundary that lies in the box; empty where none does.
+Points boundary_within(const Box& box, const geometry::HalfPlane& half_plane);
+
+/// Strokes from a boundary into its forbidden side, aslant, `gap` apart; `normal` points into the allowed side.
+std::vector<Points> hatching(const Points& boundary, Vec2 normal, double gap);
+
 /// The two directions at which the support of S changes sign: outward normals of the legs, of length 1.
 /// [0] is that of the left leg seen from the origin. Nothing where the origin lies in S, so that there is no cone.
 struct LegNormals {

@@ -11,9 +11,11 @@
 
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/speed_profile.h"
+#include "exactvo/geometry/require.h"
 #include "figures/label_places.h"
 #include "figures/local_origin.h"
 #include "figures/outlines.h"
+#include "figures/template.h"
 
 namespace exactvo::tools {
 
@@ -74,13 +76,8 @@ double scale_of(const Box& view) {
 /// The layers of one panel: data sets and the plot items that draw them.
 class PathsPanel {
  public:
-  PathsPanel(const RecordingFile& run, DataFile& data, bool detailed)
-      : run_(run),
-        data_(data),
-        detailed_(detailed),
-        view_(view_of(run)),
-        origin_(view_),
-        times_(view_, scale_of(view_)) {
+  PathsPanel(const RecordingFile& run, const Box& view, DataFile& data, bool detailed)
+      : run_(run), data_(data), detailed_(detailed), view_(view), origin_(view_), times_(view_, scale_of(view_)) {
     origin_.prepare(data_);
     if (detailed_) note_lines();
     add_obstacles();
@@ -93,6 +90,7 @@ class PathsPanel {
   }
   std::string plot() const { return plot_.text(); }
   const LocalOrigin& origin() const { return origin_; }
+  bool has_collisions() const { return has_collisions_; }
 
  private:
   std::string key(const std::string& text) const { return detailed_ ? text : ""; }
@@ -175,7 +173,7 @@ class PathsPanel {
     const int index = data_.begin("moving obstacles at the time marks", "x [m], y [m]");
     for (const auto& obstacle : run_.scenario.moving_obstacles)
       for (const Step* mark : marks) add_ring(vertices_at(obstacle, mark->time));
-    const int ways = data_.begin("ways of the moving obstacles", "x [m], y [m]");
+    const int ways = data_.begin("paths of the moving obstacles", "x [m], y [m]");
     for (const auto& obstacle : run_.scenario.moving_obstacles) {
       const Points points = vertices_of(obstacle.shape);
       Vec2 middle{};
@@ -227,7 +225,7 @@ class PathsPanel {
 
   void add_way(std::size_t i) {
     const Robot& robot = run_.scenario.robots[i];
-    const int way = data_.begin("way of " + robot.id, "x [m], y [m], t [s]");
+    const int way = data_.begin("path of " + robot.id, "x [m], y [m], t [s]");
     for (const Step& step : run_.recording.steps) {
       const Vec2 p = step.robots[i].position;
       if (!is_drawable(p)) break;
@@ -328,6 +326,7 @@ class PathsPanel {
     Points marks;
     for (const formation::Collision& c : run_.collisions)
       if (is_drawable(c.place)) marks.push_back(c.place);
+    has_collisions_ = !marks.empty();
     if (marks.empty()) return;
     const int index = data_.begin("collisions: where they were deepest", "x [m], y [m]");
     for (const Vec2 p : marks) data_.row({p.x, p.y});
@@ -358,10 +357,14 @@ class PathsPanel {
   LocalOrigin origin_;
   PlotCommand plot_;
   LabelPlaces times_;
+  bool has_collisions_ = false;
 };
 
-/// Characters in 9 points over a panel of 300 px.
-constexpr std::size_t kPanelTitle = 46;
+/// Characters in 10 points over a panel of 250 px and the gap beside it.
+constexpr std::size_t kPanelTitle = 42;
+/// What is so far beyond the business of the robots is cut off in a sheet, of its diagonal: a run that diverges must
+/// not shrink all panels.
+constexpr double kSheetRunaway = 0.25;
 
 /// A box at least a third as wide as high and the other way round, so that no plot becomes a sliver.
 Box without_slivers(Box box) {
@@ -412,12 +415,12 @@ std::string run_title(const RecordingFile& run) {
   return title;
 }
 
-Box view_of(const RecordingFile& run) {
+Box view_of(const RecordingFile& run, double runaway) {
   const Box business = business_of_robots(run.scenario);
   const Box obstacles = box_of_obstacles(run.scenario);
   Box view = business;
   if (obstacles.diagonal() <= 4.0 * business.diagonal()) view.add(obstacles);
-  const Box limit = view.grown(1.5 * view.diagonal());
+  const Box limit = view.grown(runaway * view.diagonal());
   for (const Step& step : run.recording.steps) {
     for (std::size_t i = 0; i < step.robots.size(); ++i) {
       const Vec2 p = step.robots[i].position;
@@ -429,44 +432,132 @@ Box view_of(const RecordingFile& run) {
 
 Figure paths_figure(const RecordingFile& run) {
   DataFile data;
-  const PathsPanel panel(run, data, true);
   const Box view = view_of(run);
-  const std::string body = fmt::format(
-      "  set title {}\n"
-      "  set size ratio -1\n"
-      "{}"
-      "  set xlabel '{}'\n"
-      "  set ylabel '{}'\n"
-      "  set grid lc rgb '#dcdcdc'\n"
-      "  set key outside right top reverse Left\n"
-      "{}",
-      quoted(fitted_title(run, view)), panel.origin().ranges(view), panel.origin().x_label(), panel.origin().y_label(),
-      panel.plot());
-  const std::string shows = "Ways of the robots of " + run_title(run) + "; circles are the robots to scale.";
+  const PathsPanel panel(run, view, data, true);
+  const std::string body = filled("paths", {{"title", quoted(fitted_title(run, view))},
+                                            {"ranges", panel.origin().ranges(view)},
+                                            {"x_label", markup(panel.origin().x_label())},
+                                            {"y_label", markup(panel.origin().y_label())},
+                                            {"plot", panel.plot()}});
+  const std::string shows = "Paths of the robots of " + run_title(run) + "; circles are the robots to scale.";
   return {"paths", data.text(), shows, canvas_for(view, longest_key(run)), body};
 }
 
-Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns) {
-  DataFile data;
-  const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-  std::string body =
-      fmt::format("  set multiplot layout {},{} title {}\n", rows, columns, quoted(title + " (axes in metres)"));
-  body +=
-      "  set size ratio -1\n  unset key\n  set tics font ',8'\n  set xtics offset 0,0.3\n"
-      "  set lmargin 5\n  set rmargin 1\n  set tmargin 2.5\n  set bmargin 1.5\n";
-  double tallest = 0.0;
+namespace {
+
+/// Where everything of a sheet lies, px from the top left.
+struct SheetLayout {
+  int columns, rows;
+  double panel_width, panel_height;  ///< of what the axes enclose
+
+  static constexpr double kLeft = 58.0, kRight = 14.0, kTop = 62.0, kBottom = 46.0;
+  static constexpr double kGapX = 40.0, kGapY = 50.0, kLegend = 34.0;
+
+  double width() const { return kLeft + kRight + columns * panel_width + (columns - 1) * kGapX; }
+  double height() const { return kTop + kBottom + kLegend + rows * panel_height + (rows - 1) * kGapY; }
+  double left(int column) const { return kLeft + column * (panel_width + kGapX); }
+  double top(int row) const { return kTop + row * (panel_height + kGapY); }
+};
+
+/// One width and one height for all panels, m: the same scale. Every panel keeps its own middle.
+std::vector<Box> equal_views(const std::vector<Panel>& panels) {
+  std::vector<Box> views;
+  double width = 0.0, height = 0.0;
   for (const Panel& panel : panels) {
-    const PathsPanel paths(*panel.run, data, false);
-    const Box view = view_of(*panel.run);
-    tallest = std::max(tallest, view.height() / view.width());
-    const std::string panel_title = shortened(panel.title + paths.origin().in_title(), kPanelTitle);
-    body += "  set title " + quoted(panel_title) + " font ',9' offset 0,-0.6\n" + paths.origin().ranges(view) +
-            paths.plot();
+    views.push_back(view_of(*panel.run, kSheetRunaway));
+    width = std::max(width, views.back().width());
+    height = std::max(height, views.back().height());
   }
-  body += "  unset multiplot\n";
-  const int panel_width = 300;
-  const int panel_height = static_cast<int>(250.0 * std::min(tallest, 1.2)) + 55;
-  return {name, data.text(), title + ".", {panel_width * columns, panel_height * rows + 40}, body};
+  for (Box& view : views) {
+    const Vec2 middle = 0.5 * (view.low + view.high), half{0.5 * width, 0.5 * height};
+    view = {middle - half, middle + half};
+  }
+  return views;
+}
+
+/// "(a)", ..., "(z)", "(27)", ...
+std::string letter_of(std::size_t panel) {
+  return panel < 26 ? fmt::format("({})", static_cast<char>('a' + panel)) : fmt::format("({})", panel + 1);
+}
+
+/// The name of the i-th robot in the legend: its own where it is the same in all runs that have one.
+std::string robot_in_legend(const std::vector<Panel>& panels, std::size_t i) {
+  std::string name;
+  for (const Panel& panel : panels) {
+    const auto& robots = panel.run->scenario.robots;
+    if (i >= robots.size()) continue;
+    if (!name.empty() && name != robots[i].id) return fmt::format("robot {}", i + 1);
+    name = robots[i].id;
+  }
+  return shortened(name, kNameLength);
+}
+
+/// What any panel has, in the styles of PathsPanel without details.
+PlotCommand sheet_legend(const std::vector<Panel>& panels, bool collisions) {
+  std::size_t robots = 0;
+  bool polygons = false, walls = false, moving = false, leader = false, goals = false;
+  for (const Panel& panel : panels) {
+    const formation::Scenario& s = panel.run->scenario;
+    robots = std::max(robots, s.robots.size());
+    for (const auto& o : s.obstacles) (std::holds_alternative<geometry::Polygon>(o.shape) ? polygons : walls) = true;
+    moving = moving || !s.moving_obstacles.empty();
+    leader = leader || s.formation.has_value();
+    for (const Robot& robot : s.robots) goals = goals || !robot.goals.empty();
+  }
+  PlotCommand plot;
+  plot.item("2");  // beyond the axes: gnuplot draws no legend alone
+  if (polygons) plot.item(fmt::format("keyentry with boxes fs solid noborder fc rgb '{}'", kObstacleFill), "obstacle");
+  if (walls) plot.item(fmt::format("keyentry with lines lw 2.5 lc rgb '{}'", kObstacleLine), "wall");
+  if (moving)
+    plot.item(fmt::format("keyentry with lines lw 1.5 dt (8,3) lc rgb '{}'", kObstacleLine), "moving obstacle");
+  for (std::size_t i = 0; i < robots; ++i)
+    plot.item(fmt::format("keyentry with lines lw 1.5{} lc rgb '{}'", series_dash(i), series_colour(i)),
+              robot_in_legend(panels, i));
+  if (leader) plot.item("keyentry with lines lw 1.5 dt (2,4) lc rgb 'black'", "virtual leader");
+  plot.item("keyentry with points pt 6 ps 1.3 lc rgb '#222222'", "start, end");
+  if (goals) plot.item("keyentry with points pt 2 ps 0.7 lw 2.5 lc rgb '#222222'", "goal");
+  if (collisions)
+    plot.item(fmt::format("keyentry with points pt 1 ps 1.5 lw 4 lc rgb '{}'", kCollisionColour), "collision");
+  return plot;
+}
+
+}  // namespace
+
+Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns) {
+  EXACTVO_REQUIRE(!panels.empty(), std::string("no panel"));
+  const std::vector<Box> views = equal_views(panels);
+  const int count = static_cast<int>(panels.size());
+  const double panel_width = columns > 2 ? 250.0 : 380.0;
+  const SheetLayout layout{columns, (count + columns - 1) / columns, panel_width,
+                           panel_width * views.front().height() / views.front().width()};
+  const auto across = [&](double px) { return fmt::format("{:.5f}", px / layout.width()); };
+  const auto up = [&](double px) { return fmt::format("{:.5f}", 1.0 - px / layout.height()); };
+  DataFile data;
+  std::string text;
+  bool collisions = false;
+  for (int k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const int column = k % columns, row = k / columns;
+    const PathsPanel paths(*panels[i].run, views[i], data, false);
+    collisions = collisions || paths.has_collisions();
+    const std::string words = letter_of(i) + " " + panels[i].title;
+    text += filled("sheet_panel", {{"left", across(layout.left(column))},
+                                   {"right", across(layout.left(column) + layout.panel_width)},
+                                   {"top", up(layout.top(row))},
+                                   {"bottom", up(layout.top(row) + layout.panel_height)},
+                                   {"title", quoted(shortened(words + paths.origin().in_title(), kPanelTitle))},
+                                   {"x_label", k + columns >= count ? "'x [m]'" : "''"},
+                                   {"y_label", column == 0 ? "'y [m]'" : "''"},
+                                   {"ranges", paths.origin().ranges(views[i])},
+                                   {"plot", paths.plot()}});
+  }
+  const std::string body = filled("sheet", {{"title", quoted(title)},
+                                            {"panels", text},
+                                            {"legend_top", up(layout.height() - SheetLayout::kLegend)},
+                                            {"legend_middle", up(layout.height() - 0.55 * SheetLayout::kLegend)},
+                                            {"legend", sheet_legend(panels, collisions).text()}});
+  const Canvas canvas{static_cast<int>(std::lround(layout.width())), static_cast<int>(std::lround(layout.height()))};
+  return {name, data.text(), title + ".", canvas, body};
 }
 
 }  // namespace exactvo::tools

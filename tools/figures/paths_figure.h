@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The plane: obstacles, enclosures, the robots' ways and where they were when.
+/// The plane: obstacles, enclosures, the robots' paths and where they were when.
 
 #include <cstddef>
 #include <string>
@@ -26,7 +26,8 @@ struct Panel {
   const datasets::RecordingFile* run = nullptr;
 };
 
-/// Many runs side by side on one sheet, a panel each, without legends: for comparing.
+/// Many runs side by side on one sheet, a panel each with its letter, all at one scale, with one legend below: for
+/// comparing. REQUIRES: a panel.
 Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns);
 
 /// When the robot came to rest for good, s; the end of the run where it never did.
@@ -36,7 +37,7 @@ double end_of_motion(const datasets::RecordingFile& run);
 
 /// What a paths figure shows of the plane: every start, goal, leader and obstacle, and the ways as far as they stay
 /// within a few times that (a run that diverges must not shrink the rest to a dot). Obstacles more than four times as
-/// wide as the robots' own business are shown in part.
-Box view_of(const datasets::RecordingFile& run);
+/// wide as the robots' own business are shown in part. `runaway`: how far beyond, of the diagonal, a path is followed.
+Box view_of(const datasets::RecordingFile& run, double runaway = 1.5);
 
 }  // namespace exactvo::tools

@@ -13,6 +13,7 @@
 #include "exactvo/formation/metrics.h"
 #include "figures/paths_figure.h"
 #include "figures/style.h"
+#include "figures/template.h"
 
 namespace exactvo::tools {
 
@@ -71,24 +72,22 @@ double shown_time(const RecordingFile& run) {
 
 /// Where the axis ends before the run does: a line where the robots came to rest, with words.
 std::string rest_mark(const RecordingFile& run) {
-  if (shown_time(run) >= run_time(run)) return "  unset arrow\n  unset label\n";
-  return fmt::format(
-      "  set arrow 1 from {0:.6g}, graph 0 to {0:.6g}, graph 1 nohead dt (2,3) lc rgb '#777777'\n"
-      "  set label 1 'at rest from here to {1:.6g} s' at {0:.6g}, graph 0.97 right rotate by 90 offset -0.7,0 "
-      "font ',9' textcolor rgb '#555555'\n",
-      end_of_motion(run), run_time(run));
+  if (shown_time(run) >= run_time(run)) return "";
+  return filled("rest_mark",
+                {{"time", fmt::format("{:.6g}", end_of_motion(run))}, {"end", fmt::format("{:.6g}", run_time(run))}});
 }
 
-std::string axes(const RecordingFile& run, const std::string& title, const std::string& y_label) {
+/// `y_label` in gnuplot's markup, `y_axis` settings of the axis.
+std::string series_body(const RecordingFile& run, const std::string& title, const std::string& y_label,
+                        const std::string& y_axis, const PlotCommand& plot) {
   const std::size_t room = characters_in(kCanvas.width - 60.0);
-  return rest_mark(run) + fmt::format(
-                              "  set title {}\n"
-                              "  set xlabel 'time [s]'\n"
-                              "  set xrange [0:{:.6g}]\n"
-                              "  set ylabel {}\n"
-                              "  set grid lc rgb '#dcdcdc'\n"
-                              "  set key outside right top reverse Left maxrows {}\n",
-                              quoted(shortened(title, room)), shown_time(run), quoted(y_label), kKeyRows);
+  return filled("series", {{"title", quoted(shortened(title, room))},
+                           {"end", fmt::format("{:.6g}", shown_time(run))},
+                           {"y_label", markup(y_label)},
+                           {"key_rows", std::to_string(kKeyRows)},
+                           {"rest", rest_mark(run)},
+                           {"y_axis", y_axis},
+                           {"plot", plot.text()}});
 }
 
 /// From a little below the lesser of zero and the values to a little above them; never empty.
@@ -103,7 +102,7 @@ std::string value_range(const std::vector<Series>& all) {
     }
   }
   const double room = high - low < kLeastRange ? 0.5 : 0.05 * (high - low);
-  return fmt::format("  set yrange [{:.6g}:{:.6g}]\n", low - room, high + room);
+  return fmt::format("set yrange [{:.6g}:{:.6g}]", low - room, high + room);
 }
 
 /// Distances: from zero up where nothing touches, and a line at contact.
@@ -114,8 +113,8 @@ Figure distance_figure(const RecordingFile& run, const std::string& name, const 
   add_series(run, all, data, plot);
   plot.item("0 with lines lw 1.5 dt (5,4) lc rgb 'black'", "contact");
   const std::string title = run_title(run) + ": " + what;
-  const std::string body = axes(run, title, "distance [m]") + value_range(all) + plot.text();
-  return {name, data.text(), title + ". Below zero they overlap.", kCanvas, body};
+  return {name, data.text(), title + ". Below zero they overlap.", kCanvas,
+          series_body(run, title, "distance [m]", value_range(all), plot)};
 }
 
 std::vector<Series> pair_distances(const RecordingFile& run) {
@@ -172,7 +171,7 @@ std::string velocity_panel(const RecordingFile& run, const std::string& title, c
   const std::vector<Series> all = velocity_components(run, component);
   add_series(run, all, data, plot);
   add_leader(run, component, data, plot);
-  return axes(run, title, y_label) + value_range(all) + plot.text();
+  return series_body(run, title, y_label, value_range(all), plot);
 }
 
 }  // namespace
@@ -194,14 +193,12 @@ Figure robot_distance_figure(const RecordingFile& run) {
 
 Figure velocity_figure(const RecordingFile& run) {
   DataFile data;
-  const std::string body = "  set multiplot layout 2,1\n  set lmargin 9\n" +
-                           velocity_panel(
-                               run, run_title(run) + ": velocity", "v_x [m/s]", [](Vec2 v) { return v.x; }, data) +
-                           velocity_panel(
-                               run, "", "v_y [m/s]", [](Vec2 v) { return v.y; }, data) +
-                           "  unset multiplot\n";
+  const std::string x = velocity_panel(
+      run, "(a) " + run_title(run) + ": velocity along x", "{/:Italic v}_x [m/s]", [](Vec2 v) { return v.x; }, data);
+  const std::string y = velocity_panel(
+      run, "(b) velocity along y", "{/:Italic v}_y [m/s]", [](Vec2 v) { return v.y; }, data);
   return {"velocity", data.text(), "Components of the robots' velocities in " + run_title(run) + ".", kTallCanvas,
-          body};
+          filled("velocity", {{"x", x}, {"y", y}})};
 }
 
 Figure formation_error_figure(const RecordingFile& run) {
@@ -214,9 +211,9 @@ Figure formation_error_figure(const RecordingFile& run) {
   }
   add_series(run, all, data, plot);
   const std::string title = run_title(run) + ": distance of each robot from its slot";
-  const std::string body =
-      axes(run, title, "|x_i - x_L - Δ_i| [m]") + "  set logscale y\n  set format y '%.0e'\n" + plot.text();
-  return {"formation_error", data.text(), title + ", logarithmic.", kCanvas, body};
+  return {"formation_error", data.text(), title + ", logarithmic.", kCanvas,
+          series_body(run, title, "|{/:Italic x}_i − {/:Italic x}_L − {/:Italic Δ}_i| [m]",
+                      "set logscale y\nset format y '10^{%T}'", plot)};
 }
 
 }  // namespace exactvo::tools

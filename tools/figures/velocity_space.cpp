@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "figures/outlines.h"
+#include "figures/template.h"
 
 namespace exactvo::tools {
 
@@ -120,7 +121,7 @@ class VelocitySpace {
 
   bool is_in_view(const Points& curve) const {
     for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
-      if (!segment_in_view(curve[i], curve[i + 1]).empty()) return true;
+      if (!segment_within(view_, curve[i], curve[i + 1]).empty()) return true;
     }
     return false;
   }
@@ -189,45 +190,7 @@ class VelocitySpace {
     curves.push_back(ring);
   }
 
-  /// The stretch of a half-plane's boundary that is in view; empty where none is.
-  Points boundary_in_view(const HalfPlane& h) const {
-    const Points kept = clipped(corners(view_), h);
-    const double along = 4.0 * view_.diagonal();
-    const Vec2 n = normalized(h.normal);
-    const Vec2 foot = (h.offset / norm(h.normal)) * n;
-    if (kept.empty() || !view_.grown(along).contains(foot)) return {};
-    return segment_in_view(foot - along * perp(n), foot + along * perp(n));
-  }
-
-  /// Cut by the four sides of the view in turn.
-  Points segment_in_view(Vec2 a, Vec2 b) const {
-    const HalfPlane sides[] = {{{1.0, 0.0}, view_.low.x},
-                               {{-1.0, 0.0}, -view_.high.x},
-                               {{0.0, 1.0}, view_.low.y},
-                               {{0.0, -1.0}, -view_.high.y}};
-    for (const HalfPlane& side : sides) {
-      const double out_a = violation(side, a);
-      const double out_b = violation(side, b);
-      if (out_a > 0.0 && out_b > 0.0) return {};
-      const Vec2 cut = out_a == out_b ? a : a + (out_a / (out_a - out_b)) * (b - a);
-      if (out_a > 0.0) a = cut;
-      if (out_b > 0.0) b = cut;
-    }
-    return {a, b};
-  }
-
-  /// Strokes on the forbidden side, aslant.
-  void add_hatching(const Points& line, Vec2 normal) {
-    const double gap = view_.width() / kHatchesAcross;
-    const Vec2 along = normalized(line[1] - line[0]);
-    const Vec2 stroke = -0.9 * gap * normalized(normal) + 0.6 * gap * along;
-    const double length = norm(line[1] - line[0]);
-    const int count = static_cast<int>(length / gap);
-    for (int i = 0; i < count; ++i) {
-      const Vec2 foot = line[0] + (i + 0.5) * gap * along;
-      add_points({foot, foot + stroke});
-    }
-  }
+  Points boundary_in_view(const HalfPlane& h) const { return boundary_within(view_, h); }
 
   void add_half_planes(bool active, const char* colour, double width, const std::string& title) {
     std::vector<std::pair<Points, Vec2>> lines;
@@ -238,10 +201,11 @@ class VelocitySpace {
     if (lines.empty()) return;
     const int boundaries = data_.begin(title + ": boundaries", "v_x [m/s], v_y [m/s]");
     for (const auto& [line, normal] : lines) add_points(line);
-    const int hatching = data_.begin(title + ": hatching on the forbidden side", "v_x [m/s], v_y [m/s]");
-    for (const auto& [line, normal] : lines) add_hatching(line, normal);
+    const int strokes = data_.begin(title + ": hatching on the forbidden side", "v_x [m/s], v_y [m/s]");
+    for (const auto& [line, normal] : lines)
+      for (const Points& stroke : hatching(line, normal, view_.width() / kHatchesAcross)) add_points(stroke);
     plot_.data(boundaries, fmt::format("using 1:2 with lines lw {} lc rgb '{}'", width, colour), title);
-    plot_.data(hatching, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", colour));
+    plot_.data(strokes, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", colour));
   }
 
   void add_slack_half_planes() { add_half_planes(false, kSlackColour, 1.5, "half-plane, slack"); }
@@ -339,19 +303,12 @@ Figure velocity_space_figure(const Decision& decision) {
   const std::string title =
       fmt::format("{}: velocity space of {} at t = {:.2f} s, {}", shortened(decision.scenario.name, kNameLength),
                   shortened(decision.who().id, kNameLength), decision.time, decision.method);
-  const std::string body = fmt::format(
-      "  set title {}\n"
-      "  set size ratio -1\n"
-      "  set clip two\n"
-      "  set xrange [{:.6g}:{:.6g}]\n"
-      "  set yrange [{:.6g}:{:.6g}]\n"
-      "  set xlabel 'v_x [m/s]'\n"
-      "  set ylabel 'v_y [m/s]'\n"
-      "  set grid lc rgb '#e9e9e9'\n"
-      "  set key outside right top reverse Left samplen 3\n"
-      "{}",
-      quoted(shortened(title, characters_in(kTitleRoom))), space.box().low.x, space.box().high.x, space.box().low.y,
-      space.box().high.y, space.plot());
+  const std::string body = filled("velocity_plane", {{"title", quoted(shortened(title, characters_in(kTitleRoom)))},
+                                                     {"x_low", fmt::format("{:.6g}", space.box().low.x)},
+                                                     {"x_high", fmt::format("{:.6g}", space.box().high.x)},
+                                                     {"y_low", fmt::format("{:.6g}", space.box().low.y)},
+                                                     {"y_high", fmt::format("{:.6g}", space.box().high.y)},
+                                                     {"plot", space.plot()}});
   return {"velocity_space", space.data(), title + ".", {1060, 740}, body};
 }
 

@@ -13,6 +13,7 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/remedies.h"
 #include "figures/style.h"
+#include "figures/template.h"
 #include "paper/parts.h"
 #include "paper/report_data.h"
 #include "support/files.h"
@@ -135,14 +136,13 @@ Figure counts_figure(const std::vector<VariantResult>& results, const CampaignOp
   plot.data(index, "using 2:1:2 with labels left offset 1.2,0 font ',10'");
   const std::string title =
       fmt::format("Reached and safe, of {} random formations (seed {})", options.fields, options.seed);
-  const std::string body = fmt::format(
-      "  set title {}\n  set xrange [0:{}]\n  set yrange [0.3:{}]\n  set xlabel 'fields'\n  set lmargin 20\n"
-      "  set grid x lc rgb '#dcdcdc'\n  set tics nomirror\n  set arrow from 0,{} to graph 1,first {} nohead "
-      "dt (4,4) lc rgb '#777777'\n",
-      quoted(title), 1.12 * static_cast<double>(options.fields), n + 0.7,
-      n - static_cast<double>(formation::remedy_ladder().size()) + 0.5,
-      n - static_cast<double>(formation::remedy_ladder().size()) + 0.5);
-  return {"remedies", data.text(), title + ": options added one by one above, ablations below.", {960, 620}, body + plot.text()};
+  const std::string body = filled(
+      "remedies", {{"title", quoted(title)},
+                   {"end", fmt::format("{}", 1.12 * static_cast<double>(options.fields))},
+                   {"top", fmt::format("{}", n + 0.7)},
+                   {"between", fmt::format("{}", n - static_cast<double>(formation::remedy_ladder().size()) + 0.5)},
+                   {"plot", plot.text()}});
+  return {"remedies", data.text(), title + ": options added one by one above, ablations below.", {960, 620}, body};
 }
 
 /// J in B1 and B3 for every set, logarithmic.
@@ -161,12 +161,12 @@ Figure jitter_figure(const std::vector<VariantResult>& results, const std::vecto
         fmt::format("using 2:1:yticlabels(3) with points pt {} ps 1.3 lw 2 lc rgb '{}'", 4 + 2 * s, series_colour(s)),
         kFormationScenes[s]);
   }
-  const std::string title = "Jitter J by controller options: the sum of |a_{k+1} - a_k|";
-  const std::string body = fmt::format(
-      "  set title {}\n  set logscale x\n  set format x '10^%T'\n  set yrange [0.3:{}]\n  set xlabel 'J [m/s^2]'\n"
-      "  set lmargin 20\n  set grid lc rgb '#dcdcdc'\n  set key outside right top\n",
-      quoted(title), n + 0.7);
-  return {"remedies_jitter", data.text(), title + ".", {960, 620}, body + plot.text()};
+  const std::string body = filled(
+      "remedies_jitter",
+      {{"title", markup("Jitter {/:Italic J} = Σ |{/:Italic a}_{k+1} − {/:Italic a}_k| with each set of controller options")},
+       {"top", fmt::format("{}", n + 0.7)},
+       {"plot", plot.text()}});
+  return {"remedies_jitter", data.text(), "Jitter J with each set of controller options.", {960, 620}, body};
 }
 
 }  // namespace

@@ -228,17 +228,20 @@ void add_section_a(const ReportData& data, Document& d) {
                       metres(value_of(ours, "min_obstacle_clearance")), metres(value_of(ours, "min_robot_clearance"))});
   }
   d.blocks.push_back(t);
-  d.blocks.push_back(Picture{"figures/fig5-orca/A2/paths.png", "Fig. 5(a), scenario A2: ORCA stops at the obstacle."});
-  d.blocks.push_back(Picture{"figures/fig5-orca/A2/obstacle_distance.png", "Fig. 5(b): distance from the obstacles."});
-  d.blocks.push_back(
-      Picture{"figures/fig6-ivo-edge/A2/paths.png", "Fig. 6(a), scenario A2: the paper's ellipses (ivo-edge)."});
-  d.blocks.push_back(
-      Picture{"figures/fig6-ivo-edge/A2/obstacle_distance.png", "Fig. 6(b), ivo-edge: distance from the obstacles."});
-  d.blocks.push_back(
-      Picture{"figures/fig6-ivo-edge/A2/robot_distance.png", "Fig. 6(c), ivo-edge: distance between the robots."});
-  d.blocks.push_back(Picture{"figures/fig6-ivo/A2/paths.png", "The same with the default method, ivo."});
+  d.blocks.push_back(Picture{"figures/fig5-orca/A2/paths.png",
+                             "Scenario A2 with ORCA: both robots stop at the obstacles (Fig. 5(a) of the paper)."});
+  d.blocks.push_back(Picture{"figures/fig5-orca/A2/obstacle_distance.png",
+                             "The same run: distance of each robot from the nearest obstacle over time (Fig. 5(b))."});
+  d.blocks.push_back(Picture{"figures/fig6-ivo-edge/A2/paths.png",
+                             "Scenario A2 with the paper's ellipses, method ivo-edge (Fig. 6(a))."});
+  d.blocks.push_back(Picture{"figures/fig6-ivo-edge/A2/obstacle_distance.png",
+                             "The same run: distance of each robot from the nearest obstacle over time (Fig. 6(b))."});
+  d.blocks.push_back(Picture{"figures/fig6-ivo-edge/A2/robot_distance.png",
+                             "The same run: distance between the robots over time (Fig. 6(c))."});
+  d.blocks.push_back(Picture{"figures/fig6-ivo/A2/paths.png", "Scenario A2 with the default method, ivo."});
   for (const char* method : {"orca", "ivo-edge", "ivo-cluster", "ivo"})
-    d.blocks.push_back(Picture{std::string("figures/all-") + method + ".png", std::string("A0-A15, method ") + method});
+    d.blocks.push_back(Picture{std::string("figures/all-") + method + ".png",
+                               std::string("Paths in scenarios A0 to A15, method ") + method + ", all at one scale."});
 }
 
 // --- Section V.B ---
@@ -294,18 +297,23 @@ void add_section_b(const ReportData& data, Document& d) {
     for (const ExpectedFormation& e : kExpectedFormations)
       t.rows.push_back(formation_row(data.run(scene, "ivo", e.controller), scene, e));
   d.blocks.push_back(t);
-  const std::pair<const char*, const char*> pictures[] = {{"paths", "Fig. 8(a), (b), (e): the robots' paths in B3"},
-                                                          {"velocity", "Fig. 8(c): velocity components"},
-                                                          {"robot_distance", "Fig. 8(d): distance between the robots"},
-                                                          {"formation_error", "Distance of each robot from its slot"},
-                                                          {"lyapunov", "Both Lyapunov functions, term by term"}};
-  for (const auto& [folder, controller] :
-       {std::pair{"fig8-paper-signs", "signs corrected"}, std::pair{"fig8-formation", "default"}})
+  const std::pair<const char*, const char*> pictures[] = {
+      {"paths", "Paths of the three robots in scenario B3 (Fig. 8(a), (b), (e))"},
+      {"velocity", "Velocity of each robot in B3, along x and y (Fig. 8(c))"},
+      {"robot_distance", "Distance between the robots in B3 (Fig. 8(d))"},
+      {"formation_error", "Distance of each robot in B3 from its place in the formation"},
+      {"lyapunov", "The Lyapunov function of the paper and a valid one along B3, term by term"}};
+  for (const auto& [folder, controller] : {std::pair{"fig8-paper-signs", "controller paper-signs (signs corrected)"},
+                                           std::pair{"fig8-formation", "default controller"}})
     for (const auto& [stem, caption] : pictures)
       d.blocks.push_back(
           Picture{fmt::format("figures/{}/B3/{}.png", folder, stem), fmt::format("{}, {}.", caption, controller)});
-  d.blocks.push_back(Picture{"figures/jitter.png", "Jitter with the signs corrected and with the default."});
-  d.blocks.push_back(Picture{"figures/all-formation.png", "B0-B3: as printed, signs corrected, default."});
+  d.blocks.push_back(
+      Picture{"figures/jitter.png",
+              "Jitter (sum of the changes of acceleration) with controller paper-signs and with the default."});
+  d.blocks.push_back(Picture{
+      "figures/all-formation.png",
+      "Paths in scenarios B0 to B3 with the controller as printed, with its signs corrected, and with the default."});
 }
 
 // --- The campaigns ---
@@ -357,8 +365,10 @@ void add_ablations(const ReportData& data, Document& d) {
     t.rows.push_back(cells);
   }
   d.blocks.push_back(t);
-  d.blocks.push_back(Picture{"ablations/remedies.png", "How many random formations are reached and safe."});
-  d.blocks.push_back(Picture{"ablations/remedies_jitter.png", "The causes of jitter, one by one."});
+  d.blocks.push_back(
+      Picture{"ablations/remedies.png",
+              "How many random formations reach their goal without a collision, for each set of controller options."});
+  d.blocks.push_back(Picture{"ablations/remedies_jitter.png", "Jitter in B0 to B3 for each set of controller options."});
 }
 
 /// Which program made each file that this is made of, whoever puts the report together.

@@ -11,6 +11,7 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "figures/paths_figure.h"
 #include "figures/style.h"
+#include "figures/template.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/terminal.h"
@@ -197,18 +198,19 @@ class Experiments {
     for (std::size_t i = 0; i < jitter_.size(); ++i)
       data.labelled_row({static_cast<double>(i), jitter_[i].first, jitter_[i].second}, "B" + std::to_string(i));
     PlotCommand plot;
-    const char* style = "using ($1{}0.2):{}:(0.35):xticlabels(4) with boxes fs solid 0.8 noborder lc rgb '{}'";
+    const char* style = "using ($1{}0.2):{}:(0.35) with boxes fs solid 0.8 noborder lc rgb '{}'";
     plot.data(index, fmt::format(fmt::runtime(style), '-', 2, series_colour(1)), "paper-signs");
     plot.data(index, fmt::format(fmt::runtime(style), '+', 3, series_colour(0)), "default");
+    plot.data(index, "using 1:(NaN):xticlabels(4) with points");
     plot.data(index, "using ($1-0.2):2:(sprintf('%.0f', $2)) with labels offset 0,0.6 font ',10'");
     plot.data(index, "using ($1+0.2):3:(sprintf('%.0f', $3)) with labels offset 0,0.6 font ',10'");
-    const std::string title = "Jitter J, the sum of |a_{k+1} - a_k|; B0 has no obstacle";
     const std::string body =
-        "  set title " + quoted(title) +
-        "\n  set logscale y\n  set format y '10^%T'\n  set yrange [100:2e6]\n  set xrange [-0.6:3.6]\n"
-        "  set ylabel 'J [m/s^2]'\n  set grid y lc rgb '#dcdcdc'\n  set key outside right top\n" +
-        plot.text();
-    scripts_.push_back(write_sources({"jitter", data.text(), title + ".", {860, 460}, body}, out_ / "figures"));
+        filled("jitter", {{"title", markup("Jitter {/:Italic J} = Σ |{/:Italic a}_{k+1} − {/:Italic a}_k| of two "
+                                           "controllers; B0 has no obstacle")},
+                          {"plot", plot.text()}});
+    const Figure figure{
+        "jitter", data.text(), "Jitter J of two controllers, the sum of |a_{k+1} - a_k|.", {860, 460}, body};
+    scripts_.push_back(write_sources(figure, out_ / "figures"));
   }
 
   void add_comparison() {
@@ -222,6 +224,7 @@ class Experiments {
   }
 
   void add_sheet(const std::string& stem, const std::string& title, const std::vector<Panel>& panels, int columns) {
+    if (panels.empty()) return;  // scenarios of another --data have other names
     scripts_.push_back(write_sources(paths_sheet(stem, title, panels, columns), out_ / "figures"));
   }
 

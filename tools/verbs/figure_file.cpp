@@ -24,7 +24,7 @@ std::vector<FigureFile> files_of(const fs::path& out) {
   const std::string stem = out.stem().string(), plain = plain_name(stem);
   std::vector<FigureFile> files;
   for (const char* source : {".dat", ".gp"}) files.push_back({plain + source, plain + source});
-  for (const char* picture : {".png", ".svg"}) files.push_back({plain + picture, stem + picture});
+  for (const char* picture : {".pdf", ".png", ".svg"}) files.push_back({plain + picture, stem + picture});
   return files;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// One figure for a verb: FILE.svg as the user names it, with FILE.png, FILE.dat and FILE.gp beside it.
+/// One figure for a verb: FILE.svg as the user names it, with FILE.pdf, FILE.png, FILE.dat and FILE.gp beside it.
 
 #include <filesystem>
 #include <string>

@@ -8,6 +8,7 @@
 #include "figures/local_origin.h"
 #include "figures/outlines.h"
 #include "figures/style.h"
+#include "figures/template.h"
 
 namespace exactvo::tools {
 
@@ -37,11 +38,11 @@ class Map {
     for (const Layer& layer : layers_)
       plot.data(write(layer, data), origin.using_columns() + " " + layer.style, layer.in_key ? layer.title : "");
     const double width_of_title = 700.0;
-    const std::string body = fmt::format(
-        "  set title {}\n  set size ratio -1\n{}  set xlabel '{}'\n  set ylabel '{}'\n  set tics font ',11'\n"
-        "  set grid lc rgb '#e9e9e9'\n  set key outside right top reverse Left samplen 3\n{}",
-        quoted(shortened(title, characters_in(width_of_title))), origin.ranges(shown), origin.x_label(),
-        origin.y_label(), plot.text());
+    const std::string body = filled("map", {{"title", quoted(shortened(title, characters_in(width_of_title)))},
+                                            {"ranges", origin.ranges(shown)},
+                                            {"x_label", markup(origin.x_label())},
+                                            {"y_label", markup(origin.y_label())},
+                                            {"plot", plot.text()}});
     return {"map", data.text(), title + ".", {1000, 720}, body};
   }
 

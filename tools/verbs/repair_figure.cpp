@@ -10,6 +10,7 @@
 #include "figures/local_origin.h"
 #include "figures/outlines.h"
 #include "figures/style.h"
+#include "figures/template.h"
 
 namespace exactvo::tools {
 
@@ -52,12 +53,8 @@ class Panels {
   Figure figure(std::size_t rows) const {
     const std::string shows = "Polygons before and after a repair.";
     const Canvas canvas{1000, 60 + 420 * static_cast<int>(rows)};
-    const std::string body = fmt::format(
-        "  set multiplot layout {},2\n  set size ratio -1\n  set grid lc rgb '#e9e9e9'\n  unset key\n  set tics font "
-        "',10'\n{}"
-        "  unset multiplot\n",
-        rows, plots_);
-    return {"repair", data_.text(), shows, canvas, body};
+    return {"repair", data_.text(), shows, canvas,
+            filled("repair", {{"rows", std::to_string(rows)}, {"panels", plots_}})};
   }
 
  private:
@@ -106,8 +103,10 @@ class Panels {
     const std::string from = origin.in_title();
     const std::size_t room = characters_in(kWidthOfPanel);
     const std::string shown = shortened(title, room - std::min(from.size(), room / 2)) + from;
-    plots_ += fmt::format("  set title {}\n{}  set xtics {:.9g}\n{}", quoted(shown), origin.ranges(view),
-                          distance_of_tics(view), plot.text());
+    plots_ += filled("repair_panel", {{"title", quoted(shown)},
+                                      {"ranges", origin.ranges(view)},
+                                      {"tics", fmt::format("{:.9g}", distance_of_tics(view))},
+                                      {"plot", plot.text()}});
   }
 
   DataFile data_;

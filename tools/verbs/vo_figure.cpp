@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "figures/outlines.h"
+#include "figures/template.h"
 
 namespace exactvo::tools {
 
@@ -21,6 +22,8 @@ constexpr const char* kForbiddenUnion = "with filledcurves closed fc rgb '#cfd2d
 constexpr const char* kAllowed = "with filledcurves closed fc rgb '#009E73' fs transparent solid 0.35 noborder";
 constexpr const char* kLost = "with filledcurves closed fc rgb '#E69F00' fs solid 0.75 noborder";
 constexpr const char* kBoundary = "with lines lw 2.5 lc rgb '#009E73'";
+constexpr const char* kHatches = "with lines lw 1 lc rgb '#009E73'";
+constexpr int kHatchesAcross = 45;  // over the width of the view
 constexpr const char* kShared = "with lines lw 2 dt (6,4) lc rgb '#009E73'";
 constexpr const char* kGiven = "with lines lw 1.5 lc rgb '#0072B2'";
 constexpr const char* kScaled = "with lines lw 1.5 dt (2,3) lc rgb '#3f444d'";
@@ -49,19 +52,19 @@ class Panel {
     }
     plot_.data(index, "using 1:2 " + style, title);
   }
-  /// One data set however many they are: gnuplot reads the file anew for each.
-  void boundaries(const std::string& title, const std::vector<HalfPlane>& all, const char* style = kBoundary) {
-    if (all.empty()) return;
-    const int index = data_.begin("half-planes", "v_x [m/s], v_y [m/s]");
+  /// With their forbidden sides hatched. One data set however many they are: gnuplot reads the file anew for each.
+  void boundaries(const std::string& title, const std::vector<HalfPlane>& all, const char* style = kBoundary,
+                  const char* hatches = kHatches) {
+    std::vector<Points> lines, strokes;
     for (const HalfPlane& h : all) {
-      const double length = norm(h.normal);
-      const Vec2 foot = (h.offset / (length * length)) * h.normal;
-      const Vec2 along = (4.0 * view_.diagonal() / length) * perp(h.normal);
-      data_.row({foot.x - along.x, foot.y - along.y});
-      data_.row({foot.x + along.x, foot.y + along.y});
-      data_.gap();
+      const Points line = boundary_within(view_, h);
+      if (line.empty()) continue;
+      lines.push_back(line);
+      for (const Points& stroke : hatching(line, h.normal, view_.width() / kHatchesAcross)) strokes.push_back(stroke);
     }
-    plot_.data(index, std::string("using 1:2 ") + style, title);
+    curves(title, lines, style);
+    curves("", strokes, hatches);
+    hatched_ |= !strokes.empty();
   }
   void boundary(const std::string& title, const HalfPlane& h) { boundaries(title, {h}); }
   void arrow(const std::string& title, Vec2 from, Vec2 by, const char* colour) {
@@ -76,22 +79,34 @@ class Panel {
     data_.row({at.x, at.y});
     plot_.data(index, fmt::format("using 1:2 with points pt 7 ps 1 lc rgb '{}'", colour), title);
   }
-  std::string text(const std::string& title) const {
-    return fmt::format("  set title {}\n  set xrange [{:.6g}:{:.6g}]\n  set yrange [{:.6g}:{:.6g}]\n{}", quoted(title),
-                       view_.low.x, view_.high.x, view_.low.y, view_.high.y, plot_.text());
+  /// `title` in gnuplot's markup.
+  std::string text(const std::string& title) {
+    if (hatched_) plot_.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
+    return filled("velocity_plane", {{"title", markup(title)},
+                                     {"x_low", fmt::format("{:.6g}", view_.low.x)},
+                                     {"x_high", fmt::format("{:.6g}", view_.high.x)},
+                                     {"y_low", fmt::format("{:.6g}", view_.low.y)},
+                                     {"y_high", fmt::format("{:.6g}", view_.high.y)},
+                                     {"plot", plot_.text()}});
   }
   const Box& view() const { return view_; }
 
  private:
+  void curves(const std::string& title, const std::vector<Points>& all, const char* style) {
+    if (all.empty()) return;
+    const int index = data_.begin(title.empty() ? "strokes" : title, "v_x [m/s], v_y [m/s]");
+    for (const Points& points : all) {
+      for (const Vec2 p : points) data_.row({p.x, p.y});
+      data_.gap();
+    }
+    plot_.data(index, std::string("using 1:2 ") + style, title);
+  }
+
   DataFile& data_;
   Box view_;
   PlotCommand plot_;
+  bool hatched_ = false;
 };
-
-const std::string kAxes =
-    "  set size ratio -1\n  set clip two\n  set tics front\n  set xlabel 'v_x [m/s]'\n  set ylabel 'v_y [m/s]'\n  set "
-    "grid lc rgb "
-    "'#e9e9e9'\n";
 
 Box square_round(const Box& box, double margin) {
   constexpr double kLeast = 1e-9;  // m/s: a range that gnuplot can still put tics on
@@ -141,7 +156,7 @@ Points cone_in(const Box& box, const vo::VelocityObstacle& cone, Vec2 apex) {
 }
 
 std::string horizon_text(double tau) {
-  return std::isfinite(tau) ? fmt::format("tau = {:g} s", tau) : std::string("no horizon");
+  return std::isfinite(tau) ? fmt::format("τ = {:g} s", tau) : std::string("no horizon");
 }
 
 // --- One cone ---
@@ -160,7 +175,7 @@ void draw_given(const VoAnswer& answer, Panel& panel) {
     };
     edges.push_back({seen(edge.a), seen(edge.b)});
   }
-  panel.rings("the obstacle / tau, not grown", edges, kGiven);
+  panel.rings("obstacle / τ, not grown", edges, kGiven);
 }
 
 void draw_cones(const std::vector<ConeAnswer>& cones, Panel& panel) {
@@ -173,7 +188,7 @@ void draw_cones(const std::vector<ConeAnswer>& cones, Panel& panel) {
     for (Vec2& p : scaled.back()) p += u;
   }
   panel.rings("velocity obstacle", forbidden, cones.size() == 1 ? kForbidden : kForbiddenUnion);
-  panel.rings("S / tau", scaled, kScaled);
+  panel.rings("obstacle grown by the radius, / τ", scaled, kScaled);
 }
 
 /// Those of several that have a side of what all of them allow within the view; all, where that is nothing.
@@ -198,9 +213,8 @@ void draw_half_planes(const std::vector<ConeAnswer>& cones, Panel& panel) {
     if (const auto& h = a.half_plane ? a.half_plane : a.contact) proven.push_back(*h);
     if (a.shared) shared.push_back(*a.shared);
   }
-  panel.boundaries(cones.size() == 1 ? "boundary of the half-plane" : "half-planes, where they bind",
-                   that_bind(proven, panel.view()));
-  panel.boundaries("of the shared one, not certified", shared, kShared);
+  panel.boundaries(cones.size() == 1 ? "half-plane" : "half-planes, where they bind", that_bind(proven, panel.view()));
+  panel.boundaries("shared half-plane, not certified", shared, kShared);
 }
 
 /// Of several cones the way to the nearest means something where the velocity is free, and no single one else.
@@ -225,8 +239,7 @@ Figure cone_figure(const VoAnswer& answer) {
   panel.arrow("velocity", {}, a.encounter.velocity, "#444444");
   draw_change(answer.cones, panel);
   const std::string title = "Velocity obstacle, " + horizon_text(a.encounter.time_horizon);
-  const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
-  return {"cone", data.text(), title + ".", {900, 640}, body};
+  return {"cone", data.text(), title + ".", {940, 640}, panel.text(title)};
 }
 
 // --- The family ---
@@ -253,15 +266,19 @@ Figure family_figure(const VoAnswer& answer) {
   DataFile data;
   const int count = static_cast<int>(answer.members.size());
   const int columns = std::min(count, 3), rows = (count + columns - 1) / columns;
-  std::string body = kAxes + fmt::format("  set multiplot layout {},{} title {}\n  unset key\n", rows, columns,
-                                         quoted("One encounter, " + horizon_text(a.encounter.time_horizon) +
-                                                "; grey is forbidden, black v, pink the obstacle's velocity"));
+  std::string panels;
   for (const vo::Member& m : answer.members) {
     Panel panel(data, square_round(view_of(answer.cones), 0.7));
     draw_member(m, a, panel);
-    body += panel.text(member_title(m, a.encounter.velocity));
+    const char letter = static_cast<char>('a' + (&m - answer.members.data()));
+    panels += panel.text(fmt::format("({}) {}", letter, member_title(m, a.encounter.velocity)));
   }
-  body += "  unset multiplot\n";
+  const std::string title = "One encounter, " + horizon_text(a.encounter.time_horizon) +
+                            ": forbidden in grey, the robot's velocity {/:Italic v} black, the obstacle's pink";
+  const std::string body = filled("family", {{"rows", std::to_string(rows)},
+                                             {"columns", std::to_string(columns)},
+                                             {"title", markup(title)},
+                                             {"panels", panels}});
   const Canvas canvas{60 + 360 * columns, 60 + 360 * rows};
   return {"family", data.text(), "What different rules forbid in one encounter.", canvas, body};
 }
@@ -303,9 +320,9 @@ Figure free_figure(const VoAnswer& answer) {
   panel.boundaries("half-planes", f.half_planes);
   panel.arrow("velocity", {}, answer.question.velocity, "#444444");
   const std::string title =
-      fmt::format("{:.4g} (m/s)^2 are free, {:.4g} are kept", f.free.area().low, f.report ? f.report->area.low : 0.0);
-  const std::string body = kAxes + "  set key outside right top reverse Left samplen 3\n" + panel.text(title);
-  return {"free", data.text(), "The free velocities of a scene.", {960, 640}, body};
+      fmt::format("Free velocities: {:.4g} m²/s² are free, {:.4g} m²/s² are kept by the half-planes", f.free.area().low,
+                  f.report ? f.report->area.low : 0.0);
+  return {"free", data.text(), "The free velocities of a scene.", {960, 640}, panel.text(title)};
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# exactvo_embed_templates(OUT FILES...): writes OUT, a source file with the text of the gnuplot templates FILES, so that
+# the program needs no files of its own to draw.
+function(exactvo_embed_templates out)
+  set(entries "")
+  foreach(file ${ARGN})
+    get_filename_component(name "${file}" NAME_WE)
+    file(READ "${file}" text)
+    string(APPEND entries "      {\"${name}\", R\"template(${text})template\"},\n")
+  endforeach()
+  set(source "// Made by cmake/EmbedTemplates.cmake of tools/figures/templates.
+#include \"figures/template.h\"
+
+namespace exactvo::tools {
+
+const std::map<std::string, std::string>& embedded_templates() {
+  static const std::map<std::string, std::string> kTemplates{
+${entries}  };
+  return kTemplates;
+}
+
+}  // namespace exactvo::tools
+")
+  set(written "")
+  if(EXISTS "${out}")
+    file(READ "${out}" written)
+  endif()
+  if(NOT written STREQUAL source)
+    file(WRITE "${out}" "${source}")
+  endif()
+endfunction()

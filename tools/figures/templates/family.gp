@@ -1,0 +1,4 @@
+set multiplot layout @rows@,@columns@ title @title@
+unset key
+@panels@
+unset multiplot

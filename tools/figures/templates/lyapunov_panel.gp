@@ -1,0 +1,4 @@
+set title @title@
+set ylabel @y_label@
+@y_axis@
+@plot@

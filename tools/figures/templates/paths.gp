@@ -1,0 +1,6 @@
+set title @title@
+set size ratio -1
+@ranges@
+set xlabel @x_label@
+set ylabel @y_label@
+@plot@

@@ -1,0 +1,9 @@
+set lmargin at screen @left@
+set rmargin at screen @right@
+set bmargin at screen @bottom@
+set tmargin at screen @top@
+set title @title@ font ',10' offset 0,-0.7
+set xlabel @x_label@ font ',10' offset 0,0.6
+set ylabel @y_label@ font ',10' offset 1.5,0
+@ranges@
+@plot@

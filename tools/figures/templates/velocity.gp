@@ -1,0 +1,5 @@
+set multiplot layout 2,1
+set lmargin 9
+@x@
+@y@
+unset multiplot

@@ -1,0 +1,8 @@
+set title @title@
+set size ratio -1
+set clip two
+set xrange [@x_low@:@x_high@]
+set yrange [@y_low@:@y_high@]
+set xlabel '{/:Italic v}_x [m/s]'
+set ylabel '{/:Italic v}_y [m/s]'
+@plot@
