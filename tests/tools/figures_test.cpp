@@ -18,6 +18,7 @@
 #include "figures/paths_figure.h"
 #include "figures/run_figures.h"
 #include "figures/series_figures.h"
+#include "figures/sheet.h"
 #include "figures/template.h"
 
 namespace exactvo::tools {
@@ -303,7 +304,7 @@ TEST(PathsSheet, HasOneScaleLettersLabelsAndALegend) {
     EXPECT_NEAR(all[0], all[1], 1e-6 * all[0]) << axis;
     EXPECT_NEAR(all[0], all[2], 1e-6 * all[0]) << axis;
   }
-  for (const char* words : {"'(a) small'", "'(b) large'", "'(c) again'", "xlabel 'x [m]'", "ylabel 'y [m]'",
+  for (const char* words : {"'(a) small'", "'(b) large'", "'(c) again'", "xlabel 'x [m]'", "label 1 'y [m]'",
                             "title \"R'1\"", "title 'robot 2'", "title 'obstacle'", "title 'goal'"})
     EXPECT_THAT(sheet.body, HasSubstr(words));
   EXPECT_THAT(sheet.body, Not(HasSubstr("title 'collision'")));
@@ -318,14 +319,35 @@ TEST(PathsSheet, ARunThatDivergesShrinksNoPanel) {
   EXPECT_LT(extents(both.body, "xrange")[0], 1.6 * extents(alone.body, "xrange")[0]);
 }
 
-TEST(RunFigures, ShowNoMarkupAsItIs) {
-  datasets::RecordingFile run = short_run();
-  run.lyapunov.resize(run.recording.steps.size());
-  for (const Figure& figure : {velocity_figure(run), lyapunov_figure(run)}) {
-    EXPECT_THAT(script_text(figure), Not(HasSubstr("noenhanced"))) << figure.name;
-    EXPECT_THAT(figure.body, Not(HasSubstr("'v_x"))) << figure.name;
-    EXPECT_THAT(figure.body, Not(HasSubstr("10^%T"))) << figure.name;
-  }
+TEST(PathsSheet, WithoutAPanelIsRefused) {
+  EXPECT_THROW(paths_sheet("sheet", "No run", {}, 2), std::logic_error);
+  EXPECT_THROW(sheet_figure("sheet", "", "", {}), std::logic_error);
+}
+
+TEST(Sheet, HasAnAxisLabelAtEachEdgeAndRoomForItsLegend) {
+  Sheet sheet;
+  sheet.title = "'t'";
+  sheet.x_label = "'x'";
+  sheet.y_label = "'y'";
+  sheet.columns = 2;
+  for (std::size_t k = 0; k < 5; ++k) sheet.panels.push_back({quoted(letter_of(k)), "", "plot 2\n"});
+  const Figure few = sheet_figure("s", "", "s", sheet);
+  const auto count = [&](const std::string& words) {
+    int n = 0;
+    for (std::size_t at = few.body.find(words); at != std::string::npos; at = few.body.find(words, at + 1)) ++n;
+    return n;
+  };
+  EXPECT_EQ(count("set xlabel 'x'"), 2) << "below the last panel of each column";
+  EXPECT_EQ(count("set label 1 'y' at"), 3) << "left of the first panel of each row";
+  EXPECT_EQ(count("plot 2"), 6);
+  for (int k = 0; k < 30; ++k) sheet.legend.emplace_back("keyentry with lines", "robot");
+  EXPECT_GE(sheet_figure("s", "", "s", sheet).canvas.height, few.canvas.height + 5 * 18);
+}
+
+TEST(Sheet, LettersGoOnWithNumbers) {
+  EXPECT_EQ(letter_of(0), "(a)");
+  EXPECT_EQ(letter_of(25), "(z)");
+  EXPECT_EQ(letter_of(26), "(27)");
 }
 
 TEST(SeriesFigures, ARunThatIsOverAtOnceHasAxes) {

@@ -415,6 +415,38 @@ TEST(Report, IsOneFileWithThePicturesInIt) {
   EXPECT_THAT(here.read("report.md"), HasSubstr("](figures/all-ivo.png)"));
 }
 
+TEST(Report, CaptionsAreWholeSentencesInPlainWords) {
+  const Workplace here;
+  here.write("summary.json", rosy_summary().dump());
+  const Document document = reproduction_report(ReportData(here.path(), here.path(), kSources / "datasets/data/paper"));
+  int captions = 0;
+  for (const Block& block : document.blocks) {
+    const auto* picture = std::get_if<Picture>(&block);
+    if (picture == nullptr) continue;
+    ++captions;
+    EXPECT_THAT(picture->caption, Not(testing::ContainsRegex("[_^{}*\\\\]"))) << picture->caption;
+    EXPECT_THAT(picture->caption, testing::EndsWith("."));
+    EXPECT_GE(picture->caption.size(), 20u) << picture->caption;
+  }
+  EXPECT_GE(captions, 10);
+  for (const Block& block : document.blocks) {
+    const auto* table = std::get_if<Table>(&block);
+    if (table != nullptr) {
+      EXPECT_THAT(table->head, testing::Each(Not(HasSubstr("^"))));
+    }
+  }
+}
+
+TEST(Document, PicturesNameTheirPdfAndSvg) {
+  const Workplace here;
+  const Document document{"d", {Picture{"a.png", "What it shows."}, Picture{"b.png", "More."}}};
+  for (const char* file : {"a.png", "a.pdf", "a.svg", "b.png"}) here.write(file, "x");
+  EXPECT_THAT(markdown(document), HasSubstr("What it shows. [PDF](a.pdf) [SVG](a.svg)"));
+  const std::string page = html(document, here.path());
+  EXPECT_THAT(page, HasSubstr("What it shows. <a href=\"a.pdf\">PDF</a> <a href=\"a.svg\">SVG</a></figcaption>"));
+  EXPECT_THAT(page, HasSubstr("<figcaption>More.</figcaption>"));
+}
+
 TEST(Document, TextCannotBecomeMarkup) {
   Document d{"a < b", {Paragraph{"1 < 2 & `x<y>`"}, Table{{"a|b"}, {{"*c*"}}}}};
   EXPECT_THAT(html(d, "."), HasSubstr("1 &lt; 2 &amp; <code>x&lt;y&gt;</code>"));

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "exactvo/vo/certificate.h"
 #include "vo/verb_vo.h"
@@ -326,9 +328,43 @@ TEST(VerbVo, FiguresShowTheVelocityBesideALongConeAndWhatAnEllipseEncloses) {
   ASSERT_EQ(std::sscanf(script.c_str() + range, "set xrange [%lf:%lf]", &low, &high), 2);
   EXPECT_LT(high - low, 10.0) << "a velocity of 1 m/s is to be seen";
   ASSERT_EQ(place.run("vo --obstacle '" + kSquare + "' --enclose ellipse" + rest + "ellipse.svg").status, 0);
-  EXPECT_NE(place.read("ellipse.gp").find("obstacle / τ, not grown"), std::string::npos);
+  EXPECT_NE(place.read("ellipse.gp").find("obstacle divided by τ, not grown"), std::string::npos);
   for (const char* figure : {"needle.gp", "ellipse.gp"})
     EXPECT_NE(place.read(figure).find("hatched side: forbidden"), std::string::npos) << figure;
+}
+
+/// The rows of every data set with this title.
+std::vector<std::vector<double>> rows_of(const std::string& data, const std::string& title) {
+  std::vector<std::vector<double>> rows;
+  std::istringstream in(data);
+  bool inside = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("# ", 0) == 0 && line.find(": ") != std::string::npos)
+      inside = line.substr(line.find(": ") + 2) == title;
+    std::istringstream numbers(line);
+    std::vector<double> row;
+    for (double x = 0.0; numbers >> x;) row.push_back(x);
+    if (inside && !row.empty()) rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(VerbVo, FiguresHatchTheForbiddenSideOfHalfPlanes) {
+  const Workplace place;
+  const std::string rest = " --position 0,0 --velocity 1,0.2 --radius 0.3 --time-horizon 2 --json --figure a.svg";
+  const Outcome outcome = place.run("vo --obstacle '" + kSquare + "'" + rest);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json h = json::parse(outcome.out)["half_plane"];
+  const auto side = [&](const std::vector<double>& p) {
+    return h["normal"][0].get<double>() * p[0] + h["normal"][1].get<double>() * p[1] - h["offset"].get<double>();
+  };
+  const auto strokes = rows_of(place.read("a.dat"), "strokes");
+  ASSERT_GE(strokes.size(), 20u);
+  ASSERT_EQ(strokes.size() % 2, 0u);
+  for (std::size_t i = 0; i < strokes.size(); i += 2) {
+    EXPECT_NEAR(side(strokes[i]), 0.0, 1e-6) << "it begins on the boundary";
+    EXPECT_LT(side(strokes[i + 1]), -1e-3) << "it ends on the forbidden side";
+  }
 }
 
 TEST(VerbVo, UIsAChangeOnlyWhereOneIsNeeded) {

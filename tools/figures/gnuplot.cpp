@@ -12,6 +12,7 @@
 #include <iterator>
 #include <memory>
 #include <system_error>
+
 namespace exactvo::tools {
 
 namespace fs = std::filesystem;
@@ -34,14 +35,48 @@ std::string exact_string(const std::string& bytes) {
   return '"' + text + '"';
 }
 
-/// Absolute folders begin with a slash and scripts have plain names: neither is taken for a command.
+struct Format {
+  const char* name;
+  const char* terminal;
+  const char* in_words;
+};
+/// Those of templates/frame.gp.
+constexpr Format kFormats[] = {{"svg", "svg", "SVG (its terminal svg)"},
+                               {"png", "pngcairo", "PNG (its terminal pngcairo)"},
+                               {"pdf", "pdfcairo", "PDF (its terminal pdfcairo)"}};
+
+/// What the driver prints of a terminal that this gnuplot was built without.
+const std::string kMissing = "exactvo: no terminal for ";
+
+std::string has_terminal(const Format& format) {
+  return fmt::format("strstrt(' ' . GPVAL_TERMINALS . ' ', ' {} ')", format.terminal);
+}
+
+/// Absolute folders begin with a slash and scripts have plain names: neither is taken for a command. Scripts draw
+/// `formats`; "reset session" forgets it.
 std::string driver_text(const std::vector<fs::path>& scripts) {
-  std::string text;
+  std::string text, formats = "formats = ''\n";
+  for (const Format& format : kFormats) {
+    text += fmt::format("if (!{}) {{ print '{}{}' }}\n", has_terminal(format), kMissing, format.name);
+    formats += fmt::format("if ({}) {{ formats = formats . ' {}' }}\n", has_terminal(format), format.name);
+  }
   for (const fs::path& script : scripts) {
-    text += "reset session\ncd " + exact_string(fs::absolute(script).parent_path().string()) + "\nload " +
-            exact_string(script.filename().string()) + "\n";
+    text += "reset session\n" + formats + "cd " + exact_string(fs::absolute(script).parent_path().string()) +
+            "\nload " + exact_string(script.filename().string()) + "\n";
   }
   return text;
+}
+
+std::vector<std::string> missing_formats(const std::string& messages) {
+  std::vector<std::string> missing;
+  for (const Format& format : kFormats)
+    if (messages.find(kMissing + format.name + "\n") != std::string::npos) missing.push_back(format.in_words);
+  return missing;
+}
+
+void remove_pictures(const std::vector<fs::path>& scripts) {
+  for (fs::path picture : scripts)
+    for (const Format& format : kFormats) fs::remove(picture.replace_extension(format.name));
 }
 
 std::string contents(std::FILE* file) {
@@ -104,11 +139,14 @@ RenderResult render(const std::vector<fs::path>& scripts) {
 
   pid_t pid = 0;
   const int error = spawn_gnuplot(driver.get(), messages.get(), pid);
-  if (error == ENOENT) return {Rendering::no_gnuplot, ""};
-  if (error != 0) return {Rendering::failed, std::generic_category().message(error)};
-  if (!succeeded(pid)) return {Rendering::failed, contents(messages.get())};
+  if (error == ENOENT) return {Rendering::no_gnuplot, "", {}};
+  if (error != 0) return {Rendering::failed, std::generic_category().message(error), {}};
+  if (!succeeded(pid)) {
+    remove_pictures(scripts);  // one of them may be half a picture
+    return {Rendering::failed, contents(messages.get()), {}};
+  }
   for (const fs::path& script : scripts) undate(fs::path(script).replace_extension(".pdf"));
-  return {};
+  return {Rendering::done, "", missing_formats(contents(messages.get()))};
 }
 
 }  // namespace exactvo::tools

@@ -19,9 +19,12 @@ enum class Rendering {
 struct RenderResult {
   Rendering outcome = Rendering::done;
   std::string message;  ///< what gnuplot said, where it failed
+  /// The formats that this gnuplot was built without, each with its terminal.
+  std::vector<std::string> missing;
 };
 
-/// Draws every script in one gnuplot process, each from within its own folder.
+/// Draws every script in one gnuplot process, each from within its own folder, in every format that this gnuplot has.
+/// Where it fails, no picture of these scripts is left.
 RenderResult render(const std::vector<std::filesystem::path>& scripts);
 
 }  // namespace exactvo::tools

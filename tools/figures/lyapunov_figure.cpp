@@ -68,7 +68,7 @@ void add_curve(const Curve& curve, std::size_t number, const std::vector<Lyapuno
     if (std::isfinite(value)) data.row({row.time, std::max(value, floor)});
   }
   plot.data(index,
-            fmt::format("using 1:2 with lines lw {} lc rgb '{}'", curve.sum ? 2.5 : 1.5,
+            fmt::format("using 1:2 with lines lw {} lc rgb '{}'", curve.sum ? 4.0 : 1.5,
                         curve.sum ? "black" : series_colour(number)),
             curve.label);
 }
@@ -92,10 +92,13 @@ std::string panel(const std::vector<Curve>& curves, const std::vector<LyapunovRo
   const bool logarithmic = axis == Axis::logarithmic;
   PlotCommand plot;
   const double floor = logarithmic ? kLeastShown : -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < curves.size(); ++i) add_curve(curves[i], i, rows, floor, data, plot);
+  // The sum first and wide: a term that makes up all of it is seen within.
+  for (const bool sum : {true, false})
+    for (std::size_t i = 0; i < curves.size(); ++i)
+      if (curves[i].sum == sum) add_curve(curves[i], i, rows, floor, data, plot);
   const std::string range = axis == Axis::rates ? range_of_rates(curves, rows) : std::string("set autoscale y");
   const std::string scale =
-      logarithmic ? "set logscale y\nset format y '10^{%T}'\n" : "unset logscale y\nset format y '%g'\n";
+      logarithmic ? "set logscale y\nunset mytics\nset format y '10^{%T}'\n" : "unset logscale y\nset format y '%g'\n";
   return filled(
       "lyapunov_panel",
       {{"title", quoted(title)}, {"y_label", markup(y_label)}, {"y_axis", scale + range}, {"plot", plot.text()}});

@@ -15,6 +15,7 @@
 #include "figures/label_places.h"
 #include "figures/local_origin.h"
 #include "figures/outlines.h"
+#include "figures/sheet.h"
 #include "figures/template.h"
 
 namespace exactvo::tools {
@@ -304,6 +305,12 @@ class PathsPanel {
       times_.keep_off(way, false);
       for (const Vec2 goal : run_.scenario.robots[i].goals) times_.keep_off({goal}, false);
     }
+    if (run_.scenario.formation) {
+      Points way;
+      for (const Step& step : run_.recording.steps)
+        if (is_drawable(step.leader_position)) way.push_back(step.leader_position);
+      times_.keep_off(way, false);
+    }
     for (const auto& obstacle : run_.scenario.moving_obstacles)
       for (const Step* mark : time_marks(run_)) times_.keep_off(vertices_at(obstacle, mark->time), true);
   }
@@ -331,8 +338,8 @@ class PathsPanel {
     const int index = data_.begin("collisions: where they were deepest", "x [m], y [m]");
     for (const Vec2 p : marks) data_.row({p.x, p.y});
     plot_.data(index,
-               fmt::format("{} with points pt 1 ps {} lw 4 lc rgb '{}'", origin_.using_columns(), detailed_ ? 2.5 : 1.5,
-                           kCollisionColour),
+               fmt::format("{} with points pt 1 ps {} lw {} lc rgb '{}'", origin_.using_columns(),
+                           detailed_ ? 2.5 : 1.2, detailed_ ? 4 : 2, kCollisionColour),
                key("collision"));
   }
 
@@ -343,8 +350,8 @@ class PathsPanel {
       if (robot.goals.empty()) continue;
       const int index = data_.begin("goals of " + robot.id, "x [m], y [m]");
       for (const Vec2 goal : robot.goals) data_.row({goal.x, goal.y});
-      plot_.data(index, fmt::format("{} with points pt 2 ps {} lw 2.5 lc rgb '{}'", origin_.using_columns(),
-                                    detailed_ ? 1.3 : 0.7, series_colour(i)));
+      plot_.data(index, fmt::format("{} with points pt 2 ps {} lw {} lc rgb '{}'", origin_.using_columns(),
+                                    detailed_ ? 1.3 : 0.8, detailed_ ? 2.5 : 1.5, series_colour(i)));
       any = true;
     }
     if (any && detailed_) plot_.item("keyentry with points pt 2 ps 1.3 lw 2.5 lc rgb '#222222'", "goal");
@@ -410,7 +417,7 @@ double end_of_motion(const RecordingFile& run) {
 }
 
 std::string run_title(const RecordingFile& run) {
-  std::string title = shortened(run.info.scenario, kNameLength) + ", " + run.info.method;
+  std::string title = shortened(run.info.scenario, kNameLength) + ", method " + run.info.method;
   if (run.info.controller) title += ", " + *run.info.controller + " controller";
   return title;
 }
@@ -445,20 +452,6 @@ Figure paths_figure(const RecordingFile& run) {
 
 namespace {
 
-/// Where everything of a sheet lies, px from the top left.
-struct SheetLayout {
-  int columns, rows;
-  double panel_width, panel_height;  ///< of what the axes enclose
-
-  static constexpr double kLeft = 58.0, kRight = 14.0, kTop = 62.0, kBottom = 46.0;
-  static constexpr double kGapX = 40.0, kGapY = 50.0, kLegend = 34.0;
-
-  double width() const { return kLeft + kRight + columns * panel_width + (columns - 1) * kGapX; }
-  double height() const { return kTop + kBottom + kLegend + rows * panel_height + (rows - 1) * kGapY; }
-  double left(int column) const { return kLeft + column * (panel_width + kGapX); }
-  double top(int row) const { return kTop + row * (panel_height + kGapY); }
-};
-
 /// One width and one height for all panels, m: the same scale. Every panel keeps its own middle.
 std::vector<Box> equal_views(const std::vector<Panel>& panels) {
   std::vector<Box> views;
@@ -475,11 +468,6 @@ std::vector<Box> equal_views(const std::vector<Panel>& panels) {
   return views;
 }
 
-/// "(a)", ..., "(z)", "(27)", ...
-std::string letter_of(std::size_t panel) {
-  return panel < 26 ? fmt::format("({})", static_cast<char>('a' + panel)) : fmt::format("({})", panel + 1);
-}
-
 /// The name of the i-th robot in the legend: its own where it is the same in all runs that have one.
 std::string robot_in_legend(const std::vector<Panel>& panels, std::size_t i) {
   std::string name;
@@ -493,7 +481,7 @@ std::string robot_in_legend(const std::vector<Panel>& panels, std::size_t i) {
 }
 
 /// What any panel has, in the styles of PathsPanel without details.
-PlotCommand sheet_legend(const std::vector<Panel>& panels, bool collisions) {
+std::vector<std::pair<std::string, std::string>> sheet_legend(const std::vector<Panel>& panels, bool collisions) {
   std::size_t robots = 0;
   bool polygons = false, walls = false, moving = false, leader = false, goals = false;
   for (const Panel& panel : panels) {
@@ -504,21 +492,20 @@ PlotCommand sheet_legend(const std::vector<Panel>& panels, bool collisions) {
     leader = leader || s.formation.has_value();
     for (const Robot& robot : s.robots) goals = goals || !robot.goals.empty();
   }
-  PlotCommand plot;
-  plot.item("2");  // beyond the axes: gnuplot draws no legend alone
-  if (polygons) plot.item(fmt::format("keyentry with boxes fs solid noborder fc rgb '{}'", kObstacleFill), "obstacle");
-  if (walls) plot.item(fmt::format("keyentry with lines lw 2.5 lc rgb '{}'", kObstacleLine), "wall");
-  if (moving)
-    plot.item(fmt::format("keyentry with lines lw 1.5 dt (8,3) lc rgb '{}'", kObstacleLine), "moving obstacle");
+  std::vector<std::pair<std::string, std::string>> all;
+  const auto add = [&](const std::string& what, const std::string& words) {
+    all.emplace_back("keyentry with " + what, words);
+  };
+  if (polygons) add(fmt::format("boxes fs solid noborder fc rgb '{}'", kObstacleFill), "obstacle");
+  if (walls) add(fmt::format("lines lw 2.5 lc rgb '{}'", kObstacleLine), "wall");
+  if (moving) add(fmt::format("lines lw 1.5 dt (8,3) lc rgb '{}'", kObstacleLine), "moving obstacle");
   for (std::size_t i = 0; i < robots; ++i)
-    plot.item(fmt::format("keyentry with lines lw 1.5{} lc rgb '{}'", series_dash(i), series_colour(i)),
-              robot_in_legend(panels, i));
-  if (leader) plot.item("keyentry with lines lw 1.5 dt (2,4) lc rgb 'black'", "virtual leader");
-  plot.item("keyentry with points pt 6 ps 1.3 lc rgb '#222222'", "start, end");
-  if (goals) plot.item("keyentry with points pt 2 ps 0.7 lw 2.5 lc rgb '#222222'", "goal");
-  if (collisions)
-    plot.item(fmt::format("keyentry with points pt 1 ps 1.5 lw 4 lc rgb '{}'", kCollisionColour), "collision");
-  return plot;
+    add(fmt::format("lines lw 1.5{} lc rgb '{}'", series_dash(i), series_colour(i)), robot_in_legend(panels, i));
+  if (leader) add("lines lw 1.5 dt (2,4) lc rgb 'black'", "virtual leader");
+  add("points pt 6 ps 1.3 lc rgb '#222222'", "start, end");
+  if (goals) add("points pt 2 ps 0.8 lw 1.5 lc rgb '#222222'", "goal");
+  if (collisions) add(fmt::format("points pt 1 ps 1.2 lw 2 lc rgb '{}'", kCollisionColour), "collision");
+  return all;
 }
 
 }  // namespace
@@ -526,38 +513,23 @@ PlotCommand sheet_legend(const std::vector<Panel>& panels, bool collisions) {
 Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns) {
   EXACTVO_REQUIRE(!panels.empty(), std::string("no panel"));
   const std::vector<Box> views = equal_views(panels);
-  const int count = static_cast<int>(panels.size());
-  const double panel_width = columns > 2 ? 250.0 : 380.0;
-  const SheetLayout layout{columns, (count + columns - 1) / columns, panel_width,
-                           panel_width * views.front().height() / views.front().width()};
-  const auto across = [&](double px) { return fmt::format("{:.5f}", px / layout.width()); };
-  const auto up = [&](double px) { return fmt::format("{:.5f}", 1.0 - px / layout.height()); };
+  Sheet sheet;
+  sheet.title = quoted(title);
+  sheet.x_label = "'x [m]'";
+  sheet.y_label = "'y [m]'";
+  sheet.columns = columns;
+  sheet.panel_width = columns > 2 ? 250.0 : 380.0;
+  sheet.panel_height = sheet.panel_width * views.front().height() / views.front().width();
   DataFile data;
-  std::string text;
   bool collisions = false;
-  for (int k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const int column = k % columns, row = k / columns;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
     const PathsPanel paths(*panels[i].run, views[i], data, false);
     collisions = collisions || paths.has_collisions();
-    const std::string words = letter_of(i) + " " + panels[i].title;
-    text += filled("sheet_panel", {{"left", across(layout.left(column))},
-                                   {"right", across(layout.left(column) + layout.panel_width)},
-                                   {"top", up(layout.top(row))},
-                                   {"bottom", up(layout.top(row) + layout.panel_height)},
-                                   {"title", quoted(shortened(words + paths.origin().in_title(), kPanelTitle))},
-                                   {"x_label", k + columns >= count ? "'x [m]'" : "''"},
-                                   {"y_label", column == 0 ? "'y [m]'" : "''"},
-                                   {"ranges", paths.origin().ranges(views[i])},
-                                   {"plot", paths.plot()}});
+    const std::string words = letter_of(i) + " " + panels[i].title + paths.origin().in_title();
+    sheet.panels.push_back({quoted(shortened(words, kPanelTitle)), paths.origin().ranges(views[i]), paths.plot()});
   }
-  const std::string body = filled("sheet", {{"title", quoted(title)},
-                                            {"panels", text},
-                                            {"legend_top", up(layout.height() - SheetLayout::kLegend)},
-                                            {"legend_middle", up(layout.height() - 0.55 * SheetLayout::kLegend)},
-                                            {"legend", sheet_legend(panels, collisions).text()}});
-  const Canvas canvas{static_cast<int>(std::lround(layout.width())), static_cast<int>(std::lround(layout.height()))};
-  return {name, data.text(), title + ".", canvas, body};
+  sheet.legend = sheet_legend(panels, collisions);
+  return sheet_figure(name, data.text(), title + ".", sheet);
 }
 
 }  // namespace exactvo::tools

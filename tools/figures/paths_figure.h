@@ -14,7 +14,7 @@
 
 namespace exactvo::tools {
 
-/// "A2, ivo" or "B3, ivo, default controller".
+/// "A2, method ivo" or "B3, method ivo, default controller".
 std::string run_title(const datasets::RecordingFile& run);
 
 /// `paths`: one run, with a legend, enclosures dashed in their robot's colour and each robot drawn to scale at a few

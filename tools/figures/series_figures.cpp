@@ -213,7 +213,7 @@ Figure formation_error_figure(const RecordingFile& run) {
   const std::string title = run_title(run) + ": distance of each robot from its slot";
   return {"formation_error", data.text(), title + ", logarithmic.", kCanvas,
           series_body(run, title, "|{/:Italic x}_i − {/:Italic x}_L − {/:Italic Δ}_i| [m]",
-                      "set logscale y\nset format y '10^{%T}'", plot)};
+                      "set logscale y\nunset mytics\nset format y '10^{%T}'", plot)};
 }
 
 }  // namespace exactvo::tools

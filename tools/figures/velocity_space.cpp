@@ -153,7 +153,8 @@ class VelocitySpace {
     };
     add_curves(legs, "their legs", lines(1.5, ""), "  its legs");
     add_curves(cut_offs, "their cut-offs", lines(3.0, ""), "  its cut-off");
-    add_curves(shapes, "the shapes they come from, divided by tau", lines(1.0, "dt (2,3) "), "  its shape / τ");
+    add_curves(shapes, "the shapes they come from, divided by tau", lines(1.0, "dt (2,3) "),
+               "  its shape divided by τ");
   }
 
   Vec2 tangent_point(const RecordedConstraint& c, Vec2 normal) const {
@@ -233,7 +234,7 @@ class VelocitySpace {
     if (numbers.empty()) return;
     const int index = data_.begin("numbers of the half-planes", "v_x [m/s], v_y [m/s], number");
     for (const auto& [at, number] : numbers) data_.labelled_row({at.x, at.y}, fmt::format("[{}]", number));
-    plot_.data(index, fmt::format("using 1:2:3 with labels font ',11' textcolor rgb '{}'", colour));
+    plot_.data(index, fmt::format("using 1:2:3 with labels boxed font ',11' textcolor rgb '{}'", colour));
   }
 
   /// On the allowed side of the line, in view, as far as possible from the numbers that are there: the first place
@@ -266,18 +267,18 @@ class VelocitySpace {
     if (!constraints().empty()) plot_.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
   }
 
-  void add_arrow(const std::string& title, Vec2 v, const char* colour, double width) {
+  void add_arrow(const std::string& title, Vec2 v, const char* colour, double width, double head) {
     const int index = data_.begin(title, "from v_x, v_y, by v_x, v_y [m/s]");
     data_.row({0.0, 0.0, v.x, v.y});
     const std::string style = fmt::format("lw {} lc rgb '{}'", width, colour);
-    plot_.data(index, "using 1:2:3:4 with vectors head filled size screen 0.018,18 " + style, title);
-    plot_.data(index, fmt::format("using ($1+$3):($2+$4) with points pt 7 ps 0.7 lc rgb '{}'", colour));
+    plot_.data(index, fmt::format("using 1:2:3:4 with vectors head filled size screen {},18 {}", head, style), title);
+    plot_.data(index, fmt::format("using ($1+$3):($2+$4) with points pt 7 ps {} lc rgb '{}'", 39.0 * head, colour));
   }
 
   void add_arrows() {
-    add_arrow("present velocity", d_.step.velocity, "#444444", 1.5);
-    add_arrow("chosen velocity", d_.step.chosen, kChosenColour, 4.5);
-    // Dashed and on top: where the two are the same, both are seen.
+    // Thinner and thinner: where they are the same, each is seen on those before.
+    add_arrow("chosen velocity", d_.step.chosen, kChosenColour, 4.5, 0.018);
+    add_arrow("present velocity", d_.step.velocity, "#444444", 1.5, 0.01);
     add_dashed("preferred velocity", d_.step.preferred, kPreferredColour);
   }
 

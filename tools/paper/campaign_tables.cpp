@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
@@ -122,13 +123,19 @@ std::string ablation_table(const std::vector<VariantResult>& results, const std:
   return text;
 }
 
+/// The name of a set of options as a label: mathematics set, all else as users write it after --remedies.
+std::string drawn(const std::string& name) {
+  static const std::regex horizon(R"(\btau\b)"), index("_([a-z]+)");
+  return std::regex_replace(std::regex_replace(name, horizon, "τ"), index, "_{$1}");
+}
+
 /// Bars from the top down: the ladder, then the ablations.
 Figure counts_figure(const std::vector<VariantResult>& results, const CampaignOptions& options) {
   DataFile data;
   const int index = data.begin("reached and safe of " + std::to_string(options.fields), "place, count, name");
   const double n = static_cast<double>(results.size());
   for (std::size_t i = 0; i < results.size(); ++i)
-    data.labelled_row({n - static_cast<double>(i), static_cast<double>(results[i].good())}, results[i].name);
+    data.labelled_row({n - static_cast<double>(i), static_cast<double>(results[i].good())}, drawn(results[i].name));
   PlotCommand plot;
   plot.data(index, fmt::format("using (0.5*$2):1:(0.5*$2):(0.35):yticlabels(3) with boxxyerror fs solid 0.8 noborder "
                                "lc rgb '{}'",
@@ -154,7 +161,8 @@ Figure jitter_figure(const std::vector<VariantResult>& results, const std::vecto
     const int index = data.begin(std::string("J in ") + kFormationScenes[s], "place, J [m/s^2], name");
     for (std::size_t i = 0; i < results.size(); ++i) {
       const Json& jitter = scenes[i][s]["jitter"];
-      if (!jitter.is_null()) data.labelled_row({n - static_cast<double>(i), jitter.get<double>()}, results[i].name);
+      if (!jitter.is_null())
+        data.labelled_row({n - static_cast<double>(i), jitter.get<double>()}, drawn(results[i].name));
     }
     plot.data(
         index,
@@ -163,7 +171,8 @@ Figure jitter_figure(const std::vector<VariantResult>& results, const std::vecto
   }
   const std::string body = filled(
       "remedies_jitter",
-      {{"title", markup("Jitter {/:Italic J} = Σ |{/:Italic a}_{k+1} − {/:Italic a}_k| with each set of controller options")},
+      {{"title",
+        markup("Jitter {/:Italic J} = Σ |{/:Italic a}_{k+1} − {/:Italic a}_k| with each set of controller options")},
        {"top", fmt::format("{}", n + 0.7)},
        {"plot", plot.text()}});
   return {"remedies_jitter", data.text(), "Jitter J with each set of controller options.", {960, 620}, body};

@@ -56,6 +56,18 @@ std::string markdown_row(const std::vector<std::string>& cells) {
   return row + "\n";
 }
 
+/// The formats in which a picture stands beside its PNG.
+constexpr const char* kForPrint[] = {"pdf", "svg"};
+
+std::string upper_case(std::string word) {
+  for (char& c : word) c = static_cast<char>(c - 'a' + 'A');
+  return word;
+}
+
+std::string beside(const std::string& picture, const std::string& format) {
+  return fs::path(picture).replace_extension(format).string();
+}
+
 struct MarkdownWriter {
   std::string operator()(const Heading& h) const {
     return std::string(static_cast<std::size_t>(h.level), '#') + " " + escaped_markdown(h.text) + "\n\n";
@@ -69,7 +81,9 @@ struct MarkdownWriter {
     return text + "\n";
   }
   std::string operator()(const Picture& p) const {
-    return "![" + escaped_markdown(p.caption) + "](" + p.file + ")\n\n" + escaped_markdown(p.caption) + "\n\n";
+    std::string text = "![" + escaped_markdown(p.caption) + "](" + p.file + ")\n\n" + escaped_markdown(p.caption);
+    for (const char* format : kForPrint) text += fmt::format(" [{}]({})", upper_case(format), beside(p.file, format));
+    return text + "\n\n";
   }
 };
 
@@ -103,7 +117,13 @@ struct HtmlWriter {
     const std::string image =
         bytes ? fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", caption, base64(*bytes))
               : "<p>(not drawn: " + escaped_html(p.file) + ")</p>";
-    return "<figure>" + image + "<figcaption>" + caption + "</figcaption></figure>\n";
+    std::string links;
+    for (const char* format : kForPrint) {
+      const std::string file = beside(p.file, format);
+      if (bytes && fs::exists(folder / file))
+        links += fmt::format(" <a href=\"{}\">{}</a>", escaped_html(file), upper_case(format));
+    }
+    return "<figure>" + image + "<figcaption>" + caption + links + "</figcaption></figure>\n";
   }
 };
 

@@ -35,10 +35,11 @@ struct Document {
   std::vector<Block> blocks;
 };
 
-/// Pictures as links to their files.
+/// Pictures as links to their files, with links to the PDF and SVG beside them.
 std::string markdown(const Document& document);
 
-/// Pictures in the text itself, read from `folder`; one that is not there is said to be missing.
+/// Pictures in the text itself, read from `folder`, with links to the PDF and SVG beside them where these are there; a
+/// picture that is not there is said to be missing.
 std::string html(const Document& document, const std::filesystem::path& folder);
 
 /// RFC 4648.

@@ -290,7 +290,7 @@ void add_section_b(const ReportData& data, Document& d) {
   d.blocks.push_back(
       Paragraph{"DIFFERS: not as expected. Of the default it is also expected that nothing is touched."});
   Table t{{"scenario", "controller", "position error [m]", "expected", "velocity error [m/s]", "expected",
-           "to obstacles [m]", "between robots [m]", "J [m/s^2]", "peak acceleration [m/s^2]", "heading reversals",
+           "to obstacles [m]", "between robots [m]", "jitter J [m/s²]", "peak acceleration [m/s²]", "heading reversals",
            "active-set switches"},
           {}};
   for (const char* scene : {"B0", "B1", "B2", "B3"})
@@ -352,7 +352,8 @@ void add_ablations(const ReportData& data, Document& d) {
     d.blocks.push_back(Paragraph{"Not run: `exactvo paper --out DIR --ablations` adds them."});
     return;
   }
-  Table t{{"remedies", "reached and safe", "reached", "J in B0 [m/s^2]", "B1", "B2", "B3", "median J"}, {}};
+  Table t{{"controller options", "reached and safe", "reached", "jitter J in B0 [m/s²]", "B1", "B2", "B3", "median J"},
+          {}};
   for (const Json& row : data.ablations()["rows"]) {
     std::vector<std::string> cells{row["variant"].get<std::string>(), share(row),
                                    std::to_string(row["reached"].get<std::uint64_t>())};
@@ -368,7 +369,8 @@ void add_ablations(const ReportData& data, Document& d) {
   d.blocks.push_back(
       Picture{"ablations/remedies.png",
               "How many random formations reach their goal without a collision, for each set of controller options."});
-  d.blocks.push_back(Picture{"ablations/remedies_jitter.png", "Jitter in B0 to B3 for each set of controller options."});
+  d.blocks.push_back(
+      Picture{"ablations/remedies_jitter.png", "Jitter in B0 to B3 for each set of controller options."});
 }
 
 /// Which program made each file that this is made of, whoever puts the report together.

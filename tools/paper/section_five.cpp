@@ -208,8 +208,11 @@ class Experiments {
         filled("jitter", {{"title", markup("Jitter {/:Italic J} = Σ |{/:Italic a}_{k+1} − {/:Italic a}_k| of two "
                                            "controllers; B0 has no obstacle")},
                           {"plot", plot.text()}});
-    const Figure figure{
-        "jitter", data.text(), "Jitter J of two controllers, the sum of |a_{k+1} - a_k|.", {860, 460}, body};
+    const Figure figure{"jitter",
+                        data.text(),
+                        "Jitter of two controllers: the sum of the changes of acceleration from step to step.",
+                        {860, 460},
+                        body};
     scripts_.push_back(write_sources(figure, out_ / "figures"));
   }
 

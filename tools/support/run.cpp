@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/run.h"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -113,6 +115,9 @@ void draw(const std::vector<fs::path>& scripts) {
   const RenderResult result = render(scripts);
   switch (result.outcome) {
     case Rendering::done:
+      if (!result.missing.empty())
+        message(fmt::format("this gnuplot cannot draw {}, which Debian's gnuplot-nox has: no such pictures are written",
+                            fmt::join(result.missing, " and ")));
       return;
     case Rendering::no_gnuplot:
       message("gnuplot is not installed (Debian: gnuplot-nox): the figures' data and scripts are written, no pictures");

@@ -114,7 +114,7 @@ Action declare(CLI::App& app) {
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   app.add_option("--time,-t", flags->time, "Time of the decision, s")->required();
   app.add_option("--robot,-r", flags->robot, "The robot: its id, or its index from 0")->required();
-  declare_out(app, flags->out, "FILE.svg; FILE.pdf, FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
+  declare_out(app, flags->out, kFigureFileHelp);
   declare_simulation_flags(app, flags->simulation);
   return [flags] { return explain(*flags); };
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verbs/figure_file.h"
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "support/escape.h"
@@ -20,11 +22,17 @@ struct FigureFile {
   std::string drawn, asked;
 };
 
+constexpr const char* kPictures[] = {".pdf", ".png", ".svg"};
+
+bool is_picture(const fs::path& name) {
+  return std::find(std::begin(kPictures), std::end(kPictures), name.extension()) != std::end(kPictures);
+}
+
 std::vector<FigureFile> files_of(const fs::path& out) {
   const std::string stem = out.stem().string(), plain = plain_name(stem);
   std::vector<FigureFile> files;
   for (const char* source : {".dat", ".gp"}) files.push_back({plain + source, plain + source});
-  for (const char* picture : {".pdf", ".png", ".svg"}) files.push_back({plain + picture, stem + picture});
+  for (const char* picture : kPictures) files.push_back({plain + picture, stem + picture});
   return files;
 }
 
@@ -33,7 +41,7 @@ std::vector<FigureFile> files_of(const fs::path& out) {
 void check_figure_name(const std::string& option, const std::string& name) {
   if (name.empty()) return;
   if (has_control_characters(name)) throw UsageError(option, name, "a name without control characters");
-  if (fs::path(name).extension() != ".svg") throw UsageError(option, name, "a name that ends in .svg");
+  if (!is_picture(name)) throw UsageError(option, name, "a name that ends in .svg, .png or .pdf");
   for (const FigureFile& file : files_of(name)) {
     const fs::path path = fs::path(name).parent_path() / file.asked;
     if (fs::is_directory(path)) throw UsageError(option, path.string() + ", a folder", "names that are free or files");
@@ -47,9 +55,14 @@ void write_figure(Figure figure, const fs::path& out) {
   StagedFolder folder(parent / "exactvo-figure", out);
   draw({write_sources(figure, folder.path())});
   for (const FigureFile& file : files_of(out)) {
-    if (fs::exists(folder.path() / file.drawn)) fs::rename(folder.path() / file.drawn, parent / file.asked);
+    if (fs::exists(folder.path() / file.drawn)) {
+      fs::rename(folder.path() / file.drawn, parent / file.asked);
+    } else {
+      fs::remove(parent / file.asked);  // an earlier one would show something else than its neighbours
+    }
   }
-  message("wrote " + out.string());
+  const fs::path script = out.parent_path() / (figure.name + ".gp");
+  message("wrote " + (fs::exists(out) ? out : script).string());
 }
 
 }  // namespace exactvo::tools

@@ -122,7 +122,7 @@ Action declare(CLI::App& app) {
                  "The file to write; its extension says the format. - is stdout (wkt, or as --to says)");
   app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
   declare_metres(app, flags->metres);
-  app.add_option("--figure", flags->figure, "FILE.svg of the first 400 items");
+  app.add_option("--figure", flags->figure, std::string("The first 400 items. ") + kFigureFileHelp);
   app.add_flag("--list", flags->list, "Print the kinds");
   return [flags] { return generate(*flags); };
 }

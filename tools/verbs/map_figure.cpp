@@ -37,13 +37,14 @@ class Map {
     PlotCommand plot;
     for (const Layer& layer : layers_)
       plot.data(write(layer, data), origin.using_columns() + " " + layer.style, layer.in_key ? layer.title : "");
-    const double width_of_title = 700.0;
-    const std::string body = filled("map", {{"title", quoted(shortened(title, characters_in(width_of_title)))},
+    const double scale = std::min(700.0 / shown.width(), 620.0 / shown.height());  // px a metre
+    const Canvas canvas{static_cast<int>(scale * shown.width()) + 300, static_cast<int>(scale * shown.height()) + 100};
+    const std::string body = filled("map", {{"title", quoted(shortened(title, characters_in(canvas.width - 200.0)))},
                                             {"ranges", origin.ranges(shown)},
                                             {"x_label", markup(origin.x_label())},
                                             {"y_label", markup(origin.y_label())},
                                             {"plot", plot.text()}});
-    return {"map", data.text(), title + ".", {1000, 720}, body};
+    return {"map", data.text(), title + ".", canvas, body};
   }
 
  private:
@@ -97,9 +98,9 @@ std::string line(double width, const std::string& colour, const std::string& das
 }
 
 void draw_obstacles(const Outlines& outlines, bool with_edges, Map& map) {
-  map.curves("solid", outlines.solids, solid_fill(), true);
+  map.curves("obstacle", outlines.solids, solid_fill(), true);
   if (with_edges) map.curves("edges", outlines.rings, line(1, kObstacleLine), true, false);
-  map.curves("walls", outlines.walls, line(2.5, kObstacleLine), false);
+  map.curves("wall", outlines.walls, line(2.5, kObstacleLine), false);
 }
 
 std::vector<Points> pieces_with_inside(const ObstacleShapes& shapes) {

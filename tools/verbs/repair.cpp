@@ -329,7 +329,7 @@ Action declare(CLI::App& app) {
   declare_reading_flags(app, flags->reading);
   declare_metres(app, flags->metres);
   app.add_flag("--json", flags->json, "The report as JSON on stdout");
-  app.add_option("--figure", flags->figure, "FILE.svg: before and after of every changed polygon");
+  app.add_option("--figure", flags->figure, std::string("Every changed polygon before and after. ") + kFigureFileHelp);
   return [flags] { return repair(*flags); };
 }
 

@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "exactvo/geometry/require.h"
 #include "figures/local_origin.h"
 #include "figures/outlines.h"
+#include "figures/sheet.h"
 #include "figures/style.h"
-#include "figures/template.h"
 
 namespace exactvo::tools {
 
@@ -20,17 +21,20 @@ using geometry::Polygon;
 using geometry::Ring;
 using geometry::Vec2;
 
+/// A square.
 Box view_of(const MendedPolygon& polygon) {
   Box box;
   for (const Ring& ring : polygon.before) {
     for (const Vec2 p : ring) box.add(p);
   }
   const double pad = 0.04;
-  return box.grown(std::max(pad * box.diagonal(), 1e-9));
+  const double half = 0.5 * std::max(box.width(), box.height()) + std::max(pad * box.diagonal(), 1e-9);
+  const Vec2 middle = 0.5 * (box.low + box.high);
+  return {{middle.x - half, middle.y - half}, {middle.x + half, middle.y + half}};
 }
 
-constexpr double kWidthOfPanel = 440.0;  // px, with its margins
-constexpr double kSideOfPlot = 330.0;    // px, the longer one of what the axes enclose
+constexpr double kSideOfPlot = 340.0;  // px of what the axes enclose
+constexpr double kGapOfPlots = 60.0;   // px
 /// "-1.2e+06", eight characters of 6 px, and a gap of two.
 constexpr double kWidthOfTic = 60.0;  // px
 
@@ -43,6 +47,8 @@ double distance_of_tics(const Box& view) {
   return 10.0 * power;
 }
 
+constexpr const char* kProblemMark = "with points pt 6 ps 1.6 lw 2.5 lc rgb '#e00000'";
+
 class Panels {
  public:
   void row(const MendedPolygon& polygon) {
@@ -50,11 +56,19 @@ class Panels {
     before(polygon);
     after(polygon);
   }
-  Figure figure(std::size_t rows) const {
-    const std::string shows = "Polygons before and after a repair.";
-    const Canvas canvas{1000, 60 + 420 * static_cast<int>(rows)};
-    return {"repair", data_.text(), shows, canvas,
-            filled("repair", {{"rows", std::to_string(rows)}, {"panels", plots_}})};
+  Figure figure() && {
+    sheet_.title = "'Polygons before and after their repair'";
+    sheet_.x_label = "'x [m]'";
+    sheet_.y_label = "'y [m]'";
+    sheet_.columns = 2;
+    sheet_.panel_width = sheet_.panel_height = kSideOfPlot;
+    sheet_.gap = kGapOfPlots;
+    sheet_.legend = {
+        {"keyentry with lines lw 2 lc rgb '#3f444d'", "outline"},
+        {std::string("keyentry ") + kProblemMark, "problem"},
+        {fmt::format("keyentry with boxes fs transparent solid 0.45 noborder fc rgb '{}'", series_colour(0)),
+         "polygon, a colour each"}};
+    return sheet_figure("repair", data_.text(), "Polygons before and after a repair.", sheet_);
   }
 
  private:
@@ -65,7 +79,7 @@ class Panels {
               origin.using_columns() + " with lines lw 2 lc rgb '#3f444d'");
     const int marks = data_.begin("problems", "x, y [m]");
     for (const Vec2 p : polygon.problems) data_.row({p.x, p.y});
-    plot.data(marks, origin.using_columns() + " with points pt 6 ps 1.6 lw 2.5 lc rgb '#e00000'");
+    plot.data(marks, origin.using_columns() + " " + kProblemMark);
     panel("before: " + polygon.title, view_of(polygon), plot);
   }
 
@@ -101,16 +115,15 @@ class Panels {
   void panel(const std::string& title, const Box& view, const PlotCommand& plot) {
     const LocalOrigin origin(view);
     const std::string from = origin.in_title();
-    const std::size_t room = characters_in(kWidthOfPanel);
-    const std::string shown = shortened(title, room - std::min(from.size(), room / 2)) + from;
-    plots_ += filled("repair_panel", {{"title", quoted(shown)},
-                                      {"ranges", origin.ranges(view)},
-                                      {"tics", fmt::format("{:.9g}", distance_of_tics(view))},
-                                      {"plot", plot.text()}});
+    const std::size_t room = characters_in(1.3 * (kSideOfPlot + 0.5 * kGapOfPlots));
+    const std::string words = letter_of(sheet_.panels.size()) + " " + title;
+    sheet_.panels.push_back({quoted(shortened(words, room - std::min(from.size(), room / 2)) + from),
+                             origin.ranges(view) + fmt::format("\nset xtics {:.9g}", distance_of_tics(view)),
+                             plot.text()});
   }
 
   DataFile data_;
-  std::string plots_;
+  Sheet sheet_;
 };
 
 }  // namespace
@@ -120,7 +133,7 @@ Figure repair_figure(const std::vector<MendedPolygon>& polygons) {
   Panels panels;
   const std::size_t rows = std::min(polygons.size(), kMostMendedDrawn);
   for (std::size_t k = 0; k < rows; ++k) panels.row(polygons[k]);
-  return panels.figure(rows);
+  return std::move(panels).figure();
 }
 
 }  // namespace exactvo::tools

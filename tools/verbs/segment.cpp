@@ -264,8 +264,7 @@ Action declare(CLI::App& app) {
   app.add_flag("--json", flags->json, "One JSON record per obstacle and line on stdout");
   declare_metres(app, flags->metres);
   app.add_option("--out", flags->out, "FILE.jsonl: the records; FILE.geojson: every shape as a feature");
-  app.add_option("--figure", flags->figure,
-                 "FILE.svg; FILE.pdf, FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
+  app.add_option("--figure", flags->figure, kFigureFileHelp);
   return [flags] { return segment(*flags); };
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "figures/outlines.h"
+#include "figures/sheet.h"
 #include "figures/template.h"
 
 namespace exactvo::tools {
@@ -88,6 +89,13 @@ class Panel {
                                      {"y_low", fmt::format("{:.6g}", view_.low.y)},
                                      {"y_high", fmt::format("{:.6g}", view_.high.y)},
                                      {"plot", plot_.text()}});
+  }
+  /// The same without axes of its own, for a sheet.
+  SheetPanel on_sheet(const std::string& title) const {
+    return {markup(title),
+            fmt::format("set clip two\nset xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]", view_.low.x,
+                        view_.high.x, view_.low.y, view_.high.y),
+            plot_.text()};
   }
   const Box& view() const { return view_; }
 
@@ -175,7 +183,7 @@ void draw_given(const VoAnswer& answer, Panel& panel) {
     };
     edges.push_back({seen(edge.a), seen(edge.b)});
   }
-  panel.rings("obstacle / τ, not grown", edges, kGiven);
+  panel.rings("obstacle divided by τ, not grown", edges, kGiven);
 }
 
 void draw_cones(const std::vector<ConeAnswer>& cones, Panel& panel) {
@@ -188,7 +196,7 @@ void draw_cones(const std::vector<ConeAnswer>& cones, Panel& panel) {
     for (Vec2& p : scaled.back()) p += u;
   }
   panel.rings("velocity obstacle", forbidden, cones.size() == 1 ? kForbidden : kForbiddenUnion);
-  panel.rings("obstacle grown by the radius, / τ", scaled, kScaled);
+  panel.rings("grown obstacle divided by τ", scaled, kScaled);
 }
 
 /// Those of several that have a side of what all of them allow within the view; all, where that is nothing.
@@ -258,29 +266,39 @@ void draw_member(const vo::Member& m, const ConeAnswer& a, Panel& panel) {
 
 std::string member_title(const vo::Member& m, Vec2 velocity) {
   const auto answer = m.allows(velocity);
-  return fmt::format("{}: {}{}", name(m.variant), word_of_allowed(answer), answer ? " v" : "");
+  return fmt::format("{}: {}{}", name(m.variant), word_of_allowed(answer), answer ? " {/:Italic v}" : "");
+}
+
+std::vector<std::pair<std::string, std::string>> family_legend(const VoAnswer& answer) {
+  bool cones = false, half_planes = false;
+  for (const vo::Member& m : answer.members) {
+    cones = cones || m.cone;
+    half_planes = half_planes || m.half_plane;
+  }
+  std::vector<std::pair<std::string, std::string>> all{{std::string("keyentry ") + kForbidden, "forbidden"}};
+  if (cones) all.emplace_back("keyentry with points pt 7 ps 1 lc rgb '#D55E00'", "apex of the cone");
+  if (half_planes) all.emplace_back(std::string("keyentry ") + kBoundary, "half-plane, hatched where it forbids");
+  all.emplace_back("keyentry with vectors head filled lw 2.5 lc rgb '#444444'", "velocity v of the robot");
+  all.emplace_back("keyentry with vectors head filled lw 2.5 lc rgb '#CC79A7'", "velocity of the obstacle");
+  return all;
 }
 
 Figure family_figure(const VoAnswer& answer) {
   const ConeAnswer& a = answer.cones.front();
+  Sheet sheet;
+  sheet.title = markup("What different rules forbid in one encounter, " + horizon_text(a.encounter.time_horizon));
+  sheet.x_label = markup("{/:Italic v}_x [m/s]");
+  sheet.y_label = markup("{/:Italic v}_y [m/s]");
+  sheet.columns = static_cast<int>(std::min<std::size_t>(answer.members.size(), 3));
+  sheet.panel_width = sheet.panel_height = 300.0;
+  sheet.legend = family_legend(answer);
   DataFile data;
-  const int count = static_cast<int>(answer.members.size());
-  const int columns = std::min(count, 3), rows = (count + columns - 1) / columns;
-  std::string panels;
-  for (const vo::Member& m : answer.members) {
+  for (std::size_t k = 0; k < answer.members.size(); ++k) {
     Panel panel(data, square_round(view_of(answer.cones), 0.7));
-    draw_member(m, a, panel);
-    const char letter = static_cast<char>('a' + (&m - answer.members.data()));
-    panels += panel.text(fmt::format("({}) {}", letter, member_title(m, a.encounter.velocity)));
+    draw_member(answer.members[k], a, panel);
+    sheet.panels.push_back(panel.on_sheet(letter_of(k) + " " + member_title(answer.members[k], a.encounter.velocity)));
   }
-  const std::string title = "One encounter, " + horizon_text(a.encounter.time_horizon) +
-                            ": forbidden in grey, the robot's velocity {/:Italic v} black, the obstacle's pink";
-  const std::string body = filled("family", {{"rows", std::to_string(rows)},
-                                             {"columns", std::to_string(columns)},
-                                             {"title", markup(title)},
-                                             {"panels", panels}});
-  const Canvas canvas{60 + 360 * columns, 60 + 360 * rows};
-  return {"family", data.text(), "What different rules forbid in one encounter.", canvas, body};
+  return sheet_figure("family", data.text(), "What different rules forbid in one encounter.", sheet);
 }
 
 // --- The free velocities ---

@@ -296,8 +296,7 @@ void declare_options(CLI::App& app, VoFlags& flags) {
       "what the half-planes give away");
   app.add_option("--max-speed", flags.max_speed, "m/s, required by --free");
   app.add_flag("--json", flags.json, "Everything as JSON on stdout");
-  app.add_option("--figure", flags.figure,
-                 "FILE.svg; FILE.pdf, FILE.png, FILE.dat and FILE.gp (gnuplot) appear beside it");
+  app.add_option("--figure", flags.figure, kFigureFileHelp);
 }
 
 }  // namespace exactvo::tools

@@ -2,7 +2,8 @@
 # Draw again with: gnuplot '@name@.gp'
 set encoding utf8
 data = '@name@.dat'
-do for [format in 'svg png pdf'] {
+if (!exists('formats')) formats = 'svg png pdf'
+do for [format in formats] {
   if (format eq 'svg') {
     set terminal svg enhanced size @width@,@height@ font 'DejaVu Sans,13' background rgb 'white'
   }

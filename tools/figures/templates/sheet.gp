@@ -14,7 +14,7 @@ unset tics
 unset grid
 unset title
 unset xlabel
-unset ylabel
+unset label 1
 set xrange [0:1]
 set yrange [0:1]
 set key at screen 0.5, screen @legend_middle@ center center horizontal reverse Left samplen 2.5 width 1 font ',11'

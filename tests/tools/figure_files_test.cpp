@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a figure consists of: SVG, PNG and PDF, whichever was named; nothing half drawn, nothing of an earlier figure.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kVo =
+    "vo --obstacle 'LINESTRING(2 -1, 2 1)' --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2 --figure ";
+
+TEST(FigureFiles, AnyOfTheThreeExtensionsDrawsAllThree) {
+  for (const char* extension : {"svg", "png", "pdf"}) {
+    const Workplace here;
+    const Outcome outcome = here.run(std::string(kVo) + "out/a." + extension);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("wrote out/a.") + extension));
+    EXPECT_EQ(here.files("out").size(), 5u);
+    EXPECT_EQ(here.read("out/a.pdf").substr(0, 5), "%PDF-");
+    EXPECT_EQ(here.read("out/a.png").substr(1, 3), "PNG");
+    EXPECT_THAT(here.read("out/a.svg"), HasSubstr("<svg"));
+  }
+}
+
+TEST(FigureFiles, AnotherExtensionIsRefusedAndTheThreeAreNamed) {
+  const Workplace here;
+  here.write("s.json",
+             R"({"name": "s", "robots": [{"id": "R1", "position": [0, 0], "goal": [8, 0]}], "obstacles": []})");
+  here.write("bow.wkt", "POLYGON((0 0, 2 2, 2 0, 0 2, 0 0))");
+  for (const std::string& command :
+       {std::string(kVo), std::string("explain s.json --time 1 --robot 0 --out "),
+        std::string("repair bow.wkt --out repaired.wkt --figure "), std::string("segment bow.wkt --repair --figure "),
+        std::string("generate star --count 1 --out star.wkt --figure ")}) {
+    for (const char* name : {"a.jpg", "a", "a.SVG.txt", "pdf"}) {
+      const Outcome outcome = here.run(command + name);
+      EXPECT_EQ(outcome.status, 2) << command << name;
+      EXPECT_THAT(outcome.err, AllOf(HasSubstr(".svg"), HasSubstr(".png"), HasSubstr(".pdf"))) << command << name;
+      EXPECT_FALSE(here.has(name));
+    }
+    EXPECT_FALSE(here.has("repaired.wkt") || here.has("star.wkt")) << "refused before the work";
+  }
+}
+
+TEST(FigureFiles, HelpNamesAllThree) {
+  const Workplace here;
+  for (const char* verb : {"vo", "explain", "repair", "segment", "generate"})
+    EXPECT_THAT(here.run(std::string("help ") + verb).out, HasSubstr("FILE.svg, FILE.png or FILE.pdf")) << verb;
+}
+
+TEST(FigureFiles, APdfIsTheSameAtAnyTime) {
+  const Workplace here;
+  ASSERT_EQ(here.run(std::string(kVo) + "a.pdf", "TZ=Asia/Kolkata").status, 0);
+  ASSERT_EQ(here.run(std::string(kVo) + "a/a.pdf").status, 0);
+  EXPECT_TRUE(here.read("a.pdf") == here.read("a/a.pdf"));
+  EXPECT_THAT(here.read("a.pdf"), HasSubstr("/CreationDate (D:19700101000000Z"));
+}
+
+/// A program `gnuplot` that stands before the real one.
+void write_gnuplot(const Workplace& here, const std::string& body) {
+  here.write("fake/gnuplot", "#!/bin/sh\nPATH=${PATH#*:}\n" + body + "\n");
+  fs::permissions(here.path() / "fake/gnuplot", fs::perms::owner_all);
+}
+
+const std::string kFakeFirst = "PATH=\"$PWD/fake:$PATH\"";
+
+TEST(FigureFiles, WithoutTheTerminalPdfcairoTheRestIsDrawnAndThatIsSaid) {
+  const Workplace here;
+  fs::create_directories(here.path() / "fake");
+  write_gnuplot(here, "sed 's/GPVAL_TERMINALS/\" png pngcairo svg x11 \"/g' | gnuplot \"$@\"");
+  here.write("a.pdf", "of an earlier figure");
+  const Outcome outcome = here.run(std::string(kVo) + "a.svg", kFakeFirst);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("cannot draw PDF (its terminal pdfcairo)"), HasSubstr("gnuplot-nox")));
+  EXPECT_TRUE(here.has("a.svg") && here.has("a.png"));
+  EXPECT_FALSE(here.has("a.pdf")) << "one of an earlier figure would show something else";
+}
+
+TEST(FigureFiles, WithoutAnyTerminalThereIsTheScript) {
+  const Workplace here;
+  fs::create_directories(here.path() / "fake");
+  write_gnuplot(here, "sed 's/GPVAL_TERMINALS/\" dumb \"/g' | gnuplot \"$@\"");
+  const Outcome outcome = here.run(std::string(kVo) + "a.svg", kFakeFirst);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("SVG"), HasSubstr("PNG"), HasSubstr("PDF"), HasSubstr("wrote a.gp")));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("wrote a.svg")));
+  EXPECT_TRUE(here.has("a.gp") && here.has("a.dat"));
+}
+
+TEST(FigureFiles, WithoutGnuplotNoPictureIsSaidToBeWritten) {
+  const Workplace here;
+  const Outcome outcome = here.run(std::string(kVo) + "a.svg", "PATH=/nowhere");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("gnuplot is not installed"), HasSubstr("wrote a.gp")));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("wrote a.svg")));
+}
+
+TEST(FigureFiles, AGnuplotThatFailsLeavesNothing) {
+  const Workplace here;
+  fs::create_directories(here.path() / "fake");
+  write_gnuplot(here, "(cat; echo 'exit status 3') | gnuplot \"$@\"");
+  const Outcome outcome = here.run(std::string(kVo) + "out/a.svg", kFakeFirst);
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("gnuplot failed"));
+  EXPECT_TRUE(here.files("out").empty());
+}
+
+}  // namespace
+}  // namespace exactvo::test

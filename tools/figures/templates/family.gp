@@ -1,4 +1,0 @@
-set multiplot layout @rows@,@columns@ title @title@
-unset key
-@panels@
-unset multiplot
