@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # gnuplot plain-is-unsafe.gp: by how many ulps 800 cut-offs clear their velocity obstacle, plain and certified.
 # The data: audit_half_planes ulps 800 > plain-is-unsafe.dat
-set terminal pngcairo size 1000,520 font 'sans,12'
+set terminal pngcairo size 1000,520 font 'DejaVu Sans,12'
 set output 'plain-is-unsafe.png'
 set xlabel 'half-plane'
 set ylabel 'offset minus its exact bound [ulps]'

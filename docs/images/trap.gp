@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # gnuplot trap.gp: an ellipse, its evolute, and two goals behind it. The robot comes from below.
-set terminal pngcairo size 1080,560 font 'sans,12'
+set terminal pngcairo size 1080,560 font 'DejaVu Sans,12'
 set output 'trap.png'
 set multiplot layout 1,2
 set size ratio -1
@@ -21,10 +21,10 @@ arrow_style = 'filled head'
 do for [k = 1:2] {
   g = k == 1 ? 1.85 : 2.6
   unset label; unset arrow
-  set title k == 1 ? 'Goal inside the evolute: a stable trap' : 'Goal outside the evolute: every stop is unstable'
+  set title k == 1 ? '(a) Goal inside the evolute: a stable trap' : '(b) Goal outside the evolute: every stop is unstable'
   set label 1 'goal' at 0.15, g front
   set label 2 'ellipse' at 1.15, 0.45 tc rgb '#3f444d' front
-  set label 3 'evolute' at 0.25, -1.0 tc rgb '#0072B2' front
+  set label 3 'evolute' at 0.6, -0.7 tc rgb '#0072B2' front
   set label 4 k == 1 ? 'rests here' : 'slides off' at 0.25, -(b + r) - 0.45 front
   do for [i = -2:2] {
     if (i != 0) {

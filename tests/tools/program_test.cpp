@@ -263,7 +263,7 @@ TEST(Simulate, OutputIsComplete) {
     EXPECT_THAT(files.at(std::string("figures/") + figure + ".svg"), HasSubstr("</svg>"));
   }
   EXPECT_TRUE(json::accept(files.at("metrics.json")));
-  EXPECT_EQ(files.size(), 4u + 6u * 4u) << "nothing else";
+  EXPECT_EQ(files.size(), 4u + 6u * 5u) << "nothing else";
 }
 
 TEST(Simulate, SaysWhatAFormationIsBeforeAndWhyARobotStopped) {
@@ -617,7 +617,7 @@ TEST(Explain, ATimeAfterTheEndIsRefused) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("--time"), HasSubstr("found '1000'"), HasSubstr("when the run ends")));
   EXPECT_FALSE(here.has("x.svg"));
-  EXPECT_EQ(here.run("explain s.json --time 1 --robot R1 --out x.pdf").status, 2);
+  EXPECT_EQ(here.run("explain s.json --time 1 --robot R1 --out x.jpg").status, 2);
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ namespace {
 constexpr int kTimeMarks = 6;
 /// With more robots than this, only the middle time and the last are written, and smaller.
 constexpr int kFewRobots = 3;
+/// With more robots than this, not even the last time is written over something else.
+constexpr int kSomeRobots = 12;
 /// Characters of a name in a legend or before a title.
 constexpr std::size_t kNameLength = 32;
 /// m/s: slower than this nobody sees a robot move.
@@ -324,7 +326,7 @@ class PathsPanel {
     const bool last = k + 1 == count;
     const bool middle = k == count / 2;
     if (!detailed_ || (robot_count() > kFewRobots && !last && !middle)) return {p, ""};
-    const std::optional<Vec2> place = times_.place_beside(p, radius, last);
+    const std::optional<Vec2> place = times_.place_beside(p, radius, last && robot_count() <= kSomeRobots);
     if (!place) return {p, ""};
     return {*place, fmt::format("{:.3g} s", time)};
   }
