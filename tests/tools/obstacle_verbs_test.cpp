@@ -129,7 +129,7 @@ TEST(Repair, AnIslandInAHoleIsFilledWithNothingPaintedOverIt) {
   const Outcome outcome = here.run("repair island.wkt --out mended.wkt --figure mended.svg");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::string script = here.read("mended.gp");
-  EXPECT_THAT(script, HasSubstr("title 'after: 3 polygons'"));
+  EXPECT_THAT(script, HasSubstr("title '(b) after: 3 polygons'"));
   std::size_t fillings = 0;
   for (std::size_t at = 0; (at = script.find("filledcurves", at)) != std::string::npos; ++at) ++fillings;
   EXPECT_EQ(fillings, 3u);
