@@ -21,7 +21,7 @@
 namespace exactvo::tools {
 
 struct Canvas {
-  int width = 960;   ///< px of the SVG, 1/96 inch of the PDF; the PNG has half as many again
+  int width = 960;   ///< px of the SVG, 1/96 inch of the PDF; the PNG has 1.4 times as many
   int height = 600;  ///< the same
 };
 

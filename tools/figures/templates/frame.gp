@@ -8,8 +8,8 @@ do for [format in formats] {
     set terminal svg enhanced size @width@,@height@ font 'DejaVu Sans,13' background rgb 'white'
   }
   if (format eq 'png') {
-    set terminal pngcairo enhanced size 1.5 * @width@,1.5 * @height@ font 'DejaVu Sans,13' fontscale 1.125 \
-      linewidth 1.5 pointscale 1.5
+    set terminal pngcairo enhanced size 1.4 * @width@,1.4 * @height@ font 'DejaVu Sans,13' fontscale 1.05 \
+      linewidth 1.4 pointscale 1.4
   }
   if (format eq 'pdf') {
     set terminal pdfcairo enhanced size @width@ / 96.0,@height@ / 96.0 font 'DejaVu Sans,13' fontscale 0.5625 \
