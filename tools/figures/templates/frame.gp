@@ -19,6 +19,7 @@ do for [format in formats] {
   set output '@name@.' . format
   set border lw 0.8
   set tics nomirror
+  set format '%h'
   set grid lt 1 lw 0.5 lc rgb '#dddddd'
   set key outside right top reverse Left samplen 3
 @body@
