@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "exactvo/datasets/generators.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
+#include "generators/counter_random.h"
 
 namespace exactvo::bench {
 namespace {
@@ -26,28 +27,11 @@ constexpr double kRoom = 0.15;      // m, round a start or goal
 constexpr double kFarthest = 12.0;  // m, from a start to its goal
 constexpr double kDuration = 15.0;  // s
 
-/// Uniform in [0, 1), the n-th of a fixed sequence (SplitMix64; Steele, Lea and Flood, 2014).
-double uniform(std::uint64_t n) {
-  std::uint64_t z = (n + 1) * 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
-struct Extent {
-  Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  Vec2 high{-low};
-};
-
-Extent extent_of(const std::vector<SceneObstacle>& obstacles) {
-  Extent e;
-  for (const SceneObstacle& o : obstacles) {
-    for (const Vec2 p : vertices_of(o.shape)) {
-      e.low = {std::min(e.low.x, p.x), std::min(e.low.y, p.y)};
-      e.high = {std::max(e.high.x, p.x), std::max(e.high.y, p.y)};
-    }
-  }
-  return e;
+geometry::Box extent_of(const std::vector<SceneObstacle>& obstacles) {
+  geometry::Box extent;
+  for (const SceneObstacle& o : obstacles)
+    for (const Vec2 p : vertices_of(o.shape)) extent.add(p);
+  return extent;
 }
 
 /// Draws places until they serve.
@@ -57,14 +41,14 @@ class Places {
 
   Vec2 start() {
     return drawn([&] {
-      const double x = uniform(draw_++), y = uniform(draw_++);
+      const double x = random_.uniform(0.0, 1.0), y = random_.uniform(0.0, 1.0);
       return Vec2{extent_.low.x + x * (extent_.high.x - extent_.low.x),
                   extent_.low.y + y * (extent_.high.y - extent_.low.y)};
     });
   }
   Vec2 goal(Vec2 start) {
     return drawn([&] {
-      const double x = uniform(draw_++), y = uniform(draw_++);
+      const double x = random_.uniform(0.0, 1.0), y = random_.uniform(0.0, 1.0);
       return start + kFarthest * Vec2{2.0 * x - 1.0, 2.0 * y - 1.0};
     });
   }
@@ -88,9 +72,9 @@ class Places {
   }
 
   const std::vector<SceneObstacle>& obstacles_;
-  Extent extent_;
+  geometry::Box extent_;
   std::vector<Vec2> taken_;
-  std::uint64_t draw_ = 0;
+  datasets::CounterRandom random_{0};
 };
 
 std::vector<SceneObstacle> generated(const std::string& kind, std::uint64_t count) {

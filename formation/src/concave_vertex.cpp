@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "boundary.h"
+#include "exactvo/geometry/box.h"
 #include "exactvo/vo/velocity_obstacle.h"
+#include "steering.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -124,13 +126,22 @@ class CrossingSearch {
   double finest_;  ///< m
 };
 
-struct Box {
-  Vec2 low, high;
-};
+/// Whether no free velocity has a component along `ahead`: it lies in the cone of -n_a and -n_b.
+bool holds_back(const Crossing& c, Vec2 ahead) {
+  const double turn = cross(c.normal_a, c.normal_b);
+  return -cross(ahead, c.normal_b) / turn >= 0.0 && -cross(c.normal_a, ahead) / turn >= 0.0;
+}
 
-Box box_of(const GrownShape& s) {
-  const auto reach = [&](Vec2 n) { return dot(geometry::support_point(s, n), n); };
-  return {{-reach({-1.0, 0.0}), -reach({0.0, -1.0})}, {reach({1.0, 0.0}), reach({0.0, 1.0})}};
+/// As `steering.h` turns what a robot prefers where it meets the boundary head-on.
+Vec2 with_tie_broken(const Crossing& c, Vec2 ahead) {
+  const Vec2 worst = dot(c.normal_a, ahead) < dot(c.normal_b, ahead) ? c.normal_a : c.normal_b;
+  return std::fabs(cross(worst, ahead)) < kTieAngle ? geometry::rotated(ahead, kTieAngle) : ahead;
+}
+
+geometry::Box box_of(const GrownShape& s) {
+  const geometry::Box bare = geometry::box_of(s.shape);
+  const Vec2 grown{s.radius, s.radius};
+  return {bare.low - s.origin - grown, bare.high - s.origin + grown};
 }
 
 }  // namespace
@@ -140,7 +151,7 @@ double distance_to(const GrownShape& shape, Vec2 p) {
 }
 
 bool boxes_meet(const GrownShape& a, const GrownShape& b) {
-  const Box x = box_of(a), y = box_of(b);
+  const geometry::Box x = box_of(a), y = box_of(b);
   return x.low.x <= y.high.x && y.low.x <= x.high.x && x.low.y <= y.high.y && y.low.y <= x.high.y;
 }
 
@@ -150,12 +161,13 @@ std::vector<Crossing> crossings(const GrownShape& a, const GrownShape& b) {
 
 std::optional<VertexRest> rest_at(const Crossing& c, Vec2 goal) {
   const Vec2 way = goal - c.position, ahead = geometry::normalized(way);
-  const double turn = cross(c.normal_a, c.normal_b);
-  const double share_a = -cross(way, c.normal_b) / turn, share_b = -cross(c.normal_a, way) / turn;
-  if (way == Vec2{} || !(share_a >= 0.0) || !(share_b >= 0.0)) return std::nullopt;
+  if (way == Vec2{}) return std::nullopt;
+  const bool rests = holds_back(c, ahead);
+  if (!rests && !holds_back(c, with_tie_broken(c, ahead))) return std::nullopt;
   const Vec2 out = geometry::normalized(c.normal_a + c.normal_b);
   const double depth = std::min(std::fabs(cross(ahead, c.normal_a)), std::fabs(cross(ahead, c.normal_b)));
-  return VertexRest{{c.position, out, std::numeric_limits<double>::infinity(), norm(way), true}, depth};
+  const double infinite = std::numeric_limits<double>::infinity();
+  return VertexRest{{c.position, out, infinite, norm(way), true}, rests ? depth : 0.0};
 }
 
 }  // namespace exactvo::formation::detail

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <tuple>
 
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
+#include "exactvo/geometry/require.h"
 #include "moving.h"
 
 namespace exactvo::formation::detail {
@@ -133,15 +136,20 @@ StaticField::StaticField(Scene& scene, const Scenario& scenario, const Simulatio
 /// after the other, or none.
 void StaticField::take_enclosures(const std::vector<Enclosure>& enclosures) {
   tight_index_.assign(scene_->pieces_by_place().size(), kEnclosed);
+  std::optional<std::size_t> last;  // the obstacle whose pieces are being taken, and its next piece
+  std::size_t piece = 0;
   for (std::size_t i = 0; i < enclosures.size(); ++i) {
     const Enclosure& e = enclosures[i];
     if (e.grade != EnclosureGrade::tight) {
       enclosures_.push_back({scene_->bodies().add({BodyKind::enclosure, e.shape, {}, e.obstacles}), i, e.grade});
       continue;
     }
-    std::size_t piece = scene_->first_piece(e.obstacles.front());
-    while (tight_index_[piece] != kEnclosed) ++piece;
-    tight_index_[piece] = static_cast<std::uint32_t>(i);
+    const std::size_t obstacle = e.obstacles.front();
+    if (obstacle != last) piece = scene_->first_piece(obstacle);
+    last = obstacle;
+    EXACTVO_REQUIRE(piece < scene_->first_piece(obstacle + 1),
+                    "more pieces than obstacle " + std::to_string(obstacle) + " has");
+    tight_index_[piece++] = static_cast<std::uint32_t>(i);
   }
 }
 

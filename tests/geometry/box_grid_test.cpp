@@ -59,6 +59,68 @@ TEST(BoxGrid, ASceneOnALineHasCellsToo) {
   EXPECT_EQ(found, 5u);
 }
 
+TEST(BoxGrid, ABoxAtTheEndOfTheReachIsFound) {
+  // Points where cells begin (their side is 1 m), looked at from as far as `distance_below` says.
+  std::vector<Box> boxes(33);
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i].add(Vec2{2.0 * static_cast<double>(i), 3.0});
+  boxes.pop_back();
+  boxes.back().high.x = boxes.back().low.x = 64.0;
+  const BoxGrid grid(boxes);
+  SeededRandom random(seed_of_run(14));
+  for (int k = 0; k < 2000; ++k) {
+    const Vec2 x{random.uniform(-1.0, 65.0), 3.0};
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      bool found = false;
+      grid.for_each_within(x, distance_below(boxes[i], x), [&](std::size_t j) { found = found || i == j; });
+      ASSERT_TRUE(found) << i << " from " << x.x;
+    }
+  }
+}
+
+TEST(BoxGrid, ExtentsWhoseSquareOverflowsHaveFewCells) {
+  for (const double far : {1e150, 1e200, 1e308}) {
+    std::vector<Box> boxes;
+    for (const Vec2 corner : {Vec2{-far, -far}, Vec2{far, far}, Vec2{-far, far}, Vec2{0, 0}}) {
+      boxes.emplace_back().add(corner);
+    }
+    const BoxGrid grid(boxes);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      std::vector<std::size_t> found;
+      grid.for_each_within(boxes[i].low, 1.0, [&](std::size_t j) { found.push_back(j); });
+      EXPECT_EQ(found, std::vector<std::size_t>{i}) << far;
+    }
+    std::size_t all = 0;
+    grid.for_each_within({0, 0}, kInfinity, [&](std::size_t) { ++all; });
+    EXPECT_EQ(all, boxes.size()) << far;
+  }
+}
+
+TEST(Box, DistanceBelowIsNeverAboveTheTrueDistance) {
+  SeededRandom random(seed_of_run(15));
+  const auto number = [&](int exponent) { return std::ldexp(random.uniform(-1.0, 1.0), exponent); };
+  for (int k = 0; k < 20000; ++k) {
+    const int exponent = random.integer(-1074, 1024);
+    Box box;
+    box.add({number(exponent), number(exponent)});
+    if (k % 3 == 0) box.add({number(exponent), number(exponent)});
+    const Vec2 x{number(exponent - random.integer(0, 60)), number(exponent - random.integer(0, 60))};
+    const auto away = [](double low, double high, double at) {
+      const mpq_class below = mpq_class(low) - mpq_class(at), above = mpq_class(at) - mpq_class(high);
+      return std::max({below, above, mpq_class(0)});
+    };
+    const mpq_class dx = away(box.low.x, box.high.x, x.x), dy = away(box.low.y, box.high.y, x.y);
+    const double found = distance_below(box, x);
+    ASSERT_TRUE(std::isfinite(found));
+    const mpq_class squared = dx * dx + dy * dy;
+    ASSERT_LE(mpq_class(found) * mpq_class(found), squared) << found << " at 2^" << exponent;
+    // Not far below either, where doubles have all their bits and range.
+    if (exponent < -380 || exponent > 1000) continue;
+    const mpq_class up = mpq_class(found) * mpq_class(1.0 + 0x1p-48);
+    ASSERT_GE(up * up, squared) << found << " at 2^" << exponent;
+  }
+  EXPECT_EQ(distance_below({}, {1.0, 2.0}), kInfinity);
+}
+
 TEST(Box, HoldsItsShapeAndIsNotMuchLarger) {
   SeededRandom random(seed_of_run(12));
   for (int k = 0; k < 2000; ++k) {

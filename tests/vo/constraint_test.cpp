@@ -39,6 +39,16 @@ ClearancePolicy with_room(double room) {
   return policy;
 }
 
+TEST(BodyTable, WhatIsSeenOutlastsOtherBodies) {
+  BodyTable bodies;
+  const BodyTable::Number first = bodies.add({BodyKind::robot, Disc{{3, 0}, 0.5}, {}, {0}});
+  GrownShape& seen = bodies.seen(first, {1, 2}, 0.25);
+  const Body& body = bodies[first];
+  for (std::size_t k = 1; k < 500; ++k) bodies.add({BodyKind::robot, Disc{{0, 0}, 1.0}, {}, {k}});
+  EXPECT_EQ(&body, &bodies[first]);
+  EXPECT_EQ(&seen, &bodies.seen(first, {1, 2}, 0.25));
+}
+
 TEST(Sequence, KeepsItsRoomWhileThereIsRoom) {
   const ProvenHalfPlane h = against(wall(2.5), {1, 0}, with_room(0.1));
   EXPECT_EQ(h.proof, Proof::alone);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/geometry/box.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "exactvo/geometry/rounding.h"
 
@@ -39,10 +41,17 @@ Box box_of(const ConvexShape& shape) {
   return std::visit(BoxOf{}, shape);
 }
 
+// A difference of doubles carries u and never underflows. Where the sum of squares is neither tiny nor infinite, what
+// underflows in it is less than u of it: squares and sum carry 4 u, the root 3 u, the last product and its factor 2 u.
 double distance_below(const Box& box, Vec2 x) {
+  constexpr double kDown = 1.0 - 10.0 * kUnitRoundoff;
+  constexpr double kTiny = 0x1p-900, kMost = std::numeric_limits<double>::max();
   const double dx = std::max({box.low.x - x.x, x.x - box.high.x, 0.0});
   const double dy = std::max({box.low.y - x.y, x.y - box.high.y, 0.0});
-  return std::sqrt(dx * dx + dy * dy) * (1.0 - 8.0 * kUnitRoundoff);
+  const double squares = dx * dx + dy * dy;
+  if (squares > kTiny && squares <= kMost) return std::sqrt(squares) * kDown;
+  if (!(squares > 1.0)) return std::max(dx, dy) * kDown;
+  return box.is_empty() ? squares : std::min(std::hypot(dx, dy), kMost) * kDown;
 }
 
 }  // namespace exactvo::geometry

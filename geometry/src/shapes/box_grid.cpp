@@ -3,15 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/rounding.h"
 
 namespace exactvo::geometry {
 namespace {
 
 constexpr double kMostCellsABox = 64.0;   // a box of more stands in a list of its own
 constexpr double kMostColumns = 32768.0;  // of a scene that is a line of many boxes
+
+/// m; where it is beyond the range of doubles, half their largest: the last cells then hold what lies farther.
+double size_between(double low, double high) {
+  return std::min(high - low, 0.5 * std::numeric_limits<double>::max());
+}
 
 }  // namespace
 
@@ -22,9 +29,10 @@ BoxGrid::BoxGrid(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
     extent_.add(b);
   }
   // About one cell a box, as nearly square as the columns allow.
-  const Vec2 size = extent_.high - extent_.low;
+  const Vec2 size{size_between(extent_.low.x, extent_.high.x), size_between(extent_.low.y, extent_.high.y)};
   const double count = static_cast<double>(boxes_.size());
-  side_ = std::max(std::sqrt(size.x * size.y / count), std::max(size.x, size.y) / std::min(2.0 * count, kMostColumns));
+  const double mean = std::sqrt(size.x) * std::sqrt(size.y) / std::sqrt(count);  // no product that could overflow
+  side_ = std::max(mean, std::max(size.x, size.y) / std::min(2.0 * count, kMostColumns));
   if (!(side_ > 0.0) || !std::isfinite(side_)) side_ = 1.0;
   columns_ = static_cast<std::int32_t>(std::min(std::floor(size.x / side_), kMostColumns)) + 1;
   rows_ = static_cast<std::int32_t>(std::min(std::floor(size.y / side_), kMostColumns)) + 1;
@@ -52,6 +60,13 @@ BoxGrid::BoxGrid(std::vector<Box> boxes) : boxes_(std::move(boxes)) {
   for (std::size_t i = 0; i < boxes_.size(); ++i)
     if (!is_large[i])
       for_each_cell(cells_[i], [&](std::size_t cell) { item_[next[cell]++] = static_cast<std::uint32_t>(i); });
+}
+
+// `distance_below` is low by up to 20 u of itself, and each side of the window rounds by u of its terms.
+Box BoxGrid::window_round(Vec2 x, double reach) {
+  const auto beyond = [&](double at) { return reach + 32.0 * kUnitRoundoff * (reach + std::fabs(at)); };
+  const Vec2 half{beyond(x.x), beyond(x.y)};
+  return {x - half, x + half};
 }
 
 // The same rounding for boxes and windows, and monotone: what meets has a cell in common.

@@ -31,7 +31,9 @@ struct Box {
 /// Holds the shape: exact for segments and polygons, rounded outward for discs and ellipses.
 Box box_of(const ConvexShape& shape);
 
-/// The least distance from x to the box, m: 0 inside. Rounded down: never more than the true one.
+/// The least distance from x to the box, m: 0 inside, infinite from an empty box. Rounded down: never more than the
+/// true one and, from 2^-450 m on, lower by at most 16 ulps; where that is beyond the range of doubles, their largest.
+/// REQUIRES: x is finite.
 double distance_below(const Box& box, Vec2 x);
 
 }  // namespace exactvo::geometry

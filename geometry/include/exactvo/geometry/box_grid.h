@@ -25,7 +25,7 @@ class BoxGrid {
   /// that depends on the boxes alone.
   template <class Visit>
   void for_each_within(Vec2 x, double reach, const Visit& visit) const {
-    const Cells asked = cells_of({{x.x - reach, x.y - reach}, {x.x + reach, x.y + reach}});
+    const Cells asked = cells_of(window_round(x, reach));
     for_each_in(asked, [&](std::size_t i) {
       if (distance_below(boxes_[i], x) <= reach) visit(i);
     });
@@ -47,6 +47,8 @@ class BoxGrid {
     std::int32_t first_x = 0, first_y = 0, last_x = -1, last_y = -1;
   };
   Cells cells_of(const Box& box) const;
+  /// Holds every point whose `distance_below` from x can be at most `reach`.
+  static Box window_round(Vec2 x, double reach);
 
   /// A box that several cells list is visited in the first of those that are asked for.
   template <class Visit>

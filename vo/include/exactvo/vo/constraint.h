@@ -10,11 +10,12 @@
 ///     contact    bare contact: the half-plane through v = 0 away from the nearest point;
 ///     push-out   overlap: nothing can be proven, the robot is asked to leave.
 ///
-/// Certified where `proof` says so. Bodies have numbers: a constraint, a recording and an audit name the body, nobody
-/// copies its shape. Neighbours: velocity_obstacle.h (one velocity obstacle, for who has one), reciprocal.h (the halves
-/// of a pair of robots), orca_obstacle.h (the baseline's rule for edges), lp/ (which velocity).
+/// Certified where `proof` says so. Bodies have numbers: a constraint, a recording and an audit name the body by its
+/// number, and its shape is not copied. Neighbours: velocity_obstacle.h (one velocity obstacle by itself), reciprocal.h
+/// (the halves of a pair of robots), orca_obstacle.h (the baseline's rule for edges), lp/ (the best velocity).
 
 #include <cstddef>
+#include <deque>
 #include <limits>
 #include <vector>
 
@@ -57,7 +58,8 @@ class BodyTable {
   const Body& operator[](Number body) const { return entries_[body].body; }
   const geometry::Box& box(Number body) const { return entries_[body].box; }
 
-  /// The body grown by a robot and seen from it, without a copy: valid until the next call for this body.
+  /// The body grown by a robot and seen from it, without a copy. The reference stays valid, also after `add`; what it
+  /// refers to changes with the next call for this body.
   geometry::GrownShape& seen(Number body, Vec2 position, double radius) {
     geometry::GrownShape& s = entries_[body].seen;
     s.origin = position;
@@ -71,7 +73,7 @@ class BodyTable {
     geometry::Box box;
     geometry::GrownShape seen;  ///< the shape again, with the origin and radius of whoever looked last
   };
-  std::vector<Entry> entries_;
+  std::deque<Entry> entries_;  ///< references to entries outlast `add`
 };
 
 /// What is certain of a half-plane, for the robot as it is and the body's present velocity.

@@ -35,11 +35,10 @@ struct ActiveConstraint {
 ///                                    -preferred      optimal, Objective::farthest
 ///                                    0               relaxed, infeasible: weights, of which only the ratios count
 ///
-/// These are the terms of Certificate::bound and, of a contradiction that doubles can show, its witness: a proven
-/// answer
-/// (`solve_certified`) can be checked from its problem and these numbers alone (inequalities (1) to (4) of
-/// certificate.h). In a plain answer (`solve`, `solve_single`) they are rounded, and proven by `certify`. A `pinched`
-/// answer has none (all 0).
+/// These are the terms of Certificate::bound and, where half-planes contradict each other and doubles can show it, of
+/// its witness. An answer of `solve_certified` can be checked from its problem and these numbers alone (inequalities
+/// (1) to (4) of certificate.h); those of `solve` and `solve_single` are rounded and prove nothing until `certify` has
+/// checked them. The multipliers of a `pinched` answer are 0.
 struct Solution {
   geometry::Vec2 velocity;  ///< m/s
   Status status = Status::optimal;
