@@ -98,9 +98,11 @@ ExitCode parse_and_run() {
     return ExitCode::bad_input;
   }
   given.erase(given.begin());
+  check_switches(app, given);
   std::reverse(given.begin(), given.end());  // as the parser takes them
   try {
     app.parse(given);
+    check_no_empty_values(app);
   } catch (const CLI::Success& help_or_version) {
     const auto code = static_cast<ExitCode>(app.exit(help_or_version));
     check_stdout();

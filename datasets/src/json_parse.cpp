@@ -72,32 +72,71 @@ class Guard {
   std::vector<std::set<std::string>> keys_;
 };
 
-/// The part of nlohmann's message after its own position: "unexpected '}'; expected ...".
-std::string reason_of(const std::string& message) {
-  for (const char* before : {" - ", "] "}) {
-    const std::size_t at = message.find(before);
-    if (at != std::string::npos) return message.substr(at + std::string_view(before).size());
-  }
-  return message;
+/// What stood where the parser stopped, by what it says it wanted: its words are for those who know its grammar.
+std::string expected_instead(const std::string& message) {
+  struct Meaning {
+    const char* said;
+    const char* expected;
+  };
+  static constexpr Meaning kOfTexts[] = {
+      {"missing closing quote", "a closing double quote"},
+      {"must be escaped", "text without line breaks and control characters (\\n and \\u000a stand for a line break)"},
+      {"must be followed by 4 hex digits", "four hexadecimal digits after \\u"},
+      {"forbidden character after backslash", "one of \" \\ / b f n r t u after a backslash"},
+      {"surrogate", "a surrogate pair: \\ud800 to \\udbff, then \\udc00 to \\udfff"},
+      {"ill-formed UTF-8", "text in UTF-8"},
+      {"invalid BOM", "text in UTF-8"},
+      {"invalid number", "a number as JSON writes it: 0.5, -3, 1e-9"}};
+  static constexpr Meaning kOfTokens[] = {{"expected end of input", "the end of the file after one JSON value"},
+                                          {"expected string literal", "a key in double quotes"},
+                                          {"expected ':'", "a colon after the key"},
+                                          {"expected ']'", "a comma or \"]\""},
+                                          {"expected '}'", "a comma or \"}\""}};
+  // What was read last is the file's, and may hold anything.
+  const std::string reason = message.substr(0, message.find("last read: "));
+  for (const Meaning& m : kOfTexts)
+    if (reason.find(m.said) != std::string::npos) return m.expected;
+  const std::size_t last = message.rfind("; expected ");
+  for (const Meaning& m : kOfTokens)
+    if (last != std::string::npos && message.compare(last + 2, std::string::npos, m.said) == 0) return m.expected;
+  return "a JSON value: an object, a list, a number, text in double quotes, true, false or null";
 }
 
-}  // namespace
+/// "the number 1e999".
+std::string number_in(const std::string& message) {
+  const std::size_t first = message.find('\''), last = message.rfind('\'');
+  return first < last ? "the number " + message.substr(first + 1, last - first - 1) : "a number that is too large";
+}
 
-Json parse_json(std::string_view text, const std::string& file_name) {
+/// Parses with `guard`, and says what is wrong by line and column.
+template <class Guarding>
+Json parse_guarded(std::string_view text, const std::string& file_name, const Guarding& guarding) {
   std::size_t position = 0;
   const char* begin = text.data();
   const CountingIterator first(begin, begin, &position);
   const CountingIterator last(begin + text.size(), begin, &position);
   try {
-    return Json::parse(first, last, Guard(text, file_name, position));
+    return Json::parse(first, last, guarding(position));
   } catch (const nlohmann::detail::parse_error& error) {
     const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
     throw DataError(DataCode::json_syntax, file_name, line_and_column(text, byte), excerpt(text, byte),
-                    "JSON: " + reason_of(error.what()));
+                    expected_instead(error.what()));
   } catch (const nlohmann::detail::out_of_range& error) {
-    throw DataError(DataCode::number, file_name, line_and_column(text, position), reason_of(error.what()),
+    throw DataError(DataCode::number, file_name, line_and_column(text, position), number_in(error.what()),
                     "a number that a finite double can hold");
   }
+}
+
+}  // namespace
+
+Json parse_json(std::string_view text, const std::string& file_name) {
+  return parse_guarded(text, file_name, [&](const std::size_t& position) { return Guard(text, file_name, position); });
+}
+
+void check_json_syntax(std::string_view text, const std::string& file_name) {
+  parse_guarded(text, file_name, [&](const std::size_t&) {
+    return [](int, nlohmann::detail::parse_event_t, const Json&) { return false; };
+  });
 }
 
 Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number) {

@@ -27,7 +27,10 @@ inline constexpr int kDeepestJson = 100;
 /// Throws DataError (E_JSON_SYNTAX, E_JSON_DUPLICATE_KEY, E_NESTING, E_NUMBER) with line and column.
 Json parse_json(std::string_view text, const std::string& file_name);
 
-/// The same for line `number` of a file of lines, each of which is JSON: places name that line.
+/// Throws DataError (E_JSON_SYNTAX, E_NUMBER) as `parse_json` does, and keeps nothing of the text.
+void check_json_syntax(std::string_view text, const std::string& file_name);
+
+/// `parse_json` of line `number` of a file of lines, each of which is JSON: places name that line.
 Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number);
 
 /// "a number", "text", ... with the value where it is short: what messages say was found.

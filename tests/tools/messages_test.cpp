@@ -62,6 +62,13 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"paper --out o --random 0", "--random: found '0', expected a whole number from 1 to 1000000"},
         Mistake{"paper --out o --ablations --jobs 2000",
                 "--jobs: found '2000', expected a whole number from 1 to 1024"},
+        Mistake{"simulate s.json -m orca -m ivo", "--method: given 2 times, expected once"},
+        Mistake{"trap s.json --json=2", "--json: found '2', expected no value, since it is a switch"},
+        Mistake{"trap s.json --json=true", "--json: found 'true', expected no value"},
+        Mistake{"simulate s.json --no-figures=1", "--no-figures: found '1', expected no value"},
+        Mistake{"--quiet=no simulate s.json", "--quiet: found 'no', expected no value"},
+        Mistake{"simulate -h=3", "found '3', expected no value"},
+        Mistake{"simulate ''", "scenario: found '', expected a value: JSON file"},
         Mistake{"paper", "missing option --out: "}, Mistake{"audit", "found 'neither a path nor --certificate'"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -78,6 +85,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"generate star --seed abc --out a.wkt", "--seed: found 'abc', expected a whole number"},
         Mistake{"generate star --count 3.5 --out a.wkt", "--count: found '3.5', expected a whole number"},
         Mistake{"generate star --count many --out a.wkt", "--count: found 'many', expected a whole number"},
+        Mistake{"validate ''", "files: found '', expected a value: Obstacle files"},
+        Mistake{"validate p.wkt --strict=yes", "--strict: found 'yes', expected no value"},
         Mistake{"segment", "missing argument files"},
         Mistake{"segment p.wkt --radius x", "--radius: found 'x', expected a number"},
         Mistake{"segment p.wkt --tolrance 1", "did you mean '--tolerance'?"},
@@ -124,6 +133,53 @@ TEST(Messages, AScenarioErrorDoesNotQuoteTheSchema) {
   EXPECT_THAT(
       place().run("simulate bad.json").err,
       HasSubstr(R"(found none of these keys, expected "polyline", or "polygon", or "file" [E_NO_ALTERNATIVE])"));
+}
+
+TEST(Messages, JsonThatIsMalformedIsAnsweredByLineAndColumnInPlainWords) {
+  struct Case {
+    const char* text;
+    const char* message;
+  };
+  const Case cases[] = {
+      {"{\"a\": 1,}", "line 1, column 9: found \"}\", expected a key in double quotes"},
+      {"{a: 1}", "line 1, column 2: found \"a: 1}\", expected a key in double quotes"},
+      {"{\n  \"a\" 1}", "line 2, column 7: found \"1}\", expected a colon after the key"},
+      {"{\"a\": 1 \"b\": 2}", "expected a comma or \"}\""},
+      {"{\"a\": [1 2]}", "line 1, column 10: found \"2]}\", expected a comma or \"]\""},
+      {"{\"a\": [1,]}", "expected a JSON value: an object, a list, a number, text in double quotes"},
+      {"{\"a\": tru}", "expected a JSON value"},
+      {"{\"a\": 'x'}", "expected a JSON value"},
+      {"{\"a\": 1.}", "expected a number as JSON writes it"},
+      {"{\"a\": \"x}", "expected a closing double quote"},
+      {"{\"a\": \"\\x\"}", "after a backslash"},
+      {"{\"a\": \"x\ny\"}", "expected text without line breaks"},
+      {"{\"a\": 1", "found the end of the file, expected a comma or \"}\""},
+      {"{\"a\": 1} 2", "expected the end of the file after one JSON value"},
+      {"{\"a\": 1e999}", "found the number 1e999, expected a number that a finite double can hold"},
+  };
+  for (const Case& c : cases) {
+    place().write("bad.json", c.text);
+    const Outcome outcome = place().run("simulate bad.json");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(c.message)) << c.text;
+    for (const char* foreign : {"unexpected", "literal", "last read", "parsing"})
+      EXPECT_THAT(outcome.err, Not(HasSubstr(foreign))) << c.text;
+  }
+}
+
+TEST(Messages, MalformedGeoJsonIsNotAnsweredInTheWordsOfALibrary) {
+  place().write("bad.geojson", R"({"type": "FeatureCollection", "features": [
+  {"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [[[0, 0], [1, 0] [1, 1]]]}}]})");
+  const Outcome outcome = place().run("validate bad.geojson");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.out, HasSubstr("bad.geojson: line 2, column 87: found \"[1, 1]]]}}]}\", expected a comma"));
+}
+
+TEST(Messages, PointsBelowAHeaderAreAListOfPoints) {
+  place().write("header.csv", "# from a survey\nx,y\n1,2\n3,4\n");
+  EXPECT_THAT(place().run("validate header.csv").err, HasSubstr("points-csv, 2 read: 2 valid"));
+  place().write("three.csv", "x,y,z\n1,2,3\n");
+  EXPECT_THAT(place().run("validate three.csv").err, HasSubstr("--format points-csv"));
 }
 
 TEST(Messages, AnImageIsReferredToItsMap) {

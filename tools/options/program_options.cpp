@@ -61,6 +61,8 @@ struct ProgramOptions::Parser {
       const std::string name = name_of(words[k]);
       if (std::find(names.begin(), names.end(), name) == names.end())
         throw std::runtime_error("unknown option '" + name + "'" + suggestion(name, names));
+      if (name != words[k] && std::find(switches.begin(), switches.end(), name) != switches.end())
+        throw std::runtime_error(name + " takes no value");
       if (std::find(with_value.begin(), with_value.end(), words[k]) == with_value.end()) continue;
       if (k + 1 == words.size() || is_option(words[k + 1])) throw std::runtime_error(name + " takes a value");
       ++k;
@@ -69,6 +71,7 @@ struct ProgramOptions::Parser {
 
   CLI::App app;
   std::vector<std::string> with_value;
+  std::vector<std::string> switches;
 };
 
 ProgramOptions::ProgramOptions(const std::string& program, const std::string& summary, const std::string& footer)
@@ -80,6 +83,7 @@ ProgramOptions::~ProgramOptions() = default;
 
 void ProgramOptions::flag(const std::string& name, bool& value, const std::string& help) {
   parser_->app.add_flag(name, value, help);
+  parser_->switches.push_back(name);
 }
 
 void ProgramOptions::text(const std::string& name, std::string& value, const std::string& help, bool required) {

@@ -39,6 +39,10 @@ bool is_flag(const CLI::Option& option) {
   return !option.get_positional() && option.get_expected_max() == 0;
 }
 
+bool takes_one(const CLI::Option& option) {
+  return option.get_expected_max() == 1;
+}
+
 /// The option with this name, "--out" or "-o"; null where there is none.
 const CLI::Option* option_named(const std::vector<const CLI::Option*>& options, const std::string& word) {
   for (const CLI::Option* option : options)
@@ -123,7 +127,9 @@ std::string words_of(const CLI::App& app, const CLI::ParseError& error, const st
   if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing_words(option);
   if (!option) return "the command line could not be understood";
   const std::string name = option->get_name();
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->results().empty())
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->results().size() > 1 && takes_one(*option))
+    return fmt::format("{}: given {} times, expected once", name, option->results().size());
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->results().empty() && !is_flag(*option))
     return fmt::format("{}: no value given, expected {}", name, kind_of_value(*option));
   // Checks of our own say what they found and what they expected.
   if (message.find("found '") != std::string::npos) return message;
@@ -135,6 +141,31 @@ std::string words_of(const CLI::App& app, const CLI::ParseError& error, const st
 std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
   const CLI::App* verb = verb_of(app);
   return words_of(app, error, words) + " (see 'exactvo " + (verb ? verb->get_name() + " " : "") + "--help')";
+}
+
+void check_switches(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<const CLI::Option*> options = app.get_options();
+  for (const CLI::App* verb : app.get_subcommands(nullptr)) {
+    if (std::find(words.begin(), words.end(), verb->get_name()) == words.end()) continue;
+    const std::vector<const CLI::Option*> more = verb->get_options();
+    options.insert(options.end(), more.begin(), more.end());
+  }
+  for (const std::string& word : words) {
+    if (word == "--") return;
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) continue;
+    const CLI::Option* option = option_named(options, word.substr(0, equals));
+    if (option && is_flag(*option))
+      throw UsageError(option->get_name(), word.substr(equals + 1), kind_of_value(*option));
+  }
+}
+
+void check_no_empty_values(const CLI::App& app) {
+  for (const CLI::Option* option : options_of(app)) {
+    const std::vector<std::string>& values = option->results();
+    if (is_flag(*option) || std::find(values.begin(), values.end(), "") == values.end()) continue;
+    throw UsageError(option->get_name(), "", kind_of_value(*option));
+  }
 }
 
 CLI::Validator whole_number(unsigned long long least, unsigned long long most) {

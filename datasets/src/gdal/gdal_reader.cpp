@@ -8,6 +8,8 @@
 #include <iterator>
 #include <limits>
 
+#include "exactvo/datasets/input_text.h"
+#include "exactvo/geometry/box.h"
 #include "gdal/gdal_session.h"
 #include "gdal/geojson_sequence.h"
 #include "gdal/geojson_shape.h"
@@ -71,20 +73,10 @@ void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0) {
 /// 180.00000000000014. A millionth of a degree is 0.1 m on the ground.
 constexpr double kDegreesBeyond = 1e-6;
 
-struct Box {
-  geometry::Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  geometry::Vec2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-
-  void add(geometry::Vec2 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  bool empty() const { return !(low.x <= high.x); }
-  bool is_longitude_latitude() const {
-    constexpr double kEast = 180.0 + kDegreesBeyond, kNorth = 90.0 + kDegreesBeyond;
-    return low.x >= -kEast && high.x <= kEast && low.y >= -kNorth && high.y <= kNorth;
-  }
-};
+bool is_longitude_latitude(const geometry::Box& box) {
+  constexpr double kEast = 180.0 + kDegreesBeyond, kNorth = 90.0 + kDegreesBeyond;
+  return box.low.x >= -kEast && box.high.x <= kEast && box.low.y >= -kNorth && box.high.y <= kNorth;
+}
 
 /// A millionth of a degree (0.1 m): a centre that people can copy. A billionth (0.1 mm): a place to zoom to.
 constexpr double kCentreDecimals = 1e6;
@@ -97,17 +89,22 @@ double rounded_degrees(double degrees, double decimals) {
 /// Characters of a text that is no geometry.
 constexpr std::size_t kShownText = 40;
 
-/// A sequence whose first line is malformed is one that GDAL does not know.
-bool is_sequence_name(const std::filesystem::path& path) {
+std::string lower_case_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+/// A sequence whose first line is malformed is one that GDAL does not know.
+bool is_sequence_name(const std::filesystem::path& path) {
+  const std::string extension = lower_case_extension(path);
   const char* const known[] = {".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
   return std::find(std::begin(known), std::end(known), extension) != std::end(known);
 }
 
 class VectorReader {
  public:
-  VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out) {
+  VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out), size_limit_(path) {
     data_ = open_vectors(path);
     if (is_sequence_file()) {
       complaints_.take_failure();  // of the first bad line, which is told by its number
@@ -135,8 +132,19 @@ class VectorReader {
   void refuse_complaints(const std::string& place, bool failed = false) {
     const std::string words = complaints_.take_failure();
     if (words.empty() && !failed) return;
+    if (GeoJsonSizeLimit::is_said_in(words))
+      throw DataError(DataCode::size, path_.string(), place, "a feature of more JSON than is read at a time",
+                      "fewer points in a feature, or another format, such as WKT");
+    if (place.empty()) refuse_malformed_json();
     throw DataError(DataCode::library, path_.string(), place,
                     words.empty() ? "a file that no vector driver reads" : words, "a vector file that GDAL reads");
+  }
+
+  /// Of GeoJSON and TopoJSON: what is wrong in this program's words, with line and column.
+  void refuse_malformed_json() const {
+    const std::string extension = lower_case_extension(path_);
+    if (extension != ".json" && extension != ".geojson" && extension != ".topojson") return;
+    check_json_syntax(read_text_file(path_), path_.string());
   }
 
   /// What a layer or a sequence holds, one after the other.
@@ -182,7 +190,11 @@ class VectorReader {
   }
 
   template <class Action>
-  void for_each_feature(Action action) {
+  void for_each_feature(Action for_one) {
+    const auto action = [&](const Item& item) {
+      call_wait_hook();
+      for_one(item);
+    };
     if (is_sequence()) return for_each_record(action);
     layer_->ResetReading();
     std::size_t number = 0;
@@ -196,8 +208,8 @@ class VectorReader {
     refuse_complaints("after feature " + std::to_string(number));
   }
 
-  Box bounding_box() {
-    Box box;
+  geometry::Box bounding_box() {
+    geometry::Box box;
     Visitor visitor;
     visitor.other = [](const std::string&) {};
     visitor.shape = [&](RawKind, const std::vector<geometry::Ring>& rings) {
@@ -225,9 +237,9 @@ class VectorReader {
     if (units == Units::automatic && system == nullptr)
       return settle_metres("taken as metres: names no reference system");
     if (units == Units::automatic && !system->IsGeographic()) return settle_projected(*system);
-    const Box box = bounding_box();
-    if (box.empty()) return;
-    if (!box.is_longitude_latitude()) return settle_impossible_degrees(units);
+    const geometry::Box box = bounding_box();
+    if (box.is_empty()) return;
+    if (!is_longitude_latitude(box)) return settle_impossible_degrees(units);
     project_round(box, system != nullptr && system->IsGeographic() ? *system : *OGRSpatialReference::GetWGS84SRS());
     const std::string where = given_.plane.reference_system.empty() ? "round longitude " + number(origin_->longitude) +
                                                                           ", latitude " + number(origin_->latitude)
@@ -302,7 +314,7 @@ class VectorReader {
   }
 
   /// To the plane that the file names, else to one of its own, round the middle of its box.
-  void project_round(const Box& box, OGRSpatialReference from) {
+  void project_round(const geometry::Box& box, OGRSpatialReference from) {
     from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     LocalPlane plane = given_.plane;
     OGRSpatialReference local;
@@ -336,20 +348,41 @@ class VectorReader {
   }
 
   void bring_to_metres(geometry::Ring& ring, const std::string& place) {
-    for (geometry::Vec2& p : ring) {
-      if (!geometry::is_finite(p)) continue;
-      const geometry::Vec2 written = p;
-      if (to_metres_ == nullptr) {
-        p = scale_ * p;
-      } else if (!to_metres_->Transform(1, &p.x, &p.y)) {
-        complaints_.take_failure();
-        throw DataError(DataCode::projection, path_.string(), place,
-                        "a point that has no place on the local plane: " + number(written.x) + ", " + number(written.y),
-                        "coordinates near each other");
-      } else {
-        p = given_.rounded(p + given_.plane.offset);
+    if (to_metres_ != nullptr) return project(ring, place);
+    for (geometry::Vec2& p : ring)
+      if (geometry::is_finite(p)) p = scale_ * p;
+  }
+
+  /// Many points a call: PROJ takes longer to be asked than to answer.
+  void project(geometry::Ring& ring, const std::string& place) {
+    constexpr std::size_t kPoints = 4096;
+    std::vector<std::size_t> taken;
+    std::vector<double> x, y;
+    std::vector<int> success(kPoints);
+    for (std::size_t begin = 0; begin < ring.size(); begin += kPoints) {
+      taken.clear();
+      x.clear();
+      y.clear();
+      for (std::size_t k = begin; k < std::min(begin + kPoints, ring.size()); ++k) {
+        if (!geometry::is_finite(ring[k])) continue;
+        taken.push_back(k);
+        x.push_back(ring[k].x);
+        y.push_back(ring[k].y);
+      }
+      to_metres_->Transform(static_cast<int>(taken.size()), x.data(), y.data(), nullptr, success.data());
+      for (std::size_t k = 0; k < taken.size(); ++k) {
+        geometry::Vec2& p = ring[taken[k]];
+        if (!success[k]) refuse_unplaced(p, place);
+        p = given_.rounded(geometry::Vec2{x[k], y[k]} + given_.plane.offset);
       }
     }
+  }
+
+  [[noreturn]] void refuse_unplaced(geometry::Vec2 written, const std::string& place) {
+    complaints_.take_failure();
+    throw DataError(DataCode::projection, path_.string(), place,
+                    "a point that has no place on the local plane: " + number(written.x) + ", " + number(written.y),
+                    "coordinates near each other");
   }
 
   void add(const Item& item) {
@@ -458,6 +491,7 @@ class VectorReader {
 
   std::filesystem::path path_;
   Collector& out_;
+  GeoJsonSizeLimit size_limit_;
   GdalComplaints complaints_;
   std::string malformed_;            ///< GDAL's words of a geometry of GeoJSON
   bool has_told_malformed_ = false;  ///< in words of our own, with the feature

@@ -3,9 +3,15 @@
 
 #include <cpl_conv.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <mutex>
+#include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
+
+#include "exactvo/datasets/input_text.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -27,7 +33,42 @@ const char* const* options_for(GDALDriverH driver) {
   return name == "GeoJSON" ? kGeoJsonOptions : kNoOptions;
 }
 
+double json_memory_for(double input_bytes) {
+  constexpr double kOfProcess = 60e6;  // libraries and the text itself
+  return 20.0 * input_bytes + 200e6 - kOfProcess;
+}
+
+/// Measured with json-c 0.16: a list of two numbers takes 305 bytes.
+constexpr double kBytesOfList = 305.0;
+/// Of GDAL's estimate of a feature's size, measured on polygons of two digits a point.
+constexpr double kBytesOfEstimated = 3.05;
+constexpr const char* kSizeOption = "OGR_GEOJSON_MAX_OBJ_SIZE";  // MB
+
 }  // namespace
+
+std::optional<DataError> bulky_json(std::string_view text, const std::string& file, const std::string& place) {
+  const auto lists = static_cast<double>(std::count(text.begin(), text.end(), '['));
+  if (kBytesOfList * lists <= json_memory_for(static_cast<double>(text.size()))) return std::nullopt;
+  return DataError(DataCode::size, file, place,
+                   std::to_string(static_cast<long long>(lists)) + " lists in one JSON text",
+                   "fewer at a time: features of their own, a line each, or another format");
+}
+
+GeoJsonSizeLimit::GeoJsonSizeLimit(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto size = static_cast<double>(std::filesystem::file_size(path, error));
+  if (error) return;
+  const double megabytes = json_memory_for(size) / kBytesOfEstimated / 1e6;
+  CPLSetThreadLocalConfigOption(kSizeOption, std::to_string(static_cast<long long>(megabytes)).c_str());
+}
+
+GeoJsonSizeLimit::~GeoJsonSizeLimit() {
+  CPLSetThreadLocalConfigOption(kSizeOption, nullptr);
+}
+
+bool GeoJsonSizeLimit::is_said_in(const std::string& complaint) {
+  return complaint.find("too complex/large") != std::string::npos;
+}
 
 void register_gdal_once() {
   static std::once_flag done;
@@ -68,6 +109,9 @@ std::vector<std::string> GdalComplaints::take_warnings() {
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path) {
   register_gdal_once();
   const GDALDriverH driver = GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, kDrivers, nullptr);
+  if (driver != nullptr && std::string_view(GDALGetDriverShortName(driver)) == "TopoJSON") {
+    if (const auto bulky = bulky_json(read_text_file(path), path.string(), "")) throw *bulky;
+  }
   return std::unique_ptr<GDALDataset>(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, options_for(driver), nullptr));
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "gdal/gdal_session.h"
 #include "gdal/geojson_shape.h"
 #include "text_file.h"
 
@@ -131,6 +132,8 @@ std::unique_ptr<OGRGeometry> shape_of(const CPLJSONObject& record) {
 
 GeoJsonRecord record_of(const std::string& text, const std::string& file, const GeoJsonPlace& place, bool is_spoilt) {
   GeoJsonRecord record{words_of(place), nullptr, std::nullopt};
+  record.fault = bulky_json(text, file, words_of(place));
+  if (record.fault) return record;
   CPLJSONDocument document;
   if (is_spoilt || !document.LoadMemory(text)) {
     record.fault = syntax_fault(text, file, place);

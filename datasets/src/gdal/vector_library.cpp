@@ -5,8 +5,8 @@
 namespace exactvo::datasets {
 
 const VectorLibrary& vector_library() {
-  static constexpr VectorLibrary kLibrary{read_vector_file, to_gdal_file, read_gdal_image, batch::make_geopackage,
-                                          make_plane_transform};
+  static constexpr VectorLibrary kLibrary{read_vector_file,       to_gdal_file,         read_gdal_image,
+                                          batch::make_geopackage, make_plane_transform, set_wait_hook};
   return kLibrary;
 }
 

@@ -7,6 +7,7 @@
 /// them (modules/loader.cpp), and the rest of the library calls them through this table alone.
 
 #include "batch/formats/geopackage.h"
+#include "exactvo/datasets/input_text.h"
 #include "gdal/plane_transform.h"
 #include "readers/grey_image.h"
 #include "readers/readers.h"
@@ -20,6 +21,7 @@ struct VectorLibrary {
   decltype(&datasets::read_gdal_image) read_gdal_image;
   decltype(&batch::make_geopackage) make_geopackage;
   decltype(&datasets::make_plane_transform) make_plane_transform;
+  decltype(&datasets::set_wait_hook) set_wait_hook;  ///< of the module's own copy of text_file.cpp
 };
 
 /// Throws DataError (E_FORMAT_UNAVAILABLE) where a program loads it and cannot.

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/input_text.h"
 #include "gdal/vector_library.h"
 #include "modules/module.h"
 #include "mpi/rank_library.h"
@@ -52,8 +53,13 @@ const void* load(const std::string& name, const std::string& purpose, int visibi
 
 #ifdef EXACTVO_LOADS_GDAL
 const VectorLibrary& vector_library() {
-  static const void* const library = load("gdal", "vector files, pictures and GeoPackages (GDAL)", RTLD_LOCAL);
-  return *static_cast<const VectorLibrary*>(library);
+  static const VectorLibrary& library = []() -> const VectorLibrary& {
+    const auto& loaded =
+        *static_cast<const VectorLibrary*>(load("gdal", "vector files, pictures and GeoPackages (GDAL)", RTLD_LOCAL));
+    loaded.set_wait_hook(call_wait_hook);  // the program's: a signal ends the module's readers too
+    return loaded;
+  }();
+  return library;
 }
 #endif
 

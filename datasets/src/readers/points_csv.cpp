@@ -34,19 +34,32 @@ geometry::Vec2 to_point(const LineReader& lines) {
 
 }  // namespace
 
+/// The first line that is no comment, or the second where the first is a header of two words.
 bool looks_like_points_csv(const Glimpse& glimpse) {
-  return glimpse.extension == ".csv" &&
-         is_a_pair_of_numbers(glimpse.beginning.substr(0, glimpse.beginning.find_first_of("\r\n")));
+  if (glimpse.extension != ".csv") return false;
+  std::string_view rest = glimpse.beginning;
+  for (bool may_be_header = true; !rest.empty();) {
+    const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+    const std::string_view line = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (line.empty() || line.front() == '#') continue;
+    if (is_a_pair_of_numbers(line)) return true;
+    if (!may_be_header || !begins_with_a_letter(line) || fields_of(line, ',').size() != 2) return false;
+    may_be_header = false;
+  }
+  return false;
 }
 
 void read_points_csv(const std::filesystem::path& path, Collector& out) {
   const std::string text = read_text_file(path);
   LineReader lines(text, out.file());
   std::vector<geometry::Vec2> points;
-  while (lines.next()) {
+  for (bool may_be_header = true; lines.next();) {
     const std::string_view line = trimmed(lines.line());
-    if (line.empty() || line.front() == '#' || (lines.number() == 1 && begins_with_a_letter(line))) continue;
-    points.push_back(to_point(lines));
+    if (line.empty() || line.front() == '#') continue;
+    const bool is_header = may_be_header && begins_with_a_letter(line);
+    may_be_header = false;
+    if (!is_header) points.push_back(to_point(lines));
   }
   add_hits(points, out);
 }

@@ -2,23 +2,42 @@
 #include "scenarios/schema_check.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
 
 namespace exactvo::datasets {
 namespace {
 
+/// A JSON pointer in the making: of millions of values only those that are refused need it as text.
+class Place {
+ public:
+  Place() = default;
+  Place(const Place& parent, const std::string& key) : parent_(&parent), key_(&key) {}
+  Place(const Place& parent, std::size_t index) : parent_(&parent), index_(index) {}
+
+  std::string pointer() const {
+    if (parent_ == nullptr) return "";
+    return parent_->pointer() + "/" + (key_ != nullptr ? pointer_token(*key_) : std::to_string(index_));
+  }
+
+ private:
+  const Place* parent_ = nullptr;
+  const std::string* key_ = nullptr;
+  std::size_t index_ = 0;
+};
+
 class Checker {
  public:
   Checker(const Json& root, const std::string& file) : root_(root), file_(file) {}
 
-  void check(const Json& value, const Json& schema, const std::string& pointer) const {
+  void check(const Json& value, const Json& schema, const Place& place) const {
     const Json& rules = resolved(schema);
-    for (const auto& [keyword, rule] : rules.items()) apply(keyword, rule, value, rules, pointer);
+    for (const auto& [keyword, rule] : rules.items()) apply(keyword, rule, value, rules, place);
   }
 
  private:
-  using Rule = void (Checker::*)(const Json& rule, const Json& value, const Json& rules, const std::string& at) const;
+  using Rule = void (Checker::*)(const Json& rule, const Json& value, const Json& rules, const Place& at) const;
   struct Keyword {
     const char* name;
     Rule rule;
@@ -26,7 +45,7 @@ class Checker {
   static const std::vector<Keyword>& keywords();
 
   void apply(const std::string& keyword, const Json& rule, const Json& value, const Json& rules,
-             const std::string& at) const {
+             const Place& at) const {
     for (const Keyword& known : keywords()) {
       if (keyword != known.name) continue;
       if (known.rule != nullptr) (this->*known.rule)(rule, value, rules, at);
@@ -38,12 +57,14 @@ class Checker {
   const Json& resolved(const Json& schema) const {
     const auto reference = schema.find("$ref");
     if (reference == schema.end()) return schema;
-    return root_.at(Json::json_pointer(reference->get<std::string>().substr(1)));
+    const Json*& known = resolved_[&*reference];
+    if (known == nullptr) known = &root_.at(Json::json_pointer(reference->get<std::string>().substr(1)));
+    return *known;
   }
 
-  [[noreturn]] void refuse(DataCode code, const std::string& at, const std::string& found,
+  [[noreturn]] void refuse(DataCode code, const Place& at, const std::string& found,
                            const std::string& expected) const {
-    throw DataError(code, file_, at, found, expected);
+    throw DataError(code, file_, at.pointer(), found, expected);
   }
 
   /// The unit or the shape that a description begins or ends with: "m" of "m; robots farther apart ignore each other.",
@@ -83,7 +104,7 @@ class Checker {
     return "a " + type;
   }
 
-  void type(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+  void type(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
     const Json alternatives = rule.is_array() ? rule : Json::array({rule});
     std::string expected;
     for (const Json& alternative : alternatives) {
@@ -94,14 +115,14 @@ class Checker {
     refuse(DataCode::wrong_type, at, described(value), with_unit(expected, rules));
   }
 
-  void one_of_words(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+  void one_of_words(const Json& rule, const Json& value, const Json&, const Place& at) const {
     if (std::find(rule.begin(), rule.end(), value) != rule.end()) return;
     std::string options;
     for (const Json& option : rule) options += (options.empty() ? "" : ", ") + option.dump();
     refuse(DataCode::not_an_option, at, described(value), "one of " + options);
   }
 
-  void required(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+  void required(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
     if (!value.is_object()) return;
     for (const Json& key : rule) {
       const std::string name = key.get<std::string>();
@@ -111,22 +132,22 @@ class Checker {
 
   /// A mistyped key leaves one key missing and one unknown; the unknown one tells the writer more.
   [[noreturn]] void refuse_missing(const std::string& name, const Json& value, const Json& rules,
-                                   const std::string& at) const {
+                                   const Place& at) const {
     if (rules.contains("properties") && rules.contains("additionalProperties")) {
       only_known_keys(rules.at("additionalProperties"), value, rules, at);
     }
     refuse(DataCode::key_missing, at, "no key \"" + name + "\"", "the key \"" + name + "\"");
   }
 
-  void properties(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+  void properties(const Json& rule, const Json& value, const Json&, const Place& at) const {
     if (!value.is_object()) return;
     for (const auto& [key, member] : value.items()) {
       const auto known = rule.find(key);
-      if (known != rule.end()) check(member, *known, at + "/" + pointer_token(key));
+      if (known != rule.end()) check(member, *known, Place(at, key));
     }
   }
 
-  void only_known_keys(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+  void only_known_keys(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
     if (rule != false) throw std::logic_error("schema: additionalProperties other than false is not supported");
     if (!value.is_object()) return;
     std::vector<std::string> known;
@@ -137,17 +158,17 @@ class Checker {
   }
 
   [[noreturn]] void refuse_unknown(const std::string& key, const std::vector<std::string>& known,
-                                   const std::string& at) const {
+                                   const Place& at) const {
     const std::string nearest = nearest_word(key, known);
     std::string all;
     for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
-    refuse(DataCode::key_unknown, at + "/" + pointer_token(key), "an unknown key \"" + key + "\"",
+    refuse(DataCode::key_unknown, Place(at, key), "an unknown key \"" + key + "\"",
            nearest.empty() ? "one of " + all : "a known key; did you mean \"" + nearest + "\"?");
   }
 
-  void items(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+  void items(const Json& rule, const Json& value, const Json&, const Place& at) const {
     if (!value.is_array()) return;
-    for (std::size_t i = 0; i < value.size(); ++i) check(value[i], rule, at + "/" + std::to_string(i));
+    for (std::size_t i = 0; i < value.size(); ++i) check(value[i], rule, Place(at, i));
   }
 
   /// "at least 1 entry", "at most 3 entries"
@@ -155,23 +176,23 @@ class Checker {
     return limit + " " + count.dump() + " " + (count == 1 ? one : many);
   }
 
-  void min_items(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+  void min_items(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
     if (!value.is_array() || value.size() >= rule.get<std::size_t>()) return;
     refuse(DataCode::wrong_count, at, described(value),
            with_unit(counted("at least", rule, "entry", "entries"), rules));
   }
 
-  void max_items(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
+  void max_items(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
     if (!value.is_array() || value.size() <= rule.get<std::size_t>()) return;
     refuse(DataCode::wrong_count, at, described(value), with_unit(counted("at most", rule, "entry", "entries"), rules));
   }
 
-  void min_length(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+  void min_length(const Json& rule, const Json& value, const Json&, const Place& at) const {
     if (!value.is_string() || characters(value) >= rule.get<std::size_t>()) return;
     refuse(DataCode::wrong_count, at, described(value), counted("at least", rule, "character", "characters"));
   }
 
-  void max_length(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+  void max_length(const Json& rule, const Json& value, const Json&, const Place& at) const {
     if (!value.is_string() || characters(value) <= rule.get<std::size_t>()) return;
     refuse(DataCode::wrong_count, at, described(value), counted("at most", rule, "character", "characters"));
   }
@@ -182,20 +203,21 @@ class Checker {
     return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
   }
 
-  void bound(bool holds, const std::string& words, const Json& value, const Json& rules, const std::string& at) const {
-    if (!holds) refuse(DataCode::out_of_range, at, described(value), with_unit(words, rules));
+  void bound(bool holds, const char* relation, const Json& rule, const Json& value, const Json& rules,
+             const Place& at) const {
+    if (!holds) refuse(DataCode::out_of_range, at, described(value), with_unit(relation + rule.dump(), rules));
   }
-  void minimum(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
-    if (value.is_number()) bound(value >= rule, "a number >= " + rule.dump(), value, rules, at);
+  void minimum(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
+    if (value.is_number()) bound(value >= rule, "a number >= ", rule, value, rules, at);
   }
-  void maximum(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
-    if (value.is_number()) bound(value <= rule, "a number <= " + rule.dump(), value, rules, at);
+  void maximum(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
+    if (value.is_number()) bound(value <= rule, "a number <= ", rule, value, rules, at);
   }
-  void above(const Json& rule, const Json& value, const Json& rules, const std::string& at) const {
-    if (value.is_number()) bound(value > rule, "a number > " + rule.dump(), value, rules, at);
+  void above(const Json& rule, const Json& value, const Json& rules, const Place& at) const {
+    if (value.is_number()) bound(value > rule, "a number > ", rule, value, rules, at);
   }
 
-  void none_of(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+  void none_of(const Json& rule, const Json& value, const Json&, const Place& at) const {
     try {
       check(value, rule, at);
     } catch (const DataError&) {
@@ -213,7 +235,7 @@ class Checker {
   }
 
   /// The alternatives are told apart by their required keys; the one that is meant gives its own words.
-  void one_of(const Json& rule, const Json& value, const Json&, const std::string& at) const {
+  void one_of(const Json& rule, const Json& value, const Json&, const Place& at) const {
     if (!value.is_object()) refuse(DataCode::wrong_type, at, described(value), "an object");
     std::vector<const Json*> meant;
     std::string keys;
@@ -241,6 +263,7 @@ class Checker {
 
   const Json& root_;
   const std::string& file_;
+  mutable std::map<const Json*, const Json*> resolved_;  ///< by the reference
 };
 
 const std::vector<Checker::Keyword>& Checker::keywords() {
@@ -273,7 +296,7 @@ const std::vector<Checker::Keyword>& Checker::keywords() {
 }  // namespace
 
 void check_against_schema(const Json& value, const Json& schema, const std::string& file_name) {
-  Checker(schema, file_name).check(value, schema, "");
+  Checker(schema, file_name).check(value, schema, {});
 }
 
 }  // namespace exactvo::datasets
