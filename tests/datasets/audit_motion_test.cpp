@@ -6,39 +6,28 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/input_text.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/distance.h"
+#include "formation/moving_scenes.h"
 #include "recordings/exact_motion.h"
-#include "support/seeded_random.h"
 
 namespace exactvo::datasets::test {
 namespace {
 
+using exactvo::test::random_motion;
+using exactvo::test::robot;
 using exactvo::test::SeededRandom;
+using exactvo::test::square;
 using formation::Leader;
 using formation::MotionLaw;
 using formation::MovingObstacle;
 using formation::Robot;
 using geometry::Vec2;
-
-MovingObstacle square(const std::string& id, Vec2 middle, double half, Leader motion) {
-  return {id,
-          geometry::Polygon{{middle + Vec2{-half, -half}, middle + Vec2{half, -half}, middle + Vec2{half, half},
-                             middle + Vec2{-half, half}},
-                            {}},
-          std::move(motion)};
-}
-
-Robot robot(const std::string& id, Vec2 position, Vec2 goal) {
-  Robot r;
-  r.id = id;
-  r.position = position;
-  r.goals = {goal};
-  return r;
-}
 
 /// Robots that keep their places for `steps` steps.
 RecordingFile resting(const formation::Scenario& s, std::size_t steps) {
@@ -289,24 +278,6 @@ TEST(AuditMotion, NumbersThatAreNoneAreInconsistent) {
   }
 }
 
-Leader random_motion(SeededRandom& random) {
-  Leader motion{{random.in_box(5)}, random.uniform(0.0, 9.0)};
-  for (int legs = random.integer(0, 8); legs > 0; --legs) {
-    const int kind = random.integer(0, 5);
-    const Vec2 last = motion.path.back();
-    motion.path.push_back(kind == 0   ? last
-                          : kind == 1 ? last + random.in_box(1e-9)
-                          : kind == 2 ? motion.path[motion.path.size() / 2]
-                                      : random.in_box(8));
-  }
-  double time = 0.0;
-  for (int knots = random.integer(0, 6); knots > 0; --knots) {
-    time += random.integer(0, 3) == 0 ? 0.0 : random.uniform(0.0, 1.0);
-    motion.profile.push_back({time, random.integer(0, 4) == 0 ? 0.0 : random.uniform(0.0, 9.0)});
-  }
-  return motion;
-}
-
 TEST(AuditMotion, TheWayOfAnObstacleIsWhatTheRunGoesBy) {
   SeededRandom random(exactvo::test::seed_of_run(94));
   for (int round = 0; round < 100; ++round) {
@@ -330,28 +301,55 @@ TEST(AuditMotion, TheWayOfAnObstacleIsWhatTheRunGoesBy) {
 }
 
 /// The least clearance over one step by sampling.
-double sampled_clearance(const RecordingFile& file) {
-  const formation::Recording& rec = file.recording;
+struct Sampled {
+  double least = std::numeric_limits<double>::infinity();  ///< m
+  /// m: the true least clearance is lower by at most this. From a sample to half-way to the next the obstacle goes half
+  /// of what its greatest speed allows, and the robot half of the way between the samples and, as its speed varies,
+  /// half of its second difference; all of that one is taken.
+  double slack = 0.0;
+};
+
+Vec2 place_of_robot(const formation::Recording& rec, double s) {
   const formation::RobotStep &a = rec.steps[0].robots[0], &b = rec.steps[1].robots[0];
   const double dt = rec.time_step, k = rec.tracking_gain;
-  double least = std::numeric_limits<double>::infinity();
+  Vec2 place = a.position + s * (b.position - a.position);
+  if (rec.motion == MotionLaw::exponential) {
+    const double g = (-std::expm1(-k * s * dt) + s * std::expm1(-k * dt)) / (-k * std::expm1(-k * dt));
+    place += g * (a.velocity - b.velocity);
+  }
+  if (rec.motion == MotionLaw::hermite) {
+    const Vec2 d = b.position - a.position;
+    place += s * (1 - s) * (1 - s) * (dt * a.velocity - d) - s * s * (1 - s) * (dt * b.velocity - d);
+  }
+  return place;
+}
+
+double top_speed(const Leader& motion) {
+  double top = motion.profile.empty() ? motion.speed : 0.0;
+  for (const formation::SpeedKnot& knot : motion.profile) top = std::max(top, knot.speed);
+  return top;
+}
+
+Sampled sampled_clearance(const RecordingFile& file) {
   constexpr int kSamples = 2000;
+  const formation::Recording& rec = file.recording;
+  const MovingObstacle& o = file.scenario.moving_obstacles[0];
+  Sampled found;
+  double step = 0.0, bend = 0.0;
+  Vec2 before, last;
   for (int m = 0; m <= kSamples; ++m) {
     const double s = static_cast<double>(m) / kSamples;
-    Vec2 place = a.position + s * (b.position - a.position);
-    if (rec.motion == MotionLaw::exponential) {
-      const double g = (-std::expm1(-k * s * dt) + s * std::expm1(-k * dt)) / (-k * std::expm1(-k * dt));
-      place += g * (a.velocity - b.velocity);
-    }
-    if (rec.motion == MotionLaw::hermite) {
-      const Vec2 d = b.position - a.position;
-      place += s * (1 - s) * (1 - s) * (dt * a.velocity - d) - s * s * (1 - s) * (dt * b.velocity - d);
-    }
-    const MovingObstacle& o = file.scenario.moving_obstacles[0];
-    const Vec2 moved = displacement_at(o, rec.steps[0].time + s * dt);
-    least = std::min(least, geometry::signed_distance(o.shape, place - moved) - file.scenario.robots[0].radius);
+    const Vec2 place = place_of_robot(rec, s);
+    const Vec2 moved = displacement_at(o, rec.steps[0].time + s * rec.time_step);
+    found.least =
+        std::min(found.least, geometry::signed_distance(o.shape, place - moved) - file.scenario.robots[0].radius);
+    if (m > 0) step = std::max(step, norm(place - last));
+    if (m > 1) bend = std::max(bend, norm(place - 2.0 * last + before));
+    before = last;
+    last = place;
   }
-  return least;
+  found.slack = 0.5 * step + bend + 0.5 * top_speed(o.motion) * rec.time_step / kSamples + 1e-9;
+  return found;
 }
 
 TEST(AuditMotion, AgreesWithSamplesOverRandomPathsProfilesAndCurves) {
@@ -366,18 +364,75 @@ TEST(AuditMotion, AgreesWithSamplesOverRandomPathsProfilesAndCurves) {
     file.recording.steps[1].time += start;
     file.recording.steps[0].time = start;
     const AuditReport report = audit(file);
-    const double sampled = sampled_clearance(file);
+    const Sampled sampled = sampled_clearance(file);
     EXPECT_EQ(report.unproven, 0u) << round;
     if (report.collisions == 0) {
-      EXPECT_GT(sampled, -1e-9) << round;
+      EXPECT_GT(sampled.least, -1e-9) << round;
       ++clear;
     } else {
-      EXPECT_LT(sampled, 25.0 * 1.5 / 2000) << round;
+      EXPECT_LT(sampled.least, sampled.slack) << round;
       ++meets;
     }
   }
   EXPECT_GT(clear, 30);
   EXPECT_GT(meets, 30);
+}
+
+/// `decide` over [0, 1], where parts longer than 2^-depth round `where` are not told, and how many parts it asks for.
+struct Decision {
+  exact::Verdict verdict;
+  int chords;
+};
+Decision decide_with(int depth, const std::function<bool(const exact::Rational&, const exact::Rational&)>& is_open,
+                     exact::Verdict answer = exact::Verdict::clear) {
+  const exact::Rational fine = exact::Rational(1) / (exact::Rational(1) << depth);
+  int chords = 0;
+  const auto over = [](const exact::Rational& from, const exact::Rational& to) { return std::make_pair(from, to); };
+  const auto test = [&](const auto& part) {
+    ++chords;
+    if (!is_open(part.first, part.second)) return exact::Verdict::clear;
+    return part.second - part.first > fine ? exact::Verdict::unknown : answer;
+  };
+  const exact::Verdict verdict = exact::decide(over, test, exact::Rational(0), exact::Rational(1));
+  return {verdict, chords};
+}
+
+TEST(ExactMotion, AQuestionIsGivenUpAfterItsChords) {
+  const auto everywhere = [](const exact::Rational&, const exact::Rational&) { return true; };
+  const Decision enough = decide_with(11, everywhere);
+  EXPECT_EQ(enough.verdict, exact::Verdict::clear);
+  EXPECT_EQ(enough.chords, 4095) << "2^11 parts and those that were halved";
+  const Decision too_many = decide_with(12, everywhere);
+  EXPECT_EQ(too_many.verdict, exact::Verdict::unknown);
+  EXPECT_LE(too_many.chords, exact::kMostChords + 1);
+  EXPECT_EQ(decide_with(12, everywhere, exact::Verdict::meets).verdict, exact::Verdict::meets) << "seen before that";
+}
+
+TEST(ExactMotion, OnePlaceIsHalvedSoOftenAndNoMore) {
+  const exact::Rational place(1, 3);
+  const auto round_it = [&](const exact::Rational& from, const exact::Rational& to) {
+    return from <= place && place <= to;
+  };
+  const Decision near = decide_with(exact::kMostHalvings, round_it);
+  EXPECT_EQ(near.verdict, exact::Verdict::clear);
+  EXPECT_EQ(near.chords, 2 * exact::kMostHalvings + 1);
+  const Decision contact = decide_with(exact::kMostHalvings + 1, round_it);
+  EXPECT_EQ(contact.verdict, exact::Verdict::unknown);
+  EXPECT_LE(contact.chords, 2 * exact::kMostHalvings + 1);
+}
+
+TEST(AuditMotion, EndsWhenItsCallerIsInterrupted) {
+  struct Stopped {};
+  static int calls = 0;
+  calls = 0;
+  set_wait_hook([] {
+    if (++calls == 3) throw Stopped();
+  });
+  formation::Scenario s;
+  s.robots = {robot("R1", {0, 0}, {9, 0})};
+  s.moving_obstacles = {square("box", {5, 3}, 0.5, {{{0, 0}, {9, 0}}, 1.0})};
+  EXPECT_THROW(audit(resting(s, 50)), Stopped);
+  set_wait_hook(nullptr);
 }
 
 TEST(ExactNumbers, RootsAndDecaysAreEnclosed) {
