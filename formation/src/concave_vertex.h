@@ -10,6 +10,9 @@
 ///               p            a robot heading for g rests exactly where  g - p = -(s n_A + t n_B),  s, t >= 0
 ///             robot
 ///
+/// A robot that meets one of the two boundaries within `kTieAngle` of head-on turns left by that angle (steering.h),
+/// which can turn it into the cone: so it rests there as well where g - p turned so lies in the cone.
+///
 /// Heuristic: the crossings are found by subdivision with rounded distances. None is missed but a pair of them closer
 /// together than a hundredth of the robot's radius, or where the boundaries run along each other.
 
@@ -37,7 +40,9 @@ std::vector<Crossing> crossings(const geometry::GrownShape& a, const geometry::G
 /// A robot at rest in a concave vertex.
 struct VertexRest {
   Equilibrium equilibrium;
-  double depth = 0.0;  ///< sine of the angle from the way to the goal to the nearer edge of the cone of rest, >= 0
+  /// Sine of the angle from the way to the goal to the nearer edge of the cone of rest; 0 where it lies outside by less
+  /// than the tie-break turns.
+  double depth = 0.0;
 };
 
 /// The rest of a robot at the crossing that heads for `goal`; nothing where some free velocity leads towards it.

@@ -213,18 +213,18 @@ void count_decisions(const Recording& recording, Metrics& m) {
   m.steps = recording.steps.size() - 1;
 }
 
-/// Who stopped elsewhere, a sentence each.
-std::vector<std::string> stuck_words(const Scenario& scenario, const Recording& recording) {
-  std::vector<std::string> words;
-  for (const StuckReport& report : explain_stuck(scenario, recording)) words.push_back(report.text);
-  return words;
-}
-
 }  // namespace
 
 Metrics measure(const Scenario& scenario, const Recording& recording) {
+  return evaluate(scenario, recording).metrics;
+}
+
+Evaluation evaluate(const Scenario& scenario, const Recording& recording) {
   EXACTVO_REQUIRE(!recording.steps.empty(), "an empty recording");
-  Metrics m;
+  Evaluation found;
+  found.stuck = explain_stuck(scenario, recording);
+  if (scenario.formation) found.lyapunov = lyapunov_along(scenario, recording);
+  Metrics& m = found.metrics;
   for (const Robot& r : scenario.robots) m.robots.emplace_back().id = r.id;
   measure_formation(scenario, recording, m);
   measure_arrival(scenario, recording, m);
@@ -236,10 +236,10 @@ Metrics measure(const Scenario& scenario, const Recording& recording) {
   count_decisions(recording, m);
   m.wall_time = recording.wall_time;
   m.warnings = recording.warnings;
-  m.stuck = stuck_words(scenario, recording);
-  if (scenario.formation) m.lyapunov = summary_of(lyapunov_along(scenario, recording), recording);
+  for (const StuckReport& report : found.stuck) m.stuck.push_back(report.text);
+  if (scenario.formation) m.lyapunov = summary_of(found.lyapunov, recording);
   m.outcome = detail::outcome_words(m, recording.outcome);
-  return m;
+  return found;
 }
 
 bool touched(const std::optional<double>& clearance) {

@@ -3,7 +3,7 @@
 
 /// \file
 /// The way of a moving obstacle in pieces between corners and speed knots: along each it goes straight, and its speed
-/// changes at a constant rate. Certified: each piece says by how much it may be off.
+/// changes at a constant rate. Rounded, with a certified bound of the error in each piece.
 
 #include <vector>
 
@@ -12,9 +12,9 @@
 namespace exactvo::formation::detail {
 
 struct WayPiece {
-  double from, to;      ///< s; the last piece ends at infinity
+  double from, to;      ///< s, from <= to; `to` is infinite where neither corner nor knot follows
   Vec2 vertex;          ///< m, displacement at the leg's first point
-  Vec2 direction;       ///< unit; (0, 0) at rest
+  Vec2 direction;       ///< unit, of the leg; (0, 0) at the path's end
   double origin;        ///< s, where the speed stretch begins
   double offset;        ///< m, along the leg at `origin`; negative where the leg begins later
   double speed, rate;   ///< m/s at `origin`, m/s^2
@@ -23,14 +23,15 @@ struct WayPiece {
 
   double along(double t) const { return offset + (t - origin) * (speed + 0.5 * rate * (t - origin)); }
   Vec2 at(double t) const { return vertex + along(t) * direction; }
-  /// m/s: no faster between `from` and `until`.
+  /// m/s: the greatest speed between `from` and `until`, rounded.
   double speed_bound(double until) const;
 };
 
-/// From t = 0 to the first piece that lasts until `end` (s). REQUIRES: a path of at least one point.
+/// The pieces from t = 0 on, each beginning where the one before it ends; of the last, `to` > `end` (s).
+/// REQUIRES: a path of at least one point.
 std::vector<WayPiece> way_of(const Leader& motion, double end);
 
-/// The index of the first piece that ends after `time`.
+/// The index of the first piece that ends after `time`. REQUIRES: 0 <= time <= end of `way_of`.
 std::size_t piece_at(const std::vector<WayPiece>& way, double time);
 
 }  // namespace exactvo::formation::detail

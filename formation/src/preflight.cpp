@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/hull.h"
 #include "leader.h"
+#include "moving_way.h"
 #include "walled_in.h"
 
 namespace exactvo::formation::detail {
@@ -112,41 +114,51 @@ std::string rounded(double x) {
   return text;
 }
 
-double top_speed(const Leader& motion) {
-  if (length_of(motion.path) == 0.0) return 0.0;
-  double top = motion.profile.empty() ? motion.speed : 0.0;
-  for (const SpeedKnot& knot : motion.profile) top = std::max(top, knot.speed);
+/// Of a speed: what is exactly as fast as a robot may go does not count as faster, however its direction was rounded.
+constexpr double kRounding = 1e-12;
+
+bool exceeds(double speed, double max_speed) {
+  return speed > max_speed * (1.0 + kRounding);
+}
+
+/// How much of a speed the bound counts: all of it, or its larger component.
+double counted(const Scenario& s, Vec2 velocity) {
+  return s.speed_bound == SpeedBoundKind::disc ? norm(velocity)
+                                               : std::max(std::fabs(velocity.x), std::fabs(velocity.y));
+}
+
+/// Where the speed bound of a robot is asked for most.
+struct TopSpeed {
+  double speed = 0.0;    ///< m/s, along the path
+  double counted = 0.0;  ///< m/s, of it
+};
+
+/// Over the part of the motion that happens: up to the path's end and the time limit.
+TopSpeed top_speed(const Scenario& s, const Leader& motion) {
+  const double end = std::min(leader_arrival(motion), s.time_limit);
+  TopSpeed top;
+  for (const WayPiece& piece : way_of(motion, end)) {
+    if (!(piece.from < end)) break;
+    const double speed = piece.speed_bound(std::min(piece.to, end));
+    const double part = s.speed_bound == SpeedBoundKind::disc ? speed : counted(s, speed * piece.direction);
+    if (part > top.counted) top = {speed, part};
+  }
   return top;
 }
 
-/// How much of the leader's speed the bound of a robot counts: all of it, or the larger component on the worst leg.
-double worst_share(const Scenario& s, const std::vector<Vec2>& path) {
-  if (s.speed_bound == SpeedBoundKind::disc) return 1.0;
-  double worst = 0.0;
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const Vec2 d = geometry::normalized(path[i] - path[i - 1]);
-    worst = std::max({worst, std::fabs(d.x), std::fabs(d.y)});
-  }
-  return worst;
-}
-
 void warn_of_fast_leader(const Scenario& s, std::vector<std::string>& out) {
-  // Share of a speed: a leader exactly as fast as its robots is none that outruns them, however the legs round.
-  constexpr double kRounding = 1e-12;
-  const Leader& leader = s.formation->leader;
-  const double asked = top_speed(leader) * worst_share(s, leader.path);
+  const TopSpeed top = top_speed(s, s.formation->leader);
   for (const Robot& robot : s.robots) {
-    if (!(asked > robot.max_speed * (1.0 + kRounding))) continue;
-    out.push_back("the leader moves at up to " + rounded(top_speed(leader)) + " m/s, faster than " + robot.id +
+    if (!exceeds(top.counted, robot.max_speed)) continue;
+    out.push_back("the leader moves at up to " + rounded(top.speed) + " m/s, faster than " + robot.id +
                   " can (max_speed " + rounded(robot.max_speed) + " m/s): the formation falls behind");
     return;
   }
 }
 
 void warn_of_fast_start(const Scenario& s, const Robot& robot, std::vector<std::string>& out) {
-  const Vec2 v = robot.velocity;
-  const double speed = s.speed_bound == SpeedBoundKind::disc ? norm(v) : std::max(std::fabs(v.x), std::fabs(v.y));
-  if (speed > robot.max_speed)
+  const double speed = counted(s, robot.velocity);
+  if (exceeds(speed, robot.max_speed))
     out.push_back(robot.id + " starts at " + rounded(speed) + " m/s, beyond its max_speed of " +
                   rounded(robot.max_speed) + " m/s");
 }
@@ -160,25 +172,43 @@ void warn_of_moving(const Scenario& s, const MovingObstacle& o, std::vector<std:
       out.push_back(robot.id + " starts inside the convex hull of moving obstacle '" + o.id +
                     "', as which it is avoided: the run begins in contact");
   }
-  const double speed = top_speed(o.motion);
+  const TopSpeed top = top_speed(s, o.motion);
   for (const Robot& robot : s.robots) {
-    if (!(speed > robot.max_speed)) continue;
-    out.push_back("moving obstacle '" + o.id + "' moves at up to " + rounded(speed) + " m/s, faster than " + robot.id +
-                  " (max_speed " + rounded(robot.max_speed) + " m/s): it can be run over");
+    if (!exceeds(top.counted, robot.max_speed)) continue;
+    out.push_back("moving obstacle '" + o.id + "' moves at up to " + rounded(top.speed) + " m/s, faster than " +
+                  robot.id + " (max_speed " + rounded(robot.max_speed) + " m/s): it can be run over");
     return;
   }
+}
+
+/// Where and since when a moving obstacle stands still for good.
+struct Rest {
+  double since = 0.0;  ///< s
+  Vec2 moved;          ///< m
+};
+
+/// Nothing where it still moves at the time limit.
+std::optional<Rest> rest_of(const Scenario& s, const MovingObstacle& o) {
+  const double arrival = leader_arrival(o.motion);
+  if (arrival <= s.time_limit) return Rest{arrival, o.motion.path.back() - o.motion.path.front()};
+  if (o.motion.profile.empty()) return o.motion.speed == 0.0 ? std::optional<Rest>(Rest{}) : std::nullopt;
+  // The last knot's speed is held.
+  const std::vector<SpeedKnot>& knots = o.motion.profile;
+  std::size_t first = knots.size();
+  while (first > 0 && knots[first - 1].speed == 0.0) --first;
+  if (first == knots.size() || knots[first].time > s.time_limit) return std::nullopt;
+  const double since = first == 0 ? 0.0 : knots[first].time;
+  return Rest{since, displacement_at(o, since)};
 }
 
 /// Goals that a moving obstacle covers for good where it comes to rest, or never leaves.
 void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, std::vector<std::string>& out) {
   for (const MovingObstacle& o : s.moving_obstacles) {
-    const double arrival = leader_arrival(o.motion);
-    const bool stays = top_speed(o.motion) == 0.0;
-    if (!stays && !(arrival <= s.time_limit)) continue;
-    const Vec2 moved = stays ? Vec2{} : o.motion.path.back() - o.motion.path.front();
-    if (geometry::signed_distance(o.shape, last.place - moved) + last.reach >= robot.radius) continue;
+    const std::optional<Rest> rest = rest_of(s, o);
+    if (!rest || geometry::signed_distance(o.shape, last.place - rest->moved) + last.reach >= robot.radius) continue;
     out.push_back(last.name + ", lies where moving obstacle '" + o.id + "' comes to rest" +
-                  (stays ? "" : " after " + rounded(arrival) + " s") + ": from then on it cannot be reached");
+                  (rest->since > 0.0 ? " after " + rounded(rest->since) + " s" : "") +
+                  ": from then on it cannot be reached");
   }
 }
 

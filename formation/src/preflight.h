@@ -8,13 +8,17 @@
 
 namespace exactvo::formation::detail {
 
-/// What a scenario asks for that cannot be had, in words, one line each: goals, or slots at the leader's end, inside
-/// obstacles or nearer to them than the robot's radius allows, shut off from the start by obstacles with gaps narrower
-/// than the robot (walled_in.h), or where a moving obstacle comes to rest; pairs of them nearer than two robots fit; a
-/// leader whose end lies beyond the time limit, or that is faster than a robot; a robot that starts faster than it may
-/// go, or inside the hull of a moving obstacle; a moving obstacle faster than a robot. `offsets` are those in use;
-/// empty without a formation. Sufficient, not necessary: margins, other robots and what a method can find are not
-/// considered.
+/// Warnings about what a scenario asks for and cannot get, one line each:
+///   - a goal, or a slot at the leader's end, that lies inside an obstacle or nearer to one than the robot's radius;
+///     that obstacles with gaps narrower than the robot shut off from the start (walled_in.h); or that a moving
+///     obstacle covers where it comes to rest;
+///   - two goals or slots too near to each other for both robots;
+///   - a leader that reaches its end after the time limit, or that moves faster than a robot can;
+///   - a robot that starts faster than its max_speed, or inside the hull of a moving obstacle;
+///   - a moving obstacle that is faster than a robot.
+/// Speeds count over the part of a motion that happens before the path's end and the time limit. `offsets` are the
+/// formation's in use; empty without one. Rounded. Where nothing is said a goal may still be out of reach: margins, the
+/// other robots and the limits of a method are not considered.
 std::vector<std::string> preflight_warnings(const Scenario& scenario, const std::vector<Vec2>& offsets);
 
 }  // namespace exactvo::formation::detail

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "boundary.h"
+#include "exactvo/formation/balance.h"
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/velocity_obstacle.h"
@@ -40,35 +41,23 @@ BindingConstraint binding_of(const RecordedConstraint& c, Vec2 robot) {
   return {c, nearest.normal, nearest.distance, rho};
 }
 
-/// Of the push: a share below it explains nothing.
-constexpr double kLeastShare = 1e-3;
+/// Of the push: multipliers round by far less. A share of 5e-4 decides where the tie-break turns a robot that would
+/// slide off against another boundary.
+constexpr double kLeastShare = 1e-6;
 
-/// The half-planes that push the preferred velocity to the chosen one: chosen - preferred is a combination of their
-/// normals with positive factors. One where one is enough, else two. All of them where the decision was a compromise
-/// between half-planes that contradict each other.
-void mark_pressing(const RobotStep& decision, std::vector<BindingConstraint>& binding) {
-  const Vec2 push = decision.chosen - decision.preferred;
-  if (decision.status != lp::Status::optimal) {
-    for (BindingConstraint& b : binding) b.pressing = true;
-    return;
+/// What is active in the decision, and which of it pushes: by the recorded multipliers, beside which those of the speed
+/// bound stand. All of it where the decision was a compromise between half-planes that contradict each other.
+std::vector<BindingConstraint> binding_in(const RobotStep& decision, Vec2 robot) {
+  const Balance balance = balance_of(decision);
+  const double least = kLeastShare * norm(decision.chosen - decision.preferred);
+  std::vector<BindingConstraint> binding;
+  for (std::size_t i = 0; i < decision.constraints.size(); ++i) {
+    if (!decision.constraints[i].active) continue;
+    BindingConstraint& b = binding.emplace_back(binding_of(decision.constraints[i], robot));
+    const double factor = balance.factor_of(i);
+    b.pressing = decision.status != lp::Status::optimal || (factor > 0.0 && factor >= least);
   }
-  const auto normal = [&](std::size_t k) { return geometry::normalized(binding[k].constraint.half_plane.normal); };
-  const double least = kLeastShare * norm(push);
-  if (least == 0.0) return;
-  for (std::size_t i = 0; i < binding.size(); ++i) {
-    if (!(dot(push, normal(i)) > 0.0) || std::fabs(cross(push, normal(i))) > least) continue;
-    binding[i].pressing = true;
-    return;
-  }
-  for (std::size_t i = 0; i < binding.size(); ++i) {
-    for (std::size_t j = i + 1; j < binding.size(); ++j) {
-      const double det = cross(normal(i), normal(j));
-      if (det == 0.0) continue;
-      if (cross(push, normal(j)) / det < least || cross(normal(i), push) / det < least) continue;
-      binding[i].pressing = binding[j].pressing = true;
-      return;
-    }
-  }
+  return binding;
 }
 
 std::vector<RecordedConstraint> pressing_of(const StuckReport& r) {
@@ -251,11 +240,7 @@ StuckReport report_on(const Scenario& scenario, const Recording& recording, std:
   r.goal_distance = norm(target - end.position);
   r.speed = norm(end.velocity);
   r.rest_time = rest_time_of(recording, robot);
-  if (const RobotStep* decision = last_decision(recording, robot)) {
-    for (const RecordedConstraint& c : decision->constraints)
-      if (c.active) r.binding.push_back(binding_of(c, end.position));
-    mark_pressing(*decision, r.binding);
-  }
+  if (const RobotStep* decision = last_decision(recording, robot)) r.binding = binding_in(*decision, end.position);
   r.equilibrium = equilibrium_of(r, target);
   r.text = sentence(scenario, recording, r, nearest_of(scenario, recording, target, r));
   return r;

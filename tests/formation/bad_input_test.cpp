@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/formation/speed_profile.h"
 #include "exactvo/formation/stuck.h"
 #include "paper_scenes.h"
 
@@ -107,6 +110,51 @@ TEST(BadInput, WhatMovesFasterThanARobotIsSaidBeforeTheRun) {
   EXPECT_THAT(warnings_of(with_cart({{{0, 0}, {20, 0}}, 9.0})),
               HasSubstr("moving obstacle 'cart' moves at up to 9 m/s, faster than R1"));
   EXPECT_EQ(warnings_of(with_cart({{{0, 0}}, 9.0})), "") << "it has nowhere to go";
+}
+
+TEST(BadInput, SpeedsAfterTheEndOfThePathOrTheRunDoNotCount) {
+  // 20 m at 2 m/s take 10 s; what the profile says of later never happens.
+  const Leader late{{{0, 0}, {20, 0}}, 0.0, {{0, 2}, {11, 2}, {12, 9}}};
+  EXPECT_EQ(warnings_of(with_cart(late)), "");
+  Scenario s = paper_scene("B1");
+  s.formation->leader = late;
+  EXPECT_EQ(warnings_of(s), "");
+  s.formation->leader.profile[1].time = 9.0;  // the last 2 m on the way up to 9 m/s
+  EXPECT_THAT(warnings_of(s), HasSubstr("the leader moves at up to "));
+  s = with_cart({{{0, 0}, {200, 0}}, 0.0, {{0, 2}, {50, 2}, {51, 9}}});
+  s.time_limit = 45.0;
+  EXPECT_EQ(warnings_of(s), "");
+  s.time_limit = 55.0;
+  EXPECT_THAT(warnings_of(s), HasSubstr("moving obstacle 'cart' moves at up to 9 m/s"));
+}
+
+TEST(BadInput, ABoxCountsEachLegAtItsOwnSpeed) {
+  Scenario s = paper_scene("B1");
+  s.speed_bound = SpeedBoundKind::box;
+  const double most = s.robots[0].max_speed;
+  s.formation->leader.path = {{0, 0}, {20, 20}, {40, 20}};
+  // Fast along the diagonal, where each component is 1.3 / sqrt(2) of the bound, and slow along the axis.
+  s.formation->leader.profile = speed_of_legs(s.formation->leader.path, {1.3 * most, 0.9 * most});
+  EXPECT_EQ(warnings_of(s), "");
+  s.formation->leader.profile = speed_of_legs(s.formation->leader.path, {0.9 * most, 1.3 * most});
+  EXPECT_THAT(warnings_of(s), HasSubstr("the leader moves at up to "));
+}
+
+TEST(BadInput, AStartAtExactlyTheSpeedLimitIsNoWarning) {
+  Scenario s = paper_scene("A0");
+  for (int k = 0; k < 500; ++k) {
+    s.robots[0].velocity = s.robots[0].max_speed * Vec2{std::cos(0.1 * k), std::sin(0.1 * k)};
+    EXPECT_EQ(warnings_of(s), "") << k;
+  }
+}
+
+TEST(BadInput, AMovingObstacleThatStopsOnItsWayComesToRestThere) {
+  // From 4 s on it stands 4 m from where it began, and its path goes on.
+  Scenario s = with_cart({{{0, 0}, {20, 0}}, 0.0, {{0, 1}, {4, 1}, {4, 0}}});
+  s.robots[0].goals = {s.robots[0].position + Vec2{6.0, 0.0}};
+  EXPECT_THAT(warnings_of(s), HasSubstr("lies where moving obstacle 'cart' comes to rest after 4 s"));
+  s.robots[0].goals = {s.robots[0].position + Vec2{12.0, 0.0}};
+  EXPECT_EQ(warnings_of(s), "");
 }
 
 TEST(BadInput, AStartBeyondTheSpeedLimitIsSaidBeforeTheRun) {

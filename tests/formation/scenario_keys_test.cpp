@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The keys of what moves and who does not yield, from JSON and back.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "exactvo/datasets/data_error.h"
@@ -7,6 +8,8 @@
 
 namespace exactvo::test {
 namespace {
+
+using testing::HasSubstr;
 
 const char* const kText = R"({
   "name": "cart", "robots": [ { "id": "R1", "position": [0, 0], "goal": [9, 0], "cooperates": false } ],
@@ -36,7 +39,7 @@ TEST(ScenarioKeys, AMovingObstacleNeedsItsPath) {
 
 TEST(ScenarioKeys, AMovingObstacleMayHaveASpeedProfile) {
   const std::string text = R"({ "name": "x", "robots": [ { "id": "R1", "position": [0, 0], "goal": [9, 0] } ],
-    "moving_obstacles": [ { "polygon": [[4, 4], [5, 4], [5, 5]], "path": [[0, 0], [9, 0]], "speed": 1,
+    "moving_obstacles": [ { "polygon": [[4, 4], [5, 4], [5, 5]], "path": [[0, 0], [9, 0]],
                             "profile": { "knots": [[0, 0.5], [2, 3], [2, 1]] } } ] })";
   const formation::Scenario s = datasets::parse_scenario(text, "cart.json", ".");
   const std::vector<formation::SpeedKnot>& profile = s.moving_obstacles[0].motion.profile;
@@ -46,6 +49,32 @@ TEST(ScenarioKeys, AMovingObstacleMayHaveASpeedProfile) {
   const std::string once = datasets::write_scenario(s);
   EXPECT_EQ(datasets::parse_scenario(once, "again.json", ".").moving_obstacles[0].motion.profile.size(), 3u)
       << "a recording that loses it is audited against another motion";
+}
+
+/// What is refused of a moving obstacle with these members beside its shape.
+std::string refusal_of_moving(const std::string& members) {
+  const std::string text = R"({ "name": "x", "robots": [ { "id": "R1", "position": [0, 0], "goal": [9, 0] } ],
+    "moving_obstacles": [ { "polyline": [[4, 4], [5, 4]], )" +
+                           members + " } ] }";
+  try {
+    datasets::parse_scenario(text, "cart.json", ".");
+  } catch (const datasets::DataError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(ScenarioKeys, AMovingObstacleHasASpeedOrAProfile) {
+  const std::string path = R"("path": [[0, 0], [9, 0]])";
+  const std::string speed = R"("speed": 1)", profile = R"("profile": { "legs": [2] })";
+  EXPECT_EQ(refusal_of_moving(path + ", " + speed), "");
+  EXPECT_EQ(refusal_of_moving(path + ", " + profile), "") << "a profile says all of the speed";
+  const std::string both = refusal_of_moving(path + ", " + speed + ", " + profile);
+  EXPECT_THAT(both, HasSubstr("/moving_obstacles/0")) << both;
+  EXPECT_THAT(both, HasSubstr("both \"speed\" and \"profile\"")) << both;
+  const std::string neither = refusal_of_moving(path);
+  EXPECT_THAT(neither, HasSubstr("\"speed\", or \"profile\"")) << neither;
+  EXPECT_THAT(refusal_of_moving(speed), HasSubstr("\"path\""));
 }
 
 TEST(ScenarioKeys, MovingObstaclesHaveIdsOfTheirOwn) {

@@ -120,8 +120,10 @@ Recording unchanged(const std::vector<End>& ends) {
   return r;
 }
 
-RecordedConstraint constraint(ConstraintSource source, std::size_t index, geometry::ConvexShape shape, Vec2 normal) {
+RecordedConstraint constraint(ConstraintSource source, std::size_t index, geometry::ConvexShape shape, Vec2 normal,
+                              double multiplier) {
   RecordedConstraint c;
+  c.multiplier = multiplier;
   c.source = source;
   c.index = index;
   c.shape = std::move(shape);
@@ -143,7 +145,7 @@ std::string text_of(const Scenario& s, const Recording& recording, std::size_t r
 std::vector<End> head_on() {
   const Vec2 left{5.48, 0.0}, right{6.52, 0.0};
   const auto robot = [](std::size_t i, Vec2 at, double nx) {
-    return constraint(ConstraintSource::robot, i, geometry::Disc{at, kRadius}, {nx, 0.0});
+    return constraint(ConstraintSource::robot, i, geometry::Disc{at, kRadius}, {nx, 0.0}, 3.0);
   };
   return {{left, {12, 0}, {1.5e-13, 0}, {3, 0}, {robot(1, right, -1.0)}},
           {right, {0, 0}, {-1.5e-13, 0}, {-3, 0}, {robot(0, left, 1.0)}}};
@@ -189,7 +191,11 @@ TEST(Stuck, AMovingObstacleHasNoEquilibrium) {
 /// A robot at a round enclosure (radius 2) straight before its goal 8 m behind: an unstable equilibrium.
 End at_a_round_enclosure(Vec2 velocity) {
   const geometry::Ellipse round = geometry::ellipse_from_axes({0, 0}, {2, 2, 0});
-  return {{-2.5, 0.0}, {8, 0}, velocity, {3, velocity.y}, {constraint(ConstraintSource::enclosure, 0, round, {-1, 0})}};
+  return {{-2.5, 0.0},
+          {8, 0},
+          velocity,
+          {3, velocity.y},
+          {constraint(ConstraintSource::enclosure, 0, round, {-1, 0}, 3.0)}};
 }
 
 TEST(Stuck, OnlyARobotThatMovesIsSlidingOff) {
@@ -214,10 +220,11 @@ TEST(Stuck, FarFromABoundaryThereIsNoEquilibrium) {
 
 TEST(Stuck, WhatIsActiveWithoutPushingBlocksNothing) {
   const geometry::Segment front{{1, -2}, {1, 2}}, beside{{-2, 0.5}, {1, 0.5}};
-  const auto edge = [](std::size_t i, geometry::Segment s, Vec2 n) {
-    return constraint(ConstraintSource::obstacle_edge, i, s, n);
+  const auto edge = [](std::size_t i, geometry::Segment s, Vec2 n, double multiplier) {
+    return constraint(ConstraintSource::obstacle_edge, i, s, n, multiplier);
   };
-  std::vector<End> ends{{{0.5, 0}, {8, 0}, {0, 0}, {3, 0}, {edge(1, beside, {0, -1}), edge(0, front, {-1, 0})}}};
+  std::vector<End> ends{
+      {{0.5, 0}, {8, 0}, {0, 0}, {3, 0}, {edge(1, beside, {0, -1}, 0.0), edge(0, front, {-1, 0}, 3.0)}}};
   Scenario s = scene_of(ends);
   s.obstacles = {{"front", geometry::Polyline{{front.a, front.b}}},
                  {"beside", geometry::Polyline{{beside.a, beside.b}}}};
@@ -229,10 +236,27 @@ TEST(Stuck, WhatIsActiveWithoutPushingBlocksNothing) {
   // The goal behind both: each of them is needed.
   ends[0].goal = {8, 8};
   ends[0].preferred = {2, 2};
+  for (RecordedConstraint& c : ends[0].constraints) c.multiplier = 2.0;
   s.robots[0].goals = {ends[0].goal};
   EXPECT_THAT(text_of(s, unchanged(ends)),
               HasSubstr("blocked between the edge (-2, 0.5)-(1, 0.5) of obstacle beside and "
                         "the edge (1, -2)-(1, 2) of obstacle front"));
+}
+
+TEST(Stuck, WhatPushesTogetherWithTheSpeedBoundIsNamed) {
+  // A formation's robot wants 5 m/s slantwise; the wall takes the normal part away and the disc of 3 m/s shortens the
+  // rest: the push is no multiple of the wall's normal.
+  std::vector<End> ends{
+      {{0.5, 0},
+       {8, 8},
+       {0, 3},
+       {3, 4},
+       {constraint(ConstraintSource::obstacle_edge, 0, geometry::Segment{{1, -9}, {1, 9}}, {-1, 0}, 3)}}};
+  Scenario s = scene_of(ends);
+  s.obstacles = {{"wall", geometry::Polyline{{{1, -9}, {1, 9}}}}};
+  Recording recording = unchanged(ends);
+  for (Step& row : recording.steps) row.robots[0].bound = {{lp::kDisc, 1.0 / 3.0}};
+  EXPECT_THAT(text_of(s, recording), HasSubstr("its velocity is limited by the edge (1, -9)-(1, 9) of obstacle wall"));
 }
 
 TEST(Stuck, ADecisionThatIsACompromiseSaysByHowMuch) {

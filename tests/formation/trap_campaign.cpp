@@ -20,12 +20,15 @@ int pairs(unsigned long long count, unsigned long long seed) {
     stalls += !o.arrived;
     between += !o.arrived && o.between;
     wrong += !o.agrees();
-    if (!o.agrees()) std::printf("run %llu stalls where nothing was said: %s\n", runs, o.words.c_str());
+    if (!o.agrees())
+      std::printf("run %llu stalls where nothing was said: %s; %s\n", runs, o.words.c_str(),
+                  test::words_of(*pair).c_str());
     for (const test::VertexOutcome& v : test::vertex_outcomes(*pair)) {
       ++vertices;
       if (v.distance < 0.05) continue;
       ++left;
-      std::printf("run %llu leaves a vertex said to stop it: %s\n", runs, v.words.c_str());
+      std::printf("run %llu leaves a vertex said to stop it: %s; %s\n", runs, v.words.c_str(),
+                  test::words_of(*pair).c_str());
     }
   }
   std::printf(

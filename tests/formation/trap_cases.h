@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
@@ -138,6 +139,21 @@ inline std::optional<formation::Scenario> random_pair(SeededRandom& random) {
 inline std::string report_of(const formation::Scenario& s, const formation::Recording& run) {
   const auto reports = formation::explain_stuck(s, run);
   return reports.empty() ? "arrived" : reports[0].text;
+}
+
+/// The case, losslessly: "start (x, y) goal (x, y) a (x, y)-(x, y) b (x, y)-(x, y)".
+inline std::string words_of(const formation::Scenario& s) {
+  const auto point = [](Vec2 p) {
+    char text[80];
+    std::snprintf(text, sizeof text, "(%a, %a)", p.x, p.y);
+    return std::string(text);
+  };
+  std::string words = "start " + point(s.robots[0].position) + " goal " + point(s.robots[0].goals[0]);
+  for (const formation::SceneObstacle& o : s.obstacles) {
+    const std::vector<Vec2> ends = geometry::vertices_of(o.shape);
+    words += " " + o.id + " " + point(ends.front()) + "-" + point(ends.back());
+  }
+  return words;
 }
 
 /// What a run showed, beside what was said of it.

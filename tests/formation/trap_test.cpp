@@ -395,5 +395,28 @@ TEST(Trap, SlideTimesAreThoseOfTheRun) {
   EXPECT_NEAR(sliding, *found[0].slide_time, 0.1 * *found[0].slide_time);
 }
 
+/// The way to the goal leads past the cone of rest by 5e-4 rad; the tie-break turns the robot by 1e-3 into it, against
+/// enclosure 0, and it stands for the rest of the minute.
+TEST(Trap, ARestThatTheTieBreakMakesIsForetold) {
+  Scenario s;
+  Robot r;
+  r.id = "R1";
+  r.position = {-0x1.269abe495912ap+1, 0x1.26c4bc54d333p+2};
+  r.goals = {{0x1.ea89e40f3f6dcp+1, -0x1.426d6adffe43cp+1}};
+  s.robots = {r};
+  s.obstacles = {{"a", geometry::Polyline{{{0x1.06d8ecc66a2cdp-2, 0x1.f9e556d2bbccp-1},
+                                           {0x1.dc84fabb0a68cp-4, 0x1.8534d074e1d2cp+1}}}},
+                 {"b", geometry::Polyline{{{-0x1.a1c13684e5824p-1, -0x1.faa4044877d6ep-1},
+                                           {0x1.01055908e88c2p+0, 0x1.a85f8b80772f7p+0}}}}};
+  s.time_limit = 60.0;
+  const test::PairOutcome outcome = test::outcome_of(s);
+  EXPECT_FALSE(outcome.arrived);
+  EXPECT_TRUE(outcome.between) << outcome.words;
+  EXPECT_NE(outcome.words.find("blocked between enclosure 0 of obstacle a and enclosure 1 of obstacle b"),
+            std::string::npos)
+      << outcome.words;
+  EXPECT_EQ(outcome.words.find("unstable"), std::string::npos) << outcome.words;
+}
+
 }  // namespace
 }  // namespace exactvo::formation

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "exactvo/formation/balance.h"
 #include "exactvo/formation/constraint_name.h"
 #include "explain/explanation.h"
 #include "figures/velocity_space.h"
@@ -29,8 +30,9 @@ Decision with_two_walls() {
   d.method = "method orca";
   d.step.preferred = {2.0, 1.0};
   d.step.chosen = {0.5, 0.5};
-  const auto wall = [](geometry::Segment s, std::size_t index, geometry::HalfPlane h) {
+  const auto wall = [](geometry::Segment s, std::size_t index, geometry::HalfPlane h, double multiplier) {
     RecordedConstraint c;
+    c.multiplier = multiplier;
     c.shape = s;
     c.index = index;
     c.source = ConstraintSource::obstacle_edge;
@@ -40,13 +42,13 @@ Decision with_two_walls() {
     c.active = true;
     return c;
   };
-  d.step.constraints = {wall({{1.5, -2.0}, {1.5, 2.0}}, 0, {{-1.0, 0.0}, -0.5}),
-                        wall({{-2.0, 1.5}, {2.0, 1.5}}, 1, {{0.0, -1.0}, -0.5})};
+  d.step.constraints = {wall({{1.5, -2.0}, {1.5, 2.0}}, 0, {{-1.0, 0.0}, -0.5}, 1.5),
+                        wall({{-2.0, 1.5}, {2.0, 1.5}}, 1, {{0.0, -1.0}, -0.5}, 0.5)};
   return d;
 }
 
 TEST(Decision, BalanceIsTheSumOfPushesOfWhatBinds) {
-  const Balance b = balance(with_two_walls());
+  const formation::Balance b = balance_of(with_two_walls().step);
   ASSERT_EQ(b.forces.size(), 2u);
   EXPECT_EQ(b.forces[0].constraint, 0u);
   EXPECT_DOUBLE_EQ(b.forces[0].factor, 1.5);
@@ -60,7 +62,8 @@ TEST(Decision, BalanceFindsTheSpeedBound) {
   d.step.constraints.clear();
   d.step.preferred = {0.0, 5.0};
   d.step.chosen = {0.0, 3.0};
-  const Balance b = balance(d);
+  d.step.bound = {{lp::kDisc, 2.0 / 3.0}};
+  const formation::Balance b = balance_of(d.step);
   ASSERT_EQ(b.forces.size(), 1u);
   EXPECT_FALSE(b.forces[0].constraint.has_value());
   EXPECT_DOUBLE_EQ(b.forces[0].factor, 2.0);
@@ -69,7 +72,22 @@ TEST(Decision, BalanceFindsTheSpeedBound) {
 TEST(Decision, BalanceOwnsUpWhereNothingExplainsTheChoice) {
   Decision d = with_two_walls();
   for (auto& c : d.step.constraints) c.active = false;
-  EXPECT_GT(balance(d).remainder, 1.0);
+  EXPECT_GT(balance_of(d.step).remainder, 1.0);
+}
+
+TEST(Decision, BalanceHasTheSidesOfABoxAndConstraintsOfAnyLength) {
+  Decision d = with_two_walls();
+  d.step.preferred = {2.0, 5.0};
+  d.step.chosen = {0.5, 3.0};
+  d.step.constraints.pop_back();
+  d.step.constraints[0].half_plane = {{-0.5, 0.0}, -0.25};
+  d.step.constraints[0].multiplier = 3.0;
+  d.step.bound = {{{lp::BindingKind::box_top, 0}, 2.0}};
+  const formation::Balance b = balance_of(d.step);
+  ASSERT_EQ(b.forces.size(), 2u);
+  EXPECT_DOUBLE_EQ(b.factor_of(0), 1.5);
+  EXPECT_EQ(b.forces[1].normal, (geometry::Vec2{0.0, -1.0}));
+  EXPECT_NEAR(b.remainder, 0.0, 1e-15);
 }
 
 TEST(Decision, DistanceAndTimeToContact) {
@@ -165,6 +183,19 @@ TEST(Explanation, SaysThatBoostHadTurnedWhatIsAllowedAsItStands) {
   EXPECT_THAT(words, HasSubstr("boost turned"));
   EXPECT_THAT(words, HasSubstr("lies on the line of [1]"));
   EXPECT_THAT(words, testing::Not(HasSubstr("no constraint forbids")));
+}
+
+TEST(Explanation, ABindingLineThatTheChosenVelocityLiesOnIsNotCalledMissed) {
+  Decision d = with_two_walls();
+  d.step.chosen = d.step.preferred = {0.5, 1.2};  // past the end of the wall, 0.1 m beside the robot's rim
+  d.step.mode = formation::Mode::boost;
+  d.step.constraints.pop_back();
+  d.step.constraints[0].multiplier = 0.0;
+  const std::string words = explanation(d);
+  EXPECT_THAT(words,
+              HasSubstr("[1] the edge (1.5, -2)-(1.5, 2) of obstacle east, binding: 1.00 m from the robot's rim, "
+                        "passed closely at the chosen velocity"));
+  EXPECT_THAT(words, testing::Not(HasSubstr("missed")));
 }
 
 }  // namespace

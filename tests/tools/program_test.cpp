@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
+#include "exactvo/datasets/recording_file.h"
 #include "run_program.h"
 
 namespace exactvo::test {
@@ -333,6 +334,9 @@ TEST(Simulate, ACollisionIsSaidToMachines) {
   const json end = json::parse(text.substr(text.rfind("\n{") + 1))["end"];
   EXPECT_EQ(end["outcome"], metrics["outcome"]);
   EXPECT_EQ(end["collisions"], metrics["collisions"]);
+  EXPECT_THAT(end["ended"].get<std::string>(), Not(HasSubstr("COLLISION")));
+  const datasets::RecordingFile again = datasets::read_recording(here.path() / "out/recording.jsonl");
+  EXPECT_EQ(measure(again.scenario, again.recording).outcome, metrics["outcome"]) << "said once, not twice";
   EXPECT_THAT(here.read("out/figures/paths.gp"), HasSubstr("title 'collision'"));
   EXPECT_TRUE(here.has("out/figures/obstacle_distance.svg"));
   EXPECT_EQ(here.run("simulate cart.json").status, 0) << "only where asked for";

@@ -330,17 +330,10 @@ TEST(Report, ARunThatTouchedSomethingIsNotAsExpected) {
                         "12.0! / below 18 DIFFERS |"));
 }
 
-TEST(Report, WhatIsSaidOfTheOptimaIsWhatTheRunsRecord) {
-  json summary = rosy_summary();
-  const auto row = [&] { return line_of(report_of(summary), "| (12) |", "Equations"); };
-  EXPECT_THAT(row(), HasSubstr("no certificate of optimality is recorded"));
-  EXPECT_THAT(row(), Not(HasSubstr("with a certificate for every optimum")));
-  for (json& run : summary) run["uncertified_optima"] = 0;
-  EXPECT_THAT(row(), HasSubstr("every optimum of these runs has a certificate"));
-  summary[3]["uncertified_optima"] = 7;
-  EXPECT_THAT(row(), HasSubstr("7 optima of these runs have no certificate"));
-  summary[3].erase("uncertified_optima");
-  EXPECT_THAT(row(), HasSubstr("no certificate of optimality is recorded"));
+TEST(Report, NoCertificateOfAnOptimumIsClaimed) {
+  const std::string row = line_of(report_of(rosy_summary()), "| (12) |", "Equations");
+  EXPECT_THAT(row, HasSubstr("no certificate of optimality is recorded"));
+  EXPECT_THAT(row, Not(HasSubstr("with a certificate for every optimum")));
 }
 
 TEST(Report, CountsOfHalfPlanesAreThoseOfTheRuns) {

@@ -17,66 +17,10 @@ namespace {
 
 using geometry::kPi;
 constexpr int kDirections = 4096;  // an arc between two of them strays from its chord by 3e-7 of the radius
-/// A chosen velocity this near the speed bound (relative) is on it: the solver keeps a slack of a few ulps, and a
-/// recording may have passed through text.
-constexpr double kOnBound = 1e-6;
 
 Vec2 direction(int i) {
   const double angle = 2.0 * kPi * i / kDirections;
   return {std::cos(angle), std::sin(angle)};
-}
-
-using Force = Balance::Force;
-
-void add_disc_force(const Decision& d, std::vector<Force>& forces) {
-  const double speed = norm(d.step.chosen);
-  if (speed >= d.who().max_speed * (1.0 - kOnBound)) forces.push_back({std::nullopt, -normalized(d.step.chosen), 0.0});
-}
-
-void add_box_forces(const Decision& d, std::vector<Force>& forces) {
-  const double limit = d.who().max_speed * (1.0 - kOnBound);
-  const Vec2 v = d.step.chosen;
-  if (std::abs(v.x) >= limit) forces.push_back({std::nullopt, {v.x > 0.0 ? -1.0 : 1.0, 0.0}, 0.0});
-  if (std::abs(v.y) >= limit) forces.push_back({std::nullopt, {0.0, v.y > 0.0 ? -1.0 : 1.0}, 0.0});
-}
-
-std::vector<Force> candidates(const Decision& d) {
-  std::vector<Force> forces;
-  for (std::size_t i = 0; i < d.step.constraints.size(); ++i) {
-    const RecordedConstraint& c = d.step.constraints[i];
-    if (c.active) forces.push_back({i, c.half_plane.normal, 0.0});
-  }
-  const bool disc = d.scenario.speed_bound == formation::SpeedBoundKind::disc;
-  disc ? add_disc_force(d, forces) : add_box_forces(d, forces);
-  return forces;
-}
-
-struct Fit {
-  std::vector<Force> forces;
-  double remainder = std::numeric_limits<double>::infinity();
-};
-
-void keep_better(Fit& best, Fit fit, Vec2 push) {
-  Vec2 rest = push;
-  for (const Force& force : fit.forces) {
-    if (!(force.factor >= 0.0)) return;
-    rest = rest - force.factor * force.normal;
-  }
-  fit.remainder = norm(rest);
-  if (fit.remainder < best.remainder) best = std::move(fit);
-}
-
-void try_one(Fit& best, Force a, Vec2 push) {
-  a.factor = dot(push, a.normal) / squared_norm(a.normal);
-  keep_better(best, {{a}, 0.0}, push);
-}
-
-void try_two(Fit& best, Force a, Force b, Vec2 push) {
-  const double det = cross(a.normal, b.normal);
-  if (det == 0.0) return;
-  a.factor = cross(push, b.normal) / det;
-  b.factor = cross(a.normal, push) / det;
-  keep_better(best, {{a, b}, 0.0}, push);
 }
 
 }  // namespace
@@ -109,17 +53,6 @@ std::optional<double> time_to_contact(const GrownShape& s, Vec2 v) {
   }
   if (first > last) return std::nullopt;
   return first;
-}
-
-Balance balance(const Decision& decision) {
-  const Vec2 push = decision.step.chosen - decision.step.preferred;
-  const std::vector<Force> forces = candidates(decision);
-  Fit best{{}, norm(push)};
-  for (const Force& force : forces) try_one(best, force, push);
-  for (std::size_t i = 0; i < forces.size(); ++i) {
-    for (std::size_t j = i + 1; j < forces.size(); ++j) try_two(best, forces[i], forces[j], push);
-  }
-  return {best.forces, best.remainder};
 }
 
 }  // namespace exactvo::tools

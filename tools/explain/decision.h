@@ -43,17 +43,4 @@ double distance_to(const geometry::GrownShape& s);
 /// REQUIRES: the origin lies outside.
 std::optional<double> time_to_contact(const geometry::GrownShape& s, Vec2 v);
 
-/// What holds the choice where it is: chosen - preferred = sum of factor * normal, with every factor >= 0. These are
-/// the conditions of Karush, Kuhn and Tucker: they show that no allowed velocity lies nearer to the preferred one.
-struct Balance {
-  struct Force {
-    std::optional<std::size_t> constraint;  ///< index into step.constraints; none for the speed bound
-    Vec2 normal;                            ///< into the allowed side
-    double factor = 0.0;                    ///< m/s
-  };
-  std::vector<Force> forces;
-  double remainder = 0.0;  ///< m/s: what the sum leaves over; about 0 where the balance explains the choice
-};
-Balance balance(const Decision& decision);
-
 }  // namespace exactvo::tools

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <vector>
 
+#include "exactvo/formation/balance.h"
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/simulation.h"
 
 namespace exactvo::tools {
 
+using formation::Balance;
 using formation::RecordedConstraint;
 
 namespace {
@@ -99,12 +101,20 @@ std::string head(const Decision& d) {
       shift < kNotSeen ? "the preferred one itself" : number(shift) + " m/s from the preferred one", status_words(d));
 }
 
-std::string contact_words(const RecordedConstraint& c, Vec2 preferred) {
+bool takes_preferred(const Decision& d) {
+  return norm(d.step.chosen - d.step.preferred) < kNotSeen;
+}
+
+std::string contact_words(const Decision& d, const RecordedConstraint& c) {
+  const Vec2 preferred = d.step.preferred;
   const geometry::GrownShape s = grown_shape(c);
   const double distance = distance_to(s);
   if (distance < 0.0) return fmt::format("the robot is {} m inside it: no cone exists", number(-distance));
   const std::optional<double> contact = time_to_contact(s, preferred - c.shape_velocity);
   const std::string away = fmt::format("{} m from the robot's rim", number(distance));
+  // A velocity on the line of a half-plane just misses: boost and following aim there.
+  if (!contact && takes_preferred(d) && effect_of(d, c) == Effect::binding)
+    return away + ", passed closely at the chosen velocity";
   if (!contact) return away + ", missed at the preferred velocity";
   return fmt::format("{}, reached in {} s at the preferred velocity, horizon {} s", away, number(*contact),
                      number(c.tau));
@@ -136,7 +146,7 @@ std::string effect_words(const Decision& d, const RecordedConstraint& c) {
 std::string constraint_words(const Decision& d, std::size_t i) {
   const RecordedConstraint& c = d.step.constraints[i];
   return fmt::format("  [{}] {}, {}: {}\n      {}\n", i + 1, name_of(c, d.scenario), effect_words(d, c),
-                     contact_words(c, d.step.preferred), line_words(c));
+                     contact_words(d, c), line_words(c));
 }
 
 std::string constraints_words(const Decision& d) {
@@ -160,6 +170,7 @@ std::string force_name(const Balance::Force& force) {
 std::string balance_words(const Balance& b) {
   std::string sum;
   for (const auto& force : b.forces) {
+    if (force.factor < kNotSeen) continue;
     sum += fmt::format("{}{} {}", sum.empty() ? "" : " + ", number(force.factor), force_name(force));
   }
   return "Why: chosen - preferred = " + sum +
@@ -175,7 +186,7 @@ bool is_held(const Decision& d) {
 std::string held_words(const Decision& d, const Balance& b) {
   std::vector<RecordedConstraint> by;
   for (const auto& force : b.forces)
-    if (force.constraint) by.push_back(d.step.constraints[*force.constraint]);
+    if (force.constraint && force.factor >= kNotSeen) by.push_back(d.step.constraints[*force.constraint]);
   if (by.empty()) return "";
   return fmt::format("The robot is held by {}: no allowed velocity has a component towards the preferred one.\n",
                      formation::name_of(by, d.scenario));
@@ -216,7 +227,7 @@ std::string unmoved_words(const Decision& d) {
 }
 
 std::string moved_words(const Decision& d) {
-  const Balance b = balance(d);
+  const Balance b = balance_of(d.step);
   if (b.remainder > kBalanced) return "";
   const std::string turned = turned_words(d);
   return balance_words(b) + idle_words(d, b) + (turned.empty() ? "" : "     Before that, " + turned + ".\n") +
@@ -229,7 +240,7 @@ std::string why(const Decision& d) {
         "Why: no velocity satisfies all half-planes; the chosen one has the least greatest violation ({}).\n",
         numbers_of(d, Effect::violated));
   if (d.step.status != lp::Status::optimal) return "";
-  return norm(d.step.chosen - d.step.preferred) < kNotSeen ? unmoved_words(d) : moved_words(d);
+  return takes_preferred(d) ? unmoved_words(d) : moved_words(d);
 }
 
 }  // namespace

@@ -61,8 +61,7 @@ const std::vector<Equation> kVelocityObstacles{
      "\"O = 1\", \"robot O\"; n is undefined at u = 0 and where v_opt is outside",
      "n: the outward unit normal of the velocity obstacle at its boundary point nearest v_opt; n.v >= h_S(n) / tau; "
      "alpha = 1 against obstacles and robots that do not cooperate, 1/2 between robots; each is certified to exclude "
-     "the "
-     "velocity obstacle",
+     "the velocity obstacle",
      {{"vo/include/exactvo/vo/velocity_obstacle.h", "half_plane"},
       {"vo/include/exactvo/vo/reciprocal.h", "reciprocal_half_planes"}}},
     {"(11)",

@@ -44,14 +44,6 @@ std::optional<double> total_of(const ReportData& data, const char* key) {
   return data.has_runs() ? std::optional<double>(total) : std::nullopt;
 }
 
-/// Whether the optima of equation (12) are certified is what the runs say: `uncertified_optima` of their metrics.
-std::string optimality_words(const ReportData& data) {
-  const auto uncertified = total_of(data, "uncertified_optima");
-  if (!uncertified) return "; no certificate of optimality is recorded";
-  if (*uncertified == 0.0) return "; every optimum of these runs has a certificate";
-  return fmt::format("; {:.0f} optima of these runs have no certificate", *uncertified);
-}
-
 /// What the runs have to add to what is implemented.
 std::string recorded_words(const ReportData& data, const std::string& equation) {
   const auto count = [&](const char* key, const char* words) {
@@ -59,7 +51,7 @@ std::string recorded_words(const ReportData& data, const std::string& equation) 
     return total ? fmt::format("; in these runs {:.0f} {}", *total, words) : std::string();
   };
   if (equation == "(10)") return count("uncertified_half_planes", "half-planes are not certified");
-  if (equation == "(12)") return optimality_words(data);
+  if (equation == "(12)") return "; no certificate of optimality is recorded";
   if (equation == "(13)") return count("relaxed_steps", "decisions gave way");
   return "";
 }

@@ -64,9 +64,9 @@ class Place {
 };
 
 void check_numbers(const Place& run) {
-  for (const char* key : {"last_arrival_time", "min_obstacle_clearance", "min_robot_clearance",
-                          "formation_position_error", "formation_velocity_error", "leader_arrival_time", "jitter",
-                          "relaxed_steps", "uncertified_half_planes", "uncertified_optima"})
+  for (const char* key :
+       {"last_arrival_time", "min_obstacle_clearance", "min_robot_clearance", "formation_position_error",
+        "formation_velocity_error", "leader_arrival_time", "jitter", "relaxed_steps", "uncertified_half_planes"})
     if (run.has(key)) run.at(key).number_or_none();
 }
 

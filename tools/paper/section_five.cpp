@@ -167,13 +167,11 @@ class Experiments {
 
   static std::string panel_title(const datasets::RecordingFile& run) {
     const std::string& outcome = run.recording.outcome;
-    const bool collided = outcome.rfind("COLLISION", 0) == 0;
+    const bool collided = !run.collisions.empty();
     // A panel is narrow, and all runs have the same limit.
-    if (!run.scenario.formation) {
-      const std::size_t end = collided ? outcome.find("; ") + 2 : 0;
+    if (!run.scenario.formation)
       return run.info.scenario + ": " + (collided ? "collision; " : "") +
-             outcome.substr(end, outcome.find(" within the time limit", end) - end);
-    }
+             outcome.substr(0, outcome.find(" within the time limit"));
     return run.info.scenario + ", " + *run.info.controller + (run.recording.diverged ? ": diverged" : "") +
            (collided ? ", collision" : "");
   }

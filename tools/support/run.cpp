@@ -57,14 +57,16 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
   };
   formation::Recording recording = simulate(scenario, options);
   if (interrupted()) throw Interrupted();
+  formation::Evaluation found = evaluate(scenario, recording);
   FinishedRun finished;
-  finished.metrics = measure(scenario, recording);
-  finished.file = {run_info(scenario, options, provenance), scenario, std::move(recording), {}, {}, {}};
-  finished.file.recording.outcome = finished.metrics.outcome;  // with collisions and detours
+  finished.metrics = std::move(found.metrics);
+  finished.file.info = run_info(scenario, options, provenance);
+  finished.file.scenario = scenario;
+  finished.file.recording = std::move(recording);
+  finished.file.lyapunov = std::move(found.lyapunov);
+  finished.file.stuck = std::move(found.stuck);
   finished.file.collisions = finished.metrics.collisions;
-  const formation::Recording& kept = finished.file.recording;
-  if (scenario.formation) finished.file.lyapunov = lyapunov_along(scenario, kept);
-  finished.file.stuck = explain_stuck(scenario, kept);
+  finished.file.outcome = finished.metrics.outcome;
   return finished;
 }
 

@@ -56,7 +56,8 @@ void read_end(const JsonCursor& at, RecordingFile& file) {
   if (at.at("rows").count() != recording.steps.size())
     at.at("rows").refuse(std::to_string(recording.steps.size()) + ", the rows above", DataCode::wrong_count);
   recording.diverged = at.at("diverged").truth();
-  recording.outcome = at.at("outcome").text();
+  file.outcome = at.at("outcome").text();
+  recording.outcome = at.at("ended").text();
   recording.warnings = to_texts(at.at("warnings"));
   read_stuck(at.at("stuck"), file);
   recording.wall_time = at.at("wall_time").number();

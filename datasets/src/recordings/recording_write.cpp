@@ -65,7 +65,8 @@ void append_row(JsonWriter& json, const Step& step, bool has_leader, const forma
 void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, const std::string& digest) {
   const formation::Recording& recording = file.recording;
   json.begin_object().member("rows", rows).member("diverged", recording.diverged);
-  json.member("outcome", recording.outcome);
+  json.member("outcome", file.outcome.empty() ? recording.outcome : file.outcome);
+  json.member("ended", recording.outcome);
   json.key("warnings").begin_array();
   for (const std::string& warning : recording.warnings) json.value(warning);
   json.end_array();

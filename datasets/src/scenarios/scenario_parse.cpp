@@ -39,6 +39,13 @@ formation::Robot to_robot(const Json& object) {
   return robot;
 }
 
+/// The member, uncopied; an empty list where there is none.
+const Json& list_in(const Json& object, const char* key) {
+  static const Json kNone = Json::array();
+  const auto found = object.find(key);
+  return found == object.end() ? kNone : *found;
+}
+
 RawGeometry to_raw(const Json& object, const std::string& id, const std::string& pointer) {
   RawGeometry raw;
   raw.id = id;
@@ -47,7 +54,7 @@ RawGeometry to_raw(const Json& object, const std::string& id, const std::string&
   const char* key = object.contains("polyline") ? "polyline" : "polygon";
   raw.rings.push_back(to_points(object.at(key)));
   raw.ring_pointers.push_back(pointer + "/" + key);
-  const Json holes = object.value("holes", Json::array());
+  const Json& holes = list_in(object, "holes");
   for (std::size_t h = 0; h < holes.size(); ++h) {
     raw.rings.push_back(to_points(holes[h]));
     raw.ring_pointers.push_back(pointer + "/holes/" + std::to_string(h));
@@ -81,8 +88,8 @@ class Reader {
     scenario.name = tree.at("name").get<std::string>();
     scenario.description = tree.value("description", std::string());
     for (const Json& robot : tree.at("robots")) scenario.robots.push_back(to_robot(robot));
-    read_obstacle_list(tree.value("obstacles", Json::array()), scenario);
-    read_moving_obstacles(tree.value("moving_obstacles", Json::array()), scenario);
+    read_obstacle_list(list_in(tree, "obstacles"), scenario);
+    read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
     read_figures(tree, scenario);
@@ -112,7 +119,8 @@ class Reader {
       const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
       Judgement judgement = judge(to_raw(list[k], id, pointer));
       refuse_unmended(judgement, file_);
-      formation::Leader motion{to_points(list[k].at("path")), list[k].at("speed").get<double>()};
+      formation::Leader motion{to_points(list[k].at("path"))};
+      motion.speed = list[k].value("speed", 0.0);
       if (list[k].contains("profile"))
         motion.profile = to_profile(list[k].at("profile"), motion.path, file_, pointer + "/profile");
       scenario.moving_obstacles.push_back({id, std::move(judgement.shape), std::move(motion)});
@@ -231,7 +239,8 @@ class Reader {
   /// Numbers that were no degrees are the likeliest reason why robots and obstacles do not fit together.
   std::string words_of_projection() const {
     if (projected_.empty()) return "";
-    return " (" + projected_ + ": projected from degrees to metres; \"units\": \"metres\" takes its numbers as they stand)";
+    return " (" + projected_ +
+           ": projected from degrees to metres; \"units\": \"metres\" takes its numbers as they stand)";
   }
 
   /// Problems name obstacles by their place in the scenario; in the text one entry may stand for a file of many.

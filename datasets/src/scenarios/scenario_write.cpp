@@ -43,7 +43,7 @@ void append_profile(JsonWriter& json, const std::vector<formation::SpeedKnot>& p
   json.end_array().end_object();
 }
 
-/// Where there is a profile, `speed` has no meaning.
+/// The profile where there is one, else the speed.
 void append_speed(JsonWriter& json, const formation::Leader& leader) {
   if (leader.profile.empty()) {
     json.member("speed", leader.speed);
@@ -57,8 +57,7 @@ void append_moving(JsonWriter& json, const formation::MovingObstacle& obstacle) 
   std::visit([&](const auto& shape) { append_shape(json, shape); }, obstacle.shape);
   json.key("path");
   append_points(json, obstacle.motion.path);
-  json.member("speed", obstacle.motion.speed);
-  if (!obstacle.motion.profile.empty()) append_profile(json, obstacle.motion.profile);
+  append_speed(json, obstacle.motion);
   json.end_object();
 }
 

@@ -39,6 +39,8 @@ struct RecordingFile {
   std::vector<formation::LyapunovRow> lyapunov = {};  ///< a row for every row, of a formation; else empty
   std::vector<formation::StuckReport> stuck = {};     ///< who stopped elsewhere; of what binds, the names only
   std::vector<formation::Collision> collisions = {};  ///< as the metrics have them
+  /// As the metrics have it, with collisions and detours; empty: as `recording.outcome`, which has neither.
+  std::string outcome = {};
 };
 
 /// A recording that is written as the run is made, in constant memory. Whole or not at all (atomic_file.h): nothing

@@ -16,6 +16,7 @@
 
 #include "exactvo/formation/lyapunov.h"
 #include "exactvo/formation/recording.h"
+#include "exactvo/formation/stuck.h"
 
 namespace exactvo::formation {
 
@@ -83,6 +84,16 @@ struct Metrics {
 };
 
 Metrics measure(const Scenario& scenario, const Recording& recording);
+
+/// The metrics with what they are made from.
+struct Evaluation {
+  Metrics metrics;
+  std::vector<LyapunovRow> lyapunov;  ///< a row for every row, of a formation; else empty
+  std::vector<StuckReport> stuck;     ///< of every robot that stopped elsewhere
+};
+
+/// `measure`, `lyapunov_along` and `explain_stuck` in one pass, nothing computed twice.
+Evaluation evaluate(const Scenario& scenario, const Recording& recording);
 
 /// m: contact is spoken of from this depth on. Certified clearances lie below the true ones by less than it up to 10 km
 /// from the origin (four times 2^-46 of the coordinates), so two robots that keep exactly their distance do not touch.

@@ -21,8 +21,8 @@ struct BindingConstraint {
   Vec2 normal;                     ///< unit, out of the shape at the point nearest the robot
   double clearance = 0.0;          ///< m, rim to shape
   double radius_of_curvature = 0;  ///< m, of the shape grown by the robot, at that normal; infinite on a flat edge
-  /// Whether its push is needed to explain why the robot did not take its preferred velocity: its multiplier in the
-  /// Karush-Kuhn-Tucker conditions is positive. One that is active without pushing blocks nothing.
+  /// Whether it pushes the robot off its preferred velocity: its recorded multiplier (balance.h) is positive. One that
+  /// is active without pushing blocks nothing. True of all where the decision was not `optimal`.
   bool pressing = false;
 };
 

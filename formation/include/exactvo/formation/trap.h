@@ -6,9 +6,11 @@
 /// enclosure grown by its radius, heading for a goal behind it, comes to rest where the way to the goal is normal to
 /// the boundary and the goal lies nearer than the centre of curvature (D < rho).
 ///
-/// Exact: `stall_possible` of an ellipse or disc (predicate F: the goal on or inside the evolute), `start_clear` and
-/// `goal_clear`. Rounded: everything with a length in it, and where two enclosures overlap. For polygons and segments
-/// the sign is rounded too: a flat edge traps wherever the goal's foot lies within it.
+/// Exact: the function `stall_possible` for an ellipse or disc (predicate F: the goal on or inside the evolute),
+/// `start_clear` and `goal_clear`. Rounded: everything with a length in it, `stall_possible` for polygons and segments
+/// (a flat edge traps wherever the goal's foot lies within it), and whether a goal lies deeper inside a grown enclosure
+/// than the arrival tolerance, which `TrapFinding::stall_possible` counts as well. Heuristic: two enclosures that
+/// overlap, and the edges of the method `orca`. Nothing here is a certificate that a run arrives.
 
 #include <optional>
 #include <vector>
@@ -62,6 +64,8 @@ struct TrapFinding {
   std::optional<TrapPlace> overlapping;
   bool start_clear = false;  ///< the start lies outside the grown enclosure (of two: outside both)
   bool goal_clear = false;   ///< so does the goal
+  /// One enclosure: `stall_possible` of its shape, exact for an ellipse or disc, or the goal inside it by more than the
+  /// arrival tolerance, rounded. Two enclosures, or an edge: whether there are `equilibria`, heuristic.
   bool stall_possible = false;
   /// Evolute margin of an ellipse. Of two enclosures, where a robot rests: minus the sine of the angle by which the way
   /// to the goal lies inside the cone of rest, at the vertex where that is most; near 0 the verdict is close.
@@ -73,10 +77,10 @@ struct TrapFinding {
 };
 
 /// Every robot against every enclosure that the method builds for it, then every two of them that overlap once they are
-/// grown by the robot. Exact for one ellipse or disc, heuristic for two (see `TrapFinding::overlapping`): the crossings
-/// of two boundaries are rounded, and a pair of them closer together than a hundredth of the radius can be missed.
-/// A goal inside a grown enclosure, by more than the arrival tolerance, is a stall: the robot stops at the boundary.
-/// Not judged: the pieces that an enclosure gives way to while the robot is inside it (`start_clear` is false there).
+/// grown by the robot (`TrapFinding::stall_possible` says what is exact). Of two, a pair of crossings closer together
+/// than a hundredth of the radius can be missed. A goal inside a grown enclosure, by more than the arrival tolerance,
+/// is a stall: the robot stops at the boundary. Not judged: the pieces that an enclosure gives way to while the robot
+/// is inside it (`start_clear` is false there).
 ///
 /// The method `orca` builds no enclosures: there each edge of each obstacle stands for itself, seen from its free side,
 /// together with the corner at its end where that is a concave one; a robot may rest on the edge over the goal's foot,
