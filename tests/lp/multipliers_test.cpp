@@ -159,5 +159,86 @@ TEST(Binding, IsNamedAndComparedByWhatItIs) {
   EXPECT_EQ((Binding{BindingKind::disc, 7}), kDisc) << "a bound has no number";
 }
 
+// --- Tangency: what binds is parallel, and the allowed velocities are a point or a stretch of a line ---
+
+struct Tangent {
+  BoundKind bound;
+  Objective objective;
+  double length;  ///< of the lines' normals
+};
+
+SpeedBound bound_of(BoundKind kind, double reach) {
+  SpeedBound bound;
+  if (kind != BoundKind::box) bound.disc = reach;
+  if (kind != BoundKind::disc) bound.box_x = bound.box_y = reach;
+  return bound;
+}
+
+/// A line at the end of what the bound allows in its direction, an ulp before it, at it or behind it, by itself or with
+/// its opposite; the preferred velocity at the centre, straight before the line, beside it, along it and beyond it.
+std::vector<Problem> tangent_problems(const Tangent& t) {
+  std::vector<Problem> problems;
+  constexpr double kReach = 3.0;
+  for (const Vec2 unit : {Vec2{1, 0}, Vec2{0, -1}, Vec2{-0.6, 0.8}, Vec2{0x1.6a09e667f3bcdp-1, 0x1.6a09e667f3bcdp-1}}) {
+    const double end =
+        t.bound == BoundKind::disc ? kReach : std::min(kReach, kReach * (std::fabs(unit.x) + std::fabs(unit.y)));
+    for (const double offset : {end, std::nextafter(end, 0.0), std::nextafter(end, 9.0), 0.0}) {
+      for (const bool opposite : {false, true}) {
+        for (const Vec2 preferred : {Vec2{}, 2.0 * unit, Vec2{-unit.y, unit.x}, 2.5 * Vec2{unit.y, -unit.x}, 5.0 * unit,
+                                     -1.0 * unit, end * unit}) {
+          if (t.objective == Objective::farthest && preferred == Vec2{}) continue;
+          Problem p;
+          p.bound = bound_of(t.bound, kReach);
+          p.objective = t.objective;
+          p.preferred = preferred;
+          p.constraints.push_back({{t.length * unit, t.length * offset}});
+          if (opposite) p.constraints.push_back({{-t.length * unit, -t.length * offset}});
+          for (const bool soft : {false, true}) {
+            for (Constraint& c : p.constraints) c.priority = soft ? Priority::soft : Priority::hard;
+            problems.push_back(p);
+          }
+        }
+      }
+    }
+  }
+  return problems;
+}
+
+void expect_usable_multipliers(const Solution& s, const char* solver, const Problem& problem) {
+  for (std::size_t k = 0; k < s.active_count; ++k) {
+    const double m = s.active[k].multiplier;
+    EXPECT_TRUE(std::isfinite(m) && !std::signbit(m)) << solver << ' ' << name(s.status) << ' ' << m << '\n'
+                                                      << text_of(problem);
+  }
+}
+
+TEST(Multipliers, AreFiniteAndNotNegativeAtTangency) {
+  for (const BoundKind bound : {BoundKind::disc, BoundKind::box, BoundKind::disc_box}) {
+    for (const Objective objective : {Objective::nearest, Objective::farthest}) {
+      for (const double length : {1.0, 0.37, 1e-170, 1e170}) {
+        for (const Problem& problem : tangent_problems({bound, objective, length}))
+          for (const Solver solver : {Solver::incremental, Solver::batch, Solver::certified, Solver::exact})
+            expect_usable_multipliers(solve_all(solver, {problem}).front().solution, name(solver), problem);
+      }
+    }
+  }
+}
+
+TEST(Multipliers, OfOneProblemInArraysAreFiniteAndNotNegativeAtTangency) {
+  for (const Problem& problem : tangent_problems({BoundKind::disc, Objective::nearest, 1.0})) {
+    std::vector<double> x(kSinglePadding), y(x), c(x);
+    std::size_t hard = 0;
+    for (std::size_t j = 0; j < problem.constraints.size(); ++j) {
+      x[j] = problem.constraints[j].half_plane.normal.x;
+      y[j] = problem.constraints[j].half_plane.normal.y;
+      c[j] = problem.constraints[j].half_plane.offset;
+      hard += problem.constraints[j].priority == Priority::hard;
+    }
+    const SingleProblem single{x.data(), y.data(),          c.data(),          problem.constraints.size(),
+                               hard,     problem.preferred, problem.bound.disc};
+    expect_usable_multipliers(solve_single(single), "solve_single", problem);
+  }
+}
+
 }  // namespace
 }  // namespace exactvo::lp

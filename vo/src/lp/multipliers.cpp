@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "duality.h"
 #include "region.h"
@@ -10,10 +11,34 @@
 namespace exactvo::lp {
 namespace {
 
-/// Least (a, b) with a x + b y = sum; rounded.
+/// Whether products of a normal with itself and others neither underflow nor overflow.
+bool has_usual_length(Vec2 normal) {
+  const double squared = squared_norm(normal);
+  return squared > 0x1p-400 && squared < 0x1p400;
+}
+
+/// A multiplier of a normal that is `length` times as long, where doubles reach so far.
+double for_length(double multiplier, double length) {
+  return std::min(multiplier / length, std::numeric_limits<double>::max());
+}
+
+/// (a, b) with a x + b y = sum; rounded. Not finite where x and y are parallel.
 std::array<double, 2> solve_pair(Vec2 x, Vec2 y, Vec2 sum) {
+  if (!has_usual_length(x) || !has_usual_length(y)) {
+    const double of_x = std::hypot(x.x, x.y), of_y = std::hypot(y.x, y.y);
+    const Vec2 u = x / of_x, v = y / of_y;
+    const double turn = cross(u, v);
+    return {for_length(cross(sum, v) / turn, of_x), for_length(cross(u, sum) / turn, of_y)};
+  }
   const double determinant = cross(x, y);
   return {cross(sum, y) / determinant, cross(x, sum) / determinant};
+}
+
+/// The share of `sum` along a normal.
+double solve_one(Vec2 normal, Vec2 sum) {
+  if (has_usual_length(normal)) return std::max(0.0, dot(sum, normal) / squared_norm(normal));
+  const double length = std::hypot(normal.x, normal.y);
+  return for_length(std::max(0.0, dot(sum, normal / length)), length);
 }
 
 /// What the normals, and for the disc -v, must add up to.
@@ -30,7 +55,7 @@ double multiplier_of_disc(Vec2 sum, Vec2 towards_centre) {
 }
 
 double multiplier_of_one(Binding binding, Vec2 column, Vec2 sum) {
-  return binding == kDisc ? multiplier_of_disc(sum, column) : std::max(0.0, dot(sum, column) / squared_norm(column));
+  return binding == kDisc ? multiplier_of_disc(sum, column) : solve_one(column, sum);
 }
 
 std::array<double, 3> weights_of_three(Vec2 a, Vec2 b, Vec2 c) {
