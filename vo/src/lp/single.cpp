@@ -338,13 +338,15 @@ class Slide : private Allowance {
       const Line g = end < 0 ? Line{-x, -y, 0.0, -1} : given(p_, end);
       const double pull_x = x - p_.preferred.x, pull_y = y - p_.preferred.y;
       const double pull = pull_x * g.y - pull_y * g.x, turn = cross(h, g);
-      const double shares[2] = {pull * turn, 0.0};  // of h, and where only h binds: looked up, not branched on
+      // Of h, and where only h binds: looked up, not branched on. Parallel boundaries (h is tangent to the disc) leave
+      // one point, or have no multipliers.
+      const double shares[2] = {pull * turn - static_cast<double>(turn == 0.0), 0.0};
       if (shares[where == wish] >= 0.0) {
         s.velocity = {x, y};
         optimum(h.index, end, where != wish, s);
         const double of_both[2] = {pull / turn, (h.x * pull_y - h.y * pull_x) / turn};
         const double of_one = (h.x * pull_x + h.y * pull_y) * inverse;
-        s.active[0].multiplier = where == wish ? of_one : of_both[0];
+        s.active[0].multiplier = std::max(0.0, where == wish ? of_one : of_both[0]);
         s.active[1].multiplier = where == wish ? 0.0 : std::max(0.0, of_both[1]);
         return !kProve || (all_hold(x, y) && keeps_disc(x, y) && is_proven(h, g, x, y, s));
       }
