@@ -237,6 +237,9 @@ TEST(Multipliers, OfOneProblemInArraysAreFiniteAndNotNegativeAtTangency) {
     const SingleProblem single{x.data(), y.data(),          c.data(),          problem.constraints.size(),
                                hard,     problem.preferred, problem.bound.disc};
     expect_usable_multipliers(solve_single(single), "solve_single", problem);
+    Solution certified;
+    solve_single_certified(single, certified);
+    expect_usable_multipliers(certified, "solve_single_certified", problem);
   }
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 
 /// \file
-/// One problem whose lines are arrays of the caller's: nothing is copied or allocated, and its lines are looked at a
-/// register at a time (Highway picks the target at run time). For who has one problem now; for many see batch.h, for
-/// boxes, linear objectives and lines of any length solve.h.
+/// One problem whose lines are arrays of the caller's: nothing is copied or allocated, and its lines are read a register
+/// at a time (Highway picks the target at run time). Neighbours: batch.h for many problems at once; solve.h for boxes,
+/// linear objectives and normals of any length.
 
 #include <cstddef>
 
@@ -25,11 +25,12 @@ struct SingleProblem {
   double disc = 0.0;                 ///< m/s, finite, > 0
 };
 
-/// The slack and the promises of a lane of `solve_batch`, by a shorter way; what the way cannot settle goes to `solve`,
-/// which allocates. Deterministic: the same bits on every target. REQUIRES: finite numbers as described.
+/// Solves as a lane of `solve_batch` does, with the same slack and guarantees, but faster for one problem. What this
+/// method cannot settle goes to `solve`, which allocates. Deterministic: the same bits on every target.
+/// REQUIRES: finite numbers as described.
 Solution solve_single(const SingleProblem& problem);
 
-/// The same into a place of the caller's, which saves copying what has just been written.
+/// The same, written to `answer`, which saves a copy.
 void solve_single(const SingleProblem& problem, Solution& answer);
 
 /// The same with what `solve_certified` promises: `optimal` and `relaxed` hold exactly, and no velocity is better by more
@@ -41,11 +42,11 @@ bool solve_single_certified(const SingleProblem& problem, Solution& answer);
 /// is the proof that v lies in the interior of none. REQUIRES: finite numbers.
 bool keeps(const SingleProblem& problem, geometry::Vec2 v);
 
-/// For who wants an answer that keeps everything or none: true where `velocity` is one that `keeps`, the nearest to the
-/// preferred one up to rounding inward as `solve_single` does. False, and no more is said, where no velocity keeps
-/// everything or so few do that there is no room to round inward (of a disc below 2^-200 m/s, none do). Up to 16 lines
-/// nothing is relaxed or allocated on the way; of more, it is as `solve_single`. A robot among obstacles that stand
-/// still can then stop: v = 0 keeps all their half-planes. REQUIRES: as `solve_single`.
+/// Finds a velocity that keeps every constraint, or none. True: `velocity` satisfies `keeps`, and is the nearest to the
+/// preferred one up to the inward rounding of `solve_single`. False: no velocity keeps everything, or too few do to
+/// round inward (for a disc below 2^-200 m/s always); `velocity` then means nothing. A robot among static obstacles can
+/// stop in this case, since v = 0 keeps all their half-planes. With at most 16 lines nothing is relaxed or allocated;
+/// with more it works as `solve_single` does. REQUIRES: as `solve_single`.
 bool solve_keeping(const SingleProblem& problem, geometry::Vec2& velocity);
 
 }  // namespace exactvo::lp
