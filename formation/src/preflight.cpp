@@ -133,12 +133,16 @@ struct TopSpeed {
   double counted = 0.0;  ///< m/s, of it
 };
 
+/// Of the time: a jump of speed at a corner comes before or after it by a rounding, and what is shorter is not driven.
+constexpr double kInstant = 1e-9;
+
 /// Over the part of the motion that happens: up to the path's end and the time limit.
 TopSpeed top_speed(const Scenario& s, const Leader& motion) {
   const double end = std::min(leader_arrival(motion), s.time_limit);
   TopSpeed top;
   for (const WayPiece& piece : way_of(motion, end)) {
     if (!(piece.from < end)) break;
+    if (piece.to - piece.from <= kInstant * piece.to) continue;
     const double speed = piece.speed_bound(std::min(piece.to, end));
     const double part = s.speed_bound == SpeedBoundKind::disc ? speed : counted(s, speed * piece.direction);
     if (part > top.counted) top = {speed, part};

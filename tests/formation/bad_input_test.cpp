@@ -119,7 +119,7 @@ TEST(BadInput, SpeedsAfterTheEndOfThePathOrTheRunDoNotCount) {
   Scenario s = paper_scene("B1");
   s.formation->leader = late;
   EXPECT_EQ(warnings_of(s), "");
-  s.formation->leader.profile[1].time = 9.0;  // the last 2 m on the way up to 9 m/s
+  s.formation->leader.profile[1].time = s.formation->leader.profile[2].time = 9.0;  // the last 2 m at 9 m/s
   EXPECT_THAT(warnings_of(s), HasSubstr("the leader moves at up to "));
   s = with_cart({{{0, 0}, {200, 0}}, 0.0, {{0, 2}, {50, 2}, {51, 9}}});
   s.time_limit = 45.0;

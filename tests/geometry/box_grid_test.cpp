@@ -101,8 +101,8 @@ TEST(Box, DistanceBelowIsNeverAboveTheTrueDistance) {
   for (int k = 0; k < 20000; ++k) {
     const int exponent = random.integer(-1074, 1024);
     Box box;
-    box.add({number(exponent), number(exponent)});
-    if (k % 3 == 0) box.add({number(exponent), number(exponent)});
+    box.add(Vec2{number(exponent), number(exponent)});
+    if (k % 3 == 0) box.add(Vec2{number(exponent), number(exponent)});
     const Vec2 x{number(exponent - random.integer(0, 60)), number(exponent - random.integer(0, 60))};
     const auto away = [](double low, double high, double at) {
       const mpq_class below = mpq_class(low) - mpq_class(at), above = mpq_class(at) - mpq_class(high);

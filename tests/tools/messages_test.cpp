@@ -175,6 +175,25 @@ TEST(Messages, MalformedGeoJsonIsNotAnsweredInTheWordsOfALibrary) {
   EXPECT_THAT(outcome.out, HasSubstr("bad.geojson: line 2, column 87: found \"[1, 1]]]}}]}\", expected a comma"));
 }
 
+TEST(Messages, JsonThatItsParserHasNoMemoryForIsRefused) {
+  // A point of two digits takes 300 bytes in GDAL's parser, fifty times its text.
+  std::string points = "[1,1]";
+  while (points.size() < 6'000'000) points += "," + points;
+  const std::string polygon = R"({"type": "Polygon", "coordinates": [[)" + points + "]]}";
+  place().write("many.geojsonl", polygon + "\n");
+  place().write("many.geojson",
+                R"({"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": )" + polygon + "}]}");
+  place().write(
+      "many.topojson",
+      R"({"type": "Topology", "objects": {"o": {"type": "Polygon", "arcs": [[0]]}}, "arcs": [[)" + points + "]]}");
+  for (const char* file : {"many.geojsonl", "many.geojson", "many.topojson"}) {
+    const Outcome outcome = place().run(std::string("validate ") + file);
+    EXPECT_EQ(outcome.status, 2) << file;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("[E_SIZE]"), Not(HasSubstr("OGR_")))) << file;
+    std::filesystem::remove(place().path() / file);
+  }
+}
+
 TEST(Messages, PointsBelowAHeaderAreAListOfPoints) {
   place().write("header.csv", "# from a survey\nx,y\n1,2\n3,4\n");
   EXPECT_THAT(place().run("validate header.csv").err, HasSubstr("points-csv, 2 read: 2 valid"));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -106,12 +107,26 @@ std::vector<std::string> GdalComplaints::take_warnings() {
   return std::exchange(warnings_, {});
 }
 
+namespace {
+
+/// What GDAL parses as soon as it is opened: all of TopoJSON, and every line of a sequence.
+void refuse_bulky(const std::filesystem::path& path, std::string_view driver) {
+  if (driver == "TopoJSON") {
+    if (const auto bulky = bulky_json(read_text_file(path), path.string(), "")) throw *bulky;
+  }
+  if (driver != "GeoJSONSeq") return;
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  for (std::size_t number = 1; std::getline(file, line); ++number)
+    if (const auto bulky = bulky_json(line, path.string(), "line " + std::to_string(number))) throw *bulky;
+}
+
+}  // namespace
+
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path) {
   register_gdal_once();
   const GDALDriverH driver = GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, kDrivers, nullptr);
-  if (driver != nullptr && std::string_view(GDALGetDriverShortName(driver)) == "TopoJSON") {
-    if (const auto bulky = bulky_json(read_text_file(path), path.string(), "")) throw *bulky;
-  }
+  refuse_bulky(path, driver == nullptr ? "" : GDALGetDriverShortName(driver));
   return std::unique_ptr<GDALDataset>(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, options_for(driver), nullptr));
 }

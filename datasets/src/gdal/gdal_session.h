@@ -42,7 +42,7 @@ class GdalComplaints {
 void register_gdal_once();
 
 /// Only drivers that read a local file of vectors: none that follow links to other files or to the network. Throws
-/// DataError (E_SIZE) for TopoJSON that `bulky_json` finds something in.
+/// DataError (E_SIZE) for TopoJSON, or a line of a sequence, that `bulky_json` finds something in.
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path);
 
 /// Readers may take 20 bytes of memory for each of the input and 200 MB beside. What would take more of json-c, the

@@ -10,7 +10,6 @@
 #include <optional>
 #include <vector>
 
-#include "exactvo/datasets/input_text.h"
 #include "exactvo/formation/recording.h"
 #include "recordings/exact_plane.h"
 
@@ -131,7 +130,6 @@ Verdict decide(const Over& over, const Test& test, const Rational& start, const 
     Rational from, to;
     int halvings;
   };
-  call_wait_hook();  // a long audit ends where its caller wants to
   std::vector<Part> open{{start, end, 0}};
   for (int used = 0; !open.empty(); ++used) {
     const Part part = open.back();
