@@ -128,16 +128,18 @@ TEST_F(VectorFile, SelfCrossingRingsAreRefusedWithTheirPlace) {
   EXPECT_NE(error.found().find("(1, 1)"), std::string::npos) << error.what();
 }
 
-TEST_F(VectorFile, BrokenGeoJsonIsALibrarysWord) {
-  EXPECT_EQ(refusal_of([&] { read("a.geojson", "{\"type\": \"FeatureCollection\", \"features\": [{"); }).code(),
-            DataCode::library);
+TEST_F(VectorFile, BrokenGeoJsonIsRefusedByLineAndColumn) {
+  const DataError error =
+      refusal_of([&] { read("a.geojson", "{\"type\": \"FeatureCollection\",\n \"features\": [{"); });
+  EXPECT_EQ(error.code(), DataCode::json_syntax);
+  EXPECT_EQ(error.place(), "line 2, column 16");
 }
 
 TEST_F(VectorFile, AMalformedPointHidesNoTruncation) {
   const std::string cut = R"({"type": "FeatureCollection", "features": [
     {"type": "Feature", "properties": {}, "geometry": {"type": "Point"}},
     {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coord)";
-  EXPECT_EQ(refusal_of([&] { read("a.geojson", cut); }).code(), DataCode::library);
+  EXPECT_EQ(refusal_of([&] { read("a.geojson", cut); }).code(), DataCode::json_syntax);
 }
 
 TEST_F(VectorFile, CsvWithAColumnOfWkt) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "exactvo/datasets/input_text.h"
+#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -109,9 +110,16 @@ std::vector<std::string> GdalComplaints::take_warnings() {
 
 namespace {
 
-/// What GDAL parses as soon as it is opened: all of TopoJSON, and every line of a sequence.
+constexpr std::size_t kBeginning = 4096;
+
+/// What GDAL parses as soon as it is opened: all of TopoJSON or of a single feature or geometry, and every line of a
+/// sequence.
 void refuse_bulky(const std::filesystem::path& path, std::string_view driver) {
-  if (driver == "TopoJSON") {
+  // Of a collection GeoJSON's driver takes one feature after the other, and minds its own limit.
+  const bool is_whole =
+      driver == "TopoJSON" ||
+      (driver == "GeoJSON" && read_beginning(path, kBeginning).find("\"features\"") == std::string::npos);
+  if (is_whole) {
     if (const auto bulky = bulky_json(read_text_file(path), path.string(), "")) throw *bulky;
   }
   if (driver != "GeoJSONSeq") return;
