@@ -93,7 +93,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"batch", "missing argument paths"}, Mistake{"batch p.wkt", "missing option --out"},
         Mistake{"batch p.wkt --out o --jobs 0", "--jobs: found '0', expected a whole number from 1 to 4096"},
         Mistake{"batch p.wkt --out o --jobs x", "--jobs: found 'x', expected a whole number from 1 to 4096"},
-        Mistake{"batch p.wkt --out o --limit-memory much", "--limit-memory: found 'much', expected "}));
+        Mistake{"batch p.wkt --out o --limit-memory much", "--limit-memory: found 'much', expected "},
+        Mistake{"batch p.wkt --out o --limit-memory 2XB", "--limit-memory: found '2XB', expected a number of bytes"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Velocities, Mistyped,

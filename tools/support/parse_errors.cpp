@@ -76,17 +76,18 @@ std::string unknown_option(const std::vector<const CLI::Option*>& options, const
   return "";
 }
 
-/// The value without the option, as it was given. A check that also changes a value leaves none behind where it fails.
+/// The value without the option, as it was given. A check that also changes a value leaves a part of it behind, or
+/// none.
 std::string value_of(const CLI::Option& option, const std::vector<std::string>& words) {
   const std::string parsed = fmt::format("{}", fmt::join(option.results(), " "));
-  if (!parsed.empty()) return parsed;
+  if (option.results().size() > 1) return parsed;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::size_t equals = words[i].find('=');
     if (words[i].empty() || words[i][0] != '-' || !option.check_name(words[i].substr(0, equals))) continue;
     if (equals != std::string::npos) return words[i].substr(equals + 1);
     if (i + 1 < words.size()) return words[i + 1];
   }
-  return "";
+  return parsed;
 }
 
 std::string kind_of_value(const CLI::Option& option) {
