@@ -176,7 +176,7 @@ TEST(Messages, MalformedGeoJsonIsNotAnsweredInTheWordsOfALibrary) {
   EXPECT_THAT(outcome.out, HasSubstr("bad.geojson: line 2, column 87: found \"[1, 1]]]}}]}\", expected a comma"));
 }
 
-TEST(Messages, JsonThatItsParserHasNoMemoryForIsRefused) {
+TEST(Messages, TextThatItsParserHasNoMemoryForIsRefused) {
   // A point of two digits takes 300 bytes in GDAL's parser, fifty times its text.
   std::string points = "[1,1]";
   while (points.size() < 6'000'000) points += "," + points;
@@ -187,7 +187,13 @@ TEST(Messages, JsonThatItsParserHasNoMemoryForIsRefused) {
   place().write(
       "many.topojson",
       R"({"type": "Topology", "objects": {"o": {"type": "Polygon", "arcs": [[0]]}}, "arcs": [[)" + points + "]]}");
-  for (const char* file : {"many.geojsonl", "many.geojson", "many.topojson"}) {
+  std::string words = "1,1";
+  while (words.size() < 8'000'000) words += " " + words;
+  place().write("many.kml",
+                R"(<?xml version="1.0"?><kml xmlns="http://www.opengis.net/kml/2.2"><Document><Placemark><Polygon>)"
+                "<outerBoundaryIs><LinearRing><coordinates>" +
+                    words + "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>");
+  for (const char* file : {"many.geojsonl", "many.geojson", "many.topojson", "many.kml"}) {
     const Outcome outcome = place().run(std::string("validate ") + file);
     EXPECT_EQ(outcome.status, 2) << file;
     EXPECT_THAT(outcome.out, AllOf(HasSubstr("[E_SIZE]"), Not(HasSubstr("OGR_")))) << file;

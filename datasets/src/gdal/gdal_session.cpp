@@ -35,7 +35,7 @@ const char* const* options_for(GDALDriverH driver) {
   return name == "GeoJSON" ? kGeoJsonOptions : kNoOptions;
 }
 
-double json_memory_for(double input_bytes) {
+double parser_memory_for(double input_bytes) {
   constexpr double kOfProcess = 60e6;  // libraries and the text itself
   return 20.0 * input_bytes + 200e6 - kOfProcess;
 }
@@ -50,7 +50,7 @@ constexpr const char* kSizeOption = "OGR_GEOJSON_MAX_OBJ_SIZE";  // MB
 
 std::optional<DataError> bulky_json(std::string_view text, const std::string& file, const std::string& place) {
   const auto lists = static_cast<double>(std::count(text.begin(), text.end(), '['));
-  if (kBytesOfList * lists <= json_memory_for(static_cast<double>(text.size()))) return std::nullopt;
+  if (kBytesOfList * lists <= parser_memory_for(static_cast<double>(text.size()))) return std::nullopt;
   return DataError(DataCode::size, file, place,
                    std::to_string(static_cast<long long>(lists)) + " lists in one JSON text",
                    "fewer at a time: features of their own, a line each, or another format");
@@ -60,7 +60,7 @@ GeoJsonSizeLimit::GeoJsonSizeLimit(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = static_cast<double>(std::filesystem::file_size(path, error));
   if (error) return;
-  const double megabytes = json_memory_for(size) / kBytesOfEstimated / 1e6;
+  const double megabytes = parser_memory_for(size) / kBytesOfEstimated / 1e6;
   CPLSetThreadLocalConfigOption(kSizeOption, std::to_string(static_cast<long long>(megabytes)).c_str());
 }
 
@@ -112,6 +112,27 @@ namespace {
 
 constexpr std::size_t kBeginning = 4096;
 
+/// Words with a comma in them: what KML writes a point as, "longitude,latitude,height".
+std::size_t count_of_points(std::string_view text) {
+  std::size_t points = 0;
+  bool has_comma = false;
+  for (const char c : text) {
+    const bool is_blank = c == ' ' || c == '\n' || c == '\t' || c == '\r';
+    points += is_blank && has_comma ? 1 : 0;
+    has_comma = !is_blank && (has_comma || c == ',');
+  }
+  return points;
+}
+
+void refuse_bulky_kml(const std::filesystem::path& path) {
+  constexpr double kBytesOfPoint = 180.0;  // measured, of the whole reading
+  const std::string text = read_text_file(path);
+  const std::size_t points = count_of_points(text);
+  if (kBytesOfPoint * static_cast<double>(points) <= parser_memory_for(static_cast<double>(text.size()))) return;
+  throw DataError(DataCode::size, path.string(), "", std::to_string(points) + " points of so few characters",
+                  "fewer points in a file, or another format, such as WKT");
+}
+
 /// What GDAL parses as soon as it is opened: all of TopoJSON or of a single feature or geometry, and every line of a
 /// sequence.
 void refuse_bulky(const std::filesystem::path& path, std::string_view driver) {
@@ -122,6 +143,7 @@ void refuse_bulky(const std::filesystem::path& path, std::string_view driver) {
   if (is_whole) {
     if (const auto bulky = bulky_json(read_text_file(path), path.string(), "")) throw *bulky;
   }
+  if (driver == "KML") refuse_bulky_kml(path);
   if (driver != "GeoJSONSeq") return;
   std::ifstream file(path, std::ios::binary);
   std::string line;
