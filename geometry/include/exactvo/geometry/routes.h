@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// From A to B with proof: a route for a disc among polygons and walls, or a closed chain of obstacles and gaps that
+/// proves the goal out of reach. docs/guide/routes.md has the theory with its proofs, and pictures.
+///
+///   RouteMap (obstacles)  ->  RoutePlan (radius)  ->  query(start, goal)  ->  Route | Separated | Blocked
+///
+/// The free space is closed: a centre is free where it is at least a radius away from every edge and inside no polygon.
+/// A gap of exactly two radii is passed. The outside of all obstacles is free, and obstacles may cross, touch and
+/// overlap.
+///
+/// Exact: which of the three answers is given, the points of a route and of a chain, and what `check` says of them
+/// (route_certificate.h, which shares no code with this). Rounded: lengths. A route is short, not proven shortest: its
+/// `lower_bound` says by how much at most it could be shortened.
+///
+/// The same obstacles and the same question give the same answer, bit for bit, on any number of threads.
+///
+/// Neighbours: route_certificate.h (checks answers), datasets/obstacle_file.h (obstacles from files).
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::geometry {
+
+/// An edge of an obstacle: `edges_of(obstacles[obstacle])[edge]`.
+struct EdgeName {
+  std::size_t obstacle = 0;
+  std::size_t edge = 0;
+};
+
+/// A point with rational coordinates, in metres.
+struct ExactPoint {
+  Vec2 rounded;   ///< to nearest or one off
+  std::string x;  ///< "numerator/denominator"; empty where `rounded.x` is exact
+  std::string y;
+};
+
+/// A proven route: every piece between two points keeps a radius away from every obstacle.
+struct Route {
+  std::vector<ExactPoint> points;  ///< start and goal included; a start that is the goal gives one
+  double length = 0.0;             ///< m, rounded
+  double lower_bound = 0.0;        ///< m; no route is shorter, up to rounding
+};
+
+/// A point of the chain, and how it goes on to the next one.
+struct ChainPoint {
+  ExactPoint point;
+  EdgeName on;               ///< an edge that the point lies on
+  bool gap_follows = false;  ///< true: straight across a gap narrower than two radii; false: along the edge `on`
+};
+
+/// No route: the closed chain separates start from goal. Each of its pieces lies on an obstacle's edge or bridges a gap
+/// narrower than two radii, so that no centre gets across it, and it winds round one of the two an odd number of times
+/// more than round the other.
+struct Separated {
+  std::vector<ChainPoint> chain;
+};
+
+/// No route: an end of it is not free.
+struct Blocked {
+  enum class End { start, goal } end = End::start;
+  bool inside = false;  ///< inside the polygon obstacles[by.obstacle]; else nearer than a radius to the edge
+  EdgeName by;
+};
+
+using RouteAnswer = std::variant<Route, Separated, Blocked>;
+
+struct RouteMapOptions {
+  double largest_radius = 10.0;     ///< m, >= 0: radii up to this can be planned for, or up to the obstacles' extent
+  double largest_distance = 100.0;  ///< m, >= 0: starts and goals may lie this far outside of the obstacles' box, or as
+                                    ///< far as its extent
+};
+
+/// Obstacles prepared for every radius. Immutable; copies share.
+class RouteMap {
+ public:
+  /// REQUIRES: valid obstacles (`validity.h`) with finite coordinates within 2^100 m; they may cross each other.
+  explicit RouteMap(const std::vector<Obstacle>& obstacles, const RouteMapOptions& options = {});
+
+  /// Vertices after all crossings have been cut.
+  std::size_t vertex_count() const;
+  double largest_radius() const;  ///< m
+  /// Whether a start or goal may lie there.
+  bool covers(Vec2 point) const;
+
+  struct Parts;
+  const Parts& parts() const { return *parts_; }  ///< for RoutePlan
+  std::shared_ptr<const Parts> shared_parts() const { return parts_; }
+
+ private:
+  std::shared_ptr<const Parts> parts_;
+};
+
+/// A map seen by a disc of one radius. Immutable; copies share; queries from many threads at once.
+class RoutePlan {
+ public:
+  /// REQUIRES: 0 < radius <= map.largest_radius().
+  RoutePlan(const RouteMap& map, double radius);
+
+  double radius() const;
+
+  /// REQUIRES: both within the map (`covers`). Throws std::runtime_error, a defect of the library, where a way exists
+  /// and no route along it could be proven.
+  RouteAnswer query(Vec2 start, Vec2 goal) const;
+
+  /// Whether there is a route: what `query` decides, without the route. Exact. REQUIRES: the same.
+  bool is_reachable(Vec2 start, Vec2 goal) const;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace exactvo::geometry

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The free plane cut into convex cells such that a disc of any radius can go from one place to another if and only if
+/// it fits through the gates between their cells (docs/guide/routes.md has the proof).
+///
+///   site       a vertex, or the inside of an edge, of the planar graph of all obstacles
+///   link       the shortest connection of two sites; *strict Gabriel*: its closed diametral disc meets no other site.
+///              Between two vertices these are sides of triangles of the constrained Delaunay triangulation.
+///   Link       below: one between a vertex v and the inside of an edge ("wall"), which ends at the foot of v
+///   cell       a free triangle, cut along all Links
+///   portal     a piece of an unconstrained side, or of a Link, between two cells
+///   gate       what a portal is a piece of: the side or the Link; as wide as that is long
+///
+///        x----------f----------y   wall            The Link v-f crosses the sides of triangles between v and
+///         \        .|.        /                    the wall. It is found by a search from v through sides that
+///          \      . | .      /                     hold the foot of v strictly inside, whose ends lie on either
+///           a-----.-|-.-----b    side              side of v-f.
+///            \      |      /
+///             `-----v-----'
+///
+/// Exact: every combinatorial decision here.
+
+#include <array>
+#include <vector>
+
+#include "routes/triangulation.h"
+
+namespace exactvo::geometry::routing {
+
+struct Link {
+  int vertex;
+  int wall;       ///< of the graph
+  int a, b;       ///< the wall's ends; the vertex lies to the left of ab
+  double length;  ///< m, rounded
+  struct Exit {
+    int triangle;
+    int side;  ///< local
+  };
+  std::vector<Exit> exits;  ///< the sides crossed, one after the other; the last is the wall
+};
+
+/// A side of a triangle; those on a wall are two, one for each face of it.
+struct Side {
+  int a, b;   ///< vertices
+  int right;  ///< the triangle on the right of ab; -1: a wall, or the square
+  int left;
+  std::vector<int> marks;  ///< the Links that cross it, from a to b
+};
+
+/// An end of a portal that is a piece of a side: a vertex, or where a Link crosses the side.
+struct PortalEnd {
+  int vertex = -1;
+  int link = -1;
+};
+
+struct Portal {
+  int left = -1;  ///< the cell to the left of from -> to
+  int right = -1;
+  int side = -1;  ///< the side that it is a piece of, or
+  PortalEnd from, to;
+  int link = -1;        ///< the Link that it is a piece of: between its crossings with
+  int piece = 0;        ///< exits[piece - 1] (0: the vertex) and exits[piece]
+  bool outward = true;  ///< of a Link: from -> to leads from its vertex to its foot
+};
+
+class CellMap {
+ public:
+  struct CellPortal {
+    int portal;
+    bool is_left;  ///< the cell is the portal's left one
+  };
+  struct Chord {
+    int link;
+    int side;  ///< 1: the cell lies to the left of the Link as it leaves its vertex; -1: to its right
+  };
+
+  CellMap(PlanarGraph graph, const Vec2 (&corners)[4]);
+
+  const Point& vertex(int v) const { return vertices[static_cast<std::size_t>(v)]; }
+  bool is_site(int v) const { return v < static_cast<int>(graph.vertices.size()); }
+  /// The foot of the Link on its wall.
+  Point foot(const Link& link) const;
+  /// The gate's width against 2 r. Exact.
+  bool link_admits(const Link& link, double r) const;
+  bool side_admits(const Side& side, double r) const;
+  /// The cell of a triangle in which x lies, or one of those on whose border it lies.
+  int cell_in(int triangle, const Point& x) const;
+  /// Whether x lies in the closed triangle.
+  bool triangle_holds(int triangle, const Point& x) const;
+
+  PlanarGraph graph;
+  std::vector<Point> vertices;  ///< the graph's, then the corners of the square
+  std::vector<Triangle> triangles;
+  std::vector<std::array<int, 3>> side_of;  ///< of a triangle, its sides by number
+  std::vector<Side> sides;
+  std::vector<Link> links;
+  std::vector<Portal> portals;
+  std::vector<std::vector<CellPortal>> cell_portals;  ///< counter-clockwise round the cell
+  std::vector<std::vector<Chord>> cell_chords;
+  std::vector<int> first_cell;  ///< of a triangle; those of the next begin where its end (one more than triangles)
+
+ private:
+  void number_sides();
+};
+
+/// All strict Gabriel links between a vertex and the inside of a wall. (links.cpp)
+std::vector<Link> gabriel_links(const CellMap& map);
+
+}  // namespace exactvo::geometry::routing

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "routes/chain.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "routes/signs.h"
+
+namespace exactvo::geometry::routing {
+namespace {
+
+/// Whether the ray from q to the right crosses ab: its upper end counts, its lower one does not.
+bool ray_crosses(const Point& q, const Point& a, const Point& b) {
+  const auto is_above = [&](const Point& p) {
+    return sign_of([&](auto to) -> NumberOf<decltype(to)> { return to(p).y - to(q).y; }) > 0;
+  };
+  const bool a_above = is_above(a), b_above = is_above(b);
+  return a_above != b_above && (orient(a, b, q) > 0) == b_above;
+}
+
+/// The nodes are the vertices and the edges of the graph ("walls"); arcs join a wall to its ends, and what a closed gap
+/// joins. An arc is odd if it crosses the rays from s and from t an odd number of times together; the chain is a closed
+/// walk with an odd number of odd arcs.
+class ChainFinder {
+ public:
+  ChainFinder(const ClearancePlan& plan, const Point& s, const Point& t)
+      : plan_(plan), map_(plan.map()), s_(s), t_(t), vertices_(static_cast<int>(map_.graph.vertices.size())) {
+    arcs_.resize(map_.graph.vertices.size() + map_.graph.edges.size());
+    for (std::size_t k = 0; k < map_.graph.edges.size(); ++k) add_wall(static_cast<int>(k));
+    for (std::size_t k = 0; k < map_.sides.size(); ++k) add_side(static_cast<int>(k));
+    for (std::size_t k = 0; k < map_.links.size(); ++k) add_link(static_cast<int>(k));
+  }
+
+  Separated operator()() const {
+    const int seed = node_on_odd_cycle();
+    if (seed < 0) throw std::runtime_error("routes: two components without a chain between them");
+    return as_chain(short_cycle(seed));
+  }
+
+ private:
+  struct Arc {
+    int to;
+    bool odd;
+    int link;  ///< of a gap between a vertex and a wall; kEnd: a wall and its end; kSide: two vertices
+  };
+  static constexpr int kEnd = -1, kSide = -2;
+  /// One arc of a cycle, with the node it starts from.
+  struct Move {
+    int from;
+    Arc arc;
+  };
+
+  bool odd(const Point& a, const Point& b) const { return ray_crosses(s_, a, b) != ray_crosses(t_, a, b); }
+  int wall_node(int edge) const { return vertices_ + edge; }
+  bool is_wall(int node) const { return node >= vertices_; }
+  const PlanarGraph::Edge& edge_of(int node) const { return map_.graph.edges[node - vertices_]; }
+
+  void add(int a, int b, bool is_odd, int link) {
+    arcs_[a].push_back({b, is_odd, link});
+    arcs_[b].push_back({a, is_odd, link});
+  }
+  /// A wall stands at its first end.
+  void add_wall(int k) {
+    const PlanarGraph::Edge& e = map_.graph.edges[k];
+    add(wall_node(k), e.a, false, kEnd);
+    add(wall_node(k), e.b, odd(map_.vertex(e.a), map_.vertex(e.b)), kEnd);
+  }
+  void add_side(int k) {
+    const Side& side = map_.sides[k];
+    if (side.right < 0 || plan_.side_admits(k) || !map_.triangles[side.left].free) return;
+    add(side.a, side.b, odd(map_.vertex(side.a), map_.vertex(side.b)), kSide);
+  }
+  void add_link(int k) {
+    if (plan_.link_admits(k)) return;
+    const Link& link = map_.links[k];
+    const Point foot = map_.foot(link);
+    const bool is_odd = odd(map_.vertex(link.vertex), foot) != odd(foot, map_.vertex(map_.graph.edges[link.wall].a));
+    add(link.vertex, wall_node(link.wall), is_odd, k);
+  }
+
+  /// Labels spanning trees; an arc that disagrees with the labels closes an odd cycle, and the node where the tree ways
+  /// of its ends part lies on one.
+  int node_on_odd_cycle() const {
+    const std::size_t n = arcs_.size();
+    constexpr int kUnseen = -2, kRoot = -1;
+    std::vector<int> parent(n, kUnseen), depth(n, 0);
+    std::vector<char> label(n, 0);
+    for (std::size_t root = 0; root < n; ++root) {
+      if (parent[root] != kUnseen) continue;
+      parent[root] = kRoot;
+      std::vector<int> queue{static_cast<int>(root)};
+      for (std::size_t k = 0; k < queue.size(); ++k) {
+        const int from = queue[k];
+        for (const Arc& arc : arcs_[from]) {
+          const char expected = static_cast<char>(label[from] ^ (arc.odd ? 1 : 0));
+          if (parent[arc.to] == kUnseen) {
+            parent[arc.to] = from;
+            label[arc.to] = expected;
+            depth[arc.to] = depth[from] + 1;
+            queue.push_back(arc.to);
+          } else if (label[arc.to] != expected) {
+            int a = from, b = arc.to;
+            while (a != b) (depth[a] >= depth[b] ? a : b) = parent[depth[a] >= depth[b] ? a : b];
+            return a;
+          }
+        }
+      }
+    }
+    return -1;
+  }
+
+  /// The fewest arcs that lead from the node back to itself with odd parity: breadth first over (node, parity). Then
+  /// the same from a node opposite, while that gives a shorter one.
+  std::vector<Move> short_cycle(int seed) const {
+    std::vector<Move> best;
+    constexpr int kRounds = 4;
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<Move> cycle = odd_cycle_through(seed);
+      if (!best.empty() && cycle.size() >= best.size()) break;
+      best = std::move(cycle);
+      seed = best[best.size() / 2].from;
+    }
+    return best;
+  }
+
+  std::vector<Move> odd_cycle_through(int seed) const {
+    struct Step {
+      int before = -1;
+      const Arc* arc = nullptr;
+    };
+    std::vector<Step> steps(2 * arcs_.size());
+    const std::size_t start = 2 * static_cast<std::size_t>(seed), end = start + 1;
+    std::vector<std::size_t> queue{start};
+    steps[start].before = static_cast<int>(start);
+    for (std::size_t k = 0; k < queue.size() && steps[end].before < 0; ++k) {
+      const std::size_t at = queue[k];
+      for (const Arc& arc : arcs_[at / 2]) {
+        const std::size_t next = 2 * static_cast<std::size_t>(arc.to) + ((at & 1) ^ (arc.odd ? 1 : 0));
+        if (steps[next].before >= 0) continue;
+        steps[next] = {static_cast<int>(at), &arc};
+        queue.push_back(next);
+      }
+    }
+    std::vector<Move> cycle;
+    for (std::size_t at = end; at != start; at = static_cast<std::size_t>(steps[at].before))
+      cycle.push_back({steps[at].before / 2, *steps[at].arc});
+    std::reverse(cycle.begin(), cycle.end());
+    return cycle;
+  }
+
+  /// A vertex is one point; a wall is passed from where the chain comes to it to where it leaves.
+  Separated as_chain(const std::vector<Move>& cycle) const {
+    Separated out;
+    const std::size_t n = cycle.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const Move& into = cycle[(k + n - 1) % n];
+      const Move& leaving = cycle[k];
+      const int node = leaving.from;
+      const bool gap = leaving.arc.link != kEnd;
+      if (is_wall(node)) {
+        const EdgeName on = edge_of(node).on;
+        out.chain.push_back({shown(contact(into.arc, into.from)), on, false});
+        out.chain.push_back({shown(contact(leaving.arc, leaving.arc.to)), on, gap});
+      } else {
+        // Where no gap follows, a wall does: the point lies on that.
+        const EdgeName on = gap ? map_.graph.on[node] : edge_of(leaving.arc.to).on;
+        out.chain.push_back({shown(map_.vertex(node)), on, gap});
+      }
+    }
+    drop_repeated(out.chain);
+    return out;
+  }
+
+  /// Where an arc between a wall and `vertex` touches the wall.
+  Point contact(const Arc& arc, int vertex) const {
+    return arc.link == kEnd ? map_.vertex(vertex) : map_.foot(map_.links[arc.link]);
+  }
+
+  /// A point that is followed by itself along an edge says nothing.
+  static void drop_repeated(std::vector<ChainPoint>& chain) {
+    std::vector<ChainPoint> kept;
+    const auto same = [](const ChainPoint& a, const ChainPoint& b) {
+      return a.point.rounded == b.point.rounded && a.point.x == b.point.x && a.point.y == b.point.y;
+    };
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      const ChainPoint& next = chain[(k + 1) % chain.size()];
+      if (!chain[k].gap_follows && same(chain[k], next)) continue;
+      kept.push_back(chain[k]);
+    }
+    chain = std::move(kept);
+  }
+
+  const ClearancePlan& plan_;
+  const CellMap& map_;
+  const Point& s_;
+  const Point& t_;
+  int vertices_;
+  std::vector<std::vector<Arc>> arcs_;
+};
+
+}  // namespace
+
+ExactPoint shown(const Point& p) {
+  ExactPoint out{p.rounded(), {}, {}};
+  if (p.is_double()) return out;
+  const Vector<Rational> exact = p.exact();
+  const auto text = [](const Rational& x, double rounded) {
+    return Rational(rounded) == x ? std::string() : x.get_num().get_str() + "/" + x.get_den().get_str();
+  };
+  out.x = text(exact.x, out.rounded.x);
+  out.y = text(exact.y, out.rounded.y);
+  return out;
+}
+
+Separated separating_chain(const ClearancePlan& plan, const Point& s, const Point& t) {
+  return ChainFinder(plan, s, t)();
+}
+
+}  // namespace exactvo::geometry::routing

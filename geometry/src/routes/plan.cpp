@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "routes/plan.h"
+
+#include <numeric>
+
+#include "routes/signs.h"
+
+namespace exactvo::geometry::routing {
+namespace {
+
+/// Disjoint sets with path halving.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(int a, int b) {
+    a = find(a);
+    b = find(b);
+    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
+  }
+  std::vector<int> roots() {
+    std::vector<int> out(parent_.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = find(static_cast<int>(i));
+    return out;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// Gates up to this many diameters wide are crossed through their exact middle.
+constexpr double kTight = 1.01;
+
+/// The middle of an interval that rounding has turned over.
+void close_if_empty(double& low, double& high) {
+  if (low > high) low = high = 0.5 * (low + high);
+}
+
+/// Where a Link crosses the line x + s u, |u| = 1.
+double crossing_at(const CellMap& map, int link, Vec2 x, Vec2 u) {
+  const Link& l = map.links[link];
+  const Vec2 d = map.vertex(l.b).rounded() - map.vertex(l.a).rounded();
+  return dot(map.vertex(l.vertex).rounded() - x, d) / dot(u, d);
+}
+
+/// One end of a piece of a side, moved inward (dir = 1 or -1 along u) until the centre is clear of what is there.
+struct MovedEnd {
+  double at;
+  int corner;
+  bool turns;
+};
+
+MovedEnd moved_from_vertex(const CellMap& map, int vertex, double at, double dir, double r) {
+  if (!map.is_site(vertex)) return {at, -1, false};
+  return {at + dir * r, vertex, true};
+}
+
+/// Out of the circle round the Link's vertex, and out of the strip along its wall (up to where the foot leaves the
+/// wall: beyond that the strip is no bound).
+MovedEnd moved_from_link(const CellMap& map, int link, bool admitted, Vec2 x, Vec2 u, double dir, double r) {
+  const Link& l = map.links[link];
+  const Vec2 v = map.vertex(l.vertex).rounded(), a = map.vertex(l.a).rounded(), d = map.vertex(l.b).rounded() - a;
+  const double start = crossing_at(map, link, x, u);
+  MovedEnd end{start, -1, true};
+  const Vec2 z = x + start * u;
+  if (norm(z - v) < r) {
+    const double b = dot(u, z - v), c = squared_norm(z - v) - r * r;
+    end.at += dir * (-dir * b + std::sqrt(std::max(0.0, b * b - c)));
+    end.corner = l.vertex;
+  }
+  const double height = cross(d, z - a) / norm(d), slope = dir * cross(d, u) / norm(d);
+  constexpr double kParallel = 1e-12;
+  if (height < r && slope > kParallel) {
+    double needed = start + dir * (r - height) / slope;
+    const double pace = dot(u, d), at = dot(x - a, d);
+    if (pace != 0.0) {
+      const double leaves = (dir * pace > 0.0 ? squared_norm(d) - at : -at) / pace;
+      needed = dir > 0.0 ? std::min(needed, leaves) : std::max(needed, leaves);
+    }
+    if (dir > 0.0 ? needed > end.at : needed < end.at) {
+      end.at = needed;
+      end.corner = -1;
+    }
+  }
+  end.turns = !admitted || end.at != start;
+  return end;
+}
+
+}  // namespace
+
+ClearancePlan::ClearancePlan(const CellMap& map, const EdgeGrid& grid, double radius)
+    : map_(&map), grid_(&grid), radius_(radius) {
+  decide_gates();
+  find_components();
+  shrink_all();
+  find_sectors();
+  find_ways_out();
+}
+
+void ClearancePlan::decide_gates() {
+  for (const Link& link : map_->links) link_admits_.push_back(map_->link_admits(link, radius_));
+  for (const Side& side : map_->sides) side_admits_.push_back(side.right >= 0 && map_->side_admits(side, radius_));
+}
+
+void ClearancePlan::find_components() {
+  DisjointSets cells(map_->cell_portals.size());
+  for (const Portal& portal : map_->portals)
+    if (portal.right >= 0 && admits(portal)) cells.join(portal.left, portal.right);
+  component_ = cells.roots();
+}
+
+void ClearancePlan::shrink_all() {
+  for (const Portal& portal : map_->portals) {
+    const bool passed = portal.right >= 0 && admits(portal);
+    shrunk_.push_back(!passed ? ShrunkPortal{} : portal.link >= 0 ? shrunk_link(portal) : shrunk_side(portal));
+  }
+}
+
+ShrunkPortal ClearancePlan::shrunk_link(const Portal& portal) const {
+  const Link& link = map_->links[portal.link];
+  const Vec2 v = map_->vertex(link.vertex).rounded();
+  const Vec2 d = map_->vertex(link.b).rounded() - map_->vertex(link.a).rounded();
+  const Vec2 u = Vec2{d.y, -d.x} / norm(d);  // towards the wall
+  const auto crossing = [&](int k) {
+    const Link::Exit& exit = link.exits[k];
+    const Side& side = map_->sides[map_->side_of[exit.triangle][exit.side]];
+    const Vec2 x = map_->vertex(side.a).rounded(), y = map_->vertex(side.b).rounded();
+    return dot(x + dot(v - x, d) / dot(y - x, d) * (y - x) - v, u);
+  };
+  const bool last = portal.piece + 1 == static_cast<int>(link.exits.size());
+  const double begins = portal.piece == 0 ? 0.0 : crossing(portal.piece - 1);
+  const double ends = last ? link.length : crossing(portal.piece);
+  double low = std::max(begins, radius_), high = std::min(ends, link.length - radius_);
+  ShrunkPortal out;
+  const double slack = kOpenSlack * radius_;
+  out.open = low <= high + slack;
+  out.nearly = low <= high + 1e3 * slack;
+  out.tight = link.length < 2.0 * kTight * radius_;
+  close_if_empty(low, high);
+  const bool turns_at_vertex = portal.piece == 0 || begins < radius_ || out.tight,
+             turns_at_foot = last || high < ends || out.tight;
+  const int corner = turns_at_vertex ? link.vertex : -1;
+  out.from = v + low * u;
+  out.to = v + high * u;
+  out.from_corner = corner;
+  out.from_turns = turns_at_vertex;
+  out.to_turns = turns_at_foot;
+  if (!portal.outward) {
+    std::swap(out.from, out.to);
+    std::swap(out.from_corner, out.to_corner);
+    std::swap(out.from_turns, out.to_turns);
+  }
+  return out;
+}
+
+ShrunkPortal ClearancePlan::shrunk_side(const Portal& portal) const {
+  const Side& side = map_->sides[portal.side];
+  const Vec2 x = map_->vertex(side.a).rounded(), y = map_->vertex(side.b).rounded();
+  const double length = norm(y - x);
+  const Vec2 u = (y - x) / length;
+  const auto position = [&](const PortalEnd& end) {
+    return end.vertex >= 0 ? (end.vertex == side.a ? 0.0 : length) : crossing_at(*map_, end.link, x, u);
+  };
+  const bool forward = portal.from.vertex == side.a || portal.to.vertex == side.b ||
+                       (portal.from.vertex < 0 && portal.to.vertex < 0 && position(portal.from) < position(portal.to));
+  const auto moved = [&](const PortalEnd& end, double dir) {
+    return end.vertex >= 0 ? moved_from_vertex(*map_, end.vertex, position(end), dir, radius_)
+                           : moved_from_link(*map_, end.link, link_admits_[end.link], x, u, dir, radius_);
+  };
+  MovedEnd from = moved(portal.from, forward ? 1.0 : -1.0), to = moved(portal.to, forward ? -1.0 : 1.0);
+  const double gap = forward ? to.at - from.at : from.at - to.at;
+  ShrunkPortal out;
+  const double slack = kOpenSlack * radius_;
+  out.open = gap >= -slack;
+  out.nearly = gap >= -1e3 * slack;
+  out.tight = portal.from.vertex >= 0 && portal.to.vertex >= 0 && map_->is_site(side.a) && map_->is_site(side.b) &&
+              length < 2.0 * kTight * radius_;
+  if (gap < 0.0) from.at = to.at = 0.5 * (from.at + to.at);
+  out.from = x + from.at * u;
+  out.to = x + to.at * u;
+  out.from_corner = from.corner;
+  out.to_corner = to.corner;
+  out.from_turns = from.turns;
+  out.to_turns = to.turns;
+  return out;
+}
+
+void ClearancePlan::find_sectors() {
+  DisjointSets ends(2 * map_->portals.size());
+  for (const auto& portals : map_->cell_portals) {
+    for (std::size_t k = 0; k < portals.size(); ++k) {
+      const auto [one, one_left] = portals[k];
+      const auto [two, two_left] = portals[(k + 1) % portals.size()];
+      const ShrunkPortal &p = shrunk_[one], &q = shrunk_[two];
+      if (one == two || !p.open || !q.open) continue;
+      const int corner = one_left ? p.to_corner : p.from_corner;
+      if (corner >= 0 && corner == (two_left ? q.from_corner : q.to_corner))
+        ends.join(2 * one + (one_left ? 1 : 0), 2 * two + (two_left ? 0 : 1));
+    }
+  }
+  sector_ = ends.roots();
+}
+
+void ClearancePlan::find_ways_out() {
+  const std::size_t count = map_->cell_portals.size();
+  std::vector<int> exits(count, 0), dead_ends;
+  way_out_.assign(count, -1);
+  for (std::size_t c = 0; c < count; ++c) {
+    for (const CellMap::CellPortal& p : map_->cell_portals[c]) exits[c] += shrunk_[p.portal].open ? 1 : 0;
+    if (exits[c] == 1) dead_ends.push_back(static_cast<int>(c));
+  }
+  while (!dead_ends.empty()) {
+    const int cell = dead_ends.back();
+    dead_ends.pop_back();
+    if (exits[cell] != 1 || way_out_[cell] >= 0) continue;
+    for (const CellMap::CellPortal& p : map_->cell_portals[cell]) {
+      if (!shrunk_[p.portal].open) continue;
+      const Portal& portal = map_->portals[p.portal];
+      const int to = p.is_left ? portal.right : portal.left;
+      if (way_out_[to] >= 0) continue;
+      way_out_[cell] = to;
+      if (--exits[to] == 1) dead_ends.push_back(to);
+    }
+  }
+}
+
+namespace {
+
+/// The ends of a piece of the grid.
+std::pair<const Point*, const Point*> ends_of(const CellMap& map, int piece) {
+  const int edges = static_cast<int>(map.graph.edges.size());
+  if (piece >= edges) {
+    const Point* p = &map.vertex(map.graph.isolated[piece - edges]);
+    return {p, p};
+  }
+  const PlanarGraph::Edge& e = map.graph.edges[piece];
+  return {&map.vertex(e.a), &map.vertex(e.b)};
+}
+
+/// Whether ab lies, with room for every rounding, farther than r from pq: on one side of the strip round it.
+bool is_clearly_apart(Vec2 p, Vec2 q, Vec2 a, Vec2 b, double r) {
+  const Vec2 d = q - p;
+  const double length = norm(d);
+  if (!(length > 0.0)) return false;
+  const double size =
+      std::fabs(p.x) + std::fabs(p.y) + std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y) + length;
+  const double far = r * (1.0 + 1e-6) + 0x1p-40 * size;
+  const double a_left = cross(d, a - p) / length, b_left = cross(d, b - p) / length;
+  const double a_on = dot(d, a - p) / length, b_on = dot(d, b - p) / length;
+  return (a_left > far && b_left > far) || (a_left < -far && b_left < -far) || (a_on < -far && b_on < -far) ||
+         (a_on > length + far && b_on > length + far);
+}
+
+}  // namespace
+
+int ClearancePlan::piece_too_near(const Point& x) const {
+  int found = -1;
+  grid_->for_each_near(x.rounded(), x.rounded(), radius_, [&](int piece) {
+    const auto [a, b] = ends_of(*map_, piece);
+    if (compare_segment_distance(x, *a, *b, radius_) < 0) found = piece;
+    return found < 0;
+  });
+  return found;
+}
+
+bool ClearancePlan::is_clear(const Point& p, const Point& q) const {
+  return grid_->for_each_near(p.rounded(), q.rounded(), radius_, [&](int piece) {
+    const auto [a, b] = ends_of(*map_, piece);
+    return is_clearly_apart(p.rounded(), q.rounded(), a->rounded(), b->rounded(), radius_) ||
+           keeps_clear(p, q, *a, *b, radius_);
+  });
+}
+
+}  // namespace exactvo::geometry::routing

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What a disc of one radius makes of a cell map: which gates it fits through (exact), which cells hang together
+/// (exact), and, for the search, where its centre can be on each portal (rounded).
+
+#include <vector>
+
+#include "routes/cell_map.h"
+#include "routes/edge_grid.h"
+
+namespace exactvo::geometry::routing {
+
+/// Of the radius: portals that are emptier by less count as open, and by a thousand times that as nearly open.
+inline constexpr double kOpenSlack = 1e-9;
+
+/// The part of a portal where a centre can be, as its left cell sees it.
+struct ShrunkPortal {
+  Vec2 from, to;
+  int from_corner = -1, to_corner = -1;     ///< the vertex that a path turns round at that end; -1: none
+  bool from_turns = true, to_turns = true;  ///< whether a shortest path can turn there at all
+  bool open = false;                        ///< not empty, as far as doubles tell
+  bool nearly = false;                      ///< not clearly empty
+  bool tight = false;  ///< its gate is hardly wider than the disc: to be crossed through the exact middle
+};
+
+class ClearancePlan {
+ public:
+  /// REQUIRES: radius >= 0, finite.
+  ClearancePlan(const CellMap& map, const EdgeGrid& grid, double radius);
+
+  const CellMap& map() const { return *map_; }
+  const EdgeGrid& grid() const { return *grid_; }
+  double radius() const { return radius_; }
+  bool admits(const Portal& portal) const {
+    return portal.link >= 0 ? link_admits_[portal.link] : side_admits_[portal.side];
+  }
+  bool link_admits(int link) const { return link_admits_[link]; }
+  bool side_admits(int side) const { return side_admits_[side]; }
+  const ShrunkPortal& shrunk(int portal) const { return shrunk_[portal]; }
+  /// Equal for two cells iff a disc can go from one to the other.
+  int component(int cell) const { return component_[cell]; }
+  /// Portals' ends round the same vertex between which the centre can go without leaving it: equal numbers. `end` is 2
+  /// portal + (0: from, 1: to).
+  int sector(int end) const { return sector_[end]; }
+  /// A cell that leads nowhere but to one other: that one; -1 elsewhere.
+  int way_out(int cell) const { return way_out_[cell]; }
+
+  /// A piece nearer to x than the radius, -1 where there is none. Exact.
+  int piece_too_near(const Point& x) const;
+  /// Whether the disc can move straight from p to q: every piece stays at least a radius away. Exact. REQUIRES: radius
+  /// > 0.
+  bool is_clear(const Point& p, const Point& q) const;
+
+ private:
+  void decide_gates();
+  void find_components();
+  void shrink_all();
+  void find_sectors();
+  void find_ways_out();
+  ShrunkPortal shrunk_link(const Portal& portal) const;
+  ShrunkPortal shrunk_side(const Portal& portal) const;
+
+  const CellMap* map_;
+  const EdgeGrid* grid_;
+  double radius_;
+  std::vector<char> link_admits_, side_admits_;
+  std::vector<ShrunkPortal> shrunk_;
+  std::vector<int> component_, sector_, way_out_;
+};
+
+}  // namespace exactvo::geometry::routing

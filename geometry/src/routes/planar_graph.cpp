@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "routes/planar_graph.h"
+
+#include <CGAL/Bbox_2.h>
+#include <CGAL/Box_intersection_d/Box_with_info_d.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <unordered_map>
+
+#include "routes/signs.h"
+
+namespace exactvo::geometry::routing {
+namespace {
+
+/// An edge of an obstacle with the points at which it is cut, besides its ends.
+struct CutEdge {
+  Segment segment;
+  bool solid;  ///< of a polygon: the solid lies on its left
+  EdgeName name;
+  std::vector<Point> cuts;
+};
+
+std::vector<CutEdge> edges_of_all(const std::vector<Obstacle>& obstacles) {
+  std::vector<CutEdge> all;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const std::vector<Segment> edges = edges_of(obstacles[i]);
+    for (std::size_t k = 0; k < edges.size(); ++k) all.push_back({edges[k], has_interior(obstacles[i]), {i, k}, {}});
+  }
+  return all;
+}
+
+bool is_strictly_between(Vec2 p, const Segment& s) {
+  return along(p, s.a, s.a, s.b) > 0 && along(p, s.b, s.a, s.b) < 0;
+}
+
+/// Where the lines of two segments that cross properly meet.
+Point crossing_of(const Segment& s, const Segment& t) {
+  const Vector<Rational> a = Point(s.a).exact(), b = Point(s.b).exact(), c = Point(t.a).exact(), d = Point(t.b).exact();
+  const Vector<Rational> e = minus(b, a), f = minus(d, c);
+  const Rational share = cross_of(minus(c, a), f) / cross_of(e, f);
+  return {Rational(a.x + share * e.x), Rational(a.y + share * e.y)};
+}
+
+/// Cuts both where they meet.
+void cut(CutEdge& one, CutEdge& two) {
+  const Segment& s = one.segment;
+  const Segment& t = two.segment;
+  const int c = orient(s.a, s.b, t.a), d = orient(s.a, s.b, t.b);
+  if (c * d > 0) return;
+  const int a = orient(t.a, t.b, s.a), b = orient(t.a, t.b, s.b);
+  if (a * b > 0) return;
+  if (c * d < 0 && a * b < 0) {
+    const Point x = crossing_of(s, t);
+    one.cuts.push_back(x);
+    two.cuts.push_back(x);
+    return;
+  }
+  if (c == 0 && is_strictly_between(t.a, s)) one.cuts.emplace_back(t.a);
+  if (d == 0 && is_strictly_between(t.b, s)) one.cuts.emplace_back(t.b);
+  if (a == 0 && is_strictly_between(s.a, t)) two.cuts.emplace_back(s.a);
+  if (b == 0 && is_strictly_between(s.b, t)) two.cuts.emplace_back(s.b);
+}
+
+void cut_all(std::vector<CutEdge>& edges) {
+  using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::size_t>;
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Segment& s = edges[i].segment;
+    const CGAL::Bbox_2 box(std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y), std::max(s.a.x, s.b.x),
+                           std::max(s.a.y, s.b.y));
+    boxes.emplace_back(box, i);
+  }
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
+                                [&](const Box& a, const Box& b) { cut(edges[a.info()], edges[b.info()]); });
+}
+
+/// Numbers points: equal ones get one number.
+class Vertices {
+ public:
+  explicit Vertices(PlanarGraph& graph) : graph_(graph) {}
+
+  int number_of(const Point& p, const EdgeName& on) {
+    const int next = static_cast<int>(graph_.vertices.size());
+    const int number = p.is_double() ? doubles_.emplace(bits_of(p.rounded()), next).first->second
+                                     : fractions_.emplace(p.exact(), next).first->second;
+    if (number != next) return number;
+    graph_.vertices.push_back(p);
+    graph_.on.push_back(on);
+    return number;
+  }
+
+ private:
+  using Bits = std::pair<std::uint64_t, std::uint64_t>;
+  struct Hash {
+    std::size_t operator()(const Bits& b) const {
+      return static_cast<std::size_t>((b.first * 0x9E3779B97F4A7C15u ^ b.second) * 0xD6E8FEB86659FD93u >> 7);
+    }
+  };
+  struct Less {
+    bool operator()(const Vector<Rational>& p, const Vector<Rational>& q) const {
+      const int x = cmp(p.x, q.x);
+      return x < 0 || (x == 0 && cmp(p.y, q.y) < 0);
+    }
+  };
+  static Bits bits_of(Vec2 p) {
+    const double x = p.x + 0.0, y = p.y + 0.0;  // -0 is 0
+    Bits bits;
+    std::memcpy(&bits.first, &x, sizeof x);
+    std::memcpy(&bits.second, &y, sizeof y);
+    return bits;
+  }
+
+  PlanarGraph& graph_;
+  std::unordered_map<Bits, int, Hash> doubles_;
+  std::map<Vector<Rational>, int, Less> fractions_;
+};
+
+void add_pieces(CutEdge& edge, Vertices& vertices, std::map<std::pair<int, int>, std::size_t>& by_ends,
+                PlanarGraph& graph) {
+  const Segment& s = edge.segment;
+  std::sort(edge.cuts.begin(), edge.cuts.end(),
+            [&](const Point& p, const Point& q) { return along(p, q, s.a, s.b) < 0; });
+  edge.cuts.emplace_back(s.b);
+  int from = vertices.number_of(s.a, edge.name);
+  for (const Point& p : edge.cuts) {
+    const int to = vertices.number_of(p, edge.name);
+    if (to == from) continue;
+    const auto [known, fresh] = by_ends.emplace(std::minmax(from, to), graph.edges.size());
+    if (fresh) graph.edges.push_back({from, to, 0, edge.name});
+    PlanarGraph::Edge& piece = graph.edges[known->second];
+    if (edge.solid) piece.winding += piece.a == from ? 1 : -1;
+    from = to;
+  }
+}
+
+}  // namespace
+
+PlanarGraph planar_graph(const std::vector<Obstacle>& obstacles) {
+  std::vector<CutEdge> edges = edges_of_all(obstacles);
+  cut_all(edges);
+  PlanarGraph graph;
+  Vertices vertices(graph);
+  std::map<std::pair<int, int>, std::size_t> by_ends;
+  for (CutEdge& edge : edges) {
+    if (edge.segment.a == edge.segment.b)
+      graph.isolated.push_back(vertices.number_of(edge.segment.a, edge.name));
+    else
+      add_pieces(edge, vertices, by_ends, graph);
+  }
+  return graph;
+}
+
+}  // namespace exactvo::geometry::routing

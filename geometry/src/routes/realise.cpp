@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "routes/realise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactvo/geometry/pi.h"
+#include "routes/signs.h"
+
+namespace exactvo::geometry::routing {
+namespace {
+
+/// The path keeps to circles this much larger than the disc, which pays for the rounding of its corners.
+constexpr double kRadiusSlack = 1e-11;
+constexpr double kCoordinateSlack = 0x1p-50;
+
+/// In (-pi, pi].
+double wrapped(double angle) {
+  while (angle > kPi) angle -= 2.0 * kPi;
+  while (angle <= -kPi) angle += 2.0 * kPi;
+  return angle;
+}
+
+struct Circle {
+  Vec2 centre;
+  int sense;  ///< 1: the route turns left round it, which lies to its left; -1: right
+  int vertex;
+};
+
+/// The shortest curve from one point to another that passes given circles on given sides, as a polyline outside of
+/// them.
+class TautString {
+ public:
+  TautString(const ClearancePlan& plan, Vec2 from, Vec2 to, std::vector<Circle> circles)
+      : plan_(plan), from_(from), to_(to), circles_(std::move(circles)) {
+    const double size = std::max({std::fabs(from.x), std::fabs(from.y), std::fabs(to.x), std::fabs(to.y)});
+    radius_ = plan.radius() * (1.0 + kRadiusSlack) + kCoordinateSlack * size;
+  }
+
+  /// Drops circles that the string does not touch and takes up those that it cuts, until neither is left. False where
+  /// that does not come to an end.
+  bool pull() {
+    constexpr int kMostRounds = 400;
+    for (int round = 0; round < kMostRounds; ++round)
+      if (find_tangents() && !drop_loose_circle() && !take_up_cut_vertex()) return true;
+    return false;
+  }
+
+  /// The corners between the ends, arcs in steps of at most `step` rad.
+  std::vector<Point> corners(double step) const {
+    std::vector<Point> out;
+    for (std::size_t i = 0; i < circles_.size(); ++i) {
+      const double turn = wrapped(angles_[i + 1] - angles_[i]);
+      const int count = std::max(1, static_cast<int>(std::ceil(std::fabs(turn) / step)));
+      const double half = 0.5 * turn / count, reach = radius_ / std::cos(half);
+      for (int j = 0; j < count; ++j) {
+        const double angle = angles_[i] + (2 * j + 1) * half;
+        const double out_of_centre = circles_[i].sense * reach;
+        out.emplace_back(circles_[i].centre + Vec2{out_of_centre * std::sin(angle), -out_of_centre * std::cos(angle)});
+      }
+    }
+    return out;
+  }
+
+ private:
+  /// The directions of the straight pieces and their ends; false where two centres are one (one is dropped).
+  bool find_tangents() {
+    const std::size_t n = circles_.size();
+    angles_.assign(n + 1, 0.0);
+    pieces_.assign(n + 1, {});
+    for (std::size_t i = 0; i <= n; ++i) {
+      const Vec2 a = i > 0 ? circles_[i - 1].centre : from_, b = i < n ? circles_[i].centre : to_;
+      const double ra = i > 0 ? circles_[i - 1].sense * radius_ : 0.0, rb = i < n ? circles_[i].sense * radius_ : 0.0;
+      const double distance = norm(b - a);
+      if (distance == 0.0 && n > 0) {
+        circles_.erase(circles_.begin() + static_cast<std::ptrdiff_t>(std::min(i, n - 1)));
+        return false;
+      }
+      angles_[i] = std::atan2(b.y - a.y, b.x - a.x) + std::asin(std::clamp((ra - rb) / distance, -1.0, 1.0));
+      const Vec2 right{std::sin(angles_[i]), -std::cos(angles_[i])};
+      pieces_[i] = {a + ra * right, b + rb * right};
+    }
+    return true;
+  }
+
+  bool drop_loose_circle() {
+    constexpr double kAgainst = 1e-12;  // rad
+    for (std::size_t i = 0; i < circles_.size(); ++i) {
+      if (wrapped(angles_[i + 1] - angles_[i]) * circles_[i].sense >= -kAgainst) continue;
+      circles_.erase(circles_.begin() + static_cast<std::ptrdiff_t>(i));
+      return true;
+    }
+    return false;
+  }
+
+  /// The vertex that a straight piece cuts deepest becomes a circle of its own.
+  bool take_up_cut_vertex() {
+    double deepest = plan_.radius() * 1e-9 + (radius_ - plan_.radius());
+    Circle found{};
+    std::size_t where = 0;
+    bool any = false;
+    const CellMap& map = plan_.map();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const Segment piece = pieces_[i];
+      const Vec2 d = piece.b - piece.a;
+      const double length = norm(d);
+      if (length == 0.0) continue;
+      const auto consider = [&](int v) {
+        if ((i > 0 && circles_[i - 1].vertex == v) || (i < circles_.size() && circles_[i].vertex == v)) return;
+        const Vec2 p = map.vertex(v).rounded() - piece.a;
+        const double on = dot(p, d) / length, left = cross(d, p) / length;
+        if (on <= 0.0 || on >= length || !(radius_ - std::fabs(left) > deepest)) return;
+        deepest = radius_ - std::fabs(left);
+        found = {map.vertex(v).rounded(), left > 0.0 ? 1 : -1, v};
+        where = i;
+        any = true;
+      };
+      plan_.grid().for_each_near(piece.a, piece.b, plan_.radius(), [&](int k) {
+        const int edges = static_cast<int>(map.graph.edges.size());
+        if (k >= edges)
+          consider(map.graph.isolated[k - edges]);
+        else {
+          consider(map.graph.edges[k].a);
+          consider(map.graph.edges[k].b);
+        }
+        return true;
+      });
+    }
+    if (any) circles_.insert(circles_.begin() + static_cast<std::ptrdiff_t>(where), found);
+    return any;
+  }
+
+  const ClearancePlan& plan_;
+  Vec2 from_, to_;
+  std::vector<Circle> circles_;
+  double radius_;
+  std::vector<double> angles_;  ///< rad, of the straight pieces
+  std::vector<Segment> pieces_;
+};
+
+/// A tight gate: its exact middle and the exact direction at right angles to it.
+struct Gate {
+  Point middle;
+  Vector<Rational> through;  ///< in the sense of the route
+  double width;              ///< m, |through|, rounded
+};
+
+class Realiser {
+ public:
+  Realiser(const ClearancePlan& plan, const Way& way) : plan_(plan), map_(plan.map()), way_(way) {}
+
+  std::optional<std::vector<Point>> operator()(Vec2 s, Vec2 t) {
+    split();
+    std::vector<std::vector<Point>> before, after;  // of each gate: points on the straight way into it and out of it
+    for (const Gate& gate : gates_) {
+      before.push_back(approach(gate, -1));
+      after.push_back(approach(gate, 1));
+    }
+    const std::size_t n = gates_.size();
+    route_.assign(1, Point(s));
+    for (std::size_t i = 0; i <= n; ++i) {
+      const std::vector<Point> from = i > 0 ? after[i - 1] : std::vector<Point>{Point(s)};
+      const std::vector<Point> to = i < n ? before[i] : std::vector<Point>{Point(t)};
+      if (!straight_to_next_gate(i) && !between(from, to, legs_[i]) && !by_the_middles(i, from, to))
+        return std::nullopt;
+      if (i < n) append(gates_[i].middle);
+    }
+    return std::move(route_);
+  }
+
+ private:
+  /// What lies between two gates.
+  struct Leg {
+    std::vector<Circle> circles;
+    std::size_t first = 0, last = 0;  ///< its portals
+  };
+
+  void split() {
+    legs_.assign(1, {});
+    for (const Waypoint& w : way_.waypoints) {
+      if (w.portal < 0) {
+        legs_.back().circles.push_back({map_.vertex(w.vertex).rounded(), w.on_left ? 1 : -1, w.vertex});
+        continue;
+      }
+      const Gate gate = gate_of(w.portal, w.from_left);
+      // A narrow side that is no Gabriel link is no gate: its middle is not free.
+      if (!plan_.is_clear(gate.middle, gate.middle)) continue;
+      gates_.push_back(gate);
+      legs_.back().last = static_cast<std::size_t>(w.at);
+      legs_.emplace_back();
+      legs_.back().first = static_cast<std::size_t>(w.at) + 1;
+    }
+    legs_.back().last = way_.portals.size();
+  }
+
+  Gate gate_of(int number, bool from_left) const {
+    const Portal& portal = map_.portals[number];
+    Point p, q;  // as the portal runs
+    if (portal.link >= 0) {
+      const Link& link = map_.links[portal.link];
+      p = map_.vertex(link.vertex);
+      q = map_.foot(link);
+      if (!portal.outward) std::swap(p, q);
+    } else {
+      const Side& side = map_.sides[portal.side];
+      const bool forward = portal.from.vertex == side.a;
+      p = map_.vertex(forward ? side.a : side.b);
+      q = map_.vertex(forward ? side.b : side.a);
+    }
+    const Vector<Rational> a = p.exact(), b = q.exact(), d = minus(b, a);
+    // Across it to the right of p -> q leads from its left cell to its right one.
+    const int sense = from_left ? 1 : -1;
+    return {Point(Rational((a.x + b.x) / 2), Rational((a.y + b.y) / 2)),
+            {Rational(sense * d.y), Rational(-sense * d.x)},
+            norm(q.rounded() - p.rounded())};
+  }
+
+  /// Points beside the middle from which the gate is passed straight, farthest first; the last is the middle itself.
+  std::vector<Point> approach(const Gate& gate, int sense) const {
+    std::vector<Point> out;
+    for (const double share : {0.15, 0.05, 0.01, 1e-3, 1e-5}) {
+      const Rational k(sense * share * plan_.radius() / gate.width);
+      const Vector<Rational> m = gate.middle.exact();
+      const Point p(Rational(m.x + k * gate.through.x), Rational(m.y + k * gate.through.y));
+      if (plan_.is_clear(p, gate.middle)) out.push_back(p);
+    }
+    out.push_back(gate.middle);
+    return out;
+  }
+
+  void append(const Point& p) {
+    if (p.is_double() && route_.back().is_double() && p.rounded() == route_.back().rounded()) return;
+    route_.push_back(p);
+  }
+  void append(const std::vector<Point>& points) {
+    for (const Point& p : points) append(p);
+  }
+
+  bool straight_to_next_gate(std::size_t i) {
+    return i > 0 && i < gates_.size() && plan_.is_clear(gates_[i - 1].middle, gates_[i].middle);
+  }
+
+  /// From one of the first points to one of the others round the leg's circles; the first pair that can be proven.
+  bool between(const std::vector<Point>& from, const std::vector<Point>& to, const Leg& leg) {
+    for (const Point& a : from) {
+      for (const Point& b : to) {
+        const std::optional<std::vector<Point>> found = round(a, b, leg.circles);
+        if (!found) continue;
+        append(a);
+        append(*found);
+        append(b);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// The corners of a proven polyline from a to b: none where the straight way is, else taut round the circles.
+  std::optional<std::vector<Point>> round(const Point& a, const Point& b, const std::vector<Circle>& circles) const {
+    if (circles.empty() && plan_.is_clear(a, b)) return std::vector<Point>{};
+    TautString string(plan_, a.rounded(), b.rounded(), circles);
+    if (string.pull()) {
+      for (const double step : {kPi / 16.0, kPi / 64.0, kPi / 512.0}) {
+        std::vector<Point> corners = string.corners(step);
+        if (is_clear(a, corners, b)) return corners;
+      }
+    }
+    if (!circles.empty() && plan_.is_clear(a, b)) return std::vector<Point>{};
+    return std::nullopt;
+  }
+
+  bool is_clear(const Point& a, const std::vector<Point>& corners, const Point& b) const {
+    const Point* last = &a;
+    for (const Point& p : corners) {
+      if (!plan_.is_clear(*last, p)) return false;
+      last = &p;
+    }
+    return plan_.is_clear(*last, b);
+  }
+
+  /// Where the taut string cannot be proven: through the middles of the portals, as far at a time as is clear, and taut
+  /// in between where the next is not in sight.
+  bool by_the_middles(std::size_t i, const std::vector<Point>& from, const std::vector<Point>& to) {
+    std::vector<Point> stations{from.back()};
+    for (std::size_t k = from.size() - 1; k-- > 0;) stations.push_back(from[k]);
+    for (std::size_t k = legs_[i].first; k < legs_[i].last; ++k) {
+      const Point m = middle_of(way_.portals[k]);
+      if (plan_.is_clear(m, m)) stations.push_back(m);
+    }
+    for (const Point& p : to) stations.push_back(p);
+    append(stations.front());
+    for (std::size_t k = 0; k + 1 < stations.size();) {
+      const std::size_t next = next_station(stations, k);
+      if (next == k) return false;
+      k = next;
+    }
+    return true;
+  }
+
+  /// Goes on from one station to a later one, and says to which; to itself where none can be reached.
+  std::size_t next_station(const std::vector<Point>& stations, std::size_t k) {
+    constexpr std::size_t kSight = 40, kReach = 12;
+    for (std::size_t j = std::min(stations.size() - 1, k + kSight); j > k; --j) {
+      if (!plan_.is_clear(stations[k], stations[j])) continue;
+      append(stations[j]);
+      return j;
+    }
+    for (std::size_t j = k + 1; j < std::min(stations.size(), k + kReach); ++j) {
+      const std::optional<std::vector<Point>> corners = round(stations[k], stations[j], {});
+      if (!corners) continue;
+      append(*corners);
+      append(stations[j]);
+      return j;
+    }
+    return k;
+  }
+
+  Point middle_of(int number) const {
+    const Portal& portal = map_.portals[number];
+    const bool whole_side = portal.link < 0 && portal.from.vertex >= 0 && portal.to.vertex >= 0 &&
+                            map_.is_site(portal.from.vertex) && map_.is_site(portal.to.vertex);
+    const bool short_link = portal.link >= 0 && map_.links[portal.link].length < 4.0 * plan_.radius();
+    if (whole_side || short_link) return gate_of(number, true).middle;
+    const ShrunkPortal& q = plan_.shrunk(number);
+    return Point(0.5 * (q.from + q.to));
+  }
+
+  const ClearancePlan& plan_;
+  const CellMap& map_;
+  const Way& way_;
+  std::vector<Gate> gates_;
+  std::vector<Leg> legs_;  ///< one more than gates
+  std::vector<Point> route_;
+};
+
+}  // namespace
+
+std::optional<std::vector<Point>> realised(const ClearancePlan& plan, Vec2 s, Vec2 t, const Way& way) {
+  return Realiser(plan, way)(s, t);
+}
+
+}  // namespace exactvo::geometry::routing

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "routes/search.h"
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+
+#include "exactvo/geometry/pi.h"
+
+namespace exactvo::geometry::routing {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// m, relative to 1: two ways to the same corner that differ by less are equally long.
+constexpr double kSameLength = 1e-9;
+/// m: a ray that passes an end of a portal this closely goes through it.
+constexpr double kSnap = 1e-12;
+
+Vec2 mirrored(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 d = b - a;
+  const double squared = squared_norm(d);
+  if (squared == 0.0) return p;
+  const Vec2 n{-d.y, d.x};
+  return p - (2.0 * dot(p - a, n) / squared) * n;
+}
+
+/// The length of the shortest way from `root` through the interval to t.
+double way_through(Vec2 root, Vec2 left, Vec2 right, Vec2 t) {
+  const Vec2 d = left - right;
+  if (cross(d, t - right) > 0.0) t = mirrored(t, right, left);  // t lies on the root's side
+  if (cross(left - root, t - root) > 0.0) return norm(left - root) + norm(t - left);
+  if (cross(right - root, t - root) < 0.0) return norm(right - root) + norm(t - right);
+  return norm(t - root);
+}
+
+/// Where a ray from `root` meets the line from `right` to `left`, as a share of it: -1 where it passes to the right of
+/// both, 2 where to the left.
+double share_met(Vec2 root, Vec2 ray, Vec2 right, Vec2 left) {
+  const double r = cross(ray, right - root), l = cross(ray, left - root);
+  if (r >= 0.0 && l >= 0.0) return r == 0.0 && l > 0.0 ? 0.0 : -1.0;
+  if (r <= 0.0 && l <= 0.0) return 2.0;
+  return r < 0.0 ? r / (r - l) : -1.0;
+}
+
+double snapped(double share, double length) {
+  if (std::fabs(share) * length < kSnap) return 0.0;
+  if (std::fabs(share - 1.0) * length < kSnap) return 1.0;
+  return share;
+}
+
+/// Too short to aim with: a ray that passes through its own corner.
+bool is_void(Vec2 ray) {
+  return squared_norm(ray) < 1e-28;
+}
+
+}  // namespace
+
+WaySearch::WaySearch(const ClearancePlan& plan) : plan_(plan), map_(plan.map()) {
+  const std::size_t ends = 2 * map_.portals.size();
+  best_.assign(ends, kInfinity);
+  best_in_sector_.assign(ends, kInfinity);
+  seen_.assign(ends, 0);
+  seen_in_sector_.assign(ends, 0);
+  allowed_.assign(map_.cell_portals.size(), 0);
+}
+
+std::optional<Way> WaySearch::find(Vec2 s, int start, Vec2 t, int goal) {
+  Way way;
+  if (start == goal) {
+    way.lower_bound = norm(t - s);
+    return way;
+  }
+  if (search(s, start, t, goal, way)) return way;
+  way = {};
+  if (search_nearly_open(s, start, t, goal, way)) return way;
+  return std::nullopt;
+}
+
+WaySearch::Ends WaySearch::ends_seen(const CellMap::CellPortal& p) const {
+  const ShrunkPortal& q = plan_.shrunk(p.portal);
+  if (p.is_left) return {q.from, q.to, q.from_turns, q.to_turns};
+  return {q.to, q.from, q.to_turns, q.from_turns};
+}
+
+int WaySearch::corner_at(int portal, Vec2 x) const {
+  const ShrunkPortal& q = plan_.shrunk(portal);
+  return 2 * portal + (norm(x - q.from) <= norm(x - q.to) ? 0 : 1);
+}
+
+bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
+  nodes_.clear();
+  queue_.clear();
+  fresh_ = 0;
+  ++round_;
+  for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_[c] = round_;
+  open_start(s, start);
+  // Many times what any search was seen to take; one that rounding sends in circles ends here.
+  const long most = 20000 + 50 * static_cast<long>(map_.cell_portals.size());
+  for (long taken = 0; taken < most; ++taken) {
+    // A single successor is expanded at once, several wait in the queue.
+    const bool single = nodes_.size() == fresh_ + 1 && nodes_[fresh_].cell != goal;
+    int number = static_cast<int>(fresh_);
+    double bound = 0.0;
+    if (!single) {
+      queue_fresh(t);
+      number = next_from_queue(bound);
+      if (number < 0) return false;
+    }
+    fresh_ = nodes_.size();
+    if (is_outdone(nodes_[number])) continue;
+    if (nodes_[number].cell == goal) {
+      trace(number, t, way);
+      // Portals that rounding has shut were opened by up to twice the slack.
+      way.lower_bound =
+          std::max(norm(t - s), bound - 2.0 * kOpenSlack * plan_.radius() * static_cast<double>(way.portals.size()));
+      return true;
+    }
+    expand(number);
+  }
+  return false;
+}
+
+void WaySearch::open_start(Vec2 s, int start) {
+  for (const CellMap::CellPortal& p : map_.cell_portals[start]) {
+    const Portal& portal = map_.portals[p.portal];
+    const int to = p.is_left ? portal.right : portal.left;
+    if (!plan_.shrunk(p.portal).open || !may_enter(start, to)) continue;
+    const Ends e = ends_seen(p);
+    nodes_.push_back(
+        {to, p.portal, -1, -1, e.left, e.right, s, e.left - s, e.right - s, e.left_turns, e.right_turns, 0.0});
+  }
+}
+
+void WaySearch::queue_fresh(Vec2 t) {
+  for (; fresh_ < nodes_.size(); ++fresh_) {
+    const Node& n = nodes_[fresh_];
+    queue_.emplace_back(n.length + way_through(n.root, n.left, n.right, t), static_cast<int>(fresh_));
+    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+  }
+}
+
+int WaySearch::next_from_queue(double& bound) {
+  if (queue_.empty()) return -1;
+  std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
+  const auto [best, number] = queue_.back();
+  queue_.pop_back();
+  bound = best;
+  return number;
+}
+
+bool WaySearch::is_outdone(const Node& node) const {
+  if (node.corner < 0) return false;
+  return (seen_[node.corner] == round_ && best_[node.corner] < node.length - kSameLength) ||
+         is_far_outdone(node.corner, node.length);
+}
+
+/// Another corner round the same vertex was reached so much earlier that going round from there is no longer.
+bool WaySearch::is_far_outdone(int corner, double length) const {
+  const int sector = plan_.sector(corner);
+  return seen_in_sector_[sector] == round_ &&
+         best_in_sector_[sector] + 2.0 * kPi * plan_.radius() + kSameLength < length;
+}
+
+void WaySearch::expand(int number) {
+  const Node n = nodes_[number];
+  for (const CellMap::CellPortal& p : map_.cell_portals[n.cell]) {
+    const Portal& portal = map_.portals[p.portal];
+    const int to = p.is_left ? portal.right : portal.left;
+    if (p.portal == n.portal || !plan_.shrunk(p.portal).open || !may_enter(n.cell, to)) continue;
+    const Ends e = ends_seen(p);
+    const double width = norm(e.left - e.right);
+    const double right = is_void(n.right_ray) ? -1.0 : snapped(share_met(n.root, n.right_ray, e.right, e.left), width);
+    const double left = is_void(n.left_ray) ? 2.0 : snapped(share_met(n.root, n.left_ray, e.right, e.left), width);
+    const auto at = [&](double share) {
+      return share <= 0.0 ? e.right : share >= 1.0 ? e.left : e.right + share * (e.left - e.right);
+    };
+    if (right > 0.0 &&
+        n.right_turns) {  // turning right round `right`, it sees from the portal's right end up to the ray
+      const Vec2 end = at(right);
+      turn(n, number, corner_at(n.portal, n.right), n.right, p.portal, to, end, e.right,
+           right >= 1.0 ? end - n.right : n.right_ray, e.right - n.right, right >= 1.0 && e.left_turns, e.right_turns);
+    }
+    const double low = std::max(right, 0.0), high = std::min(left, 1.0);
+    if (low < high || (low == high && width < kSnap)) {
+      const Vec2 l = at(high), r = at(low);
+      nodes_.push_back({to, p.portal, number, n.corner, l, r, n.root, high >= 1.0 ? l - n.root : n.left_ray,
+                        low <= 0.0 ? r - n.root : n.right_ray, high >= 1.0 && e.left_turns, low <= 0.0 && e.right_turns,
+                        n.length});
+    }
+    if (left < 1.0 && n.left_turns) {
+      const Vec2 end = at(left);
+      turn(n, number, corner_at(n.portal, n.left), n.left, p.portal, to, e.left, end, e.left - n.left,
+           left <= 0.0 ? end - n.left : n.left_ray, e.left_turns, left <= 0.0 && e.right_turns);
+    }
+  }
+}
+
+void WaySearch::turn(const Node& node, int parent, int corner, Vec2 root, int portal, int to, Vec2 left, Vec2 right,
+                     Vec2 left_ray, Vec2 right_ray, bool left_turns, bool right_turns) {
+  const double length = node.length + norm(root - node.root);
+  if ((seen_[corner] == round_ && best_[corner] < length - kSameLength) || is_far_outdone(corner, length)) return;
+  const auto keep_least = [&](std::vector<int>& seen, std::vector<double>& best, int key) {
+    if (seen[key] != round_ || length < best[key]) {
+      seen[key] = round_;
+      best[key] = length;
+    }
+  };
+  keep_least(seen_, best_, corner);
+  keep_least(seen_in_sector_, best_in_sector_, plan_.sector(corner));
+  nodes_.push_back(
+      {to, portal, parent, corner, left, right, root, left_ray, right_ray, left_turns, right_turns, length});
+}
+
+// --- From the last node back to the way ---
+
+void WaySearch::trace(int number, Vec2 t, Way& way) const {
+  std::vector<const Node*> nodes;
+  for (int k = number; k >= 0; k = nodes_[k].parent) nodes.push_back(&nodes_[k]);
+  std::reverse(nodes.begin(), nodes.end());
+  for (const Node* n : nodes) way.portals.push_back(n->portal);
+
+  const auto crossed_from_left = [&](std::size_t k) { return map_.portals[way.portals[k]].right == nodes[k]->cell; };
+  const auto vertex_at = [&](int corner) {
+    const ShrunkPortal& q = plan_.shrunk(corner / 2);
+    return corner % 2 ? q.to_corner : q.from_corner;
+  };
+  const auto place_of = [&](int portal, std::size_t otherwise) {
+    const auto found = std::find(way.portals.begin(), way.portals.end(), portal);
+    return found == way.portals.end() ? otherwise : static_cast<std::size_t>(found - way.portals.begin());
+  };
+  std::vector<Waypoint> list;
+  const auto add_vertex = [&](int corner, std::size_t otherwise) {
+    const std::size_t at = place_of(corner / 2, otherwise);
+    const int vertex = vertex_at(corner);
+    if (vertex < 0 || plan_.shrunk(corner / 2).tight) return;
+    // Its portal's left cell sees `to` on the left.
+    list.push_back({-1, false, vertex, crossed_from_left(at) == (corner % 2 == 1), static_cast<int>(at)});
+  };
+
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (plan_.shrunk(way.portals[k]).tight)
+      list.push_back({way.portals[k], crossed_from_left(k), -1, false, static_cast<int>(k)});
+  int last = -1;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (nodes[k]->corner < 0 || nodes[k]->corner == last) continue;
+    last = nodes[k]->corner;
+    add_vertex(last, k);
+  }
+  // The last turn may be at an end of the last interval.
+  const Node& n = *nodes.back();
+  const Vec2 d = n.left - n.right;
+  const Vec2 goal = squared_norm(d) > 0.0 && cross(d, t - n.right) > 0.0 ? mirrored(t, n.right, n.left) : t;
+  int corner = -1;
+  if (cross(n.left - n.root, goal - n.root) > 0.0)
+    corner = corner_at(n.portal, n.left);
+  else if (cross(n.right - n.root, goal - n.root) < 0.0)
+    corner = corner_at(n.portal, n.right);
+  if (corner >= 0 && corner != last) add_vertex(corner, nodes.size() - 1);
+
+  std::stable_sort(list.begin(), list.end(), [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
+  const auto same = [&](const Waypoint& a, const Waypoint& b) {
+    if ((a.portal < 0) != (b.portal < 0)) return false;
+    if (a.portal < 0) return a.vertex == b.vertex && a.on_left == b.on_left;
+    const Portal &p = map_.portals[a.portal], &q = map_.portals[b.portal];
+    return p.link >= 0 && p.link == q.link;  // two pieces of one gate
+  };
+  for (const Waypoint& w : list)
+    if (way.waypoints.empty() || !same(way.waypoints.back(), w)) way.waypoints.push_back(w);
+}
+
+// --- The second search ---
+
+bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way) {
+  way.lower_bound = norm(t - s);
+  struct Reached {
+    double length = kInfinity;
+    int through = -1;  ///< the portal
+    Vec2 at;
+  };
+  std::vector<Reached> reached(map_.cell_portals.size());
+  reached[start] = {0.0, -1, s};
+  std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> queue;
+  queue.emplace(0.0, start);
+  while (!queue.empty()) {
+    const auto [length, cell] = queue.top();
+    queue.pop();
+    if (length > reached[cell].length) continue;
+    if (cell == goal) break;
+    for (const CellMap::CellPortal& p : map_.cell_portals[cell]) {
+      const Portal& portal = map_.portals[p.portal];
+      if (portal.right < 0 || !plan_.admits(portal)) continue;
+      const ShrunkPortal& q = plan_.shrunk(p.portal);
+      const int to = p.is_left ? portal.right : portal.left;
+      const Vec2 middle = 0.5 * (q.from + q.to);
+      // Portals that are clearly empty come last: a gate that the disc fits through may have some.
+      const double penalty = q.nearly ? 0.0 : 1e6 * (1.0 + plan_.radius());
+      const double there = length + norm(middle - reached[cell].at) + penalty;
+      if (!(there < reached[to].length)) continue;
+      reached[to] = {there, p.portal, middle};
+      queue.emplace(there, to);
+    }
+  }
+  if (reached[goal].through < 0) return false;
+  std::vector<std::pair<int, bool>> crossed;  // portal, from its left
+  for (int c = goal; c != start;) {
+    const Portal& portal = map_.portals[reached[c].through];
+    const bool from_left = portal.right == c;
+    crossed.emplace_back(reached[c].through, from_left);
+    c = from_left ? portal.left : portal.right;
+  }
+  std::reverse(crossed.begin(), crossed.end());
+  for (const auto& [portal, from_left] : crossed) {
+    const int at = static_cast<int>(way.portals.size());
+    way.portals.push_back(portal);
+    if (!plan_.shrunk(portal).tight) continue;
+    const auto same_gate = [&](const Waypoint& w) {
+      return map_.portals[portal].link >= 0 && map_.portals[w.portal].link == map_.portals[portal].link;
+    };
+    if (way.waypoints.empty() || !same_gate(way.waypoints.back()))
+      way.waypoints.push_back({portal, from_left, -1, false, at});
+  }
+  return true;
+}
+
+}  // namespace exactvo::geometry::routing

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The shortest way through the shrunk portals: Polyanya (Cui, Harabor and Grastien, IJCAI 2017) over the cells.
+/// Rounded: it says through which portals and round which corners, and how long the shortest curve through the shrunk
+/// portals is, which no route undercuts. The route itself is made and proven in realise.h.
+///
+/// Where rounding shuts what the exact rules leave open, a plain Dijkstra search over the portals finds a way.
+
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "routes/plan.h"
+
+namespace exactvo::geometry::routing {
+
+/// What the route passes, in order: a tight gate, to be crossed through its middle, or a vertex to go round.
+struct Waypoint {
+  int portal = -1;         ///< of the gate; -1: a vertex
+  bool from_left = false;  ///< the gate is crossed from its portal's left cell
+  int vertex = -1;
+  bool on_left = false;  ///< the vertex lies to the left of the route
+  int at = 0;            ///< its place in `Way::portals`
+};
+
+struct Way {
+  std::vector<int> portals;
+  std::vector<Waypoint> waypoints;
+  double lower_bound = 0.0;  ///< m; no route is shorter, up to rounding
+};
+
+/// Scratch memory of a search, to be used again and again by one thread.
+class WaySearch {
+ public:
+  explicit WaySearch(const ClearancePlan& plan);
+
+  /// From s in one cell to t in another. Nothing where neither search finds a way: a defect if the cells are in one
+  /// component.
+  std::optional<Way> find(Vec2 s, int start, Vec2 t, int goal);
+
+ private:
+  /// From `root`, reached after `length`, through the interval between `right` and `left` of a portal, into `cell`. The
+  /// rays that bound what is seen are kept as directions from the corners that made them: clipped points are too near
+  /// to aim with.
+  struct Node {
+    int cell, portal, parent;
+    int corner;  ///< the portal end at which the root lies: 2 portal + (0: from, 1: to); -1: the start
+    Vec2 left, right, root, left_ray, right_ray;
+    bool left_turns, right_turns;
+    double length;
+  };
+  struct Ends {
+    Vec2 right, left;
+    bool right_turns, left_turns;
+  };
+  struct Hit {
+    double right, left;
+  };
+
+  bool search(Vec2 s, int start, Vec2 t, int goal, Way& way);
+  bool search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way);
+  void open_start(Vec2 s, int start);
+  void expand(int number);
+  void turn(const Node& node, int parent, int corner, Vec2 root, int portal, int to, Vec2 left, Vec2 right,
+            Vec2 left_ray, Vec2 right_ray, bool left_turns, bool right_turns);
+  void queue_fresh(Vec2 t);
+  int next_from_queue(double& bound);
+  bool is_outdone(const Node& node) const;
+  bool is_far_outdone(int corner, double length) const;
+  bool may_enter(int from, int to) const {
+    return plan_.way_out(to) < 0 || allowed_[to] == round_ || plan_.way_out(from) == to;
+  }
+  Ends ends_seen(const CellMap::CellPortal& portal) const;
+  int corner_at(int portal, Vec2 x) const;
+  void trace(int number, Vec2 t, Way& way) const;
+
+  const ClearancePlan& plan_;
+  const CellMap& map_;
+  std::vector<Node> nodes_;
+  std::size_t fresh_ = 0;  ///< nodes from here on were made by the expansion under way
+  std::vector<std::pair<double, int>> queue_;
+  std::vector<double> best_, best_in_sector_;
+  std::vector<int> seen_, seen_in_sector_, allowed_;  ///< by the number of the round
+  int round_ = 0;
+};
+
+}  // namespace exactvo::geometry::routing

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The exact questions of distance that routes ask. Every answer is a sign: -1, 0 or 1. All are polynomials in the
+/// coordinates, so that no square root is taken. Lengths r are doubles >= 0.
+
+#include "routes/exact_point.h"
+
+namespace exactvo::geometry::routing {
+
+using detail::cross_of;
+using detail::dot_of;
+using detail::minus;
+using detail::squared;
+
+/// The turn a -> b -> c: 1 to the left.
+inline int orient(const Point& a, const Point& b, const Point& c) {
+  return sign_of([&](auto to) -> NumberOf<decltype(to)> { return cross_of(minus(to(b), to(a)), minus(to(c), to(a))); });
+}
+
+/// The sign of (p - q).(b - a): whether p lies beyond q along ab.
+inline int along(const Point& p, const Point& q, const Point& a, const Point& b) {
+  return sign_of([&](auto to) -> NumberOf<decltype(to)> { return dot_of(minus(to(p), to(q)), minus(to(b), to(a))); });
+}
+
+/// |pq|^2 against k r^2.
+inline int compare_distance(const Point& p, const Point& q, double r, double k = 1.0) {
+  return sign_of([&](auto to) -> NumberOf<decltype(to)> {
+    const auto d = minus(to(p), to(q));
+    return dot_of(d, d) - to(k) * squared(to(r));
+  });
+}
+
+/// The squared distance of p to the line ab against k r^2.
+inline int compare_line_distance(const Point& p, const Point& a, const Point& b, double r, double k = 1.0) {
+  return sign_of([&](auto to) -> NumberOf<decltype(to)> {
+    const auto d = minus(to(b), to(a));
+    return squared(cross_of(d, minus(to(p), to(a)))) - to(k) * squared(to(r)) * dot_of(d, d);
+  });
+}
+
+/// The distance of p to the segment ab against r.
+inline int compare_segment_distance(const Point& p, const Point& a, const Point& b, double r) {
+  if (along(p, a, a, b) <= 0) return compare_distance(p, a, r);
+  if (along(p, b, a, b) >= 0) return compare_distance(p, b, r);
+  return compare_line_distance(p, a, b, r);
+}
+
+/// Whether the segments pq and ab cross in a point that is interior to both.
+inline bool cross_properly(const Point& p, const Point& q, const Point& a, const Point& b) {
+  return orient(p, q, a) * orient(p, q, b) < 0 && orient(a, b, p) * orient(a, b, q) < 0;
+}
+
+/// Whether the segment pq keeps a distance of at least r > 0 from the segment ab.
+inline bool keeps_clear(const Point& p, const Point& q, const Point& a, const Point& b, double r) {
+  return compare_segment_distance(p, a, b, r) >= 0 && compare_segment_distance(q, a, b, r) >= 0 &&
+         compare_segment_distance(a, p, q, r) >= 0 && compare_segment_distance(b, p, q, r) >= 0 &&
+         !cross_properly(p, q, a, b);
+}
+
+}  // namespace exactvo::geometry::routing

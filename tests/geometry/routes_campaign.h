@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Routes at critical radii: for each world the largest double at which the goal is reached, found by bisection, and
+/// radii beside it. Every answer must be the right one, and be accepted by the checker.
+
+#include <string>
+#include <vector>
+
+#include "exactvo/geometry/route_certificate.h"
+#include "route_fields.h"
+
+namespace exactvo::test {
+
+struct RouteCampaign {
+  std::size_t cases = 0, routes = 0, chains = 0, blocked = 0;
+  double worst_ratio = 1.0;  ///< of a route's length to its lower bound
+  std::vector<std::string> failures;
+};
+
+/// A case as it goes into tests/corpus/geometry/routes.txt.
+inline std::string route_case_text(const RouteField& f, double radius) {
+  std::string text = "route " + geometry::hex_text(radius) + " " + geometry::to_string({f.start, f.goal}) + " " +
+                     std::to_string(f.obstacles.size());
+  for (const Obstacle& o : f.obstacles) {
+    const std::vector<Vec2> points = geometry::vertices_of(o);
+    text += std::string(geometry::has_interior(o) ? " polygon " : " wall ") + geometry::to_string(points);
+  }
+  return text;
+}
+
+inline void check_radius(const RouteField& f, const geometry::RouteMap& map, double radius, int expected,
+                         RouteCampaign& out) {
+  ++out.cases;
+  const auto fail = [&](const std::string& why) { out.failures.push_back(why + "\n" + route_case_text(f, radius)); };
+  try {
+    const geometry::RoutePlan plan(map, radius);
+    const geometry::RouteAnswer answer = plan.query(f.start, f.goal);
+    const std::string wrong = geometry::check(f.obstacles, {radius, f.start, f.goal}, answer);
+    if (!wrong.empty()) fail("refused: " + wrong);
+    const bool reached = std::holds_alternative<geometry::Route>(answer);
+    if (reached != plan.is_reachable(f.start, f.goal)) fail("query and is_reachable differ");
+    if (expected >= 0 && reached != (expected == 1)) fail(expected == 1 ? "not reached" : "reached");
+    if (const auto* route = std::get_if<geometry::Route>(&answer)) {
+      ++out.routes;
+      if (route->lower_bound > 0.0) out.worst_ratio = std::max(out.worst_ratio, route->length / route->lower_bound);
+      if (route->length < route->lower_bound * (1.0 - 1e-9)) fail("shorter than its lower bound");
+    } else if (std::holds_alternative<geometry::Separated>(answer)) {
+      ++out.chains;
+    } else {
+      ++out.blocked;
+    }
+  } catch (const std::exception& e) {
+    fail(e.what());
+  }
+}
+
+inline void check_field(const RouteField& f, SeededRandom& random, RouteCampaign& out) {
+  const geometry::RouteMap map(f.obstacles);
+  const auto reaches = [&](double r) { return geometry::RoutePlan(map, r).is_reachable(f.start, f.goal); };
+  constexpr double kSmall = 1e-3, kLarge = 6.0;
+  if (!reaches(kSmall)) {
+    check_radius(f, map, kSmall, 0, out);
+    check_radius(f, map, random.uniform(0.01, 1.0), 0, out);
+    return;
+  }
+  double low = kSmall, high = kLarge;
+  while (std::nextafter(low, high) < high) (reaches(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+  check_radius(f, map, low, 1, out);
+  check_radius(f, map, high, 0, out);
+  for (const double size : {1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.5}) {
+    check_radius(f, map, std::min(low, low * (1.0 - random.uniform(0.0, size))), 1, out);
+    check_radius(f, map, std::max(high, high * (1.0 + random.uniform(0.0, size))), 0, out);
+  }
+}
+
+}  // namespace exactvo::test
