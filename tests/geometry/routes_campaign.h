@@ -45,7 +45,10 @@ inline void check_radius(const RouteField& f, const geometry::RouteMap& map, dou
     if (const auto* route = std::get_if<geometry::Route>(&answer)) {
       ++out.routes;
       if (route->lower_bound > 0.0) out.worst_ratio = std::max(out.worst_ratio, route->length / route->lower_bound);
-      if (route->length < route->lower_bound * (1.0 - 1e-9)) fail("shorter than its lower bound");
+      if (route->length < route->lower_bound * (1.0 - 1e-9))
+        fail("shorter than its lower bound: " + std::to_string(1e9 * (1.0 - route->length / route->lower_bound)) +
+             "e-9 of it, length " + std::to_string(route->length) + " with " + std::to_string(route->points.size()) +
+             " points");
     } else if (std::holds_alternative<geometry::Separated>(answer)) {
       ++out.chains;
     } else {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "routes/plan.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "routes/signs.h"
@@ -51,20 +52,21 @@ struct MovedEnd {
   double at;
   int corner;
   bool turns;
+  bool moved;
 };
 
 MovedEnd moved_from_vertex(const CellMap& map, int vertex, double at, double dir, double r) {
-  if (!map.is_site(vertex)) return {at, -1, false};
-  return {at + dir * r, vertex, true};
+  if (!map.is_site(vertex)) return {at, -1, false, false};
+  return {at + dir * r, vertex, true, true};
 }
 
 /// Out of the circle round the Link's vertex, and out of the strip along its wall (up to where the foot leaves the
 /// wall: beyond that the strip is no bound).
-MovedEnd moved_from_link(const CellMap& map, int link, bool admitted, Vec2 x, Vec2 u, double dir, double r) {
+MovedEnd moved_from_link(const CellMap& map, int link, Vec2 x, Vec2 u, double dir, double r) {
   const Link& l = map.links[link];
   const Vec2 v = map.vertex(l.vertex).rounded(), a = map.vertex(l.a).rounded(), d = map.vertex(l.b).rounded() - a;
   const double start = crossing_at(map, link, x, u);
-  MovedEnd end{start, -1, true};
+  MovedEnd end{start, -1, true, false};
   const Vec2 z = x + start * u;
   if (norm(z - v) < r) {
     const double b = dot(u, z - v), c = squared_norm(z - v) - r * r;
@@ -85,7 +87,7 @@ MovedEnd moved_from_link(const CellMap& map, int link, bool admitted, Vec2 x, Ve
       end.corner = -1;
     }
   }
-  end.turns = !admitted || end.at != start;
+  end.moved = end.at != start;
   return end;
 }
 
@@ -96,6 +98,7 @@ ClearancePlan::ClearancePlan(const CellMap& map, const EdgeGrid& grid, double ra
   decide_gates();
   find_components();
   shrink_all();
+  find_turns();
   find_sectors();
   find_ways_out();
 }
@@ -140,18 +143,15 @@ ShrunkPortal ClearancePlan::shrunk_link(const Portal& portal) const {
   out.nearly = low <= high + 1e3 * slack;
   out.tight = link.length < 2.0 * kTight * radius_;
   close_if_empty(low, high);
-  const bool turns_at_vertex = portal.piece == 0 || begins < radius_ || out.tight,
-             turns_at_foot = last || high < ends || out.tight;
-  const int corner = turns_at_vertex ? link.vertex : -1;
   out.from = v + low * u;
   out.to = v + high * u;
-  out.from_corner = corner;
-  out.from_turns = turns_at_vertex;
-  out.to_turns = turns_at_foot;
+  out.from_corner = portal.piece == 0 || begins < radius_ || out.tight ? link.vertex : -1;
+  out.from_moved = portal.piece == 0 || low != begins;
+  out.to_moved = last || high != ends;
   if (!portal.outward) {
     std::swap(out.from, out.to);
     std::swap(out.from_corner, out.to_corner);
-    std::swap(out.from_turns, out.to_turns);
+    std::swap(out.from_moved, out.to_moved);
   }
   return out;
 }
@@ -168,7 +168,7 @@ ShrunkPortal ClearancePlan::shrunk_side(const Portal& portal) const {
                        (portal.from.vertex < 0 && portal.to.vertex < 0 && position(portal.from) < position(portal.to));
   const auto moved = [&](const PortalEnd& end, double dir) {
     return end.vertex >= 0 ? moved_from_vertex(*map_, end.vertex, position(end), dir, radius_)
-                           : moved_from_link(*map_, end.link, link_admits_[end.link], x, u, dir, radius_);
+                           : moved_from_link(*map_, end.link, x, u, dir, radius_);
   };
   MovedEnd from = moved(portal.from, forward ? 1.0 : -1.0), to = moved(portal.to, forward ? -1.0 : 1.0);
   const double gap = forward ? to.at - from.at : from.at - to.at;
@@ -185,7 +185,50 @@ ShrunkPortal ClearancePlan::shrunk_side(const Portal& portal) const {
   out.to_corner = to.corner;
   out.from_turns = from.turns;
   out.to_turns = to.turns;
+  out.from_moved = from.moved || gap < 0.0;
+  out.to_moved = to.moved || gap < 0.0;
   return out;
+}
+
+/// Where a Link crosses a side four portals meet. Where all of them are open up to the crossing, no shortest path turns
+/// there.
+void ClearancePlan::find_turns() {
+  struct End {
+    int portal;
+    bool is_from;
+  };
+  std::vector<std::size_t> first{0};  // of a Link's crossings
+  for (const Link& link : map_->links) first.push_back(first.back() + link.exits.size());
+  std::vector<std::vector<End>> meeting(first.back());
+  for (std::size_t p = 0; p < map_->portals.size(); ++p) {
+    const Portal& portal = map_->portals[p];
+    const int number = static_cast<int>(p);
+    if (portal.link >= 0) {
+      const std::size_t base = first[portal.link] + static_cast<std::size_t>(portal.piece);
+      if (portal.piece > 0) meeting[base - 1].push_back({number, portal.outward});
+      meeting[base].push_back({number, !portal.outward});
+      continue;
+    }
+    for (const bool is_from : {true, false}) {
+      const int link = (is_from ? portal.from : portal.to).link;
+      if (link < 0) continue;
+      const std::vector<Link::Exit>& exits = map_->links[link].exits;
+      std::size_t k = 0;
+      while (map_->side_of[exits[k].triangle][exits[k].side] != portal.side) ++k;
+      meeting[first[link] + k].push_back({number, is_from});
+    }
+  }
+  for (std::size_t l = 0; l < map_->links.size(); ++l) {
+    for (std::size_t k = first[l]; k + 1 < first[l + 1]; ++k) {  // the last lies on the wall
+      const bool all_reach =
+          meeting[k].size() == 4 && std::all_of(meeting[k].begin(), meeting[k].end(), [&](const End& e) {
+            const ShrunkPortal& q = shrunk_[e.portal];
+            return q.open && !(e.is_from ? q.from_moved : q.to_moved);
+          });
+      if (!all_reach) continue;
+      for (const End& e : meeting[k]) (e.is_from ? shrunk_[e.portal].from_turns : shrunk_[e.portal].to_turns) = false;
+    }
+  }
 }
 
 void ClearancePlan::find_sectors() {

@@ -20,6 +20,7 @@ struct ShrunkPortal {
   Vec2 from, to;
   int from_corner = -1, to_corner = -1;     ///< the vertex that a path turns round at that end; -1: none
   bool from_turns = true, to_turns = true;  ///< whether a shortest path can turn there at all
+  bool from_moved = true, to_moved = true;  ///< whether shrinking moved that end
   bool open = false;                        ///< not empty, as far as doubles tell
   bool nearly = false;                      ///< not clearly empty
   bool tight = false;  ///< its gate is hardly wider than the disc: to be crossed through the exact middle
@@ -57,6 +58,7 @@ class ClearancePlan {
   void decide_gates();
   void find_components();
   void shrink_all();
+  void find_turns();
   void find_sectors();
   void find_ways_out();
   ShrunkPortal shrunk_link(const Portal& portal) const;

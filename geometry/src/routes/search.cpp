@@ -169,6 +169,10 @@ void WaySearch::expand(int number) {
     if (p.portal == n.portal || !plan_.shrunk(p.portal).open || !may_enter(n.cell, to)) continue;
     const Ends e = ends_seen(p);
     const double width = norm(e.left - e.right);
+    if (width < kSnap) {
+      expand_to_point(number, p.portal, to, e);
+      continue;
+    }
     const double right = is_void(n.right_ray) ? -1.0 : snapped(share_met(n.root, n.right_ray, e.right, e.left), width);
     const double left = is_void(n.left_ray) ? 2.0 : snapped(share_met(n.root, n.left_ray, e.right, e.left), width);
     const auto at = [&](double share) {
@@ -181,7 +185,7 @@ void WaySearch::expand(int number) {
            right >= 1.0 ? end - n.right : n.right_ray, e.right - n.right, right >= 1.0 && e.left_turns, e.right_turns);
     }
     const double low = std::max(right, 0.0), high = std::min(left, 1.0);
-    if (low < high || (low == high && width < kSnap)) {
+    if (low < high) {
       const Vec2 l = at(high), r = at(low);
       nodes_.push_back({to, p.portal, number, n.corner, l, r, n.root, high >= 1.0 ? l - n.root : n.left_ray,
                         low <= 0.0 ? r - n.root : n.right_ray, high >= 1.0 && e.left_turns, low <= 0.0 && e.right_turns,
@@ -192,6 +196,26 @@ void WaySearch::expand(int number) {
       turn(n, number, corner_at(n.portal, n.left), n.left, p.portal, to, e.left, end, e.left - n.left,
            left <= 0.0 ? end - n.left : n.left_ray, e.left_turns, left <= 0.0 && e.right_turns);
     }
+  }
+}
+
+/// A portal that the disc just fits through is a point: it is seen whole or not at all, and turned at on both sides.
+void WaySearch::expand_to_point(int number, int portal, int to, const Ends& e) {
+  const Node n = nodes_[number];
+  const auto beyond = [&](Vec2 ray, double side) {
+    return !is_void(ray) && side * cross(ray, e.left - n.root) > kSnap * norm(ray);
+  };
+  if (beyond(n.left_ray, 1.0)) {
+    if (n.left_turns)
+      turn(n, number, corner_at(n.portal, n.left), n.left, portal, to, e.left, e.right, e.left - n.left,
+           e.right - n.left, e.left_turns, e.right_turns);
+  } else if (beyond(n.right_ray, -1.0)) {
+    if (n.right_turns)
+      turn(n, number, corner_at(n.portal, n.right), n.right, portal, to, e.left, e.right, e.left - n.right,
+           e.right - n.right, e.left_turns, e.right_turns);
+  } else {
+    nodes_.push_back({to, portal, number, n.corner, e.left, e.right, n.root, e.left - n.root, e.right - n.root,
+                      e.left_turns, e.right_turns, n.length});
   }
 }
 

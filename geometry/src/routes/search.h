@@ -64,6 +64,7 @@ class WaySearch {
   bool search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way);
   void open_start(Vec2 s, int start);
   void expand(int number);
+  void expand_to_point(int number, int portal, int to, const Ends& e);
   void turn(const Node& node, int parent, int corner, Vec2 root, int portal, int to, Vec2 left, Vec2 right,
             Vec2 left_ray, Vec2 right_ray, bool left_turns, bool right_turns);
   void queue_fresh(Vec2 t);
