@@ -309,6 +309,14 @@ int ClearancePlan::piece_too_near(const Point& x) const {
   return found;
 }
 
+void ClearancePlan::for_each_piece_near(Vec2 x, double r,
+                                        const std::function<bool(const Point&, const Point&)>& f) const {
+  grid_->for_each_near(x, x, r, [&](int piece) {
+    const auto [a, b] = ends_of(*map_, piece);
+    return f(*a, *b);
+  });
+}
+
 bool ClearancePlan::is_clear(const Point& p, const Point& q) const {
   return grid_->for_each_near(p.rounded(), q.rounded(), radius_, [&](int piece) {
     const auto [a, b] = ends_of(*map_, piece);

@@ -5,6 +5,7 @@
 /// What a disc of one radius makes of a cell map: which gates it fits through (exact), which cells hang together
 /// (exact), and, for the search, where its centre can be on each portal (rounded).
 
+#include <functional>
 #include <vector>
 
 #include "routes/cell_map.h"
@@ -53,6 +54,8 @@ class ClearancePlan {
   /// Whether the disc can move straight from p to q: every piece stays at least a radius away. Exact. REQUIRES: radius
   /// > 0.
   bool is_clear(const Point& p, const Point& q) const;
+  /// Calls f(a, b) for the pieces that may come within r of x, some of them more than once, while f returns true.
+  void for_each_piece_near(Vec2 x, double r, const std::function<bool(const Point&, const Point&)>& f) const;
 
  private:
   void decide_gates();

@@ -159,11 +159,11 @@ class Realiser {
     const std::size_t n = gates_.size();
     route_.assign(1, Point(s));
     for (std::size_t i = 0; i <= n; ++i) {
-      const std::vector<Point> from = i > 0 ? after[i - 1] : std::vector<Point>{Point(s)};
-      const std::vector<Point> to = i < n ? before[i] : std::vector<Point>{Point(t)};
+      const std::vector<Point> from = i > 0 ? after[i - 1] : departures(s);
+      const std::vector<Point> to = i < n ? before[i] : departures(t);
       if (!straight_to_next_gate(i) && !between(from, to, legs_[i]) && !by_the_middles(i, from, to))
         return std::nullopt;
-      if (i < n) append(gates_[i].middle);
+      append(i < n ? gates_[i].middle : Point(t));
     }
     return std::move(route_);
   }
@@ -225,6 +225,34 @@ class Realiser {
       if (plan_.is_clear(p, gate.middle)) out.push_back(p);
     }
     out.push_back(gate.middle);
+    return out;
+  }
+
+  /// An end of the route, behind points from which it is reached straight. Where the disc stands in contact with a
+  /// site, it can leave along the tangent, which is rational, and perhaps in no other direction that doubles name.
+  std::vector<Point> departures(Vec2 x) const {
+    constexpr double kContact = 1.0 + 1e-6;
+    constexpr std::size_t kMostContacts = 4;
+    std::vector<Vector<Rational>> tangents;
+    plan_.for_each_piece_near(x, kContact * plan_.radius(), [&](const Point& a, const Point& b) {
+      if (compare_segment_distance(x, a, b, kContact * plan_.radius()) >= 0) return true;
+      const bool at_a = along(x, a, a, b) <= 0, at_b = along(x, b, a, b) >= 0;
+      const Vector<Rational> away = minus(Point(x).exact(), (at_a ? a : b).exact());
+      tangents.push_back(at_a || at_b ? Vector<Rational>{away.y, -away.x} : minus(b.exact(), a.exact()));
+      return tangents.size() < kMostContacts;
+    });
+    std::vector<Point> out;
+    for (const double share : {0.15, 0.05, 0.01, 1e-3, 1e-5}) {
+      for (const Vector<Rational>& tangent : tangents) {
+        const double length = std::hypot(tangent.x.get_d(), tangent.y.get_d());
+        for (const double sense : {1.0, -1.0}) {
+          const Rational k(sense * share * plan_.radius() / length);
+          const Point p(Rational(x.x + k * tangent.x), Rational(x.y + k * tangent.y));
+          if (plan_.is_clear(p, x)) out.push_back(p);
+        }
+      }
+    }
+    out.emplace_back(x);
     return out;
   }
 
