@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "routes/links.h"
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
@@ -213,13 +214,32 @@ void cut_into_cells(CellMap& map) {
 
 }  // namespace
 
-CellMap::CellMap(PlanarGraph g, const Vec2 (&corners)[4]) : graph(std::move(g)), vertices(graph.vertices) {
-  for (const Vec2& corner : corners) vertices.emplace_back(corner);
-  triangles = triangulate(graph, corners);
-  number_sides();
-  links = gabriel_links(*this);
+CellMap::CellMap(PlanarGraph g, const Vec2 (&corners)[4]) : graph(std::move(g)) {
+  triangulate_and_link(corners);
   mark_crossings(*this);
   cut_into_cells(*this);
+}
+
+/// As many links and crossings as vertices, up to a constant: where there are more, crowded walls are cut. (Maps
+/// without such walls take 2 to 4 steps a corner, and at most 2 crossings a vertex.)
+void CellMap::triangulate_and_link(const Vec2 (&corners)[4]) {
+  constexpr std::size_t kStepsACorner = 8, kCrossingsAVertex = 8, kSmall = 4096;
+  constexpr int kMostRounds = 8;  // each lets a fan shrink by a factor of hundreds; then whatever it takes
+  for (int round = 0;; ++round) {
+    vertices = graph.vertices;
+    for (const Vec2& corner : corners) vertices.emplace_back(corner);
+    triangles = triangulate(graph, corners);
+    sides.clear();
+    number_sides();
+    const std::size_t steps = kStepsACorner * 3 * triangles.size() + kSmall;
+    LinkBounds bounds{steps, kCrossingsAVertex * vertices.size() + kSmall};
+    if (round == kMostRounds) bounds = {};
+    std::optional<std::vector<Link>> found = gabriel_links(*this, bounds);
+    if (!found && !cut_crowded_walls(*this, steps, graph)) found = gabriel_links(*this, {});
+    if (!found) continue;
+    links = std::move(*found);
+    return;
+  }
 }
 
 void CellMap::number_sides() {
@@ -248,20 +268,12 @@ Point CellMap::foot(const Link& link) const {
   return {Rational(a.x + share * d.x), Rational(a.y + share * d.y)};
 }
 
-namespace {
-/// Widths are rounded by a few ulps: those beyond this are decided without a sign.
-constexpr double kClearlyWider = 1.0 + 1e-6;
-}  // namespace
-
 bool CellMap::link_admits(const Link& link, double r) const {
-  return link.length > 2.0 * r * kClearlyWider ||
-         compare_line_distance(vertex(link.vertex), vertex(link.a), vertex(link.b), r, 4.0) >= 0;
+  return compare_line_distance(vertex(link.vertex), vertex(link.a), vertex(link.b), r, 4.0) >= 0;
 }
 
 bool CellMap::side_admits(const Side& side, double r) const {
-  if (!is_site(side.a) || !is_site(side.b)) return true;
-  return norm(vertex(side.a).rounded() - vertex(side.b).rounded()) > 2.0 * r * kClearlyWider ||
-         compare_distance(vertex(side.a), vertex(side.b), r, 4.0) >= 0;
+  return !is_site(side.a) || !is_site(side.b) || compare_distance(vertex(side.a), vertex(side.b), r, 4.0) >= 0;
 }
 
 int CellMap::cell_in(int triangle, const Point& x) const {

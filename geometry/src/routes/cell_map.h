@@ -102,10 +102,8 @@ class CellMap {
   std::vector<int> first_cell;  ///< of a triangle; those of the next begin where its end (one more than triangles)
 
  private:
+  void triangulate_and_link(const Vec2 (&corners)[4]);
   void number_sides();
 };
-
-/// All strict Gabriel links between a vertex and the inside of a wall. (links.cpp)
-std::vector<Link> gabriel_links(const CellMap& map);
 
 }  // namespace exactvo::geometry::routing

@@ -18,18 +18,12 @@ bool ray_crosses(const Point& q, const Point& a, const Point& b) {
   return a_above != b_above && (orient(a, b, q) > 0) == b_above;
 }
 
-/// The nodes are the vertices and the edges of the graph ("walls"); arcs join a wall to its ends, and what a closed gap
-/// joins. An arc is odd if it crosses the rays from s and from t an odd number of times together; the chain is a closed
-/// walk with an odd number of odd arcs.
+/// A closed walk over the arcs with an odd number of odd ones: an arc is odd if it crosses the rays from s and from t
+/// an odd number of times together. A wall stands at its first end.
 class ChainFinder {
  public:
-  ChainFinder(const ClearancePlan& plan, const Point& s, const Point& t)
-      : plan_(plan), map_(plan.map()), s_(s), t_(t), vertices_(static_cast<int>(map_.graph.vertices.size())) {
-    arcs_.resize(map_.graph.vertices.size() + map_.graph.edges.size());
-    for (std::size_t k = 0; k < map_.graph.edges.size(); ++k) add_wall(static_cast<int>(k));
-    for (std::size_t k = 0; k < map_.sides.size(); ++k) add_side(static_cast<int>(k));
-    for (std::size_t k = 0; k < map_.links.size(); ++k) add_link(static_cast<int>(k));
-  }
+  ChainFinder(const ClearancePlan& plan, const ArcGraph& graph, const Point& s, const Point& t)
+      : map_(plan.map()), graph_(graph), s_(s), t_(t), vertices_(static_cast<int>(map_.graph.vertices.size())) {}
 
   Separated operator()() const {
     const int seed = node_on_odd_cycle();
@@ -38,12 +32,7 @@ class ChainFinder {
   }
 
  private:
-  struct Arc {
-    int to;
-    bool odd;
-    int link;  ///< of a gap between a vertex and a wall; kEnd: a wall and its end; kSide: two vertices
-  };
-  static constexpr int kEnd = -1, kSide = -2;
+  using Arc = ArcGraph::Arc;
   /// One arc of a cycle, with the node it starts from.
   struct Move {
     int from;
@@ -51,37 +40,22 @@ class ChainFinder {
   };
 
   bool odd(const Point& a, const Point& b) const { return ray_crosses(s_, a, b) != ray_crosses(t_, a, b); }
-  int wall_node(int edge) const { return vertices_ + edge; }
   bool is_wall(int node) const { return node >= vertices_; }
   const PlanarGraph::Edge& edge_of(int node) const { return map_.graph.edges[node - vertices_]; }
 
-  void add(int a, int b, bool is_odd, int link) {
-    arcs_[a].push_back({b, is_odd, link});
-    arcs_[b].push_back({a, is_odd, link});
-  }
-  /// A wall stands at its first end.
-  void add_wall(int k) {
-    const PlanarGraph::Edge& e = map_.graph.edges[k];
-    add(wall_node(k), e.a, false, kEnd);
-    add(wall_node(k), e.b, odd(map_.vertex(e.a), map_.vertex(e.b)), kEnd);
-  }
-  void add_side(int k) {
-    const Side& side = map_.sides[k];
-    if (side.right < 0 || plan_.side_admits(k) || !map_.triangles[side.left].free) return;
-    add(side.a, side.b, odd(map_.vertex(side.a), map_.vertex(side.b)), kSide);
-  }
-  void add_link(int k) {
-    if (plan_.link_admits(k)) return;
-    const Link& link = map_.links[k];
-    const Point foot = map_.foot(link);
-    const bool is_odd = odd(map_.vertex(link.vertex), foot) != odd(foot, map_.vertex(map_.graph.edges[link.wall].a));
-    add(link.vertex, wall_node(link.wall), is_odd, k);
+  bool is_odd(int from, const Arc& arc) const {
+    if (arc.link == ArcGraph::kSide) return odd(map_.vertex(from), map_.vertex(arc.to));
+    const int wall = is_wall(from) ? from : arc.to, vertex = is_wall(from) ? arc.to : from;
+    const PlanarGraph::Edge& e = edge_of(wall);
+    if (arc.link == ArcGraph::kEnd) return vertex == e.b && odd(map_.vertex(e.a), map_.vertex(e.b));
+    const Point& foot = graph_.foot(arc.link);
+    return odd(map_.vertex(vertex), foot) != odd(foot, map_.vertex(e.a));
   }
 
   /// Labels spanning trees; an arc that disagrees with the labels closes an odd cycle, and the node where the tree ways
   /// of its ends part lies on one.
   int node_on_odd_cycle() const {
-    const std::size_t n = arcs_.size();
+    const std::size_t n = static_cast<std::size_t>(graph_.size());
     constexpr int kUnseen = -2, kRoot = -1;
     std::vector<int> parent(n, kUnseen), depth(n, 0);
     std::vector<char> label(n, 0);
@@ -91,8 +65,9 @@ class ChainFinder {
       std::vector<int> queue{static_cast<int>(root)};
       for (std::size_t k = 0; k < queue.size(); ++k) {
         const int from = queue[k];
-        for (const Arc& arc : arcs_[from]) {
-          const char expected = static_cast<char>(label[from] ^ (arc.odd ? 1 : 0));
+        for (const Arc* to = graph_.begin(from); to != graph_.end(from); ++to) {
+          const Arc& arc = *to;
+          const char expected = static_cast<char>(label[from] ^ (is_odd(from, arc) ? 1 : 0));
           if (parent[arc.to] == kUnseen) {
             parent[arc.to] = from;
             label[arc.to] = expected;
@@ -128,16 +103,17 @@ class ChainFinder {
       int before = -1;
       const Arc* arc = nullptr;
     };
-    std::vector<Step> steps(2 * arcs_.size());
+    std::vector<Step> steps(2 * static_cast<std::size_t>(graph_.size()));
     const std::size_t start = 2 * static_cast<std::size_t>(seed), end = start + 1;
     std::vector<std::size_t> queue{start};
     steps[start].before = static_cast<int>(start);
     for (std::size_t k = 0; k < queue.size() && steps[end].before < 0; ++k) {
       const std::size_t at = queue[k];
-      for (const Arc& arc : arcs_[at / 2]) {
-        const std::size_t next = 2 * static_cast<std::size_t>(arc.to) + ((at & 1) ^ (arc.odd ? 1 : 0));
+      const int from = static_cast<int>(at / 2);
+      for (const Arc* arc = graph_.begin(from); arc != graph_.end(from); ++arc) {
+        const std::size_t next = 2 * static_cast<std::size_t>(arc->to) + ((at & 1) ^ (is_odd(from, *arc) ? 1 : 0));
         if (steps[next].before >= 0) continue;
-        steps[next] = {static_cast<int>(at), &arc};
+        steps[next] = {static_cast<int>(at), arc};
         queue.push_back(next);
       }
     }
@@ -156,7 +132,7 @@ class ChainFinder {
       const Move& into = cycle[(k + n - 1) % n];
       const Move& leaving = cycle[k];
       const int node = leaving.from;
-      const bool gap = leaving.arc.link != kEnd;
+      const bool gap = leaving.arc.link != ArcGraph::kEnd;
       if (is_wall(node)) {
         const EdgeName on = edge_of(node).on;
         out.chain.push_back({shown(contact(into.arc, into.from)), on, false});
@@ -173,7 +149,7 @@ class ChainFinder {
 
   /// Where an arc between a wall and `vertex` touches the wall.
   Point contact(const Arc& arc, int vertex) const {
-    return arc.link == kEnd ? map_.vertex(vertex) : map_.foot(map_.links[arc.link]);
+    return arc.link == ArcGraph::kEnd ? map_.vertex(vertex) : graph_.foot(arc.link);
   }
 
   /// A point that is followed by itself along an edge says nothing.
@@ -190,15 +166,53 @@ class ChainFinder {
     chain = std::move(kept);
   }
 
-  const ClearancePlan& plan_;
   const CellMap& map_;
+  const ArcGraph& graph_;
   const Point& s_;
   const Point& t_;
   int vertices_;
-  std::vector<std::vector<Arc>> arcs_;
 };
 
 }  // namespace
+
+ArcGraph::ArcGraph(const ClearancePlan& plan) {
+  const CellMap& map = plan.map();
+  const int vertices = static_cast<int>(map.graph.vertices.size());
+  struct Pair {
+    int a, b, link;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t k = 0; k < map.graph.edges.size(); ++k) {
+    const int wall = vertices + static_cast<int>(k);
+    pairs.push_back({wall, map.graph.edges[k].a, kEnd});
+    pairs.push_back({wall, map.graph.edges[k].b, kEnd});
+  }
+  for (std::size_t k = 0; k < map.sides.size(); ++k) {
+    const Side& side = map.sides[k];
+    if (side.right >= 0 && !plan.side_admits(static_cast<int>(k)) && map.triangles[side.left].free)
+      pairs.push_back({side.a, side.b, kSide});
+  }
+  foot_of_.assign(map.links.size(), -1);
+  for (std::size_t k = 0; k < map.links.size(); ++k) {
+    const Link& link = map.links[k];
+    if (plan.link_admits(static_cast<int>(k))) continue;
+    foot_of_[k] = static_cast<int>(feet_.size());
+    feet_.push_back(map.foot(link));
+    pairs.push_back({link.vertex, vertices + link.wall, static_cast<int>(k)});
+  }
+  first_.assign(map.graph.vertices.size() + map.graph.edges.size() + 1, 0);
+  for (const Pair& p : pairs) {
+    ++first_[p.a + 1];
+    ++first_[p.b + 1];
+  }
+  for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
+  arcs_.resize(2 * pairs.size());
+  std::vector<int> next(first_.begin(), first_.end() - 1);
+  for (const Pair& p : pairs) {
+    arcs_[next[p.a]++] = {p.b, p.link};
+    arcs_[next[p.b]++] = {p.a, p.link};
+  }
+}
 
 ExactPoint shown(const Point& p) {
   ExactPoint out{p.rounded(), {}, {}};
@@ -212,8 +226,8 @@ ExactPoint shown(const Point& p) {
   return out;
 }
 
-Separated separating_chain(const ClearancePlan& plan, const Point& s, const Point& t) {
-  return ChainFinder(plan, s, t)();
+Separated separating_chain(const ClearancePlan& plan, const ArcGraph& graph, const Point& s, const Point& t) {
+  return ChainFinder(plan, graph, s, t)();
 }
 
 }  // namespace exactvo::geometry::routing

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "routes/edge_grid.h"
 
-#include <limits>
+#include "exactvo/geometry/box.h"
 
 namespace exactvo::geometry::routing {
 namespace {
@@ -26,25 +26,18 @@ Vec2 middle_of(const CellMap& map, const Triangle& t) {
 }  // namespace
 
 EdgeGrid::EdgeGrid(const CellMap& map) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec2 low{kInfinity, kInfinity}, high{-kInfinity, -kInfinity};
-  for (std::size_t v = 0; v < map.graph.vertices.size(); ++v) {
-    const Vec2 p = map.graph.vertices[v].rounded();
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  if (map.graph.vertices.empty()) low = high = {0.0, 0.0};
-  const double width = high.x - low.x, height = high.y - low.y, extent = std::max(width, height);
-  low_ = low;
+  Box box;
+  for (const Point& p : map.graph.vertices) box.add(p.rounded());
+  if (box.is_empty()) box = {{0.0, 0.0}, {0.0, 0.0}};
+  low_ = box.low;
+  const double width = box.high.x - box.low.x, height = box.high.y - box.low.y, extent = std::max(width, height);
   // About two cells a vertex; as thin a map as may be gets no more than that many in a row.
   const double wanted = 2.0 * static_cast<double>(map.graph.vertices.size()) + 16.0;
-  size_ = std::max(std::sqrt(width * height / wanted), extent / wanted);
+  size_ = std::max(std::sqrt(width) * std::sqrt(height) / std::sqrt(wanted), extent / wanted);
   if (!(size_ > 0.0)) size_ = 1.0;
   columns_ = static_cast<int>(width / size_) + 1;
   rows_ = static_cast<int>(height / size_) + 1;
-  // More than rounding makes of a coordinate, and of a line's height over a column.
-  constexpr double kRounding = 0x1p-40;
-  slack_ = kRounding * std::max({std::fabs(low.x), std::fabs(low.y), std::fabs(high.x), std::fabs(high.y)});
+  for (const double x : {box.low.x, box.low.y, box.high.x, box.high.y}) largest_ = std::max(largest_, std::fabs(x));
 
   hints_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), -1);
   for (std::size_t f = 0; f < map.triangles.size(); ++f) {
@@ -73,9 +66,10 @@ std::pair<int, int> EdgeGrid::rows_in_column(Vec2 a, Vec2 b, double reach, int i
 void EdgeGrid::add_all(const CellMap& map) {
   const std::vector<Piece> pieces = pieces_of(map);
   const auto for_each_cell = [&](const Piece& p, const auto& f) {
-    const int first = column(std::min(p.a.x, p.b.x) - slack_), last = column(std::max(p.a.x, p.b.x) + slack_);
+    const double slack = slack_for(p.a, p.b, 0.0);
+    const int first = column(std::min(p.a.x, p.b.x) - slack), last = column(std::max(p.a.x, p.b.x) + slack);
     for (int i = first; i <= last; ++i) {
-      const auto [low, high] = rows_in_column(p.a, p.b, slack_, i);
+      const auto [low, high] = rows_in_column(p.a, p.b, slack, i);
       for (int j = low; j <= high; ++j) f(cell(i, j));
     }
   };

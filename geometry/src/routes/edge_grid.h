@@ -3,7 +3,8 @@
 
 /// \file
 /// A uniform grid over the obstacles' pieces: which may come near a segment, and which triangle to start a walk from.
-/// Conservative: what it names is a superset.
+/// Conservative: what it names is a superset. A BoxGrid would look at the whole box of a segment; here only cells
+/// beside the segment are visited, and a long wall lies only in the cells beside it.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,7 @@ class EdgeGrid {
   /// an edge of the graph, or beyond those an isolated vertex. Stops where f returns false, and returns that.
   template <typename F>
   bool for_each_near(Vec2 a, Vec2 b, double r, const F& f) const {
-    const double reach = r + slack_;
+    const double reach = r + slack_for(a, b, r);
     const int first = column(std::min(a.x, b.x) - reach), last = column(std::max(a.x, b.x) + reach);
     for (int i = first; i <= last; ++i) {
       const auto [low, high] = rows_in_column(a, b, reach, i);
@@ -36,6 +37,11 @@ class EdgeGrid {
   }
 
  private:
+  /// More than rounding makes of a coordinate, and of a line's height over a column, wherever the segment lies.
+  double slack_for(Vec2 a, Vec2 b, double r) const {
+    constexpr double kRounding = 0x1p-40;
+    return kRounding * std::max({largest_, std::fabs(a.x), std::fabs(a.y), std::fabs(b.x), std::fabs(b.y), r});
+  }
   int column(double x) const { return clamped((x - low_.x) / size_, columns_); }
   int row(double y) const { return clamped((y - low_.y) / size_, rows_); }
   static int clamped(double k, int count) {
@@ -49,7 +55,7 @@ class EdgeGrid {
   void add_all(const CellMap& map);
 
   Vec2 low_;
-  double size_ = 1.0, slack_ = 0.0;
+  double size_ = 1.0, largest_ = 0.0;  ///< m: a cell's side; the largest coordinate
   int columns_ = 1, rows_ = 1;
   std::vector<int> hints_, starts_, items_;
 };

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "routes/links.h"
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "routes/cell_map.h"
+#include "exactvo/geometry/box.h"
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
@@ -64,101 +67,299 @@ class DiametralDisc {
   const Point& b_;
 };
 
-/// From one vertex and one of its triangles through all sides that a Link can cross.
-class LinkSearch {
+/// The edges of the graph and its isolated vertices, by place: a binary tree of boxes. A disc that touches a row of
+/// vertices in one of them meets few of its boxes, where a grid or a window would look at the whole row.
+class SiteTree {
  public:
-  LinkSearch(const CellMap& map, std::vector<Link>& out) : map_(map), out_(out) {}
-
-  void from(int triangle, int corner) {
-    vertex_ = map_.triangles[triangle].vertex[corner];
-    if (map_.is_site(vertex_)) through(triangle, corner);
+  explicit SiteTree(const CellMap& map) {
+    const auto add = [&](int a, int b) {
+      Site site{{}, a, b};
+      site.box.add(map.vertex(a).rounded());
+      site.box.add(map.vertex(b).rounded());
+      sites_.push_back(site);
+    };
+    for (const PlanarGraph::Edge& e : map.graph.edges) add(e.a, e.b);
+    for (const int v : map.graph.isolated) add(v, v);
+    split(0, sites_.size());
   }
 
- private:
-  const Point& point(int v) const { return map_.vertex(v); }
-
-  void through(int triangle, int side) {
-    const Triangle& t = map_.triangles[triangle];
-    const int x = t.vertex[(side + 1) % 3], y = t.vertex[(side + 2) % 3];
-    const Point& v = point(vertex_);
-    if (along(v, point(x), point(x), point(y)) <= 0 || along(v, point(y), point(x), point(y)) >= 0) return;
-    path_.push_back({triangle, side});
-    if (t.wall[side] >= 0) {
-      if (crosses_whole_path(x, y) && is_gabriel(x, y)) add(t.wall[side], x, y);
-    } else if (t.neighbour[side] >= 0) {
-      const int next = t.neighbour[side];
-      const int back = side_towards(next, triangle);
-      through(next, (back + 1) % 3);
-      through(next, (back + 2) % 3);
+  /// Calls f(a, b) for all sites ab that may come within r of m, while it returns true. False where f did.
+  template <typename F>
+  bool for_each_near(Vec2 m, double r, const F& f) const {
+    // More than the roundings of m, r and of vertices.
+    const double reach = r + 0x1p-40 * std::max({std::fabs(m.x), std::fabs(m.y), r});
+    std::vector<std::size_t> todo{0};
+    while (!todo.empty()) {
+      const std::size_t number = todo.back();
+      const Node& node = nodes_[number];
+      todo.pop_back();
+      if (distance_below(node.box, m) > reach) continue;
+      if (node.second != 0) {
+        todo.push_back(node.second);
+        todo.push_back(number + 1);
+        continue;
+      }
+      for (std::size_t k = node.first; k < node.last; ++k)
+        if (distance_below(sites_[k].box, m) <= reach && !f(sites_[k].a, sites_[k].b)) return false;
     }
-    path_.pop_back();
-  }
-
-  int side_towards(int triangle, int neighbour) const {
-    const int* n = map_.triangles[triangle].neighbour;
-    return static_cast<int>(std::find(n, n + 3, neighbour) - n);
-  }
-
-  void add(int wall, int x, int y) {
-    const Vec2 v = point(vertex_).rounded(), a = point(x).rounded(), d = point(y).rounded() - a;
-    out_.push_back({vertex_, wall, x, y, std::fabs(cross(d, v - a)) / norm(d), path_});
-  }
-
-  /// Whether the ends of every side on the way lie strictly on either side of the line from v to its foot on xy.
-  bool crosses_whole_path(int x, int y) const {
-    return std::all_of(path_.begin(), path_.end() - 1, [&](const Link::Exit& exit) {
-      const Triangle& t = map_.triangles[exit.triangle];
-      const Point& v = point(vertex_);
-      const int a = along(point(t.vertex[(exit.side + 1) % 3]), v, point(x), point(y));
-      const int b = along(point(t.vertex[(exit.side + 2) % 3]), v, point(x), point(y));
-      return a * b < 0;
-    });
-  }
-
-  /// Whether no site but v and the wall ab meets the disc: looked up in the triangles that meet it, from those on the
-  /// way outward.
-  bool is_gabriel(int a, int b) const {
-    const DiametralDisc disc(point(vertex_), point(a), point(b));
-    std::vector<int> reached;
-    for (const Link::Exit& exit : path_) reached.push_back(exit.triangle);
-    for (std::size_t k = 0; k < reached.size(); ++k)
-      if (!spread(reached[k], a, b, disc, reached)) return false;
     return true;
   }
 
-  /// False where a site in or on this triangle meets the disc; adds the neighbours into which the disc reaches.
-  bool spread(int triangle, int a, int b, const DiametralDisc& disc, std::vector<int>& reached) const {
+ private:
+  struct Site {
+    Box box;
+    int a, b;
+  };
+  struct Node {
+    Box box;
+    std::size_t first, last;  ///< of the sites
+    std::size_t second = 0;   ///< the second child; the first is the next node; 0: a leaf
+  };
+  static constexpr std::size_t kLeaf = 8;
+
+  void split(std::size_t first, std::size_t last) {
+    const std::size_t number = nodes_.size();
+    nodes_.push_back({{}, first, last});
+    for (std::size_t k = first; k < last; ++k) nodes_[number].box.add(sites_[k].box);
+    if (last - first <= kLeaf) return;
+    const Vec2 size = nodes_[number].box.high - nodes_[number].box.low;
+    const auto middle = sites_.begin() + static_cast<std::ptrdiff_t>((first + last) / 2);
+    std::nth_element(sites_.begin() + static_cast<std::ptrdiff_t>(first), middle,
+                     sites_.begin() + static_cast<std::ptrdiff_t>(last), [&](const Site& p, const Site& q) {
+                       return size.x > size.y ? p.box.low.x + p.box.high.x < q.box.low.x + q.box.high.x
+                                              : p.box.low.y + p.box.high.y < q.box.low.y + q.box.high.y;
+                     });
+    split(first, (first + last) / 2);
+    nodes_[number].second = nodes_.size();
+    split((first + last) / 2, last);
+  }
+
+  std::vector<Site> sites_;
+  std::vector<Node> nodes_;
+};
+
+/// Where a wall is to be cut so that fewer sides of triangles lie across the Links that end on it.
+struct Crowd {
+  int wall;
+  double share;  ///< of the Link's foot along the wall's own direction
+};
+
+/// Depth first from a vertex through all sides that a Link from it can cross; no recursion, since a Link may cross as
+/// many sides as there are vertices.
+class LinkSearch {
+ public:
+  explicit LinkSearch(const CellMap& map) : map_(map), reached_in_(map.triangles.size(), 0) {}
+
+  void from(int triangle, int corner) {
+    vertex_ = map_.triangles[triangle].vertex[corner];
+    if (!map_.triangles[triangle].free || !map_.is_site(vertex_)) return;
+    path_.clear();
+    todo_.clear();
+    const int* v = map_.triangles[triangle].vertex;
+    if (!map_.is_site(v[(corner + 1) % 3]) || !map_.is_site(v[(corner + 2) % 3])) return;
+    todo_.push_back({triangle, corner, 0, v[(corner + 1) % 3], v[(corner + 2) % 3]});
+    while (!todo_.empty()) {
+      const Step step = todo_.back();
+      todo_.pop_back();
+      path_.resize(step.depth);
+      through(step);
+    }
+  }
+
+  std::vector<Link> links;
+  std::vector<Crowd> crowds;  ///< of every long way to a wall
+  std::size_t steps = 0;      ///< triangles looked at
+  std::size_t crossings = 0;  ///< of all links with sides
+
+ private:
+  /// A side to leave a triangle by. All sides on the way to it are seen from the vertex between `right` and `left`.
+  struct Step {
+    int triangle, side;
+    std::size_t depth;
+    int right, left;
+  };
+  static constexpr std::size_t kLongWay = 8;
+
+  const Point& point(int v) const { return map_.vertex(v); }
+
+  void through(const Step& step) {
+    ++steps;
+    const Triangle& t = map_.triangles[step.triangle];
+    const int x = t.vertex[(step.side + 1) % 3], y = t.vertex[(step.side + 2) % 3];
+    const Point& v = point(vertex_);
+    if (along(v, point(x), point(x), point(y)) <= 0 || along(v, point(y), point(x), point(y)) >= 0) return;
+    path_.push_back({step.triangle, step.side});
+    if (t.wall[step.side] >= 0)
+      arrive(t.wall[step.side], x, y, step);
+    else if (t.neighbour[step.side] >= 0)
+      enter(t.neighbour[step.side], step);
+  }
+
+  /// Goes on through those of the next triangle's other two sides of which something is seen. No link crosses a side xc
+  /// to a corner c of the square: a circle round it is empty and huge, the link cuts a small cap off it, and x, on the
+  /// arc of that cap, would lie in the link's disc.
+  void enter(int triangle, const Step& from) {
+    const Triangle& t = map_.triangles[triangle];
+    const int back = static_cast<int>(std::find(t.neighbour, t.neighbour + 3, from.triangle) - t.neighbour);
+    const Point& v = point(vertex_);
+    for (const int side : {(back + 1) % 3, (back + 2) % 3}) {
+      const int x = t.vertex[(side + 1) % 3], y = t.vertex[(side + 2) % 3];
+      if (!map_.is_site(x) || !map_.is_site(y)) continue;
+      const int right = orient(v, point(from.right), point(x)) > 0 ? x : from.right;
+      const int left = orient(v, point(from.left), point(y)) < 0 ? y : from.left;
+      if (orient(v, point(right), point(left)) > 0 && can_be_crossed(x, y, right) && can_be_crossed(x, y, left))
+        todo_.push_back({triangle, side, path_.size(), right, left});
+    }
+  }
+
+  /// Whether the disc over v and some point c of the side xy can be without u: (u - v).(u - c) > 0 for an end of it.
+  bool can_be_crossed(int x, int y, int u) const {
+    const Point &v = point(vertex_), &p = point(u);
+    return along(point(x), p, v, p) < 0 || along(point(y), p, v, p) < 0;
+  }
+
+  /// The foot on the wall xy must be seen strictly between the ends of all sides on the way.
+  void arrive(int wall, int x, int y, const Step& step) {
+    const Point &v = point(vertex_), &a = point(x), &b = point(y);
+    if (along(point(step.right), v, a, b) >= 0 || along(point(step.left), v, a, b) <= 0) return;
+    if (path_.size() > kLongWay) crowds.push_back({wall, share_of_foot(wall)});
+    if (!is_gabriel(x, y)) return;
+    const Vec2 d = b.rounded() - a.rounded();
+    links.push_back({vertex_, wall, x, y, std::fabs(cross(d, v.rounded() - a.rounded())) / norm(d), path_});
+    crossings += path_.size();
+  }
+
+  double share_of_foot(int wall) const {
+    const PlanarGraph::Edge& e = map_.graph.edges[wall];
+    const Vec2 a = point(e.a).rounded(), d = point(e.b).rounded() - a;
+    return dot(point(vertex_).rounded() - a, d) / squared_norm(d);
+  }
+
+  /// Whether no site but v and the wall ab meets the disc: looked up in the triangles that meet it, from those on the
+  /// way outward; where these are many, though the disc may be empty, by place.
+  bool is_gabriel(int a, int b) {
+    constexpr std::size_t kMany = 32;
+    const DiametralDisc disc(point(vertex_), point(a), point(b));
+    ++searches_;
+    reached_.clear();
+    for (const Link::Exit& exit : path_) reach(exit.triangle);
+    for (std::size_t k = 0; k < reached_.size(); ++k) {
+      ++steps;
+      if (k >= kMany) return is_gabriel_by_place(a, b, disc);
+      if (!spread(reached_[k], a, b, disc)) return false;
+    }
+    return true;
+  }
+
+  bool is_gabriel_by_place(int a, int b, const DiametralDisc& disc) {
+    if (!sites_) sites_.emplace(map_);
+    const Vec2 v = point(vertex_).rounded(), p = point(a).rounded(), d = point(b).rounded() - p;
+    const Vec2 to_foot = cross(d, v - p) / squared_norm(d) * Vec2{d.y, -d.x};
+    return sites_->for_each_near(v + 0.5 * to_foot, 0.5 * norm(to_foot), [&](int x, int y) {
+      ++steps;
+      return (x == a && y == b) || (x == b && y == a) || !meets(x, y, a, b, disc);
+    });
+  }
+
+  /// Whether the site xy meets the disc anywhere but in v.
+  bool meets(int x, int y, int a, int b, const DiametralDisc& disc) const {
+    for (const int u : {x, y})
+      if (u != vertex_ && u != a && u != b && disc.holds(point(u))) return true;
+    if (x == y) return false;
+    return x == vertex_ || y == vertex_ ? disc.entered_from_v_towards(point(x == vertex_ ? y : x))
+                                        : disc.meets_inside(point(x), point(y));
+  }
+
+  void reach(int triangle) {
+    if (reached_in_[triangle] == searches_) return;
+    reached_in_[triangle] = searches_;
+    reached_.push_back(triangle);
+  }
+
+  /// False where a site in or on this triangle meets the disc; goes on to the neighbours into which the disc reaches.
+  bool spread(int triangle, int a, int b, const DiametralDisc& disc) {
     const Triangle& t = map_.triangles[triangle];
     for (const int u : t.vertex)
-      if (u != vertex_ && u != a && u != b && map_.is_site(u) && disc.holds(point(u))) return false;
+      if (map_.is_site(u) && meets(u, u, a, b, disc)) return false;
     for (int i = 0; i < 3; ++i) {
       const int x = t.vertex[(i + 1) % 3], y = t.vertex[(i + 2) % 3];
-      const bool at_v = x == vertex_ || y == vertex_;
-      if (t.wall[i] >= 0) {
-        if (x == a && y == b) continue;
-        if (at_v ? disc.entered_from_v_towards(point(x == vertex_ ? y : x)) : disc.meets_inside(point(x), point(y)))
-          return false;
-      } else if (t.neighbour[i] >= 0 && std::find(reached.begin(), reached.end(), t.neighbour[i]) == reached.end()) {
-        if (at_v || disc.meets_inside(point(x), point(y))) reached.push_back(t.neighbour[i]);
-      }
+      const bool is_wall = t.wall[i] >= 0;
+      if (is_wall ? x == a && y == b : t.neighbour[i] < 0 || reached_in_[t.neighbour[i]] == searches_) continue;
+      const bool crossed = x == vertex_ || y == vertex_ ? disc.entered_from_v_towards(point(x == vertex_ ? y : x))
+                                                        : disc.meets_inside(point(x), point(y));
+      if (!crossed) continue;
+      if (is_wall) return false;
+      reach(t.neighbour[i]);
     }
     return true;
   }
 
   const CellMap& map_;
-  std::vector<Link>& out_;
   int vertex_ = -1;
   std::vector<Link::Exit> path_;
+  std::vector<Step> todo_;
+  std::vector<std::size_t> reached_in_;  ///< of a triangle: the last search that reached it
+  std::vector<int> reached_;
+  std::size_t searches_ = 0;
+  std::optional<SiteTree> sites_;  ///< made when it is first needed
 };
+
+/// Feet of Links from vertices all over the map, as many as the steps allow. The stride is prime and larger than any
+/// number of corners, so that each corner comes once.
+std::vector<Crowd> sampled_crowds(const CellMap& map, std::size_t most_steps) {
+  constexpr std::uint64_t kStride = 11400714819323198393u;
+  LinkSearch search(map);
+  const std::uint64_t corners = 3 * map.triangles.size();
+  for (std::uint64_t k = 0, at = 0; k < corners && search.steps < most_steps; ++k) {
+    search.from(static_cast<int>(at / 3), static_cast<int>(at % 3));
+    at = (at + kStride % corners) % corners;
+  }
+  return std::move(search.crowds);
+}
+
+/// The point of the wall at a share that has few digits, exactly.
+Point point_at(const Point& a, const Point& b, double share) {
+  const Vector<Rational> p = a.exact(), d = minus(b.exact(), p);
+  const Rational s(share);
+  return {Rational(p.x + s * d.x), Rational(p.y + s * d.y)};
+}
 
 }  // namespace
 
-std::vector<Link> gabriel_links(const CellMap& map) {
-  std::vector<Link> links;
-  LinkSearch search(map, links);
-  for (std::size_t f = 0; f < map.triangles.size(); ++f)
-    for (int corner = 0; map.triangles[f].free && corner < 3; ++corner) search.from(static_cast<int>(f), corner);
-  return links;
+std::optional<std::vector<Link>> gabriel_links(const CellMap& map, LinkBounds bounds) {
+  LinkSearch search(map);
+  for (std::size_t f = 0; f < map.triangles.size(); ++f) {
+    for (int corner = 0; corner < 3; ++corner) search.from(static_cast<int>(f), corner);
+    if (search.steps > bounds.steps || search.crossings > bounds.crossings) return std::nullopt;
+  }
+  return std::move(search.links);
+}
+
+bool cut_crowded_walls(const CellMap& map, std::size_t most_steps, PlanarGraph& graph) {
+  std::vector<Crowd> crowds = sampled_crowds(map, most_steps);
+  constexpr double kGrid = 0x1p40;  // shares of a wall: finer than any spacing of feet that matters
+  for (Crowd& c : crowds) c.share = std::nearbyint(c.share * kGrid) / kGrid;
+  std::sort(crowds.begin(), crowds.end(),
+            [](const Crowd& p, const Crowd& q) { return p.wall < q.wall || (p.wall == q.wall && p.share < q.share); });
+  bool any = false;
+  for (std::size_t k = 0; k < crowds.size();) {
+    const int wall = crowds[k].wall;
+    const PlanarGraph::Edge whole = graph.edges[wall];
+    const Point a = graph.vertices[whole.a], b = graph.vertices[whole.b];
+    int last = wall;  // the piece that is still to be cut
+    for (double before = 0.0; k < crowds.size() && crowds[k].wall == wall; ++k) {
+      if (!(crowds[k].share > before && crowds[k].share < 1.0)) continue;
+      before = crowds[k].share;
+      const int middle = static_cast<int>(graph.vertices.size());
+      graph.vertices.push_back(point_at(a, b, before));
+      graph.on.push_back(whole.on);
+      graph.edges[last].b = middle;
+      last = static_cast<int>(graph.edges.size());
+      graph.edges.push_back({middle, whole.b, whole.winding, whole.on});
+      any = true;
+    }
+  }
+  return any;
 }
 
 }  // namespace exactvo::geometry::routing

@@ -32,6 +32,10 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
+double largest_of(Vec2 p) {
+  return std::max(std::fabs(p.x), std::fabs(p.y));
+}
+
 /// Gates up to this many diameters wide are crossed through their exact middle.
 constexpr double kTight = 1.01;
 
@@ -145,6 +149,7 @@ ShrunkPortal ClearancePlan::shrunk_link(const Portal& portal) const {
   close_if_empty(low, high);
   out.from = v + low * u;
   out.to = v + high * u;
+  out.size = std::max({largest_of(v), largest_of(out.from), largest_of(out.to), link.length});
   out.from_corner = portal.piece == 0 || begins < radius_ || out.tight ? link.vertex : -1;
   out.from_moved = portal.piece == 0 || low != begins;
   out.to_moved = last || high != ends;
@@ -156,15 +161,18 @@ ShrunkPortal ClearancePlan::shrunk_link(const Portal& portal) const {
   return out;
 }
 
+/// Positions are counted from an end that is a site: the other may be a corner of the square, far away.
 ShrunkPortal ClearancePlan::shrunk_side(const Portal& portal) const {
   const Side& side = map_->sides[portal.side];
-  const Vec2 x = map_->vertex(side.a).rounded(), y = map_->vertex(side.b).rounded();
+  const bool turned = !map_->is_site(side.a);
+  const int first = turned ? side.b : side.a, second = turned ? side.a : side.b;
+  const Vec2 x = map_->vertex(first).rounded(), y = map_->vertex(second).rounded();
   const double length = norm(y - x);
   const Vec2 u = (y - x) / length;
   const auto position = [&](const PortalEnd& end) {
-    return end.vertex >= 0 ? (end.vertex == side.a ? 0.0 : length) : crossing_at(*map_, end.link, x, u);
+    return end.vertex >= 0 ? (end.vertex == first ? 0.0 : length) : crossing_at(*map_, end.link, x, u);
   };
-  const bool forward = portal.from.vertex == side.a || portal.to.vertex == side.b ||
+  const bool forward = portal.from.vertex == first || portal.to.vertex == second ||
                        (portal.from.vertex < 0 && portal.to.vertex < 0 && position(portal.from) < position(portal.to));
   const auto moved = [&](const PortalEnd& end, double dir) {
     return end.vertex >= 0 ? moved_from_vertex(*map_, end.vertex, position(end), dir, radius_)
@@ -185,6 +193,9 @@ ShrunkPortal ClearancePlan::shrunk_side(const Portal& portal) const {
   out.to_corner = to.corner;
   out.from_turns = from.turns;
   out.to_turns = to.turns;
+  out.size = largest_of(x);  // of an end where nothing turns it does not matter
+  if (from.turns) out.size = std::max({out.size, largest_of(out.from), std::fabs(from.at)});
+  if (to.turns) out.size = std::max({out.size, largest_of(out.to), std::fabs(to.at)});
   out.from_moved = from.moved || gap < 0.0;
   out.to_moved = to.moved || gap < 0.0;
   return out;
@@ -272,22 +283,12 @@ void ClearancePlan::find_ways_out() {
 
 namespace {
 
-/// The ends of a piece of the grid.
-std::pair<const Point*, const Point*> ends_of(const CellMap& map, int piece) {
-  const int edges = static_cast<int>(map.graph.edges.size());
-  if (piece >= edges) {
-    const Point* p = &map.vertex(map.graph.isolated[piece - edges]);
-    return {p, p};
-  }
-  const PlanarGraph::Edge& e = map.graph.edges[piece];
-  return {&map.vertex(e.a), &map.vertex(e.b)};
-}
-
 /// Whether ab lies, with room for every rounding, farther than r from pq: on one side of the strip round it.
 bool is_clearly_apart(Vec2 p, Vec2 q, Vec2 a, Vec2 b, double r) {
   const Vec2 d = q - p;
   const double length = norm(d);
-  if (!(length > 0.0)) return false;
+  constexpr double kShort = 0x1p-400;  // m: a square of it would underflow
+  if (!(length > kShort)) return false;
   const double size =
       std::fabs(p.x) + std::fabs(p.y) + std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y) + length;
   const double far = r * (1.0 + 1e-6) + 0x1p-40 * size;
@@ -299,29 +300,41 @@ bool is_clearly_apart(Vec2 p, Vec2 q, Vec2 a, Vec2 b, double r) {
 
 }  // namespace
 
+std::pair<int, int> ClearancePlan::ends_of(int piece) const {
+  const int edges = static_cast<int>(map_->graph.edges.size());
+  if (piece < edges) return {map_->graph.edges[piece].a, map_->graph.edges[piece].b};
+  const int vertex = map_->graph.isolated[piece - edges];
+  return {vertex, vertex};
+}
+
 int ClearancePlan::piece_too_near(const Point& x) const {
   int found = -1;
   grid_->for_each_near(x.rounded(), x.rounded(), radius_, [&](int piece) {
-    const auto [a, b] = ends_of(*map_, piece);
-    if (compare_segment_distance(x, *a, *b, radius_) < 0) found = piece;
+    const auto [a, b] = ends_of(piece);
+    if (compare_segment_distance(x, map_->vertex(a), map_->vertex(b), radius_) < 0) found = piece;
     return found < 0;
   });
   return found;
 }
 
-void ClearancePlan::for_each_piece_near(Vec2 x, double r,
-                                        const std::function<bool(const Point&, const Point&)>& f) const {
+std::vector<int> ClearancePlan::pieces_within(Vec2 x, double r) const {
+  std::vector<int> found;
   grid_->for_each_near(x, x, r, [&](int piece) {
-    const auto [a, b] = ends_of(*map_, piece);
-    return f(*a, *b);
+    const auto [a, b] = ends_of(piece);
+    if (compare_segment_distance(x, map_->vertex(a), map_->vertex(b), r) < 0) found.push_back(piece);
+    return true;
   });
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
 }
 
 bool ClearancePlan::is_clear(const Point& p, const Point& q) const {
   return grid_->for_each_near(p.rounded(), q.rounded(), radius_, [&](int piece) {
-    const auto [a, b] = ends_of(*map_, piece);
-    return is_clearly_apart(p.rounded(), q.rounded(), a->rounded(), b->rounded(), radius_) ||
-           keeps_clear(p, q, *a, *b, radius_);
+    const auto [i, j] = ends_of(piece);
+    const Point &a = map_->vertex(i), &b = map_->vertex(j);
+    return is_clearly_apart(p.rounded(), q.rounded(), a.rounded(), b.rounded(), radius_) ||
+           keeps_clear(p, q, a, b, radius_);
   });
 }
 

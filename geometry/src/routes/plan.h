@@ -5,7 +5,7 @@
 /// What a disc of one radius makes of a cell map: which gates it fits through (exact), which cells hang together
 /// (exact), and, for the search, where its centre can be on each portal (rounded).
 
-#include <functional>
+#include <utility>
 #include <vector>
 
 #include "routes/cell_map.h"
@@ -24,6 +24,7 @@ struct ShrunkPortal {
   bool from_moved = true, to_moved = true;  ///< whether shrinking moved that end
   bool open = false;                        ///< not empty, as far as doubles tell
   bool nearly = false;                      ///< not clearly empty
+  double size = 0.0;                        ///< m: its ends are rounded as numbers of this size are
   bool tight = false;  ///< its gate is hardly wider than the disc: to be crossed through the exact middle
 };
 
@@ -54,8 +55,10 @@ class ClearancePlan {
   /// Whether the disc can move straight from p to q: every piece stays at least a radius away. Exact. REQUIRES: radius
   /// > 0.
   bool is_clear(const Point& p, const Point& q) const;
-  /// Calls f(a, b) for the pieces that may come within r of x, some of them more than once, while f returns true.
-  void for_each_piece_near(Vec2 x, double r, const std::function<bool(const Point&, const Point&)>& f) const;
+  /// The pieces nearer than r to x, each once, ascending.
+  std::vector<int> pieces_within(Vec2 x, double r) const;
+  /// The ends of a piece of the grid, as vertices; twice the same for an isolated one.
+  std::pair<int, int> ends_of(int piece) const;
 
  private:
   void decide_gates();

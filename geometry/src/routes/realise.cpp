@@ -104,7 +104,7 @@ class TautString {
       const Segment piece = pieces_[i];
       const Vec2 d = piece.b - piece.a;
       const double length = norm(d);
-      if (length == 0.0) continue;
+      if (!(length > 0.0)) continue;
       const auto consider = [&](int v) {
         if ((i > 0 && circles_[i - 1].vertex == v) || (i < circles_.size() && circles_[i].vertex == v)) return;
         const Vec2 p = map.vertex(v).rounded() - piece.a;
@@ -116,13 +116,9 @@ class TautString {
         any = true;
       };
       plan_.grid().for_each_near(piece.a, piece.b, plan_.radius(), [&](int k) {
-        const int edges = static_cast<int>(map.graph.edges.size());
-        if (k >= edges)
-          consider(map.graph.isolated[k - edges]);
-        else {
-          consider(map.graph.edges[k].a);
-          consider(map.graph.edges[k].b);
-        }
+        const auto [a, b] = plan_.ends_of(k);
+        consider(a);
+        if (b != a) consider(b);
         return true;
       });
     }
@@ -228,19 +224,30 @@ class Realiser {
     return out;
   }
 
+  /// Along the sites that the disc touches at x, or nearly; parallel ones once.
+  std::vector<Vector<Rational>> tangents_at(Vec2 x) const {
+    constexpr double kContact = 1.0 + 1e-6;
+    std::vector<Vector<Rational>> tangents;
+    for (const int piece : plan_.pieces_within(x, kContact * plan_.radius())) {
+      const auto [i, j] = plan_.ends_of(piece);
+      const Point &a = map_.vertex(i), &b = map_.vertex(j);
+      const bool at_a = along(x, a, a, b) <= 0, at_b = along(x, b, a, b) >= 0;
+      const Vector<Rational> away = minus(Point(x).exact(), (at_a ? a : b).exact());
+      const Vector<Rational> tangent =
+          at_a || at_b ? Vector<Rational>{Rational(away.y), Rational(-away.x)} : minus(b.exact(), a.exact());
+      const bool known = std::any_of(tangents.begin(), tangents.end(), [&](const Vector<Rational>& t) {
+        const Rational turn = cross_of(t, tangent);
+        return sgn(turn) == 0;
+      });
+      if (!known) tangents.push_back(tangent);
+    }
+    return tangents;
+  }
+
   /// An end of the route, behind points from which it is reached straight. Where the disc stands in contact with a
   /// site, it can leave along the tangent, which is rational, and perhaps in no other direction that doubles name.
   std::vector<Point> departures(Vec2 x) const {
-    constexpr double kContact = 1.0 + 1e-6;
-    constexpr std::size_t kMostContacts = 4;
-    std::vector<Vector<Rational>> tangents;
-    plan_.for_each_piece_near(x, kContact * plan_.radius(), [&](const Point& a, const Point& b) {
-      if (compare_segment_distance(x, a, b, kContact * plan_.radius()) >= 0) return true;
-      const bool at_a = along(x, a, a, b) <= 0, at_b = along(x, b, a, b) >= 0;
-      const Vector<Rational> away = minus(Point(x).exact(), (at_a ? a : b).exact());
-      tangents.push_back(at_a || at_b ? Vector<Rational>{away.y, -away.x} : minus(b.exact(), a.exact()));
-      return tangents.size() < kMostContacts;
-    });
+    const std::vector<Vector<Rational>> tangents = tangents_at(x);
     std::vector<Point> out;
     for (const double share : {0.15, 0.05, 0.01, 1e-3, 1e-5}) {
       for (const Vector<Rational>& tangent : tangents) {
@@ -268,19 +275,43 @@ class Realiser {
     return i > 0 && i < gates_.size() && plan_.is_clear(gates_[i - 1].middle, gates_[i].middle);
   }
 
-  /// From one of the first points to one of the others round the leg's circles; the first pair that can be proven.
+  /// A proven polyline, its ends included.
+  struct Proven {
+    std::vector<Point> points;
+    double length = 0.0;  ///< m, rounded
+  };
+
+  std::optional<Proven> joined(const Point& a, const Point& b, const Point& first, const Point& last,
+                               const Leg& leg) const {
+    std::optional<std::vector<Point>> corners = round(a, b, leg.circles);
+    if (!corners) return std::nullopt;
+    Proven out{{a}, norm(a.rounded() - first.rounded()) + norm(b.rounded() - last.rounded())};
+    out.points.insert(out.points.end(), corners->begin(), corners->end());
+    out.points.push_back(b);
+    for (std::size_t k = 1; k < out.points.size(); ++k)
+      out.length += norm(out.points[k].rounded() - out.points[k - 1].rounded());
+    return out;
+  }
+
+  /// From one of the first points to one of the others round the leg's circles. The first points are the farthest from
+  /// the ends, from which a way is proven most easily; then points nearer to the ends, while that is shorter.
   bool between(const std::vector<Point>& from, const std::vector<Point>& to, const Leg& leg) {
-    for (const Point& a : from) {
-      for (const Point& b : to) {
-        const std::optional<std::vector<Point>> found = round(a, b, leg.circles);
-        if (!found) continue;
-        append(a);
-        append(*found);
-        append(b);
-        return true;
-      }
-    }
-    return false;
+    std::optional<Proven> best;
+    std::size_t i = 0, j = 0;
+    const auto try_pair = [&](std::size_t k, std::size_t l) {
+      std::optional<Proven> other = joined(from[k], to[l], from.back(), to.back(), leg);
+      if (!other || (best && !(other->length < best->length))) return;
+      best = std::move(other);
+      i = k;
+      j = l;
+    };
+    for (std::size_t k = 0; k < from.size() && !best; ++k)
+      for (std::size_t l = 0; l < to.size() && !best; ++l) try_pair(k, l);
+    if (!best) return false;
+    for (std::size_t k = i + 1; k < from.size(); ++k) try_pair(k, j);
+    for (std::size_t l = j + 1; l < to.size(); ++l) try_pair(i, l);
+    append(best->points);
+    return true;
   }
 
   /// The corners of a proven polyline from a to b: none where the straight way is, else taut round the circles.

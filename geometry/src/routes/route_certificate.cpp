@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "exactvo/geometry/require.h"
@@ -39,24 +40,37 @@ Place place_of(Vec2 p) {
   return {Rational(p.x), Rational(p.y)};
 }
 
-/// "numerator/denominator" or "numerator"; nothing where it is something else.
+/// "numerator/denominator" or "numerator", or the double where the text is empty. Nothing where it is something else,
+/// or where the double is none of the two next to it.
 std::optional<Rational> number_of(const std::string& text, double rounded) {
-  if (text.empty()) {
-    if (!std::isfinite(rounded)) return std::nullopt;
-    return Rational(rounded);
-  }
+  if (!std::isfinite(rounded)) return std::nullopt;
+  if (text.empty()) return Rational(rounded);
   const std::string allowed = "-0123456789/";
   if (text.find_first_not_of(allowed) != std::string::npos) return std::nullopt;
   Rational value;
   if (value.set_str(text, 10) != 0 || value.get_den() == 0) return std::nullopt;
   value.canonicalize();
-  return value;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double below = std::nextafter(rounded, -kInfinity), above = std::nextafter(rounded, kInfinity);
+  const bool is_next =
+      (!std::isfinite(below) || value > Rational(below)) && (!std::isfinite(above) || value < Rational(above));
+  return is_next ? std::optional(value) : std::nullopt;
 }
 
 std::optional<Place> place_of(const ExactPoint& p) {
   const std::optional<Rational> x = number_of(p.x, p.rounded.x), y = number_of(p.y, p.rounded.y);
   if (!x || !y) return std::nullopt;
   return Place{*x, *y};
+}
+
+/// Rounded, a few units in the last place off.
+double length_of(const std::vector<Place>& points) {
+  double length = 0.0;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    const Place d = points[k] - points[k - 1];
+    length += std::hypot(d.x.get_d(), d.y.get_d());
+  }
+  return length;
 }
 
 Rational squared_distance(const Place& p, const Stretch& s) {
@@ -101,7 +115,7 @@ class Checker {
     std::vector<Place> points;
     for (std::size_t k = 0; k < route.points.size(); ++k) {
       const std::optional<Place> p = place_of(route.points[k]);
-      if (!p) return at(k) + "not a pair of numbers";
+      if (!p) return at(k) + "no pair of numbers, or not those that are rounded";
       points.push_back(*p);
     }
     if (points.empty()) return "no points";
@@ -112,6 +126,12 @@ class Checker {
       const std::string why = too_near({points[k], points[std::min(k + 1, points.size() - 1)]});
       if (!why.empty()) return at(k) + why;
     }
+    constexpr double kRounding = 0x1p-40;  // far more than a sum of 2^12 square roots is off by
+    const double length = length_of(points);
+    if (!(std::fabs(route.length - length) <= kRounding * length)) return "its length is not that of its points";
+    constexpr double kOfSearch = 0x1p-30;  // the bound's own rounding
+    if (!(route.lower_bound >= 0.0 && route.lower_bound <= length * (1.0 + kOfSearch)))
+      return "its lower bound is more than its length";
     return "";
   }
 
@@ -122,7 +142,7 @@ class Checker {
     for (std::size_t k = 0; k < chain.size(); ++k) {
       const ChainPoint &here = chain[k], &next = chain[(k + 1) % chain.size()];
       const std::optional<Place> p = place_of(here.point), q = place_of(next.point);
-      if (!p || !q) return at(k) + "not a pair of numbers";
+      if (!p || !q) return at(k) + "no pair of numbers, or not those that are rounded";
       if (!exists(here.on)) return at(k) + "no such edge";
       if (!lies_on(*p, edge(here.on))) return at(k) + "not on its edge";
       if (here.gap_follows) {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/geometry/routes.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <mutex>
-#include <stdexcept>
+#include <optional>
 
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/require.h"
 #include "routes/chain.h"
 #include "routes/realise.h"
 #include "routes/signs.h"
+#include "shapes/edge_crossing.h"
 
 namespace exactvo::geometry {
 
@@ -19,58 +21,58 @@ using routing::Point;
 
 namespace {
 
-/// The box of all obstacles.
-struct Extent {
-  Vec2 low{0.0, 0.0}, high{0.0, 0.0};
-  double size() const { return std::max(high.x - low.x, high.y - low.y); }
-};
+constexpr double kLargest = 0x1p100, kSmallestRadius = 0x1p-100;  // m
 
-constexpr double kLargest = 0x1p100;  // m
-
-Extent extent_of(const std::vector<Obstacle>& obstacles) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Extent e{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
+Box box_of(const std::vector<Obstacle>& obstacles) {
+  Box box;
   for (const Obstacle& obstacle : obstacles) {
     for (const Vec2& p : vertices_of(obstacle)) {
       EXACTVO_REQUIRE(std::fabs(p.x) <= kLargest && std::fabs(p.y) <= kLargest, to_string({p}));
-      e.low = {std::min(e.low.x, p.x), std::min(e.low.y, p.y)};
-      e.high = {std::max(e.high.x, p.x), std::max(e.high.y, p.y)};
+      box.add(p);
     }
   }
-  return e.low.x <= e.high.x ? e : Extent{};
+  return box.is_empty() ? Box{{0.0, 0.0}, {0.0, 0.0}} : box;
+}
+
+/// m: what is far and near on this map. All obstacles may be one point, or none: then far is some places of the last
+/// digit of its coordinates away.
+double scale_of(const Box& box) {
+  constexpr double kPoint = 0x1p-20;
+  double scale = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+  for (const double x : {box.low.x, box.low.y, box.high.x, box.high.y}) scale = std::max(scale, kPoint * std::fabs(x));
+  return scale > 0.0 ? scale : 1.0;
 }
 
 /// A square so far out that neither the way round all obstacles nor the disc of a link comes near its sides: a link is
 /// at most sqrt 2 extents long, and a disc needs two radii of room.
 struct Frame {
-  Vec2 centre;
-  double half;
-  Frame(const Extent& e, double radius, double distance)
-      : centre(0.5 * (e.low + e.high)), half(4.0 * e.size() + 8.0 * radius + 2.0 * distance + 1.0) {}
+  Vec2 corners[4];
+  Frame(const Box& box, double scale, double radius, double distance) {
+    const Vec2 c = 0.5 * (box.low + box.high);
+    const double h = 5.0 * scale + 8.0 * radius + 2.0 * distance;
+    const Vec2 square[4] = {{c.x - h, c.y - h}, {c.x + h, c.y - h}, {c.x + h, c.y + h}, {c.x - h, c.y + h}};
+    std::copy(square, square + 4, corners);
+  }
 };
 
 }  // namespace
 
 struct RouteMap::Parts {
   std::vector<Obstacle> obstacles;
-  Extent extent;
+  Box box;
+  double scale;
   double largest_radius;
-  double margin;  ///< how far outside of the extent a start or goal may lie
+  double margin;  ///< m: how far outside of the box a start or goal may lie
   CellMap cells;
   routing::EdgeGrid grid;
 
-  static CellMap cells_of(const std::vector<Obstacle>& obstacles, const Frame& frame) {
-    const Vec2 c = frame.centre;
-    const double h = frame.half;
-    const Vec2 corners[4] = {{c.x - h, c.y - h}, {c.x + h, c.y - h}, {c.x + h, c.y + h}, {c.x - h, c.y + h}};
-    return CellMap(routing::planar_graph(obstacles), corners);
-  }
   Parts(const std::vector<Obstacle>& all, const RouteMapOptions& options)
       : obstacles(all),
-        extent(extent_of(obstacles)),
-        largest_radius(std::max(options.largest_radius, extent.size())),
-        margin(std::max(options.largest_distance, extent.size())),
-        cells(cells_of(obstacles, Frame(extent, largest_radius, margin))),
+        box(box_of(obstacles)),
+        scale(scale_of(box)),
+        largest_radius(std::max(options.largest_radius, 2.0 * scale)),
+        margin(std::max(options.largest_distance, 4.0 * scale)),
+        cells(routing::planar_graph(obstacles), Frame(box, scale, largest_radius, margin).corners),
         grid(cells) {}
 };
 
@@ -86,14 +88,18 @@ std::size_t RouteMap::vertex_count() const {
   return parts_->cells.graph.vertices.size();
 }
 
+std::size_t RouteMap::cell_count() const {
+  return parts_->cells.cell_portals.size();
+}
+
 double RouteMap::largest_radius() const {
   return parts_->largest_radius;
 }
 
 bool RouteMap::covers(Vec2 p) const {
-  const Extent& e = parts_->extent;
+  const Box& b = parts_->box;
   const double m = parts_->margin;
-  return p.x >= e.low.x - m && p.x <= e.high.x + m && p.y >= e.low.y - m && p.y <= e.high.y + m;
+  return p.x >= b.low.x - m && p.x <= b.high.x + m && p.y >= b.low.y - m && p.y <= b.high.y + m;
 }
 
 // --- One radius ---
@@ -103,6 +109,8 @@ struct RoutePlan::State {
   ClearancePlan plan;
   std::mutex mutex;
   std::vector<std::unique_ptr<routing::WaySearch>> idle;  ///< scratch memory between queries
+  std::once_flag arcs_made;
+  std::optional<routing::ArcGraph> arcs;  ///< made for the first chain
 
   State(const RouteMap& m, double radius) : map(m), plan(map.parts().cells, map.parts().grid, radius) {}
 
@@ -112,6 +120,10 @@ struct RoutePlan::State {
     std::unique_ptr<routing::WaySearch> search = std::move(idle.back());
     idle.pop_back();
     return search;
+  }
+  Separated chain_between(Vec2 start, Vec2 goal) {
+    std::call_once(arcs_made, [this] { arcs.emplace(plan); });
+    return routing::separating_chain(plan, *arcs, start, goal);
   }
   void give_back(std::unique_ptr<routing::WaySearch> search) {
     const std::lock_guard<std::mutex> lock(mutex);
@@ -159,18 +171,15 @@ EdgeName name_of(const CellMap& map, int piece) {
   return piece < edges ? map.graph.edges[piece].on : map.graph.on[map.graph.isolated[piece - edges]];
 }
 
-/// A polygon that holds x, by the parity of the crossings of a ray to the right.
+/// The first polygon that holds x, which lies on no edge; the number of obstacles if there is none.
 std::size_t polygon_round(const std::vector<Obstacle>& obstacles, Vec2 x) {
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (!has_interior(obstacles[i])) continue;
+  const auto holds = [&](const Obstacle& obstacle) {
+    if (!has_interior(obstacle)) return false;
     bool inside = false;
-    for (const Segment& e : edges_of(obstacles[i])) {
-      if ((e.a.y > x.y) == (e.b.y > x.y)) continue;
-      if ((routing::orient(e.a, e.b, x) > 0) == (e.b.y > x.y)) inside = !inside;
-    }
-    if (inside) return i;
-  }
-  return obstacles.size();
+    for (const Segment& e : edges_of(obstacle)) inside ^= detail::crossing(e, x) == detail::Crossing::right;
+    return inside;
+  };
+  return static_cast<std::size_t>(std::find_if(obstacles.begin(), obstacles.end(), holds) - obstacles.begin());
 }
 
 Located located(const RouteMap::Parts& parts, const ClearancePlan& plan, Vec2 x, Blocked::End end) {
@@ -192,16 +201,25 @@ Located located(const RouteMap::Parts& parts, const ClearancePlan& plan, Vec2 x,
   return out;
 }
 
+/// Rounded: of the exact differences, since points may lie near to each other and far from the origin.
 double length_of(const std::vector<Point>& points) {
   double length = 0.0;
-  for (std::size_t i = 1; i < points.size(); ++i) length += norm(points[i].rounded() - points[i - 1].rounded());
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Point &p = points[i - 1], &q = points[i];
+    if (p.is_double() && q.is_double()) {
+      length += norm(q.rounded() - p.rounded());
+    } else {
+      const routing::Vector<routing::Rational> d = routing::minus(q.exact(), p.exact());
+      length += norm(Vec2{d.x.get_d(), d.y.get_d()});
+    }
+  }
   return length;
 }
 
 }  // namespace
 
 RoutePlan::RoutePlan(const RouteMap& map, double radius) {
-  EXACTVO_REQUIRE(radius > 0.0 && radius <= map.largest_radius(), std::to_string(radius));
+  EXACTVO_REQUIRE(radius >= kSmallestRadius && radius <= map.largest_radius(), hex_text(radius));
   state_ = std::make_shared<State>(map, radius);
 }
 
@@ -225,15 +243,15 @@ RouteAnswer RoutePlan::query(Vec2 start, Vec2 goal) const {
   if (s.cell < 0) return s.blocked;
   const Located t = located(parts, plan, goal, Blocked::End::goal);
   if (t.cell < 0) return t.blocked;
-  if (plan.component(s.cell) != plan.component(t.cell)) return routing::separating_chain(plan, start, goal);
+  if (plan.component(s.cell) != plan.component(t.cell)) return state_->chain_between(start, goal);
   if (start == goal) return Route{{routing::shown(start)}, 0.0, 0.0};
   std::unique_ptr<routing::WaySearch> search = state_->take();
   const std::optional<routing::Way> way = search->find(start, s.cell, goal, t.cell);
   state_->give_back(std::move(search));
   const std::optional<std::vector<Point>> points = way ? routing::realised(plan, start, goal, *way) : std::nullopt;
   if (!points)
-    throw std::runtime_error("routes: no proven route from " + to_string({start}) + " to " + to_string({goal}) +
-                             " for radius " + hex_text(plan.radius()) + ", though there is one");
+    throw RouteNotProven("routes: no proven route from " + to_string({start}) + " to " + to_string({goal}) +
+                         " for radius " + hex_text(plan.radius()) + ", though there is one");
   Route route{{}, length_of(*points), way->lower_bound};
   for (const Point& p : *points) route.points.push_back(routing::shown(p));
   return route;

@@ -11,10 +11,13 @@ namespace exactvo::geometry::routing {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// m, relative to 1: two ways to the same corner that differ by less are equally long.
-constexpr double kSameLength = 1e-9;
-/// m: a ray that passes an end of a portal this closely goes through it.
-constexpr double kSnap = 1e-12;
+/// m, as a share of the coordinates involved: a ray that passes an end of a portal this closely goes through it. It is
+/// more than corners are off by, which come out of a division and a few products (2^-53 each).
+constexpr double kRounding = 0x1p-45;
+
+double largest_of(Vec2 p) {
+  return std::max(std::fabs(p.x), std::fabs(p.y));
+}
 
 Vec2 mirrored(Vec2 p, Vec2 a, Vec2 b) {
   const Vec2 d = b - a;
@@ -42,15 +45,15 @@ double share_met(Vec2 root, Vec2 ray, Vec2 right, Vec2 left) {
   return r < 0.0 ? r / (r - l) : -1.0;
 }
 
-double snapped(double share, double length) {
-  if (std::fabs(share) * length < kSnap) return 0.0;
-  if (std::fabs(share - 1.0) * length < kSnap) return 1.0;
+double snapped(double share, double length, double snap) {
+  if (std::fabs(share) * length < snap) return 0.0;
+  if (std::fabs(share - 1.0) * length < snap) return 1.0;
   return share;
 }
 
 /// Too short to aim with: a ray that passes through its own corner.
-bool is_void(Vec2 ray) {
-  return squared_norm(ray) < 1e-28;
+bool is_void(Vec2 ray, double size) {
+  return norm(ray) <= 0x1p-51 * size;
 }
 
 }  // namespace
@@ -59,9 +62,8 @@ WaySearch::WaySearch(const ClearancePlan& plan) : plan_(plan), map_(plan.map()) 
   const std::size_t ends = 2 * map_.portals.size();
   best_.assign(ends, kInfinity);
   best_in_sector_.assign(ends, kInfinity);
-  seen_.assign(ends, 0);
-  seen_in_sector_.assign(ends, 0);
-  allowed_.assign(map_.cell_portals.size(), 0);
+  seen_ = seen_in_sector_ = Marks(ends);
+  allowed_ = Marks(map_.cell_portals.size());
 }
 
 std::optional<Way> WaySearch::find(Vec2 s, int start, Vec2 t, int goal) {
@@ -90,13 +92,15 @@ int WaySearch::corner_at(int portal, Vec2 x) const {
 bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
   nodes_.clear();
   queue_.clear();
+  beside_root_.clear();
   fresh_ = 0;
-  ++round_;
-  for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_[c] = round_;
+  for (Marks* marks : {&seen_, &seen_in_sector_, &allowed_}) marks->clear();
+  for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_.add(c);
   open_start(s, start);
   // Many times what any search was seen to take; one that rounding sends in circles ends here.
-  const long most = 20000 + 50 * static_cast<long>(map_.cell_portals.size());
-  for (long taken = 0; taken < most; ++taken) {
+  constexpr std::size_t kMostNodes = std::size_t{1} << 27;  // 16 GB, and far from the largest int
+  const std::size_t most = std::min(kMostNodes, 20000 + 50 * map_.cell_portals.size());
+  for (std::size_t taken = 0; taken < most && nodes_.size() < 4 * most; ++taken) {
     // A single successor is expanded at once, several wait in the queue.
     const bool single = nodes_.size() == fresh_ + 1 && nodes_[fresh_].cell != goal;
     int number = static_cast<int>(fresh_);
@@ -126,8 +130,7 @@ void WaySearch::open_start(Vec2 s, int start) {
     const int to = p.is_left ? portal.right : portal.left;
     if (!plan_.shrunk(p.portal).open || !may_enter(start, to)) continue;
     const Ends e = ends_seen(p);
-    nodes_.push_back(
-        {to, p.portal, -1, -1, e.left, e.right, s, e.left - s, e.right - s, e.left_turns, e.right_turns, 0.0});
+    add({to, p.portal, -1, -1, e.left, e.right, s, e.left - s, e.right - s, e.left_turns, e.right_turns, 0.0});
   }
 }
 
@@ -149,16 +152,36 @@ int WaySearch::next_from_queue(double& bound) {
 }
 
 bool WaySearch::is_outdone(const Node& node) const {
-  if (node.corner < 0) return false;
-  return (seen_[node.corner] == round_ && best_[node.corner] < node.length - kSameLength) ||
-         is_far_outdone(node.corner, node.length);
+  return node.corner >= 0 && is_outdone_at(node.corner, node.length);
 }
 
-/// Another corner round the same vertex was reached so much earlier that going round from there is no longer.
-bool WaySearch::is_far_outdone(int corner, double length) const {
+/// The corner was reached before on a shorter way; or another corner round the same vertex was, so much earlier that
+/// going round from there is no longer.
+bool WaySearch::is_outdone_at(int corner, double length) const {
+  constexpr double kSame = 0x1p-34;  // many times what rounding makes of the length of a way
+  const double clearly_less = length - kSame * (length + plan_.shrunk(corner / 2).size);
   const int sector = plan_.sector(corner);
-  return seen_in_sector_[sector] == round_ &&
-         best_in_sector_[sector] + 2.0 * kPi * plan_.radius() + kSameLength < length;
+  return (seen_.has(corner) && best_[corner] < clearly_less) ||
+         (seen_in_sector_.has(sector) && best_in_sector_[sector] + 2.0 * kPi * plan_.radius() < clearly_less);
+}
+
+/// Several portals may end at one root, where it lies on them or where the disc just fits through them. What goes round
+/// such a root comes back to the same portal with nothing new to see, and is not followed again.
+void WaySearch::add(const Node& node) {
+  const double size = std::max(size_of_root(node), plan_.shrunk(node.portal).size);
+  if (norm(node.left - node.root) <= kRounding * size || norm(node.right - node.root) <= kRounding * size) {
+    const std::uint64_t into = map_.portals[node.portal].right == node.cell ? 1 : 0;
+    const std::uint64_t key =
+        (static_cast<std::uint64_t>(node.corner + 1) << 33) | (static_cast<std::uint64_t>(node.portal) << 1) | into;
+    const auto [known, fresh] = beside_root_.emplace(key, node.length);
+    if (!fresh && known->second <= node.length) return;
+    known->second = node.length;
+  }
+  nodes_.push_back(node);
+}
+
+double WaySearch::size_of_root(const Node& node) const {
+  return node.corner < 0 ? largest_of(node.root) : plan_.shrunk(node.corner / 2).size;
 }
 
 void WaySearch::expand(int number) {
@@ -169,12 +192,15 @@ void WaySearch::expand(int number) {
     if (p.portal == n.portal || !plan_.shrunk(p.portal).open || !may_enter(n.cell, to)) continue;
     const Ends e = ends_seen(p);
     const double width = norm(e.left - e.right);
-    if (width < kSnap) {
-      expand_to_point(number, p.portal, to, e);
+    const double size = std::max(size_of_root(n), plan_.shrunk(p.portal).size), snap = kRounding * size;
+    if (width < snap) {
+      expand_to_point(number, p.portal, to, e, size);
       continue;
     }
-    const double right = is_void(n.right_ray) ? -1.0 : snapped(share_met(n.root, n.right_ray, e.right, e.left), width);
-    const double left = is_void(n.left_ray) ? 2.0 : snapped(share_met(n.root, n.left_ray, e.right, e.left), width);
+    const double right =
+        is_void(n.right_ray, size) ? -1.0 : snapped(share_met(n.root, n.right_ray, e.right, e.left), width, snap);
+    const double left =
+        is_void(n.left_ray, size) ? 2.0 : snapped(share_met(n.root, n.left_ray, e.right, e.left), width, snap);
     const auto at = [&](double share) {
       return share <= 0.0 ? e.right : share >= 1.0 ? e.left : e.right + share * (e.left - e.right);
     };
@@ -187,9 +213,8 @@ void WaySearch::expand(int number) {
     const double low = std::max(right, 0.0), high = std::min(left, 1.0);
     if (low < high) {
       const Vec2 l = at(high), r = at(low);
-      nodes_.push_back({to, p.portal, number, n.corner, l, r, n.root, high >= 1.0 ? l - n.root : n.left_ray,
-                        low <= 0.0 ? r - n.root : n.right_ray, high >= 1.0 && e.left_turns, low <= 0.0 && e.right_turns,
-                        n.length});
+      add({to, p.portal, number, n.corner, l, r, n.root, high >= 1.0 ? l - n.root : n.left_ray,
+           low <= 0.0 ? r - n.root : n.right_ray, high >= 1.0 && e.left_turns, low <= 0.0 && e.right_turns, n.length});
     }
     if (left < 1.0 && n.left_turns) {
       const Vec2 end = at(left);
@@ -200,10 +225,10 @@ void WaySearch::expand(int number) {
 }
 
 /// A portal that the disc just fits through is a point: it is seen whole or not at all, and turned at on both sides.
-void WaySearch::expand_to_point(int number, int portal, int to, const Ends& e) {
+void WaySearch::expand_to_point(int number, int portal, int to, const Ends& e, double size) {
   const Node n = nodes_[number];
   const auto beyond = [&](Vec2 ray, double side) {
-    return !is_void(ray) && side * cross(ray, e.left - n.root) > kSnap * norm(ray);
+    return !is_void(ray, size) && side * cross(ray, e.left - n.root) > kRounding * size * norm(ray);
   };
   if (beyond(n.left_ray, 1.0)) {
     if (n.left_turns)
@@ -214,25 +239,24 @@ void WaySearch::expand_to_point(int number, int portal, int to, const Ends& e) {
       turn(n, number, corner_at(n.portal, n.right), n.right, portal, to, e.left, e.right, e.left - n.right,
            e.right - n.right, e.left_turns, e.right_turns);
   } else {
-    nodes_.push_back({to, portal, number, n.corner, e.left, e.right, n.root, e.left - n.root, e.right - n.root,
-                      e.left_turns, e.right_turns, n.length});
+    add({to, portal, number, n.corner, e.left, e.right, n.root, e.left - n.root, e.right - n.root, e.left_turns,
+         e.right_turns, n.length});
   }
 }
 
 void WaySearch::turn(const Node& node, int parent, int corner, Vec2 root, int portal, int to, Vec2 left, Vec2 right,
                      Vec2 left_ray, Vec2 right_ray, bool left_turns, bool right_turns) {
   const double length = node.length + norm(root - node.root);
-  if ((seen_[corner] == round_ && best_[corner] < length - kSameLength) || is_far_outdone(corner, length)) return;
-  const auto keep_least = [&](std::vector<int>& seen, std::vector<double>& best, int key) {
-    if (seen[key] != round_ || length < best[key]) {
-      seen[key] = round_;
+  if (is_outdone_at(corner, length)) return;
+  const auto keep_least = [&](Marks& seen, std::vector<double>& best, int key) {
+    if (!seen.has(key) || length < best[key]) {
+      seen.add(key);
       best[key] = length;
     }
   };
   keep_least(seen_, best_, corner);
   keep_least(seen_in_sector_, best_in_sector_, plan_.sector(corner));
-  nodes_.push_back(
-      {to, portal, parent, corner, left, right, root, left_ray, right_ray, left_turns, right_turns, length});
+  add({to, portal, parent, corner, left, right, root, left_ray, right_ray, left_turns, right_turns, length});
 }
 
 // --- From the last node back to the way ---
@@ -296,19 +320,21 @@ void WaySearch::trace(int number, Vec2 t, Way& way) const {
 
 bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way) {
   way.lower_bound = norm(t - s);
+  // Portals that are clearly empty come last: a gate that the disc fits through may have some.
+  using Cost = std::pair<int, double>;  // of those, how many; then the length, m
   struct Reached {
-    double length = kInfinity;
+    Cost cost{std::numeric_limits<int>::max(), kInfinity};
     int through = -1;  ///< the portal
     Vec2 at;
   };
   std::vector<Reached> reached(map_.cell_portals.size());
-  reached[start] = {0.0, -1, s};
-  std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> queue;
-  queue.emplace(0.0, start);
+  reached[start] = {{0, 0.0}, -1, s};
+  std::priority_queue<std::pair<Cost, int>, std::vector<std::pair<Cost, int>>, std::greater<>> queue;
+  queue.emplace(Cost{0, 0.0}, start);
   while (!queue.empty()) {
-    const auto [length, cell] = queue.top();
+    const auto [cost, cell] = queue.top();
     queue.pop();
-    if (length > reached[cell].length) continue;
+    if (cost > reached[cell].cost) continue;
     if (cell == goal) break;
     for (const CellMap::CellPortal& p : map_.cell_portals[cell]) {
       const Portal& portal = map_.portals[p.portal];
@@ -316,10 +342,8 @@ bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way
       const ShrunkPortal& q = plan_.shrunk(p.portal);
       const int to = p.is_left ? portal.right : portal.left;
       const Vec2 middle = 0.5 * (q.from + q.to);
-      // Portals that are clearly empty come last: a gate that the disc fits through may have some.
-      const double penalty = q.nearly ? 0.0 : 1e6 * (1.0 + plan_.radius());
-      const double there = length + norm(middle - reached[cell].at) + penalty;
-      if (!(there < reached[to].length)) continue;
+      const Cost there{cost.first + (q.nearly ? 0 : 1), cost.second + norm(middle - reached[cell].at)};
+      if (!(there < reached[to].cost)) continue;
       reached[to] = {there, p.portal, middle};
       queue.emplace(there, to);
     }

@@ -8,11 +8,14 @@
 ///
 /// Where rounding shuts what the exact rules leave open, a plain Dijkstra search over the portals finds a way.
 
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "routes/marks.h"
 #include "routes/plan.h"
 
 namespace exactvo::geometry::routing {
@@ -56,23 +59,22 @@ class WaySearch {
     Vec2 right, left;
     bool right_turns, left_turns;
   };
-  struct Hit {
-    double right, left;
-  };
 
   bool search(Vec2 s, int start, Vec2 t, int goal, Way& way);
   bool search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way);
   void open_start(Vec2 s, int start);
   void expand(int number);
-  void expand_to_point(int number, int portal, int to, const Ends& e);
+  void expand_to_point(int number, int portal, int to, const Ends& e, double size);
+  double size_of_root(const Node& node) const;
+  void add(const Node& node);
   void turn(const Node& node, int parent, int corner, Vec2 root, int portal, int to, Vec2 left, Vec2 right,
             Vec2 left_ray, Vec2 right_ray, bool left_turns, bool right_turns);
   void queue_fresh(Vec2 t);
   int next_from_queue(double& bound);
   bool is_outdone(const Node& node) const;
-  bool is_far_outdone(int corner, double length) const;
+  bool is_outdone_at(int corner, double length) const;
   bool may_enter(int from, int to) const {
-    return plan_.way_out(to) < 0 || allowed_[to] == round_ || plan_.way_out(from) == to;
+    return plan_.way_out(to) < 0 || allowed_.has(to) || plan_.way_out(from) == to;
   }
   Ends ends_seen(const CellMap::CellPortal& portal) const;
   int corner_at(int portal, Vec2 x) const;
@@ -84,8 +86,8 @@ class WaySearch {
   std::size_t fresh_ = 0;  ///< nodes from here on were made by the expansion under way
   std::vector<std::pair<double, int>> queue_;
   std::vector<double> best_, best_in_sector_;
-  std::vector<int> seen_, seen_in_sector_, allowed_;  ///< by the number of the round
-  int round_ = 0;
+  Marks seen_, seen_in_sector_, allowed_;
+  std::unordered_map<std::uint64_t, double> beside_root_;  ///< lengths of nodes whose interval ends at their root
 };
 
 }  // namespace exactvo::geometry::routing

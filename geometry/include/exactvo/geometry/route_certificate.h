@@ -7,10 +7,10 @@
 ///
 /// Properties (tests quote the numbers):
 ///  (1) every answer of `RoutePlan::query` is valid;
-///  (2) no two valid answers to one question are of different kinds: a route cannot cross a valid chain, and an end
-///  that
-///      is blocked has no route;
-///  (3) an answer of which a point was moved onto or over an obstacle, or a link lengthened to two radii, is not valid.
+///  (2) no two valid answers to one question are of different kinds: a route cannot cross a valid chain, and a blocked
+///      end has no route;
+///  (3) an answer of which a point was moved onto or over an obstacle, or a link lengthened to two radii, is not valid;
+///  (4) the doubles beside fractions are checked, and the length; of the lower bound only that it is not more.
 
 #include <string>
 #include <vector>

@@ -21,7 +21,7 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
+#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
@@ -38,7 +38,7 @@ struct EdgeName {
 
 /// A point with rational coordinates, in metres.
 struct ExactPoint {
-  Vec2 rounded;   ///< to nearest or one off
+  Vec2 rounded;   ///< one of the two doubles next to it, or the point itself
   std::string x;  ///< "numerator/denominator"; empty where `rounded.x` is exact
   std::string y;
 };
@@ -73,10 +73,18 @@ struct Blocked {
 
 using RouteAnswer = std::variant<Route, Separated, Blocked>;
 
+/// How far the map reaches beyond its obstacles. Its scale is the longer side of the obstacles' box (of one point 2^-20
+/// of its coordinates, of none 1 m).
 struct RouteMapOptions {
-  double largest_radius = 10.0;     ///< m, >= 0: radii up to this can be planned for, or up to the obstacles' extent
-  double largest_distance = 100.0;  ///< m, >= 0: starts and goals may lie this far outside of the obstacles' box, or as
-                                    ///< far as its extent
+  double largest_radius = 0.0;    ///< m, >= 0: radii up to this can be planned for; twice the scale always
+  double largest_distance = 0.0;  ///< m, >= 0: starts and goals may lie this far outside of the obstacles' box; four
+                                  ///< times the scale always
+};
+
+/// A way exists, and no route along it could be proven: a defect of the library, never "unreachable". It may happen
+/// where coordinates of one map differ by more than their 16 digits.
+struct RouteNotProven : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// Obstacles prepared for every radius. Immutable; copies share.
@@ -87,13 +95,14 @@ class RouteMap {
 
   /// Vertices after all crossings have been cut.
   std::size_t vertex_count() const;
+  /// The convex cells that the free plane is cut into: O(vertices), in practice three to ten times as many.
+  std::size_t cell_count() const;
   double largest_radius() const;  ///< m
   /// Whether a start or goal may lie there.
   bool covers(Vec2 point) const;
 
   struct Parts;
   const Parts& parts() const { return *parts_; }  ///< for RoutePlan
-  std::shared_ptr<const Parts> shared_parts() const { return parts_; }
 
  private:
   std::shared_ptr<const Parts> parts_;
@@ -102,13 +111,12 @@ class RouteMap {
 /// A map seen by a disc of one radius. Immutable; copies share; queries from many threads at once.
 class RoutePlan {
  public:
-  /// REQUIRES: 0 < radius <= map.largest_radius().
+  /// REQUIRES: 2^-100 m <= radius <= map.largest_radius().
   RoutePlan(const RouteMap& map, double radius);
 
   double radius() const;
 
-  /// REQUIRES: both within the map (`covers`). Throws std::runtime_error, a defect of the library, where a way exists
-  /// and no route along it could be proven.
+  /// REQUIRES: both within the map (`covers`). Throws RouteNotProven.
   RouteAnswer query(Vec2 start, Vec2 goal) const;
 
   /// Whether there is a route: what `query` decides, without the route. Exact. REQUIRES: the same.
