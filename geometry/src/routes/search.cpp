@@ -37,9 +37,15 @@ double way_through(Vec2 root, Vec2 left, Vec2 right, Vec2 t) {
 }
 
 /// Where a ray from `root` meets the line from `right` to `left`, as a share of it: -1 where it passes to the right of
-/// both, 2 where to the left.
-double share_met(Vec2 root, Vec2 ray, Vec2 right, Vec2 left) {
-  const double r = cross(ray, right - root), l = cross(ray, left - root);
+/// both, 2 where to the left. An end nearer to the ray's line than `snap` lies on it: where the root itself lies on the
+/// line, an end behind it would come to lie on the wrong side.
+double share_met(Vec2 root, Vec2 ray, Vec2 right, Vec2 left, double snap) {
+  const double on_line = snap * norm(ray);
+  const auto side_of = [&](Vec2 end) {
+    const double side = cross(ray, end - root);
+    return std::fabs(side) <= on_line ? 0.0 : side;
+  };
+  const double r = side_of(right), l = side_of(left);
   if (r >= 0.0 && l >= 0.0) return r == 0.0 && l > 0.0 ? 0.0 : -1.0;
   if (r <= 0.0 && l <= 0.0) return 2.0;
   return r < 0.0 ? r / (r - l) : -1.0;
@@ -166,14 +172,22 @@ bool WaySearch::is_outdone_at(int corner, double length) const {
 }
 
 /// Several portals may end at one root, where it lies on them or where the disc just fits through them. What goes round
-/// such a root comes back to the same portal with nothing new to see, and is not followed again.
+/// such a root comes back to the same portal and sees the same there, bit for bit, and is not followed again.
 void WaySearch::add(const Node& node) {
   const double size = std::max(size_of_root(node), plan_.shrunk(node.portal).size);
   if (norm(node.left - node.root) <= kRounding * size || norm(node.right - node.root) <= kRounding * size) {
-    const std::uint64_t into = map_.portals[node.portal].right == node.cell ? 1 : 0;
-    const std::uint64_t key =
-        (static_cast<std::uint64_t>(node.corner + 1) << 33) | (static_cast<std::uint64_t>(node.portal) << 1) | into;
-    const auto [known, fresh] = beside_root_.emplace(key, node.length);
+    const Sight sight{static_cast<double>(node.corner),
+                      static_cast<double>(node.portal),
+                      static_cast<double>(node.cell),
+                      node.left.x,
+                      node.left.y,
+                      node.right.x,
+                      node.right.y,
+                      node.left_ray.x,
+                      node.left_ray.y,
+                      node.right_ray.x,
+                      node.right_ray.y};
+    const auto [known, fresh] = beside_root_.emplace(sight, node.length);
     if (!fresh && known->second <= node.length) return;
     known->second = node.length;
   }
@@ -198,9 +212,9 @@ void WaySearch::expand(int number) {
       continue;
     }
     const double right =
-        is_void(n.right_ray, size) ? -1.0 : snapped(share_met(n.root, n.right_ray, e.right, e.left), width, snap);
+        is_void(n.right_ray, size) ? -1.0 : snapped(share_met(n.root, n.right_ray, e.right, e.left, snap), width, snap);
     const double left =
-        is_void(n.left_ray, size) ? 2.0 : snapped(share_met(n.root, n.left_ray, e.right, e.left), width, snap);
+        is_void(n.left_ray, size) ? 2.0 : snapped(share_met(n.root, n.left_ray, e.right, e.left, snap), width, snap);
     const auto at = [&](double share) {
       return share <= 0.0 ? e.right : share >= 1.0 ? e.left : e.right + share * (e.left - e.right);
     };

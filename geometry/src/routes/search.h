@@ -8,10 +8,10 @@
 ///
 /// Where rounding shuts what the exact rules leave open, a plain Dijkstra search over the portals finds a way.
 
-#include <cstdint>
+#include <array>
 #include <limits>
+#include <map>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -87,7 +87,9 @@ class WaySearch {
   std::vector<std::pair<double, int>> queue_;
   std::vector<double> best_, best_in_sector_;
   Marks seen_, seen_in_sector_, allowed_;
-  std::unordered_map<std::uint64_t, double> beside_root_;  ///< lengths of nodes whose interval ends at their root
+  /// Corner, portal, cell, interval and rays of a node.
+  using Sight = std::array<double, 11>;
+  std::map<Sight, double> beside_root_;  ///< lengths of nodes whose interval ends at their root
 };
 
 }  // namespace exactvo::geometry::routing
