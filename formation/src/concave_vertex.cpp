@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "boundary.h"
 #include "exactvo/geometry/box.h"
@@ -34,14 +35,16 @@ struct Stretch {
   Vec2 from, to;                  ///< m, where straight
   Vec2 normal;                    ///< where straight
   double begin = 0.0, end = 0.0;  ///< rad, where curved
+  std::optional<Vec2> corner;     ///< m, where curved about a corner of the shape
 };
 
-void add_arc(double begin, double end, std::vector<Stretch>& out) {
+void add_arc(double begin, double end, std::optional<Vec2> corner, std::vector<Stretch>& out) {
   const int parts = std::max(1, static_cast<int>(std::ceil((end - begin) / kMostTurn)));
   for (int k = 0; k < parts; ++k) {
     Stretch s;
     s.begin = begin + (end - begin) * k / parts;
     s.end = begin + (end - begin) * (k + 1) / parts;
+    s.corner = corner;
     out.push_back(s);
   }
 }
@@ -50,16 +53,16 @@ void add_arc(double begin, double end, std::vector<Stretch>& out) {
 std::vector<Stretch> stretches_of(const Boundary& boundary, double radius) {
   std::vector<Stretch> out;
   const std::vector<geometry::Segment>& edges = boundary.flat_edges();
-  if (edges.empty()) add_arc(0.0, kFullTurn, out);
+  if (edges.empty()) add_arc(0.0, kFullTurn, std::nullopt, out);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Vec2 normal = -geometry::perp(geometry::normalized(edges[i].b - edges[i].a));
     const geometry::Segment& next = edges[(i + 1) % edges.size()];
     const Vec2 turned = -geometry::perp(geometry::normalized(next.b - next.a));
-    out.push_back({true, edges[i].a + radius * normal, edges[i].b + radius * normal, normal, 0.0, 0.0});
+    out.push_back({true, edges[i].a + radius * normal, edges[i].b + radius * normal, normal, 0.0, 0.0, {}});
     const double begin = std::atan2(normal.y, normal.x);
     double turn = std::atan2(turned.y, turned.x) - begin;
     if (turn < 0.0) turn += kFullTurn;
-    if (turn > 0.0) add_arc(begin, begin + turn, out);
+    if (turn > 0.0) add_arc(begin, begin + turn, edges[i].b, out);
   }
   return out;
 }
@@ -67,7 +70,7 @@ std::vector<Stretch> stretches_of(const Boundary& boundary, double radius) {
 class CrossingSearch {
  public:
   CrossingSearch(const GrownShape& a, const GrownShape& b)
-      : boundary_(a.shape, a.radius), b_(b), finest_(kFinest * a.radius) {
+      : boundary_(a.shape, a.radius), b_(b), radius_(a.radius), finest_(kFinest * a.radius) {
     for (const Stretch& s : stretches_of(boundary_, a.radius)) {
       const Sample first = sample(s, 0.0), last = sample(s, 1.0);
       search(s, first, last);
@@ -85,9 +88,14 @@ class CrossingSearch {
   };
 
   Sample sample(const Stretch& s, double share) const {
-    const Vec2 p =
-        s.straight ? s.from + share * (s.to - s.from) : boundary_.at(s.begin + share * (s.end - s.begin)).position;
+    const Vec2 p = s.straight ? s.from + share * (s.to - s.from) : on_arc(s, s.begin + share * (s.end - s.begin));
     return {share, p, distance_to(b_, p)};
+  }
+
+  /// Round a corner it is the corner's circle: where an end's angle is rounded past the normal of the edge beside it,
+  /// the support point in that direction is at the far end of the edge.
+  Vec2 on_arc(const Stretch& s, double angle) const {
+    return s.corner ? *s.corner + radius_ * Vec2{std::cos(angle), std::sin(angle)} : boundary_.at(angle).position;
   }
 
   Sample between(const Stretch& s, const Sample& a, const Sample& b) const {
@@ -99,23 +107,50 @@ class CrossingSearch {
     const double chord = norm(last.position - first.position);
     const bool changes = first.inside() != last.inside();
     if (!changes && std::fabs(first.distance) + std::fabs(last.distance) > kArcToChord * chord) return;
-    if (chord > finest_) {
-      const Sample middle = between(s, first, last);
-      search(s, first, middle);
-      search(s, middle, last);
+    if (chord <= finest_) {
+      if (changes) add(s, first, last);
       return;
     }
-    if (changes) add(s, first, last);
+    const Sample middle = between(s, first, last);
+    if (!(first.share < middle.share && middle.share < last.share)) return search_chord(s, first, last);
+    search(s, first, middle);
+    search(s, middle, last);
   }
 
-  void add(const Stretch& s, Sample first, Sample last) {
+  /// The boundary of a thin ellipse runs straight between the points of neighbouring directions, for all that doubles
+  /// tell.
+  void search_chord(const Stretch& s, const Sample& first, const Sample& last) {
+    if (s.straight) return;  // its points lie too far from 0 to be told apart
+    const Stretch chord = chord_of(s, first, last);
+    search(chord, sample(chord, 0.0), sample(chord, 1.0));
+  }
+
+  static Stretch chord_of(const Stretch& s, const Sample& first, const Sample& last) {
+    return {true, first.position, last.position, normal_at(s, first.share), 0.0, 0.0, {}};
+  }
+
+  static Vec2 normal_at(const Stretch& s, double share) {
+    const double angle = s.begin + share * (s.end - s.begin);
+    return s.straight ? s.normal : Vec2{std::cos(angle), std::sin(angle)};
+  }
+
+  void bisect(const Stretch& s, Sample& first, Sample& last) const {
     constexpr int kBisections = 40;  // of a centimetre: far below rounding
     for (int k = 0; k < kBisections; ++k) {
       const Sample middle = between(s, first, last);
       (middle.inside() == first.inside() ? first : last) = middle;
     }
-    const double angle = s.begin + first.share * (s.end - s.begin);
-    const Vec2 normal = s.straight ? s.normal : Vec2{std::cos(angle), std::sin(angle)};
+  }
+
+  void add(const Stretch& s, Sample first, Sample last) {
+    bisect(s, first, last);
+    const Vec2 normal = normal_at(s, first.share);
+    if (!s.straight) {
+      const Stretch chord = chord_of(s, first, last);
+      first = sample(chord, 0.0);
+      last = sample(chord, 1.0);
+      bisect(chord, first, last);
+    }
     const Vec2 other = nearest_of(b_, first.position).normal;
     if (std::fabs(cross(normal, other)) < kParallel) return;
     found.push_back({first.position, normal, other});
@@ -123,6 +158,7 @@ class CrossingSearch {
 
   Boundary boundary_;
   GrownShape b_;
+  double radius_;  ///< m
   double finest_;  ///< m
 };
 

@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <regex>
-
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <regex>
 
 #include "exactvo/datasets/recording_file.h"
 #include "run_program.h"
@@ -67,6 +67,16 @@ TEST(Program, TrapJudgesAMethodWithoutEnclosures) {
   EXPECT_NE(findings[0].at("stall_possible"), findings[1].at("stall_possible"));
   here.write("empty.json", with(R"({ "id": "wall", "polyline": [[4, -1], [4, 1]] })", ""));
   EXPECT_THAT(here.run("trap empty.json --method orca").out, HasSubstr("no obstacles"));
+}
+
+TEST(Program, TrapAnswersForEveryScenarioOfThePaper) {
+  const Workplace here;
+  for (const auto& entry : std::filesystem::directory_iterator(data_file("paper"))) {
+    if (entry.path().extension() != ".json") continue;
+    const Outcome outcome = here.run("trap '" + entry.path().string() + "'");
+    EXPECT_EQ(outcome.status, 0) << entry.path() << ": " << outcome.err;
+    EXPECT_FALSE(outcome.out.empty()) << entry.path();
+  }
 }
 
 /// A U that opens towards the robot, which stalls between the ellipses of its right wall and its roof.
