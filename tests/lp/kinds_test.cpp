@@ -2,6 +2,7 @@
 // Every pair of a problem's kind (bound, objective, priorities) and a solver, against the exact solver.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include "exactvo/vo/lp/certificate.h"
@@ -162,6 +163,35 @@ TEST(EveryKind, WithTiesIsAsGoodAsTheExactAnswerOrHasNoProof) {
     }
   }
   EXPECT_LT(100 * doubtful, problems) << doubtful;
+}
+
+// What is let pass as rounding was not scaled with short normals: wrong from 1e-15 down.
+TEST(EveryKind, WithShortAndLongNormalsIsAsGoodAsTheExactAnswer) {
+  SeededRandom random(test::seed_of_run(68));
+  std::size_t optimal = 0, relaxed = 0;
+  for (const ProblemKind& kind : well_formed_kinds()) {
+    for (const int exponent : {-500, -300, -50, 50, 300, 500}) {
+      for (int k = 0; k < 10; ++k) {
+        Problem problem = random_problem(kind, random);
+        const Solution plain = solve_exact(problem).solution;
+        if (plain.status == Status::pinched) continue;
+        for (Constraint& c : problem.constraints) {
+          HalfPlane& h = c.half_plane;
+          h = {{std::ldexp(h.normal.x, exponent), std::ldexp(h.normal.y, exponent)}, std::ldexp(h.offset, exponent)};
+        }
+        for (const Solver solver : {Solver::incremental, Solver::batch}) {
+          const Solution s = solve_all(solver, {problem}).front().solution;
+          ASSERT_EQ(s.status, plain.status) << name(kind) << ", 2^" << exponent << ", " << text_of(problem);
+          EXPECT_LE(norm(s.velocity - plain.velocity), s.status == Status::optimal ? 1e-5 : HUGE_VAL)
+              << text_of(problem);
+          EXPECT_NEAR(std::ldexp(s.violation, -exponent), plain.violation, kAlike) << text_of(problem);
+          ++(s.status == Status::optimal ? optimal : relaxed);
+        }
+      }
+    }
+  }
+  EXPECT_GT(optimal, 1000U);
+  EXPECT_GT(relaxed, 1000U);
 }
 
 TEST(EveryKind, WithoutAFiniteBoundIsRefusedForALinearObjective) {

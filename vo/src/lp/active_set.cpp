@@ -112,14 +112,19 @@ Found start_of(const Region& region, Objective objective, Vec2 preferred) {
   return found;
 }
 
+/// What rounding may leave of the line's excess: with short normals, as much less.
+double noise_of(const Line& line, double speed) {
+  return kNoise * speed * std::min(1.0, std::abs(line.normal.x) + std::abs(line.normal.y));
+}
+
 /// The position of the line violated most at v beyond rounding, `level` being what soft lines may be violated by.
 std::size_t most_violated(const Region& region, Vec2 v, double level, const Basis& basis) {
   std::size_t worst = kNoPosition;
-  double most = kNoise * region.speed;
+  double most = 0.0;
   for (std::size_t k = 0; k < region.lines.size(); ++k) {
     const Line& line = region.lines[k];
     const double by = excess(line, v) - (line.soft ? level : 0.0);
-    if (by > most && !basis.has(k)) most = by, worst = k;
+    if (by > most && by > noise_of(line, region.speed) && !basis.has(k)) most = by, worst = k;
   }
   return worst;
 }

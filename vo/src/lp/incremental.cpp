@@ -144,6 +144,35 @@ bool preferred_is_allowed(const Problem& problem) {
   return problem.objective == Objective::nearest && holds(problem, Status::optimal, problem.preferred);
 }
 
+Solution solve_with_slacks(const Problem& problem) {
+  const Solution first = solve_with_slack(problem, kSlacks[0]);
+  Solution s = first;
+  for (std::size_t k = 1; k < std::size(kSlacks) && s.status == Status::pinched; ++k)
+    s = solve_with_slack(problem, kSlacks[k]);
+  return s.status == Status::optimal || s.status == Status::relaxed ? s : first;
+}
+
+/// Of the longest normal. 0 without constraints.
+int exponent_of_normals(const Problem& problem) {
+  double longest = 0.0;
+  for (const Constraint& c : problem.constraints)
+    longest = std::max({longest, std::abs(c.half_plane.normal.x), std::abs(c.half_plane.normal.y)});
+  return longest > 0.0 ? std::ilogb(longest) : 0;
+}
+
+/// Up to here the squares and products of normals and offsets are far inside the range of doubles.
+constexpr int kPlainExponent = 100;
+
+/// The same problem with every constraint multiplied by 2^exponent: exact but for underflow, and which violation is
+/// largest stays as it is.
+Problem scaled(Problem problem, int exponent) {
+  for (Constraint& c : problem.constraints) {
+    HalfPlane& h = c.half_plane;
+    h = {{std::ldexp(h.normal.x, exponent), std::ldexp(h.normal.y, exponent)}, std::ldexp(h.offset, exponent)};
+  }
+  return problem;
+}
+
 }  // namespace
 
 // A dual active-set method (Goldfarb and Idnani 1983) in the plane: the working set holds at most two lines, each pivot
@@ -179,11 +208,10 @@ bool preferred_is_allowed(const Problem& problem) {
 Solution solve(const Problem& problem) {
   require_well_formed(problem);
   if (preferred_is_allowed(problem)) return {problem.preferred, Status::optimal, {}, 0, 0.0};
-  const Solution first = solve_with_slack(problem, kSlacks[0]);
-  Solution s = first;
-  for (std::size_t k = 1; k < std::size(kSlacks) && s.status == Status::pinched; ++k)
-    s = solve_with_slack(problem, kSlacks[k]);
-  if (s.status != Status::optimal && s.status != Status::relaxed) s = first;
+  const int exponent = exponent_of_normals(problem);
+  Solution s =
+      std::abs(exponent) <= kPlainExponent ? solve_with_slacks(problem) : solve_with_slacks(scaled(problem, -exponent));
+  if (std::abs(exponent) > kPlainExponent) s.violation = std::ldexp(s.violation, exponent);
   set_multipliers(problem, s);
   return s;
 }
