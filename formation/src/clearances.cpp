@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/obstacle_index.h"
 #include "motion.h"
 #include "moving_way.h"
 
@@ -41,99 +42,165 @@ double rounding(double shape, const Segment& chord, double others) {
 /// Who may not be touched: an obstacle, a moving obstacle or another robot, by its number.
 using Other = std::pair<CollisionKind, std::size_t>;
 
-/// Contacts of one pair in consecutive steps are one collision.
-class Contacts {
- public:
-  void note(std::size_t robot, Other other, std::size_t step, double clearance) {
-    std::vector<Contact>& all = contacts_[{robot, other}];
-    if (all.empty() || all.back().last + 1 < step) all.push_back({step, step, step, clearance});
-    Contact& now = all.back();
-    now.last = step;
-    if (clearance < now.clearance) {
-      now.clearance = clearance;
-      now.deepest = step;
-    }
-  }
-
-  struct Contact {
-    std::size_t first, last, deepest;  ///< steps
-    double clearance;                  ///< m, the least
-  };
-  const std::map<std::pair<std::size_t, Other>, std::vector<Contact>>& all() const { return contacts_; }
-
- private:
-  std::map<std::pair<std::size_t, Other>, std::vector<Contact>> contacts_;
+/// Where something was between two rows.
+struct Moment {
+  double time = 0.0;  ///< s, of the first
+  Motion robot, other;
 };
 
-class Sweep {
+/// Consecutive steps in which a pair touches: one collision.
+struct Contact {
+  std::size_t last = 0;  ///< step
+  double from = 0.0, until = 0.0;
+  double clearance = kInfinity;  ///< m, the least
+  Moment deepest;
+  bool relaxed = false;  ///< a decision of one of the two could not keep every half-plane before or meanwhile
+};
+
+}  // namespace
+
+class ClearanceSweep::Sweep {
  public:
-  Sweep(const Scenario& scenario, const Recording& recording) : scenario_(scenario), recording_(recording) {
-    for (const SceneObstacle& o : scenario.obstacles) largest_.push_back(largest(o.shape));
+  Sweep(const Scenario& scenario, const Recording& run)
+      : scenario_(scenario), run_(run), least_(scenario.robots.size(), kInfinity) {
+    std::vector<geometry::Box> boxes;
+    for (const SceneObstacle& o : scenario.obstacles) {
+      largest_.push_back(largest(o.shape));
+      obstacles_.emplace_back(o.shape);
+      boxes.push_back(obstacles_.back().box());
+    }
+    by_place_ = geometry::BoxGrid(std::move(boxes));
+    constexpr double kToTheEnd = std::numeric_limits<double>::max();
     for (const MovingObstacle& o : scenario.moving_obstacles) {
-      ways_.push_back(way_of(o.motion, recording.steps.back().time + recording.time_step));
+      ways_.push_back(way_of(o.motion, kToTheEnd));
       moving_largest_.push_back(largest(o.shape));
     }
   }
 
-  Clearances operator()() {
-    std::vector<double> least(scenario_.robots.size(), kInfinity);
-    double between = kInfinity;
-    for (std::size_t k = 0; k + 1 < recording_.steps.size(); ++k) {
-      std::vector<Motion> motions;
-      for (std::size_t i = 0; i < least.size(); ++i) {
-        motions.push_back(motion_of(k, i));
-        lower_to_obstacles(k, i, motions.back(), least[i]);
-      }
-      lower_between(k, motions, between);
+  void add(const Step& row) {
+    if (!rows_.empty()) {
+      const std::size_t step = count_++;
+      motions_.clear();
+      for (std::size_t i = 0; i < least_.size(); ++i) motions_.push_back(motion_to(row, i));
+      for (std::size_t i = 0; i < least_.size(); ++i) lower_to_obstacles(step, row.time, i);
+      lower_between(step, row.time);
     }
+    if (rows_.size() == 2) rows_.erase(rows_.begin());
+    rows_.push_back(state_of(row));
+  }
+
+  Clearances result() const {
     Clearances out;
-    for (double x : least) out.to_obstacles.push_back(std::isfinite(x) ? std::optional<double>(x) : std::nullopt);
-    if (std::isfinite(between)) out.between_robots = between;
+    for (double x : least_) out.to_obstacles.push_back(std::isfinite(x) ? std::optional<double>(x) : std::nullopt);
+    if (std::isfinite(between_)) out.between_robots = between_;
     out.collisions = collisions();
     return out;
   }
 
  private:
-  Motion motion_of(std::size_t step, std::size_t robot) const {
-    const RobotStep& from = recording_.steps[step].robots[robot];
-    const RobotStep& to = recording_.steps[step + 1].robots[robot];
-    return {recording_.motion, recording_.time_step, recording_.tracking_gain, from.position, from.velocity,
-            to.position,       to.velocity};
+  /// What is kept of a row.
+  struct State {
+    struct Robot {
+      Vec2 position, velocity;
+      bool relaxed = false;
+    };
+    double time = 0.0;
+    std::vector<Robot> robots;
+  };
+
+  static State state_of(const Step& row) {
+    State state{row.time, {}};
+    for (const RobotStep& r : row.robots)
+      state.robots.push_back({r.position, r.velocity, r.status != lp::Status::optimal});
+    return state;
+  }
+
+  /// From the last row to this one.
+  Motion motion_to(const Step& row, std::size_t robot) const {
+    const State::Robot& from = rows_.back().robots[robot];
+    const RobotStep& to = row.robots[robot];
+    return {run_.motion, run_.time_step, run_.tracking_gain, from.position, from.velocity, to.position, to.velocity};
   }
 
   /// What is not touched need not be known beyond the least so far.
   static double enough(double least) { return std::max(least, 0.0); }
 
-  void lower_to_obstacles(std::size_t step, std::size_t robot, const Motion& motion, double& least) {
-    for (std::size_t o = 0; o < scenario_.obstacles.size(); ++o)
-      note(robot, {CollisionKind::obstacle, o}, step, obstacle_clearance(o, robot, motion, enough(least)), least);
-    for (std::size_t o = 0; o < scenario_.moving_obstacles.size(); ++o)
-      note(robot, {CollisionKind::moving_obstacle, o}, step, moving_clearance(o, step, robot, motion, enough(least)),
+  void lower_to_obstacles(std::size_t step, double end, std::size_t robot) {
+    double& least = least_[robot];
+    for (const std::size_t o : near_obstacles(robot, enough(least)))
+      note(robot, {CollisionKind::obstacle, o}, step, end, obstacle_clearance(o, robot, motions_[robot], enough(least)),
            least);
+    for (std::size_t o = 0; o < scenario_.moving_obstacles.size(); ++o)
+      note(robot, {CollisionKind::moving_obstacle, o}, step, end,
+           moving_clearance(o, robot, motions_[robot], enough(least)), least);
   }
 
-  void note(std::size_t robot, Other other, std::size_t step, double clearance, double& least) {
-    if (touched(clearance)) contacts_.note(robot, other, step, clearance);
+  /// Those that the motion could come as near as that, by number: all that lie farther from its chord than what is
+  /// taken off on the way from a distance to a clearance.
+  const std::vector<std::size_t>& near_obstacles(std::size_t robot, double enough) {
+    near_.clear();
+    const Motion& motion = motions_[robot];
+    const Segment chord = motion.chord(0.0, 1.0);
+    geometry::Box box;
+    box.add(chord.a);
+    box.add(chord.b);
+    const double off = most_off(robot, motion, chord) + motion.stray(1.0);
+    const double reach = (1.0 + 1e-9) * (enough + off);
+    by_place_.for_each_meeting({box.low - Vec2{reach, reach}, box.high + Vec2{reach, reach}},
+                               [&](std::size_t o) { near_.push_back(o); });
+    std::sort(near_.begin(), near_.end());
+    return near_;
+  }
+
+  /// m: no chord of the motion has more taken off its distance.
+  double most_off(std::size_t robot, const Motion& motion, const Segment& chord) const {
+    const double radius = scenario_.robots[robot].radius, reach = radius + motion.reach();
+    const double shape = largest_.empty() ? 0.0 : *std::max_element(largest_.begin(), largest_.end());
+    return 2.0 * rounding(shape, chord, reach + motion.stray(1.0)) + radius;
+  }
+
+  void note(std::size_t robot, Other other, std::size_t step, double end, double clearance, double& least) {
     least = std::min(least, clearance);
+    if (!touched(clearance)) return;
+    std::vector<Contact>& all = contacts_[{robot, other}];
+    if (all.empty() || all.back().last + 1 < step) {
+      all.emplace_back().from = rows_.back().time;
+      all.back().relaxed = was_relaxed(rows_.front(), robot, other);
+    }
+    Contact& now = all.back();
+    now.last = step;
+    now.until = end;
+    now.relaxed = now.relaxed || was_relaxed(rows_.back(), robot, other);
+    if (!(clearance < now.clearance)) return;
+    now.clearance = clearance;
+    now.deepest = {rows_.back().time, motions_[robot],
+                   motions_[other.first == CollisionKind::robot ? other.second : robot]};
   }
 
+  static bool was_relaxed(const State& row, std::size_t robot, Other other) {
+    return row.robots[robot].relaxed || (other.first == CollisionKind::robot && row.robots[other.second].relaxed);
+  }
+
+  /// Beyond `enough` any number that is not less.
   double obstacle_clearance(std::size_t obstacle, std::size_t robot, const Motion& motion, double enough) const {
+    constexpr double kRounding = 1e-12;
     const double radius = scenario_.robots[robot].radius, reach = radius + motion.reach();
     return least_clearance(
         [&](double start, double end) {
           const Segment chord = motion.chord(start, end);
           const double off = rounding(largest_[obstacle], chord, reach) + radius;
-          const double distance = geometry::swept_distance(scenario_.obstacles[obstacle].shape, chord);
-          return ChordClearance{distance - off, motion.stray(end - start)};
+          const double stray = motion.stray(end - start);
+          const double distance =
+              obstacles_[obstacle].swept_distance(chord, (1.0 + kRounding) * (enough + off + stray));
+          return ChordClearance{distance - off, stray};
         },
         0.0, 1.0, enough);
   }
 
   /// Piece after piece of the obstacle's way.
-  double moving_clearance(std::size_t obstacle, std::size_t step, std::size_t robot, const Motion& motion,
-                          double enough) const {
+  double moving_clearance(std::size_t obstacle, std::size_t robot, const Motion& motion, double enough) const {
     const std::vector<WayPiece>& way = ways_[obstacle];
-    const double time = recording_.steps[step].time, end = time + motion.duration;
+    const double time = rows_.back().time, end = time + motion.duration;
     double least = kInfinity;
     for (std::size_t p = piece_at(way, time); p < way.size() && way[p].from < end; ++p) {
       const double from = std::clamp((way[p].from - time) / motion.duration, 0.0, 1.0);
@@ -170,15 +237,16 @@ class Sweep {
   static double strays(const Motion& m) { return norm(m.to - m.from) + m.stray(1.0); }
 
   /// Pairs that stay farther apart than the least so far are skipped: twice their ways would not bring them nearer.
-  void lower_between(std::size_t step, const std::vector<Motion>& all, double& least) {
+  void lower_between(std::size_t step, double end) {
     std::vector<double> ways;
-    for (const Motion& m : all) ways.push_back(strays(m));
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      for (std::size_t j = i + 1; j < all.size(); ++j) {
+    for (const Motion& m : motions_) ways.push_back(strays(m));
+    for (std::size_t i = 0; i < motions_.size(); ++i) {
+      for (std::size_t j = i + 1; j < motions_.size(); ++j) {
         const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
-        const double apart = norm(all[i].from - all[j].from) - radii;
-        if (apart > enough(least) + 2.0 * (ways[i] + ways[j])) continue;
-        note(i, {CollisionKind::robot, j}, step, pair_clearance(all[i], all[j], radii, enough(least)), least);
+        const double apart = norm(motions_[i].from - motions_[j].from) - radii;
+        if (apart > enough(between_) + 2.0 * (ways[i] + ways[j])) continue;
+        note(i, {CollisionKind::robot, j}, step, end, pair_clearance(motions_[i], motions_[j], radii, enough(between_)),
+             between_);
       }
     }
   }
@@ -199,13 +267,13 @@ class Sweep {
   // --- Collisions ---
 
   /// m: the clearance at one moment, a share of the way through the step.
-  double clearance_at(std::size_t robot, Other other, std::size_t step, double share) const {
-    const Vec2 place = motion_of(step, robot).at(share);
+  double clearance_at(std::size_t robot, Other other, const Moment& moment, double share) const {
+    const Vec2 place = moment.robot.at(share);
     const double radius = scenario_.robots[robot].radius;
-    const double time = recording_.steps[step].time + share * recording_.time_step;
+    const double time = moment.time + share * run_.time_step;
     const auto [kind, index] = other;
     if (kind == CollisionKind::robot)
-      return norm(place - motion_of(step, index).at(share)) - radius - scenario_.robots[index].radius;
+      return norm(place - moment.other.at(share)) - radius - scenario_.robots[index].radius;
     if (kind == CollisionKind::obstacle)
       return geometry::signed_distance(scenario_.obstacles[index].shape, place) - radius;
     const std::vector<WayPiece>& way = ways_[index];
@@ -219,58 +287,62 @@ class Sweep {
     return kind == CollisionKind::obstacle ? scenario_.obstacles[index].id : scenario_.moving_obstacles[index].id;
   }
 
-  Collision collision(std::size_t robot, Other other, const Contacts::Contact& contact) const {
+  Collision collision(std::size_t robot, Other other, const Contact& contact) const {
     constexpr int kMoments = 64;  // of the deepest step
     Collision c;
     c.robot = scenario_.robots[robot].id;
     c.kind = other.first;
     c.with = name_of(other);
-    c.from = recording_.steps[contact.first].time;
-    c.until = recording_.steps[contact.last + 1].time;
+    c.from = contact.from;
+    c.until = contact.until;
     double least = kInfinity;
     for (int m = 0; m <= kMoments; ++m) {
       const double share = static_cast<double>(m) / kMoments;
       const double clearance = clearance_at(robot, other, contact.deepest, share);
       if (!(clearance < least)) continue;
       least = clearance;
-      c.deepest_at = recording_.steps[contact.deepest].time + share * recording_.time_step;
-      c.place = motion_of(contact.deepest, robot).at(share);
+      c.deepest_at = contact.deepest.time + share * run_.time_step;
+      c.place = contact.deepest.robot.at(share);
     }
     c.depth = -std::min(least, contact.clearance);
-    c.relaxed = was_relaxed(robot, other, contact);
+    c.relaxed = contact.relaxed;
     return c;
-  }
-
-  /// Whether a decision of one of the two could not keep every half-plane on the way into it.
-  bool was_relaxed(std::size_t robot, Other other, const Contacts::Contact& contact) const {
-    const std::size_t before = contact.first > 0 ? contact.first - 1 : 0;
-    for (std::size_t k = before; k <= contact.last; ++k) {
-      const std::vector<RobotStep>& row = recording_.steps[k].robots;
-      if (row[robot].status != lp::Status::optimal) return true;
-      if (other.first == CollisionKind::robot && row[other.second].status != lp::Status::optimal) return true;
-    }
-    return false;
   }
 
   std::vector<Collision> collisions() const {
     std::vector<Collision> out;
-    for (const auto& [pair, contacts] : contacts_.all())
-      for (const Contacts::Contact& contact : contacts) out.push_back(collision(pair.first, pair.second, contact));
+    for (const auto& [pair, contacts] : contacts_)
+      for (const Contact& contact : contacts) out.push_back(collision(pair.first, pair.second, contact));
     std::stable_sort(out.begin(), out.end(), [](const Collision& a, const Collision& b) { return a.from < b.from; });
     return out;
   }
 
   const Scenario& scenario_;
-  const Recording& recording_;
+  const Recording& run_;
   std::vector<double> largest_, moving_largest_;
+  std::vector<geometry::ObstacleIndex> obstacles_;
+  geometry::BoxGrid by_place_;
   std::vector<std::vector<WayPiece>> ways_;
-  Contacts contacts_;
+  std::vector<double> least_;  ///< m, of each robot to obstacles
+  double between_ = kInfinity;
+  std::map<std::pair<std::size_t, Other>, std::vector<Contact>> contacts_;
+  std::vector<State> rows_;  ///< the last two
+  std::size_t count_ = 0;    ///< steps
+  // Memory that a step leaves to the next.
+  std::vector<Motion> motions_;
+  std::vector<std::size_t> near_;
 };
 
-}  // namespace
+ClearanceSweep::ClearanceSweep(const Scenario& scenario, const Recording& run)
+    : sweep_(std::make_unique<Sweep>(scenario, run)) {}
+ClearanceSweep::~ClearanceSweep() = default;
 
-Clearances swept_clearances(const Scenario& scenario, const Recording& recording) {
-  return Sweep(scenario, recording)();
+void ClearanceSweep::add(const Step& row) {
+  sweep_->add(row);
+}
+
+Clearances ClearanceSweep::result() const {
+  return sweep_->result();
 }
 
 }  // namespace exactvo::formation::detail

@@ -23,7 +23,9 @@ using geometry::norm;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void measure_clearances(const Scenario& scenario, const Recording& recording, Metrics& m) {
-  detail::Clearances clearances = detail::swept_clearances(scenario, recording);
+  detail::ClearanceSweep sweep(scenario, recording);
+  for (const Step& row : recording.steps) sweep.add(row);
+  detail::Clearances clearances = sweep.result();
   for (std::size_t i = 0; i < m.robots.size(); ++i) {
     const std::optional<double>& mine = clearances.to_obstacles[i];
     m.robots[i].min_obstacle_clearance = mine;

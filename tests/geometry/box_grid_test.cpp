@@ -161,34 +161,43 @@ std::vector<Obstacle> scene(SeededRandom& random) {
   return all;
 }
 
-TEST(ObstacleIndex, GivesTheDistanceOfTheNearestObstacleBitForBit) {
+TEST(ObstacleIndex, GivesTheSweptDistanceBitForBit) {
   SeededRandom random(seed_of_run(13));
   for (int k = 0; k < 40; ++k) {
-    const std::vector<Obstacle> obstacles = scene(random);
-    ObstacleIndex index;
-    for (const Obstacle& o : obstacles) index.add(o);
-    index.build();
-    for (int q = 0; q < 100; ++q) {
-      const Vec2 from = random.in_box(q % 10 == 0 ? 60.0 : 14.0);
-      const Segment path{from, q % 9 == 0 ? from : from + random.in_box(q % 4 == 0 ? 8.0 : 0.3)};
-      double least = kInfinity;
-      for (const Obstacle& o : obstacles) least = std::min(least, swept_distance(o, path));
-      ASSERT_EQ(index.swept_distance(path, kInfinity), least) << to_string(ConvexShape{path});
-      const double enough = random.uniform(0.0, 4.0);
-      const double within = index.swept_distance(path, enough);
-      if (least < enough) {
-        ASSERT_EQ(within, least);
-      } else {
-        ASSERT_GE(within, enough);
+    for (const Obstacle& o : scene(random)) {
+      const ObstacleIndex index(o);
+      for (int q = 0; q < 40; ++q) {
+        const Vec2 from = random.in_box(q % 10 == 0 ? 60.0 : 14.0);
+        const Segment path{from, q % 9 == 0 ? from : from + random.in_box(q % 4 == 0 ? 8.0 : 0.3)};
+        const double least = swept_distance(o, path);
+        ASSERT_EQ(index.swept_distance(path, kInfinity), least) << to_string(ConvexShape{path});
+        const double enough = random.uniform(0.0, 4.0);
+        const double within = index.swept_distance(path, enough);
+        if (least < enough) {
+          ASSERT_EQ(within, least);
+        } else {
+          ASSERT_GE(within, enough);
+        }
       }
     }
   }
 }
 
-TEST(ObstacleIndex, ASceneWithoutObstaclesIsInfinitelyFar) {
-  ObstacleIndex index;
-  index.build();
-  EXPECT_EQ(index.swept_distance({{0, 0}, {1, 0}}, kInfinity), kInfinity);
+/// A comb whose teeth are as high as itself: every edge crosses every height.
+TEST(ObstacleIndex, PreparesLongEdgesInMemoryThatGrowsWithTheirNumber) {
+  constexpr int kTeeth = 20000;
+  Ring ring;
+  for (int i = 0; i < kTeeth; ++i) {
+    ring.push_back({2.0 * i, 0.0});
+    ring.push_back({2.0 * i + 1.0, 1000.0});
+  }
+  ring.push_back({2.0 * kTeeth, -1.0});
+  ring.push_back({0.0, -1.0});
+  const Obstacle comb = Polygon{ring, {}};
+  const ObstacleIndex index(comb);
+  for (const Segment path :
+       {Segment{{3.0, 900.0}, {3.1, 900.0}}, Segment{{2.0, 500.0}, {2.0, 500.1}}, Segment{{-5.0, 3.0}, {-4.0, 3.0}}})
+    EXPECT_EQ(index.swept_distance(path, kInfinity), swept_distance(comb, path));
 }
 
 TEST(RoundedUpSum, IsNotBelowTheExactSum) {

@@ -2,9 +2,10 @@
 #pragma once
 
 /// \file
-/// The obstacles of a scene by place: how near a motion comes to any of them, by looking at the edges round it alone.
-/// The same doubles as distance.h gives, obstacle by obstacle. Questions are exact where they are there.
+/// One obstacle, prepared for many distances: its edges by place, and for each height those that cross it. The same
+/// doubles as distance.h gives. Questions are exact where they are there.
 
+#include <cstdint>
 #include <vector>
 
 #include "exactvo/geometry/box_grid.h"
@@ -15,34 +16,28 @@ namespace exactvo::geometry {
 
 class ObstacleIndex {
  public:
-  void add(const Obstacle& obstacle);
-  /// Call once, after the last `add`.
-  void build();
+  explicit ObstacleIndex(const Obstacle& obstacle);
 
-  /// The least of `swept_distance` to any obstacle, m, where that is less than `enough`; else some number that is not.
+  const Box& box() const { return box_; }
+
+  /// `swept_distance` to the obstacle, m, where that is less than `enough`; else some number that is not.
   double swept_distance(const Segment& path, double enough) const;
 
  private:
-  /// A polygon's edges by the stretch of y that they cross.
-  struct Strips {
-    Box box;
-    std::uint32_t first_edge = 0, last_edge = 0;  ///< of `edges_`
-    double height = 1.0;                          ///< m
-    std::vector<std::uint32_t> start, item;
-  };
-
-  Strips strips_of(std::size_t first_edge, std::size_t last_edge) const;
-  bool is_inside(const Strips& polygon, Vec2 x) const;
+  void make_strips();
+  std::size_t strip_at(double y) const;
+  bool is_inside(Vec2 x) const;
   /// The least distance to an edge, where that is less than `enough`.
-  template <class Query>
-  double edge_distance(const Query& query, const Box& round, double enough) const;
+  double edge_distance(const Segment& path, double enough) const;
+  double signed_distance(Vec2 x, bool inside) const;
 
   std::vector<Segment> edges_;
-  std::vector<std::uint32_t> obstacle_of_;  ///< of each edge
-  std::uint32_t obstacles_ = 0;
-  std::vector<Strips> polygons_;
+  Box box_;
+  double largest_ = 0.0;  ///< m, coordinate
   BoxGrid edges_by_place_;
-  BoxGrid polygons_by_place_;
+  // Of a polygon: strips of equal height, each with the edges that cross it. Few enough to list no edge too often.
+  double height_ = 1.0;  ///< m
+  std::vector<std::uint32_t> start_, item_;
 };
 
 }  // namespace exactvo::geometry
