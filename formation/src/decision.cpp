@@ -2,6 +2,7 @@
 #include "decision.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
@@ -88,6 +89,16 @@ lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {
   return bound;
 }
 
+/// m: how much nearer the robot and the body can come within a step, whatever is decided.
+double Decider::reach_of(const Constraint& c, const Viewpoint& from) const {
+  constexpr double kRounding = 1.0 + 1e-6;  // clearances are rounded
+  const double fastest = std::sqrt(2.0);  // the farthest velocity of a box bound, in sides of it
+  const vo::Body& body = (*bodies_)[c.body];
+  const double other =
+      body.kind == vo::BodyKind::robot ? fastest * scenario_->robots[c.index].max_speed : norm(body.velocity);
+  return kRounding * scenario_->time_step * (fastest * from.max_speed + other);
+}
+
 RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from,
                                      const lp::ActiveConstraint* active) const {
   const vo::Body& body = (*bodies_)[c.body];
@@ -131,7 +142,8 @@ void Decider::decide(const DecisionInput& in, RobotStep& step) {
     for (const Constraint& c : *some) {
       const lp::ActiveConstraint* active = active_at(solution, number++);
       if (c.proof == vo::Proof::none) ++step.uncertified;
-      if (in.keep_all || active) step.constraints.push_back(recorded(c, in.from, active));
+      if (in.keep_all || active || c.clearance <= reach_of(c, in.from))
+        step.constraints.push_back(recorded(c, in.from, active));
     }
   }
 }

@@ -41,10 +41,12 @@ class Decider {
   Decider(const Scenario& scenario, const vo::BodyTable& bodies) : scenario_(&scenario), bodies_(&bodies) {}
 
   /// Fills `chosen`, `status`, `violation`, `constraints` and `uncertified` of the step; the other fields are the
-  /// caller's.
+  /// caller's. Keeps the constraints that bind and those against what can be met within a step: with these alone an
+  /// audit sees that none is missing.
   void decide(const DecisionInput& in, RobotStep& step);
 
  private:
+  double reach_of(const Constraint& c, const Viewpoint& from) const;
   RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, const lp::ActiveConstraint* active) const;
 
   const Scenario* scenario_;

@@ -70,6 +70,7 @@ class FormationRun {
     recording.time_step = scenario_.time_step;
     recording.tracking_gain = spec_.gains.k3;
     recording.relative_frame = !remedies_.absolute_frame;
+    recording.remedies = remedies_;
     recording.offsets = offsets_;
     for (std::size_t k = 0; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
       recording.steps.push_back(decide_all(clock_.time(k)));

@@ -29,6 +29,13 @@ std::optional<std::string> optional_text(const JsonCursor& at) {
   return at.text();
 }
 
+formation::Remedies to_remedies(const JsonCursor& at) {
+  formation::Remedies remedies;
+  for (const formation::RemedySwitch& s : formation::remedy_switches()) remedies.*s.on = at.at(s.name).truth();
+  remedies.acceleration_bound = at.at("acceleration_bound").number();
+  return remedies;
+}
+
 void read_header(const JsonCursor& at, const std::string& name, RecordingFile& file) {
   if (at.at("kind").text() != kKind) at.at("kind").refuse("\"exactvo-recording\"", DataCode::not_an_option);
   if (at.at("format_version").integer() != kRecordingFormat)
@@ -44,6 +51,7 @@ void read_header(const JsonCursor& at, const std::string& name, RecordingFile& f
   recording.motion = enumerator<formation::MotionLaw>(at.at("motion"));
   recording.tracking_gain = at.at("tracking_gain").number();
   recording.relative_frame = at.at("relative_frame").truth();
+  if (file.scenario.formation) recording.remedies = to_remedies(at.at("remedies"));
   recording.offsets = at.at("offsets").points();
   const std::size_t slots = file.scenario.formation ? file.scenario.robots.size() : 0;
   if (recording.offsets.size() != slots)

@@ -18,6 +18,12 @@ using formation::RecordedConstraint;
 using formation::RobotStep;
 using formation::Step;
 
+void append_remedies(JsonWriter& json, const formation::Remedies& remedies) {
+  json.key("remedies").begin_object();
+  for (const formation::RemedySwitch& s : formation::remedy_switches()) json.member(s.name, remedies.*s.on);
+  json.member("acceleration_bound", remedies.acceleration_bound).end_object();
+}
+
 void append_header(JsonWriter& json, const RecordingFile& file) {
   const formation::Recording& recording = file.recording;
   json.begin_object().member("kind", "exactvo-recording").member("format_version", kRecordingFormat);
@@ -25,6 +31,7 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.member("integrator", file.info.integrator);
   json.member("time_step", recording.time_step).member("motion", word_for(recording.motion));
   json.member("tracking_gain", recording.tracking_gain).member("relative_frame", recording.relative_frame);
+  if (recording.remedies) append_remedies(json, *recording.remedies);
   json.key("offsets");
   append_points(json, recording.offsets);
   json.member("all_half_planes", recording.all_half_planes);

@@ -4,6 +4,7 @@
 /// \file
 /// What happened in a run: a row a step, with each robot's state, its decision and the half-planes behind it.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,10 +66,11 @@ struct RobotStep {
   lp::Status status = lp::Status::optimal;
   double violation = 0.0;  ///< m/s, of the soft half-planes
   Mode mode = Mode::direct;
-  int side = 0;                                 ///< +1 left, -1 right, 0 none: the side kept while blocked
-  std::string note;                             ///< why a mode began or ended, empty otherwise
-  std::vector<RecordedConstraint> constraints;  ///< the active ones; all of them where asked for
-  std::size_t uncertified = 0;                  ///< half-planes of this decision that could not be certified
+  int side = 0;      ///< +1 left, -1 right, 0 none: the side kept while blocked
+  std::string note;  ///< why a mode began or ended, empty otherwise
+  /// The active ones and those against what could be met within a step; all of them where asked for.
+  std::vector<RecordedConstraint> constraints;
+  std::size_t uncertified = 0;  ///< half-planes of this decision that could not be certified
 };
 
 /// Where a moving obstacle is, from where it was at t = 0, and how it moves.
@@ -110,6 +112,7 @@ struct Recording {
   double tracking_gain = 0.0;  ///< k3, 1/s, where motion is exponential
   /// `chosen` is relative to the leader, as the paper's controllers have it (V_IVO of (15)); else absolute.
   bool relative_frame = false;
+  std::optional<Remedies> remedies;  ///< of a formation's controller, as they were in force
   std::vector<Vec2> offsets;  ///< m, Delta_i as the controller used them (recentred or not); empty without a formation
   bool diverged = false;      ///< the formation's error grew to the end, or the state left every bound
   std::string outcome;        ///< in words, for people
