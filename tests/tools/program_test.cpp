@@ -366,6 +366,25 @@ TEST(Audit, AnObstacleThatMovesIsOne) {
   EXPECT_FALSE(report["not_audited"].empty());
 }
 
+TEST(Audit, ComparesTheScenarioThatItIsGiven) {
+  const Workplace here;
+  ASSERT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --out out --no-figures").status, 0);
+  const Outcome same = here.run("audit out --json --scenario " + data_file("paper/A1.json"));
+  EXPECT_EQ(same.status, 0) << same.out;
+  const json report = json::parse(same.out);
+  for (const char* point : {"scenario", "bodies", "completeness", "half_planes", "choices", "sequence", "motions"}) {
+    EXPECT_GT(report["points"][point]["asked"], 0) << point;
+    EXPECT_EQ(report["points"][point]["asked"], report["points"][point]["proven"]) << point;
+  }
+  const Outcome other = here.run("audit out --scenario " + data_file("paper/A2.json"));
+  EXPECT_EQ(other.status, 1);
+  EXPECT_THAT(other.out, HasSubstr("the scenario of the recording is not the one given"));
+  EXPECT_THAT(other.out, HasSubstr("choices satisfy their half-planes and are the best: "));
+  const Outcome none = here.run("audit out --scenario nowhere.json");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(here.run("audit out").out, HasSubstr("--scenario FILE compares them"));
+}
+
 TEST(Audit, TheCurvesOfAFormationAreProven) {
   const Workplace here;
   ASSERT_EQ(here.run("simulate " + data_file("paper/B1.json") + " --out out --no-figures").status, 0);

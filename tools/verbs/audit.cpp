@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/scenario_file.h"
 #include "support/certificates.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -22,6 +24,7 @@ namespace {
 struct Flags {
   std::string path;
   std::string certificates;
+  std::string scenario;
   bool json = false;
 };
 
@@ -39,21 +42,46 @@ std::vector<fs::path> recordings_in(const std::string& path) {
   return found;
 }
 
+/// What is asked at each point, in words.
+const char* in_words(datasets::AuditPoint point) {
+  constexpr const char* kWords[] = {"the recording is of its scenario",
+                                    "bodies contain the obstacles they stand for",
+                                    "nothing within reach of a step lacks a half-plane",
+                                    "half-planes exclude their velocity obstacles",
+                                    "choices satisfy their half-planes and are the best",
+                                    "rows follow from one another",
+                                    "motions keep clear of everything"};
+  return kWords[static_cast<std::size_t>(point)];
+}
+
 std::string summary(const datasets::AuditReport& report) {
-  std::string text = fmt::format(
-      "{} half-planes, {} unsafe\n{} steps, {} collisions, {} not proven\n{} inconsistencies\n", report.half_planes,
-      report.unsafe, report.steps, report.collisions, report.unproven, report.inconsistencies);
+  std::string text;
+  for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
+    const datasets::PointCount& n = report.points[p];
+    text += fmt::format("{}: {} asked, {} proven", in_words(static_cast<datasets::AuditPoint>(p)), n.asked(), n.proven);
+    if (n.refuted > 0) text += fmt::format(", {} refuted", n.refuted);
+    if (n.open > 0) text += fmt::format(", {} left open", n.open);
+    text += "\n";
+  }
+  text += fmt::format("{} half-planes of obstacles, {} unsafe; {} steps, {} collisions\n", report.half_planes,
+                      report.unsafe, report.steps, report.collisions);
+  if (report.largest_violation > 0.0)
+    text += fmt::format("largest violation of a half-plane: {:.3g} m/s\n", report.largest_violation);
   if (report.curved_steps > 0)
     text += fmt::format("{} of the steps are curves, up to {:.2g} m off the straight way: the curves were checked\n",
                         report.curved_steps, report.largest_bulge);
   for (const std::string& finding : report.findings) text += "  " + finding + "\n";
+  text += "not audited:\n";
+  for (const std::string& words : not_audited(report)) text += "  " + words + "\n";
   return text;
 }
 
 ExitCode audit_recordings(const Flags& flags) {
+  std::optional<formation::Scenario> scenario;
+  if (!flags.scenario.empty()) scenario = datasets::load_scenario(flags.scenario);
   datasets::AuditReport sum;
   for (const fs::path& file : recordings_in(flags.path)) {
-    datasets::AuditReport report = datasets::audit_recording(file);
+    datasets::AuditReport report = datasets::audit_recording(file, scenario ? &*scenario : nullptr);
     for (std::string& finding : report.findings) finding = file.string() + ": " + finding;
     datasets::add(sum, report);
     if (interrupted()) throw Interrupted();
@@ -78,12 +106,15 @@ ExitCode audit(const Flags& flags) {
   if (flags.path.empty() == flags.certificates.empty())
     throw UsageError("audit", flags.path.empty() ? "neither a path nor --certificate" : "a path and --certificate",
                      "one of the two: a recording (or a folder of them), or --certificate FILE");
+  if (!flags.certificates.empty() && !flags.scenario.empty())
+    throw UsageError("--scenario", flags.scenario, "a recording to compare it with, not --certificate");
   return flags.path.empty() ? audit_certificates(flags) : audit_recordings(flags);
 }
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("path", flags->path, "A recording.jsonl, or a folder searched for them");
+  app.add_option("--scenario", flags->scenario, "FILE that the recordings must be of, with its obstacle files");
   app.add_option("--certificate", flags->certificates,
                  "FILE with one certificate per line, or the output of vo --json; - for stdin");
   app.add_flag("--json", flags->json, "Counts and findings, or one verdict per certificate, as JSON on stdout");
@@ -95,8 +126,10 @@ Action declare(CLI::App& app) {
 Verb audit_verb() {
   return {
       "audit",
-      "Verify recordings in exact rational arithmetic: every half-plane, every step (exit status 1 if one fails)",
+      "Verify recordings in exact rational arithmetic: bodies, half-planes, choices, every step (exit status 1 if one "
+      "fails)",
       "  exactvo audit out --json\n"
+      "  exactvo audit out/A1 --scenario datasets/data/paper/A1.json\n"
       "  exactvo vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --json \\\n"
       "      | exactvo audit --certificate -\n",
       declare};

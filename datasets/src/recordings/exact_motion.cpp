@@ -234,4 +234,16 @@ Chord ExactWay::within(const Rational& start, const Rational& end) const {
   return chord(pieces_[piece_at(start)], start, end);
 }
 
+std::vector<Point> ExactWay::velocities(const Rational& time, const Rational& slack) const {
+  std::vector<Point> all;
+  for (const Piece& piece : pieces_) {
+    if (piece.from > time + slack || (piece.to && *piece.to < time - slack)) continue;
+    Rational at = std::max(time, piece.from);
+    if (piece.to) at = std::min(at, *piece.to);
+    const Rational speed = piece.stretch.speed + piece.stretch.rate * (at - piece.stretch.start);
+    all.push_back(Rational(speed / piece.length.middle()) * piece.leg);
+  }
+  return all;
+}
+
 }  // namespace exactvo::datasets::exact

@@ -86,6 +86,9 @@ class ExactWay {
   std::vector<TimedChord> over(const Rational& start, const Rational& end) const;
   /// The same for a stretch of time within one piece.
   Chord within(const Rational& start, const Rational& end) const;
+  /// The velocities that it has at some time within `slack` (s) of this one, up to 2^-180 of them: several at a corner
+  /// or a jump of its speed.
+  std::vector<Point> velocities(const Rational& time, const Rational& slack) const;
 
  private:
   struct Stretch {

@@ -3,23 +3,35 @@
 
 /// \file
 /// Verifies a recording in exact rational arithmetic (GMP), with none of the filters that made it and sharing no code
-/// with the run but plain types:
-///  (1) every certified half-plane of an obstacle excludes the interior of its obstacle's velocity obstacle
-///      (vo/certificate.h);
-///  (2) every motion from one row to the next keeps clear of obstacles, of moving obstacles where they are meanwhile
-///      (round the corners of their paths and through the changes of their speed), and of the other robots;
-///  (3) rows are a time step apart, and follow from one another by the law of motion up to rounding: x + T v of
-///  straight
-///      motions, v' = -k3 (v - w) in closed form.
+/// with the run but plain types and two checkers of certificates (vo/certificate.h, lp/certificate.h). Seven points:
 ///
-/// The motion of (2) is the one that was driven (`formation::MotionLaw`): straight, the exponential curve, or the cubic
-/// through both rows. Curves are cut into chords with a proven bound of how far they stray, finer and finer until each
-/// is proven clear or a collision is. Straight motions and those of obstacles whose legs have rational lengths are
-/// decided exactly; elsewhere what touches to within some 1e-7 of its bulge may be neither, and is `unproven`.
+///  (1) scenario      the header agrees with its scenario, its scenario with the file given, the lines with the seal;
+///  (2) bodies        for every robot and goal each obstacle edge lies inside a body that stands for its obstacle; what
+///                    is no enclosure is made of its obstacle's vertices or edges;
+///  (3) completeness  whatever a robot could meet within the step, at its greatest speed, is excluded by half-planes of
+///                    its row, for the step at least: obstacles edge by edge, moving obstacles at their present
+///                    velocity, robots by both halves of the pair;
+///  (4) half-planes   every certified half-plane excludes the interior of its body's velocity obstacle, for the robot's
+///                    radius, where the row has both, and looks a time step ahead; a robot's half takes its share;
+///  (5) choices       the velocity chosen satisfies the recorded half-planes and the speed bound, and the recorded
+///                    multipliers prove that none is better (or, relaxed, that none violates less);
+///  (6) sequence      the first row is the scenario's start; the next follows from the choice by the law of motion (bit
+///                    for bit of kinematic robots, else up to named roundings); leader and moving obstacles are where
+///                    their paths have them;
+///  (7) motions       every motion from row to row, as it was driven, keeps clear of obstacles, of moving obstacles
+///  where
+///                    they are meanwhile, and of the other robots.
 ///
-/// A robot's reciprocal half-plane promises nothing alone and is not counted. `not_audited` lists what is not asked.
-/// The seal has no key: it shows damage, not forgery.
+/// The motion of (7) is straight, the exponential curve, or the cubic through both rows (`formation::MotionLaw`).
+/// Curves are cut into chords with a proven bound of how far they stray, finer and finer until each is proven clear or
+/// a collision is. Straight motions and those of obstacles whose legs have rational lengths are decided exactly;
+/// elsewhere what touches to within some 1e-7 of its bulge stays open.
+///
+/// What stays open is neither proven nor refuted: of (7) it is a failure. Of (3) to (5) it is none by itself (a robot
+/// whose anchor overlaps an obstacle can be promised nothing), since (7) proves what was driven. `not_audited` lists
+/// what is not asked. The seal has no key: it shows damage, and the points show forgery.
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -29,40 +41,65 @@
 
 namespace exactvo::datasets {
 
+enum class AuditPoint { scenario, bodies, completeness, half_planes, choices, sequence, motions };
+inline constexpr std::size_t kAuditPoints = 7;
+
+/// "scenario", "bodies" and so on, as in JSON.
+const char* name(AuditPoint point);
+
+/// asked = proven + refuted + open.
+struct PointCount {
+  std::size_t proven = 0;
+  std::size_t refuted = 0;
+  std::size_t open = 0;
+  std::size_t asked() const { return proven + refuted + open; }
+};
+
 struct AuditReport {
-  std::size_t half_planes = 0;        ///< certified ones of obstacles
-  std::size_t unsafe = 0;             ///< of these, not disjoint from the interior
-  std::size_t steps = 0;              ///< a robot's motion from one row to the next
+  std::array<PointCount, kAuditPoints> points{};  ///< in the order of AuditPoint
+  PointCount& operator[](AuditPoint point) { return points[static_cast<std::size_t>(point)]; }
+  const PointCount& operator[](AuditPoint point) const { return points[static_cast<std::size_t>(point)]; }
+
+  std::size_t half_planes = 0;        ///< of (4): certified ones of obstacles
+  std::size_t unsafe = 0;             ///< of (4): refuted
+  std::size_t steps = 0;              ///< of (7): a robot's motion from one row to the next
   std::size_t collisions = 0;         ///< of these, nearer to an obstacle or another robot than the radii allow
   std::size_t unproven = 0;           ///< of these, neither a collision nor proven to be none
-  std::size_t inconsistencies = 0;    ///< rows that do not follow one another, a seal that does not fit the rows
+  std::size_t inconsistencies = 0;    ///< refuted of (1) and (6)
   std::vector<std::string> findings;  ///< the first of each kind, in words; at most kMostAuditFindings
 
   std::size_t curved_steps = 0;        ///< of the steps, those that were not driven in a straight line
   std::size_t obstacle_questions = 0;  ///< pairs of a step and an obstacle, a moving obstacle, another robot
   std::size_t moving_questions = 0;
   std::size_t robot_questions = 0;
-  double largest_bulge = 0.0;  ///< m: no curve strays farther from the straight way between its rows
+  double largest_bulge = 0.0;      ///< m: no curve strays farther from the straight way between its rows
+  double largest_violation = 0.0;  ///< m/s: of a half-plane that must hold, by the choice; 0 where all hold
 
-  bool clean() const { return unsafe == 0 && collisions == 0 && unproven == 0 && inconsistencies == 0; }
+  bool scenario_was_given = false;  ///< the recorded scenario was compared with a file
+  bool has_sums = false;            ///< a run tracks a sum in which the choice is one term: (6) asks less
+  bool has_integrated = false;      ///< a run was integrated by dopri5 or rosenbrock4
+
+  /// Nothing is refuted, and no motion open.
+  bool clean() const;
 };
 inline constexpr std::size_t kMostAuditFindings = 20;
 
-/// REQUIRES: a recording that read_recording gave, or one like it.
-AuditReport audit(const RecordingFile& file);
+/// REQUIRES: a recording that read_recording gave, or one like it. `scenario`: what it must be a recording of.
+AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario = nullptr);
 
-/// The same for a file, with its seal: the digest of all lines in the last one (recording_file.h), so that a row that was
-/// altered in a way that is still safe, an ulp inward, is found too. Throws DataError where it can't be read.
-AuditReport audit_recording(const std::filesystem::path& path);
+/// The same for a file, with its seal: the digest of all lines in the last one (recording_file.h), so that a row that
+/// was altered in a way that is still safe, an ulp inward, is found too. Throws DataError where it can't be read.
+AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario = nullptr);
 
 /// Counts added up, findings joined.
 void add(AuditReport& sum, const AuditReport& other);
 
-/// What no audit of a recording asks, a sentence each.
-const std::vector<std::string>& not_audited();
+/// What this audit did not ask, a sentence each.
+std::vector<std::string> not_audited(const AuditReport& report);
 
-/// One JSON object: `half_planes`, `unsafe`, `steps`, `collisions`, `unproven`, `inconsistencies`, `proved` (how much
-/// of what was proven), `not_audited`, `findings`.
+/// One JSON object: `half_planes`, `unsafe`, `steps`, `collisions`, `unproven`, `inconsistencies`, `points` (of each
+/// point `asked`, `proven`, `refuted`, `open`), `largest_violation`, `proved` (how much of what was proven),
+/// `not_audited`, `findings`.
 std::string to_json(const AuditReport& report);
 
 }  // namespace exactvo::datasets

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recordings/audit_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include "recordings/exact_shapes.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using exact::exactly;
+using exact::Point;
+using exact::Rational;
+using formation::Outlook;
+using geometry::Vec2;
+using vo::Body;
+using vo::BodyKind;
+
+bool is_edge_of(const geometry::ConvexShape& shape, const RationalObstacle& obstacle) {
+  const auto* s = std::get_if<geometry::Segment>(&shape);
+  return s && std::any_of(obstacle.segments.begin(), obstacle.segments.end(), [&](const geometry::Segment& edge) {
+           return (edge.a == s->a && edge.b == s->b) || (edge.a == s->b && edge.b == s->a);
+         });
+}
+
+}  // namespace
+
+BodyAudit::BodyAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, AuditTally& tally)
+    : file_(file), obstacles_(obstacles), covered_(file.recording.bodies.size()), tally_(tally) {}
+
+void BodyAudit::check() {
+  for (std::size_t number = 0; number < file_.recording.bodies.size(); ++number) check_body(number);
+  check_outlooks();
+}
+
+void BodyAudit::check_body(std::size_t number) {
+  const Body& body = file_.recording.bodies[number];
+  const bool stands_still = body.kind == BodyKind::enclosure || body.kind == BodyKind::obstacle_edge;
+  if (!stands_still || body.owners.empty()) return;  // what has no owner may not be named (audit_decisions.h)
+  const std::string name = "body " + std::to_string(number);
+  if (!geometry::is_valid(body.shape)) return tally_.refuted(AuditPoint::bodies, name + " is no valid shape");
+  if (body.kind == BodyKind::obstacle_edge) {
+    const bool is_edge = body.owners.size() == 1 && is_edge_of(body.shape, obstacles_[body.owners.front()]);
+    return is_edge ? tally_.proven(AuditPoint::bodies)
+                   : tally_.refuted(AuditPoint::bodies, name + " is no edge of its obstacle");
+  }
+  bool stands_for_all = true;
+  for (const std::size_t owner : body.owners) {
+    Covered& covered = covered_[number].emplace_back(Covered{owner, {}});
+    for (const exact::Straight& edge : obstacles_[owner].edges) {
+      covered.edges.push_back(exact::contains(body.shape, edge.from) && exact::contains(body.shape, edge.to));
+      covered.any = covered.any || covered.edges.back();
+    }
+    stands_for_all = stands_for_all && covered.any;
+  }
+  stands_for_all || is_made_of_its_owner(body)
+      ? tally_.proven(AuditPoint::bodies)
+      : tally_.refuted(AuditPoint::bodies, name + " does not contain an edge of every obstacle that it stands for");
+}
+
+/// A convex piece from the middle of a polygon contains none of its edges.
+bool BodyAudit::is_made_of_its_owner(const Body& body) const {
+  const auto* polygon = std::get_if<geometry::ConvexPolygon>(&body.shape);
+  if (!polygon || body.owners.size() != 1) return false;
+  const std::vector<Vec2> all = geometry::vertices_of(*obstacles_[body.owners.front()].obstacle);
+  return std::all_of(polygon->vertices.begin(), polygon->vertices.end(),
+                     [&](Vec2 v) { return std::find(all.begin(), all.end(), v) != all.end(); });
+}
+
+void BodyAudit::check_outlooks() {
+  const std::vector<Outlook>& outlooks = file_.recording.outlooks;
+  std::vector<const Outlook*> last(file_.scenario.robots.size(), nullptr);
+  const bool has_enclosures =
+      std::any_of(file_.recording.bodies.begin(), file_.recording.bodies.end(),
+                  [](const Body& body) { return body.kind == BodyKind::enclosure && !body.owners.empty(); });
+  const bool has_edges = std::any_of(file_.recording.bodies.begin(), file_.recording.bodies.end(),
+                                     [](const Body& body) { return body.kind == BodyKind::obstacle_edge; });
+  if (has_enclosures && has_edges)
+    tally_.refuted(AuditPoint::bodies, "the bodies are enclosures and edges: no method has both");
+  for (const Outlook& outlook : outlooks) {
+    const std::string name =
+        "the enclosures of " + file_.scenario.robots[outlook.robot].id + " for goal " + std::to_string(outlook.goal);
+    if (!is_in_order(outlook, last[outlook.robot])) tally_.refuted(AuditPoint::bodies, name + " come out of turn");
+    last[outlook.robot] = &outlook;
+    if (has_edges) continue;
+    const std::vector<bool> covered = covered_by(outlook);
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      covered[k] ? tally_.proven(AuditPoint::bodies)
+                 : tally_.refuted(AuditPoint::bodies, name + " leave out a part of " + file_.scenario.obstacles[k].id);
+  }
+  for (std::size_t i = 0; i < last.size() && has_enclosures; ++i)
+    if (!last[i]) tally_.refuted(AuditPoint::bodies, file_.scenario.robots[i].id + " has no enclosures");
+}
+
+/// The first at t = 0 for the first goal, then goal after goal, each from a row at which the last goal was reached.
+bool BodyAudit::is_in_order(const Outlook& outlook, const Outlook* before) const {
+  if (!before) return outlook.time == 0.0 && outlook.goal == 0;
+  const formation::Robot& robot = file_.scenario.robots[outlook.robot];
+  if (outlook.goal != before->goal + 1 || outlook.goal >= robot.goals.size() || outlook.time < before->time)
+    return false;
+  const double row = std::round(outlook.time / file_.recording.time_step);
+  if (!(row >= 0.0) || !(row < static_cast<double>(file_.recording.steps.size()))) return false;
+  const formation::Step& step = file_.recording.steps[static_cast<std::size_t>(row)];
+  if (step.time != outlook.time) return false;
+  // Reached within the robot's radius; distances there are rounded.
+  const Point d = exactly(step.robots[outlook.robot].position) - exactly(robot.goals[before->goal]);
+  const Rational reach(std::max(robot.radius, file_.scenario.arrival_tolerance));
+  return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));
+}
+
+/// Of each obstacle, whether each of its edges lies in a body of the outlook that stands for it.
+std::vector<bool> BodyAudit::covered_by(const Outlook& outlook) const {
+  std::vector<std::vector<bool>> edges;
+  for (const RationalObstacle& o : obstacles_) edges.emplace_back(o.edges.size(), false);
+  for (const std::size_t body : outlook.bodies)
+    for (const Covered& covered : covered_[body])
+      for (std::size_t e = 0; e < covered.edges.size(); ++e)
+        if (covered.edges[e]) edges[covered.owner][e] = true;
+  std::vector<bool> all;
+  for (const std::vector<bool>& of_obstacle : edges)
+    all.push_back(std::all_of(of_obstacle.begin(), of_obstacle.end(), [](bool b) { return b; }));
+  return all;
+}
+
+}  // namespace exactvo::datasets

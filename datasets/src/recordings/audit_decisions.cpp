@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recordings/audit_decisions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "exactvo/vo/certificate.h"
+#include "recordings/exact_shapes.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using exact::exactly;
+using exact::Point;
+using exact::Rational;
+using exact::Verdict;
+using formation::Outlook;
+using formation::RecordedConstraint;
+using formation::RobotStep;
+using formation::Step;
+using geometry::Vec2;
+using vo::BodyKind;
+
+bool is_static(const RecordedConstraint& c) {
+  return c.source == BodyKind::enclosure || c.source == BodyKind::obstacle_edge;
+}
+
+bool has_numbers(const geometry::HalfPlane& h) {
+  return geometry::is_finite(h.normal) && h.normal != Vec2{} && std::isfinite(h.offset);
+}
+
+/// The robot's half against the other; nothing where the row has none.
+const RecordedConstraint* half_against(const RobotStep& robot, std::size_t other) {
+  for (const RecordedConstraint& c : robot.constraints)
+    if (c.source == BodyKind::robot && c.index == other && has_numbers(c.half_plane)) return &c;
+  return nullptr;
+}
+
+Rational violation_at(const geometry::HalfPlane& h, const Point& v) {
+  return Rational(h.offset) - exact::dot(exactly(h.normal), v);
+}
+
+/// Share of the largest speed: what is said to bind does so to within this (lp/certificate.h has the same for gaps).
+constexpr double kBindsWithin = lp::kWidestGap;
+
+}  // namespace
+
+DecisionAudit::DecisionAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles,
+                             AuditTally& tally)
+    : file_(file),
+      obstacles_(obstacles),
+      duration_(file.recording.time_step),
+      literal_horizons_(file.recording.remedies && !file.recording.remedies->tau_clamp),
+      tally_(tally) {}
+
+/// m/s, no less than the length of any velocity within the bound.
+double DecisionAudit::fastest(std::size_t robot) const {
+  constexpr double kDiagonal = 1.4142135623731;  // above sqrt 2 by more than the product's rounding
+  const double speed = file_.scenario.robots[robot].max_speed;
+  return file_.scenario.speed_bound == formation::SpeedBoundKind::disc ? speed : kDiagonal * speed;
+}
+
+DecisionAudit::Seen DecisionAudit::seen(std::size_t row, std::size_t robot) const {
+  const Step& step = file_.recording.steps[row];
+  const RobotStep& state = step.robots[robot];
+  const Rational radius(file_.scenario.robots[robot].radius), reach = duration_ * Rational(fastest(robot));
+  return {row, robot, &step, &state, exactly(state.anchor), radius, reach, exact::at_least(radius + reach)};
+}
+
+void DecisionAudit::place_moving(const Step& step) {
+  moved_.clear();
+  for (std::size_t k = 0; k < file_.scenario.moving_obstacles.size() && k < step.moving.size(); ++k)
+    moved_.push_back(formation::hull_of(file_.scenario.moving_obstacles[k], step.moving[k].displacement));
+}
+
+void DecisionAudit::check(std::size_t row) {
+  const Step& step = file_.recording.steps[row];
+  place_moving(step);
+  std::vector<Seen> all;
+  for (std::size_t i = 0; i < step.robots.size(); ++i) all.push_back(seen(row, i));
+  for (const Seen& s : all) {
+    nothing_is_missing(s);
+    half_planes_hold(s);
+    choice_is_best(s);
+  }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j)
+      if (can_meet(all[i], all[j])) answer(against_robot(all[i], all[j]), all[i], "robot " + id(all[j]));
+}
+
+// --- (3) Nothing is missing ---
+
+void DecisionAudit::answer(Verdict verdict, const Seen& s, const std::string& whom) {
+  if (verdict == Verdict::clear) return tally_.proven(AuditPoint::completeness);
+  if (verdict == Verdict::unknown)
+    return tally_.open(AuditPoint::completeness, at_row(s.row, id(s) + " overlaps " + whom +
+                                                                   ", or decides for less than "
+                                                                   "a time step: no half-plane is promised"));
+  tally_.refuted(AuditPoint::completeness,
+                 at_row(s.row, "no half-plane keeps " + id(s) + " from " + whom + " for a time step"));
+}
+
+void DecisionAudit::nothing_is_missing(const Seen& s) {
+  const AuditBox here = box_of(s.state->anchor);
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    if (are_apart(here, obstacles_[k].box, s.near)) continue;
+    bool in_reach = false;
+    const Verdict verdict = against_edges(s, obstacles_[k], in_reach);
+    if (in_reach) answer(verdict, s, "obstacle " + file_.scenario.obstacles[k].id);
+  }
+  for (std::size_t k = 0; k < moved_.size(); ++k) {
+    bool in_reach = false;
+    const Verdict verdict = against_moving(s, k, in_reach);
+    if (in_reach) answer(verdict, s, "moving obstacle " + file_.scenario.moving_obstacles[k].id);
+  }
+}
+
+Verdict DecisionAudit::against_edges(const Seen& s, const RationalObstacle& obstacle, bool& in_reach) const {
+  const Rational within = (s.radius + s.reach) * (s.radius + s.reach), rim = s.radius * s.radius;
+  const bool is_solid = geometry::has_interior(*obstacle.obstacle);
+  if (is_solid && exact::is_inside(s.at, *obstacle.obstacle)) {
+    in_reach = true;
+    return Verdict::unknown;
+  }
+  bool overlaps = false, missing = false;
+  for (const std::size_t e : obstacle.near(box_of(s.state->anchor), s.near)) {
+    const exact::Straight& edge = obstacle.edges[e];
+    const Rational away = exact::squared_distance(s.at, edge);
+    if (away > within) continue;
+    in_reach = true;
+    overlaps = overlaps || away < rim;
+    const bool faces_away = is_solid && sgn(exact::cross(edge.to - edge.from, s.at - edge.from)) > 0;
+    missing = missing || (!faces_away && !is_excluded(s, obstacle.segments[e]));
+  }
+  if (overlaps || (missing && literal_horizons_)) return Verdict::unknown;
+  return missing ? Verdict::meets : Verdict::clear;
+}
+
+bool DecisionAudit::is_excluded(const Seen& s, const geometry::Segment& edge) const {
+  const double radius = file_.scenario.robots[s.robot].radius, step = file_.recording.time_step;
+  return std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const RecordedConstraint& c) {
+    return c.hard && is_static(c) && vo::is_true({edge, s.state->anchor, radius, step, {}, c.half_plane});
+  });
+}
+
+/// At its present velocity.
+Verdict DecisionAudit::against_moving(const Seen& s, std::size_t k, bool& in_reach) const {
+  const formation::MovedObstacle& moved = s.step->moving[k];
+  const Point u = exactly(moved.velocity);
+  const Rational reach = s.reach + duration_ * exact::root(exact::dot(u, u)).high;
+  in_reach = exact::is_within(moved_[k], s.at, s.radius + reach);
+  if (!in_reach) return Verdict::clear;
+  if (!exact::is_clear(moved_[k], s.at, s.radius)) return Verdict::unknown;
+  const double radius = file_.scenario.robots[s.robot].radius, step = file_.recording.time_step;
+  const bool excluded =
+      std::any_of(s.state->constraints.begin(), s.state->constraints.end(), [&](const RecordedConstraint& c) {
+        return c.source == BodyKind::moving_obstacle && c.index == k &&
+               vo::is_true({moved_[k], s.state->anchor, radius, step, moved.velocity, c.half_plane});
+      });
+  return excluded ? Verdict::clear : Verdict::meets;
+}
+
+/// Within the step, and one of them does something about it.
+bool DecisionAudit::can_meet(const Seen& a, const Seen& b) const {
+  constexpr double kRounding = 1.0 + 0x1p-50;
+  if (are_apart(box_of(a.state->anchor), box_of(b.state->anchor), kRounding * (a.near + b.near))) return false;
+  const std::vector<formation::Robot>& robots = file_.scenario.robots;
+  if (!robots[a.robot].cooperates && !robots[b.robot].cooperates) return false;
+  const Rational near = a.radius + b.radius + a.reach + b.reach;
+  const Point apart = b.at - a.at;
+  return exact::dot(apart, apart) <= near * near;
+}
+
+/// Two that cooperate: opposite normals, bit for bit, and the sum of the offsets for the relative velocity. One that
+/// does not keeps its present velocity.
+Verdict DecisionAudit::against_robot(const Seen& a, const Seen& b) const {
+  const Rational reach = a.radius + b.radius;
+  const Point apart = b.at - a.at;
+  if (exact::dot(apart, apart) < reach * reach) return Verdict::unknown;
+  const bool a_yields = file_.scenario.robots[a.robot].cooperates;
+  const bool b_yields = file_.scenario.robots[b.robot].cooperates;
+  const RecordedConstraint* of_a = a_yields ? half_against(*a.state, b.robot) : nullptr;
+  const RecordedConstraint* of_b = b_yields ? half_against(*b.state, a.robot) : nullptr;
+  if ((a_yields && !of_a) || (b_yields && !of_b)) return Verdict::meets;
+  if (of_a && of_b && of_a->half_plane.normal != -of_b->half_plane.normal) return Verdict::meets;
+  const Point n = of_a ? exactly(of_a->half_plane.normal) : exactly(-of_b->half_plane.normal);
+  const auto at_least = [](const RecordedConstraint* half, const Point& normal, const RobotStep& robot) {
+    return half ? Rational(half->half_plane.offset) : Rational(exact::dot(normal, exactly(robot.anchor_velocity)));
+  };
+  const Point m{Rational(-n.x), Rational(-n.y)};
+  const Rational offset = at_least(of_a, n, *a.state) + at_least(of_b, m, *b.state);
+  return exact::excludes_disc(apart, reach, n, offset, duration_) ? Verdict::clear : Verdict::meets;
+}
+
+// --- (4) Half-planes ---
+
+void DecisionAudit::half_planes_hold(const Seen& s) {
+  std::size_t uncertified = 0;
+  for (const RecordedConstraint& c : s.state->constraints) {
+    const std::string wrong = misnamed(s, c);
+    if (!wrong.empty()) {
+      tally_.refuted(AuditPoint::half_planes, at_row(s.row, "a half-plane of " + id(s) + wrong));
+    } else if (!c.certified) {
+      ++uncertified;
+      tally_.open(AuditPoint::half_planes, at_row(s.row, "a half-plane of " + id(s) + " is not certified"));
+    } else {
+      tally_.report.half_planes += c.source != BodyKind::robot;
+      holds(s, c)
+          ? tally_.proven(AuditPoint::half_planes)
+          : tally_.refuted(AuditPoint::half_planes,
+                           at_row(s.row, "a half-plane of " + id(s) + " is not disjoint from its velocity obstacle"));
+    }
+  }
+  const bool counts =
+      file_.recording.all_half_planes ? uncertified == s.state->uncertified : uncertified <= s.state->uncertified;
+  if (!counts)
+    tally_.refuted(AuditPoint::half_planes, at_row(s.row, "half-planes of " + id(s) +
+                                                              " that are not certified are not "
+                                                              "as many as it says"));
+}
+
+/// What is wrong with the names of a half-plane; empty where nothing is.
+std::string DecisionAudit::misnamed(const Seen& s, const RecordedConstraint& c) const {
+  const std::vector<vo::Body>& bodies = file_.recording.bodies;
+  if (c.body >= bodies.size() || bodies[c.body].owners.empty() || bodies[c.body].kind != c.source)
+    return " names no body that stands for something";
+  if (c.hard != is_static(c)) return " has the priority of another kind";
+  const vo::Body& body = bodies[c.body];
+  if (c.source == BodyKind::robot || c.source == BodyKind::moving_obstacle) {
+    if (c.piece != 0 || c.index != body.owners.front()) return " has another index than its body";
+    if (c.source == BodyKind::robot && (c.index == s.robot || !file_.scenario.robots[s.robot].cooperates))
+      return " is against itself, or of a robot that ignores others";
+    return c.source == BodyKind::moving_obstacle && c.index >= moved_.size() ? " is against what has no place" : "";
+  }
+  if (!(c.tau >= file_.recording.time_step) && !literal_horizons_) return " looks less than a time step ahead";
+  if (c.source == BodyKind::obstacle_edge) return "";
+  const Outlook* outlook = nullptr;
+  for (const Outlook& o : file_.recording.outlooks)
+    if (o.robot == s.robot && o.time <= s.step->time) outlook = &o;
+  if (!outlook) return file_.recording.outlooks.empty() ? "" : " is none of its enclosures";
+  if (c.index >= outlook->bodies.size()) return " is none of its enclosures";
+  const std::size_t enclosure = outlook->bodies[c.index];
+  if (c.piece == 0) return enclosure == c.body ? "" : " is none of its enclosures";
+  const std::vector<std::size_t>& owners = bodies[enclosure].owners;
+  const bool is_piece = std::all_of(body.owners.begin(), body.owners.end(), [&](std::size_t owner) {
+    return std::find(owners.begin(), owners.end(), owner) != owners.end();
+  });
+  return is_piece ? "" : " is no piece of its enclosure";
+}
+
+bool DecisionAudit::holds(const Seen& s, const RecordedConstraint& c) const {
+  const double radius = file_.scenario.robots[s.robot].radius;
+  const Vec2 at = s.state->anchor;
+  if (c.source == BodyKind::moving_obstacle)
+    return vo::is_true({moved_[c.index], at, radius, c.tau, s.step->moving[c.index].velocity, c.half_plane});
+  if (c.source != BodyKind::robot)
+    return vo::is_true({file_.recording.bodies[c.body].shape, at, radius, c.tau, {}, c.half_plane});
+  const formation::Robot& other = file_.scenario.robots[c.index];
+  const RobotStep& them = s.step->robots[c.index];
+  if (other.cooperates) return takes_its_share(s, c);
+  const geometry::Disc disc{them.anchor, other.radius};
+  return vo::is_true({disc, at, radius, c.tau, them.anchor_velocity, c.half_plane});
+}
+
+/// Half of what the pair's relative velocity must change, which is 2 offset - n.(v_a + v_b): where both take as much,
+/// they do not collide within tau.
+bool DecisionAudit::takes_its_share(const Seen& s, const RecordedConstraint& c) const {
+  if (!has_numbers(c.half_plane) || !(c.tau > 0.0) || !std::isfinite(c.tau)) return false;
+  const RobotStep& them = s.step->robots[c.index];
+  const Point n = exactly(c.half_plane.normal);
+  const Point both = exactly(s.state->anchor_velocity) + exactly(them.anchor_velocity);
+  const Rational offset = 2 * Rational(c.half_plane.offset) - exact::dot(n, both);
+  const Rational reach = s.radius + Rational(file_.scenario.robots[c.index].radius);
+  return exact::excludes_disc(exactly(them.anchor) - s.at, reach, n, offset, Rational(c.tau));
+}
+
+// --- (5) Choices ---
+
+void DecisionAudit::choice_is_best(const Seen& s) {
+  const RobotStep& r = *s.state;
+  const auto answer = [&](const std::string& why, bool is_open) {
+    if (why.empty()) return tally_.proven(AuditPoint::choices);
+    const std::string text = at_row(s.row, "the choice of " + id(s) + why);
+    is_open ? tally_.open(AuditPoint::choices, text) : tally_.refuted(AuditPoint::choices, text);
+  };
+  if (!geometry::is_finite(r.preferred) || !geometry::is_finite(r.chosen) || !std::isfinite(r.violation) ||
+      !std::all_of(r.constraints.begin(), r.constraints.end(),
+                   [](const RecordedConstraint& c) { return has_numbers(c.half_plane); }))
+    return answer(" is without numbers", false);
+  const Violations most = violations(s);
+  tally_.report.largest_violation = std::max(tally_.report.largest_violation, exact::at_least(most.forbidden));
+  lp::Problem problem;
+  lp::Solution solution;
+  std::string why = misstated(s, most);
+  if (why.empty()) why = stated(s, problem, solution);
+  if (!why.empty()) return answer(why, false);
+  // What has no room is held to its rounding error; that nothing is better is not proven by its numbers.
+  if (r.status == lp::Status::pinched) return answer(" has no room: that it is the best is not proven", true);
+  const lp::Flaw flaw = lp::check(problem, lp::claim_of(problem, solution));
+  if (flaw == lp::Flaw::none) return answer("", false);
+  answer(flaw == lp::Flaw::velocity ? " breaks a half-plane or the speed bound"
+                                    : " is not proven the best by its multipliers",
+         false);
+}
+
+/// By how much the choice breaks what must hold, and what may give.
+DecisionAudit::Violations DecisionAudit::violations(const Seen& s) const {
+  const RobotStep& r = *s.state;
+  const bool no_room = r.status == lp::Status::pinched, infeasible = r.status == lp::Status::infeasible;
+  const Point chosen = exactly(r.chosen);
+  Violations most{Rational(0), Rational(0)};
+  for (const RecordedConstraint& c : r.constraints) {
+    const Rational violation = violation_at(c.half_plane, chosen);
+    const bool may_give = infeasible || (!c.hard && (no_room || r.status == lp::Status::relaxed));
+    if (!may_give) most.forbidden = std::max(most.forbidden, violation);
+    if (may_give && c.hard == infeasible) most.given = std::max(most.given, violation);
+  }
+  return most;
+}
+
+/// What is wrong with what a row says of its choice beside the multipliers; empty where nothing is.
+std::string DecisionAudit::misstated(const Seen& s, const Violations& most) const {
+  const RobotStep& r = *s.state;
+  const Point chosen = exactly(r.chosen);
+  const Rational speed(fastest(s.robot)), near = Rational(kBindsWithin) * speed;
+  if (r.status == lp::Status::pinched) {
+    if (most.forbidden > near || exact::dot(chosen, chosen) > (speed + near) * (speed + near))
+      return " breaks a half-plane or the speed bound";
+    return "";
+  }
+  if (abs(Rational(r.violation) - most.given) > near) return " states another violation than it has";
+  for (const RecordedConstraint& c : r.constraints) {
+    if (!c.active && c.multiplier != 0.0) return " is pressed by a half-plane that does not bind";
+    if (c.active && r.status == lp::Status::optimal && violation_at(c.half_plane, chosen) < -near)
+      return " is bound by a half-plane that it does not touch";
+  }
+  return "";
+}
+
+/// The decision as a problem of the recorded half-planes, and its answer. Says what is wrong with its terms.
+std::string DecisionAudit::stated(const Seen& s, lp::Problem& problem, lp::Solution& solution) const {
+  const RobotStep& r = *s.state;
+  const double speed = file_.scenario.robots[s.robot].max_speed;
+  if (file_.scenario.speed_bound == formation::SpeedBoundKind::disc)
+    problem.bound.disc = speed;
+  else
+    problem.bound.box_x = problem.bound.box_y = speed;
+  problem.preferred = r.preferred;
+  solution.velocity = r.chosen;
+  solution.status = r.status;
+  solution.violation = r.violation;
+  bool fits = true;
+  const auto take = [&](const lp::Binding& binding, double multiplier) {
+    fits = fits && solution.active_count < solution.active.size() && multiplier >= 0.0 && std::isfinite(multiplier);
+    if (fits) solution.active[solution.active_count++] = {binding, multiplier};
+  };
+  for (const RecordedConstraint& c : r.constraints) {
+    problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
+    if (c.active) take(lp::constraint_at(problem.constraints.size() - 1), c.multiplier);
+  }
+  for (const lp::ActiveConstraint& part : r.bound) take(part.binding, part.multiplier);
+  return fits ? "" : " has more multipliers, or others, than an optimum has";
+}
+
+}  // namespace exactvo::datasets

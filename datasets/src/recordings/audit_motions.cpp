@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recordings/audit_motions.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using exact::Chord;
+using exact::ExactWay;
+using exact::Rational;
+using exact::StepMotion;
+using exact::Verdict;
+using formation::MotionLaw;
+
+/// Whether what follows the chord comes nearer than r to an edge or is inside.
+Verdict against(const Chord& chord, const RationalObstacle& obstacle, const std::vector<std::size_t>& edges,
+                const Rational& r) {
+  const auto some_nearer_than = [&](const Rational& reach) {
+    return std::any_of(edges.begin(), edges.end(), [&](std::size_t edge) {
+      return exact::come_nearer_than(chord.way, obstacle.edges[edge], reach);
+    });
+  };
+  if (chord.stray < r && some_nearer_than(r - chord.stray)) return Verdict::meets;
+  if (sgn(chord.stray) > 0 && some_nearer_than(r + chord.stray)) return Verdict::unknown;
+  return exact::is_inside(chord.way.from, *obstacle.obstacle) ? Verdict::meets : Verdict::clear;
+}
+
+/// Whether what follows the chord comes nearer than `reach` to the origin.
+Verdict against_origin(const Chord& chord, const Rational& reach) {
+  const Rational squared = exact::squared_distance({Rational(0), Rational(0)}, chord.way);
+  if (chord.stray < reach) {
+    const Rational surely = reach - chord.stray;
+    if (squared < surely * surely) return Verdict::meets;
+  }
+  const Rational possibly = reach + chord.stray;
+  return squared >= possibly * possibly ? Verdict::clear : Verdict::unknown;
+}
+
+}  // namespace
+
+MotionAudit::MotionAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles,
+                         const std::vector<ExactWay>& ways, const exact::ExponentialLaw* law, AuditTally& tally)
+    : file_(file), obstacles_(obstacles), ways_(ways), law_(law), duration_(file.recording.time_step), tally_(tally) {
+  for (const formation::MovingObstacle& o : file.scenario.moving_obstacles) moving_.emplace_back(o.shape);
+}
+
+void MotionAudit::Answer::take(Verdict verdict, const char* kind, const std::string& id) {
+  if (verdict == Verdict::clear) return;
+  std::string& where = verdict == Verdict::meets ? met : open;
+  if (where.empty()) where = kind + id;
+}
+
+void MotionAudit::check(std::size_t row) {
+  const formation::Step& from = file_.recording.steps[row];
+  const formation::Step& to = file_.recording.steps[row + 1];
+  AuditReport& report = tally_.report;
+  std::vector<Driven> driven;
+  for (std::size_t i = 0; i < file_.scenario.robots.size(); ++i) {
+    const StepMotion motion(file_.recording.motion, law_, duration_, from.robots[i], to.robots[i]);
+    const Chord whole = motion.over(Rational(0), Rational(1));
+    report.largest_bulge = std::max(report.largest_bulge, exact::at_least(whole.stray));
+    driven.push_back({motion, box_of(whole)});
+  }
+  const Moved moved = displacements(row);
+  for (std::size_t i = 0; i < driven.size(); ++i) {
+    if (file_.recording.motion != MotionLaw::straight) ++report.curved_steps;
+    Answer answer;
+    meet_obstacles(driven[i], i, answer);
+    meet_moving(driven[i], i, row, moved, answer);
+    meet_robots(driven, i, answer);
+    const std::string& robot = file_.scenario.robots[i].id;
+    if (!answer.met.empty())
+      tally_.refuted(AuditPoint::motions, at_row(row, robot + " overlaps " + answer.met));
+    else if (!answer.open.empty())
+      tally_.open(AuditPoint::motions,
+                  at_row(row, robot + " comes too near to " + answer.open + " to be proven clear of it"));
+    else
+      tally_.proven(AuditPoint::motions);
+  }
+}
+
+MotionAudit::Moved MotionAudit::displacements(std::size_t row) const {
+  const Rational from(file_.recording.steps[row].time), to(file_.recording.steps[row + 1].time);
+  Moved all;
+  for (const ExactWay& way : ways_) all.push_back(way.over(from, to));
+  return all;
+}
+
+void MotionAudit::meet_obstacles(const Driven& d, std::size_t i, Answer& answer) {
+  const double radius = file_.scenario.robots[i].radius;
+  const Rational r(radius);
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    ++tally_.report.obstacle_questions;
+    if (are_apart(d.box, obstacles_[k].box, radius)) continue;
+    const std::vector<std::size_t> edges = obstacles_[k].near(d.box, radius);
+    const auto over = [&](const Rational& s, const Rational& e) { return d.motion.over(s, e); };
+    const auto test = [&](const Chord& chord) { return against(chord, obstacles_[k], edges, r); };
+    answer.take(exact::decide(over, test, Rational(0), Rational(1)), "obstacle ", file_.scenario.obstacles[k].id);
+  }
+}
+
+/// Piece after piece of the obstacle's way, seen from the obstacle.
+void MotionAudit::meet_moving(const Driven& d, std::size_t i, std::size_t row, const Moved& moved, Answer& answer) {
+  const double radius = file_.scenario.robots[i].radius;
+  const Rational r(radius);
+  const Rational from(file_.recording.steps[row].time), passed = Rational(file_.recording.steps[row + 1].time) - from;
+  for (std::size_t k = 0; k < moving_.size(); ++k) {
+    ++tally_.report.moving_questions;
+    for (const ExactWay::TimedChord& piece : moved[k]) {
+      const Rational start = (piece.start - from) / passed, end = (piece.end - from) / passed;
+      const AuditBox seen = box_of(d.motion.over(start, end) - piece.chord);
+      if (are_apart(seen, moving_[k].box, radius)) continue;
+      const std::vector<std::size_t> edges = moving_[k].near(seen, radius);
+      const auto over = [&](const Rational& s, const Rational& e) {
+        return d.motion.over(s, e) - ways_[k].within(from + s * passed, from + e * passed);
+      };
+      const auto test = [&](const Chord& chord) { return against(chord, moving_[k], edges, r); };
+      answer.take(exact::decide(over, test, start, end), "moving obstacle ", file_.scenario.moving_obstacles[k].id);
+    }
+  }
+}
+
+void MotionAudit::meet_robots(const std::vector<Driven>& driven, std::size_t i, Answer& answer) {
+  for (std::size_t j = 0; j < driven.size(); ++j) {
+    if (j == i) continue;
+    ++tally_.report.robot_questions;
+    const Rational reach = Rational(file_.scenario.robots[i].radius) + Rational(file_.scenario.robots[j].radius);
+    if (are_apart(driven[i].box, driven[j].box, exact::at_least(reach))) continue;
+    const StepMotion seen = driven[i].motion.seen_from(driven[j].motion);
+    const auto over = [&](const Rational& s, const Rational& e) { return seen.over(s, e); };
+    const auto test = [&](const Chord& chord) { return against_origin(chord, reach); };
+    answer.take(exact::decide(over, test, Rational(0), Rational(1)), "robot ", file_.scenario.robots[j].id);
+  }
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recordings/audit_sequence.h"
+
+#include <cmath>
+
+namespace exactvo::datasets {
+namespace {
+
+using exact::exactly;
+using exact::ExactWay;
+using exact::Interval;
+using exact::length_at_most;
+using exact::Point;
+using exact::Rational;
+using formation::Leader;
+using formation::RobotStep;
+using formation::Step;
+using geometry::Vec2;
+
+/// A step's results are sums of terms that passed fewer than this many roundings (rk4, the longest, 40).
+constexpr double kRoundings = 64 * 0x1p-53;
+
+/// Of dopri5 and rosenbrock4, whose tolerance is 1e-12 a step: what is farther off than this did not come from them.
+constexpr double kAdaptive = 0x1p-20;
+constexpr double kAdaptiveAtRest = 1e-9;  ///< m/s
+
+/// A path counts as covered when all but 1e-12 of it is (formation's leader.h): places are known to within a share of
+/// the path, and a leader that brakes to rest there is at rest this much earlier (s).
+constexpr double kShareOfWay = 0x1p-37;
+constexpr double kRestsEarlier = 0x1p-12;
+constexpr double kShareOfSpeed = 0x1p-44;
+
+Rational length_of(const Leader& motion) {
+  Rational length(0);
+  for (std::size_t i = 0; i < motion.path.size(); ++i) {
+    length += length_at_most(exactly(motion.path[i]));
+    if (i > 0) length += length_at_most(exactly(motion.path[i]) - exactly(motion.path[i - 1]));
+  }
+  return length;
+}
+
+Rational top_speed(const Leader& motion) {
+  Rational speed(motion.speed);
+  for (const formation::SpeedKnot& knot : motion.profile) speed = std::max(speed, Rational(knot.speed));
+  return speed;
+}
+
+Interval exactly_that(const Rational& x) {
+  return {x, x};
+}
+
+/// What holds a product of x, of any sign, with a number.
+Point scaled(const Interval& x, const Point& p) {
+  return x.middle() * p;
+}
+
+}  // namespace
+
+SequenceAudit::SequenceAudit(const RecordingFile& file, const std::vector<ExactWay>& ways,
+                             const exact::ExponentialLaw* law, AuditTally& tally)
+    : file_(file), ways_(ways), duration_(file.recording.time_step), tally_(tally) {
+  if (!file.scenario.formation) return;
+  leader_.emplace(file.scenario.formation->leader, Rational(file.recording.steps.back().time) + 1);
+  const std::string integrator = file.info.integrator.value_or("exact");
+  const Rational k(file.scenario.formation->gains.k3), z = k * duration_;
+  if (law) {
+    law_ = Law{exactly_that(Rational(1)) - law->settled(), law->settled() / exactly_that(k), z};
+  } else if (integrator == "euler") {
+    law_ = Law{exactly_that(1 - z), exactly_that(duration_), z};
+  } else if (integrator == "rk4") {
+    const Rational z2 = z * z, z3 = z2 * z;
+    law_ = Law{exactly_that(1 - z + z2 / 2 - z3 / 6 + z3 * z / 24),
+               exactly_that(duration_ * (1 - z / 2 + z2 / 6 - z3 / 24)), z};
+  } else if (sgn(z) > 0) {
+    const Interval remains = exact::decay(z);
+    law_ = Law{remains, (exactly_that(Rational(1)) - remains) / exactly_that(k), z};
+    is_adaptive_ = true;
+    tally.report.has_integrated = true;
+  }
+  if (!tracks_its_choice()) tally.report.has_sums = true;
+}
+
+void SequenceAudit::ask(bool holds, std::size_t row, const std::string& what) {
+  holds ? tally_.proven(AuditPoint::sequence) : tally_.refuted(AuditPoint::sequence, at_row(row, what));
+}
+
+void SequenceAudit::check_row(std::size_t row) {
+  const Step& step = file_.recording.steps[row];
+  ask(step.time == static_cast<double>(row) * file_.recording.time_step, row,
+      "its time is not its number of time steps");
+  if (leader_) {
+    const Leader& motion = file_.scenario.formation->leader;
+    const Vec2 start = motion.path.front();
+    ask(is_on_way(*leader_, motion, step.time, step.leader_position - start, step.leader_velocity), row,
+        "the leader is not where its path has it");
+  }
+  for (std::size_t k = 0; k < step.moving.size(); ++k) {
+    const formation::MovingObstacle& o = file_.scenario.moving_obstacles[k];
+    ask(is_on_way(ways_[k], o.motion, step.time, step.moving[k].displacement, step.moving[k].velocity), row,
+        "moving obstacle " + o.id + " is not where its path has it");
+  }
+  for (std::size_t i = 0; i < step.robots.size(); ++i)
+    ask(has_its_anchor(row, i), row,
+        "half-planes of " + file_.scenario.robots[i].id + " are not built where its controller builds them");
+}
+
+bool SequenceAudit::is_on_way(const ExactWay& way, const Leader& motion, double time, Vec2 displacement,
+                              Vec2 velocity) const {
+  if (!(time >= 0.0) || !geometry::is_finite(displacement) || !geometry::is_finite(velocity)) return false;
+  const Rational t(time), speed = top_speed(motion);
+  const exact::Chord at = way.within(t, t);
+  const Rational near = Rational(kShareOfWay) * (length_of(motion) + speed * t) + 2 * at.stray;
+  if (length_at_most(exactly(displacement) - at.way.from) > near) return false;
+  const std::vector<Point> all = way.velocities(t, Rational(kRestsEarlier));
+  return std::any_of(all.begin(), all.end(), [&](const Point& v) {
+    return length_at_most(exactly(velocity) - v) <= Rational(kShareOfSpeed) * (speed + length_at_most(v));
+  });
+}
+
+/// Kinematic robots and controllers without a brake point build half-planes at the robot. The brake point is
+/// x + v / k3, round what was tracked before.
+bool SequenceAudit::has_its_anchor(std::size_t row, std::size_t i) const {
+  const RobotStep& r = file_.recording.steps[row].robots[i];
+  const std::optional<formation::Remedies>& remedies = file_.recording.remedies;
+  const bool is_last = row + 1 == file_.recording.steps.size();
+  if (file_.scenario.formation && !remedies) return true;  // nothing is known of its controller
+  if (is_last || !remedies || !remedies->brake_point) return r.anchor == r.position && r.anchor_velocity == r.velocity;
+  if (r.anchor != r.position + r.velocity / file_.scenario.formation->gains.k3) return false;
+  if (row == 0) return r.anchor_velocity == r.velocity;
+  return !tracks_its_choice() || r.anchor_velocity == file_.recording.steps[row - 1].robots[i].chosen;
+}
+
+bool SequenceAudit::tracks_its_choice() const {
+  const std::optional<formation::Remedies>& remedies = file_.recording.remedies;
+  return remedies && remedies->filter_last && remedies->absolute_frame && !(remedies->acceleration_bound > 0.0);
+}
+
+void SequenceAudit::check_step(std::size_t row) {
+  for (std::size_t i = 0; i < file_.scenario.robots.size(); ++i) {
+    const bool holds = follows(file_.recording.steps[row].robots[i], file_.recording.steps[row + 1].robots[i]);
+    const std::string& robot = file_.scenario.robots[i].id;
+    if (holds && law_ && is_adaptive_)
+      tally_.open(AuditPoint::sequence, at_row(row, robot + " was integrated with a tolerance"));
+    else
+      ask(holds, row, robot + " does not get to the next row by its law of motion");
+  }
+}
+
+bool SequenceAudit::follows(const RobotStep& from, const RobotStep& to) const {
+  if (!file_.scenario.formation) {
+    const Vec2 next = from.position + file_.recording.time_step * from.chosen;
+    return to.velocity == from.chosen && to.position == next;
+  }
+  if (!law_) return false;  // a gain of 0 or less
+  return tracks_its_choice() ? follows_tracking(from, to) : follows_something(from, to);
+}
+
+/// m: what a step's position may be off, of terms of this size; speeds in m/s are worth a step and what z makes of it.
+Rational SequenceAudit::rounding(const Rational& position, const Rational& speeds) const {
+  const Rational z = law_->z, growth = is_adaptive_ ? Rational(1) : Rational(1 + z + z * z + z * z * z + z * z * z * z);
+  const Rational at_rest(is_adaptive_ ? kAdaptiveAtRest : 0.0);
+  return Rational(is_adaptive_ ? kAdaptive : kRoundings) * (position + duration_ * growth * speeds) +
+         duration_ * at_rest;
+}
+
+bool SequenceAudit::follows_tracking(const RobotStep& from, const RobotStep& to) const {
+  if (!geometry::is_finite(from.chosen)) return false;
+  const Point w = exactly(from.chosen), gap = exactly(from.velocity) - w, x0 = exactly(from.position);
+  const Rational speeds = length_at_most(w) + length_at_most(exactly(from.velocity)) + length_at_most(gap);
+  const Rational near = rounding(length_at_most(x0), speeds);
+  const Point x = x0 + duration_ * w + scaled(law_->reach, gap);
+  if (length_at_most(exactly(to.position) - x) > near + law_->reach.half_width() * length_at_most(gap)) return false;
+  const Point v = w + scaled(law_->remains, gap);
+  const Rational off = law_->remains.half_width() * length_at_most(gap);
+  return length_at_most(exactly(to.velocity) - v) <= rounding(Rational(0), speeds) / duration_ + off;
+}
+
+/// With w eliminated: x1 - x0 = T v0 - (T - Q) / (1 - P) (v0 - v1).
+bool SequenceAudit::follows_something(const RobotStep& from, const RobotStep& to) const {
+  const Interval settled = exactly_that(Rational(1)) - law_->remains;
+  if (sgn(settled.low) <= 0) return true;  // rk4 far beyond its limit: the rows do not say what was tracked
+  const Interval lag = (exactly_that(duration_) - law_->reach) / settled;
+  const Point v0 = exactly(from.velocity), change = v0 - exactly(to.velocity);
+  const Point x0 = exactly(from.position), x1 = exactly(to.position);
+  const Point left = x1 - x0 - duration_ * v0 + scaled(lag, change);
+  const Rational speeds = length_at_most(v0) + length_at_most(change) / settled.low;
+  return length_at_most(left) <=
+         rounding(length_at_most(x0) + length_at_most(x1), 2 * speeds) + lag.half_width() * speeds;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The seven points of an audit, each by the forgery that it is there for.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactvo/datasets/audit.h"
+#include "exactvo/formation/simulation.h"
+#include "recordings/exact_shapes.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+using exactvo::test::SeededRandom;
+using formation::ConstraintSource;
+using formation::RecordedConstraint;
+using formation::RobotStep;
+using formation::Scenario;
+using formation::Step;
+using geometry::Vec2;
+
+/// Two robots that pass each other along a wall, one behind a block.
+Scenario scene() {
+  Scenario s;
+  formation::Robot a, b;
+  a.id = "a";
+  a.position = {0.0, 0.1};
+  a.goals = {{8.0, 0.0}};
+  b.id = "b";
+  b.position = {8.0, -0.1};
+  b.goals = {{0.0, 0.0}};
+  s.robots = {a, b};
+  s.obstacles = {{"wall", geometry::Polyline{{{4.0, 0.9}, {4.0, 3.0}, {5.0, 4.0}}}},
+                 {"block", geometry::Polygon{{{2.0, -3.0}, {3.0, -3.0}, {3.0, -0.7}, {2.0, -0.7}}, {}}}};
+  s.time_limit = 20.0;
+  return s;
+}
+
+RecordingFile recorded(const Scenario& s, formation::SimulationOptions options = {}) {
+  RecordingFile file;
+  file.scenario = s;
+  file.info.method = name(options.method);
+  if (s.formation) {
+    file.info.controller = name(options.controller);
+    file.info.integrator = name(options.integrator);
+  }
+  file.recording = formation::simulate(s, options);
+  return file;
+}
+
+Scenario formation_scene() {
+  Scenario s;
+  s.time_step = 0.02;
+  s.time_limit = 1.0;
+  for (int k = 0; k < 2; ++k) {
+    formation::Robot r;
+    r.id = "R" + std::to_string(k + 1);
+    r.position = {0.0, 1.3 * k};
+    s.robots.push_back(r);
+  }
+  s.formation.emplace();
+  s.formation->topology = {{{0, 1}, {1, 0}}, {1, 1}};
+  s.formation->offsets = {{0, 0}, {0, 1.3}};
+  s.formation->leader = {{{0.5, 0.5}, {9, 3}}, 1.5};
+  s.obstacles = {{"post", geometry::Polygon{{{0.9, -0.2}, {1.2, -0.2}, {1.2, 0.3}, {0.9, 0.3}}, {}}}};
+  return s;
+}
+
+const RecordingFile& clean() {
+  static const RecordingFile file = recorded(scene());
+  return file;
+}
+
+/// The audit of `clean()` after a forgery of the first constraint that `which` picks.
+template <class Which, class How>
+AuditReport forged_constraint(const Which& which, const How& how) {
+  RecordingFile file = clean();
+  for (Step& row : file.recording.steps)
+    for (RobotStep& robot : row.robots)
+      for (RecordedConstraint& c : robot.constraints)
+        if (which(c)) {
+          how(robot, c);
+          return audit(file);
+        }
+  ADD_FAILURE() << "nothing to forge";
+  return {};
+}
+bool is_hard(const RecordedConstraint& c) {
+  return c.hard;
+}
+bool is_of_pair(const RecordedConstraint& c) {
+  return c.source == ConstraintSource::robot;
+}
+
+TEST(AuditPoints, AreAllAskedAndProvenOfARunAsItWasMade) {
+  const Scenario s = scene();
+  for (const formation::Method method :
+       {formation::Method::ivo, formation::Method::orca, formation::Method::ivo_edge}) {
+    formation::SimulationOptions options;
+    options.method = method;
+    const AuditReport report = audit(recorded(s, options), &s);
+    EXPECT_TRUE(report.clean()) << to_json(report);
+    for (const PointCount& point : report.points) {
+      EXPECT_GT(point.proven, 0u) << name(method);
+      EXPECT_EQ(point.asked(), point.proven) << name(method);
+    }
+    EXPECT_EQ(report.largest_violation, 0.0) << "choices are rounded inward";
+  }
+}
+
+TEST(AuditPoints, AnotherScenarioIsRefused) {
+  Scenario other = scene();
+  other.robots[0].radius = std::nextafter(0.5, 0.0);
+  EXPECT_EQ(audit(clean(), &other)[AuditPoint::scenario].refuted, 1u);
+  const Scenario same = scene();
+  EXPECT_TRUE(audit(clean(), &same).clean());
+  const std::vector<std::string> without = not_audited(audit(clean())), with = not_audited(audit(clean(), &same));
+  EXPECT_EQ(without.size(), with.size() + 1);
+}
+
+TEST(AuditPoints, ABodyThatIsSmallerThanItsObstacleIsRefused) {
+  formation::SimulationOptions options;
+  options.method = formation::Method::ivo_edge;
+  const RecordingFile good = recorded(scene(), options);
+  std::size_t forged = 0;
+  for (std::size_t k = 0; k < good.recording.bodies.size(); ++k) {
+    RecordingFile file = good;
+    auto* ellipse = std::get_if<geometry::Ellipse>(&file.recording.bodies[k].shape);
+    if (!ellipse) continue;
+    ellipse->l11 *= 0.5;
+    ellipse->l21 *= 0.5;
+    ellipse->l22 *= 0.5;
+    EXPECT_GT(audit(file)[AuditPoint::bodies].refuted, 0u);
+    file = good;
+    file.recording.bodies[k].owners = {file.recording.bodies[k].owners.front() == 0 ? std::size_t{1} : 0};
+    EXPECT_GT(audit(file)[AuditPoint::bodies].refuted, 0u) << "it stands for another obstacle";
+    ++forged;
+  }
+  EXPECT_GT(forged, 0u);
+}
+
+TEST(AuditPoints, AnOutlookThatLeavesABodyOutIsRefused) {
+  for (std::size_t k = 0; k < clean().recording.outlooks[0].bodies.size(); ++k) {
+    RecordingFile file = clean();
+    std::vector<std::size_t>& bodies = file.recording.outlooks[0].bodies;
+    bodies.erase(bodies.begin() + static_cast<std::ptrdiff_t>(k));
+    EXPECT_GT(audit(file)[AuditPoint::bodies].refuted, 0u);
+  }
+}
+
+TEST(AuditPoints, AHalfPlaneThatIsMissingIsNoticedThoughItDoesNotBind) {
+  // Rows hold what binds and what is within reach of a step; of these some do not bind.
+  std::size_t noticed = 0;
+  for (std::size_t k = 0; k < clean().recording.steps.size(); ++k)
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::vector<RecordedConstraint>& all = clean().recording.steps[k].robots[i].constraints;
+      for (std::size_t c = 0; c < all.size(); ++c) {
+        if (all[c].active) continue;
+        RecordingFile file = clean();
+        std::vector<RecordedConstraint>& left = file.recording.steps[k].robots[i].constraints;
+        left.erase(left.begin() + static_cast<std::ptrdiff_t>(c));
+        noticed += audit(file)[AuditPoint::completeness].refuted;
+      }
+    }
+  EXPECT_GT(noticed, 3u);
+}
+
+TEST(AuditPoints, AnObstacleThatNobodySawIsMissing) {
+  RecordingFile file = clean();
+  const Vec2 at = file.recording.steps[20].robots[0].position;
+  file.scenario.obstacles.push_back({"ghost", geometry::Polyline{{at + Vec2{-0.1, 0.55}, at + Vec2{0.1, 0.55}}}});
+  const AuditReport report = audit(file);
+  EXPECT_GT(report[AuditPoint::completeness].refuted, 0u);
+  EXPECT_GT(report[AuditPoint::bodies].refuted, 0u);
+}
+
+TEST(AuditPoints, AHorizonBelowTheTimeStepIsRefused) {
+  const AuditReport report = forged_constraint(is_hard, [](RobotStep&, RecordedConstraint& c) { c.tau = 0.049; });
+  EXPECT_EQ(report[AuditPoint::half_planes].refuted, 1u);
+}
+
+TEST(AuditPoints, AHalfPlaneThatIsSaidToBeSoftIsRefused) {
+  const AuditReport report = forged_constraint(is_hard, [](RobotStep&, RecordedConstraint& c) { c.hard = false; });
+  EXPECT_GT(report[AuditPoint::half_planes].refuted, 0u);
+}
+
+TEST(AuditPoints, AHalfPlaneOfAnotherBodyIsRefused) {
+  const AuditReport report = forged_constraint(is_hard, [](RobotStep&, RecordedConstraint& c) { c.body = 1000; });
+  EXPECT_GT(report[AuditPoint::half_planes].refuted, 0u);
+}
+
+TEST(AuditPoints, ARobotsHalfThatTakesLessThanItsShareIsRefused) {
+  const AuditReport report =
+      forged_constraint(is_of_pair, [](RobotStep&, RecordedConstraint& c) { c.half_plane.offset -= 0.1; });
+  EXPECT_GT(report[AuditPoint::half_planes].refuted, 0u);
+}
+
+TEST(AuditPoints, APairWhoseNormalsAreNotOppositeIsNotKeptApart) {
+  RecordingFile file = clean();
+  for (Step& row : file.recording.steps) {
+    RobotStep &a = row.robots[0], &b = row.robots[1];
+    const auto half = [](RobotStep& r) { return std::find_if(r.constraints.begin(), r.constraints.end(), is_of_pair); };
+    if (norm(a.position - b.position) > 1.2 || half(a) == a.constraints.end() || half(b) == b.constraints.end())
+      continue;
+    half(b)->half_plane.normal.x = std::nextafter(half(b)->half_plane.normal.x, 2.0);
+    EXPECT_GT(audit(file)[AuditPoint::completeness].refuted, 0u);
+    return;
+  }
+  FAIL() << "they never come near";
+}
+
+TEST(AuditPoints, AChoiceBeyondAHalfPlaneOrTheSpeedLimitIsRefused) {
+  const AuditReport beyond =
+      forged_constraint([](const RecordedConstraint& c) { return c.active; },
+                        [](RobotStep& robot, RecordedConstraint& c) { robot.chosen -= 1e-6 * c.half_plane.normal; });
+  EXPECT_GT(beyond[AuditPoint::choices].refuted, 0u);
+  EXPECT_NEAR(beyond.largest_violation, 1e-6, 1e-9);
+  RecordingFile file = clean();
+  RobotStep& robot = file.recording.steps[3].robots[0];
+  robot.chosen = robot.preferred = {std::nextafter(3.0, 4.0), 0.0};
+  EXPECT_GT(audit(file)[AuditPoint::choices].refuted, 0u);
+}
+
+TEST(AuditPoints, AChoiceThatIsSaidToHaveNoRoomIsHeldToItsRounding) {
+  const auto binds = [](const RecordedConstraint& c) { return c.active && c.hard; };
+  const AuditReport open =
+      forged_constraint(binds, [](RobotStep& robot, RecordedConstraint&) { robot.status = lp::Status::pinched; });
+  EXPECT_EQ(open[AuditPoint::choices].open, 1u);
+  const AuditReport report = forged_constraint(binds, [](RobotStep& robot, RecordedConstraint& c) {
+    robot.status = lp::Status::pinched;
+    robot.chosen -= 1e-9 * c.half_plane.normal;
+  });
+  EXPECT_EQ(report[AuditPoint::choices].refuted, 1u);
+}
+
+TEST(AuditPoints, AChoiceThatIsNotTheBestIsRefused) {
+  RecordingFile file = clean();
+  RobotStep& robot = file.recording.steps[3].robots[0];
+  robot.chosen = 0.999 * robot.chosen;
+  EXPECT_EQ(audit(file)[AuditPoint::choices].refuted, 1u);
+}
+
+TEST(AuditPoints, MultipliersThatDoNotProveTheChoiceAreRefused) {
+  const auto presses = [](const RecordedConstraint& c) { return c.multiplier > 1e-3; };
+  for (const double factor : {0.0, 0.9, 1.1, -1.0}) {
+    const AuditReport report =
+        forged_constraint(presses, [&](RobotStep&, RecordedConstraint& c) { c.multiplier *= factor; });
+    EXPECT_EQ(report[AuditPoint::choices].refuted, 1u) << factor;
+  }
+}
+
+TEST(AuditPoints, AnAnchorElsewhereIsRefused) {
+  RecordingFile file = clean();
+  file.recording.steps[5].robots[0].anchor.x += 0x1p-50;
+  EXPECT_GT(audit(file)[AuditPoint::sequence].refuted, 0u);
+}
+
+TEST(AuditPoints, ATimeThatIsNotItsRowsIsRefused) {
+  RecordingFile file = clean();
+  file.recording.steps[6].time = std::nextafter(file.recording.steps[6].time, 9.0);
+  EXPECT_EQ(audit(file)[AuditPoint::sequence].refuted, 1u);
+}
+
+TEST(AuditPoints, AreProvenOfFormationsWithEveryIntegrator) {
+  for (const formation::Integrator i :
+       {formation::Integrator::exact, formation::Integrator::euler, formation::Integrator::rk4,
+        formation::Integrator::dopri5, formation::Integrator::rosenbrock4}) {
+    formation::SimulationOptions options;
+    options.integrator = i;
+    const RecordingFile file = recorded(formation_scene(), options);
+    const AuditReport report = audit(file);
+    EXPECT_TRUE(report.clean()) << name(i) << to_json(report);
+    const bool adaptive = i == formation::Integrator::dopri5 || i == formation::Integrator::rosenbrock4;
+    EXPECT_EQ(report[AuditPoint::sequence].open > 0, adaptive) << name(i);
+    EXPECT_EQ(report.has_integrated, adaptive);
+    // Another velocity, by a millionth of a metre a second, does not come from the choice.
+    RecordingFile forged = file;
+    forged.recording.steps[7].robots[1].velocity.y += 1e-5;
+    EXPECT_GT(audit(forged)[AuditPoint::sequence].refuted, 0u) << name(i);
+  }
+}
+
+TEST(AuditPoints, WhatALeaderOrAMovingObstacleDidIsHeldToItsPath) {
+  Scenario s = formation_scene();
+  s.moving_obstacles = {
+      {"cart", geometry::Polyline{{{-3, -2}, {-2, -2}}}, {{{0, 0}, {1, 0}, {1, 1}}, 0.0, {{0, 0}, {2, 3}}}}};
+  const RecordingFile file = recorded(s);
+  EXPECT_TRUE(audit(file).clean()) << to_json(audit(file));
+  const auto refuted = [&](const auto& forge) {
+    RecordingFile forged = file;
+    forge(forged.recording.steps[9]);
+    return audit(forged)[AuditPoint::sequence].refuted;
+  };
+  EXPECT_EQ(refuted([](Step& row) { row.leader_position.x += 1e-8; }), 1u);
+  EXPECT_EQ(refuted([](Step& row) { row.leader_velocity.y += 1e-8; }), 1u);
+  EXPECT_EQ(refuted([](Step& row) { row.moving[0].displacement.x += 1e-8; }), 1u);
+  EXPECT_EQ(refuted([](Step& row) { row.moving[0].velocity.x += 1e-8; }), 1u);
+}
+
+TEST(AuditPoints, ChoicesThatWereRelaxedAreProvenToViolateLeast) {
+  Scenario s;
+  s.time_limit = 1.0;
+  for (int k = 0; k < 6; ++k) {
+    formation::Robot r;
+    r.id = "r" + std::to_string(k);
+    r.position = {1.02 * (k % 3), 1.02 * (k / 3)};
+    r.goals = {{2.0 - 5.0 * (k % 3), 5.0 - 9.0 * (k / 3)}};
+    s.robots.push_back(r);
+  }
+  RecordingFile file = recorded(s);
+  std::size_t relaxed = 0;
+  for (Step& row : file.recording.steps)
+    for (RobotStep& robot : row.robots) relaxed += robot.status == lp::Status::relaxed;
+  ASSERT_GT(relaxed, 0u);
+  EXPECT_EQ(audit(file)[AuditPoint::choices].refuted, 0u) << to_json(audit(file));
+  for (Step& row : file.recording.steps)
+    for (RobotStep& robot : row.robots)
+      if (robot.status == lp::Status::relaxed) {
+        robot.violation += 1e-6;
+        EXPECT_EQ(audit(file)[AuditPoint::choices].refuted, 1u);
+        return;
+      }
+}
+
+// --- Runs as they were made are not refuted ---
+
+geometry::Ring star(SeededRandom& random, Vec2 middle, double size) {
+  const int corners = random.integer(3, 9);
+  geometry::Ring ring;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = 6.283185307179586 * (k + random.uniform(0.0, 0.8)) / corners;
+    ring.push_back(middle + size * random.uniform(0.3, 1.0) * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return ring;
+}
+
+/// A clutter of walls, stars, a room with a hole, carts and robots that want across.
+Scenario clutter(SeededRandom& random) {
+  Scenario s;
+  s.time_step = random.integer(0, 1) ? 0.05 : 0.1;
+  s.time_limit = 40 * s.time_step;
+  s.speed_bound = random.integer(0, 1) ? formation::SpeedBoundKind::disc : formation::SpeedBoundKind::box;
+  for (int k = random.integer(1, 5); k > 0; --k) {
+    const Vec2 middle = random.in_box(3.0);
+    const std::string id = "o" + std::to_string(k);
+    if (random.integer(0, 2) == 0) {
+      geometry::Polyline wall{{middle}};
+      for (int n = random.integer(1, 4); n > 0; --n) wall.points.push_back(wall.points.back() + random.in_box(2.0));
+      s.obstacles.push_back({id, wall});
+    } else {
+      s.obstacles.push_back({id, geometry::Polygon{star(random, middle, random.uniform(0.3, 2.0)), {}}});
+    }
+  }
+  if (random.integer(0, 2) == 0)
+    s.obstacles.push_back(
+        {"room", geometry::Polygon{{{-8, -8}, {8, -8}, {8, 8}, {-8, 8}}, {{{-7, -7}, {-7, 7}, {7, 7}, {7, -7}}}}});
+  for (int k = random.integer(0, 2); k > 0; --k)
+    s.moving_obstacles.push_back({"cart" + std::to_string(k),
+                                  geometry::Polygon{star(random, random.in_box(5.0), 0.6), {}},
+                                  {{{0, 0}, random.in_box(4.0), random.in_box(4.0)}, random.uniform(0.1, 2.0)}});
+  for (int k = random.integer(1, 4); k > 0; --k) {
+    formation::Robot r;
+    r.id = "r" + std::to_string(k);
+    r.position = random.in_box(6.0);
+    r.velocity = random.in_box(1.0);
+    r.radius = random.uniform(0.1, 0.6);
+    r.goals = {random.in_box(6.0)};
+    r.cooperates = random.integer(0, 5) > 0;
+    s.robots.push_back(r);
+  }
+  return s;
+}
+
+void make_a_formation_of(Scenario& s, SeededRandom& random) {
+  const std::size_t n = s.robots.size();
+  s.time_step = 0.02;
+  s.time_limit = 1.0;
+  s.formation.emplace();
+  s.formation->topology = {std::vector<std::vector<double>>(n, std::vector<double>(n, 1.0)),
+                           std::vector<double>(n, 1.0)};
+  for (std::size_t i = 0; i < n; ++i) {
+    s.formation->topology.adjacency[i][i] = 0.0;
+    s.formation->offsets.push_back(random.in_box(2.0));
+    s.robots[i].goals.clear();
+  }
+  s.formation->leader = {{random.in_box(3.0), random.in_box(5.0), random.in_box(5.0)}, random.uniform(0.0, 3.0)};
+  if (random.integer(0, 1))
+    s.formation->leader.profile = {{0.1, 0.0}, {0.4, 2.0}, {0.4, random.uniform(0.0, 3.0)}, {0.7, 0.0}};
+}
+
+TEST(AuditPoints, RandomRunsAreRefutedByTheirMotionsAlone) {
+  using formation::Method;
+  SeededRandom random(exactvo::test::seed_of_run(98));
+  std::size_t runs = 0, asked = 0;
+  for (int round = 0; round < 90; ++round) {
+    Scenario s = clutter(random);
+    if (round % 3 == 0) make_a_formation_of(s, random);
+    if (!formation::validate(s).empty()) continue;
+    formation::SimulationOptions options;
+    constexpr Method kMethods[] = {Method::ivo, Method::orca, Method::ivo_edge, Method::ivo_cluster};
+    options.method = kMethods[round % 4];
+    options.record_all = round % 5 == 0;
+    options.integrator = static_cast<formation::Integrator>(random.integer(0, 4));
+    options.controller = static_cast<formation::Controller>(random.integer(0, 3));
+    const AuditReport report = audit(recorded(s, options), &s);
+    for (std::size_t p = 0; p + 1 < kAuditPoints; ++p)
+      EXPECT_EQ(report.points[p].refuted, 0u) << round << " " << to_json(report);
+    asked += report[AuditPoint::completeness].proven;
+    ++runs;
+  }
+  EXPECT_GT(runs, 60u);
+  EXPECT_GT(asked, 300u);
+}
+
+/// By sampling: points of the shape lie in it, points a little outward do not.
+TEST(ExactShapes, ContainTheirPointsAndNoOthers) {
+  SeededRandom random(exactvo::test::seed_of_run(97));
+  for (int round = 0; round < 500; ++round) {
+    const geometry::Ellipse e{random.in_box(3), random.uniform(0.1, 2), random.uniform(-1, 1), random.uniform(0.1, 2)};
+    const Vec2 w = random.direction();
+    const auto at = [&](double scale) {
+      return exact::exactly(e.center + scale * Vec2{e.l11 * w.x, e.l21 * w.x + e.l22 * w.y});
+    };
+    EXPECT_TRUE(exact::contains(e, at(1.0 - 1e-9)));
+    EXPECT_FALSE(exact::contains(e, at(1.0 + 1e-9)));
+  }
+  const geometry::ConvexPolygon square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  EXPECT_TRUE(exact::contains(square, exact::exactly({1.0, 0.5})));
+  EXPECT_FALSE(exact::contains(square, exact::exactly({std::nextafter(1.0, 2.0), 0.5})));
+  EXPECT_FALSE(exact::contains(geometry::ConvexPolygon{{{0, 0}, {2, 0}}}, exact::exactly({1.0, 0x1p-60})));
+  EXPECT_TRUE(exact::contains(geometry::Segment{{0, 0}, {2, 2}}, exact::exactly({1.0, 1.0})));
+  EXPECT_FALSE(exact::contains(geometry::Segment{{0, 0}, {2, 2}}, exact::exactly({3.0, 3.0})));
+  EXPECT_TRUE(exact::contains(geometry::Ellipse{{0, 0}, 0.0, 3.0, 4.0}, exact::exactly({0.0, 5.0})));
+  EXPECT_FALSE(exact::contains(geometry::Ellipse{{0, 0}, 0.0, 3.0, 4.0}, exact::exactly({0.0, 5.0000001})));
+  EXPECT_TRUE(exact::contains(geometry::Ellipse{{0, 0}, 2.0, 1.0, 0.0}, exact::exactly({-2.0, -1.0})));
+  EXPECT_TRUE(exact::contains(geometry::Disc{{0, 0}, 5.0}, exact::exactly({3.0, 4.0})));
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test
