@@ -41,6 +41,9 @@ void BodyAudit::check_body(std::size_t number) {
   const bool stands_still = body.kind == BodyKind::enclosure || body.kind == BodyKind::obstacle_edge;
   if (!stands_still || body.owners.empty()) return;  // what has no owner may not be named (audit_decisions.h)
   const std::string name = "body " + std::to_string(number);
+  const std::size_t most = *std::max_element(body.owners.begin(), body.owners.end());
+  if (most >= obstacles_.size())
+    return tally_.refuted(AuditPoint::bodies, name + " stands for an obstacle that the scenario does not have");
   if (!geometry::is_valid(body.shape)) return tally_.refuted(AuditPoint::bodies, name + " is no valid shape");
   if (body.kind == BodyKind::obstacle_edge) {
     const bool is_edge = body.owners.size() == 1 && is_edge_of(body.shape, obstacles_[body.owners.front()]);

@@ -229,6 +229,7 @@ std::string DecisionAudit::misnamed(const Seen& s, const RecordedConstraint& c) 
   const vo::Body& body = bodies[c.body];
   if (c.source == BodyKind::robot || c.source == BodyKind::moving_obstacle) {
     if (c.piece != 0 || c.index != body.owners.front()) return " has another index than its body";
+    if (c.source == BodyKind::robot && c.index >= file_.scenario.robots.size()) return " is against no robot";
     if (c.source == BodyKind::robot && (c.index == s.robot || !file_.scenario.robots[s.robot].cooperates))
       return " is against itself, or of a robot that ignores others";
     return c.source == BodyKind::moving_obstacle && c.index >= moved_.size() ? " is against what has no place" : "";
