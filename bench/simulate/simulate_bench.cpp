@@ -4,6 +4,7 @@
 // Before anything is timed each scene is run twice, and the digests compared.
 //
 //   bench_simulate --benchmark_filter=ivo/willow
+//   bench_simulate --table --against OTHER/bench_simulate       # two builds side by side, as ratios (table.h)
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -14,7 +15,9 @@
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "options/program_options.h"
 #include "scenes.h"
+#include "table.h"
 
 namespace exactvo::bench {
 namespace {
@@ -71,10 +74,31 @@ void add(const Scenario& scenario, Method method) {
 }  // namespace
 }  // namespace exactvo::bench
 
+namespace exactvo::bench {
+namespace {
+
+int print_table_as_asked(int argc, char** argv) {
+  TableOptions asked;
+  asked.self = argv[0];
+  bool table = false;
+  tools::ProgramOptions options("bench_simulate", "How many robot steps a second does simulate take?");
+  options.flag("--table", table, "Print a table of all scenes instead");
+  options.text("--against", asked.against, "Another build's bench_simulate, to be compared with");
+  options.text("--scenes", asked.scenes, "Regular expression of the scenes' names");
+  options.word("--method", asked.method, {"ivo", "orca"}, "Method");
+  if (options.parse(argc, argv)) print_table(asked);
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace exactvo::bench
+
 int main(int argc, char** argv) {
+  using namespace exactvo;
+  if (argc > 1 && std::string(argv[1]) == "--table")
+    return tools::run_program("bench_simulate", [&] { return bench::print_table_as_asked(argc, argv); });
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
-  using namespace exactvo;
   for (const auto& scenes : {bench::generated_scenes(), bench::public_scenes(), bench::project_scenes()})
     for (const formation::Scenario& scene : scenes)
       for (const auto method : {formation::Method::ivo, formation::Method::orca}) bench::add(scene, method);

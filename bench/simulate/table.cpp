@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "table.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <regex>
+#include <stdexcept>
+#include <vector>
+
+namespace exactvo::bench {
+namespace {
+
+struct Rate {
+  double steps = 0.0;  ///< a second of CPU time
+  std::string label;
+};
+
+std::string quoted(const std::string& word) {
+  return "'" + std::regex_replace(word, std::regex("'"), "'\\''") + "'";
+}
+
+std::string output_of(const std::string& command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  if (!pipe) throw std::runtime_error("cannot run " + command);
+  std::string text;
+  std::array<char, 4096> part{};
+  while (const std::size_t got = fread(part.data(), 1, part.size(), pipe.get())) text.append(part.data(), got);
+  return text;
+}
+
+/// The benchmarks that a program has, "ivo/A1" and so on, in its order.
+std::vector<std::string> names_in(const std::string& program, const TableOptions& options) {
+  const std::regex wanted(options.method + "/" + (options.scenes.empty() ? "[^/]*" : "(" + options.scenes + ")"));
+  std::vector<std::string> names;
+  std::string listed = output_of(quoted(program) + " --benchmark_list_tests=true 2>/dev/null");
+  for (std::size_t end = 0; (end = listed.find('\n')) != std::string::npos; listed.erase(0, end + 1))
+    if (const std::string name = listed.substr(0, end); std::regex_match(name, wanted)) names.push_back(name);
+  if (names.empty()) throw std::runtime_error(program + " has no such benchmark");
+  return names;
+}
+
+/// Of a run with its metrics: what the verb `simulate` takes before it writes. Nothing where the program lacks it.
+std::optional<Rate> rate_of(const std::string& program, const std::string& name) {
+  const std::string text = output_of(quoted(program) + " --benchmark_format=json --benchmark_min_time=0.2 " +
+                                     quoted("--benchmark_filter=^" + name + "/measured$") + " 2>/dev/null");
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || json.value("benchmarks", nlohmann::json::array()).empty()) return std::nullopt;
+  const nlohmann::json& row = json["benchmarks"][0];
+  return Rate{row.value("robot_steps", 0.0), row.value("label", "")};
+}
+
+std::string cpu() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+}  // namespace
+
+void print_table(const TableOptions& options) {
+  const bool both = !options.against.empty();
+  fmt::print("CPU: {}\n\n", cpu());
+  fmt::print("{}",
+             both ? "| scene | before [robot steps/s] | now [robot steps/s] | ratio | runs |\n|---|---|---|---|---|\n"
+                  : "| scene | [robot steps/s] |\n|---|---|\n");
+  for (const std::string& name : names_in(options.self, options)) {
+    const std::optional<Rate> now = rate_of(options.self, name);
+    const std::optional<Rate> before = both ? rate_of(options.against, name) : std::nullopt;
+    if (!now) throw std::runtime_error(options.self + " gave nothing for " + name);
+    const std::string scene = name.substr(name.find('/') + 1);
+    if (!both) {
+      fmt::print("| {} | {:.0f} |\n", scene, now->steps);
+    } else if (!before) {
+      fmt::print("| {} | - | {:.0f} | - | - |\n", scene, now->steps);
+    } else {
+      fmt::print("| {} | {:.0f} | {:.0f} | {:.3g} | {} |\n", scene, before->steps, now->steps,
+                 now->steps / before->steps, now->label == before->label ? "the same bits" : "differ");
+    }
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace exactvo::bench

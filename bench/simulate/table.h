@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Robot steps a second of `simulate` on every scene in one table, of two builds side by side: ratios say more than
+/// rates, which belong to a machine.
+
+#include <string>
+
+namespace exactvo::bench {
+
+struct TableOptions {
+  std::string self;     ///< this program's path
+  std::string against;  ///< another build's bench_simulate; empty: none
+  std::string scenes;   ///< a regular expression of scene names; empty: all
+  std::string method = "ivo";
+};
+
+/// Runs the programs scene by scene, one after the other, and prints the table as Markdown, the CPU above it. Where the
+/// labels (digests of the runs) differ, it says so: then the two do not drive the same runs. Throws std::runtime_error
+/// where a program cannot be run.
+void print_table(const TableOptions& options);
+
+}  // namespace exactvo::bench
