@@ -27,24 +27,28 @@ Vec2 middle(const vo::PointBracket& p) {
 
 constexpr double kTurn = 2.0 * 3.14159265358979324;
 
-/// From 0 to a whole turn. Where both ends look alike it is nothing, or all of the speed's circle: the only one of
-/// which more than half can be seen. A piece that has all of it is no sliver.
-double angle_along(const FreeArc& arc, const FreePiece& piece) {
+/// Below this ends look alike, in rad.
+constexpr double kAlike = 1e-7;
+
+/// In (-kAlike, 2 pi). Where both ends look alike it may be a whole turn less: their doubles do not tell.
+double angle_along(const FreeArc& arc) {
   const Vec2 a = middle(arc.from) - arc.center, b = middle(arc.to) - arc.center;
   const double turned = arc.turn * std::atan2(cross(a, b), dot(a, b));
-  constexpr double kAlike = 1e-7;
-  if (std::fabs(turned) > kAlike) return turned < 0.0 ? turned + kTurn : turned;
-  const bool is_all = arc.kind == vo::ArcKind::speed_circle && piece.area.low > arc.radius * arc.radius;
-  return is_all ? kTurn + std::min(turned, 0.0) : std::fabs(turned);
+  return turned < -kAlike ? turned + kTurn : turned;
 }
 
-double length_of(const FreeArc& arc, const FreePiece& piece) {
-  return arc.turn == 0 ? norm(middle(arc.to) - middle(arc.from)) : arc.radius * angle_along(arc, piece);
+/// All of the speed's circle, or nothing: of no other circle more than half is seen.
+bool may_be_whole(const FreeArc& arc) {
+  return arc.kind == vo::ArcKind::speed_circle && angle_along(arc) < kAlike;
 }
 
-Vec2 halfway(const FreeArc& arc, const FreePiece& piece) {
+double length_of(const FreeArc& arc) {
+  return arc.turn == 0 ? norm(middle(arc.to) - middle(arc.from)) : arc.radius * angle_along(arc);
+}
+
+Vec2 halfway(const FreeArc& arc) {
   if (arc.turn == 0) return 0.5 * (middle(arc.from) + middle(arc.to));
-  return arc.center + geometry::rotated(middle(arc.from) - arc.center, 0.5 * arc.turn * angle_along(arc, piece));
+  return arc.center + geometry::rotated(middle(arc.from) - arc.center, 0.5 * arc.turn * angle_along(arc));
 }
 
 std::string closure_of(const FreePiece& piece) {
@@ -57,7 +61,7 @@ std::string closure_of(const FreePiece& piece) {
 
 double perimeter_of(const FreePiece& piece) {
   double sum = 0.0;
-  for (const FreeArc& arc : piece.boundary) sum += length_of(arc, piece);
+  for (const FreeArc& arc : piece.boundary) sum += length_of(arc);
   return sum;
 }
 
@@ -68,9 +72,12 @@ std::string area_text(const geometry::Bracket& b) {
 /// The face that the piece is, taken out of the faces.
 std::string take_face_of(const FreePiece& piece, std::vector<OracleFace>& faces) {
   const double perimeter = perimeter_of(piece);
+  const auto open = std::find_if(piece.boundary.begin(), piece.boundary.end(), may_be_whole);
+  const double or_this = perimeter + (open == piece.boundary.end() ? 0.0 : kTurn * open->radius);
   const auto same = std::find_if(faces.begin(), faces.end(), [&](const OracleFace& face) {
     return piece.area.low <= face.area_high && face.area_low <= piece.area.high &&
-           std::fabs(face.perimeter - perimeter) <= kRounded * (1.0 + perimeter);
+           std::min(std::fabs(face.perimeter - perimeter), std::fabs(face.perimeter - or_this)) <=
+               kRounded * (1.0 + or_this);
   });
   if (same == faces.end())
     return "no component has the area " + area_text(piece.area) + " and the perimeter " + std::to_string(perimeter) +
@@ -85,7 +92,7 @@ std::string compare_membership(const FreeScene& scene, const FreeArrangement& fr
   for (const FreePiece& piece : free.pieces()) {
     for (const FreeArc& arc : piece.boundary) {
       samples.push_back(middle(arc.from));
-      samples.push_back(halfway(arc, piece));
+      samples.push_back(halfway(arc));
     }
   }
   for (const SceneCone& cone : scene.cones) samples.push_back(cone.apex);
