@@ -41,14 +41,14 @@ Region random_hull(SeededRandom& random) {
 TEST(Region, OperationsOfTwoSquares) {
   const Region a = square(), b = shifted({1.0, 1.0});
   expect_area(a, 4.0);
-  expect_area(a.united(b), 7.0);
-  expect_area(a.met(b), 1.0);
-  expect_area(a.minus(b), 3.0);
-  expect_area(b.minus(a), 3.0);
-  EXPECT_TRUE(a.minus(a).is_empty());
+  expect_area(a.union_with(b), 7.0);
+  expect_area(a.intersection(b), 1.0);
+  expect_area(a.difference(b), 3.0);
+  expect_area(b.difference(a), 3.0);
+  EXPECT_TRUE(a.difference(a).is_empty());
   EXPECT_TRUE(Region().is_empty());
-  expect_area(Region().united(a), 4.0);
-  EXPECT_TRUE(Region().met(a).is_empty());
+  expect_area(Region().union_with(a), 4.0);
+  EXPECT_TRUE(Region().intersection(a).is_empty());
 }
 
 TEST(Region, PlacesAreExactToAnUlp) {
@@ -68,7 +68,7 @@ TEST(Region, WhatHoldsOfPlacesHoldsOfOperations) {
   SeededRandom random(test::seed_of_run(811));
   for (int i = 0; i < 60; ++i) {
     const Region a = random_hull(random), b = random_hull(random);
-    const Region either = a.united(b), both = a.met(b), rest = a.minus(b);
+    const Region either = a.union_with(b), both = a.intersection(b), rest = a.difference(b);
     for (int k = 0; k < 40; ++k) {
       const Vec2 x{random.integer(-16, 16) * 0.125, random.integer(-16, 16) * 0.125};
       const Place in_a = a.locate(x), in_b = b.locate(x);
@@ -87,8 +87,8 @@ TEST(Region, AreasAddUp) {
   for (int i = 0; i < 60; ++i) {
     const Region a = random_hull(random), b = random_hull(random);
     const double sum = a.area().low + b.area().low;
-    EXPECT_NEAR(a.united(b).area().low + a.met(b).area().low, sum, kRounded);
-    EXPECT_NEAR(a.minus(b).area().low + a.met(b).area().low, a.area().low, kRounded);
+    EXPECT_NEAR(a.union_with(b).area().low + a.intersection(b).area().low, sum, kRounded);
+    EXPECT_NEAR(a.difference(b).area().low + a.intersection(b).area().low, a.area().low, kRounded);
     EXPECT_LE(a.area().low, a.area().high);
     EXPECT_LE(a.area().high - a.area().low, kRounded);
   }
@@ -102,8 +102,8 @@ TEST(Region, CutsOneByOneAndAllAtOnceAreTheSame) {
     Region one_by_one = square();
     for (const HalfPlane& h : keep) one_by_one = one_by_one.cut(h);
     const Region at_once = Region::cut(kSquare, keep);
-    EXPECT_TRUE(one_by_one.minus(at_once).is_empty());
-    EXPECT_TRUE(at_once.minus(one_by_one).is_empty());
+    EXPECT_TRUE(one_by_one.difference(at_once).is_empty());
+    EXPECT_TRUE(at_once.difference(one_by_one).is_empty());
   }
 }
 
@@ -120,7 +120,8 @@ TEST(Region, ACutKeepsTheSideOfTheNormal) {
 }
 
 TEST(Region, PiecesAreLargestFirst) {
-  const Region two = square().united(shifted({3.0, 2.0})).minus(Region::hull_of({{4.0, 2.0}, {5.0, 2.0}, {5.0, 3.0}}));
+  const Region two =
+      square().union_with(shifted({3.0, 2.0})).difference(Region::hull_of({{4.0, 2.0}, {5.0, 2.0}, {5.0, 3.0}}));
   const std::vector<Region::Piece> pieces = two.pieces();
   ASSERT_EQ(pieces.size(), 2U);
   EXPECT_EQ(pieces[0].area.low, 4.0);
@@ -130,11 +131,11 @@ TEST(Region, PiecesAreLargestFirst) {
   EXPECT_EQ(pieces[0].region.locate({1.0, 1.0}), Place::inside);
   EXPECT_EQ(pieces[1].region.locate({1.0, 1.0}), Place::outside);
   EXPECT_TRUE(Region().pieces().empty());
-  EXPECT_EQ(square().united(shifted({2.0, 2.0})).pieces().size(), 1U) << "they touch in a corner";
+  EXPECT_EQ(square().union_with(shifted({2.0, 2.0})).pieces().size(), 1U) << "they touch in a corner";
 }
 
 TEST(Region, APieceMayHaveAHole) {
-  const Region ring = square().minus(Region::hull_of({{0.5, 0.5}, {1.5, 0.5}, {1.5, 1.5}, {0.5, 1.5}}));
+  const Region ring = square().difference(Region::hull_of({{0.5, 0.5}, {1.5, 0.5}, {1.5, 1.5}, {0.5, 1.5}}));
   const std::vector<Region::Piece> pieces = ring.pieces();
   ASSERT_EQ(pieces.size(), 1U);
   EXPECT_EQ(pieces[0].polygon.holes.size(), 1U);
@@ -146,9 +147,9 @@ TEST(Region, WhatHasNoAreaIsNothing) {
   EXPECT_TRUE(Region::hull_of({}).is_empty());
   EXPECT_TRUE(Region::hull_of({{1.0, 1.0}}).is_empty());
   EXPECT_TRUE(Region::hull_of({{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}}).is_empty());
-  EXPECT_TRUE(square().met(shifted({2.0, 0.0})).is_empty()) << "a common edge";
-  expect_area(square().united(shifted({2.0, 0.0})), 8.0);
-  EXPECT_EQ(square().united(shifted({2.0, 0.0})).pieces().size(), 1U);
+  EXPECT_TRUE(square().intersection(shifted({2.0, 0.0})).is_empty()) << "a common edge";
+  expect_area(square().union_with(shifted({2.0, 0.0})), 8.0);
+  EXPECT_EQ(square().union_with(shifted({2.0, 0.0})).pieces().size(), 1U);
 }
 
 TEST(Region, NumbersBeyondTheRangeAreTheCallersMistake) {

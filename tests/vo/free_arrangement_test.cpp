@@ -80,13 +80,13 @@ TEST(FreeArrangement, AWedgeAndACutOffOfKnownArea) {
   const double r = 0.25, leg = std::sqrt(0.25 - r * r);
   const FreeArrangement truncated({cone_of(Disc{{2.0, 0.0}, 1.0}, 0.0, 4.0)}, 1.0);
   expect_area(truncated, kPi * 5.0 / 6.0 + leg * r - r * r * kPi / 3.0);
-  EXPECT_EQ(count(truncated, ArcKind::front_arc), 1);
+  EXPECT_EQ(count(truncated, ArcKind::cut_off_arc), 1);
 }
 
 TEST(FreeArrangement, AWallHasAnOffsetEdgeAndTwoArcs) {
   const FreeArrangement free({cone_of(Segment{{2.0, -1.0}, {2.0, 1.0}}, 0.5, 2.0)}, 2.0);
   EXPECT_EQ(count(free, ArcKind::offset_edge), 1);
-  EXPECT_EQ(count(free, ArcKind::front_arc), 2);
+  EXPECT_EQ(count(free, ArcKind::cut_off_arc), 2);
   EXPECT_EQ(count(free, ArcKind::leg), 2);
   EXPECT_EQ(count(free, ArcKind::speed_circle), 1);
   EXPECT_EQ(free.pieces().size(), 1u);

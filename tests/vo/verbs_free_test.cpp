@@ -77,13 +77,13 @@ TEST(VerbVo, TheArcsOfAnExactPieceSayWhoseTheyAreAndJoin) {
     for (std::size_t k = 0; k < arcs.size(); ++k) {
       EXPECT_EQ(arcs[k].at("to"), arcs[(k + 1) % arcs.size()].at("from"));
       const std::string kind = arcs[k].at("kind");
-      EXPECT_EQ(arcs[k].contains("radius"), kind == "front arc" || kind == "speed circle") << kind;
+      EXPECT_EQ(arcs[k].contains("radius"), kind == "cut-off arc" || kind == "speed circle") << kind;
       EXPECT_EQ(arcs[k].at("cone").is_null(), kind == "speed circle");
       kinds += kind + " of " + arcs[k].at("obstacle").dump() + ", ";
     }
   }
   EXPECT_NE(kinds.find("offset edge of 0, "), std::string::npos) << kinds;
-  EXPECT_NE(kinds.find("front arc of 1, "), std::string::npos) << kinds;
+  EXPECT_NE(kinds.find("cut-off arc of 1, "), std::string::npos) << kinds;
   EXPECT_NE(kinds.find("leg of 1, "), std::string::npos) << kinds;
 }
 

@@ -20,9 +20,9 @@ bool same_edge(const Run& s, const Run& t) {
   return s.edge.a == t.edge.a && s.edge.b == t.edge.b;
 }
 
-bool stands_before(const Run& s, const Run& t) {
-  if (s.edge.a != t.edge.a) return lexicographically_less(s.edge.a, t.edge.a);
-  return lexicographically_less(s.edge.b, t.edge.b);
+bool lexicographically_less(const Run& s, const Run& t) {
+  if (s.edge.a != t.edge.a) return detail::lexicographically_less(s.edge.a, t.edge.a);
+  return detail::lexicographically_less(s.edge.b, t.edge.b);
 }
 
 class Boundary {
@@ -33,7 +33,7 @@ class Boundary {
 
   /// Whether every edge is run along as often as against.
   bool is_empty() {
-    std::sort(runs_.begin(), runs_.end(), stands_before);
+    std::sort(runs_.begin(), runs_.end(), lexicographically_less);
     for (std::size_t i = 0; i < runs_.size();) {
       int sum = 0;
       const Run& first = runs_[i];
@@ -45,7 +45,7 @@ class Boundary {
 
  private:
   void add(Vec2 a, Vec2 b, int times) {
-    runs_.push_back(lexicographically_less(a, b) ? Run{{a, b}, times} : Run{{b, a}, -times});
+    runs_.push_back(detail::lexicographically_less(a, b) ? Run{{a, b}, times} : Run{{b, a}, -times});
   }
 
   std::vector<Run> runs_;
@@ -57,7 +57,7 @@ bool is_convex_partition(const std::vector<Ring>& rings, const std::vector<Conve
   Boundary boundary;
   for (const Ring& ring : rings) boundary.add(ring, -1);
   for (const ConvexPolygon& piece : pieces) {
-    if (!runs_once_round_to_the_left(piece.vertices)) return false;
+    if (!is_convex_ccw(piece.vertices)) return false;
     boundary.add(piece.vertices, 1);
   }
   return boundary.is_empty();

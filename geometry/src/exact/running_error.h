@@ -10,39 +10,39 @@
 
 namespace exactvo::geometry::detail {
 
-struct Tracked {
+struct RunningError {
   double value = 0.0;
   double error = 0.0;
 
-  Tracked() = default;
+  RunningError() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): a double is exact, and the formulas are shared with exact types.
-  Tracked(double v) : value(v) {}
-  Tracked(double v, double e) : value(v), error(e) {}
+  RunningError(double v) : value(v) {}
+  RunningError(double v, double e) : value(v), error(e) {}
 };
 
 inline constexpr double kHalfUlp = 0x1p-53;
 /// More than any rounding error of a product that underflows (2^-1075).
 inline constexpr double kUnderflow = 0x1p-1070;
 
-inline Tracked operator+(Tracked a, Tracked b) {
+inline RunningError operator+(RunningError a, RunningError b) {
   const double v = a.value + b.value;
   return {v, a.error + b.error + kHalfUlp * std::fabs(v)};
 }
-inline Tracked operator-(Tracked a, Tracked b) {
+inline RunningError operator-(RunningError a, RunningError b) {
   const double v = a.value - b.value;
   return {v, a.error + b.error + kHalfUlp * std::fabs(v)};
 }
-inline Tracked operator-(Tracked a) {
+inline RunningError operator-(RunningError a) {
   return {-a.value, a.error};
 }
-inline Tracked operator*(Tracked a, Tracked b) {
+inline RunningError operator*(RunningError a, RunningError b) {
   const double v = a.value * b.value;
   return {v, std::fabs(a.value) * b.error + std::fabs(b.value) * a.error + a.error * b.error + kHalfUlp * std::fabs(v) +
                  kUnderflow};
 }
 
 /// Whether the sign of the value is beyond doubt; overflow and NaN are doubt.
-inline bool decided(Tracked a) {
+inline bool decided(RunningError a) {
   constexpr double kSlack = 1.0 + 0x1p-40;
   return std::isfinite(a.value) && std::fabs(a.value) > a.error * kSlack;
 }

@@ -129,7 +129,7 @@ void enclose_free_of_traps(const ShapeOptions& options, ObstacleShapes& out) {
 
 bool trap_free_for_every_goal(const Ellipse& ellipse) {
   EXACTVO_REQUIRE(is_valid(ConvexShape{ellipse}), to_string(ConvexShape{ellipse}));
-  const detail::Tracked approx = detail::excess_of_slenderness<detail::Tracked>(ellipse);
+  const detail::RunningError approx = detail::excess_of_slenderness<detail::RunningError>(ellipse);
   if (detail::decided(approx)) {
     detail::count_filter();
     return approx.value < 0.0;

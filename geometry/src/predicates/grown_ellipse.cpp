@@ -190,12 +190,12 @@ constexpr double kErrorLine = 16.0 * kUnit;
 /// (p.v - t |v|^2)(b + sqrt f) errs by (4 + 13) u, (N.p)(v.Sigma N) by 12 u of their magnitudes; twice that and more.
 constexpr double kErrorTime = 48.0 * kUnit;
 
-Way way_of(bool decided, bool meets) {
-  return !decided ? Way::unknown : meets ? Way::meets : Way::misses;
+FilterAnswer answer_of(bool decided, bool meets) {
+  return !decided ? FilterAnswer::uncertain : meets ? FilterAnswer::intersects : FilterAnswer::disjoint;
 }
 
 /// By the line first, then by where on it.
-Way way_past_rounded(const Ellipse& e, const GrownShape& s, Vec2 p, Vec2 v, double t_max) {
+FilterAnswer segment_rounded_ellipse_filter(const Ellipse& e, const GrownShape& s, Vec2 p, Vec2 v, double t_max) {
   const double np = cross(v, p);
   const Vec2 ln{e.l21 * v.x - e.l11 * v.y, e.l22 * v.x};
   const double speed2 = squared_norm(v);
@@ -207,28 +207,29 @@ Way way_past_rounded(const Ellipse& e, const GrownShape& s, Vec2 p, Vec2 v, doub
   const double size_l = std::fabs(e.l11) + std::fabs(e.l21) + std::fabs(e.l22);
   const double error_line = kErrorLine * size_v * (size_p + size_l + s.radius) + kSupportUnderflow;
   const double gap = std::fabs(np) - root - reach;
-  if (gap > error_line) return Way::misses;
-  if (!(gap < -error_line)) return Way::unknown;
+  if (gap > error_line) return FilterAnswer::disjoint;
+  if (!(gap < -error_line)) return FilterAnswer::uncertain;
   // Where on the line: the sign of A (b + sqrt f) - tilt at t = 0 and t = t_max.
   const Vec2 ld{e.l11 * v.x + e.l21 * v.y, e.l22 * v.y};
   const double width = root * (root + reach);
   const double beyond = t_max * speed2;
   const double at_start = dot(p, v) * width - np * dot(ld, ln);
   const double at_end = at_start - beyond * width;
-  if (!(size_p + size_v + size_l + s.radius + beyond <= kLargest) || e.l11 == 0.0 || e.l22 == 0.0) return Way::unknown;
+  if (!(size_p + size_v + size_l + s.radius + beyond <= kLargest) || e.l11 == 0.0 || e.l22 == 0.0)
+    return FilterAnswer::uncertain;
   const double size_root = size_l * size_v;
   const double error =
       kErrorTime * size_root * ((size_p * size_v + beyond) * (size_root + reach) + size_p * size_v * size_root) +
       kUnderflowTime;
-  if (at_start > error && at_end < -error) return Way::meets;
+  if (at_start > error && at_end < -error) return FilterAnswer::intersects;
   // The chord lies behind or ahead: the nearer end decides.
   Place place{};
   const Vec2 q = t_max * v;
   const bool ahead = at_end > error;
-  if (!ahead && !(at_start < -error)) return Way::unknown;
+  if (!ahead && !(at_start < -error)) return FilterAnswer::uncertain;
   const Vec2 size{std::fabs(p.x) + (ahead ? std::fabs(q.x) : 0.0), std::fabs(p.y) + (ahead ? std::fabs(q.y) : 0.0)};
   const bool decided = locate_rounded(e, ahead ? p - q : p, size, s.radius, place);
-  return way_of(decided, place != Place::outside);
+  return answer_of(decided, place != Place::outside);
 }
 
 }  // namespace
@@ -236,14 +237,15 @@ Way way_past_rounded(const Ellipse& e, const GrownShape& s, Vec2 p, Vec2 v, doub
 /// With T = |L|^2 (Frobenius), D = det(L)^2 and R = r^2 the semi-axes are at most sqrt(T) and at least sqrt(D / T), so
 /// S lies between the discs of squared radius 2 (T + R) >= (sqrt(T) + r)^2 and D / T + R round its centre. Those,
 /// rounded, are off by 5 u and 8 u; 0 / 0 decides nothing.
-Way way_past_ellipse(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max) {
+FilterAnswer segment_ellipse_filter(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max) {
   const Vec2 p = e.center - s.origin;
   const double trace = e.l11 * e.l11 + e.l21 * e.l21 + e.l22 * e.l22;
   const double R = s.radius * s.radius;
-  if (way_past_disc(p, v, t_max, 2.0 * (trace + R)) == Way::misses) return Way::misses;
+  if (segment_disc_filter(p, v, t_max, 2.0 * (trace + R)) == FilterAnswer::disjoint) return FilterAnswer::disjoint;
   const double det = e.l11 * e.l22;
-  if (way_past_disc(p, v, t_max, det * det / trace + R) == Way::meets) return Way::meets;
-  return way_past_rounded(e, s, p, v, t_max);
+  if (segment_disc_filter(p, v, t_max, det * det / trace + R) == FilterAnswer::intersects)
+    return FilterAnswer::intersects;
+  return segment_rounded_ellipse_filter(e, s, p, v, t_max);
 }
 
 bool segment_meets_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& v, const Exact& t_max) {

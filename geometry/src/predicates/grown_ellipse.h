@@ -6,7 +6,7 @@
 
 #include "exact/exact_vector.h"
 #include "exactvo/geometry/predicates.h"
-#include "predicates/way_past_disc.h"
+#include "predicates/segment_disc_filter.h"
 
 namespace exactvo::geometry::detail {
 
@@ -17,7 +17,7 @@ bool locate_rounded(const Ellipse& e, Vec2 u, Vec2 size, double radius, Place& p
 Place locate_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& q);
 
 /// Whether [0, t_max v] meets S. REQUIRES: t_max >= 0; of the second, v is not zero.
-Way way_past_ellipse(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max);
+FilterAnswer segment_ellipse_filter(const Ellipse& e, const GrownShape& s, Vec2 v, double t_max);
 bool segment_meets_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& v, const Exact& t_max);
 
 }  // namespace exactvo::geometry::detail

@@ -13,7 +13,7 @@
 #include "predicates/exact_sweep.h"
 #include "predicates/grown_ellipse.h"
 #include "predicates/grown_polygon.h"
-#include "predicates/way_past_disc.h"
+#include "predicates/segment_disc_filter.h"
 
 namespace exactvo::geometry {
 namespace {
@@ -25,16 +25,16 @@ using detail::decided;
 using detail::difference;
 using detail::dot_of;
 using detail::Exact;
+using detail::FilterAnswer;
 using detail::GrownPolygon;
 using detail::make;
+using detail::RunningError;
+using detail::segment_disc_filter;
 using detail::sign_of;
 using detail::sign_of_double;
 using detail::sign_with_two_roots;
 using detail::squared;
-using detail::Tracked;
 using detail::Vector;
-using detail::Way;
-using detail::way_past_disc;
 
 std::string show(Vec2 v) {
   return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ")";
@@ -55,7 +55,7 @@ void require_valid(const Ellipse& e) {
 /// and uses + - * only.
 template <typename Formula>
 Sign filtered_sign(const Formula& formula) {
-  const Tracked approx = formula(Tracked{});
+  const RunningError approx = formula(RunningError{});
   if (decided(approx)) {
     count_filter();
     return sign_of_double(approx.value);
@@ -169,16 +169,16 @@ struct Locator {
 };
 
 // Kept out of the filters' way: its frame would cost as much as a filter. They decide nothing with a NaN.
-[[gnu::noinline, gnu::cold]] bool segment_meets_in_doubt(const GrownShape& s, Vec2 v, double t_max) {
+[[gnu::noinline, gnu::cold]] bool segment_meets_exact_stage(const GrownShape& s, Vec2 v, double t_max) {
   require_segment(s, v, t_max);
   require_valid(s);
   count_exact();
   return detail::segment_meets_exactly(s, make<Exact>(v), Exact(t_max));
 }
 
-inline bool met(Way way, const GrownShape& s, Vec2 v, double t_max) {
-  if (way == Way::unknown) return segment_meets_in_doubt(s, v, t_max);
-  return detail::count_filtered(way == Way::meets);
+inline bool decided_or_exact(FilterAnswer answer, const GrownShape& s, Vec2 v, double t_max) {
+  if (answer == FilterAnswer::uncertain) return segment_meets_exact_stage(s, v, t_max);
+  return detail::count_filtered(answer == FilterAnswer::intersects);
 }
 
 [[gnu::noinline]] bool segment_meets_polygon(const GrownShape& s, const Vec2* vertices, std::size_t count, Vec2 v,
@@ -253,13 +253,14 @@ Place locate(const GrownShape& s, Vec2 q) {
 
 /// A disc is a point grown by both radii; their sum is not a double, so the exact stage is its own.
 bool segment_meets(const GrownShape& s, Vec2 direction, double t_max) {
-  if (t_max < 0.0 || s.radius < 0.0) return segment_meets_in_doubt(s, direction, t_max);  // refused there
+  if (t_max < 0.0 || s.radius < 0.0) return segment_meets_exact_stage(s, direction, t_max);  // refused there
   if (const auto* d = std::get_if<Disc>(&s.shape)) {
     const double reach = d->radius + s.radius;
-    return met(way_past_disc(d->center - s.origin, direction, t_max, reach * reach), s, direction, t_max);
+    return decided_or_exact(segment_disc_filter(d->center - s.origin, direction, t_max, reach * reach), s, direction,
+                            t_max);
   }
   if (const auto* e = std::get_if<Ellipse>(&s.shape))
-    return met(detail::way_past_ellipse(*e, s, direction, t_max), s, direction, t_max);
+    return decided_or_exact(detail::segment_ellipse_filter(*e, s, direction, t_max), s, direction, t_max);
   if (const auto* g = std::get_if<Segment>(&s.shape)) return segment_meets_segment(s, *g, direction, t_max);
   const std::vector<Vec2>& v = std::get<ConvexPolygon>(s.shape).vertices;
   return segment_meets_polygon(s, v.data(), v.size(), direction, t_max);

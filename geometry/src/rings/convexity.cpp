@@ -34,7 +34,7 @@ std::size_t changes_of_half(const std::vector<Vec2>& ring) {
 
 }  // namespace
 
-bool runs_once_round_to_the_left(const std::vector<Vec2>& ring) {
+bool is_convex_ccw(const std::vector<Vec2>& ring) {
   const std::size_t n = ring.size();
   if (n < 3) return false;
   for (std::size_t i = 0; i < n; ++i) {

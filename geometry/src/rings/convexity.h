@@ -13,7 +13,7 @@ namespace exactvo::geometry::detail {
 /// Whether the closed ring turns nowhere to the right, somewhere to the left, never back, and only once round:
 /// then it bounds a convex polygon of positive area, counter-clockwise. Vertices on a straight run are tolerated, two
 /// equal ones running are not. Exact, O(n).
-bool runs_once_round_to_the_left(const std::vector<Vec2>& ring);
+bool is_convex_ccw(const std::vector<Vec2>& ring);
 
 /// Whether all points lie on one line. Exact, O(n).
 bool on_one_line(const std::vector<Vec2>& points);

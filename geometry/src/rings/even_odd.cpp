@@ -269,7 +269,7 @@ Loop walk_from(const HalfEdge& first) {
   return walk;
 }
 
-bool stands_before(const Ring& a, const Ring& b) {
+bool lexicographically_less(const Ring& a, const Ring& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), detail::lexicographically_less);
 }
 
@@ -289,9 +289,9 @@ std::vector<Polygon> polygons_of(Arrangement& arrangement, std::size_t component
       }
     }
   }
-  for (Polygon& polygon : polygons) std::sort(polygon.holes.begin(), polygon.holes.end(), stands_before);
+  for (Polygon& polygon : polygons) std::sort(polygon.holes.begin(), polygon.holes.end(), lexicographically_less);
   std::sort(polygons.begin(), polygons.end(),
-            [](const Polygon& a, const Polygon& b) { return stands_before(a.outer, b.outer); });
+            [](const Polygon& a, const Polygon& b) { return lexicographically_less(a.outer, b.outer); });
   return polygons;
 }
 

@@ -122,7 +122,7 @@ void check_placement(const std::vector<CleanRing>& rings, Problems& problems) {
   }
 }
 
-bool stands_before(const RingProblem& a, const RingProblem& b) {
+bool lexicographically_less(const RingProblem& a, const RingProblem& b) {
   return std::tie(a.ring, a.vertex, a.code) < std::tie(b.ring, b.vertex, b.code);
 }
 
@@ -175,7 +175,7 @@ NormalizedPolygon normalize(const std::vector<Ring>& rings) {
     every_ring_stands = check_ring(rings[i], i, clean[i], result.problems) && every_ring_stands;
   }
   if (every_ring_stands && rings.size() > 1) check_placement(clean, result.problems);
-  std::sort(result.problems.begin(), result.problems.end(), stands_before);
+  std::sort(result.problems.begin(), result.problems.end(), lexicographically_less);
   result.polygon.outer = std::move(clean.front().points);
   for (std::size_t i = 1; i < clean.size(); ++i) result.polygon.holes.push_back(std::move(clean[i].points));
   return result;
@@ -189,7 +189,7 @@ NormalizedPolyline normalize_polyline(const std::vector<Vec2>& points) {
     const Vec2 where = points.empty() ? Vec2{} : points.front();
     result.problems.push_back({RingProblemCode::too_few_points, 0, 0, where, false});
   }
-  std::sort(result.problems.begin(), result.problems.end(), stands_before);
+  std::sort(result.problems.begin(), result.problems.end(), lexicographically_less);
   return result;
 }
 

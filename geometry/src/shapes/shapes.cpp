@@ -25,11 +25,11 @@ bool valid(const Segment& s) {
 
 // One point, a segment, or once round; a vertex may be listed twice running, which only the slow path looks into.
 bool bounds_a_convex_set(const std::vector<Vec2>& vertices) {
-  if (detail::runs_once_round_to_the_left(vertices) || detail::on_one_line(vertices)) return true;
+  if (detail::is_convex_ccw(vertices) || detail::on_one_line(vertices)) return true;
   std::vector<Vec2> distinct = vertices;
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   if (distinct.front() == distinct.back()) distinct.pop_back();
-  return detail::runs_once_round_to_the_left(distinct);
+  return detail::is_convex_ccw(distinct);
 }
 
 bool valid(const ConvexPolygon& p) {

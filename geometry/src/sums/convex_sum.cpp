@@ -63,7 +63,7 @@ bool is_between_places(const Edge& e) {
   return is_place(e.from) && is_place(e.to);
 }
 
-[[gnu::noinline, gnu::cold]] Sign turn_in_doubt(const Edge& s, const Edge& t) {
+[[gnu::noinline, gnu::cold]] Sign turn_exact_stage(const Edge& s, const Edge& t) {
   // Summands are merged before they are checked: any answer will do for what will be refused.
   if (!is_between_places(s) || !is_between_places(t)) return Sign::zero;
   if (is_exact(s) && is_exact(t)) {
@@ -87,7 +87,7 @@ inline Sign turn(const Edge& s, const Edge& t) {
   const Cross c(s.along, t.along);
   if (c.value > c.error) return Sign::positive;
   if (c.value < -c.error) return Sign::negative;
-  return turn_in_doubt(s, t);
+  return turn_exact_stage(s, t);
 }
 
 inline bool is_lower(Vec2 a, Vec2 b) {
@@ -246,8 +246,8 @@ class Sums {
 
 // Positive if s comes first. Of the next edges of two fans the directions are at most pi apart; opposite ones (a
 // segment turning back beside a run of collinear edges) are told from parallel ones by the half they point to.
-[[gnu::noinline, gnu::cold]] Sign order_in_doubt(Edge s, Edge t) {
-  const Sign sign = turn_in_doubt(s, t);
+[[gnu::noinline, gnu::cold]] Sign order_exact_stage(Edge s, Edge t) {
+  const Sign sign = turn_exact_stage(s, t);
   if (sign != Sign::zero || points_up(s) == points_up(t)) return sign;
   return points_up(s) ? Sign::positive : Sign::negative;
 }
@@ -256,7 +256,7 @@ inline Sign order(const Edge& s, const Edge& t) {
   const Cross c(s.along, t.along);
   if (c.value > c.error) return Sign::positive;
   if (c.value < -c.error) return Sign::negative;
-  return order_in_doubt(s, t);
+  return order_exact_stage(s, t);
 }
 
 // Merges the edges of both by their directions. Whether it is proven that both were convex and the sum is.

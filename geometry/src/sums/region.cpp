@@ -194,11 +194,11 @@ Region Region::cut(const HalfPlane& keep) const {
       reach = std::max({reach, -box.xmin(), box.xmax(), -box.ymin(), box.ymax()});
     }
     const double r = std::min(2.0 * reach + 1.0, kLargestCoordinate);
-    return met(cut(ConvexPolygon{{{-r, -r}, {r, -r}, {r, r}, {-r, r}}}, {keep}));
+    return intersection(cut(ConvexPolygon{{{-r, -r}, {r, -r}, {r, r}, {-r, r}}}, {keep}));
   });
 }
 
-Region Region::united(const Region& other) const {
+Region Region::union_with(const Region& other) const {
   return guarded("Region::united", [&] {
     auto out = std::make_shared<Set>(*set_);
     out->set.join(other.set_->set);
@@ -206,7 +206,7 @@ Region Region::united(const Region& other) const {
   });
 }
 
-Region Region::minus(const Region& other) const {
+Region Region::difference(const Region& other) const {
   return guarded("Region::minus", [&] {
     auto out = std::make_shared<Set>(*set_);
     out->set.difference(other.set_->set);
@@ -214,7 +214,7 @@ Region Region::minus(const Region& other) const {
   });
 }
 
-Region Region::met(const Region& other) const {
+Region Region::intersection(const Region& other) const {
   return guarded("Region::met", [&] {
     auto out = std::make_shared<Set>(*set_);
     out->set.intersection(other.set_->set);

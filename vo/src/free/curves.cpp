@@ -159,7 +159,7 @@ class ConeCurves {
   void add_front(const std::vector<Point>& stops, std::vector<Curve>& out) const {
     for (std::size_t i = front_.size(); i-- > 0;) {
       const Circle circle{moved(apex_, scale_, front_[i]), scale_ * radius_};
-      if (sgn(radius_) != 0) out.push_back(arc(ArcKind::front_arc, circle, stops[2 * i + 1], stops[2 * i], false));
+      if (sgn(radius_) != 0) out.push_back(arc(ArcKind::cut_off_arc, circle, stops[2 * i + 1], stops[2 * i], false));
       if (i > 0)
         out.push_back(segment(ArcKind::offset_edge, stops[2 * i], stops[2 * i - 1], front_[i - 1] - front_[i]));
     }

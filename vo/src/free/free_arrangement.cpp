@@ -12,7 +12,7 @@
 #include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/require.h"
 #include "free/arc_measure.h"
-#include "free/moderate.h"
+#include "free/supported_range.h"
 
 namespace exactvo::vo {
 namespace {
@@ -150,8 +150,8 @@ const char* name(ArcKind kind) {
   switch (kind) {
     case ArcKind::speed_circle:
       return "speed circle";
-    case ArcKind::front_arc:
-      return "front arc";
+    case ArcKind::cut_off_arc:
+      return "cut-off arc";
     case ArcKind::offset_edge:
       return "offset edge";
     case ArcKind::leg:
@@ -170,9 +170,9 @@ std::size_t FreeArrangement::curves_of(const ShiftedCone& cone) {
 }
 
 Refusal FreeArrangement::refusal_of(const std::vector<ShiftedCone>& cones, double max_speed) {
-  const auto moderate = [](const ShiftedCone& c) { return detail::is_moderate(c); };
+  const auto in_supported_range = [](const ShiftedCone& c) { return detail::is_in_supported_range(c); };
   const bool in_range = max_speed >= kLeastArrangedNumber && max_speed <= kMostArrangedNumber;
-  if (!in_range || !std::all_of(cones.begin(), cones.end(), moderate)) return Refusal::range;
+  if (!in_range || !std::all_of(cones.begin(), cones.end(), in_supported_range)) return Refusal::range;
   if (!std::all_of(cones.begin(), cones.end(), can_hold)) return Refusal::ellipse;
   if (cones.size() > kMostCones) return Refusal::cones;
   return has_too_many_curves(cones) ? Refusal::curves : Refusal::none;

@@ -40,7 +40,7 @@ std::vector<HalfPlane> within_reach(const std::vector<HalfPlane>& half_planes, c
 
 /// Half-planes over a region that holds the disc, in one cut.
 Region kept(const Region& disc, const std::vector<HalfPlane>& half_planes, const detail::Window& window) {
-  return disc.met(Region::cut(detail::square_of(window), half_planes));
+  return disc.intersection(Region::cut(detail::square_of(window), half_planes));
 }
 
 /// Whether the apex is a double: apex and minus_apex add up to nothing.
@@ -93,8 +93,8 @@ FreeVelocities::FreeVelocities(std::vector<ShiftedCone> cones, const FreeVelocit
     const Region whole = Region::cut(detail::square_of(window), {});
     from_inside_.push_back(overlaps ? whole : detail::cone_from_inside(cone, window));
     from_outside_.push_back(overlaps ? whole : detail::cone_from_outside(cone, window));
-    inner_ = inner_.minus(from_outside_.back());
-    outer_ = outer_.minus(from_inside_.back());
+    inner_ = inner_.difference(from_outside_.back());
+    outer_ = outer_.difference(from_inside_.back());
   }
 }
 
@@ -111,8 +111,9 @@ Bracket FreeVelocities::area() const {
 
 std::size_t FreeVelocities::least_components() const {
   const std::vector<Region::Piece> outer = outer_.pieces();
-  return static_cast<std::size_t>(std::count_if(
-      outer.begin(), outer.end(), [&](const Region::Piece& piece) { return !piece.region.met(inner_).is_empty(); }));
+  return static_cast<std::size_t>(std::count_if(outer.begin(), outer.end(), [&](const Region::Piece& piece) {
+    return !piece.region.intersection(inner_).is_empty();
+  }));
 }
 
 bool FreeVelocities::proven_by_certificates(const std::vector<HalfPlane>& half_planes) const {
@@ -122,26 +123,26 @@ bool FreeVelocities::proven_by_certificates(const std::vector<HalfPlane>& half_p
   });
 }
 
-RegionReport FreeVelocities::compare(const std::vector<HalfPlane>& as_given) const {
+RegionReport FreeVelocities::compare(const std::vector<HalfPlane>& unclipped) const {
   const detail::Window window = window_of(options_);
-  const std::vector<HalfPlane> half_planes = within_reach(as_given, window);
+  const std::vector<HalfPlane> half_planes = within_reach(unclipped, window);
   RegionReport report;
   const Region from_inside = kept(disc_inside_, half_planes, window);
   report.region = kept(disc_outside_, half_planes, window);
   report.area = {from_inside.area().low, report.region.area().high};
-  const auto cut_into = [&](const Region& cone) { return !from_inside.met(cone).is_empty(); };
+  const auto cut_into = [&](const Region& cone) { return !from_inside.intersection(cone).is_empty(); };
   if (std::any_of(from_inside_.begin(), from_inside_.end(), cut_into)) report.inside = Inside::no;
-  const auto misses = [&](const Region& cone) { return report.region.met(cone).is_empty(); };
-  if (proven_by_certificates(as_given) || std::all_of(from_outside_.begin(), from_outside_.end(), misses))
+  const auto misses = [&](const Region& cone) { return report.region.intersection(cone).is_empty(); };
+  if (proven_by_certificates(unclipped) || std::all_of(from_outside_.begin(), from_outside_.end(), misses))
     report.inside = Inside::yes;
-  const Region lost = inner_.minus(report.region);
-  report.given_away = {lost.area().low, outer_.minus(from_inside).area().high};
+  const Region lost = inner_.difference(report.region);
+  report.given_away = {lost.area().low, outer_.difference(from_inside).area().high};
   for (Region::Piece& piece : lost.pieces()) {
     if (piece.area.high < window.tolerance * window.speed) break;
     LostPiece out{std::move(piece.polygon), piece.area, {}, 0};
     if (!half_planes.empty()) {
       out.half_plane = blamed(piece.region, piece.area.high, half_planes);
-      out.farthest = farthest_out(out.polygon, as_given[out.half_plane]);
+      out.farthest = farthest_out(out.polygon, unclipped[out.half_plane]);
     }
     report.lost.push_back(std::move(out));
   }

@@ -45,9 +45,9 @@ class Region {
   /// same.
   static Region cut(const ConvexPolygon& polygon, const std::vector<HalfPlane>& keep);
 
-  Region united(const Region& other) const;
-  Region minus(const Region& other) const;
-  Region met(const Region& other) const;
+  Region union_with(const Region& other) const;
+  Region difference(const Region& other) const;
+  Region intersection(const Region& other) const;
 
   bool is_empty() const;
   Bracket area() const;  ///< m^2 or whatever the square of the unit is

@@ -62,8 +62,8 @@ enum class Refusal {
 /// "none", "ellipse" and so on.
 const char* name(Refusal refusal);
 
-enum class ArcKind { speed_circle, front_arc, offset_edge, leg };
-/// "speed circle", "front arc", "offset edge", "leg".
+enum class ArcKind { speed_circle, cut_off_arc, offset_edge, leg };
+/// "speed circle", "cut-off arc", "offset edge", "leg".
 const char* name(ArcKind kind);
 
 /// Certified: the point lies in the box. Each side is at most 2^-48 max_speed wide, or as narrow as doubles are there.
@@ -123,7 +123,6 @@ class FreeArrangement {
   std::optional<bool> attempt_holds(const std::vector<HalfPlane>& half_planes) const;
 
   const std::vector<ShiftedCone>& cones() const { return cones_; }
-  double max_speed() const { return max_speed_; }
 
  private:
   std::vector<ShiftedCone> cones_;

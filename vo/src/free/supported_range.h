@@ -9,9 +9,9 @@
 
 namespace exactvo::vo::detail {
 
-bool is_moderate(double x);
-bool is_moderate(Vec2 v);
+bool is_in_supported_range(double x);
+bool is_in_supported_range(Vec2 v);
 /// All numbers of the cone: obstacle, robot, horizon (which may be infinite) and apex.
-bool is_moderate(const ShiftedCone& cone);
+bool is_in_supported_range(const ShiftedCone& cone);
 
 }  // namespace exactvo::vo::detail

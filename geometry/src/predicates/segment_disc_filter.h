@@ -10,7 +10,7 @@
 
 namespace exactvo::geometry::detail {
 
-enum class Way { misses, meets, unknown };
+enum class FilterAnswer { disjoint, intersects, uncertain };
 
 /// Whether [0, t v] meets the disc of squared radius r2 round p. With P = |p.x| + |p.y|, V = |v.x| + |v.y|:
 ///
@@ -22,23 +22,23 @@ enum class Way { misses, meets, unknown };
 /// to the end by e^2 / |v|^2 <= 32 u^2 (P + t V)^2 at most, squared: no more than the second order. Beside it
 /// what underflow adds to p.v (2^-1073) can move the squared distance by 2 t times as much.
 /// REQUIRES: p and r2 in error by at most u and 12 u of themselves, t >= 0. NaN and overflow are unknown.
-inline Way way_past_disc(Vec2 p, Vec2 v, double t, double r2) {
+inline FilterAnswer segment_disc_filter(Vec2 p, Vec2 v, double t, double r2) {
   constexpr double kError = 32.0 * kUnitRoundoff;
   constexpr double kMost = 0x1p100;              // of a number; no product of them overflows
   constexpr double kLostToUnderflow = 0x1p-600;  // more than an underflow times the largest of them
   const auto side = [](double gap, double error) {
-    return gap > error ? Way::misses : gap < -error ? Way::meets : Way::unknown;
+    return gap > error ? FilterAnswer::disjoint : gap < -error ? FilterAnswer::intersects : FilterAnswer::uncertain;
   };
   const double size_p = std::fabs(p.x) + std::fabs(p.y);
   const double size_v = std::fabs(v.x) + std::fabs(v.y);
-  if (!(size_p + size_v + t <= kMost && r2 <= kMost * kMost)) return Way::unknown;
+  if (!(size_p + size_v + t <= kMost && r2 <= kMost * kMost)) return FilterAnswer::uncertain;
   const double pv = dot(p, v);
   const double size2 = size_p * size_p + r2;
   if (pv <= 0.0) return side(squared_norm(p) - r2, kError * size2 + kLostToUnderflow);
   const double speed2 = squared_norm(v);
   const double c = cross(v, p);
-  const Way line = side(c * c - r2 * speed2, kError * size2 * (size_v * size_v) + kLostToUnderflow);
-  if (line == Way::misses || pv < t * speed2) return line;
+  const FilterAnswer line = side(c * c - r2 * speed2, kError * size2 * (size_v * size_v) + kLostToUnderflow);
+  if (line == FilterAnswer::disjoint || pv < t * speed2) return line;
   const double size_end = size_p + t * size_v;
   return side(squared_norm(p - t * v) - r2, kError * (size_end * size_end + r2) + kLostToUnderflow);
 }
