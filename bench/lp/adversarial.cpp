@@ -44,7 +44,7 @@ std::vector<char> exact_verdicts(const std::vector<lp::Problem>& problems) {
     const lp::Proven proven = lp::solve_exact(p);
     const bool contradiction = proven.certificate && !proven.certificate->contradiction.empty();
     feasible.push_back(proven.solution.status == lp::Status::optimal ||
-                       (proven.solution.status == lp::Status::pinched && !contradiction));
+                       (proven.solution.status == lp::Status::no_interior && !contradiction));
   }
   return feasible;
 }

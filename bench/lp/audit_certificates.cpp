@@ -18,7 +18,7 @@ namespace exactvo::bench {
 namespace {
 
 using lp::Certificate;
-using lp::Flaw;
+using lp::CertificateError;
 using lp::Problem;
 using lp::Proven;
 using lp::Solver;
@@ -33,9 +33,9 @@ struct Counts {
 /// Each voids any certificate it applies to; false where it does not apply.
 using Tampering = bool (*)(const Problem&, Certificate&);
 
-/// What is pinched claims nothing of its velocity.
+/// What is no_interior claims nothing of its velocity.
 bool beyond_the_bound(const Problem& problem, Certificate& c) {
-  if (c.status == lp::Status::pinched) return false;
+  if (c.status == lp::Status::no_interior) return false;
   c.velocity.x += 3.0 * problem.bound.disc;
   return true;
 }
@@ -53,7 +53,7 @@ bool bound_by_another(const Problem& problem, Certificate& c) {
 }
 
 bool another_vertex(const Problem& problem, Certificate& c) {
-  if (c.status != lp::Status::pinched) return false;
+  if (c.status != lp::Status::no_interior) return false;
   c.vertex.assign(1, lp::constraint_at(problem.constraints.size()));
   return true;
 }
@@ -70,14 +70,14 @@ void tamper(const Problem& problem, const Certificate& sound, Counts& counts) {
     Certificate changed = sound;
     if (!change(problem, changed)) continue;
     ++counts.tampered;
-    if (check(problem, changed) == Flaw::none) ++counts.overlooked;
+    if (check(problem, changed) == CertificateError::none) ++counts.overlooked;
   }
 }
 
 void audit(const Problem& problem, const Proven& answer, Counts& counts) {
   if (!answer.certificate) {
     ++counts.unproven;
-  } else if (check(problem, *answer.certificate) != Flaw::none) {
+  } else if (check(problem, *answer.certificate) != CertificateError::none) {
     ++counts.refused;
   } else {
     ++counts.accepted;
@@ -85,7 +85,7 @@ void audit(const Problem& problem, const Proven& answer, Counts& counts) {
   }
 }
 
-/// Whether all soft and hard lines can be kept. `pinched` says that no double was found that does, not which it is.
+/// Whether all soft and hard lines can be kept. `no_interior` says that no double was found that does, not which it is.
 bool is_feasible(const Proven& answer) {
   return answer.certificate && answer.certificate->contradiction.empty();
 }

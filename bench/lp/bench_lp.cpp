@@ -66,7 +66,7 @@ Truth certified(const std::vector<lp::Problem>& problems) {
 }
 
 bool is_feasible(const lp::Solution& s) {
-  return s.status == lp::Status::optimal || s.status == lp::Status::pinched;
+  return s.status == lp::Status::optimal || s.status == lp::Status::no_interior;
 }
 
 /// The problems of --instances, as a set.

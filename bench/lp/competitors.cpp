@@ -38,7 +38,7 @@ class Batch : public Competitor {
   Answer answer(std::size_t i) const override {
     return {{static_cast<double>(arrays_.velocity_x[i]), static_cast<double>(arrays_.velocity_y[i])},
             arrays_.status[i] == static_cast<std::uint8_t>(lp::Status::optimal) ||
-                arrays_.status[i] == static_cast<std::uint8_t>(lp::Status::pinched)};
+                arrays_.status[i] == static_cast<std::uint8_t>(lp::Status::no_interior)};
   }
   void run() override { lp::solve_batch(arrays_.problems(), arrays_.answers(prove_), 0, arrays_.count); }
 
@@ -48,7 +48,7 @@ class Batch : public Competitor {
 };
 
 bool feasible(const lp::Solution& s) {
-  return s.status == lp::Status::optimal || s.status == lp::Status::pinched;
+  return s.status == lp::Status::optimal || s.status == lp::Status::no_interior;
 }
 
 /// One problem after the other, each as arrays.

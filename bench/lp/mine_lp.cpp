@@ -29,7 +29,7 @@ struct Flags {
 bool feasible_when_shifted(lp::Problem problem, double by) {
   for (lp::Constraint& c : problem.constraints) c.half_plane.offset += by;
   const lp::Status status = lp::solve_certified(problem).solution.status;
-  return status == lp::Status::optimal || status == lp::Status::pinched;
+  return status == lp::Status::optimal || status == lp::Status::no_interior;
 }
 
 double worst_violation(const lp::Problem& problem, const TextbookVelocity& answer) {

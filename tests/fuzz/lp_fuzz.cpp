@@ -87,9 +87,9 @@ Problem plain_problem_from(Bytes bytes) {
   std::abort();
 }
 
-/// pinched with a contradiction: the hard ones can be held; without: all can.
+/// no_interior with a contradiction: the hard ones can be held; without: all can.
 Status verdict(const Proven& p) {
-  if (p.solution.status != Status::pinched) return p.solution.status;
+  if (p.solution.status != Status::no_interior) return p.solution.status;
   return p.certificate && !p.certificate->contradiction.empty() ? Status::relaxed : Status::optimal;
 }
 
@@ -99,7 +99,8 @@ void examine(const Problem& problem) {
     Proven answer = solve_all(solver, {problem}).front();
     prove(problem, answer);
     if (!answer.certificate) fail("no certificate", problem);
-    if (check(problem, *answer.certificate) != Flaw::none) fail("a certificate that does not hold", problem);
+    if (check(problem, *answer.certificate) != CertificateError::none)
+      fail("a certificate that does not hold", problem);
     if (verdict(answer) != verdict(exact)) fail("a wrong verdict", problem);
   }
 }

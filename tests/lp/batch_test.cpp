@@ -119,7 +119,7 @@ TEST_P(Kinds, VerdictsAndCertificatesAreThoseOfTheCertifiedSolver) {
     ASSERT_TRUE(certificate.has_value()) << i << ' ' << name(s.status) << " active " << s.active[0].binding.index << ' '
                                          << s.active[1].binding.index << ' ' << s.active[2].binding.index << '\n'
                                          << text_of(problem);
-    ASSERT_EQ(check(problem, *certificate), Flaw::none);
+    ASSERT_EQ(check(problem, *certificate), CertificateError::none);
   }
 }
 
@@ -250,7 +250,7 @@ TEST(Batch, AdversarialVerdictsAreRightWhereProofIsAskedFor) {
       for (std::size_t i = 0; i < batch.problems().size(); ++i)
         EXPECT_EQ(batch.solution(i).status == Status::relaxed,
                   solve_exact(batch.problems()[i]).solution.status == Status::relaxed)
-            << text_of(batch.problems()[i]);  // all soft: optimal and pinched both say feasible
+            << text_of(batch.problems()[i]);  // all soft: optimal and no_interior both say feasible
     }
   }
 }
@@ -318,7 +318,7 @@ bool keeps_hard_lines(const Problem& problem, Vec2 velocity) {
                          hard.constraints.end());
   Certificate claim;
   claim.velocity = velocity;
-  return check(hard, claim) != Flaw::velocity;
+  return check(hard, claim) != CertificateError::velocity;
 }
 
 template <class T>

@@ -120,7 +120,7 @@ TEST(Certificate, EveryAnswerOfEverySolverIsAccepted) {
   for (const Problem& problem : problems()) {
     for (const Proven& proven : {solve_certified(problem), solve_exact(problem)}) {
       ASSERT_TRUE(proven.certificate.has_value()) << text_of(problem);
-      EXPECT_EQ(check(problem, *proven.certificate), Flaw::none) << text_of(problem);
+      EXPECT_EQ(check(problem, *proven.certificate), CertificateError::none) << text_of(problem);
       EXPECT_EQ(proven.certificate->status, proven.solution.status);
     }
   }
@@ -134,7 +134,7 @@ TEST(Certificate, EveryCorruptedOneIsRejected) {
       Certificate c = sound;
       if (!kCorruptions[k](problem, c)) continue;
       ++corrupted;
-      EXPECT_NE(check(problem, c), Flaw::none) << "corruption " << k << '\n' << text_of(problem);
+      EXPECT_NE(check(problem, c), CertificateError::none) << "corruption " << k << '\n' << text_of(problem);
     }
   }
   EXPECT_GE(corrupted, 10000);
@@ -150,21 +150,21 @@ TEST(Certificate, AWrongVerdictCannotBeCertified) {
   }
 }
 
-TEST(Certificate, APinchedRegionIsProvenByItsVertex) {
+TEST(Certificate, ARegionWithoutInteriorIsProvenByItsVertex) {
   // x >= 1/3 and x <= 1/3 as 3x >= 1 and -3x >= -1: no double lies between, yet (1/3, 0) does.
   Problem problem;
   problem.bound.disc = 2.0;
   problem.preferred = {1.0, 0.0};
   problem.constraints = {{{{3.0, 0.0}, 1.0}, Priority::hard, 0}, {{{-3.0, 0.0}, -1.0}, Priority::hard, 1}};
   const Proven proven = solve_certified(problem);
-  EXPECT_STREQ(name(proven.solution.status), "pinched");
+  EXPECT_STREQ(name(proven.solution.status), "no-interior");
   EXPECT_TRUE(proven.exact_stage);
   EXPECT_NEAR(proven.solution.velocity.x, 1.0 / 3.0, 1e-15);
   ASSERT_TRUE(proven.certificate.has_value());
-  EXPECT_EQ(check(problem, *proven.certificate), Flaw::none);
+  EXPECT_EQ(check(problem, *proven.certificate), CertificateError::none);
   Certificate moved = *proven.certificate;
   moved.vertex = {};
-  EXPECT_EQ(check(problem, moved), Flaw::vertex);
+  EXPECT_EQ(check(problem, moved), CertificateError::vertex);
 }
 
 Constraint constraint(Priority priority, Vec2 normal, double offset) {
@@ -173,7 +173,7 @@ Constraint constraint(Priority priority, Vec2 normal, double offset) {
 
 bool is_proven_or_silent(const Problem& problem, const Proven& answer) {
   return is_finite(answer.solution.velocity) &&
-         (!answer.certificate || check(problem, *answer.certificate) == Flaw::none);
+         (!answer.certificate || check(problem, *answer.certificate) == CertificateError::none);
 }
 
 TEST(Certificate, NumbersFarApartGiveAProofOrNone) {
@@ -211,7 +211,7 @@ TEST(Certificate, AnInfiniteViolationIsNotProven) {
 }
 
 TEST(Certificate, FlawsHaveNames) {
-  EXPECT_STREQ(name(Flaw::contradiction), "contradiction");
+  EXPECT_STREQ(name(CertificateError::contradiction), "contradiction");
 }
 
 TEST(Certificate, APreferenceWhoseSquareOverflowsIsAimedAt) {
@@ -223,7 +223,7 @@ TEST(Certificate, APreferenceWhoseSquareOverflowsIsAimedAt) {
     EXPECT_STREQ(name(answer.solution.status), "optimal");
     EXPECT_NEAR(answer.solution.velocity.x, std::sqrt(0.5), 1e-14);
     EXPECT_NEAR(answer.solution.velocity.y, std::sqrt(0.5), 1e-14);
-    EXPECT_TRUE(!answer.certificate || check(p, *answer.certificate) == Flaw::none);
+    EXPECT_TRUE(!answer.certificate || check(p, *answer.certificate) == CertificateError::none);
   }
 }
 

@@ -129,9 +129,9 @@ TEST(EveryKind, IsRightByBruteForce) {
       const Problem problem = k % 2 == 0 ? random_problem(kind, random) : grid_problem(kind, random);
       const Proven exact = solve_exact(problem);
       ASSERT_TRUE(exact.certificate.has_value()) << text_of(problem);
-      EXPECT_EQ(check(problem, *exact.certificate), Flaw::none) << text_of(problem);
+      EXPECT_EQ(check(problem, *exact.certificate), CertificateError::none) << text_of(problem);
       const Solution& s = exact.solution;
-      if (s.status == Status::pinched) continue;
+      if (s.status == Status::no_interior) continue;
       ASSERT_EQ(s.status, oracle::verdict(problem)) << text_of(problem);
       if (s.status != Status::optimal)
         EXPECT_NEAR(s.violation, oracle::least_violation(problem), kAlike) << text_of(problem);
@@ -174,7 +174,7 @@ TEST(EveryKind, WithShortAndLongNormalsIsAsGoodAsTheExactAnswer) {
       for (int k = 0; k < 10; ++k) {
         Problem problem = random_problem(kind, random);
         const Solution plain = solve_exact(problem).solution;
-        if (plain.status == Status::pinched) continue;
+        if (plain.status == Status::no_interior) continue;
         for (Constraint& c : problem.constraints) {
           HalfPlane& h = c.half_plane;
           h = {{std::ldexp(h.normal.x, exponent), std::ldexp(h.normal.y, exponent)}, std::ldexp(h.offset, exponent)};
@@ -221,7 +221,7 @@ TEST(Solve, AVelocityBeyondDoublesIsNotReplacedByAnOptimum) {
   p.constraints.push_back({{{-1e10, 1.0}, -1.0}, Priority::hard, -1});
   const Solution s = solve(p);
   EXPECT_TRUE(is_finite(s.velocity));
-  EXPECT_STREQ(name(s.status), "pinched");
+  EXPECT_STREQ(name(s.status), "no-interior");
 }
 
 }  // namespace

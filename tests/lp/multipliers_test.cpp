@@ -106,7 +106,7 @@ TEST(Multipliers, AloneProveTheAnswer) {
     ++problems;
     const Certificate claim = claim_of(problem, answer.solution);
     EXPECT_STREQ(name(check(problem, claim)), "none") << name(claim.status) << '\n' << text_of(problem);
-    proven += check(problem, claim_of(problem, solve(problem))) == Flaw::none;
+    proven += check(problem, claim_of(problem, solve(problem))) == CertificateError::none;
   });
   EXPECT_GT(problems, 90U * well_formed_kinds().size());
   EXPECT_GE(1000 * proven, 999 * problems) << "plain answers: their multipliers are rounded, not chosen";
@@ -118,7 +118,7 @@ TEST(Multipliers, OfAnotherVelocityProveNothing) {
     if (s.status != Status::optimal || s.active_count == 0) return;
     s.velocity = 0.5 * s.velocity;
     if (why_worse(problem, s, solve_exact(problem).solution, 1e-6).empty()) return;
-    EXPECT_NE(check(problem, claim_of(problem, s)), Flaw::none) << text_of(problem);
+    EXPECT_NE(check(problem, claim_of(problem, s)), CertificateError::none) << text_of(problem);
   });
 }
 
@@ -134,7 +134,7 @@ TEST(Multipliers, OfOneProblemInArraysAreThoseOfSolve) {
     }
     const Solution s = solve_single({x.data(), y.data(), c.data(), p.constraints.size(), 0, p.preferred, p.bound.disc});
     EXPECT_LE(missed(p, s), kStationary) << text_of(p);
-    EXPECT_EQ(check(p, claim_of(p, s)), Flaw::none) << name(s.status) << '\n' << text_of(p);
+    EXPECT_EQ(check(p, claim_of(p, s)), CertificateError::none) << name(s.status) << '\n' << text_of(p);
   }
 }
 

@@ -54,7 +54,7 @@ Problem grid_problem(SeededRandom& random) {
 }
 
 Status verdict_of(const Proven& proven, const Problem& problem) {
-  if (proven.solution.status != Status::pinched) return proven.solution.status;
+  if (proven.solution.status != Status::no_interior) return proven.solution.status;
   return proven.certificate->contradiction.empty() ? Status::optimal : oracle::verdict(problem);
 }
 

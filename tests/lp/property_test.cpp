@@ -133,7 +133,7 @@ TEST(Properties, AnswersHoldExactlyAndTwiceTheSame) {
   for (const Problem& problem : mixture()) {
     const Proven once = solve_certified(problem), again = solve_certified(problem);
     EXPECT_EQ(once.solution.velocity, again.solution.velocity);
-    EXPECT_EQ(check(problem, *once.certificate), Flaw::none) << text_of(problem);
+    EXPECT_EQ(check(problem, *once.certificate), CertificateError::none) << text_of(problem);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the double-precision solvers make of a problem: lines moved inward, the sides of the box, a smaller disc.
-#include "lp/region.h"
+#include "lp/problem/region.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "exactvo/vo/lp/instances.h"
-#include "lp/exact_sign.h"
+#include "lp/problem/exact_sign.h"
 
 namespace exactvo::lp {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
-#include "lp/exact_number.h"
-#include "lp/rounded_gap.h"
-#include "lp/twofold.h"
+#include "lp/proof/double_double.h"
+#include "lp/proof/exact_number.h"
+#include "lp/proof/rounded_gap.h"
 #include "problem_text.h"
 #include "support/seeded_random.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Exact exact(const Twofold& x) {
+Exact exact(const DoubleDouble& x) {
   return Exact(x.high) + Exact(x.low);
 }
 
@@ -27,28 +27,29 @@ Exact magnitude(const Exact& x) {
 }
 
 /// Whether `rounded` is within 16 u^2 of the exact result.
-bool is_close(const Twofold& rounded, const Exact& result) {
+bool is_close(const DoubleDouble& rounded, const Exact& result) {
   return sign_of(magnitude(exact(rounded) - result) - Exact(0x1p-102) * magnitude(result)) <= 0;
 }
 
-Twofold random_twofold(test::SeededRandom& random) {
+DoubleDouble random_twofold(test::SeededRandom& random) {
   const double high = std::ldexp(random.uniform(-1.0, 1.0), static_cast<int>(random.uniform(-60.0, 60.0)));
   return sum_of_ordered(high, high * random.uniform(-1.0, 1.0) * 0x1p-53);
 }
 
-TEST(Twofold, OperationsKeepTheirErrorBounds) {
+TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   test::SeededRandom random(test::seed_of_run(20261));
   for (int k = 0; k < 100000; ++k) {
-    const Twofold a = random_twofold(random);
+    const DoubleDouble a = random_twofold(random);
     // Every fourth nearly cancels.
-    const Twofold b = k % 4 ? random_twofold(random) : Twofold(-a.high * (1.0 + random.uniform(-4.0, 4.0) * 0x1p-52));
+    const DoubleDouble b =
+        k % 4 ? random_twofold(random) : DoubleDouble(-a.high * (1.0 + random.uniform(-4.0, 4.0) * 0x1p-52));
     ASSERT_TRUE(is_close(a + b, exact(a) + exact(b))) << std::hexfloat << a.high << ' ' << a.low << ' ' << b.high;
     ASSERT_TRUE(is_close(a - b, exact(a) - exact(b))) << std::hexfloat << a.high << ' ' << a.low << ' ' << b.high;
     ASSERT_TRUE(is_close(a * b, exact(a) * exact(b))) << std::hexfloat << a.high << ' ' << a.low << ' ' << b.high;
   }
 }
 
-TEST(Twofold, SumsAndProductsOfDoublesAreExact) {
+TEST(DoubleDouble, SumsAndProductsOfDoublesAreExact) {
   test::SeededRandom random(test::seed_of_run(20262));
   for (int k = 0; k < 100000; ++k) {
     const double a = random_twofold(random).high, b = random_twofold(random).high;
@@ -72,7 +73,7 @@ Scope scope_of(Status status) {
 
 /// Multipliers of several parts cannot be said here.
 bool is_plain(const Certificate& c) {
-  bool plain = c.status != Status::pinched;
+  bool plain = c.status != Status::no_interior;
   for (const Term& term : c.bound) plain = plain && term.multiplier.size() == 1;
   return plain;
 }

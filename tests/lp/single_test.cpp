@@ -59,7 +59,7 @@ TEST(Single, VerdictsAndCertificatesAreThoseOfTheCertifiedSolver) {
     ASSERT_STREQ(name(s.status), name(solve_certified(problem).solution.status)) << text_of(problem);
     const auto certificate = certify(problem, s);
     ASSERT_TRUE(certificate.has_value()) << text_of(problem);
-    ASSERT_EQ(check(problem, *certificate), Flaw::none) << text_of(problem);
+    ASSERT_EQ(check(problem, *certificate), CertificateError::none) << text_of(problem);
   }
 }
 
@@ -95,7 +95,7 @@ TEST(SingleCertified, AnswersAreProvenAndCarryTheirProof) {
     ASSERT_TRUE(solve_single_certified(arrays.problem(), s)) << text_of(problem);
     ASSERT_STREQ(name(s.status), name(solve_exact(problem).solution.status)) << text_of(problem);
     ASSERT_TRUE(s.status != Status::optimal || keeps(arrays.problem(), s.velocity)) << text_of(problem);
-    by_own_multipliers += check(problem, claim_of(problem, s)) == Flaw::none;
+    by_own_multipliers += check(problem, claim_of(problem, s)) == CertificateError::none;
   }
   EXPECT_GE(1000 * by_own_multipliers, 999 * problems.size());
 }
@@ -107,7 +107,7 @@ TEST(SingleCertified, AdversarialVerdictsAreRight) {
         Solution s;
         ASSERT_TRUE(solve_single_certified(Arrays(problem).problem(), s)) << text_of(problem);
         EXPECT_EQ(s.status == Status::relaxed, solve_exact(problem).solution.status == Status::relaxed)
-            << text_of(problem);  // all soft: optimal and pinched both say feasible
+            << text_of(problem);  // all soft: optimal and no_interior both say feasible
       }
     }
   }
@@ -186,7 +186,7 @@ TEST(Keeps, HoldsOfEveryOptimumAndOfNoRelaxedAnswer) {
   for (const Problem& problem : mixture()) {
     const Arrays arrays(problem);
     const Solution s = arrays.solve();
-    if (s.status == Status::pinched) continue;
+    if (s.status == Status::no_interior) continue;
     ASSERT_EQ(keeps(arrays.problem(), s.velocity), s.status == Status::optimal) << text_of(problem);
   }
 }
@@ -198,7 +198,7 @@ TEST(SolveKeeping, FindsTheOptimumOrNothing) {
     const Arrays arrays(problem);
     const Solution s = arrays.solve();
     Vec2 v;
-    const bool is_found = solve_keeping(arrays.problem(), v);
+    const bool is_found = solve_feasible(arrays.problem(), v);
     optimal += s.status == Status::optimal;
     missed += s.status == Status::optimal && !is_found;
     if (!is_found) continue;
@@ -217,10 +217,10 @@ TEST(SolveKeeping, SaysNoWhereNothingKeepsAllOrOnlyAPointDoes) {
     p.preferred = {1.0, 0.0};
     p.constraints.push_back({{{1.0, 0.0}, gap}, Priority::hard, -1});
     p.constraints.push_back({{{-1.0, 0.0}, 0.0}, Priority::hard, -1});
-    EXPECT_FALSE(solve_keeping(Arrays(p).problem(), v)) << gap;
+    EXPECT_FALSE(solve_feasible(Arrays(p).problem(), v)) << gap;
     p.constraints.assign(20, p.constraints.front());
     p.constraints.push_back({{{-1.0, 0.0}, 0.0}, Priority::hard, -1});
-    EXPECT_FALSE(solve_keeping(Arrays(p).problem(), v)) << gap;
+    EXPECT_FALSE(solve_feasible(Arrays(p).problem(), v)) << gap;
   }
 }
 
@@ -229,12 +229,12 @@ TEST(SolveKeeping, SquaresBeyondDoublesTakeTheLongWay) {
   p.bound.disc = 2.0;
   p.preferred = {1e160, 0.0};
   Vec2 v;
-  ASSERT_TRUE(solve_keeping(Arrays(p).problem(), v));
+  ASSERT_TRUE(solve_feasible(Arrays(p).problem(), v));
   EXPECT_NEAR(v.x, 2.0, 1e-12);
   p.bound.disc = 1e160;
   p.preferred = {0.0, 0.0};
   p.constraints.push_back({{{1.0, 0.0}, 1e157}, Priority::hard, -1});
-  ASSERT_TRUE(solve_keeping(Arrays(p).problem(), v));
+  ASSERT_TRUE(solve_feasible(Arrays(p).problem(), v));
   EXPECT_NEAR(v.x, 1e157, 1e146);
 }
 

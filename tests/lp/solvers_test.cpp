@@ -34,7 +34,7 @@ TEST(Solvers, AllAgreeAndAllAreProven) {
     for (std::size_t k = 0; k < problems.size(); ++k) {
       prove(problems[k], answers[k]);
       ASSERT_TRUE(answers[k].certificate.has_value()) << text << '\n' << text_of(problems[k]);
-      EXPECT_EQ(check(problems[k], *answers[k].certificate), Flaw::none) << text_of(problems[k]);
+      EXPECT_EQ(check(problems[k], *answers[k].certificate), CertificateError::none) << text_of(problems[k]);
       EXPECT_EQ(answers[k].solution.status, exact[k].solution.status) << text << '\n' << text_of(problems[k]);
     }
   }

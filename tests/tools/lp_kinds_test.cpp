@@ -46,7 +46,7 @@ json line_of(const lp::Problem& problem) {
 
 lp::Status status_named(const std::string& text) {
   for (const lp::Status status :
-       {lp::Status::optimal, lp::Status::relaxed, lp::Status::infeasible, lp::Status::pinched})
+       {lp::Status::optimal, lp::Status::relaxed, lp::Status::infeasible, lp::Status::no_interior})
     if (text == name(status)) return status;
   throw std::runtime_error("no status: " + text);
 }

@@ -75,7 +75,7 @@ std::string status_words(const Decision& d) {
     case lp::Status::infeasible:
       return fmt::format("the hard constraints contradict each other or the speed bound by {} m/s{}", by,
                          violated_words(d));
-    case lp::Status::pinched:
+    case lp::Status::no_interior:
       return "the hard constraints leave no room for rounding";
   }
   return "";

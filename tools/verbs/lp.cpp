@@ -69,7 +69,7 @@ Summary summarise(const std::vector<lp::Problem>& problems, const std::vector<lp
   for (std::size_t k = 0; k < problems.size(); ++k) {
     const lp::Proven& answer = answers[k];
     ++summary.by_status[static_cast<std::size_t>(answer.solution.status)];
-    summary.certified += answer.certificate && check(problems[k], *answer.certificate) == lp::Flaw::none;
+    summary.certified += answer.certificate && check(problems[k], *answer.certificate) == lp::CertificateError::none;
     summary.exact_fallbacks += answer.exact_stage;
     summary.worst_violation = std::max(summary.worst_violation, answer.solution.violation);
     summary.worst_breach = std::max(summary.worst_breach, broken_by(problems[k], answer));
@@ -118,8 +118,8 @@ void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
                         a.velocity.y, a.violation, answers[k].certificate ? "proven" : without));
   }
   out.add(fmt::format(
-      "{} problems: {} optimal, {} relaxed, {} infeasible, {} pinched; {} proven, {} by the exact stage\n", s.problems,
-      s.by_status[0], s.by_status[1], s.by_status[2], s.by_status[3], s.certified, s.exact_fallbacks));
+      "{} problems: {} optimal, {} relaxed, {} infeasible, {} without interior; {} proven, {} by the exact stage\n",
+      s.problems, s.by_status[0], s.by_status[1], s.by_status[2], s.by_status[3], s.certified, s.exact_fallbacks));
   out.add(fmt::format("worst violation {:.4g} m/s; solver alone {:.4g} ns per problem\n", s.worst_violation,
                       s.ns_per_solve));
   out.flush();

@@ -18,7 +18,7 @@ nlohmann::ordered_json terms_json(const std::vector<lp::Term>& terms) {
 nlohmann::ordered_json certificate_json(const lp::Certificate& c) {
   nlohmann::ordered_json out = {
       {"bound", terms_json(c.bound)}, {"contradiction", terms_json(c.contradiction)}, {"gap", c.gap}};
-  if (c.status != lp::Status::pinched) return out;
+  if (c.status != lp::Status::no_interior) return out;
   out["vertex"] = nlohmann::ordered_json::array();
   for (const lp::Binding& binding : c.vertex) out["vertex"].push_back(name_of(binding));
   return out;

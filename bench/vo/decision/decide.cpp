@@ -20,7 +20,7 @@ using geometry::perp;
 using geometry::squared_norm;
 using geometry::Vec2;
 
-/// The lines of a decision as `solve_keeping` wants them.
+/// The lines of a decision as `solve_feasible` wants them.
 struct Lines {
   static constexpr std::size_t kRoom = (kSeen + lp::kSinglePadding - 1) / lp::kSinglePadding * lp::kSinglePadding;
   alignas(64) double x[kRoom];
@@ -85,7 +85,7 @@ Vec2 proven_velocity(const Scene& scene) {
   Lines lines;
   if (!lines.fill(scene, [](const GrownShape& s, double tau, Vec2 v) { return vo::half_plane(s, tau, v); })) return {};
   Vec2 v;
-  return lp::solve_keeping(lines.problem(scene), v) ? v : Vec2{};
+  return lp::solve_feasible(lines.problem(scene), v) ? v : Vec2{};
 }
 
 Vec2 plain_velocity(const Scene& scene) {

@@ -297,18 +297,18 @@ void DecisionAudit::choice_is_best(const Seen& s) {
   if (why.empty()) why = stated(s, problem, solution);
   if (!why.empty()) return answer(why, false);
   // What has no room is held to its rounding error; that nothing is better is not proven by its numbers.
-  if (r.status == lp::Status::pinched) return answer(" has no room: that it is the best is not proven", true);
-  const lp::Flaw flaw = lp::check(problem, lp::claim_of(problem, solution));
-  if (flaw == lp::Flaw::none) return answer("", false);
-  answer(flaw == lp::Flaw::velocity ? " breaks a half-plane or the speed bound"
-                                    : " is not proven the best by its multipliers",
+  if (r.status == lp::Status::no_interior) return answer(" has no room: that it is the best is not proven", true);
+  const lp::CertificateError flaw = lp::check(problem, lp::claim_of(problem, solution));
+  if (flaw == lp::CertificateError::none) return answer("", false);
+  answer(flaw == lp::CertificateError::velocity ? " breaks a half-plane or the speed bound"
+                                                : " is not proven the best by its multipliers",
          false);
 }
 
 /// By how much the choice breaks what must hold, and what may give.
 DecisionAudit::Violations DecisionAudit::violations(const Seen& s) const {
   const RobotStep& r = *s.state;
-  const bool no_room = r.status == lp::Status::pinched, infeasible = r.status == lp::Status::infeasible;
+  const bool no_room = r.status == lp::Status::no_interior, infeasible = r.status == lp::Status::infeasible;
   const Point chosen = exactly(r.chosen);
   Violations most{Rational(0), Rational(0)};
   for (const RecordedConstraint& c : r.constraints) {
@@ -325,7 +325,7 @@ std::string DecisionAudit::misstated(const Seen& s, const Violations& most) cons
   const RobotStep& r = *s.state;
   const Point chosen = exactly(r.chosen);
   const Rational speed(fastest(s.robot)), near = Rational(kBindsWithin) * speed;
-  if (r.status == lp::Status::pinched) {
+  if (r.status == lp::Status::no_interior) {
     if (most.forbidden > near || exact::dot(chosen, chosen) > (speed + near) * (speed + near))
       return " breaks a half-plane or the speed bound";
     return "";

@@ -8,7 +8,7 @@ const std::vector<Word<lp::Status>>& words() {
   static const std::vector<Word<lp::Status>> kWords{{lp::Status::optimal, "optimal"},
                                                     {lp::Status::relaxed, "relaxed"},
                                                     {lp::Status::infeasible, "infeasible"},
-                                                    {lp::Status::pinched, "pinched"}};
+                                                    {lp::Status::no_interior, "no-interior"}};
   return kWords;
 }
 

@@ -44,8 +44,8 @@ class Point {
 };
 
 /// The conversions that a polynomial is evaluated with: a point or a double becomes a number of the stage.
-struct ToTracked {
-  using Number = detail::Tracked;
+struct ToRunningError {
+  using Number = detail::RunningError;
   Number operator()(double d) const { return d; }
   Vector<Number> operator()(const Point& p) const {
     const Vec2 v = p.rounded();
@@ -78,7 +78,7 @@ using NumberOf = typename Convert::Number;
 /// The sign of `polynomial(convert)`, -1, 0 or 1, for a polynomial over points and doubles that go through `convert`.
 template <typename Polynomial>
 int sign_of(const Polynomial& polynomial) {
-  const detail::Tracked filtered = polynomial(ToTracked{});
+  const detail::RunningError filtered = polynomial(ToRunningError{});
   if (detail::decided(filtered)) return filtered.value > 0.0 ? 1 : -1;
   bool lossy = false;
   const detail::Exact exact = polynomial(ToMpzf{&lossy});

@@ -226,10 +226,10 @@ TEST(AuditPoints, AChoiceBeyondAHalfPlaneOrTheSpeedLimitIsRefused) {
 TEST(AuditPoints, AChoiceThatIsSaidToHaveNoRoomIsHeldToItsRounding) {
   const auto binds = [](const RecordedConstraint& c) { return c.active && c.hard; };
   const AuditReport open =
-      forged_constraint(binds, [](RobotStep& robot, RecordedConstraint&) { robot.status = lp::Status::pinched; });
+      forged_constraint(binds, [](RobotStep& robot, RecordedConstraint&) { robot.status = lp::Status::no_interior; });
   EXPECT_EQ(open[AuditPoint::choices].open, 1u);
   const AuditReport report = forged_constraint(binds, [](RobotStep& robot, RecordedConstraint& c) {
-    robot.status = lp::Status::pinched;
+    robot.status = lp::Status::no_interior;
     robot.chosen -= 1e-9 * c.half_plane.normal;
   });
   EXPECT_EQ(report[AuditPoint::choices].refuted, 1u);

@@ -459,17 +459,17 @@ class Opinion {
     for (const Line& line : s.lines) {
       if (line.certified) half_plane(k, i, line);
       const bool gives = s.status == "infeasible" || (s.status == "relaxed" && !line.hard);
-      if (s.status == "pinched" && line.hard && line.slack(s.chosen) < -kClose) wrong(k, i, "breaks a half-plane");
+      if (s.status == "no-interior" && line.hard && line.slack(s.chosen) < -kClose) wrong(k, i, "breaks a half-plane");
       if (gives)
         worst = std::max(worst, -line.slack(s.chosen));
-      else if (s.status != "pinched" && !line.keeps_exactly(s.chosen))
+      else if (s.status != "no-interior" && !line.keeps_exactly(s.chosen))
         wrong(k, i, "breaks a half-plane");
       const auto body = bodies_.find(line.body);
       const bool stands =
           body != bodies_.end() && (body->second.kind == "enclosure" || body->second.kind == "obstacle-edge");
       if (line.hard != stands) wrong(k, i, "a priority");
     }
-    if (s.status != "pinched" && std::fabs(worst - s.violation) > kClose) wrong(k, i, "the violation");
+    if (s.status != "no-interior" && std::fabs(worst - s.violation) > kClose) wrong(k, i, "the violation");
     optimum(k, i, worst);
     balance(k, i);
     completeness(k, i);
@@ -478,7 +478,7 @@ class Opinion {
   /// Velocities beside the chosen one that are allowed and better.
   void optimum(std::size_t k, std::size_t i, double worst) {
     const State& s = rows_[k].robots[i];
-    if (s.status == "pinched") return;
+    if (s.status == "no-interior") return;
     const bool gives = s.status != "optimal";
     const Vec2 to = s.preferred - s.chosen;
     for (int m = 0; m < 360; ++m) {
@@ -502,7 +502,7 @@ class Opinion {
   /// The multipliers' sum.
   void balance(std::size_t k, std::size_t i) {
     const State& s = rows_[k].robots[i];
-    if (s.status == "pinched") return;
+    if (s.status == "no-interior") return;
     Vec2 sum{};
     double weight = 0.0;
     for (const Line& line : s.lines) {

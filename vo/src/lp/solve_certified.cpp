@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "certify.h"
-#include "exact.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/solve.h"
-#include "multipliers.h"
+#include "lp/exact/exact.h"
+#include "lp/proof/certify.h"
+#include "lp/proof/multipliers.h"
 
 namespace exactvo::lp {
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "batch_layout.h"
-#include "certify.h"
-#include "exact.h"
 #include "exactvo/vo/lp/solve.h"
-#include "multipliers.h"
+#include "lp/exact/exact.h"
+#include "lp/lanes/layout.h"
+#include "lp/proof/certify.h"
+#include "lp/proof/multipliers.h"
 
 namespace exactvo::lp {
 namespace {

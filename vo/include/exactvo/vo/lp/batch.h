@@ -9,7 +9,7 @@
 /// bits. Rounded inward like `solve`; a verdict is heuristic in the last digits. Lanes that the lockstep walk cannot
 /// settle (too many rounds, contradicting hard lines, speeds whose squares leave the range of T: below 2^-200 or above
 /// 2^250 m/s, of float 2^-25 and 2^30) go to the scalar solver. Float answers from there are moved inward once more,
-/// by up to three steps of float, and are `pinched` where that does not do.
+/// by up to three steps of float, and are `no_interior` where that does not do.
 
 #include <cstddef>
 #include <cstdint>

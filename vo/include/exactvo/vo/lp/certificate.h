@@ -41,12 +41,12 @@ struct Certificate {
   /// By how much a better one could exist at most: m^2/s^2 of |v - preferred|^2 where optimal, m/s of the violation
   /// where relaxed or infeasible, of preferred.v for Objective::farthest. A rounding error; 0 or more.
   double gap = 0.0;
-  /// pinched: at most two constraints or sides of the box; the point of their boundaries that is nearest 0 keeps
+  /// no_interior: at most two constraints or sides of the box; the point of their boundaries that is nearest 0 keeps
   /// everything (the hard ones only, where there is a contradiction), exactly.
   std::vector<Binding> vertex;
 };
 
-enum class Flaw {
+enum class CertificateError {
   none,           ///< the certificate proves its claim
   malformed,      ///< indices, counts, signs or numbers out of range
   velocity,       ///< the velocity does not keep what the status says
@@ -56,11 +56,11 @@ enum class Flaw {
 };
 
 /// "none", "malformed", "velocity", "contradiction", "bound", "vertex".
-const char* name(Flaw flaw);
+const char* name(CertificateError flaw);
 
 /// Exact: rational arithmetic throughout, O(m). Any certificate is fine as input, also a broken one.
 /// REQUIRES: a well-formed problem.
-Flaw check(const Problem& problem, const Certificate& certificate);
+CertificateError check(const Problem& problem, const Certificate& certificate);
 
 /// A certificate that `check` accepts for this solution, or nothing where the solution is not right, or is right and
 /// its active set does not show why. REQUIRES: a well-formed problem.

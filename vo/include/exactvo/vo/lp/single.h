@@ -2,9 +2,9 @@
 #pragma once
 
 /// \file
-/// One problem whose lines are arrays of the caller's: nothing is copied or allocated, and its lines are read a register
-/// at a time (Highway picks the target at run time). Neighbours: batch.h for many problems at once; solve.h for boxes,
-/// linear objectives and normals of any length.
+/// One problem whose lines are arrays of the caller's: nothing is copied or allocated, and its lines are read a
+/// register at a time (Highway picks the target at run time). Neighbours: batch.h for many problems at once; solve.h
+/// for boxes, linear objectives and normals of any length.
 
 #include <cstddef>
 
@@ -33,9 +33,9 @@ Solution solve_single(const SingleProblem& problem);
 /// The same, written to `answer`, which saves a copy.
 void solve_single(const SingleProblem& problem, Solution& answer);
 
-/// The same with what `solve_certified` promises: `optimal` and `relaxed` hold exactly, and no velocity is better by more
-/// than kWidestGap of certificate.h. Certified: the multipliers are proven in doubles with their rounding errors, and
-/// what these cannot show goes to `solve_certified`, which allocates. False where there is no proof either.
+/// The same with what `solve_certified` promises: `optimal` and `relaxed` hold exactly, and no velocity is better by
+/// more than kWidestGap of certificate.h. Certified: the multipliers are proven in doubles with their rounding errors,
+/// and what these cannot show goes to `solve_certified`, which allocates. False where there is no proof either.
 bool solve_single_certified(const SingleProblem& problem, Solution& answer);
 
 /// Whether v keeps every line, hard or soft, and the disc. Exact. With certified half-planes of velocity obstacles this
@@ -47,6 +47,6 @@ bool keeps(const SingleProblem& problem, geometry::Vec2 v);
 /// round inward (for a disc below 2^-200 m/s always); `velocity` then means nothing. A robot among static obstacles can
 /// stop in this case, since v = 0 keeps all their half-planes. With at most 16 lines nothing is relaxed or allocated;
 /// with more it works as `solve_single` does. REQUIRES: as `solve_single`.
-bool solve_keeping(const SingleProblem& problem, geometry::Vec2& velocity);
+bool solve_feasible(const SingleProblem& problem, geometry::Vec2& velocity);
 
 }  // namespace exactvo::lp

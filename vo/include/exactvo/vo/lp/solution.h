@@ -16,10 +16,10 @@ enum class Status {
   optimal,     ///< every constraint and the speed bound hold, exactly, for the doubles returned
   relaxed,     ///< the soft ones had to give: the largest violation is the least possible; the hard ones hold exactly
   infeasible,  ///< the hard ones contradict each other or the speed bound; velocity violates them least
-  pinched      ///< what must hold can be held, but by no double that was found: it leaves no room to round inward
+  no_interior  ///< what must hold can be held, but by no double that was found: there is no room to round inward
 };
 
-/// "optimal", "relaxed", "infeasible", "pinched".
+/// "optimal", "relaxed", "infeasible", "no-interior".
 const char* name(Status status);
 
 /// What binds, and how strongly.
@@ -38,13 +38,13 @@ struct ActiveConstraint {
 /// These are the terms of Certificate::bound and, where half-planes contradict each other and doubles can show it, of
 /// its witness. An answer of `solve_certified` can be checked from its problem and these numbers alone (inequalities
 /// (1) to (4) of certificate.h); those of `solve` and `solve_single` are rounded and prove nothing until `certify` has
-/// checked them. The multipliers of a `pinched` answer are 0.
+/// checked them. The multipliers of a `no_interior` answer are 0.
 struct Solution {
   geometry::Vec2 velocity;  ///< m/s
   Status status = Status::optimal;
   std::array<ActiveConstraint, 3> active{};
   std::size_t active_count = 0;  ///< at most 2 where optimal, at most 3 elsewhere
-  /// m/s. relaxed: the largest of a soft constraint; infeasible: the largest of a hard one; pinched: the largest of
+  /// m/s. relaxed: the largest of a soft constraint; infeasible: the largest of a hard one; no_interior: the largest of
   /// any, about a rounding error; 0 where optimal. In units of the constraint's own |normal|, rounded.
   double violation = 0.0;
 };

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A register full of problems and the feasibility phase. Compiled once a SIMD target, hence the toggling guard.
+#if defined(EXACTVO_BATCH_WALK_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef EXACTVO_BATCH_WALK_H
+#undef EXACTVO_BATCH_WALK_H
+#else
+#define EXACTVO_BATCH_WALK_H
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace exactvo::lp::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The lines of a pack: line k of its first lane stands at x[k * stride], y[...], c[...].
+template <class T>
+struct Rows {
+  const T* x;
+  const T* y;
+  const T* c;
+  std::size_t stride, count;
+};
+
+/// A line a lane. A lane without one has normal (0, 0), offset -1 and index kNoLine: it cuts nothing.
+template <class D>
+struct LineV {
+  hn::Vec<D> x, y, c, index;
+};
+
+template <class D>
+LineV<D> HWY_INLINE no_line(D d) {
+  const hn::Vec<D> zero = hn::Zero(d);
+  return {zero, zero, hn::Set(d, hn::TFromD<D>(-1)), hn::Set(d, hn::TFromD<D>(kNoLine))};
+}
+
+template <class V, class M>
+V HWY_INLINE pick(M m, V yes, V no) {
+  return hn::IfThenElse(m, yes, no);
+}
+/// Without kIndex nobody asks for numbers of lines, and they stay as they are.
+template <bool kIndex = true, class D, class M>
+LineV<D> HWY_INLINE pick(M m, const LineV<D>& yes, const LineV<D>& no) {
+  return {pick(m, yes.x, no.x), pick(m, yes.y, no.y), pick(m, yes.c, no.c),
+          kIndex ? pick(m, yes.index, no.index) : no.index};
+}
+template <class V>
+V HWY_INLINE dot(V ax, V ay, V bx, V by) {
+  return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by));
+}
+template <class V>
+V HWY_INLINE cross(V ax, V ay, V bx, V by) {
+  return hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx));
+}
+template <class D>
+hn::Vec<D> HWY_INLINE cross(const LineV<D>& a, const LineV<D>& b) {
+  return cross(a.x, a.y, b.x, b.y);
+}
+template <class D>
+hn::Vec<D> HWY_INLINE excess(const LineV<D>& line, hn::Vec<D> x, hn::Vec<D> y) {
+  return hn::Sub(line.c, dot(line.x, line.y, x, y));
+}
+
+/// What is asked of the lanes of a pack, and how far they are.
+template <class D>
+struct Pack {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  using Id = hn::Vec<hn::RebindToUnsigned<D>>;
+
+  D d;
+  Id id;                        ///< which problem
+  V px, py, speed, hard_count;  ///< preferred velocity, disc as given, hard lines
+  V slack, noise, disc, disc_squared;
+  V vx, vy;
+  V level;                        ///< of the relaxation phase, m/s: what the soft lines of the basis are violated by
+  LineV<D> first, second, third;  ///< the basis
+  LineV<D> entering;              ///< the line violated most
+  M violated;                     ///< lanes that have one
+  M relaxing;                     ///< lanes on the relaxation phase
+
+  HWY_INLINE void derive() {
+    const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
+    slack = hn::Mul(speed, hn::Set(d, T(kSlackUnits) * u));
+    noise = hn::Mul(speed, hn::Set(d, T(kNoiseUnits) * u));
+    disc = hn::Mul(speed, hn::Set(d, T(1) - T(kDiscUnits) * u));
+    disc_squared = hn::Mul(disc, disc);
+  }
+
+  HWY_INLINE M none() const { return hn::MaskFromVec(hn::Zero(d)); }
+  HWY_INLINE M exists(const LineV<D>& line) const {
+    return hn::Gt(hn::Max(hn::Abs(line.x), hn::Abs(line.y)), hn::Zero(d));
+  }
+  /// Where no line is hard numbers may be missing, and hard_count is 0.
+  HWY_INLINE M is_soft(const LineV<D>& line) const {
+    const M hard = hn::And(hn::Ge(line.index, hn::Zero(d)), hn::Lt(line.index, hard_count));
+    return hn::AndNot(hard, exists(line));
+  }
+
+  /// Lanes whose squares neither overflow nor lose digits.
+  HWY_INLINE M in_range() const {
+    const V limit = hn::Mul(speed, speed), most = hn::Max(dot(px, py, px, py), limit);
+    return hn::And(hn::Ge(limit, hn::Set(d, kLeastSquare<T>)), hn::Le(most, hn::Set(d, kMostSquare<T>)));
+  }
+
+  /// The optimum of the disc alone. The first step sets what is in hand.
+  HWY_INLINE void start() {
+    const T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
+    const V squared = dot(px, py, px, py);
+    const V limit = hn::Mul(hn::Mul(speed, speed), hn::Set(d, T(1) - T(kDiscUnits) * u));
+    const M inside = hn::Le(squared, limit);
+    vx = px;
+    vy = py;
+    if (!hn::AllTrue(d, inside)) {
+      const V shrink = hn::Div(disc, hn::Sqrt(hn::Max(squared, limit)));
+      vx = pick(inside, px, hn::Mul(px, shrink));
+      vy = pick(inside, py, hn::Mul(py, shrink));
+    }
+    level = hn::Zero(d);
+    relaxing = none();
+    third = no_line(d);
+    entering.index = third.index;
+  }
+};
+
+/// The line violated most a lane. On the feasibility phase all lines carry the slack; on the second only the hard ones
+/// do, and soft ones count from `level` on. The level is taken off the soft ones rather than added to the hard ones: it
+/// may be many times the speed, and its rounding would then exceed the slack. Without kIndex the number of the line
+/// stays what it was: who asks for none is spared the cost. With kAsk each line goes with one of `ahead`, which a later
+/// pack will read.
+template <bool kHard, bool kIndex, bool kAsk, class D, class T>
+HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead = nullptr) {
+  const D d;
+  using V = hn::Vec<D>;
+  const V zero = hn::Zero(d);
+  const V enough = kHard ? p.noise : hn::Add(p.level, p.noise);
+  const V allowed = pick(p.relaxing, enough, hn::Sub(p.noise, p.slack));
+  const V hard_extra = hn::IfThenElseZero(p.relaxing, p.slack);
+  const V soft_extra = hn::IfThenElseZero(p.relaxing, hn::Neg(p.level));
+  const V vx = p.vx, vy = p.vy, one = hn::Set(d, T(1)), hard_count = p.hard_count;
+  V most = allowed;
+  V ex = zero, ey = zero, ec = zero, number = zero;
+  V index = hn::Set(d, T(kNoLine));
+  const T *nx = rows.x, *ny = rows.y, *c = rows.c;
+#pragma GCC unroll 5
+  for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
+    if (kAsk) hwy::Prefetch(ahead + k * rows.stride);
+    const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
+    V by = hn::Sub(offset, dot(x, y, vx, vy));
+    if (kHard) by = hn::Add(by, pick(hn::Lt(number, hard_count), hard_extra, soft_extra));
+    const auto more = hn::Gt(by, most);
+    most = hn::Max(most, by);
+    ex = pick(more, x, ex);
+    ey = pick(more, y, ey);
+    ec = pick(more, offset, ec);
+    if (kIndex) {
+      index = pick(more, number, index);
+      number = hn::Add(number, one);
+    }
+  }
+  p.violated = hn::Gt(most, allowed);
+  auto with_slack = hn::Not(p.relaxing);
+  if (kHard) with_slack = hn::Or(with_slack, hn::Lt(index, hard_count));
+  p.entering.x = ex;
+  p.entering.y = ey;
+  p.entering.c = pick(with_slack, hn::Add(ec, p.slack), ec);
+  if (kIndex) p.entering.index = index;
+}
+
+/// 1 / |n|^2 of a normal of length within 2^-10 of 1, by multiplying: a divider takes one register at a time, and a
+/// step has enough for it to do. Wrong by e in |n|^2, 2 - |n|^2 is wrong by e^2, and each of Newton's steps squares
+/// that again: from e <= 2^-8, 2^-64 after two, 2^-32 after one. Rounding adds 2 u.
+template <class D, class V>
+HWY_INLINE V inverse_of_square(D d, V squared) {
+  const V two = hn::Set(d, hn::TFromD<D>(2));
+  V inverse = hn::Sub(two, squared);
+  for (int k = 0; k < (sizeof(hn::TFromD<D>) == 8 ? 2 : 1); ++k)
+    inverse = hn::Mul(inverse, hn::Sub(two, hn::Mul(squared, inverse)));
+  return inverse;
+}
+
+/// Where `other` cuts the boundary of `line` off. Parallel lines are taken for very nearly so: a nudge that is lost in
+/// any other slope stands for 0.
+template <class D, class V>
+HWY_INLINE V cut_off(D d, const LineV<D>& line, V squared, const LineV<D>& other, V& low, V& high) {
+  using T = hn::TFromD<D>;
+  const V slope = hn::Add(cross(line, other), hn::Set(d, kParallel<T>));
+  const V missing = hn::Sub(hn::Mul(other.c, squared), hn::Mul(dot(line.x, line.y, other.x, other.y), line.c));
+  const V cut = hn::Div(missing, slope);
+  const auto raises = hn::Gt(slope, hn::Zero(d));
+  low = pick(raises, hn::Max(low, cut), low);
+  high = pick(raises, high, hn::Min(high, cut));
+  return cut;
+}
+
+/// A round of the feasibility phase for the lanes in `moving`: the optimum on the boundary of `entering`, of the kKept
+/// lines in hand those that bind. Gives the lanes where nothing is left: entering, first and second contradict.
+///
+/// The boundary is v = (c n + s n') / |n|^2, n' being n turned left, and each line in hand cuts it off at an s of its
+/// own. Masks cost more than numbers, so what binds is found by comparing with that s. The disc is asked only where the
+/// s found lies beyond it.
+template <int kKept, bool kIndex, class D>
+HWY_INLINE hn::Mask<D> step(Pack<D>& p, hn::Mask<D> moving) {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  const D d;
+  const LineV<D> h = p.entering;
+  const V squared = dot(h.x, h.y, h.x, h.y);
+  const V inverse = inverse_of_square(d, squared);
+  const V far = hn::Set(d, hwy::HighestValue<T>());
+  V low = hn::Neg(far), high = far;
+  V cut_first = hn::Zero(d), cut_second = cut_first;
+  if (kKept > 0) cut_first = cut_off(p.d, h, squared, p.first, low, high);
+  if (kKept > 1) cut_second = cut_off(p.d, h, squared, p.second, low, high);
+  const V wish = cross(h.x, h.y, p.px, p.py);
+  V where = hn::Min(hn::Max(wish, low), high);
+  const V room = hn::Sub(hn::Mul(p.disc_squared, squared), hn::Mul(h.c, h.c));
+  const M beyond = hn::And(moving, hn::Gt(hn::Mul(where, where), room));
+  M empty = hn::Gt(low, high);
+  if (!hn::AllFalse(d, beyond)) {
+    const V reach = hn::Sqrt(hn::Max(room, hn::Zero(d)));
+    low = hn::Max(low, hn::Neg(reach));
+    high = hn::Min(high, reach);
+    where = hn::Min(hn::Max(wish, low), high);
+    empty = hn::Or(hn::Gt(low, high), hn::Lt(room, hn::Zero(d)));
+  }
+  const M moves = hn::AndNot(empty, moving);
+  p.vx = pick(moves, hn::Mul(hn::Sub(hn::Mul(h.x, h.c), hn::Mul(where, h.y)), inverse), p.vx);
+  p.vy = pick(moves, hn::Mul(hn::Add(hn::Mul(h.y, h.c), hn::Mul(where, h.x)), inverse), p.vy);
+  const LineV<D> none = no_line(d);
+  if (kKept == 0) {
+    p.second = none;
+    p.first = pick<kIndex>(moves, h, none);
+    return hn::And(moving, empty);
+  }
+  LineV<D> kept = none;
+  if (kKept > 1) kept = pick<kIndex>(hn::Eq(where, cut_second), p.second, kept);
+  kept = pick<kIndex>(hn::Eq(where, cut_first), p.first, kept);
+  p.second = pick<kIndex>(moves, kept, p.second);
+  p.first = pick<kIndex>(moves, h, p.first);
+  return hn::And(moving, empty);
+}
+
+}  // namespace exactvo::lp::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

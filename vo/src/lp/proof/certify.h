@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Finding multipliers. Heuristic in how (doubles, the smallest gap of the candidates), proven in what: nothing is
+/// returned that `check` would not accept.
+
+#include <optional>
+#include <vector>
+
+#include "exactvo/vo/lp/certificate.h"
+#include "lp/proof/exact_number.h"
+
+namespace exactvo::lp {
+
+/// A certificate for `solution` with a gap of at most `widest_gap` (see Certificate::gap). `candidates` may bind: the
+/// multipliers are those of the best one, two or three of them. `contradiction` is used where the multipliers of the
+/// bound do not contradict by themselves.
+std::optional<Certificate> certificate_for(const Problem& problem, const Solution& solution,
+                                           const std::vector<Binding>& candidates,
+                                           const std::vector<Term>& contradiction, double widest_gap);
+
+/// What the solution says binds.
+std::vector<Binding> active_bindings(const Solution& solution);
+
+/// The widest gap a double answer may have.
+double widest_gap_of_doubles(const Problem& problem, Status status);
+
+/// The exact multipliers of a contradiction among at most three constraints or two and the disc, up to a common factor
+/// that keeps them in the range of double. Empty where these do not contradict.
+std::vector<Term> contradiction_of(const Problem& problem, const std::vector<Binding>& bindings);
+
+}  // namespace exactvo::lp

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lp/proof/multipliers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lp/problem/region.h"
+#include "lp/proof/duality.h"
+
+namespace exactvo::lp {
+namespace {
+
+/// Whether products of a normal with itself and others neither underflow nor overflow.
+bool has_usual_length(Vec2 normal) {
+  const double squared = squared_norm(normal);
+  return squared > 0x1p-400 && squared < 0x1p400;
+}
+
+/// A multiplier of a normal that is `length` times as long, where doubles reach so far.
+double for_length(double multiplier, double length) {
+  return std::min(multiplier / length, std::numeric_limits<double>::max());
+}
+
+/// (a, b) with a x + b y = sum; rounded. Not finite where x and y are parallel.
+std::array<double, 2> solve_pair(Vec2 x, Vec2 y, Vec2 sum) {
+  if (!has_usual_length(x) || !has_usual_length(y)) {
+    const double of_x = std::hypot(x.x, x.y), of_y = std::hypot(y.x, y.y);
+    const Vec2 u = x / of_x, v = y / of_y;
+    const double turn = cross(u, v);
+    return {for_length(cross(sum, v) / turn, of_x), for_length(cross(u, sum) / turn, of_y)};
+  }
+  const double determinant = cross(x, y);
+  return {cross(sum, y) / determinant, cross(x, sum) / determinant};
+}
+
+/// The share of `sum` along a normal.
+double solve_one(Vec2 normal, Vec2 sum) {
+  if (has_usual_length(normal)) return std::max(0.0, dot(sum, normal) / squared_norm(normal));
+  const double length = std::hypot(normal.x, normal.y);
+  return for_length(std::max(0.0, dot(sum, normal / length)), length);
+}
+
+/// What the normals, and for the disc -v, must add up to.
+Vec2 pull(Objective objective, Vec2 preferred, Vec2 v) {
+  return objective == Objective::nearest ? v - preferred : -preferred;
+}
+
+/// nu of (4), |p|/|v| - 1 where the disc binds alone. Beyond 1/u a larger one moves the bound by less than u |p|^2, the
+/// least gap anyway; a disc of 0, or one whose square underflows, has no other.
+double multiplier_of_disc(Vec2 sum, Vec2 towards_centre) {
+  constexpr double kMost = 1.0 / kUnitRoundoff;
+  const double nu = dot(sum, towards_centre) / squared_norm(towards_centre);
+  return nu < kMost ? std::max(0.0, nu) : kMost;  // also where nu is 0/0
+}
+
+double multiplier_of_one(Binding binding, Vec2 column, Vec2 sum) {
+  return binding == kDisc ? multiplier_of_disc(sum, column) : solve_one(column, sum);
+}
+
+std::array<double, 3> weights_of_three(Vec2 a, Vec2 b, Vec2 c) {
+  const std::array<double, 3> w = {cross(b, c), cross(c, a), cross(a, b)};
+  const double turn = std::copysign(1.0, w[0] + w[1] + w[2]);
+  return {turn * w[0], turn * w[1], turn * w[2]};
+}
+
+std::array<double, 3> weights_of_two(Vec2 a, Vec2 b, Vec2 v, bool on_disc) {
+  const double turn = std::copysign(1.0, cross(a, b));
+  return {on_disc ? turn * cross(v, b) : norm(b), on_disc ? turn * cross(a, v) : norm(a), 0.0};
+}
+
+/// What is active, as vectors that add up to `wanted`.
+class Stationarity {
+ public:
+  Stationarity(const Normals& normals, Objective objective, Vec2 preferred, Solution& s)
+      : s_(s),
+        columns_(normals),
+        wanted_(s.status == Status::optimal ? pull(objective, preferred, s.velocity) : Vec2{}) {
+    for (std::size_t k = 0; k < s.active_count; ++k)
+      if (s.active[k].binding == kDisc) columns_[k] = -s.velocity;
+  }
+
+  /// Of two that are said to bind, one that pulls the wrong way binds in name only.
+  void set_of_optimum() {
+    if (s_.active_count == 0) return;
+    if (s_.active_count == 1) return set_alone(0);
+    const auto pair = solve_pair(columns_[0], columns_[1], wanted_);
+    const bool both = std::isfinite(pair[0]) && std::isfinite(pair[1]);
+    if (!both || pair[1] <= 0.0) return set_alone(0);
+    if (pair[0] <= 0.0) return set_alone(1);
+    s_.active[0].multiplier = pair[0];
+    s_.active[1].multiplier = pair[1];
+  }
+
+  void set_of_least_violation() {
+    std::array<std::size_t, 3> line{};
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < s_.active_count; ++k)
+      if (s_.active[k].binding != kDisc) line[count++] = k;
+    std::array<double, 3> weight = {1.0, 0.0, 0.0};
+    if (count == 2) weight = weights_of_two(columns_[line[0]], columns_[line[1]], s_.velocity, s_.active_count == 3);
+    if (count == 3) weight = weights_of_three(columns_[0], columns_[1], columns_[2]);
+    for (std::size_t k = 0; k < count; ++k)
+      s_.active[line[k]].multiplier = weight[k] > 0.0 && std::isfinite(weight[k]) ? weight[k] : 0.0;
+    set_of_disc();
+  }
+
+  /// nu, so that lines and disc add up. REQUIRES: the lines' multipliers.
+  void set_of_disc() {
+    Vec2 missing = wanted_;
+    for (std::size_t k = 0; k < s_.active_count; ++k)
+      if (s_.active[k].binding != kDisc) missing = missing - s_.active[k].multiplier * columns_[k];
+    for (std::size_t k = 0; k < s_.active_count; ++k)
+      if (s_.active[k].binding == kDisc) s_.active[k].multiplier = multiplier_of_disc(missing, columns_[k]);
+  }
+
+ private:
+  void set_alone(std::size_t k) {
+    s_.active[k].multiplier = multiplier_of_one(s_.active[k].binding, columns_[k], wanted_);
+  }
+
+  Solution& s_;
+  Normals columns_;
+  Vec2 wanted_;
+};
+
+Normals normals_of(const Problem& problem, const Solution& s) {
+  Normals normals{};
+  for (std::size_t k = 0; k < s.active_count; ++k)
+    if (s.active[k].binding != kDisc) normals[k] = half_plane_at(problem, s.active[k].binding).normal;
+  return normals;
+}
+
+}  // namespace
+
+Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, const Chosen& chosen) {
+  const Vec2 sum = pull(problem.objective, problem.preferred, v);
+  const auto column = [&](std::size_t k) { return chosen[k] == kDisc ? -v : half_plane_at(problem, chosen[k]).normal; };
+  Multipliers m;
+  if (chosen.count == 1) {
+    m.add(chosen[0], multiplier_of_one(chosen[0], column(0), sum));
+  } else if (chosen.count == 2) {
+    const auto pair = solve_pair(column(0), column(1), sum);
+    m.add(chosen[0], std::max(0.0, pair[0]));
+    m.add(chosen[1], std::max(0.0, pair[1]));
+  }
+  return m;
+}
+
+Multipliers weights_of_lines(const Problem& problem, Vec2 v, const Chosen& chosen, bool on_disc) {
+  const auto normal = [&](std::size_t k) { return half_plane_at(problem, chosen[k]).normal; };
+  std::array<double, 3> weight = {1.0, 0.0, 0.0};
+  if (chosen.count == 2) weight = weights_of_two(normal(0), normal(1), v, on_disc);
+  if (chosen.count == 3) weight = weights_of_three(normal(0), normal(1), normal(2));
+  Multipliers m;
+  for (std::size_t k = 0; k < chosen.count; ++k) m.add(chosen[k], weight[k]);
+  return m;
+}
+
+void set_multipliers(const Normals& normals, Objective objective, Vec2 preferred, Solution& s) {
+  if (s.status == Status::no_interior) return;
+  Stationarity stationarity(normals, objective, preferred, s);
+  if (s.status == Status::optimal)
+    stationarity.set_of_optimum();
+  else
+    stationarity.set_of_least_violation();
+}
+
+void set_multipliers(const Problem& problem, Solution& s) {
+  set_multipliers(normals_of(problem, s), problem.objective, problem.preferred, s);
+}
+
+bool has_multipliers_of(const Certificate& certificate, const Solution& s) {
+  const auto is_active = [&](const Term& term) {
+    return std::any_of(s.active.begin(), s.active.begin() + s.active_count, [&](const ActiveConstraint& a) {
+      return a.binding == term.binding && term.multiplier.size() == 1 && a.multiplier == term.multiplier.front();
+    });
+  };
+  return std::all_of(certificate.bound.begin(), certificate.bound.end(), is_active);
+}
+
+void set_multipliers(const Problem& problem, const Certificate& certificate, Solution& s) {
+  for (std::size_t k = 0; k < s.active_count; ++k) {
+    s.active[k].multiplier = 0.0;
+    for (const Term& term : certificate.bound)
+      if (term.binding == s.active[k].binding)
+        for (const double part : term.multiplier) s.active[k].multiplier += part;
+  }
+  if (s.status == Status::optimal && problem.objective == Objective::nearest) return;
+  // (2) and (3) need no multiplier of the disc.
+  if (s.status != Status::no_interior)
+    Stationarity(normals_of(problem, s), problem.objective, problem.preferred, s).set_of_disc();
+}
+
+}  // namespace exactvo::lp

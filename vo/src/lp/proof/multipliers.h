@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The multipliers with which what binds makes a velocity stationary (solution.h has the equations). Rounded; whether
+/// they prove an answer is for rounded_gap.h and `check` to say.
+
+#include <array>
+#include <cstddef>
+
+#include "exactvo/vo/lp/certificate.h"
+#include "lp/proof/rounded_gap.h"
+
+namespace exactvo::lp {
+
+/// Up to three of what may bind.
+struct Chosen {
+  std::array<Binding, 3> binding{};
+  std::size_t count = 0;
+  const Binding& operator[](std::size_t k) const { return binding[k]; }
+};
+
+/// Of at most two that bind at the optimum v, the disc's nu among them. Each is 0 or more; not finite where the two are
+/// parallel.
+Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, const Chosen& chosen);
+
+/// Weights of at most three lines (no disc) whose sum of normals vanishes or, `on_disc`, of two lines whose sum points
+/// along v. Negative or not finite where these lines have none.
+Multipliers weights_of_lines(const Problem& problem, Vec2 v, const Chosen& lines, bool on_disc);
+
+/// Of what is active in a solution, in its order; what stands for the disc is not read.
+using Normals = std::array<Vec2, 3>;
+
+/// Sets the multipliers of what `solution` says binds.
+void set_multipliers(const Normals& normals, Objective objective, Vec2 preferred, Solution& solution);
+void set_multipliers(const Problem& problem, Solution& solution);
+
+/// Whether the terms of the certificate are the multipliers that the solution has.
+bool has_multipliers_of(const Certificate& certificate, const Solution& solution);
+
+/// Sets the multipliers of the certificate, and that of a disc which it leaves out.
+void set_multipliers(const Problem& problem, const Certificate& certificate, Solution& solution);
+
+}  // namespace exactvo::lp
