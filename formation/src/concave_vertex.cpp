@@ -168,10 +168,11 @@ bool holds_back(const Crossing& c, Vec2 ahead) {
   return -cross(ahead, c.normal_b) / turn >= 0.0 && -cross(c.normal_a, ahead) / turn >= 0.0;
 }
 
-/// As `steering.h` turns what a robot prefers where it meets the boundary head-on.
-Vec2 with_tie_broken(const Crossing& c, Vec2 ahead) {
+/// What a robot at the crossing prefers that heads along `ahead`: of the two half-planes, whose lines go through 0, it
+/// is turned at the one it violates most (steering.h).
+Vec2 preferred_at(const Crossing& c, Vec2 ahead) {
   const Vec2 worst = dot(c.normal_a, ahead) < dot(c.normal_b, ahead) ? c.normal_a : c.normal_b;
-  return std::fabs(cross(worst, ahead)) < kTieAngle ? geometry::rotated(ahead, kTieAngle) : ahead;
+  return dot(worst, ahead) < 0.0 ? with_tie_broken(worst, ahead) : ahead;
 }
 
 geometry::Box box_of(const GrownShape& s) {
@@ -198,12 +199,11 @@ std::vector<Crossing> crossings(const GrownShape& a, const GrownShape& b) {
 std::optional<VertexRest> rest_at(const Crossing& c, Vec2 goal) {
   const Vec2 way = goal - c.position, ahead = geometry::normalized(way);
   if (way == Vec2{}) return std::nullopt;
-  const bool rests = holds_back(c, ahead);
-  if (!rests && !holds_back(c, with_tie_broken(c, ahead))) return std::nullopt;
+  if (!holds_back(c, preferred_at(c, ahead))) return std::nullopt;
   const Vec2 out = geometry::normalized(c.normal_a + c.normal_b);
   const double depth = std::min(std::fabs(cross(ahead, c.normal_a)), std::fabs(cross(ahead, c.normal_b)));
   const double infinite = std::numeric_limits<double>::infinity();
-  return VertexRest{{c.position, out, infinite, norm(way), true}, rests ? depth : 0.0};
+  return VertexRest{{c.position, out, infinite, norm(way), true}, holds_back(c, ahead) ? depth : 0.0};
 }
 
 }  // namespace exactvo::formation::detail

@@ -7,11 +7,12 @@
 ///
 ///        A    \   / B        p: the crossing, n_A and n_B the outward normals there
 ///         ____ \ / ____      free velocities at p: { v : n_A . v >= 0, n_B . v >= 0 }
-///               p            a robot heading for g rests exactly where  g - p = -(s n_A + t n_B),  s, t >= 0
+///               p            no free velocity has a component along w if  w = -(s n_A + t n_B),  s, t >= 0
 ///             robot
 ///
-/// A robot that meets one of the two boundaries within `kTieAngle` of head-on turns left by that angle (steering.h),
-/// which can turn it into the cone: so it rests there as well where g - p turned so lies in the cone.
+/// So a robot rests at p if what it prefers lies in this cone. It prefers the direction g - p to its goal g, turned
+/// left by `kTieAngle` if it meets the boundary it violates most within that angle of head-on (steering.h). The turn
+/// can lead into the cone, where the robot comes to rest, or out of it, where it slides away.
 ///
 /// Heuristic: the crossings are found by subdivision with rounded distances. None is missed but a pair of them closer
 /// together than a hundredth of the robot's radius, or where the boundaries run along each other.
@@ -40,12 +41,13 @@ std::vector<Crossing> crossings(const geometry::GrownShape& a, const geometry::G
 /// A robot at rest in a concave vertex.
 struct VertexRest {
   Equilibrium equilibrium;
-  /// Sine of the angle from the way to the goal to the nearer edge of the cone of rest; 0 where it lies outside by less
-  /// than the tie-break turns.
+  /// Sine of the angle from the direction to the goal to the nearer edge of the cone; 0 if that direction is outside
+  /// and only the tie-break turns it into the cone.
   double depth = 0.0;
 };
 
-/// The rest of a robot at the crossing that heads for `goal`; nothing where some free velocity leads towards it.
+/// The rest of a robot at the crossing that heads for `goal`; nothing if some free velocity has a component along what
+/// the robot prefers.
 std::optional<VertexRest> rest_at(const Crossing& crossing, Vec2 goal);
 
 }  // namespace exactvo::formation::detail

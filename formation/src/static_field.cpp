@@ -149,6 +149,8 @@ void StaticField::take_enclosures(const std::vector<Enclosure>& enclosures) {
     last = obstacle;
     EXACTVO_REQUIRE(piece < scene_->first_piece(obstacle + 1),
                     "more pieces than obstacle " + std::to_string(obstacle) + " has");
+    EXACTVO_REQUIRE(tight_index_[piece] == kEnclosed,
+                    "pieces of obstacle " + std::to_string(obstacle) + " come in two runs");
     tight_index_[piece++] = static_cast<std::uint32_t>(i);
   }
 }

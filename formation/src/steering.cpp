@@ -105,10 +105,12 @@ std::optional<Vec2> boosted(const std::vector<Constraint>& lines, Vec2 v) {
 
 Vec2 with_tie_broken(const std::vector<Constraint>& lines, Vec2 v) {
   const Constraint* worst = most_violated(lines, v);
-  if (!worst) return v;
-  const Vec2 n = worst->half_plane.normal;
-  const bool head_on = std::fabs(geometry::cross(-n, v)) < kTieAngle * norm(n) * norm(v);
-  return head_on ? geometry::rotated(v, kTieAngle) : v;
+  return worst ? with_tie_broken(worst->half_plane.normal, v) : v;
+}
+
+Vec2 with_tie_broken(Vec2 normal, Vec2 v) {
+  const bool is_head_on = std::fabs(geometry::cross(normal, v)) < kTieAngle * norm(normal) * norm(v);
+  return is_head_on ? geometry::rotated(v, kTieAngle) : v;
 }
 
 // --- Following ---

@@ -43,6 +43,9 @@ inline constexpr double kTieAngle = 1e-3;
 /// |w| sin e - |w|^2 / (2 |v|) <= |v| e^2 / 2, that is 1.5e-6 m/s at 3 m/s, and only while the tie lasts.
 Vec2 with_tie_broken(const std::vector<Constraint>& lines, Vec2 v);
 
+/// The same for one half-plane, given by its normal of any length. REQUIRES: v violates it.
+Vec2 with_tie_broken(Vec2 normal, Vec2 v);
+
 /// Follows a boundary after a stall: state of one robot. The side is the one on which a rehearsal of the static scene
 /// leaves the boundary with the shorter way to go; ties go left.
 class Follower {

@@ -395,20 +395,27 @@ TEST(Trap, SlideTimesAreThoseOfTheRun) {
   EXPECT_NEAR(sliding, *found[0].slide_time, 0.1 * *found[0].slide_time);
 }
 
-/// The way to the goal leads past the cone of rest by 5e-4 rad; the tie-break turns the robot by 1e-3 into it, against
-/// enclosure 0, and it stands for the rest of the minute.
-TEST(Trap, ARestThatTheTieBreakMakesIsForetold) {
+/// Two walls whose enclosures overlap, with a concave vertex near (-0.7732, 1.4079); mirrored, near (0.7732, 1.4079).
+Scenario overlapping_pair(bool is_mirrored) {
+  const auto at = [&](double x, double y) { return Vec2{is_mirrored ? -x : x, y}; };
   Scenario s;
   Robot r;
   r.id = "R1";
-  r.position = {-0x1.269abe495912ap+1, 0x1.26c4bc54d333p+2};
-  r.goals = {{0x1.ea89e40f3f6dcp+1, -0x1.426d6adffe43cp+1}};
+  r.position = at(-0x1.269abe495912ap+1, 0x1.26c4bc54d333p+2);
+  r.goals = {at(0x1.ea89e40f3f6dcp+1, -0x1.426d6adffe43cp+1)};
   s.robots = {r};
-  s.obstacles = {{"a", geometry::Polyline{{{0x1.06d8ecc66a2cdp-2, 0x1.f9e556d2bbccp-1},
-                                           {0x1.dc84fabb0a68cp-4, 0x1.8534d074e1d2cp+1}}}},
-                 {"b", geometry::Polyline{{{-0x1.a1c13684e5824p-1, -0x1.faa4044877d6ep-1},
-                                           {0x1.01055908e88c2p+0, 0x1.a85f8b80772f7p+0}}}}};
+  s.obstacles = {{"a", geometry::Polyline{{at(0x1.06d8ecc66a2cdp-2, 0x1.f9e556d2bbccp-1),
+                                           at(0x1.dc84fabb0a68cp-4, 0x1.8534d074e1d2cp+1)}}},
+                 {"b", geometry::Polyline{{at(-0x1.a1c13684e5824p-1, -0x1.faa4044877d6ep-1),
+                                           at(0x1.01055908e88c2p+0, 0x1.a85f8b80772f7p+0)}}}};
   s.time_limit = 60.0;
+  return s;
+}
+
+/// The direction to the goal is outside the cone of rest by 5e-4 rad; the tie-break turns the robot by 1e-3 into it,
+/// against enclosure 0, and it stands for the rest of the minute.
+TEST(Trap, ARestThatTheTieBreakMakesIsForetold) {
+  const Scenario s = overlapping_pair(false);
   const test::PairOutcome outcome = test::outcome_of(s);
   EXPECT_FALSE(outcome.arrived);
   EXPECT_TRUE(outcome.between) << outcome.words;
@@ -416,6 +423,34 @@ TEST(Trap, ARestThatTheTieBreakMakesIsForetold) {
             std::string::npos)
       << outcome.words;
   EXPECT_EQ(outcome.words.find("unstable"), std::string::npos) << outcome.words;
+}
+
+/// The goal is turned round the mirrored vertex, so that its direction is in the cone by `depth` rad beside the edge
+/// at which the robot meets enclosure 1 head-on.
+Scenario mirrored_pair_with_depth(double depth) {
+  constexpr double kOutside = 5.433e-4;  // rad, by which the direction misses the cone before
+  Scenario s = overlapping_pair(true);
+  const Vec2 vertex{0x1.8bdd773f7e3ebp-1, 0x1.68698401075b8p+0};
+  s.robots[0].goals = {vertex + geometry::rotated(s.robots[0].goals[0] - vertex, -(kOutside + depth))};
+  return s;
+}
+
+TEST(Trap, ARestThatTheTieBreakEndsIsNotForetold) {
+  for (const double depth : {1e-4, 5e-4, 9e-4}) {
+    const Scenario s = mirrored_pair_with_depth(depth);
+    const auto findings = trap_test(s, test::pair_options());
+    ASSERT_TRUE(findings.back().overlapping);
+    EXPECT_FALSE(findings.back().stall_possible) << "depth " << depth;
+    EXPECT_TRUE(test::outcome_of(s).arrived) << "depth " << depth << ": " << test::outcome_of(s).words;
+  }
+}
+
+TEST(Trap, BeyondTheReachOfTheTieBreakTheRestIsForetold) {
+  const Scenario s = mirrored_pair_with_depth(1.1e-3);
+  const test::PairOutcome outcome = test::outcome_of(s);
+  EXPECT_FALSE(outcome.arrived);
+  EXPECT_TRUE(outcome.between) << outcome.words;
+  EXPECT_NEAR(*trap_test(s, test::pair_options()).back().margin, -1.1e-3, 1e-5);
 }
 
 }  // namespace
