@@ -41,10 +41,6 @@ BindingConstraint binding_of(const RecordedConstraint& c, Vec2 robot) {
   return {c, nearest.normal, nearest.distance, rho};
 }
 
-/// Of the push: multipliers round by far less. A share of 5e-4 decides where the tie-break turns a robot that would
-/// slide off against another boundary.
-constexpr double kLeastShare = 1e-6;
-
 /// What is active in the decision, and which of it pushes: by the recorded multipliers, beside which those of the speed
 /// bound stand. All of it where the decision was a compromise between half-planes that contradict each other.
 std::vector<BindingConstraint> binding_in(const RobotStep& decision, Vec2 robot) {

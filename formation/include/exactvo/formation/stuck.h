@@ -16,13 +16,18 @@ namespace exactvo::formation {
 /// m/s: a slower robot counts as at rest. (In a flat trap or a corner the tie-break leaves it a creeping speed.)
 inline constexpr double kAtRest = 0.01;
 
+/// Of the push |chosen - preferred|: a smaller multiplier is rounding. (Multipliers round by far less. A share of 5e-4
+/// decides where the tie-break turns a robot that would slide off against another boundary.)
+inline constexpr double kLeastShare = 1e-6;
+
 struct BindingConstraint {
   RecordedConstraint constraint;
   Vec2 normal;                     ///< unit, out of the shape at the point nearest the robot
   double clearance = 0.0;          ///< m, rim to shape
   double radius_of_curvature = 0;  ///< m, of the shape grown by the robot, at that normal; infinite on a flat edge
-  /// Whether it pushes the robot off its preferred velocity: its recorded multiplier (balance.h) is positive. One that
-  /// is active without pushing blocks nothing. True of all where the decision was not `optimal`.
+  /// Whether it pushes the robot off its preferred velocity: its recorded multiplier (balance.h) is positive and at
+  /// least `kLeastShare` of the push. One that is active without pushing blocks nothing. True of all where the decision
+  /// was not `optimal`: its multipliers say nothing of the preferred velocity.
   bool pressing = false;
 };
 
