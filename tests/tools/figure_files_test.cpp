@@ -76,6 +76,7 @@ TEST(FigureFiles, WithoutTheTerminalPdfcairoTheRestIsDrawnAndThatIsSaid) {
   const Workplace here;
   fs::create_directories(here.path() / "fake");
   write_gnuplot(here, "sed 's/GPVAL_TERMINALS/\" png pngcairo svg x11 \"/g' | gnuplot \"$@\"");
+  here.write("a.gp", "of an earlier figure");
   here.write("a.pdf", "of an earlier figure");
   const Outcome outcome = here.run(std::string(kVo) + "a.svg", kFakeFirst);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -101,6 +102,81 @@ TEST(FigureFiles, WithoutGnuplotNoPictureIsSaidToBeWritten) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("gnuplot is not installed"), HasSubstr("wrote a.gp")));
   EXPECT_THAT(outcome.err, Not(HasSubstr("wrote a.svg")));
+}
+
+TEST(FigureFiles, APictureThatIsOfNoFigureStaysWhereNothingIsDrawn) {
+  const Workplace here;
+  for (const char* name : {"a.png", "a.svg", "a.pdf"}) here.write(name, "a map");
+  EXPECT_EQ(here.run(std::string(kVo) + "a.svg", "PATH=/nowhere").status, 0);
+  for (const char* name : {"a.png", "a.svg", "a.pdf"}) EXPECT_TRUE(here.has(name)) << name;
+  EXPECT_TRUE(here.has("a.gp"));
+}
+
+/// Every verb that draws a figure, each with a file that it reads or writes besides and that the figure would replace.
+struct Replacing {
+  std::string command;
+  std::string replaced;
+};
+
+constexpr const char* kScenario =
+    R"({"name": "s", "robots": [{"id": "R1", "position": [0, 0], "goal": [8, 0]}], "obstacles": [{"file": "room.yaml"}]})";
+
+const Replacing kReplacing[] = {
+    {"segment room.yaml --figure room.svg", "room.png"},
+    {"segment room.yaml --figure ./sub/../room.pdf", "room.png"},
+    {"segment --format ros-map room.map --figure room.svg", "room.png"},
+    {"segment map.pdf --format wkt --figure map.svg", "map.pdf"},
+    {"segment a.wkt map.pdf --figure map.png", "map.pdf"},
+    {"segment roads.tab --figure roads.svg", "roads.dat"},
+    {"repair room.yaml --out r.wkt --figure room.svg", "room.png"},
+    {"repair map.pdf --format wkt --out r.wkt --figure map.svg", "map.pdf"},
+    {"repair a.wkt --out r.dat --to wkt --figure r.svg", "r.dat"},
+    {"generate star --count 1 --out r.dat --to wkt --figure r.svg", "r.dat"},
+    {"explain room.svg --time 1 --robot 0 --out room.svg", "room.svg"},
+    {"explain s.json --time 1 --robot 0 --out room.svg", "room.png"},
+    {"vo --position 0,0 --velocity 1,0 --radius 0.3 --time-horizon 2 --obstacle room.yaml --figure room.svg",
+     "room.png"},
+    {"vo --position 0,0 --velocity 1,0 --time-horizon 2 --obstacle a.wkt --format wkt --robot map.pdf --figure map.svg",
+     "map.pdf"},
+};
+
+TEST(FigureFiles, AFigureNeverReplacesWhatItsCommandReadsOrWritesBesides) {
+  const Workplace here;
+  fs::create_directories(here.path() / "sub");
+  for (const char* name : {"a.wkt", "map.pdf"}) here.write(name, "POLYGON((2 0, 4 0, 4 2, 2 2, 2 0))");
+  for (const char* name : {"room.yaml", "room.map"})
+    here.write(name,
+               "image: room.png\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.6\n"
+               "free_thresh: 0.2\n");
+  for (const char* name : {"room.png", "roads.tab", "roads.dat"}) here.write(name, "kept as it is");
+  for (const char* name : {"s.json", "room.svg"}) here.write(name, kScenario);
+  const auto before = here.files(".");
+  for (const Replacing& r : kReplacing) {
+    const Outcome outcome = here.run(r.command);
+    EXPECT_EQ(outcome.status, 2) << r.command;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("would replace "), HasSubstr(r.replaced))) << r.command;
+    EXPECT_TRUE(here.files(".") == before) << r.command << ": refused before the work";
+  }
+}
+
+TEST(FigureFiles, AnObstacleFileNeverReplacesThePictureOfItsMap) {
+  const Workplace here;
+  here.write("room.yaml", "image: room.png\nresolution: 0.1\norigin: [0, 0, 0]\n");
+  here.write("room.png", "kept as it is");
+  for (const char* command : {"convert room.yaml room.png --to wkt", "repair room.yaml --out room.png --to wkt"}) {
+    const Outcome outcome = here.run(command);
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("another file than the input")) << command;
+    EXPECT_EQ(here.read("room.png"), "kept as it is") << command;
+  }
+}
+
+TEST(FigureFiles, AFigureMayStandBesideItsInput) {
+  const Workplace here;
+  here.write("a.wkt", "POLYGON((2 0, 4 0, 4 2, 2 2, 2 0))");
+  EXPECT_EQ(here.run("segment a.wkt --figure a.svg").status, 0);
+  EXPECT_EQ(here.run("segment a.wkt --figure a.svg").status, 0) << "and be drawn again";
+  EXPECT_EQ(here.read("a.wkt"), "POLYGON((2 0, 4 0, 4 2, 2 2, 2 0))");
 }
 
 TEST(FigureFiles, AGnuplotThatFailsLeavesNothing) {

@@ -100,12 +100,6 @@ datasets::ObstacleFile read_file(const std::string& name, const datasets::ReadOp
   return file;
 }
 
-/// A text too long for a name is no file.
-bool is_there(const std::string& name) {
-  std::error_code too_long;
-  return fs::exists(name, too_long);
-}
-
 /// What begins WKT; EMPTY and Z, M are the reader's to judge.
 bool begins_wkt(const std::string& word) {
   for (const char* known :
@@ -122,6 +116,11 @@ datasets::ObstacleFile read(const std::string& option, const std::string& text, 
 }
 
 }  // namespace
+
+bool is_there(const std::string& text) {
+  std::error_code too_long;
+  return fs::exists(text, too_long);
+}
 
 std::vector<GivenObstacle> obstacles_in(const std::string& option, const std::string& text,
                                         const datasets::ReadOptions& reading) {

@@ -20,6 +20,9 @@ using GivenObstacle = std::variant<geometry::Obstacle, geometry::ConvexShape>;
 /// m: coordinates and lengths go up to here, so that their squares and those of their sums stay far within doubles.
 inline constexpr double kLargestGiven = datasets::kLargestCoordinate;
 
+/// Whether `text` is the name of a file or a folder; one too long for a name is not.
+bool is_there(const std::string& text);
+
 /// The obstacles in `text`, at least one: a file with some; WKT; `DISC(x y, r)`; `ELLIPSE(cx cy, l11 l21 l22)`, the set
 /// c + L w with |w| <= 1 and L = [l11 0; l21 l22], exactly as given; `ELLIPSE(cx cy, a b, degrees)`, semi-axes and the
 /// angle of the first, rounded to such an L. A file is read as `reading` says; degrees that became metres are said.

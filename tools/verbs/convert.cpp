@@ -54,7 +54,7 @@ datasets::ObstacleFile read(const Flags& flags) {
 ExitCode convert(const Flags& flags) {
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = output_format(flags.out, flags.to);
-  refuse_input_as_output(flags.in, "out", flags.out);
+  refuse_input_as_output(flags.in, flags.reading.format, "out", flags.out);
   datasets::ObstacleFile file = read(flags);
   for (const datasets::DataError& error : file.rejected) message(std::string("left out: ") + error.what());
   say_what_was_read(file);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "exactvo/datasets/input_files.h"
 #include "exactvo/formation/stuck.h"
 #include "explain/explanation.h"
 #include "figures/velocity_space.h"
@@ -95,7 +96,7 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
 
 void check(const Flags& flags) {
   if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time of at least 0 s");
-  check_figure_name("--out", flags.out);
+  check_figure_name("--out", flags.out, datasets::files_read_with(flags.scenario, "scenario"));
 }
 
 ExitCode explain(const Flags& flags) {

@@ -57,7 +57,7 @@ void check(const Flags& flags) {
     throw UsageError("--count", std::to_string(flags.count), "a whole number from 1 to 100000000");
   if (flags.out.empty()) throw UsageError("--out", "", "a file to write");
   check_format("--to", flags.to, datasets::writable_formats());
-  check_figure_name("--figure", flags.figure);
+  check_figure_name("--figure", flags.figure, {flags.out});
 }
 
 std::vector<SceneObstacle> item(const Flags& flags, std::uint64_t k) {

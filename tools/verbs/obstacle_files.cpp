@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/obstacle_write.h"
 #include "support/escape.h"
 #include "support/files.h"
@@ -161,9 +162,20 @@ datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::stri
   return options;
 }
 
-void refuse_input_as_output(const std::string& in, const std::string& option, const std::string& out) {
-  std::error_code error;
-  if (std::filesystem::equivalent(in, out, error)) throw UsageError(option, out, "another file than the input " + in);
+void refuse_input_as_output(const std::string& in, const std::string& format, const std::string& option,
+                            const std::string& out) {
+  for (const std::filesystem::path& file : datasets::files_read_with(in, format)) {
+    std::error_code error;
+    if (std::filesystem::equivalent(file, out, error))
+      throw UsageError(option, out, "another file than the input " + file.string());
+  }
+}
+
+std::vector<std::filesystem::path> all_read_with(const std::vector<std::string>& files, const std::string& format) {
+  std::vector<std::filesystem::path> all;
+  for (const std::string& file : files)
+    for (std::filesystem::path& read : datasets::files_read_with(file, format)) all.push_back(std::move(read));
+  return all;
 }
 
 void declare_metres(CLI::App& app, bool& metres) {

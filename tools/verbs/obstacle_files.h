@@ -6,6 +6,7 @@
 /// lines and as JSON.
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -44,8 +45,13 @@ struct FileAnswer {
   bool is_whole() const { return content && content->counts.rejected == 0; }
 };
 
-/// Throws UsageError where `out` is the file `in`, by whatever name or link.
-void refuse_input_as_output(const std::string& in, const std::string& option, const std::string& out);
+/// Throws UsageError if `out` is the file `in`, or one that is read with it (datasets/input_files.h), by whatever name
+/// or link. `format` is that of `in`, empty if it is to be found out.
+void refuse_input_as_output(const std::string& in, const std::string& format, const std::string& option,
+                            const std::string& out);
+
+/// Everything that is read with the files; `format` is that of all, empty if it is to be found out.
+std::vector<std::filesystem::path> all_read_with(const std::vector<std::string>& files, const std::string& format);
 
 /// --metres, of verbs that write GeoJSON.
 void declare_metres(CLI::App& app, bool& metres);

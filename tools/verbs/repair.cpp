@@ -290,15 +290,22 @@ void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out)
 
 // --- The verb ---
 
+/// What is read, and written beside the figure.
+std::vector<std::filesystem::path> other_files(const Flags& flags) {
+  std::vector<std::filesystem::path> files = all_read_with(flags.files, flags.reading.format);
+  files.emplace_back(flags.out);
+  return files;
+}
+
 ExitCode repair(const Flags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading);
   options.repair = true;
   options.keep_properties = true;
-  check_figure_name("--figure", flags.figure);
+  if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, other_files(flags));
   if (flags.out == "-") throw UsageError("--out", "-", "a file: stdout has the report");
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = datasets::format_to_write(flags.out, flags.to);
-  for (const std::string& file : flags.files) refuse_input_as_output(file, "--out", flags.out);
+  for (const std::string& file : flags.files) refuse_input_as_output(file, flags.reading.format, "--out", flags.out);
   const std::vector<FileAnswer> answers = read_each(flags.files, options);
   const ExitCode code = exit_code(answers);
   if (flags.json) {

@@ -45,11 +45,18 @@ struct TakenApart {
 
 // --- The work ---
 
+/// What is read, and written beside the figure.
+std::vector<std::filesystem::path> other_files(const Flags& flags) {
+  std::vector<std::filesystem::path> files = all_read_with(flags.files, flags.reading.format);
+  if (!flags.out.empty()) files.emplace_back(flags.out);
+  return files;
+}
+
 void check(const Flags& flags) {
   require_length("--tolerance", flags.tolerance);
   require_length("--radius", flags.radius);
   require_length("--facade-margin", flags.facade_margin);
-  check_figure_name("--figure", flags.figure);
+  if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, other_files(flags));
   const std::string extension = std::filesystem::path(flags.out).extension().string();
   if (!flags.out.empty() && extension != ".jsonl" && extension != ".geojson")
     throw UsageError("--out", flags.out, "a name that ends in .jsonl or .geojson");
@@ -229,7 +236,7 @@ ExitCode segment(const Flags& flags) {
   check(flags);
   datasets::ReadOptions reading = reading_options(flags.reading);
   reading.repair = flags.repair;
-  for (const std::string& file : flags.files) refuse_input_as_output(file, "--out", flags.out);
+  for (const std::string& file : flags.files) refuse_input_as_output(file, flags.reading.format, "--out", flags.out);
   const std::vector<FileAnswer> answers = read_each(flags.files, reading);
   for (const FileAnswer& answer : answers) {
     if (answer.error) throw datasets::DataError(*answer.error);

@@ -170,13 +170,22 @@ void check_company(const VoFlags& flags) {
   require(flags.variants.empty() || !flags.free, "--variant", "--variant beside --free", "one of the two");
 }
 
+/// Of the obstacles and the robot, those that are files, with what is read with them.
+std::vector<std::filesystem::path> files_named_in(const VoFlags& flags) {
+  std::vector<std::string> texts = flags.obstacles;
+  texts.push_back(flags.robot);
+  texts.erase(std::remove_if(texts.begin(), texts.end(), [](const std::string& t) { return !is_there(t); }),
+              texts.end());
+  return all_read_with(texts, flags.reading.format);
+}
+
 void check_words(const VoFlags& flags) {
   const bool known = flags.enclose == "none" || flags.enclose == "ellipse" || flags.enclose == "trap-free";
   require(known, "--enclose", flags.enclose, "one of none ellipse trap-free");
   require(flags.pieces.empty() || flags.pieces == "convex" || flags.pieces == "hull", "--pieces", flags.pieces,
           "one of convex hull");
   require(flags.pieces.empty() || flags.enclose == "none", "--pieces", "--pieces beside --enclose", "one of the two");
-  check_figure_name("--figure", flags.figure);
+  if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, files_named_in(flags));
 }
 
 void check_numbers(const VoFlags& flags) {

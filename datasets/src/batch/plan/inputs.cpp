@@ -2,28 +2,18 @@
 #include "batch/plan/inputs.h"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <utility>
 
 #include "batch/plan/journal.h"
 #include "exactvo/datasets/data_error.h"
-#include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/provenance.h"
-#include "exactvo/datasets/scenario_file.h"
-#include "readers/readers.h"
-#include "text_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_extension(const fs::path& path) {
-  std::string text = path.extension().string();
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 bool is_regular(const fs::path& path) {
   std::error_code error;
@@ -35,49 +25,6 @@ fs::path name_of_file(const fs::path& path) {
   std::error_code error;
   fs::path canonical = fs::weakly_canonical(path, error);
   return error ? path : canonical;
-}
-
-/// What `action` lists. A file that can't be understood names none; reading it as an input says what is wrong.
-template <class Action>
-std::vector<fs::path> listed(const Action& action) {
-  try {
-    return action();
-  } catch (const std::exception&) {
-    return {};
-  }
-}
-
-/// What belongs to the file and is no input of its own.
-std::vector<fs::path> belongings_of(const fs::path& path, const std::string& format) {
-  const std::string extension = lower_extension(path);
-  std::vector<fs::path> found;
-  if (extension == ".yaml" || extension == ".yml" || format == "ros-map") {
-    found = listed([&] { return std::vector<fs::path>{picture_of_ros_map(path)}; });
-  }
-  if (extension == ".shp") {
-    for (const char* other : {".shx", ".dbf", ".prj", ".cpg", ".SHX", ".DBF", ".PRJ", ".CPG"}) {
-      found.push_back(fs::path(path).replace_extension(other));
-    }
-  }
-  found.erase(std::remove_if(found.begin(), found.end(), [](const fs::path& p) { return !is_regular(p); }),
-              found.end());
-  return found;
-}
-
-/// The obstacle files that a scenario names: inputs of their own as well, where they lie in a folder that is walked.
-std::vector<fs::path> named_by_scenario(const fs::path& path, const std::string& format) {
-  return listed([&] {
-    const bool is_scenario = format == "scenario" || (format.empty() && format_of(path) == "scenario");
-    return is_scenario ? files_of_scenario(path) : std::vector<fs::path>{};
-  });
-}
-
-/// Everything that is read with the file, the file itself first, each once.
-void collect(const fs::path& path, const std::string& format, std::vector<fs::path>& files, std::set<fs::path>& seen) {
-  if (!seen.insert(name_of_file(path)).second) return;
-  files.push_back(path);
-  for (const fs::path& other : belongings_of(path, format)) collect(other, {}, files, seen);
-  for (const fs::path& other : named_by_scenario(path, format)) collect(other, {}, files, seen);
 }
 
 /// Empty where it can't be read. Whatever is no regular file, a pipe for instance, is not opened.
@@ -135,7 +82,7 @@ class Listing {
     std::vector<Input> inputs;
     for (const fs::path& file : files_) {
       const fs::path name = name_of_file(file);
-      const bool belongs = belongings_.count(name) > 0 && named_.count(name) == 0;
+      const bool belongs = sidecars_.count(name) > 0 && named_.count(name) == 0;
       if (belongs || !seen.insert(name).second) continue;
       std::error_code error;
       const std::uintmax_t size = fs::file_size(file, error);
@@ -153,7 +100,7 @@ class Listing {
     std::vector<fs::path> found = files_below(folder);
     std::sort(found.begin(), found.end());
     for (const fs::path& file : found) {
-      for (const fs::path& other : belongings_of(file, format_)) belongings_.insert(name_of_file(other));
+      for (const fs::path& other : sidecar_files(file, format_)) sidecars_.insert(name_of_file(other));
     }
     files_.insert(files_.end(), found.begin(), found.end());
   }
@@ -203,8 +150,8 @@ class Listing {
   std::set<fs::path> met_;  ///< earlier batches, whatever way leads to them
   std::vector<fs::path> folders_;
   std::vector<fs::path> files_;
-  std::set<fs::path> named_;       ///< by the user: wanted, whatever else needs them
-  std::set<fs::path> belongings_;  ///< of files met in a folder
+  std::set<fs::path> named_;     ///< by the user: wanted, whatever else needs them
+  std::set<fs::path> sidecars_;  ///< of files met in a folder
 };
 
 }  // namespace
@@ -212,9 +159,7 @@ class Listing {
 std::string identity_of_input(const fs::path& path, const std::string& format) {
   const std::string own = hash_of(path);
   if (own.empty()) return own;
-  std::vector<fs::path> files;
-  std::set<fs::path> seen;
-  collect(path, format, files, seen);
+  const std::vector<fs::path> files = files_read_with(path, format);
   std::string all = own;
   for (std::size_t k = 1; k < files.size(); ++k) all += " " + hash_of(files[k]);
   return files.size() == 1 ? own : sha256_of(all);

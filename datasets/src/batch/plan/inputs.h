@@ -27,7 +27,7 @@ struct Inputs {
 };
 
 /// Files as named, folders walked in order of names. In a folder, hidden files and folders, what belongs to another
-/// file (the tables of a Shapefile, the pictures of ROS maps), whatever is below `out` and whatever is below an earlier
+/// file (`sidecar_files`), whatever is below `out` and whatever is below an earlier
 /// batch's output (`EarlierBatch`) are no inputs; a file that is named is one in any case. Each file once. Links to
 /// folders and what is no regular file are inputs without a hash, never opened here. `format` is that of all files, if
 /// it is given. Throws DataError for a path that is not there or where there is nothing to read (E_FILE_MISSING) and a
