@@ -12,8 +12,11 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "run_program.h"
@@ -72,6 +75,10 @@ class Running {
 
   int status_after(int signal) const {
     await_rest();
+    EXPECT_EQ(::kill(pid_, signal), 0);
+    return status();
+  }
+  int status_at_once(int signal) const {
     EXPECT_EQ(::kill(pid_, signal), 0);
     return status();
   }
@@ -158,6 +165,92 @@ TEST(Pipes, WhatComesThroughOneIsReadWhateverReadsIt) {
   const Outcome nothing = here.run("validate /dev/stdin --format wkt", "cat empty.wkt | ");
   EXPECT_EQ(nothing.status, 2);
   EXPECT_THAT(nothing.out, AllOf(HasSubstr("/dev/stdin"), HasSubstr("an empty file")));
+}
+
+TEST(Pipes, EveryVerbReadsOneOnce) {
+  const Workplace here;
+  here.write("s.wkt", kSquare);
+  std::filesystem::copy_file(data_file("paper/A1.json"), here.path() / "s.json");
+  here.write("s.lp.json", here.run("vo --obstacle s.wkt --position 9,9 --velocity 1,0 --radius 0.5 --time-horizon 2 "
+                                   "--json")
+                              .out);
+  ASSERT_EQ(here.run("simulate s.json --out run --no-figures").status, 0);
+  std::filesystem::copy_file(here.path() / "run/recording.jsonl", here.path() / "s.jsonl");
+  // What is read, and how; PIPE stands for its name.
+  const std::vector<std::pair<std::string, std::string>> commands{
+      {"s.json", "simulate PIPE"},
+      {"s.json", "simulate PIPE --out out --no-figures"},
+      {"s.json", "trap PIPE"},
+      {"s.json", "explain PIPE --time 1 --robot 0 --out e.svg"},
+      {"s.json", "audit run --scenario PIPE"},
+      {"s.jsonl", "audit PIPE"},
+      {"s.lp.json", "audit --certificate PIPE"},
+      {"s.wkt", "validate PIPE"},
+      {"s.wkt", "repair PIPE --out r.wkt --figure r.svg"},
+      {"s.wkt", "convert PIPE c.geojson"},
+      {"s.wkt", "segment PIPE"},
+      {"s.wkt", "vo --obstacle PIPE --position 9,9 --velocity 1,0 --radius 0.5 --time-horizon 2"}};
+  for (auto [file, command] : commands) {
+    const std::string pipe = "pipe-" + file;
+    if (!here.has(pipe)) make_pipe(here, pipe);
+    command.replace(command.find("PIPE"), 4, pipe);
+    // A second reading would wait for ever.
+    const std::string whole = "cd '" + here.path().string() + "'; timeout 60 cp " + file + " " + pipe + " & cd '" +
+                              here.path().string() + "'; timeout 60 '" EXACTVO_PROGRAM "' " + command + " >log 2>&1";
+    EXPECT_EQ(std::system(whole.c_str()), 0) << command << "\n" << here.read("log");
+  }
+  EXPECT_EQ(without_times(here.read("out/trajectory.csv")), without_times(here.read("run/trajectory.csv")));
+  EXPECT_THAT(here.read("out/metrics.json"), HasSubstr("pipe-s.json"));
+}
+
+/// Names in the folder that begin with a dot.
+std::vector<std::string> hidden_in(const fs::path& folder) {
+  std::vector<std::string> found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (const std::string name = entry.path().filename().string(); name.front() == '.') found.push_back(name);
+  return found;
+}
+
+void await(const std::function<bool()>& condition) {
+  for (int k = 0; k < 6000 && !condition(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(condition());
+}
+
+TEST(Signals, ARunOfAFormationEndsAtOnce) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    const Workplace here;
+    const Running program(here, {"simulate", data_file("formation/hundred.json"), "--no-figures", "--out", "out"});
+    await([&] {
+      return here.has("err") && here.read("err").find("formation: ") != std::string::npos;
+    });  // said just before the run
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_EQ(program.status_at_once(signal), 128 + signal);
+    // After the grace of ten seconds the last three words are not said.
+    EXPECT_THAT(here.read("err"), HasSubstr("interrupted; nothing was written"));
+    EXPECT_FALSE(here.has("out"));
+    EXPECT_THAT(hidden_in(here.path()), testing::IsEmpty());
+  }
+}
+
+TEST(Signals, OneWhileFiguresAreDrawnLeavesNoTemporaryFolder) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    const Workplace here;
+    // One that never ends, and lets no signal but SIGKILL end it.
+    fs::create_directory(here.path() / "bin");
+    here.write("bin/gnuplot", "#!/bin/sh\ntrap '' INT TERM\n: > '" + (here.path() / "started").string() +
+                                  "'\nwhile :; do sleep 1; done\n");
+    fs::permissions(here.path() / "bin/gnuplot", fs::perms::owner_all);
+    const std::string path = (here.path() / "bin").string() + ":" + std::getenv("PATH");
+    ::setenv("PATH", path.c_str(), 1);
+    const Running program(here, {"simulate", data_file("paper/A1.json"), "--out", "out"});
+    ::setenv("PATH", path.substr(path.find(':') + 1).c_str(), 1);
+    await([&] { return here.has("started"); });
+    EXPECT_THAT(hidden_in(here.path()), testing::SizeIs(1));
+    EXPECT_EQ(program.status_at_once(signal), 128 + signal);
+    EXPECT_THAT(here.read("err"), HasSubstr("interrupted"));
+    EXPECT_FALSE(here.has("out"));
+    EXPECT_THAT(hidden_in(here.path()), testing::IsEmpty());
+  }
 }
 
 TEST(Pipes, DevicesFoldersAndSocketsAreRefused) {

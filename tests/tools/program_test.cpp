@@ -366,6 +366,24 @@ TEST(Audit, AnObstacleThatMovesIsOne) {
   EXPECT_FALSE(report["not_audited"].empty());
 }
 
+TEST(Audit, SaysHowManyFindingsItDoesNotList) {
+  const Workplace here;
+  std::string slower = kRunOver;  // the longer one overlaps the other, the more there is to list
+  slower.replace(slower.find("\"speed\": 4"), 10, "\"speed\": 1");
+  here.write("cart.json", slower);
+  ASSERT_EQ(here.run("simulate cart.json --out out --no-figures").status, 0);
+  const json report = json::parse(here.run("audit out --json").out);
+  std::size_t found = 0, unlisted = 0;
+  for (const json& point : report["points"]) {
+    found += point["refuted"].get<std::size_t>() + point["open"].get<std::size_t>();
+    unlisted += point["unlisted"].get<std::size_t>();
+  }
+  EXPECT_EQ(report["findings"].size() + unlisted, found);
+  ASSERT_GT(report["points"]["motions"]["unlisted"], 0);
+  EXPECT_THAT(here.run("audit out").out,
+              HasSubstr("... and " + report["points"]["motions"]["unlisted"].dump() + " more of"));
+}
+
 TEST(Audit, ComparesTheScenarioThatItIsGiven) {
   const Workplace here;
   ASSERT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --out out --no-figures").status, 0);

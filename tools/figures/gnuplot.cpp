@@ -7,11 +7,15 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <system_error>
+
+#include "support/stop.h"
+#include "support/terminal.h"
 
 namespace exactvo::tools {
 
@@ -108,9 +112,11 @@ int spawn_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
 }
 
 bool succeeded(pid_t pid) {
+  const EndedWithUs ours(pid);
   int status = 0;
   while (::waitpid(pid, &status, 0) < 0) {
     if (errno != EINTR) return false;
+    if (interrupted()) ::kill(pid, SIGTERM);  // Ctrl-C reaches both, a SIGTERM only this program
   }
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }

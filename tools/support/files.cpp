@@ -89,6 +89,7 @@ StagedFolder::StagedFolder(fs::path target, const fs::path& named)
   staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
   std::error_code error;
   if (fs::exists(target_, error) && !fs::is_directory(target_)) fail(target_, "a file of that name");
+  removed_at_end_.emplace(staging_.string());  // before it is there: a signal may come in between
   fs::create_directories(staging_, error);
   if (error) fail(named.empty() ? target_ : named, error.message());
 }

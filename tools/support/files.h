@@ -7,7 +7,10 @@
 /// Neighbours: datasets/atomic_file.h does the same for one file.
 
 #include <filesystem>
+#include <optional>
 #include <string>
+
+#include "support/stop.h"
 
 namespace exactvo::tools {
 
@@ -26,7 +29,8 @@ void check_output_folder(const std::filesystem::path& target);
 void remove_figures(const std::filesystem::path& target);
 
 /// A folder in the making: a hidden sibling of `target` to write into. `publish` puts it in place; without it the
-/// destructor leaves no trace, so a run that fails or is interrupted never leaves half an output.
+/// destructor leaves no trace, nor does a signal that ends the program (stop.h), so a run that fails or is interrupted
+/// never leaves half an output.
 class StagedFolder {
  public:
   /// Creates the hidden folder (and the target's parents). `named` is what the user called the whole, for messages;
@@ -47,6 +51,7 @@ class StagedFolder {
 
   std::filesystem::path target_;
   std::filesystem::path staging_;
+  std::optional<RemovedAtEnd> removed_at_end_;
 };
 
 }  // namespace exactvo::tools

@@ -131,15 +131,10 @@ void draw(const std::vector<fs::path>& scripts) {
   }
 }
 
-Scenario read_scenario(const std::string& path) {
+ReadScenario read_scenario(const std::string& path) {
   datasets::LoadedScenario loaded = load(path);
   for (const std::string& note : loaded.notes) message(note);
-  return std::move(loaded.scenario);
-}
-
-std::vector<fs::path> input_files(const std::string& path) {
-  if (path == "-") return {};
-  return datasets::files_of_scenario(path);
+  return {std::move(loaded.scenario), std::move(loaded.files)};
 }
 
 }  // namespace exactvo::tools

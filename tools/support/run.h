@@ -54,10 +54,12 @@ std::vector<std::filesystem::path> write_figures(const FinishedRun& run, const s
 /// Runs gnuplot on the scripts; a message where it is absent. Throws std::runtime_error where it fails.
 void draw(const std::vector<std::filesystem::path>& scripts);
 
-/// A scenario from a file, or from stdin where `path` is "-".
-formation::Scenario read_scenario(const std::string& path);
+struct ReadScenario {
+  formation::Scenario scenario;
+  std::vector<std::filesystem::path> files;  ///< for provenance: the file itself and those it names; none where stdin
+};
 
-/// What read_scenario reads, for provenance; none where that is stdin.
-std::vector<std::filesystem::path> input_files(const std::string& path);
+/// A scenario from a file or a pipe, which is read once, or from stdin where `path` is "-".
+ReadScenario read_scenario(const std::string& path);
 
 }  // namespace exactvo::tools

@@ -14,6 +14,7 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 #include "support/escape.h"
+#include "support/stop.h"
 
 namespace exactvo::tools {
 
@@ -26,17 +27,23 @@ volatile std::sig_atomic_t interrupt_seen = 0;
 /// Seconds that a program has to end by itself.
 constexpr unsigned kGrace = 10;
 
+template <std::size_t N>
+[[noreturn]] void end_now(const char (&words)[N]) {
+  remove_what_is_unfinished();
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, words, N - 1);
+  ::_exit(128 + interrupt_seen);
+}
+
 extern "C" void on_interrupt(int signal) {
   interrupt_seen = signal;
+  if (ends_at_once()) end_now("exactvo: error: interrupted; nothing was written\n");
   ::alarm(kGrace);
 }
 
 /// Something does not look at `interrupted`: a library, or a long computation. Nothing half-written stands under a name
 /// of its own at any time, so that the program may end anywhere.
 extern "C" void on_end_of_grace(int) {
-  constexpr char kWords[] = "exactvo: error: interrupted\n";
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kWords, sizeof kWords - 1);
-  ::_exit(128 + interrupt_seen);
+  end_now("exactvo: error: interrupted\n");
 }
 
 void throw_if_interrupted() {
@@ -47,6 +54,8 @@ void throw_if_interrupted() {
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
+  // One handler at a time: they remove folders.
+  for (const int other : {SIGALRM, SIGINT, SIGTERM}) ::sigaddset(&action.sa_mask, other);
   ::sigaction(signal, &action, nullptr);
 }
 

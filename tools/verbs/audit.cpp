@@ -54,6 +54,17 @@ const char* in_words(datasets::AuditPoint point) {
   return kWords[static_cast<std::size_t>(point)];
 }
 
+std::string unlisted_lines(const datasets::AuditReport& report) {
+  std::string text;
+  for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
+    if (report.points[p].unlisted == 0) continue;
+    text +=
+        fmt::format("  ... and {} more of \"{}\" (the first {} of a recording are listed)\n", report.points[p].unlisted,
+                    in_words(static_cast<datasets::AuditPoint>(p)), datasets::kMostAuditFindings);
+  }
+  return text;
+}
+
 std::string summary(const datasets::AuditReport& report) {
   std::string text;
   for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
@@ -71,6 +82,7 @@ std::string summary(const datasets::AuditReport& report) {
     text += fmt::format("{} of the steps are curves, up to {:.2g} m off the straight way: the curves were checked\n",
                         report.curved_steps, report.largest_bulge);
   for (const std::string& finding : report.findings) text += "  " + finding + "\n";
+  text += unlisted_lines(report);
   text += "not audited:\n";
   for (const std::string& words : not_audited(report)) text += "  " + words + "\n";
   return text;

@@ -13,6 +13,7 @@
 #include "support/escape.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
+#include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -87,6 +88,7 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
   options.stop_at = flags.time;
   options.progress = [](double) { return !interrupted(); };
   const std::size_t robot = find_robot(scenario, flags.robot);
+  const EndsAtOnce nothing_is_written;
   const formation::Recording recording = formation::simulate(scenario, options);
   if (interrupted()) throw Interrupted();
   const formation::Step& step = last_decision(recording, flags.time);
@@ -101,7 +103,7 @@ void check(const Flags& flags) {
 
 ExitCode explain(const Flags& flags) {
   check(flags);
-  const Scenario scenario = read_scenario(flags.scenario);
+  const Scenario scenario = read_scenario(flags.scenario).scenario;
   note_unused(flags.simulation, scenario);
   const Explained explained = decide(flags, scenario);
   print(shown_lines(explanation(explained.decision)));

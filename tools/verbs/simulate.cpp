@@ -11,6 +11,7 @@
 #include "support/files.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
+#include "support/stop.h"
 #include "support/terminal.h"
 #include "verb.h"
 
@@ -108,10 +109,13 @@ void announce(const formation::Scenario& scenario, const formation::SimulationOp
       s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate, s.euler_step_limit, scenario.time_step));
 }
 
-FinishedRun run_with_progress(const Flags& flags, const formation::Scenario& scenario,
+FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read,
                               const formation::SimulationOptions& options) {
-  const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, input_files(flags.scenario));
+  const formation::Scenario& scenario = read.scenario;
+  const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
   ProgressLine line(scenario.time_limit, "s simulated");
+  line.show(0.0, scenario.name);  // the shapes of many robots take a while before the first step
+  const EndsAtOnce nothing_is_written;
   return run(scenario, options, provenance, [&](double time) { line.show(time, scenario.name); });
 }
 
@@ -123,8 +127,11 @@ void print_results(const Flags& flags, const FinishedRun& finished) {
 void print_and_write(const Flags& flags, const FinishedRun& finished) {
   const std::optional<RunName> replaced = run_in(flags.out);
   StagedFolder folder(flags.out);
-  write_results(finished, folder.path());
-  if (!flags.no_figures) draw(write_figures(finished, folder.path() / "figures"));
+  {
+    const EndsAtOnce nothing_is_published;
+    write_results(finished, folder.path());
+    if (!flags.no_figures) draw(write_figures(finished, folder.path() / "figures"));
+  }
   if (interrupted()) throw Interrupted();
   print_results(flags, finished);
   if (flags.no_figures) remove_figures(flags.out);
@@ -135,14 +142,18 @@ void print_and_write(const Flags& flags, const FinishedRun& finished) {
 ExitCode simulate(const Flags& flags) {
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = flags.record_all;
-  const formation::Scenario scenario = read_scenario(flags.scenario);
+  const ReadScenario read = read_scenario(flags.scenario);
+  const formation::Scenario& scenario = read.scenario;
   note_unused(flags.simulation, scenario);
   if (!flags.out.empty()) {
     check_output_folder(flags.out);
     if (!flags.force) check_same_run(flags.out, name_of(scenario, options));
   }
-  announce(scenario, options);
-  const FinishedRun finished = run_with_progress(flags, scenario, options);
+  {
+    const EndsAtOnce nothing_is_written;
+    announce(scenario, options);
+  }
+  const FinishedRun finished = run_with_progress(flags, read, options);
   flags.out.empty() ? print_results(flags, finished) : print_and_write(flags, finished);
   const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
   return failed ? ExitCode::negative : ExitCode::success;

@@ -11,6 +11,7 @@
 #include "exactvo/formation/trap.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
+#include "support/stop.h"
 #include "verb.h"
 
 namespace exactvo::tools {
@@ -142,7 +143,8 @@ std::string words_of(const formation::Scenario& scenario, const TrapFinding& f, 
 }
 
 ExitCode trap(const Flags& flags) {
-  const formation::Scenario scenario = read_scenario(flags.scenario);
+  const formation::Scenario scenario = read_scenario(flags.scenario).scenario;
+  const EndsAtOnce nothing_is_written;
   const std::vector<TrapFinding> findings = formation::trap_test(scenario, simulation_options(flags.simulation));
   std::string text;
   if (flags.json) {

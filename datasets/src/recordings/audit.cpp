@@ -186,8 +186,9 @@ AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario
 }
 
 AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario) {
-  AuditTally tally = audited(read_recording(path), scenario);
-  check_seal(read_text_file(path), tally);
+  const std::string text = read_text_file(path);  // once: of a pipe nothing is left
+  AuditTally tally = audited(parse_recording(text, path.string()), scenario);
+  check_seal(text, tally);
   return finished(std::move(tally));
 }
 
@@ -196,6 +197,7 @@ void add(AuditReport& sum, const AuditReport& other) {
     sum.points[p].proven += other.points[p].proven;
     sum.points[p].refuted += other.points[p].refuted;
     sum.points[p].open += other.points[p].open;
+    sum.points[p].unlisted += other.points[p].unlisted;
   }
   for (std::size_t AuditReport::*count :
        {&AuditReport::half_planes, &AuditReport::unsafe, &AuditReport::steps, &AuditReport::collisions,
@@ -247,6 +249,7 @@ std::string to_json(const AuditReport& report) {
     count("proven", point.proven);
     count("refuted", point.refuted);
     count("open", point.open);
+    count("unlisted", point.unlisted);
     json.end_object();
   }
   json.end_object().member("largest_violation", report.largest_violation);

@@ -14,15 +14,19 @@ namespace exactvo::datasets {
 class AuditTally {
  public:
   void proven(AuditPoint point) { ++report[point].proven; }
-  void refuted(AuditPoint point, const std::string& what) { find(report[point].refuted, what); }
-  void open(AuditPoint point, const std::string& what) { find(report[point].open, what); }
+  void refuted(AuditPoint point, const std::string& what) { find(report[point], report[point].refuted, what); }
+  void open(AuditPoint point, const std::string& what) { find(report[point], report[point].open, what); }
 
   AuditReport report;
 
  private:
-  /// Every kind is heard once, whatever the others fill.
-  void find(std::size_t& counter, const std::string& what) {
-    if (counter++ == 0 || report.findings.size() < kMostAuditFindings) report.findings.push_back(what);
+  /// Each kind has its own bound, so that none is crowded out by another.
+  void find(PointCount& point, std::size_t& counter, const std::string& what) {
+    if (counter++ < kMostAuditFindings) {
+      report.findings.push_back(what);
+    } else {
+      ++point.unlisted;
+    }
   }
 };
 

@@ -205,8 +205,10 @@ void require_recording(std::string_view text, const std::string& name) {
 }  // namespace
 
 RecordingFile read_recording(const std::filesystem::path& path) {
-  const std::string text = read_text_file(path);
-  const std::string name = path.string();
+  return parse_recording(read_text_file(path), path.string());
+}
+
+RecordingFile parse_recording(const std::string& text, const std::string& name) {
   require_recording(text, name);
   std::string_view rest = text;
   RecordingFile file;

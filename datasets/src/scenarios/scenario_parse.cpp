@@ -78,7 +78,7 @@ class Reader {
 
   LoadedScenario read(const Json& tree) {
     Scenario scenario = read_scenario(tree);
-    return {std::move(scenario), std::move(notes_)};
+    return {std::move(scenario), std::move(notes_), std::move(files_)};
   }
 
  private:
@@ -135,6 +135,7 @@ class Reader {
     const std::string prefix = object.value("id", named.stem().string());
     const std::filesystem::path path = base_dir_ / named;
     ObstacleFile file = read_named_file(path, options, pointer);
+    files_.push_back(path);
     add_notes(file);
     for (const formation::SceneObstacle& obstacle : file.obstacles) refuse_far(obstacle, path);
     if (file.origin) projected_ += (projected_.empty() ? "" : ", ") + named.string();
@@ -261,7 +262,8 @@ class Reader {
   };
   std::vector<Origin> origin_of_;  ///< per obstacle of the scenario
   std::vector<std::string> notes_;
-  std::string projected_;  ///< files that were projected from degrees to metres, with commas between
+  std::vector<std::filesystem::path> files_;  ///< of obstacles
+  std::string projected_;                     ///< files that were projected from degrees to metres, with commas between
 };
 
 }  // namespace
@@ -278,7 +280,9 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name, c
 LoadedScenario load_scenario_with_notes(const std::filesystem::path& path) {
   const std::string text = read_text_file(path);
   if (text.empty()) throw DataError(DataCode::json_syntax, path.string(), "", "an empty file", "a scenario in JSON");
-  return parse_scenario_with_notes(text, path.string(), path.parent_path());
+  LoadedScenario loaded = parse_scenario_with_notes(text, path.string(), path.parent_path());
+  loaded.files.insert(loaded.files.begin(), path);
+  return loaded;
 }
 
 Scenario load_scenario(const std::filesystem::path& path) {

@@ -52,6 +52,7 @@ struct PointCount {
   std::size_t proven = 0;
   std::size_t refuted = 0;
   std::size_t open = 0;
+  std::size_t unlisted = 0;  ///< of the refuted and the open, those that have no line among AuditReport::findings
   std::size_t asked() const { return proven + refuted + open; }
 };
 
@@ -66,7 +67,7 @@ struct AuditReport {
   std::size_t collisions = 0;         ///< of these, nearer to an obstacle or another robot than the radii allow
   std::size_t unproven = 0;           ///< of these, neither a collision nor proven to be none
   std::size_t inconsistencies = 0;    ///< refuted of (1) and (6)
-  std::vector<std::string> findings;  ///< the first of each kind, in words; at most kMostAuditFindings
+  std::vector<std::string> findings;  ///< in words: of each point the first refuted and the first open ones
 
   std::size_t curved_steps = 0;        ///< of the steps, those that were not driven in a straight line
   std::size_t obstacle_questions = 0;  ///< pairs of a step and an obstacle, a moving obstacle, another robot
@@ -82,6 +83,7 @@ struct AuditReport {
   /// Nothing is refuted, and no motion open.
   bool clean() const;
 };
+/// Findings of one point and one recording: this many refuted and this many open ones; PointCount counts the others.
 inline constexpr std::size_t kMostAuditFindings = 20;
 
 /// REQUIRES: a recording that read_recording gave, or one like it. `scenario`: what it must be a recording of.
@@ -98,7 +100,7 @@ void add(AuditReport& sum, const AuditReport& other);
 std::vector<std::string> not_audited(const AuditReport& report);
 
 /// One JSON object: `half_planes`, `unsafe`, `steps`, `collisions`, `unproven`, `inconsistencies`, `points` (of each
-/// point `asked`, `proven`, `refuted`, `open`), `largest_violation`, `proved` (how much of what was proven),
+/// point `asked`, `proven`, `refuted`, `open`, `unlisted`), `largest_violation`, `proved` (how much of what was proven),
 /// `not_audited`, `findings`.
 std::string to_json(const AuditReport& report);
 

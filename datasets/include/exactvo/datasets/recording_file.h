@@ -68,6 +68,8 @@ void write_recording(const std::filesystem::path& path, const RecordingFile& fil
 
 /// Throws DataError naming the line and, within it, the JSON pointer.
 RecordingFile read_recording(const std::filesystem::path& path);
+/// The same from the file's text; `file_name` is used in messages.
+RecordingFile parse_recording(const std::string& text, const std::string& file_name);
 
 /// One row a robot and step: time, robot, state, preferred and chosen velocity, status, mode, side; with a formation
 /// also the leader's state. Units stand in the column names. Same atomicity.

@@ -26,6 +26,8 @@ namespace exactvo::datasets {
 struct LoadedScenario {
   formation::Scenario scenario;
   std::vector<std::string> notes;  ///< "floor.geojson: metres: by its member "units""; empty without obstacle files
+  /// The scenario file (unless it was parsed from text), then every obstacle file it names: what a run depends on.
+  std::vector<std::filesystem::path> files = {};
 };
 
 /// Reads a scenario; obstacle files it names are looked up beside it. Throws DataError: for a mistake in such a file it
@@ -41,7 +43,7 @@ LoadedScenario parse_scenario_with_notes(const std::string& text, const std::str
 formation::Scenario parse_scenario(const std::string& text, const std::string& file_name,
                                    const std::filesystem::path& base_dir);
 
-/// The scenario file itself, then every obstacle file it names: what a run depends on. Throws DataError.
+/// LoadedScenario::files without the rest. Reads the file: of a pipe nothing is left. Throws DataError.
 std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path);
 
 /// Canonical JSON: every field written, keys in the schema's order, obstacles inline, shortest numbers that read back

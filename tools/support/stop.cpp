@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that the handler calls is a system call: no allocation, no lock, no stdio.
+#include "support/stop.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <climits>
+#include <csignal>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace exactvo::tools {
+
+namespace {
+
+std::atomic<int> at_once{0};
+std::atomic<pid_t> child_of_ours{0};
+
+struct Slot {
+  std::atomic<bool> is_taken{false};
+  std::atomic<bool> is_set{false};
+  char path[PATH_MAX];
+};
+std::array<Slot, 16> slots;
+
+/// As getdents64(2) has it.
+struct Entry {
+  std::uint64_t inode;
+  std::int64_t offset;
+  std::uint16_t length;
+  unsigned char type;
+  char name[1];
+};
+
+bool is_dots(const char* name) {
+  return std::strcmp(name, ".") == 0 || std::strcmp(name, "..") == 0;
+}
+
+constexpr int kDeepest = 8;  // the folders of an output are two deep
+
+void remove_contents(int folder, int depth);
+
+void remove_entry(int folder, const char* name, int depth) {
+  if (::unlinkat(folder, name, 0) == 0 || depth == kDeepest) return;
+  // Again where something was left: a file system may list less while entries go.
+  for (int pass = 0; pass < 4 && ::unlinkat(folder, name, AT_REMOVEDIR) != 0; ++pass) {
+    const int inner = ::openat(folder, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (inner < 0) return;
+    remove_contents(inner, depth + 1);
+    ::close(inner);
+  }
+  ::unlinkat(folder, name, AT_REMOVEDIR);
+}
+
+void remove_contents(int folder, int depth) {
+  alignas(Entry) char block[4096];
+  for (;;) {
+    const long got = ::syscall(SYS_getdents64, folder, block, sizeof block);
+    if (got <= 0) return;
+    for (long at = 0; at < got;) {
+      const auto* entry = reinterpret_cast<const Entry*>(block + at);
+      const char* name = block + at + offsetof(Entry, name);
+      at += entry->length;
+      if (!is_dots(name)) remove_entry(folder, name, depth);
+    }
+  }
+}
+
+}  // namespace
+
+EndsAtOnce::EndsAtOnce() {
+  ++at_once;
+}
+EndsAtOnce::~EndsAtOnce() {
+  --at_once;
+}
+bool ends_at_once() {
+  return at_once > 0;
+}
+
+RemovedAtEnd::RemovedAtEnd(const std::string& folder) : slot_(-1) {
+  if (folder.size() >= PATH_MAX) return;
+  for (std::size_t k = 0; k < slots.size() && slot_ < 0; ++k)
+    if (!slots[k].is_taken.exchange(true)) slot_ = static_cast<int>(k);
+  if (slot_ < 0) return;
+  Slot& mine = slots[static_cast<std::size_t>(slot_)];
+  std::memcpy(mine.path, folder.c_str(), folder.size() + 1);
+  mine.is_set = true;
+}
+
+RemovedAtEnd::~RemovedAtEnd() {
+  if (slot_ < 0) return;
+  slots[static_cast<std::size_t>(slot_)].is_set = false;
+  slots[static_cast<std::size_t>(slot_)].is_taken = false;
+}
+
+EndedWithUs::EndedWithUs(pid_t child) {
+  child_of_ours = child;
+}
+EndedWithUs::~EndedWithUs() {
+  child_of_ours = 0;
+}
+
+void remove_what_is_unfinished() {
+  if (const pid_t child = child_of_ours; child > 0) {
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+  }
+  for (const Slot& slot : slots)
+    if (slot.is_set) remove_entry(AT_FDCWD, slot.path, 0);
+}
+
+}  // namespace exactvo::tools
