@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "audit/edits.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -44,8 +46,8 @@ Lines recorded(const Scenario& scenario, const SimulationOptions& options) {
     file.info.integrator = name(options.integrator);
   }
   file.recording = formation::simulate(scenario, options);
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("exactvo_edits_" + scenario.name + ".jsonl");
+  const std::filesystem::path path = std::filesystem::temp_directory_path() /
+                                     ("exactvo_edits_" + std::to_string(::getpid()) + "_" + scenario.name + ".jsonl");
   write_recording(path, file);
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();

@@ -96,6 +96,24 @@ bool is_default(const std::string& key, const json& value) {
   return true;
 }
 
+/// A vertex that is given twice in a row changes no curve.
+json without_repeated_vertices(const json& curve) {
+  json kept = json::array();
+  for (const json& vertex : curve)
+    if (kept.empty() || kept.back() != vertex) kept.push_back(vertex);
+  return kept;
+}
+
+bool is_same_scenario(const json& a, const json& b);
+
+bool is_same_member(const std::string& key, const json& a, const json& b) {
+  if (key == "polygon" || key == "polyline" || key == "path")
+    return without_repeated_vertices(a) == without_repeated_vertices(b);
+  if (key != "holes") return is_same_scenario(a, b);
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const json& c, const json& d) { return is_same_member("polygon", c, d); });
+}
+
 /// The same, or less by what is a default.
 bool is_same_scenario(const json& a, const json& b) {
   if (a.is_array() && b.is_array() && a.size() == b.size())
@@ -104,7 +122,7 @@ bool is_same_scenario(const json& a, const json& b) {
   for (const auto& [key, value] : a.items())
     if (!b.contains(key)) return false;
   for (const auto& [key, value] : b.items())
-    if (a.contains(key) ? !is_same_scenario(a.at(key), value) : !is_default(key, value)) return false;
+    if (a.contains(key) ? !is_same_member(key, a.at(key), value) : !is_default(key, value)) return false;
   return true;
 }
 
