@@ -11,6 +11,7 @@
 #include "leader.h"
 #include "moving.h"
 #include "remedies.h"
+#include "rows.h"
 #include "run_clock.h"
 #include "runs.h"
 #include "slot_follower.h"
@@ -64,24 +65,28 @@ class FormationRun {
     }
   }
 
-  Recording run() {
-    Recording recording;
+  void run(Recording& recording, RunSink& sink) {
     recording.motion = motion_of(options_.integrator);
     recording.time_step = scenario_.time_step;
     recording.tracking_gain = spec_.gains.k3;
     recording.relative_frame = !remedies_.absolute_frame;
     recording.remedies = remedies_;
     recording.offsets = offsets_;
-    for (std::size_t k = 0; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
-      recording.steps.push_back(decide_all(clock_.time(k)));
-      move(recording.steps.back());
-    }
-    recording.steps.push_back(state_row(clock_.time(recording.steps.size())));
     for (std::size_t i = 0; i < robots_.size(); ++i)
       recording.outlooks.push_back({0.0, i, 0, robots_[i].field.shapes()});
+    sink.begin(recording);
+    RowFeed rows(scene_.bodies(), recording.outlooks, sink);
+    const double first_error = error_in(state_row(0.0));
+    std::size_t k = 0;
+    for (; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
+      Step row = decide_all(clock_.time(k));
+      move(row);
+      rows.add(std::move(row));
+    }
+    const Step last = state_row(clock_.time(k));
+    rows.add(last);
     recording.bodies = scene_.copied_bodies();
-    judge(recording);
-    return recording;
+    judge(first_error, last, recording);
   }
 
  private:
@@ -221,17 +226,15 @@ class FormationRun {
     return worst;
   }
 
-  void judge(Recording& recording) const {
-    const double first = error_in(recording.steps.front());
-    const double last = error_in(recording.steps.back());
+  void judge(double first, const Step& end, Recording& recording) const {
+    const double last = error_in(end);
     // Judged by the end alone: a formation that ends farther from its slots than it began has not formed.
     constexpr double kArrivedOnce = 1.0;  // m: an error this small is no divergence even when the start was exact
     recording.diverged = out_of_bounds() || last > std::max(first, kArrivedOnce);
     recording.outcome = recording.diverged
                             ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
                             : "formation error " + metres(last) + " at the end";
-    if (leader_arrival(spec_.leader) > recording.steps.back().time)
-      recording.outcome += "; the leader did not reach its end";
+    if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
   }
 
   Remedies remedies_;
@@ -251,8 +254,8 @@ class FormationRun {
 
 }  // namespace
 
-Recording run_formation(const Scenario& scenario, const SimulationOptions& options) {
-  return FormationRun(scenario, options).run();
+void run_formation(const Scenario& scenario, const SimulationOptions& options, Recording& recording, RunSink& sink) {
+  FormationRun(scenario, options).run(recording, sink);
 }
 
 }  // namespace exactvo::formation::detail

@@ -6,6 +6,7 @@
 
 #include "decision.h"
 #include "moving.h"
+#include "rows.h"
 #include "run_clock.h"
 #include "runs.h"
 #include "static_field.h"
@@ -41,19 +42,21 @@ class KinematicRun {
     }
   }
 
-  Recording run() {
-    Recording recording;
+  void run(Recording& recording, RunSink& sink) {
     recording.motion = MotionLaw::straight;
     recording.time_step = scenario_.time_step;
-    for (std::size_t k = 0; !clock_.ends_at(k) && !all_arrived(); ++k) {
-      recording.steps.push_back(decide_all(clock_.time(k)));
-      move(recording.steps.back());
+    sink.begin(recording);
+    RowFeed rows(scene_.bodies(), outlooks_, sink);
+    std::size_t k = 0;
+    for (; !clock_.ends_at(k) && !all_arrived(); ++k) {
+      Step row = decide_all(clock_.time(k));
+      move(row);
+      rows.add(std::move(row));
     }
-    recording.steps.push_back(final_row(clock_.time(recording.steps.size())));
+    rows.add(final_row(clock_.time(k)));
     recording.outcome = outcome();
     recording.outlooks = std::move(outlooks_);
     recording.bodies = scene_.copied_bodies();
-    return recording;
   }
 
  private:
@@ -215,8 +218,8 @@ class KinematicRun {
 
 }  // namespace
 
-Recording run_kinematic(const Scenario& scenario, const SimulationOptions& options) {
-  return KinematicRun(scenario, options).run();
+void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Recording& recording, RunSink& sink) {
+  KinematicRun(scenario, options).run(recording, sink);
 }
 
 }  // namespace exactvo::formation::detail

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "consensus.h"
 #include "exactvo/geometry/require.h"
+#include "lyapunov_watch.h"
+#include "rows.h"
 
 namespace exactvo::formation {
 namespace {
@@ -51,17 +54,15 @@ double huber(const FormationSpec& f, double s) {
   return s <= knee ? 0.5 * f.gains.kappa * s * s : f.catch_up_speed * (s - 0.5 * knee);
 }
 
-/// V_IVO of (15): the decision of row k, relative to the leader.
-Vec2 avoidance(const Recording& recording, std::size_t k, std::size_t i) {
-  const Step& row = recording.steps[k];
-  return recording.relative_frame ? row.robots[i].chosen : row.robots[i].chosen - row.leader_velocity;
+/// V_IVO of (15): the decision of a row, relative to the leader.
+Vec2 avoidance(const Recording& run, const Step& row, std::size_t i) {
+  return run.relative_frame ? row.robots[i].chosen : row.robots[i].chosen - row.leader_velocity;
 }
 
 /// sum of v^_i.(v^_i - V_IVO,i).
-double integrand(const Recording& recording, std::size_t k, const RelativeState& s) {
+double integrand(const Recording& run, const Step& row, const RelativeState& s) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < s.velocity.size(); ++i)
-    sum += dot(s.velocity[i], s.velocity[i] - avoidance(recording, k, i));
+  for (std::size_t i = 0; i < s.velocity.size(); ++i) sum += dot(s.velocity[i], s.velocity[i] - avoidance(run, row, i));
   return sum;
 }
 
@@ -75,16 +76,16 @@ double exponential_integral(Vec2 from, Vec2 to, Vec2 a, double k3, double h) {
   return h * dot(w, w - a) + e1 * dot(b, 2.0 * w - a) + e2 * squared_norm(b);
 }
 
-/// Of the integrand over the step from row k on, with the decision and the leader's velocity of that row.
-double integral_over_step(const Recording& recording, std::size_t k) {
-  const double h = recording.time_step;
+/// Of the integrand over the step from a row to the next, with the decision and the leader's velocity of that row.
+double integral_over_step(const Recording& run, const Step& row, const Step& next) {
+  const double h = run.time_step;
   double sum = 0.0;
-  for (std::size_t i = 0; i < recording.steps[k].robots.size(); ++i) {
-    const Vec2 leader = recording.steps[k].leader_velocity, a = avoidance(recording, k, i);
-    const Vec2 from = recording.steps[k].robots[i].velocity - leader;
-    const Vec2 to = recording.steps[k + 1].robots[i].velocity - leader;
-    sum += recording.motion == MotionLaw::exponential ? exponential_integral(from, to, a, recording.tracking_gain, h)
-                                                      : 0.5 * h * (dot(from, from - a) + dot(to, to - a));
+  for (std::size_t i = 0; i < row.robots.size(); ++i) {
+    const Vec2 leader = row.leader_velocity, a = avoidance(run, row, i);
+    const Vec2 from = row.robots[i].velocity - leader;
+    const Vec2 to = next.robots[i].velocity - leader;
+    sum += run.motion == MotionLaw::exponential ? exponential_integral(from, to, a, run.tracking_gain, h)
+                                                : 0.5 * h * (dot(from, from - a) + dot(to, to - a));
   }
   return sum;
 }
@@ -107,41 +108,46 @@ SoundTerms sound_terms(const FormationSpec& f, const RelativeState& s) {
   return t;
 }
 
+/// A step of a run: from one row to the next.
+struct Interval {
+  const Recording& run;
+  const Step& row;
+  const Step& next;
+};
+
 /// u_i at the row's time: of the exact law from both ends of the step, else the difference over the step.
-Vec2 acceleration(const Recording& recording, std::size_t k, std::size_t i) {
-  const Vec2 v = recording.steps[k].robots[i].velocity, next = recording.steps[k + 1].robots[i].velocity;
-  if (recording.motion != MotionLaw::exponential) return (next - v) / recording.time_step;
-  return recording.tracking_gain / -std::expm1(-recording.tracking_gain * recording.time_step) * (next - v);
+Vec2 acceleration(const Interval& p, std::size_t i) {
+  const Vec2 change = p.next.robots[i].velocity - p.row.robots[i].velocity;
+  if (p.run.motion != MotionLaw::exponential) return change / p.run.time_step;
+  return p.run.tracking_gain / -std::expm1(-p.run.tracking_gain * p.run.time_step) * change;
 }
 
-PaperRates paper_rates(const FormationSpec& f, const Recording& recording, std::size_t k, const RelativeState& s) {
+PaperRates paper_rates(const FormationSpec& f, const Interval& p, const RelativeState& s) {
   PaperRates r;
-  for (std::size_t i = 0; i < s.velocity.size(); ++i) r.kinetic += dot(s.velocity[i], acceleration(recording, k, i));
+  for (std::size_t i = 0; i < s.velocity.size(); ++i) r.kinetic += dot(s.velocity[i], acceleration(p, i));
   r.consensus = f.gains.k1 * across(f.topology, s.position, s.velocity);
   r.pinning = f.gains.k1 * pinned(f.topology, s.position, s.velocity);
-  r.integral = f.gains.k3 * integrand(recording, k, s);
+  r.integral = f.gains.k3 * integrand(p.run, p.row, s);
   return r;
 }
 
 /// e_i: what is tracked, whatever the controller (v + u / k3), less the preference of the law that the function belongs
 /// to, consensus term and all: what obstacles, robots and steering ask for.
-Vec2 intervention(const FormationSpec& f, const Recording& recording, std::size_t k, const RelativeState& s,
-                  std::size_t i) {
-  const RobotStep& robot = recording.steps[k].robots[i];
-  const Vec2 tracked = robot.velocity + acceleration(recording, k, i) / f.gains.k3;
-  const Vec2 slotwards = detail::preference(f, Remedies{}, s.position[i], recording.steps[k].leader_velocity, 0.0);
+Vec2 intervention(const FormationSpec& f, const Interval& p, const RelativeState& s, std::size_t i) {
+  const Vec2 tracked = p.row.robots[i].velocity + acceleration(p, i) / f.gains.k3;
+  const Vec2 slotwards = detail::preference(f, Remedies{}, s.position[i], p.row.leader_velocity, 0.0);
   return tracked - slotwards - detail::consensus_input(f, s, i, -1.0) / f.gains.k3;
 }
 
-void add_rates(const FormationSpec& f, const Recording& recording, std::size_t k, const RelativeState& s,
-               LyapunovRow& out) {
+void add_rates(const FormationSpec& f, const Interval& p, const RelativeState& s, LyapunovRow& out) {
   const double consensus = across(f.topology, s.velocity, s.velocity) + pinned(f.topology, s.velocity, s.velocity);
   const double speed2 = sum_of_squares(s.velocity);
-  out.paper_rates = paper_rates(f, recording, k, s);
+  out.has_rates = true;
+  out.paper_rates = paper_rates(f, p, s);
   out.paper_rate = -f.gains.k2 * consensus;
   double along = 0.0, squared = 0.0;
   for (std::size_t i = 0; i < s.velocity.size(); ++i) {
-    const Vec2 e = intervention(f, recording, k, s, i);
+    const Vec2 e = intervention(f, p, s, i);
     along += dot(s.velocity[i], e);
     squared += squared_norm(e);
   }
@@ -149,46 +155,63 @@ void add_rates(const FormationSpec& f, const Recording& recording, std::size_t k
   out.rate_bound = -0.5 * f.gains.k3 * speed2 + 0.5 * f.gains.k3 * squared;
 }
 
-LyapunovCourse course_of(const std::vector<LyapunovRow>& rows, const Recording& recording,
-                         double (*value)(const LyapunovRow&)) {
-  LyapunovCourse c{value(rows.front()), value(rows.back()), value(rows.front()), 0.0};
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    c.least = std::min(c.least, value(rows[k]));
-    if (recording.steps[k].leader_velocity == recording.steps[k - 1].leader_velocity)
-      c.largest_rise = std::max(c.largest_rise, value(rows[k]) - value(rows[k - 1]));
-  }
-  return c;
-}
-
 }  // namespace
 
-std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recording& recording) {
-  EXACTVO_REQUIRE(scenario.formation && recording.offsets.size() == scenario.robots.size(), scenario.name);
-  const FormationSpec& f = *scenario.formation;
-  EXACTVO_REQUIRE(f.topology.adjacency.size() == scenario.robots.size(), scenario.name);
-  std::vector<LyapunovRow> rows;
-  double integral = 0.0;
-  for (std::size_t k = 0; k < recording.steps.size(); ++k) {
-    const Step& row = recording.steps[k];
-    const RelativeState s = relative_state(row, recording.offsets);
-    LyapunovRow out;
-    out.time = row.time;
-    out.paper = paper_terms(f, s, integral);
-    out.sound = sound_terms(f, s);
-    out.has_rates = k + 1 < recording.steps.size();
-    if (out.has_rates) {
-      add_rates(f, recording, k, s, out);
-      integral += integral_over_step(recording, k);
-    }
-    rows.push_back(out);
+namespace detail {
+
+LyapunovWatch::LyapunovWatch(const Scenario& scenario, const Recording& run) : spec_(*scenario.formation), run_(run) {
+  EXACTVO_REQUIRE(run.offsets.size() == scenario.robots.size(), scenario.name);
+  EXACTVO_REQUIRE(spec_.topology.adjacency.size() == scenario.robots.size(), scenario.name);
+}
+
+std::optional<LyapunovRow> LyapunovWatch::add(std::shared_ptr<const Step> row) {
+  std::optional<LyapunovRow> before;
+  if (row_) {
+    add_rates(spec_, {run_, *row_, *row}, state_, values_);
+    integral_ += integral_over_step(run_, *row_, *row);
+    before = values_;
   }
+  state_ = relative_state(*row, run_.offsets);
+  values_ = {};
+  values_.time = row->time;
+  values_.has_rates = false;
+  values_.paper = paper_terms(spec_, state_, integral_);
+  values_.sound = sound_terms(spec_, state_);
+  const bool steady = row_ && row->leader_velocity == row_->leader_velocity;
+  paper_.add(values_.paper.value(), steady);
+  sound_.add(values_.sound.value(), steady);
+  row_ = std::move(row);
+  return before;
+}
+
+void LyapunovWatch::Course::add(double value, bool steady) {
+  if (!begun_) {
+    course = {value, value, value, 0.0};
+    begun_ = true;
+    return;
+  }
+  course.least = std::min(course.least, value);
+  if (steady) course.largest_rise = std::max(course.largest_rise, value - course.last);
+  course.last = value;
+}
+
+}  // namespace detail
+
+std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recording& recording) {
+  EXACTVO_REQUIRE(scenario.formation.has_value(), scenario.name);
+  detail::LyapunovWatch watch(scenario, recording);
+  std::vector<LyapunovRow> rows;
+  for (const Step& step : recording.steps)
+    if (const auto before = watch.add(detail::borrowed(step))) rows.push_back(*before);
+  if (!recording.steps.empty()) rows.push_back(watch.last());
   return rows;
 }
 
-LyapunovSummary summary_of(const std::vector<LyapunovRow>& rows, const Recording& recording) {
-  EXACTVO_REQUIRE(!rows.empty() && rows.size() == recording.steps.size(), std::to_string(rows.size()));
-  return {course_of(rows, recording, [](const LyapunovRow& r) { return r.paper.value(); }),
-          course_of(rows, recording, [](const LyapunovRow& r) { return r.sound.value(); })};
+LyapunovSummary summary_of(const Scenario& scenario, const Recording& recording) {
+  EXACTVO_REQUIRE(scenario.formation.has_value(), scenario.name);
+  detail::LyapunovWatch watch(scenario, recording);
+  for (const Step& step : recording.steps) watch.add(detail::borrowed(step));
+  return watch.summary();
 }
 
 }  // namespace exactvo::formation

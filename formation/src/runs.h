@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The two kinds of run behind `simulate`.
+/// The two kinds of run behind `simulate`: each hands its rows to the sink and writes all else into the recording.
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
@@ -10,9 +10,9 @@
 namespace exactvo::formation::detail {
 
 /// Kinematic robots with goals (Section V.A).
-Recording run_kinematic(const Scenario& scenario, const SimulationOptions& options);
+void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Recording& recording, RunSink& sink);
 
 /// Second-order robots and a virtual leader (Sections IV and V.B). REQUIRES: scenario.formation.
-Recording run_formation(const Scenario& scenario, const SimulationOptions& options);
+void run_formation(const Scenario& scenario, const SimulationOptions& options, Recording& recording, RunSink& sink);
 
 }  // namespace exactvo::formation::detail

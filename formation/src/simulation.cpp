@@ -31,6 +31,42 @@ std::vector<Vec2> offsets_of(const Scenario& scenario, const SimulationOptions& 
   return offsets_in_use(*scenario.formation, remedies_in_use(scenario, options));
 }
 
+/// All rows: the recording has the rest.
+struct RowsKept : RunSink {
+  void begin(const Recording&) override {}
+  void add_body(const vo::Body&) override {}
+  void add_outlook(const Outlook&) override {}
+  void add_row(Step row) override { rows.push_back(std::move(row)); }
+
+  std::vector<Step> rows;
+};
+
+/// Knows how long the sink took, whose time is not the run's.
+class TimedSink : public RunSink {
+ public:
+  explicit TimedSink(RunSink& sink) : sink_(sink) {}
+  void begin(const Recording& run) override {
+    timed([&] { sink_.begin(run); });
+  }
+  void add_body(const vo::Body& body) override { sink_.add_body(body); }
+  void add_outlook(const Outlook& outlook) override { sink_.add_outlook(outlook); }
+  void add_row(Step row) override {
+    timed([&] { sink_.add_row(std::move(row)); });
+  }
+  double seconds() const { return seconds_; }
+
+ private:
+  template <class Work>
+  void timed(const Work& work) {
+    const Clock::time_point start = Clock::now();
+    work();
+    seconds_ += seconds_since(start);
+  }
+
+  RunSink& sink_;
+  double seconds_ = 0.0;
+};
+
 }  // namespace
 
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {
@@ -42,15 +78,24 @@ std::vector<std::string> warnings_before(const Scenario& scenario, const Simulat
 }
 
 Recording simulate(const Scenario& scenario, const SimulationOptions& options) {
+  RowsKept rows;
+  Recording recording = simulate(scenario, options, rows);
+  recording.steps = std::move(rows.rows);
+  return recording;
+}
+
+Recording simulate(const Scenario& scenario, const SimulationOptions& options, RunSink& sink) {
   const std::vector<ScenarioProblem> problems = validate(scenario);
   EXACTVO_REQUIRE(problems.empty(),
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
   const Clock::time_point start = Clock::now();
-  std::vector<std::string> warnings = warnings_before(scenario, options);
-  Recording recording = scenario.formation ? run_formation(scenario, options) : run_kinematic(scenario, options);
-  recording.warnings = std::move(warnings);
+  Recording recording;
+  recording.warnings = warnings_before(scenario, options);
   recording.all_half_planes = options.record_all;
-  recording.wall_time = seconds_since(start);
+  TimedSink timed(sink);
+  scenario.formation ? run_formation(scenario, options, recording, timed)
+                     : run_kinematic(scenario, options, recording, timed);
+  recording.wall_time = seconds_since(start) - timed.seconds();
   return recording;
 }
 

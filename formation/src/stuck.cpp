@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "boundary.h"
 #include "exactvo/formation/balance.h"
@@ -11,21 +12,31 @@
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/velocity_obstacle.h"
 #include "leader.h"
+#include "rows.h"
+#include "stuck_watch.h"
 
 namespace exactvo::formation {
 namespace {
 
 using geometry::norm;
 
-Vec2 target_of(const Scenario& s, const Recording& recording, std::size_t i) {
-  if (!s.formation) return s.robots[i].goals.back();
-  return recording.steps.back().leader_position + recording.offsets[i];
+using detail::StuckWatch;
+
+/// How a run ended.
+struct RunEnd {
+  const Scenario& scenario;
+  const Recording& run;  ///< without its rows
+  const Step& last;
+  const Step* decided;  ///< the row of the last decisions: the last row has none. Null where none were taken
+};
+
+Vec2 target_of(const RunEnd& end, std::size_t i) {
+  if (!end.scenario.formation) return end.scenario.robots[i].goals.back();
+  return end.last.leader_position + end.run.offsets[i];
 }
 
-/// The row of the last decision: the final one has none. Nothing where no decision was taken.
-const RobotStep* last_decision(const Recording& recording, std::size_t robot) {
-  if (recording.steps.size() < 2) return nullptr;
-  return &recording.steps[recording.steps.size() - 2].robots[robot];
+const RobotStep* last_decision(const RunEnd& end, std::size_t robot) {
+  return end.decided ? &end.decided->robots[robot] : nullptr;
 }
 
 bool is_static(const RecordedConstraint& c) {
@@ -92,33 +103,6 @@ std::optional<Equilibrium> equilibrium_of(const StuckReport& r, Vec2 target) {
   return only ? equilibrium_at(*only, r.position, target) : std::nullopt;
 }
 
-// --- How it moved ---
-
-/// s; how long the robot had been slower than kAtRest when the run ended.
-double rest_time_of(const Recording& recording, std::size_t robot) {
-  const std::vector<Step>& steps = recording.steps;
-  std::size_t first = steps.size();
-  while (first > 0 && norm(steps[first - 1].robots[robot].velocity) < kAtRest) --first;
-  return first == steps.size() ? 0.0 : steps.back().time - steps[first].time;
-}
-
-/// A robot's least distance from its goal, and when that was.
-struct Nearest {
-  double time = 0.0;      ///< s
-  double distance = 0.0;  ///< m
-};
-
-/// A slot moves, so that of a formation's robots only the end counts.
-Nearest nearest_of(const Scenario& s, const Recording& recording, Vec2 target, const StuckReport& r) {
-  Nearest nearest{recording.steps.back().time, r.goal_distance};
-  if (s.formation) return nearest;
-  for (const Step& step : recording.steps) {
-    const double distance = norm(target - step.robots[r.robot].position);
-    if (distance < nearest.distance) nearest = {step.time, distance};
-  }
-  return nearest;
-}
-
 // --- Words ---
 
 std::string printed(const char* format, double a, double b = 0.0) {
@@ -131,18 +115,18 @@ std::string length(double x) {
   return std::isfinite(x) ? printed("%.3g m", x) : "infinite (a flat edge)";
 }
 
-std::string motion_words(const Scenario& s, const Recording& recording, const StuckReport& r) {
+std::string motion_words(const RunEnd& run, const StuckReport& r) {
   const std::string speed = printed("%.2g m/s", r.speed);
   if (r.speed < kAtRest)
     return "at rest" + (r.rest_time > 0.0 ? printed(" for %.3g s", r.rest_time) : "") + " (" + speed + ")";
-  const double end = recording.steps.back().time;
-  const bool ran_out = end + 0.5 * recording.time_step >= s.time_limit;
+  const double end = run.last.time;
+  const bool ran_out = end + 0.5 * run.run.time_step >= run.scenario.time_limit;
   return ran_out ? "still moving when time ran out (" + speed + ")"
                  : printed("moving at %.4g s", end) + " (" + speed + ")";
 }
 
 /// Of a robot that went away from where it wanted to, as one that circles does.
-std::string nearest_words(const Nearest& nearest, const StuckReport& r) {
+std::string nearest_words(const StuckWatch::Nearest& nearest, const StuckReport& r) {
   if (r.speed < kAtRest || nearest.distance >= r.goal_distance) return "";
   return printed("; it was nearest at %.4g s, ", nearest.time) + length(nearest.distance) + " away";
 }
@@ -159,28 +143,27 @@ std::string equilibrium_words(const StuckReport& r) {
   return (rests ? ": an unstable equilibrium " : ", sliding off an unstable equilibrium ") + curvature_words(e);
 }
 
-bool is_pressed_by(const Recording& recording, std::size_t robot, std::size_t other) {
-  const RobotStep* decision = last_decision(recording, robot);
+bool is_pressed_by(const RunEnd& end, std::size_t robot, std::size_t other) {
+  const RobotStep* decision = last_decision(end, robot);
   return decision && std::any_of(decision->constraints.begin(), decision->constraints.end(), [&](const auto& c) {
            return c.active && c.source == ConstraintSource::robot && c.index == other;
          });
 }
 
 /// What the one robot that is in the way does itself.
-std::string other_words(const Scenario& s, const Recording& recording, const StuckReport& r,
-                        const RecordedConstraint& by) {
-  const RobotStep& other = recording.steps.back().robots.at(by.index);
-  if (norm(target_of(s, recording, by.index) - other.position) <= s.arrival_tolerance)
-    return s.formation ? ", which is at its slot" : ", which is at its goal";
+std::string other_words(const RunEnd& end, const StuckReport& r, const RecordedConstraint& by) {
+  const RobotStep& other = end.last.robots.at(by.index);
+  if (norm(target_of(end, by.index) - other.position) <= end.scenario.arrival_tolerance)
+    return end.scenario.formation ? ", which is at its slot" : ", which is at its goal";
   if (norm(other.velocity) >= kAtRest) return ", which is moving";
-  return is_pressed_by(recording, by.index, r.robot) ? ": each stands in the other's way" : ", which is at rest";
+  return is_pressed_by(end, by.index, r.robot) ? ": each stands in the other's way" : ", which is at rest";
 }
 
-std::string blocked_words(const Scenario& s, const Recording& recording, const StuckReport& r) {
+std::string blocked_words(const RunEnd& end, const StuckReport& r) {
   const std::vector<RecordedConstraint> by = pressing_of(r);
   const bool walls = by.size() > 1 && std::all_of(by.begin(), by.end(), is_static);
-  std::string text = (walls ? "blocked between " : "blocked by ") + name_of(by, s);
-  if (by.size() == 1 && by.front().source == ConstraintSource::robot) text += other_words(s, recording, r, by.front());
+  std::string text = (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario);
+  if (by.size() == 1 && by.front().source == ConstraintSource::robot) text += other_words(end, r, by.front());
   if (r.equilibrium) text += equilibrium_words(r);
   return text;
 }
@@ -196,19 +179,19 @@ std::string moving_words(const Scenario& s, const RobotStep& decision, const Stu
   return "its velocity is limited by " + name_of(by, s) + (r.equilibrium ? equilibrium_words(r) : "");
 }
 
-std::string cause_words(const Scenario& s, const Recording& recording, const StuckReport& r) {
-  const RobotStep* decision = last_decision(recording, r.robot);
+std::string cause_words(const RunEnd& end, const StuckReport& r) {
+  const RobotStep* decision = last_decision(end, r.robot);
   if (!decision) return "no decision was taken";
   std::string text;
   if (r.speed >= kAtRest) {
-    text =
-        r.binding.empty() && decision->mode != Mode::following ? "no active constraint" : moving_words(s, *decision, r);
+    text = r.binding.empty() && decision->mode != Mode::following ? "no active constraint"
+                                                                  : moving_words(end.scenario, *decision, r);
   } else if (r.binding.empty()) {
     text = "no active constraint";
   } else if (pressing_of(r).empty()) {
     text = "no active constraint changes its velocity";
   } else {
-    text = blocked_words(s, recording, r);
+    text = blocked_words(end, r);
   }
   if (decision->status != lp::Status::optimal && decision->violation > 0.0)
     text += printed("; the half-planes contradict each other by %.2g m/s", decision->violation);
@@ -216,44 +199,70 @@ std::string cause_words(const Scenario& s, const Recording& recording, const Stu
   return text;
 }
 
-std::string sentence(const Scenario& s, const Recording& recording, const StuckReport& r, const Nearest& nearest) {
-  return s.robots[r.robot].id + " is " + length(r.goal_distance) + (s.formation ? " from its slot" : " from its goal") +
-         printed(", at (%.3f, %.3f), ", r.position.x, r.position.y) + motion_words(s, recording, r) + "; " +
-         cause_words(s, recording, r) + nearest_words(nearest, r);
+std::string sentence(const RunEnd& end, const StuckReport& r, const StuckWatch::Nearest& nearest) {
+  return end.scenario.robots[r.robot].id + " is " + length(r.goal_distance) +
+         (end.scenario.formation ? " from its slot" : " from its goal") +
+         printed(", at (%.3f, %.3f), ", r.position.x, r.position.y) + motion_words(end, r) + "; " +
+         cause_words(end, r) + nearest_words(nearest, r);
 }
 
 /// Whether standing elsewhere means anything.
-bool is_settled(const Scenario& scenario, const Recording& recording) {
-  if (!scenario.formation) return true;
-  return !recording.diverged && detail::leader_arrival(scenario.formation->leader) <= recording.steps.back().time;
+bool is_settled(const RunEnd& end) {
+  if (!end.scenario.formation) return true;
+  return !end.run.diverged && detail::leader_arrival(end.scenario.formation->leader) <= end.last.time;
 }
 
-StuckReport report_on(const Scenario& scenario, const Recording& recording, std::size_t robot, Vec2 target) {
-  const RobotStep& end = recording.steps.back().robots[robot];
+StuckReport report_on(const RunEnd& end, std::size_t robot, const StuckWatch::OfRobot& before, Vec2 target) {
+  const RobotStep& state = end.last.robots[robot];
   StuckReport r;
   r.robot = robot;
-  r.position = end.position;
-  r.goal_distance = norm(target - end.position);
-  r.speed = norm(end.velocity);
-  r.rest_time = rest_time_of(recording, robot);
-  if (const RobotStep* decision = last_decision(recording, robot)) r.binding = binding_in(*decision, end.position);
+  r.position = state.position;
+  r.goal_distance = norm(target - state.position);
+  r.speed = norm(state.velocity);
+  if (before.at_rest_since) r.rest_time = end.last.time - *before.at_rest_since;
+  if (const RobotStep* decision = last_decision(end, robot)) r.binding = binding_in(*decision, state.position);
   r.equilibrium = equilibrium_of(r, target);
-  r.text = sentence(scenario, recording, r, nearest_of(scenario, recording, target, r));
+  StuckWatch::Nearest nearest = before.nearest;
+  if (!(nearest.distance < r.goal_distance)) nearest = {end.last.time, r.goal_distance};
+  r.text = sentence(end, r, nearest);
   return r;
 }
 
 }  // namespace
 
-std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording) {
-  EXACTVO_REQUIRE(!recording.steps.empty(), "an empty recording");
+void detail::StuckWatch::add(std::shared_ptr<const Step> row) {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    OfRobot& r = robots_[i];
+    if (!(norm(row->robots[i].velocity) < kAtRest)) {
+      r.at_rest_since.reset();
+    } else if (!r.at_rest_since) {
+      r.at_rest_since = row->time;
+    }
+    if (scenario_.formation) continue;
+    const double distance = norm(scenario_.robots[i].goals.back() - row->robots[i].position);
+    if (distance < r.nearest.distance) r.nearest = {row->time, distance};
+  }
+  decided_ = std::move(last_);
+  last_ = std::move(row);
+}
+
+std::vector<StuckReport> detail::StuckWatch::reports(const Recording& run) const {
+  EXACTVO_REQUIRE(last_ != nullptr, "an empty recording");
+  const RunEnd end{scenario_, run, *last_, decided_.get()};
   std::vector<StuckReport> reports;
-  if (!is_settled(scenario, recording)) return reports;
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-    const Vec2 target = target_of(scenario, recording, i);
-    if (norm(target - recording.steps.back().robots[i].position) <= scenario.arrival_tolerance) continue;
-    reports.push_back(report_on(scenario, recording, i, target));
+  if (!is_settled(end)) return reports;
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const Vec2 target = target_of(end, i);
+    if (norm(target - last_->robots[i].position) <= scenario_.arrival_tolerance) continue;
+    reports.push_back(report_on(end, i, robots_[i], target));
   }
   return reports;
+}
+
+std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording) {
+  detail::StuckWatch watch(scenario);
+  for (const Step& row : recording.steps) watch.add(detail::borrowed(row));
+  return watch.reports(recording);
 }
 
 }  // namespace exactvo::formation

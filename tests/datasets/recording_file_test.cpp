@@ -378,13 +378,20 @@ TEST_F(RecordingFileTest, ARecordingCutShortIsNotTakenForAWholeOne) {
       "line " + std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n')));
 }
 
+void write_table(const std::filesystem::path& path, const RecordingFile& file) {
+  TrajectoryWriter writer(path, file.scenario);
+  for (const formation::Step& row : file.recording.steps) writer.add(row);
+  EXPECT_FALSE(std::filesystem::exists(path));
+  writer.finish();
+}
+
 TEST_F(RecordingFileTest, TheTrajectoryHasARowARobotAndStep) {
-  write_trajectory_csv(folder_ / "t.csv", sample(false));
+  write_table(folder_ / "t.csv", sample(false));
   const std::string text = content_of(folder_ / "t.csv");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 20 * 3);
   EXPECT_EQ(text.find("leader"), std::string::npos);
   EXPECT_NE(text.find("\n0,\"R, \"\"0\"\"\","), std::string::npos);
-  write_trajectory_csv(folder_ / "f.csv", sample(true));
+  write_table(folder_ / "f.csv", sample(true));
   const std::string rows = content_of(folder_ / "f.csv");
   EXPECT_NE(rows.find(",leader_x_m,"), std::string::npos);
 }

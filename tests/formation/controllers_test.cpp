@@ -201,7 +201,7 @@ TEST(Lyapunov, TheIntegralOf18KeepsTheDecisionOfItsStep) {
   // V falls in B0 all along, and to where the exact integral of the held decisions leads.
   const Scenario s = paper_scene("B0");
   const Recording r = simulate(s, test::with_controller(Controller::paper_signs));
-  const LyapunovCourse course = summary_of(lyapunov_along(s, r), r).paper;
+  const LyapunovCourse course = summary_of(s, r).paper;
   EXPECT_EQ(course.largest_rise, 0.0);
   EXPECT_NEAR(course.last, -1406.0, 1.0);
 }

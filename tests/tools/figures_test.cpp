@@ -266,7 +266,8 @@ TEST(LyapunovFigure, HasEveryTermAndTheTableToo) {
                            "'slots'", "'tracking'", "'intervention'", "'bound'"})
     EXPECT_THAT(figure.body, HasSubstr(std::string("title ") + term));
   EXPECT_THAT(figure.data, HasSubstr("0.625"));
-  const std::string table = lyapunov_csv(run.lyapunov);
+  std::string table = lyapunov_csv_head();
+  for (const formation::LyapunovRow& row : run.lyapunov) table += lyapunov_csv_line(row);
   EXPECT_EQ(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')), run.lyapunov.size() + 1);
   EXPECT_THAT(table, HasSubstr(",0.625,"));
 }

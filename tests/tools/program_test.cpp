@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program as a user meets it: what it prints, what it writes, and how it refuses.
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -352,6 +356,44 @@ TEST(Simulate, ACollisionIsSaidToMachines) {
   EXPECT_EQ(here.run("simulate cart.json").status, 0) << "only where asked for";
   const std::string clear = "simulate " + data_file("paper/A1.json") + " --fail-on-collision";
   EXPECT_EQ(here.run(clear).status, 0);
+}
+
+/// MB that the program takes at most.
+double peak_memory(const Workplace& here, const std::vector<std::string>& arguments) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::chdir(here.path().c_str()) != 0 || !std::freopen("/dev/null", "w", stdout) ||
+        !std::freopen("/dev/null", "w", stderr))
+      ::_exit(99);
+    std::vector<char*> argv{const_cast<char*>(EXACTVO_PROGRAM)};
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    ::execv(EXACTVO_PROGRAM, argv.data());
+    ::_exit(99);
+  }
+  int status = 0;
+  struct rusage used {};
+  EXPECT_EQ(::wait4(child, &status, 0, &used), child);
+  EXPECT_EQ(status, 0);
+  return static_cast<double>(used.ru_maxrss) / 1024.0;
+}
+
+TEST(Simulate, MemoryDoesNotGrowWithTheRun) {
+  const Workplace here;
+  // A robot that waits for ever before a wall.
+  const auto scenario = [](int seconds) {
+    return R"({ "name": "wait", "time_limit": )" + std::to_string(seconds) + R"(,
+      "robots": [ { "id": "R", "position": [0, 0], "goal": [8, 0] } ],
+      "obstacles": [ { "id": "U", "polyline": [[2, -4], [4, -4], [4, 4], [2, 4]] } ] })";
+  };
+  here.write("short.json", scenario(200));
+  here.write("long.json", scenario(2000));
+  const double less =
+      peak_memory(here, {"simulate", "short.json", "--method", "ivo-edge", "--out", "short", "--no-figures"});
+  const double more =
+      peak_memory(here, {"simulate", "long.json", "--method", "ivo-edge", "--out", "long", "--no-figures"});
+  EXPECT_EQ(json::parse(here.read("long/metrics.json"))["steps"], 40000);
+  EXPECT_LT(more - less, 5.0) << less << " MB for 4,000 rows, " << more << " MB for 40,000";
 }
 
 TEST(Audit, AnObstacleThatMovesIsOne) {

@@ -5,7 +5,6 @@
 /// Both Lyapunov functions along a run, term by term (formation/lyapunov.h).
 
 #include <string>
-#include <vector>
 
 #include "exactvo/datasets/recording_file.h"
 #include "figures/figure.h"
@@ -16,7 +15,8 @@ namespace exactvo::tools {
 /// REQUIRES: a formation's run with its rows of `lyapunov`.
 Figure lyapunov_figure(const datasets::RecordingFile& run);
 
-/// A row a row, units in the column names.
-std::string lyapunov_csv(const std::vector<formation::LyapunovRow>& rows);
+/// The same as a table: its head, with units in the column names, and the line of one row.
+std::string lyapunov_csv_head();
+std::string lyapunov_csv_line(const formation::LyapunovRow& row);
 
 }  // namespace exactvo::tools

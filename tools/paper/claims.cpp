@@ -210,7 +210,7 @@ auto of_paper_function(const char* key) {
 Claim lyapunov_falls(const ReportData& data) {
   const Runs signs = formation_runs(data, "paper-signs");
   const formation::Counterexample c = formation::theorem_one_counterexample();
-  const auto course = summary_of(lyapunov_along(c.scenario, c.recording), c.recording).paper;
+  const auto course = summary_of(c.scenario, c.recording).paper;
   const double lost = c.recording.steps.back().robots.front().position.x;
   const bool proves = course.least >= 0.0 || lost < formation::kFormed;  // what a Lyapunov function would show
   const auto error = number("formation_position_error");

@@ -98,7 +98,7 @@ class Experiments {
     options.controller = controller;
     const auto provenance = datasets::make_provenance(flags_.command_line, flags_.seed, {file});
     line_.show(static_cast<double>(metrics_.size()), scenario_name + " " + name(method));
-    FinishedRun finished = run(datasets::load_scenario(file), options, provenance);
+    FinishedRun finished = run(datasets::load_scenario(file), options, provenance, {{}, !flags_.no_figures, {}});
     metrics_.push_back(finished.metrics_json());
     return finished;
   }

@@ -14,9 +14,9 @@
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "figures/gnuplot.h"
-#include "figures/lyapunov_figure.h"
 #include "figures/run_figures.h"
 #include "support/files.h"
+#include "support/run_recorder.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {
@@ -50,23 +50,20 @@ std::string FinishedRun::metrics_json() const {
 }
 
 FinishedRun run(const Scenario& scenario, SimulationOptions options, const datasets::Provenance& provenance,
-                const std::function<void(double)>& progress) {
+                const RunOutput& output) {
   options.progress = [&](double time) {
-    if (progress) progress(time);
+    if (output.progress) output.progress(time);
     return !interrupted();
   };
-  formation::Recording recording = simulate(scenario, options);
+  datasets::RecordingFile about;
+  about.info = run_info(scenario, options, provenance);
+  about.scenario = scenario;
+  RunRecorder recorder(std::move(about), output.folder, output.figures);
+  formation::Recording recording = simulate(scenario, options, recorder);
   if (interrupted()) throw Interrupted();
-  formation::Evaluation found = evaluate(scenario, recording);
   FinishedRun finished;
-  finished.metrics = std::move(found.metrics);
-  finished.file.info = run_info(scenario, options, provenance);
-  finished.file.scenario = scenario;
-  finished.file.recording = std::move(recording);
-  finished.file.lyapunov = std::move(found.lyapunov);
-  finished.file.stuck = std::move(found.stuck);
-  finished.file.collisions = finished.metrics.collisions;
-  finished.file.outcome = finished.metrics.outcome;
+  finished.metrics = recorder.finish(std::move(recording), finished.file);
+  if (!output.folder.empty()) write_text(output.folder / "metrics.json", finished.metrics_json());
   return finished;
 }
 
@@ -97,13 +94,6 @@ void check_same_run(const fs::path& folder, const RunName& run) {
   throw datasets::DataError(datasets::DataCode::other_run, folder.string(), "",
                             "an earlier run of " + in_words(*earlier),
                             "an earlier run of " + in_words(run) + ", another folder, or --force to replace it");
-}
-
-void write_results(const FinishedRun& run, const fs::path& folder) {
-  write_recording(folder / "recording.jsonl", run.file);
-  write_trajectory_csv(folder / "trajectory.csv", run.file);
-  if (!run.file.lyapunov.empty()) write_text(folder / "lyapunov.csv", lyapunov_csv(run.file.lyapunov));
-  write_text(folder / "metrics.json", run.metrics_json());
 }
 
 std::vector<fs::path> write_figures(const FinishedRun& run, const fs::path& folder) {

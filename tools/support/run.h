@@ -18,14 +18,21 @@
 namespace exactvo::tools {
 
 struct FinishedRun {
-  datasets::RecordingFile file;
+  datasets::RecordingFile file;  ///< of the rows those that figures show (run_recorder.h)
   formation::Metrics metrics;
   std::string metrics_json() const;
 };
 
-/// Runs the scenario and measures it. Throws Interrupted where the user stopped it.
+struct RunOutput {
+  std::filesystem::path folder = {};               ///< must exist; nothing is written where it is empty
+  bool figures = true;                             ///< whether any will be drawn
+  std::function<void(double)> progress = nullptr;  ///< gets the simulated time, s
+};
+
+/// Runs the scenario and measures it, and writes recording.jsonl, trajectory.csv, metrics.json and, of a formation,
+/// lyapunov.csv as it goes: memory does not grow with the run. Throws Interrupted where the user stopped it.
 FinishedRun run(const formation::Scenario& scenario, formation::SimulationOptions options,
-                const datasets::Provenance& provenance, const std::function<void(double)>& progress = {});
+                const datasets::Provenance& provenance, const RunOutput& output = {});
 
 /// What tells one run from another in a folder.
 struct RunName {
@@ -44,9 +51,6 @@ std::optional<RunName> run_in(const std::filesystem::path& folder);
 
 /// Throws datasets::DataError (E_OTHER_RUN) if the folder holds an earlier run of another name.
 void check_same_run(const std::filesystem::path& folder, const RunName& run);
-
-/// recording.jsonl, trajectory.csv and metrics.json in `folder`, which must exist.
-void write_results(const FinishedRun& run, const std::filesystem::path& folder);
 
 /// The figures' data and scripts in `folder`, which is created. Returns the scripts, for `draw`.
 std::vector<std::filesystem::path> write_figures(const FinishedRun& run, const std::filesystem::path& folder);

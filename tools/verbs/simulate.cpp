@@ -109,14 +109,16 @@ void announce(const formation::Scenario& scenario, const formation::SimulationOp
       s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate, s.euler_step_limit, scenario.time_step));
 }
 
-FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read,
-                              const formation::SimulationOptions& options) {
+/// Into the folder, which may be none.
+FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options,
+                              const std::filesystem::path& folder) {
   const formation::Scenario& scenario = read.scenario;
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
   ProgressLine line(scenario.time_limit, "s simulated");
   line.show(0.0, scenario.name);  // the shapes of many robots take a while before the first step
-  const EndsAtOnce nothing_is_written;
-  return run(scenario, options, provenance, [&](double time) { line.show(time, scenario.name); });
+  const EndsAtOnce nothing_is_published;
+  const bool figures = !folder.empty() && !flags.no_figures;
+  return run(scenario, options, provenance, {folder, figures, [&](double time) { line.show(time, scenario.name); }});
 }
 
 void print_results(const Flags& flags, const FinishedRun& finished) {
@@ -124,19 +126,26 @@ void print_results(const Flags& flags, const FinishedRun& finished) {
 }
 
 /// Printed before it is published: where stdout takes no more, nothing is written at all.
-void print_and_write(const Flags& flags, const FinishedRun& finished) {
+FinishedRun run_into_folder(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options) {
   const std::optional<RunName> replaced = run_in(flags.out);
   StagedFolder folder(flags.out);
-  {
+  FinishedRun finished = run_with_progress(flags, read, options, folder.path());
+  if (!flags.no_figures) {
     const EndsAtOnce nothing_is_published;
-    write_results(finished, folder.path());
-    if (!flags.no_figures) draw(write_figures(finished, folder.path() / "figures"));
+    draw(write_figures(finished, folder.path() / "figures"));
   }
   if (interrupted()) throw Interrupted();
   print_results(flags, finished);
   if (flags.no_figures) remove_figures(flags.out);
   folder.publish("metrics.json");
   message("wrote " + flags.out + (replaced ? ", in place of an earlier run of " + in_words(*replaced) : ""));
+  return finished;
+}
+
+FinishedRun run_and_print(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options) {
+  FinishedRun finished = run_with_progress(flags, read, options, {});
+  print_results(flags, finished);
+  return finished;
 }
 
 ExitCode simulate(const Flags& flags) {
@@ -153,8 +162,8 @@ ExitCode simulate(const Flags& flags) {
     const EndsAtOnce nothing_is_written;
     announce(scenario, options);
   }
-  const FinishedRun finished = run_with_progress(flags, read, options);
-  flags.out.empty() ? print_results(flags, finished) : print_and_write(flags, finished);
+  const FinishedRun finished =
+      flags.out.empty() ? run_and_print(flags, read, options) : run_into_folder(flags, read, options);
   const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
   return failed ? ExitCode::negative : ExitCode::success;
 }

@@ -94,6 +94,9 @@ void SequenceAudit::check_row(std::size_t row) {
     ask(is_on_way(*leader_, motion, step.time, step.leader_position - start, step.leader_velocity), row,
         "the leader is not where its path has it");
   }
+  const bool decides = row + 1 < file_.recording.steps.size();
+  if (decides && step.moving.size() != file_.scenario.moving_obstacles.size())
+    tally_.refuted(AuditPoint::sequence, at_row(row, "it does not say where the moving obstacles are"));
   for (std::size_t k = 0; k < step.moving.size(); ++k) {
     const formation::MovingObstacle& o = file_.scenario.moving_obstacles[k];
     ask(is_on_way(ways_[k], o.motion, step.time, step.moving[k].displacement, step.moving[k].velocity), row,

@@ -41,19 +41,29 @@ std::string csv_row(const formation::Step& step, const formation::RobotStep& rob
 
 }  // namespace
 
-void write_trajectory_csv(const std::filesystem::path& path, const RecordingFile& file) {
-  const bool has_leader = file.scenario.formation.has_value();
-  AtomicFile out(path);
-  out.write(
+struct TrajectoryWriter::State {
+  AtomicFile out;
+  const formation::Scenario& scenario;
+};
+
+TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario)
+    : state_(new State{AtomicFile(path), scenario}) {
+  state_->out.write(
       "time_s,robot,x_m,y_m,vx_m_s,vy_m_s,preferred_vx_m_s,preferred_vy_m_s,chosen_vx_m_s,chosen_vy_m_s,status,mode,"
       "side");
-  out.write(has_leader ? ",leader_x_m,leader_y_m,leader_vx_m_s,leader_vy_m_s\n" : "\n");
-  for (const formation::Step& step : file.recording.steps) {
-    for (std::size_t i = 0; i < step.robots.size(); ++i) {
-      out.write(csv_row(step, step.robots[i], file.scenario.robots.at(i).id, has_leader));
-    }
-  }
-  out.commit();
+  state_->out.write(scenario.formation ? ",leader_x_m,leader_y_m,leader_vx_m_s,leader_vy_m_s\n" : "\n");
+}
+
+TrajectoryWriter::~TrajectoryWriter() = default;
+
+void TrajectoryWriter::add(const formation::Step& row) {
+  for (std::size_t i = 0; i < row.robots.size(); ++i)
+    state_->out.write(
+        csv_row(row, row.robots[i], state_->scenario.robots.at(i).id, state_->scenario.formation.has_value()));
+}
+
+void TrajectoryWriter::finish() {
+  state_->out.commit();
 }
 
 }  // namespace exactvo::datasets

@@ -63,6 +63,17 @@ Vec2 nearest_on(const std::pair<Vec2, Vec2>& edge, Vec2 p) {
   return edge.first + t * e;
 }
 
+/// Ends may be as far away as doubles go: by long doubles, and without the nearest point.
+long double distance_from_edge(const std::pair<Vec2, Vec2>& edge, Vec2 p) {
+  const auto [a, b] = edge;
+  const long double ex = static_cast<long double>(b.x) - a.x, ey = static_cast<long double>(b.y) - a.y;
+  const long double ax = static_cast<long double>(p.x) - a.x, ay = static_cast<long double>(p.y) - a.y;
+  const long double bx = static_cast<long double>(p.x) - b.x, by = static_cast<long double>(p.y) - b.y;
+  if (ax * ex + ay * ey <= 0.0L) return std::hypot(ax, ay);
+  if (bx * ex + by * ey >= 0.0L) return std::hypot(bx, by);
+  return std::fabs(ex * ay - ey * ax) / std::hypot(ex, ey);
+}
+
 bool inside(const Outline& o, Vec2 p) {
   bool in = false;
   for (const auto& [a, b] : o.edges)
@@ -104,11 +115,20 @@ json without_repeated_vertices(const json& curve) {
   return kept;
 }
 
+/// From its least vertex on, towards the lesser of that one's neighbours: a ring begins anywhere and goes either way.
+json ring_in_order(const json& ring) {
+  json vertices = without_repeated_vertices(ring);
+  if (vertices.size() > 1 && vertices.front() == vertices.back()) vertices.erase(vertices.size() - 1);
+  std::rotate(vertices.begin(), std::min_element(vertices.begin(), vertices.end()), vertices.end());
+  if (vertices.size() > 2 && vertices.back() < vertices[1]) std::reverse(vertices.begin() + 1, vertices.end());
+  return vertices;
+}
+
 bool is_same_scenario(const json& a, const json& b);
 
 bool is_same_member(const std::string& key, const json& a, const json& b) {
-  if (key == "polygon" || key == "polyline" || key == "path")
-    return without_repeated_vertices(a) == without_repeated_vertices(b);
+  if (key == "polygon") return ring_in_order(a) == ring_in_order(b);
+  if (key == "polyline" || key == "path") return without_repeated_vertices(a) == without_repeated_vertices(b);
   if (key != "holes") return is_same_scenario(a, b);
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const json& c, const json& d) { return is_same_member("polygon", c, d); });
@@ -197,10 +217,7 @@ struct Shape {
       return x * x + y * y <= det * det * (1.0 + 1e-9);
     }
     if (radius > 0.0) return norm(p - corners[0]) <= radius + kClose;
-    if (corners.size() < 3) {
-      const std::pair<Vec2, Vec2> edge{corners.front(), corners.back()};
-      return norm(p - nearest_on(edge, p)) <= kClose;
-    }
+    if (corners.size() < 3) return distance_from_edge({corners.front(), corners.back()}, p) <= kClose;
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const Vec2 e = corners[(k + 1) % corners.size()] - corners[k];
       if (cross(e, p - corners[k]) < -kClose * (norm(e) + 1.0)) return false;
@@ -308,7 +325,7 @@ class Opinion {
   std::string operator()() {
     for (std::size_t k = 0; k < rows_.size() && why_.empty(); ++k) {
       state(k);
-      if (k + 1 < rows_.size()) {
+      if (k + 1 < rows_.size() && why_.empty()) {
         step(k);
         motion(k);
         for (std::size_t i = 0; i < rows_[k].robots.size(); ++i) decision(k, i);
@@ -368,6 +385,8 @@ class Opinion {
     if (is_formation() &&
         (norm(row.leader - leader_.at(row.time)) > kClose || !moves_so(leader_, row.time, row.leader_velocity)))
       wrong("row " + std::to_string(k) + ": the leader");
+    if (row.moving.size() != (k + 1 < rows_.size() ? moving_.size() : 0))
+      return wrong("row " + std::to_string(k) + ": the number of moving obstacles");
     for (std::size_t m = 0; m < row.moving.size(); ++m)
       if (norm(row.moving[m].first - (movers_[m].at(row.time) - movers_[m].path.front())) > kClose ||
           !moves_so(movers_[m], row.time, row.moving[m].second))

@@ -71,8 +71,20 @@ RecordingFile read_recording(const std::filesystem::path& path);
 /// The same from the file's text; `file_name` is used in messages.
 RecordingFile parse_recording(const std::string& text, const std::string& file_name);
 
-/// One row a robot and step: time, robot, state, preferred and chosen velocity, status, mode, side; with a formation
-/// also the leader's state. Units stand in the column names. Same atomicity.
-void write_trajectory_csv(const std::filesystem::path& path, const RecordingFile& file);
+/// The table of a run as it is made, one row per robot and step: time, robot, state, preferred and chosen velocity,
+/// status, mode, side; with a formation also the leader's state. Units stand in the column names. Whole or not at all,
+/// as RecordingWriter.
+class TrajectoryWriter {
+ public:
+  /// `scenario` must outlive the writer.
+  TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario);
+  ~TrajectoryWriter();
+  void add(const formation::Step& row);
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace exactvo::datasets

@@ -78,8 +78,8 @@ struct LyapunovSummary {
   LyapunovCourse paper;
   LyapunovCourse sound;
 };
-/// REQUIRES: rows that lyapunov_along gave for this recording, at least one.
-LyapunovSummary summary_of(const std::vector<LyapunovRow>& rows, const Recording& recording);
+/// REQUIRES: a formation's recording of this scenario, with a row.
+LyapunovSummary summary_of(const Scenario& scenario, const Recording& recording);
 
 /// The counterexample to Theorem 1 (docs/guide/formation.md): three robots at rest on their slots, equations (14) and
 /// (15) with their signs mended, and an avoidance that asks robot 1 for a constant `push` (m/s) relative to the leader.

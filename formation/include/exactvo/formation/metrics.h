@@ -10,6 +10,8 @@
 /// its depth.
 
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,6 +96,26 @@ struct Evaluation {
 
 /// `measure`, `lyapunov_along` and `explain_stuck` in one pass, nothing computed twice.
 Evaluation evaluate(const Scenario& scenario, const Recording& recording);
+
+/// The same of a run as it is made: takes one row after the other and keeps the last two, so that its memory does not
+/// grow with the run.
+class Evaluator {
+ public:
+  /// Gets every row once, in order, as soon as all is known of it: of a formation what the Lyapunov functions are there
+  /// (else null), whose rates need the next row.
+  using TakeRow = std::function<void(const Step& row, const LyapunovRow* lyapunov)>;
+
+  /// Of `run` what is known before the first row. `scenario` must outlive the evaluator.
+  Evaluator(const Scenario& scenario, const Recording& run, TakeRow take_row = {});
+  ~Evaluator();
+  void add(std::shared_ptr<const Step> row);
+  /// Of `run` how it ended: outcome, warnings, wall time. The evaluation has no `lyapunov`. REQUIRES: a row.
+  Evaluation finish(const Recording& run);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 /// m: contact is spoken of from this depth on. Certified clearances lie below the true ones by less than it up to 10 km
 /// from the origin (four times 2^-46 of the coordinates), so two robots that keep exactly their distance do not touch.

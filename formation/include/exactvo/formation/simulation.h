@@ -69,6 +69,22 @@ std::vector<std::string> warnings_before(const Scenario& scenario, const Simulat
 /// REQUIRES: a valid scenario (`validate`).
 Recording simulate(const Scenario& scenario, const SimulationOptions& options = {});
 
+/// Takes a run as it is made, so that a run of any length needs constant memory.
+class RunSink {
+ public:
+  virtual ~RunSink() = default;
+  /// First of all. `run` has what is known before the first row: warnings, motion, time step, gains, offsets, remedies.
+  virtual void begin(const Recording& run) = 0;
+  /// Bodies come in the order of their numbers, each before what names it.
+  virtual void add_body(const vo::Body& body) = 0;
+  virtual void add_outlook(const Outlook& outlook) = 0;
+  /// Rows come in the order of time; the last one is the final state.
+  virtual void add_row(Step row) = 0;
+};
+
+/// The same run into a sink; the recording that is returned has all but the rows.
+Recording simulate(const Scenario& scenario, const SimulationOptions& options, RunSink& sink);
+
 /// What is wrong with a scenario, in words, one a line; empty when it can be run. Each names the JSON pointer of the
 /// field.
 struct ScenarioProblem {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Rows of a run on their way from where they are made to those that read them.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "exactvo/formation/simulation.h"
+#include "exactvo/vo/constraint.h"
+
+namespace exactvo::formation::detail {
+
+/// Of a row that outlives all who read it.
+inline std::shared_ptr<const Step> borrowed(const Step& row) {
+  return {std::shared_ptr<void>(), &row};
+}
+
+/// Hands rows to a sink, before each what is new among the bodies and outlooks that it may name.
+class RowFeed {
+ public:
+  /// All must outlive the feed.
+  RowFeed(const vo::BodyTable& bodies, const std::vector<Outlook>& outlooks, RunSink& sink)
+      : bodies_(bodies), outlooks_(outlooks), sink_(sink) {}
+
+  void add(Step row) {
+    for (; told_bodies_ < bodies_.size(); ++told_bodies_) sink_.add_body(bodies_[told_bodies_]);
+    for (; told_outlooks_ < outlooks_.size(); ++told_outlooks_) sink_.add_outlook(outlooks_[told_outlooks_]);
+    sink_.add_row(std::move(row));
+  }
+
+ private:
+  const vo::BodyTable& bodies_;
+  const std::vector<Outlook>& outlooks_;
+  RunSink& sink_;
+  std::size_t told_bodies_ = 0, told_outlooks_ = 0;
+};
+
+}  // namespace exactvo::formation::detail

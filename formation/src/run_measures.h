@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The metrics of a run that rows add up to: paths, arrivals, a formation's course, jitter, counts. Rounded.
+
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "exactvo/formation/metrics.h"
+
+namespace exactvo::formation::detail {
+
+/// m: how far a robot of a formation is from its slot.
+double slot_error(const Step& row, const std::vector<Vec2>& offsets, std::size_t robot);
+
+/// Since when an error stays within a tolerance.
+class SettledSince {
+ public:
+  void add(double time, double error, double tolerance) {
+    if (!(error <= tolerance)) {
+      since_.reset();
+    } else if (!since_) {
+      since_ = time;
+    }
+  }
+  const std::optional<double>& since() const { return since_; }
+
+ private:
+  std::optional<double> since_;
+};
+
+/// Takes the rows of a run one after the other, and keeps of them what the next one needs.
+class RunMeasures {
+ public:
+  /// Of `run` what is known before the first row: time step, offsets. Both must outlive it.
+  RunMeasures(const Scenario& scenario, const Recording& run);
+  void add(const Step& row);
+  /// Of the rows so far, at least one. Writes all of `m` that is no clearance, word or Lyapunov function.
+  void write_to(Metrics& m) const;
+
+ private:
+  /// What binds, whatever the order.
+  using ActiveSet = std::vector<std::tuple<ConstraintSource, std::size_t, std::size_t>>;
+  static ActiveSet active_set(const RobotStep& step);
+
+  struct OfRobot {
+    Vec2 position, velocity;  ///< in the last row
+    std::optional<Vec2> acceleration;
+    double path_length = 0.0;
+    std::size_t goal = 0;  ///< which it heads for
+    SettledSince settled;
+    double direct_way = 0.0;  ///< m, of a formation: to its slot and on with the leader
+    double largest_slot_error = 0.0, largest_slot_error_at = 0.0;
+    double jitter = 0.0, velocity_variation = 0.0, peak_acceleration = 0.0;
+    double last_turn = 0.0;
+    std::size_t reversals = 0;
+    ActiveSet active;
+  };
+
+  void add_motion(OfRobot& r, const RobotStep& step) const;
+  void add_turn(OfRobot& r, Vec2 velocity) const;
+  void add_decision(OfRobot& r, const RobotStep& step);
+  void add_arrival(std::size_t robot, const Step& row);
+  void add_to_course(const Step& row);
+  void write_formation(Metrics& m) const;
+  void write_arrivals(Metrics& m) const;
+  void write_course(Metrics& m) const;
+  void write_detours(Metrics& m) const;
+  double direct_way(std::size_t robot) const;
+
+  /// Counts of decisions. Those of the last row are no decision's, so a row counts when the next one comes.
+  struct Counts {
+    std::size_t relaxed = 0, uncertified = 0, switches = 0;
+  };
+
+  const Scenario& scenario_;
+  const Recording& run_;
+  std::vector<OfRobot> robots_;
+  std::size_t rows_ = 0;
+  Counts counted_, of_last_row_;
+  std::optional<double> first_formed_;
+  SettledSince formed_;
+  Step last_;  ///< the last row, without its decisions
+};
+
+}  // namespace exactvo::formation::detail

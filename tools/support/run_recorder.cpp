@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support/run_recorder.h"
+
+#include <utility>
+
+#include "figures/lyapunov_figure.h"
+
+namespace exactvo::tools {
+
+using datasets::RecordingFile;
+using formation::LyapunovRow;
+using formation::Step;
+
+namespace {
+
+/// What figures show of a row.
+Step without_half_planes(const Step& row) {
+  Step shown;
+  shown.time = row.time;
+  shown.leader_position = row.leader_position;
+  shown.leader_velocity = row.leader_velocity;
+  shown.robots.reserve(row.robots.size());
+  for (const formation::RobotStep& r : row.robots) {
+    formation::RobotStep& robot = shown.robots.emplace_back();
+    robot.position = r.position;
+    robot.velocity = r.velocity;
+  }
+  return shown;
+}
+
+template <typename T>
+void keep_every_second(std::vector<T>& all) {
+  for (std::size_t k = 1; 2 * k < all.size(); ++k) all[k] = std::move(all[2 * k]);
+  all.resize((all.size() + 1) / 2);
+}
+
+}  // namespace
+
+void ShownRows::add(const Step& row, const LyapunovRow* lyapunov) {
+  if (last_is_extra_) {
+    rows_.pop_back();
+    if (!lyapunov_.empty()) lyapunov_.pop_back();
+  }
+  if ((rows_.size() + 1) * row.robots.size() > kMostStates && rows_.size() > 2) thin();
+  rows_.push_back(without_half_planes(row));
+  if (lyapunov) lyapunov_.push_back(*lyapunov);
+  last_is_extra_ = count_ % every_ != 0;
+  ++count_;
+}
+
+void ShownRows::thin() {
+  keep_every_second(rows_);
+  keep_every_second(lyapunov_);
+  every_ *= 2;
+}
+
+void ShownRows::move_to(RecordingFile& file) {
+  file.recording.steps = std::move(rows_);
+  file.lyapunov = std::move(lyapunov_);
+}
+
+struct RunRecorder::Files {
+  Files(const std::filesystem::path& folder, const RecordingFile& about)
+      : recording(folder / "recording.jsonl", about), trajectory(folder / "trajectory.csv", about.scenario) {
+    if (!about.scenario.formation) return;
+    lyapunov.emplace(folder / "lyapunov.csv");
+    lyapunov->write(lyapunov_csv_head());
+  }
+
+  datasets::RecordingWriter recording;
+  datasets::TrajectoryWriter trajectory;
+  std::optional<datasets::AtomicFile> lyapunov;
+};
+
+RunRecorder::RunRecorder(RecordingFile about, std::filesystem::path folder, bool has_figures)
+    : about_(std::move(about)), folder_(std::move(folder)), has_figures_(has_figures) {}
+
+void RunRecorder::begin(const formation::Recording& run) {
+  about_.recording = run;
+  if (!folder_.empty()) files_ = std::make_shared<Files>(folder_, about_);
+  evaluator_.emplace(about_.scenario, about_.recording,
+                     [this](const Step& row, const LyapunovRow* lyapunov) { take(row, lyapunov); });
+}
+
+void RunRecorder::add_row(Step row) {
+  evaluator_->add(std::make_shared<const Step>(std::move(row)));
+  outlooks_of_last_ = std::exchange(outlooks_of_next_, {});
+}
+
+void RunRecorder::take(const Step& row, const LyapunovRow* lyapunov) {
+  if (has_figures_) shown_.add(row, lyapunov);
+  if (!files_) return;
+  for (const formation::Outlook& outlook : outlooks_of_last_) files_->recording.add(outlook, bodies_);
+  files_->recording.add(row, bodies_, lyapunov);
+  files_->trajectory.add(row);
+  if (files_->lyapunov && lyapunov) files_->lyapunov->write(lyapunov_csv_line(*lyapunov));
+}
+
+formation::Metrics RunRecorder::finish(formation::Recording run, RecordingFile& file) {
+  formation::Evaluation found = evaluator_->finish(run);
+  file = std::move(about_);
+  file.recording = std::move(run);
+  shown_.move_to(file);
+  file.stuck = std::move(found.stuck);
+  file.collisions = found.metrics.collisions;
+  file.outcome = found.metrics.outcome;
+  if (files_) {
+    files_->recording.finish(file);
+    files_->trajectory.finish();
+    if (files_->lyapunov) files_->lyapunov->commit();
+    files_.reset();
+  }
+  return std::move(found.metrics);
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A run on its way to its files: every row is measured and written as it is made and then forgotten, but for those
+/// that figures show.
+///
+/// Neighbours: run.h runs a scenario into one.
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/recording_file.h"
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/simulation.h"
+
+namespace exactvo::tools {
+
+/// Rows for figures: all of a short run, of a long one every second, fourth and so on, and always the last one. Without
+/// half-planes, which no figure of a run shows.
+class ShownRows {
+ public:
+  /// Of all robots together; 256 bytes each.
+  static constexpr std::size_t kMostStates = 200'000;
+
+  void add(const formation::Step& row, const formation::LyapunovRow* lyapunov);
+  void move_to(datasets::RecordingFile& file);
+
+ private:
+  void thin();
+
+  std::vector<formation::Step> rows_;
+  std::vector<formation::LyapunovRow> lyapunov_;  ///< of the same rows, of a formation
+  std::size_t count_ = 0;                         ///< rows so far
+  std::size_t every_ = 1;
+  bool last_is_extra_ = false;  ///< the last one is kept only until the next comes
+};
+
+class RunRecorder : public formation::RunSink {
+ public:
+  /// `about`: what is known before the run. `folder` must exist; nothing is written where it is empty. Without
+  /// `has_figures` no row is kept for them.
+  RunRecorder(datasets::RecordingFile about, std::filesystem::path folder, bool has_figures = true);
+
+  void begin(const formation::Recording& run) override;
+  void add_body(const vo::Body& body) override { bodies_.push_back(body); }
+  void add_outlook(const formation::Outlook& outlook) override { outlooks_of_next_.push_back(outlook); }
+  void add_row(formation::Step row) override;
+
+  /// `run` is what the simulation returned. Afterwards recording.jsonl, trajectory.csv and, of a formation,
+  /// lyapunov.csv stand in the folder, and `file` has the whole but for the rows that no figure shows.
+  formation::Metrics finish(formation::Recording run, datasets::RecordingFile& file);
+
+ private:
+  struct Files;
+  void take(const formation::Step& row, const formation::LyapunovRow* lyapunov);
+
+  datasets::RecordingFile about_;
+  std::filesystem::path folder_;
+  bool has_figures_;
+  std::shared_ptr<Files> files_;
+  std::optional<formation::Evaluator> evaluator_;
+  ShownRows shown_;
+  std::vector<vo::Body> bodies_;
+  /// A row is written when the next one comes, and the outlooks that came before it stand before it in the file.
+  std::vector<formation::Outlook> outlooks_of_last_, outlooks_of_next_;
+};
+
+}  // namespace exactvo::tools
