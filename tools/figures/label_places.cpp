@@ -44,23 +44,37 @@ double LabelPlaces::room_round(Vec2 p) const {
   return room;
 }
 
-std::optional<Vec2> LabelPlaces::place_beside(Vec2 p, double radius, bool must) {
-  Vec2 best = p;
+/// The first with room enough, else the one with the most.
+std::optional<Vec2> LabelPlaces::best_of(const Points& places, bool must) {
+  Vec2 best = places.front();
   double most = -2.0;
-  for (const double out : {18.0, 30.0, 44.0}) {
-    if (out > 30.0 && !must) break;  // so far off a time seems to be another robot's
-    for (const int turn : {1, 7, 3, 5, 0, 4, 2, 6}) {
-      const double angle = 0.25 * kPi * turn, away = radius + out / scale_;
-      const Vec2 place = p + Vec2{1.2 * away * std::cos(angle), away * std::sin(angle)};
-      const double room = most >= kEnough ? -2.0 : room_round(place);
-      if (room <= most) continue;
-      best = place;
-      most = room;
-    }
+  for (const Vec2 place : places) {
+    const double room = most >= kEnough ? -2.0 : room_round(place);
+    if (room <= most) continue;
+    best = place;
+    most = room;
   }
   if (!must && most <= 0.0) return std::nullopt;
   labels_.push_back(best);
   return best;
+}
+
+std::optional<Vec2> LabelPlaces::place_beside(Vec2 p, double radius, bool must) {
+  Points places;
+  for (const double out : {18.0, 30.0, 44.0}) {
+    if (out > 30.0 && !must) break;  // so far off a time seems to be another robot's
+    for (const int turn : {1, 7, 3, 5, 0, 4, 2, 6}) {
+      const double angle = 0.25 * kPi * turn, away = radius + out / scale_;
+      places.push_back(p + Vec2{1.2 * away * std::cos(angle), away * std::sin(angle)});
+    }
+  }
+  return best_of(places, must);
+}
+
+std::optional<Vec2> LabelPlaces::place_at_side(Vec2 p, double half_width, bool must) {
+  const double away = half_width + (kHalfWidth + kEnough + 1.0) / scale_;
+  const double below = 2.0 * kHalfHeight / scale_;
+  return best_of({p + Vec2{away, 0.0}, p - Vec2{away, 0.0}, p + Vec2{0.0, below}, p - Vec2{0.0, below}}, must);
 }
 
 }  // namespace exactvo::tools

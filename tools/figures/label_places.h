@@ -24,8 +24,12 @@ class LabelPlaces {
   /// where one must be written, the place with the most room.
   std::optional<Vec2> place_beside(Vec2 p, double radius, bool must);
 
+  /// The same, to the right or left of what is twice as wide as `half_width`, or within it.
+  std::optional<Vec2> place_at_side(Vec2 p, double half_width, bool must);
+
  private:
   double room_round(Vec2 p) const;
+  std::optional<Vec2> best_of(const Points& places, bool must);
 
   Box view_;
   double scale_;

@@ -88,6 +88,7 @@ class PathsPanel {
     if (detailed_) add_enclosures();
     add_leader();
     for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) add_way(i);
+    if (detailed_) add_times_of_moving_obstacles();
     add_goals();
     add_collisions();
   }
@@ -116,7 +117,7 @@ class PathsPanel {
       walls |= polygon == nullptr;
     }
     if (polygons) add_polygons();
-    if (walls) add_walls(!polygons);
+    if (walls) add_walls();
   }
 
   std::vector<const geometry::Polygon*> polygons() const {
@@ -149,7 +150,7 @@ class PathsPanel {
     plot_.data(border, fmt::format("{} with lines lw 1 lc rgb '{}'", origin_.using_columns(), kObstacleLine));
   }
 
-  void add_walls(bool in_legend) {
+  void add_walls() {
     const int index = data_.begin("walls", "x [m], y [m]");
     for (const auto& obstacle : run_.scenario.obstacles) {
       const auto* wall = std::get_if<geometry::Polyline>(&obstacle.shape);
@@ -160,7 +161,7 @@ class PathsPanel {
     plot_.data(
         index,
         fmt::format("{} with lines lw {} lc rgb '{}'", origin_.using_columns(), detailed_ ? 4 : 2.5, kObstacleLine),
-        key(in_legend ? "obstacle" : "wall"));
+        key("wall"));
   }
 
   static Points vertices_at(const formation::MovingObstacle& obstacle, double time) {
@@ -169,7 +170,14 @@ class PathsPanel {
     return points;
   }
 
-  /// Where they are at every time mark, the first and the last outlined strongly, and the way of their middle.
+  static Vec2 middle_at(const formation::MovingObstacle& obstacle, double time) {
+    const Points points = vertices_at(obstacle, time);
+    Vec2 middle{};
+    for (const Vec2 p : points) middle += p / static_cast<double>(points.size());
+    return middle;
+  }
+
+  /// Where they are at every time mark, and the way of their middle.
   void add_moving_obstacles() {
     if (run_.scenario.moving_obstacles.empty()) return;
     const std::vector<const Step*> marks = time_marks(run_);
@@ -178,11 +186,8 @@ class PathsPanel {
       for (const Step* mark : marks) add_ring(vertices_at(obstacle, mark->time));
     const int ways = data_.begin("paths of the moving obstacles", "x [m], y [m]");
     for (const auto& obstacle : run_.scenario.moving_obstacles) {
-      const Points points = vertices_of(obstacle.shape);
-      Vec2 middle{};
-      for (const Vec2 p : points) middle += p / static_cast<double>(points.size());
       for (const Step* mark : marks) {
-        const Vec2 p = middle + displacement_at(obstacle, mark->time);
+        const Vec2 p = middle_at(obstacle, mark->time);
         data_.row({p.x, p.y});
       }
       data_.gap();
@@ -191,6 +196,27 @@ class PathsPanel {
                key("moving obstacle"));
     plot_.data(ways, fmt::format("{} with linespoints lw 1 pt 7 ps 0.5 dt (2,3) lc rgb '{}'", origin_.using_columns(),
                                  kObstacleLine));
+  }
+
+  /// Where there is room, after the robots' times; the first and the last have theirs in any case.
+  void add_times_of_moving_obstacles() {
+    if (run_.scenario.moving_obstacles.empty()) return;
+    const std::vector<const Step*> marks = time_marks(run_);
+    const int index = data_.begin("times of the moving obstacles", "x [m], y [m], t");
+    for (const auto& obstacle : run_.scenario.moving_obstacles) {
+      for (std::size_t k = 0; k < marks.size(); ++k) {
+        const bool is_end = k == 0 || k + 1 == marks.size();
+        const Vec2 p = middle_at(obstacle, marks[k]->time);
+        if (!is_drawable(p)) continue;
+        double half_width = 0.0;
+        for (const Vec2 q : vertices_at(obstacle, marks[k]->time))
+          half_width = std::max(half_width, std::fabs(q.x - p.x));
+        if (const std::optional<Vec2> place = times_.place_at_side(p, half_width, is_end))
+          data_.labelled_row({place->x, place->y}, fmt::format("{:.3g} s", marks[k]->time));
+      }
+    }
+    plot_.data(index, origin_.using_columns(1, 2, ":3") +
+                          fmt::format(" with labels center font ',8' textcolor rgb '{}'", kObstacleLine));
   }
 
   /// Ellipses only: a facade that stands for itself would be drawn over the obstacle.
@@ -256,10 +282,9 @@ class PathsPanel {
                           fmt::format(" with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
                                       series_colour(i)));
     if (!detailed_) return;
-    plot_.data(index, origin_.using_columns(4, 5, ":6") +
-                          fmt::format(" with labels center font ',{}' textcolor rgb '{}'",
-                                      robot_count() <= kFewRobots ? 10 : 8,
-                                      robot_count() <= kFewRobots ? "#222222" : series_colour(i)));
+    plot_.data(index,
+               origin_.using_columns(4, 5, ":6") + fmt::format(" with labels center font ',{}' textcolor rgb '{}'",
+                                                               robot_count() <= kFewRobots ? 10 : 8, series_colour(i)));
   }
 
   /// The row at which the robot came to rest, or the last one that can be drawn.
