@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <set>
 
+#include "exactvo/datasets/input_text.h"
 #include "json_text.h"
 #include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {
 
-/// Walks the text and lets the parser's callback know how far it has come, since nlohmann does not say.
+/// Walks the text, lets the parser's callback know how far it has come, since nlohmann does not say, and lets a signal
+/// end a long parse.
 class CountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -22,6 +24,7 @@ class CountingIterator {
   CountingIterator& operator++() {
     ++at_;
     *position_ = static_cast<std::size_t>(at_ - begin_);
+    if (*position_ % kBlock == 0) call_wait_hook();
     return *this;
   }
   CountingIterator operator++(int) {
@@ -33,6 +36,8 @@ class CountingIterator {
   bool operator!=(const CountingIterator& other) const { return at_ != other.at_; }
 
  private:
+  static constexpr std::size_t kBlock = std::size_t{1} << 16;  ///< bytes between two calls of the wait hook
+
   const char* at_;
   const char* begin_;
   std::size_t* position_;
@@ -137,6 +142,13 @@ void check_json_syntax(std::string_view text, const std::string& file_name) {
   parse_guarded(text, file_name, [&](const std::size_t&) {
     return [](int, nlohmann::detail::parse_event_t, const Json&) { return false; };
   });
+}
+
+Json parse_json_if_any(std::string_view text) {
+  std::size_t position = 0;
+  const char* begin = text.data();
+  return Json::parse(CountingIterator(begin, begin, &position), CountingIterator(begin + text.size(), begin, &position),
+                     nullptr, false);
 }
 
 Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number) {

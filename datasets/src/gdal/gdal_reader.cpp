@@ -105,14 +105,10 @@ bool is_sequence_name(const std::filesystem::path& path) {
 class VectorReader {
  public:
   VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out), size_limit_(path) {
+    if (is_sequence_file()) return;  // GDAL is not asked: it would read all of it now
     data_ = open_vectors(path);
-    if (is_sequence_file()) {
-      complaints_.take_failure();  // of the first bad line, which is told by its number
-      data_.reset();
-    } else {
-      set_malformed_aside();
-      refuse_complaints("", data_ == nullptr);
-    }
+    set_malformed_aside();
+    refuse_complaints("", data_ == nullptr);
   }
 
   void read() {
@@ -158,8 +154,9 @@ class VectorReader {
   };
 
   bool is_sequence_file() const {
-    if (data_ == nullptr) return is_sequence_name(path_);
-    return driver() == "GeoJSONSeq" || (driver() == "GeoJSON" && begins_as_sequence(path_, is_sequence_name(path_)));
+    const std::string driver = vector_driver_of(path_);
+    if (driver.empty()) return is_sequence_name(path_);
+    return driver == "GeoJSONSeq" || (driver == "GeoJSON" && begins_as_sequence(path_, is_sequence_name(path_)));
   }
 
   /// GDAL's driver would leave malformed lines out; they are read here.

@@ -3,9 +3,7 @@
 
 #include <cpl_conv.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -13,7 +11,8 @@
 #include <utility>
 
 #include "exactvo/datasets/input_text.h"
-#include "text_file.h"
+#include "gdal/geojson_sequence.h"
+#include "gdal/json_memory.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -23,38 +22,23 @@ const char* const kDrivers[] = {
     "KML",     "GML",        "GPX",      "MapInfo File",   "SQLite", nullptr};
 
 /// NATIVE_DATA keeps the members of a GeoJSON collection that GDAL has no place for, `units` among them.
-const char* const kGeoJsonOptions[] = {"NATIVE_DATA=YES", nullptr};
+/// Properties are read from there too, so that fields are of no use: as lists of strings they take quadratic time.
+const char* const kGeoJsonOptions[] = {"NATIVE_DATA=YES", "ARRAY_AS_STRING=YES", nullptr};
 /// What people call a column of WKT.
 const char* const kCsvOptions[] = {"GEOM_POSSIBLE_NAMES=WKT,wkt,geometry,geom,the_geom,wkt_geom", nullptr};
 const char* const kNoOptions[] = {nullptr};
 
 /// A driver warns of options that it does not know.
-const char* const* options_for(GDALDriverH driver) {
-  const std::string name = driver == nullptr ? "" : GDALGetDriverShortName(driver);
+const char* const* options_for(const std::string& name) {
   if (name == "CSV") return kCsvOptions;
   return name == "GeoJSON" ? kGeoJsonOptions : kNoOptions;
 }
 
-double parser_memory_for(double input_bytes) {
-  constexpr double kOfProcess = 60e6;  // libraries and the text itself
-  return 20.0 * input_bytes + 200e6 - kOfProcess;
-}
-
-/// Measured with json-c 0.16: a list of two numbers takes 305 bytes.
-constexpr double kBytesOfList = 305.0;
 /// Of GDAL's estimate of a feature's size, measured on polygons of two digits a point.
 constexpr double kBytesOfEstimated = 3.05;
 constexpr const char* kSizeOption = "OGR_GEOJSON_MAX_OBJ_SIZE";  // MB
 
 }  // namespace
-
-std::optional<DataError> bulky_json(std::string_view text, const std::string& file, const std::string& place) {
-  const auto lists = static_cast<double>(std::count(text.begin(), text.end(), '['));
-  if (kBytesOfList * lists <= parser_memory_for(static_cast<double>(text.size()))) return std::nullopt;
-  return DataError(DataCode::size, file, place,
-                   std::to_string(static_cast<long long>(lists)) + " lists in one JSON text",
-                   "fewer at a time: features of their own, a line each, or another format");
-}
 
 GeoJsonSizeLimit::GeoJsonSizeLimit(const std::filesystem::path& path) {
   std::error_code error;
@@ -110,13 +94,16 @@ std::vector<std::string> GdalComplaints::take_warnings() {
 
 namespace {
 
-constexpr std::size_t kBeginning = 4096;
+/// Characters between two calls of the wait hook.
+constexpr std::size_t kBlock = std::size_t{1} << 16;
 
 /// Words with a comma in them: what KML writes a point as, "longitude,latitude,height".
 std::size_t count_of_points(std::string_view text) {
   std::size_t points = 0;
   bool has_comma = false;
-  for (const char c : text) {
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    if (k % kBlock == 0) call_wait_hook();
+    const char c = text[k];
     const bool is_blank = c == ' ' || c == '\n' || c == '\t' || c == '\r';
     points += is_blank && has_comma ? 1 : 0;
     has_comma = !is_blank && (has_comma || c == ',');
@@ -133,30 +120,25 @@ void refuse_bulky_kml(const std::filesystem::path& path) {
                   "fewer points in a file, or another format, such as WKT");
 }
 
-/// What GDAL parses as soon as it is opened: all of TopoJSON or of a single feature or geometry, and every line of a
-/// sequence.
+/// What GDAL parses whole as soon as it is opened: TopoJSON, a single feature or geometry, KML. Of a collection the
+/// driver of GeoJSON takes one feature after the other, and keeps to a limit of its own (GeoJsonSizeLimit).
 void refuse_bulky(const std::filesystem::path& path, std::string_view driver) {
-  // Of a collection GeoJSON's driver takes one feature after the other, and minds its own limit.
-  const bool is_whole =
-      driver == "TopoJSON" ||
-      (driver == "GeoJSON" && read_beginning(path, kBeginning).find("\"features\"") == std::string::npos);
-  if (is_whole) {
-    if (const auto bulky = bulky_json(read_text_file(path), path.string(), "")) throw *bulky;
-  }
   if (driver == "KML") refuse_bulky_kml(path);
-  if (driver != "GeoJSONSeq") return;
-  std::ifstream file(path, std::ios::binary);
-  std::string line;
-  for (std::size_t number = 1; std::getline(file, line); ++number)
-    if (const auto bulky = bulky_json(line, path.string(), "line " + std::to_string(number))) throw *bulky;
+  if (driver != "TopoJSON" && (driver != "GeoJSON" || is_feature_collection(path))) return;
+  if (const auto bulky = bulky_json_file(path)) throw *bulky;
 }
 
 }  // namespace
 
-std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path) {
+std::string vector_driver_of(const std::filesystem::path& path) {
   register_gdal_once();
   const GDALDriverH driver = GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, kDrivers, nullptr);
-  refuse_bulky(path, driver == nullptr ? "" : GDALGetDriverShortName(driver));
+  return driver == nullptr ? "" : GDALGetDriverShortName(driver);
+}
+
+std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path) {
+  const std::string driver = vector_driver_of(path);
+  refuse_bulky(path, driver);
   return std::unique_ptr<GDALDataset>(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, options_for(driver), nullptr));
 }

@@ -8,12 +8,8 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
-
-#include "exactvo/datasets/data_error.h"
 
 namespace exactvo::datasets {
 
@@ -41,15 +37,17 @@ class GdalComplaints {
 
 void register_gdal_once();
 
+/// The driver that would open the file, by its content and name; "" where there is none.
+std::string vector_driver_of(const std::filesystem::path& path);
+
 /// Only drivers that read a local file of vectors: none that follow links to other files or to the network. Throws
-/// DataError (E_SIZE) for TopoJSON, or a line of a sequence, that `bulky_json` finds something in.
+/// DataError (E_SIZE) for what GDAL parses whole where that would take more memory than a reader may (20 bytes for each
+/// of the input and 200 MB beside): TopoJSON and GeoJSON of one feature or geometry, estimated from their objects,
+/// lists and values (gdal/json_memory.h), and KML, estimated from its points.
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path);
 
-/// Readers may take 20 bytes of memory for each of the input and 200 MB beside. What would take more of json-c, the
-/// parser of GDAL, in which a point of two digits takes 300 bytes; nothing where the text fits.
-std::optional<DataError> bulky_json(std::string_view text, const std::string& file, const std::string& place);
-
-/// The same of a feature of GeoJSON, which GDAL holds to its own estimate of sizes: in this thread while it lives.
+/// Holds each feature of a GeoJSON collection to the same memory, by GDAL's estimate of its size: in this thread while
+/// it lives.
 class GeoJsonSizeLimit {
  public:
   explicit GeoJsonSizeLimit(const std::filesystem::path& path);

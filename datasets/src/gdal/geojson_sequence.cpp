@@ -5,8 +5,9 @@
 
 #include <algorithm>
 
-#include "gdal/gdal_session.h"
+#include "exactvo/datasets/input_text.h"
 #include "gdal/geojson_shape.h"
+#include "gdal/json_memory.h"
 #include "text_file.h"
 
 namespace exactvo::datasets {
@@ -17,6 +18,9 @@ constexpr const char* kBlanks = " \t\r\n";
 constexpr const char* kByteOrderMark = "\xef\xbb\xbf";
 
 constexpr int kEnd = std::char_traits<char>::eof();
+
+/// Bytes between two calls of the wait hook: a signal ends a long scan.
+constexpr std::size_t kBlock = std::size_t{1} << 16;
 
 bool is_blank(int c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
@@ -82,7 +86,8 @@ class FirstObject {
   bool pass(bool whatever_type) {
     int c = skip_blanks();
     if (c != '{') return false;
-    for (; c != kEnd; c = bytes_.snextc()) {
+    for (std::size_t k = 0; c != kEnd; c = bytes_.snextc(), ++k) {
+      if (k % kBlock == 0) call_wait_hook();
       if (c == '\n' && members_.nesting().in_string()) return false;  // broken: strings have no line ends
       spans_lines_ = spans_lines_ || c == '\n';
       members_.take(static_cast<char>(c));
@@ -182,6 +187,7 @@ bool GeoJsonSequence::ends_line(const JsonNesting& nesting) const {
 
 /// The next byte, counted; kEnd at the end.
 int GeoJsonSequence::take_byte() {
+  if (++bytes_ % kBlock == 0) call_wait_hook();
   const int c = file_.rdbuf()->sbumpc();
   column_ = c == '\n' ? 1 : column_ + 1;
   line_ += c == '\n' ? 1 : 0;
@@ -238,6 +244,18 @@ bool begins_as_sequence(const std::filesystem::path& path, bool name_says) {
   return first.pass(name_says) && (name_says || is_type_of_record(first.type())) && first.more_follows();
 }
 
+bool is_feature_collection(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  skip_byte_order_mark(file);
+  MembersOfObject members;
+  std::size_t bytes = 0;
+  for (int c = file.rdbuf()->sgetc(); c != kEnd && members.type().empty(); c = file.rdbuf()->snextc()) {
+    if (++bytes % kBlock == 0) call_wait_hook();
+    members.take(static_cast<char>(c));
+  }
+  return members.type() == "FeatureCollection";
+}
+
 void for_each_stray_entry(const std::filesystem::path& path, const std::function<void(const DataError&)>& action) {
   std::ifstream file(path, std::ios::binary);
   skip_byte_order_mark(file);
@@ -250,7 +268,9 @@ void for_each_stray_entry(const std::filesystem::path& path, const std::function
   MembersOfObject members;
   std::size_t number = 0;
   bool is_awaited = false;
+  std::size_t bytes = 0;
   for (int c = file.rdbuf()->sgetc(); c != kEnd; c = file.rdbuf()->snextc()) {
+    if (++bytes % kBlock == 0) call_wait_hook();
     const bool is_among = members.is_among_features();
     members.take(static_cast<char>(c));
     if (is_awaited && !is_blank(c)) {

@@ -23,7 +23,7 @@ namespace exactvo::datasets {
 struct GeoJsonRecord {
   std::string place;                   ///< "line 3", or "line 3, column 70" behind another: where it begins
   std::unique_ptr<OGRGeometry> shape;  ///< none for a feature without one, and for a fault
-  std::optional<DataError> fault;      ///< E_JSON_SYNTAX, E_FORMAT_SYNTAX
+  std::optional<DataError> fault;      ///< E_JSON_SYNTAX, E_FORMAT_SYNTAX, E_SIZE
   std::string text{};                  ///< as it stands in the file
 };
 
@@ -67,6 +67,7 @@ class GeoJsonSequence {
   bool spans_lines_ = false;     ///< the first one does: then only the end of an object ends a record
   std::size_t line_ = 1;         ///< of the next byte
   std::size_t column_ = 1;       ///< of the next byte
+  std::size_t bytes_ = 0;        ///< taken
   GeoJsonPlace begin_;           ///< of the record that was read last
   bool is_spoilt_ = false;       ///< more than white space follows its object, which GDAL's parser passes over
   bool has_begun_ = false;       ///< some record was read
@@ -76,6 +77,9 @@ class GeoJsonSequence {
 /// the file's `name_says` that it is a sequence: GDAL may take such a file for GeoJSON of one object, and then says
 /// nothing of the rest. Memory does not grow with the file.
 bool begins_as_sequence(const std::filesystem::path& path, bool name_says);
+
+/// Whether the first member "type" of the outermost object names a FeatureCollection, wherever it stands.
+bool is_feature_collection(const std::filesystem::path& path);
 
 /// Tells of the entries of a collection's "features" that are no objects, by their JSON pointers: GDAL passes over them
 /// without a word. Memory does not grow with the file.

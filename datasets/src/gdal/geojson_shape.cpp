@@ -94,7 +94,7 @@ Fault fault_of_geometry(const Json& geometry, const std::string& pointer, int de
 Json parsed(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0x80) != 0; }, '?');
-  return Json::parse(text, nullptr, false);
+  return parse_json_if_any(text);
 }
 
 bool holds_position(const Json& geometry) {

@@ -82,7 +82,7 @@ double bounded(const JsonCursor& at, double largest) {
 }  // namespace
 
 FeatureProperties properties_of_geojson(std::string_view record) {
-  const Json feature = Json::parse(record, nullptr, false);
+  const Json feature = parse_json_if_any(record);
   FeatureProperties properties;
   if (!feature.is_object()) return properties;
   const auto members = feature.find("properties");
