@@ -201,6 +201,58 @@ TEST(Messages, TextThatItsParserHasNoMemoryForIsRefused) {
   }
 }
 
+/// `payload` repeated, with commas between.
+std::string repeated(const std::string& payload, std::size_t count) {
+  std::string text = payload;
+  for (std::size_t k = 1; k < count; ++k) text += "," + payload;
+  return text;
+}
+
+std::string feature_with(const std::string& members) {
+  return R"({"type": "Feature", "properties": {)" + members +
+         R"(}, "geometry": {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]}})";
+}
+
+/// In kB of addresses: the rule of 20 bytes a byte and 200 MB, and `kLibraries` that are mapped and not touched.
+std::string within_rule(std::size_t bytes) {
+  constexpr std::size_t kLibraries = 400'000;
+  return "ulimit -v " + std::to_string(20 * bytes / 1000 + 200'000 + kLibraries) + "; ";
+}
+
+TEST(Messages, MemoryOfJsonIsEstimatedFromAllItsTokens) {
+  const std::string points = repeated("[1,1]", 1'200'000);
+  const std::pair<const char*, std::string> files[] = {
+      {"objects.geojsonl", feature_with("\"p\": [" + repeated("{}", 1'300'000) + "]") + "\n"},
+      {"numbers.geojsonl", feature_with("\"p\": [" + repeated("1.1", 4'000'000) + "]") + "\n"},
+      {"objects.topojson", R"({"type": "Topology", "x": [)" + repeated("{}", 400'000) +
+                               R"(], "objects": {"o": {"type": "Polygon", "arcs": [[0]]}}, "arcs": [[[0,0],[1,1]]]})"},
+      {"geometry.geojson", R"({"type": "Polygon", "coordinates": [[)" + points + "]]}"},
+      {"feature.geojson", feature_with("\"features\": 1, \"p\": [" + points + "]")}};
+  for (const auto& [name, text] : files) {
+    place().write(name, text);
+    const Outcome outcome = place().run(std::string("validate ") + name, within_rule(text.size()));
+    EXPECT_EQ(outcome.status, 2) << name << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("[E_SIZE]")) << name;
+    std::filesystem::remove(place().path() / name);
+  }
+}
+
+TEST(Messages, JsonBelowTheLimitOfMemoryIsRead) {
+  const std::pair<const char*, std::string> files[] = {
+      {"objects.geojsonl", feature_with("\"p\": [" + repeated("{}", 160'000) + "]") + "\n"},
+      {"numbers.geojson", feature_with("\"p\": [" + repeated("1.1", 1'500'000) + "]")},
+      {"strings.geojson", feature_with("\"p\": [" + repeated("\"\"", 400'000) + "]")},
+      {"described.geojson", R"({"description": ")" + std::string(5000, 'x') +
+                                R"(", "type": "FeatureCollection", "features": [)" +
+                                repeated(feature_with("\"a\": 1"), 25'000) + "]}"}};
+  for (const auto& [name, text] : files) {
+    place().write(name, text);
+    const Outcome outcome = place().run(std::string("validate ") + name, within_rule(text.size()));
+    EXPECT_EQ(outcome.status, 0) << name << outcome.err << outcome.out.substr(0, 500);
+    std::filesystem::remove(place().path() / name);
+  }
+}
+
 TEST(Messages, PointsBelowAHeaderAreAListOfPoints) {
   place().write("header.csv", "# from a survey\nx,y\n1,2\n3,4\n");
   EXPECT_THAT(place().run("validate header.csv").err, HasSubstr("points-csv, 2 read: 2 valid"));

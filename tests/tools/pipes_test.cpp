@@ -75,6 +75,9 @@ class Running {
 
   int status_after(int signal) const {
     await_rest();
+    return status_at_once(signal);
+  }
+  int status_at_once(int signal) const {
     EXPECT_EQ(::kill(pid_, signal), 0);
     return status();
   }
@@ -145,6 +148,23 @@ TEST(Pipes, AWaitForTheRestEndsAtASignal) {
   ASSERT_GT(::write(writer, "POLYGON ((", 10), 0);
   EXPECT_EQ(program.status_after(SIGTERM), 143);
   ::close(writer);
+}
+
+/// The hook of the module that holds GDAL: the signal comes while it reads, and `alarm` ends a program that does not
+/// see it, with the same status but with other words.
+TEST(Pipes, ASignalEndsTheReadingOfALongVectorFile) {
+  const Workplace here;
+  std::string line = R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[)";
+  for (int k = 0; k < 2000; ++k) line += "[" + std::to_string(k) + ".25," + std::to_string(k * k) + ".5],";
+  line += "[0.25,0.5]]]}}\n";
+  std::string text;
+  while (text.size() < 100'000'000) text += line;
+  here.write("long.geojsonl", text);
+  const Running program(here, {"validate", "long.geojsonl"});
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_EQ(program.status_at_once(SIGTERM), 143) << here.read("err");
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(9)) << "ended by the grace of ten seconds";
 }
 
 TEST(Pipes, WhatComesThroughOneIsReadWhateverReadsIt) {
