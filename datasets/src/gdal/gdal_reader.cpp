@@ -107,6 +107,10 @@ class VectorReader {
   VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out), size_limit_(path) {
     if (is_sequence_file()) return;  // GDAL is not asked: it would read all of it now
     data_ = open_vectors(path);
+    if (data_ == nullptr && is_sequence_name(path)) {
+      complaints_.take_failure();  // of a bad first line, which is reported with its number
+      return;
+    }
     set_malformed_aside();
     refuse_complaints("", data_ == nullptr);
   }
