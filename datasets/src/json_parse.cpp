@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <set>
-
 #include "exactvo/datasets/input_text.h"
+#include "json_builder.h"
+#include "json_if_any.h"
 #include "json_text.h"
 #include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {
 
-/// Walks the text, lets the parser's callback know how far it has come, since nlohmann does not say, and lets a signal
+/// Walks the text, notes how far the parser has come, since nlohmann does not say, and lets a signal
 /// end a long parse.
 class CountingIterator {
  public:
@@ -41,40 +41,6 @@ class CountingIterator {
   const char* at_;
   const char* begin_;
   std::size_t* position_;
-};
-
-/// Refuses what the parser would take: duplicate keys and bottomless nesting.
-class Guard {
- public:
-  Guard(std::string_view text, const std::string& file, const std::size_t& position)
-      : text_(text), file_(file), position_(position) {}
-
-  bool operator()(int depth, nlohmann::detail::parse_event_t event, const Json& value) {
-    using Event = nlohmann::detail::parse_event_t;
-    if (event == Event::object_start || event == Event::array_start) descend(depth);
-    if (event == Event::object_start) keys_.emplace_back();
-    if (event == Event::object_end) keys_.pop_back();
-    if (event == Event::key) note_key(value.get_ref<const std::string&>());
-    return true;
-  }
-
- private:
-  void descend(int depth) const {
-    if (depth < kDeepestJson) return;
-    throw DataError(DataCode::nesting, file_, line_and_column(text_, position_), "more than 100 levels of nesting",
-                    "a file that nests less deeply");
-  }
-
-  void note_key(const std::string& key) {
-    if (keys_.back().insert(key).second) return;
-    throw DataError(DataCode::json_duplicate_key, file_, line_and_column(text_, position_),
-                    "the key \"" + key + "\" a second time", "each key once in an object");
-  }
-
-  std::string_view text_;
-  const std::string& file_;
-  const std::size_t& position_;
-  std::vector<std::set<std::string>> keys_;
 };
 
 /// What stood where the parser stopped, by what it says it wanted: its words are for those who know its grammar.
@@ -113,42 +79,103 @@ std::string number_in(const std::string& message) {
   return first < last ? "the number " + message.substr(first + 1, last - first - 1) : "a number that is too large";
 }
 
-/// Parses with `guard`, and says what is wrong by line and column.
-template <class Guarding>
-Json parse_guarded(std::string_view text, const std::string& file_name, const Guarding& guarding) {
-  std::size_t position = 0;
-  const char* begin = text.data();
-  const CountingIterator first(begin, begin, &position);
-  const CountingIterator last(begin + text.size(), begin, &position);
-  try {
-    return Json::parse(first, last, guarding(position));
-  } catch (const nlohmann::detail::parse_error& error) {
-    const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
-    throw DataError(DataCode::json_syntax, file_name, line_and_column(text, byte), excerpt(text, byte),
+/// What is wrong with a text, by line and column.
+class SyntaxErrors {
+ public:
+  SyntaxErrors(std::string_view text, const std::string& file, const std::size_t& position)
+      : text_(text), file_(file), position_(position) {}
+
+  [[noreturn]] void refuse(std::size_t bytes, const nlohmann::detail::exception& error) const {
+    if (dynamic_cast<const nlohmann::detail::out_of_range*>(&error) != nullptr)
+      throw here(DataCode::number, number_in(error.what()), "a number that a finite double can hold");
+    const std::size_t byte = bytes > 0 ? bytes - 1 : 0;
+    throw DataError(DataCode::json_syntax, file_, line_and_column(text_, byte), excerpt(text_, byte),
                     expected_instead(error.what()));
-  } catch (const nlohmann::detail::out_of_range& error) {
-    throw DataError(DataCode::number, file_name, line_and_column(text, position), number_in(error.what()),
-                    "a number that a finite double can hold");
   }
+  DataError here(DataCode code, const std::string& found, const std::string& expected) const {
+    return {code, file_, line_and_column(text_, position_), found, expected};
+  }
+
+ private:
+  std::string_view text_;
+  const std::string& file_;
+  const std::size_t& position_;
+};
+
+/// Refuses what the parser would accept: duplicate keys and bottomless nesting.
+class GuardedBuilder : public JsonBuilder {
+ public:
+  explicit GuardedBuilder(const SyntaxErrors& errors) : errors_(errors) {}
+
+  bool parse_error(std::size_t bytes, const std::string&, const nlohmann::detail::exception& error) override {
+    errors_.refuse(bytes, error);
+  }
+
+ private:
+  void on_open(std::size_t depth) override {
+    if (depth >= kDeepestJson)
+      throw errors_.here(DataCode::nesting, "more than 100 levels of nesting", "a file that nests less deeply");
+  }
+  void on_second(const std::string& key) override {
+    throw errors_.here(DataCode::json_duplicate_key, "the key \"" + key + "\" a second time",
+                       "each key once in an object");
+  }
+
+  const SyntaxErrors& errors_;
+};
+
+/// Keeps nothing.
+class SyntaxCheck : public nlohmann::json_sax<Json> {
+ public:
+  explicit SyntaxCheck(const SyntaxErrors& errors) : errors_(errors) {}
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t bytes, const std::string&, const nlohmann::detail::exception& error) override {
+    errors_.refuse(bytes, error);
+  }
+
+ private:
+  const SyntaxErrors& errors_;
+};
+
+bool parse_into(nlohmann::json_sax<Json>& events, std::string_view text, std::size_t& position) {
+  const char* begin = text.data();
+  return Json::sax_parse(CountingIterator(begin, begin, &position),
+                         CountingIterator(begin + text.size(), begin, &position), &events);
 }
 
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& file_name) {
-  return parse_guarded(text, file_name, [&](const std::size_t& position) { return Guard(text, file_name, position); });
+  std::size_t position = 0;
+  const SyntaxErrors errors(text, file_name, position);
+  GuardedBuilder builder(errors);
+  parse_into(builder, text, position);
+  return builder.take();
 }
 
 void check_json_syntax(std::string_view text, const std::string& file_name) {
-  parse_guarded(text, file_name, [&](const std::size_t&) {
-    return [](int, nlohmann::detail::parse_event_t, const Json&) { return false; };
-  });
+  std::size_t position = 0;
+  const SyntaxErrors errors(text, file_name, position);
+  SyntaxCheck check(errors);
+  parse_into(check, text, position);
 }
 
 Json parse_json_if_any(std::string_view text) {
   std::size_t position = 0;
-  const char* begin = text.data();
-  return Json::parse(CountingIterator(begin, begin, &position), CountingIterator(begin + text.size(), begin, &position),
-                     nullptr, false);
+  JsonBuilder builder;
+  return parse_into(builder, text, position) ? builder.take() : Json(Json::value_t::discarded);
 }
 
 Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number) {

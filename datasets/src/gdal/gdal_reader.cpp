@@ -104,7 +104,7 @@ bool is_sequence_name(const std::filesystem::path& path) {
 
 class VectorReader {
  public:
-  VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out), size_limit_(path) {
+  VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out), geojson_parsing_(path) {
     if (is_sequence_file()) return;  // GDAL is not asked: it would read all of it now
     data_ = open_vectors(path);
     if (data_ == nullptr && is_sequence_name(path)) {
@@ -132,10 +132,11 @@ class VectorReader {
   void refuse_complaints(const std::string& place, bool failed = false) {
     const std::string words = complaints_.take_failure();
     if (words.empty() && !failed) return;
-    if (GeoJsonSizeLimit::is_said_in(words))
+    if (GeoJsonParsing::is_size_limit_in(words))
       throw DataError(DataCode::size, path_.string(), place, "a feature of more JSON than is read at a time",
                       "fewer points in a feature, or another format, such as WKT");
     if (place.empty()) refuse_malformed_json();
+    if (words.empty()) refuse_late_type();
     throw DataError(DataCode::library, path_.string(), place,
                     words.empty() ? "a file that no vector driver reads" : words, "a vector file that GDAL reads");
   }
@@ -145,6 +146,14 @@ class VectorReader {
     const std::string extension = lower_case_extension(path_);
     if (extension != ".json" && extension != ".geojson" && extension != ".topojson") return;
     check_json_syntax(read_text_file(path_), path_.string());
+  }
+
+  /// GeoJSON that GDAL does not take for such: it looks for the type in the first 6000 bytes.
+  void refuse_late_type() const {
+    const std::string type = beginning_of_geojson(path_).type;
+    if (type != "FeatureCollection" && !is_type_of_record(type)) return;
+    throw DataError(DataCode::library, path_.string(), "/type", "\"" + type + "\" behind long members",
+                    "GeoJSON with its member \"type\" first");
   }
 
   /// What a layer or a sequence holds, one after the other.
@@ -492,7 +501,7 @@ class VectorReader {
 
   std::filesystem::path path_;
   Collector& out_;
-  GeoJsonSizeLimit size_limit_;
+  GeoJsonParsing geojson_parsing_;
   GdalComplaints complaints_;
   std::string malformed_;            ///< GDAL's words of a geometry of GeoJSON
   bool has_told_malformed_ = false;  ///< in words of our own, with the feature

@@ -22,8 +22,7 @@ const char* const kDrivers[] = {
     "KML",     "GML",        "GPX",      "MapInfo File",   "SQLite", nullptr};
 
 /// NATIVE_DATA keeps the members of a GeoJSON collection that GDAL has no place for, `units` among them.
-/// Properties are read from there too, so that fields are of no use: as lists of strings they take quadratic time.
-const char* const kGeoJsonOptions[] = {"NATIVE_DATA=YES", "ARRAY_AS_STRING=YES", nullptr};
+const char* const kGeoJsonOptions[] = {"NATIVE_DATA=YES", nullptr};
 /// What people call a column of WKT.
 const char* const kCsvOptions[] = {"GEOM_POSSIBLE_NAMES=WKT,wkt,geometry,geom,the_geom,wkt_geom", nullptr};
 const char* const kNoOptions[] = {nullptr};
@@ -37,10 +36,13 @@ const char* const* options_for(const std::string& name) {
 /// Of GDAL's estimate of a feature's size, measured on polygons of two digits a point.
 constexpr double kBytesOfEstimated = 3.05;
 constexpr const char* kSizeOption = "OGR_GEOJSON_MAX_OBJ_SIZE";  // MB
+/// Properties are read from native data; as GDAL's fields they take quadratic time.
+constexpr const char* kNoFieldsOption = "ATTRIBUTES_SKIP";
 
 }  // namespace
 
-GeoJsonSizeLimit::GeoJsonSizeLimit(const std::filesystem::path& path) {
+GeoJsonParsing::GeoJsonParsing(const std::filesystem::path& path) {
+  CPLSetThreadLocalConfigOption(kNoFieldsOption, "YES");
   std::error_code error;
   const auto size = static_cast<double>(std::filesystem::file_size(path, error));
   if (error) return;
@@ -48,11 +50,12 @@ GeoJsonSizeLimit::GeoJsonSizeLimit(const std::filesystem::path& path) {
   CPLSetThreadLocalConfigOption(kSizeOption, std::to_string(static_cast<long long>(megabytes)).c_str());
 }
 
-GeoJsonSizeLimit::~GeoJsonSizeLimit() {
+GeoJsonParsing::~GeoJsonParsing() {
   CPLSetThreadLocalConfigOption(kSizeOption, nullptr);
+  CPLSetThreadLocalConfigOption(kNoFieldsOption, nullptr);
 }
 
-bool GeoJsonSizeLimit::is_said_in(const std::string& complaint) {
+bool GeoJsonParsing::is_size_limit_in(const std::string& complaint) {
   return complaint.find("too complex/large") != std::string::npos;
 }
 
@@ -111,6 +114,10 @@ std::size_t count_of_points(std::string_view text) {
   return points;
 }
 
+void refuse_bulky_json(const std::filesystem::path& path) {
+  if (const auto bulky = bulky_json_file(path)) throw *bulky;
+}
+
 void refuse_bulky_kml(const std::filesystem::path& path) {
   constexpr double kBytesOfPoint = 180.0;  // measured, of the whole reading
   const std::string text = read_text_file(path);
@@ -120,12 +127,22 @@ void refuse_bulky_kml(const std::filesystem::path& path) {
                   "fewer points in a file, or another format, such as WKT");
 }
 
-/// What GDAL parses whole as soon as it is opened: TopoJSON, a single feature or geometry, KML. Of a collection the
-/// driver of GeoJSON takes one feature after the other, and keeps to a limit of its own (GeoJsonSizeLimit).
+/// Of a collection GDAL's driver of GeoJSON takes one feature after the other, with a limit of its own
+/// (GeoJsonParsing), which leaves out what stands before them.
+void refuse_bulky_geojson(const std::filesystem::path& path) {
+  const GeoJsonBeginning beginning = beginning_of_geojson(path);
+  if (!beginning.is_collection()) return refuse_bulky_json(path);
+  std::error_code error;
+  const auto size = static_cast<double>(std::filesystem::file_size(path, error));
+  if (!error && beginning.before_features.bytes() > parser_memory_for(size))
+    throw too_bulky(beginning.before_features, path.string(), "");
+}
+
+/// What GDAL parses whole as soon as it is opened: TopoJSON, a single feature or geometry, KML.
 void refuse_bulky(const std::filesystem::path& path, std::string_view driver) {
   if (driver == "KML") refuse_bulky_kml(path);
-  if (driver != "TopoJSON" && (driver != "GeoJSON" || is_feature_collection(path))) return;
-  if (const auto bulky = bulky_json_file(path)) throw *bulky;
+  if (driver == "TopoJSON") refuse_bulky_json(path);
+  if (driver == "GeoJSON") refuse_bulky_geojson(path);
 }
 
 }  // namespace

@@ -46,17 +46,17 @@ std::string vector_driver_of(const std::filesystem::path& path);
 /// lists and values (gdal/json_memory.h), and KML, estimated from its points.
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path);
 
-/// Holds each feature of a GeoJSON collection to the same memory, by GDAL's estimate of its size: in this thread while
-/// it lives.
-class GeoJsonSizeLimit {
+/// In this thread while it lives: holds each feature of a GeoJSON collection to the same memory, by GDAL's estimate of
+/// its size, and makes no fields of properties, which are read from the native data of the features.
+class GeoJsonParsing {
  public:
-  explicit GeoJsonSizeLimit(const std::filesystem::path& path);
-  ~GeoJsonSizeLimit();
-  GeoJsonSizeLimit(const GeoJsonSizeLimit&) = delete;
-  GeoJsonSizeLimit& operator=(const GeoJsonSizeLimit&) = delete;
+  explicit GeoJsonParsing(const std::filesystem::path& path);
+  ~GeoJsonParsing();
+  GeoJsonParsing(const GeoJsonParsing&) = delete;
+  GeoJsonParsing& operator=(const GeoJsonParsing&) = delete;
 
   /// Whether these are GDAL's words for a feature beyond the limit.
-  static bool is_said_in(const std::string& complaint);
+  static bool is_size_limit_in(const std::string& complaint);
 };
 
 }  // namespace exactvo::datasets

@@ -7,7 +7,6 @@
 
 #include "exactvo/datasets/input_text.h"
 #include "gdal/geojson_shape.h"
-#include "gdal/json_memory.h"
 #include "text_file.h"
 
 namespace exactvo::datasets {
@@ -86,12 +85,16 @@ class FirstObject {
   bool pass(bool whatever_type) {
     int c = skip_blanks();
     if (c != '{') return false;
+    bool is_type_checked = false;
     for (std::size_t k = 0; c != kEnd; c = bytes_.snextc(), ++k) {
       if (k % kBlock == 0) call_wait_hook();
       if (c == '\n' && members_.nesting().in_string()) return false;  // broken: strings have no line ends
       spans_lines_ = spans_lines_ || c == '\n';
       members_.take(static_cast<char>(c));
-      if (!whatever_type && !type().empty() && !is_type_of_record(type())) return false;
+      if (!whatever_type && !is_type_checked && !type().empty()) {
+        is_type_checked = true;
+        if (!is_type_of_record(type())) return false;
+      }
       if (members_.nesting().objects() == 0) break;
     }
     return c != kEnd && bytes_.snextc() != kEnd;
@@ -244,16 +247,22 @@ bool begins_as_sequence(const std::filesystem::path& path, bool name_says) {
   return first.pass(name_says) && (name_says || is_type_of_record(first.type())) && first.more_follows();
 }
 
-bool is_feature_collection(const std::filesystem::path& path) {
+GeoJsonBeginning beginning_of_geojson(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   skip_byte_order_mark(file);
+  GeoJsonBeginning beginning;
   MembersOfObject members;
+  bool is_before_features = true;
   std::size_t bytes = 0;
-  for (int c = file.rdbuf()->sgetc(); c != kEnd && members.type().empty(); c = file.rdbuf()->snextc()) {
+  for (int c = file.rdbuf()->sgetc(); c != kEnd; c = file.rdbuf()->snextc()) {
     if (++bytes % kBlock == 0) call_wait_hook();
     members.take(static_cast<char>(c));
+    is_before_features = is_before_features && !members.is_among_features();
+    if (is_before_features) beginning.before_features.take(static_cast<char>(c));
+    beginning.type = members.type();
+    if (!beginning.type.empty() && !(beginning.is_collection() && is_before_features)) break;
   }
-  return members.type() == "FeatureCollection";
+  return beginning;
 }
 
 void for_each_stray_entry(const std::filesystem::path& path, const std::function<void(const DataError&)>& action) {

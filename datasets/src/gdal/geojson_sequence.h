@@ -17,6 +17,7 @@
 #include <string>
 
 #include "exactvo/datasets/data_error.h"
+#include "gdal/json_memory.h"
 
 namespace exactvo::datasets {
 
@@ -78,8 +79,15 @@ class GeoJsonSequence {
 /// nothing of the rest. Memory does not grow with the file.
 bool begins_as_sequence(const std::filesystem::path& path, bool name_says);
 
-/// Whether the first member "type" of the outermost object names a FeatureCollection, wherever it stands.
-bool is_feature_collection(const std::filesystem::path& path);
+/// What a reader of collections has to know of a GeoJSON file before it opens one.
+struct GeoJsonBeginning {
+  std::string type;            ///< the first member "type" of the outermost object, wherever it stands
+  JsonMemory before_features;  ///< of a collection: of the members before "features", which GDAL parses at once
+
+  bool is_collection() const { return type == "FeatureCollection"; }
+};
+/// Reads as far as that takes, which is the whole file where "type" comes last. Memory does not grow with the file.
+GeoJsonBeginning beginning_of_geojson(const std::filesystem::path& path);
 
 /// Tells of the entries of a collection's "features" that are no objects, by their JSON pointers: GDAL passes over them
 /// without a word. Memory does not grow with the file.

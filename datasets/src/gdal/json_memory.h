@@ -38,6 +38,9 @@ class JsonMemory {
   bool is_real_ = false;  ///< of a number
 };
 
+/// E_SIZE, in the words of all that is refused for its estimate.
+DataError too_bulky(const JsonMemory& memory, const std::string& file, const std::string& place);
+
 /// E_SIZE, if parsing `text` would take more memory than a reader may (an estimate). Calls the wait hook on its way.
 std::optional<DataError> bulky_json(std::string_view text, const std::string& file, const std::string& place);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "json_cursor.h"
+#include "json_if_any.h"
 
 namespace exactvo::datasets {
 namespace {
