@@ -385,7 +385,8 @@ class Opinion {
     if (is_formation() &&
         (norm(row.leader - leader_.at(row.time)) > kClose || !moves_so(leader_, row.time, row.leader_velocity)))
       wrong("row " + std::to_string(k) + ": the leader");
-    if (row.moving.size() != (k + 1 < rows_.size() ? moving_.size() : 0))
+    const bool is_last = k + 1 == rows_.size();
+    if (row.moving.size() != moving_.size() && !(is_last && row.moving.empty()))
       return wrong("row " + std::to_string(k) + ": the number of moving obstacles");
     for (std::size_t m = 0; m < row.moving.size(); ++m)
       if (norm(row.moving[m].first - (movers_[m].at(row.time) - movers_[m].path.front())) > kClose ||
