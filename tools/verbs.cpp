@@ -6,6 +6,7 @@ namespace exactvo::tools {
 // One line a verb, in the order of --help.
 Verb simulate_verb();
 Verb explain_verb();
+Verb draw_verb();
 Verb paper_verb();
 Verb lp_verb();
 Verb vo_verb();
@@ -20,8 +21,8 @@ Verb segment_verb();
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = {
-      simulate_verb(), explain_verb(), paper_verb(),   lp_verb(),    vo_verb(),       audit_verb(),  trap_verb(),
-      validate_verb(), repair_verb(),  convert_verb(), batch_verb(), generate_verb(), segment_verb()};
+      simulate_verb(), explain_verb(),  draw_verb(),   paper_verb(),   lp_verb(),    vo_verb(),       audit_verb(),
+      trap_verb(),     validate_verb(), repair_verb(), convert_verb(), batch_verb(), generate_verb(), segment_verb()};
   return all;
 }
 

@@ -713,5 +713,51 @@ TEST(Explain, ATimeAfterTheEndIsRefused) {
   EXPECT_EQ(here.run("explain s.json --time 1 --robot R1 --out x.jpg").status, 2);
 }
 
+TEST(Explain, ARecordingSaysWhatTheRunSays) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  ASSERT_EQ(here.run("simulate s.json --method orca --out out --no-figures --record-all").status, 0);
+  for (const char* time : {"0", "2.5", "10"}) {
+    const std::string question = std::string(" --time ") + time + " --robot R1 --out ";
+    const Outcome run = here.run("explain s.json --method orca" + question + "run.svg");
+    for (const char* recorded : {"explain out", "explain out/recording.jsonl"}) {
+      const Outcome again = here.run(recorded + question + "again.svg");
+      ASSERT_EQ(again.status, 0) << again.err;
+      EXPECT_EQ(again.out, run.out) << time;
+      EXPECT_EQ(here.read("again.dat"), here.read("run.dat"));
+    }
+  }
+  EXPECT_THAT(here.run("explain out --time 1 --robot 0 --method ivo").err,
+              HasSubstr("--method has no effect: the run is read from its recording"));
+  EXPECT_EQ(here.run("explain out --time 1000 --robot R1").status, 2);
+  EXPECT_EQ(here.run("explain out --time 1 --robot 0 --out out/recording.jsonl").status, 2);
+  ASSERT_EQ(here.run("simulate s.json --method orca --out less --no-figures").status, 0);
+  EXPECT_THAT(here.run("explain less --time 10 --robot R1").out,
+              AllOf(HasSubstr("The robot is held by"), HasSubstr("--record-all")));
+}
+
+TEST(Draw, GivesTheFiguresOfTheRun) {
+  for (const char* scenario : {"paper/A2.json", "paper/B1.json"}) {
+    const Workplace here;
+    ASSERT_EQ(here.run("simulate " + data_file(scenario) + " --out run").status, 0);
+    ASSERT_EQ(here.run("draw run/recording.jsonl --out again").status, 0);
+    EXPECT_EQ(here.files("again"), here.files("run/figures")) << scenario;
+  }
+}
+
+TEST(Draw, PutsThemBesideTheRecordingAndRefusesOtherFolders) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  ASSERT_EQ(here.run("simulate s.json --out run --no-figures").status, 0);
+  EXPECT_FALSE(here.has("run/figures"));
+  ASSERT_EQ(here.run("draw run", "PATH=/nowhere").status, 0);
+  EXPECT_TRUE(here.has("run/figures/paths.gp"));
+  std::filesystem::create_directory(here.path() / "mine");
+  here.write("mine/thesis.txt", "x");
+  EXPECT_EQ(here.run("draw run --out mine").status, 2);
+  EXPECT_THAT(here.run("draw mine").err, HasSubstr("mine/recording.jsonl"));
+  EXPECT_THAT(here.run("draw s.json").err, HasSubstr("E_"));
+}
+
 }  // namespace
 }  // namespace exactvo::test

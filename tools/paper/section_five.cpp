@@ -161,7 +161,7 @@ class Experiments {
   /// `scenario` is the name of its file: the one within it may be anything, a way out of the folder too.
   void add_figures(const std::string& scenario, const FinishedRun& finished, const std::string& folder) {
     const fs::path target = out_ / "figures" / folder / scenario;
-    const std::vector<fs::path> scripts = write_figures(finished, target);
+    const std::vector<fs::path> scripts = write_figures(finished.file, target);
     scripts_.insert(scripts_.end(), scripts.begin(), scripts.end());
   }
 

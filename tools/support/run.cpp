@@ -96,10 +96,16 @@ void check_same_run(const fs::path& folder, const RunName& run) {
                             "an earlier run of " + in_words(run) + ", another folder, or --force to replace it");
 }
 
-std::vector<fs::path> write_figures(const FinishedRun& run, const fs::path& folder) {
+std::optional<fs::path> recording_at(const fs::path& path) {
+  std::error_code unknown;
+  if (fs::is_directory(path, unknown)) return path / "recording.jsonl";
+  return path.extension() == ".jsonl" ? std::optional(path) : std::nullopt;
+}
+
+std::vector<fs::path> write_figures(const datasets::RecordingFile& run, const fs::path& folder) {
   make_folder(folder);
   std::vector<fs::path> scripts;
-  for (const Figure& figure : run_figures(run.file)) scripts.push_back(write_sources(figure, folder));
+  for (const Figure& figure : run_figures(run)) scripts.push_back(write_sources(figure, folder));
   return scripts;
 }
 

@@ -52,8 +52,12 @@ std::optional<RunName> run_in(const std::filesystem::path& folder);
 /// Throws datasets::DataError (E_OTHER_RUN) if the folder holds an earlier run of another name.
 void check_same_run(const std::filesystem::path& folder, const RunName& run);
 
+/// The recording that a path means: `recording.jsonl` of a folder, or the file itself if its name ends in .jsonl.
+std::optional<std::filesystem::path> recording_at(const std::filesystem::path& path);
+
 /// The figures' data and scripts in `folder`, which is created. Returns the scripts, for `draw`.
-std::vector<std::filesystem::path> write_figures(const FinishedRun& run, const std::filesystem::path& folder);
+std::vector<std::filesystem::path> write_figures(const datasets::RecordingFile& run,
+                                                 const std::filesystem::path& folder);
 
 /// Runs gnuplot on the scripts; a message where it is absent. Throws std::runtime_error where it fails.
 void draw(const std::vector<std::filesystem::path>& scripts);

@@ -81,8 +81,8 @@ std::optional<formation::Remedies> remedies_of(const SimulationFlags& flags, for
 }  // namespace
 
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
-  app.add_option("--method,-m", flags.method, help("Avoidance method", formation::method_names()))
-      ->capture_default_str();
+  CLI::Option* method = app.add_option("--method,-m", flags.method, help("Avoidance method", formation::method_names()))
+                            ->capture_default_str();
   flags.of_formations = {
       app.add_option("--controller,-c", flags.controller, help("Formation controller", formation::controller_names()))
           ->capture_default_str(),
@@ -95,10 +95,11 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
                      fmt::format("Switch a controller option: NAME=on or NAME=off, repeatable: {}; "
                                  "acceleration_bound=8 (m/s^2)",
                                  fmt::join(switch_names(), ", ")))};
-  declare_seed(app, flags.seed);
+  flags.of_runs = flags.of_formations;
+  flags.of_runs.insert(flags.of_runs.end(), {method, declare_seed(app, flags.seed)});
 }
 
-void declare_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
+CLI::Option* declare_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
   // The parser would let -1 and 2^64 pass as 2^64 - 1.
   const auto fits = [](const std::string& text) {
     errno = 0;
@@ -106,7 +107,7 @@ void declare_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
     const bool is_seed = text.rfind('-', 0) != 0 && errno != ERANGE;
     return is_seed ? std::string() : "found '" + text + "', expected a whole number from 0 to 18446744073709551615";
   };
-  app.add_option("--seed", seed, help)->capture_default_str()->check(CLI::Validator(fits, "", ""));
+  return app.add_option("--seed", seed, help)->capture_default_str()->check(CLI::Validator(fits, "", ""));
 }
 
 CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& help) {
@@ -118,13 +119,21 @@ CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& hel
   return app.add_option("--out,-o", out, help)->check(CLI::Validator(is_name, "", ""));
 }
 
+namespace {
+
+void note(const std::vector<const CLI::Option*>& options, const std::string& why) {
+  for (const CLI::Option* option : options)
+    if (option->count() > 0) message("note: --" + option->get_lnames().front() + " has no effect: " + why);
+}
+
+}  // namespace
+
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
-  if (scenario.formation) return;
-  for (const CLI::Option* option : flags.of_formations) {
-    if (option->count() > 0) {
-      message("note: --" + option->get_lnames().front() + " has no effect: the scenario has no formation");
-    }
-  }
+  if (!scenario.formation) note(flags.of_formations, "the scenario has no formation");
+}
+
+void note_recorded(const SimulationFlags& flags) {
+  note(flags.of_runs, "the run is read from its recording");
 }
 
 formation::SimulationOptions simulation_options(const SimulationFlags& flags) {

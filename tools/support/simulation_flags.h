@@ -20,6 +20,7 @@ struct SimulationFlags {
   std::string remedies;               ///< a set by its name, instead of the controller's
   std::vector<std::string> switches;  ///< "smoothing=on"
   std::uint64_t seed = 0;
+  std::vector<const CLI::Option*> of_runs;        ///< all
   std::vector<const CLI::Option*> of_formations;  ///< --controller, --integrator, --remedies, --remedy
 };
 
@@ -27,11 +28,13 @@ struct SimulationFlags {
 CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& help);
 
 /// Declares --seed: a whole number below 2^64.
-void declare_seed(CLI::App& app, std::uint64_t& seed,
-                  const std::string& help = "Noted in the provenance; a run draws no random numbers");
+CLI::Option* declare_seed(CLI::App& app, std::uint64_t& seed,
+                          const std::string& help = "Noted in the provenance; a run draws no random numbers");
 
 /// A message for each option given that a scenario without a formation does not use.
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario);
+/// A message for each option given where the run is a recorded one.
+void note_recorded(const SimulationFlags& flags);
 
 /// Declares --method, --controller, --integrator, --remedies, --remedy and --seed. `flags` must outlive the parsing.
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags);

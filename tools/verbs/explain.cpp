@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "exactvo/datasets/input_files.h"
+#include "exactvo/datasets/recording_file.h"
 #include "exactvo/formation/stuck.h"
 #include "explain/explanation.h"
 #include "figures/velocity_space.h"
@@ -96,16 +97,48 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
           remarks_on(scenario, recording, robot)};
 }
 
-void check(const Flags& flags) {
+/// The run as it was at a time: up to the row after the last one at or before it.
+void cut_after(formation::Recording& run, double time) {
+  std::size_t last = 0;
+  while (last + 2 < run.steps.size() && run.steps[last + 1].time <= time + 1e-6 * run.time_step) ++last;
+  if (last + 2 == run.steps.size()) return;
+  run.steps.resize(last + 2);
+  run.diverged = false;  // said of the end
+}
+
+Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
+  datasets::RecordingFile file = datasets::read_recording(path);
+  const std::size_t robot = find_robot(file.scenario, flags.robot);
+  last_decision(file.recording, flags.time);  // refuses a time after the end
+  cut_after(file.recording, flags.time);
+  const formation::Step& step = last_decision(file.recording, flags.time);
+  const std::string method =
+      "method " + file.info.method + (file.info.controller ? ", controller " + *file.info.controller : "");
+  Explained explained{{file.scenario, method, robot, step.time, step.robots.at(robot)},
+                      remarks_on(file.scenario, file.recording, robot)};
+  if (!file.recording.all_half_planes)
+    explained.remarks.push_back(
+        "The recording has only the half-planes that bind and those against what could be met within a time step: "
+        "simulate --record-all keeps the others too.");
+  return explained;
+}
+
+/// Of a recording, or of a scenario that is run until then.
+Explained explained_by(const Flags& flags) {
   if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time of at least 0 s");
+  if (const auto recording = recording_at(flags.scenario)) {
+    check_figure_name("--out", flags.out, {*recording});
+    note_recorded(flags.simulation);
+    return decision_in(flags, *recording);
+  }
   check_figure_name("--out", flags.out, datasets::files_read_with(flags.scenario, "scenario"));
+  const Scenario scenario = read_scenario(flags.scenario).scenario;
+  note_unused(flags.simulation, scenario);
+  return decide(flags, scenario);
 }
 
 ExitCode explain(const Flags& flags) {
-  check(flags);
-  const Scenario scenario = read_scenario(flags.scenario).scenario;
-  note_unused(flags.simulation, scenario);
-  const Explained explained = decide(flags, scenario);
+  const Explained explained = explained_by(flags);
   print(shown_lines(explanation(explained.decision)));
   for (const std::string& remark : explained.remarks) print(shown(remark) + "\n");
   if (!flags.out.empty()) write_figure(velocity_space_figure(explained.decision), flags.out);
@@ -114,7 +147,8 @@ ExitCode explain(const Flags& flags) {
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
+  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin; or the recording of a run, or its folder")
+      ->required();
   app.add_option("--time,-t", flags->time, "Time of the decision, s")->required();
   app.add_option("--robot,-r", flags->robot, "The robot: its id, or its index from 0")->required();
   declare_out(app, flags->out, kFigureFileHelp);
@@ -126,7 +160,9 @@ Action declare(CLI::App& app) {
 
 Verb explain_verb() {
   return {"explain", "Draw one robot's velocity space at one moment and explain which constraints are binding",
-          "  exactvo explain datasets/data/paper/A1.json --method orca --time 10 --robot R1 --out out/stuck.svg\n",
+          "  exactvo explain datasets/data/paper/A1.json --method orca --time 10 --robot R1 --out out/stuck.svg\n"
+          "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
+          "  exactvo explain out/A7 --time 3 --robot R1\n",
           declare};
 }
 

@@ -132,7 +132,7 @@ FinishedRun run_into_folder(const Flags& flags, const ReadScenario& read, const 
   FinishedRun finished = run_with_progress(flags, read, options, folder.path());
   if (!flags.no_figures) {
     const EndsAtOnce nothing_is_published;
-    draw(write_figures(finished, folder.path() / "figures"));
+    draw(write_figures(finished.file, folder.path() / "figures"));
   }
   if (interrupted()) throw Interrupted();
   print_results(flags, finished);
