@@ -56,13 +56,20 @@ inline void check_field(const RouteField& f, SeededRandom& random, RouteCampaign
   const geometry::RouteMap map(f.obstacles);
   const auto reaches = [&](double r) { return geometry::RoutePlan(map, r).is_reachable(f.start, f.goal); };
   constexpr double kSmall = 1e-3, kLarge = 13.0;  // the fence is 24 m wide
+  const double widest = map.widest_radius(f.start, f.goal);
+  const auto fail_widest = [&](double found) {
+    out.failures.push_back("the widest radius is " + geometry::hex_text(found) + ", not " + geometry::hex_text(widest) +
+                           "\n" + corpus_line(RouteCase{f, found}));
+  };
   if (!reaches(kSmall)) {
+    if (widest >= kSmall) fail_widest(kSmall);
     check_radius(f, map, kSmall, 0, out);
     check_radius(f, map, random.uniform(0.01, 1.0), 0, out);
     return;
   }
   double low = kSmall, high = kLarge;
   while (std::nextafter(low, high) < high) (reaches(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+  if (low != widest) fail_widest(low);
   check_radius(f, map, low, 1, out);
   check_radius(f, map, high, 0, out);
   for (const double size : {1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.5}) {

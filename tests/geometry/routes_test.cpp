@@ -64,6 +64,23 @@ TEST(Routes, AGapOfExactlyTwoRadiiIsPassedAndTheNextDoubleIsNot) {
   EXPECT_GE(gaps, 1u);
 }
 
+// The campaigns compare it with a bisection over doubles.
+TEST(WidestRadius, IsThatOfTheGateThatTheWidestWayCannotAvoid) {
+  // Two doors from the left to the right, 2 and 3 m wide, and a niche of 1 m.
+  const std::vector<Obstacle> doors{
+      Polyline{{{0, -50}, {0, -1}}},        Polyline{{{0, 1}, {0, 10}}},
+      Polyline{{{0, 13}, {0, 50}}},         Polyline{{{9, 0}, {9, 4}}},
+      Polyline{{{10, 0}, {10, 4}, {9, 4}}}, test::fence({{-50, -50}, {50, -50}, {50, 50}, {-50, 50}})};
+  const RouteMap map(doors);
+  EXPECT_EQ(map.widest_radius({-20, 0}, {20, 30}), 1.5);
+  EXPECT_EQ(map.widest_radius({-20, 0}, {9.5, 2}), 0.5);
+  EXPECT_EQ(map.widest_radius({-20, 0}, {9.5, 3.75}), 0.25);  // nearer to the niche's end
+  EXPECT_EQ(map.widest_radius({-20, 0}, {60, 0}), 0.0);
+  EXPECT_EQ(map.widest_radius({-20, 0}, {0, 20}), 0.0);
+  EXPECT_EQ(map.widest_radius({-20, 0}, {-20, 0}), 20.0);
+  EXPECT_EQ(RouteMap({}).widest_radius({0, 0}, {1, 1}), RouteMap({}).largest_radius());
+}
+
 TEST(Routes, OutsideOfAllObstaclesIsFree) {
   const std::vector<Obstacle> wall{Polyline{{{0, -5}, {0, 5}}}};
   const RouteAnswer answer = asked(wall, 0.5, {-1, 0}, {1, 0});

@@ -23,6 +23,7 @@
 /// Exact: every combinatorial decision here.
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "routes/triangulation.h"
@@ -79,6 +80,12 @@ class CellMap {
   CellMap(PlanarGraph graph, const Vec2 (&corners)[4]);
 
   const Point& vertex(int v) const { return vertices[static_cast<std::size_t>(v)]; }
+  /// A piece is an edge of the graph, or beyond those an isolated vertex, twice.
+  std::pair<int, int> ends_of(int piece) const {
+    const int edges = static_cast<int>(graph.edges.size());
+    if (piece < edges) return {graph.edges[piece].a, graph.edges[piece].b};
+    return {graph.isolated[piece - edges], graph.isolated[piece - edges]};
+  }
   bool is_site(int v) const { return v < static_cast<int>(graph.vertices.size()); }
   /// The foot of the Link on its wall.
   Point foot(const Link& link) const;

@@ -300,13 +300,6 @@ bool is_clearly_apart(Vec2 p, Vec2 q, Vec2 a, Vec2 b, double r) {
 
 }  // namespace
 
-std::pair<int, int> ClearancePlan::ends_of(int piece) const {
-  const int edges = static_cast<int>(map_->graph.edges.size());
-  if (piece < edges) return {map_->graph.edges[piece].a, map_->graph.edges[piece].b};
-  const int vertex = map_->graph.isolated[piece - edges];
-  return {vertex, vertex};
-}
-
 int ClearancePlan::piece_too_near(const Point& x) const {
   int found = -1;
   grid_->for_each_near(x.rounded(), x.rounded(), radius_, [&](int piece) {

@@ -58,7 +58,7 @@ class ClearancePlan {
   /// The pieces nearer than r to x, each once, ascending.
   std::vector<int> pieces_within(Vec2 x, double r) const;
   /// The ends of a piece of the grid, as vertices; twice the same for an isolated one.
-  std::pair<int, int> ends_of(int piece) const;
+  std::pair<int, int> ends_of(int piece) const { return map_->ends_of(piece); }
 
  private:
   void decide_gates();

@@ -11,6 +11,7 @@
 #include "routes/chain.h"
 #include "routes/realise.h"
 #include "routes/signs.h"
+#include "routes/widest.h"
 #include "shapes/edge_crossing.h"
 
 namespace exactvo::geometry {
@@ -65,6 +66,13 @@ struct RouteMap::Parts {
   double margin;  ///< m: how far outside of the box a start or goal may lie
   CellMap cells;
   routing::EdgeGrid grid;
+  mutable std::once_flag gates_made;
+  mutable std::optional<routing::GateTree> gates;  ///< made when the widest radius is first asked for
+
+  const routing::GateTree& gate_tree() const {
+    std::call_once(gates_made, [this] { gates.emplace(cells); });
+    return *gates;
+  }
 
   Parts(const std::vector<Obstacle>& all, const RouteMapOptions& options)
       : obstacles(all),
@@ -139,9 +147,8 @@ struct Located {
   Blocked blocked;
 };
 
-int triangle_of(const ClearancePlan& plan, const Point& x) {
-  const CellMap& map = plan.map();
-  int triangle = plan.grid().triangle_near(x.rounded()), before = -1;
+int triangle_of(const CellMap& map, const routing::EdgeGrid& grid, const Point& x) {
+  int triangle = grid.triangle_near(x.rounded()), before = -1;
   // A walk towards x through the sides that it lies beyond. It may run in circles where the triangulation is not
   // Delaunay: the side to begin with changes from step to step, and after as many steps as triangles all are tried.
   for (std::size_t step = 0; step < map.triangles.size() + 16; ++step) {
@@ -190,7 +197,7 @@ Located located(const RouteMap::Parts& parts, const ClearancePlan& plan, Vec2 x,
     out.blocked.by = name_of(parts.cells, piece);
     return out;
   }
-  const int triangle = triangle_of(plan, x);
+  const int triangle = triangle_of(parts.cells, parts.grid, x);
   if (triangle < 0) throw std::runtime_error("routes: no triangle holds " + to_string({x}));
   if (parts.cells.triangles[triangle].free) {
     out.cell = parts.cells.cell_in(triangle, x);
@@ -217,6 +224,21 @@ double length_of(const std::vector<Point>& points) {
 }
 
 }  // namespace
+
+double RouteMap::widest_radius(Vec2 start, Vec2 goal) const {
+  EXACTVO_REQUIRE(covers(start) && covers(goal), to_string({start, goal}));
+  const CellMap& cells = parts_->cells;
+  const int s = triangle_of(cells, parts_->grid, start), t = triangle_of(cells, parts_->grid, goal);
+  if (s < 0 || t < 0) throw std::runtime_error("routes: no triangle holds " + to_string({start, goal}));
+  // One on an edge may be said to lie in either triangle: its clearance is 0.
+  if (!cells.triangles[s].free || !cells.triangles[t].free) return 0.0;
+  const int from = cells.cell_in(s, start), to = cells.cell_in(t, goal);
+  const routing::GateTree& tree = parts_->gate_tree();
+  if (!tree.connects(from, to)) return 0.0;
+  const double widest = std::min({tree.widest_radius(from, to), routing::clearance_of(cells, parts_->grid, start),
+                                  routing::clearance_of(cells, parts_->grid, goal), largest_radius()});
+  return widest >= kSmallestRadius ? widest : 0.0;
+}
 
 RoutePlan::RoutePlan(const RouteMap& map, double radius) {
   EXACTVO_REQUIRE(radius >= kSmallestRadius && radius <= map.largest_radius(), hex_text(radius));

@@ -101,6 +101,11 @@ class RouteMap {
   /// Whether a start or goal may lie there.
   bool covers(Vec2 point) const;
 
+  /// The largest double for which a disc of that radius has a route, in metres; 0 if none has. Exact: `RoutePlan` finds
+  /// a route for it, and for the next double a chain, or that an end is blocked. `largest_radius` where even that fits.
+  /// O(n log n) for the first question, then O(log n) and the time to look up what is near. REQUIRES: `covers` both.
+  double widest_radius(Vec2 start, Vec2 goal) const;
+
   struct Parts;
   const Parts& parts() const { return *parts_; }  ///< for RoutePlan
 
