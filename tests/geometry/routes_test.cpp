@@ -77,7 +77,7 @@ TEST(WidestRadius, IsThatOfTheGateThatTheWidestWayCannotAvoid) {
   EXPECT_EQ(map.widest_radius({-20, 0}, {9.5, 3.75}), 0.25);  // nearer to the niche's end
   EXPECT_EQ(map.widest_radius({-20, 0}, {60, 0}), 0.0);
   EXPECT_EQ(map.widest_radius({-20, 0}, {0, 20}), 0.0);
-  EXPECT_EQ(map.widest_radius({-20, 0}, {-20, 0}), 20.0);
+  EXPECT_EQ(map.widest_radius({-20, 5}, {-20, 5}), 20.0);
   EXPECT_EQ(RouteMap({}).widest_radius({0, 0}, {1, 1}), RouteMap({}).largest_radius());
 }
 
