@@ -12,6 +12,15 @@ namespace {
 
 using geometry::norm;
 
+/// The farthest velocity of a box bound, in sides of it.
+const double kFastest = std::sqrt(2.0);
+
+/// m: how much nearer the robot and something of that speed can come within a step.
+double reach_within(double time_step, const Viewpoint& from, double other) {
+  constexpr double kRounding = 1.0 + 1e-6;  // clearances are rounded
+  return kRounding * time_step * (kFastest * from.max_speed + other);
+}
+
 Constraint against_robot(const geometry::HalfPlane& h, bool certified, std::size_t other, const Scene& scene,
                          const vo::MovingDisc& self, const vo::MovingDisc& them, double tau) {
   Constraint c;
@@ -89,14 +98,16 @@ lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {
   return bound;
 }
 
+double reach_of_step(const Scenario& scenario, const Viewpoint& from) {
+  return reach_within(scenario.time_step, from, 0.0);
+}
+
 /// m: how much nearer the robot and the body can come within a step, whatever is decided.
 double Decider::reach_of(const Constraint& c, const Viewpoint& from) const {
-  constexpr double kRounding = 1.0 + 1e-6;  // clearances are rounded
-  const double fastest = std::sqrt(2.0);  // the farthest velocity of a box bound, in sides of it
   const vo::Body& body = (*bodies_)[c.body];
   const double other =
-      body.kind == vo::BodyKind::robot ? fastest * scenario_->robots[c.index].max_speed : norm(body.velocity);
-  return kRounding * scenario_->time_step * (fastest * from.max_speed + other);
+      body.kind == vo::BodyKind::robot ? kFastest * scenario_->robots[c.index].max_speed : norm(body.velocity);
+  return reach_within(scenario_->time_step, from, other);
 }
 
 RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from,
@@ -121,13 +132,21 @@ RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from,
   return r;
 }
 
-void Decider::decide(const DecisionInput& in, RobotStep& step) {
+lp::Solution Decider::solution_of(const DecisionInput& in) {
   problem_.bound = speed_bound(*scenario_, in.from.max_speed);
   problem_.preferred = in.preferred;
-  problem_.constraints.clear();
-  for (const std::vector<Constraint>* some : {in.statics, in.others})
-    for (const Constraint& c : *some) problem_.constraints.push_back({c.half_plane, c.priority});
-  const lp::Solution solution = lp::solve(problem_);
+  if (in.more && in.keep_all) in.more->need_all();
+  for (;;) {
+    problem_.constraints.clear();
+    for (const std::vector<Constraint>* some : {in.statics, in.others})
+      for (const Constraint& c : *some) problem_.constraints.push_back({c.half_plane, c.priority});
+    const lp::Solution solution = lp::solve(problem_, pricing_);
+    if (!in.more || !in.more->need_for(solution, pricing_)) return solution;
+  }
+}
+
+void Decider::decide(const DecisionInput& in, RobotStep& step) {
+  const lp::Solution solution = solution_of(in);
   step.preferred = in.preferred;
   step.chosen = solution.velocity;
   step.status = solution.status;

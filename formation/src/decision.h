@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "needed_constraints.h"
 #include "static_field.h"
 
 namespace exactvo::formation::detail {
@@ -25,6 +26,9 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
 /// s: within this a robot in contact is asked to part: never less than a step.
 double contact_time(const Scenario& scenario);
 
+/// m: how much nearer a robot and what stands still can come within a step, whatever is decided.
+double reach_of_step(const Scenario& scenario, const Viewpoint& from);
+
 lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed);
 
 struct DecisionInput {
@@ -33,6 +37,7 @@ struct DecisionInput {
   const std::vector<Constraint>* statics = nullptr;
   const std::vector<Constraint>* others = nullptr;  ///< robots and moving obstacles
   bool keep_all = false;
+  NeededConstraints* more = nullptr;  ///< grows `statics` by what the decision needs; none: they are all there
 };
 
 /// Makes decisions one after the other in memory of its own.
@@ -46,12 +51,14 @@ class Decider {
   void decide(const DecisionInput& in, RobotStep& step);
 
  private:
+  lp::Solution solution_of(const DecisionInput& in);
   double reach_of(const Constraint& c, const Viewpoint& from) const;
   RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, const lp::ActiveConstraint* active) const;
 
   const Scenario* scenario_;
   const vo::BodyTable* bodies_;
   lp::Problem problem_;
+  lp::Pricing pricing_;
 };
 
 }  // namespace exactvo::formation::detail

@@ -6,6 +6,7 @@
 
 #include "decision.h"
 #include "moving.h"
+#include "needed_constraints.h"
 #include "rows.h"
 #include "run_clock.h"
 #include "runs.h"
@@ -107,7 +108,10 @@ class KinematicRun {
     const Robot& spec = scenario_.robots[i];
     KinematicRobot& r = robots_[i];
     const Viewpoint here{r.position, r.velocity, spec.radius, spec.max_speed};
-    r.field->constraints(here, statics_);
+    if (options_.method == Method::orca)
+      r.field->constraints(here, all_);
+    else
+      statics_.look(*r.field, here, reach_of_step(scenario_, here));
     add_moving_constraints(scenario_, here, scene_, others_[i]);
     RobotStep step;
     step.position = r.position;
@@ -115,8 +119,12 @@ class KinematicRun {
     step.anchor = here.position;
     step.anchor_velocity = here.velocity;
     step.note = std::exchange(r.note, {});
-    const Vec2 preferred = steer(i, time, statics_, step);
-    decider_.decide({preferred, here, &statics_, &others_[i], clock_.keeps_all(time)}, step);
+    const bool keep_all = clock_.keeps_all(time);
+    const Vec2 preferred = steer(i, time, step);
+    if (options_.method == Method::orca)
+      decider_.decide({preferred, here, &all_, &others_[i], keep_all, nullptr}, step);
+    else
+      decider_.decide({preferred, here, &statics_.lines(), &others_[i], keep_all, &statics_}, step);
     return step;
   }
 
@@ -126,35 +134,42 @@ class KinematicRun {
     return speed * geometry::normalized(to_goal);
   }
 
-  Vec2 steer(std::size_t i, double time, const std::vector<Constraint>& statics, RobotStep& step) {
+  bool is_in_contact() const {
+    const std::vector<Constraint>& statics = options_.method == Method::orca ? all_ : statics_.lines();
+    return !statics.empty() && statics.front().clearance < 0.0;
+  }
+
+  Vec2 steer(std::size_t i, double time, RobotStep& step) {
     const Vec2 preferred = straight_for_goal(i);
     if (at_goal(i)) {
       step.mode = Mode::arrived;
       return preferred;
     }
-    const bool in_contact = !statics.empty() && statics.front().clearance < 0.0;
+    const bool in_contact = is_in_contact();
     if (in_contact) step.mode = Mode::pushing_out;
     if (options_.method == Method::orca) return preferred;
-    if (options_.method != Method::ivo) return ties_broken(i, statics, preferred, step);
+    if (options_.method != Method::ivo) return ties_broken(i, preferred, step);
     const Robot& spec = scenario_.robots[i];
     const Viewpoint here{robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
     const Follower::Answer answer =
         robots_[i].follower.steer({time, scenario_.time_step, here, goal_of(i),
                                    spec.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field},
-                                  statics);
+                                  statics_);
     step.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
     step.side = answer.side;
     step.note = joined_notes(step.note, answer.note);
     if (answer.mode == Mode::following) return answer.preferred;
-    const std::optional<Vec2> boost = boosted(statics, preferred);
-    if (!boost) return ties_broken(i, statics, preferred, step);
+    statics_.need_at(preferred);
+    const std::optional<Vec2> boost = boosted(statics_.lines(), preferred);
+    if (!boost) return ties_broken(i, preferred, step);
     step.mode = Mode::boost;
     return *boost;
   }
 
   /// Says so when a tie begins.
-  Vec2 ties_broken(std::size_t i, const std::vector<Constraint>& statics, Vec2 preferred, RobotStep& step) {
-    const Vec2 turned = with_tie_broken(statics, preferred);
+  Vec2 ties_broken(std::size_t i, Vec2 preferred, RobotStep& step) {
+    statics_.need_at(preferred);
+    const Vec2 turned = with_tie_broken(statics_.lines(), preferred);
     const bool tied = !(turned == preferred);
     if (tied && !robots_[i].tied) step.note = joined_notes(step.note, "head-on: the tie between the sides goes left");
     robots_[i].tied = tied;
@@ -212,7 +227,8 @@ class KinematicRun {
   std::vector<Outlook> outlooks_;
   // Memory that a step leaves to the next.
   std::vector<Anchor> anchors_;
-  std::vector<Constraint> statics_;
+  NeededConstraints statics_;                    ///< of the methods that have static fields of shapes
+  std::vector<Constraint> all_;                  ///< of Method::orca
   std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
 };
 

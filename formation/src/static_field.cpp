@@ -39,11 +39,8 @@ geometry::EnclosureOptions enclosure_options(const Scenario& scenario) {
   return options;
 }
 
-/// Nearest first; of shapes equally near, the order of their names.
-void sort_by_clearance(std::vector<Constraint>& lines) {
-  std::sort(lines.begin(), lines.end(), [](const Constraint& a, const Constraint& b) {
-    return std::tie(a.clearance, a.index, a.piece) < std::tie(b.clearance, b.index, b.piece);
-  });
+bool meet(const geometry::Box& a, const geometry::Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
 }
 
 /// The farthest velocity of a box bound is sqrt 2 times its side.
@@ -52,6 +49,12 @@ bool is_beyond_reach(double clearance, const Viewpoint& from, double tau) {
 }
 
 }  // namespace
+
+void sort_by_clearance(std::vector<Constraint>& lines) {
+  std::sort(lines.begin(), lines.end(), [](const Constraint& a, const Constraint& b) {
+    return std::tie(a.clearance, a.index, a.piece) < std::tie(b.clearance, b.index, b.piece);
+  });
+}
 
 // --- The scene ---
 
@@ -196,6 +199,21 @@ double StaticField::farthest_that_matters(const Viewpoint& from) const {
   return kRounding * (std::sqrt(2.0) * from.max_speed * tau + from.radius + kContactSkin);
 }
 
+template <class Visit>
+void StaticField::for_each_shape_meeting(const geometry::Box& window, const Visit& visit) const {
+  if (method_ == Method::ivo_edge) {
+    scene_->facade_ellipses_by_place().for_each_meeting(window, [&](std::size_t k) {
+      visit(Shape{scene_->facade_ellipse(k), k, EnclosureGrade::containing});
+    });
+    return;
+  }
+  for (const Shape& e : enclosures_)
+    if (meet(scene_->bodies().box(e.body), window)) visit(e);
+  scene_->pieces_by_place().for_each_meeting(window, [&](std::size_t k) {
+    if (tight_index_[k] != kEnclosed) visit(Shape{scene_->piece(k), tight_index_[k], EnclosureGrade::tight});
+  });
+}
+
 void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach) const {
   out.clear();
   constexpr double kRounding = 1.0 + 1e-9;
@@ -220,20 +238,129 @@ void StaticField::for_each_shape_within(Vec2 x, double reach, const Visit& visit
   });
 }
 
+/// An enclosure that the robot is in gives way to what it encloses.
+bool StaticField::gives_way(const Shape& shape, const Viewpoint& from) const {
+  if (shape.grade == EnclosureGrade::tight) return false;
+  BodyTable& bodies = scene_->bodies();
+  if (distance_below(bodies.box(shape.body), from.position) > from.radius) return false;
+  return locate(bodies.seen(shape.body, from.position, from.radius), Vec2{}) != geometry::Place::outside;
+}
+
+template <class Visit>
+void StaticField::for_each_piece_of(const Shape& shape, const Visit& visit) const {
+  std::size_t number = 0;
+  for (const std::size_t obstacle : scene_->bodies()[shape.body].owners)
+    for (std::size_t k = scene_->first_piece(obstacle); k < scene_->first_piece(obstacle + 1); ++k)
+      visit(scene_->piece(k), Name{shape.index, ++number, EnclosureGrade::tight});
+}
+
 void StaticField::add_shape(const Shape& shape, const Viewpoint& from, double reach,
                             std::vector<Constraint>& out) const {
-  BodyTable& bodies = scene_->bodies();
-  const bool inside = shape.grade != EnclosureGrade::tight &&
-                      locate(bodies.seen(shape.body, from.position, from.radius), Vec2{}) != geometry::Place::outside;
-  if (!inside) return add_body(shape.body, {shape.index, 0, shape.grade}, from, out);
-  // The enclosure gives way to what it encloses.
-  std::size_t number = 0;
-  for (const std::size_t obstacle : bodies[shape.body].owners)
-    for (std::size_t k = scene_->first_piece(obstacle); k < scene_->first_piece(obstacle + 1); ++k) {
-      ++number;
-      if (distance_below(bodies.box(scene_->piece(k)), from.position) <= reach)
-        add_body(scene_->piece(k), {shape.index, number, EnclosureGrade::tight}, from, out);
-    }
+  if (!gives_way(shape, from)) return add_body(shape.body, {shape.index, 0, shape.grade}, from, out);
+  for_each_piece_of(shape, [&](BodyTable::Number piece, const Name& name) {
+    if (distance_below(scene_->bodies().box(piece), from.position) <= reach) add_body(piece, name, from, out);
+  });
+}
+
+// --- What a decision needs ---
+//
+// With S the body grown by the robot and its room, seen from the robot, VO = { s / t : s in S, 0 < t <= tau }, and the
+// half-plane of a v outside VO is that of VO's point nearest to v: n.v - c = |v - VO| for the unit n. Two lower bounds
+// of that distance, from a box round the body alone:
+//
+//     |v - s/t| >= |s|/t - |v| >= |S| / tau - |v|              for a slow robot
+//     |v - s/t| = |t v - s| / t >= |path - S| / tau            path = { t v : 0 <= t <= tau }, for a fast one
+//
+// tau grows with the distance of the body, and so does |S| / tau.
+
+namespace {
+
+double largest_coordinate(const geometry::Box& b) {
+  return std::max({std::fabs(b.low.x), std::fabs(b.low.y), std::fabs(b.high.x), std::fabs(b.high.y)});
+}
+
+/// The largest distance along a few axes by which the path from x to x + u and the box are separated: never more than
+/// their distance.
+double distance_below(const geometry::Box& box, Vec2 x, Vec2 u) {
+  const Vec2 end = x + u;
+  const double across_x = std::max(box.low.x - std::max(x.x, end.x), std::min(x.x, end.x) - box.high.x);
+  const double across_y = std::max(box.low.y - std::max(x.y, end.y), std::min(x.y, end.y) - box.high.y);
+  const double beside = std::max({across_x, across_y, 0.0});
+  const double length = std::fabs(u.x) + std::fabs(u.y);  // at least |u|
+  if (!(length > 0.0)) return beside;
+  const Vec2 half = 0.5 * (box.high - box.low);
+  const double off = std::fabs(cross(u, 0.5 * (box.low + box.high) - x));
+  return std::max(beside, (off - half.x * std::fabs(u.y) - half.y * std::fabs(u.x)) / length);
+}
+
+}  // namespace
+
+/// m/s: less than n.v - c of the half-plane against whatever the box holds.
+double StaticField::room_below(const geometry::Box& box, const Viewpoint& from) const {
+  constexpr double kRounding = 1e-12;  // of the coordinates
+  const double kept =
+      scenario_->margins.obstacle + kContactSkin + kRounding * (largest_coordinate(box) + norm(from.position));
+  const double nearest = geometry::distance_below(box, from.position) - from.radius;
+  const double speed = norm(from.velocity);
+  const double slow = (nearest - kept) / horizon(nearest, from) - speed;
+  const Vec2 corner = {std::max(box.high.x - from.position.x, from.position.x - box.low.x),
+                       std::max(box.high.y - from.position.y, from.position.y - box.low.y)};
+  const double tau = horizon(norm(corner), from);
+  const double path = distance_below(box, from.position, tau * from.velocity);
+  return std::max(slow, (path - from.radius - kept) / tau);
+}
+
+/// m, from the rim: whatever is farther leaves a robot at rest at least that room.
+double StaticField::distance_of_room(const Viewpoint& from, double room) const {
+  const Horizons& h = scenario_->horizons;
+  const double kept = scenario_->margins.obstacle + kContactSkin;
+  const double least = std::max(h.least, 2.0 * scenario_->time_step);
+  const double pace = std::max(norm(from.velocity), h.speed_floor * from.max_speed);  // tau = distance / pace between
+  if (const double d = kept + least * room; d <= pace * least) return d;
+  if (const double d = kept * pace / (pace - room); room < pace && d <= pace * h.most) return std::max(d, pace * least);
+  return std::max(kept + h.most * room, pace * h.most);
+}
+
+bool StaticField::is_needed(const geometry::Box& box, const Viewpoint& from, const Need& need) const {
+  constexpr double kRounding = 1.0 + 1e-9;
+  if (need.within >= 0.0 &&
+      geometry::distance_below(box, from.position) <= kRounding * (need.within + from.radius + kContactSkin))
+    return true;
+  return need.room > 0.0 && room_below(box, from) < need.room;
+}
+
+/// Meets every box that is needed: boxes that meet each other in pairs have a place in common.
+geometry::Box StaticField::window_of(const Viewpoint& from, const Need& need) const {
+  constexpr double kRounding = 1.0 + 1e-6;
+  const auto grown = [&](Vec2 x, double by) {
+    const Vec2 half{kRounding * by, kRounding * by};
+    return geometry::Box{x - half, x + half};
+  };
+  const double kept = from.radius + scenario_->margins.obstacle + 2.0 * kContactSkin;
+  geometry::Box window = grown(from.position, kept + std::max(need.within, 0.0));
+  if (!(need.room > 0.0)) return window;
+  const double most = scenario_->horizons.most;
+  const geometry::Box slow = grown(from.position, kept + distance_of_room(from, need.room + norm(from.velocity)));
+  geometry::Box fast = grown(from.position, kept + most * need.room);
+  fast.add(grown(from.position + most * from.velocity, kept + most * need.room));
+  window.add(geometry::Box{{std::max(slow.low.x, fast.low.x), std::max(slow.low.y, fast.low.y)},
+                           {std::min(slow.high.x, fast.high.x), std::min(slow.high.y, fast.high.y)}});
+  return window;
+}
+
+void StaticField::add_needed(const Viewpoint& from, const Need& had, const Need& need,
+                             std::vector<Constraint>& out) const {
+  EXACTVO_REQUIRE(rule_ == HorizonRule::clamped && method_ != Method::orca, "bounds of other horizons");
+  const auto add_if_new = [&](BodyTable::Number body, const Name& name) {
+    const geometry::Box& box = scene_->bodies().box(body);
+    if (is_needed(box, from, need) && !is_needed(box, from, had)) add_body(body, name, from, out);
+  };
+  for_each_shape_meeting(window_of(from, need), [&](const Shape& s) {
+    if (gives_way(s, from))
+      for_each_piece_of(s, add_if_new);
+    else
+      add_if_new(s.body, {s.index, 0, s.grade});
+  });
 }
 
 void StaticField::add_body(BodyTable::Number body, const Name& name, const Viewpoint& from,

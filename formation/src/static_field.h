@@ -24,6 +24,9 @@ struct Constraint : vo::Constraint {
   bool trap_free = false;  ///< the shape carries the certificate for this robot's goal
 };
 
+/// Nearest first; of shapes equally near, the order of their names.
+void sort_by_clearance(std::vector<Constraint>& lines);
+
 /// How a half-plane is asked for: the point it is built at and the velocity it is built round.
 struct Viewpoint {
   Vec2 position;         ///< m
@@ -84,6 +87,13 @@ class Scene {
   std::size_t first_robot_ = 0, first_moving_ = 0;
 };
 
+/// Which static shapes a decision needs: those within reach, and those whose half-plane may leave the robot's velocity
+/// less room than asked.
+struct Need {
+  double within = -1.0;  ///< m, from the rim; negative: none for its distance
+  double room = 0.0;     ///< m/s; 0: none for its room
+};
+
 /// What the literal paper does instead of clamping tau.
 enum class HorizonRule { clamped, literal };
 
@@ -98,6 +108,11 @@ class StaticField {
   /// Half-planes of every shape that could matter to a robot of that speed, nearest first; of those farther than
   /// `reach` (m, from the rim) only some.
   void constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach = kEverywhere) const;
+
+  /// Adds the half-planes that are needed and were not before, in no order, each the same bits as `constraints` gives.
+  /// Of what is left out, the unit normal n and offset c have n.v - c >= need.room at v = from.velocity, and a lower
+  /// bound of that is certain beyond all rounding. REQUIRES: HorizonRule::clamped; a method other than orca.
+  void add_needed(const Viewpoint& from, const Need& had, const Need& need, std::vector<Constraint>& out) const;
 
   /// The shapes by their number in this field, as bodies: `Constraint::index` counts them.
   std::vector<vo::BodyTable::Number> shapes() const;
@@ -119,8 +134,13 @@ class StaticField {
   void take_enclosures(const std::vector<geometry::Enclosure>& enclosures);
   template <class Visit>
   void for_each_shape_within(Vec2 x, double reach, const Visit& visit) const;
+  template <class Visit>
+  void for_each_shape_meeting(const geometry::Box& window, const Visit& visit) const;
   double horizon(double distance, const Viewpoint& from) const;
   double farthest_that_matters(const Viewpoint& from) const;
+  bool gives_way(const Shape& shape, const Viewpoint& from) const;
+  template <class Visit>
+  void for_each_piece_of(const Shape& shape, const Visit& visit) const;
   void add_shape(const Shape& shape, const Viewpoint& from, double reach, std::vector<Constraint>& out) const;
   void add_body(vo::BodyTable::Number body, const Name& name, const Viewpoint& from,
                 std::vector<Constraint>& out) const;
@@ -129,6 +149,11 @@ class StaticField {
                 std::vector<Constraint>& out) const;
 
   static constexpr std::uint32_t kEnclosed = static_cast<std::uint32_t>(-1);
+
+  geometry::Box window_of(const Viewpoint& from, const Need& need) const;
+  bool is_needed(const geometry::Box& box, const Viewpoint& from, const Need& need) const;
+  double room_below(const geometry::Box& box, const Viewpoint& from) const;
+  double distance_of_room(const Viewpoint& from, double room) const;
 
   Scene* scene_;
   const Scenario* scenario_;

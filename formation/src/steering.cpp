@@ -160,10 +160,12 @@ bool Follower::may_leave(const Situation& s, const std::vector<Constraint>& near
   return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !blocked(near, s.preferred);
 }
 
-Follower::Answer Follower::steer(const Situation& s, const std::vector<Constraint>& lines) {
-  const std::vector<Constraint> near = within(lines, s.reach);
+Follower::Answer Follower::steer(const Situation& s, NeededConstraints& statics) {
+  if (!following_ && !stalled(s)) return {s.preferred, Mode::direct, 0, ""};
+  statics.need_within(s.reach);
+  const std::vector<Constraint> near = within(statics.lines(), s.reach);
   if (!following_) {
-    if (!stalled(s) || !blocked(near, s.preferred)) return {s.preferred, Mode::direct, 0, ""};
+    if (!blocked(near, s.preferred)) return {s.preferred, Mode::direct, 0, ""};
     return begin(s, near);
   }
   if (!may_leave(s, near)) return follow(s, near);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "needed_constraints.h"
 #include "static_field.h"
 
 namespace exactvo::formation::detail {
@@ -66,7 +67,7 @@ class Follower {
     Vec2 preferred;                      ///< m/s, straight for the goal
     const StaticField* field = nullptr;  ///< for the rehearsal
   };
-  Answer steer(const Situation& s, const std::vector<Constraint>& lines);
+  Answer steer(const Situation& s, NeededConstraints& statics);
 
   /// A new goal: whatever was followed is forgotten.
   void reset();

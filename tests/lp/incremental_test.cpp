@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <random>
 #include <stdexcept>
 
 #include "exactvo/vo/lp/solve.h"
@@ -182,6 +184,61 @@ TEST(Incremental, NamesNoSpeedBoundThatDoesNotBind) {
   EXPECT_EQ(std::count_if(s.active.begin(), s.active.begin() + s.active_count,
                           [](const auto& a) { return a.binding.kind == BindingKind::box_right; }),
             1);
+}
+
+/// The constraints that at one of the velocities are violated most or nearly so, or hold there with no room to spare.
+Problem with_those_that_count(const Problem& problem, const Pricing& pricing, std::size_t& left_out) {
+  constexpr double kClearly = 1e-9;
+  Problem part = problem;
+  part.constraints.clear();
+  for (const Constraint& c : problem.constraints) {
+    bool counts = false;
+    for (const geometry::Vec2 v : pricing.at) {
+      double most = 0.0;
+      for (const Constraint& other : problem.constraints) most = std::max(most, violation(other.half_plane, v));
+      counts = counts || violation(c.half_plane, v) > most - kClearly;
+    }
+    if (counts) part.constraints.push_back(c);
+    left_out += !counts;
+  }
+  return part;
+}
+
+TEST(Pricing, WhatIsNeitherViolatedMostNorTightCanBeLeftOut) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> angle(0.0, 6.283), offset(-1.2, 0.4);
+  std::size_t walked = 0, left_out = 0;
+  for (int k = 0; k < 3000; ++k) {
+    Problem problem = in_disc(1.2, {1.5 * std::cos(angle(random)), std::sin(angle(random))});
+    for (int i = 0; i < 12; ++i) {
+      const double a = angle(random);
+      add(problem, {std::cos(a), std::sin(a)}, offset(random), i % 4 == 3 ? Priority::soft : Priority::hard);
+    }
+    Pricing pricing, again;
+    const Solution whole = solve(problem, pricing);
+    EXPECT_EQ(solve(problem).velocity, whole.velocity);
+    if (!pricing.is_all || whole.status != Status::optimal) continue;
+    EXPECT_FALSE(pricing.at.empty());
+    const Solution part = solve(with_those_that_count(problem, pricing, left_out), again);
+    EXPECT_EQ(part.velocity, whole.velocity);
+    EXPECT_EQ(part.status, whole.status);
+    ASSERT_EQ(part.active_count, whole.active_count);
+    for (std::size_t i = 0; i < whole.active_count; ++i)
+      EXPECT_EQ(part.active[i].multiplier, whole.active[i].multiplier);
+    walked += pricing.at.size() > 2;
+  }
+  EXPECT_GT(walked, 300u);
+  EXPECT_GT(left_out, 3000u);
+}
+
+/// Where constraints are relaxed every one counts.
+TEST(Pricing, SaysWhereConstraintsWereRelaxed) {
+  Problem problem = in_disc(1.0, {0.0, 1.0});
+  add(problem, {1.0, 0.0}, 0.5);
+  add(problem, {-1.0, 0.0}, 0.5);
+  Pricing pricing;
+  EXPECT_NE(solve(problem, pricing).status, Status::optimal);
+  EXPECT_FALSE(pricing.is_all);
 }
 
 }  // namespace

@@ -153,9 +153,10 @@ Region within_disc(const Region& region, double radius) {
   return bounded;
 }
 
-Found walk_to_best(const Region& region, Objective objective, Vec2 preferred) {
+Found walk_to_best(const Region& region, Objective objective, Vec2 preferred, std::vector<Vec2>* priced) {
   Found found = start_of(region, objective, preferred);
   for (int round = 0; round < kMostRounds; ++round) {
+    if (priced) priced->push_back(found.velocity);
     const std::size_t entering = most_violated(region, found.velocity, 0.0, found.basis);
     if (entering == kNoPosition) return found;
     const Members kept = members_of(found.basis, region);
@@ -168,10 +169,11 @@ Found walk_to_best(const Region& region, Objective objective, Vec2 preferred) {
 
 }  // namespace
 
-Found best_velocity(const Region& region, Objective objective, Vec2 preferred) {
-  if (objective == Objective::nearest || std::isfinite(region.disc)) return walk_to_best(region, objective, preferred);
+Found best_velocity(const Region& region, Objective objective, Vec2 preferred, std::vector<Vec2>* priced) {
+  if (objective == Objective::nearest || std::isfinite(region.disc))
+    return walk_to_best(region, objective, preferred, priced);
   // On a line alone a linear objective has no optimum: a disc beyond the corners of the box stands for what bounds it.
-  return walk_to_best(within_disc(region, 2.0 * region.speed), objective, preferred);
+  return walk_to_best(within_disc(region, 2.0 * region.speed), objective, preferred, priced);
 }
 
 // The least violation: lines of the space (v_x, v_y, t), where a soft line is the plane t = offset - normal . v. The

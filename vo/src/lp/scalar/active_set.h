@@ -21,7 +21,8 @@ struct Found {
 
 /// The optimum of `objective` over the lines (hard and soft alike) and the disc of `region`. REQUIRES: for a linear
 /// objective a finite disc, or lines that leave only speeds up to `region.speed`.
-Found best_velocity(const Region& region, Objective objective, Vec2 preferred);
+/// `priced`, where given, gets the velocities at which the most violated line was looked for.
+Found best_velocity(const Region& region, Objective objective, Vec2 preferred, std::vector<Vec2>* priced = nullptr);
 
 /// The velocity that keeps the hard lines and the disc and violates the soft ones least. `feasible` is false where the
 /// hard lines left nothing.

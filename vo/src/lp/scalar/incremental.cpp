@@ -6,8 +6,8 @@
 #include "lp/scalar/active_set.h"
 
 #include "exactvo/vo/lp/solve.h"
-#include "lp/proof/multipliers.h"
 #include "lp/problem/satisfaction.h"
+#include "lp/proof/multipliers.h"
 #include "lp/scalar/inward.h"
 
 namespace exactvo::lp {
@@ -124,9 +124,10 @@ Solution infeasible(const Problem& problem, const Region& hard) {
   return s;
 }
 
-Solution solve_with_slack(const Problem& problem, double slack) {
+Solution solve_with_slack(const Problem& problem, double slack, Pricing& pricing) {
   const Region region = region_of(problem, slack);
-  const Found best = best_velocity(region, problem.objective, problem.preferred);
+  const Found best = best_velocity(region, problem.objective, problem.preferred, &pricing.at);
+  pricing.is_all = pricing.is_all && best.feasible;
   if (best.feasible) {
     if (!is_finite(best.velocity)) return without_answer(problem);
     Solution s = solution_of(problem, region, best, Status::optimal);
@@ -145,11 +146,11 @@ bool preferred_is_allowed(const Problem& problem) {
   return problem.objective == Objective::nearest && holds(problem, Status::optimal, problem.preferred);
 }
 
-Solution solve_with_slacks(const Problem& problem) {
-  const Solution first = solve_with_slack(problem, kSlacks[0]);
+Solution solve_with_slacks(const Problem& problem, Pricing& pricing) {
+  const Solution first = solve_with_slack(problem, kSlacks[0], pricing);
   Solution s = first;
   for (std::size_t k = 1; k < std::size(kSlacks) && s.status == Status::no_interior; ++k)
-    s = solve_with_slack(problem, kSlacks[k]);
+    s = solve_with_slack(problem, kSlacks[k], pricing);
   return s.status == Status::optimal || s.status == Status::relaxed ? s : first;
 }
 
@@ -206,15 +207,26 @@ Problem scaled(Problem problem, int exponent) {
 //
 // Lines carry an inward slack. The velocity is then held exactly against the constraints as they were given; where it
 // breaks one, all is repeated with more slack, and where no slack helps the answer is `no_interior`.
-Solution solve(const Problem& problem) {
+Solution solve(const Problem& problem, Pricing& pricing) {
   require_well_formed(problem);
-  if (preferred_is_allowed(problem)) return {problem.preferred, Status::optimal, {}, 0, 0.0};
+  pricing.at.clear();
+  pricing.is_all = true;
+  if (preferred_is_allowed(problem)) {
+    pricing.at.push_back(problem.preferred);
+    return {problem.preferred, Status::optimal, {}, 0, 0.0};
+  }
   const int exponent = exponent_of_normals(problem);
-  Solution s =
-      std::abs(exponent) <= kPlainExponent ? solve_with_slacks(problem) : solve_with_slacks(scaled(problem, -exponent));
-  if (std::abs(exponent) > kPlainExponent) s.violation = std::ldexp(s.violation, exponent);
+  const bool is_plain = std::abs(exponent) <= kPlainExponent;
+  pricing.is_all = is_plain;  // else another constraint may change the scale
+  Solution s = is_plain ? solve_with_slacks(problem, pricing) : solve_with_slacks(scaled(problem, -exponent), pricing);
+  if (!is_plain) s.violation = std::ldexp(s.violation, exponent);
   set_multipliers(problem, s);
   return s;
+}
+
+Solution solve(const Problem& problem) {
+  Pricing pricing;
+  return solve(problem, pricing);
 }
 
 }  // namespace exactvo::lp

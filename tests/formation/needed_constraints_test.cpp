@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Half-planes that are built on demand: what is left out changes no bit of a decision.
+#include "needed_constraints.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "decision.h"
+#include "exactvo/datasets/generators.h"
+#include "generators/counter_random.h"
+#include "paper_scenes.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+/// A floor, or a field of polygons, seen by a robot at random places, going anywhere at any speed.
+struct Sight {
+  Scenario scenario;
+  SimulationOptions options;
+  std::optional<Scene> scene;
+  std::optional<StaticField> field;
+  geometry::Box extent;
+
+  Sight(const std::string& kind, Method method) {
+    for (std::uint64_t item = 0; item < 3; ++item)
+      for (SceneObstacle& o : datasets::generated_item(kind, item, 11)) scenario.obstacles.push_back(std::move(o));
+    for (const SceneObstacle& o : scenario.obstacles)
+      for (const Vec2 p : vertices_of(o.shape)) extent.add(p);
+    options.method = method;
+    scene.emplace(scenario, options);
+    field.emplace(*scene, scenario, options, 0.2, extent.low, extent.high, HorizonRule::clamped);
+  }
+
+  Viewpoint draw(datasets::CounterRandom& random) const {
+    const double x = random.uniform(0.0, 1.0), y = random.uniform(0.0, 1.0);
+    const Vec2 size = extent.high - extent.low;
+    return {extent.low + Vec2{x * size.x, y * size.y}, velocity(random), 0.2, 1.2};
+  }
+
+  static Vec2 velocity(datasets::CounterRandom& random) {
+    const double angle = random.uniform(0.0, 6.28), speed = 1.2 * std::max(0.0, random.uniform(-0.3, 1.3));
+    return {speed * std::cos(angle), speed * std::sin(angle)};
+  }
+};
+
+bool are_same(const Constraint& a, const Constraint& b) {
+  return a.body == b.body && a.half_plane.normal == b.half_plane.normal && a.half_plane.offset == b.half_plane.offset &&
+         a.clearance == b.clearance && a.time_horizon == b.time_horizon && a.index == b.index && a.piece == b.piece &&
+         a.proof == b.proof && a.trap_free == b.trap_free;
+}
+
+/// Those of `all` that are not among `some`, which must come in the same order.
+std::vector<Constraint> left_out(const std::vector<Constraint>& all, const std::vector<Constraint>& some) {
+  std::vector<Constraint> out;
+  std::size_t next = 0;
+  for (const Constraint& c : all) {
+    if (next < some.size() && are_same(c, some[next]))
+      ++next;
+    else
+      out.push_back(c);
+  }
+  EXPECT_EQ(next, some.size());
+  return out;
+}
+
+double violation_of_unit(const Constraint& c, Vec2 v) {
+  return geometry::violation(c.half_plane, v) / norm(c.half_plane.normal);
+}
+
+class NeededHalfPlanes : public testing::TestWithParam<std::tuple<const char*, Method>> {};
+
+TEST_P(NeededHalfPlanes, LeaveOutNoneThatAVelocityViolatesMost) {
+  const Sight sight(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  datasets::CounterRandom random(3);
+  NeededConstraints needed;
+  std::vector<Constraint> all;
+  std::size_t built = 0, asked = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Viewpoint from = sight.draw(random);
+    sight.field->constraints(from, all);
+    needed.look(*sight.field, from, 0.1);
+    for (const Constraint& c : left_out(all, needed.lines())) EXPECT_GT(c.clearance, 0.1);
+    needed.need_within(0.36);
+    for (const Constraint& c : left_out(all, needed.lines())) EXPECT_GT(c.clearance, 0.36);
+    for (const Vec2 v : {from.velocity, Sight::velocity(random)}) {
+      needed.need_at(v);
+      double most = 0.0;
+      for (const Constraint& c : needed.lines())
+        most = std::max({most, geometry::violation(c.half_plane, v), violation_of_unit(c, v)});
+      for (const Constraint& c : left_out(all, needed.lines())) {
+        EXPECT_LT(violation_of_unit(c, v), most - 1e-4);
+        EXPECT_NE(c.proof, vo::Proof::none);
+      }
+    }
+    built += needed.lines().size();
+    asked += all.size();
+  }
+  EXPECT_LT(built, (3 * asked) / 4);  // of what stands round a place that may lie inside an obstacle
+}
+
+TEST_P(NeededHalfPlanes, GiveTheDecisionThatAllGive) {
+  const Sight sight(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  datasets::CounterRandom random(4);
+  NeededConstraints needed;
+  std::vector<Constraint> all;
+  Scenario one = sight.scenario;
+  one.robots.emplace_back();
+  Decider decider(one, sight.scene->bodies());
+  const std::vector<Constraint> others;
+  for (int k = 0; k < 2000; ++k) {
+    const Viewpoint from = sight.draw(random);
+    const Vec2 preferred = Sight::velocity(random);
+    sight.field->constraints(from, all);
+    needed.look(*sight.field, from, reach_of_step(one, from));
+    RobotStep of_all, of_needed;
+    decider.decide({preferred, from, &all, &others, false, nullptr}, of_all);
+    decider.decide({preferred, from, &needed.lines(), &others, false, &needed}, of_needed);
+    EXPECT_EQ(of_needed.chosen, of_all.chosen);
+    EXPECT_EQ(of_needed.status, of_all.status);
+    EXPECT_EQ(of_needed.violation, of_all.violation);
+    EXPECT_EQ(of_needed.uncertified, of_all.uncertified);
+    ASSERT_EQ(of_needed.constraints.size(), of_all.constraints.size());
+    for (std::size_t i = 0; i < of_all.constraints.size(); ++i) {
+      EXPECT_EQ(of_needed.constraints[i].body, of_all.constraints[i].body);
+      EXPECT_EQ(of_needed.constraints[i].active, of_all.constraints[i].active);
+      EXPECT_EQ(of_needed.constraints[i].multiplier, of_all.constraints[i].multiplier);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, NeededHalfPlanes,
+                         testing::Combine(testing::Values("floor", "polygon", "field-open", "block"),
+                                          testing::Values(Method::ivo, Method::ivo_edge)),
+                         [](const auto& row) {
+                           std::string text = std::string(std::get<0>(row.param)) + "_" + name(std::get<1>(row.param));
+                           std::replace(text.begin(), text.end(), '-', '_');
+                           return text;
+                         });
+
+/// The decision with some half-planes and with all: every row of a run, as it is written.
+TEST(NeededHalfPlanes, ARunThatKeepsAllDrivesTheSameRows) {
+  for (const char* scene : {"A2", "A7", "A14"}) {
+    const Scenario s = test::paper_scene(scene);
+    SimulationOptions all;
+    all.record_all = true;
+    const Recording whole = simulate(s, all), usual = simulate(s);
+    ASSERT_EQ(whole.steps.size(), usual.steps.size());
+    for (std::size_t k = 0; k < whole.steps.size(); ++k)
+      for (std::size_t i = 0; i < s.robots.size(); ++i) {
+        const RobotStep &a = whole.steps[k].robots[i], &b = usual.steps[k].robots[i];
+        EXPECT_EQ(a.chosen, b.chosen);
+        EXPECT_EQ(a.mode, b.mode);
+        EXPECT_EQ(a.note, b.note);
+        EXPECT_EQ(a.uncertified, b.uncertified);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::formation::detail
