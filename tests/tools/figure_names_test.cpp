@@ -126,6 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
                     FigureOf{"explain", "explain s.json --time 1 --robot 0 --out"},
                     FigureOf{"repair", "repair bow.wkt --out mended.wkt --figure"},
                     FigureOf{"segment", "segment square.wkt --figure"},
+                    FigureOf{"route", "route square.wkt --from -2,0 --to 9,1 --radius 0.1 --figure"},
                     FigureOf{"generate", "generate star --count 1 --out star.wkt --figure"}),
     [](const auto& test) { return test.param.verb; });
 

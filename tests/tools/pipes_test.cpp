@@ -122,6 +122,8 @@ TEST(Pipes, AWaitForAWriterEndsAtASignalInEveryVerb) {
   make_pipe(here, "p.wkt");
   make_pipe(here, "p.geojson");
   make_pipe(here, "p.json");
+  make_pipe(here, "p.csv");
+  here.write("s.wkt", kSquare);
   const std::vector<std::vector<std::string>> commands{
       {"validate", "p.wkt"},
       {"validate", "p.geojson"},
@@ -131,6 +133,9 @@ TEST(Pipes, AWaitForAWriterEndsAtASignalInEveryVerb) {
       {"segment", "p.geojson"},
       {"simulate", "p.json", "--out", "out"},
       {"trap", "p.json"},
+      {"route", "p.wkt", "--from", "0,0", "--to", "1,1", "--radius", "0.1"},
+      {"route", "s.wkt", "--queries", "p.csv", "--radius", "0.1"},
+      {"route", "s.wkt", "--queries", "-", "--radius", "0.1"},
       {"explain", "p.json", "--time", "1", "--robot", "0", "--out", "o.svg"},
       {"lp", "p.json"},
       {"lp", "-"},
@@ -218,6 +223,7 @@ TEST(Pipes, EveryVerbReadsOneOnce) {
       {"s.wkt", "repair PIPE --out r.wkt --figure r.svg"},
       {"s.wkt", "convert PIPE c.geojson"},
       {"s.wkt", "segment PIPE"},
+      {"s.wkt", "route PIPE --from -9,0 --to -9,9 --radius 0.5"},
       {"s.wkt", "vo --obstacle PIPE --position 9,9 --velocity 1,0 --radius 0.5 --time-horizon 2"}};
   for (auto [file, command] : commands) {
     const std::string pipe = "pipe-" + file;

@@ -19,6 +19,7 @@
 #include "exactvo/geometry/support.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
+#include "support/route_certificates.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {
@@ -194,37 +195,63 @@ JudgedCertificate judge_beside(const std::string& text, const Json& object) {
   return judged;
 }
 
-void judge_member(const Json& certificate, const Json& object, JudgedCertificates& judged) {
-  if (certificate.is_null()) {
-    ++judged.none;
-  } else {
-    judged.all.push_back(judge_beside(text_in(certificate).value_or(""), object));
-  }
-}
-
-void judge_tree(const Json& value, JudgedCertificates& judged) {
-  if (value.is_string() && begins_as_one(value.get_ref<const std::string&>()))
-    judged.all.push_back(judge(value.get<std::string>()));
-  if (value.is_array())
-    for (const Json& item : value) judge_tree(item, judged);
-  if (!value.is_object()) return;
-  for (const auto& [key, member] : value.items()) {
-    if (key == "certificate") {
-      judge_member(member, value, judged);
+/// The certificates of one JSON value or of several lines of JSON, in order.
+class TreeJudge {
+ public:
+  void judge(const std::string& text) {
+    if (const auto json = parsed(text)) {
+      walk(*json);
     } else {
-      judge_tree(member, judged);
+      judged_.all.push_back({"unreadable JSON", "", false});
     }
   }
+  JudgedCertificates judged() && { return std::move(judged_); }
+
+ private:
+  void walk(const Json& value) {
+    if (value.is_string() && begins_as_one(value.get_ref<const std::string&>()))
+      judged_.all.push_back(tools::judge(value.get<std::string>()));
+    if (value.is_array())
+      for (const Json& item : value) walk(item);
+    if (!value.is_object()) return;
+    if (RouteJudge::is_one(value)) return judged_.all.push_back(routes_.judge(value, nullptr));
+    for (const auto& [key, member] : value.items()) {
+      if (key == "certificate") {
+        add(member, value);
+      } else {
+        walk(member);
+      }
+    }
+  }
+
+  void add(const Json& certificate, const Json& object) {
+    if (certificate.is_null()) {
+      ++judged_.none;
+    } else if (RouteJudge::is_one(certificate)) {
+      judged_.all.push_back(routes_.judge(certificate, object));
+    } else {
+      judged_.all.push_back(judge_beside(text_in(certificate).value_or(""), object));
+    }
+  }
+
+  RouteJudge routes_;
+  JudgedCertificates judged_;
+};
+
+/// Whether the text is a JSON value a line, several of them.
+bool is_json_lines(const std::string& text) {
+  const std::vector<std::string> lines = lines_of(text);
+  return lines.size() > 1 && !Json::accept(text) && Json::accept(lines.front());
 }
 
 JudgedCertificates judge_json(const std::string& text) {
-  JudgedCertificates judged;
-  if (const auto json = parsed(text)) {
-    judge_tree(*json, judged);
+  TreeJudge judge;
+  if (is_json_lines(text)) {
+    for (const std::string& line : lines_of(text)) judge.judge(line);
   } else {
-    judged.all.push_back({"unreadable JSON", "", false});
+    judge.judge(text);
   }
-  return judged;
+  return std::move(judge).judged();
 }
 
 JudgedCertificates judge_lines(const std::string& text) {

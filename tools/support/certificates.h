@@ -2,8 +2,9 @@
 #pragma once
 
 /// \file
-/// Certificates as text, of half-planes and of containment, judged by the checkers of vo/certificate.h and
-/// vo/containment.h, which share nothing with what makes them.
+/// Certificates of half-planes and of containment as text, and of routes as JSON (route_certificates.h), judged by the
+/// checkers of vo/certificate.h, vo/containment.h and geometry/route_certificate.h, which share nothing with what makes
+/// them.
 
 #include <cstddef>
 #include <string>
@@ -13,7 +14,7 @@ namespace exactvo::tools {
 
 struct JudgedCertificate {
   std::string verdict;  ///< vo::name(Verdict), "not a certificate", "of another half-plane", "of another ellipse",
-                        ///< "of another obstacle", "unreadable JSON"
+                        ///< "of another obstacle", "unreadable JSON"; of a route RouteJudge's
   std::string claim;    ///< what is claimed, rounded for people; empty where it is none
   bool valid = false;
 };
@@ -23,13 +24,13 @@ struct JudgedCertificates {
   std::size_t none = 0;                ///< places of JSON that say that there is none: "certificate": null
 };
 
-/// Every certificate of a text: one a line, where blank lines do not count and any other line is "not a certificate".
-/// Of JSON (first letter { or [) the text of every `certificate`, whatever it begins with, and every other string that
-/// begins as one; JSON that cannot be read is one that is not valid. The `half_plane` or `contact_half_plane` beside a
-/// certificate must be the one that it proves, number by number, and it must be of the `shape` beside it, or where a
-/// `robot` stands there of their sum, made again by `geometry::grown_by_polygon`. Beside a `taken_as` that is an
-/// ellipse the shape must be an ellipse, and the same one where that has a certificate of containment. In lines,
-/// nothing says which belong together, and this is not checked.
+/// Every certificate of a text, which may be JSON, JSON lines or plain lines: one a line, where blank lines do not
+/// count and any other line is "not a certificate". Of JSON (first letter { or [) the text of every `certificate`,
+/// whatever it begins with, and every other string that begins as one; JSON that cannot be read is one that is not
+/// valid. The `half_plane` or `contact_half_plane` beside a certificate must be the one that it proves, number by
+/// number, and it must be of the `shape` beside it, or where a `robot` stands there of their sum, made again by
+/// `geometry::grown_by_polygon`. Beside a `taken_as` that is an ellipse the shape must be an ellipse, and the same one
+/// where that has a certificate of containment. In lines, nothing says which belong together, and this is not checked.
 JudgedCertificates judge_certificates_in(const std::string& text);
 
 /// The same of a file, or of stdin where its name is "-". Throws DataError where it can't be read, UsageError where

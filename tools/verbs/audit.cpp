@@ -128,7 +128,7 @@ Action declare(CLI::App& app) {
   app.add_option("path", flags->path, "A recording.jsonl, or a folder searched for them");
   app.add_option("--scenario", flags->scenario, "FILE that the recordings must be of, with its obstacle files");
   app.add_option("--certificate", flags->certificates,
-                 "FILE with one certificate per line, or the output of vo --json; - for stdin");
+                 "FILE with one certificate per line, or the output of vo --json or route --json; - for stdin");
   app.add_flag("--json", flags->json, "Counts and findings, or one verdict per certificate, as JSON on stdout");
   return [flags] { return audit(*flags); };
 }

@@ -3,105 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "figures/local_origin.h"
 #include "figures/outlines.h"
 #include "figures/style.h"
-#include "figures/template.h"
+#include "verbs/map_layers.h"
 
 namespace exactvo::tools {
 
 namespace {
 
 using geometry::ObstacleShapes;
-using geometry::Polygon;
-using geometry::Polyline;
-
-class Map {
- public:
-  /// Every point drawn belongs to the view.
-  void curves(const std::string& title, const std::vector<Points>& curves, const std::string& style, bool closed,
-              bool in_key = true) {
-    if (curves.empty()) return;
-    layers_.push_back({title, curves, style, closed, in_key});
-    for (const Points& curve : curves)
-      for (const Vec2 p : curve) view_.add(p);
-  }
-
-  Figure figure(const std::string& title) const {
-    const Box shown = axes();
-    const LocalOrigin origin(shown);
-    DataFile data;
-    origin.prepare(data);
-    PlotCommand plot;
-    for (const Layer& layer : layers_)
-      plot.data(write(layer, data), origin.using_columns() + " " + layer.style, layer.in_key ? layer.title : "");
-    const double scale = std::min(700.0 / shown.width(), 620.0 / shown.height());  // px a metre
-    const Canvas canvas{static_cast<int>(scale * shown.width()) + 300, static_cast<int>(scale * shown.height()) + 100};
-    const std::string body = filled("map", {{"title", quoted(shortened(title, characters_in(canvas.width - 200.0)))},
-                                            {"ranges", origin.ranges(shown)},
-                                            {"x_label", markup(origin.x_label())},
-                                            {"y_label", markup(origin.y_label())},
-                                            {"plot", plot.text()}});
-    return {"map", data.text(), title + ".", canvas, body};
-  }
-
- private:
-  struct Layer {
-    std::string title;
-    std::vector<Points> curves;
-    std::string style;
-    bool closed, in_key;
-  };
-
-  Box axes() const {
-    const double half = 0.53 * std::max({view_.width(), view_.height(), 1e-6});
-    const Vec2 middle = 0.5 * (view_.low + view_.high);
-    const bool is_wide = view_.width() > view_.height();
-    const double half_x = is_wide ? half : std::max(0.53 * view_.width(), 0.3 * half);
-    const double half_y = is_wide ? std::max(0.53 * view_.height(), 0.3 * half) : half;
-    return {{middle.x - half_x, middle.y - half_y}, {middle.x + half_x, middle.y + half_y}};
-  }
-
-  static int write(const Layer& layer, DataFile& data) {
-    const int index = data.begin(layer.title, "x, y [m]");
-    for (const Points& curve : layer.curves) {
-      for (const Vec2 p : curve) data.row({p.x, p.y});
-      if (layer.closed && !curve.empty()) data.row({curve.front().x, curve.front().y});
-      data.gap();
-    }
-    return index;
-  }
-
-  std::vector<Layer> layers_;
-  Box view_;
-};
-
-struct Outlines {
-  std::vector<Points> solids, rings, walls;
-
-  void add(const geometry::Obstacle& obstacle) {
-    if (const auto* line = std::get_if<Polyline>(&obstacle)) return walls.push_back(line->points);
-    const auto& polygon = std::get<Polygon>(obstacle);
-    solids.push_back(tied_together(polygon));
-    rings.push_back(polygon.outer);
-    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
-  }
-};
-
-std::string solid_fill() {
-  return fmt::format("with filledcurves closed fs solid noborder fc rgb '{}'", kObstacleFill);
-}
-std::string line(double width, const std::string& colour, const std::string& dash = "") {
-  return fmt::format("with lines lw {} lc rgb '{}'{}", width, colour, dash);
-}
-
-void draw_obstacles(const Outlines& outlines, bool with_edges, Map& map) {
-  map.curves("obstacle", outlines.solids, solid_fill(), true);
-  if (with_edges) map.curves("edges", outlines.rings, line(1, kObstacleLine), true, false);
-  map.curves("wall", outlines.walls, line(2.5, kObstacleLine), false);
-}
 
 std::vector<Points> pieces_with_inside(const ObstacleShapes& shapes) {
   std::vector<Points> pieces;
@@ -113,7 +23,7 @@ std::vector<Points> pieces_with_inside(const ObstacleShapes& shapes) {
 }
 
 /// Neighbouring pieces in different colours, as far as taking turns does that.
-void draw_pieces(const std::vector<ObstacleShapes>& obstacles, Map& map) {
+void draw_pieces(const std::vector<ObstacleShapes>& obstacles, MapLayers& map) {
   constexpr std::size_t kColours = 4;
   std::vector<std::vector<Points>> by_colour(kColours);
   for (const ObstacleShapes& shapes : obstacles) {
@@ -140,47 +50,47 @@ std::vector<Points> gathered(const std::vector<ObstacleShapes>& obstacles, const
 }  // namespace
 
 Figure map_figure(const std::vector<formation::SceneObstacle>& obstacles, const std::string& title) {
-  Map map;
-  Outlines outlines;
-  for (const formation::SceneObstacle& o : obstacles) outlines.add(o.shape);
-  draw_obstacles(outlines, true, map);
+  MapLayers map;
+  std::vector<geometry::Obstacle> all;
+  for (const formation::SceneObstacle& o : obstacles) all.push_back(o.shape);
+  add_obstacles(all, true, map);
   return map.figure(title);
 }
 
 Figure shapes_figure(const std::vector<ObstacleShapes>& obstacles, const std::string& title) {
-  Map map;
-  Outlines outlines;
-  for (const ObstacleShapes& shapes : obstacles) outlines.add(shapes.obstacle);
+  MapLayers map;
+  std::vector<geometry::Obstacle> all;
+  for (const ObstacleShapes& shapes : obstacles) all.push_back(shapes.obstacle);
   constexpr std::size_t kMostDrawnBold = 40;
   const bool crowded = obstacles.size() > kMostDrawnBold;
-  draw_obstacles(outlines, false, map);
+  add_obstacles(all, false, map);
   draw_pieces(obstacles, map);
   map.curves("facade ellipses",
              gathered(obstacles,
                       [](const ObstacleShapes& s, std::vector<Points>& out) {
                         for (const geometry::FacadeEnclosure& e : s.facade_ellipses) out.push_back(outline(e.ellipse));
                       }),
-             line(crowded ? 0.4 : 0.8, "#56B4E9"), true);
+             line_style(crowded ? 0.4 : 0.8, "#56B4E9"), true);
   map.curves(
       "hulls",
       gathered(obstacles, [](const ObstacleShapes& s, std::vector<Points>& out) { out.push_back(s.hull.vertices); }),
-      line(1.6, "#009E73", " dt (8,5)"), true);
+      line_style(1.6, "#009E73", " dt (8,5)"), true);
   map.curves("smallest ellipses",
              gathered(obstacles, [](const ObstacleShapes& s,
                                     std::vector<Points>& out) { out.push_back(outline(s.smallest_ellipse)); }),
-             line(1.8, "#0072B2"), true);
+             line_style(1.8, "#0072B2"), true);
   map.curves("trap-free ellipses",
              gathered(obstacles,
                       [](const ObstacleShapes& s, std::vector<Points>& out) {
                         if (s.trap_free.ellipse) out.push_back(outline(*s.trap_free.ellipse));
                       }),
-             line(1.8, "#CC79A7", " dt (3,3)"), true);
+             line_style(1.8, "#CC79A7", " dt (3,3)"), true);
   map.curves("facades",
              gathered(obstacles,
                       [](const ObstacleShapes& s, std::vector<Points>& out) {
                         for (const geometry::Segment& f : s.facades.facades) out.push_back({f.a, f.b});
                       }),
-             crowded ? line(1.0, "#D55E00") : "with linespoints lw 2.2 pt 7 ps 0.35 lc rgb '#D55E00'", false);
+             crowded ? line_style(1.0, "#D55E00") : "with linespoints lw 2.2 pt 7 ps 0.35 lc rgb '#D55E00'", false);
   return map.figure(title);
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,6 +13,7 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/vo/membership.h"
+#include "support/fields.h"
 #include "support/line_stream.h"
 #include "support/terminal.h"
 #include "verbs/robot_limits.h"
@@ -28,35 +28,6 @@ namespace {
 // --- Reading ---
 
 constexpr const char* kExpected = "two numbers, vx,vy, or JSON, [vx, vy] or {\"velocity\": [vx, vy]}";
-constexpr const char* kBlanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-/// Between commas, or between blanks where there is no comma.
-std::vector<std::string_view> fields_of(std::string_view line) {
-  const char* const separators = line.find(',') != std::string_view::npos ? "," : kBlanks;
-  const bool by_blanks = separators == kBlanks;
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t end = line.find_first_of(separators);
-    fields.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(by_blanks ? std::min(line.find_first_not_of(separators, end), line.size()) : end + 1);
-  }
-}
-
-std::optional<double> number_in(std::string_view field) {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  return value;
-}
-
 class VelocityReader {
  public:
   explicit VelocityReader(const std::string& file) : lines_(file) {}
@@ -64,7 +35,7 @@ class VelocityReader {
   /// The next one; nothing at the end.
   std::optional<Vec2> next() {
     while (lines_.next()) {
-      const std::string_view line = trimmed(without_mark(lines_.line()));
+      const std::string_view line = trimmed(without_mark(lines_.line(), lines_.number()));
       if (line.empty() || line.front() == '#') continue;
       if (!std::exchange(has_begun_, true) && takes_header(line)) continue;
       const Vec2 v = velocity_in(line);
@@ -81,12 +52,6 @@ class VelocityReader {
     std::string text(found.substr(0, kShown));
     if (found.size() > kShown) text += "...";
     throw DataError(code, lines_.file(), lines_.place(), text, expected);
-  }
-
-  /// A byte order mark before the first line.
-  std::string_view without_mark(std::string_view line) const {
-    constexpr std::string_view kMark = "\xEF\xBB\xBF";
-    return lines_.number() == 1 && line.substr(0, kMark.size()) == kMark ? line.substr(kMark.size()) : line;
   }
 
   /// Whether the line names columns; then says which are which.

@@ -2,6 +2,7 @@
 // Moving AI maps: "type octile", "height H", "width W", "map", then H rows of W symbols, the top one first.
 #include <map>
 
+#include "exactvo/datasets/moving_ai.h"
 #include "readers/grid.h"
 #include "readers/line_reader.h"
 #include "readers/readers.h"
@@ -101,6 +102,14 @@ Grid read_grid(LineReader& lines, Collector& out) {
 }
 
 }  // namespace
+
+MapSize read_map_size(const std::filesystem::path& map) {
+  const std::string text = read_text_file(map);
+  const std::string name = map.string();
+  LineReader lines(text, name);
+  const Header header = read_header(lines);
+  return {static_cast<std::int64_t>(header.width), static_cast<std::int64_t>(header.height)};
+}
 
 bool looks_like_moving_ai_map(const Glimpse& glimpse) {
   if (glimpse.extension != ".map") return false;

@@ -31,6 +31,15 @@ struct PathTask {
   double optimal_length = 0.0;  ///< cells
 };
 
+/// Cells.
+struct MapSize {
+  std::int64_t columns = 0;
+  std::int64_t rows = 0;
+};
+
+/// What the header of a `.map` says, without its cells. Throws DataError with the line.
+MapSize read_map_size(const std::filesystem::path& map);
+
 /// Throws DataError with the line.
 std::vector<PathTask> read_tasks(const std::filesystem::path& path);
 

@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verb `route` as a user meets it: answers, certificates and who accepts them, many questions, bad input.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/// Two rooms with a door of 1 m between walls 7 and 9; a desk in the right one.
+constexpr const char* kRooms = R"({"name": "rooms", "robots": [{"id": "R", "position": [1, 1], "goal": [2, 1]}],
+ "obstacles": [{"id": "outer wall", "polyline": [[0, 0], [12, 0], [12, 8], [0, 8], [0, 0]]},
+               {"id": "7", "polyline": [[6, 0], [6, 3]]}, {"id": "9", "polyline": [[6, 4], [6, 8]]},
+               {"id": "desk", "polygon": [[8, 2], [10, 2], [10, 4], [8, 4]]}]})";
+
+/// Three walls that cross each other in points that are no doubles, round (1, 0.9).
+constexpr const char* kTriangle =
+    "LINESTRING (-1 0, 3 0.1)\nLINESTRING (-0.5 -0.7, 1.5 2.9)\nLINESTRING (2.6 -0.5, 0.7 2.9)\n";
+
+/// A block in the middle, corridors of one cell round it.
+constexpr const char* kGrid = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n";
+
+class Rooms {
+ public:
+  Rooms() {
+    here.write("rooms.json", kRooms);
+    here.write("triangle.wkt", kTriangle);
+    here.write("grid.map", kGrid);
+  }
+  Outcome route(const std::string& arguments) const { return here.run("route rooms.json " + arguments); }
+
+  Workplace here;
+};
+
+std::vector<json> json_lines(const std::string& text) {
+  std::vector<json> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(json::parse(line));
+  return lines;
+}
+
+// --- Answers in words ---
+
+TEST(RouteVerb, ARouteHasItsLengthItsBoundAndItsCorners) {
+  const Rooms rooms;
+  const Outcome outcome = rooms.route("--from 1,1 --to 3,1 --radius 0.4");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.out, "route: 2 m, no route is shorter than 2 m, 0 corners\nLINESTRING (1 1, 3 1)\n");
+  const Outcome bent = rooms.route("--from 1,1 --to 11,7 --radius 0.4");
+  EXPECT_EQ(bent.status, 0);
+  EXPECT_THAT(bent.out, AllOf(StartsWith("route: 11.6"), HasSubstr(" corner")));
+}
+
+TEST(RouteVerb, ASeparationNamesItsGapsAndWhatTheWidestNeeds) {
+  const Rooms rooms;
+  const Outcome outcome = rooms.route("--from 1,1 --to 11,7 --radius 0.6");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.out,
+            "separated: closed by 1 gap, 1 m, between wall 7 and wall 9, which would have to be 1.2 m\n"
+            "  gap of 1 m between wall 7 and wall 9, from (6, 3) to (6, 4)\n");
+  const Outcome two = rooms.here.run("route grid.map --from 0,0 --to 3,0 --radius 0.5");
+  EXPECT_EQ(two.status, 0) << two.out;
+  rooms.here.write(
+      "posts.wkt",
+      "LINESTRING (0 0, 1 0)\nLINESTRING (1.9 0, 1.9 1)\nLINESTRING (1.5 1.5, 0 1.8)\nLINESTRING (-0.5 1.5, "
+      "-0.5 0.3)\n");
+  const Outcome posts = rooms.here.run("route posts.wkt --from 0.7,0.8 --to 5,5 --radius 0.6");
+  EXPECT_EQ(posts.status, 1);
+  EXPECT_THAT(posts.out, StartsWith("separated: closed by 4 gaps; the widest, 0.9 m, between wall "));
+  EXPECT_THAT(posts.out, HasSubstr("would have to be 1.2 m\n  gap of "));
+}
+
+TEST(RouteVerb, AGapNarrowerByTheLastDigitIsToldFromWhatItWouldHaveToBe) {
+  const Rooms rooms;
+  EXPECT_EQ(rooms.route("--from 1,1 --to 11,7 --radius 0.5").status, 0) << "a gap of exactly two radii is passed";
+  const Outcome outcome = rooms.route("--from 1,1 --to 11,7 --radius 0.50000000000000011");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out,
+              HasSubstr("1 gap, 1 m, between wall 7 and wall 9, which would have to be 1.0000000000000002 m"));
+}
+
+TEST(RouteVerb, AWallWithoutAGapIsNamedAlone) {
+  const Rooms rooms;
+  const Outcome outcome = rooms.route("--from 1,1 --to 20,1 --radius 0.1");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.out, "separated: closed by outer wall alone\n");
+}
+
+TEST(RouteVerb, ABlockedEndIsToldWithWhatBlocksItAndHowNear) {
+  const Rooms rooms;
+  const Outcome inside = rooms.route("--from 1,1 --to 9,3 --radius 0.4");
+  EXPECT_EQ(inside.status, 1);
+  EXPECT_EQ(inside.out, "blocked: the goal is inside desk\n");
+  const Outcome near = rooms.route("--from 5.75,1 --to 1,1 --radius 0.4");
+  EXPECT_EQ(near.status, 1);
+  EXPECT_EQ(near.out, "blocked: the start is 0.25 m from wall 7 and would have to be 0.4 m\n");
+  EXPECT_EQ(rooms.route("--from 6,1 --to 1,1 --radius 0.4").out, "blocked: the start is on wall 7\n");
+}
+
+TEST(RouteVerb, TheWidestRadiusIsTheLargestDoubleWithARoute) {
+  const Rooms rooms;
+  rooms.here.write("door.wkt",
+                   "LINESTRING (0 -5, 0.13 -0.31)\nLINESTRING (0.21 0.4, 0 5)\nLINESTRING (0 5, 9 5, 9 -5, 0 -5)\n");
+  const Outcome widest = rooms.here.run("route door.wkt --from 4,1 --to -4,1 --widest --json");
+  EXPECT_EQ(widest.status, 0);
+  const double radius = json::parse(widest.out).at("widest_radius");
+  EXPECT_NEAR(radius, 0.5 * std::hypot(0.08, 0.71), 1e-12);
+  const auto status = [&](double r) {
+    std::ostringstream text;
+    text.precision(17);
+    text << r;
+    return rooms.here.run("route door.wkt --from 4,1 --to -4,1 --radius " + text.str()).status;
+  };
+  EXPECT_EQ(status(radius), 0);
+  EXPECT_EQ(status(std::nextafter(radius, 1.0)), 1);
+  EXPECT_EQ(rooms.route("--from 1,1 --to 11,7 --widest").out, "widest radius: 0.5 m\n");
+  const Outcome none = rooms.route("--from 1,1 --to 9,3 --widest");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_EQ(none.out, "widest radius: 0 m\n");
+}
+
+// --- Certificates: accepted as they are, rejected where they were changed ---
+
+struct Case {
+  std::string name, arguments;
+};
+
+const Case kCases[] = {{"route", "rooms.json --from 1,1 --to 11,7 --radius 0.45"},
+                       {"separated", "rooms.json --from 1,1 --to 11,7 --radius 0.6"},
+                       {"fractions", "triangle.wkt --from 1,0.9 --to 5,5 --radius 0.1"},
+                       {"fractions in a route", "triangle.wkt --from 4,1 --to -1,1 --radius 0.1"},
+                       {"blocked", "rooms.json --from 5.75,1 --to 1,1 --radius 0.4"},
+                       {"inside", "rooms.json --from 1,1 --to 9,3 --radius 0.4"}};
+
+/// What was changed, and the certificate that came of it; each claims what is false or not shown.
+using Mutants = std::vector<std::pair<std::string, json>>;
+
+void add_mutants_of_route(const json& certificate, Mutants& mutants) {
+  const auto change = [&](const std::string& what, const auto& edit) {
+    mutants.emplace_back(what, certificate);
+    edit(mutants.back().second);
+  };
+  for (std::size_t k = 0; k < certificate.at("points").size(); ++k) {
+    const std::string at = "point " + std::to_string(k);
+    change(at + " dropped", [&](json& c) { c["points"].erase(k); });
+    change(at + " moved onto a wall", [&](json& c) { c["points"][k] = {6.0, 2.0}; });
+  }
+  change("the radius enlarged", [](json& c) { c["radius"] = 1.01 * c["radius"].get<double>(); });
+  change("the length changed", [](json& c) { c["length"] = 1.001 * c["length"].get<double>(); });
+  change("a bound above the length", [](json& c) { c["lower_bound"] = 2.0 * c["length"].get<double>(); });
+  change("another goal", [](json& c) { c["goal"][0] = 10.75; });
+  change("no points", [](json& c) { c["points"] = json::array(); });
+}
+
+void add_mutants_of_chain(const json& certificate, Mutants& mutants) {
+  const auto change = [&](const std::string& what, const auto& edit) {
+    mutants.emplace_back(what, certificate);
+    edit(mutants.back().second);
+  };
+  for (std::size_t k = 0; k < certificate.at("chain").size(); ++k) {
+    const std::string at = "point " + std::to_string(k);
+    change(at + " dropped", [&](json& c) { c["chain"].erase(k); });
+    change(at + " moved", [&](json& c) {
+      c["chain"][k]["point"] = {c["chain"][k]["point"][0].get<double>() + 0.01,
+                                c["chain"][k]["point"][1].get<double>() + 0.02};
+    });
+    change(at + " on another edge", [&](json& c) { c["chain"][k]["obstacle"] = 77; });
+    if (certificate["chain"][k]["gap"]) change(at + " without its gap", [&](json& c) { c["chain"][k]["gap"] = false; });
+    if (certificate["chain"][k]["point"].size() == 4)
+      change(at + " with a fraction of another value", [&](json& c) { c["chain"][k]["point"][2] = "1/3"; });
+  }
+  change("the goal on the start's side", [](json& c) { c["goal"] = c["start"]; });
+}
+
+Mutants mutants_of(const json& certificate) {
+  Mutants mutants;
+  const std::string kind = certificate.at("kind");
+  if (kind == "route") add_mutants_of_route(certificate, mutants);
+  if (kind == "separated") add_mutants_of_chain(certificate, mutants);
+  if (kind == "blocked") {
+    json freed = certificate;
+    freed["start"] = freed["goal"] = {3.0, 3.0};
+    mutants.emplace_back("an end that is free", freed);
+  }
+  for (const char* key : {"radius", "start", "goal", "kind"}) {
+    json without = certificate;
+    without.erase(key);
+    mutants.emplace_back(std::string("no ") + key, without);
+  }
+  return mutants;
+}
+
+json answer_to(const Rooms& rooms, const Case& c) {
+  const Outcome outcome = rooms.here.run("route " + c.arguments + " --json");
+  EXPECT_LE(outcome.status, 1) << c.name << outcome.err;
+  return json::parse(outcome.out);
+}
+
+/// The answer of a case as it is, then every change of its certificate, a line each.
+std::string lines_of(const json& answer, const Mutants& mutants) {
+  std::string text = answer.dump() + "\n";
+  for (const auto& [what, certificate] : mutants) text += json{{"certificate", certificate}}.dump() + "\n";
+  return text;
+}
+
+TEST(RouteCertificates, AuditAcceptsEachKindAndRejectsEachChange) {
+  const Rooms rooms;
+  for (const Case& c : kCases) {
+    const json answer = answer_to(rooms, c);
+    const Mutants mutants = mutants_of(answer.at("certificate"));
+    ASSERT_GE(mutants.size(), 5u);
+    rooms.here.write("answers.jsonl", lines_of(answer, mutants));
+    const Outcome outcome = rooms.here.run("audit --certificate answers.jsonl --json");
+    EXPECT_EQ(outcome.status, 1);
+    const json judged = json::parse(outcome.out);
+    EXPECT_EQ(judged.at("verdicts").at(0), "valid") << c.name << ": " << answer;
+    ASSERT_EQ(judged.at("verdicts").size(), mutants.size() + 1);
+    for (std::size_t k = 0; k < mutants.size(); ++k)
+      EXPECT_NE(judged.at("verdicts").at(k + 1), "valid") << c.name << ", " << mutants[k].first << mutants[k].second;
+    rooms.here.write("answer.json", answer.dump());
+    EXPECT_EQ(rooms.here.run("audit --certificate answer.json").status, 0);
+    rooms.here.write("certificate.json", answer.at("certificate").dump(1));
+    EXPECT_EQ(rooms.here.run("audit --certificate certificate.json").status, 0) << "without what stands beside it";
+  }
+}
+
+/// Its verdicts, a line each, after a line feed.
+std::string python_verdicts(const Workplace& here, const std::string& text) {
+  here.write("answers.jsonl", text);
+  const std::string command = "cd '" + here.path().string() + "' && python3 '" EXACTVO_CHECK_ROUTE "' answers.jsonl";
+  EXPECT_NE(std::system((command + " >verdicts").c_str()), 0);
+  return "\n" + here.read("verdicts");
+}
+
+TEST(RouteCertificates, ThePythonCheckerAcceptsEachKindAndRejectsEachChange) {
+  if (std::system("python3 -c 'import fractions' >/dev/null 2>&1") != 0) GTEST_SKIP() << "no python3";
+  const Rooms rooms;
+  for (const Case& c : kCases) {
+    const json answer = answer_to(rooms, c);
+    const Mutants mutants = mutants_of(answer.at("certificate"));
+    const std::string verdicts = python_verdicts(rooms.here, lines_of(answer, mutants));
+    EXPECT_THAT(verdicts, Not(HasSubstr("\n1: not proven"))) << c.name;
+    for (std::size_t k = 0; k < mutants.size(); ++k)
+      EXPECT_THAT(verdicts, HasSubstr("\n" + std::to_string(k + 2) + ": not proven"))
+          << c.name << ", " << mutants[k].first << ": " << mutants[k].second;
+    EXPECT_THAT(verdicts, HasSubstr("\n" + std::to_string(mutants.size() + 1) + " certificates, 1 proven\n"));
+  }
+}
+
+TEST(RouteCertificates, CrossingsThatAreNoDoublesStandAsFractions) {
+  const Rooms rooms;
+  const json answer = answer_to(rooms, kCases[2]);
+  EXPECT_EQ(answer.at("status"), "separated");
+  std::size_t fractions = 0;
+  for (const json& point : answer.at("certificate").at("chain")) fractions += point.at("point").size() == 4 ? 1 : 0;
+  EXPECT_GE(fractions, 3u);
+}
+
+TEST(RouteCertificates, WhatIsSaidBesideACertificateMustBeWhatItSays) {
+  const Rooms rooms;
+  const json answer = answer_to(rooms, kCases[0]);
+  const std::pair<const char*, json> lies[] = {{"length", 1.0},       {"status", "separated"},
+                                               {"radius", 5.0},       {"start", {2.0, 1.0}},
+                                               {"lower_bound", 11.9}, {"points", json::array()}};
+  for (const auto& [key, lie] : lies) {
+    json changed = answer;
+    changed[key] = lie;
+    rooms.here.write("changed.json", changed.dump());
+    const Outcome outcome = rooms.here.run("audit --certificate changed.json");
+    EXPECT_EQ(outcome.status, 1) << key;
+    EXPECT_THAT(outcome.out, HasSubstr("of another answer")) << key;
+  }
+}
+
+TEST(RouteCertificates, ObstaclesStandInTheFirstOneOfAFile) {
+  const Rooms rooms;
+  rooms.here.write("q.csv", "start_x,start_y,goal_x,goal_y\n1,1,3,1\n1,1,11,7\n");
+  const Outcome outcome = rooms.route("--queries q.csv --radius 0.6 --json");
+  const std::vector<json> lines = json_lines(outcome.out);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_TRUE(lines[0].at("certificate").contains("obstacles"));
+  EXPECT_FALSE(lines[1].at("certificate").contains("obstacles"));
+  rooms.here.write("both.jsonl", outcome.out);
+  EXPECT_EQ(rooms.here.run("audit --certificate both.jsonl --json").out,
+            "{\"certificates\": 2, \"valid\": 2, \"none\": 0, \"verdicts\": [\"valid\", \"valid\"]}\n");
+  rooms.here.write("second.jsonl", lines[1].dump());
+  const Outcome second = rooms.here.run("audit --certificate second.jsonl");
+  EXPECT_EQ(second.status, 1);
+  EXPECT_THAT(second.out, HasSubstr("no obstacles: neither in it nor in one before it"));
+  rooms.here.write("cut.jsonl", outcome.out.substr(0, outcome.out.size() - 9));
+  EXPECT_THAT(rooms.here.run("audit --certificate cut.jsonl").out, HasSubstr("2: unreadable JSON"));
+}
+
+// --- Many questions ---
+
+TEST(RouteQueries, EachLineOfATableIsAnsweredByALine) {
+  const Rooms rooms;
+  const std::string table =
+      "name,goal_x,goal_y,start_x,start_y\n\n# a remark\nfar,11,7,1,1\nnear,3,1,1,1\ndesk,9,3,1,1\n";
+  rooms.here.write("q.csv", table);
+  const Outcome words = rooms.route("--queries q.csv --radius 0.6 --widest");
+  EXPECT_EQ(words.status, 1) << "two of them are no route";
+  EXPECT_EQ(
+      words.out,
+      "0: separated: closed by 1 gap, 1 m, between wall 7 and wall 9, which would have to be 1.2 m; widest radius: "
+      "0.5 m\n"
+      "1: route: 2 m, no route is shorter than 2 m, 0 corners; widest radius: 1 m\n"
+      "2: blocked: the goal is inside desk; widest radius: 0 m\n");
+  const std::vector<json> lines = json_lines(rooms.route("--queries - --radius 0.6 --json < q.csv").out);
+  ASSERT_EQ(lines.size(), 3u);
+  const char* const statuses[] = {"separated", "route", "blocked"};
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    EXPECT_EQ(lines[k].at("index"), k);
+    EXPECT_EQ(lines[k].at("status"), statuses[k]);
+    EXPECT_EQ(lines[k].at("length").is_null(), k != 1);
+    EXPECT_EQ(lines[k].at("points").is_null(), k != 1);
+  }
+  EXPECT_EQ(lines[0].at("needed_width"), 1.2);
+  EXPECT_EQ(lines[0].at("gaps"), json::parse(R"([{"width": 1.0, "from": [6.0, 3.0], "to": [6.0, 4.0],
+                                                  "between": ["7", "9"]}])"));
+  EXPECT_EQ(lines[1].at("length"), 2.0);
+  EXPECT_EQ(lines[2].at("blocked").at("obstacle"), "desk");
+  rooms.here.write("near.csv", "start_x,start_y,goal_x,goal_y\n1,1,3,1\n");
+  EXPECT_EQ(rooms.route("--queries near.csv --radius 0.6").status, 0);
+  rooms.here.write("none.csv", "start_x,start_y,goal_x,goal_y\n");
+  EXPECT_EQ(rooms.route("--queries none.csv --radius 0.6").out, "");
+}
+
+TEST(RouteQueries, CellsOfAMovingAiMapAreCountedFromItsTopLeftCorner) {
+  const Rooms rooms;
+  rooms.here.write("grid.map.scen", "version 1\n0\tgrid.map\t4\t3\t0\t0\t3\t2\t5\n0\tgrid.map\t4\t3\t1\t0\t2\t0\t1\n");
+  const Outcome outcome = rooms.here.run("route grid.map --queries grid.map.scen --radius 0.5 --json");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("points are middles of cells"));
+  const std::vector<json> lines = json_lines(outcome.out);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].at("start"), json({0.5, 2.5}));
+  EXPECT_EQ(lines[0].at("goal"), json({3.5, 0.5}));
+  EXPECT_EQ(lines[1].at("points").front(), json({1.5, 2.5}));
+  EXPECT_EQ(lines[1].at("points").back(), json({2.5, 2.5}));
+  EXPECT_NEAR(lines[1].at("length"), 1.0, 1e-12);
+  const json same = json::parse(rooms.here.run("route grid.map --from 0,0 --to 3,2 --radius 0.5 --json").out);
+  EXPECT_EQ(same.at("start"), lines[0].at("start"));
+  EXPECT_EQ(same.at("length"), lines[0].at("length"));
+  const json corner = json::parse(
+      rooms.here.run("route grid.map --from 0.5,0.5 --to 3,0.5 --radius 0.5 --cell-point corner --json").out);
+  EXPECT_EQ(corner.at("start"), json({0.5, 2.5}));
+  EXPECT_EQ(corner.at("goal"), json({3.0, 2.5}));
+  EXPECT_EQ(
+      json::parse(rooms.here.run("route grid.map --from 0,0 --to 3,2 --radius 1 --cell-size 2 --json").out).at("goal"),
+      json({7.0, 1.0}));
+}
+
+TEST(RouteQueries, WhatLiesOutsideOfAMovingAiMapIsOutOfBounds) {
+  const Rooms rooms;
+  const Outcome outcome = rooms.here.run("route grid.map --from 0,0 --to 3,2 --radius 0.51");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("blocked: the start is 0.5 m from the border of the map"));
+  // The only other way would lead round the map.
+  rooms.here.write("halves.map", "type octile\nheight 1\nwidth 3\nmap\n.@.\n");
+  EXPECT_THAT(rooms.here.run("route halves.map --from 0,0 --to 2,0 --radius 0.25").out, StartsWith("separated: "));
+}
+
+// --- Figures ---
+
+TEST(RouteFigures, ShowTheAnswerWithStartAndGoal) {
+  const Rooms rooms;
+  const std::pair<const char*, const char*> cases[] = {{"0.4", "has a route of 11.6"}, {"0.6", "has no route"}};
+  for (const auto& [radius, title] : cases) {
+    const Outcome outcome = rooms.route(std::string("--from 1,1 --to 11,7 --figure out/f.svg --radius ") + radius);
+    EXPECT_LE(outcome.status, 1) << outcome.err;
+    EXPECT_THAT(rooms.here.read("out/f.gp"), AllOf(HasSubstr(title), HasSubstr("disc at the goal")));
+    EXPECT_TRUE(rooms.here.has("out/f.png"));
+  }
+  EXPECT_THAT(rooms.here.read("out/f.dat"), HasSubstr("1 m"));
+  EXPECT_EQ(rooms.route("--from 1,1 --to 9,3 --figure out/f.svg --radius 0.6").status, 1);
+  EXPECT_THAT(rooms.here.read("out/f.gp"), HasSubstr("does not fit at the goal"));
+}
+
+// --- Bad input ---
+
+TEST(RouteVerb, BadInputIsRefusedWithItsPlace) {
+  const Rooms rooms;
+  rooms.here.write("bow.wkt", "POLYGON ((0 0, 2 2, 2 0, 0 2, 0 0))\n");
+  rooms.here.write("empty.wkt", "");
+  rooms.here.write("empty.csv", "");
+  rooms.here.write("words.csv", "a,b\n1,1,3,1\n");
+  rooms.here.write("nan.csv", "start_x,start_y,goal_x,goal_y\n1,1,3,1\n1,1,nan,1\n");
+  rooms.here.write("short.csv", "start_x,start_y,goal_x,goal_y\n1,1,3\n");
+  rooms.here.write("far.csv", "start_x,start_y,goal_x,goal_y\n1,1,1e6,1\n");
+  rooms.here.write("other.scen", "version 1\n0\tgrid.map\t4\t4\t0\t0\t3\t2\t5\n");
+  rooms.here.write("beyond.scen", "version 1\n0\tgrid.map\t4\t3\t0\t0\t3\t3\t5\n");
+  const std::pair<std::string, std::string> cases[] = {
+      {"rooms.json --to 3,1 --radius 1", "--from: found 'nothing'"},
+      {"rooms.json --from 3,1 --radius 1", "--to: found 'nothing'"},
+      {"rooms.json --from 3,1 --to 4,1", "--radius: found 'nothing'"},
+      {"rooms.json --from 3 --to 4,1 --radius 1", "--from: found '3', expected two numbers"},
+      {"rooms.json --from nan,1 --to 4,1 --radius 1", "--from: found 'nan,1', expected two numbers"},
+      {"rooms.json --from 3,1 --to 4,1e40 --radius 1", "--to: found '4,1e40', expected two numbers within 2^100"},
+      {"rooms.json --from 3,1 --to 4,1 --radius 0", "--radius: found '0', expected a length from 2^-100 m"},
+      {"rooms.json --from 3,1 --to 4,1 --radius=-1", "--radius: found '-1'"},
+      {"rooms.json --from 3,1 --to 4,1 --radius nan", "--radius: found 'nan'"},
+      {"rooms.json --from 3,1 --to 4,1 --radius inf", "--radius: found 'inf'"},
+      {"rooms.json --from 3,1 --queries nan.csv --radius 1", "--queries: found '--queries beside --from'"},
+      {"rooms.json --queries nan.csv --radius 1 --figure f.svg", "--figure: found '--figure beside --queries'"},
+      {"rooms.json --from 3,1 --to 4,1 --widest --figure f.svg", "--figure: found '--figure without --radius'"},
+      {"rooms.json --queries empty.csv --radius 1", "empty.csv: found an empty file, expected a header"},
+      {"rooms.json --queries words.csv --radius 1", "words.csv: line 1: found a,b, expected a header"},
+      {"rooms.json --queries nan.csv --radius 1", "nan.csv: line 3: found nan, expected a number in the column goal_x"},
+      {"rooms.json --queries short.csv --radius 1", "short.csv: line 2: found 3 fields, expected 4 fields [E_COUNT]"},
+      {"rooms.json --queries far.csv --radius 1", "far.csv: line 2: found the goal 1000000,1, expected a point within"},
+      {"rooms.json --queries other.scen --radius 1", "other.scen: line 1: found cells of a Moving AI map"},
+      {"grid.map --queries other.scen --radius 0.2", "found a task for a map of 4 x 4 cells, expected 4 x 3 cells"},
+      {"grid.map --queries beyond.scen --radius 0.2", "beyond.scen: line 2: found the goal 3,3, expected a cell"},
+      {"grid.map --from 4,1 --to 0,0 --radius 0.2", "--from: found '4,1', expected a cell of the map"},
+      {"grid.map --from 0,0 --to 3,2 --radius 0.2 --cell-point midle", "--cell-point: found 'midle'"},
+      {"nowhere.wkt --from 3,1 --to 4,1 --radius 1", "nowhere.wkt: found no such file"},
+      {"empty.wkt --from 3,1 --to 4,1 --radius 1", "[E_FORMAT_UNKNOWN]"},
+      {"bow.wkt --from 3,1 --to 4,1 --radius 1", "bow.wkt: line 1, column 1, ring 0, vertex 0: found a ring that"}};
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = rooms.here.run("route " + arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(message)) << arguments;
+  }
+  EXPECT_EQ(rooms.here.run("route bow.wkt --from 3,1 --to 4,1 --radius 0.5 --repair").status, 0);
+}
+
+TEST(RouteVerb, PointsFarFromTheMapAreAnswered) {
+  const Rooms rooms;
+  EXPECT_EQ(rooms.route("--from 1e6,1 --to -1e9,7 --radius 0.4").status, 0);
+  EXPECT_EQ(rooms.route("--from 1e6,1 --to 3,1 --radius 0.4").status, 1);
+  EXPECT_EQ(rooms.route("--from 1e6,1 --to -1e6,7 --radius 500").status, 0);
+}
+
+TEST(RouteVerb, AMapWithoutObstaclesIsOneStraightLine) {
+  const Rooms rooms;
+  rooms.here.write("none.wkt", "GEOMETRYCOLLECTION EMPTY\n");
+  const Outcome outcome = rooms.here.run("route none.wkt --from 0,0 --to 3,4 --radius 1");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("LINESTRING (0 0, 3 4)"));
+  EXPECT_THAT(outcome.err, HasSubstr("none.wkt: no obstacle in it"));
+}
+
+TEST(RouteVerb, DegreesAreProjectedAndItIsSaid) {
+  const Rooms rooms;
+  rooms.here.write(
+      "yard.geojson",
+      R"({"type": "Polygon", "coordinates": [[[13, 52], [13.001, 52], [13.001, 52.001], [13, 52.001], [13, 52]]]})");
+  const Outcome outcome = rooms.here.run("route yard.geojson --from=-60,0 --to 60,0 --radius 1");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("projected from degrees to metres, centred on longitude 13.0005"));
+}
+
+TEST(RouteVerb, MovingObstaclesAreLeftOutAloud) {
+  const Rooms rooms;
+  json scenario = json::parse(kRooms);
+  scenario["moving_obstacles"] = json::parse(
+      R"([{"id": "cart", "polygon": [[2, 2], [3, 2], [3, 3], [2, 3]], "path": [[0, 0], [1, 0]], "speed": 0.1}])");
+  rooms.here.write("moving.json", scenario.dump());
+  EXPECT_THAT(rooms.here.run("route moving.json --from 1,1 --to 3,1 --radius 0.1").err,
+              HasSubstr("1 moving obstacles left out"));
+}
+
+}  // namespace
+}  // namespace exactvo::test

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Certificates of routes as JSON: a question, its answer, and the obstacles that both are about. Numbers are doubles,
+/// written so that they read back as the same; a coordinate that is no double stands as a fraction beside its rounded
+/// value. docs/guide/routes.md has the format; examples/check_route.py checks it without this program.
+///
+/// Neighbours: certificates.h judges whole files, geometry/route_certificate.h decides.
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/route_certificate.h"
+#include "support/certificates.h"
+
+namespace exactvo::tools {
+
+using RouteJson = nlohmann::ordered_json;
+
+/// "route", "separated" or "blocked".
+const char* status_of(const geometry::RouteAnswer& answer);
+
+/// [x, y], the rounded coordinates.
+RouteJson rounded_json(const std::vector<geometry::ExactPoint>& points);
+
+/// `obstacles` null: those of an earlier certificate in the same file.
+RouteJson certificate_json(const geometry::RouteQuestion& question, const geometry::RouteAnswer& answer,
+                           const std::vector<formation::SceneObstacle>* obstacles);
+
+/// Judges the certificates of one file in order.
+class RouteJudge {
+ public:
+  /// Whether an object claims to be one: it has a `kind` that is a status.
+  static bool is_one(const RouteJson& certificate);
+
+  /// `beside`: the object whose `certificate` it is. What it says of status, radius, start, goal, points and lengths
+  /// must be what the certificate says; else the verdict is "of another answer". REQUIRES: is_one(certificate).
+  JudgedCertificate judge(const RouteJson& certificate, const RouteJson& beside);
+
+ private:
+  std::optional<std::vector<geometry::Obstacle>> obstacles_;  ///< of the last certificate that had any
+};
+
+}  // namespace exactvo::tools
