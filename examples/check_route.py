@@ -125,8 +125,9 @@ def check(c, obstacles):
         return not_free(start, radius, obstacles) or not_free(goal, radius, obstacles)
     if c["kind"] != "blocked":
         return "of no known kind"
-    end, edge, by = {"start": start, "goal": goal}[c["end"]], edge_of(obstacles, c), obstacles[c["obstacle"]]
-    proven = by.is_solid and is_inside(end, by.edges) if c["inside"] else square_to(end, edge) < radius * radius
+    end, by = {"start": start, "goal": goal}[c["end"]], obstacles[abs(c["obstacle"])]
+    inside = by.is_solid and is_inside(end, by.edges)
+    proven = inside if c["inside"] else square_to(end, edge_of(obstacles, c)) < radius * radius
     return "" if proven else "not inside" if c["inside"] else "far enough away"
 
 

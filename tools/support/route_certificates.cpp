@@ -82,7 +82,8 @@ struct WriteAnswer {
   void operator()(const Blocked& blocked) const {
     json["end"] = blocked.end == Blocked::End::start ? "start" : "goal";
     json["inside"] = blocked.inside;
-    add(blocked.by, json);
+    json["obstacle"] = blocked.by.obstacle;
+    if (!blocked.inside) json["edge"] = blocked.by.edge;
   }
   static void add(const EdgeName& name, RouteJson& to) {
     to["obstacle"] = name.obstacle;
@@ -157,11 +158,15 @@ std::optional<Obstacle> obstacle_in(const RouteJson* json) {
   return polygon;
 }
 
+std::optional<std::size_t> number_of(const RouteJson& json, const char* key) {
+  const RouteJson* number = member(json, key);
+  if (number == nullptr || !number->is_number_unsigned()) return std::nullopt;
+  return number->get<std::size_t>();
+}
+
 std::optional<EdgeName> edge_in(const RouteJson& json) {
-  const RouteJson *obstacle = member(json, "obstacle"), *edge = member(json, "edge");
-  if (obstacle == nullptr || edge == nullptr || !obstacle->is_number_unsigned() || !edge->is_number_unsigned())
-    return std::nullopt;
-  return EdgeName{obstacle->get<std::size_t>(), edge->get<std::size_t>()};
+  const std::optional<std::size_t> obstacle = number_of(json, "obstacle"), edge = number_of(json, "edge");
+  return obstacle && edge ? std::optional(EdgeName{*obstacle, *edge}) : std::nullopt;
 }
 
 std::optional<ChainPoint> chain_point_in(const RouteJson* json) {
@@ -186,12 +191,16 @@ std::optional<RouteAnswer> separated_in(const RouteJson& json) {
   return Separated{std::move(*chain)};
 }
 
+/// Inside a polygon no edge of it counts.
 std::optional<RouteAnswer> blocked_in(const RouteJson& json) {
   const RouteJson *end = member(json, "end"), *inside = member(json, "inside");
-  const std::optional<EdgeName> by = edge_in(json);
-  if (end == nullptr || (*end != "start" && *end != "goal") || inside == nullptr || !inside->is_boolean() || !by)
+  if (end == nullptr || (*end != "start" && *end != "goal") || inside == nullptr || !inside->is_boolean())
     return std::nullopt;
-  return Blocked{*end == "start" ? Blocked::End::start : Blocked::End::goal, inside->get<bool>(), *by};
+  const bool is_inside = inside->get<bool>();
+  const std::optional<std::size_t> obstacle = number_of(json, "obstacle"), edge = number_of(json, "edge");
+  if (!obstacle || (!is_inside && !edge)) return std::nullopt;
+  return Blocked{*end == "start" ? Blocked::End::start : Blocked::End::goal, is_inside,
+                 EdgeName{*obstacle, edge.value_or(0)}};
 }
 
 std::optional<RouteAnswer> answer_in(const RouteJson& json) {
