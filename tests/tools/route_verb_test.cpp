@@ -69,7 +69,8 @@ TEST(RouteVerb, ASeparationNamesItsGapsAndWhatTheWidestNeeds) {
   const Outcome outcome = rooms.route("--from 1,1 --to 11,7 --radius 0.6");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.out,
-            "separated: closed by 1 gap, 1 m, between wall 7 and wall 9, which would have to be 1.2 m\n"
+            "separated, the start is enclosed: closed by 1 gap, 1 m, between wall 7 and wall 9, which would have to be "
+            "1.2 m\n"
             "  gap of 1 m between wall 7 and wall 9, from (6, 3) to (6, 4)\n");
   const Outcome two = rooms.here.run("route grid.map --from 0,0 --to 3,0 --radius 0.5");
   EXPECT_EQ(two.status, 0) << two.out;
@@ -79,7 +80,8 @@ TEST(RouteVerb, ASeparationNamesItsGapsAndWhatTheWidestNeeds) {
       "-0.5 0.3)\n");
   const Outcome posts = rooms.here.run("route posts.wkt --from 0.7,0.8 --to 5,5 --radius 0.6");
   EXPECT_EQ(posts.status, 1);
-  EXPECT_THAT(posts.out, StartsWith("separated: closed by 4 gaps; the widest, 0.9 m, between wall "));
+  EXPECT_THAT(posts.out,
+              StartsWith("separated, the start is enclosed: closed by 4 gaps; the widest, 0.9 m, between wall "));
   EXPECT_THAT(posts.out, HasSubstr("would have to be 1.2 m\n  gap of "));
 }
 
@@ -96,7 +98,7 @@ TEST(RouteVerb, AWallWithoutAGapIsNamedAlone) {
   const Rooms rooms;
   const Outcome outcome = rooms.route("--from 1,1 --to 20,1 --radius 0.1");
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.out, "separated: closed by outer wall alone\n");
+  EXPECT_EQ(outcome.out, "separated, the start is enclosed: closed by outer wall alone\n");
 }
 
 TEST(RouteVerb, ABlockedEndIsToldWithWhatBlocksItAndHowNear) {
@@ -130,6 +132,21 @@ TEST(RouteVerb, TheWidestRadiusIsTheLargestDoubleWithARoute) {
   const Outcome none = rooms.route("--from 1,1 --to 9,3 --widest");
   EXPECT_EQ(none.status, 1);
   EXPECT_EQ(none.out, "widest radius: 0 m\n");
+}
+
+TEST(RouteVerb, TheWidestRadiusIsNotBoundByTheMap) {
+  const Rooms rooms;
+  // Only their distance from the room holds the disc back: 100 m, nine times the size of the map.
+  EXPECT_EQ(rooms.route("--from=-100,0 --to=-100,8 --widest").out, "widest radius: 100 m\n");
+  rooms.here.write("q.csv", "start_x,start_y,goal_x,goal_y\n-45,0,-45,8\n");
+  EXPECT_EQ(rooms.route("--queries q.csv --widest").out, "0: widest radius: 45 m\n");
+}
+
+TEST(RouteVerb, TheEnclosedEndIsNamed) {
+  const Rooms rooms;
+  const Outcome outcome = rooms.route("--from 20,1 --to 1,1 --radius 0.1 --json");
+  EXPECT_EQ(json::parse(outcome.out).at("enclosed"), "goal");
+  EXPECT_THAT(rooms.route("--from 20,1 --to 1,1 --radius 0.1").out, StartsWith("separated, the goal is enclosed: "));
 }
 
 // --- Certificates: accepted as they are, rejected where they were changed ---
@@ -313,12 +330,12 @@ TEST(RouteQueries, EachLineOfATableIsAnsweredByALine) {
   rooms.here.write("q.csv", table);
   const Outcome words = rooms.route("--queries q.csv --radius 0.6 --widest");
   EXPECT_EQ(words.status, 1) << "two of them are no route";
-  EXPECT_EQ(
-      words.out,
-      "0: separated: closed by 1 gap, 1 m, between wall 7 and wall 9, which would have to be 1.2 m; widest radius: "
-      "0.5 m\n"
-      "1: route: 2 m, no route is shorter than 2 m, 0 corners; widest radius: 1 m\n"
-      "2: blocked: the goal is inside desk; widest radius: 0 m\n");
+  EXPECT_EQ(words.out,
+            "0: separated, the start is enclosed: closed by 1 gap, 1 m, between wall 7 and wall 9, which would have to "
+            "be 1.2 m; widest radius: "
+            "0.5 m\n"
+            "1: route: 2 m, no route is shorter than 2 m, 0 corners; widest radius: 1 m\n"
+            "2: blocked: the goal is inside desk; widest radius: 0 m\n");
   const std::vector<json> lines = json_lines(rooms.route("--queries - --radius 0.6 --json < q.csv").out);
   ASSERT_EQ(lines.size(), 3u);
   const char* const statuses[] = {"separated", "route", "blocked"};
@@ -371,7 +388,7 @@ TEST(RouteQueries, WhatLiesOutsideOfAMovingAiMapIsOutOfBounds) {
   EXPECT_THAT(outcome.out, HasSubstr("blocked: the start is 0.5 m from the border of the map"));
   // The only other way would lead round the map.
   rooms.here.write("halves.map", "type octile\nheight 1\nwidth 3\nmap\n.@.\n");
-  EXPECT_THAT(rooms.here.run("route halves.map --from 0,0 --to 2,0 --radius 0.25").out, StartsWith("separated: "));
+  EXPECT_THAT(rooms.here.run("route halves.map --from 0,0 --to 2,0 --radius 0.25").out, StartsWith("separated, the "));
 }
 
 // --- Figures ---

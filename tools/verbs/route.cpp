@@ -87,24 +87,37 @@ Vec2 point_in(const char* option, const std::string& text, const AskedMap& map) 
   return *metres;
 }
 
-/// m: how far outside of the obstacles' box the points may lie, so that the map covers them.
-double distance_of(const AskedMap& map, std::initializer_list<Vec2> points) {
+geometry::Box box_of(const AskedMap& map) {
   geometry::Box box;
   for (const geometry::Obstacle& obstacle : map.shapes)
     for (const Vec2 p : geometry::vertices_of(obstacle)) box.add(p);
-  if (box.is_empty()) box = {{0.0, 0.0}, {0.0, 0.0}};
+  return box.is_empty() ? geometry::Box{{0.0, 0.0}, {0.0, 0.0}} : box;
+}
+
+/// m: how far outside of the obstacles' box the points lie, in x or in y.
+double distance_of(const geometry::Box& box, std::initializer_list<Vec2> points) {
   double distance = 0.0;
   for (const Vec2 p : points)
     distance = std::max({distance, box.low.x - p.x, p.x - box.high.x, box.low.y - p.y, p.y - box.high.y});
-  return std::min(2.0 * distance, kLargestNumber);  // more than is needed, whatever is rounded
+  return distance;
+}
+
+/// What a map has to cover for points so far outside of the obstacles' box.
+geometry::RouteMapOptions options_for(const Flags& flags, const geometry::Box& box, double distance) {
+  // No point keeps farther from all obstacles than sqrt 2 (distance + side): no wider disc is free anywhere.
+  const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+  const double widest = flags.widest ? 2.0 * (distance + side) : 0.0;
+  const auto within_range = [](double length) { return std::min(length, kLargestNumber); };
+  return {within_range(std::max(flags.radius.value_or(0.0), widest)),
+          within_range(2.0 * distance)};  // twice: more than is needed, whatever is rounded
 }
 
 // --- Answering ---
 
 class Answers {
  public:
-  Answers(const AskedMap& asked, const Flags& flags, double largest_distance)
-      : asked_(asked), flags_(flags), routes_(asked.shapes, {flags.radius.value_or(0.0), largest_distance}) {
+  Answers(const AskedMap& asked, const Flags& flags, const geometry::RouteMapOptions& options)
+      : asked_(asked), flags_(flags), routes_(asked.shapes, options) {
     if (flags.radius) plan_.emplace(routes_, *flags.radius);
   }
 
@@ -135,7 +148,8 @@ class Answers {
 
 ExitCode answer_one(const AskedMap& map, const Flags& flags) {
   const Vec2 start = point_in("--from", flags.from, map), goal = point_in("--to", flags.to, map);
-  const Answers answers(map, flags, distance_of(map, {start, goal}));
+  const geometry::Box box = box_of(map);
+  const Answers answers(map, flags, options_for(flags, box, distance_of(box, {start, goal})));
   const AnsweredRoute answered = answers.answer(0, start, goal);
   if (!flags.figure.empty()) write_figure(route_figure(answered, map), flags.figure);
   answers.print_answer(answered);
@@ -148,13 +162,18 @@ Vec2 place_of(Vec2 given, const char* end, const AskedMap& map, const Answers& a
   if (!metres) queries.refuse(datasets::DataCode::out_of_range, found, map.accepted_points());
   if (!answers.covers(*metres))
     queries.refuse(datasets::DataCode::out_of_range, found,
-                   "a point within four times the size of the map (--from and --to take any)");
+                   "a point within four times the size of the map from it (--from and --to take any)");
   return *metres;
 }
 
+/// Of the longer side of the obstacles' box.
+constexpr double kFarthestOfQueries = 4.0;
+
 ExitCode answer_many(const AskedMap& map, const Flags& flags) {
   RouteQueries queries(flags.queries, map);
-  const Answers answers(map, flags, 0.0);
+  const geometry::Box box = box_of(map);
+  const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+  const Answers answers(map, flags, options_for(flags, box, kFarthestOfQueries * side));
   bool all = true;
   while (const std::optional<RouteQuery> query = queries.next()) {
     const Vec2 start = place_of(query->start, "start", map, answers, queries);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/predicates.h"
 #include "support/escape.h"
 #include "support/route_certificates.h"
 
@@ -72,16 +73,37 @@ std::string listed(const std::vector<Gap>& gaps, const AskedMap& map) {
   return text;
 }
 
-std::string words(const Separated& separated, const AskedMap& map, double radius, bool in_full) {
+/// By the parity of crossings of the chain as rounded.
+bool goes_round(const std::vector<ChainPoint>& chain, Vec2 p) {
+  bool inside = false;
+  for (std::size_t k = 0; k < chain.size(); ++k) {
+    const Vec2 a = chain[k].point.rounded, b = chain[(k + 1) % chain.size()].point.rounded;
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    inside ^= (geometry::orientation(a, b, p) == geometry::Sign::positive) == (b.y > a.y);
+  }
+  return inside;
+}
+
+/// "start" or "goal"; nothing where the rounded chain cannot tell.
+const char* enclosed_end(const Separated& separated, const geometry::RouteQuestion& question) {
+  const bool start = goes_round(separated.chain, question.start), goal = goes_round(separated.chain, question.goal);
+  if (start == goal) return nullptr;
+  return start ? "start" : "goal";
+}
+
+std::string words(const Separated& separated, const AskedMap& map, const geometry::RouteQuestion& question,
+                  bool in_full) {
   const std::vector<Gap> gaps = gaps_of(separated);
-  if (gaps.empty()) return "separated: " + closed_by_obstacles(separated, map);
+  const char* const enclosed = enclosed_end(separated, question);
+  const std::string begin = enclosed ? fmt::format("separated, the {} is enclosed: ", enclosed) : "separated: ";
+  if (gaps.empty()) return begin + closed_by_obstacles(separated, map);
   const Gap& widest = widest_of(gaps);
-  const auto [width, needed] = widths_told_apart(widest.width, 2.0 * radius);
-  const std::string text =
-      gaps.size() == 1 ? fmt::format("separated: closed by 1 gap, {} m, {}, which would have to be {} m", width,
-                                     between(widest, map), needed)
-                       : fmt::format("separated: closed by {} gaps; the widest, {} m, {}, would have to be {} m",
-                                     gaps.size(), width, between(widest, map), needed);
+  const auto [width, needed] = widths_told_apart(widest.width, 2.0 * question.radius);
+  const std::string text = gaps.size() == 1
+                               ? begin + fmt::format("closed by 1 gap, {} m, {}, which would have to be {} m", width,
+                                                     between(widest, map), needed)
+                               : begin + fmt::format("closed by {} gaps; the widest, {} m, {}, would have to be {} m",
+                                                     gaps.size(), width, between(widest, map), needed);
   return in_full ? text + listed(gaps, map) : text;
 }
 
@@ -139,6 +161,8 @@ void add_answer(const AnsweredRoute& answered, const AskedMap& map, bool with_ob
   json["lower_bound"] = route ? OrderedJson(route->lower_bound) : OrderedJson(nullptr);
   json["points"] = route ? rounded_json(route->points) : OrderedJson(nullptr);
   if (const auto* separated = std::get_if<Separated>(&answer)) {
+    const char* const enclosed = enclosed_end(*separated, answered.question);
+    json["enclosed"] = enclosed ? OrderedJson(enclosed) : OrderedJson(nullptr);
     json["needed_width"] = 2.0 * answered.question.radius;
     json["gaps"] = gaps_json(*separated, map);
   }
@@ -179,7 +203,7 @@ std::string words_of(const AnsweredRoute& answered, const AskedMap& map, bool in
   if (answered.answer) {
     if (const auto* route = std::get_if<Route>(&*answered.answer)) text = words(*route, in_full);
     if (const auto* separated = std::get_if<Separated>(&*answered.answer))
-      text = words(*separated, map, answered.question.radius, in_full);
+      text = words(*separated, map, answered.question, in_full);
     if (const auto* blocked = std::get_if<Blocked>(&*answered.answer)) text = words(*blocked, map, answered.question);
     text = shown_lines(text);
   }
@@ -202,6 +226,7 @@ std::string json_of(const AnsweredRoute& answered, const AskedMap& map, bool wit
   json["start"] = pair_json(answered.question.start);
   json["goal"] = pair_json(answered.question.goal);
   if (answered.widest) json["widest_radius"] = *answered.widest;
+  if (answered.is_widest_of_map) json["widest_radius_is_bound_of_map"] = true;
   if (answered.answer) add_answer(answered, map, with_obstacles, json);
   return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }

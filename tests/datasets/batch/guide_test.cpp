@@ -28,19 +28,19 @@ std::vector<std::string> commands_of_the_page() {
 
 using GuidePage = TemporaryFolder;
 
-TEST_F(GuidePage, SixCommandsLeadFromAMapToVelocityObstacles) {
+TEST_F(GuidePage, SevenCommandsLeadFromAMapToVelocityObstacles) {
   fs::create_directories(folder_ / "bin");
   fs::create_symlink(EXACTVO_PROGRAM, folder_ / "bin" / "exactvo");
   fs::create_symlink(EXACTVO_SOURCE_DIR "/datasets", folder_ / "datasets");
   const std::vector<std::string> commands = commands_of_the_page();
-  ASSERT_EQ(commands.size(), 6u);
+  ASSERT_EQ(commands.size(), 7u);
   for (const std::string& command : commands) {
     ASSERT_EQ(command.rfind("exactvo ", 0), 0u) << command;
     const std::string all = "cd '" + folder_.string() + "' && PATH=\"$PWD/bin:$PATH\" " + command + " >log 2>&1";
     EXPECT_EQ(std::system(all.c_str()), 0) << command << "\n" << text_of(folder_ / "log");
   }
-  for (const char* file :
-       {"room.geojson", "room.svg", "room/summary.json", "room/index.html", "pillar.svg", "run/metrics.json"}) {
+  for (const char* file : {"room.geojson", "room.svg", "route.svg", "room/summary.json", "room/index.html",
+                           "pillar.svg", "run/metrics.json"}) {
     EXPECT_GT(fs::file_size(folder_ / "out" / file), 100u) << file;
   }
 }
