@@ -70,6 +70,7 @@ class ClearanceSweep::Sweep {
       boxes.push_back(obstacles_.back().box());
     }
     by_place_ = geometry::BoxGrid(std::move(boxes));
+    for (const double x : largest_) largest_of_all_ = std::max(largest_of_all_, x);
     constexpr double kToTheEnd = std::numeric_limits<double>::max();
     for (const MovingObstacle& o : scenario.moving_obstacles) {
       ways_.push_back(way_of(o.motion, kToTheEnd));
@@ -155,8 +156,7 @@ class ClearanceSweep::Sweep {
   /// m: no chord of the motion has more taken off its distance.
   double most_off(std::size_t robot, const Motion& motion, const Segment& chord) const {
     const double radius = scenario_.robots[robot].radius, reach = radius + motion.reach();
-    const double shape = largest_.empty() ? 0.0 : *std::max_element(largest_.begin(), largest_.end());
-    return 2.0 * rounding(shape, chord, reach + motion.stray(1.0)) + radius;
+    return 2.0 * rounding(largest_of_all_, chord, reach + motion.stray(1.0)) + radius;
   }
 
   void note(std::size_t robot, Other other, std::size_t step, double end, double clearance, double& least) {
@@ -320,6 +320,7 @@ class ClearanceSweep::Sweep {
   const Scenario& scenario_;
   const Recording& run_;
   std::vector<double> largest_, moving_largest_;
+  double largest_of_all_ = 0.0;
   std::vector<geometry::ObstacleIndex> obstacles_;
   geometry::BoxGrid by_place_;
   std::vector<std::vector<WayPiece>> ways_;

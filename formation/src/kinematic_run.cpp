@@ -153,8 +153,7 @@ class KinematicRun {
     const Viewpoint here{robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
     const Follower::Answer answer =
         robots_[i].follower.steer({time, scenario_.time_step, here, goal_of(i),
-                                   spec.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field},
-                                  statics_);
+                                   spec.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field});
     step.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
     step.side = answer.side;
     step.note = joined_notes(step.note, answer.note);

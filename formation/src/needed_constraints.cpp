@@ -6,9 +6,6 @@
 namespace exactvo::formation::detail {
 namespace {
 
-/// Of the largest speed: what is left out has this much room to spare, far above any rounding of a half-plane.
-constexpr double kSpare = 1e-3;
-
 constexpr double kFirstStage = 0.25;  // of the largest speed
 
 /// What the most violated line is violated by, m/s, whichever of the two measures is asked for.
@@ -20,6 +17,12 @@ double most_violation(const std::vector<Constraint>& lines, Vec2 v) {
 }
 
 }  // namespace
+
+bool violates(const geometry::HalfPlane& h, Vec2 v) {
+  // A velocity that lies on the line up to rounding moves along it.
+  constexpr double kOnLine = 1e-12;
+  return geometry::violation(h, v) > kOnLine * (1.0 + norm(v));
+}
 
 void NeededConstraints::look(const StaticField& field, const Viewpoint& from, double reach) {
   field_ = &field;
@@ -47,10 +50,10 @@ bool NeededConstraints::need_within(double reach) {
 /// With room r > 0 at the present velocity u, a half-plane is violated at v by |v - u| - r at most. Those without room
 /// may be violated by any amount.
 bool NeededConstraints::need_at(Vec2 v) {
-  const double away = norm(v - from_.velocity) + kSpare * from_.max_speed;
+  const double away = norm(v - from_.velocity) + kSpareRoom * from_.max_speed;
   bool added = false;
   for (;;) {
-    const double room = std::max(away - most_violation(lines_, v), kSpare * from_.max_speed);
+    const double room = std::max(away - most_violation(lines_, v), kSpareRoom * from_.max_speed);
     if (has_all_ || room <= have_.room) return added;
     // In stages: a line that is violated more leaves less to ask for.
     const double stage = std::max(2.0 * have_.room, kFirstStage * from_.max_speed);
@@ -71,6 +74,53 @@ bool NeededConstraints::need_all() {
   field_->constraints(from_, lines_);
   has_all_ = true;
   return lines_.size() != before;
+}
+
+// --- One after the other ---
+
+void NearConstraints::look(const StaticField& field, const Viewpoint& from, double reach) {
+  field_ = &field;
+  from_ = from;
+  reach_ = reach;
+  lines_.clear();
+  field.candidates(from, reach, candidates_);
+}
+
+/// Builds those that are wanted. True where half-planes were added.
+template <class Wanted>
+bool NearConstraints::build_where(const Wanted& wanted) {
+  const std::size_t before = lines_.size();
+  for (StaticField::Candidate& c : candidates_) {
+    if (c.is_built || !wanted(c)) continue;
+    c.is_built = true;
+    field_->build(c, from_, lines_);
+    if (!lines_.empty() && !(lines_.back().clearance <= reach_)) lines_.pop_back();
+  }
+  if (lines_.size() == before) return false;
+  sort_by_clearance(lines_);
+  return true;
+}
+
+const Constraint* NearConstraints::first_violated(Vec2 v) {
+  const double room = norm(v - from_.velocity) + kSpareRoom * from_.max_speed;
+  for (;;) {
+    const auto first =
+        std::find_if(lines_.begin(), lines_.end(), [&](const Constraint& c) { return violates(c.half_plane, v); });
+    const bool found = first != lines_.end();
+    // Of the others, only what may be nearer and violated. The nearest is asked first: it often settles it.
+    const double nearer = found ? first->clearance : reach_;
+    const StaticField::Candidate* next = nullptr;
+    for (const StaticField::Candidate& c : candidates_)
+      if (!c.is_built && c.nearest <= nearer && c.room < room && (!next || c.nearest < next->nearest)) next = &c;
+    if (!next) return found ? &*first : nullptr;
+    build_where([&](const StaticField::Candidate& c) { return &c == next; });
+  }
+}
+
+const Constraint* NearConstraints::of_body(vo::BodyTable::Number body) {
+  build_where([&](const StaticField::Candidate& c) { return c.body == body; });
+  const auto found = std::find_if(lines_.begin(), lines_.end(), [&](const Constraint& c) { return c.body == body; });
+  return found == lines_.end() ? nullptr : &*found;
 }
 
 }  // namespace exactvo::formation::detail

@@ -11,6 +11,12 @@
 
 namespace exactvo::formation::detail {
 
+/// Of the largest speed: what is left out has this much room to spare, far above any rounding of a half-plane.
+inline constexpr double kSpareRoom = 1e-3;
+
+/// Whether v violates the half-plane beyond what counts as lying on its line.
+bool violates(const geometry::HalfPlane& h, Vec2 v);
+
 /// Grows on demand; each half-plane is the same bits as StaticField::constraints gives, in the same order.
 class NeededConstraints {
  public:
@@ -22,8 +28,6 @@ class NeededConstraints {
 
   // What is asked for is there afterwards. True where half-planes were added.
 
-  /// Those within `reach`.
-  bool need_within(double reach);
   /// The one that v violates most, and any that it might violate as much; with a normal of unit length or as it is.
   bool need_at(Vec2 v);
   /// All that the answer rests on.
@@ -31,12 +35,36 @@ class NeededConstraints {
   bool need_all();
 
  private:
+  bool need_within(double reach);
   bool need(const Need& need);
 
   const StaticField* field_ = nullptr;
   Viewpoint from_;
   Need have_;
   bool has_all_ = false;
+  std::vector<Constraint> lines_;
+};
+
+/// The static half-planes within reach, one after the other as a turning velocity meets them. Answers as if all were
+/// there, nearest first.
+class NearConstraints {
+ public:
+  /// Begins anew. `field` must outlive the questions; `reach` in m, from the rim.
+  void look(const StaticField& field, const Viewpoint& from, double reach);
+
+  /// The first that v violates, or null. Valid until the next question.
+  const Constraint* first_violated(Vec2 v);
+  /// That of a body, or null. Valid until the next question.
+  const Constraint* of_body(vo::BodyTable::Number body);
+
+ private:
+  template <class Wanted>
+  bool build_where(const Wanted& wanted);
+
+  const StaticField* field_ = nullptr;
+  Viewpoint from_;
+  double reach_ = 0.0;
+  std::vector<StaticField::Candidate> candidates_;
   std::vector<Constraint> lines_;
 };
 

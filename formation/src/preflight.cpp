@@ -13,6 +13,7 @@
 #include "exactvo/geometry/hull.h"
 #include "leader.h"
 #include "moving_way.h"
+#include "obstacle_boxes.h"
 #include "walled_in.h"
 
 namespace exactvo::formation::detail {
@@ -51,9 +52,18 @@ bool is_blocked(const SceneObstacle& o, const Robot& robot, const Target& t) {
   return geometry::signed_distance(o.shape, t.place) + t.reach < robot.radius;
 }
 
-void warn_of_obstacles(const Scenario& s, const Robot& robot, const Target& t, std::vector<std::string>& out) {
-  for (const SceneObstacle& o : s.obstacles) {
-    if (!is_blocked(o, robot, t)) continue;
+/// Those that block a target, ascending.
+std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes, const Robot& robot, const Target& t) {
+  std::vector<std::size_t> found;
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+    if (!boxes.is_beyond(k, t.place, robot.radius) && is_blocked(s.obstacles[k], robot, t)) found.push_back(k);
+  return found;
+}
+
+void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which, const Target& t,
+                       std::vector<std::string>& out) {
+  for (const std::size_t k : which) {
+    const SceneObstacle& o = s.obstacles[k];
     const bool inside = geometry::signed_distance(o.shape, t.place) < 0.0;
     out.push_back(t.name + (inside ? ", lies inside obstacle '" : ", is too near to obstacle '") + o.id +
                   "' for the robot's radius: it cannot be reached");
@@ -83,8 +93,6 @@ using WallsByRadius = std::map<double, Walls>;
 
 void warn_of_walls(const Scenario& s, const Robot& robot, const Target& t, WallsByRadius& walls,
                    std::vector<std::string>& out) {
-  const auto blocks = [&](const SceneObstacle& o) { return is_blocked(o, robot, t); };
-  if (std::any_of(s.obstacles.begin(), s.obstacles.end(), blocks)) return;
   const Walls& of_robot = walls.try_emplace(robot.radius, s.obstacles, robot.radius).first->second;
   if (const auto found = of_robot.between({robot.position, 0.0}, {t.place, t.reach}))
     out.push_back(t.name + ", cannot be reached: " + chain_words(s, *found, robot));
@@ -222,11 +230,13 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
   std::vector<std::string> out;
   std::vector<Target> last;
   WallsByRadius walls;
+  const ObstacleBoxes boxes(scenario.obstacles);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::vector<Target> targets = targets_of(scenario, offsets, i);
     for (const Target& t : targets) {
-      warn_of_obstacles(scenario, scenario.robots[i], t, out);
-      warn_of_walls(scenario, scenario.robots[i], t, walls, out);
+      const std::vector<std::size_t> in_the_way = blocking(scenario, boxes, scenario.robots[i], t);
+      warn_of_obstacles(scenario, in_the_way, t, out);
+      if (in_the_way.empty()) warn_of_walls(scenario, scenario.robots[i], t, walls, out);
     }
     warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
     warn_of_fast_start(scenario, scenario.robots[i], out);

@@ -6,6 +6,7 @@
 
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/distance.h"
+#include "obstacle_boxes.h"
 
 namespace exactvo::formation {
 namespace {
@@ -63,15 +64,19 @@ void check_robots(const Scenario& s, Checker& c) {
 
 /// Moving obstacles stand at t = 0 as their shapes say.
 void check_starts(const Scenario& s, Checker& c) {
+  const detail::ObstacleBoxes boxes(s.obstacles);
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
-    const auto require_clear = [&](const geometry::Obstacle& shape, const std::string& name) {
+    const auto require_clear = [&](const geometry::Obstacle& shape, const char* kind, const std::string& id) {
       const double gap = geometry::signed_distance(shape, s.robots[i].position) - s.robots[i].radius;
-      c.require(!(gap < 0.0), "/robots/" + std::to_string(i) + "/position",
-                show(s.robots[i].position) + ", " + show(-gap) + " m inside " + name,
+      if (!(gap < 0.0)) return;
+      c.require(false, "/robots/" + std::to_string(i) + "/position",
+                show(s.robots[i].position) + ", " + show(-gap) + " m inside " + kind + " '" + id + "'",
                 "a start that is clear of every obstacle");
     };
-    for (const SceneObstacle& o : s.obstacles) require_clear(o.shape, "obstacle '" + o.id + "'");
-    for (const MovingObstacle& o : s.moving_obstacles) require_clear(o.shape, "moving obstacle '" + o.id + "'");
+    for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+      if (!boxes.is_beyond(k, s.robots[i].position, s.robots[i].radius))
+        require_clear(s.obstacles[k].shape, "obstacle", s.obstacles[k].id);
+    for (const MovingObstacle& o : s.moving_obstacles) require_clear(o.shape, "moving obstacle", o.id);
   }
 }
 

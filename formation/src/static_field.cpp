@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -214,10 +215,15 @@ void StaticField::for_each_shape_meeting(const geometry::Box& window, const Visi
   });
 }
 
+/// m, from the centre, never too short.
+double StaticField::distance_within(const Viewpoint& from, double reach) const {
+  constexpr double kRounding = 1.0 + 1e-9;
+  return std::min(farthest_that_matters(from), kRounding * (reach + from.radius + kContactSkin));
+}
+
 void StaticField::constraints(const Viewpoint& from, std::vector<Constraint>& out, double reach) const {
   out.clear();
-  constexpr double kRounding = 1.0 + 1e-9;
-  const double within = std::min(farthest_that_matters(from), kRounding * (reach + from.radius + kContactSkin));
+  const double within = distance_within(from, reach);
   if (method_ == Method::orca) return add_edges(from, within, out);
   for_each_shape_within(from.position, within, [&](const Shape& s) { add_shape(s, from, within, out); });
   sort_by_clearance(out);
@@ -361,6 +367,33 @@ void StaticField::add_needed(const Viewpoint& from, const Need& had, const Need&
     else
       add_if_new(s.body, {s.index, 0, s.grade});
   });
+}
+
+void StaticField::candidates(const Viewpoint& from, double reach, std::vector<Candidate>& out) const {
+  EXACTVO_REQUIRE(rule_ == HorizonRule::clamped && method_ != Method::orca, "bounds of other horizons");
+  out.clear();
+  const double within = distance_within(from, reach);
+  const auto add = [&](BodyTable::Number body, const Name& name) {
+    const geometry::Box& box = scene_->bodies().box(body);
+    const double distance = geometry::distance_below(box, from.position);
+    if (!(distance <= within)) return;
+    // In the box nothing is known of the depth; outside, clearances are rounded.
+    constexpr double kRounding = 1e-12;  // of the coordinates
+    const double rounding = kRounding * (largest_coordinate(box) + norm(from.position) + distance + from.radius);
+    const double nearest =
+        distance > 0.0 ? distance - from.radius - rounding : -std::numeric_limits<double>::infinity();
+    out.push_back({body, name.index, name.piece, name.grade, nearest, room_below(box, from), false});
+  };
+  for_each_shape_within(from.position, within, [&](const Shape& s) {
+    if (gives_way(s, from))
+      for_each_piece_of(s, add);
+    else
+      add(s.body, {s.index, 0, s.grade});
+  });
+}
+
+void StaticField::build(const Candidate& c, const Viewpoint& from, std::vector<Constraint>& out) const {
+  add_body(c.body, {c.index, c.piece, c.grade}, from, out);
 }
 
 void StaticField::add_body(BodyTable::Number body, const Name& name, const Viewpoint& from,

@@ -114,6 +114,19 @@ class StaticField {
   /// bound of that is certain beyond all rounding. REQUIRES: HorizonRule::clamped; a method other than orca.
   void add_needed(const Viewpoint& from, const Need& had, const Need& need, std::vector<Constraint>& out) const;
 
+  /// One body of the field as a robot sees it, before its half-plane is built.
+  struct Candidate {
+    vo::BodyTable::Number body = 0;
+    std::size_t index = 0, piece = 0;
+    geometry::EnclosureGrade grade = geometry::EnclosureGrade::tight;
+    double nearest = 0.0;  ///< m, from the rim: no more than its clearance
+    double room = 0.0;     ///< m/s: no more than n.v - c of its half-plane at v = from.velocity, where this is > 0
+    bool is_built = false;
+  };
+  /// What `constraints` would build within that reach, and its half-plane where it has one. The same REQUIRES.
+  void candidates(const Viewpoint& from, double reach, std::vector<Candidate>& out) const;
+  void build(const Candidate& candidate, const Viewpoint& from, std::vector<Constraint>& out) const;
+
   /// The shapes by their number in this field, as bodies: `Constraint::index` counts them.
   std::vector<vo::BodyTable::Number> shapes() const;
   /// The same with what they are.
@@ -150,6 +163,7 @@ class StaticField {
 
   static constexpr std::uint32_t kEnclosed = static_cast<std::uint32_t>(-1);
 
+  double distance_within(const Viewpoint& from, double reach) const;
   geometry::Box window_of(const Viewpoint& from, const Need& need) const;
   bool is_needed(const geometry::Box& box, const Viewpoint& from, const Need& need) const;
   double room_below(const geometry::Box& box, const Viewpoint& from) const;

@@ -39,10 +39,29 @@ double allowed_half_angle(const geometry::HalfPlane& h, double speed) {
   return ratio <= -1.0 ? kPi : std::acos(ratio);
 }
 
-bool violates(const geometry::HalfPlane& h, Vec2 v) {
-  // A velocity that lies on the line up to rounding moves along it.
-  constexpr double kOnLine = 1e-12;
-  return h.offset - dot(h.normal, v) > kOnLine * (1.0 + norm(v));
+/// The same of any lines that say which is the first that a velocity violates.
+template <class FirstViolated>
+std::optional<Sweep> swept(const FirstViolated& first_violated, Vec2 start, double side, double speed) {
+  Sweep out;
+  const double first = angle_of(start);
+  // Each turn enters one line's allowed arc; after a full circle there is none.
+  while (out.rotation < 2.0 * kPi) {
+    const double angle = first + side * out.rotation;
+    out.velocity = at_angle(angle, speed);
+    const Constraint* met = first_violated(out.velocity);
+    if (!met) return out;
+    const geometry::HalfPlane& h = met->half_plane;
+    const double half = allowed_half_angle(h, speed);
+    if (half < 0.0) return std::nullopt;
+    const double entry = angle_of(h.normal) - side * half;
+    out.rotation += wrapped(side * (entry - angle)) + kInside;
+    out.last = met->body;
+  }
+  return std::nullopt;
+}
+
+std::optional<Sweep> sweep(NearConstraints& near, Vec2 start, double side, double speed) {
+  return swept([&](Vec2 v) { return near.first_violated(v); }, start, side, speed);
 }
 
 }  // namespace
@@ -52,27 +71,12 @@ bool blocked(const std::vector<Constraint>& lines, Vec2 v) {
 }
 
 std::optional<Sweep> sweep(const std::vector<Constraint>& lines, Vec2 start, double side, double speed) {
-  Sweep out;
-  const double first = angle_of(start);
-  // Each turn enters one line's allowed arc; after a full circle there is none.
-  while (out.rotation < 2.0 * kPi) {
-    const double angle = first + side * out.rotation;
-    out.velocity = at_angle(angle, speed);
-    bool turned = false;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const geometry::HalfPlane& h = lines[i].half_plane;
-      if (!violates(h, out.velocity)) continue;
-      const double half = allowed_half_angle(h, speed);
-      if (half < 0.0) return std::nullopt;
-      const double entry = angle_of(h.normal) - side * half;
-      out.rotation += wrapped(side * (entry - angle)) + kInside;
-      out.last = i;
-      turned = true;
-      break;
-    }
-    if (!turned) return out;
-  }
-  return std::nullopt;
+  const auto first_violated = [&](Vec2 v) -> const Constraint* {
+    const auto met =
+        std::find_if(lines.begin(), lines.end(), [&](const Constraint& c) { return violates(c.half_plane, v); });
+    return met == lines.end() ? nullptr : &*met;
+  };
+  return swept(first_violated, start, side, speed);
 }
 
 namespace {
@@ -144,28 +148,16 @@ bool Follower::stalled(const Situation& s) {
   return s.time - best_time_ > kStallTime;
 }
 
-namespace {
-
-/// A far shape's half-plane grazes every fast velocity towards it (tau = dist / |v|); only near ones block.
-std::vector<Constraint> within(const std::vector<Constraint>& lines, double reach) {
-  std::vector<Constraint> near;
-  for (const Constraint& c : lines)
-    if (c.clearance <= reach) near.push_back(c);
-  return near;
+bool Follower::may_leave(const Situation& s, NearConstraints& near) const {
+  return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !near.first_violated(s.preferred);
 }
 
-}  // namespace
-
-bool Follower::may_leave(const Situation& s, const std::vector<Constraint>& near) const {
-  return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !blocked(near, s.preferred);
-}
-
-Follower::Answer Follower::steer(const Situation& s, NeededConstraints& statics) {
+Follower::Answer Follower::steer(const Situation& s) {
   if (!following_ && !stalled(s)) return {s.preferred, Mode::direct, 0, ""};
-  statics.need_within(s.reach);
-  const std::vector<Constraint> near = within(statics.lines(), s.reach);
+  NearConstraints near;
+  near.look(*s.field, s.robot, s.reach);
   if (!following_) {
-    if (!blocked(near, s.preferred)) return {s.preferred, Mode::direct, 0, ""};
+    if (!near.first_violated(s.preferred)) return {s.preferred, Mode::direct, 0, ""};
     return begin(s, near);
   }
   if (!may_leave(s, near)) return follow(s, near);
@@ -189,13 +181,12 @@ void Follower::commit(const Situation& s, int side, std::size_t followed) {
 double Follower::rehearse(Situation s) const {
   constexpr double kHorizon = 60.0;  // s: a boundary longer than that ranks by how far the goal is then
   Follower actor = *this;
-  std::vector<Constraint> seen;
+  NearConstraints near;
   const double start = s.time;
   for (; s.time - start < kHorizon; s.time += s.time_step) {
     const Vec2 to_goal = s.goal - s.robot.position;
     s.preferred = s.robot.max_speed * geometry::normalized(to_goal);
-    s.field->constraints(s.robot, seen, s.reach);
-    const std::vector<Constraint> near = within(seen, s.reach);
+    near.look(*s.field, s.robot, s.reach);
     if (actor.may_leave(s, near)) break;
     s.robot.velocity = actor.follow(s, near).preferred;
     if (actor.circled_) return std::numeric_limits<double>::infinity();
@@ -219,15 +210,15 @@ std::string side_words(bool left, double left_time, double right_time) {
 
 }  // namespace
 
-Follower::Answer Follower::begin(const Situation& s, const std::vector<Constraint>& near) {
+Follower::Answer Follower::begin(const Situation& s, NearConstraints& near) {
   const std::optional<Sweep> left = sweep(near, s.preferred, 1.0, s.robot.max_speed);
   const std::optional<Sweep> right = sweep(near, s.preferred, -1.0, s.robot.max_speed);
   // At full speed nothing may stand in the way of what a slower preference violates: then there is no boundary.
   const bool met = left && right && left->last != Sweep::kNone && right->last != Sweep::kNone;
   if (!met) return {s.preferred, Mode::direct, 0, ""};
   Follower to_left, to_right;
-  to_left.commit(s, 1, near[left->last].body);
-  to_right.commit(s, -1, near[right->last].body);
+  to_left.commit(s, 1, left->last);
+  to_right.commit(s, -1, right->last);
   const double left_time = to_left.rehearse(s), right_time = to_right.rehearse(s);
   const bool go_left = left_time <= right_time + s.time_step;
   *this = go_left ? to_left : to_right;
@@ -235,19 +226,18 @@ Follower::Answer Follower::begin(const Situation& s, const std::vector<Constrain
           "stalled: follows the boundary, turning " + side_words(go_left, left_time, right_time)};
 }
 
-Follower::Answer Follower::follow(const Situation& s, const std::vector<Constraint>& near) {
+Follower::Answer Follower::follow(const Situation& s, NearConstraints& near) {
   walked_ += norm(s.robot.position - last_position_);
   last_position_ = s.robot.position;
   Answer answer{s.preferred, Mode::following, side_, ""};
   // Start the turn at the followed shape itself, so that the boundary is hugged round its corners.
-  const auto same = [&](const Constraint& c) { return c.body == followed_; };
-  const auto followed = std::find_if(near.begin(), near.end(), same);
-  const Vec2 start = followed == near.end() ? s.preferred : -followed->normal;
+  const Constraint* followed = near.of_body(followed_);
+  const Vec2 start = followed ? -followed->normal : s.preferred;
   for (double speed = s.robot.max_speed; speed > kLeastFollowing * s.robot.max_speed; speed *= 0.5) {
     const std::optional<Sweep> found = sweep(near, start, side_, speed);
     if (!found) continue;
     answer.preferred = found->velocity;
-    if (found->last != Sweep::kNone) followed_ = near[found->last].body;
+    if (found->last != Sweep::kNone) followed_ = found->last;
     break;
   }
   if (!circled_ && walked_ > 4.0 * kCircleReach && norm(s.robot.position - hit_) < kCircleReach) {

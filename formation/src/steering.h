@@ -21,7 +21,7 @@ namespace exactvo::formation::detail {
 struct Sweep {
   Vec2 velocity;             ///< m/s
   double rotation = 0.0;     ///< rad, >= 0
-  std::size_t last = kNone;  ///< the constraint that stopped the turn last
+  std::size_t last = kNone;  ///< the body of the constraint that stopped the turn last
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 };
 std::optional<Sweep> sweep(const std::vector<Constraint>& lines, Vec2 start, double side, double speed);
@@ -59,15 +59,17 @@ class Follower {
   };
 
   struct Situation {
-    double time = 0.0;                   ///< s
-    double time_step = 0.0;              ///< s
-    Viewpoint robot;                     ///< where it is
-    Vec2 goal;                           ///< m
-    double reach = 0.0;                  ///< m: shapes farther than this neither stop the robot nor are followed
-    Vec2 preferred;                      ///< m/s, straight for the goal
-    const StaticField* field = nullptr;  ///< for the rehearsal
+    double time = 0.0;       ///< s
+    double time_step = 0.0;  ///< s
+    Viewpoint robot;         ///< where it is
+    Vec2 goal;               ///< m
+    /// m: shapes farther than this neither stop the robot nor are followed. A far shape's half-plane grazes every fast
+    /// velocity towards it (tau = dist / |v|); only near ones block.
+    double reach = 0.0;
+    Vec2 preferred;  ///< m/s, straight for the goal
+    const StaticField* field = nullptr;
   };
-  Answer steer(const Situation& s, NeededConstraints& statics);
+  Answer steer(const Situation& s);
 
   /// A new goal: whatever was followed is forgotten.
   void reset();
@@ -77,11 +79,11 @@ class Follower {
 
  private:
   bool stalled(const Situation& s);
-  Answer begin(const Situation& s, const std::vector<Constraint>& near);
-  Answer follow(const Situation& s, const std::vector<Constraint>& near);
+  Answer begin(const Situation& s, NearConstraints& near);
+  Answer follow(const Situation& s, NearConstraints& near);
   void commit(const Situation& s, int side, std::size_t followed);
   double rehearse(Situation s) const;
-  bool may_leave(const Situation& s, const std::vector<Constraint>& near) const;
+  bool may_leave(const Situation& s, NearConstraints& near) const;
 
   bool following_ = false;
   int side_ = 0;

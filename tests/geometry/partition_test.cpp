@@ -143,5 +143,40 @@ TEST(Corpus, RefusesWhatItCannotRead) {
   EXPECT_THROW(test::read_corpus("geometry/no_such_file.txt"), std::runtime_error);
 }
 
+/// What needs no partition is not asked of CGAL; the piece is the one that it would give.
+TEST(ConvexPieces, AConvexRingIsItsOwnPieceAsTheOptimalPartitionHasIt) {
+  SeededRandom random(17);
+  std::size_t judged = 0;
+  for (int k = 0; k < 600; ++k) {
+    std::vector<Vec2> points;
+    for (int i = random.integer(3, 30); i > 0; --i) {
+      const double angle = random.uniform(0.0, 6.28);
+      const Vec2 on_ellipse{3.0 * std::cos(angle), 2.0 * std::sin(angle)};
+      const Vec2 on_grid{0.1 * random.integer(0, 9), 0.1 * random.integer(0, 9)};
+      points.push_back(k % 2 == 0 ? on_ellipse : on_grid);
+    }
+    std::vector<Vec2> ring = convex_hull(points).vertices;
+    if (ring.size() < 3) continue;
+    std::rotate(ring.begin(), ring.begin() + random.integer(0, static_cast<int>(ring.size()) - 1), ring.end());
+    const std::vector<ConvexPolygon> pieces = convex_pieces(ring);
+    const std::vector<ConvexPolygon> by_cgal = convex_pieces(ring, PartitionMethod::optimal);
+    ASSERT_EQ(pieces.size(), 1u) << test::corpus_line(ring);
+    ASSERT_EQ(by_cgal.size(), 1u) << test::corpus_line(ring);
+    EXPECT_EQ(pieces[0].vertices, ring) << test::corpus_line(ring);
+    EXPECT_EQ(by_cgal[0].vertices, ring) << test::corpus_line(ring);
+    ++judged;
+  }
+  EXPECT_GT(judged, 400u);
+}
+
+/// A vertex in the middle of a side is left to the partition.
+TEST(ConvexPieces, AStraightVertexIsLeftToThePartition) {
+  const Ring ring{{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}};
+  const std::vector<ConvexPolygon> pieces = convex_pieces(ring),
+                                   by_cgal = convex_pieces(ring, PartitionMethod::optimal);
+  ASSERT_EQ(pieces.size(), by_cgal.size());
+  for (std::size_t k = 0; k < pieces.size(); ++k) EXPECT_EQ(pieces[k].vertices, by_cgal[k].vertices);
+}
+
 }  // namespace
 }  // namespace exactvo::geometry

@@ -84,6 +84,15 @@ PartitionMethod chosen(PartitionMethod method, std::size_t size) {
   return size <= kMostForOptimal ? PartitionMethod::optimal : PartitionMethod::triangles;
 }
 
+/// Of a simple ring: whether it is convex and has no vertex in the middle of a side. Then it is its own optimal
+/// partition, as CGAL lists it too.
+bool turns_left_everywhere(const Ring& ring) {
+  const std::size_t n = ring.size();
+  for (std::size_t i = 0; i < n; ++i)
+    if (orientation(ring[i], ring[(i + 1) % n], ring[(i + 2) % n]) != Sign::positive) return false;
+  return true;
+}
+
 std::vector<ConvexPolygon> proved_triangles(const std::vector<Ring>& rings) {
   std::vector<ConvexPolygon> pieces = detail::merged_triangles(rings);
   EXACTVO_REQUIRE(detail::is_convex_partition(rings, pieces), excerpt(rings.front()));
@@ -135,6 +144,8 @@ std::vector<Ring> rings_split_where_they_touch(const Polygon& polygon) {
 std::vector<ConvexPolygon> convex_pieces(const Ring& ring, PartitionMethod method) {
   EXACTVO_REQUIRE(std::all_of(ring.begin(), ring.end(), is_finite), excerpt(ring));
   EXACTVO_REQUIRE(is_simple(ring) && winding(ring) == Sign::positive, excerpt(ring));
+  if (method == PartitionMethod::automatic && ring.size() <= kMostForOptimal && turns_left_everywhere(ring))
+    return {ConvexPolygon{ring}};
   return detail::without_cgal_failures(
       "convex_pieces", [&] { return excerpt(ring); }, [&] { return proved_pieces(ring, chosen(method, ring.size())); });
 }
