@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <utility>
+#include <variant>
 
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/obstacle_index.h"
@@ -159,7 +160,19 @@ class ClearanceSweep::Sweep {
     return 2.0 * rounding(largest_of_all_, chord, reach + motion.stray(1.0)) + radius;
   }
 
-  void note(std::size_t robot, Other other, std::size_t step, double end, double clearance, double& least) {
+  /// m, the least clearance that there can be: the centre at no distance from a line or another centre. The bounds of
+  /// roundings and curves may lie below it.
+  double least_possible(std::size_t robot, Other other) const {
+    const double radius = scenario_.robots[robot].radius;
+    const auto [kind, index] = other;
+    if (kind == CollisionKind::robot) return -(radius + scenario_.robots[index].radius);
+    const geometry::Obstacle& shape =
+        kind == CollisionKind::obstacle ? scenario_.obstacles[index].shape : scenario_.moving_obstacles[index].shape;
+    return std::holds_alternative<geometry::Polyline>(shape) ? -radius : -kInfinity;
+  }
+
+  void note(std::size_t robot, Other other, std::size_t step, double end, double bound, double& least) {
+    const double clearance = std::max(bound, least_possible(robot, other));
     least = std::min(least, clearance);
     if (!touched(clearance)) return;
     std::vector<Contact>& all = contacts_[{robot, other}];

@@ -238,6 +238,26 @@ TEST(Collisions, ACartThatRunsARobotOverIsNamedWithTimeAndDepth) {
   EXPECT_EQ(m.outcome, "COLLISION: R1 overlapped moving obstacle cart by 1.5 m at 2.5 s; the robot arrived");
 }
 
+TEST(Collisions, TheDepthInAWallIsAtMostTheRadius) {
+  // The centre goes through a wall without thickness, on a curve whose chords stray: the certified bound lay below.
+  Scenario s;
+  s.time_step = 0.02;
+  s.robots = {robot("R1", {-0.05, 0}, {1, 1})};
+  s.obstacles = {{"wall", geometry::Polyline{{{0, -5}, {0, 5}}}}};
+  Recording rec = resting(s, 1);
+  rec.motion = MotionLaw::exponential;
+  rec.tracking_gain = 37.5;
+  rec.steps[0].robots[0].velocity = {8, -7};
+  rec.steps[1].robots[0].position = {0.03, 0.02};
+  rec.steps[1].robots[0].velocity = {1, 5};
+  const Metrics m = measure(s, rec);
+  ASSERT_EQ(m.collisions.size(), 1u);
+  const double radius = s.robots[0].radius;
+  EXPECT_LE(m.collisions[0].depth, radius);
+  EXPECT_NEAR(m.collisions[0].depth, radius, 1e-4);
+  EXPECT_GE(m.min_obstacle_clearance.value(), -radius);
+}
+
 TEST(Collisions, EachStretchOfContactIsOne) {
   Scenario s;
   s.time_step = 0.5;
