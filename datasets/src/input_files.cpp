@@ -8,6 +8,7 @@
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "file_names.h"
 #include "readers/readers.h"
 
 namespace exactvo::datasets {
@@ -25,18 +26,6 @@ std::string lower_extension(const fs::path& path) {
 std::string upper(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return text;
-}
-
-bool is_regular(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
-}
-
-/// One name for each file; where links can't be followed, the path as it stands.
-fs::path name_of_file(const fs::path& path) {
-  std::error_code error;
-  fs::path canonical = fs::weakly_canonical(path, error);
-  return error ? path : canonical;
 }
 
 /// What `action` lists; nothing if the file cannot be understood.

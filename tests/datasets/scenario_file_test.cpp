@@ -172,5 +172,21 @@ TEST(FilesOfScenario, NamesTheScenarioAndWhatItRefersTo) {
   EXPECT_EQ(files_of_scenario(kData / "paper" / "A2.json").size(), 1u);
 }
 
+class FilesOfARun : public TemporaryFolder {};
+
+TEST_F(FilesOfARun, IncludeWhatIsReadWithObstacleFiles) {
+  put("room.pgm", "P2\n3 3\n255\n255 255 255\n255 0 255\n255 255 255\n");
+  put("room.yaml",
+      "image: room.pgm\nresolution: 1\norigin: [5, 5, 0]\nnegate: 0\n"
+      "occupied_thresh: 0.65\nfree_thresh: 0.2\n");
+  put("inner.json", R"({"name": "inner", "robots": [{"id": "R", "position": [0, 0], "goal": [1, 0]}],
+             "obstacles": [{"file": "room.yaml"}]})");
+  put("s.json", R"({"name": "s", "robots": [{"id": "R", "position": [0, 0], "goal": [1, 0]}],
+             "obstacles": [{"file": "inner.json", "id": "a"}, {"file": "room.yaml", "id": "b"}]})");
+  std::vector<std::string> names;
+  for (const auto& file : load_scenario_with_notes(folder_ / "s.json").files) names.push_back(file.filename().string());
+  EXPECT_EQ(names, (std::vector<std::string>{"s.json", "inner.json", "room.yaml", "room.pgm"}));
+}
+
 }  // namespace
 }  // namespace exactvo::datasets::test

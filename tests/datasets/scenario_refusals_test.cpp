@@ -191,8 +191,8 @@ TEST_F(ScenarioFiles, NotesTellWhatWasDoneToObstacleFiles) {
       parse_scenario_with_notes(with(R"("obstacles": [{"file": "walls.wkt"}])"), "scenario.json", folder_);
   EXPECT_EQ(loaded.scenario.obstacles.size(), 1u);
   ASSERT_EQ(loaded.notes.size(), 2u);
-  EXPECT_EQ(loaded.notes[0].rfind((folder_ / "walls.wkt").string() + ": 1 of the obstacles put right", 0), 0u);
-  EXPECT_EQ(loaded.notes[1].rfind((folder_ / "walls.wkt").string() + ": 1 passed over", 0), 0u);
+  EXPECT_EQ(loaded.notes[0].rfind((folder_ / "walls.wkt").string() + ": 1 of the obstacles repaired", 0), 0u);
+  EXPECT_EQ(loaded.notes[1].rfind((folder_ / "walls.wkt").string() + ": 1 skipped", 0), 0u);
 }
 
 TEST_F(ScenarioFiles, ObstacleFilesAreFoundBesideTheScenario) {

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/simulation.h"
@@ -70,6 +71,30 @@ Units to_units(const std::string& word) {
 /// m; the schema's bound of what stands in the scenario.
 constexpr double kFarthest = 1e9;
 
+/// A file of obstacles where a scenario is expected, and how a scenario takes it.
+DataError no_scenario(const std::string& file, const std::string& format) {
+  const std::string name = file == "-" ? "FILE" : std::filesystem::path(file).filename().string();
+  return {DataCode::format_unknown, file, "", "a file of obstacles, " + format,
+          R"(a scenario in JSON, which has robots and names such a file: "obstacles": [{"file": ")" + name + R"("}])"};
+}
+
+/// Says so of text in another format than JSON, and of a bare list in one of obstacles.
+void refuse_other_formats(const std::filesystem::path& path, const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  std::error_code error;
+  if (first == std::string::npos || text[first] == '{' || !std::filesystem::is_regular_file(path, error)) return;
+  std::string format;
+  try {
+    format = format_of(path);
+  } catch (const DataError&) {
+    return;  // the parser says what is wrong
+  }
+  const std::string extension = path.extension().string();
+  const bool is_json_by_name = extension == ".json" || extension == ".geojson" || extension == ".topojson";
+  if (format == "scenario" || (format == "gdal" && is_json_by_name)) return;
+  throw no_scenario(path.string(), format == "gdal" ? "a vector file" : "format " + format);
+}
+
 /// Reads one scenario; a class only so that the file's name and folder need not be handed round.
 class Reader {
  public:
@@ -83,6 +108,7 @@ class Reader {
 
  private:
   Scenario read_scenario(const Json& tree) {
+    refuse_geojson(tree);
     check_against_schema(tree, parsed_schema(), file_);
     Scenario scenario;
     scenario.name = tree.at("name").get<std::string>();
@@ -96,6 +122,14 @@ class Reader {
     refuse_repeated_ids(scenario);
     refuse_what_cannot_run(scenario);
     return scenario;
+  }
+
+  /// Obstacles alone, which begin as a scenario does.
+  void refuse_geojson(const Json& tree) const {
+    const auto type = tree.is_object() ? tree.find("type") : tree.end();
+    if (type == tree.end() || !type->is_string() || tree.contains("robots")) return;
+    const bool is_topology = *type == "Topology";
+    throw no_scenario(file_, (is_topology ? "TopoJSON" : "GeoJSON") + (" (" + type->get<std::string>()) + ")");
   }
 
   void read_obstacle_list(const Json& list, Scenario& scenario) {
@@ -135,7 +169,8 @@ class Reader {
     const std::string prefix = object.value("id", named.stem().string());
     const std::filesystem::path path = base_dir_ / named;
     ObstacleFile file = read_named_file(path, options, pointer);
-    files_.push_back(path);
+    for (std::filesystem::path& read : files_read_with(path, options.format))
+      if (std::find(files_.begin(), files_.end(), read) == files_.end()) files_.push_back(std::move(read));
     add_notes(file);
     for (const formation::SceneObstacle& obstacle : file.obstacles) refuse_far(obstacle, path);
     if (file.origin) projected_ += (projected_.empty() ? "" : ", ") + named.string();
@@ -184,8 +219,8 @@ class Reader {
     const auto count = [&](std::size_t n, const char* words) {
       if (n > 0) notes_.push_back(name + std::to_string(n) + words);
     };
-    count(file.counts.repaired, " of the obstacles put right (winding, closure, repeated vertices)");
-    count(file.counts.passed_over, " passed over (points, empty geometries)");
+    count(file.counts.repaired, " of the obstacles repaired (winding, closure, repeated vertices)");
+    count(file.counts.passed_over, " skipped (points, empty geometries)");
   }
 
   static void read_figures(const Json& tree, Scenario& scenario) {
@@ -262,7 +297,7 @@ class Reader {
   };
   std::vector<Origin> origin_of_;  ///< per obstacle of the scenario
   std::vector<std::string> notes_;
-  std::vector<std::filesystem::path> files_;  ///< of obstacles
+  std::vector<std::filesystem::path> files_;  ///< of obstacles, and what is read with them
   std::string projected_;                     ///< files that were projected from degrees to metres, with commas between
 };
 
@@ -280,6 +315,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name, c
 LoadedScenario load_scenario_with_notes(const std::filesystem::path& path) {
   const std::string text = read_text_file(path);
   if (text.empty()) throw DataError(DataCode::json_syntax, path.string(), "", "an empty file", "a scenario in JSON");
+  refuse_other_formats(path, text);
   LoadedScenario loaded = parse_scenario_with_notes(text, path.string(), path.parent_path());
   loaded.files.insert(loaded.files.begin(), path);
   return loaded;

@@ -22,11 +22,12 @@
 namespace exactvo::datasets {
 
 /// A scenario and what a reader of it should know: a line a fact, for people. Of each obstacle file it names: how the
-/// units were decided, the projection's centre and the extent, how many repairs were made and what was passed over.
+/// units were decided, the projection's centre and the extent, how many repairs were made and what was skipped.
 struct LoadedScenario {
   formation::Scenario scenario;
   std::vector<std::string> notes;  ///< "floor.geojson: metres: by its member "units""; empty without obstacle files
-  /// The scenario file (unless it was parsed from text), then every obstacle file it names: what a run depends on.
+  /// What a run depends on: the scenario file (unless it was parsed from text), then every obstacle file it names, each
+  /// followed by the files that are read with it (input_files.h), such as the picture of a ROS map.
   std::vector<std::filesystem::path> files = {};
 };
 
@@ -43,7 +44,8 @@ LoadedScenario parse_scenario_with_notes(const std::string& text, const std::str
 formation::Scenario parse_scenario(const std::string& text, const std::string& file_name,
                                    const std::filesystem::path& base_dir);
 
-/// LoadedScenario::files without the rest. Reads the file: of a pipe nothing is left. Throws DataError.
+/// The scenario file and the obstacle files it names, without what is read with those. Reads the file: of a pipe
+/// nothing is left. Throws DataError.
 std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path);
 
 /// Canonical JSON: every field written, keys in the schema's order, obstacles inline, shortest numbers that read back

@@ -9,23 +9,12 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/provenance.h"
+#include "file_names.h"
 
 namespace exactvo::datasets::batch {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_regular(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
-}
-
-/// One name for each file; where links can't be followed, the path as it stands.
-fs::path name_of_file(const fs::path& path) {
-  std::error_code error;
-  fs::path canonical = fs::weakly_canonical(path, error);
-  return error ? path : canonical;
-}
 
 /// Empty where it can't be read. Whatever is no regular file, a pipe for instance, is not opened.
 std::string hash_of(const fs::path& path) {
