@@ -53,7 +53,7 @@ std::size_t ObstacleIndex::strip_at(double y) const {
   return static_cast<std::size_t>(std::clamp((y - box_.low.y) / height_, 0.0, count - 1.0));
 }
 
-/// A strip an edge, or fewer where long edges would be listed in too many.
+/// One strip per edge, or fewer where long edges would be listed in too many.
 void ObstacleIndex::make_strips() {
   constexpr std::size_t kMostListings = 8;  // of an edge, on average
   for (std::size_t count = edges_.size(); count > 0; count /= 2) {
