@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/counted.h"
 
 #include <cmath>
 #include <string>
@@ -104,6 +105,16 @@ void check_moving(const Scenario& s, Checker& c) {
   }
 }
 
+/// Said of the one of the two that is not the default, where that is one.
+void require_step_within_horizon(const Scenario& s, Checker& c) {
+  const bool holds = s.horizons.least >= 2.0 * s.time_step;
+  if (s.time_step > Scenario{}.time_step)
+    return c.require(holds, "/time_step", show(s.time_step),
+                     "at most half of /horizons/least, which is " + show(s.horizons.least) + " (s)");
+  c.require(holds, "/horizons/least", show(s.horizons.least),
+            "at least twice /time_step, " + show(2.0 * s.time_step) + " (s)");
+}
+
 void check_times(const Scenario& s, Checker& c) {
   c.positive(s.time_step, "/time_step", "s");
   c.positive(s.time_limit, "/time_limit", "s");
@@ -116,8 +127,7 @@ void check_times(const Scenario& s, Checker& c) {
   c.positive(s.horizons.most, "/horizons/most", "s");
   c.require(s.horizons.most >= s.horizons.least, "/horizons/most", show(s.horizons.most),
             "at least /horizons/least, " + show(s.horizons.least));
-  c.require(s.horizons.least >= 2.0 * s.time_step, "/horizons/least", show(s.horizons.least),
-            "at least twice /time_step, " + show(2.0 * s.time_step) + " (s)");
+  require_step_within_horizon(s, c);
   c.positive(s.horizons.speed_floor, "/horizons/speed_floor", "share of max_speed");
   c.positive(s.horizons.orca, "/horizons/orca", "s");
   c.positive(s.horizons.robots, "/horizons/robots", "s");
@@ -144,9 +154,9 @@ void check_topology(const Topology& t, std::size_t n, Checker& c) {
   bool shaped = t.adjacency.size() == n && t.pinning.size() == n;
   for (const auto& row : t.adjacency) shaped = shaped && row.size() == n;
   c.require(shaped, at,
-            "adjacency with " + std::to_string(t.adjacency.size()) + " rows, pinning with " +
-                std::to_string(t.pinning.size()) + " entries",
-            "an n x n adjacency and n pinning gains, n = " + std::to_string(n) + " robots");
+            "adjacency with " + geometry::counted(t.adjacency.size(), "row") + ", pinning with " +
+                geometry::counted(t.pinning.size(), "entry", "entries"),
+            "an n x n adjacency and n pinning gains, n = " + geometry::counted(n, "robot"));
   if (!shaped) return;
   for (std::size_t i = 0; i < n; ++i) {
     c.not_negative(t.pinning[i], at + "/pinning/" + std::to_string(i), "gain");
@@ -163,7 +173,7 @@ void check_topology(const Topology& t, std::size_t n, Checker& c) {
 
 void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
   check_topology(f.topology, n, c);
-  c.require(f.offsets.size() == n, "/formation/offsets", std::to_string(f.offsets.size()) + " offsets",
+  c.require(f.offsets.size() == n, "/formation/offsets", geometry::counted(f.offsets.size(), "offset"),
             "one a robot: " + std::to_string(n));
   for (std::size_t i = 0; i < f.offsets.size(); ++i) c.finite(f.offsets[i], "/formation/offsets/" + std::to_string(i));
   c.require(!f.leader.path.empty(), "/formation/leader/path", "no points", "at least one point");

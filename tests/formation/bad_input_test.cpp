@@ -198,7 +198,7 @@ TEST(BadInput, GainsOfZeroOrBelowAreRefused) {
 TEST(BadInput, AStepBeyondTheHorizonsLimitIsRefused) {
   Scenario s = paper_scene("A2");
   s.time_step = 0.2;  // horizons.least is 0.3 s
-  expect_refused(s, "/horizons/least");
+  expect_refused(s, "/time_step");
 }
 
 TEST(BadInput, AStepBeyondTheIntegratorsLimitIsSaidBeforeTheRun) {

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
 #include "run_program.h"
 
 namespace exactvo::test {
@@ -82,6 +86,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"convert p.wkt", "missing argument out: "},
         Mistake{"convert p.wkt o.wkt extra", "unexpected argument 'extra'"},
         Mistake{"convert p.wkt o.wkt --skip 1", "unexpected argument '1': --skip takes no value"},
+        Mistake{"generate", "missing argument kind: One of polygon "},
+        Mistake{"generate star", "missing option --out: The file to write"},
         Mistake{"generate star --seed abc --out a.wkt", "--seed: found 'abc', expected a whole number"},
         Mistake{"generate star --count 3.5 --out a.wkt", "--count: found '3.5', expected a whole number"},
         Mistake{"generate star --count many --out a.wkt", "--count: found 'many', expected a whole number"},
@@ -305,6 +311,145 @@ TEST(Messages, AGoalThatIsWalledInIsSaidBeforeTheRun) {
       place().run("simulate room.json").err,
       HasSubstr("goal of R1, (0, 0), cannot be reached: obstacle 'room' encloses it, with gaps of at most 0.8 m for "
                 "a robot 1 m wide"));
+}
+
+TEST(Messages, ObstaclesInPlaceOfAScenarioAreCalledThatWithTheWayToUseThem) {
+  place().write("o.geojson", R"({"type": "FeatureCollection", "features": []})");
+  place().write("o.json", R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]})");
+  place().write("rings.json", "[[[0, 0], [1, 0], [1, 1]]]");
+  const std::pair<const char*, const char*> files[] = {{"o.geojson", "GeoJSON (FeatureCollection)"},
+                                                       {"o.json", "GeoJSON (Polygon)"},
+                                                       {"rings.json", "format rings-json"},
+                                                       {"p.wkt", "format wkt"}};
+  for (const auto& [file, format] : files) {
+    for (const char* verb : {"simulate ", "trap ", "explain --time 0 --robot R1 "}) {
+      const Outcome outcome = place().run(verb + std::string(file));
+      EXPECT_EQ(outcome.status, 2) << verb << file;
+      EXPECT_THAT(outcome.err, HasSubstr(std::string(file) + ": found a file of obstacles, " + format +
+                                         ", expected a scenario in JSON, which has robots and names such a file: "
+                                         "\"obstacles\": [{\"file\": \"" +
+                                         file + "\"}] [E_FORMAT_UNKNOWN]"))
+          << verb << file;
+    }
+  }
+  EXPECT_THAT(place().run("simulate -", "cat o.geojson | ").err, HasSubstr("-: found a file of obstacles, GeoJSON"));
+}
+
+TEST(Messages, AGuessedFormatIsNamedWhereReadingFails) {
+  place().write("g.txt", "POLYGON((0 0, 1 0, 1 x))\n");
+  EXPECT_THAT(place().run("validate g.txt").out, Not(HasSubstr("guessed"))) << "one obstacle of a file that was read";
+  place().write("g.map", "type octile\nheight 2\nwidth x\nmap\n..\n");
+  const std::string guess = "; read as movingai-map, which is guessed from its content and name: ";
+  EXPECT_THAT(place().run("validate g.map").out, HasSubstr(guess + "--format names another format"));
+  EXPECT_THAT(place().run("segment g.map").err, HasSubstr(guess + "--format names another format"));
+  EXPECT_THAT(place().run("repair g.map --out o.wkt").err, HasSubstr(guess + "--format names another format"));
+  const Outcome converted = place().run("convert g.map o.wkt");
+  EXPECT_EQ(converted.status, 2);
+  EXPECT_THAT(converted.err, HasSubstr(guess + "--from names another format"));
+  EXPECT_THAT(place().run("validate g.map --format movingai-map").out, Not(HasSubstr("guessed")));
+  EXPECT_THAT(place().run("validate missing.map").out, Not(HasSubstr("guessed")));
+}
+
+TEST(Messages, PointsMayHaveAnyUsualSeparator) {
+  for (const char* between : {",", ", ", ";", "\t", " ", "   "}) {
+    place().write("points.csv", std::string("x") + between + "y\n1" + between + "2\n3" + between + "4\n");
+    EXPECT_THAT(place().run("validate points.csv").err, HasSubstr("points-csv, 2 read: 2 valid")) << between;
+  }
+  place().write("points.csv", "1,2\n3\n");
+  EXPECT_THAT(place().run("validate points.csv").out,
+              HasSubstr("line 2: found 1 number in a line, expected two, x and y, with a comma, a semicolon, a tab or "
+                        "blanks between them [E_COUNT]"));
+}
+
+TEST(Messages, AnEmptyRecordingIsCalledEmpty) {
+  place().write("empty.jsonl", "");
+  EXPECT_THAT(place().run("audit empty.jsonl").err,
+              HasSubstr("empty.jsonl: found an empty file, expected a recording.jsonl, as simulate --out writes it"));
+}
+
+TEST(Messages, ATimeStepBeyondTheHorizonIsReportedAsTheTimeStep) {
+  place().write("slow.json", R"({"name": "slow", "time_step": 1,
+    "robots": [{"id": "R1", "position": [0, 0], "goal": [8, 0]}]})");
+  EXPECT_THAT(place().run("simulate slow.json").err,
+              HasSubstr("/time_step: found 1, expected at most half of /horizons/least, which is 0.3 (s)"));
+  place().write("slow.json", R"({"name": "slow", "horizons": {"least": 0.01},
+    "robots": [{"id": "R1", "position": [0, 0], "goal": [8, 0]}]})");
+  EXPECT_THAT(place().run("simulate slow.json").err, HasSubstr("/horizons/least: found 0.01, expected at least twice"));
+}
+
+TEST(Messages, OneIsSingular) {
+  EXPECT_THAT(place().run("convert p.wkt q.wkt").err, HasSubstr("q.wkt (wkt): 1 obstacle\n"));
+  EXPECT_THAT(place().run("generate star --count 1 --out star.wkt").err, HasSubstr(": 1 obstacle of 1 item, star"));
+  EXPECT_THAT(place().run("batch p.wkt --out batch").err, HasSubstr("1 file, "));
+  place().write("p.jsonl", R"({"bound": {"disc": 2}, "preferred": [2, 0], "constraints": []})");
+  EXPECT_THAT(place().run("lp p.jsonl").out, HasSubstr("1 problem: 1 optimal"));
+  EXPECT_THAT(place().run("segment p.wkt").out, HasSubstr(", 1 piece ("));
+}
+
+constexpr const char* kVo = "vo --position 0,0 --radius 0.5 --time-horizon 2 --obstacle ";
+
+TEST(Messages, AFileOfVelocitiesIsCheckedBeforeTheFirstAnswer) {
+  place().write("v.txt", "1,0.2\n0,1\nabc\n1,1\n");
+  const std::string vo = std::string(kVo) + "'DISC(4 0, 1)' --velocities ";
+  const Outcome file = place().run(vo + "v.txt");
+  EXPECT_EQ(file.status, 2);
+  EXPECT_THAT(file.out, IsEmpty());
+  EXPECT_THAT(file.err, AllOf(HasSubstr("v.txt: line 3: found abc"), Not(HasSubstr("answered"))));
+  const Outcome stream = place().run(vo + "-", "cat v.txt | ");
+  EXPECT_EQ(stream.status, 2);
+  EXPECT_EQ(stream.out, "1,0.2 free\n0,1 free\n");
+  EXPECT_THAT(stream.err, AllOf(HasSubstr("line 3: found abc"), HasSubstr("; answered before it: 2 velocities")));
+}
+
+TEST(Messages, ContactPointsToItsHalfPlane) {
+  const Outcome touching = place().run(std::string(kVo) + "'DISC(1.5 0, 1)' --velocity 1,0");
+  EXPECT_THAT(touching.out, AllOf(HasSubstr("The half-plane of contact stands below"), HasSubstr("(contact)\n")));
+  const Outcome within = place().run(std::string(kVo) + "'DISC(0.5 0, 1)' --velocity 1,0");
+  EXPECT_THAT(within.out, HasSubstr("No half-plane of contact can be proven"));
+  const Outcome many = place().run(std::string(kVo) + "'DISC(1.5 0, 1)' --velocities -", "echo 1,0 | ");
+  EXPECT_EQ(many.out, "1,0 contact\n");
+  EXPECT_THAT(many.err, HasSubstr("vo with --velocity instead of --velocities shows the half-plane of contact"));
+}
+
+/// A minus before a zero that no other digit follows.
+testing::AssertionResult has_no_negative_zero(const std::string& text) {
+  const std::regex zero(R"(-0(\.0*)?([^.0-9x]|$))");
+  std::smatch found;
+  if (!std::regex_search(text, found, zero)) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << found.prefix().str().substr(std::max(found.position() - 60L, 0L)) << found[0];
+}
+
+TEST(Messages, ZeroHasNoSign) {
+  const std::string polygon = "'POLYGON((2 -1, 3 -1, 3 1, 2 1, 2 -1))' ";
+  for (const std::string& arguments : {std::string("--velocity=-0.0,0"), std::string("--velocity=-0.0,0 --json"),
+                                       std::string("--velocity 1,0.2 --free --max-speed 1.5"),
+                                       std::string("--velocity 1,0.2 --free --max-speed 1.5 --json")})
+    EXPECT_TRUE(has_no_negative_zero(place().run(kVo + polygon + arguments).out)) << arguments;
+  for (const char* json : {"", " --json"}) {
+    EXPECT_TRUE(has_no_negative_zero(place().run(kVo + polygon + "--velocities -" + json, "echo -0.0,-0 | ").out));
+  }
+  place().write("p.jsonl", R"({"bound": {"disc": 2}, "preferred": [-0.0, -0.0], "constraints": []})");
+  EXPECT_TRUE(has_no_negative_zero(place().run("lp p.jsonl").out));
+  EXPECT_TRUE(has_no_negative_zero(place().run("lp p.jsonl --json").out));
+}
+
+TEST(Messages, FreeVelocitiesHaveUnitsInEveryLine) {
+  const std::string out =
+      place()
+          .run(std::string(kVo) + "'POLYGON((2 -1, 3 -1, 3 1, 2 1, 2 -1))' --velocity 1,0.2 --free --max-speed 1.5")
+          .out;
+  std::istringstream lines(out);
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_THAT(line, HasSubstr("(m/s)^2")) << out;
+  EXPECT_EQ(count, 6u) << out;
+}
+
+TEST(Messages, ATrapFindingHasOneVerdict) {
+  place().write("wall.json", R"({"name": "wall", "robots": [{"id": "R1", "position": [0, 0], "goal": [20, 0]}],
+    "obstacles": [{"id": "wall", "polyline": [[9, -3], [9, 3]]}]})");
+  const std::string out = place().run("trap wall.json").out;
+  EXPECT_THAT(out, AllOf(HasSubstr("no stall (trap-free), relative margin "),
+                         HasSubstr("\n    unstable equilibrium, no stall, at ("), Not(HasSubstr("may balance"))));
 }
 
 TEST(Messages, ColumnsOfAnswersHaveAHeader) {

@@ -112,7 +112,7 @@ TEST(Batch, FoldersOfEarlierBatchesAreNotedAndNotRead) {
   const Outcome outcome = here.run("batch maps --out two --write figures");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("note: not read: maps/one holds an earlier batch (2 files)"));
-  EXPECT_THAT(outcome.out, HasSubstr("1 files: 1 done"));
+  EXPECT_THAT(outcome.out, HasSubstr("1 file: 1 done"));
   const Outcome nothing = here.run("batch maps/one --out two --write figures");
   EXPECT_EQ(nothing.status, 2);
   EXPECT_THAT(nothing.err, HasSubstr("no file to read; maps/one holds an earlier batch"));

@@ -413,11 +413,11 @@ TEST(Convert, SaysWhatIsLost) {
   here.write("holed.wkt", "POLYGON ((0 0, 9 0, 9 9, 0 9, 0 0), (1 1, 1 2, 2 2, 1 1))\nPOINT (3 3)\n");
   const Outcome outcome = here.run("convert holed.wkt out.poly.xml");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 hole filled"), HasSubstr("lost 1 inputs")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 hole filled"), HasSubstr("lost 1 input (")));
   here.write("grid.map", "type octile\nheight 2\nwidth 3\nmap\n@..\n@.@\n");
   const Outcome grid = here.run("convert grid.map grid.geojson");
   EXPECT_EQ(grid.status, 0) << grid.err;
-  EXPECT_THAT(grid.err, HasSubstr("3 of 6 cells are occupied; they became 2 polygons"));
+  EXPECT_THAT(grid.err, HasSubstr("occupied cells: 3 of 6; they became 2 polygons"));
 }
 
 TEST(Convert, ADashIsStandardOutput) {

@@ -277,7 +277,7 @@ TEST(BatchSizes, AreSaidBeforeAndWhatIsThirtyTimesTheInputIsWrittenOnRequest) {
   here.write("room.wkt", kRoom);
   const Outcome outcome = here.run("batch room.wkt --out out");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 files, 67 B: about 87.1 B in out"), HasSubstr("--write geopackage adds"),
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 file, 67 B: about 87.1 B in out"), HasSubstr("--write geopackage adds"),
                                  HasSubstr("--write geojson adds")));
   EXPECT_TRUE(here.has("out/figures.jsonl"));
   EXPECT_TRUE(here.has("out/index.html"));

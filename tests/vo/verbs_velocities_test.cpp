@@ -145,7 +145,7 @@ TEST(VerbVo, InContactNoVelocityIsFree) {
   EXPECT_TRUE(json_lines(here.run(inside + " --json").out).at(0).at("collides").is_null());
 }
 
-TEST(VerbVo, AWrongLineIsNamedAfterTheAnswersBeforeIt) {
+TEST(VerbVo, AWrongLineIsNamed) {
   const struct {
     std::string text, code, place;
   } cases[] = {{"1,0\n0,x\n", "E_NUMBER", "line 2"},
@@ -166,7 +166,10 @@ TEST(VerbVo, AWrongLineIsNamedAfterTheAnswersBeforeIt) {
     EXPECT_THAT(run.err, HasSubstr("v")) << run.err;
     EXPECT_THAT(run.err, HasSubstr(place)) << run.err;
     EXPECT_THAT(run.err, HasSubstr(code)) << run.err;
-    EXPECT_EQ(run.out.substr(0, 13), "1,0 collides\n") << "what stood before it";
+    EXPECT_EQ(run.out, "") << "a file is checked first";
+    const Outcome stream = here.run(kSquareAhead + "--velocities - < v");
+    EXPECT_EQ(stream.status, 2) << text.substr(0, 40);
+    EXPECT_EQ(stream.out.substr(0, 13), "1,0 collides\n") << "what stood before it";
   }
   const Outcome missing = Workplace().run(kSquareAhead + "--velocities nowhere.csv");
   EXPECT_EQ(missing.status, 2);

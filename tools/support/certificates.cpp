@@ -15,11 +15,13 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/minkowski.h"
 #include "exactvo/geometry/support.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
 #include "support/route_certificates.h"
+#include "support/unsigned_zero.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {
@@ -50,12 +52,13 @@ bool begins_as_one(const std::string& text) {
 std::string claim_words(const vo::HalfPlaneClaim& c) {
   const geometry::HalfPlane& h = c.half_plane;
   return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s, robot at ({:.6g}, {:.6g}), radius {:.6g} m, {:g} s",
-                     h.normal.x, h.normal.y, h.offset, c.position.x, c.position.y, c.radius, c.time_horizon);
+                     unsigned_zero(h.normal.x), unsigned_zero(h.normal.y), unsigned_zero(h.offset),
+                     unsigned_zero(c.position.x), unsigned_zero(c.position.y), c.radius, c.time_horizon);
 }
 
 std::string claim_words(const vo::Containment& c) {
-  return fmt::format("an ellipse round ({:.6g}, {:.6g}) contains {} points", c.ellipse.center.x, c.ellipse.center.y,
-                     c.points.size());
+  return fmt::format("an ellipse round ({:.6g}, {:.6g}) m contains {}", c.ellipse.center.x, c.ellipse.center.y,
+                     geometry::counted(c.points.size(), "point"));
 }
 
 JudgedCertificate judged_as(vo::Verdict verdict, std::string claim) {

@@ -13,6 +13,11 @@ namespace exactvo::tools {
 UsageError::UsageError(const std::string& where, const std::string& found, const std::string& expected)
     : std::runtime_error(where + ": found '" + found + "', expected " + expected) {}
 
+UsageError::UsageError(const std::string& message) : std::runtime_error(message) {}
+
+MissingOption::MissingOption(const std::string& verb, const std::string& what, const std::string& description)
+    : UsageError("missing " + what + ": " + description + " (see 'exactvo " + verb + " --help')") {}
+
 void require_length(const std::string& option, double value) {
   if (!(value >= 0.0) || std::isinf(value))
     throw UsageError(option, fmt::format("{}", value), "a length in m, at least 0");

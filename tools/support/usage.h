@@ -15,6 +15,16 @@ class UsageError : public std::runtime_error {
  public:
   /// "WHERE: found 'FOUND', expected EXPECTED".
   UsageError(const std::string& where, const std::string& found, const std::string& expected);
+
+ protected:
+  explicit UsageError(const std::string& message);
+};
+
+/// What no verb works without, where the parser does not ask for it because something else may stand in its place.
+class MissingOption : public UsageError {
+ public:
+  /// `what`: "option --out" or "argument kind". "missing WHAT: DESCRIPTION (see 'exactvo VERB --help')".
+  MissingOption(const std::string& verb, const std::string& what, const std::string& description);
 };
 
 /// Throws UsageError unless `value` is a finite length of 0 m or more.

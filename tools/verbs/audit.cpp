@@ -10,6 +10,7 @@
 
 #include "exactvo/datasets/audit.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/geometry/counted.h"
 #include "support/certificates.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -18,6 +19,7 @@
 namespace exactvo::tools {
 
 namespace fs = std::filesystem;
+using geometry::counted;
 
 namespace {
 
@@ -74,12 +76,12 @@ std::string summary(const datasets::AuditReport& report) {
     if (n.open > 0) text += fmt::format(", {} left open", n.open);
     text += "\n";
   }
-  text += fmt::format("{} half-planes of obstacles, {} unsafe; {} steps, {} collisions\n", report.half_planes,
-                      report.unsafe, report.steps, report.collisions);
+  text += fmt::format("{} of obstacles, {} unsafe; {}, {}\n", counted(report.half_planes, "half-plane"), report.unsafe,
+                      counted(report.steps, "step"), counted(report.collisions, "collision"));
   if (report.largest_violation > 0.0)
     text += fmt::format("largest violation of a half-plane: {:.3g} m/s\n", report.largest_violation);
   if (report.curved_steps > 0)
-    text += fmt::format("{} of the steps are curves, up to {:.2g} m off the straight way: the curves were checked\n",
+    text += fmt::format("curved steps: {}, up to {:.2g} m off the straight way; the curves were checked\n",
                         report.curved_steps, report.largest_bulge);
   for (const std::string& finding : report.findings) text += "  " + finding + "\n";
   text += unlisted_lines(report);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // exactvo batch: every obstacle of every file taken apart, enclosed and certified.
 #include "exactvo/datasets/batch.h"
+#include "exactvo/geometry/counted.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -23,6 +24,8 @@
 #include "verbs/robot_limits.h"
 
 namespace exactvo::tools {
+
+using geometry::counted;
 
 namespace {
 
@@ -209,8 +212,8 @@ void say_sizes(const BatchConfiguration& c, const BatchProgress& progress, const
   const auto input = static_cast<double>(progress.input_bytes);
   const double factor =
       kFiguresOfInput + (c.geopackage ? kGeoPackageOfInput : 0.0) + (c.geojson ? kGeoJsonOfInput : 0.0);
-  std::string text =
-      fmt::format("{} files, {}: about {} in {}", progress.inputs, size_text(input), size_text(factor * input), out);
+  std::string text = fmt::format("{}, {}: about {} in {}", counted(progress.inputs, "file"), size_text(input),
+                                 size_text(factor * input), out);
   if (!c.geopackage) text += fmt::format("; --write geopackage adds about {}", size_text(kGeoPackageOfInput * input));
   if (!c.geojson) text += fmt::format("; --write geojson adds about {}", size_text(kGeoJsonOfInput * input));
   message(text);
@@ -233,10 +236,10 @@ class Reporter {
     last_ = now;
     const double elapsed = seconds(now - start_);
     const double left = progress.share_done > 0.0 ? elapsed * (1.0 / progress.share_done - 1.0) : 0.0;
-    const std::string text =
-        fmt::format("{} of {} files, {:.0f} %, {} obstacles, {:.0f}/s, {:.0f} s left: {}", progress.inputs_done,
-                    progress.inputs, 100.0 * progress.share_done, progress.obstacles,
-                    static_cast<double>(progress.obstacles) / elapsed, left, progress.doing);
+    const std::string text = fmt::format("{} of {}, {:.0f} %, {}, {:.0f}/s, {:.0f} s left: {}", progress.inputs_done,
+                                         counted(progress.inputs, "file"), 100.0 * progress.share_done,
+                                         counted(progress.obstacles, "obstacle"),
+                                         static_cast<double>(progress.obstacles) / elapsed, left, progress.doing);
     if (on_terminal) {
       line_.show(progress.share_done, text);
     } else {
@@ -258,7 +261,7 @@ class Reporter {
 };
 
 std::string words_of(const BatchTally& tally, const char* what) {
-  std::string text = fmt::format("{} {}: {} done, {} repaired, {} rejected", tally.read, what, tally.done,
+  std::string text = fmt::format("{}: {} done, {} repaired, {} rejected", counted(tally.read, what), tally.done,
                                  tally.repaired, tally.rejected_in_all());
   for (const auto& [code, count] : tally.rejected) text += fmt::format(", {} {}", code, count);
   return text;
@@ -266,10 +269,10 @@ std::string words_of(const BatchTally& tally, const char* what) {
 
 /// Of a shard only what the last one did is known, and how long that took: no rate of the whole.
 std::string words_of(const BatchSummary& s, const std::string& out, bool with_rates) {
-  std::string text = words_of(s.files, "files") + "\n" + words_of(s.obstacles, "obstacles");
-  text += fmt::format("\n{} points and empty geometries skipped\n", s.passed_over);
-  text += fmt::format("{} obstacles in {}: {} certified, {} uncertified, {} vertices\n", s.obstacles_out, out,
-                      s.certified, s.uncertified, s.vertices);
+  std::string text = words_of(s.files, "file") + "\n" + words_of(s.obstacles, "obstacle");
+  text += fmt::format("\n{} skipped (points, empty geometries)\n", counted(s.passed_over, "input"));
+  text += fmt::format("{} in {}: {} certified, {} uncertified, {}\n", counted(s.obstacles_out, "obstacle"), out,
+                      s.certified, s.uncertified, counted(s.vertices, "vertex", "vertices"));
   if (with_rates && s.obstacles_now > 0 && s.seconds > 0.0) {
     text +=
         fmt::format("{:.3g} s, {:.0f} obstacles/s, {:.0f} vertices/s\n", s.seconds,
@@ -301,8 +304,8 @@ bool goes_over_another(const Flags& flags) {
 /// Folders that were named or walked and are not read.
 void note_earlier_batches(const datasets::BatchResult& result) {
   for (const datasets::EarlierBatch& earlier : result.earlier)
-    message(fmt::format("note: not read: {} holds an earlier batch ({} files); a file that is named is read",
-                        earlier.folder, earlier.files));
+    message(fmt::format("note: not read: {} holds an earlier batch ({}); a file that is named is read", earlier.folder,
+                        counted(earlier.files, "file")));
 }
 
 /// Nothing of this process's own to tell: the last of several puts the parts together.

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "exactvo/datasets/obstacle_write.h"
+#include "exactvo/geometry/counted.h"
 #include "support/projection.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -13,6 +15,8 @@
 #include "verbs/obstacle_files.h"
 
 namespace exactvo::tools {
+
+using geometry::counted;
 
 namespace {
 
@@ -26,17 +30,19 @@ struct Flags {
 
 void say_what_was_read(const datasets::ObstacleFile& file) {
   if (file.coverage) {
-    message(fmt::format("{}: {} of {} cells are occupied; they became {} polygons that hold exactly those", file.file,
-                        file.coverage->occupied, file.coverage->cells, file.obstacles.size()));
+    message(fmt::format("{}: occupied cells: {} of {}; they became {}, exactly those", file.file,
+                        file.coverage->occupied, file.coverage->cells, counted(file.obstacles.size(), "polygon")));
   }
   if (file.origin) message(projection_line(file));
-  if (file.counts.repaired > 0) message(fmt::format("{}: {} obstacles repaired", file.file, file.counts.repaired));
+  if (file.counts.repaired > 0)
+    message(fmt::format("{}: {} repaired", file.file, counted(file.counts.repaired, "obstacle")));
   if (file.counts.passed_over > 0)
-    message(fmt::format("{}: lost {} inputs that are no obstacles (points, empty geometries)", file.file,
-                        file.counts.passed_over));
+    message(fmt::format("{}: lost {} (points, empty geometries): no obstacle", file.file,
+                        counted(file.counts.passed_over, "input")));
 }
 
-datasets::ObstacleFile read(const Flags& flags) {
+/// Nothing where it cannot be read, which is said then.
+std::optional<datasets::ObstacleFile> read(const Flags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading, "--from");
   options.repair = flags.repair;
   options.keep_going = flags.skip;
@@ -47,7 +53,10 @@ datasets::ObstacleFile read(const Flags& flags) {
     const std::string place = error.place();
     if (place.find("ring") != std::string::npos && !flags.repair)
       message("--repair repairs most such problems, --skip omits such obstacles");
-    throw;
+    if (interrupted()) throw;
+    const std::string guessed = options.format.empty() ? guessed_format(flags.in) : "";
+    error_message(error.what() + guess_words({flags.in, std::nullopt, error, guessed}, "--from"));
+    return std::nullopt;
   }
 }
 
@@ -55,12 +64,14 @@ ExitCode convert(const Flags& flags) {
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = output_format(flags.out, flags.to);
   refuse_input_as_output(flags.in, flags.reading.format, "out", flags.out);
-  datasets::ObstacleFile file = read(flags);
+  std::optional<datasets::ObstacleFile> content = read(flags);
+  if (!content) return ExitCode::bad_input;
+  datasets::ObstacleFile& file = *content;
   for (const datasets::DataError& error : file.rejected) message(std::string("left out: ") + error.what());
   say_what_was_read(file);
   write_or_print(flags.out, file.obstacles, {to, file.plane, flags.metres, std::move(file.properties)});
-  message(
-      fmt::format("{} ({}) -> {} ({}): {} obstacles", file.file, file.format, flags.out, to, file.obstacles.size()));
+  message(fmt::format("{} ({}) -> {} ({}): {}", file.file, file.format, flags.out, to,
+                      counted(file.obstacles.size(), "obstacle")));
   return file.rejected.empty() ? ExitCode::success : ExitCode::negative;
 }
 

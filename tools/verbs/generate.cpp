@@ -9,6 +9,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/generators.h"
 #include "exactvo/datasets/obstacle_write.h"
+#include "exactvo/geometry/counted.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -33,6 +34,11 @@ struct Flags {
 };
 
 constexpr std::uint64_t kMostItemsDrawn = 400;
+constexpr const char* kOutHelp = "The file to write; its extension says the format. - is stdout (wkt, or as --to says)";
+
+std::string kind_help() {
+  return fmt::format("One of {}", fmt::join(datasets::generator_kind_names(), " "));
+}
 
 ExitCode list_kinds() {
   std::string text;
@@ -43,6 +49,7 @@ ExitCode list_kinds() {
 }
 
 void check_kind(const std::string& kind) {
+  if (kind.empty()) throw MissingOption("generate", "argument kind", kind_help());
   const std::vector<std::string> known = datasets::generator_kind_names();
   for (const std::string& name : known) {
     if (kind == name) return;
@@ -52,10 +59,10 @@ void check_kind(const std::string& kind) {
 
 void check(const Flags& flags) {
   check_kind(flags.kind);
+  if (flags.out.empty()) throw MissingOption("generate", "option --out", kOutHelp);
   constexpr std::int64_t kMostItems = 100'000'000;
   if (flags.count < 1 || flags.count > kMostItems)
     throw UsageError("--count", std::to_string(flags.count), "a whole number from 1 to 100000000");
-  if (flags.out.empty()) throw UsageError("--out", "", "a file to write");
   check_format("--to", flags.to, datasets::writable_formats());
   check_figure_name("--figure", flags.figure, {flags.out});
 }
@@ -98,7 +105,7 @@ std::size_t write(const Flags& flags, std::uint64_t count) {
 void draw_figure(const Flags& flags, std::uint64_t count) {
   const std::uint64_t drawn = std::min(count, kMostItemsDrawn);
   if (drawn < count) message(fmt::format("the figure shows the first {} of {} items", drawn, count));
-  const std::string title = fmt::format("{}, seed {}, {} items", flags.kind, flags.seed, drawn);
+  const std::string title = fmt::format("{}, seed {}, {}", flags.kind, flags.seed, geometry::counted(drawn, "item"));
   write_figure(map_figure(items(flags, drawn), title), flags.figure);
 }
 
@@ -107,19 +114,18 @@ ExitCode generate(const Flags& flags) {
   check(flags);
   const auto count = static_cast<std::uint64_t>(flags.count);
   const std::size_t written = write(flags, count);
-  message(fmt::format("wrote {}: {} obstacles of {} items, {}, seed {}", flags.out, written, count, flags.kind,
-                      flags.seed));
+  message(fmt::format("wrote {}: {} of {}, {}, seed {}", flags.out, geometry::counted(written, "obstacle"),
+                      geometry::counted(count, "item"), flags.kind, flags.seed));
   if (!flags.figure.empty()) draw_figure(flags, count);
   return ExitCode::success;
 }
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("kind", flags->kind, fmt::format("One of {}", fmt::join(datasets::generator_kind_names(), " ")));
+  app.add_option("kind", flags->kind, kind_help());
   declare_seed(app, flags->seed, "Of the generator; the same seed gives the same bytes on every machine");
   app.add_option("--count", flags->count, "Number of items; one maze, block or field consists of several obstacles");
-  app.add_option("--out", flags->out,
-                 "The file to write; its extension says the format. - is stdout (wkt, or as --to says)");
+  app.add_option("--out", flags->out, kOutHelp);
   app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
   declare_metres(app, flags->metres);
   app.add_option("--figure", flags->figure, std::string("The first 400 items. ") + kFigureFileHelp);

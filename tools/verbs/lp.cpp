@@ -11,8 +11,10 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/lp_problems.h"
+#include "exactvo/geometry/counted.h"
 #include "exactvo/vo/lp/solvers.h"
 #include "support/terminal.h"
+#include "support/unsigned_zero.h"
 #include "support/usage.h"
 #include "verb.h"
 #include "verbs/lp_lines.h"
@@ -114,12 +116,14 @@ void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const lp::Solution& a = answers[k].solution;
     const char* without = s.unproven ? "NOT proven" : "";
-    out.add(fmt::format("{:>8} {:<11}{:>22.17g}{:>24.17g}{:>12.4g}  {}\n", k, name(a.status), a.velocity.x,
-                        a.velocity.y, a.violation, answers[k].certificate ? "proven" : without));
+    out.add(fmt::format("{:>8} {:<11}{:>22.17g}{:>24.17g}{:>12.4g}  {}\n", k, name(a.status),
+                        unsigned_zero(a.velocity.x), unsigned_zero(a.velocity.y), a.violation,
+                        answers[k].certificate ? "proven" : without));
   }
-  out.add(fmt::format(
-      "{} problems: {} optimal, {} relaxed, {} infeasible, {} without interior; {} proven, {} by the exact stage\n",
-      s.problems, s.by_status[0], s.by_status[1], s.by_status[2], s.by_status[3], s.certified, s.exact_fallbacks));
+  out.add(
+      fmt::format("{}: {} optimal, {} relaxed, {} infeasible, {} without interior; {} proven, {} by the exact stage\n",
+                  geometry::counted(s.problems, "problem"), s.by_status[0], s.by_status[1], s.by_status[2],
+                  s.by_status[3], s.certified, s.exact_fallbacks));
   out.add(fmt::format("worst violation {:.4g} m/s; solver alone {:.4g} ns per problem\n", s.worst_violation,
                       s.ns_per_solve));
   out.flush();
@@ -153,7 +157,7 @@ ExitCode run(const Flags& flags) {
   else
     print_table(answers, summary);
   if (summary.unproven.value_or(0) == 0) return ExitCode::success;
-  message(fmt::format("warning: {} of {} answers have no proof: their multipliers leave the range of doubles",
+  message(fmt::format("warning: answers without a proof: {} of {}; their multipliers leave the range of doubles",
                       *summary.unproven, summary.problems));
   return ExitCode::negative;
 }

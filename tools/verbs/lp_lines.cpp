@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verbs/lp_lines.h"
 
+#include "support/unsigned_zero.h"
+
 namespace exactvo::tools {
 namespace {
 
@@ -30,7 +32,7 @@ nlohmann::ordered_json result_line(std::size_t index, const lp::Proven& answer) 
   const lp::Solution& s = answer.solution;
   nlohmann::ordered_json out = {{"index", index},
                                 {"status", name(s.status)},
-                                {"velocity", {s.velocity.x, s.velocity.y}},
+                                {"velocity", {unsigned_zero(s.velocity.x), unsigned_zero(s.velocity.y)}},
                                 {"violation", s.violation},
                                 {"active", nlohmann::ordered_json::array()}};
   for (std::size_t k = 0; k < s.active_count; ++k) out["active"].push_back(name_of(s.active[k].binding));

@@ -18,6 +18,7 @@
 #include "support/files.h"
 #include "support/projection.h"
 #include "support/terminal.h"
+#include "support/unsigned_zero.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {
@@ -47,7 +48,7 @@ FileAnswer read_one(const std::string& file, const datasets::ReadOptions& option
     say_projection(*answer.content);
     return answer;
   } catch (const DataError& error) {
-    return {file, std::nullopt, error};
+    return {file, std::nullopt, error, options.format.empty() ? guessed_format(file) : ""};
   }
 }
 
@@ -206,6 +207,25 @@ void write_or_print(const std::string& out, const std::vector<formation::SceneOb
   print({std::istreambuf_iterator<char>(written), std::istreambuf_iterator<char>()});
 }
 
+std::string guessed_format(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return "";  // a pipe is empty by now
+  try {
+    return datasets::format_of(file);
+  } catch (const DataError&) {
+    return "";
+  }
+}
+
+std::string guess_words(const FileAnswer& answer, const std::string& option) {
+  using datasets::DataCode;
+  const DataCode code = answer.error ? answer.error->code() : DataCode::size;
+  // Another format would not help.
+  if (code == DataCode::size || code == DataCode::file_unreadable || answer.guessed_format.empty()) return "";
+  return fmt::format("; read as {}, which is guessed from its content and name: {} names another format",
+                     answer.guessed_format, option);
+}
+
 std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options) {
   std::vector<FileAnswer> answers;
   for (const std::string& file : files) {
@@ -246,7 +266,7 @@ OrderedJson json_of(const FileAnswer& answer) {
 }
 
 std::string lines_of(const FileAnswer& answer, bool with_mended) {
-  if (answer.error) return shown(answer.error->what()) + "\n";
+  if (answer.error) return shown(answer.error->what() + guess_words(answer)) + "\n";
   std::string text;
   for (const RingFinding& f : answer.content->findings) {
     if (f.mended && !with_mended) continue;
@@ -278,7 +298,7 @@ std::string text_of(const OrderedJson& json) {
 }
 
 OrderedJson json_number(double x) {
-  return std::isfinite(x) ? OrderedJson(x) : OrderedJson(nullptr);
+  return std::isfinite(x) ? OrderedJson(unsigned_zero(x)) : OrderedJson(nullptr);
 }
 
 }  // namespace exactvo::tools

@@ -41,6 +41,7 @@ struct FileAnswer {
   std::string file;
   std::optional<datasets::ObstacleFile> content;
   std::optional<datasets::DataError> error;
+  std::string guessed_format{};  ///< of a file that could not be read: as what, if nobody said
 
   bool is_whole() const { return content && content->counts.rejected == 0; }
 };
@@ -67,6 +68,13 @@ void write_or_print(const std::string& out, const std::vector<formation::SceneOb
 /// The format to write: `to`, or as the extension of `out` says; wkt for "-". Throws DataError.
 std::string output_format(const std::string& out, const std::string& to);
 
+/// "; read as pslg, which is guessed from its content and name: --format names another"; empty if the format was given,
+/// or none was found. `option`: the one that would name it.
+std::string guess_words(const FileAnswer& answer, const std::string& option = "--format");
+
+/// The format that a file is taken for when none is named; empty if none is found, or the file cannot be read twice.
+std::string guessed_format(const std::string& file);
+
 /// Reads every file; a DataError of a file becomes its answer. Says which were projected.
 std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options);
 
@@ -83,7 +91,7 @@ OrderedJson json_of(const FileAnswer& answer);
 /// A line a problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], mended". `with_mended`: also those.
 std::string lines_of(const FileAnswer& answer, bool with_mended);
 
-/// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 passed over, 0 rejected".
+/// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 skipped, 0 rejected".
 std::string counts_line(const FileAnswer& answer);
 
 OrderedJson json_of(const datasets::ReadCounts& counts);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "exactvo/datasets/obstacle_write.h"
+#include "exactvo/geometry/counted.h"
 #include "support/escape.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -284,7 +285,8 @@ void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out)
   if (polygons.empty()) return message("no figure: nothing had to be cut");
   const std::size_t number = number_recombined(answers);
   if (number > polygons.size())
-    message(fmt::format("the figure shows {} of {} polygons that were cut", polygons.size(), number));
+    message(
+        fmt::format("the figure shows {} of {} that were cut", polygons.size(), geometry::counted(number, "polygon")));
   write_figure(repair_figure(polygons), out);
 }
 
@@ -315,7 +317,7 @@ ExitCode repair(const Flags& flags) {
   }
   if (code == ExitCode::bad_input) {
     for (const FileAnswer& answer : answers) {
-      if (answer.error) error_message(answer.error->what());
+      if (answer.error) error_message(answer.error->what() + guess_words(answer));
     }
     return code;
   }

@@ -8,6 +8,7 @@
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/obstacle_record.h"
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/obstacle_shapes.h"
 #include "figures/outlines.h"
 #include "support/escape.h"
@@ -19,6 +20,8 @@
 #include "verbs/obstacle_files.h"
 
 namespace exactvo::tools {
+
+using geometry::counted;
 
 using geometry::ObstacleShapes;
 using geometry::Vec2;
@@ -203,18 +206,18 @@ std::string words_of(const TakenApart& t) {
   const ObstacleShapes& s = t.shapes;
   const geometry::ShapeFigures& f = s.figures;
   return fmt::format(
-      "{} {}: {} vertices, {:.6g} m^2; {} facades within {:.3g} m ({}), {} pieces ({}), hull {:.6g} m^2 ({}), "
+      "{} {}: {}, {:.6g} m^2; {} within {:.3g} m ({}), {} ({}), hull {:.6g} m^2 ({}), "
       "ellipse {:.6g} m^2 ({}), facade ellipses ({}), trap-free {}\n",
-      shown(t.head.file), shown(t.head.id), f.vertices, f.area, s.facades.facades.size(), s.facades.deviation,
-      word(s.facades_follow), s.pieces.size(), word(s.pieces_cover), f.hull_area, word(s.hull_contains), f.ellipse_area,
+      shown(t.head.file), shown(t.head.id), counted(f.vertices, "vertex", "vertices"), f.area,
+      counted(s.facades.facades.size(), "facade"), s.facades.deviation, word(s.facades_follow),
+      counted(s.pieces.size(), "piece"), word(s.pieces_cover), f.hull_area, word(s.hull_contains), f.ellipse_area,
       word(s.ellipse_contains), word(s.facade_ellipses_contain),
       s.trap_free.ellipse ? fmt::format("{:.6g} m^2 ({})", f.trap_free_area, word(s.trap_free_contains)) : "none");
 }
 
 std::string title_of(const std::vector<std::string>& files, std::size_t obstacles) {
   const std::string name = std::filesystem::path(files.front()).filename().string();
-  return fmt::format("{}{}: {} obstacle{}", name, files.size() > 1 ? " and others" : "", obstacles,
-                     obstacles == 1 ? "" : "s");
+  return fmt::format("{}{}: {}", name, files.size() > 1 ? " and others" : "", counted(obstacles, "obstacle"));
 }
 
 void draw_figure(const std::vector<TakenApart>& all, const Flags& flags) {
@@ -239,7 +242,11 @@ ExitCode segment(const Flags& flags) {
   for (const std::string& file : flags.files) refuse_input_as_output(file, flags.reading.format, "--out", flags.out);
   const std::vector<FileAnswer> answers = read_each(flags.files, reading);
   for (const FileAnswer& answer : answers) {
-    if (answer.error) throw datasets::DataError(*answer.error);
+    if (!answer.error) continue;
+    error_message(answer.error->what() + guess_words(answer));
+    return ExitCode::bad_input;
+  }
+  for (const FileAnswer& answer : answers) {
     for (const datasets::DataError& error : answer.content->rejected) message(std::string("left out: ") + error.what());
   }
   const std::vector<TakenApart> all = take_apart(answers, flags);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "exactvo/formation/stability.h"
+#include "exactvo/geometry/counted.h"
 #include "support/escape.h"
 #include "support/files.h"
 #include "support/run.h"
@@ -89,13 +90,15 @@ std::string summary(const FinishedRun& run) {
   for (const std::string& words : m.stuck) text += fmt::format("  stuck        {}\n", shown(words));
   return text + fmt::format(
                     "  clearance    to obstacles {}, between robots {}\n"
-                    "  jitter       {:.4g} m/s^2, {} heading reversals, {} active-set switches\n"
+                    "  jitter       {:.4g} m/s^2, {}, {}\n"
                     "  velocity     total variation {:.4g} m/s, peak acceleration {:.4g} m/s^2\n"
-                    "  half-planes  {} not certified, relaxed in {} decisions\n"
+                    "  half-planes  {} not certified, relaxed in {}\n"
                     "  steps        {} in {:.3g} s of wall time\n",
                     or_dash(m.min_obstacle_clearance, "m"), or_dash(m.min_robot_clearance, "m"), m.jitter,
-                    m.heading_reversals, m.active_set_switches, m.velocity_variation, m.peak_acceleration,
-                    m.uncertified_half_planes, m.relaxed_steps, m.steps, m.wall_time);
+                    geometry::counted(m.heading_reversals, "heading reversal"),
+                    geometry::counted(m.active_set_switches, "active-set switch", "active-set switches"),
+                    m.velocity_variation, m.peak_acceleration, m.uncertified_half_planes,
+                    geometry::counted(m.relaxed_steps, "decision"), m.steps, m.wall_time);
 }
 
 /// What can be said before the run.

@@ -12,6 +12,7 @@
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/stop.h"
+#include "support/unsigned_zero.h"
 #include "verb.h"
 
 namespace exactvo::tools {
@@ -30,7 +31,7 @@ struct Flags {
 
 /// JSON has no word for infinity: null, as for what does not apply.
 std::string number(double x) {
-  return std::isfinite(x) ? fmt::format("{}", x) : "null";
+  return std::isfinite(x) ? fmt::format("{}", unsigned_zero(x)) : "null";
 }
 std::string number(const std::optional<double>& x) {
   return x ? number(*x) : "null";
@@ -51,7 +52,7 @@ std::string quoted(const std::string& text) {
 std::string json_of(const Equilibrium& e, double max_speed) {
   return fmt::format(
       "{{ \"position\": [{}, {}], \"radius_of_curvature\": {}, \"distance\": {}, \"stable\": {}, \"rate\": {} }}",
-      e.position.x, e.position.y, number(e.radius_of_curvature), number(e.distance), e.stable,
+      number(e.position.x), number(e.position.y), number(e.radius_of_curvature), number(e.distance), e.stable,
       number(e.rate_at(max_speed)));
 }
 
@@ -124,7 +125,7 @@ std::string subject_words(const formation::Scenario& scenario, const TrapFinding
 std::string rest_words(const TrapFinding& f, const Equilibrium& e) {
   const std::string at = fmt::format("at ({:.4g}, {:.4g})", e.position.x, e.position.y);
   if (f.overlapping) return fmt::format("rests {} in their concave vertex, goal {:.4g} m away", at, e.distance);
-  return fmt::format("{} {}: {}, goal {:.4g} m away", e.stable ? "rests" : "may balance", at,
+  return fmt::format("{} {}: {}, goal {:.4g} m away", e.stable ? "rests" : "unstable equilibrium, no stall,", at,
                      curvature_words(e.radius_of_curvature), e.distance);
 }
 
@@ -132,12 +133,12 @@ std::string words_of(const formation::Scenario& scenario, const TrapFinding& f, 
   const std::string grade = f.overlapping ? "overlapping, heuristic" : name(f.place.enclosure.grade);
   std::string text = fmt::format("{}, {}: {} ({})", scenario.robots[f.robot].id, subject_words(scenario, f, orca),
                                  f.stall_possible ? "a stall is possible" : "no stall", grade);
-  if (f.margin && std::isfinite(*f.margin)) text += fmt::format(", margin {:.3g}", *f.margin);
+  if (f.margin && std::isfinite(*f.margin)) text += fmt::format(", relative margin {:.3g}", *f.margin);
   if (!f.start_clear) text += "; the start is not clear of it";
   if (!f.start_clear && !f.overlapping && f.place.enclosure.grade != geometry::EnclosureGrade::tight)
     text += " (while the robot is inside, its pieces stand for it; they are not judged)";
   if (!f.goal_clear) text += "; the goal is not clear of it";
-  if (f.slide_time) text += fmt::format("; slides {:.3g} s", *f.slide_time);
+  if (f.slide_time) text += fmt::format("; slides along it for {:.3g} s", *f.slide_time);
   for (const Equilibrium& e : f.equilibria) text += "\n    " + rest_words(f, e);
   return text + "\n";
 }

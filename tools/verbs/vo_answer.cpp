@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "exactvo/geometry/predicates.h"
+#include "support/unsigned_zero.h"
 
 namespace exactvo::tools {
 
@@ -69,7 +70,7 @@ const char* word_of(Taken taken) {
 // --- JSON ---
 
 std::string json(double x) {
-  return std::isfinite(x) ? fmt::format("{}", x) : "null";
+  return std::isfinite(x) ? fmt::format("{}", unsigned_zero(x)) : "null";
 }
 std::string json(Vec2 v) {
   return fmt::format("[{}, {}]", json(v.x), json(v.y));

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "exactvo/geometry/counted.h"
+#include "support/unsigned_zero.h"
+
 namespace exactvo::tools {
 namespace {
 
@@ -25,7 +28,7 @@ std::string contact_words(const VoQuestion& question, std::size_t cone) {
 std::string curves_words(const std::vector<ShiftedCone>& cones) {
   std::size_t curves = 0;
   for (const ShiftedCone& cone : cones) curves += FreeArrangement::curves_of(cone);
-  return fmt::format("{} boundary curves, more than {}", curves, vo::kMostCurves);
+  return fmt::format("{}, more than {}", geometry::counted(curves, "boundary curve"), vo::kMostCurves);
 }
 
 /// REQUIRES: not Refusal::none.
@@ -37,7 +40,7 @@ std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, co
       return ellipse_words(question, static_cast<std::size_t>(first - cones.begin()));
     }
     case vo::Refusal::cones:
-      return fmt::format("{} convex shapes, more than {}", cones.size(), vo::kMostCones);
+      return fmt::format("{}, more than {}", geometry::counted(cones.size(), "convex shape"), vo::kMostCones);
     case vo::Refusal::curves:
       return curves_words(cones);
     case vo::Refusal::range:
@@ -48,7 +51,7 @@ std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, co
 }
 
 std::string json(const Bracket& b) {
-  return fmt::format("[{}, {}]", b.low, b.high);
+  return fmt::format("[{}, {}]", unsigned_zero(b.low), unsigned_zero(b.high));
 }
 std::string json(const vo::PointBracket& p) {
   return fmt::format("[{}, {}]", json(p.x), json(p.y));
@@ -62,8 +65,8 @@ std::string owner_json(const vo::FreeArc& arc, const VoQuestion& question) {
 
 std::string circle_json(const vo::FreeArc& arc) {
   if (arc.turn == 0) return "";
-  return fmt::format(", \"center\": [{}, {}], \"radius\": {}, \"turn\": {}", arc.center.x, arc.center.y, arc.radius,
-                     arc.turn);
+  return fmt::format(", \"center\": [{}, {}], \"radius\": {}, \"turn\": {}", unsigned_zero(arc.center.x),
+                     unsigned_zero(arc.center.y), arc.radius, arc.turn);
 }
 
 std::string arc_json(const vo::FreeArc& arc, const VoQuestion& question) {
@@ -112,13 +115,13 @@ std::string exact_free_json(const ExactFree& exact, const VoQuestion& question) 
 }
 
 std::string exact_free_words(const ExactFree& exact) {
-  if (!exact.free) return fmt::format("exactly           not shown: {}\n", exact.why_not);
+  if (!exact.free) return fmt::format("exact result      none: {}\n", exact.why_not);
   const std::size_t pieces = exact.free->pieces().size();
   const Bracket area = exact.free->area();
-  const std::string text = fmt::format("exactly           {:.10g} to {:.10g} (m/s)^2, in {} {}", area.low, area.high,
-                                       pieces, pieces == 1 ? "piece" : "pieces");
+  const std::string text = fmt::format("exact result      area {:.10g} to {:.10g} (m/s)^2, {}", area.low, area.high,
+                                       geometry::counted(pieces, "connected part"));
   return text + (exact.region_inside
-                     ? fmt::format("; what half-planes keep is free: {}\n", word_of(*exact.region_inside))
+                     ? fmt::format("; all that the half-planes allow is free: {}\n", word_of(*exact.region_inside))
                      : "\n");
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/pieces.h"
@@ -78,7 +79,8 @@ datasets::ReadOptions whole_files(const ReadingFlags& reading) {
 /// The hull of a robot that is its own hull.
 ConvexPolygon robot_of(const std::string& text, const ReadingFlags& reading) {
   const std::vector<GivenObstacle> given = obstacles_in("--robot", text, whole_files(reading));
-  if (given.size() != 1) throw UsageError("--robot", fmt::format("{} geometries", given.size()), "one convex polygon");
+  if (given.size() != 1)
+    throw UsageError("--robot", geometry::counted(given.size(), "geometry", "geometries"), "one convex polygon");
   const auto* polygon = std::get_if<geometry::Obstacle>(&given.front());
   if (!polygon) throw UsageError("--robot", text, "a convex polygon (a disc is given by --radius)");
   if (!geometry::is_convex(*polygon))
@@ -224,13 +226,14 @@ void add_obstacle(const GivenObstacle& given, vo::Encounter e, const VoFlags& fl
 
 void check_obstacles(const VoFlags& flags, const VoQuestion& q) {
   if (q.obstacles.size() != 1 && !q.free && flags.velocities.empty())
-    throw UsageError("--obstacle", fmt::format("{} obstacles", q.obstacles.size()),
+    throw UsageError("--obstacle", geometry::counted(q.obstacles.size(), "obstacle"),
                      "one obstacle (several go with --free and --velocities)");
   if (q.encounters.size() != 1 && !q.variants.empty())
     throw UsageError("--variant", fmt::format("an obstacle of {} convex pieces", q.encounters.size()),
                      "a convex shape: add --pieces hull or --enclose ellipse");
   if (flags.obstacle_velocities.size() > flags.obstacles.size())
-    throw UsageError("--obstacle-velocity", fmt::format("{} velocities", flags.obstacle_velocities.size()),
+    throw UsageError("--obstacle-velocity",
+                     geometry::counted(flags.obstacle_velocities.size(), "velocity", "velocities"),
                      "at most one an --obstacle");
 }
 

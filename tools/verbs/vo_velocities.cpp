@@ -4,18 +4,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/geometry/counted.h"
 #include "exactvo/vo/membership.h"
 #include "support/fields.h"
 #include "support/line_stream.h"
 #include "support/terminal.h"
+#include "support/unsigned_zero.h"
 #include "verbs/robot_limits.h"
 
 namespace exactvo::tools {
@@ -174,10 +178,19 @@ class Answers {
   }
   void flush() { out_.flush(); }
 
+  /// Where the half-plane is that can be proven then.
+  void note_contact() const {
+    if (!contact_) return;
+    message(
+        fmt::format("the robot touches or overlaps obstacle {}: no velocity is free; vo with --velocity instead of "
+                    "--velocities shows the half-plane of contact",
+                    place_of(question_, *contact_).obstacle));
+  }
+
  private:
   void add_json(std::size_t line, Vec2 v, Answer answer, std::size_t with) {
     constexpr const char* kCollides[] = {"false", "true", "null"};
-    out_.add("{{\"line\": {}, \"velocity\": [{}, {}], \"collides\": {}", line, v.x, v.y,
+    out_.add("{{\"line\": {}, \"velocity\": [{}, {}], \"collides\": {}", line, unsigned_zero(v.x), unsigned_zero(v.y),
              kCollides[static_cast<int>(answer)]);
     if (answer == Answer::free) return out_.add("}}");
     const Place place = place_of(question_, with);
@@ -186,7 +199,7 @@ class Answers {
 
   void add_words(Vec2 v, Answer answer, std::size_t with) {
     constexpr const char* kWords[] = {"free", "collides", "contact"};
-    out_.add("{},{} {}", v.x, v.y, kWords[static_cast<int>(answer)]);
+    out_.add("{},{} {}", unsigned_zero(v.x), unsigned_zero(v.y), kWords[static_cast<int>(answer)]);
     if (answer == Answer::free || question_.encounters.size() == 1) return;
     const Place place = place_of(question_, with);
     out_.add(" with obstacle {}", place.obstacle);
@@ -200,13 +213,28 @@ class Answers {
   Output out_;
 };
 
+/// Reads the file without an answer, so that a line that is wrong is refused before the first answer.
+void check(const std::string& file) {
+  VelocityReader velocities(file);
+  while (velocities.next()) {
+  }
+}
+
 }  // namespace
 
 void answer_velocities(const VoQuestion& question, const std::string& file, bool json) {
+  std::error_code no_file;
+  if (file != "-" && std::filesystem::is_regular_file(file, no_file)) check(file);
   VelocityReader velocities(file);
   Answers answers(question, json);
+  answers.note_contact();
+  std::size_t count = 0;
   try {
-    while (const std::optional<Vec2> v = velocities.next()) answers.add(velocities.number(), *v);
+    for (; const std::optional<Vec2> v = velocities.next(); ++count) answers.add(velocities.number(), *v);
+  } catch (const DataError& error) {
+    answers.flush();
+    throw DataError(error.code(), error.file(), error.place(), error.found(),
+                    error.expected() + "; answered before it: " + geometry::counted(count, "velocity", "velocities"));
   } catch (...) {
     answers.flush();
     throw;

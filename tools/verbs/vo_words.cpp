@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exactvo/geometry/counted.h"
+#include "support/unsigned_zero.h"
 #include "verbs/vo_answer.h"
 
 namespace exactvo::tools {
@@ -29,11 +31,6 @@ std::string in_words(const AskedObstacle& o) {
 
 namespace {
 
-/// Not "-0".
-double unsigned_zero(double x) {
-  return x == 0.0 ? 0.0 : x;
-}
-
 std::string text_of(const HalfPlane& h) {
   return fmt::format("{:+.6g} v_x {:+.6g} v_y >= {:.6g} m/s", unsigned_zero(h.normal.x), unsigned_zero(h.normal.y),
                      unsigned_zero(h.offset));
@@ -50,7 +47,8 @@ std::string half_plane_words(const ConeAnswer& a) {
   const std::string verdict = why ? fmt::format("none: {}", why_words(why)) : name(check(*a.certificate));
   std::string text;
   if (a.half_plane) text += fmt::format("half-plane        {}\n", text_of(*a.half_plane));
-  if (a.contact) text += fmt::format("half-plane        {}, away from the nearest point\n", text_of(*a.contact));
+  if (a.contact)
+    text += fmt::format("half-plane        {}, away from the nearest point (contact)\n", text_of(*a.contact));
   text += fmt::format("certificate       {}{}\n", verdict, a.certificate ? ", of this half-plane" : "");
   if (a.shared)
     text += fmt::format(
@@ -87,6 +85,14 @@ std::string cone_words(const ConeAnswer& a) {
          (a.exact_legs ? exact_legs_words(*a.exact_legs) : "");
 }
 
+/// Where the half-plane of contact stands: below, and under which key.
+std::string contact_words(const VoAnswer& a) {
+  const bool any =
+      std::any_of(a.cones.begin(), a.cones.end(), [](const ConeAnswer& c) { return c.contact.has_value(); });
+  return any ? "The half-plane of contact stands below (\"contact_half_plane\" with --json).\n"
+             : "No half-plane of contact can be proven (\"contact_half_plane\" with --json is null).\n";
+}
+
 std::string verdict_words(bool overlaps, bool contains, const char* what) {
   if (overlaps) return fmt::format("The robot touches or overlaps {}: there is no cone.\n", what);
   return contains ? "The velocity collides within the horizon (contact counts as a collision).\n"
@@ -107,6 +113,7 @@ std::string single_words(const VoAnswer& a) {
   const bool stands_in = o.taken != Taken::itself && o.taken != Taken::convex_pieces;
   const std::string what = stands_in ? in_words(o) : "the obstacle";
   std::string text = taken_words(a.question, o) + verdict_words(any_overlaps(a), any_contains(a), what.c_str());
+  if (any_overlaps(a)) text += contact_words(a);
   if (a.cones.size() == 1) return text + cone_words(a.cones.front());
   for (std::size_t k = 0; k < a.cones.size(); ++k)
     text += fmt::format("piece {}: {}{}", k, verdict_words(a.cones[k].overlaps, a.cones[k].contains, "it"),
@@ -127,15 +134,17 @@ std::string member_words(const vo::Member& m, bool overlaps, Vec2 velocity) {
 
 std::string region_words(const VoAnswer& a) {
   const vo::RegionReport& report = *a.free->report;
-  std::string text = fmt::format("half-planes       keep {:.6g} to {:.6g} of it; all free: {}\n", report.area.low,
-                                 report.area.high, name(report.inside));
-  text += fmt::format("given away        {:.6g} to {:.6g}\n", report.given_away.low, report.given_away.high);
+  std::string text = fmt::format("half-planes       allow an area of {:.6g} to {:.6g} (m/s)^2; all of it is free: {}\n",
+                                 report.area.low, report.area.high, name(report.inside));
+  text += fmt::format("free, excluded    area {:.6g} to {:.6g} (m/s)^2{}\n", report.given_away.low,
+                      report.given_away.high, report.lost.empty() ? "" : ", in these parts:");
   for (const vo::LostPiece& piece : report.lost) {
     const auto [obstacle, cone] = place_of(a, piece);
     const bool one = a.question.obstacles[obstacle].encounters == 1;
-    text +=
-        fmt::format("  {:.4g} as far as ({:.4g}, {:.4g}) m/s, by the half-plane of obstacle {}{}\n", piece.area.high,
-                    piece.farthest.x, piece.farthest.y, obstacle, one ? "" : fmt::format(", piece {}", cone));
+    text += fmt::format(
+        "  {:.4g} (m/s)^2, excluded by the half-plane of obstacle {}{}; farthest beyond it: ({:.4g}, {:.4g}) m/s\n",
+        piece.area.high, obstacle, one ? "" : fmt::format(", piece {}", cone), unsigned_zero(piece.farthest.x),
+        unsigned_zero(piece.farthest.y));
   }
   return text;
 }
@@ -146,13 +155,12 @@ std::string free_words(const VoAnswer& a) {
   for (std::size_t k = 0; k < a.question.obstacles.size(); ++k)
     if (const AskedObstacle& o = a.question.obstacles[k]; o.taken != Taken::itself)
       text += fmt::format("obstacle {:<8} taken as {}\n", k, in_words(o));
-  text +=
-      fmt::format("free velocities   {:.6g} to {:.6g} (m/s)^2, in at least {} {}\n", f.free.area().low,
-                  f.free.area().high, f.free.least_components(), f.free.least_components() == 1 ? "piece" : "pieces");
+  text += fmt::format("free velocities   area {:.6g} to {:.6g} (m/s)^2, at least {}\n", f.free.area().low,
+                      f.free.area().high, geometry::counted(f.free.least_components(), "connected part"));
   text += exact_free_words(f.exact);
   if (f.report) return text + region_words(a);
-  return text + (any_overlaps(a) ? "The robot touches or overlaps an obstacle: nothing is free, nothing is kept.\n"
-                                 : "half-planes       none is proven at an obstacle: nothing is kept\n");
+  return text + (any_overlaps(a) ? "The robot touches or overlaps an obstacle: no velocity is free.\n"
+                                 : "half-planes       an obstacle has no proven one: they allow no velocity\n");
 }
 
 }  // namespace

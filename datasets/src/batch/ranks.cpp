@@ -13,6 +13,7 @@
 #include "batch/merge/summary.h"
 #include "batch/plan/input_record.h"
 #include "batch/session.h"
+#include "exactvo/geometry/counted.h"
 #include "mpi/rank_library.h"
 
 namespace exactvo::datasets {
@@ -244,7 +245,7 @@ void refuse_shards(const BatchRun& run, int ranks) {
   if (run.shards == 1) return;
   throw DataError(DataCode::other_run, run.out.string(), "",
                   "shard " + std::to_string(run.shard) + "/" + std::to_string(run.shards) + " in each of " +
-                      std::to_string(ranks) + " ranks",
+                      geometry::counted(ranks, "rank"),
                   "shards or ranks: ranks share all inputs among them");
 }
 

@@ -43,12 +43,12 @@ struct Visitor {
 };
 
 void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0) {
-  if (depth > kDeepestCollection) return visitor.other("collections nested too deeply passed over");
-  if (geometry.IsEmpty()) return visitor.other(std::string("an empty ") + geometry.getGeometryName() + " passed over");
+  if (depth > kDeepestCollection) return visitor.other("collections nested too deeply skipped");
+  if (geometry.IsEmpty()) return visitor.other(std::string("an empty ") + geometry.getGeometryName() + " skipped");
   switch (wkbFlatten(geometry.getGeometryType())) {
     case wkbPoint:
     case wkbMultiPoint:
-      return visitor.other("a " + std::string(geometry.getGeometryName()) + " passed over: points are no obstacles");
+      return visitor.other("a " + std::string(geometry.getGeometryName()) + " skipped: points are no obstacles");
     case wkbLineString:
       return visitor.shape(RawKind::polyline, {points_of(*geometry.toLineString())});
     case wkbPolygon:
@@ -66,7 +66,7 @@ void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0) {
   if (straight && wkbFlatten(straight->getGeometryType()) != wkbFlatten(geometry.getGeometryType())) {
     return visit(*straight, visitor, depth + 1);
   }
-  visitor.other(std::string("a ") + geometry.getGeometryName() + " passed over: no line or polygon");
+  visitor.other(std::string("a ") + geometry.getGeometryName() + " skipped: no line or polygon");
 }
 
 /// Degrees that a coordinate may lie beyond 180 or 90 and still be one: writers round, and some files hold
@@ -404,7 +404,7 @@ class VectorReader {
         return out_.reject(*lost);
       }
     }
-    if (item.shape == nullptr) return out_.pass_over(place, "a feature without geometry passed over");
+    if (item.shape == nullptr) return out_.pass_over(place, "a feature without geometry skipped");
     const FeatureProperties properties = properties_of(item);
     std::size_t part = 0;
     Visitor visitor;

@@ -70,7 +70,7 @@ class GeoJsonSequence {
   std::size_t column_ = 1;       ///< of the next byte
   std::size_t bytes_ = 0;        ///< taken
   GeoJsonPlace begin_;           ///< of the record that was read last
-  bool is_spoilt_ = false;       ///< more than white space follows its object, which GDAL's parser passes over
+  bool is_spoilt_ = false;       ///< more than white space follows its object, which GDAL's parser skips
   bool has_begun_ = false;       ///< some record was read
 };
 
@@ -89,7 +89,7 @@ struct GeoJsonBeginning {
 /// Reads as far as that takes, which is the whole file where "type" comes last. Memory does not grow with the file.
 GeoJsonBeginning beginning_of_geojson(const std::filesystem::path& path);
 
-/// Tells of the entries of a collection's "features" that are no objects, by their JSON pointers: GDAL passes over them
+/// Tells of the entries of a collection's "features" that are no objects, by their JSON pointers: GDAL skips them
 /// without a word. Memory does not grow with the file.
 void for_each_stray_entry(const std::filesystem::path& path, const std::function<void(const DataError&)>& action);
 

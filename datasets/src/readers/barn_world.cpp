@@ -20,7 +20,7 @@ void add_model(const XmlFile& xml, const pugi::xml_node& model, Collector& out) 
   const pugi::xml_node radius = shape.child("cylinder").child("radius");
   if (!radius)
     return out.pass_over(xml.place_of(model),
-                         std::string("model ") + model.attribute("name").value() + " passed over: no cylinder");
+                         std::string("model ") + model.attribute("name").value() + " skipped: no cylinder");
   RawGeometry raw;
   raw.id = model.attribute("name").value();
   raw.place = xml.place_of(model) + ", model " + raw.id;

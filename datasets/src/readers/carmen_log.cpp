@@ -5,6 +5,7 @@
 #include "readers/readers.h"
 #include "text_file.h"
 
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/pi.h"
 
 namespace exactvo::datasets {
@@ -25,7 +26,7 @@ void add_scan(const LineReader& lines, const std::vector<std::string_view>& word
   if (words.size() < 2) lines.refuse(DataCode::wrong_count, "no number of beams", "FLASER n r1 .. rn x y theta");
   const std::int64_t stated = lines.to_integer(words[1]);
   if (stated < 0 || stated > kMostBeams || words.size() < static_cast<std::size_t>(stated) + 5) {
-    lines.refuse(DataCode::wrong_count, std::to_string(words.size()) + " words",
+    lines.refuse(DataCode::wrong_count, geometry::counted(words.size(), "word"),
                  "FLASER, a number n, n ranges and a pose; n is " + std::to_string(stated));
   }
   const auto beams = static_cast<std::size_t>(stated);
@@ -58,7 +59,7 @@ void read_carmen_log(const std::filesystem::path& path, Collector& out) {
     add_scan(lines, words_of(lines.line()), hits);
     ++scans;
   }
-  out.note("", std::to_string(scans) + " scans");
+  out.note("", geometry::counted(scans, "scan"));
   add_hits(hits, out);
 }
 

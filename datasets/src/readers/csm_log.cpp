@@ -4,6 +4,7 @@
 #include <limits>
 #include <string_view>
 
+#include "exactvo/geometry/counted.h"
 #include "json_cursor.h"
 #include "readers/hits.h"
 #include "readers/readers.h"
@@ -86,7 +87,7 @@ void read_csm_log(const std::filesystem::path& path, Collector& out) {
     const Json tree = parse_json(object, out.file());
     add_scan(JsonCursor(tree, out.file(), "scan " + std::to_string(scans++)), hits);
   }
-  out.note("", std::to_string(scans) + " scans");
+  out.note("", geometry::counted(scans, "scan"));
   add_hits(hits, out);
 }
 

@@ -133,7 +133,7 @@ void read_counted_rings(const std::filesystem::path& path, Collector& out) {
     geometry::Ring& ring = raw.rings.emplace_back();
     for (std::size_t n = lines.count(0); n > 0; --n) ring.push_back(lines.point());
   }
-  if (raw.rings.empty()) return out.pass_over(raw.place, "an empty polygon passed over");
+  if (raw.rings.empty()) return out.pass_over(raw.place, "an empty polygon skipped");
   out.add(raw);
 }
 

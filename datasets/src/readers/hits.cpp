@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/require.h"
 #include "readers/grid.h"
 
@@ -77,7 +78,7 @@ void add_hits(const std::vector<geometry::Vec2>& hits, Collector& out) {
     const auto y = static_cast<std::size_t>(cell_of(hit.y, cell) - rows.low);
     grid.occupied[y * grid.width + x] = 1;
   }
-  out.note("", std::to_string(hits.size()) + " hits");
+  out.note("", geometry::counted(hits.size(), "hit"));
   add_grid(grid, {{0.0, 0.0}, cell, 0.0, columns.low, rows.low}, out);
 }
 

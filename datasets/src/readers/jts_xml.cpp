@@ -10,7 +10,7 @@ namespace {
 void add_argument(const XmlFile& xml, const pugi::xml_node& argument, std::size_t number, Collector& out) {
   const std::string_view text = trimmed(argument.child_value());
   const std::string place = xml.place_of(argument);
-  if (text.empty()) return out.pass_over(place, "an empty argument passed over");
+  if (text.empty()) return out.pass_over(place, "an empty argument skipped");
   const std::string id = std::to_string(number) + argument.name();
   if (is_wkb_text(text)) return read_wkb_text(text, place, id, out);
   read_wkt_text(text, place, id, out);

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "exactvo/datasets/moving_ai.h"
+#include "exactvo/geometry/counted.h"
 #include "readers/grid.h"
 #include "readers/line_reader.h"
 #include "readers/readers.h"
@@ -73,7 +74,7 @@ Header read_header(LineReader& lines) {
 void read_row(const LineReader& lines, std::size_t y, Grid& grid, std::map<char, std::size_t>& odd) {
   const std::string_view row = lines.line();
   if (row.size() != grid.width) {
-    lines.refuse(DataCode::wrong_count, std::to_string(row.size()) + " cells", std::to_string(grid.width) + " cells");
+    lines.refuse(DataCode::wrong_count, geometry::counted(row.size(), "cell"), geometry::counted(grid.width, "cell"));
   }
   for (std::size_t x = 0; x < row.size(); ++x) {
     const Ground ground = ground_of(row[x]);
@@ -91,12 +92,12 @@ Grid read_grid(LineReader& lines, Collector& out) {
   std::map<char, std::size_t> odd;
   for (std::size_t row = 0; row < header.height; ++row) {
     if (!lines.next()) {
-      lines.refuse(DataCode::wrong_count, std::to_string(row) + " rows", std::to_string(header.height) + " rows");
+      lines.refuse(DataCode::wrong_count, geometry::counted(row, "row"), geometry::counted(header.height, "row"));
     }
     read_row(lines, header.height - 1 - row, grid, odd);
   }
   for (const auto& [symbol, count] : odd) {
-    out.note("", std::to_string(count) + " cells of the unusual symbol " + symbol + " taken as free");
+    out.note("", geometry::counted(count, "cell") + " of the unusual symbol " + symbol + " taken as free");
   }
   return grid;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Moving AI tasks: "version 1", then a line a task: bucket, map, width, height, start x y, goal x y, optimal length.
 #include "exactvo/datasets/moving_ai.h"
+#include "exactvo/geometry/counted.h"
 #include "readers/line_reader.h"
 #include "readers/readers.h"
 #include "text_file.h"
@@ -19,7 +20,7 @@ std::vector<std::string_view> task_fields(std::string_view line) {
 PathTask to_task(const LineReader& lines) {
   const std::vector<std::string_view> f = task_fields(lines.line());
   if (f.size() != kFields) {
-    lines.refuse(DataCode::wrong_count, std::to_string(f.size()) + " fields", std::to_string(kFields) + " fields");
+    lines.refuse(DataCode::wrong_count, geometry::counted(f.size(), "field"), geometry::counted(kFields, "field"));
   }
   PathTask task;
   task.bucket = lines.to_integer(f[0]);
@@ -74,7 +75,7 @@ void read_moving_ai_scen(const std::filesystem::path& path, Collector& out) {
   std::size_t outside = 0;
   for (std::size_t k = 0; k < tasks.size(); ++k) outside += is_inside_its_map(tasks[k]) ? 0 : 1;
   out.note("", std::to_string(tasks.size()) + " path-finding tasks, no obstacles: these are in the map");
-  if (outside > 0) out.note("", std::to_string(outside) + " tasks outside the size that they state");
+  if (outside > 0) out.note("", geometry::counted(outside, "task") + " outside the size that they state");
 }
 
 }  // namespace exactvo::datasets

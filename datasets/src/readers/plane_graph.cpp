@@ -84,7 +84,7 @@ void add_walls(std::vector<GraphChain> chains, const std::string& place, Collect
 
 bool is_lonely(const PlaneGraph& graph, Collector& out, const std::string& place) {
   if (!graph.edges.empty()) return false;
-  out.pass_over(place, "points without edges passed over: points are no obstacles");
+  out.pass_over(place, "points without edges skipped: points are no obstacles");
   return true;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes of motion planners and trajectory collections: OMPL's circles and grids, OpenTraj's line segments.
+#include "exactvo/geometry/counted.h"
 #include "readers/discs.h"
 #include "readers/grid.h"
 #include "readers/line_reader.h"
@@ -39,7 +40,7 @@ std::vector<std::vector<std::uint8_t>> read_rows(LineReader& lines) {
     std::vector<std::uint8_t>& row = rows.emplace_back();
     for (const std::string_view word : words_of(lines.line())) row.push_back(cell(lines, word));
     if (row.size() != rows.front().size())
-      lines.refuse(DataCode::wrong_count, std::to_string(row.size()) + " cells",
+      lines.refuse(DataCode::wrong_count, geometry::counted(row.size(), "cell"),
                    std::to_string(rows.front().size()) + ", as in the first row");
   }
   return rows;

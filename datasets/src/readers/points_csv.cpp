@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Unordered points: "x, y" a line, in metres. A first line of words is a header.
+// Unordered points, in metres: "x, y" in each line, with a comma, a semicolon, a tab or blanks between. A first line of
+// words is a header.
 #include <algorithm>
 #include <cctype>
 
+#include "exactvo/geometry/counted.h"
 #include "readers/hits.h"
 #include "readers/line_reader.h"
 #include "readers/readers.h"
@@ -11,8 +13,15 @@
 namespace exactvo::datasets {
 namespace {
 
+/// At the first kind of separator that the line has.
+std::vector<std::string_view> columns_of(std::string_view line) {
+  for (const char separator : {',', ';', '\t'})
+    if (line.find(separator) != std::string_view::npos) return fields_of(line, separator);
+  return words_of(line);
+}
+
 bool is_a_pair_of_numbers(std::string_view line) {
-  const std::vector<std::string_view> fields = fields_of(line, ',');
+  const std::vector<std::string_view> fields = columns_of(line);
   return fields.size() == 2 && std::all_of(fields.begin(), fields.end(), [](std::string_view field) {
            return !field.empty() && field.find_first_not_of("+-.0123456789eE") == std::string_view::npos;
          });
@@ -23,9 +32,10 @@ bool begins_with_a_letter(std::string_view line) {
 }
 
 geometry::Vec2 to_point(const LineReader& lines) {
-  const std::vector<std::string_view> fields = fields_of(lines.line(), ',');
+  const std::vector<std::string_view> fields = columns_of(lines.line());
   if (fields.size() != 2) {
-    lines.refuse(DataCode::wrong_count, std::to_string(fields.size()) + " fields", "two: x, y");
+    lines.refuse(DataCode::wrong_count, geometry::counted(fields.size(), "number") + " in a line",
+                 "two, x and y, with a comma, a semicolon, a tab or blanks between them");
   }
   const geometry::Vec2 point{lines.to_number(fields[0]), lines.to_number(fields[1])};
   if (!geometry::is_finite(point)) lines.refuse(DataCode::not_finite, excerpt(lines.line(), 0), "finite coordinates");
@@ -44,7 +54,7 @@ bool looks_like_points_csv(const Glimpse& glimpse) {
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (line.empty() || line.front() == '#') continue;
     if (is_a_pair_of_numbers(line)) return true;
-    if (!may_be_header || !begins_with_a_letter(line) || fields_of(line, ',').size() != 2) return false;
+    if (!may_be_header || !begins_with_a_letter(line) || columns_of(line).size() != 2) return false;
     may_be_header = false;
   }
   return false;

@@ -37,7 +37,7 @@ void read_rings_json(const std::filesystem::path& path, Collector& out) {
   raw.id = "0";
   raw.place = "polygon";
   for (std::size_t k = 0; k < rings.size(); ++k) raw.rings.push_back(to_ring(rings.at(k)));
-  if (raw.rings.empty()) return out.pass_over(raw.place, "an empty polygon passed over");
+  if (raw.rings.empty()) return out.pass_over(raw.place, "an empty polygon skipped");
   out.add(raw);
 }
 

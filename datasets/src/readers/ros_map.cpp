@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "exactvo/geometry/counted.h"
 #include "readers/grey_image.h"
 #include "readers/grid.h"
 #include "readers/readers.h"
@@ -52,7 +53,7 @@ class MapYaml {
       refuse("resolution", DataCode::out_of_range, std::to_string(m.resolution), "a number > 0");
     const auto origin = required<std::vector<double>>("origin", "[x, y, yaw]");
     if (origin.size() != 3)
-      refuse("origin", DataCode::wrong_count, std::to_string(origin.size()) + " numbers", "[x, y, yaw]");
+      refuse("origin", DataCode::wrong_count, geometry::counted(origin.size(), "number"), "[x, y, yaw]");
     for (std::size_t i = 0; i < 3; ++i) m.origin[i] = finite(origin[i], "origin");
     m.negate = negate();
     m.occupied_thresh = threshold("occupied_thresh", m.occupied_thresh);

@@ -44,7 +44,7 @@ void read_sumo_poly(const std::filesystem::path& path, Collector& out) {
   const XmlFile xml(path, out.file());
   for (const pugi::xml_node shape : xml.document().document_element().children()) {
     if (std::string_view(shape.name()) == "poi") {
-      out.pass_over(xml.place_of(shape), "a poi passed over: points are no obstacles");
+      out.pass_over(xml.place_of(shape), "a poi skipped: points are no obstacles");
     }
     if (std::string_view(shape.name()) != "poly") continue;
     try {

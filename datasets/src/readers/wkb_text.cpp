@@ -42,7 +42,7 @@ class WkbReader {
     switch (head.kind) {
       case 1:
         point(head);
-        return out_.pass_over(place_, "a point passed over: points are no obstacles");
+        return out_.pass_over(place_, "a point skipped: points are no obstacles");
       case 2:
         return hand_on(RawKind::polyline, {points(head)});
       case 3:
@@ -144,8 +144,7 @@ class WkbReader {
     raw.place = place_ + (part_ > 0 ? ", part " + std::to_string(part_ + 1) : "");
     raw.rings = std::move(rings);
     ++part_;
-    if (raw.rings.empty() || raw.rings.front().empty())
-      return out_.pass_over(raw.place, "an empty geometry passed over");
+    if (raw.rings.empty() || raw.rings.front().empty()) return out_.pass_over(raw.place, "an empty geometry skipped");
     out_.add(raw);
   }
 

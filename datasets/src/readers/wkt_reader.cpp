@@ -87,7 +87,7 @@ class WktReader {
 
   void geometry(int depth) {
     const std::string kind = keyword();
-    if (try_empty()) return out_.pass_over(where_, "an empty " + kind + " passed over");
+    if (try_empty()) return out_.pass_over(where_, "an empty " + kind + " skipped");
     if (kind == "POINT" || kind == "MULTIPOINT") return points(kind);
     if (kind == "LINESTRING" || kind == "LINEARRING") return line();
     if (kind == "POLYGON" || kind == "TRIANGLE") return polygon();
@@ -118,7 +118,7 @@ class WktReader {
     scan_.need_sign('(');
     do {
       if (try_empty()) {
-        out_.pass_over(where_, "an empty part passed over");
+        out_.pass_over(where_, "an empty part skipped");
       } else {
         item();
       }
@@ -139,7 +139,7 @@ class WktReader {
       coordinate();
       if (wrapped) scan_.need_sign(')');
     });
-    out_.pass_over(where_, "a " + kind + " passed over: points are no obstacles");
+    out_.pass_over(where_, "a " + kind + " skipped: points are no obstacles");
   }
 
   void line() { hand_on(RawKind::polyline, {ring()}); }
@@ -189,7 +189,7 @@ class WktReader {
     raw.place = where_ + (part_ > 0 ? ", part " + std::to_string(part_ + 1) : "");
     raw.rings = std::move(rings);
     ++part_;
-    if (raw.rings.empty()) return out_.pass_over(raw.place, "an empty polygon passed over");
+    if (raw.rings.empty()) return out_.pass_over(raw.place, "an empty polygon skipped");
     out_.add(raw);
   }
 

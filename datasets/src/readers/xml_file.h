@@ -35,7 +35,7 @@ class XmlFile {
   mutable std::vector<std::size_t> line_starts_;  ///< made when the first place is asked for
 };
 
-/// Whether `element` is the first element of the text, comments and declarations passed over.
+/// Whether `element` is the first element of the text, comments and declarations skipped.
 bool first_element_is(const std::string& text, const std::string& element);
 
 }  // namespace exactvo::datasets

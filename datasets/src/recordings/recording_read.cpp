@@ -3,6 +3,7 @@
 
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/geometry/counted.h"
 #include "json_cursor.h"
 #include "recordings/codec.h"
 #include "recordings/recording_extras.h"
@@ -55,7 +56,8 @@ void read_header(const JsonCursor& at, const std::string& name, RecordingFile& f
   recording.offsets = at.at("offsets").points();
   const std::size_t slots = file.scenario.formation ? file.scenario.robots.size() : 0;
   if (recording.offsets.size() != slots)
-    at.at("offsets").refuse(std::to_string(slots) + " offsets, one a robot of a formation", DataCode::wrong_count);
+    at.at("offsets").refuse(geometry::counted(slots, "offset") + ", one for each robot of a formation",
+                            DataCode::wrong_count);
   recording.all_half_planes = at.at("all_half_planes").truth();
 }
 
@@ -145,7 +147,7 @@ class LineReader {
     if (at.has("moving")) read_moving(at.at("moving"), step);
     const JsonCursor robots = at.at("robots");
     if (robots.size() != file_.scenario.robots.size())
-      robots.refuse(std::to_string(file_.scenario.robots.size()) + " robots, as the scenario has",
+      robots.refuse(geometry::counted(file_.scenario.robots.size(), "robot") + ", as the scenario has",
                     DataCode::wrong_count);
     for (std::size_t i = 0; i < robots.size(); ++i) step.robots.push_back(to_robot(robots.at(i)));
     for (std::size_t i = 0; i < robots.size(); ++i)
@@ -199,7 +201,8 @@ std::string_view next_line(std::string_view& text) {
 /// A file of another kind is refused as a whole: what is wrong in its first line tells nobody anything.
 void require_recording(std::string_view text, const std::string& name) {
   if (text.substr(0, text.find('\n')).find(kKind) != std::string_view::npos) return;
-  throw DataError(DataCode::format_unknown, name, "", "no recording", "a recording.jsonl, as simulate --out writes it");
+  throw DataError(DataCode::format_unknown, name, "", text.empty() ? "an empty file" : "no recording",
+                  "a recording.jsonl, as simulate --out writes it");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "exactvo/formation/patterns.h"
 #include "exactvo/formation/speed_profile.h"
+#include "exactvo/geometry/counted.h"
 #include "scenarios/scenario_values.h"
 
 namespace exactvo::datasets {
@@ -100,7 +101,7 @@ std::vector<formation::SpeedKnot> to_profile(const Json& object, const std::vect
   if (object.contains("legs")) {
     const auto speeds = object.at("legs").get<std::vector<double>>();
     if (speeds.size() + 1 != path.size())
-      throw DataError(DataCode::scenario, file, pointer + "/legs", std::to_string(speeds.size()) + " speeds",
+      throw DataError(DataCode::scenario, file, pointer + "/legs", geometry::counted(speeds.size(), "speed"),
                       "one a leg of the path: " + std::to_string(path.size() - 1));
     return formation::speed_of_legs(path, speeds);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The obstacles of a scenario (scenario_file.h), those of the files that it names included.
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/geometry/counted.h"
 #include "readers/readers.h"
 #include "writers/writers.h"
 
@@ -55,7 +56,7 @@ void read_scenario_obstacles(const std::filesystem::path& path, Collector& out) 
   for (const formation::SceneObstacle& obstacle : loaded.scenario.obstacles) out.add(to_raw(obstacle));
   for (const std::string& note : loaded.notes) out.note("", note);
   const std::size_t moving = loaded.scenario.moving_obstacles.size();
-  if (moving > 0) out.note("", std::to_string(moving) + " moving obstacles left out: they have no one place");
+  if (moving > 0) out.note("", geometry::counted(moving, "moving obstacle") + " left out, for lack of a fixed place");
 }
 
 }  // namespace exactvo::datasets

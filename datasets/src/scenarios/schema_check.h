@@ -5,7 +5,7 @@
 /// Holds a JSON value against a JSON Schema and says where it does not fit, what stood there and what should have.
 /// Covers the keywords that our schemas use (type, enum, required, properties, additionalProperties: false, items,
 /// oneOf, not, $ref into definitions, the bounds of numbers, strings and lists); a keyword beyond these is a
-/// std::logic_error when it is met, never passed over. Verdicts agree with valijson's (tests compare them); the words
+/// std::logic_error when it is met, never skipped. Verdicts agree with valijson's (tests compare them); the words
 /// are why this is here.
 
 #include <string>

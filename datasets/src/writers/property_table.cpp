@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "exactvo/geometry/counted.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
@@ -123,10 +124,10 @@ std::vector<std::string> property_losses(const WriteOptions& options, const char
     std::string listed;
     for (std::size_t k = 0; k < std::min(names.size(), kMostNamed); ++k) listed += (k > 0 ? ", " : "") + names[k];
     if (names.size() > kMostNamed) listed += ", and " + std::to_string(names.size() - kMostNamed) + " more";
-    losses.push_back(std::to_string(names.size()) + (names.size() == 1 ? " property (" : " properties (") + listed +
-                     ") of " + std::to_string(features) + (features == 1 ? " obstacle" : " obstacles") + reason);
+    losses.push_back(geometry::counted(names.size(), "property", "properties") + " (" + listed + ") of " +
+                     geometry::counted(features, "obstacle") + reason);
   }
-  if (ids > 0) losses.push_back(std::to_string(ids) + (ids == 1 ? " feature id" : " feature ids") + reason);
+  if (ids > 0) losses.push_back(geometry::counted(ids, "feature id") + reason);
   return losses;
 }
 

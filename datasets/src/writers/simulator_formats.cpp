@@ -2,6 +2,7 @@
 // Obstacles as simulators of crowds and traffic and a triangulator's tests hold them: outlines, mostly without holes.
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/markup.h"
+#include "exactvo/geometry/counted.h"
 #include "json_text.h"
 #include "scenarios/scenario_json.h"
 #include "writers/writers.h"
@@ -45,7 +46,7 @@ std::string number(double x) {
 Written to_rings_json(const Obstacles& obstacles, const WriteOptions& options, const std::string& file) {
   const auto* polygon = obstacles.size() == 1 ? std::get_if<geometry::Polygon>(&obstacles.front().shape) : nullptr;
   if (polygon == nullptr) {
-    throw DataError(DataCode::wrong_count, file, "", std::to_string(obstacles.size()) + " obstacles",
+    throw DataError(DataCode::wrong_count, file, "", geometry::counted(obstacles.size(), "obstacle"),
                     "one polygon: rings-json holds no more, and no walls");
   }
   JsonWriter json(JsonWriter::Layout::compact);

@@ -20,7 +20,7 @@
 
 namespace exactvo::datasets {
 
-/// Empty lines are passed over. Throws DataError, E_FORMAT_UNKNOWN where the bytes are neither; `file_name` is used in
+/// Empty lines are skipped. Throws DataError, E_FORMAT_UNKNOWN where the bytes are neither; `file_name` is used in
 /// its words. Every problem returned passes lp::require_well_formed.
 std::vector<lp::Problem> parse_lp_problems(const std::string& bytes, const std::string& file_name);
 

@@ -15,7 +15,7 @@
 /// +-90 degrees, by more than the millionth that writers round by, is taken as metres. The notes of a file read by GDAL
 /// say how its units were decided, round what centre it was projected, and its extent.
 ///
-/// Heights (Z, M) are dropped. Points are no obstacles: passed over, with a note. A coordinate beyond
+/// Heights (Z, M) are dropped. Points are no obstacles: skipped, with a note. A coordinate beyond
 /// kLargestCoordinate is refused (E_RANGE), whatever the format.
 
 #include <cstddef>
@@ -56,11 +56,11 @@ struct ReadOptions {
   bool repair = false;
 };
 
-/// Something that a reader should know and that did not stop the reading: a repair, or something passed over.
+/// Something that a reader should know and that did not stop the reading: a repair, or something skipped.
 struct DataNote {
-  std::optional<DataCode> code;  ///< of a repair; none where something was merely passed over
+  std::optional<DataCode> code;  ///< of a repair; none where something was merely skipped
   std::string place;             ///< "feature 3, ring 0, vertex 17"
-  std::string text;              ///< "ring closed", "point passed over"
+  std::string text;              ///< "ring closed", "point skipped"
 };
 
 /// Numbers that stand in a file and are no metres, so that a finding can be searched for there.
@@ -117,7 +117,7 @@ struct Extent {
   geometry::Vec2 high;
 };
 
-/// An input counts as `read`; each ends as an obstacle (`done` or `repaired`), passed over or in `rejected`.
+/// An input counts as `read`; each ends as an obstacle (`done` or `repaired`), skipped or in `rejected`.
 struct ReadCounts {
   std::size_t read = 0;         ///< geometries met: polygons and polylines, one each, and points
   std::size_t done = 0;         ///< obstacles as they stood

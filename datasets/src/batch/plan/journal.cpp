@@ -9,6 +9,7 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/provenance.h"
+#include "exactvo/geometry/counted.h"
 #include "json_text.h"
 #include "system_error.h"
 #include "text_file.h"
@@ -42,8 +43,9 @@ void refuse_other_inputs(const Json& there, const Identity& identity, const fs::
   const auto at = there.find("inputs");
   const std::size_t count = at != there.end() && at->is_array() ? at->size() : 0;
   if (count != identity.inputs.size()) {
-    throw other_run(path, "an output of " + std::to_string(count) + " inputs",
-                    std::to_string(identity.inputs.size()) + " inputs as named now; another --out, or an empty one");
+    throw other_run(
+        path, "an output of " + geometry::counted(count, "input"),
+        geometry::counted(identity.inputs.size(), "input") + " as named now; another --out, or an empty one");
   }
   for (std::size_t k = 0; k < count; ++k) {
     const Input& input = identity.inputs[k];

@@ -118,7 +118,7 @@ struct ObstacleShapes {
 ObstacleShapes shapes_of(const Obstacle& obstacle, const ShapeOptions& options = {});
 
 /// Loose points: facades by region growing (scan.h). Hull and ellipses hold every finite point, the facades are within
-/// their deviation of them. Points that are not finite are passed over; without any the answer is not valid.
+/// their deviation of them. Points that are not finite are skipped; without any the answer is not valid.
 ObstacleShapes shapes_of_points(const std::vector<Vec2>& points, const PointOptions& how = {},
                                 const ShapeOptions& options = {});
 
