@@ -39,6 +39,17 @@ struct Stretch {
 Place place_of(Vec2 p) {
   return {Rational(p.x), Rational(p.y)};
 }
+Stretch stretch_of(const Segment& s) {
+  return {place_of(s.a), place_of(s.b)};
+}
+
+/// Doubles that are not more and not less: GMP rounds towards 0.
+double not_above(const Rational& x) {
+  return std::nextafter(x.get_d(), -std::numeric_limits<double>::infinity());
+}
+double not_below(const Rational& x) {
+  return std::nextafter(x.get_d(), std::numeric_limits<double>::infinity());
+}
 
 /// "numerator/denominator" or "numerator", or the double where the text is empty. Nothing where it is something else,
 /// or where the double is none of the two next to it.
@@ -106,8 +117,7 @@ class Checker {
     squared_ = radius_ * radius_;
     for (const Obstacle& obstacle : obstacles) {
       solid_.push_back(has_interior(obstacle));
-      edges_.emplace_back();
-      for (const Segment& e : edges_of(obstacle)) edges_.back().push_back({place_of(e.a), place_of(e.b)});
+      edges_.push_back(edges_of(obstacle));
     }
   }
 
@@ -174,14 +184,14 @@ class Checker {
   bool exists(const EdgeName& name) const {
     return name.obstacle < edges_.size() && name.edge < edges_[name.obstacle].size();
   }
-  const Stretch& edge(const EdgeName& name) const { return edges_[name.obstacle][name.edge]; }
+  Stretch edge(const EdgeName& name) const { return stretch_of(edges_[name.obstacle][name.edge]); }
 
   static bool lies_on(const Place& p, const Stretch& s) { return sgn(squared_distance(p, s)) == 0; }
 
   bool inside(std::size_t obstacle, const Place& p) const {
     bool in = false;
     if (solid_[obstacle])
-      for (const Stretch& e : edges_[obstacle]) in ^= ray_crosses(p, e.a, e.b);
+      for (const Segment& e : edges_[obstacle]) in ^= ray_crosses(p, place_of(e.a), place_of(e.b));
     return in;
   }
   bool inside_any(const Place& p) const {
@@ -193,13 +203,14 @@ class Checker {
   std::string too_near(const Stretch& piece) const {
     const auto [left, right] = std::minmax(piece.a.x, piece.b.x);
     const auto [low, high] = std::minmax(piece.a.y, piece.b.y);
-    const Rational x0 = left - radius_, x1 = right + radius_, y0 = low - radius_, y1 = high + radius_;
+    const double x0 = not_above(left - radius_), x1 = not_below(right + radius_);
+    const double y0 = not_above(low - radius_), y1 = not_below(high + radius_);
     for (std::size_t i = 0; i < edges_.size(); ++i) {
       for (std::size_t k = 0; k < edges_[i].size(); ++k) {
-        const Stretch& e = edges_[i][k];
+        const Segment& e = edges_[i][k];
         const bool apart = (e.a.x < x0 && e.b.x < x0) || (e.a.x > x1 && e.b.x > x1) || (e.a.y < y0 && e.b.y < y0) ||
                            (e.a.y > y1 && e.b.y > y1);
-        if (!apart && comes_nearer_than(piece, e, squared_))
+        if (!apart && comes_nearer_than(piece, stretch_of(e), squared_))
           return "nearer to edge " + std::to_string(k) + " of obstacle " + std::to_string(i) + " than the radius";
       }
     }
@@ -209,7 +220,7 @@ class Checker {
   Rational radius_, squared_;
   Place start_, goal_;
   std::vector<char> solid_;
-  std::vector<std::vector<Stretch>> edges_;
+  std::vector<std::vector<Segment>> edges_;
 };
 
 }  // namespace
