@@ -488,7 +488,7 @@ TEST(RouteVerb, MovingObstaclesAreLeftOutAloud) {
       R"([{"id": "cart", "polygon": [[2, 2], [3, 2], [3, 3], [2, 3]], "path": [[0, 0], [1, 0]], "speed": 0.1}])");
   rooms.here.write("moving.json", scenario.dump());
   EXPECT_THAT(rooms.here.run("route moving.json --from 1,1 --to 3,1 --radius 0.1").err,
-              HasSubstr("1 moving obstacles left out"));
+              HasSubstr("1 moving obstacle left out"));
 }
 
 }  // namespace
