@@ -44,8 +44,7 @@ def turn(a, b, p):
     return ux * vy - uy * vx
 
 
-def square_to(p, edge):
-    """The squared distance of a point from an edge."""
+def square_to(p, edge):  # the squared distance
     a, b = edge
     along, to = minus(b, a), minus(p, a)
     length = dot(along, along)
@@ -137,7 +136,8 @@ def main():
         try:
             answer = json.loads(line)
             c = answer.get("certificate", answer)
-            obstacles = [Obstacle(o) for o in c["obstacles"]] if "obstacles" in c else obstacles
+            listed, obstacles = c.get("obstacles"), None if "obstacles" in c else obstacles
+            obstacles = obstacles if listed is None else [Obstacle(o) for o in listed]
             why = check(c, obstacles) or ("another status" if answer.get("status", c["kind"]) != c["kind"] else "")
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             why = "not a certificate: %r" % error

@@ -277,6 +277,22 @@ TEST(RouteCertificates, ThePythonCheckerAcceptsEachKindAndRejectsEachChange) {
   }
 }
 
+TEST(RouteCertificates, ObstaclesThatCannotBeReadAreNotReplacedByThoseBefore) {
+  const Rooms rooms;
+  const json answer = answer_to(rooms, kCases[0]);
+  json spoilt = answer, later = answer;
+  spoilt["certificate"]["obstacles"][0] = {{"id", "outer wall"}};
+  later["certificate"].erase("obstacles");
+  const std::string text = answer.dump() + "\n" + spoilt.dump() + "\n" + later.dump() + "\n";
+  rooms.here.write("answers.jsonl", text);
+  const Outcome outcome = rooms.here.run("audit --certificate answers.jsonl");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("2: obstacles that cannot be read"), HasSubstr("3: no obstacles"),
+                                 HasSubstr("3 certificates, 1 valid")));
+  if (std::system("python3 -c 'import fractions' >/dev/null 2>&1") != 0) return;
+  EXPECT_THAT(python_verdicts(rooms.here, text), HasSubstr("3 certificates, 1 proven"));
+}
+
 TEST(RouteCertificates, CrossingsThatAreNoDoublesStandAsFractions) {
   const Rooms rooms;
   const json answer = answer_to(rooms, kCases[2]);
