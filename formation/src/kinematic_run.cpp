@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "decision.h"
+#include "guide.h"
 #include "moving.h"
 #include "needed_constraints.h"
 #include "rows.h"
@@ -24,8 +25,10 @@ struct KinematicRobot {
   std::size_t goal = 0;
   std::optional<StaticField> field;
   Follower follower;
-  bool tied = false;      ///< the last preference was turned to break a tie
-  std::string note = {};  ///< for the next row
+  std::optional<Course> course = {};  ///< with guidance: to its present goal
+  std::string no_way = {};            ///< with guidance: why it has no course
+  bool tied = false;                  ///< the last preference was turned to break a tie
+  std::string note = {};              ///< for the next row
 };
 
 class KinematicRun {
@@ -37,8 +40,12 @@ class KinematicRun {
         clock_(scenario, options),
         decider_(scenario, scene_.bodies()),
         anchors_(scenario.robots.size()) {
+    if (options.guidance == Guidance::route)
+      guide_.emplace(scenario, options.method == Method::orca ? 0.0 : scenario.margins.obstacle);
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
-      robots_.push_back({scenario.robots[i].position, scenario.robots[i].velocity, 0, std::nullopt, {}, false, {}});
+      KinematicRobot& robot = robots_.emplace_back();
+      robot.position = scenario.robots[i].position;
+      robot.velocity = scenario.robots[i].velocity;
       look_at_goal(i, 0.0);
     }
   }
@@ -68,7 +75,17 @@ class KinematicRun {
     robots_[i].field.emplace(scene_, scenario_, options_, spec.radius, robots_[i].position, goal_of(i),
                              HorizonRule::clamped);
     robots_[i].follower.reset();
+    if (guide_) plan_course(i);
     outlooks_.push_back({time, i, robots_[i].goal, robots_[i].field->shapes()});
+  }
+
+  void plan_course(std::size_t i) {
+    KinematicRobot& r = robots_[i];
+    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, goal_of(i));
+    r.course = std::move(answer.course);
+    r.no_way = std::move(answer.why_not);
+    if (r.course) return r.field->set_margin(Guide::margin_of(*r.course, scenario_.robots[i].radius));
+    r.note = joined_notes(r.note, "stays, its goal is out of reach: " + r.no_way);
   }
 
   bool at_goal(std::size_t i) const {
@@ -128,10 +145,18 @@ class KinematicRun {
     return step;
   }
 
-  Vec2 straight_for_goal(std::size_t i) const {
-    const Vec2 to_goal = goal_of(i) - robots_[i].position;
-    const double speed = std::min(scenario_.robots[i].max_speed, norm(to_goal) / scenario_.time_step);
-    return speed * geometry::normalized(to_goal);
+  Vec2 straight_for(std::size_t i, Vec2 place) const {
+    const Vec2 way = place - robots_[i].position;
+    const double speed = std::min(scenario_.robots[i].max_speed, norm(way) / scenario_.time_step);
+    return speed * geometry::normalized(way);
+  }
+
+  /// Along its course; a robot without one stays.
+  Vec2 guided(std::size_t i, RobotStep& step) {
+    KinematicRobot& r = robots_[i];
+    if (!r.course) return {};
+    if (step.mode == Mode::direct) step.mode = Mode::guided;
+    return straight_for(i, guide_->heading(*r.course, scenario_.robots[i].radius, r.position));
   }
 
   bool is_in_contact() const {
@@ -140,13 +165,14 @@ class KinematicRun {
   }
 
   Vec2 steer(std::size_t i, double time, RobotStep& step) {
-    const Vec2 preferred = straight_for_goal(i);
+    const Vec2 preferred = straight_for(i, goal_of(i));
     if (at_goal(i)) {
       step.mode = Mode::arrived;
       return preferred;
     }
     const bool in_contact = is_in_contact();
     if (in_contact) step.mode = Mode::pushing_out;
+    if (guide_) return guided(i, step);
     if (options_.method == Method::orca) return preferred;
     if (options_.method != Method::ivo) return ties_broken(i, preferred, step);
     const Robot& spec = scenario_.robots[i];
@@ -203,6 +229,9 @@ class KinematicRun {
       if (!at_goal(i) && robots_[i].follower.circled())
         text += "; " + scenario_.robots[i].id +
                 " completed a full circuit of the obstacle without finding a way to its goal";
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!robots_[i].no_way.empty())
+        text += "; " + scenario_.robots[i].id + " cannot reach its goal: " + robots_[i].no_way;
     return text;
   }
 
@@ -222,6 +251,7 @@ class KinematicRun {
   Scene scene_;
   RunClock clock_;
   Decider decider_;
+  std::optional<Guide> guide_;
   std::vector<KinematicRobot> robots_;
   std::vector<Outlook> outlooks_;
   // Memory that a step leaves to the next.

@@ -23,7 +23,9 @@ constexpr Names<Integrator, 5> kIntegrators{{{Integrator::exact, "exact"},
                                              {Integrator::rk4, "rk4"},
                                              {Integrator::dopri5, "dopri5"},
                                              {Integrator::rosenbrock4, "rosenbrock4"}}};
-constexpr Names<Mode, 5> kModes{{{Mode::direct, "direct"},
+constexpr Names<Guidance, 2> kGuidances{{{Guidance::none, "none"}, {Guidance::route, "route"}}};
+constexpr Names<Mode, 6> kModes{{{Mode::direct, "direct"},
+                                 {Mode::guided, "guided"},
                                  {Mode::boost, "boost"},
                                  {Mode::following, "following"},
                                  {Mode::pushing_out, "pushing-out"},
@@ -64,6 +66,9 @@ const char* name(Controller c) {
 const char* name(Integrator i) {
   return name_in(kIntegrators, i);
 }
+const char* name(Guidance g) {
+  return name_in(kGuidances, g);
+}
 const char* name(Mode m) {
   return name_in(kModes, m);
 }
@@ -76,6 +81,9 @@ std::vector<std::string> controller_names() {
 std::vector<std::string> integrator_names() {
   return all_of(kIntegrators);
 }
+std::vector<std::string> guidance_names() {
+  return all_of(kGuidances);
+}
 bool parse(const std::string& text, Method& out) {
   return parse_in(kMethods, text, out);
 }
@@ -84,6 +92,9 @@ bool parse(const std::string& text, Controller& out) {
 }
 bool parse(const std::string& text, Integrator& out) {
   return parse_in(kIntegrators, text, out);
+}
+bool parse(const std::string& text, Guidance& out) {
+  return parse_in(kGuidances, text, out);
 }
 
 }  // namespace exactvo::formation

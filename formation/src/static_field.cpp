@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -20,12 +21,6 @@ using geometry::Enclosure;
 using geometry::EnclosureGrade;
 using vo::BodyKind;
 using vo::BodyTable;
-
-/// m. Half-planes are built for a robot this much larger and certified for the robot as it is: a robot that presses
-/// against a wall for minutes closes the gap by a constant factor a step, and without a skin it would end within
-/// rounding of the wall, where nothing can be proven. Rounding moves it by about 1e-15 of the coordinates a step, so
-/// 1e-6 m outlasts 10^7 steps at 100 m.
-constexpr double kContactSkin = 1e-6;
 
 /// In real overlap nothing can be certified; the robot is asked to leave within this time, at a share of its speed.
 constexpr double kPushOutTime = 0.2;   // s
@@ -131,9 +126,14 @@ void Scene::add_chains(const Scenario& scenario) {
 
 StaticField::StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius,
                          Vec2 start, Vec2 goal, HorizonRule rule)
-    : scene_(&scene), scenario_(&scenario), method_(options.method), rule_(rule) {
-  if (method_ == Method::ivo_cluster || method_ == Method::ivo)
-    take_enclosures(geometry::enclose(scene.parts(), radius, start, goal, enclosure_options(scenario)));
+    : scene_(&scene), scenario_(&scenario), method_(options.method), rule_(rule), margin_(scenario.margins.obstacle) {
+  if (method_ != Method::ivo_cluster && method_ != Method::ivo) return;
+  if (options.guidance == Guidance::route) {
+    tight_index_.resize(scene.pieces_by_place().size());
+    std::iota(tight_index_.begin(), tight_index_.end(), 0u);
+    return;
+  }
+  take_enclosures(geometry::enclose(scene.parts(), radius, start, goal, enclosure_options(scenario)));
 }
 
 /// Ellipses become bodies; what stands as its pieces is the scene's already. Of an obstacle either all pieces come, one
@@ -304,8 +304,7 @@ double distance_below(const geometry::Box& box, Vec2 x, Vec2 u) {
 /// m/s: less than n.v - c of the half-plane against whatever the box holds.
 double StaticField::room_below(const geometry::Box& box, const Viewpoint& from) const {
   constexpr double kRounding = 1e-12;  // of the coordinates
-  const double kept =
-      scenario_->margins.obstacle + kContactSkin + kRounding * (largest_coordinate(box) + norm(from.position));
+  const double kept = margin_ + kContactSkin + kRounding * (largest_coordinate(box) + norm(from.position));
   const double nearest = geometry::distance_below(box, from.position) - from.radius;
   const double speed = norm(from.velocity);
   const double slow = (nearest - kept) / horizon(nearest, from) - speed;
@@ -319,7 +318,7 @@ double StaticField::room_below(const geometry::Box& box, const Viewpoint& from) 
 /// m, from the rim: whatever is farther leaves a robot at rest at least that room.
 double StaticField::distance_of_room(const Viewpoint& from, double room) const {
   const Horizons& h = scenario_->horizons;
-  const double kept = scenario_->margins.obstacle + kContactSkin;
+  const double kept = margin_ + kContactSkin;
   const double least = std::max(h.least, 2.0 * scenario_->time_step);
   const double pace = std::max(norm(from.velocity), h.speed_floor * from.max_speed);  // tau = distance / pace between
   if (const double d = kept + least * room; d <= pace * least) return d;
@@ -342,7 +341,7 @@ geometry::Box StaticField::window_of(const Viewpoint& from, const Need& need) co
     const Vec2 half{kRounding * by, kRounding * by};
     return geometry::Box{x - half, x + half};
   };
-  const double kept = from.radius + scenario_->margins.obstacle + 2.0 * kContactSkin;
+  const double kept = from.radius + margin_ + 2.0 * kContactSkin;
   geometry::Box window = grown(from.position, kept + std::max(need.within, 0.0));
   if (!(need.room > 0.0)) return window;
   const double most = scenario_->horizons.most;
@@ -404,7 +403,7 @@ void StaticField::add_body(BodyTable::Number body, const Name& name, const Viewp
   policy.time_horizon = horizon(nearest.distance, from);
   if (is_beyond_reach(nearest.distance, from, policy.time_horizon)) return;
   // An ellipse has its margin inside; a bare piece gets it here.
-  policy.room = name.grade == EnclosureGrade::tight ? scenario_->margins.obstacle + kContactSkin : kContactSkin;
+  policy.room = name.grade == EnclosureGrade::tight ? margin_ + kContactSkin : kContactSkin;
   policy.push_out_time = kPushOutTime;
   policy.push_out_speed = kPushOutShare * from.max_speed;
   const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity, policy);

@@ -445,6 +445,7 @@ double end_of_motion(const RecordingFile& run) {
 
 std::string run_title(const RecordingFile& run) {
   std::string title = shortened(run.info.scenario, kNameLength) + ", method " + run.info.method;
+  if (run.info.guidance) title += ", along a " + *run.info.guidance;
   if (run.info.controller) title += ", " + *run.info.controller + " controller";
   return title;
 }

@@ -33,6 +33,8 @@ datasets::RunInfo run_info(const Scenario& scenario, const SimulationOptions& op
   if (scenario.formation) {
     info.controller = name(options.controller);
     info.integrator = name(options.integrator);
+  } else if (options.guidance != formation::Guidance::none) {
+    info.guidance = name(options.guidance);
   }
   return info;
 }
@@ -69,11 +71,12 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
 
 RunName name_of(const Scenario& scenario, const SimulationOptions& options) {
   const datasets::RunInfo info = run_info(scenario, options, {});
-  return {info.scenario, info.method, info.controller};
+  return {info.scenario, info.method, info.controller, info.guidance};
 }
 
 std::string in_words(const RunName& run) {
-  return run.scenario + ", method " + run.method + (run.controller ? ", controller " + *run.controller : "");
+  return run.scenario + ", method " + run.method + (run.controller ? ", controller " + *run.controller : "") +
+         (run.guidance ? ", guidance " + *run.guidance : "");
 }
 
 std::optional<RunName> run_in(const fs::path& folder) {
@@ -85,7 +88,7 @@ std::optional<RunName> run_in(const fs::path& folder) {
     if (found == metrics.end() || !found->is_string()) return std::nullopt;
     return found->get<std::string>();
   };
-  return RunName{text("scenario").value_or(""), text("method").value_or(""), text("controller")};
+  return RunName{text("scenario").value_or(""), text("method").value_or(""), text("controller"), text("guidance")};
 }
 
 void check_same_run(const fs::path& folder, const RunName& run) {

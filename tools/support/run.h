@@ -37,9 +37,10 @@ FinishedRun run(const formation::Scenario& scenario, formation::SimulationOption
 /// What tells one run from another in a folder.
 struct RunName {
   std::string scenario, method;
-  std::optional<std::string> controller;
+  std::optional<std::string> controller, guidance;
   bool operator==(const RunName& other) const {
-    return scenario == other.scenario && method == other.method && controller == other.controller;
+    return scenario == other.scenario && method == other.method && controller == other.controller &&
+           guidance == other.guidance;
   }
 };
 RunName name_of(const formation::Scenario& scenario, const formation::SimulationOptions& options);

@@ -83,6 +83,9 @@ std::optional<formation::Remedies> remedies_of(const SimulationFlags& flags, for
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
   CLI::Option* method = app.add_option("--method,-m", flags.method, help("Avoidance method", formation::method_names()))
                             ->capture_default_str();
+  flags.of_goals = {app.add_option("--guidance,-g", flags.guidance,
+                                   help("How robots with goals find their way", formation::guidance_names()))
+                        ->capture_default_str()};
   flags.of_formations = {
       app.add_option("--controller,-c", flags.controller, help("Formation controller", formation::controller_names()))
           ->capture_default_str(),
@@ -96,7 +99,7 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
                                  "acceleration_bound=8 (m/s^2)",
                                  fmt::join(switch_names(), ", ")))};
   flags.of_runs = flags.of_formations;
-  flags.of_runs.insert(flags.of_runs.end(), {method, declare_seed(app, flags.seed)});
+  flags.of_runs.insert(flags.of_runs.end(), {method, flags.of_goals.front(), declare_seed(app, flags.seed)});
 }
 
 CLI::Option* declare_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
@@ -129,7 +132,8 @@ void note(const std::vector<const CLI::Option*>& options, const std::string& why
 }  // namespace
 
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
-  if (!scenario.formation) note(flags.of_formations, "the scenario has no formation");
+  scenario.formation ? note(flags.of_goals, "robots of a formation have no goals")
+                     : note(flags.of_formations, "the scenario has no formation");
 }
 
 void note_recorded(const SimulationFlags& flags) {
@@ -139,6 +143,10 @@ void note_recorded(const SimulationFlags& flags) {
 formation::SimulationOptions simulation_options(const SimulationFlags& flags) {
   formation::SimulationOptions options;
   options.method = parse_choice<formation::Method>("--method", flags.method, formation::method_names());
+  options.guidance = parse_choice<formation::Guidance>("--guidance", flags.guidance, formation::guidance_names());
+  if (options.guidance == formation::Guidance::route && options.method == formation::Method::ivo_edge)
+    throw UsageError("--guidance", "route with ivo-edge, whose ellipses would close what a route passes",
+                     "another method: orca, ivo-cluster or ivo");
   options.controller =
       parse_choice<formation::Controller>("--controller", flags.controller, formation::controller_names());
   options.integrator =

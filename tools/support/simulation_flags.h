@@ -15,12 +15,14 @@ namespace exactvo::tools {
 
 struct SimulationFlags {
   std::string method = "ivo";
+  std::string guidance = "none";
   std::string controller = "default";
   std::string integrator = "exact";
   std::string remedies;               ///< a set by its name, instead of the controller's
   std::vector<std::string> switches;  ///< "smoothing=on"
   std::uint64_t seed = 0;
   std::vector<const CLI::Option*> of_runs;        ///< all
+  std::vector<const CLI::Option*> of_goals;       ///< --guidance
   std::vector<const CLI::Option*> of_formations;  ///< --controller, --integrator, --remedies, --remedy
 };
 
@@ -31,7 +33,7 @@ CLI::Option* declare_out(CLI::App& app, std::string& out, const std::string& hel
 CLI::Option* declare_seed(CLI::App& app, std::uint64_t& seed,
                           const std::string& help = "Noted in the provenance; a run draws no random numbers");
 
-/// A message for each option given that a scenario without a formation does not use.
+/// A message for each option given that the scenario does not use.
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario);
 /// A message for each option given where the run is a recorded one.
 void note_recorded(const SimulationFlags& flags);

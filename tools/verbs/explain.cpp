@@ -64,7 +64,8 @@ const formation::Step& last_decision(const formation::Recording& recording, doub
 }
 
 std::string method_words(const Scenario& scenario, const SimulationFlags& flags) {
-  return "method " + flags.method + (scenario.formation ? ", controller " + flags.controller : "");
+  if (scenario.formation) return "method " + flags.method + ", controller " + flags.controller;
+  return "method " + flags.method + (flags.guidance == "none" ? "" : ", guidance " + flags.guidance);
 }
 
 struct Explained {
@@ -112,8 +113,9 @@ Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
   last_decision(file.recording, flags.time);  // refuses a time after the end
   cut_after(file.recording, flags.time);
   const formation::Step& step = last_decision(file.recording, flags.time);
-  const std::string method =
-      "method " + file.info.method + (file.info.controller ? ", controller " + *file.info.controller : "");
+  const std::string method = "method " + file.info.method +
+                             (file.info.controller ? ", controller " + *file.info.controller : "") +
+                             (file.info.guidance ? ", guidance " + *file.info.guidance : "");
   Explained explained{{file.scenario, method, robot, step.time, step.robots.at(robot)},
                       remarks_on(file.scenario, file.recording, robot)};
   if (!file.recording.all_half_planes)

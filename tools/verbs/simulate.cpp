@@ -83,6 +83,7 @@ std::string lyapunov_lines(const formation::LyapunovSummary& s) {
 std::string summary(const FinishedRun& run) {
   const formation::Metrics& m = run.metrics;
   std::string text = fmt::format("{}, method {}", shown(run.file.info.scenario), run.file.info.method);
+  if (run.file.info.guidance) text += fmt::format(", guidance {}", *run.file.info.guidance);
   if (run.file.info.controller) text += fmt::format(", controller {}", *run.file.info.controller);
   text += ": " + shown(m.outcome) + "\n" + collision_lines(m.collisions);
   for (const auto& robot : m.robots) text += robot_line(robot, !run.file.scenario.formation);
@@ -184,7 +185,8 @@ Action declare(CLI::App& app) {
   app.add_flag("--json", flags->json, "Print the metrics as JSON");
   app.add_flag("--no-figures", flags->no_figures, "Write no figures");
   app.add_flag("--fail-on-collision", flags->fail_on_collision, "Exit status 1 if a robot overlaps anything");
-  app.add_flag("--force", flags->force, "Let --out replace an earlier run of another scenario, method or controller");
+  app.add_flag("--force", flags->force,
+               "Let --out replace an earlier run of another scenario, method, guidance or controller");
   return [flags] { return simulate(*flags); };
 }
 
@@ -193,6 +195,7 @@ Action declare(CLI::App& app) {
 Verb simulate_verb() {
   return {"simulate", "Run one scenario",
           "  exactvo simulate datasets/data/paper/A2.json --method ivo --out out/A2\n"
+          "  exactvo simulate datasets/data/office/office.json --guidance route --out out/office\n"
           "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
           "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",

@@ -66,6 +66,7 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   JsonWriter json(JsonWriter::Layout::indented);
   json.begin_object();
   json.member("scenario", info.scenario).member("method", info.method).member("controller", info.controller);
+  if (info.guidance) json.member("guidance", *info.guidance);
   json.member("all_arrived", m.all_arrived).member("last_arrival_time", m.last_arrival_time);
   json.member("min_obstacle_clearance", m.min_obstacle_clearance).member("min_robot_clearance", m.min_robot_clearance);
   append_collisions(json, m.collisions);

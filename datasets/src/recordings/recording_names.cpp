@@ -26,11 +26,9 @@ const std::vector<Word<lp::BindingKind>>& words() {
 template <>
 const std::vector<Word<formation::Mode>>& words() {
   using formation::Mode;
-  static const std::vector<Word<Mode>> kWords{{Mode::direct, "direct"},
-                                              {Mode::boost, "boost"},
-                                              {Mode::following, "following"},
-                                              {Mode::pushing_out, "pushing-out"},
-                                              {Mode::arrived, "arrived"}};
+  static const std::vector<Word<Mode>> kWords{
+      {Mode::direct, "direct"},       {Mode::guided, "guided"},           {Mode::boost, "boost"},
+      {Mode::following, "following"}, {Mode::pushing_out, "pushing-out"}, {Mode::arrived, "arrived"}};
   return kWords;
 }
 

@@ -29,6 +29,7 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.begin_object().member("kind", "exactvo-recording").member("format_version", kRecordingFormat);
   json.member("method", file.info.method).member("controller", file.info.controller);
   json.member("integrator", file.info.integrator);
+  if (file.info.guidance) json.member("guidance", *file.info.guidance);
   json.member("time_step", recording.time_step).member("motion", word_for(recording.motion));
   json.member("tracking_gain", recording.tracking_gain).member("relative_frame", recording.relative_frame);
   if (recording.remedies) append_remedies(json, *recording.remedies);

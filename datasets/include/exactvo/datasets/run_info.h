@@ -17,6 +17,7 @@ struct RunInfo {
   std::optional<std::string> controller;  ///< none without a formation
   std::optional<std::string> integrator;  ///< none without a formation
   Provenance provenance;
+  std::optional<std::string> guidance = std::nullopt;  ///< "route"; none where robots go without
 };
 
 }  // namespace exactvo::datasets

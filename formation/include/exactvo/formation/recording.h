@@ -45,6 +45,7 @@ struct RecordedConstraint {
 /// How the preferred velocity was formed.
 enum class Mode {
   direct,       ///< straight for the goal or slot
+  guided,       ///< along a proven route
   boost,        ///< turned onto the tangent of a certified trap-free enclosure
   following,    ///< along a boundary: after a stall, or (formations) on the side committed to
   pushing_out,  ///< in contact: leaving an obstacle

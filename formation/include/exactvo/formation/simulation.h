@@ -33,6 +33,13 @@ enum class Controller {
 
 enum class Integrator { exact, euler, rk4, dopri5, rosenbrock4 };
 
+/// How a robot with goals finds its way.
+enum class Guidance {
+  none,  ///< straight for the goal, and round obstacles as the method has it
+  route  ///< along a proven route (geometry/routes.h) through what the margin leaves, without enclosures; a robot whose
+         ///< goal is proven out of reach stays
+};
+
 /// The remedies that a controller consists of.
 Remedies remedies_of(Controller controller);
 
@@ -40,16 +47,20 @@ Remedies remedies_of(Controller controller);
 const char* name(Method m);
 const char* name(Controller c);  ///< "paper-literal", "paper-signs", "corrected", "default"
 const char* name(Integrator i);
+const char* name(Guidance g);
 const char* name(Mode m);
 std::vector<std::string> method_names();
 std::vector<std::string> controller_names();
 std::vector<std::string> integrator_names();
+std::vector<std::string> guidance_names();
 bool parse(const std::string& text, Method& out);
 bool parse(const std::string& text, Controller& out);
 bool parse(const std::string& text, Integrator& out);
+bool parse(const std::string& text, Guidance& out);
 
 struct SimulationOptions {
   Method method = Method::ivo;
+  Guidance guidance = Guidance::none;            ///< used by robots with goals only; not with Method::ivo_edge
   Controller controller = Controller::standard;  ///< used by formations only
   Integrator integrator = Integrator::exact;     ///< used by formations only
   std::optional<Remedies> remedies;              ///< formations: these instead of the controller's
