@@ -684,6 +684,39 @@ TEST(Simulate, WithoutGnuplotTheDataAndScriptsStand) {
   EXPECT_TRUE(here.has("out/metrics.json"));
 }
 
+TEST(Simulate, FollowsProvenRoutes) {
+  const Workplace here;
+  const auto door = [](const char* upper) {
+    return R"({ "name": "door", "time_limit": 60, "time_step": 0.1,
+      "robots": [ { "id": "R", "position": [-4, 3], "goal": [4, 3] } ],
+      "obstacles": [ { "id": "lower", "polyline": [[0, -6], [0, -0.6]] }, { "id": "upper", "polyline": [[0, )" +
+           std::string(upper) + R"(], [0, 6]] },
+                     { "id": "frame", "polyline": [[-6, -6], [6, -6], [6, 6], [-6, 6], [-6, -6]] } ] })";
+  };
+  here.write("open.json", door("0.6"));
+  here.write("shut.json", door("0.3"));
+  const Outcome open = here.run("simulate open.json --guidance route --out open --no-figures");
+  ASSERT_EQ(open.status, 0) << open.err;
+  EXPECT_THAT(open.out, HasSubstr("method ivo, guidance route: the robot arrived"));
+  EXPECT_EQ(json::parse(here.read("open/metrics.json"))["guidance"], "route");
+  EXPECT_THAT(here.read("open/trajectory.csv"), HasSubstr(",guided,"));
+  EXPECT_EQ(here.run("audit open --scenario open.json").status, 0);
+  EXPECT_THAT(here.run("explain open --time 1 --robot R").out, HasSubstr("leads along a proven route"));
+  EXPECT_EQ(here.run("draw open").status, 0);
+  EXPECT_THAT(here.run("simulate open.json --out open --no-figures").err, HasSubstr("guidance route")) << "another run";
+
+  const Outcome shut = here.run("simulate shut.json --guidance route");
+  EXPECT_EQ(shut.status, 0);
+  EXPECT_THAT(shut.out, AllOf(HasSubstr("R cannot reach its goal: a chain of obstacles with 1 gap separates it"),
+                              HasSubstr("the widest, 0.9 m at ")));
+
+  EXPECT_EQ(here.run("simulate open.json --guidance route --method ivo-edge").status, 2);
+  EXPECT_THAT(here.run("simulate open.json --guidance routes").err, HasSubstr("one of none route"));
+  EXPECT_THAT(here.run("simulate " + data_file("paper/B0.json") + " --guidance route").err,
+              HasSubstr("--guidance has no effect: robots of a formation have no goals"));
+  EXPECT_THAT(here.run("trap open.json --guidance route").err, HasSubstr("--guidance has no effect"));
+}
+
 TEST(Explain, SaysWhatHoldsARobotAndDrawsIt) {
   const Workplace here;
   here.write("s.json", kOneRobot);

@@ -195,6 +195,8 @@ std::string held_words(const Decision& d, const Balance& b) {
 /// How the preferred velocity came about, where it is not simply straight for the goal.
 std::string turned_words(const Decision& d) {
   switch (d.step.mode) {
+    case formation::Mode::guided:
+      return "the preferred velocity leads along a proven route to the goal";
     case formation::Mode::boost:
       return "boost turned the preferred velocity onto the tangent of the enclosure in the way";
     case formation::Mode::following:

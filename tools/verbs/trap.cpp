@@ -13,6 +13,7 @@
 #include "support/simulation_flags.h"
 #include "support/stop.h"
 #include "support/unsigned_zero.h"
+#include "support/terminal.h"
 #include "verb.h"
 
 namespace exactvo::tools {
@@ -143,10 +144,18 @@ std::string words_of(const formation::Scenario& scenario, const TrapFinding& f, 
   return text + "\n";
 }
 
+std::vector<TrapFinding> tested(const formation::Scenario& scenario, const formation::SimulationOptions& options) {
+  const EndsAtOnce nothing_is_written;
+  return formation::trap_test(scenario, options);
+}
+
 ExitCode trap(const Flags& flags) {
   const formation::Scenario scenario = read_scenario(flags.scenario).scenario;
-  const EndsAtOnce nothing_is_written;
-  const std::vector<TrapFinding> findings = formation::trap_test(scenario, simulation_options(flags.simulation));
+  formation::SimulationOptions options = simulation_options(flags.simulation);
+  if (options.guidance != formation::Guidance::none)
+    message("note: --guidance has no effect: routes lead round traps, which are judged without them");
+  options.guidance = formation::Guidance::none;
+  const std::vector<TrapFinding> findings = tested(scenario, options);
   std::string text;
   if (flags.json) {
     text = json_of(scenario, findings);
