@@ -7,6 +7,7 @@
 
 #include "consensus.h"
 #include "decision.h"
+#include "divergence.h"
 #include "integrators.h"
 #include "leader.h"
 #include "moving.h"
@@ -76,7 +77,7 @@ class FormationRun {
       recording.outlooks.push_back({0.0, i, 0, robots_[i].field.shapes()});
     sink.begin(recording);
     RowFeed rows(scene_.bodies(), recording.outlooks, sink);
-    const double first_error = error_in(state_row(0.0));
+    const double first_error = formation_error(state_row(0.0), offsets_);
     std::size_t k = 0;
     for (; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
       Step row = decide_all(clock_.time(k));
@@ -210,27 +211,15 @@ class FormationRun {
     return row;
   }
 
-  /// m: beyond this nothing is worth computing (an explicit Euler step past its limit gets here in seconds).
-  static constexpr double kOutOfBounds = 1e6;
-
   bool out_of_bounds() const {
     for (const FormationRobot& r : robots_)
-      if (!(norm(r.body.position) < kOutOfBounds && norm(r.body.velocity) < kOutOfBounds)) return true;
+      if (is_out_of_bounds(r.body.position, r.body.velocity)) return true;
     return false;
   }
 
-  double error_in(const Step& row) const {
-    double worst = 0.0;
-    for (std::size_t i = 0; i < row.robots.size(); ++i)
-      worst = std::max(worst, norm(row.robots[i].position - row.leader_position - offsets_[i]));
-    return worst;
-  }
-
   void judge(double first, const Step& end, Recording& recording) const {
-    const double last = error_in(end);
-    // Judged by the end alone: a formation that ends farther from its slots than it began has not formed.
-    constexpr double kArrivedOnce = 1.0;  // m: an error this small is no divergence even when the start was exact
-    recording.diverged = out_of_bounds() || last > std::max(first, kArrivedOnce);
+    const double last = formation_error(end, offsets_);
+    recording.diverged = out_of_bounds() || has_diverged(first, last);
     recording.outcome = recording.diverged
                             ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
                             : "formation error " + metres(last) + " at the end";

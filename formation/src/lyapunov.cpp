@@ -8,7 +8,7 @@
 
 #include "consensus.h"
 #include "exactvo/geometry/require.h"
-#include "lyapunov_watch.h"
+#include "lyapunov_accumulator.h"
 #include "rows.h"
 
 namespace exactvo::formation {
@@ -108,21 +108,21 @@ SoundTerms sound_terms(const FormationSpec& f, const RelativeState& s) {
   return t;
 }
 
-/// A step of a run: from one row to the next.
-struct Interval {
+/// A row and the next one.
+struct RowPair {
   const Recording& run;
   const Step& row;
   const Step& next;
 };
 
 /// u_i at the row's time: of the exact law from both ends of the step, else the difference over the step.
-Vec2 acceleration(const Interval& p, std::size_t i) {
+Vec2 acceleration(const RowPair& p, std::size_t i) {
   const Vec2 change = p.next.robots[i].velocity - p.row.robots[i].velocity;
   if (p.run.motion != MotionLaw::exponential) return change / p.run.time_step;
   return p.run.tracking_gain / -std::expm1(-p.run.tracking_gain * p.run.time_step) * change;
 }
 
-PaperRates paper_rates(const FormationSpec& f, const Interval& p, const RelativeState& s) {
+PaperRates paper_rates(const FormationSpec& f, const RowPair& p, const RelativeState& s) {
   PaperRates r;
   for (std::size_t i = 0; i < s.velocity.size(); ++i) r.kinetic += dot(s.velocity[i], acceleration(p, i));
   r.consensus = f.gains.k1 * across(f.topology, s.position, s.velocity);
@@ -133,13 +133,13 @@ PaperRates paper_rates(const FormationSpec& f, const Interval& p, const Relative
 
 /// e_i: what is tracked, whatever the controller (v + u / k3), less the preference of the law that the function belongs
 /// to, consensus term and all: what obstacles, robots and steering ask for.
-Vec2 intervention(const FormationSpec& f, const Interval& p, const RelativeState& s, std::size_t i) {
+Vec2 intervention(const FormationSpec& f, const RowPair& p, const RelativeState& s, std::size_t i) {
   const Vec2 tracked = p.row.robots[i].velocity + acceleration(p, i) / f.gains.k3;
   const Vec2 slotwards = detail::preference(f, Remedies{}, s.position[i], p.row.leader_velocity, 0.0);
   return tracked - slotwards - detail::consensus_input(f, s, i, -1.0) / f.gains.k3;
 }
 
-void add_rates(const FormationSpec& f, const Interval& p, const RelativeState& s, LyapunovRow& out) {
+void add_rates(const FormationSpec& f, const RowPair& p, const RelativeState& s, LyapunovRow& out) {
   const double consensus = across(f.topology, s.velocity, s.velocity) + pinned(f.topology, s.velocity, s.velocity);
   const double speed2 = sum_of_squares(s.velocity);
   out.has_rates = true;
@@ -159,12 +159,13 @@ void add_rates(const FormationSpec& f, const Interval& p, const RelativeState& s
 
 namespace detail {
 
-LyapunovWatch::LyapunovWatch(const Scenario& scenario, const Recording& run) : spec_(*scenario.formation), run_(run) {
+LyapunovAccumulator::LyapunovAccumulator(const Scenario& scenario, const Recording& run)
+    : spec_(*scenario.formation), run_(run) {
   EXACTVO_REQUIRE(run.offsets.size() == scenario.robots.size(), scenario.name);
   EXACTVO_REQUIRE(spec_.topology.adjacency.size() == scenario.robots.size(), scenario.name);
 }
 
-std::optional<LyapunovRow> LyapunovWatch::add(std::shared_ptr<const Step> row) {
+std::optional<LyapunovRow> LyapunovAccumulator::add(std::shared_ptr<const Step> row) {
   std::optional<LyapunovRow> before;
   if (row_) {
     add_rates(spec_, {run_, *row_, *row}, state_, values_);
@@ -184,7 +185,7 @@ std::optional<LyapunovRow> LyapunovWatch::add(std::shared_ptr<const Step> row) {
   return before;
 }
 
-void LyapunovWatch::Course::add(double value, bool steady) {
+void LyapunovAccumulator::Course::add(double value, bool steady) {
   if (!begun_) {
     course = {value, value, value, 0.0};
     begun_ = true;
@@ -199,7 +200,7 @@ void LyapunovWatch::Course::add(double value, bool steady) {
 
 std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recording& recording) {
   EXACTVO_REQUIRE(scenario.formation.has_value(), scenario.name);
-  detail::LyapunovWatch watch(scenario, recording);
+  detail::LyapunovAccumulator watch(scenario, recording);
   std::vector<LyapunovRow> rows;
   for (const Step& step : recording.steps)
     if (const auto before = watch.add(detail::borrowed(step))) rows.push_back(*before);
@@ -209,7 +210,8 @@ std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recordin
 
 LyapunovSummary summary_of(const Scenario& scenario, const Recording& recording) {
   EXACTVO_REQUIRE(scenario.formation.has_value(), scenario.name);
-  detail::LyapunovWatch watch(scenario, recording);
+  EXACTVO_REQUIRE(!recording.steps.empty(), "an empty recording");
+  detail::LyapunovAccumulator watch(scenario, recording);
   for (const Step& step : recording.steps) watch.add(detail::borrowed(step));
   return watch.summary();
 }

@@ -6,15 +6,16 @@
 #include <utility>
 
 #include "clearances.h"
+#include "divergence.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/formation/stuck.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/require.h"
-#include "lyapunov_watch.h"
+#include "lyapunov_accumulator.h"
+#include "metrics_accumulator.h"
 #include "outcome_words.h"
 #include "rows.h"
-#include "run_measures.h"
-#include "stuck_watch.h"
+#include "stuck_accumulator.h"
 
 namespace exactvo::formation {
 namespace {
@@ -60,9 +61,9 @@ struct Evaluator::Parts {
   const Recording run;
   TakeRow take_row;
   detail::ClearanceSweep clearances;
-  detail::RunMeasures measures;
-  detail::StuckWatch stuck;
-  std::optional<detail::LyapunovWatch> lyapunov;
+  detail::MetricsAccumulator measures;
+  detail::StuckAccumulator stuck;
+  std::optional<detail::LyapunovAccumulator> lyapunov;
   std::shared_ptr<const Step> last;
 };
 
@@ -112,6 +113,16 @@ Evaluation evaluate(const Scenario& scenario, const Recording& recording) {
   Evaluation found = evaluator.finish(recording);
   found.lyapunov = std::move(lyapunov);
   return found;
+}
+
+bool has_diverged(const Recording& recording) {
+  EXACTVO_REQUIRE(!recording.steps.empty(), "an empty recording");
+  if (recording.offsets.empty()) return false;
+  const Step &first = recording.steps.front(), &last = recording.steps.back();
+  const bool is_out = std::any_of(last.robots.begin(), last.robots.end(),
+                                  [](const RobotStep& r) { return detail::is_out_of_bounds(r.position, r.velocity); });
+  return is_out || detail::has_diverged(detail::formation_error(first, recording.offsets),
+                                        detail::formation_error(last, recording.offsets));
 }
 
 bool touched(const std::optional<double>& clearance) {

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Rows of a run on their way from where they are made to those that read them.
+/// Passes rows from the simulation to a RunSink.
 
 #include <memory>
 #include <utility>
@@ -13,7 +13,7 @@
 
 namespace exactvo::formation::detail {
 
-/// Of a row that outlives all who read it.
+/// A non-owning pointer; `row` must outlive it.
 inline std::shared_ptr<const Step> borrowed(const Step& row) {
   return {std::shared_ptr<void>(), &row};
 }

@@ -41,15 +41,19 @@ struct RowsKept : RunSink {
   std::vector<Step> rows;
 };
 
-/// Knows how long the sink took, whose time is not the run's.
+/// Measures the time spent in the sink, to subtract it from `wall_time`.
 class TimedSink : public RunSink {
  public:
   explicit TimedSink(RunSink& sink) : sink_(sink) {}
   void begin(const Recording& run) override {
     timed([&] { sink_.begin(run); });
   }
-  void add_body(const vo::Body& body) override { sink_.add_body(body); }
-  void add_outlook(const Outlook& outlook) override { sink_.add_outlook(outlook); }
+  void add_body(const vo::Body& body) override {
+    timed([&] { sink_.add_body(body); });
+  }
+  void add_outlook(const Outlook& outlook) override {
+    timed([&] { sink_.add_outlook(outlook); });
+  }
   void add_row(Step row) override {
     timed([&] { sink_.add_row(std::move(row)); });
   }

@@ -13,14 +13,14 @@
 #include "exactvo/vo/velocity_obstacle.h"
 #include "leader.h"
 #include "rows.h"
-#include "stuck_watch.h"
+#include "stuck_accumulator.h"
 
 namespace exactvo::formation {
 namespace {
 
 using geometry::norm;
 
-using detail::StuckWatch;
+using detail::StuckAccumulator;
 
 /// How a run ended.
 struct RunEnd {
@@ -126,7 +126,7 @@ std::string motion_words(const RunEnd& run, const StuckReport& r) {
 }
 
 /// Of a robot that went away from where it wanted to, as one that circles does.
-std::string nearest_words(const StuckWatch::Nearest& nearest, const StuckReport& r) {
+std::string nearest_words(const StuckAccumulator::Nearest& nearest, const StuckReport& r) {
   if (r.speed < kAtRest || nearest.distance >= r.goal_distance) return "";
   return printed("; it was nearest at %.4g s, ", nearest.time) + length(nearest.distance) + " away";
 }
@@ -199,7 +199,7 @@ std::string cause_words(const RunEnd& end, const StuckReport& r) {
   return text;
 }
 
-std::string sentence(const RunEnd& end, const StuckReport& r, const StuckWatch::Nearest& nearest) {
+std::string sentence(const RunEnd& end, const StuckReport& r, const StuckAccumulator::Nearest& nearest) {
   return end.scenario.robots[r.robot].id + " is " + length(r.goal_distance) +
          (end.scenario.formation ? " from its slot" : " from its goal") +
          printed(", at (%.3f, %.3f), ", r.position.x, r.position.y) + motion_words(end, r) + "; " +
@@ -212,7 +212,7 @@ bool is_settled(const RunEnd& end) {
   return !end.run.diverged && detail::leader_arrival(end.scenario.formation->leader) <= end.last.time;
 }
 
-StuckReport report_on(const RunEnd& end, std::size_t robot, const StuckWatch::OfRobot& before, Vec2 target) {
+StuckReport report_on(const RunEnd& end, std::size_t robot, const StuckAccumulator::OfRobot& before, Vec2 target) {
   const RobotStep& state = end.last.robots[robot];
   StuckReport r;
   r.robot = robot;
@@ -222,7 +222,7 @@ StuckReport report_on(const RunEnd& end, std::size_t robot, const StuckWatch::Of
   if (before.at_rest_since) r.rest_time = end.last.time - *before.at_rest_since;
   if (const RobotStep* decision = last_decision(end, robot)) r.binding = binding_in(*decision, state.position);
   r.equilibrium = equilibrium_of(r, target);
-  StuckWatch::Nearest nearest = before.nearest;
+  StuckAccumulator::Nearest nearest = before.nearest;
   if (!(nearest.distance < r.goal_distance)) nearest = {end.last.time, r.goal_distance};
   r.text = sentence(end, r, nearest);
   return r;
@@ -230,7 +230,7 @@ StuckReport report_on(const RunEnd& end, std::size_t robot, const StuckWatch::Of
 
 }  // namespace
 
-void detail::StuckWatch::add(std::shared_ptr<const Step> row) {
+void detail::StuckAccumulator::add(std::shared_ptr<const Step> row) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     OfRobot& r = robots_[i];
     if (!(norm(row->robots[i].velocity) < kAtRest)) {
@@ -246,7 +246,7 @@ void detail::StuckWatch::add(std::shared_ptr<const Step> row) {
   last_ = std::move(row);
 }
 
-std::vector<StuckReport> detail::StuckWatch::reports(const Recording& run) const {
+std::vector<StuckReport> detail::StuckAccumulator::reports(const Recording& run) const {
   EXACTVO_REQUIRE(last_ != nullptr, "an empty recording");
   const RunEnd end{scenario_, run, *last_, decided_.get()};
   std::vector<StuckReport> reports;
@@ -260,7 +260,7 @@ std::vector<StuckReport> detail::StuckWatch::reports(const Recording& run) const
 }
 
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording) {
-  detail::StuckWatch watch(scenario);
+  detail::StuckAccumulator watch(scenario);
   for (const Step& row : recording.steps) watch.add(detail::borrowed(row));
   return watch.reports(recording);
 }

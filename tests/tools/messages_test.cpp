@@ -286,7 +286,7 @@ TEST(Messages, GeoJsonWhoseTypeStandsTooFarBackIsRefusedWithTheReason) {
   const Outcome outcome = place().run("validate late.geojson");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.out, HasSubstr("/type: found \"FeatureCollection\" behind long members, expected GeoJSON with "
-                                     "its member \"type\" first [E_LIBRARY]"));
+                                     "its member \"type\" first [E_FORMAT_SYNTAX]"));
 }
 
 TEST(Messages, PointsBelowAHeaderAreAListOfPoints) {

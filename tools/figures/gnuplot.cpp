@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 #include "support/stop.h"
@@ -91,8 +92,26 @@ std::string contents(std::FILE* file) {
   return text;
 }
 
-/// The error code of the attempt to start, 0 where `pid` runs.
-int spawn_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
+/// Blocks the signals whose handlers look at children, for as long as it lives.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t ours;
+    ::sigemptyset(&ours);
+    for (const int signal : {SIGALRM, SIGINT, SIGTERM}) ::sigaddset(&ours, signal);
+    ::pthread_sigmask(SIG_BLOCK, &ours, &before_);
+  }
+  ~SignalsBlocked() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+  const sigset_t& before() const { return before_; }
+
+ private:
+  sigset_t before_{};
+};
+
+/// The error code of the attempt to start, 0 where `pid` runs, with the signals of `mask` blocked.
+int spawn_gnuplot(std::FILE* input, std::FILE* messages, const sigset_t& mask, pid_t& pid) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, fileno(input), 0);
@@ -106,19 +125,40 @@ int spawn_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
   for (char** variable = environ; *variable != nullptr; ++variable)
     if (std::string(*variable).rfind("TZ=", 0) != 0) environment.push_back(*variable);
   environment.insert(environment.end(), {utc, nullptr});
-  const int error = posix_spawnp(&pid, program, &actions, nullptr, arguments, environment.data());
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setsigmask(&attributes, &mask);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  const int error = posix_spawnp(&pid, program, &actions, &attributes, arguments, environment.data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   return error;
 }
 
-bool succeeded(pid_t pid) {
-  const EndedWithUs ours(pid);
-  int status = 0;
-  while (::waitpid(pid, &status, 0) < 0) {
-    if (errno != EINTR) return false;
+/// Waits until the child has ended, and leaves its number taken, so that no other process can have it meanwhile.
+void await_end(pid_t pid) {
+  siginfo_t info{};
+  while (::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOWAIT) < 0 && errno == EINTR)
     if (interrupted()) ::kill(pid, SIGTERM);  // Ctrl-C reaches both, a SIGTERM only this program
-  }
+}
+
+bool succeeded(pid_t pid) {
+  int status = 0;
+  while (::waitpid(pid, &status, 0) < 0)
+    if (errno != EINTR) return false;
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// The error code of the attempt to start; else `pid` has run to its end.
+int run_gnuplot(std::FILE* input, std::FILE* messages, pid_t& pid) {
+  std::optional<KillChildOnSignal> ours;
+  {
+    const SignalsBlocked until_it_is_known;
+    if (const int error = spawn_gnuplot(input, messages, until_it_is_known.before(), pid)) return error;
+    ours.emplace(pid);
+  }
+  await_end(pid);
+  return 0;
 }
 
 /// Cairo writes the time into a PDF. The same input gives the same bytes: it becomes the beginning of 1970.
@@ -144,7 +184,7 @@ RenderResult render(const std::vector<fs::path>& scripts) {
   std::rewind(driver.get());
 
   pid_t pid = 0;
-  const int error = spawn_gnuplot(driver.get(), messages.get(), pid);
+  const int error = run_gnuplot(driver.get(), messages.get(), pid);
   if (error == ENOENT) return {Rendering::no_gnuplot, "", {}};
   if (error != 0) return {Rendering::failed, std::generic_category().message(error), {}};
   if (!succeeded(pid)) {

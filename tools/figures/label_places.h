@@ -24,7 +24,7 @@ class LabelPlaces {
   /// where one must be written, the place with the most room.
   std::optional<Vec2> place_beside(Vec2 p, double radius, bool must);
 
-  /// The same, to the right or left of what is twice as wide as `half_width`, or within it.
+  /// The same beside or inside an object `2 * half_width` wide, centred at `p`.
   std::optional<Vec2> place_at_side(Vec2 p, double half_width, bool must);
 
  private:

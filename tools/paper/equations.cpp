@@ -21,7 +21,7 @@ const std::vector<Equation> kModel{
      "x_i - x_j -> Delta_i - Delta_j, v_i - v_j -> 0",
      "",
      "measured: the worst distance from a slot and the worst difference from the leader's velocity",
-     {{"formation/src/run_measures.cpp", "write_formation"}}},
+     {{"formation/src/metrics_accumulator.cpp", "write_formation"}}},
     {"(4)",
      "the mean of x_i tends to x_L",
      "contradicts Section V.B, whose offsets sum to (1, 1): the centroid would be 0.471 m off",

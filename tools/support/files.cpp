@@ -48,6 +48,17 @@ bool holds_metrics(const fs::path& path) {
   return text.find("\"min_obstacle_clearance\":") != std::string::npos;
 }
 
+/// NAME.gp that says how it is drawn again, or NAME.dat, .svg, .png or .pdf beside one.
+bool is_of_a_figure(const fs::path& file) {
+  const std::string extension = file.extension().string();
+  if (extension != ".gp" && extension != ".dat" && extension != ".svg" && extension != ".png" && extension != ".pdf")
+    return false;
+  std::ifstream script(fs::path(file).replace_extension(".gp"));
+  std::string first, second;
+  return std::getline(script, first) && std::getline(script, second) &&
+         second.rfind("# Draw again with: gnuplot", 0) == 0;
+}
+
 }  // namespace
 
 void write_text(const fs::path& path, const std::string& text) {
@@ -78,6 +89,16 @@ void check_output_folder(const fs::path& target) {
                             "a folder that does not exist, is empty, or holds an earlier output");
 }
 
+void check_figure_folder(const fs::path& target) {
+  std::error_code error;
+  if (!fs::is_directory(target, error)) return;
+  for (const auto& entry : fs::directory_iterator(target))
+    if (!is_of_a_figure(entry.path()))
+      throw datasets::DataError(datasets::DataCode::file_unwritable, target.string(), "",
+                                "a folder with other files in it: " + entry.path().filename().string(),
+                                "a folder that does not exist, is empty, or holds figures only");
+}
+
 void remove_figures(const fs::path& target) {
   std::error_code error;
   fs::remove_all(target / "figures", error);
@@ -89,7 +110,7 @@ StagedFolder::StagedFolder(fs::path target, const fs::path& named)
   staging_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(::getpid()));
   std::error_code error;
   if (fs::exists(target_, error) && !fs::is_directory(target_)) fail(target_, "a file of that name");
-  removed_at_end_.emplace(staging_.string());  // before it is there: a signal may come in between
+  remove_on_signal_.emplace(staging_.string());  // before it is there: a signal may come in between
   fs::create_directories(staging_, error);
   if (error) fail(named.empty() ? target_ : named, error.message());
 }

@@ -25,6 +25,9 @@ void make_folder(const std::filesystem::path& path);
 /// the work, not after.
 void check_output_folder(const std::filesystem::path& target);
 
+/// The same of a folder for figures alone: throws where it holds a file that is no figure of ours, nor belongs to one.
+void check_figure_folder(const std::filesystem::path& target);
+
 /// Takes an earlier output's pictures away, which would show another run than the one that is put there without any.
 void remove_figures(const std::filesystem::path& target);
 
@@ -51,7 +54,7 @@ class StagedFolder {
 
   std::filesystem::path target_;
   std::filesystem::path staging_;
-  std::optional<RemovedAtEnd> removed_at_end_;
+  std::optional<RemoveFolderOnSignal> remove_on_signal_;
 };
 
 }  // namespace exactvo::tools

@@ -3,7 +3,6 @@
 #include "support/stop.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+
+#include "support/terminal.h"
 
 namespace exactvo::tools {
 
@@ -30,6 +31,9 @@ struct Slot {
 };
 std::array<Slot, 16> slots;
 
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
+              "a signal handler reads them");
+
 /// As getdents64(2) has it.
 struct Entry {
   std::uint64_t inode;
@@ -43,7 +47,7 @@ bool is_dots(const char* name) {
   return std::strcmp(name, ".") == 0 || std::strcmp(name, "..") == 0;
 }
 
-constexpr int kDeepest = 8;  // the folders of an output are two deep
+constexpr int kDeepest = 8;  // folders within folders; an output has four at most
 
 void remove_contents(int folder, int depth);
 
@@ -75,17 +79,20 @@ void remove_contents(int folder, int depth) {
 
 }  // namespace
 
-EndsAtOnce::EndsAtOnce() {
+TerminateOnSignal::TerminateOnSignal() {
   ++at_once;
+  if (!interrupted()) return;
+  --at_once;
+  throw Interrupted();  // it came before, and nothing would look at it
 }
-EndsAtOnce::~EndsAtOnce() {
+TerminateOnSignal::~TerminateOnSignal() {
   --at_once;
 }
-bool ends_at_once() {
+bool terminates_on_signal() {
   return at_once > 0;
 }
 
-RemovedAtEnd::RemovedAtEnd(const std::string& folder) : slot_(-1) {
+RemoveFolderOnSignal::RemoveFolderOnSignal(const std::string& folder) : slot_(-1) {
   if (folder.size() >= PATH_MAX) return;
   for (std::size_t k = 0; k < slots.size() && slot_ < 0; ++k)
     if (!slots[k].is_taken.exchange(true)) slot_ = static_cast<int>(k);
@@ -95,16 +102,17 @@ RemovedAtEnd::RemovedAtEnd(const std::string& folder) : slot_(-1) {
   mine.is_set = true;
 }
 
-RemovedAtEnd::~RemovedAtEnd() {
+RemoveFolderOnSignal::~RemoveFolderOnSignal() {
   if (slot_ < 0) return;
-  slots[static_cast<std::size_t>(slot_)].is_set = false;
-  slots[static_cast<std::size_t>(slot_)].is_taken = false;
+  Slot& mine = slots[static_cast<std::size_t>(slot_)];
+  while (!mine.is_set.exchange(false)) ::pause();  // a handler in another thread has taken it: the program ends
+  mine.is_taken = false;
 }
 
-EndedWithUs::EndedWithUs(pid_t child) {
+KillChildOnSignal::KillChildOnSignal(pid_t child) {
   child_of_ours = child;
 }
-EndedWithUs::~EndedWithUs() {
+KillChildOnSignal::~KillChildOnSignal() {
   child_of_ours = 0;
 }
 
@@ -113,8 +121,8 @@ void remove_what_is_unfinished() {
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
   }
-  for (const Slot& slot : slots)
-    if (slot.is_set) remove_entry(AT_FDCWD, slot.path, 0);
+  for (Slot& slot : slots)
+    if (slot.is_set.exchange(false)) remove_entry(AT_FDCWD, slot.path, 0);
 }
 
 }  // namespace exactvo::tools

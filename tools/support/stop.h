@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// What a signal that ends the program takes with it: temporary folders and programs that it started. Both are known
-/// to the signal handler, since a computation or a library may not return for minutes.
+/// Temporary folders and child processes to clean up when a signal ends the program. The signal handler does it, since
+/// a computation or a library may not return for minutes.
 
 #include <sys/types.h>
 
@@ -13,35 +13,36 @@ namespace exactvo::tools {
 
 /// While one lives, the first SIGINT or SIGTERM ends the program from within the handler, instead of being noted. For
 /// work whose end loses nothing: a computation before anything is written, or one that writes into a staged folder.
-class EndsAtOnce {
+class TerminateOnSignal {
  public:
-  EndsAtOnce();
-  ~EndsAtOnce();
-  EndsAtOnce(const EndsAtOnce&) = delete;
-  EndsAtOnce& operator=(const EndsAtOnce&) = delete;
+  /// Throws Interrupted where a signal has come before.
+  TerminateOnSignal();
+  ~TerminateOnSignal();
+  TerminateOnSignal(const TerminateOnSignal&) = delete;
+  TerminateOnSignal& operator=(const TerminateOnSignal&) = delete;
 };
-bool ends_at_once();
+bool terminates_on_signal();
 
 /// A folder that a signal removes with all in it, for as long as the object lives. Beyond a fixed number of them at a
 /// time, further ones are not registered.
-class RemovedAtEnd {
+class RemoveFolderOnSignal {
  public:
-  explicit RemovedAtEnd(const std::string& folder);
-  ~RemovedAtEnd();
-  RemovedAtEnd(const RemovedAtEnd&) = delete;
-  RemovedAtEnd& operator=(const RemovedAtEnd&) = delete;
+  explicit RemoveFolderOnSignal(const std::string& folder);
+  ~RemoveFolderOnSignal();
+  RemoveFolderOnSignal(const RemoveFolderOnSignal&) = delete;
+  RemoveFolderOnSignal& operator=(const RemoveFolderOnSignal&) = delete;
 
  private:
   int slot_;
 };
 
 /// A child that a signal ends first, since it may write into such a folder. At most one at a time.
-class EndedWithUs {
+class KillChildOnSignal {
  public:
-  explicit EndedWithUs(pid_t child);
-  ~EndedWithUs();
-  EndedWithUs(const EndedWithUs&) = delete;
-  EndedWithUs& operator=(const EndedWithUs&) = delete;
+  explicit KillChildOnSignal(pid_t child);
+  ~KillChildOnSignal();
+  KillChildOnSignal(const KillChildOnSignal&) = delete;
+  KillChildOnSignal& operator=(const KillChildOnSignal&) = delete;
 };
 
 /// Ends the child and removes the folders. Async-signal-safe.

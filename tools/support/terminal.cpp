@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <system_error>
 #include <utility>
@@ -27,21 +29,30 @@ volatile std::sig_atomic_t interrupt_seen = 0;
 /// Seconds that a program has to end by itself.
 constexpr unsigned kGrace = 10;
 
-template <std::size_t N>
-[[noreturn]] void end_now(const char (&words)[N]) {
+std::atomic<bool> ending{false};
+std::atomic<bool> stderr_is_terminal{false};
+
+void write_to_stderr(const char* text) {
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
+}
+
+/// Called by signal handlers.
+[[noreturn]] void end_now(const char* words) {
+  while (ending.exchange(true)) ::pause();  // another thread's handler is at it
   remove_what_is_unfinished();
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, words, N - 1);
+  if (stderr_is_terminal) write_to_stderr("\r\033[K");  // over the progress line
+  write_to_stderr(words);
   ::_exit(128 + interrupt_seen);
 }
 
 extern "C" void on_interrupt(int signal) {
   interrupt_seen = signal;
-  if (ends_at_once()) end_now("exactvo: error: interrupted; nothing was written\n");
+  if (terminates_on_signal()) end_now("exactvo: error: interrupted; nothing was written\n");
   ::alarm(kGrace);
 }
 
-/// Something does not look at `interrupted`: a library, or a long computation. Nothing half-written stands under a name
-/// of its own at any time, so that the program may end anywhere.
+/// Something does not look at `interrupted`: a library, or a long computation. No file is half-written under its own
+/// name at any time, so that the program may end anywhere; files of one output may then be of two runs.
 extern "C" void on_end_of_grace(int) {
   end_now("exactvo: error: interrupted\n");
 }
@@ -54,7 +65,7 @@ void throw_if_interrupted() {
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
-  // One handler at a time: they remove folders.
+  // One handler at a time in a thread.
   for (const int other : {SIGALRM, SIGINT, SIGTERM}) ::sigaddset(&action.sa_mask, other);
   ::sigaction(signal, &action, nullptr);
 }
@@ -102,6 +113,7 @@ void error_message(const std::string& text) {
 }
 
 void note_interrupts() {
+  stderr_is_terminal = ::isatty(STDERR_FILENO) == 1;
   handle(SIGALRM, on_end_of_grace);
   handle(SIGINT, on_interrupt);
   handle(SIGTERM, on_interrupt);

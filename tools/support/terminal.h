@@ -23,8 +23,9 @@ void check_stdout();
 void message(const std::string& text);
 void error_message(const std::string& text);
 
-/// After this, an interrupt (Ctrl-C) or a request to terminate is noted instead of ending the program at once; readers
-/// that wait throw `Interrupted` then. What has not ended ten seconds later is ended.
+/// After this, an interrupt (Ctrl-C) or a request to terminate is noted instead of ending the program at once (while a
+/// TerminateOnSignal lives, it still ends at once: stop.h); readers that wait throw `Interrupted` then. What has not
+/// ended ten seconds later is ended.
 void note_interrupts();
 bool interrupted();
 /// What the program answers with after an interrupt: 130, or 143 after a request to terminate.

@@ -60,9 +60,10 @@ std::string unlisted_lines(const datasets::AuditReport& report) {
   std::string text;
   for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
     if (report.points[p].unlisted == 0) continue;
-    text +=
-        fmt::format("  ... and {} more of \"{}\" (the first {} of a recording are listed)\n", report.points[p].unlisted,
-                    in_words(static_cast<datasets::AuditPoint>(p)), datasets::kMostAuditFindings);
+    text += fmt::format(
+        "  ... and {} more of \"{}\" (of a recording, the first {} refuted and the first {} open ones are listed)\n",
+        report.points[p].unlisted, in_words(static_cast<datasets::AuditPoint>(p)), datasets::kMostAuditFindings,
+        datasets::kMostAuditFindings);
   }
   return text;
 }

@@ -11,6 +11,7 @@
 #include "support/simulation_flags.h"
 #include "support/stop.h"
 #include "support/terminal.h"
+#include "support/usage.h"
 #include "verb.h"
 
 namespace exactvo::tools {
@@ -33,15 +34,30 @@ void keep_shown_rows(datasets::RecordingFile& file) {
   shown.move_to(file);
 }
 
-ExitCode draw_figures(const Flags& flags) {
-  const fs::path recording = recording_at(flags.recording).value_or(flags.recording);
-  const fs::path out = flags.out.empty() ? recording.parent_path() / "figures" : fs::path(flags.out);
-  if (!flags.out.empty()) check_output_folder(out);
-  const EndsAtOnce nothing_is_published;
+/// figures/ beside the recording, unless --out names another folder.
+fs::path folder_for(const Flags& flags, const fs::path& recording) {
+  if (!flags.out.empty()) return flags.out;
+  std::error_code unknown;
+  const std::string name = recording.string();
+  const bool is_device = name.rfind("/dev/", 0) == 0 || name.rfind("/proc/", 0) == 0;
+  if (is_device || (fs::exists(recording, unknown) && !fs::is_regular_file(recording, unknown)))
+    throw UsageError("draw", recording.string() + " without --out", "--out FOLDER beside a pipe");
+  return recording.parent_path() / "figures";
+}
+
+void draw_into(const fs::path& folder, const fs::path& recording) {
+  const TerminateOnSignal terminate_on_signal;
   datasets::RecordingFile file = datasets::read_recording(recording);
   keep_shown_rows(file);
+  draw(write_figures(file, folder));
+}
+
+ExitCode draw_figures(const Flags& flags) {
+  const fs::path recording = recording_at(flags.recording).value_or(flags.recording);
+  const fs::path out = folder_for(flags, recording);
+  check_figure_folder(out);
   StagedFolder folder(out);
-  draw(write_figures(file, folder.path()));
+  draw_into(folder.path(), recording);
   if (interrupted()) throw Interrupted();
   folder.publish();
   message("wrote " + out.string());

@@ -8,6 +8,7 @@
 
 #include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/recording_file.h"
+#include "exactvo/formation/metrics.h"
 #include "exactvo/formation/stuck.h"
 #include "explain/explanation.h"
 #include "figures/velocity_space.h"
@@ -51,16 +52,18 @@ std::size_t find_robot(const Scenario& scenario, const std::string& text) {
       fmt::format("a number from 0 to {} or one of {}{}", ids.size() - 1, fmt::join(ids, " "), suggestion(text, ids)));
 }
 
-/// The last row in which a decision was taken: the final row of a recording has none.
-const formation::Step& last_decision(const formation::Recording& recording, double time) {
+/// Throws UsageError for a time after the end of the run.
+void check_time(const formation::Recording& recording, double time) {
   if (recording.steps.size() < 2)
     throw UsageError("--time", fmt::format("{}", time), "a time before the end of the run");
-  const formation::Step& step = recording.steps[recording.steps.size() - 2];
   const double end = recording.steps.back().time;
-  if (time > end + 0.5 * recording.time_step) {
+  if (time > end + 0.5 * recording.time_step)
     throw UsageError("--time", fmt::format("{}", time), fmt::format("at most {:.6g} s, when the run ends", end));
-  }
-  return step;
+}
+
+/// The last row in which a decision was taken: the final row of a recording has none.
+const formation::Step& last_decision(const formation::Recording& recording) {
+  return recording.steps[recording.steps.size() - 2];
 }
 
 std::string method_words(const Scenario& scenario, const SimulationFlags& flags) {
@@ -90,29 +93,31 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
   options.stop_at = flags.time;
   options.progress = [](double) { return !interrupted(); };
   const std::size_t robot = find_robot(scenario, flags.robot);
-  const EndsAtOnce nothing_is_written;
+  const TerminateOnSignal terminate_on_signal;
   const formation::Recording recording = formation::simulate(scenario, options);
   if (interrupted()) throw Interrupted();
-  const formation::Step& step = last_decision(recording, flags.time);
+  check_time(recording, flags.time);
+  const formation::Step& step = last_decision(recording);
   return {{scenario, method_words(scenario, flags.simulation), robot, step.time, step.robots.at(robot)},
           remarks_on(scenario, recording, robot)};
 }
 
 /// The run as it was at a time: up to the row after the last one at or before it.
 void cut_after(formation::Recording& run, double time) {
+  constexpr double kSameRow = 1e-6;  // of a step: 6 * 0.05 is not 0.3 in doubles
   std::size_t last = 0;
-  while (last + 2 < run.steps.size() && run.steps[last + 1].time <= time + 1e-6 * run.time_step) ++last;
+  while (last + 2 < run.steps.size() && run.steps[last + 1].time <= time + kSameRow * run.time_step) ++last;
   if (last + 2 == run.steps.size()) return;
   run.steps.resize(last + 2);
-  run.diverged = false;  // said of the end
+  run.diverged = formation::has_diverged(run);
 }
 
 Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
   datasets::RecordingFile file = datasets::read_recording(path);
   const std::size_t robot = find_robot(file.scenario, flags.robot);
-  last_decision(file.recording, flags.time);  // refuses a time after the end
+  check_time(file.recording, flags.time);
   cut_after(file.recording, flags.time);
-  const formation::Step& step = last_decision(file.recording, flags.time);
+  const formation::Step& step = last_decision(file.recording);
   const std::string method = "method " + file.info.method +
                              (file.info.controller ? ", controller " + *file.info.controller : "") +
                              (file.info.guidance ? ", guidance " + *file.info.guidance : "");

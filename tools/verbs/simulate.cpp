@@ -120,7 +120,7 @@ FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read, cons
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
   ProgressLine line(scenario.time_limit, "s simulated");
   line.show(0.0, scenario.name);  // the shapes of many robots take a while before the first step
-  const EndsAtOnce nothing_is_published;
+  const TerminateOnSignal terminate_on_signal;
   const bool figures = !folder.empty() && !flags.no_figures;
   return run(scenario, options, provenance, {folder, figures, [&](double time) { line.show(time, scenario.name); }});
 }
@@ -135,7 +135,7 @@ FinishedRun run_into_folder(const Flags& flags, const ReadScenario& read, const 
   StagedFolder folder(flags.out);
   FinishedRun finished = run_with_progress(flags, read, options, folder.path());
   if (!flags.no_figures) {
-    const EndsAtOnce nothing_is_published;
+    const TerminateOnSignal terminate_on_signal;
     draw(write_figures(finished.file, folder.path() / "figures"));
   }
   if (interrupted()) throw Interrupted();
@@ -163,7 +163,7 @@ ExitCode simulate(const Flags& flags) {
     if (!flags.force) check_same_run(flags.out, name_of(scenario, options));
   }
   {
-    const EndsAtOnce nothing_is_written;
+    const TerminateOnSignal terminate_on_signal;
     announce(scenario, options);
   }
   const FinishedRun finished =

@@ -145,7 +145,7 @@ std::string words_of(const formation::Scenario& scenario, const TrapFinding& f, 
 }
 
 std::vector<TrapFinding> tested(const formation::Scenario& scenario, const formation::SimulationOptions& options) {
-  const EndsAtOnce nothing_is_written;
+  const TerminateOnSignal terminate_on_signal;
   return formation::trap_test(scenario, options);
 }
 

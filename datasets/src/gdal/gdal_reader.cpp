@@ -133,7 +133,7 @@ class VectorReader {
     const std::string words = complaints_.take_failure();
     if (words.empty() && !failed) return;
     if (GeoJsonParsing::is_size_limit_in(words))
-      throw DataError(DataCode::size, path_.string(), place, "a feature of more JSON than is read at a time",
+      throw DataError(DataCode::size, path_.string(), place, "a feature or member of more JSON than is read at a time",
                       "fewer points in a feature, or another format, such as WKT");
     if (place.empty()) refuse_malformed_json();
     if (words.empty()) refuse_late_type();
@@ -152,7 +152,7 @@ class VectorReader {
   void refuse_late_type() const {
     const std::string type = beginning_of_geojson(path_).type;
     if (type != "FeatureCollection" && !is_type_of_record(type)) return;
-    throw DataError(DataCode::library, path_.string(), "/type", "\"" + type + "\" behind long members",
+    throw DataError(DataCode::format_syntax, path_.string(), "/type", "\"" + type + "\" behind long members",
                     "GeoJSON with its member \"type\" first");
   }
 

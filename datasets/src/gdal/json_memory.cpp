@@ -34,7 +34,7 @@ double parser_memory_for(double input_bytes) {
 void JsonMemory::take(char c) {
   ++characters_;
   if (!in_string_) return take_outside(c);
-  if (c == '"' && !is_escaped_) in_string_ = false;
+  if (c == quote_ && !is_escaped_) in_string_ = false;
   is_escaped_ = c == '\\' && !is_escaped_;
 }
 
@@ -47,11 +47,15 @@ void JsonMemory::take_outside(char c) {
       of_tokens_ += kOfList;
       break;
     case '"':
+    case '\'':  // json-c takes both
       of_tokens_ += kOfString;
       in_string_ = true;
+      may_be_name_ = true;
+      quote_ = c;
       break;
     case ':':
-      of_tokens_ += kOfMember - kOfString;  // the string before it was a name
+      if (may_be_name_) of_tokens_ += kOfMember - kOfString;  // the string before it was one
+      may_be_name_ = false;
       break;
     case ' ':
     case '\t':

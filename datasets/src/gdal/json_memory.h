@@ -34,8 +34,10 @@ class JsonMemory {
   std::size_t characters_ = 0;
   bool in_string_ = false;
   bool is_escaped_ = false;
-  bool in_word_ = false;  ///< a number, true, false or null
-  bool is_real_ = false;  ///< of a number
+  bool may_be_name_ = false;  ///< the last string, of a member
+  char quote_ = '"';          ///< that ends the string
+  bool in_word_ = false;      ///< a number, true, false or null
+  bool is_real_ = false;      ///< of a number
 };
 
 /// E_SIZE, in the words of all that is refused for its estimate.

@@ -14,8 +14,8 @@
 
 namespace exactvo::datasets {
 
-/// What a crash of the machine may not take: the content of whatever file stands there, or also that it stands there.
-/// (A crash of the program takes neither.)
+/// What survives a crash of the machine. `content`: the file is complete, old or new. `name`: after `commit` it is the
+/// new one. A crash of the program alone loses neither.
 enum class Durability { content, name };
 
 /// A folder that is not there: made, or a reason not to write. The latter where somebody else may have taken it away.

@@ -48,9 +48,10 @@ struct BatchConfiguration {
   std::uint64_t memory_limit = 0;
   std::optional<BatchRobot> robot;
   bool geopackage = built_with_gdal();  ///< obstacles.gpkg; E_FORMAT_UNAVAILABLE in a build without GDAL
-  bool geojson = true;             ///< obstacles.geojson, facades.geojson, ...; E_FORMAT_UNAVAILABLE as well, unless
-  bool geojson_in_metres = false;  ///< which other programs take for degrees
-  bool pictures = true;            ///< index.html
+  bool geojson = true;                  ///< obstacles.geojson, facades.geojson, ...; without GDAL E_FORMAT_UNAVAILABLE,
+                                        ///< unless `geojson_in_metres`
+  bool geojson_in_metres = false;       ///< coordinates in metres; other programs will read them as degrees
+  bool pictures = true;                 ///< index.html
 };
 
 /// How it is run; none of it changes the results.
@@ -109,9 +110,9 @@ enum class BatchEnd {
   interrupted  ///< `keep_going` said no; --resume goes on
 };
 
-/// A folder that holds what a batch has written, whole or not, among the folders of `BatchRun::paths` and below: its
-/// files are outputs, obstacles that lie elsewhere as well, and no inputs. It is known by the summary.json of a
-/// finished batch or the .parts/run.json of an unfinished one. `BatchRun::out` is none of them; nor is it read.
+/// A folder among those of `BatchRun::paths` and below that holds what a batch has written, finished or not. Its files
+/// are not read: they are outputs, and their obstacles come from other files. It is known by the summary.json of a
+/// finished batch or the .parts/run.json of an unfinished one. `BatchRun::out` is never read and never listed here.
 struct EarlierBatch {
   std::string folder;
   std::size_t files = 0;  ///< that are not read, as far as they can be counted

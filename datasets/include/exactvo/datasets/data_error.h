@@ -35,7 +35,7 @@ enum class DataCode {
   format_syntax,      ///< E_FORMAT_SYNTAX: breaks the rules of its format; the place is a line and column, or a feature
   number,             ///< E_NUMBER: not a number, or one that no finite double can hold
   nesting,            ///< E_NESTING: nested deeper than anything sensible
-  size,               ///< E_SIZE: a header that claims more than the file holds or memory allows
+  size,               ///< E_SIZE: more than the file holds, or more than memory or time allow
   path_escape,        ///< E_PATH_ESCAPE: a file named in a map lies outside the map's folder
   image,              ///< E_IMAGE: the picture of a map is missing or can't be decoded
   projection,         ///< E_PROJECTION: coordinates that can't be brought to metres

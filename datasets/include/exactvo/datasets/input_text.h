@@ -11,9 +11,9 @@
 
 namespace exactvo::datasets {
 
-/// `hook` is called at least ten times a second while a reader waits, and once for every geometry it reads; what it
-/// throws ends the reading and comes out of it. One hook for the whole process, called from whatever thread reads; null
-/// takes it away.
+/// `hook` is called at least ten times a second while a reader waits, for every geometry and every 64 KiB
+/// of JSON that it reads; what it throws ends the reading and comes out of it. One hook for the whole process, called
+/// from whatever thread reads; null takes it away.
 void set_wait_hook(void (*hook)());
 
 /// Calls the hook, if there is one.

@@ -6,8 +6,8 @@
 /// (what was run, the whole scenario, provenance); then, in the order in which they came up, every `body` (a convex
 /// shape with a number and the obstacles that it stands for) before the first line that names it, every `outlook` (the
 /// enclosures of a robot for a goal) and a `row` a step; last the `end` (how the run went, and the digest of all before
-/// it). Nothing is said twice, and nothing is known late: a run of any length is written in constant memory as it is
-/// made. A file without an end was cut off and is refused; so is one of format 1.
+/// it). Each fact is stored once, before the first line that needs it: a run of any length can be written in constant
+/// memory while it is computed. A file without an end was cut off and is refused; so is one of format 1.
 ///
 /// Enough stands there to prove half-planes again without the program that wrote them: beside each its body, clearance
 /// and horizon, and in its row where robots and moving obstacles were. The end's `sha256` shows what was altered since.
@@ -48,7 +48,7 @@ struct RecordingFile {
 class RecordingWriter {
  public:
   /// Of `about` only what is known before a run: the scenario, the info, and of the recording `motion`, `time_step`,
-  /// `tracking_gain`, `relative_frame`, `offsets` and `all_half_planes`.
+  /// `tracking_gain`, `relative_frame`, `remedies`, `offsets` and `all_half_planes`.
   RecordingWriter(const std::filesystem::path& path, const RecordingFile& about);
   ~RecordingWriter();
   /// `bodies` are the run's so far.

@@ -31,8 +31,9 @@ struct LoadedScenario {
   std::vector<std::filesystem::path> files = {};
 };
 
-/// Reads a scenario; obstacle files it names are looked up beside it. Throws DataError: for a mistake in such a file it
-/// names that file, for one that can't be opened or told the scenario and the place that names it.
+/// Reads a scenario; obstacle files it names are looked up beside it. Throws DataError: if such a
+/// file has invalid content, the error names that file; if it cannot be opened or its format is unknown, the error
+/// names the scenario and the JSON pointer of the reference.
 LoadedScenario load_scenario_with_notes(const std::filesystem::path& path);
 
 /// The same without the notes.

@@ -36,8 +36,8 @@ struct SoundTerms {
   double value() const { return kinetic + consensus + slots; }
 };
 
-/// Equation (19) term by term, with the acceleration that the robots had at the row's time: what (18) really does. Of
-/// laws other than the exponential it is the mean acceleration over the step.
+/// The terms of (19) with the robots' actual accelerations: the true derivative of (18). For motion laws other than
+/// `exponential`, the mean acceleration over the step is used.
 struct PaperRates {
   double kinetic = 0.0;    ///< sum v^_i.u_i
   double consensus = 0.0;  ///< k1/2 sum a_ij (x^_i - x^_j).(v^_i - v^_j)

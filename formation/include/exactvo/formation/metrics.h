@@ -101,15 +101,18 @@ Evaluation evaluate(const Scenario& scenario, const Recording& recording);
 /// grow with the run.
 class Evaluator {
  public:
-  /// Gets every row once, in order, as soon as all is known of it: of a formation what the Lyapunov functions are there
-  /// (else null), whose rates need the next row.
+  /// Called once per row, in order, when the next row or the end is known. `lyapunov` holds the values at that row, and
+  /// is null without a formation. If it throws, the exception is passed on and the evaluator is unusable.
   using TakeRow = std::function<void(const Step& row, const LyapunovRow* lyapunov)>;
 
-  /// Of `run` what is known before the first row. `scenario` must outlive the evaluator.
+  /// Reads from `run`: motion, time_step, tracking_gain, relative_frame, offsets. `scenario` must outlive the
+  /// evaluator.
   Evaluator(const Scenario& scenario, const Recording& run, TakeRow take_row = {});
   ~Evaluator();
+  /// REQUIRES: not null.
   void add(std::shared_ptr<const Step> row);
-  /// Of `run` how it ended: outcome, warnings, wall time. The evaluation has no `lyapunov`. REQUIRES: a row.
+  /// Once, after the last row. Reads from `run`: outcome, diverged, warnings, wall_time, offsets, time_step. `lyapunov`
+  /// of the result is empty. REQUIRES: a row.
   Evaluation finish(const Recording& run);
 
  private:
@@ -117,8 +120,9 @@ class Evaluator {
   std::unique_ptr<Parts> parts_;
 };
 
-/// m: contact is spoken of from this depth on. Certified clearances lie below the true ones by less than it up to 10 km
-/// from the origin (four times 2^-46 of the coordinates), so two robots that keep exactly their distance do not touch.
+/// m. A clearance below `-kContactDepth` is a contact. Certified clearances are too low by at most 4 * 2^-46 of the
+/// coordinates, which is less than this within 10 km of the origin; robots exactly at contact distance are therefore
+/// not reported.
 inline constexpr double kContactDepth = 1e-9;
 
 /// Whether a clearance is a contact; an empty one, of a scene without anything to touch, is none.
@@ -135,6 +139,10 @@ bool is_safe(const Metrics& metrics);
 
 /// A detour that is worth a word in the outcome of a formation: longer than 1 m and than this share of the direct way.
 inline constexpr double kLongDetour = 0.25;
+
+/// What `Recording::diverged` is of a run that ends with the last row: a formation ends farther from its slots than it
+/// began, or its state left every bound. REQUIRES: a row.
+bool has_diverged(const Recording& recording);
 
 /// "obstacle", "moving obstacle" or "robot".
 const char* name(CollisionKind kind);

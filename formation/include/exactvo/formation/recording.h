@@ -123,7 +123,7 @@ struct Recording {
   std::vector<vo::Body> bodies;
   std::vector<Outlook> outlooks;  ///< in order of time: of every robot's first goal, then of others as they came up
   bool all_half_planes = false;   ///< every half-plane of every decision was kept
-  double wall_time = 0.0;         ///< s, of the decisions, without what takes the rows
+  double wall_time = 0.0;         ///< s: duration of `simulate` without the time spent in the sink
 };
 
 }  // namespace exactvo::formation

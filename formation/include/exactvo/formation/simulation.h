@@ -80,11 +80,13 @@ std::vector<std::string> warnings_before(const Scenario& scenario, const Simulat
 /// REQUIRES: a valid scenario (`validate`).
 Recording simulate(const Scenario& scenario, const SimulationOptions& options = {});
 
-/// Takes a run as it is made, so that a run of any length needs constant memory.
+/// Takes a run as it is made, so that a run of any length needs constant memory. An exception that a sink throws ends
+/// the run and is passed on.
 class RunSink {
  public:
   virtual ~RunSink() = default;
-  /// First of all. `run` has what is known before the first row: warnings, motion, time step, gains, offsets, remedies.
+  /// First of all. `run` has what is known before the first row: warnings, motion, time_step, tracking_gain,
+  /// relative_frame, remedies, offsets, all_half_planes.
   virtual void begin(const Recording& run) = 0;
   /// Bodies come in the order of their numbers, each before what names it.
   virtual void add_body(const vo::Body& body) = 0;

@@ -13,10 +13,11 @@
 namespace exactvo::formation::detail {
 
 /// Takes the rows of a run one after the other, and keeps the last.
-class LyapunovWatch {
+class LyapunovAccumulator {
  public:
-  /// Of `run` what is known before the first row; it and the scenario, which has a formation, must outlive the watch.
-  LyapunovWatch(const Scenario& scenario, const Recording& run);
+  /// Of `run` what is known before the first row; it and the scenario, which has a formation, must outlive the
+  /// accumulator.
+  LyapunovAccumulator(const Scenario& scenario, const Recording& run);
 
   /// The values at the row before, whose rates are known now; nothing for the first row.
   std::optional<LyapunovRow> add(std::shared_ptr<const Step> row);

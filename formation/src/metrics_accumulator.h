@@ -32,12 +32,12 @@ class SettledSince {
 };
 
 /// Takes the rows of a run one after the other, and keeps of them what the next one needs.
-class RunMeasures {
+class MetricsAccumulator {
  public:
   /// Of `run` what is known before the first row: time step, offsets. Both must outlive it.
-  RunMeasures(const Scenario& scenario, const Recording& run);
+  MetricsAccumulator(const Scenario& scenario, const Recording& run);
   void add(const Step& row);
-  /// Of the rows so far, at least one. Writes all of `m` that is no clearance, word or Lyapunov function.
+  /// Of the rows so far, at least one. Writes paths, arrivals, errors, the formation's course, jitter and counts into `m`.
   void write_to(Metrics& m) const;
 
  private:

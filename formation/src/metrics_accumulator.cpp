@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run_measures.h"
+#include "metrics_accumulator.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,10 +36,10 @@ Step state_of(const Step& row) {
 
 }  // namespace
 
-RunMeasures::RunMeasures(const Scenario& scenario, const Recording& run)
+MetricsAccumulator::MetricsAccumulator(const Scenario& scenario, const Recording& run)
     : scenario_(scenario), run_(run), robots_(scenario.robots.size()) {}
 
-void RunMeasures::add(const Step& row) {
+void MetricsAccumulator::add(const Step& row) {
   counted_.relaxed += of_last_row_.relaxed;
   counted_.uncertified += of_last_row_.uncertified;
   counted_.switches += of_last_row_.switches;
@@ -60,7 +60,7 @@ void RunMeasures::add(const Step& row) {
   ++rows_;
 }
 
-void RunMeasures::add_motion(OfRobot& r, const RobotStep& step) const {
+void MetricsAccumulator::add_motion(OfRobot& r, const RobotStep& step) const {
   r.path_length += norm(step.position - r.position);
   const Vec2 acceleration = (step.velocity - r.velocity) / run_.time_step;
   if (r.acceleration) r.jitter += norm(acceleration - *r.acceleration);
@@ -71,7 +71,7 @@ void RunMeasures::add_motion(OfRobot& r, const RobotStep& step) const {
   add_turn(r, step.velocity);
 }
 
-void RunMeasures::add_turn(OfRobot& r, Vec2 velocity) const {
+void MetricsAccumulator::add_turn(OfRobot& r, Vec2 velocity) const {
   const double turn = std::atan2(cross(r.velocity, velocity), dot(r.velocity, velocity));
   if (std::fabs(turn) < kLeastTurn) {
     r.last_turn = 0.0;
@@ -81,7 +81,7 @@ void RunMeasures::add_turn(OfRobot& r, Vec2 velocity) const {
   r.last_turn = turn;
 }
 
-RunMeasures::ActiveSet RunMeasures::active_set(const RobotStep& step) {
+MetricsAccumulator::ActiveSet MetricsAccumulator::active_set(const RobotStep& step) {
   ActiveSet active;
   for (const RecordedConstraint& c : step.constraints)
     if (c.active) active.emplace_back(c.source, c.index, c.piece);
@@ -89,7 +89,7 @@ RunMeasures::ActiveSet RunMeasures::active_set(const RobotStep& step) {
   return active;
 }
 
-void RunMeasures::add_decision(OfRobot& r, const RobotStep& step) {
+void MetricsAccumulator::add_decision(OfRobot& r, const RobotStep& step) {
   if (step.status != lp::Status::optimal) ++of_last_row_.relaxed;
   of_last_row_.uncertified += step.uncertified;
   ActiveSet active = active_set(step);
@@ -98,7 +98,7 @@ void RunMeasures::add_decision(OfRobot& r, const RobotStep& step) {
 }
 
 /// A kinematic run passes at most one goal on the way a row, within the tolerance or the robot's radius.
-void RunMeasures::add_arrival(std::size_t robot, const Step& row) {
+void MetricsAccumulator::add_arrival(std::size_t robot, const Step& row) {
   OfRobot& r = robots_[robot];
   const Robot& spec = scenario_.robots[robot];
   double error = std::numeric_limits<double>::infinity();
@@ -113,7 +113,7 @@ void RunMeasures::add_arrival(std::size_t robot, const Step& row) {
   r.settled.add(row.time, error, scenario_.arrival_tolerance);
 }
 
-void RunMeasures::add_to_course(const Step& row) {
+void MetricsAccumulator::add_to_course(const Step& row) {
   double worst = 0.0;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const double error = slot_error(row, run_.offsets, i);
@@ -126,7 +126,7 @@ void RunMeasures::add_to_course(const Step& row) {
   formed_.add(row.time, worst, scenario_.arrival_tolerance);
 }
 
-void RunMeasures::write_to(Metrics& m) const {
+void MetricsAccumulator::write_to(Metrics& m) const {
   if (scenario_.formation) write_formation(m);
   write_arrivals(m);
   for (std::size_t i = 0; i < robots_.size(); ++i) {
@@ -145,7 +145,7 @@ void RunMeasures::write_to(Metrics& m) const {
   m.steps = rows_ - 1;
 }
 
-void RunMeasures::write_formation(Metrics& m) const {
+void MetricsAccumulator::write_formation(Metrics& m) const {
   const double arrival = leader_arrival(scenario_.formation->leader);
   if (arrival <= last_.time) m.leader_arrival_time = arrival;
   double position = 0.0, velocity = 0.0;
@@ -157,7 +157,7 @@ void RunMeasures::write_formation(Metrics& m) const {
   m.formation_velocity_error = velocity;
 }
 
-void RunMeasures::write_arrivals(Metrics& m) const {
+void MetricsAccumulator::write_arrivals(Metrics& m) const {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     RobotMetrics& out = m.robots[i];
     out.arrival_time = robots_[i].settled.since();
@@ -173,7 +173,7 @@ void RunMeasures::write_arrivals(Metrics& m) const {
 }
 
 /// Whom the formation lost, and since when it holds.
-void RunMeasures::write_course(Metrics& m) const {
+void MetricsAccumulator::write_course(Metrics& m) const {
   FormationCourse& course = m.formation_course.emplace();
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const OfRobot& r = robots_[i];
@@ -187,7 +187,7 @@ void RunMeasures::write_course(Metrics& m) const {
   course.formed_since = formed_.since();
 }
 
-void RunMeasures::write_detours(Metrics& m) const {
+void MetricsAccumulator::write_detours(Metrics& m) const {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     if (!scenario_.formation && !m.robots[i].arrived) continue;
     m.robots[i].detour = std::max(0.0, m.robots[i].path_length - direct_way(i));
@@ -195,7 +195,7 @@ void RunMeasures::write_detours(Metrics& m) const {
 }
 
 /// m: from a robot's start to its goals, or to its slot and on with the leader.
-double RunMeasures::direct_way(std::size_t robot) const {
+double MetricsAccumulator::direct_way(std::size_t robot) const {
   if (scenario_.formation) return robots_[robot].direct_way;
   double way = 0.0;
   Vec2 here = scenario_.robots[robot].position;

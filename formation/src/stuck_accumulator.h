@@ -14,9 +14,9 @@
 namespace exactvo::formation::detail {
 
 /// Takes the rows of a run one after the other, and keeps the last two: where it ended, and what was decided last.
-class StuckWatch {
+class StuckAccumulator {
  public:
-  explicit StuckWatch(const Scenario& scenario) : scenario_(scenario), robots_(scenario.robots.size()) {}
+  explicit StuckAccumulator(const Scenario& scenario) : scenario_(scenario), robots_(scenario.robots.size()) {}
   void add(std::shared_ptr<const Step> row);
   /// `run` has how the run ended, and what was known before it. REQUIRES: a row.
   std::vector<StuckReport> reports(const Recording& run) const;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// When a formation has diverged.
+
+#include <algorithm>
+#include <vector>
+
+#include "exactvo/formation/recording.h"
+
+namespace exactvo::formation::detail {
+
+/// m and m/s: beyond this nothing is worth computing (an explicit Euler step past its limit gets here in seconds).
+inline constexpr double kOutOfBounds = 1e6;
+
+inline bool is_out_of_bounds(Vec2 position, Vec2 velocity) {
+  return !(geometry::norm(position) < kOutOfBounds && geometry::norm(velocity) < kOutOfBounds);
+}
+
+/// m: the largest distance of a robot from its slot.
+inline double formation_error(const Step& row, const std::vector<Vec2>& offsets) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < row.robots.size(); ++i)
+    worst = std::max(worst, geometry::norm(row.robots[i].position - row.leader_position - offsets[i]));
+  return worst;
+}
+
+/// Judged by the end alone: a formation that ends farther from its slots than it began has not formed.
+inline bool has_diverged(double first_error, double last_error) {
+  constexpr double kArrivedOnce = 1.0;  // m: an error this small is no divergence even when the start was exact
+  return last_error > std::max(first_error, kArrivedOnce);
+}
+
+}  // namespace exactvo::formation::detail
