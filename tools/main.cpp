@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <new>
@@ -31,7 +32,8 @@ constexpr const char* kExitCodes =
     "  1    completed; the check failed (verbs that check something)\n"
     "  2    a file, an option or an output location is wrong; nothing was written\n"
     "  3    a defect of the program\n"
-    "  130  interrupted by Ctrl-C, 143 by SIGTERM; nothing was written (a batch keeps its progress for --resume)\n"
+    "  130  interrupted by Ctrl-C, 143 by SIGTERM; no file is left half-written (a batch keeps its progress for "
+    "--resume)\n"
     "\n"
     "Results go to stdout, messages to stderr. SI units: metres, seconds, radians.";
 
@@ -118,7 +120,7 @@ ExitCode parse_and_run() {
 }
 
 ExitCode say_interrupted() {
-  error_message("interrupted; nothing was written");
+  error_message("interrupted; what was not finished is not written");
   return ExitCode::interrupted;
 }
 
@@ -133,8 +135,13 @@ ExitCode guarded() {
     if (interrupted()) return say_interrupted();  // what a library made of a call that the signal ended
     error_message(error.what());
     return ExitCode::bad_input;
+  } catch (const ReaderLeft&) {
+    return ExitCode::success;
   } catch (const Interrupted&) {
     return say_interrupted();
+  } catch (const std::filesystem::filesystem_error& error) {
+    error_message(error.path1().string() + ": " + error.code().message() + " [E_FILE_UNREADABLE]");
+    return ExitCode::bad_input;
   } catch (const std::bad_alloc&) {
     error_message("more memory wanted than there is [E_SIZE]");
     return ExitCode::bad_input;

@@ -18,7 +18,7 @@ enum class ExitCode : int {
   negative = 1,        ///< done, and the answer is no (of verbs that judge)
   bad_input = 2,       ///< a file, an option or a place to write to is wrong; nothing was written
   internal_error = 3,  ///< a defect of the program
-  interrupted = 130    ///< by the user (143: by SIGTERM); nothing was written
+  interrupted = 130    ///< by the user (143: by SIGTERM); no file is left half-written
 };
 
 using Action = std::function<ExitCode()>;

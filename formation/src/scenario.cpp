@@ -123,7 +123,7 @@ void check_times(const Scenario& s, Checker& c) {
   c.positive(s.horizons.least, "/horizons/least", "s");
   constexpr double kMostSteps = 1e7;  // rows that a recording can hold in memory
   c.require(!(s.time_step > 0.0) || s.time_limit / s.time_step <= kMostSteps, "/time_limit", show(s.time_limit),
-            "at most 10^7 steps of /time_step, " + show(s.time_step) + " (s)");
+            "at most 10^7 steps of /time_step, " + show(1e7 * s.time_step) + " (s)");
   c.positive(s.horizons.most, "/horizons/most", "s");
   c.require(s.horizons.most >= s.horizons.least, "/horizons/most", show(s.horizons.most),
             "at least /horizons/least, " + show(s.horizons.least));

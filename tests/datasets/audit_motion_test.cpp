@@ -148,6 +148,7 @@ RecordingFile curve(double k, double dt, Vec2 from, Vec2 v0, Vec2 w) {
   file.recording.steps[0].robots[0].velocity = v0;
   file.recording.steps[1].robots[0].velocity = w + decayed * (v0 - w);
   file.recording.steps[1].robots[0].position = from + dt * w + lag * (v0 - w);
+  file.scenario.time_limit = file.scenario.time_step;
   return file;
 }
 

@@ -177,7 +177,7 @@ TEST(Pipes, ASignalEndsTheReadingOfOneLargeFeature) {
     const Running program(here, {"validate", file});
     program.await_work(kAmidReading);
     EXPECT_EQ(program.status_at_once(SIGTERM), 143) << here.read("err");
-    EXPECT_THAT(here.read("err"), HasSubstr("interrupted; nothing was written")) << file;
+    EXPECT_THAT(here.read("err"), HasSubstr("interrupted; what was not finished is not written")) << file;
   }
 }
 

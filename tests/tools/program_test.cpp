@@ -7,12 +7,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <regex>
 
+#include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
 #include "run_program.h"
 
@@ -429,6 +431,48 @@ TEST(Audit, SaysHowManyFindingsItDoesNotList) {
               HasSubstr("... and " + report["points"]["motions"]["unlisted"].dump() + " more of"));
 }
 
+TEST(Audit, ARunAmongEdgesThatItNeverMetIsProven) {
+  const Workplace here;
+  here.write("far.json", R"({ "name": "far", "robots": [ { "id": "R", "position": [0, 0], "goal": [6, 0] } ],
+    "obstacles": [ { "id": "w", "polyline": [[0, 6], [6, 6]] } ] })");
+  for (const char* method : {"orca", "ivo-edge", "ivo-cluster", "ivo"}) {
+    ASSERT_EQ(here.run(std::string("simulate far.json --no-figures --force --out out -m ") + method).status, 0);
+    EXPECT_EQ(here.run("audit out").status, 0) << method << here.run("audit out").out;
+  }
+}
+
+/// The lines of a recording with an end and a digest made anew.
+std::string sealed_again(std::vector<json> lines) {
+  std::string text;
+  lines.back()["end"]["rows"] =
+      std::count_if(lines.begin(), lines.end(), [](const json& l) { return l.contains("row"); });
+  lines.back()["end"]["collisions"] = json::array();
+  for (std::size_t k = 0; k + 1 < lines.size(); ++k) text += lines[k].dump() + "\n";
+  lines.back()["end"]["sha256"] = datasets::sha256_of(text);
+  return text + lines.back().dump() + "\n";
+}
+
+TEST(Audit, ARunThatIsCutOffBeforeItsCollisionIsRefuted) {
+  const Workplace here;
+  here.write("truck.json",
+             R"({ "name": "mov", "robots": [ { "id": "a", "position": [0, 0], "max_speed": 1, "goal": [10, 0] } ],
+    "moving_obstacles": [ { "id": "truck", "polygon": [[12, -1], [14, -1], [14, 1], [12, 1]], "path": [[0, 0], [-20, 0]], "speed": 4 } ] })");
+  ASSERT_EQ(here.run("simulate truck.json --out out --no-figures").status, 0);
+  std::vector<json> lines;
+  std::istringstream recording(here.read("out/recording.jsonl"));
+  for (std::string line; std::getline(recording, line);) lines.push_back(json::parse(line));
+  for (const std::size_t rows : {1u, 40u, 61u}) {
+    std::vector<json> cut;
+    std::size_t kept = 0;
+    for (const json& line : lines)
+      if (!line.contains("row") || kept++ < rows) cut.push_back(line);
+    here.write("cut.jsonl", sealed_again(cut));
+    const Outcome outcome = here.run("audit cut.jsonl --scenario truck.json");
+    EXPECT_EQ(outcome.status, 1) << rows;
+    EXPECT_THAT(outcome.out, HasSubstr("the last row is before the time limit, and not every robot has arrived"));
+  }
+}
+
 TEST(Audit, ComparesTheScenarioThatItIsGiven) {
   const Workplace here;
   ASSERT_EQ(here.run("simulate " + data_file("paper/A1.json") + " --out out --no-figures").status, 0);
@@ -718,6 +762,40 @@ TEST(Simulate, FollowsProvenRoutes) {
   EXPECT_THAT(here.run("simulate " + data_file("paper/B0.json") + " --guidance route").err,
               HasSubstr("--guidance has no effect: robots of a formation have no goals"));
   EXPECT_THAT(here.run("trap open.json --guidance route").err, HasSubstr("--guidance has no effect"));
+}
+
+TEST(Simulate, WithoutFiguresTakesAwayOnlyFiguresOfItsOwn) {
+  const Workplace here;
+  here.write("s.json", kOneRobot);
+  ASSERT_EQ(here.run("simulate s.json --out run", "PATH=/nowhere").status, 0);
+  here.write("run/figures/notes.txt", "mine");
+  here.write("run/figures/mine.svg", "mine");
+  ASSERT_EQ(here.run("simulate s.json --out run --no-figures").status, 0);
+  EXPECT_FALSE(here.has("run/figures/paths.gp"));
+  EXPECT_FALSE(here.has("run/figures/paths.dat"));
+  EXPECT_EQ(here.read("run/figures/notes.txt"), "mine");
+  EXPECT_EQ(here.read("run/figures/mine.svg"), "mine");
+}
+
+TEST(Program, ANameThatIsTooLongIsNoDefect) {
+  const Workplace here;
+  const std::string name(300, 'n');
+  for (const std::string& command : {"audit " + name, "generate maze --out m.wkt --figure " + name + ".svg",
+                                     "batch . --out " + name, "paper --data " + name + " --out p"}) {
+    const Outcome outcome = here.run(command);
+    EXPECT_EQ(outcome.status, 2) << command << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("[E_FILE_")) << command;
+  }
+}
+
+TEST(Program, WhatIsPrintedForEverEndsWhenNobodyReadsIt) {
+  const Workplace here;
+  here.write("run.sh",
+             "yes 3,0 | timeout 60 '" EXACTVO_PROGRAM
+             "' vo --obstacle 'DISC(4 0, 1)' --velocities - "
+             "--position 0,0 --radius 0.5 --time-horizon 2 | head -1 > first; echo ${PIPESTATUS[1]} > status");
+  EXPECT_EQ(std::system(("cd '" + here.path().string() + "' && bash run.sh").c_str()), 0);
+  EXPECT_EQ(here.read("status"), "0\n");
 }
 
 TEST(Explain, SaysWhatHoldsARobotAndDrawsIt) {

@@ -101,8 +101,17 @@ void check_figure_folder(const fs::path& target) {
 
 void remove_figures(const fs::path& target) {
   std::error_code error;
-  fs::remove_all(target / "figures", error);
-  if (error) fail(target / "figures", error.message());
+  const fs::path folder = target / "figures";
+  if (!fs::is_directory(folder, error)) return;
+  std::vector<fs::path> ours, folders{folder};
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory()) folders.push_back(entry.path());
+    if (is_of_a_figure(entry.path())) ours.push_back(entry.path());
+  }
+  for (const fs::path& file : ours)
+    if (!fs::remove(file, error)) fail(file, error.message());
+  std::sort(folders.rbegin(), folders.rend());                   // what lies within first
+  for (const fs::path& each : folders) fs::remove(each, error);  // one that holds anything else stays
 }
 
 StagedFolder::StagedFolder(fs::path target, const fs::path& named)

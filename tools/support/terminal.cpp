@@ -104,6 +104,10 @@ void check_stdout() {
                             std::generic_category().message(error), "a place to write to");
 }
 
+void throw_if_reader_left() {
+  if (reader_left) throw ReaderLeft();
+}
+
 void message(const std::string& text) {
   if (!quiet) put("exactvo: " + shown_lines(text) + "\n");
 }

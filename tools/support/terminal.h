@@ -19,6 +19,12 @@ void print(const std::string& text);
 /// The same for what was printed by other means.
 void check_stdout();
 
+/// Nobody reads stdout any more (`| head`): what would go on printing for long ends here, with success.
+struct ReaderLeft : std::runtime_error {
+  ReaderLeft() : std::runtime_error("the reader of stdout has left") {}
+};
+void throw_if_reader_left();
+
 /// "exactvo: TEXT" on stderr, unless quiet; control characters are shown, not sent.
 void message(const std::string& text);
 void error_message(const std::string& text);

@@ -196,7 +196,7 @@ ExitCode route(const Flags& flags) {
         fmt::format("{}: points are {}s of cells, columns from the left and rows from the top, from 0; answers are "
                     "in m, y upward",
                     map.file, flags.cell_point));
-  const EndsAtOnce answers_are_printed_whole;
+  const TerminateOnSignal terminate_on_signal;
   return flags.queries.empty() ? answer_one(map, flags) : answer_many(map, flags);
 }
 

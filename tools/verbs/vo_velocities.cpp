@@ -147,7 +147,10 @@ class Output {
     text_ += '\n';
     if (text_.size() > kChunk) flush();
   }
-  void flush() { print(std::exchange(text_, {})); }
+  void flush() {
+    print(std::exchange(text_, {}));
+    throw_if_reader_left();
+  }
 
  private:
   static constexpr std::size_t kChunk = std::size_t{1} << 16;

@@ -108,6 +108,37 @@ void check_header(const RecordingFile& file, const formation::Scenario* meant, A
   require(AuditPoint::sequence, starts, "the first row is not the scenario's start");
 }
 
+bool has_arrived(const formation::Robot& robot, const formation::RobotStep& state, double tolerance) {
+  const exact::Point d = exact::exactly(state.position) - exact::exactly(robot.goals.back());
+  const Rational reach(tolerance);
+  return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));  // distances in a run are rounded
+}
+
+/// A run ends at its time limit, or before if everybody has arrived or a formation has left every bound.
+bool is_whole(const RecordingFile& file) {
+  constexpr double kSameRow = 1e-6;     // of a step
+  constexpr double kOutOfBounds = 1e6;  // m and m/s
+  const formation::Scenario& s = file.scenario;
+  const std::vector<Step>& rows = file.recording.steps;
+  const double steps = std::ceil(s.time_limit / s.time_step - kSameRow);
+  if (static_cast<double>(rows.size() - 1) >= steps) return true;
+  const std::vector<formation::RobotStep>& last = rows.back().robots;
+  if (s.formation)
+    return std::any_of(last.begin(), last.end(), [](const formation::RobotStep& r) {
+      return !(geometry::norm(r.position) < kOutOfBounds && geometry::norm(r.velocity) < kOutOfBounds);
+    });
+  return std::equal(s.robots.begin(), s.robots.end(), last.begin(), last.end(),
+                    [&](const formation::Robot& robot, const formation::RobotStep& state) {
+                      return has_arrived(robot, state, s.arrival_tolerance);
+                    });
+}
+
+void check_end(const RecordingFile& file, AuditTally& tally) {
+  is_whole(file)
+      ? tally.proven(AuditPoint::sequence)
+      : tally.refuted(AuditPoint::sequence, "the last row is before the time limit, and not every robot has arrived");
+}
+
 void check_rows(const RecordingFile& file, AuditTally& tally) {
   const std::vector<RationalObstacle> obstacles = rational_obstacles(file.scenario);
   const std::vector<Step>& rows = file.recording.steps;
@@ -151,6 +182,7 @@ AuditTally audited(const RecordingFile& file, const formation::Scenario* scenari
   if (why.empty()) {
     check_header(file, scenario, tally);
     check_rows(file, tally);
+    check_end(file, tally);
   } else {
     tally.refuted(AuditPoint::sequence, why);
   }

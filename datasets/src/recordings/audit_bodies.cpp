@@ -81,6 +81,9 @@ void BodyAudit::check_outlooks() {
                   [](const Body& body) { return body.kind == BodyKind::enclosure && !body.owners.empty(); });
   const bool has_edges = std::any_of(file_.recording.bodies.begin(), file_.recording.bodies.end(),
                                      [](const Body& body) { return body.kind == BodyKind::obstacle_edge; });
+  // A run among edges names only those that it met, if any: completeness is asked of its rows.
+  const bool names_none = !has_enclosures && std::all_of(outlooks.begin(), outlooks.end(),
+                                                         [](const Outlook& o) { return o.bodies.empty(); });
   if (has_enclosures && has_edges)
     tally_.refuted(AuditPoint::bodies, "the bodies are enclosures and edges: no method has both");
   for (const Outlook& outlook : outlooks) {
@@ -88,7 +91,7 @@ void BodyAudit::check_outlooks() {
         "the enclosures of " + file_.scenario.robots[outlook.robot].id + " for goal " + std::to_string(outlook.goal);
     if (!is_in_order(outlook, last[outlook.robot])) tally_.refuted(AuditPoint::bodies, name + " come out of turn");
     last[outlook.robot] = &outlook;
-    if (has_edges) continue;
+    if (has_edges || names_none) continue;
     const std::vector<bool> covered = covered_by(outlook);
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
       covered[k] ? tally_.proven(AuditPoint::bodies)
