@@ -37,7 +37,8 @@ class MetricsAccumulator {
   /// Of `run` what is known before the first row: time step, offsets. Both must outlive it.
   MetricsAccumulator(const Scenario& scenario, const Recording& run);
   void add(const Step& row);
-  /// Of the rows so far, at least one. Writes paths, arrivals, errors, the formation's course, jitter and counts into `m`.
+  /// Of the rows so far, at least one. Writes paths, arrivals, errors, the formation's course, jitter and counts into
+  /// `m`.
   void write_to(Metrics& m) const;
 
  private:

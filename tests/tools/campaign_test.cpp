@@ -66,8 +66,8 @@ TEST(Parts, AMistakeInOneGoesThrough) {
   EXPECT_TRUE(here.has("good.part"));
 }
 
-/// SHA-256 of the rows of a campaign over four fields of each kind and method. (Jitter is summed robot by robot: another
-/// order of the sum changes its last digit.)
+/// SHA-256 of the rows of a campaign over four fields of each kind and method. (Jitter is summed robot by robot:
+/// another order of the sum changes its last digit.)
 constexpr const char* kGoldenRows = "b7b6973ab4db15d7572483e8d44c87e369d7151d278a855a3afb497bb7d07d94";
 
 TEST(Campaign, TheSameBytesForOneTwoAndFourThreads) {

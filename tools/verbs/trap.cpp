@@ -12,8 +12,8 @@
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/stop.h"
-#include "support/unsigned_zero.h"
 #include "support/terminal.h"
+#include "support/unsigned_zero.h"
 #include "verb.h"
 
 namespace exactvo::tools {
