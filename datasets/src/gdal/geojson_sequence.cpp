@@ -252,15 +252,18 @@ GeoJsonBeginning beginning_of_geojson(const std::filesystem::path& path) {
   skip_byte_order_mark(file);
   GeoJsonBeginning beginning;
   MembersOfObject members;
-  bool is_before_features = true;
+  bool is_object = false, is_before_features = true;
   std::size_t bytes = 0;
   for (int c = file.rdbuf()->sgetc(); c != kEnd; c = file.rdbuf()->snextc()) {
     if (++bytes % kBlock == 0) call_wait_hook();
+    if (c == 0 || (!is_object && !is_blank(c) && c != '{')) break;  // no JSON object: sparse files have such bytes
+    is_object = is_object || c == '{';
     members.take(static_cast<char>(c));
     is_before_features = is_before_features && !members.is_among_features();
     if (is_before_features) beginning.before_features.take(static_cast<char>(c));
-    beginning.type = members.type();
-    if (!beginning.type.empty() && !(beginning.is_collection() && is_before_features)) break;
+    if (members.type().empty()) continue;
+    if (beginning.type != members.type()) beginning.type = members.type();
+    if (!(beginning.is_collection() && is_before_features)) break;
   }
   return beginning;
 }

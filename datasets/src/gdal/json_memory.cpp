@@ -110,7 +110,10 @@ std::optional<DataError> bulky_json_file(const std::filesystem::path& path) {
   JsonMemory memory;
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
     call_wait_hook();
-    for (const char c : std::string_view(block).substr(0, static_cast<std::size_t>(file.gcount()))) memory.take(c);
+    const std::string_view read = std::string_view(block).substr(0, static_cast<std::size_t>(file.gcount()));
+    const std::string_view text = read.substr(0, read.find('\0'));
+    for (const char c : text) memory.take(c);
+    if (text.size() < read.size()) break;  // JSON has no such byte, and parsers stop there
   }
   if (!memory.is_too_much()) return std::nullopt;
   return too_bulky(memory, path.string(), "");
