@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// When a formation has diverged.
+/// How far a formation is from its slots, and when it has diverged.
 
 #include <algorithm>
 #include <vector>
@@ -18,11 +18,15 @@ inline bool is_out_of_bounds(Vec2 position, Vec2 velocity) {
   return !(geometry::norm(position) < kOutOfBounds && geometry::norm(velocity) < kOutOfBounds);
 }
 
+/// m: how far a robot is from its slot.
+inline double slot_error(const Step& row, const std::vector<Vec2>& offsets, std::size_t robot) {
+  return geometry::norm(row.robots[robot].position - row.leader_position - offsets[robot]);
+}
+
 /// m: the largest distance of a robot from its slot.
 inline double formation_error(const Step& row, const std::vector<Vec2>& offsets) {
   double worst = 0.0;
-  for (std::size_t i = 0; i < row.robots.size(); ++i)
-    worst = std::max(worst, geometry::norm(row.robots[i].position - row.leader_position - offsets[i]));
+  for (std::size_t i = 0; i < row.robots.size(); ++i) worst = std::max(worst, slot_error(row, offsets, i));
   return worst;
 }
 

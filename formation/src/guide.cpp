@@ -16,8 +16,8 @@ using geometry::norm;
 using geometry::RouteAnswer;
 using geometry::Segment;
 
-/// m: half-planes keep a robot this far from what its route touches, on the inside of it. Twice the skin: a route that
-/// keeps this much more than half-planes do is never closed by them.
+/// m: a route keeps this much more than the radius and the margin. Half-planes keep one skin more than both, so they
+/// close no gap that the route passes, and one skin is left for rounding.
 constexpr double kSkins = 2.0 * kContactSkin;
 
 std::vector<geometry::Obstacle> shapes_of(const Scenario& scenario) {
@@ -60,19 +60,21 @@ Guide::Guide(const Scenario& scenario, double most_margin)
   by_place_ = geometry::BoxGrid(std::move(boxes));
 }
 
-const geometry::RoutePlan& Guide::plan_for(double radius) {
+geometry::RoutePlan Guide::plan_for(double radius) {
   return plans_.try_emplace(radius, map_, radius).first->second;
 }
 
 CourseAnswer Guide::course(double radius, Vec2 from, Vec2 to) {
   if (!map_.covers(from) || !map_.covers(to)) return {std::nullopt, "it is too far from all obstacles"};
   const double wanted = radius + most_margin_ + kSkins;
-  const double keeps = plan_for(wanted).is_reachable(from, to) ? wanted : map_.widest_radius(from, to);
+  const bool has_margin = plan_for(wanted).is_reachable(from, to);
+  const double keeps = has_margin ? wanted : map_.widest_radius(from, to);
   if (keeps < radius) return {std::nullopt, words_of(plan_for(radius).query(from, to))};
   if (keeps < radius + kSkins)
     return {std::nullopt, "the widest way leaves it less than " + metres(kSkins) + " of room: too little to drive"};
   try {
-    const RouteAnswer answer = plan_for(keeps).query(from, to);
+    // The widest radius is another for every place: such plans are not kept.
+    const RouteAnswer answer = (has_margin ? plan_for(wanted) : geometry::RoutePlan(map_, keeps)).query(from, to);
     Course course;
     course.keeps = keeps;
     for (const geometry::ExactPoint& p : std::get<geometry::Route>(answer).points) course.points.push_back(p.rounded);

@@ -48,7 +48,7 @@ class Guide {
   Vec2 heading(Course& course, double radius, Vec2 here);
 
  private:
-  const geometry::RoutePlan& plan_for(double radius);
+  geometry::RoutePlan plan_for(double radius);
   std::string words_of(const geometry::RouteAnswer& answer) const;
   double clearance_at(Vec2 here, double enough) const;
   bool is_in_sight(Vec2 here, Vec2 there, double clearance) const;
@@ -58,7 +58,7 @@ class Guide {
   const Scenario& scenario_;
   double most_margin_;
   geometry::RouteMap map_;
-  std::map<double, geometry::RoutePlan> plans_;  ///< by radius
+  std::map<double, geometry::RoutePlan> plans_;  ///< by radius: of each robot, with its margin and without
   std::vector<geometry::ObstacleIndex> obstacles_;
   geometry::BoxGrid by_place_;
 };

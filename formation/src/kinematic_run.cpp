@@ -105,8 +105,8 @@ class KinematicRun {
     const double reach = std::max(scenario_.arrival_tolerance, spec.radius);
     if (robots_[i].goal + 1 >= spec.goals.size() || norm(goal_of(i) - robots_[i].position) > reach) return;
     ++robots_[i].goal;
-    look_at_goal(i, time);
     robots_[i].note = "goal " + std::to_string(robots_[i].goal) + " passed: heads for the next";
+    look_at_goal(i, time);  // which may note that the next one is out of reach
   }
 
   Step decide_all(double time) {
@@ -156,7 +156,10 @@ class KinematicRun {
     KinematicRobot& r = robots_[i];
     if (!r.course) return {};
     if (step.mode == Mode::direct) step.mode = Mode::guided;
-    return straight_for(i, guide_->heading(*r.course, scenario_.robots[i].radius, r.position));
+    const double radius = scenario_.robots[i].radius;
+    const Vec2 place = guide_->heading(*r.course, radius, r.position);
+    r.field->set_margin(Guide::margin_of(*r.course, radius));  // it may have planned again, through other gaps
+    return straight_for(i, place);
   }
 
   bool is_in_contact() const {

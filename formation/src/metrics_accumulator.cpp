@@ -5,15 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "divergence.h"
 #include "leader.h"
 
 namespace exactvo::formation::detail {
 
 using geometry::norm;
-
-double slot_error(const Step& row, const std::vector<Vec2>& offsets, std::size_t robot) {
-  return norm(row.robots[robot].position - row.leader_position - offsets[robot]);
-}
 
 namespace {
 
@@ -148,12 +145,9 @@ void MetricsAccumulator::write_to(Metrics& m) const {
 void MetricsAccumulator::write_formation(Metrics& m) const {
   const double arrival = leader_arrival(scenario_.formation->leader);
   if (arrival <= last_.time) m.leader_arrival_time = arrival;
-  double position = 0.0, velocity = 0.0;
-  for (std::size_t i = 0; i < last_.robots.size(); ++i) {
-    position = std::max(position, slot_error(last_, run_.offsets, i));
-    velocity = std::max(velocity, norm(last_.robots[i].velocity - last_.leader_velocity));
-  }
-  m.formation_position_error = position;
+  double velocity = 0.0;
+  for (const RobotStep& r : last_.robots) velocity = std::max(velocity, norm(r.velocity - last_.leader_velocity));
+  m.formation_position_error = formation_error(last_, run_.offsets);
   m.formation_velocity_error = velocity;
 }
 

@@ -12,9 +12,6 @@
 
 namespace exactvo::formation::detail {
 
-/// m: how far a robot of a formation is from its slot.
-double slot_error(const Step& row, const std::vector<Vec2>& offsets, std::size_t robot);
-
 /// Since when an error stays within a tolerance.
 class SettledSince {
  public:

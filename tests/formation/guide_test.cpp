@@ -147,6 +147,30 @@ TEST(Guidance, WhoWasPushedOutOfSightPlansAgain) {
   EXPECT_EQ(course.points, again);
 }
 
+TEST(Guidance, ACourseThatIsPlannedAgainMayLeaveLessMargin) {
+  Scenario s = door(3.0);
+  s.obstacles.push_back({"shelf", Polyline{{{-6, -3}, {-2, -3}}}});
+  detail::Guide guide(s, 0.08);
+  detail::Course course = *guide.course(0.5, {-4, 3}, {4, 3}).course;
+  EXPECT_NEAR(detail::Guide::margin_of(course, 0.5), 0.08, 1e-12);
+  guide.heading(course, 0.5, {-5, -5.48});  // 0.52 m from the frame, out of sight of the course
+  EXPECT_NEAR(detail::Guide::margin_of(course, 0.5), 0.02, 1e-5);
+}
+
+TEST(Guidance, AGoalOnTheWayThatIsPassedAndANextThatIsOutOfReachAreBothNoted) {
+  Scenario s = door(2.0);
+  s.robots[0].goals = {{4, 3}, {30, 30}};
+  const GuidedRun run = guided(s);
+  bool noted = false;
+  for (const Step& step : run.recording.steps) {
+    const std::string& note = step.robots[0].note;
+    noted =
+        noted || (note.find("goal 1 passed") != std::string::npos && note.find("out of reach") != std::string::npos);
+  }
+  EXPECT_TRUE(noted);
+  EXPECT_THAT(run.metrics.outcome, HasSubstr("R cannot reach its goal"));
+}
+
 TEST(Guidance, WhoMustGiveWayToACartArrives) {
   Scenario s = door(3.0);
   s.moving_obstacles = {

@@ -88,15 +88,15 @@ class SiteTree {
   bool for_each_near(Vec2 m, double r, const F& f) const {
     // More than the roundings of m, r and of vertices.
     const double reach = r + 0x1p-40 * std::max({std::fabs(m.x), std::fabs(m.y), r});
-    std::vector<std::size_t> todo{0};
-    while (!todo.empty()) {
-      const std::size_t number = todo.back();
+    std::vector<std::size_t> pending{0};
+    while (!pending.empty()) {
+      const std::size_t number = pending.back();
       const Node& node = nodes_[number];
-      todo.pop_back();
+      pending.pop_back();
       if (distance_below(node.box, m) > reach) continue;
       if (node.second != 0) {
-        todo.push_back(node.second);
-        todo.push_back(number + 1);
+        pending.push_back(node.second);
+        pending.push_back(number + 1);
         continue;
       }
       for (std::size_t k = node.first; k < node.last; ++k)

@@ -79,16 +79,16 @@ std::vector<Triangle> triangles_over(const PlanarGraph& graph, const Vec2 (&corn
 void mark_free(const PlanarGraph& graph, std::vector<Triangle>& triangles) {
   constexpr int kUnknown = std::numeric_limits<int>::min();
   std::vector<int> solids(triangles.size(), kUnknown);
-  std::vector<int> todo;
+  std::vector<int> pending;
   for (std::size_t f = 0; f < triangles.size(); ++f) {
     const Triangle& t = triangles[f];
     if (solids[f] != kUnknown || std::none_of(t.neighbour, t.neighbour + 3, [](int n) { return n < 0; })) continue;
     solids[f] = 0;
-    todo.push_back(static_cast<int>(f));
+    pending.push_back(static_cast<int>(f));
   }
-  while (!todo.empty()) {
-    const int f = todo.back();
-    todo.pop_back();
+  while (!pending.empty()) {
+    const int f = pending.back();
+    pending.pop_back();
     const Triangle& t = triangles[f];
     for (int i = 0; i < 3; ++i) {
       if (t.neighbour[i] < 0 || solids[t.neighbour[i]] != kUnknown) continue;
@@ -99,7 +99,7 @@ void mark_free(const PlanarGraph& graph, std::vector<Triangle>& triangles) {
         change = on_its_left ? -wall.winding : wall.winding;
       }
       solids[t.neighbour[i]] = solids[f] + change;
-      todo.push_back(t.neighbour[i]);
+      pending.push_back(t.neighbour[i]);
     }
   }
   for (std::size_t f = 0; f < triangles.size(); ++f) triangles[f].free = solids[f] == 0;
