@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Many robots, one step at a time: reciprocal collision avoidance (van den Berg, Guy, Lin, Manocha, "Reciprocal n-body
+/// collision avoidance", 2011) for one robot or a million, every step certified.
+///
+/// Positions are whole multiples of a lattice step q (2^-18 m unless another is chosen), and so is what a robot moves
+/// in a time step: p' = p + m is exact, and m q / dt is the velocity that was decided on. What is certified is what is
+/// driven. "Float" and "double" name the arithmetic of half-planes and of the linear program only.
+///
+/// Promises (tests quote the numbers). Let a robot be *kept* in a step if its velocity provably satisfies all its
+/// half-planes, and let two robots *touch* if they are nearer than the sum R of their radii and a rounding error: 40 u
+/// (|dx|
+/// + |dy| + R), u = 2^-24 (float) or 2^-53.
+///  (1) Two kept robots that do not touch at the beginning of a step are apart at every moment of it. Certified, for
+///      `CrowdOptions::certified`.
+///  (2) Both robots of a pair use the same normal, one negated, bit for bit; their offsets add up to at least what the
+///      pair needs.
+///  (3) |velocity| <= max_speed, exactly.
+///  (4) The same calls give the same bits, on every SIMD target and with any number of threads.
+///  (5) Every robot that could be met within the step is among the neighbours, however many they are.
+///  (6) A crowd that was restored from a snapshot goes on with the same bits.
+/// A robot that is not kept (`StepReport::relaxed`) had to violate half-planes; it violates them as little as possible,
+/// up to rounding, and nothing is promised of it. Which velocity is best is heuristic in its last digits.
+///
+/// Units are metres, seconds, metres per second. Neighbours: vo/reciprocal.h is the rule for one pair in double.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/vec2.h"
+
+namespace exactvo::formation {
+
+using geometry::Vec2;
+
+/// Names a robot until it is removed; then it may be given to another. Small numbers: 0 ... id_end() - 1.
+using RobotId = std::uint32_t;
+using KindId = std::uint8_t;
+
+/// What robots of a kind have in common.
+struct CrowdKind {
+  double radius = 0.5;               ///< m, > 0
+  double max_speed = 1.5;            ///< m/s, at least 16 lattice steps and at most 2^22 of them a time step
+  double time_horizon = 5.0;         ///< s, at least the time step; a pair looks ahead the shorter of its two
+  double neighbour_distance = 15.0;  ///< m, > 0; taken as the distance within which robots can meet if that is more
+  int neighbours = 10;               ///< 1 ... 15: the nearest within the distance, and all that could be met, (5)
+};
+
+/// The arithmetic of half-planes and linear programs.
+enum class CrowdPrecision {
+  float_lines,  ///< "float": offsets are rounded up by about 1e-6 m/s
+  double_lines  ///< "double": by about 1e-15 m/s
+};
+
+/// "float", "double".
+const char* name(CrowdPrecision precision);
+bool parse(const std::string& text, CrowdPrecision& out);
+
+struct CrowdOptions {
+  double time_step = 0.25;         ///< s, > 0
+  double position_step = 0x1p-18;  ///< m, q: a power of two in [2^-40, 1]; positions stay below 2^30 q
+  CrowdPrecision precision = CrowdPrecision::float_lines;
+  bool certified = true;     ///< false: offsets are rounded to nearest and nothing is promised; for comparison
+  int threads = 1;           ///< 1 ... 1024, oneTBB's; 0: as many as there are
+  bool time_phases = false;  ///< fills Crowd::phases
+};
+
+/// What is wrong with an argument, and with which robot.
+enum class CrowdProblem {
+  not_finite,      ///< a number is NaN or infinite
+  out_of_range,    ///< a number is outside the range that its field states
+  beyond_lattice,  ///< a position at or beyond 2^30 q
+  coincident,      ///< two robots in one place, one of them new
+  too_many,        ///< more than 2^30 robots, 256 kinds
+  unknown_robot,   ///< no robot has this id
+  unknown_kind,    ///< no kind has this number
+  wrong_count,     ///< an array is shorter than id_end()
+  bad_snapshot     ///< not a snapshot, cut off, or changed
+};
+
+/// "not-finite", "out-of-range" and so on.
+const char* name(CrowdProblem problem);
+
+/// A caller's mistake; the crowd is as it was before the call.
+class CrowdError : public std::invalid_argument {
+ public:
+  CrowdError(CrowdProblem problem, const std::string& words) : std::invalid_argument(words), problem_(problem) {}
+  CrowdProblem problem() const { return problem_; }
+
+ private:
+  CrowdProblem problem_;
+};
+
+/// What happened in a step. Every count is the same on every machine and with any number of threads.
+struct StepReport {
+  std::size_t robots = 0;
+  std::size_t neighbours = 0;  ///< half-planes made
+  std::size_t relaxed = 0;     ///< robots that are not kept: nothing is promised of them
+  std::size_t touching = 0;    ///< robots that touched another at the beginning of the step
+  std::size_t widened = 0;     ///< robots with more in reach of the step than their kind's neighbours: took more, (5)
+  std::size_t nudged = 0;      ///< kept robots whose velocity had to be rounded to another place of the lattice
+};
+
+/// Seconds of threads in each phase, summed over the steps; only with CrowdOptions::time_phases.
+struct CrowdPhases {
+  double sort = 0.0, search = 0.0, lines = 0.0, solve = 0.0, finish = 0.0;
+};
+
+/// A stretch of robots that ask where they want to go. Positions and velocities are exact.
+class CrowdSlice {
+ public:
+  std::size_t size() const { return count_; }
+  RobotId id(std::size_t k) const { return static_cast<RobotId>(id_[k]); }
+  KindId kind(std::size_t k) const { return static_cast<KindId>(tag_[k] & 0xFFU); }
+  Vec2 position(std::size_t k) const { return {step_ * x_[k], step_ * y_[k]}; }
+  Vec2 velocity(std::size_t k) const { return {step_ * mx_[k] / time_step_, step_ * my_[k] / time_step_}; }
+  /// m/s, finite, below 2^20. What is not set is 0.
+  void prefer(std::size_t k, Vec2 velocity) { preferred_[k] = velocity; }
+
+ private:
+  template <class T>
+  friend class CrowdEngine;
+  std::size_t count_ = 0;
+  const std::int32_t *id_ = nullptr, *x_ = nullptr, *y_ = nullptr, *mx_ = nullptr, *my_ = nullptr;
+  const std::uint16_t* tag_ = nullptr;
+  double step_ = 0.0, time_step_ = 0.0;
+  Vec2* preferred_ = nullptr;
+};
+
+/// Called from several threads at once where there are several; what it says of a robot must not depend on the slice.
+using Steering = std::function<void(CrowdSlice&)>;
+
+/// One robot's next decision, recomputed from the present state.
+struct CrowdExplanation {
+  struct Neighbour {
+    RobotId robot = 0;
+    geometry::HalfPlane half_plane;  ///< of the velocity; what is certified
+    bool touching = false;           ///< nothing is promised of this pair
+  };
+  RobotId robot = 0;
+  Vec2 position;   ///< m, exact
+  Vec2 velocity;   ///< m/s, now
+  Vec2 preferred;  ///< m/s, as it was rounded for the linear program
+  Vec2 chosen;     ///< m/s, what `step` will choose: m q / dt
+  bool kept = false;
+  bool widened = false;
+  std::vector<Neighbour> neighbours;  ///< nearest first
+};
+
+class Crowd {
+ public:
+  explicit Crowd(const CrowdOptions& options = {});
+  ~Crowd();
+  Crowd(Crowd&&) noexcept;
+  Crowd& operator=(Crowd&&) noexcept;
+
+  KindId add_kind(const CrowdKind& kind);
+  /// At rest, at the place of the lattice nearest to `position`. O(1); two robots in one place are found by `step`.
+  RobotId add_robot(Vec2 position, KindId kind = 0);
+  /// Memory for so many, where it is known how many there will be.
+  void reserve(std::size_t robots);
+  /// O(1), but O(n) the first time after a step.
+  void remove_robot(RobotId robot);
+
+  std::size_t size() const;
+  /// Above every id: arrays by id have this length. Entries of ids that name nobody are neither read nor written.
+  std::size_t id_end() const;
+  const CrowdOptions& options() const;
+  const CrowdKind& kind(KindId kind) const;
+
+  /// m/s, by id; they stay until they are set again. New robots prefer 0. Takes the place of a steering function.
+  void set_preferred(const std::vector<Vec2>& by_id);
+  /// Asked at every step from now on. Not part of a snapshot.
+  void set_steering(Steering steering);
+
+  /// Decides for all robots and moves them. Throws CrowdError where a robot would leave the lattice, where two are in
+  /// one place and one of them is new, or where the steering function prefers what is not finite or too large; what the
+  /// function itself throws passes. The robots are then as they were before.
+  StepReport step();
+
+  /// m, exact, by id; grows the array to id_end().
+  void positions(std::vector<Vec2>& by_id) const;
+  /// m/s, m q / dt, by id: exact where q / dt is a power of two, else the nearest double.
+  void velocities(std::vector<Vec2>& by_id) const;
+  /// 1: the robot was kept in the last step. 0: it was not, or is new.
+  void kept(std::vector<std::uint8_t>& by_id) const;
+  Vec2 position(RobotId robot) const;
+  Vec2 velocity(RobotId robot) const;
+  KindId kind_of(RobotId robot) const;
+
+  /// Recomputed, the same bits that `step` would choose. Throws what `step` would throw.
+  CrowdExplanation explain(RobotId robot) const;
+
+  /// Everything but the steering function, in a binary form of this version. Throws std::ios_base::failure where the
+  /// stream fails.
+  void snapshot(std::ostream& to) const;
+  /// On as many threads as given (CrowdOptions::threads), whatever the crowd had.
+  static Crowd restored(std::istream& from, int threads = 1);
+
+  /// Of positions, motions and kinds by id, for comparing runs.
+  std::uint64_t digest() const;
+  /// Memory that grows with the robots.
+  std::size_t bytes() const;
+  const CrowdPhases& phases() const;
+
+ private:
+  class Engine;
+  explicit Crowd(std::unique_ptr<Engine> engine);
+  std::unique_ptr<Engine> engine_;
+};
+
+/// The name of the SIMD target in use ("AVX3", "AVX2", "SSE4", ...).
+const char* crowd_target();
+
+}  // namespace exactvo::formation

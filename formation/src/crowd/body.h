@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A crowd behind its interface: robots by id, what callers may get wrong, when to sort.
+
+#include <chrono>
+#include <iosfwd>
+#include <memory>
+#include <vector>
+
+#include "crowd/engine.h"
+
+namespace exactvo::formation::crowd {
+
+inline constexpr std::uint32_t kMostRobots = 1U << 30U;
+inline constexpr std::uint32_t kNowhere = 0xFFFFFFFFU;
+/// m/s; squares of speeds stay ordinary floats.
+inline constexpr double kFastest = 0x1p15;
+/// m
+inline constexpr double kLeastStrip = 0x1p-6;
+
+void require_valid(const CrowdOptions& options);
+void require_valid(const CrowdKind& kind, const CrowdOptions& options);
+
+class CrowdBody {
+ public:
+  explicit CrowdBody(const CrowdOptions& options);
+
+  KindId add_kind(const CrowdKind& kind);
+  RobotId add_robot(Vec2 position, KindId kind);
+  void remove_robot(RobotId robot);
+  StepReport step();
+  /// Sorts and lays out where something has changed. Calling it more often changes nothing.
+  void make_ready();
+  /// Throws where there is none of this id.
+  std::size_t place_of(RobotId robot);
+  std::uint64_t digest() const;
+
+  Vec2 velocity(std::size_t at) const {
+    const CrowdOptions& o = core->options;
+    return {o.position_step * core->robots.mx[at] / o.time_step, o.position_step * core->robots.my[at] / o.time_step};
+  }
+  std::size_t bytes() const { return core->bytes() + 4 * (places.capacity() + free_ids.capacity()); }
+
+  std::unique_ptr<CrowdCore> core;
+  std::uint64_t steps = 0;
+  RobotId id_end = 0;
+  std::vector<RobotId> free_ids;      ///< the last one is given first
+  std::vector<std::uint32_t> places;  ///< by id, or empty
+  bool unsorted = true;
+  bool unchecked = true;  ///< robots are new
+
+ private:
+  static double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+  void find_places();
+  void guess_hints();
+  void follow_density();
+  void require_apart() const;
+  void require_on_lattice() const;
+  bool is_new(std::size_t at) const;
+};
+
+/// snapshot.cpp. The body is ready.
+void write_snapshot(const CrowdBody& body, std::ostream& to);
+CrowdOptions read_options(std::istream& from);
+void read_snapshot(CrowdBody& body, std::istream& from);
+
+}  // namespace exactvo::formation::crowd

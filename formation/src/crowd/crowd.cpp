@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/crowd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "crowd/body.h"
+#include "exactvo/vo/lp/batch.h"
+
+namespace exactvo::formation {
+
+using namespace crowd;
+
+namespace {
+
+/// Steps after which the height of the strips follows the density.
+constexpr std::uint64_t kStepsPerStripHeight = 16;
+
+/// Neighbours that the first search is laid out for, in a crowd as dense everywhere as its bounding box.
+constexpr double kFirstGuess = 1.1;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+std::string words(const char* field, double found, const std::string& expected) {
+  return std::string(field) + ": found " + number(found) + ", expected " + expected;
+}
+
+void require_in_range(const char* field, double x, bool holds, const std::string& expected) {
+  if (!std::isfinite(x)) throw CrowdError(CrowdProblem::not_finite, words(field, x, expected));
+  if (!holds) throw CrowdError(CrowdProblem::out_of_range, words(field, x, expected));
+}
+
+bool is_power_of_two(double x) {
+  int exponent = 0;
+  return std::frexp(x, &exponent) == 0.5;
+}
+
+}  // namespace
+
+const char* name(CrowdPrecision precision) {
+  return precision == CrowdPrecision::float_lines ? "float" : "double";
+}
+
+bool parse(const std::string& text, CrowdPrecision& out) {
+  for (const CrowdPrecision p : {CrowdPrecision::float_lines, CrowdPrecision::double_lines})
+    if (text == name(p)) return out = p, true;
+  return false;
+}
+
+const char* name(CrowdProblem problem) {
+  constexpr const char* kNames[] = {"not-finite",    "out-of-range", "beyond-lattice", "coincident",  "too-many",
+                                    "unknown-robot", "unknown-kind", "wrong-count",    "bad-snapshot"};
+  return kNames[static_cast<int>(problem)];
+}
+
+const char* crowd_target() {
+  return lp::batch_target();
+}
+
+namespace crowd {
+
+void require_valid(const CrowdOptions& o) {
+  require_in_range("time_step", o.time_step, o.time_step >= 0x1p-20 && o.time_step <= 0x1p20, "2^-20 to 2^20 s");
+  const double q = o.position_step;
+  require_in_range("position_step", q, q >= 0x1p-40 && q <= 1.0 && is_power_of_two(q),
+                   "a power of two in [2^-40, 1] m");
+  require_in_range("threads", o.threads, o.threads >= 0 && o.threads <= 1024, "0 to 1024");
+}
+
+void require_valid(const CrowdKind& k, const CrowdOptions& o) {
+  const double step = o.position_step / o.time_step, far = kLatticeEnd * o.position_step;
+  require_in_range("radius", k.radius, k.radius > 0.0 && k.radius < far, "above 0 and below " + number(far) + " m");
+  require_in_range("max_speed", k.max_speed, k.max_speed >= 16.0 * step && k.max_speed <= 0x1p22 * step,
+                   number(16.0 * step) + " to " + number(0x1p22 * step) + " m/s: 16 to 2^22 steps of the lattice");
+  require_in_range("max_speed", k.max_speed, k.max_speed >= 0x1p-12 && k.max_speed <= kFastest, "2^-12 to 2^15 m/s");
+  require_in_range("time_horizon", k.time_horizon, k.time_horizon >= o.time_step && k.time_horizon <= 0x1p20,
+                   "the time step, " + number(o.time_step) + ", to 2^20 s");
+  require_in_range("neighbour_distance", k.neighbour_distance, k.neighbour_distance > 0.0, "above 0 m");
+  require_in_range("neighbours", k.neighbours, k.neighbours >= 1 && k.neighbours <= kMostNeighbours, "1 to 15");
+}
+
+CrowdBody::CrowdBody(const CrowdOptions& options) {
+  require_valid(options);
+  core = options.precision == CrowdPrecision::float_lines ? make_float_core(options) : make_double_core(options);
+}
+
+KindId CrowdBody::add_kind(const CrowdKind& kind) {
+  if (core->kinds.size() == 256) throw CrowdError(CrowdProblem::too_many, "kinds: found a 257th, expected 256 at most");
+  require_valid(kind, core->options);
+  core->kinds.push_back(kind);
+  core->take_kinds();
+  return static_cast<KindId>(core->kinds.size() - 1);
+}
+
+RobotId CrowdBody::add_robot(Vec2 position, KindId kind) {
+  if (kind >= core->kinds.size())
+    throw CrowdError(CrowdProblem::unknown_kind,
+                     words("kind", kind, "below " + std::to_string(core->kinds.size()) + ", the number of kinds"));
+  if (!geometry::is_finite(position))
+    throw CrowdError(CrowdProblem::not_finite,
+                     words("position", std::isfinite(position.x) ? position.y : position.x, "a number"));
+  const double x = std::nearbyint(position.x / core->options.position_step);
+  const double y = std::nearbyint(position.y / core->options.position_step);
+  if (!(std::max(std::fabs(x), std::fabs(y)) < kLatticeEnd))
+    throw CrowdError(CrowdProblem::beyond_lattice,
+                     words("position", std::fabs(x) < kLatticeEnd ? position.y : position.x,
+                           "less than " + number(kLatticeEnd * core->options.position_step) + " m from 0"));
+  if (free_ids.empty() && id_end == kMostRobots)
+    throw CrowdError(CrowdProblem::too_many, "robots: found one more than 2^30, expected 2^30 at most");
+  RobotId id = id_end;
+  if (free_ids.empty())
+    ++id_end;
+  else
+    id = free_ids.back(), free_ids.pop_back();
+  core->robots.append(static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(id), kind);
+  if (!places.empty()) {
+    if (places.size() <= id) places.resize(id + 1, kNowhere);
+    places[id] = static_cast<std::uint32_t>(core->robots.size() - 1);
+  }
+  unsorted = unchecked = true;
+  core->forget_preference(id);
+  return id;
+}
+
+void CrowdBody::find_places() {
+  if (!places.empty()) return;
+  places.assign(id_end, kNowhere);
+  for (std::size_t i = 0; i < core->robots.size(); ++i)
+    places[static_cast<std::size_t>(core->robots.id[i])] = static_cast<std::uint32_t>(i);
+}
+
+std::size_t CrowdBody::place_of(RobotId robot) {
+  find_places();
+  if (robot >= places.size() || places[robot] == kNowhere)
+    throw CrowdError(CrowdProblem::unknown_robot, "robot " + std::to_string(robot) + ": found no robot of this id");
+  return places[robot];
+}
+
+void CrowdBody::remove_robot(RobotId robot) {
+  const std::size_t at = place_of(robot);
+  const auto last = static_cast<RobotId>(core->robots.id[core->robots.size() - 1]);
+  core->robots.remove(at);
+  places[last] = static_cast<std::uint32_t>(at);
+  places[robot] = kNowhere;
+  free_ids.push_back(robot);
+  unsorted = true;
+}
+
+/// How far the first search goes where nothing is known: the mean distance of the last neighbour in a crowd that fills
+/// its bounding box evenly.
+void CrowdBody::guess_hints() {
+  Robots& r = core->robots;
+  const Window w = r.bounds();
+  const double area = static_cast<double>(w.x1 - w.x0 + 1) * static_cast<double>(w.y1 - w.y0 + 1);
+  const double each = area / (3.14159 * static_cast<double>(r.size()));
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    if (!is_new(i)) continue;  // a guess does not hang on earlier ones
+    const CrowdKind& kind = core->kinds[r.tag[i] & 0xFFU];
+    const double guess = kFirstGuess * std::sqrt(each * kind.neighbours);
+    r.hint[i] = static_cast<std::int32_t>(
+        std::clamp(guess, 1.0, std::min(0x1p30, kind.neighbour_distance / core->options.position_step + 1.0)));
+  }
+  follow_density();
+}
+
+void CrowdBody::follow_density() {
+  core->robots.follow_density(kLeastStrip / core->options.position_step, 0x1p30);
+}
+
+/// Neighbours in the order are the only ones that can stand in one place.
+void CrowdBody::require_apart() const {
+  const Robots& r = core->robots;
+  for (std::size_t i = 0; i + 1 < r.size(); ++i) {
+    if (r.x[i] != r.x[i + 1]) continue;
+    for (std::size_t j = i + 1; j < r.size() && r.x[j] == r.x[i]; ++j)
+      if (r.y[j] == r.y[i] && (is_new(i) || is_new(j)))
+        throw CrowdError(CrowdProblem::coincident,
+                         "robots " + std::to_string(r.id[i]) + " and " + std::to_string(r.id[j]) + ": found both at (" +
+                             number(core->options.position_step * r.x[i]) + ", " +
+                             number(core->options.position_step * r.y[i]) + "), expected each in a place of its own");
+  }
+}
+
+bool CrowdBody::is_new(std::size_t at) const {
+  return (core->robots.tag[at] & Robots::kSettled) == 0;
+}
+
+void CrowdBody::make_ready() {
+  if (!unsorted) return;
+  Robots& r = core->robots;
+  const double start = core->options.time_phases ? now() : 0.0;
+  if (unchecked) {
+    places.clear();
+    r.shrink();
+    r.sort(core->tasks);
+    require_apart();
+    guess_hints();
+    unchecked = false;
+  }
+  r.sort(core->tasks);
+  places.clear();
+  unsorted = false;
+  if (core->options.time_phases) core->phases.sort += now() - start;
+}
+
+/// Looks at every robot only where one could be near the end.
+void CrowdBody::require_on_lattice() const {
+  const Robots& r = core->robots;
+  const Window w = r.bounds();
+  const std::int64_t safe = kLatticeEnd - (std::int64_t{1} << 23);
+  if (w.x0 > -safe && w.y0 > -safe && w.x1 < safe && w.y1 < safe) return;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const std::int64_t x = std::int64_t{r.x[i]} + r.next_mx[i], y = std::int64_t{r.y[i]} + r.next_my[i];
+    if (std::max(std::abs(x), std::abs(y)) >= kLatticeEnd)
+      throw CrowdError(CrowdProblem::beyond_lattice, "robot " + std::to_string(r.id[i]) + ": found a step beyond " +
+                                                         number(kLatticeEnd * core->options.position_step) +
+                                                         " m, expected positions below it");
+  }
+}
+
+StepReport CrowdBody::step() {
+  make_ready();
+  const StepReport report = core->decide();
+  require_on_lattice();
+  core->robots.move(core->tasks);
+  if (steps++ % kStepsPerStripHeight == 0) follow_density();
+  unsorted = true;
+  places.clear();
+  return report;
+}
+
+std::uint64_t CrowdBody::digest() const {
+  const Robots& r = core->robots;
+  std::vector<std::uint32_t> at(id_end, kNowhere);
+  for (std::size_t i = 0; i < r.size(); ++i) at[static_cast<std::size_t>(r.id[i])] = static_cast<std::uint32_t>(i);
+  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a, a word at a time
+  const auto add = [&](std::int64_t value) { hash = (hash ^ static_cast<std::uint64_t>(value)) * 1099511628211ULL; };
+  for (const std::uint32_t i : at) {
+    if (i == kNowhere) {
+      add(-1);
+      continue;
+    }
+    for (const std::int32_t value : {r.x[i], r.y[i], r.mx[i], r.my[i], static_cast<std::int32_t>(r.tag[i] & 0x1FFU)})
+      add(value);
+  }
+  return hash;
+}
+
+}  // namespace crowd
+
+class Crowd::Engine : public CrowdBody {
+ public:
+  using CrowdBody::CrowdBody;
+};
+
+Crowd::Crowd(const CrowdOptions& options) : engine_(std::make_unique<Engine>(options)) {}
+Crowd::Crowd(std::unique_ptr<Engine> engine) : engine_(std::move(engine)) {}
+Crowd::~Crowd() = default;
+Crowd::Crowd(Crowd&&) noexcept = default;
+Crowd& Crowd::operator=(Crowd&&) noexcept = default;
+
+KindId Crowd::add_kind(const CrowdKind& kind) {
+  return engine_->add_kind(kind);
+}
+RobotId Crowd::add_robot(Vec2 position, KindId kind) {
+  return engine_->add_robot(position, kind);
+}
+void Crowd::reserve(std::size_t robots) {
+  engine_->core->robots.reserve(robots);
+}
+void Crowd::remove_robot(RobotId robot) {
+  engine_->remove_robot(robot);
+}
+std::size_t Crowd::size() const {
+  return engine_->core->robots.size();
+}
+std::size_t Crowd::id_end() const {
+  return engine_->id_end;
+}
+const CrowdOptions& Crowd::options() const {
+  return engine_->core->options;
+}
+
+const CrowdKind& Crowd::kind(KindId kind) const {
+  const auto& kinds = engine_->core->kinds;
+  if (kind >= kinds.size())
+    throw CrowdError(CrowdProblem::unknown_kind,
+                     words("kind", kind, "below " + std::to_string(kinds.size()) + ", the number of kinds"));
+  return kinds[kind];
+}
+
+void Crowd::set_preferred(const std::vector<Vec2>& by_id) {
+  if (by_id.size() < id_end())
+    throw CrowdError(CrowdProblem::wrong_count, words("preferred velocities", static_cast<double>(by_id.size()),
+                                                      std::to_string(id_end()) + ", one for each id"));
+  engine_->core->set_preferred(by_id);
+  engine_->core->steering = nullptr;
+}
+
+void Crowd::set_steering(Steering steering) {
+  engine_->core->steering = std::move(steering);
+}
+
+StepReport Crowd::step() {
+  return engine_->step();
+}
+
+void Crowd::positions(std::vector<Vec2>& by_id) const {
+  const Robots& r = engine_->core->robots;
+  const double q = options().position_step;
+  if (by_id.size() < id_end()) by_id.resize(id_end());
+  for (std::size_t i = 0; i < r.size(); ++i) by_id[static_cast<std::size_t>(r.id[i])] = {q * r.x[i], q * r.y[i]};
+}
+
+void Crowd::velocities(std::vector<Vec2>& by_id) const {
+  const Robots& r = engine_->core->robots;
+  if (by_id.size() < id_end()) by_id.resize(id_end());
+  for (std::size_t i = 0; i < r.size(); ++i) by_id[static_cast<std::size_t>(r.id[i])] = engine_->velocity(i);
+}
+
+void Crowd::kept(std::vector<std::uint8_t>& by_id) const {
+  const Robots& r = engine_->core->robots;
+  if (by_id.size() < id_end()) by_id.resize(id_end());
+  for (std::size_t i = 0; i < r.size(); ++i) by_id[static_cast<std::size_t>(r.id[i])] = (r.tag[i] & Robots::kKept) != 0;
+}
+
+Vec2 Crowd::position(RobotId robot) const {
+  const std::size_t i = engine_->place_of(robot);
+  const double q = options().position_step;
+  return {q * engine_->core->robots.x[i], q * engine_->core->robots.y[i]};
+}
+
+Vec2 Crowd::velocity(RobotId robot) const {
+  return engine_->velocity(engine_->place_of(robot));
+}
+
+KindId Crowd::kind_of(RobotId robot) const {
+  return static_cast<KindId>(engine_->core->robots.tag[engine_->place_of(robot)] & 0xFFU);
+}
+
+CrowdExplanation Crowd::explain(RobotId robot) const {
+  engine_->place_of(robot);
+  engine_->make_ready();
+  return engine_->core->explain(engine_->place_of(robot));
+}
+
+void Crowd::snapshot(std::ostream& to) const {
+  engine_->make_ready();
+  write_snapshot(*engine_, to);
+}
+
+Crowd Crowd::restored(std::istream& from, int threads) {
+  CrowdOptions options = read_options(from);
+  options.threads = threads;
+  auto engine = std::make_unique<Engine>(options);
+  read_snapshot(*engine, from);
+  return Crowd(std::move(engine));
+}
+
+std::uint64_t Crowd::digest() const {
+  return engine_->digest();
+}
+std::size_t Crowd::bytes() const {
+  return engine_->bytes();
+}
+const CrowdPhases& Crowd::phases() const {
+  return engine_->core->phases;
+}
+
+}  // namespace exactvo::formation

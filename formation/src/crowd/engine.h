@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// One step of a crowd: sort, find neighbours, make half-planes, solve, round to the lattice, move.
+///
+/// A robot is decided in one of two ways that give the same bits: in a pack of sixteen that share their candidates, or
+/// alone, with any number of neighbours: where it stands too densely for a pack, where more can be met within the step
+/// than its kind has neighbours, where another stands in its very place, and for `explain`.
+
+#include <memory>
+#include <vector>
+
+#include "crowd/kinds.h"
+#include "crowd/lines.h"
+#include "crowd/robots.h"
+#include "exactvo/formation/crowd.h"
+
+namespace exactvo::formation {
+
+/// What does not depend on the arithmetic.
+class CrowdCore {
+ public:
+  explicit CrowdCore(const CrowdOptions& given) : options(given), tasks(given.threads) {}
+  virtual ~CrowdCore() = default;
+
+  virtual void take_kinds() = 0;
+  virtual void set_preferred(const std::vector<Vec2>& by_id) = 0;
+  virtual void forget_preference(RobotId robot) = 0;
+  virtual std::vector<Vec2> preferred() const = 0;
+  /// Robots are sorted; writes next_mx, next_my, next_kept, hint.
+  virtual StepReport decide() = 0;
+  virtual CrowdExplanation explain(std::size_t robot) = 0;
+  virtual std::size_t bytes() const = 0;
+
+  CrowdOptions options;
+  std::vector<CrowdKind> kinds;
+  crowd::Robots robots;
+  crowd::Tasks tasks;
+  Steering steering;
+  CrowdPhases phases;
+  std::size_t range = 0;  ///< robots a task; 0: as it thinks best. The results are the same.
+};
+
+std::unique_ptr<CrowdCore> make_float_core(const CrowdOptions& options);
+std::unique_ptr<CrowdCore> make_double_core(const CrowdOptions& options);
+
+}  // namespace exactvo::formation

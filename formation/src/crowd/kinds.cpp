@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crowd/kinds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "crowd/layout.h"
+
+namespace exactvo::formation::crowd {
+namespace {
+
+/// Half a lattice step in both coordinates, sqrt(1/2), and what it is rounded by.
+constexpr double kHalfDiagonal = 0.7072;
+
+/// In lattice steps a time step: what lines are moved inward by, and how much of that may be used up again.
+constexpr double kSlackSteps = 0.75, kSpareSteps = 0.72;
+
+/// Checking a line rounds by at most 11 u V: three roundings a product, the velocity itself, the difference.
+constexpr double kCheckUnits = 16.0;
+
+template <class T>
+T rounded_up(double value) {
+  const T rounded = static_cast<T>(value);
+  return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<T>::infinity()) : rounded;
+}
+
+template <class T>
+T rounded_down(double value) {
+  return -rounded_up<T>(-value);
+}
+
+}  // namespace
+
+float without_number(float squared) {
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &squared, sizeof bits);
+  bits &= ~static_cast<std::uint32_t>(kIndexBits);
+  std::memcpy(&squared, &bits, sizeof bits);
+  return squared;
+}
+
+template <class T>
+KindTable<T> kind_table(const CrowdOptions& options, const std::vector<CrowdKind>& kinds) {
+  constexpr double u = sizeof(T) == 8 ? 0x1p-53 : 0x1p-24;
+  const double dt = options.time_step, q = options.position_step;
+  double largest = 0.0, fastest = 0.0;
+  for (const CrowdKind& k : kinds) {
+    largest = std::max(largest, k.radius);
+    fastest = std::max(fastest, k.max_speed);
+  }
+  KindTable<T> table;
+  table.velocity_step = q / dt;
+  if (options.certified) {
+    table.lattice_slack = static_cast<T>(kSlackSteps * q / dt + 2.0 * kCheckUnits * u * fastest);
+    table.spare = kSpareSteps * q / dt + 1.5 * kCheckUnits * u * fastest;
+  }
+  for (const CrowdKind& k : kinds) {
+    table.radius.push_back(rounded_up<T>(k.radius));
+    table.inverse_horizon.push_back(static_cast<T>(1.0 / k.time_horizon));
+    table.least_offset.push_back(static_cast<T>(-4.0 * k.max_speed));
+    const double share = sizeof(T) == 8 ? 0x1p-48 : 0x1p-20;
+    table.disc.push_back(rounded_down<T>((k.max_speed - kHalfDiagonal * q / dt) * (1.0 - share)));
+    table.allowed.push_back(rounded_down<T>(table.spare - kCheckUnits * u * k.max_speed));
+    // A squared distance in float is off by 3 u, 2^-22; cut, it is below that. Twice 2^-20 is put on.
+    const double reach = (k.radius + largest + (k.max_speed + fastest) * dt) * (1.0 + 0x1p-20) / q + 1.0;
+    table.reach.push_back(rounded_up<float>(reach * reach * (1.0 + 0x1p-20)));
+    // Beyond what cutting takes off: 2^-15 of the square.
+    const double within = std::min(std::max(k.neighbour_distance / q, reach * (1.0 + 0x1p-10)), 0x1p31);
+    table.none.push_back(without_number(static_cast<float>(within * within)));
+    table.window.push_back(within);
+    table.neighbours.push_back(k.neighbours);
+    table.most_neighbours = std::max(table.most_neighbours, k.neighbours);
+  }
+  return table;
+}
+
+template KindTable<float> kind_table(const CrowdOptions&, const std::vector<CrowdKind>&);
+template KindTable<double> kind_table(const CrowdOptions&, const std::vector<CrowdKind>&);
+
+}  // namespace exactvo::formation::crowd

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What the engine looks up by kind, in its own arithmetic and rounded to the safe side.
+
+#include <cstdint>
+#include <vector>
+
+#include "exactvo/formation/crowd.h"
+
+namespace exactvo::formation::crowd {
+
+template <class T>
+struct KindTable {
+  std::vector<T> radius;           ///< m, rounded up
+  std::vector<T> inverse_horizon;  ///< 1/s
+  std::vector<T> least_offset;     ///< m/s, below it an offset never binds
+  std::vector<T> disc;             ///< m/s, less what rounding to the lattice adds
+  std::vector<T> allowed;          ///< m/s, what may be missing of a line with its lattice slack, as computed in T
+  std::vector<float> none;     ///< squared lattice steps, without the bits of a number: keys from here on do not count
+  std::vector<float> reach;    ///< squared lattice steps, rounded up: who is farther cannot be met within the step
+  std::vector<double> window;  ///< lattice steps, how far a search goes at most
+  std::vector<int> neighbours;
+  int most_neighbours = 1;
+  T lattice_slack = 0;  ///< m/s, in every offset
+  double spare = 0.0;   ///< m/s, how much of it the rounding to the lattice may use up; the rest covers underflow
+  double velocity_step = 0.0;  ///< m/s, q / dt
+};
+
+template <class T>
+KindTable<T> kind_table(const CrowdOptions& options, const std::vector<CrowdKind>& kinds);
+
+/// The bits of a squared distance that order neighbours.
+float without_number(float squared);
+
+}  // namespace exactvo::formation::crowd

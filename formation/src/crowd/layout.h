@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What the units of the crowd engine hand to each other: tables of candidates, ranked neighbours, half-planes.
+
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+namespace exactvo::formation::crowd {
+
+/// Robots that share a list of candidates, next to each other in the sorted order. The same on every target.
+inline constexpr std::size_t kPack = 16;
+/// Problems that go to the linear program together: it keeps six registers of sixteen floats under way.
+inline constexpr std::size_t kGroupPacks = 6, kSlots = kGroupPacks * kPack;
+/// A candidate's number rides in the low bits of its squared distance.
+inline constexpr std::size_t kMostCandidates = 256;
+inline constexpr std::int32_t kIndexBits = 0xFF;
+inline constexpr int kMostNeighbours = 15, kMostRanks = kMostNeighbours + 1;
+/// Arrays of robots end with so many that are nobody's, so that whole registers may be read.
+inline constexpr std::size_t kPadding = 64;
+/// Coordinates stay below it, so that differences fit 32 bits.
+inline constexpr std::int32_t kLatticeEnd = 1 << 30;
+/// An offset that always holds.
+inline constexpr double kNever = -1e30;
+
+template <class A>
+struct CacheAligned {
+  using value_type = A;
+  CacheAligned() = default;
+  template <class B>
+  CacheAligned(const CacheAligned<B>&) {}
+  A* allocate(std::size_t m) { return static_cast<A*>(::operator new (m * sizeof(A), std::align_val_t{64})); }
+  void deallocate(A* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
+  bool operator==(const CacheAligned&) const { return true; }
+  bool operator!=(const CacheAligned&) const { return false; }
+};
+
+template <class A>
+using Array = std::vector<A, CacheAligned<A>>;
+
+/// Robots of some stretches of the sorted order, side by side, in that order.
+struct Candidates {
+  static constexpr std::size_t kRoom = kMostCandidates + kPadding;
+  alignas(64) std::int32_t x[kRoom], y[kRoom], mx[kRoom], my[kRoom], kind[kRoom];
+  std::size_t count = 0;
+};
+
+/// key[r][lane]: the r-th smallest of a lane, a squared distance (lattice steps) whose low bits hold the candidate's
+/// number; `none` of the lane where there are fewer.
+struct Ranked {
+  alignas(64) float key[kMostRanks][kPack];
+};
+
+/// What every half-plane of a crowd has in common.
+template <class T>
+struct LineRule {
+  T position_step = 0;  ///< m
+  T velocity_step = 0;  ///< m/s, q / dt rounded: what a motion of one lattice step is taken for
+  T inverse_step = 0;   ///< dt / q
+  T inverse_time = 0;   ///< 1/s, 1 / dt
+  T lattice_slack = 0;  ///< m/s: room for the rounding of velocities to the lattice
+  bool certified = true;
+  bool mixed = false;                  ///< more than one kind
+  const T* radius = nullptr;           ///< m, by kind, rounded up
+  const T* inverse_horizon = nullptr;  ///< 1/s, by kind
+  const T* least_offset = nullptr;     ///< m/s, by kind: below it an offset never binds
+};
+
+/// Up to kPack robots whose half-planes are made, rank by rank. The robots' own arrays are read to kPack.
+struct LineQuery {
+  const Candidates* others = nullptr;
+  const Ranked* ranked = nullptr;
+  const float* none = nullptr;  ///< by lane: keys from here on are no neighbours
+  int first_rank = 1, end_rank = 1;
+  const std::int32_t *x = nullptr, *y = nullptr, *mx = nullptr, *my = nullptr;
+  const std::int32_t* kind = nullptr;
+};
+
+/// Where half-planes go: that of rank r (counted from first_rank) and lane l stands at [r * stride + l].
+template <class T>
+struct LineRows {
+  T *x = nullptr, *y = nullptr, *c = nullptr;
+  std::size_t stride = 0;
+};
+
+/// Bit `lane`: a neighbour of the lane touches it; stands in the very place of it.
+struct LineFlags {
+  std::uint32_t touching = 0, coincident = 0;
+};
+
+}  // namespace exactvo::formation::crowd

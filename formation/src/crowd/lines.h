@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The half-planes of up to sixteen robots, in the layout that the linear program reads, and its answers on the
+/// lattice.
+
+#include "crowd/layout.h"
+
+namespace exactvo::formation::crowd {
+
+/// Half-planes of the ranks of the query; lanes without a neighbour at a rank get (1, 0), kNever. Certified
+/// (pair_line.h): satisfied with `lattice_slack` to spare they are safe.
+LineFlags make_lines(const LineRule<float>& rule, const LineQuery& query, const LineRows<float>& out);
+LineFlags make_lines(const LineRule<double>& rule, const LineQuery& query, const LineRows<double>& out);
+
+/// Answers of the linear program.
+template <class T>
+struct Answers {
+  const T *vx = nullptr, *vy = nullptr;              ///< m/s
+  const T *x = nullptr, *y = nullptr, *c = nullptr;  ///< rows of lines
+  std::size_t lines = 0, stride = 0;
+};
+
+/// Velocities rounded to whole motions, and by how much each violates its lines at most, in T: max c - n.v.
+template <class T>
+struct Rounded {
+  alignas(64) std::int32_t mx[kPack], my[kPack];
+  alignas(64) T excess[kPack];
+};
+
+void round_to_lattice(const LineRule<float>& rule, const Answers<float>& answers, Rounded<float>& out);
+void round_to_lattice(const LineRule<double>& rule, const Answers<double>& answers, Rounded<double>& out);
+
+}  // namespace exactvo::formation::crowd

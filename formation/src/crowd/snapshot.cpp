@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A crowd as bytes, little-endian: a mark, the options, and behind them, in a checksum, kinds and robots in their
+// order.
+#include <cmath>
+#include <cstring>
+#include <istream>
+#include <ostream>
+#include <type_traits>
+
+#include "crowd/body.h"
+
+namespace exactvo::formation::crowd {
+namespace {
+
+constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '1'};
+constexpr std::size_t kAtOnce = 1 << 16;
+
+[[noreturn]] void refuse(const std::string& found) {
+  throw CrowdError(CrowdProblem::bad_snapshot,
+                   "snapshot: found " + found + ", expected what Crowd::snapshot has written");
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) refuse(std::string(what) + " that no crowd has");
+}
+
+/// FNV-1a, a byte at a time.
+class Checksum {
+ public:
+  void add(const void* bytes, std::size_t count) {
+    const auto* b = static_cast<const unsigned char*>(bytes);
+    for (std::size_t k = 0; k < count; ++k) hash_ = (hash_ ^ b[k]) * 1099511628211ULL;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ULL;
+};
+
+class Writer {
+ public:
+  explicit Writer(std::ostream& to) : to_(to) {}
+
+  template <class A>
+  void put(const A& value) {
+    put_all(&value, 1);
+  }
+  template <class A>
+  void put_all(const A* values, std::size_t count) {
+    static_assert(std::is_arithmetic_v<A>, "structs have padding");
+    sum_.add(values, count * sizeof(A));
+    to_.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(count * sizeof(A)));
+    if (!to_) throw std::ios_base::failure("a snapshot could not be written");
+  }
+  void finish() { put(std::uint64_t{sum_.value()}), to_.flush(); }
+
+ private:
+  std::ostream& to_;
+  Checksum sum_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::istream& from) : from_(from) {}
+
+  template <class A>
+  A get() {
+    A value{};
+    get_all(&value, 1);
+    return value;
+  }
+  template <class A>
+  void get_all(A* values, std::size_t count) {
+    static_assert(std::is_arithmetic_v<A>, "structs have padding");
+    from_.read(reinterpret_cast<char*>(values), static_cast<std::streamsize>(count * sizeof(A)));
+    if (!from_) refuse("its end too early");
+    sum_.add(values, count * sizeof(A));
+  }
+  /// In pieces: a count that was changed does not ask for more memory than there is to read.
+  template <class Vector>
+  void get_some(Vector& values, std::size_t count) {
+    values.clear();
+    while (values.size() < count) {
+      const std::size_t had = values.size(), more = std::min(kAtOnce, count - had);
+      values.resize(had + more);
+      get_all(values.data() + had, more);
+    }
+  }
+  void finish() {
+    const std::uint64_t computed = sum_.value();
+    if (get<std::uint64_t>() != computed) refuse("another checksum than its content has");
+  }
+
+ private:
+  std::istream& from_;
+  Checksum sum_;
+};
+
+void put(Writer& to, const CrowdKind& k) {
+  for (const double field : {k.radius, k.max_speed, k.time_horizon, k.neighbour_distance}) to.put(field);
+  to.put(std::int32_t{k.neighbours});
+}
+
+CrowdKind get_kind(Reader& from) {
+  CrowdKind k;
+  for (double* field : {&k.radius, &k.max_speed, &k.time_horizon, &k.neighbour_distance}) *field = from.get<double>();
+  k.neighbours = from.get<std::int32_t>();
+  return k;
+}
+
+bool on_lattice(std::int32_t v) {
+  return v > -kLatticeEnd && v < kLatticeEnd;
+}
+
+struct Columns {
+  std::vector<std::int32_t> x, y, mx, my, id, hint;
+  std::vector<std::uint16_t> tag;
+};
+
+/// Ids name each robot once, the free ones are the rest.
+void require_ids(const Columns& c, const std::vector<RobotId>& free_ids, RobotId id_end) {
+  std::vector<bool> seen(id_end);
+  const auto see = [&](std::int64_t id) {
+    require(id >= 0 && id < id_end && !seen[static_cast<std::size_t>(id)], "an id");
+    seen[static_cast<std::size_t>(id)] = true;
+  };
+  for (const std::int32_t id : c.id) see(id);
+  for (const RobotId id : free_ids) see(id);
+}
+
+void require_robots(const Columns& c, const CrowdCore& core) {
+  for (std::size_t i = 0; i < c.x.size(); ++i) {
+    require(on_lattice(c.x[i]) && on_lattice(c.y[i]), "a position");
+    const std::size_t kind = c.tag[i] & 0xFFU;
+    require(kind < core.kinds.size() && (c.tag[i] >> 10U) == 0, "a kind");
+    const double speed = core.kinds[kind].max_speed * core.options.time_step / core.options.position_step;
+    require(std::hypot(c.mx[i], c.my[i]) <= speed * (1.0 + 0x1p-40), "a motion");
+    require(c.hint[i] >= 0 && c.hint[i] <= 1 << 30, "a distance");
+  }
+}
+
+}  // namespace
+
+void write_snapshot(const CrowdBody& body, std::ostream& to) {
+  const CrowdCore& core = *body.core;
+  const CrowdOptions& o = core.options;
+  to.write(kMark, sizeof kMark);
+  Writer head(to);
+  head.put(o.time_step);
+  head.put(o.position_step);
+  head.put(static_cast<std::int32_t>(o.precision));
+  head.put(std::int32_t{o.certified});
+  head.finish();
+  Writer out(to);
+  out.put(static_cast<std::uint32_t>(core.kinds.size()));
+  for (const CrowdKind& k : core.kinds) put(out, k);
+  const Robots& r = core.robots;
+  out.put(body.steps);
+  out.put(r.strip());
+  out.put(std::uint32_t{body.id_end});
+  out.put(static_cast<std::uint32_t>(body.free_ids.size()));
+  out.put_all(body.free_ids.data(), body.free_ids.size());
+  out.put(static_cast<std::uint32_t>(r.size()));
+  for (const auto* field : {&r.x, &r.y, &r.mx, &r.my, &r.id, &r.hint}) out.put_all(field->data(), r.size());
+  out.put_all(r.tag.data(), r.size());
+  const std::vector<Vec2> preferred = core.preferred();
+  out.put(static_cast<std::uint32_t>(preferred.size()));
+  for (const Vec2 v : preferred) out.put(v.x), out.put(v.y);
+  out.finish();
+}
+
+CrowdOptions read_options(std::istream& from) {
+  char mark[sizeof kMark] = {};
+  from.read(mark, sizeof mark);
+  if (!from || std::memcmp(mark, kMark, sizeof mark) != 0) refuse("another beginning");
+  Reader in(from);
+  CrowdOptions o;
+  o.time_step = in.get<double>();
+  o.position_step = in.get<double>();
+  const auto precision = in.get<std::int32_t>();
+  o.certified = in.get<std::int32_t>() != 0;
+  in.finish();
+  require(precision == 0 || precision == 1, "a precision");
+  o.precision = static_cast<CrowdPrecision>(precision);
+  return o;
+}
+
+void read_snapshot(CrowdBody& body, std::istream& from) {
+  CrowdCore& core = *body.core;
+  Reader in(from);
+  const auto kinds = in.get<std::uint32_t>();
+  require(kinds <= 256, "a number of kinds");
+  for (std::uint32_t k = 0; k < kinds; ++k) {
+    const CrowdKind kind = get_kind(in);
+    require_valid(kind, core.options);
+    core.kinds.push_back(kind);
+  }
+  body.steps = in.get<std::uint64_t>();
+  const double strip = in.get<double>();
+  require(std::isfinite(strip) && strip > 0.0, "a strip");
+  const auto id_end = in.get<std::uint32_t>();
+  require(id_end <= kMostRobots, "a number of ids");
+  in.get_some(body.free_ids, in.get<std::uint32_t>());
+  const auto count = in.get<std::uint32_t>();
+  require(std::uint64_t{count} + body.free_ids.size() == id_end, "a number of robots");
+  Columns c;
+  for (auto* field : {&c.x, &c.y, &c.mx, &c.my, &c.id, &c.hint}) in.get_some(*field, count);
+  in.get_some(c.tag, count);
+  const auto preferences = in.get<std::uint32_t>();
+  std::vector<double> numbers;
+  in.get_some(numbers, 2 * std::size_t{preferences});
+  in.finish();
+  require_ids(c, body.free_ids, id_end);
+  require_robots(c, core);
+
+  core.take_kinds();
+  body.id_end = id_end;
+  Robots& r = core.robots;
+  r.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    r.append(c.x[i], c.y[i], c.id[i], 0);
+    r.mx[i] = c.mx[i];
+    r.my[i] = c.my[i];
+    r.hint[i] = c.hint[i];
+    r.tag[i] = c.tag[i];
+  }
+  r.set_strip(strip);
+  if (preferences >= id_end && preferences > 0) {
+    std::vector<Vec2> by_id(preferences);
+    for (std::size_t k = 0; k < preferences; ++k) by_id[k] = {numbers[2 * k], numbers[2 * k + 1]};
+    core.set_preferred(by_id);
+  }
+  body.unsorted = true;
+  body.unchecked = false;
+}
+
+}  // namespace exactvo::formation::crowd

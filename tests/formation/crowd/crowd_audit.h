@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What a crowd promises, checked in rationals by code that shares nothing with it.
+
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/crowd.h"
+#include "exactvo/vo/certificate.h"
+
+namespace exactvo::formation {
+
+/// The numbers of the properties are those of crowd.h.
+struct CrowdAudit {
+  std::size_t pairs = 0;      ///< looked at
+  std::size_t touching = 0;   ///< of them: nothing is promised
+  std::size_t one_sided = 0;  ///< only one of the two has the other among its neighbours
+  std::size_t both_kept = 0;  ///< of those that do not touch
+  std::size_t unsafe = 0;     ///< (2): the halves leave a velocity that collides within the horizon
+  std::size_t unequal = 0;    ///< (2): normals are not the negatives of each other
+  std::size_t broken = 0;     ///< a kept robot violates a half-plane
+  std::size_t met = 0;        ///< (1): two kept robots touch within the step
+  std::size_t fast = 0;       ///< (3)
+  std::size_t differing = 0;  ///< `explain` said another velocity than `step` chose
+  std::string first;          ///< the first that failed, in hexadecimal floats
+
+  std::size_t failures() const { return unsafe + unequal + broken + met + fast + differing; }
+};
+
+class CrowdAuditor {
+ public:
+  explicit CrowdAuditor(Crowd& crowd) : crowd_(crowd) {}
+
+  /// Audits one step of the crowd, every pair of neighbours of it.
+  void step(CrowdAudit& audit) {
+    before_.clear();
+    std::vector<Vec2> velocities, positions;
+    crowd_.positions(positions);
+    for (RobotId id = 0; id < crowd_.id_end(); ++id) before_.push_back(crowd_.explain(id));
+    crowd_.step();
+    crowd_.velocities(velocities);
+    crowd_.kept(kept_);
+    moved_.clear();
+    crowd_.positions(moved_);
+    for (RobotId id = 0; id < crowd_.id_end(); ++id) {
+      const CrowdExplanation& e = before_[id];
+      if (!(velocities[id] == e.chosen) || (kept_[id] != 0) != e.kept) fail(audit, audit.differing, e, nullptr);
+      check_robot(audit, e);
+      for (const auto& n : e.neighbours) check_pair(audit, e, n);
+    }
+  }
+
+  /// Two discs that move by whole steps of the lattice, at every moment between: apart, exactly?
+  static bool apart(Vec2 a, Vec2 a_to, Vec2 b, Vec2 b_to, double radius_a, double radius_b) {
+    const mpq_class radius = mpq_class(radius_a) + mpq_class(radius_b), limit = radius * radius;
+    const mpq_class px = mpq_class(b.x) - mpq_class(a.x), py = mpq_class(b.y) - mpq_class(a.y);
+    const mpq_class mx = mpq_class(a_to.x) - mpq_class(a.x) - mpq_class(b_to.x) + mpq_class(b.x);
+    const mpq_class my = mpq_class(a_to.y) - mpq_class(a.y) - mpq_class(b_to.y) + mpq_class(b.y);
+    const mpq_class along = px * mx + py * my, squared = mx * mx + my * my;
+    const mpq_class ex = px - mx, ey = py - my;
+    if (along <= 0) return px * px + py * py > limit;
+    if (along >= squared) return ex * ex + ey * ey > limit;
+    const mpq_class across = px * my - py * mx;
+    return across * across > limit * squared;
+  }
+
+ private:
+  void check_robot(CrowdAudit& audit, const CrowdExplanation& e) {
+    const mpq_class dt(crowd_.options().time_step), x = (mpq_class(moved_[e.robot].x) - mpq_class(e.position.x)) / dt,
+                                                    y = (mpq_class(moved_[e.robot].y) - mpq_class(e.position.y)) / dt;
+    const mpq_class limit(crowd_.kind(crowd_.kind_of(e.robot)).max_speed);
+    if (x * x + y * y > limit * limit) fail(audit, audit.fast, e, nullptr);
+    if (!e.kept) return;
+    for (const auto& n : e.neighbours) {
+      const geometry::HalfPlane& h = n.half_plane;
+      if (mpq_class(h.normal.x) * x + mpq_class(h.normal.y) * y < mpq_class(h.offset)) fail(audit, audit.broken, e, &n);
+    }
+  }
+
+  void check_pair(CrowdAudit& audit, const CrowdExplanation& a, const CrowdExplanation::Neighbour& n) {
+    const CrowdExplanation& b = before_[n.robot];
+    const CrowdExplanation::Neighbour* back = nullptr;
+    for (const auto& m : b.neighbours)
+      if (m.robot == a.robot) back = &m;
+    if (back && n.robot < a.robot) return;  // already looked at
+    ++audit.pairs;
+    audit.one_sided += back == nullptr;
+    audit.touching += n.touching;
+    if (n.touching) return;
+    const CrowdKind& kind_a = crowd_.kind(crowd_.kind_of(a.robot));
+    const CrowdKind& kind_b = crowd_.kind(crowd_.kind_of(b.robot));
+    if (back) check_halves(audit, a, n, *back, kind_a, kind_b);
+    if (!a.kept || !b.kept) return;
+    ++audit.both_kept;
+    if (!apart(a.position, moved_[a.robot], b.position, moved_[b.robot], kind_a.radius, kind_b.radius))
+      fail(audit, audit.met, a, &n);
+  }
+
+  void check_halves(CrowdAudit& audit, const CrowdExplanation& a, const CrowdExplanation::Neighbour& n,
+                    const CrowdExplanation::Neighbour& back, const CrowdKind& kind_a, const CrowdKind& kind_b) {
+    if (!(back.half_plane.normal == -n.half_plane.normal)) fail(audit, audit.unequal, a, &n);
+    // The sum, rounded down.
+    const double sum = std::nextafter(n.half_plane.offset + back.half_plane.offset, -1e300);
+    const double horizon = std::min(kind_a.time_horizon, kind_b.time_horizon);
+    const geometry::Disc other{before_[n.robot].position, kind_b.radius};
+    if (!vo::is_true({other, a.position, kind_a.radius, horizon, {}, {n.half_plane.normal, sum}}))
+      fail(audit, audit.unsafe, a, &n);
+  }
+
+  void fail(CrowdAudit& audit, std::size_t& count, const CrowdExplanation& e, const CrowdExplanation::Neighbour* n) {
+    ++count;
+    if (!audit.first.empty()) return;
+    char text[512];
+    std::snprintf(text, sizeof text,
+                  "robot %u at (%a, %a), velocity (%a, %a), preferred (%a, %a), chosen (%a, %a), kept %d", e.robot,
+                  e.position.x, e.position.y, e.velocity.x, e.velocity.y, e.preferred.x, e.preferred.y, e.chosen.x,
+                  e.chosen.y, e.kept);
+    audit.first = text;
+    if (!n) return;
+    const CrowdExplanation& o = before_[n->robot];
+    std::snprintf(text, sizeof text,
+                  "; against %u at (%a, %a), velocity (%a, %a): normal (%a, %a), offset %a, touching %d", n->robot,
+                  o.position.x, o.position.y, o.velocity.x, o.velocity.y, n->half_plane.normal.x,
+                  n->half_plane.normal.y, n->half_plane.offset, n->touching);
+    audit.first += text;
+  }
+
+  Crowd& crowd_;
+  std::vector<CrowdExplanation> before_;
+  std::vector<Vec2> moved_;
+  std::vector<std::uint8_t> kept_;
+};
+
+}  // namespace exactvo::formation
