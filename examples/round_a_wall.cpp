@@ -27,6 +27,7 @@ int main() {
   scenario.robots = {{"R1", {0.0, 0.0}, {0.0, 0.0}, 0.5, 3.0, {{20.0, 0.0}}}};
   scenario.obstacles = {{"wall", geometry::Polyline{{{9.0, -3.0}, {9.0, 3.0}}}}};
   scenario.time_limit = 30.0;
+  scenario.guidance = formation::Guidance::none;  // by default a route leads round the wall
 
   const bool usual_arrives = run(scenario, formation::Method::orca);
   const bool improved_arrives = run(scenario, formation::Method::ivo);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "exactvo/geometry/distance.h"
 #include "static_field.h"
 
 namespace exactvo::formation::detail {
@@ -20,28 +21,6 @@ using geometry::Segment;
 /// close no gap that the route passes, and one skin is left for rounding.
 constexpr double kSkins = 2.0 * kContactSkin;
 
-std::vector<geometry::Obstacle> shapes_of(const Scenario& scenario) {
-  std::vector<geometry::Obstacle> all;
-  for (const SceneObstacle& o : scenario.obstacles) all.push_back(o.shape);
-  return all;
-}
-
-/// Starts, goals and their surroundings, where robots may be pushed.
-geometry::RouteMapOptions reach_of(const Scenario& scenario, double margin) {
-  geometry::Box box;
-  for (const SceneObstacle& o : scenario.obstacles)
-    for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
-  geometry::RouteMapOptions options;
-  for (const Robot& r : scenario.robots) {
-    options.largest_radius = std::max(options.largest_radius, r.radius + margin + kSkins);
-    for (Vec2 p : r.goals) options.largest_distance = std::max(options.largest_distance, norm(p - r.position));
-    if (!scenario.obstacles.empty())
-      options.largest_distance = std::max(options.largest_distance, 2.0 * geometry::distance_below(box, r.position));
-  }
-  options.largest_distance = 2.0 * options.largest_distance + 100.0 * options.largest_radius;
-  return options;
-}
-
 std::string metres(double x) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3g m", x);
@@ -51,61 +30,44 @@ std::string metres(double x) {
 }  // namespace
 
 Guide::Guide(const Scenario& scenario, double most_margin)
-    : scenario_(scenario), most_margin_(most_margin), map_(shapes_of(scenario), reach_of(scenario, most_margin)) {
+    : most_margin_(most_margin), reach_(scenario, most_margin + kSkins) {
   std::vector<geometry::Box> boxes;
   for (const SceneObstacle& o : scenario.obstacles) {
+    edges_.push_back(geometry::edges_of(o.shape));
     obstacles_.emplace_back(o.shape);
     boxes.push_back(obstacles_.back().box());
   }
   by_place_ = geometry::BoxGrid(std::move(boxes));
 }
 
-geometry::RoutePlan Guide::plan_for(double radius) {
-  return plans_.try_emplace(radius, map_, radius).first->second;
-}
-
-CourseAnswer Guide::course(double radius, Vec2 from, Vec2 to) {
-  if (!map_.covers(from) || !map_.covers(to)) return {std::nullopt, "it is too far from all obstacles"};
+CourseAnswer Guide::course(double radius, Vec2 from, const Destination& to) {
+  const std::optional<Vec2> end = reach_.reachable_place(radius + kSkins, from, to);
+  if (!end) return {std::nullopt, why_not(radius, from, to), !has_room(radius, from)};
   const double wanted = radius + most_margin_ + kSkins;
-  const bool has_margin = plan_for(wanted).is_reachable(from, to);
-  const double keeps = has_margin ? wanted : map_.widest_radius(from, to);
-  if (keeps < radius) return {std::nullopt, words_of(plan_for(radius).query(from, to))};
-  if (keeps < radius + kSkins)
-    return {std::nullopt, "the widest way leaves it less than " + metres(kSkins) + " of room: too little to drive"};
+  const bool has_margin = reach_.plan(wanted).is_reachable(from, *end);
+  const double keeps = has_margin ? wanted : reach_.map().widest_radius(from, *end);
   try {
     // The widest radius is another for every place: such plans are not kept.
-    const RouteAnswer answer = (has_margin ? plan_for(wanted) : geometry::RoutePlan(map_, keeps)).query(from, to);
+    const RouteAnswer answer =
+        (has_margin ? reach_.plan(wanted) : geometry::RoutePlan(reach_.map(), keeps)).query(from, *end);
     Course course;
+    course.to = to;
     course.keeps = keeps;
     for (const geometry::ExactPoint& p : std::get<geometry::Route>(answer).points) course.points.push_back(p.rounded);
-    return {std::move(course), ""};
+    return {std::move(course)};
   } catch (const geometry::RouteNotProven& e) {
     return {std::nullopt, std::string("a way exists, but none could be proven (") + e.what() + ")"};
   }
 }
 
 /// Why there is no route.
-std::string Guide::words_of(const RouteAnswer& answer) const {
-  const auto name = [&](const geometry::EdgeName& edge) { return scenario_.obstacles[edge.obstacle].id; };
-  if (const auto* blocked = std::get_if<geometry::Blocked>(&answer))
-    return std::string(blocked->end == geometry::Blocked::End::start ? "it" : "the goal") +
-           (blocked->inside ? " lies inside " : " is nearer than its radius to ") + name(blocked->by);
-  const auto& chain = std::get<geometry::Separated>(answer).chain;
-  std::size_t gaps = 0, widest = 0;
-  double width = -1.0;
-  for (std::size_t k = 0; k < chain.size(); ++k) {
-    if (!chain[k].gap_follows) continue;
-    ++gaps;
-    const double mine = norm(chain[(k + 1) % chain.size()].point.rounded - chain[k].point.rounded);
-    if (!(mine > width)) continue;
-    width = mine;
-    widest = k;
-  }
-  if (gaps == 0) return "obstacles without a gap lie round one of the two";
-  const std::string one = name(chain[widest].on), other = name(chain[(widest + 1) % chain.size()].on);
-  return "a chain of obstacles with " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
-         " separates it from its goal; the widest, " + metres(width) + " at " + one +
-         (one == other ? "" : " and " + other) + ", is narrower than the robot";
+std::string Guide::why_not(double radius, Vec2 from, const Destination& to) {
+  if (reach_.reachable_place(radius, from, to))
+    return "the widest way leaves the robot less than " + metres(kSkins) + " of room: too little to drive";
+  std::string text = reach_.why_not(radius, from, to, "the goal");
+  if (to.reach > 0.0 && has_room(radius, from) && !reach_.is_proven_out_of_reach(radius, from, to))
+    text += "; no place within " + metres(to.reach) + " of it was found that can be reached, which is no proof";
+  return text;
 }
 
 double Guide::margin_of(const Course& course, double radius) {
@@ -161,13 +123,40 @@ Vec2 Guide::heading(Course& course, double radius, Vec2 here) {
     return std::max(radius, std::min(course.keeps, clearance_at(here, course.keeps))) - 0.5 * kSkins;
   };
   if (!look_ahead(course, here, clearance())) {
-    CourseAnswer again = this->course(radius, here, course.points.back());
+    if (!has_room(radius, here)) return way_out(radius, here);
+    CourseAnswer again = this->course(radius, here, course.to);
     if (!again.course) return course.points[course.next];
     course = std::move(*again.course);
     if (!look_ahead(course, here, clearance()))
       return course.points[std::min<std::size_t>(1, course.points.size() - 1)];
   }
   return course.next + 1 == course.points.size() ? course.points.back() : farthest_in_sight(course, here, clearance());
+}
+
+bool Guide::has_room(double radius, Vec2 here) const {
+  const double enough = radius + kSkins;
+  return clearance_at(here, enough) >= enough;
+}
+
+Vec2 Guide::way_out(double radius, Vec2 here) const {
+  const double wanted = radius + 2.0 * kSkins;
+  double least = wanted;
+  Vec2 away;
+  by_place_.for_each_within(here, wanted, [&](std::size_t o) {
+    for (const Segment& edge : edges_[o]) {
+      const Vec2 from = here - geometry::nearest_point(edge, here);
+      if (!(norm(from) < least)) continue;
+      least = norm(from);
+      away = from;
+    }
+  });
+  return here + (wanted - least) * geometry::normalized(away);
+}
+
+std::optional<Guide> guide_for(const Scenario& scenario, const SimulationOptions& options) {
+  if (guidance_of(scenario, options) == Guidance::none) return std::nullopt;
+  return std::optional<Guide>(std::in_place, scenario,
+                              options.method == Method::orca ? 0.0 : scenario.margins.obstacle);
 }
 
 }  // namespace exactvo::formation::detail

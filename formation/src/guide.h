@@ -7,38 +7,44 @@
 /// to the half-planes, as for every preferred velocity.
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
+#include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/obstacle_index.h"
 #include "exactvo/geometry/routes.h"
+#include "reachability.h"
 
 namespace exactvo::formation::detail {
 
 /// A robot's route to one of its goals, and how far it has come.
 struct Course {
-  std::vector<Vec2> points;  ///< m, with start and goal
-  std::size_t next = 0;      ///< the farthest of them that was in sight
+  std::vector<Vec2> points;  ///< m, with start and end
+  Destination to;            ///< where the end is the place, or one within reach of it
+  std::size_t next = 0;      ///< the farthest of the points that was in sight
   double keeps = 0.0;        ///< m: every piece stays that far from obstacles
 };
 
-/// A course, or why there is none, in words.
+/// A course, or why there is none.
 struct CourseAnswer {
   std::optional<Course> course;
-  std::string why_not = {};
+  std::string why_not = {};       ///< in words
+  bool start_is_blocked = false;  ///< nearer to an obstacle than its radius: pushed out it may have one
 };
 
 class Guide {
  public:
-  /// `most_margin`: what robots keep beside their radius where there is room, m.
+  /// `most_margin`: what robots keep beside their radius where there is room, m. The scenario must outlive the guide.
   Guide(const Scenario& scenario, double most_margin);
 
+  /// Which places can be reached at all.
+  Reachability& reachability() { return reach_; }
+
   /// The route that leaves a robot of `radius` the margin, or as much of it as the widest way has.
-  CourseAnswer course(double radius, Vec2 from, Vec2 to);
+  CourseAnswer course(double radius, Vec2 from, const Destination& to);
 
   /// How much of the margin the course leaves a robot of `radius`, m.
   static double margin_of(const Course& course, double radius);
@@ -47,20 +53,27 @@ class Guide {
   /// is in sight, the robot was pushed off, and the course is planned again from where it is.
   Vec2 heading(Course& course, double radius, Vec2 here);
 
+  /// Whether a robot has room to plan a course.
+  bool has_room(double radius, Vec2 here) const;
+
+  /// A place straight away from the nearest obstacle, at which a robot has room. REQUIRES: it has none here.
+  Vec2 way_out(double radius, Vec2 here) const;
+
  private:
-  geometry::RoutePlan plan_for(double radius);
-  std::string words_of(const geometry::RouteAnswer& answer) const;
+  std::string why_not(double radius, Vec2 from, const Destination& to);
   double clearance_at(Vec2 here, double enough) const;
   bool is_in_sight(Vec2 here, Vec2 there, double clearance) const;
   bool look_ahead(Course& course, Vec2 here, double clearance) const;
   Vec2 farthest_in_sight(const Course& course, Vec2 here, double clearance) const;
 
-  const Scenario& scenario_;
   double most_margin_;
-  geometry::RouteMap map_;
-  std::map<double, geometry::RoutePlan> plans_;  ///< by radius: of each robot, with its margin and without
+  Reachability reach_;
+  std::vector<std::vector<geometry::Segment>> edges_;  ///< of each obstacle
   std::vector<geometry::ObstacleIndex> obstacles_;
   geometry::BoxGrid by_place_;
 };
+
+/// The guide of a run; nothing where its robots go without.
+std::optional<Guide> guide_for(const Scenario& scenario, const SimulationOptions& options);
 
 }  // namespace exactvo::formation::detail

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "decision.h"
+#include "goals.h"
 #include "guide.h"
 #include "moving.h"
 #include "needed_constraints.h"
@@ -27,21 +28,22 @@ struct KinematicRobot {
   Follower follower;
   std::optional<Course> course = {};  ///< with guidance: to its present goal
   std::string no_way = {};            ///< with guidance: why it has no course
+  bool waits_for_room = false;        ///< with guidance: it has to be pushed out before its course can be planned
   bool tied = false;                  ///< the last preference was turned to break a tie
   std::string note = {};              ///< for the next row
 };
 
 class KinematicRun {
  public:
-  KinematicRun(const Scenario& scenario, const SimulationOptions& options)
+  /// Without a guide robots head straight for their goals.
+  KinematicRun(const Scenario& scenario, const SimulationOptions& options, Guide* guide)
       : scenario_(scenario),
         options_(options),
+        guide_(guide),
         scene_(scenario, options),
         clock_(scenario, options),
         decider_(scenario, scene_.bodies()),
         anchors_(scenario.robots.size()) {
-    if (options.guidance == Guidance::route)
-      guide_.emplace(scenario, options.method == Method::orca ? 0.0 : scenario.margins.obstacle);
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
       robot.position = scenario.robots[i].position;
@@ -81,17 +83,22 @@ class KinematicRun {
 
   void plan_course(std::size_t i) {
     KinematicRobot& r = robots_[i];
-    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, goal_of(i));
+    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, {goal_of(i), reach_of_goal(i)});
     r.course = std::move(answer.course);
     r.no_way = std::move(answer.why_not);
+    r.waits_for_room = answer.start_is_blocked;
     if (r.course) return r.field->set_margin(Guide::margin_of(*r.course, scenario_.robots[i].radius));
-    r.note = joined_notes(r.note, "stays, its goal is out of reach: " + r.no_way);
+    r.note = joined_notes(r.note, r.waits_for_room ? "in contact: moves away before its route is planned"
+                                                   : "stays, its goal is out of reach: " + r.no_way);
   }
 
-  bool at_goal(std::size_t i) const {
-    const bool last = robots_[i].goal + 1 == scenario_.robots[i].goals.size();
-    return last && norm(goal_of(i) - robots_[i].position) <= scenario_.arrival_tolerance;
-  }
+  bool has_last_goal(std::size_t i) const { return robots_[i].goal + 1 == scenario_.robots[i].goals.size(); }
+
+  double reach_of_goal(std::size_t i) const { return reach_of(scenario_, scenario_.robots[i], robots_[i].goal); }
+
+  bool is_within_reach(std::size_t i) const { return norm(goal_of(i) - robots_[i].position) <= reach_of_goal(i); }
+
+  bool at_goal(std::size_t i) const { return has_last_goal(i) && is_within_reach(i); }
 
   bool all_arrived() const {
     for (std::size_t i = 0; i < robots_.size(); ++i)
@@ -99,11 +106,8 @@ class KinematicRun {
     return true;
   }
 
-  /// A goal on the way counts as reached within the robot's own radius.
   void pass_waypoint(std::size_t i, double time) {
-    const Robot& spec = scenario_.robots[i];
-    const double reach = std::max(scenario_.arrival_tolerance, spec.radius);
-    if (robots_[i].goal + 1 >= spec.goals.size() || norm(goal_of(i) - robots_[i].position) > reach) return;
+    if (has_last_goal(i) || !is_within_reach(i)) return;
     ++robots_[i].goal;
     robots_[i].note = "goal " + std::to_string(robots_[i].goal) + " passed: heads for the next";
     look_at_goal(i, time);  // which may note that the next one is out of reach
@@ -154,9 +158,13 @@ class KinematicRun {
   /// Along its course; a robot without one stays.
   Vec2 guided(std::size_t i, RobotStep& step) {
     KinematicRobot& r = robots_[i];
+    const double radius = scenario_.robots[i].radius;
+    if (r.waits_for_room) {
+      if (!guide_->has_room(radius, r.position)) return straight_for(i, guide_->way_out(radius, r.position));
+      plan_course(i);
+    }
     if (!r.course) return {};
     if (step.mode == Mode::direct) step.mode = Mode::guided;
-    const double radius = scenario_.robots[i].radius;
     const Vec2 place = guide_->heading(*r.course, radius, r.position);
     r.field->set_margin(Guide::margin_of(*r.course, radius));  // it may have planned again, through other gaps
     return straight_for(i, place);
@@ -251,10 +259,10 @@ class KinematicRun {
 
   const Scenario& scenario_;
   const SimulationOptions& options_;
+  Guide* guide_;
   Scene scene_;
   RunClock clock_;
   Decider decider_;
-  std::optional<Guide> guide_;
   std::vector<KinematicRobot> robots_;
   std::vector<Outlook> outlooks_;
   // Memory that a step leaves to the next.
@@ -266,8 +274,9 @@ class KinematicRun {
 
 }  // namespace
 
-void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Recording& recording, RunSink& sink) {
-  KinematicRun(scenario, options).run(recording, sink);
+void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Guide* guide, Recording& recording,
+                   RunSink& sink) {
+  KinematicRun(scenario, options, guide).run(recording, sink);
 }
 
 }  // namespace exactvo::formation::detail

@@ -4,22 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <optional>
 
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/hull.h"
+#include "goals.h"
 #include "leader.h"
 #include "moving_way.h"
 #include "obstacle_boxes.h"
-#include "walled_in.h"
 
 namespace exactvo::formation::detail {
 namespace {
 
-/// A place that a robot has to come within `reach` of.
 struct Target {
   Vec2 place;    ///< m
   double reach;  ///< m
@@ -40,10 +38,9 @@ std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offse
     return {{slot, s.arrival_tolerance, "the slot of " + robot.id + " at the leader's end, " + printed(slot)}};
   }
   for (std::size_t g = 0; g < robot.goals.size(); ++g) {
-    const bool last = g + 1 == robot.goals.size();
-    const double reach = last ? s.arrival_tolerance : std::max(s.arrival_tolerance, robot.radius);
     const std::string number = robot.goals.size() > 1 ? " " + std::to_string(g + 1) : "";
-    targets.push_back({robot.goals[g], reach, "goal" + number + " of " + robot.id + ", " + printed(robot.goals[g])});
+    targets.push_back(
+        {robot.goals[g], reach_of(s, robot, g), "goal" + number + " of " + robot.id + ", " + printed(robot.goals[g])});
   }
   return targets;
 }
@@ -70,32 +67,14 @@ void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which,
   }
 }
 
-std::string metres(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g m", x);
-  return text;
-}
-
-/// "obstacle 'room' encloses it", "obstacles 'a' and 'b' enclose it with gaps of at most 0.4 m".
-std::string chain_words(const Scenario& s, const Enclosing& e, const Robot& robot) {
-  std::vector<std::string> ids;
-  for (const std::size_t k : e.obstacles) ids.push_back("'" + s.obstacles[k].id + "'");
-  const bool one = ids.size() == 1;
-  std::string text = (one ? "obstacle " : "obstacles ") + abridged(ids) + (one ? " encloses " : " enclose ") +
-                     (e.around_goal ? "it" : "the start");
-  if (e.widest_gap > 0.0)
-    text += ", with gaps of at most " + metres(e.widest_gap) + " for a robot " + metres(2.0 * robot.radius) + " wide";
-  return text;
-}
-
-/// By radius: most robots of a scene are of one size.
-using WallsByRadius = std::map<double, Walls>;
-
-void warn_of_walls(const Scenario& s, const Robot& robot, const Target& t, WallsByRadius& walls,
-                   std::vector<std::string>& out) {
-  const Walls& of_robot = walls.try_emplace(robot.radius, s.obstacles, robot.radius).first->second;
-  if (const auto found = of_robot.between({robot.position, 0.0}, {t.place, t.reach}))
-    out.push_back(t.name + ", cannot be reached: " + chain_words(s, *found, robot));
+/// Returns where the robot gets to.
+std::optional<Vec2> warn_of_ways(const Robot& robot, Vec2 from, const Target& t, Reachability& reach,
+                                 std::vector<std::string>& out) {
+  const Destination to{t.place, t.reach};
+  if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
+  if (reach.is_proven_out_of_reach(robot.radius, from, to))
+    out.push_back(t.name + ", cannot be reached: " + reach.why_not(robot.radius, from, to, "it"));
+  return std::nullopt;
 }
 
 void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
@@ -226,17 +205,18 @@ void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, st
 
 }  // namespace
 
-std::vector<std::string> preflight_warnings(const Scenario& scenario, const std::vector<Vec2>& offsets) {
+std::vector<std::string> preflight_warnings(const Scenario& scenario, const std::vector<Vec2>& offsets,
+                                            Reachability& reach) {
   std::vector<std::string> out;
   std::vector<Target> last;
-  WallsByRadius walls;
   const ObstacleBoxes boxes(scenario.obstacles);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::vector<Target> targets = targets_of(scenario, offsets, i);
+    std::optional<Vec2> from = scenario.robots[i].position;
     for (const Target& t : targets) {
       const std::vector<std::size_t> in_the_way = blocking(scenario, boxes, scenario.robots[i], t);
       warn_of_obstacles(scenario, in_the_way, t, out);
-      if (in_the_way.empty()) warn_of_walls(scenario, scenario.robots[i], t, walls, out);
+      from = from && in_the_way.empty() ? warn_of_ways(scenario.robots[i], *from, t, reach, out) : std::nullopt;
     }
     warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
     warn_of_fast_start(scenario, scenario.robots[i], out);

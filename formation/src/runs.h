@@ -10,7 +10,11 @@
 namespace exactvo::formation::detail {
 
 /// Kinematic robots with goals (Section V.A).
-void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Recording& recording, RunSink& sink);
+class Guide;
+
+/// Without a guide robots head straight for their goals.
+void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Guide* guide, Recording& recording,
+                   RunSink& sink);
 
 /// Second-order robots and a virtual leader (Sections IV and V.B). REQUIRES: scenario.formation.
 void run_formation(const Scenario& scenario, const SimulationOptions& options, Recording& recording, RunSink& sink);

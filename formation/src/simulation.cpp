@@ -10,7 +10,9 @@
 #include "exactvo/geometry/require.h"
 
 #include "goals.h"
+#include "guide.h"
 #include "preflight.h"
+#include "reachability.h"
 #include "remedies.h"
 #include "runs.h"
 #include "static_field.h"
@@ -29,6 +31,15 @@ double seconds_since(Clock::time_point start) {
 std::vector<Vec2> offsets_of(const Scenario& scenario, const SimulationOptions& options) {
   if (!scenario.formation) return {};
   return offsets_in_use(*scenario.formation, remedies_in_use(scenario, options));
+}
+
+std::vector<std::string> warnings_with(const Scenario& scenario, const SimulationOptions& options,
+                                       Reachability& reach) {
+  std::vector<std::string> warnings;
+  if (scenario.formation) warnings = step_warnings(*scenario.formation, options.integrator, scenario.time_step);
+  for (std::string& warning : preflight_warnings(scenario, offsets_of(scenario, options), reach))
+    warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 /// All rows: the recording has the rest.
@@ -73,12 +84,14 @@ class TimedSink : public RunSink {
 
 }  // namespace
 
+Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options) {
+  if (scenario.formation || options.method == Method::ivo_edge) return Guidance::none;
+  return options.guidance.value_or(scenario.guidance);
+}
+
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {
-  std::vector<std::string> warnings;
-  if (scenario.formation) warnings = step_warnings(*scenario.formation, options.integrator, scenario.time_step);
-  for (std::string& warning : preflight_warnings(scenario, offsets_of(scenario, options)))
-    warnings.push_back(std::move(warning));
-  return warnings;
+  Reachability reach(scenario);
+  return warnings_with(scenario, options, reach);
 }
 
 Recording simulate(const Scenario& scenario, const SimulationOptions& options) {
@@ -94,11 +107,13 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
   const Clock::time_point start = Clock::now();
   Recording recording;
-  recording.warnings = warnings_before(scenario, options);
+  std::optional<Guide> guide = guide_for(scenario, options);
+  recording.warnings =
+      guide ? warnings_with(scenario, options, guide->reachability()) : warnings_before(scenario, options);
   recording.all_half_planes = options.record_all;
   TimedSink timed(sink);
   scenario.formation ? run_formation(scenario, options, recording, timed)
-                     : run_kinematic(scenario, options, recording, timed);
+                     : run_kinematic(scenario, options, guide ? &*guide : nullptr, recording, timed);
   recording.wall_time = seconds_since(start) - timed.seconds();
   return recording;
 }

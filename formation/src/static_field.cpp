@@ -128,7 +128,7 @@ StaticField::StaticField(Scene& scene, const Scenario& scenario, const Simulatio
                          Vec2 start, Vec2 goal, HorizonRule rule)
     : scene_(&scene), scenario_(&scenario), method_(options.method), rule_(rule), margin_(scenario.margins.obstacle) {
   if (method_ != Method::ivo_cluster && method_ != Method::ivo) return;
-  if (options.guidance == Guidance::route) {
+  if (guidance_of(scenario, options) == Guidance::route) {
     tight_index_.resize(scene.pieces_by_place().size());
     std::iota(tight_index_.begin(), tight_index_.end(), 0u);
     return;

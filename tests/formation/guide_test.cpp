@@ -31,7 +31,6 @@ struct GuidedRun {
 GuidedRun guided(const Scenario& scenario, Method method = Method::ivo) {
   SimulationOptions options;
   options.method = method;
-  options.guidance = Guidance::route;
   GuidedRun run;
   run.recording = simulate(scenario, options);
   run.metrics = measure(scenario, run.recording);
@@ -92,8 +91,8 @@ TEST(Guidance, AGoalOutOfReachIsProvenSoAndTheRobotStays) {
     const GuidedRun run = guided(door(width));
     EXPECT_FALSE(run.metrics.all_arrived);
     for (const Step& step : run.recording.steps) EXPECT_EQ(step.robots[0].position, (Vec2{-4, 3}));
-    EXPECT_THAT(run.metrics.outcome, AllOf(HasSubstr("R cannot reach its goal: "), HasSubstr("1 gap separates"),
-                                           HasSubstr("at wall 1 and wall 2")));
+    EXPECT_THAT(run.metrics.outcome, AllOf(HasSubstr("R cannot reach its goal: obstacles 'wall 1', 'wall 2' "),
+                                           HasSubstr("enclose the goal, with a gap of"), Not(HasSubstr("no proof"))));
   }
 }
 
@@ -106,7 +105,53 @@ TEST(Guidance, WhatFitsToTheLastMicrometreIsNotDriven) {
 TEST(Guidance, AnEndThatIsNotFreeIsNamed) {
   Scenario s = door(2.0);
   s.robots[0].goals = {{5.8, 3}};
-  EXPECT_THAT(guided(s).metrics.outcome, HasSubstr("the goal is nearer than its radius to wall 3"));
+  EXPECT_THAT(guided(s).metrics.outcome, HasSubstr("the goal is nearer than the robot's radius to obstacle 'wall 3'"));
+}
+
+TEST(Guidance, AGoalTooNearToAWallIsReachedWithinItsTolerance) {
+  Scenario s = door(2.0);
+  s.robots[0].goals = {{5.55, 3}};  // a robot of 0.5 m can come within 0.05 m, which counts as arrived
+  const GuidedRun run = guided(s);
+  EXPECT_TRUE(run.metrics.all_arrived) << run.metrics.outcome;
+  EXPECT_TRUE(is_safe(run.metrics));
+  s.robots[0].goals = {{5.55, 3}, {4, -3}, {4, 3}};  // on the way within its radius
+  EXPECT_TRUE(guided(s).metrics.all_arrived);
+}
+
+TEST(Guidance, ThatNoPlaceWithinReachIsFreeIsProvenOrSaidNotToBe) {
+  Scenario s = door(2.0);
+  for (const double depth : {5.601, 5.7, 6.5}) {  // the tolerance is 0.1 m: free places are at most at 5.5
+    s.robots[0].goals = {{depth, 3}};
+    EXPECT_THAT(guided(s).metrics.outcome, AllOf(HasSubstr("cannot reach"), Not(HasSubstr("no proof")))) << depth;
+    EXPECT_THAT(warnings_before(s), testing::SizeIs(1)) << depth;
+  }
+  // A corner: free places within reach lie between the directions that are tried.
+  s.robots[0].goals = {{5.5 + 0.0701, 5.5 + 0.0701}};
+  EXPECT_THAT(guided(s).metrics.outcome, HasSubstr("no place within 0.1 m of it was found"));
+}
+
+TEST(Guidance, WhoStartsWithoutRoomMovesAwayAndArrives) {
+  // Less than 2e-6 m: too little to plan a route from.
+  for (const Method method : {Method::orca, Method::ivo_cluster, Method::ivo}) {
+    for (const Vec2 start : {Vec2{-5.5 + 1e-7, 3}, Vec2{-5.5 + 5e-7, 5.5 - 1e-7}, Vec2{-0.5 - 1e-6, 3}}) {
+      Scenario s = door(2.0);
+      s.robots[0].position = start;
+      const GuidedRun run = guided(s, method);
+      EXPECT_TRUE(run.metrics.all_arrived) << name(method) << " " << start.x << ": " << run.metrics.outcome;
+    }
+  }
+}
+
+TEST(Guidance, IsWhatTheScenarioSaysUnlessTheOptionsDo) {
+  Scenario s = door(2.0);
+  SimulationOptions options;
+  EXPECT_EQ(guidance_of(s, options), Guidance::route);
+  s.guidance = Guidance::none;
+  EXPECT_EQ(guidance_of(s, options), Guidance::none);
+  options.guidance = Guidance::route;
+  EXPECT_EQ(guidance_of(s, options), Guidance::route);
+  options.method = Method::ivo_edge;
+  EXPECT_EQ(guidance_of(s, options), Guidance::none);
 }
 
 TEST(Guidance, EveryGoalOnTheWayHasARouteOfItsOwn) {
@@ -121,7 +166,7 @@ TEST(Guidance, WhoWasPushedOutOfSightPlansAgain) {
   Scenario s = door(3.0);
   s.obstacles.push_back({"shelf", Polyline{{{-6, -3}, {-2, -3}}}});
   detail::Guide guide(s, 0.08);
-  detail::CourseAnswer answer = guide.course(0.5, {-4, 3}, {4, 3});
+  detail::CourseAnswer answer = guide.course(0.5, {-4, 3}, {{4, 3}, 0.1});
   ASSERT_TRUE(answer.course) << answer.why_not;
   detail::Course course = *answer.course;
   const std::vector<Vec2> before = course.points;
@@ -151,7 +196,7 @@ TEST(Guidance, ACourseThatIsPlannedAgainMayLeaveLessMargin) {
   Scenario s = door(3.0);
   s.obstacles.push_back({"shelf", Polyline{{{-6, -3}, {-2, -3}}}});
   detail::Guide guide(s, 0.08);
-  detail::Course course = *guide.course(0.5, {-4, 3}, {4, 3}).course;
+  detail::Course course = *guide.course(0.5, {-4, 3}, {{4, 3}, 0.1}).course;
   EXPECT_NEAR(detail::Guide::margin_of(course, 0.5), 0.08, 1e-12);
   guide.heading(course, 0.5, {-5, -5.48});  // 0.52 m from the frame, out of sight of the course
   EXPECT_NEAR(detail::Guide::margin_of(course, 0.5), 0.02, 1e-5);
@@ -202,10 +247,11 @@ TEST(Guidance, ReachesWhatHasARouteAndNothingElseInMazes) {
     if (!validate(s).empty()) continue;
     const GuidedRun run = guided(s);
     const bool reachable = plan.is_reachable(s.robots[0].position, s.robots[0].goals[0]);
-    EXPECT_EQ(run.metrics.all_arrived, reachable) << item << ": " << run.metrics.outcome;
+    const bool arrived = run.metrics.all_arrived;  // maybe within its tolerance only
+    EXPECT_TRUE(arrived || !reachable) << item << ": " << run.metrics.outcome;
     EXPECT_TRUE(is_safe(run.metrics)) << item;
-    EXPECT_EQ(run.metrics.outcome.find("cannot reach") == std::string::npos, reachable) << item;
-    ++(reachable ? reached : proven);
+    EXPECT_EQ(run.metrics.outcome.find("cannot reach") == std::string::npos, arrived) << item;
+    ++(arrived ? reached : proven);
   }
   EXPECT_GT(reached, 2u);
   EXPECT_GT(proven, 2u);

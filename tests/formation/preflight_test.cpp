@@ -8,8 +8,8 @@
 
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/distance.h"
+#include "reachability.h"
 #include "support/seeded_random.h"
-#include "walled_in.h"
 
 namespace exactvo::formation {
 namespace {
@@ -39,8 +39,8 @@ TEST(Preflight, AGoalInARoomWithANarrowDoorCannotBeReached) {
   const auto warnings = warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(0.9)}}));
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0],
-              HasSubstr("goal of R1, (0, 0), cannot be reached: obstacle 'room' encloses it, with gaps of at "
-                        "most 0.9 m for a robot 1 m wide"));
+              HasSubstr("goal of R1, (0, 0), cannot be reached: obstacle 'room' encloses it, with a gap of 0.9 m "
+                        "for a robot 1 m wide"));
   EXPECT_TRUE(warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(1.1)}})).empty());
   EXPECT_EQ(warnings_before(scene({8, 0}, {{0, 0}}, {{"room", room(0.0)}})).size(), 1u);
 }
@@ -65,7 +65,7 @@ TEST(Preflight, AChainOfSeveralObstaclesIsNamed) {
                                           {"far", geometry::Polyline{{{9, 9}, {12, 12}}}}};
   const auto warnings = warnings_before(scene({8, 0}, {{0, 0}}, halves));
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_THAT(warnings[0], HasSubstr("obstacles 'north' and 'south' enclose it, with gaps of at most 0.6 m"));
+  EXPECT_THAT(warnings[0], HasSubstr("obstacles 'north' and 'south' enclose it, with 2 gaps of at most 0.6 m"));
 }
 
 TEST(Preflight, WallsThatCrossOrTouchCloseARoom) {
@@ -168,7 +168,7 @@ TEST(Preflight, AgreesWithAFloodedGrid) {
     const Vec2 start = s.robots[0].position, goal = s.robots[0].goals[0];
     const Flood certain(s, kDiagonal);
     if (!certain.is_free(start) || !certain.is_free(goal)) continue;
-    const bool shut = detail::Walls(s.obstacles, kRadius).between({start, 0.0}, {goal, 0.0}).has_value();
+    const bool shut = !detail::Reachability(s).reachable_place(kRadius, start, {goal, 0.0});
     if (certain.connects(start, goal)) {
       EXPECT_FALSE(shut) << "case " << k << ": a way exists";
       ++joined;

@@ -33,11 +33,25 @@ datasets::RunInfo run_info(const Scenario& scenario, const SimulationOptions& op
   if (scenario.formation) {
     info.controller = name(options.controller);
     info.integrator = name(options.integrator);
-  } else if (options.guidance != formation::Guidance::none) {
-    info.guidance = name(options.guidance);
+  } else if (const formation::Guidance g = guidance_of(scenario, options); g != formation::Guidance::none) {
+    info.guidance = name(g);
   }
   return info;
 }
+
+/// Hands the warnings on before the first row.
+class WarningRecorder : public RunRecorder {
+ public:
+  WarningRecorder(datasets::RecordingFile about, const RunOutput& output)
+      : RunRecorder(std::move(about), output.folder, output.figures), warnings_(output.warnings) {}
+  void begin(const formation::Recording& run) override {
+    if (warnings_) warnings_(run.warnings);
+    RunRecorder::begin(run);
+  }
+
+ private:
+  std::function<void(const std::vector<std::string>&)> warnings_;
+};
 
 datasets::LoadedScenario load(const std::string& path) {
   if (path != "-") return datasets::load_scenario_with_notes(path);
@@ -60,7 +74,7 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
   datasets::RecordingFile about;
   about.info = run_info(scenario, options, provenance);
   about.scenario = scenario;
-  RunRecorder recorder(std::move(about), output.folder, output.figures);
+  WarningRecorder recorder(std::move(about), output);
   formation::Recording recording = simulate(scenario, options, recorder);
   if (interrupted()) throw Interrupted();
   FinishedRun finished;

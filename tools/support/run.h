@@ -27,6 +27,8 @@ struct RunOutput {
   std::filesystem::path folder = {};               ///< must exist; nothing is written where it is empty
   bool figures = true;                             ///< whether any will be drawn
   std::function<void(double)> progress = nullptr;  ///< gets the simulated time, s
+  /// Gets, before the first row, what can be said before the run (formation::warnings_before).
+  std::function<void(const std::vector<std::string>&)> warnings = nullptr;
 };
 
 /// Runs the scenario and measures it, and writes recording.jsonl, trajectory.csv, metrics.json and, of a formation,

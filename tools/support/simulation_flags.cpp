@@ -83,9 +83,9 @@ std::optional<formation::Remedies> remedies_of(const SimulationFlags& flags, for
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
   CLI::Option* method = app.add_option("--method,-m", flags.method, help("Avoidance method", formation::method_names()))
                             ->capture_default_str();
-  flags.of_goals = {app.add_option("--guidance,-g", flags.guidance,
-                                   help("How robots with goals find their way", formation::guidance_names()))
-                        ->capture_default_str()};
+  flags.of_goals = {app.add_option(
+      "--guidance,-g", flags.guidance,
+      help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names()))};
   flags.of_formations = {
       app.add_option("--controller,-c", flags.controller, help("Formation controller", formation::controller_names()))
           ->capture_default_str(),
@@ -143,7 +143,8 @@ void note_recorded(const SimulationFlags& flags) {
 formation::SimulationOptions simulation_options(const SimulationFlags& flags) {
   formation::SimulationOptions options;
   options.method = parse_choice<formation::Method>("--method", flags.method, formation::method_names());
-  options.guidance = parse_choice<formation::Guidance>("--guidance", flags.guidance, formation::guidance_names());
+  if (!flags.guidance.empty())
+    options.guidance = parse_choice<formation::Guidance>("--guidance", flags.guidance, formation::guidance_names());
   if (options.guidance == formation::Guidance::route && options.method == formation::Method::ivo_edge)
     throw UsageError("--guidance", "route with ivo-edge, whose ellipses would close what a route passes",
                      "another method: orca, ivo-cluster or ivo");

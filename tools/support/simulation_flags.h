@@ -15,7 +15,7 @@ namespace exactvo::tools {
 
 struct SimulationFlags {
   std::string method = "ivo";
-  std::string guidance = "none";
+  std::string guidance;  ///< empty: as the scenario says
   std::string controller = "default";
   std::string integrator = "exact";
   std::string remedies;               ///< a set by its name, instead of the controller's

@@ -66,9 +66,11 @@ const formation::Step& last_decision(const formation::Recording& recording) {
   return recording.steps[recording.steps.size() - 2];
 }
 
-std::string method_words(const Scenario& scenario, const SimulationFlags& flags) {
-  if (scenario.formation) return "method " + flags.method + ", controller " + flags.controller;
-  return "method " + flags.method + (flags.guidance == "none" ? "" : ", guidance " + flags.guidance);
+std::string method_words(const Scenario& scenario, const formation::SimulationOptions& options) {
+  const std::string method = std::string("method ") + name(options.method);
+  if (scenario.formation) return method + ", controller " + name(options.controller);
+  const formation::Guidance guidance = guidance_of(scenario, options);
+  return method + (guidance == formation::Guidance::none ? "" : std::string(", guidance ") + name(guidance));
 }
 
 struct Explained {
@@ -98,7 +100,7 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
   if (interrupted()) throw Interrupted();
   check_time(recording, flags.time);
   const formation::Step& step = last_decision(recording);
-  return {{scenario, method_words(scenario, flags.simulation), robot, step.time, step.robots.at(robot)},
+  return {{scenario, method_words(scenario, options), robot, step.time, step.robots.at(robot)},
           remarks_on(scenario, recording, robot)};
 }
 

@@ -102,9 +102,12 @@ std::string summary(const FinishedRun& run) {
                     geometry::counted(m.relaxed_steps, "decision"), m.steps, m.wall_time);
 }
 
-/// What can be said before the run.
-void announce(const formation::Scenario& scenario, const formation::SimulationOptions& options) {
-  for (const std::string& warning : warnings_before(scenario, options)) message("warning: " + warning);
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) message("warning: " + warning);
+}
+
+/// How fast a formation can form, said before the run.
+void announce(const formation::Scenario& scenario) {
   if (!scenario.formation) return;
   const formation::Stability s = stability_of(*scenario.formation);
   message(fmt::format(
@@ -122,7 +125,8 @@ FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read, cons
   line.show(0.0, scenario.name);  // the shapes of many robots take a while before the first step
   const TerminateOnSignal terminate_on_signal;
   const bool figures = !folder.empty() && !flags.no_figures;
-  return run(scenario, options, provenance, {folder, figures, [&](double time) { line.show(time, scenario.name); }});
+  return run(scenario, options, provenance,
+             {folder, figures, [&](double time) { line.show(time, scenario.name); }, warn});
 }
 
 void print_results(const Flags& flags, const FinishedRun& finished) {
@@ -162,10 +166,7 @@ ExitCode simulate(const Flags& flags) {
     check_output_folder(flags.out);
     if (!flags.force) check_same_run(flags.out, name_of(scenario, options));
   }
-  {
-    const TerminateOnSignal terminate_on_signal;
-    announce(scenario, options);
-  }
+  announce(scenario);
   const FinishedRun finished =
       flags.out.empty() ? run_and_print(flags, read, options) : run_into_folder(flags, read, options);
   const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
@@ -195,7 +196,7 @@ Action declare(CLI::App& app) {
 Verb simulate_verb() {
   return {"simulate", "Run one scenario",
           "  exactvo simulate datasets/data/paper/A2.json --method ivo --out out/A2\n"
-          "  exactvo simulate datasets/data/office/office.json --guidance route --out out/office\n"
+          "  exactvo simulate datasets/data/office/office.json --out out/office\n"
           "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
           "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",

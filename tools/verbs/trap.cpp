@@ -152,7 +152,7 @@ std::vector<TrapFinding> tested(const formation::Scenario& scenario, const forma
 ExitCode trap(const Flags& flags) {
   const formation::Scenario scenario = read_scenario(flags.scenario).scenario;
   formation::SimulationOptions options = simulation_options(flags.simulation);
-  if (options.guidance != formation::Guidance::none)
+  if (options.guidance.value_or(formation::Guidance::none) != formation::Guidance::none)
     message("note: --guidance has no effect: routes lead round traps, which are judged without them");
   options.guidance = formation::Guidance::none;
   const std::vector<TrapFinding> findings = tested(scenario, options);

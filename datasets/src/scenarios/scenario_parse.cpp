@@ -118,6 +118,7 @@ class Reader {
     read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
+    if (tree.value("guidance", "route") == "none") scenario.guidance = formation::Guidance::none;
     read_figures(tree, scenario);
     refuse_repeated_ids(scenario);
     refuse_what_cannot_run(scenario);

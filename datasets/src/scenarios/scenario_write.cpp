@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/simulation.h"
 #include "scenarios/scenario_json.h"
 
 namespace exactvo::datasets {
@@ -105,6 +106,7 @@ void append_formation(JsonWriter& json, const formation::FormationSpec& spec) {
 }
 
 void append_figures(JsonWriter& json, const Scenario& scenario) {
+  if (!scenario.formation) json.member("guidance", formation::name(scenario.guidance));
   json.member("speed_bound", scenario.speed_bound == formation::SpeedBoundKind::box ? "box" : "disc");
   const formation::Horizons& horizons = scenario.horizons;
   json.key("horizons").begin_inline_object();

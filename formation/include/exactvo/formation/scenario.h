@@ -40,6 +40,13 @@ enum class SpeedBoundKind {
   box    ///< |v_x| <= max_speed and |v_y| <= max_speed
 };
 
+/// How a robot with goals finds its way.
+enum class Guidance {
+  none,  ///< straight for the goal, and round obstacles as the method has it: the paper's way
+  route  ///< along a proven route (geometry/routes.h) through what the margin leaves, without enclosures; a robot whose
+         ///< goal is proven out of reach stays
+};
+
 /// tau of the velocity obstacles, s. IVO: tau = clamp(dist / max(|v|, speed_floor max_speed), least, most); ORCA uses
 /// `orca`.
 struct Horizons {
@@ -108,6 +115,7 @@ struct Scenario {
   std::vector<Robot> robots;
   std::vector<SceneObstacle> obstacles;
   std::optional<FormationSpec> formation;  ///< none: kinematic robots with goals (Section V.A)
+  Guidance guidance = Guidance::route;     ///< of robots with goals
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;
   Horizons horizons;
   Margins margins;

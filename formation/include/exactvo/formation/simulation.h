@@ -33,13 +33,6 @@ enum class Controller {
 
 enum class Integrator { exact, euler, rk4, dopri5, rosenbrock4 };
 
-/// How a robot with goals finds its way.
-enum class Guidance {
-  none,  ///< straight for the goal, and round obstacles as the method has it
-  route  ///< along a proven route (geometry/routes.h) through what the margin leaves, without enclosures; a robot whose
-         ///< goal is proven out of reach stays
-};
-
 /// The remedies that a controller consists of.
 Remedies remedies_of(Controller controller);
 
@@ -60,7 +53,7 @@ bool parse(const std::string& text, Guidance& out);
 
 struct SimulationOptions {
   Method method = Method::ivo;
-  Guidance guidance = Guidance::none;            ///< used by robots with goals only; not with Method::ivo_edge
+  std::optional<Guidance> guidance;              ///< instead of the scenario's
   Controller controller = Controller::standard;  ///< used by formations only
   Integrator integrator = Integrator::exact;     ///< used by formations only
   std::optional<Remedies> remedies;              ///< formations: these instead of the controller's
@@ -73,8 +66,12 @@ struct SimulationOptions {
   std::function<bool(double)> progress;
 };
 
+/// How robots find their way in a run: none in a formation, whose robots have no goals, and with Method::ivo_edge,
+/// whose ellipses would close what a route passes.
+Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options);
+
 /// What can be said before a run, a line each: a step beyond the integrator's limit, goals, slots or a leader's end
-/// that cannot be reached, or not within the time limit. The run's recording has the same.
+/// that cannot be reached, or not within the time limit. The run's recording has the same. REQUIRES: a valid scenario.
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options = {});
 
 /// REQUIRES: a valid scenario (`validate`).

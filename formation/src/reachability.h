@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Which places robots can reach among the static obstacles of a scene, and why not the others. Exact for a place
+/// (geometry/routes.h). A place counts as reached within a disc about it: that some place in the disc can be reached is
+/// exact too; that none can is proven by `is_proven_out_of_reach`, or left open. Moving obstacles and other robots are
+/// not considered, nor the margins that a method keeps.
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/routes.h"
+
+namespace exactvo::formation::detail {
+
+/// A place, and how near to it a robot has reached it.
+struct Destination {
+  Vec2 place;          ///< m
+  double reach = 0.0;  ///< m, >= 0
+};
+
+class Reachability {
+ public:
+  /// `most_extra`: what a robot may be asked to keep beside its radius, m, >= 0.
+  explicit Reachability(const Scenario& scenario, double most_extra = 0.0);
+
+  const geometry::RouteMap& map() const { return map_; }
+
+  /// Made at the first question and kept. REQUIRES: no more than the largest radius of the robots and `most_extra`.
+  const geometry::RoutePlan& plan(double radius);
+
+  /// The destination, or of 64 places within its reach the first that a disc of `radius` can get to.
+  std::optional<Vec2> reachable_place(double radius, Vec2 from, const Destination& to);
+
+  /// Whether no place within reach of the destination can be reached: proven, up to a rounding that leaves it open.
+  bool is_proven_out_of_reach(double radius, Vec2 from, const Destination& to);
+
+  /// "obstacles 'a' and 'b' enclose the start, with gaps of at most 0.9 m for a robot 1 m wide"; the goal is called
+  /// `goal`. REQUIRES: the destination's place itself cannot be reached.
+  std::string why_not(double radius, Vec2 from, const Destination& to, const std::string& goal);
+
+ private:
+  std::string words_of(const geometry::Separated& answer, double radius, const std::string& goal, Vec2 place) const;
+
+  const Scenario& scenario_;
+  geometry::RouteMap map_;
+  std::map<double, geometry::RoutePlan> plans_;  ///< by radius
+};
+
+}  // namespace exactvo::formation::detail
