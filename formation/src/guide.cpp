@@ -27,6 +27,13 @@ std::string metres(double x) {
   return text;
 }
 
+/// Whether the course goes on with less room at its next point, which the robot has not come to yet.
+bool is_before_narrow(const Course& course, std::size_t next, Vec2 here) {
+  constexpr double kThere = 1e-3;  // m
+  return next + 1 < course.points.size() && course.keeps[next + 1] < course.keeps[next] &&
+         norm(here - course.points[next]) > kThere;
+}
+
 }  // namespace
 
 Guide::Guide(const Scenario& scenario, double most_margin)
@@ -41,37 +48,68 @@ Guide::Guide(const Scenario& scenario, double most_margin)
 }
 
 CourseAnswer Guide::course(double radius, Vec2 from, const Destination& to) {
+  if (obstacles_.empty()) return {direct(radius, from, to)};
   const std::optional<Vec2> end = reach_.reachable_place(radius + kSkins, from, to);
-  if (!end) return {std::nullopt, why_not(radius, from, to), !has_room(radius, from)};
-  const double wanted = radius + most_margin_ + kSkins;
-  const bool has_margin = reach_.plan(wanted).is_reachable(from, *end);
-  const double keeps = has_margin ? wanted : reach_.map().widest_radius(from, *end);
+  if (!end) return {std::nullopt, why_not(radius, from, to), "", !has_room(radius, from)};
   try {
-    // The widest radius is another for every place: such plans are not kept.
-    const RouteAnswer answer =
-        (has_margin ? reach_.plan(wanted) : geometry::RoutePlan(reach_.map(), keeps)).query(from, *end);
-    Course course;
-    course.to = to;
-    course.keeps = keeps;
-    for (const geometry::ExactPoint& p : std::get<geometry::Route>(answer).points) course.points.push_back(p.rounded);
-    return {std::move(course)};
+    return {planned(radius, from, *end, to)};
   } catch (const geometry::RouteNotProven& e) {
-    return {std::nullopt, std::string("a way exists, but none could be proven (") + e.what() + ")"};
+    return {std::nullopt, "", e.what()};
   }
+}
+
+/// Without obstacles.
+Course Guide::direct(double radius, Vec2 from, const Destination& to) const {
+  const double keeps = radius + most_margin_ + kSkins;
+  return {{from, to.place}, {keeps, keeps}, to};
+}
+
+/// REQUIRES: a way from `from` to `end` for `radius` and the skins.
+Course Guide::planned(double radius, Vec2 from, Vec2 end, const Destination& to) {
+  const double least = radius + kSkins, wanted = least + most_margin_;
+  const Vec2 first = roomy_place_near(radius, from), last = roomy_place_near(radius, end);
+  const bool has_margin = reach_.plan(wanted).is_reachable(first, last);
+  const double keeps = has_margin ? wanted : reach_.map().widest_radius(first, last);
+  // The widest radius is another for every place: such plans are not kept.
+  const RouteAnswer answer =
+      (has_margin ? reach_.plan(wanted) : geometry::RoutePlan(reach_.map(), keeps)).query(first, last);
+  Course course;
+  course.to = to;
+  const auto add = [&](Vec2 point, double kept) {
+    course.points.push_back(point);
+    course.keeps.push_back(kept);
+  };
+  if (first != from) add(from, least);
+  for (const geometry::ExactPoint& p : std::get<geometry::Route>(answer).points)
+    add(p.rounded, course.points.size() == 1 && first != from ? least : keeps);
+  if (last != end) add(end, least);
+  return course;
+}
+
+/// The place, or one in sight of it that leaves a robot there the margin; the place again where none is found.
+Vec2 Guide::roomy_place_near(double radius, Vec2 place) const {
+  constexpr int kRings = 4, kDirections = 16;
+  constexpr double kTurn = 6.283185307179586, kFarthest = 2.0;  // margins: enough for a corner
+  const double least = radius + kSkins, wanted = least + most_margin_;
+  if (clearance_at(place, wanted) >= wanted) return place;
+  for (int ring = 1; ring <= kRings; ++ring) {
+    for (int k = 0; k < kDirections; ++k) {
+      const double distance = kFarthest * most_margin_ * ring / kRings;
+      const Vec2 near = place + distance * geometry::rotated({1.0, 0.0}, k * kTurn / kDirections);
+      if (clearance_at(near, wanted) >= wanted && is_in_sight(place, near, least)) return near;
+    }
+  }
+  return place;
 }
 
 /// Why there is no route.
 std::string Guide::why_not(double radius, Vec2 from, const Destination& to) {
   if (reach_.reachable_place(radius, from, to))
-    return "the widest way leaves the robot less than " + metres(kSkins) + " of room: too little to drive";
+    return "the widest way leaves the robot less than " + metres(kSkins) + " of room, too little to drive";
   std::string text = reach_.why_not(radius, from, to, "the goal");
   if (to.reach > 0.0 && has_room(radius, from) && !reach_.is_proven_out_of_reach(radius, from, to))
     text += "; no place within " + metres(to.reach) + " of it was found that can be reached, which is no proof";
   return text;
-}
-
-double Guide::margin_of(const Course& course, double radius) {
-  return std::max(0.0, course.keeps - radius - kSkins);
 }
 
 /// m, from the centre; beyond `enough` any number that is not less.
@@ -95,42 +133,47 @@ bool Guide::is_in_sight(Vec2 here, Vec2 there, double clearance) const {
   return clear;
 }
 
-/// Whether a point of the course is in sight; `next` becomes the farthest of them, counted on from where it was.
-bool Guide::look_ahead(Course& course, Vec2 here, double clearance) const {
+/// Whether a point of the course is in sight; `next` becomes the farthest of them, counted on from where it was. A
+/// robot that was pushed nearer to an obstacle sees past it as near as it stands.
+bool Guide::look_ahead(Course& course, double radius, Vec2 here) const {
+  const double stands = clearance_at(here, radius + most_margin_ + kSkins);
+  const auto sees = [&](std::size_t k) {
+    return is_in_sight(here, course.points[k], std::max(radius, std::min(course.keeps[k], stands)) - 0.5 * kSkins);
+  };
   std::size_t next = course.next;
-  while (!is_in_sight(here, course.points[next], clearance))
+  while (!sees(next))
     if (next-- == 0) return false;
-  while (next + 1 < course.points.size() && is_in_sight(here, course.points[next + 1], clearance)) ++next;
+  while (next + 1 < course.points.size() && !is_before_narrow(course, next, here) && sees(next + 1)) ++next;
   course.next = next;
   return true;
 }
 
-/// On the piece after the farthest point in sight.
-Vec2 Guide::farthest_in_sight(const Course& course, Vec2 here, double clearance) const {
+/// Along the piece after the farthest point in sight as far as it is in sight.
+Heading Guide::heading_on(const Course& course, double radius, Vec2 here) const {
   constexpr int kHalvings = 6;  // of a piece: where a robot heads for need not be the very farthest point
-  const Vec2 from = course.points[course.next], piece = course.points[course.next + 1] - from;
+  const std::size_t next = course.next;
+  const auto margin = [&](std::size_t k) { return std::max(0.0, course.keeps[k] - radius - kSkins); };
+  const Vec2 from = course.points[next];
+  if (next + 1 == course.points.size() || is_before_narrow(course, next, here)) return {from, margin(next)};
+  const double stands = clearance_at(here, radius + most_margin_ + kSkins);
+  const double clearance = std::max(radius, std::min(course.keeps[next + 1], stands)) - 0.5 * kSkins;
+  const Vec2 piece = course.points[next + 1] - from;
   double seen = 0.0, hidden = 1.0;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (seen + hidden);
     (is_in_sight(here, from + middle * piece, clearance) ? seen : hidden) = middle;
   }
-  return from + seen * piece;
+  return {from + seen * piece, margin(next + 1)};
 }
 
-Vec2 Guide::heading(Course& course, double radius, Vec2 here) {
-  // A robot that was pushed nearer to an obstacle sees past it as near as it stands.
-  const auto clearance = [&] {
-    return std::max(radius, std::min(course.keeps, clearance_at(here, course.keeps))) - 0.5 * kSkins;
-  };
-  if (!look_ahead(course, here, clearance())) {
-    if (!has_room(radius, here)) return way_out(radius, here);
-    CourseAnswer again = this->course(radius, here, course.to);
-    if (!again.course) return course.points[course.next];
-    course = std::move(*again.course);
-    if (!look_ahead(course, here, clearance()))
-      return course.points[std::min<std::size_t>(1, course.points.size() - 1)];
-  }
-  return course.next + 1 == course.points.size() ? course.points.back() : farthest_in_sight(course, here, clearance());
+Heading Guide::heading(Course& course, double radius, Vec2 here) {
+  if (look_ahead(course, radius, here)) return heading_on(course, radius, here);
+  if (!has_room(radius, here)) return {way_out(radius, here)};
+  CourseAnswer again = this->course(radius, here, course.to);
+  if (!again.course) return {course.points[course.next]};
+  course = std::move(*again.course);
+  if (look_ahead(course, radius, here)) return heading_on(course, radius, here);
+  return {course.points[std::min<std::size_t>(1, course.points.size() - 1)]};
 }
 
 bool Guide::has_room(double radius, Vec2 here) const {

@@ -22,17 +22,25 @@ namespace exactvo::formation::detail {
 
 /// A robot's route to one of its goals, and how far it has come.
 struct Course {
-  std::vector<Vec2> points;  ///< m, with start and end
-  Destination to;            ///< where the end is the place, or one within reach of it
-  std::size_t next = 0;      ///< the farthest of the points that was in sight
-  double keeps = 0.0;        ///< m: every piece stays that far from obstacles
+  std::vector<Vec2> points;   ///< m, with start and end
+  std::vector<double> keeps;  ///< m, of each point: how far the piece that leads there stays from obstacles, up to
+                              ///< the rounding of its ends
+  Destination to;             ///< the end is its place, or one within reach of it
+  std::size_t next = 0;       ///< the farthest of the points that was in sight
 };
 
 /// A course, or why there is none.
 struct CourseAnswer {
   std::optional<Course> course;
-  std::string why_not = {};       ///< in words
-  bool start_is_blocked = false;  ///< nearer to an obstacle than its radius: pushed out it may have one
+  std::string why_not = {};       ///< why the goal is out of reach
+  std::string defect = {};        ///< why a way that exists could not be proven: never to be seen
+  bool start_is_blocked = false;  ///< it has no room where it is: moved away it may have a course
+};
+
+/// Where a robot heads now.
+struct Heading {
+  Vec2 place;           ///< m
+  double margin = 0.0;  ///< m: what is kept from obstacles beside the radius on the way there
 };
 
 class Guide {
@@ -43,15 +51,13 @@ class Guide {
   /// Which places can be reached at all.
   Reachability& reachability() { return reach_; }
 
-  /// The route that leaves a robot of `radius` the margin, or as much of it as the widest way has.
+  /// The route that leaves a robot of `radius` the margin, or as much of it as the widest way has. Where an end leaves
+  /// less, the margin is kept on the way between.
   CourseAnswer course(double radius, Vec2 from, const Destination& to);
-
-  /// How much of the margin the course leaves a robot of `radius`, m.
-  static double margin_of(const Course& course, double radius);
 
   /// The farthest point of the course that a robot can see: the straight way there stays clear of obstacles. Where none
   /// is in sight, the robot was pushed off, and the course is planned again from where it is.
-  Vec2 heading(Course& course, double radius, Vec2 here);
+  Heading heading(Course& course, double radius, Vec2 here);
 
   /// Whether a robot has room to plan a course.
   bool has_room(double radius, Vec2 here) const;
@@ -60,11 +66,14 @@ class Guide {
   Vec2 way_out(double radius, Vec2 here) const;
 
  private:
+  Course direct(double radius, Vec2 from, const Destination& to) const;
+  Course planned(double radius, Vec2 from, Vec2 end, const Destination& to);
+  Vec2 roomy_place_near(double radius, Vec2 place) const;
   std::string why_not(double radius, Vec2 from, const Destination& to);
   double clearance_at(Vec2 here, double enough) const;
   bool is_in_sight(Vec2 here, Vec2 there, double clearance) const;
-  bool look_ahead(Course& course, Vec2 here, double clearance) const;
-  Vec2 farthest_in_sight(const Course& course, Vec2 here, double clearance) const;
+  bool look_ahead(Course& course, double radius, Vec2 here) const;
+  Heading heading_on(const Course& course, double radius, Vec2 here) const;
 
   double most_margin_;
   Reachability reach_;

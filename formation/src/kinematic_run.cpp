@@ -58,7 +58,7 @@ class KinematicRun {
     sink.begin(recording);
     RowFeed rows(scene_.bodies(), outlooks_, sink);
     std::size_t k = 0;
-    for (; !clock_.ends_at(k) && !all_arrived(); ++k) {
+    for (; !clock_.ends_at(k) && !all_arrived() && (k == 0 || !nobody_goes_on()); ++k) {
       Step row = decide_all(clock_.time(k));
       move(row);
       rows.add(std::move(row));
@@ -85,11 +85,17 @@ class KinematicRun {
     KinematicRobot& r = robots_[i];
     CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, {goal_of(i), reach_of_goal(i)});
     r.course = std::move(answer.course);
-    r.no_way = std::move(answer.why_not);
+    r.no_way = answer.defect.empty()
+                   ? "cannot reach " + name_of_goal(i) + ": " + answer.why_not
+                   : "stays: a way exists, and by a defect of the program no route could be proven: " + answer.defect;
+    if (r.course) r.no_way.clear();
     r.waits_for_room = answer.start_is_blocked;
-    if (r.course) return r.field->set_margin(Guide::margin_of(*r.course, scenario_.robots[i].radius));
-    r.note = joined_notes(r.note, r.waits_for_room ? "in contact: moves away before its route is planned"
-                                                   : "stays, its goal is out of reach: " + r.no_way);
+    if (r.course) return;
+    r.note = joined_notes(r.note, r.waits_for_room ? "has no room: moves away before its route is planned" : r.no_way);
+  }
+
+  std::string name_of_goal(std::size_t i) const {
+    return scenario_.robots[i].goals.size() == 1 ? "its goal" : "its goal " + std::to_string(robots_[i].goal + 1);
   }
 
   bool has_last_goal(std::size_t i) const { return robots_[i].goal + 1 == scenario_.robots[i].goals.size(); }
@@ -155,6 +161,15 @@ class KinematicRun {
     return speed * geometry::normalized(way);
   }
 
+  bool stays(std::size_t i) const { return guide_ && !robots_[i].course && !robots_[i].waits_for_room; }
+
+  /// Whether all robots have arrived or stay, and nothing comes to push them.
+  bool nobody_goes_on() const {
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!at_goal(i) && !stays(i)) return false;
+    return scenario_.moving_obstacles.empty();
+  }
+
   /// Along its course; a robot without one stays.
   Vec2 guided(std::size_t i, RobotStep& step) {
     KinematicRobot& r = robots_[i];
@@ -163,11 +178,11 @@ class KinematicRun {
       if (!guide_->has_room(radius, r.position)) return straight_for(i, guide_->way_out(radius, r.position));
       plan_course(i);
     }
+    if (step.mode == Mode::direct) step.mode = r.course ? Mode::guided : Mode::staying;
     if (!r.course) return {};
-    if (step.mode == Mode::direct) step.mode = Mode::guided;
-    const Vec2 place = guide_->heading(*r.course, radius, r.position);
-    r.field->set_margin(Guide::margin_of(*r.course, radius));  // it may have planned again, through other gaps
-    return straight_for(i, place);
+    const Heading to = guide_->heading(*r.course, radius, r.position);
+    r.field->set_margin(to.margin);  // from the next step on
+    return straight_for(i, to.place);
   }
 
   bool is_in_contact() const {
@@ -241,8 +256,7 @@ class KinematicRun {
         text += "; " + scenario_.robots[i].id +
                 " completed a full circuit of the obstacle without finding a way to its goal";
     for (std::size_t i = 0; i < robots_.size(); ++i)
-      if (!robots_[i].no_way.empty())
-        text += "; " + scenario_.robots[i].id + " cannot reach its goal: " + robots_[i].no_way;
+      if (!robots_[i].no_way.empty() && !at_goal(i)) text += "; " + scenario_.robots[i].id + " " + robots_[i].no_way;
     return text;
   }
 
@@ -251,10 +265,11 @@ class KinematicRun {
     for (std::size_t i = 0; i < robots_.size(); ++i) arrived += at_goal(i);
     const std::size_t all = robots_.size();
     if (arrived == all) return all == 1 ? "the robot arrived" : "all robots arrived";
-    if (all == 1) return "the robot did not arrive within the time limit";
+    const std::string until = nobody_goes_on() ? "" : " within the time limit";
+    if (all == 1) return "the robot did not arrive" + until;
     return (arrived == 0 ? "none of " + std::to_string(all) + " robots arrived"
                          : std::to_string(all - arrived) + " of " + std::to_string(all) + " robots did not arrive") +
-           " within the time limit";
+           until;
   }
 
   const Scenario& scenario_;

@@ -24,8 +24,9 @@ constexpr Names<Integrator, 5> kIntegrators{{{Integrator::exact, "exact"},
                                              {Integrator::dopri5, "dopri5"},
                                              {Integrator::rosenbrock4, "rosenbrock4"}}};
 constexpr Names<Guidance, 2> kGuidances{{{Guidance::none, "none"}, {Guidance::route, "route"}}};
-constexpr Names<Mode, 6> kModes{{{Mode::direct, "direct"},
+constexpr Names<Mode, 7> kModes{{{Mode::direct, "direct"},
                                  {Mode::guided, "guided"},
+                                 {Mode::staying, "staying"},
                                  {Mode::boost, "boost"},
                                  {Mode::following, "following"},
                                  {Mode::pushing_out, "pushing-out"},

@@ -53,6 +53,7 @@ RecordingFile resting(const formation::Scenario& s, std::size_t steps) {
 
 TEST(AuditMotion, ACartThatRunsASlowRobotOverIsACollision) {
   formation::Scenario s;
+  s.guidance = formation::Guidance::none;
   s.robots = {robot("slow", {0, 0}, {40, 0})};
   s.robots[0].max_speed = 0.5;
   s.moving_obstacles = {square("cart", {-9, 0}, 1.0, {{{0, 0}, {60, 0}}, 4.0})};
@@ -69,6 +70,7 @@ TEST(AuditMotion, ACartThatRunsASlowRobotOverIsACollision) {
 
 TEST(AuditMotion, AnObstacleThatIsBackAtEveryRowIsSeenBetween) {
   formation::Scenario s;
+  s.guidance = formation::Guidance::none;
   s.time_step = 0.5;
   s.robots = {robot("R1", {5.0, 0.0}, {5.0, 0.0})};
   Leader round{{{0, 0}}, 44.0};
@@ -83,6 +85,7 @@ TEST(AuditMotion, AnObstacleThatIsBackAtEveryRowIsSeenBetween) {
 TEST(AuditMotion, ToTouchAtACornerIsNoCollisionAndAnUlpNearerIs) {
   // The square's front is at 3.5 m where it turns, in the middle of a step.
   formation::Scenario s;
+  s.guidance = formation::Guidance::none;
   s.time_step = 0.4;
   s.robots = {robot("R1", {4.0, 0.0}, {4.0, 0.0})};
   s.moving_obstacles = {square("shuttle", {0, 0}, 0.5, {{{0, 0}, {3, 0}, {0, 0}}, 1.0})};
@@ -95,6 +98,7 @@ TEST(AuditMotion, CornersAfterLegsOfIrrationalLengthAreEnclosed) {
   // A wall's end goes to (3, 3) and back; the robot's rim is a picometre beyond it, or a picometre this side.
   for (const double gap : {1e-12, -1e-12}) {
     formation::Scenario s;
+    s.guidance = formation::Guidance::none;
     s.time_step = 0.7;
     const double away = 3.0 + (0.5 + gap) / std::sqrt(2.0);
     s.robots = {robot("R1", {away, away}, {away, away})};
@@ -109,6 +113,7 @@ TEST(AuditMotion, CornersAfterLegsOfIrrationalLengthAreEnclosed) {
 TEST(AuditMotion, ASpeedThatChangesWithinAStepIsFollowed) {
   // It makes up one metre on the robot and loses it again, all within one step.
   formation::Scenario s;
+  s.guidance = formation::Guidance::none;
   s.time_step = 4.0;
   s.robots = {robot("R1", {2.0, 0.0}, {6.0, 0.0})};
   s.moving_obstacles = {
@@ -130,6 +135,7 @@ TEST(AuditMotion, ASpeedThatChangesWithinAStepIsFollowed) {
 /// One step of v' = -k (v - w), as the run computes it.
 RecordingFile curve(double k, double dt, Vec2 from, Vec2 v0, Vec2 w) {
   formation::Scenario s;
+  s.guidance = formation::Guidance::none;
   s.time_step = dt;
   s.robots = {robot("R1", from, {})};
   s.robots[0].goals.clear();
@@ -225,6 +231,7 @@ TEST(AuditMotion, ARowThatDoesNotFollowIsInconsistent) {
   EXPECT_EQ(audit(file).inconsistencies, 1u);
 
   formation::Scenario s;
+  s.guidance = formation::Guidance::none;
   s.robots = {robot("R1", {3, 4}, {9, 9})};
   s.time_limit = 1.0;
   RecordingFile straight;
@@ -440,6 +447,7 @@ TEST(AuditMotion, EndsWhenItsCallerIsInterrupted) {
     if (++calls == 3) throw Stopped();
   });
   formation::Scenario s;
+  s.guidance = formation::Guidance::none;
   s.robots = {robot("R1", {0, 0}, {9, 0})};
   s.moving_obstacles = {square("box", {5, 3}, 0.5, {{{0, 0}, {9, 0}}, 1.0})};
   EXPECT_THROW(audit(resting(s, 50)), Stopped);

@@ -177,29 +177,76 @@ TEST(Guidance, WhoWasPushedOutOfSightPlansAgain) {
   };
   // In sight of the route it is kept, and the robot heads for what it sees.
   for (const Vec2 here : {Vec2{-4, 3}, Vec2{-3, 0}, Vec2{-1, 0.5}}) {
-    EXPECT_TRUE(is_clear(here, guide.heading(course, 0.5, here)));
+    EXPECT_TRUE(is_clear(here, guide.heading(course, 0.5, here).place));
     EXPECT_EQ(course.points, before);
   }
   // Behind the shelf nothing of it is.
   const Vec2 behind{-5, -5};
   for (const Vec2 p : before) EXPECT_FALSE(is_clear(behind, p));
-  EXPECT_TRUE(is_clear(behind, guide.heading(course, 0.5, behind)));
+  EXPECT_TRUE(is_clear(behind, guide.heading(course, 0.5, behind).place));
   EXPECT_EQ(course.points.front(), behind);
   EXPECT_EQ(course.points.back(), (Vec2{4, 3}));
-  // In contact there is no route: the last heading stays.
+  // Without room no route is planned: the robot moves away from the wall first.
   const std::vector<Vec2> again = course.points;
-  guide.heading(course, 0.5, {-5.6, 5});
+  EXPECT_GT(guide.heading(course, 0.5, {-5.6, 5}).place.x, -5.6);
   EXPECT_EQ(course.points, again);
 }
 
-TEST(Guidance, ACourseThatIsPlannedAgainMayLeaveLessMargin) {
-  Scenario s = door(3.0);
-  s.obstacles.push_back({"shelf", Polyline{{{-6, -3}, {-2, -3}}}});
+TEST(Guidance, AnEndWithoutMarginDoesNotTakeItFromTheWay) {
+  const Scenario s = door(3.0);
   detail::Guide guide(s, 0.08);
-  detail::Course course = *guide.course(0.5, {-4, 3}, {{4, 3}, 0.1}).course;
-  EXPECT_NEAR(detail::Guide::margin_of(course, 0.5), 0.08, 1e-12);
-  guide.heading(course, 0.5, {-5, -5.48});  // 0.52 m from the frame, out of sight of the course
-  EXPECT_NEAR(detail::Guide::margin_of(course, 0.5), 0.02, 1e-5);
+  // 0.02 m of the start's margin are missing, and 0.03 m of the goal's.
+  const Vec2 start{-5.44, 3}, goal{4, -5.45};
+  const detail::Course course = *guide.course(0.5, start, {goal, 0.1}).course;
+  EXPECT_EQ(course.points.front(), start);
+  EXPECT_EQ(course.points.back(), goal);
+  for (std::size_t k = 2; k + 1 < course.points.size(); ++k) EXPECT_GE(course.keeps[k], 0.58) << k;
+  EXPECT_LT(course.keeps.back(), 0.51);
+  Scenario run_of = s;
+  run_of.robots[0].position = start;
+  run_of.robots[0].goals = {goal};
+  run_of.arrival_tolerance = 1e-3;
+  const GuidedRun run = guided(run_of);
+  EXPECT_TRUE(run.metrics.all_arrived) << run.metrics.outcome;
+  for (const Step& row : run.recording.steps) {
+    const Vec2 p = row.robots[0].position;
+    if (std::fabs(p.x) > 2.0) continue;
+    EXPECT_GT(geometry::signed_distance(s.obstacles[0].shape, p), 0.579);
+  }
+}
+
+TEST(Guidance, WithoutObstaclesNoPlaceIsTooFar) {
+  for (const Vec2 where : {Vec2{0, 0}, Vec2{1000, 1000}, Vec2{-1e8, 3}}) {
+    Scenario s = scene({}, where, where + Vec2{5, 0});
+    EXPECT_TRUE(guided(s).metrics.all_arrived) << where.x;
+    s.robots.push_back(s.robots[0]);
+    s.robots[1].id = "S";
+    s.robots[1].position = where + Vec2{0, 3};
+    s.robots[1].goals = {where + Vec2{5, 3}};
+    EXPECT_TRUE(guided(s).metrics.all_arrived) << where.x;
+  }
+}
+
+TEST(Guidance, ARunEndsWhenNobodyGoesOn) {
+  Scenario s = door(0.5);
+  s.time_limit = 1e5;
+  const GuidedRun alone = guided(s);
+  EXPECT_EQ(alone.recording.steps.size(), 2u) << "one decision, which `explain` speaks of";
+  EXPECT_EQ(alone.recording.steps[0].robots[0].mode, Mode::staying);
+  EXPECT_THAT(alone.metrics.outcome, testing::StartsWith("the robot did not arrive; R cannot reach its goal: "));
+  s.robots.push_back(s.robots[0]);
+  s.robots[1].id = "S";
+  s.robots[1].position = {-4, -3};
+  s.robots[1].goals = {{-2, -3}};
+  const GuidedRun both = guided(s);
+  EXPECT_GT(both.recording.steps.size(), 10u);
+  EXPECT_THAT(both.metrics.outcome, testing::StartsWith("1 of 2 robots did not arrive; R cannot reach its goal: "));
+}
+
+TEST(Guidance, WhoIsAtItsGoalNeedsNoRoute) {
+  Scenario s = scene({Polyline{{{-1, 0.6}, {1, 0.6}}}}, {0, 0}, {0, 0.3});
+  s.arrival_tolerance = 0.5;
+  EXPECT_EQ(guided(s).metrics.outcome, "the robot arrived");
 }
 
 TEST(Guidance, AGoalOnTheWayThatIsPassedAndANextThatIsOutOfReachAreBothNoted) {
@@ -210,10 +257,10 @@ TEST(Guidance, AGoalOnTheWayThatIsPassedAndANextThatIsOutOfReachAreBothNoted) {
   for (const Step& step : run.recording.steps) {
     const std::string& note = step.robots[0].note;
     noted =
-        noted || (note.find("goal 1 passed") != std::string::npos && note.find("out of reach") != std::string::npos);
+        noted || (note.find("goal 1 passed") != std::string::npos && note.find("cannot reach its goal 2") != std::string::npos);
   }
   EXPECT_TRUE(noted);
-  EXPECT_THAT(run.metrics.outcome, HasSubstr("R cannot reach its goal"));
+  EXPECT_THAT(run.metrics.outcome, HasSubstr("R cannot reach its goal 2: "));
 }
 
 TEST(Guidance, WhoMustGiveWayToACartArrives) {

@@ -115,6 +115,7 @@ TEST(Multipliers, BalanceTheChoiceAgainstThePreferredVelocity) {
 
 TEST(Outlooks, EveryGoalsEnclosuresAreKept) {
   Scenario s;
+  s.guidance = Guidance::none;
   Robot r;
   r.id = "R1";
   r.goals = {{10, 0}, {20, 0}};

@@ -120,6 +120,7 @@ inline bool is_clear_cut(const std::vector<formation::TrapFinding>& findings) {
 /// A robot and two facades whose grown ellipses overlap; nothing where the drawing gives none that can be judged.
 inline std::optional<formation::Scenario> random_pair(SeededRandom& random) {
   formation::Scenario s;
+  s.guidance = formation::Guidance::none;
   formation::Robot robot;
   robot.id = "R1";
   robot.goals = {random.in_box(8.0)};

@@ -197,6 +197,8 @@ std::string turned_words(const Decision& d) {
   switch (d.step.mode) {
     case formation::Mode::guided:
       return "the preferred velocity leads along a proven route to the goal";
+    case formation::Mode::staying:
+      return "the robot stays, since its goal is out of reach";
     case formation::Mode::boost:
       return "boost turned the preferred velocity onto the tangent of the enclosure in the way";
     case formation::Mode::following:

@@ -60,6 +60,7 @@ Lines recorded(const Scenario& scenario, const SimulationOptions& options) {
 
 Scenario kinematic(const std::string& name) {
   Scenario s;
+  s.guidance = formation::Guidance::none;
   s.name = name;
   s.time_step = 0.1;
   s.time_limit = 0.8;
@@ -112,6 +113,7 @@ Scenario crowd() {
 
 Scenario three(const std::string& name) {
   Scenario s;
+  s.guidance = formation::Guidance::none;
   s.name = name;
   s.time_step = 0.02;
   s.time_limit = 0.16;
@@ -142,6 +144,12 @@ Scenario with_cart(Scenario s) {
   return s;
 }
 
+Scenario guided(Scenario s) {
+  s.guidance = formation::Guidance::route;
+  s.name += "_guided";
+  return s;
+}
+
 }  // namespace
 
 std::vector<ShortRun> short_runs() {
@@ -161,6 +169,7 @@ std::vector<ShortRun> short_runs() {
       {corner(), Method::ivo, true},
       {corner(), Method::orca, false},
       {corner(), Method::ivo_edge, false},
+      {guided(corner()), Method::ivo, false},
       {cart(), Method::ivo, false},
       {cart(), Method::orca, true},
       {crowd(), Method::ivo, false},
@@ -247,11 +256,11 @@ constexpr const char* kNumberWords[] = {"an ulp up", "an ulp down", "a part in 1
 
 const std::vector<std::string>& other_words() {
   static const std::vector<std::string> words{
-      "optimal",     "relaxed", "infeasible",    "no-interior",    "direct",   "boost",       "following",
-      "pushing-out", "arrived", "enclosure",     "robot",          "straight", "exponential", "hermite",
-      "exact",       "euler",   "rk4",           "dopri5",         "ivo",      "orca",        "default",
-      "corrected",   "disc",    "right",         "left",           "top",      "bottom",      "nan",
-      "inf",         "",        "obstacle-edge", "moving-obstacle"};
+      "optimal",     "relaxed",   "infeasible", "no-interior",   "direct",         "boost",    "following",
+      "pushing-out", "staying",   "arrived",    "enclosure",     "robot",          "straight", "exponential",
+      "hermite",     "exact",     "euler",      "rk4",           "dopri5",         "ivo",      "orca",
+      "default",     "corrected", "disc",       "right",         "left",           "top",      "bottom",
+      "nan",         "inf",       "",           "obstacle-edge", "moving-obstacle"};
   return words;
 }
 

@@ -24,6 +24,7 @@ using geometry::Vec2;
 /// Two robots that pass each other along a wall, one behind a block.
 Scenario scene() {
   Scenario s;
+  s.guidance = formation::Guidance::none;
   formation::Robot a, b;
   a.id = "a";
   a.position = {0.0, 0.1};
@@ -52,6 +53,7 @@ RecordingFile recorded(const Scenario& s, formation::SimulationOptions options =
 
 Scenario formation_scene() {
   Scenario s;
+  s.guidance = formation::Guidance::none;
   s.time_step = 0.02;
   s.time_limit = 1.0;
   for (int k = 0; k < 2; ++k) {
@@ -301,6 +303,7 @@ TEST(AuditPoints, WhatALeaderOrAMovingObstacleDidIsHeldToItsPath) {
 
 TEST(AuditPoints, ChoicesThatWereRelaxedAreProvenToViolateLeast) {
   Scenario s;
+  s.guidance = formation::Guidance::none;
   s.time_limit = 1.0;
   for (int k = 0; k < 6; ++k) {
     formation::Robot r;
@@ -339,6 +342,7 @@ geometry::Ring star(SeededRandom& random, Vec2 middle, double size) {
 /// A clutter of walls, stars, a room with a hole, carts and robots that want across.
 Scenario clutter(SeededRandom& random) {
   Scenario s;
+  s.guidance = formation::Guidance::none;
   s.time_step = random.integer(0, 1) ? 0.05 : 0.1;
   s.time_limit = 40 * s.time_step;
   s.speed_bound = random.integer(0, 1) ? formation::SpeedBoundKind::disc : formation::SpeedBoundKind::box;

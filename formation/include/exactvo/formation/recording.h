@@ -46,6 +46,7 @@ struct RecordedConstraint {
 enum class Mode {
   direct,       ///< straight for the goal or slot
   guided,       ///< along a proven route
+  staying,      ///< its goal is out of reach: the run's outcome says why
   boost,        ///< turned onto the tangent of a certified trap-free enclosure
   following,    ///< along a boundary: after a stall, or (formations) on the side committed to
   pushing_out,  ///< in contact: leaving an obstacle
