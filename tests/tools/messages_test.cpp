@@ -307,10 +307,9 @@ TEST(Messages, AGoalThatIsWalledInIsSaidBeforeTheRun) {
   place().write("room.json",
                 R"({"name": "room", "robots": [{"id": "R1", "position": [8, 0], "goal": [0, 0]}], "time_limit": 1,
     "obstacles": [{"id": "room", "polyline": [[3, 0.4], [3, 3], [-3, 3], [-3, -3], [3, -3], [3, -0.4]]}]})");
-  EXPECT_THAT(
-      place().run("simulate room.json").err,
-      HasSubstr("goal of R1, (0, 0), cannot be reached: obstacle 'room' encloses it, with gaps of at most 0.8 m for "
-                "a robot 1 m wide"));
+  EXPECT_THAT(place().run("simulate room.json").err,
+              HasSubstr("goal of R1, (0, 0), cannot be reached: obstacle 'room' encloses it, with a gap of 0.8 m for a "
+                        "robot 1 m wide"));
 }
 
 TEST(Messages, ObstaclesInPlaceOfAScenarioAreCalledThatWithTheWayToUseThem) {
