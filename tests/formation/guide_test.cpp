@@ -276,7 +276,8 @@ TEST(Guidance, WhoMustGiveWayToACartArrives) {
 TEST(Guidance, ReachesWhatHasARouteAndNothingElseInMazes) {
   exactvo::test::SeededRandom random(exactvo::test::seed_of_run(73));
   std::size_t reached = 0, proven = 0;
-  for (std::uint64_t item = 0; reached + proven < 12; ++item) {
+  for (std::uint64_t item = 0; reached < 6 || proven < 4; ++item) {
+    ASSERT_LT(item, 500u);
     Scenario s = scene({}, {}, {}, random.uniform(0.15, 0.3));
     std::vector<geometry::Obstacle> shapes;
     geometry::Box box;
@@ -300,8 +301,6 @@ TEST(Guidance, ReachesWhatHasARouteAndNothingElseInMazes) {
     EXPECT_EQ(run.metrics.outcome.find("cannot reach") == std::string::npos, arrived) << item;
     ++(arrived ? reached : proven);
   }
-  EXPECT_GT(reached, 2u);
-  EXPECT_GT(proven, 2u);
 }
 
 }  // namespace
