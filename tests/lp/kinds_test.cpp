@@ -194,6 +194,77 @@ TEST(EveryKind, WithShortAndLongNormalsIsAsGoodAsTheExactAnswer) {
   EXPECT_GT(relaxed, 1000U);
 }
 
+/// The speed that rounding is measured by, and with it the violation: m/s, m/s |n|.
+double largest_speed_of(const Problem& p, Vec2 velocity) {
+  double speed = norm(velocity) + norm(p.preferred);
+  for (const Constraint& c : p.constraints)
+    speed = std::max(speed, std::abs(c.half_plane.offset) / norm(c.half_plane.normal));
+  return speed;
+}
+double longest_normal(const Problem& p) {
+  double length = 0.0;
+  for (const Constraint& c : p.constraints) length = std::max(length, norm(c.half_plane.normal));
+  return length;
+}
+
+void expect_small_gap(const Problem& problem, const Proven& answer) {
+  ASSERT_TRUE(answer.certificate.has_value()) << text_of(problem);
+  const Certificate& c = *answer.certificate;
+  EXPECT_STREQ(name(check(problem, c)), "none") << text_of(problem);
+  EXPECT_TRUE(is_tight(problem, c)) << c.gap << '\n' << text_of(problem);
+  if (c.status == Status::no_interior) return;
+  const double speed = largest_speed_of(problem, c.velocity);
+  const double unit = c.status == Status::optimal ? speed * speed : c.violation + speed * longest_normal(problem);
+  EXPECT_LE(c.gap, 1e-11 * unit) << name(c.status) << " by " << c.violation << '\n' << text_of(problem);
+}
+
+// Without a disc or a box the gap of a least violation was the violation itself: multipliers in doubles leave a sum of
+// normals of about u. With a region that is one point of the disc it was some m/s: no multipliers are largest there.
+TEST(EveryKind, AGapIsARoundingError) {
+  SeededRandom random(test::seed_of_run(69));
+  std::size_t without_bound = 0;
+  for (const ProblemKind& kind : well_formed_kinds()) {
+    for (int k = 0; k < 200; ++k) {
+      const Problem problem = k % 2 == 0 ? random_problem(kind, random) : grid_problem(kind, random);
+      const Proven answer = solve_certified(problem);
+      expect_small_gap(problem, answer);
+      if (k % 8 < 2) expect_small_gap(problem, solve_exact(problem));
+      without_bound += !is_bounded(kind.bound) && answer.solution.status != Status::optimal;
+    }
+  }
+  EXPECT_GT(without_bound, 200U);
+}
+
+// A gap was measured by the speed alone, and a violation of short normals is smaller than that.
+TEST(EveryKind, AGapIsARoundingErrorOfShortNormals) {
+  SeededRandom random(test::seed_of_run(70));
+  for (const ProblemKind& kind : well_formed_kinds()) {
+    for (int k = 0; k < 20; ++k) {
+      Problem problem = random_problem(kind, random);
+      for (Constraint& c : problem.constraints) {
+        HalfPlane& h = c.half_plane;
+        h = {{std::ldexp(h.normal.x, -50), std::ldexp(h.normal.y, -50)}, std::ldexp(h.offset, -50)};
+      }
+      expect_small_gap(problem, solve_certified(problem));
+    }
+  }
+}
+
+// The only double inside this needle near its tip lies 0.7 m/s away from it.
+TEST(Certificate, AGapThatIsNoRoundingErrorIsSaidToBeWide) {
+  Problem p;
+  p.bound.disc = 2.0;
+  p.preferred = {-1.0, 1.0 / 3.0};
+  p.constraints.push_back({{{0.0, 3.0}, 1.0}, Priority::hard, -1});
+  p.constraints.push_back({{{3e-14, -3.0}, -1.0}, Priority::hard, -1});
+  const Proven answer = solve_certified(p);
+  ASSERT_EQ(answer.solution.status, Status::optimal);
+  ASSERT_TRUE(answer.certificate.has_value());
+  EXPECT_EQ(check(p, *answer.certificate), CertificateError::none);
+  EXPECT_GT(answer.certificate->gap, 1e-2);
+  EXPECT_FALSE(is_tight(p, *answer.certificate));
+}
+
 TEST(EveryKind, WithoutAFiniteBoundIsRefusedForALinearObjective) {
   SeededRandom random(test::seed_of_run(67));
   EXPECT_EQ(refused_kinds().size(), 12U);

@@ -146,6 +146,35 @@ TEST(Lp, WhoAsksForProofsIsToldHowManyThereAreNot) {
   EXPECT_TRUE(summary_of(here.run("lp p.jsonl --json --solver incremental")).at("unproven").is_null());
 }
 
+// The tip of this needle is no double: what lies inside is far from the best velocity, and was called proven.
+TEST(Lp, AnAnswerFarFromTheBestIsNotCalledProven) {
+  const Workplace here;
+  here.write("p.jsonl",
+             R"({"bound":{"disc":2},"preferred":[-1,0.3333333333333333],"constraints":[{"normal":[0,3],"offset":1},)"
+             R"({"normal":[3e-14,-3],"offset":-1}]})");
+  const Outcome table = here.run("lp p.jsonl");
+  EXPECT_EQ(table.status, 1);
+  EXPECT_THAT(table.out, AllOf(HasSubstr("NOT proven: within "), HasSubstr("0 proven")));
+  const json summary = summary_of(here.run("lp p.jsonl --json"));
+  EXPECT_EQ(summary.at("certified"), 0);
+  EXPECT_EQ(summary.at("unproven"), 1);
+}
+
+// Lines of the document were read as documents of their own.
+TEST(Lp, OneDocumentOverSeveralLinesIsOneProblem) {
+  const Workplace here;
+  here.write("p.json", json::parse(kGood).dump(2) + "\n");
+  const Outcome whole = here.run("lp p.json --json");
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  EXPECT_EQ(summary_of(whole).at("problems"), 1);
+  here.write("p.json", "{\n  \"preferred\": [3, 3],\n  \"constraints\": [],\n  \"foo\": 1\n}\n");
+  EXPECT_THAT(here.run("lp p.json").err, AllOf(HasSubstr("/foo"), HasSubstr("[E_KEY_UNKNOWN]")));
+  here.write("p.json", json::parse(kGood).dump(2) + "\n" + json::parse(kGood).dump(2) + "\n");
+  const Outcome two = here.run("lp p.json");
+  EXPECT_EQ(two.status, 2);
+  EXPECT_THAT(two.err, HasSubstr("one JSON document per line, or one document over several lines"));
+}
+
 /// Two soft lines half a metre a second apart: each gives a quarter.
 constexpr const char* kApart = R"({"bound": {"disc": 2}, "preferred": [2, 0], "constraints": [
  {"normal": [1, 0], "offset": 0.25, "priority": "soft"}, {"normal": [-1, 0], "offset": 0.25, "priority": "soft"}]})";

@@ -43,10 +43,11 @@ double thread_nanoseconds() {
 struct Summary {
   std::size_t problems = 0;
   std::array<std::size_t, 4> by_status{};
+  std::vector<bool> is_proven;  ///< of each answer: by a certificate that `check` accepts and whose gap is rounding
   std::size_t certified = 0;
   std::optional<std::size_t> unproven;  ///< where proofs were asked for: answers without one
   std::size_t exact_fallbacks = 0;
-  double worst_violation = 0.0;  ///< m/s, the largest `violation` of an answer
+  double worst_violation = 0.0;  ///< the largest `violation` of an answer
   double worst_breach = 0.0;     ///< m/s, of what an answer's status says must hold
   double ns_per_solve = 0.0;     ///< the solver alone
 };
@@ -65,13 +66,19 @@ double broken_by(const lp::Problem& problem, const lp::Proven& answer) {
   return most;
 }
 
+bool is_proven(const lp::Problem& problem, const lp::Proven& answer) {
+  return answer.certificate && check(problem, *answer.certificate) == lp::CertificateError::none &&
+         is_tight(problem, *answer.certificate);
+}
+
 Summary summarise(const std::vector<lp::Problem>& problems, const std::vector<lp::Proven>& answers, bool with_proofs) {
   Summary summary;
   summary.problems = problems.size();
   for (std::size_t k = 0; k < problems.size(); ++k) {
     const lp::Proven& answer = answers[k];
     ++summary.by_status[static_cast<std::size_t>(answer.solution.status)];
-    summary.certified += answer.certificate && check(problems[k], *answer.certificate) == lp::CertificateError::none;
+    summary.is_proven.push_back(is_proven(problems[k], answer));
+    summary.certified += summary.is_proven.back();
     summary.exact_fallbacks += answer.exact_stage;
     summary.worst_violation = std::max(summary.worst_violation, answer.solution.violation);
     summary.worst_breach = std::max(summary.worst_breach, broken_by(problems[k], answer));
@@ -109,16 +116,22 @@ class Output {
   std::string text_;
 };
 
+/// What the table says of an answer's proof.
+std::string proof_words(const lp::Proven& answer, bool is_proven, bool is_asked_for) {
+  if (is_proven) return "proven";
+  if (answer.certificate) return fmt::format("NOT proven: within {:.2g}", answer.certificate->gap);
+  return is_asked_for ? "NOT proven" : "";
+}
+
 void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
   Output out;
   out.add(fmt::format("{:>8} {:<11}{:>22}{:>24}{:>12}  {}\n", "problem", "status", "v_x [m/s]", "v_y [m/s]",
                       "violation", "certificate"));
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const lp::Solution& a = answers[k].solution;
-    const char* without = s.unproven ? "NOT proven" : "";
     out.add(fmt::format("{:>8} {:<11}{:>22.17g}{:>24.17g}{:>12.4g}  {}\n", k, name(a.status),
                         unsigned_zero(a.velocity.x), unsigned_zero(a.velocity.y), a.violation,
-                        answers[k].certificate ? "proven" : without));
+                        proof_words(answers[k], s.is_proven[k], s.unproven.has_value())));
   }
   out.add(
       fmt::format("{}: {} optimal, {} relaxed, {} infeasible, {} without interior; {} proven, {} by the exact stage\n",
@@ -157,14 +170,17 @@ ExitCode run(const Flags& flags) {
   else
     print_table(answers, summary);
   if (summary.unproven.value_or(0) == 0) return ExitCode::success;
-  message(fmt::format("warning: answers without a proof: {} of {}; their multipliers leave the range of doubles",
-                      *summary.unproven, summary.problems));
+  message(
+      fmt::format("warning: answers without a proof: {} of {}; their multipliers leave the range of doubles, or no "
+                  "double near the best velocity satisfies what must hold",
+                  *summary.unproven, summary.problems));
   return ExitCode::negative;
 }
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("file", flags->file, "Problems: JSON Lines or a binary instance file; - for stdin")->required();
+  app.add_option("file", flags->file, "Problems: JSON Lines, one JSON document or a binary instance file; - for stdin")
+      ->required();
   app.add_option("--solver", flags->solver, "incremental, batch, certified or exact")->capture_default_str();
   app.add_flag("--certify", flags->certify, "Certify every answer; those that cannot be certified are solved exactly");
   app.add_flag("--json", flags->json, "One JSON result per line, then a summary");
@@ -178,9 +194,9 @@ Verb lp_verb() {
       "lp", "Solve the small optimisation problems that turn half-planes into a velocity, with certificates",
       "  echo '{\"bound\": {\"disc\": 2}, \"preferred\": [2, 0], \"constraints\": [{\"normal\": [-1, 0], \"offset\": "
       "-0.5}]}' | exactvo lp - --json\n"
-      "    (status 1: an answer has no certificate although one was requested by `certified`, `exact` or --certify. "
-      "The "
-      "lines:\n"
+      "    (a violation is in m/s where the normals have length 1, else in m/s times |normal|. Status 1: an answer is "
+      "not\n"
+      "    proven although a proof was requested by `certified`, `exact` or --certify. The lines:\n"
       "    docs/guide/linear-program.md. ns_per_solve is the thread's processor time of the solver alone, one pass "
       "over\n"
       "    the file: not reading, laying out for `batch`, gathering, printing, nor what --certify adds. Of a file of "

@@ -7,8 +7,10 @@
 #include <cstring>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "exactvo/vo/lp/instances.h"
+#include "json_if_any.h"
 #include "json_text.h"
 #include "scenarios/schema_check.h"
 #include "text_file.h"
@@ -97,13 +99,37 @@ lp::Problem parse_line(const std::string& text, std::size_t number, const std::s
   }
 }
 
+/// One problem over several lines, as a formatter writes it.
+lp::Problem parse_document(const std::string& bytes, const std::string& file) {
+  const auto tree = [&] {
+    try {
+      return parse_json(bytes, file);
+    } catch (const DataError& e) {
+      throw DataError(e.code(), file, e.place(), e.found(),
+                      e.expected() + "; one JSON document per line, or one document over several lines");
+    }
+  }();
+  check_against_schema(tree, parsed_schema(), file);
+  return Line(tree, file).problem();
+}
+
+bool is_blank(std::string_view text) {
+  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
+}
+
 std::vector<lp::Problem> read_lines(const std::string& bytes, const std::string& file) {
   std::vector<lp::Problem> problems;
-  std::istringstream in(bytes);
   std::size_t number = 0;
-  for (std::string line; std::getline(in, line);) {
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    const std::string line = bytes.substr(at, end - at);
+    at = end + 1;
     ++number;
-    if (line.find_first_not_of(" \t\r") != std::string::npos) problems.push_back(parse_line(line, number, file));
+    if (is_blank(line)) continue;
+    const bool is_whole = !problems.empty() || at >= bytes.size() || is_blank(std::string_view(bytes).substr(at)) ||
+                          !parse_json_if_any(line).is_discarded();
+    if (!is_whole) return {parse_document(bytes, file)};
+    problems.push_back(parse_line(line, number, file));
   }
   return problems;
 }

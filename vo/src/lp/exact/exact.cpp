@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "lp/exact/exact_search.h"
 #include "lp/problem/satisfaction.h"
@@ -14,8 +13,6 @@
 
 namespace exactvo::lp {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<Binding> bindings_of(const ExactRegion& region, const ExactOptimum& o) {
   std::vector<Binding> bindings;
@@ -96,10 +93,9 @@ Proven rounded_inward(const Problem& problem, Status status, const ExactRegion& 
   const std::vector<Binding> tight = bindings_of(region, optimum);
   name_active(tight, answer.solution);
   set_multipliers(problem, answer.solution);
-  answer.certificate = certificate_for(problem, answer.solution, tight, contradiction, kInfinity);
+  answer.certificate = certificate_for(problem, answer.solution, tight, contradiction, Stage::exact);
   const auto& certificate = answer.certificate;
-  const bool tells = certificate && certificate->gap <= widest_gap_of_doubles(problem, status);
-  if (tells && !has_multipliers_of(*certificate, answer.solution))
+  if (certificate && is_tight(problem, *certificate) && !has_multipliers_of(*certificate, answer.solution))
     take_from(*certificate, problem, tight, answer.solution);
   return answer;
 }

@@ -41,23 +41,66 @@ Scope scope_of(Status status) {
   return status == Status::infeasible ? Scope::hard_may_give : Scope::all_must_hold;
 }
 
-/// What a gap is measured by: (V + |p|)^2 of (4), V |d| of (3), V of (2), V the largest speed in play.
-double unit_of_gap(const Problem& problem, Scope scope) {
-  const double speed = largest_speed(problem), p = norm(problem.preferred);
-  if (scope != Scope::all_must_hold) return speed;
-  return problem.objective == Objective::nearest ? (speed + p) * (speed + p) : speed * p;
+/// The longest normal of the terms that may be violated: violations are in units of |n|.
+double length_of_giving(const Problem& problem, Scope scope, const Multipliers& m) {
+  double longest = 0.0;
+  for (std::size_t k = 0; k < m.count; ++k)
+    if (may_give(problem, m.binding[k], scope))
+      longest = std::max(longest, norm(half_plane_at(problem, m.binding[k]).normal));
+  return longest;
 }
 
-/// The least gap tried first: rounding alone makes one as large.
-double least_gap(const Problem& problem, Scope scope) {
-  return std::max(kUnitRoundoff * unit_of_gap(problem, scope), std::numeric_limits<double>::min());
+/// What the gap of a claim is measured by, V the largest speed in play. Without a bound a vertex may lie far beyond it,
+/// where it is |v| of the exact optimum; a velocity in doubles that lies there is more likely wrong.
+class UnitOfGap {
+ public:
+  UnitOfGap(const Problem& problem, Scope scope, const Claim& claim, Stage stage)
+      : problem_(problem), scope_(scope), violation_(claim.violation) {
+    const double p = norm(problem.preferred), least = stage == Stage::exact ? norm(claim.velocity) : 0.0;
+    const double speed = std::max(largest_speed(problem), least);
+    if (scope != Scope::all_must_hold)
+      unit_ = speed;
+    else
+      unit_ = problem.objective == Objective::nearest ? (speed + p) * (speed + p) : speed * p;
+  }
+
+  /// (V + |p|)^2 of (4), V |d| of (3), of (2) the violation or V |n|, whichever is more.
+  double of(const Multipliers& m) const {
+    if (scope_ == Scope::all_must_hold) return unit_;
+    return std::max(violation_, unit_ * length_of_giving(problem_, scope_, m));
+  }
+
+ private:
+  const Problem& problem_;
+  Scope scope_;
+  double violation_;
+  double unit_;
+};
+
+/// Rounding alone makes a gap as large as this share of its unit.
+double least_gap(double unit) {
+  return std::max(kUnitRoundoff * unit, std::numeric_limits<double>::min());
+}
+
+bool bounds(const Problem& problem, Scope scope, const Claim& claim, const Combination& sum, double gap) {
+  if (scope == Scope::all_must_hold) return bounds_objective(problem, sum, claim.velocity, gap);
+  return bounds_violation(problem, sum, claim.violation, gap);
+}
+
+/// The least gap of `least`, 4 `least`, 16 `least`, ... with which the sum proves the claim, at most `limit`.
+std::optional<double> exact_gap(const Problem& problem, Scope scope, const Claim& claim, const Combination& sum,
+                                double least, double limit) {
+  for (double gap = bounds(problem, scope, claim, sum, 0.0) ? 0.0 : least; gap <= limit && std::isfinite(gap);
+       gap *= 4.0)
+    if (bounds(problem, scope, claim, sum, gap)) return gap;
+  return std::nullopt;
 }
 
 /// Finds the multipliers that prove the claim with the smallest gap.
 class Search {
  public:
-  Search(const Problem& problem, Scope scope, const Claim& claim, double widest)
-      : problem_(problem), scope_(scope), claim_(claim), widest_(widest), least_(least_gap(problem, scope)) {}
+  Search(const Problem& problem, Scope scope, const Claim& claim, Stage stage)
+      : problem_(problem), scope_(scope), claim_(claim), stage_(stage), unit_(problem, scope, claim, stage) {}
 
   /// Tries the solution's own multipliers, then every choice of at most three candidates.
   void run(const Multipliers& own, const std::vector<Binding>& candidates) {
@@ -74,27 +117,47 @@ class Search {
   }
 
   bool found() const { return found_; }
+  bool is_tight() const { return found_ && gap_ <= kWidestGap * unit_.of(best_); }
   double gap() const { return gap_; }
   const Multipliers& best() const { return best_; }
 
  private:
-  bool settled() const { return found_ && gap_ <= 64.0 * least_; }
+  bool settled() const { return found_ && gap_ <= 64.0 * least_gap(unit_.of(best_)); }
+
+  double widest(const Multipliers& m) const {
+    return stage_ == Stage::exact ? std::numeric_limits<double>::infinity() : kWidestGap * unit_.of(m);
+  }
 
   void attempt(const std::array<Binding, 3>& candidates, std::size_t count) {
     Chosen chosen;
     if (scope_ == Scope::all_must_hold) {
       chosen = {candidates, count};
-      return consider(without_implied_disc(problem_, multipliers_of_optimum(problem_, claim_.velocity, chosen)));
+      consider(without_implied_disc(problem_, multipliers_of_optimum(problem_, claim_.velocity, chosen)));
+      return consider_touching(chosen);
     }
     for (std::size_t k = 0; k < count; ++k)
       if (candidates[k] != kDisc) chosen.binding[chosen.count++] = candidates[k];
     consider(weights_of_lines(problem_, claim_.velocity, chosen, false));
     if (chosen.count == 2) consider(weights_of_lines(problem_, claim_.velocity, chosen, true));
+    consider_touching(chosen);
+  }
+
+  /// A line that may touch the disc, and at the least violation what is violated there.
+  void consider_touching(const Chosen& chosen) {
+    if (chosen.count != 2 || !std::isfinite(problem_.bound.disc) || settled()) return;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Binding line = chosen[k], other = chosen[1 - k];
+      if (scope_ == Scope::all_must_hold) {
+        if (line != kDisc && other == kDisc) consider(multipliers_where_touching(problem_, claim_.velocity, line));
+      } else if (!may_give(problem_, line, scope_) && may_give(problem_, other, scope_)) {
+        consider(weights_where_touching(problem_, line, other));
+      }
+    }
   }
 
   void consider(const Multipliers& m) {
     if (!usable(m)) return;
-    const std::optional<double> gap = gap_within(m, found_ ? 0.5 * gap_ : widest_);
+    const std::optional<double> gap = gap_within(m, found_ ? 0.5 * gap_ : widest(m));
     if (!gap) return;
     found_ = true;
     gap_ = *gap;
@@ -108,9 +171,11 @@ class Search {
     if (rough && rough->low > limit) return std::nullopt;
     const auto fine = rounded_gap(problem_, m, scope_, claim_, Digits::twice);
     if (fine && fine->low > limit) return std::nullopt;
-    if (!fine || !(fine->high <= limit) || std::isinf(fine->high)) return exact_gap_within(m, limit);
+    const auto sum = [&] { return combine(problem_, terms_of(m), scope_); };
+    if (!fine || !(fine->high <= limit) || std::isinf(fine->high))
+      return exact_gap(problem_, scope_, claim_, sum(), least_gap(unit_.of(m)), limit);
     const bool may_be_none = fine->low <= 0.0 && fine->high > 0.0;
-    return may_be_none && bounds(combine(problem_, terms_of(m), scope_), 0.0) ? 0.0 : std::max(0.0, fine->high);
+    return may_be_none && bounds(problem_, scope_, claim_, sum(), 0.0) ? 0.0 : std::max(0.0, fine->high);
   }
 
   /// Nothing is nearer, and nothing is needed to prove that.
@@ -119,23 +184,11 @@ class Search {
            claim_.velocity == problem_.preferred;
   }
 
-  std::optional<double> exact_gap_within(const Multipliers& m, double limit) const {
-    const Combination sum = combine(problem_, terms_of(m), scope_);
-    for (double gap = bounds(sum, 0.0) ? 0.0 : least_; gap <= limit && std::isfinite(gap); gap *= 4.0)
-      if (bounds(sum, gap)) return gap;
-    return std::nullopt;
-  }
-
-  bool bounds(const Combination& sum, double gap) const {
-    if (scope_ == Scope::all_must_hold) return bounds_objective(problem_, sum, claim_.velocity, gap);
-    return bounds_violation(problem_, sum, claim_.violation, gap);
-  }
-
   const Problem& problem_;
   Scope scope_;
   Claim claim_;
-  double widest_;
-  double least_;
+  Stage stage_;
+  UnitOfGap unit_;
   bool found_ = false;
   double gap_ = 0.0;
   Multipliers best_;
@@ -177,37 +230,90 @@ Multipliers own_multipliers(const Problem& problem, const Solution& s, Scope sco
   return m;
 }
 
-bool proves_contradiction(const Problem& problem, const Multipliers& m, Scope scope) {
-  if (const auto surplus = rounded_surplus(problem, m, scope)) {
-    if (surplus->low > 0.0) return true;
-    if (surplus->high <= 0.0) return false;
+/// Whether they contradict by (1): rounding settles nearly all that are a double each.
+bool proves_contradiction(const Problem& problem, const std::vector<Term>& terms, Scope scope) {
+  Multipliers m;
+  for (const Term& term : terms)
+    if (term.multiplier.size() == 1) m.add(term.binding, term.multiplier.front());
+  if (m.count == terms.size()) {
+    if (const auto surplus = rounded_surplus(problem, m, scope)) {
+      if (surplus->low > 0.0) return true;
+      if (surplus->high <= 0.0) return false;
+    }
   }
-  return contradicts(problem, combine(problem, terms_of(m), scope));
+  return contradicts(problem, combine(problem, terms, scope));
+}
+
+/// Terms of (2), (3) or (4), and the gap with which they prove a claim.
+struct Bound {
+  std::vector<Term> terms;
+  double gap = 0.0;
+};
+
+/// Multipliers in double leave a sum of normals of about u, which an unbounded velocity multiplies by more than any
+/// number. With exact multipliers the sum of two or three lines is 0.
+std::optional<Bound> exact_bound(const Problem& problem, Scope scope, const Claim& claim,
+                                 const std::vector<Binding>& lines) {
+  const UnitOfGap unit(problem, scope, claim, Stage::exact);
+  std::optional<Bound> best;
+  const auto consider = [&](const std::vector<Binding>& chosen) {
+    Multipliers names;
+    for (const Binding& line : chosen) names.add(line, 1.0);
+    const double least = least_gap(unit.of(names)), limit = best ? 0.5 * best->gap : kWidestGap * unit.of(names);
+    if (best && best->gap <= 64.0 * least) return;
+    const std::vector<Term> terms = cancelling_terms(problem, chosen);
+    if (terms.empty()) return;
+    if (const auto gap = exact_gap(problem, scope, claim, combine(problem, terms, scope), least, limit))
+      best = Bound{terms, *gap};
+  };
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (std::size_t j = i + 1; j < lines.size(); ++j) {
+      consider({lines[i], lines[j]});
+      for (std::size_t k = j + 1; k < lines.size(); ++k) consider({lines[i], lines[j], lines[k]});
+    }
+  return best;
+}
+
+std::optional<Bound> bound_of(const Problem& problem, Scope scope, const Claim& claim, const Multipliers& own,
+                              std::vector<Binding> candidates, Stage stage) {
+  Search search(problem, scope, claim, stage);
+  search.run(own, candidates);
+  std::optional<Bound> bound;
+  if (search.found()) bound = Bound{terms_of(search.best()), search.gap()};
+  if (stage == Stage::doubles || scope == Scope::all_must_hold || search.is_tight()) return bound;
+  candidates.erase(std::remove(candidates.begin(), candidates.end(), kDisc), candidates.end());
+  const std::optional<Bound> exact = exact_bound(problem, scope, claim, candidates);
+  return exact ? exact : bound;
 }
 
 }  // namespace
 
-double widest_gap_of_doubles(const Problem& problem, Status status) {
-  return kWidestGap * unit_of_gap(problem, scope_of(status));
-}
-
 std::optional<Certificate> certificate_for(const Problem& problem, const Solution& solution,
                                            const std::vector<Binding>& candidates,
-                                           const std::vector<Term>& contradiction, double widest_gap) {
+                                           const std::vector<Term>& contradiction, Stage stage) {
   if (!holds(problem, solution.status, solution.velocity)) return std::nullopt;
   const Scope scope = scope_of(solution.status);
   const bool gives = scope != Scope::all_must_hold;
   const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
   if (!std::isfinite(claim.violation)) return std::nullopt;
-  Search search(problem, scope, claim, widest_gap);
-  search.run(own_multipliers(problem, solution, scope), usable_candidates(problem, candidates, scope));
-  if (!search.found()) return std::nullopt;
-  Certificate c{solution.status, claim.velocity, claim.violation, {}, terms_of(search.best()), search.gap(), {}};
+  const auto bound = bound_of(problem, scope, claim, own_multipliers(problem, solution, scope),
+                              usable_candidates(problem, candidates, scope), stage);
+  if (!bound) return std::nullopt;
+  Certificate c{solution.status, claim.velocity, claim.violation, {}, bound->terms, bound->gap, {}};
   if (!gives) return c;
-  const bool by_itself = proves_contradiction(problem, search.best(), scope);
+  const bool by_itself = proves_contradiction(problem, c.bound, scope);
   if (!by_itself && !contradicts(problem, combine(problem, contradiction, scope))) return std::nullopt;
   c.contradiction = by_itself ? c.bound : contradiction;
   return c;
+}
+
+bool is_tight(const Problem& problem, const Certificate& c) {
+  constexpr double kWidestOfOptimum = 0x1p-20;
+  const Scope scope = scope_of(c.status);
+  Multipliers names;
+  for (const Term& term : c.bound) names.add(term.binding, 1.0);
+  const double unit = UnitOfGap(problem, scope, {c.velocity, c.violation}, Stage::exact).of(names);
+  return c.gap <= (scope == Scope::all_must_hold ? kWidestOfOptimum : kWidestGap) * unit;
 }
 
 std::vector<Binding> active_bindings(const Solution& solution) {
@@ -222,20 +328,21 @@ Certificate claim_of(const Problem& problem, const Solution& solution) {
   claim.status = solution.status;
   claim.velocity = solution.velocity;
   if (solution.status == Status::no_interior) return claim;
-  const bool gives = solution.status != Status::optimal;
-  claim.bound = terms_of(own_multipliers(problem, solution, scope_of(solution.status)));
-  claim.gap = widest_gap_of_doubles(problem, solution.status);
-  if (!gives) return claim;
-  claim.violation = violation_not_less(problem, solution);
-  claim.contradiction = claim.bound;
+  const Scope scope = scope_of(solution.status);
+  const Multipliers own = own_multipliers(problem, solution, scope);
+  claim.bound = terms_of(own);
+  if (scope != Scope::all_must_hold) {
+    claim.violation = violation_not_less(problem, solution);
+    claim.contradiction = claim.bound;
+  }
+  claim.gap = kWidestGap * UnitOfGap(problem, scope, {claim.velocity, claim.violation}, Stage::doubles).of(own);
   return claim;
 }
 
 std::optional<Certificate> certify(const Problem& problem, const Solution& solution) {
   require_well_formed(problem);
   if (solution.status == Status::no_interior || !is_finite(solution.velocity)) return std::nullopt;
-  return certificate_for(problem, solution, active_bindings(solution), {},
-                         widest_gap_of_doubles(problem, solution.status));
+  return certificate_for(problem, solution, active_bindings(solution), {}, Stage::doubles);
 }
 
 }  // namespace exactvo::lp

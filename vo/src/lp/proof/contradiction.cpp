@@ -41,16 +41,22 @@ std::vector<double> parts_of(Exact x) {
   return parts;
 }
 
-/// The multipliers, rounded to one double each where that still contradicts.
-std::vector<Term> proven(const Problem& problem, std::vector<Weighted> exact_terms) {
-  normalise(exact_terms);
-  std::vector<Term> rounded, whole;
-  for (const Weighted& t : exact_terms) {
-    if (sign_of(t.multiplier) < 0) return {};
-    if (sign_of(t.multiplier) == 0) continue;
-    rounded.push_back({t.binding, {t.multiplier.to_double()}});
-    whole.push_back({t.binding, parts_of(t.multiplier)});
+/// Empty where they are not all of one sign.
+std::vector<Term> terms_of(const std::vector<Weighted>& weights) {
+  std::vector<Term> terms;
+  for (const Weighted& w : weights) {
+    if (sign_of(w.multiplier) < 0) return {};
+    if (sign_of(w.multiplier) > 0) terms.push_back({w.binding, parts_of(w.multiplier)});
   }
+  return terms;
+}
+
+/// The multipliers, rounded to one double each where that still contradicts.
+std::vector<Term> proven(const Problem& problem, std::vector<Weighted> weights) {
+  normalise(weights);
+  const std::vector<Term> whole = terms_of(weights);
+  std::vector<Term> rounded = whole;
+  for (Term& term : rounded) term.multiplier.resize(1);
   for (const std::vector<Term>& terms : {rounded, whole}) {
     const Combination sum = combine(problem, terms, Scope::soft_may_give);
     if (sum.well_formed && contradicts(problem, sum)) return terms;
@@ -63,35 +69,35 @@ std::vector<Term> of_one(const Problem& problem, Binding a) {
 }
 
 /// Two opposite lines: the sum of normals cancels.
-std::vector<Term> of_opposite(const Problem& problem, Binding a, Binding b) {
+std::vector<Weighted> of_opposite(const Problem& problem, Binding a, Binding b) {
   const Vec2 na = half_plane_at(problem, a).normal;
   const Vec2 nb = half_plane_at(problem, b).normal;
   const bool by_x = std::abs(na.x) > std::abs(na.y);
-  return proven(problem, {{a, Exact(std::abs(by_x ? nb.x : nb.y))}, {b, Exact(std::abs(by_x ? na.x : na.y))}});
+  return {{a, Exact(std::abs(by_x ? nb.x : nb.y))}, {b, Exact(std::abs(by_x ? na.x : na.y))}};
 }
 
 /// Two lines and the disc: the multipliers that make their sum point from 0 to where they cross.
-std::vector<Term> of_crossing(const Problem& problem, Binding a, Binding b) {
+std::vector<Weighted> of_crossing(const Problem& problem, Binding a, Binding b) {
   const ExactLine la = exact(half_plane_at(problem, a));
   const ExactLine lb = exact(half_plane_at(problem, b));
   const Exact between = dot(la.normal, lb.normal);
-  return proven(problem, {{a, la.offset * dot(lb.normal, lb.normal) - lb.offset * between},
-                          {b, lb.offset * dot(la.normal, la.normal) - la.offset * between}});
+  return {{a, la.offset * dot(lb.normal, lb.normal) - lb.offset * between},
+          {b, lb.offset * dot(la.normal, la.normal) - la.offset * between}};
 }
 
 /// Three lines: the sum of normals cancels.
-std::vector<Term> of_three(const Problem& problem, Binding a, Binding b, Binding c) {
+std::vector<Weighted> of_three(const Problem& problem, Binding a, Binding b, Binding c) {
   const ExactVector na = exact(half_plane_at(problem, a).normal);
   const ExactVector nb = exact(half_plane_at(problem, b).normal);
   const ExactVector nc = exact(half_plane_at(problem, c).normal);
   const Exact wa = cross(nb, nc), wb = cross(nc, na), wc = cross(na, nb);
   const Exact sign(sign_of(wa) + sign_of(wb) + sign_of(wc) < 0 ? -1 : 1);
-  return proven(problem, {{a, sign * wa}, {b, sign * wb}, {c, sign * wc}});
+  return {{a, sign * wa}, {b, sign * wb}, {c, sign * wc}};
 }
 
 std::vector<Term> of_two(const Problem& problem, Binding a, Binding b) {
-  std::vector<Term> terms = of_opposite(problem, a, b);
-  return terms.empty() ? of_crossing(problem, a, b) : terms;
+  std::vector<Term> terms = proven(problem, of_opposite(problem, a, b));
+  return terms.empty() ? proven(problem, of_crossing(problem, a, b)) : terms;
 }
 
 }  // namespace
@@ -110,7 +116,15 @@ std::vector<Term> contradiction_of(const Problem& problem, const std::vector<Bin
       if (!terms.empty()) return terms;
     }
   }
-  return lines.size() == 3 ? of_three(problem, lines[0], lines[1], lines[2]) : std::vector<Term>{};
+  if (lines.size() != 3) return {};
+  return proven(problem, of_three(problem, lines[0], lines[1], lines[2]));
+}
+
+std::vector<Term> cancelling_terms(const Problem& problem, const std::vector<Binding>& lines) {
+  std::vector<Weighted> weights =
+      lines.size() == 3 ? of_three(problem, lines[0], lines[1], lines[2]) : of_opposite(problem, lines[0], lines[1]);
+  normalise(weights);
+  return terms_of(weights);
 }
 
 }  // namespace exactvo::lp

@@ -46,12 +46,14 @@ Vec2 pull(Objective objective, Vec2 preferred, Vec2 v) {
   return objective == Objective::nearest ? v - preferred : -preferred;
 }
 
-/// nu of (4), |p|/|v| - 1 where the disc binds alone. Beyond 1/u a larger one moves the bound by less than u |p|^2, the
-/// least gap anyway; a disc of 0, or one whose square underflows, has no other.
+/// Beyond 1/u a larger nu moves the bound of (4) by less than u |p|^2, the least gap anyway.
+constexpr double kMostOfDisc = 1.0 / kUnitRoundoff;
+
+/// nu of (4), |p|/|v| - 1 where the disc binds alone. A disc of 0, or one whose square underflows, has no other than
+/// the largest.
 double multiplier_of_disc(Vec2 sum, Vec2 towards_centre) {
-  constexpr double kMost = 1.0 / kUnitRoundoff;
   const double nu = dot(sum, towards_centre) / squared_norm(towards_centre);
-  return nu < kMost ? std::max(0.0, nu) : kMost;  // also where nu is 0/0
+  return nu < kMostOfDisc ? std::max(0.0, nu) : kMostOfDisc;  // also where nu is 0/0
 }
 
 double multiplier_of_one(Binding binding, Vec2 column, Vec2 sum) {
@@ -154,6 +156,26 @@ Multipliers weights_of_lines(const Problem& problem, Vec2 v, const Chosen& chose
   if (chosen.count == 3) weight = weights_of_three(normal(0), normal(1), normal(2));
   Multipliers m;
   for (std::size_t k = 0; k < chosen.count; ++k) m.add(chosen[k], weight[k]);
+  return m;
+}
+
+Multipliers multipliers_where_touching(const Problem& problem, Vec2 v, Binding line) {
+  const Vec2 normal = half_plane_at(problem, line).normal;
+  Multipliers m;
+  if (problem.objective == Objective::farthest) {
+    m.add(line, for_length(norm(problem.preferred) / kUnitRoundoff, norm(normal)));
+    return m;
+  }
+  m.add(line, solve_one(normal, (1.0 + kMostOfDisc) * v - problem.preferred));
+  m.add(kDisc, kMostOfDisc);
+  return m;
+}
+
+Multipliers weights_where_touching(const Problem& problem, Binding line, Binding gives) {
+  const double length = norm(half_plane_at(problem, gives).normal);
+  Multipliers m;
+  m.add(line, for_length(length / kUnitRoundoff, norm(half_plane_at(problem, line).normal)));
+  m.add(gives, 1.0);
   return m;
 }
 

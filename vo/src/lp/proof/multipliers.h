@@ -28,6 +28,12 @@ Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, const Chosen&
 /// along v. Negative or not finite where these lines have none.
 Multipliers weights_of_lines(const Problem& problem, Vec2 v, const Chosen& lines, bool on_disc);
 
+/// For a line that touches the disc at v, so that no other velocity satisfies both: no multipliers make v stationary
+/// there, and the larger they are, the smaller is the gap. These leave about u of its unit. Of the objective, with the
+/// disc's nu for Objective::nearest; of the violation of `gives`, with the line between it and the disc.
+Multipliers multipliers_where_touching(const Problem& problem, Vec2 v, Binding line);
+Multipliers weights_where_touching(const Problem& problem, Binding line, Binding gives);
+
 /// Of what is active in a solution, in its order; what stands for the disc is not read.
 using Normals = std::array<Vec2, 3>;
 

@@ -35,11 +35,11 @@ struct Term {
 struct Certificate {
   Status status = Status::optimal;
   geometry::Vec2 velocity;          ///< m/s, what the claim is about
-  double violation = 0.0;           ///< m/s, no constraint that may give is violated by more
+  double violation = 0.0;           ///< as Solution::violation; no constraint that may give is violated by more
   std::vector<Term> contradiction;  ///< relaxed, infeasible: at most three terms, by (1)
   std::vector<Term> bound;          ///< why no velocity is better than by `gap`; at most three terms
-  /// By how much a better one could exist at most: m^2/s^2 of |v - preferred|^2 where optimal, m/s of the violation
-  /// where relaxed or infeasible, of preferred.v for Objective::farthest. A rounding error; 0 or more.
+  /// How much better a velocity could be at most, 0 or more: of |v - preferred|^2 in m^2/s^2 (nearest), of preferred.v
+  /// in m/s |preferred| (farthest), of the violation in m/s |n|. A rounding error where `is_tight`.
   double gap = 0.0;
   /// no_interior: at most two constraints or sides of the box; the point of their boundaries that is nearest 0 keeps
   /// everything (the hard ones only, where there is a contradiction), exactly.
@@ -72,9 +72,16 @@ std::optional<Certificate> certify(const Problem& problem, const Solution& solut
 /// recorded with its multipliers carries its proof. REQUIRES: a well-formed problem.
 Certificate claim_of(const Problem& problem, const Solution& solution);
 
-/// The gap up to which a double answer passes: this share of V^2 (optimal) or V (relaxed), V the speed bound or, where
-/// there is none, the largest speed of the data. The tables ask for violations of at most 1e-12; 2^-40 is 9e-13.
+/// The gap up to which a double answer passes: this share of its unit, which is (V + |preferred|)^2 (nearest),
+/// V |preferred| (farthest), or V times the longest |normal| of the constraints in `bound` that may be violated, at
+/// least the violation itself. V is the speed bound or, where there is none, the largest speed of the data. The tables
+/// ask for violations of at most 1e-12; 2^-40 is 9e-13.
 inline constexpr double kWidestGap = 0x1p-40;
+
+/// Whether the gap is small enough to call the answer proven: kWidestGap of its unit for violations, 2^-20 of it where
+/// optimal, since in a region as sharp as a needle no double lies nearer to the best point; V is |velocity| where that
+/// is more. REQUIRES: a certificate that `check` accepts.
+bool is_tight(const Problem& problem, const Certificate& certificate);
 
 struct Proven {
   Solution solution;

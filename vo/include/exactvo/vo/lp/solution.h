@@ -44,8 +44,8 @@ struct Solution {
   Status status = Status::optimal;
   std::array<ActiveConstraint, 3> active{};
   std::size_t active_count = 0;  ///< at most 2 where optimal, at most 3 elsewhere
-  /// m/s. relaxed: the largest of a soft constraint; infeasible: the largest of a hard one; no_interior: the largest of
-  /// any, about a rounding error; 0 where optimal. In units of the constraint's own |normal|, rounded.
+  /// c - n.v where it is largest, in m/s |n|: m/s where |n| = 1. relaxed: of the soft constraints; infeasible: of the
+  /// hard ones; no_interior: of any, about a rounding error; 0 where optimal. Rounded.
   double violation = 0.0;
 };
 
