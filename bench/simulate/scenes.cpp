@@ -93,6 +93,7 @@ fs::path data(const char* name) {
 Scenario crossing(std::string name, std::vector<SceneObstacle> obstacles, std::size_t count) {
   Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.name = std::move(name);
   Places places(obstacles);
   for (std::size_t i = 0; i < count; ++i) {

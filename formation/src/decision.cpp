@@ -52,6 +52,25 @@ void sort_by_distance(const std::vector<Anchor>& anchors, std::size_t self, std:
   });
 }
 
+/// Both halves of a pair.
+struct PairConstraints {
+  Constraint of_a, of_b;
+};
+
+PairConstraints against_each_other(const Scene& scene, std::size_t i, const vo::MovingDisc& a, std::size_t j,
+                                   const vo::MovingDisc& b, const vo::ReciprocalOptions& options) {
+  const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a, b, options);
+  const double tau = options.time_horizon;
+  return {against_robot(pair.a, pair.certified, j, scene, a, b, tau),
+          against_robot(pair.b, pair.certified, i, scene, b, a, tau)};
+}
+
+Constraint* against(std::size_t robot, const Scene& scene, std::vector<Constraint>& all) {
+  for (Constraint& c : all)
+    if (scene.bodies()[c.body].kind == vo::BodyKind::robot && c.index == robot) return &c;
+  return nullptr;
+}
+
 }  // namespace
 
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
@@ -71,17 +90,30 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       if (norm(anchors[i].position - anchors[j].position) > scenario.neighbour_distance) continue;
-      const vo::MovingDisc a{anchors[i].position, anchors[i].velocity, scenario.robots[i].radius};
-      const vo::MovingDisc b{anchors[j].position, anchors[j].velocity, scenario.robots[j].radius};
       const bool a_yields = scenario.robots[i].cooperates, b_yields = scenario.robots[j].cooperates;
       pair_options.share_of_a = a_yields == b_yields ? 0.5 : (a_yields ? 1.0 : 0.0);
-      const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a, b, pair_options);
-      const double tau = pair_options.time_horizon;
-      if (a_yields) out[i].push_back(against_robot(pair.a, pair.certified, j, scene, a, b, tau));
-      if (b_yields) out[j].push_back(against_robot(pair.b, pair.certified, i, scene, b, a, tau));
+      const vo::MovingDisc a{anchors[i].position, anchors[i].velocity, scenario.robots[i].radius};
+      const vo::MovingDisc b{anchors[j].position, anchors[j].velocity, scenario.robots[j].radius};
+      const PairConstraints pair = against_each_other(scene, i, a, j, b, pair_options);
+      if (a_yields) out[i].push_back(pair.of_a);
+      if (b_yields) out[j].push_back(pair.of_b);
     }
   }
   for (std::size_t i = 0; i < n; ++i) sort_by_distance(anchors, i, out[i]);
+}
+
+void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
+               std::size_t j, std::vector<std::vector<Constraint>>& constraints) {
+  Constraint* mine = against(j, scene, constraints[i]);
+  Constraint* theirs = against(i, scene, constraints[j]);
+  if (!mine || !theirs) return;
+  vo::ReciprocalOptions options;
+  options.time_horizon = options.contact_time = contact_time(scenario);
+  const vo::MovingDisc a{anchors[i].position, {}, scenario.robots[i].radius};
+  const vo::MovingDisc b{anchors[j].position, {}, scenario.robots[j].radius};
+  const PairConstraints pair = against_each_other(scene, i, a, j, b, options);
+  *mine = pair.of_a;
+  *theirs = pair.of_b;
 }
 
 double contact_time(const Scenario& scenario) {

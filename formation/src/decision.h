@@ -23,6 +23,12 @@ struct Anchor {
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
                        Scene& scene, std::vector<std::vector<Constraint>>& out);
 
+/// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far
+/// as `contact_time`: v = 0 satisfies them as long as the robots do not overlap, and they are as certain (liveness,
+/// rule R0).
+void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
+               std::size_t j, std::vector<std::vector<Constraint>>& constraints);
+
 /// s: within this a robot in contact is asked to part: never less than a step.
 double contact_time(const Scenario& scenario);
 

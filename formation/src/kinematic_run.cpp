@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Kinematic robots with goals: Section V.A.
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -29,6 +30,7 @@ struct KinematicRobot {
   std::optional<Course> course = {};  ///< with guidance: to its present goal
   std::string no_way = {};            ///< with guidance: why it has no course
   bool waits_for_room = false;        ///< with guidance: it has to be pushed out before its course can be planned
+  double held_up = 0.0;               ///< 0 .. 1: how little of its preference it drove of late
   bool tied = false;                  ///< the last preference was turned to break a tie
   std::string note = {};              ///< for the next row
 };
@@ -40,6 +42,7 @@ class KinematicRun {
       : scenario_(scenario),
         options_(options),
         guide_(guide),
+        liveness_(liveness_of(scenario, options)),
         scene_(scenario, options),
         clock_(scenario, options),
         decider_(scenario, scene_.bodies()),
@@ -127,32 +130,97 @@ class KinematicRun {
     move_obstacles(scenario_, time, scene_, row.moving);
     row.robots.reserve(robots_.size());
     for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time));
+    if (liveness_ != Liveness::off) repair(time, row);
     return row;
+  }
+
+  static bool is_relaxed(const RobotStep& step) {
+    return step.status == lp::Status::relaxed || step.status == lp::Status::infeasible;
+  }
+
+  /// Instead of relaxing: all pairs of a robot whose half-planes contradict each other fall back, until none does. Each
+  /// round a pair falls back for good. What moving obstacles and robots that do not yield ask for may still be relaxed.
+  void repair(double time, Step& row) {
+    std::set<std::size_t> contradicted;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (is_relaxed(row.robots[i])) contradicted.insert(i);
+    std::set<std::pair<std::size_t, std::size_t>> fallen;
+    while (!contradicted.empty()) {
+      std::set<std::size_t> changed;
+      for (const std::size_t i : contradicted) {
+        for (const std::size_t j : robots_met_by(i)) {
+          const bool both_yield = scenario_.robots[i].cooperates && scenario_.robots[j].cooperates;
+          if (!both_yield || !fallen.insert(std::minmax(i, j)).second) continue;
+          fall_back(scenario_, anchors_, scene_, i, j, others_);
+          changed.insert(i);
+          changed.insert(j);
+        }
+      }
+      contradicted.clear();
+      for (const std::size_t i : changed) {
+        look(i);
+        choose(i, row.robots[i].preferred, time, row.robots[i]);
+        if (is_relaxed(row.robots[i])) contradicted.insert(i);
+      }
+    }
+  }
+
+  std::vector<std::size_t> robots_met_by(std::size_t i) const {
+    std::vector<std::size_t> all;
+    for (const Constraint& c : others_[i])
+      if (scene_.bodies()[c.body].kind == vo::BodyKind::robot) all.push_back(c.index);
+    return all;
   }
 
   RobotStep decide_one(std::size_t i, double time) {
     pass_waypoint(i, time);
-    const Robot& spec = scenario_.robots[i];
+    look(i);
+    add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
     KinematicRobot& r = robots_[i];
-    const Viewpoint here{r.position, r.velocity, spec.radius, spec.max_speed};
-    if (options_.method == Method::orca)
-      r.field->constraints(here, all_);
-    else
-      statics_.look(*r.field, here, reach_of_step(scenario_, here));
-    add_moving_constraints(scenario_, here, scene_, others_[i]);
     RobotStep step;
-    step.position = r.position;
-    step.velocity = r.velocity;
-    step.anchor = here.position;
-    step.anchor_velocity = here.velocity;
+    step.position = step.anchor = r.position;
+    step.velocity = step.anchor_velocity = r.velocity;
     step.note = std::exchange(r.note, {});
-    const bool keep_all = clock_.keeps_all(time);
     const Vec2 preferred = steer(i, time, step);
-    if (options_.method == Method::orca)
-      decider_.decide({preferred, here, &all_, &others_[i], keep_all, nullptr}, step);
-    else
-      decider_.decide({preferred, here, &statics_.lines(), &others_[i], keep_all, &statics_}, step);
+    choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), time, step);
     return step;
+  }
+
+  Viewpoint viewpoint(std::size_t i) const {
+    const Robot& spec = scenario_.robots[i];
+    return {robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
+  }
+
+  /// At the static obstacles: `statics_` or, of Method::orca, `all_`.
+  void look(std::size_t i) {
+    const Viewpoint here = viewpoint(i);
+    if (options_.method == Method::orca)
+      robots_[i].field->constraints(here, all_);
+    else
+      statics_.look(*robots_[i].field, here, reach_of_step(scenario_, here));
+  }
+
+  /// REQUIRES: it has looked, and nobody after it.
+  void choose(std::size_t i, Vec2 preferred, double time, RobotStep& step) {
+    const bool keep_all = clock_.keeps_all(time);
+    if (options_.method == Method::orca)
+      decider_.decide({preferred, viewpoint(i), &all_, &others_[i], keep_all, nullptr}, step);
+    else
+      decider_.decide({preferred, viewpoint(i), &statics_.lines(), &others_[i], keep_all, &statics_}, step);
+  }
+
+  /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).
+  /// Less near the goal: else it could go round and round it.
+  Vec2 biased(std::size_t i, Vec2 preferred, Mode mode) {
+    constexpr double kSmoothing = 0.1, kLeast = 0.03, kMost = 1.3;  // of a step; rad; rad
+    constexpr double kNearGoal = 4.0;                               // radii
+    const bool is_free = mode == Mode::direct || mode == Mode::guided;
+    if (!is_free || preferred == Vec2{} || robots_met_by(i).empty()) return preferred;
+    KinematicRobot& r = robots_[i];
+    const double missing = 1.0 - dot(r.velocity, preferred) / squared_norm(preferred);
+    r.held_up += kSmoothing * (std::clamp(missing, 0.0, 1.0) - r.held_up);
+    const double far = std::min(1.0, norm(goal_of(i) - r.position) / (kNearGoal * scenario_.robots[i].radius));
+    return geometry::rotated(preferred, -far * (kLeast + kMost * r.held_up));
   }
 
   Vec2 straight_for(std::size_t i, Vec2 place) const {
@@ -275,6 +343,7 @@ class KinematicRun {
   const Scenario& scenario_;
   const SimulationOptions& options_;
   Guide* guide_;
+  Liveness liveness_;
   Scene scene_;
   RunClock clock_;
   Decider decider_;

@@ -24,6 +24,7 @@ constexpr Names<Integrator, 5> kIntegrators{{{Integrator::exact, "exact"},
                                              {Integrator::dopri5, "dopri5"},
                                              {Integrator::rosenbrock4, "rosenbrock4"}}};
 constexpr Names<Guidance, 2> kGuidances{{{Guidance::none, "none"}, {Guidance::route, "route"}}};
+constexpr Names<Liveness, 2> kLivenesses{{{Liveness::off, "off"}, {Liveness::bias, "bias"}}};
 constexpr Names<Mode, 7> kModes{{{Mode::direct, "direct"},
                                  {Mode::guided, "guided"},
                                  {Mode::staying, "staying"},
@@ -67,6 +68,10 @@ const char* name(Controller c) {
 const char* name(Integrator i) {
   return name_in(kIntegrators, i);
 }
+const char* name(Liveness l) {
+  return name_in(kLivenesses, l);
+}
+
 const char* name(Guidance g) {
   return name_in(kGuidances, g);
 }
@@ -82,6 +87,10 @@ std::vector<std::string> controller_names() {
 std::vector<std::string> integrator_names() {
   return all_of(kIntegrators);
 }
+std::vector<std::string> liveness_names() {
+  return all_of(kLivenesses);
+}
+
 std::vector<std::string> guidance_names() {
   return all_of(kGuidances);
 }
@@ -94,6 +103,10 @@ bool parse(const std::string& text, Controller& out) {
 bool parse(const std::string& text, Integrator& out) {
   return parse_in(kIntegrators, text, out);
 }
+bool parse(const std::string& text, Liveness& out) {
+  return parse_in(kLivenesses, text, out);
+}
+
 bool parse(const std::string& text, Guidance& out) {
   return parse_in(kGuidances, text, out);
 }

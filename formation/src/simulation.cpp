@@ -89,6 +89,10 @@ Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options)
   return options.guidance.value_or(scenario.guidance);
 }
 
+Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options) {
+  return scenario.formation ? Liveness::off : options.liveness.value_or(scenario.liveness);
+}
+
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {
   Reachability reach(scenario);
   return warnings_with(scenario, options, reach);

@@ -54,6 +54,7 @@ RecordingFile resting(const formation::Scenario& s, std::size_t steps) {
 TEST(AuditMotion, ACartThatRunsASlowRobotOverIsACollision) {
   formation::Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.robots = {robot("slow", {0, 0}, {40, 0})};
   s.robots[0].max_speed = 0.5;
   s.moving_obstacles = {square("cart", {-9, 0}, 1.0, {{{0, 0}, {60, 0}}, 4.0})};
@@ -71,6 +72,7 @@ TEST(AuditMotion, ACartThatRunsASlowRobotOverIsACollision) {
 TEST(AuditMotion, AnObstacleThatIsBackAtEveryRowIsSeenBetween) {
   formation::Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.time_step = 0.5;
   s.robots = {robot("R1", {5.0, 0.0}, {5.0, 0.0})};
   Leader round{{{0, 0}}, 44.0};
@@ -86,6 +88,7 @@ TEST(AuditMotion, ToTouchAtACornerIsNoCollisionAndAnUlpNearerIs) {
   // The square's front is at 3.5 m where it turns, in the middle of a step.
   formation::Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.time_step = 0.4;
   s.robots = {robot("R1", {4.0, 0.0}, {4.0, 0.0})};
   s.moving_obstacles = {square("shuttle", {0, 0}, 0.5, {{{0, 0}, {3, 0}, {0, 0}}, 1.0})};
@@ -99,6 +102,7 @@ TEST(AuditMotion, CornersAfterLegsOfIrrationalLengthAreEnclosed) {
   for (const double gap : {1e-12, -1e-12}) {
     formation::Scenario s;
     s.guidance = formation::Guidance::none;
+    s.liveness = formation::Liveness::off;
     s.time_step = 0.7;
     const double away = 3.0 + (0.5 + gap) / std::sqrt(2.0);
     s.robots = {robot("R1", {away, away}, {away, away})};
@@ -114,6 +118,7 @@ TEST(AuditMotion, ASpeedThatChangesWithinAStepIsFollowed) {
   // It makes up one metre on the robot and loses it again, all within one step.
   formation::Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.time_step = 4.0;
   s.robots = {robot("R1", {2.0, 0.0}, {6.0, 0.0})};
   s.moving_obstacles = {
@@ -136,6 +141,7 @@ TEST(AuditMotion, ASpeedThatChangesWithinAStepIsFollowed) {
 RecordingFile curve(double k, double dt, Vec2 from, Vec2 v0, Vec2 w) {
   formation::Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.time_step = dt;
   s.robots = {robot("R1", from, {})};
   s.robots[0].goals.clear();
@@ -232,6 +238,7 @@ TEST(AuditMotion, ARowThatDoesNotFollowIsInconsistent) {
 
   formation::Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.robots = {robot("R1", {3, 4}, {9, 9})};
   s.time_limit = 1.0;
   RecordingFile straight;
@@ -448,6 +455,7 @@ TEST(AuditMotion, EndsWhenItsCallerIsInterrupted) {
   });
   formation::Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.robots = {robot("R1", {0, 0}, {9, 0})};
   s.moving_obstacles = {square("box", {5, 3}, 0.5, {{{0, 0}, {9, 0}}, 1.0})};
   EXPECT_THROW(audit(resting(s, 50)), Stopped);

@@ -260,6 +260,7 @@ Scenario closed_room() {
 TEST(BadInput, AGoalInAClosedRoomEndsWithTheFullCircleStated) {
   SimulationOptions options;
   options.guidance = Guidance::none;
+  options.liveness = Liveness::off;
   const test::FinishedRun r = test::run(closed_room(), options);
   EXPECT_FALSE(r.metrics.all_arrived);
   EXPECT_THAT(r.recording.outcome, HasSubstr("the robot did not arrive"));

@@ -149,6 +149,7 @@ TEST(Metrics, ASlideFromOneEdgeToTheNextIsASwitch) {
   SimulationOptions orca;
   orca.method = Method::orca;
   orca.guidance = Guidance::none;  // into the roof, not round it
+  orca.liveness = Liveness::off;
   s.time_limit = 20.0;
   const Recording rec = simulate(s, orca);
   std::map<std::size_t, std::string> edges;

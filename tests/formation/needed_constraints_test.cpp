@@ -29,6 +29,7 @@ struct Sight {
 
   Sight(const std::string& kind, Method method) {
     scenario.guidance = Guidance::none;
+    scenario.liveness = Liveness::off;
     for (std::uint64_t item = 0; item < 3; ++item)
       for (SceneObstacle& o : datasets::generated_item(kind, item, 11)) scenario.obstacles.push_back(std::move(o));
     for (const SceneObstacle& o : scenario.obstacles)

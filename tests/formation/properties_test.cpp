@@ -23,6 +23,7 @@ const char* const kStaticScenes[] = {"A1",  "A3",  "A4",  "A5",  "A6",  "A8", "A
 SimulationOptions everything_of(Method method) {
   SimulationOptions options;
   options.guidance = Guidance::none;
+  options.liveness = Liveness::off;
   options.method = method;
   options.record_all = true;
   return options;

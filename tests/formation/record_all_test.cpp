@@ -116,6 +116,7 @@ TEST(Multipliers, BalanceTheChoiceAgainstThePreferredVelocity) {
 TEST(Outlooks, EveryGoalsEnclosuresAreKept) {
   Scenario s;
   s.guidance = Guidance::none;
+  s.liveness = Liveness::off;
   Robot r;
   r.id = "R1";
   r.goals = {{10, 0}, {20, 0}};

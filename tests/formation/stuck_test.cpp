@@ -39,6 +39,7 @@ TEST(Stuck, TheThinEllipseNamesItsCurvature) {
 TEST(Stuck, ARobotThatCirclesAnUnreachableGoalIsNotAtRest) {
   Scenario s;
   s.guidance = Guidance::none;
+  s.liveness = Liveness::off;
   s.robots.emplace_back();
   s.robots.front().id = "R1";
   s.robots.front().position = {0, 0};
@@ -86,6 +87,7 @@ struct End {
 Scenario scene_of(const std::vector<End>& ends) {
   Scenario s;
   s.guidance = Guidance::none;
+  s.liveness = Liveness::off;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     Robot r;
     r.id = "R" + std::to_string(i + 1);
@@ -288,6 +290,7 @@ TEST(Stuck, ARestThatBeganLateIsCountedFromThere) {
 Scenario one_robot(Vec2 goal) {
   Scenario s;
   s.guidance = Guidance::none;
+  s.liveness = Liveness::off;
   Robot r;
   r.id = "R1";
   r.goals = {goal};

@@ -121,6 +121,7 @@ inline bool is_clear_cut(const std::vector<formation::TrapFinding>& findings) {
 inline std::optional<formation::Scenario> random_pair(SeededRandom& random) {
   formation::Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   formation::Robot robot;
   robot.id = "R1";
   robot.goals = {random.in_box(8.0)};

@@ -156,6 +156,7 @@ TEST(Trap, FindingsOfTheScenesSayWhatTheRunsShow) {
 Scenario one_robot(geometry::Obstacle obstacle) {
   Scenario s;
   s.guidance = Guidance::none;
+  s.liveness = Liveness::off;
   Robot r;
   r.id = "R1";
   r.goals = {{8.0, 0.0}};
@@ -372,6 +373,7 @@ TEST(Trap, SlideTimesAreThoseOfTheRun) {
   // A disc-like enclosure met off its axis: the robot slides until its way is free.
   Scenario s;
   s.guidance = Guidance::none;
+  s.liveness = Liveness::off;
   Robot r;
   r.id = "R1";
   r.position = {-8.0, 0.5};
@@ -402,6 +404,7 @@ Scenario overlapping_pair(bool is_mirrored) {
   const auto at = [&](double x, double y) { return Vec2{is_mirrored ? -x : x, y}; };
   Scenario s;
   s.guidance = Guidance::none;
+  s.liveness = Liveness::off;
   Robot r;
   r.id = "R1";
   r.position = at(-0x1.269abe495912ap+1, 0x1.26c4bc54d333p+2);

@@ -52,8 +52,8 @@ constexpr Method kMethods[] = {Method::orca, Method::ivo_edge, Method::ivo_clust
 constexpr Controller kControllers[] = {Controller::paper_literal, Controller::paper_signs, Controller::corrected,
                                        Controller::standard};
 
-/// The runs of a scene: every method, of robots with goals along routes too ("ivo+route"), and of a formation every
-/// controller with the default method.
+/// The runs of a scene: every method, of robots with goals along routes ("ivo+route") and with liveness too, and of a
+/// formation every controller with the default method.
 std::map<std::string, SimulationOptions> runs_of(const Scenario& s) {
   std::map<std::string, SimulationOptions> runs;
   const auto add = [&](const SimulationOptions& o) {
@@ -62,10 +62,13 @@ std::map<std::string, SimulationOptions> runs_of(const Scenario& s) {
   for (const Method method : kMethods) {
     SimulationOptions options = test::with_method(method);
     options.guidance = Guidance::none;
+    options.liveness = Liveness::off;
     add(options);
     if (s.formation || method == Method::ivo_edge) continue;
     options.guidance = Guidance::route;
     runs[std::string(name(method)) + "+route " + name(options.controller)] = options;
+    options.liveness = Liveness::bias;
+    runs[std::string(name(method)) + "+route+bias " + name(options.controller)] = options;
   }
   if (!s.formation || s.robots.size() > 10) return runs;
   for (const Controller controller : kControllers) add(test::with_controller(controller));

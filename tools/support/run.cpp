@@ -33,8 +33,11 @@ datasets::RunInfo run_info(const Scenario& scenario, const SimulationOptions& op
   if (scenario.formation) {
     info.controller = name(options.controller);
     info.integrator = name(options.integrator);
-  } else if (const formation::Guidance g = guidance_of(scenario, options); g != formation::Guidance::none) {
-    info.guidance = name(g);
+  } else {
+    const formation::Guidance guidance = guidance_of(scenario, options);
+    const formation::Liveness liveness = liveness_of(scenario, options);
+    if (guidance != formation::Guidance::none) info.guidance = name(guidance);
+    if (liveness != formation::Liveness::off) info.liveness = name(liveness);
   }
   return info;
 }
@@ -85,12 +88,12 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
 
 RunName name_of(const Scenario& scenario, const SimulationOptions& options) {
   const datasets::RunInfo info = run_info(scenario, options, {});
-  return {info.scenario, info.method, info.controller, info.guidance};
+  return {info.scenario, info.method, info.controller, info.guidance, info.liveness};
 }
 
 std::string in_words(const RunName& run) {
   return run.scenario + ", method " + run.method + (run.controller ? ", controller " + *run.controller : "") +
-         (run.guidance ? ", guidance " + *run.guidance : "");
+         (run.guidance ? ", guidance " + *run.guidance : "") + (run.liveness ? ", liveness " + *run.liveness : "");
 }
 
 std::optional<RunName> run_in(const fs::path& folder) {
@@ -102,7 +105,8 @@ std::optional<RunName> run_in(const fs::path& folder) {
     if (found == metrics.end() || !found->is_string()) return std::nullopt;
     return found->get<std::string>();
   };
-  return RunName{text("scenario").value_or(""), text("method").value_or(""), text("controller"), text("guidance")};
+  return RunName{text("scenario").value_or(""), text("method").value_or(""), text("controller"), text("guidance"),
+                 text("liveness")};
 }
 
 void check_same_run(const fs::path& folder, const RunName& run) {

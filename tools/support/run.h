@@ -39,10 +39,10 @@ FinishedRun run(const formation::Scenario& scenario, formation::SimulationOption
 /// What tells one run from another in a folder.
 struct RunName {
   std::string scenario, method;
-  std::optional<std::string> controller, guidance;
+  std::optional<std::string> controller, guidance, liveness;
   bool operator==(const RunName& other) const {
     return scenario == other.scenario && method == other.method && controller == other.controller &&
-           guidance == other.guidance;
+           guidance == other.guidance && liveness == other.liveness;
   }
 };
 RunName name_of(const formation::Scenario& scenario, const formation::SimulationOptions& options);

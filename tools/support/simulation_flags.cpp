@@ -83,9 +83,13 @@ std::optional<formation::Remedies> remedies_of(const SimulationFlags& flags, for
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
   CLI::Option* method = app.add_option("--method,-m", flags.method, help("Avoidance method", formation::method_names()))
                             ->capture_default_str();
-  flags.of_goals = {app.add_option(
-      "--guidance,-g", flags.guidance,
-      help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names()))};
+  flags.of_goals = {
+      app.add_option(
+          "--guidance,-g", flags.guidance,
+          help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names())),
+      app.add_option("--liveness", flags.liveness,
+                     help("What keeps robots with goals from waiting for ever, instead of what the scenario says",
+                          formation::liveness_names()))};
   flags.of_formations = {
       app.add_option("--controller,-c", flags.controller, help("Formation controller", formation::controller_names()))
           ->capture_default_str(),
@@ -99,7 +103,8 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
                                  "acceleration_bound=8 (m/s^2)",
                                  fmt::join(switch_names(), ", ")))};
   flags.of_runs = flags.of_formations;
-  flags.of_runs.insert(flags.of_runs.end(), {method, flags.of_goals.front(), declare_seed(app, flags.seed)});
+  flags.of_runs.insert(flags.of_runs.end(), flags.of_goals.begin(), flags.of_goals.end());
+  flags.of_runs.insert(flags.of_runs.end(), {method, declare_seed(app, flags.seed)});
 }
 
 CLI::Option* declare_seed(CLI::App& app, std::uint64_t& seed, const std::string& help) {
@@ -145,6 +150,8 @@ formation::SimulationOptions simulation_options(const SimulationFlags& flags) {
   options.method = parse_choice<formation::Method>("--method", flags.method, formation::method_names());
   if (!flags.guidance.empty())
     options.guidance = parse_choice<formation::Guidance>("--guidance", flags.guidance, formation::guidance_names());
+  if (!flags.liveness.empty())
+    options.liveness = parse_choice<formation::Liveness>("--liveness", flags.liveness, formation::liveness_names());
   if (options.guidance == formation::Guidance::route && options.method == formation::Method::ivo_edge)
     throw UsageError("--guidance", "route with ivo-edge, whose ellipses would close what a route passes",
                      "another method: orca, ivo-cluster or ivo");

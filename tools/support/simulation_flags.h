@@ -16,13 +16,14 @@ namespace exactvo::tools {
 struct SimulationFlags {
   std::string method = "ivo";
   std::string guidance;  ///< empty: as the scenario says
+  std::string liveness;  ///< the same
   std::string controller = "default";
   std::string integrator = "exact";
   std::string remedies;               ///< a set by its name, instead of the controller's
   std::vector<std::string> switches;  ///< "smoothing=on"
   std::uint64_t seed = 0;
   std::vector<const CLI::Option*> of_runs;        ///< all
-  std::vector<const CLI::Option*> of_goals;       ///< --guidance
+  std::vector<const CLI::Option*> of_goals;       ///< --guidance, --liveness
   std::vector<const CLI::Option*> of_formations;  ///< --controller, --integrator, --remedies, --remedy
 };
 

@@ -70,7 +70,9 @@ std::string method_words(const Scenario& scenario, const formation::SimulationOp
   const std::string method = std::string("method ") + name(options.method);
   if (scenario.formation) return method + ", controller " + name(options.controller);
   const formation::Guidance guidance = guidance_of(scenario, options);
-  return method + (guidance == formation::Guidance::none ? "" : std::string(", guidance ") + name(guidance));
+  const formation::Liveness liveness = liveness_of(scenario, options);
+  return method + (guidance == formation::Guidance::none ? "" : std::string(", guidance ") + name(guidance)) +
+         (liveness == formation::Liveness::off ? "" : std::string(", liveness ") + name(liveness));
 }
 
 struct Explained {
@@ -122,7 +124,8 @@ Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
   const formation::Step& step = last_decision(file.recording);
   const std::string method = "method " + file.info.method +
                              (file.info.controller ? ", controller " + *file.info.controller : "") +
-                             (file.info.guidance ? ", guidance " + *file.info.guidance : "");
+                             (file.info.guidance ? ", guidance " + *file.info.guidance : "") +
+                             (file.info.liveness ? ", liveness " + *file.info.liveness : "");
   Explained explained{{file.scenario, method, robot, step.time, step.robots.at(robot)},
                       remarks_on(file.scenario, file.recording, robot)};
   if (!file.recording.all_half_planes)

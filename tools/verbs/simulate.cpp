@@ -84,6 +84,7 @@ std::string summary(const FinishedRun& run) {
   const formation::Metrics& m = run.metrics;
   std::string text = fmt::format("{}, method {}", shown(run.file.info.scenario), run.file.info.method);
   if (run.file.info.guidance) text += fmt::format(", guidance {}", *run.file.info.guidance);
+  if (run.file.info.liveness) text += fmt::format(", liveness {}", *run.file.info.liveness);
   if (run.file.info.controller) text += fmt::format(", controller {}", *run.file.info.controller);
   text += ": " + shown(m.outcome) + "\n" + collision_lines(m.collisions);
   for (const auto& robot : m.robots) text += robot_line(robot, !run.file.scenario.formation);
@@ -187,7 +188,7 @@ Action declare(CLI::App& app) {
   app.add_flag("--no-figures", flags->no_figures, "Write no figures");
   app.add_flag("--fail-on-collision", flags->fail_on_collision, "Exit status 1 if a robot overlaps anything");
   app.add_flag("--force", flags->force,
-               "Let --out replace an earlier run of another scenario, method, guidance or controller");
+               "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller");
   return [flags] { return simulate(*flags); };
 }
 

@@ -91,6 +91,7 @@ void add_obstacles(Draws& draws, const std::vector<Circle>& circles, MakeObstacl
 Scenario single_robot_field(Draws& draws, MakeObstacle make) {
   Scenario s;
   s.guidance = formation::Guidance::none;  // as in Section V.A
+  s.liveness = formation::Liveness::off;
   formation::Robot robot;
   robot.id = "R1";
   robot.goals = {{25.0, 13.0}};

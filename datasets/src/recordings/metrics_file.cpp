@@ -67,6 +67,7 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.begin_object();
   json.member("scenario", info.scenario).member("method", info.method).member("controller", info.controller);
   if (info.guidance) json.member("guidance", *info.guidance);
+  if (info.liveness) json.member("liveness", *info.liveness);
   json.member("all_arrived", m.all_arrived).member("last_arrival_time", m.last_arrival_time);
   json.member("min_obstacle_clearance", m.min_obstacle_clearance).member("min_robot_clearance", m.min_robot_clearance);
   append_collisions(json, m.collisions);

@@ -47,6 +47,7 @@ void read_header(const JsonCursor& at, const std::string& name, RecordingFile& f
   file.info.controller = optional_text(at.at("controller"));
   file.info.integrator = optional_text(at.at("integrator"));
   if (at.has("guidance")) file.info.guidance = at.at("guidance").text();
+  if (at.has("liveness")) file.info.liveness = at.at("liveness").text();
   file.info.provenance = parse_provenance(at.at("provenance").json().dump(), name);
   formation::Recording& recording = file.recording;
   recording.time_step = at.at("time_step").number();

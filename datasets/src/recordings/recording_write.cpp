@@ -30,6 +30,7 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
   json.member("method", file.info.method).member("controller", file.info.controller);
   json.member("integrator", file.info.integrator);
   if (file.info.guidance) json.member("guidance", *file.info.guidance);
+  if (file.info.liveness) json.member("liveness", *file.info.liveness);
   json.member("time_step", recording.time_step).member("motion", word_for(recording.motion));
   json.member("tracking_gain", recording.tracking_gain).member("relative_frame", recording.relative_frame);
   if (recording.remedies) append_remedies(json, *recording.remedies);

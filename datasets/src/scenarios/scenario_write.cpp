@@ -106,7 +106,10 @@ void append_formation(JsonWriter& json, const formation::FormationSpec& spec) {
 }
 
 void append_figures(JsonWriter& json, const Scenario& scenario) {
-  if (!scenario.formation) json.member("guidance", formation::name(scenario.guidance));
+  if (!scenario.formation) {
+    json.member("guidance", formation::name(scenario.guidance));
+    json.member("liveness", formation::name(scenario.liveness));
+  }
   json.member("speed_bound", scenario.speed_bound == formation::SpeedBoundKind::box ? "box" : "disc");
   const formation::Horizons& horizons = scenario.horizons;
   json.key("horizons").begin_inline_object();

@@ -61,6 +61,7 @@ Lines recorded(const Scenario& scenario, const SimulationOptions& options) {
 Scenario kinematic(const std::string& name) {
   Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.name = name;
   s.time_step = 0.1;
   s.time_limit = 0.8;
@@ -114,6 +115,7 @@ Scenario crowd() {
 Scenario three(const std::string& name) {
   Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.name = name;
   s.time_step = 0.02;
   s.time_limit = 0.16;

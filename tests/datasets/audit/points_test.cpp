@@ -25,6 +25,7 @@ using geometry::Vec2;
 Scenario scene() {
   Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   formation::Robot a, b;
   a.id = "a";
   a.position = {0.0, 0.1};
@@ -54,6 +55,7 @@ RecordingFile recorded(const Scenario& s, formation::SimulationOptions options =
 Scenario formation_scene() {
   Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.time_step = 0.02;
   s.time_limit = 1.0;
   for (int k = 0; k < 2; ++k) {
@@ -304,6 +306,7 @@ TEST(AuditPoints, WhatALeaderOrAMovingObstacleDidIsHeldToItsPath) {
 TEST(AuditPoints, ChoicesThatWereRelaxedAreProvenToViolateLeast) {
   Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.time_limit = 1.0;
   for (int k = 0; k < 6; ++k) {
     formation::Robot r;
@@ -343,6 +346,7 @@ geometry::Ring star(SeededRandom& random, Vec2 middle, double size) {
 Scenario clutter(SeededRandom& random) {
   Scenario s;
   s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
   s.time_step = random.integer(0, 1) ? 0.05 : 0.1;
   s.time_limit = 40 * s.time_step;
   s.speed_bound = random.integer(0, 1) ? formation::SpeedBoundKind::disc : formation::SpeedBoundKind::box;

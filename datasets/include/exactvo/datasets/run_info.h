@@ -18,6 +18,7 @@ struct RunInfo {
   std::optional<std::string> integrator;  ///< none without a formation
   Provenance provenance;
   std::optional<std::string> guidance = std::nullopt;  ///< "route"; none where robots go without
+  std::optional<std::string> liveness = std::nullopt;  ///< "bias"; none where nothing is done against waiting
 };
 
 }  // namespace exactvo::datasets

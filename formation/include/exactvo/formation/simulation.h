@@ -41,19 +41,23 @@ const char* name(Method m);
 const char* name(Controller c);  ///< "paper-literal", "paper-signs", "corrected", "default"
 const char* name(Integrator i);
 const char* name(Guidance g);
+const char* name(Liveness l);
 const char* name(Mode m);
 std::vector<std::string> method_names();
 std::vector<std::string> controller_names();
 std::vector<std::string> integrator_names();
 std::vector<std::string> guidance_names();
+std::vector<std::string> liveness_names();
 bool parse(const std::string& text, Method& out);
 bool parse(const std::string& text, Controller& out);
 bool parse(const std::string& text, Integrator& out);
 bool parse(const std::string& text, Guidance& out);
+bool parse(const std::string& text, Liveness& out);
 
 struct SimulationOptions {
   Method method = Method::ivo;
   std::optional<Guidance> guidance;              ///< instead of the scenario's
+  std::optional<Liveness> liveness;              ///< instead of the scenario's
   Controller controller = Controller::standard;  ///< used by formations only
   Integrator integrator = Integrator::exact;     ///< used by formations only
   std::optional<Remedies> remedies;              ///< formations: these instead of the controller's
@@ -69,6 +73,9 @@ struct SimulationOptions {
 /// How robots find their way in a run: none in a formation, whose robots have no goals, and with Method::ivo_edge,
 /// whose ellipses would close what a route passes.
 Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options);
+
+/// What is done against waiting in a run: nothing in a formation.
+Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options);
 
 /// What can be said before a run, a line each: a step beyond the integrator's limit, goals, slots or a leader's end
 /// that cannot be reached, or not within the time limit. The run's recording has the same. REQUIRES: a valid scenario.
