@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "crowd/crowd_scenes.h"
+#include "crowd_scenes.h"
 #include "options/program_options.h"
 
 namespace exactvo::formation {

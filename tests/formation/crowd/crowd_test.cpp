@@ -11,7 +11,7 @@
 
 #include "crowd/body.h"
 #include "crowd/crowd_audit.h"
-#include "crowd/crowd_scenes.h"
+#include "crowd_scenes.h"
 #include "exactvo/vo/lp/batch.h"
 
 namespace exactvo::formation {

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How fast is a step of a crowd, where does its time go, what does certification cost, and what does the textbook need
+// for the same step? Each round sets the textbook's crowd to the state of ours, compares what both choose, and times
+// both one after the other by the CPU time of the thread, so that a busy machine slows both alike. Preferences are set
+// before, untimed. One thread.
+//
+//   bench_crowd --benchmark_filter='crowd/10000/'
+//
+// Counters: `ns` a robot step; `textbook` how many times as long the textbook takes; `of_plain` time over that of the
+// same without certification (medians of the rounds); `sort` ... `finish` shares of the time; `relaxed` % of robots;
+// `bytes` a robot, and the textbook's; `apart_99` m/s, 99 % of velocities are nearer to the textbook's.
+#include <benchmark/benchmark.h>
+
+#include <ctime>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "crowd_scenes.h"
+#include "textbook_crowd.h"
+
+namespace exactvo::bench {
+namespace {
+
+using formation::Crowd;
+using formation::CrowdKind;
+using formation::CrowdPrecision;
+using formation::CrowdScene;
+using geometry::Vec2;
+
+/// Rounds, and steps before the first.
+constexpr int kRounds = 11, kWarmUp = 30;
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+template <class Do>
+double seconds_of(const Do& what) {
+  const double start = thread_seconds();
+  what();
+  return thread_seconds() - start;
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// A crowd that is told its preferences before each step.
+struct Told {
+  explicit Told(const CrowdScene& of) : scene(of), crowd(formation::crowd_of(of)) { crowd.set_steering(nullptr); }
+
+  void tell() {
+    crowd.positions(positions);
+    preferred.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) preferred[i] = scene.preferred(i, positions[i]);
+    crowd.set_preferred(preferred);
+  }
+
+  const CrowdScene& scene;
+  Crowd crowd;
+  std::vector<Vec2> positions, preferred, velocities;
+};
+
+TextbookCrowd textbook_of(const CrowdScene& scene) {
+  TextbookCrowd crowd(static_cast<float>(scene.options.time_step));
+  crowd.reserve(scene.robots.size());
+  for (const auto& robot : scene.robots) {
+    const CrowdKind& kind = scene.kinds[robot.kind];
+    TextbookAgent agent;
+    agent.radius = static_cast<float>(kind.radius);
+    agent.max_speed = static_cast<float>(kind.max_speed);
+    agent.time_horizon = static_cast<float>(kind.time_horizon);
+    agent.neighbour_distance = static_cast<float>(kind.neighbour_distance);
+    agent.neighbours = kind.neighbours;
+    crowd.add(agent);
+  }
+  return crowd;
+}
+
+void copy_state(Told& from, TextbookCrowd& to) {
+  from.crowd.velocities(from.velocities);
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    to[i].x = static_cast<float>(from.positions[i].x);
+    to[i].y = static_cast<float>(from.positions[i].y);
+    to[i].vx = static_cast<float>(from.velocities[i].x);
+    to[i].vy = static_cast<float>(from.velocities[i].y);
+    to[i].preferred_x = static_cast<float>(from.preferred[i].x);
+    to[i].preferred_y = static_cast<float>(from.preferred[i].y);
+  }
+  to.read();
+}
+
+/// m/s, by how much the velocities of both differ, ascending.
+std::vector<double> differences(Told& ours, TextbookCrowd& theirs) {
+  ours.crowd.velocities(ours.velocities);
+  theirs.write();
+  std::vector<double> apart;
+  for (std::size_t i = 0; i < theirs.size(); ++i)
+    apart.push_back(geometry::norm(ours.velocities[i] -
+                                   Vec2{static_cast<double>(theirs[i].vx), static_cast<double>(theirs[i].vy)}));
+  std::sort(apart.begin(), apart.end());
+  return apart;
+}
+
+void step(benchmark::State& state, const std::string& kind, std::size_t count, CrowdPrecision precision) {
+  CrowdScene scene = formation::crowd_scene(kind, count);
+  scene.options.precision = precision;
+  CrowdScene unproven = scene;
+  unproven.options.certified = false;
+  Told ours(scene), plain(unproven);
+  TextbookCrowd theirs = textbook_of(scene);
+  for (int k = 0; k < kWarmUp; ++k)
+    for (Told* crowd : {&ours, &plain}) crowd->tell(), crowd->crowd.step();
+  std::vector<double> ns, ratios, of_plain, apart;
+  formation::StepReport report;
+  for (auto _ : state) {
+    ours.tell();
+    plain.tell();
+    copy_state(ours, theirs);
+    const double textbook = seconds_of([&] { theirs.step(); });
+    const double certified = seconds_of([&] { report = ours.crowd.step(); });
+    const double rounded = seconds_of([&] { plain.crowd.step(); });
+    state.SetIterationTime(certified);
+    ns.push_back(1e9 * certified / static_cast<double>(count));
+    ratios.push_back(textbook / certified);
+    of_plain.push_back(certified / rounded);
+    const auto round = differences(ours, theirs);
+    apart.insert(apart.end(), round.begin(), round.end());
+  }
+  std::sort(apart.begin(), apart.end());
+  const double middling = apart[apart.size() / 2];
+  if (middling > 1e-3) return state.SkipWithError("the textbook chooses other velocities");
+  const double robots = static_cast<double>(count);
+  state.counters["ns"] = median(ns);
+  state.counters["textbook"] = median(ratios);
+  state.counters["of_plain"] = median(of_plain);
+  state.counters["apart_50"] = middling;
+  state.counters["apart_99"] = apart[apart.size() * 99 / 100];
+  state.counters["relaxed"] = 100.0 * static_cast<double>(report.relaxed) / robots;
+  state.counters["neighbours"] = static_cast<double>(report.neighbours) / robots;
+  state.counters["bytes"] = static_cast<double>(ours.crowd.bytes()) / robots;
+  state.counters["bytes_textbook"] = static_cast<double>(theirs.bytes()) / robots;
+
+  // By the clock on the wall: of the step that took least, in which nothing else ran.
+  scene.options.time_phases = true;
+  Told timed(scene);
+  formation::CrowdPhases before{}, best{};
+  double least = 1e300;
+  for (int k = 0; k < 3 * kRounds; ++k, before = timed.crowd.phases()) {
+    timed.tell();
+    timed.crowd.step();
+    const formation::CrowdPhases& p = timed.crowd.phases();
+    const formation::CrowdPhases now{p.sort - before.sort, p.search - before.search, p.lines - before.lines,
+                                     p.solve - before.solve, p.finish - before.finish};
+    const double whole = now.sort + now.search + now.lines + now.solve + now.finish;
+    if (k == 0 || whole >= least) continue;
+    least = whole;
+    best = now;
+  }
+  state.counters["sort"] = best.sort / least;
+  state.counters["search"] = best.search / least;
+  state.counters["lines"] = best.lines / least;
+  state.counters["solve"] = best.solve / least;
+  state.counters["finish"] = best.finish / least;
+}
+
+void register_all() {
+  for (const char* kind : {"crowd", "ring", "streams", "groups", "mixture", "jam"})
+    for (const std::size_t count : {250, 1000, 10000, 50000, 200000, 1000000})
+      for (const CrowdPrecision precision : {CrowdPrecision::float_lines, CrowdPrecision::double_lines}) {
+        if (kind == std::string("ring") && count > 200000) continue;  // wider than a lattice of fine steps
+        const std::string label = std::string(kind) + "/" + std::to_string(count) + "/" + name(precision);
+        benchmark::RegisterBenchmark(label.c_str(), [=](benchmark::State& s) { step(s, kind, count, precision); })
+            ->Iterations(kRounds)
+            ->UseManualTime()
+            ->Unit(benchmark::kMillisecond);
+      }
+}
+
+}  // namespace
+}  // namespace exactvo::bench
+
+int main(int argc, char** argv) {
+  exactvo::bench::register_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  std::fprintf(stderr, "SIMD target %s\n", exactvo::formation::crowd_target());
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

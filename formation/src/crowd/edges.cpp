@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crowd/edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace exactvo::formation::crowd {
+namespace {
+
+using geometry::dot;
+
+constexpr double kUnit = 0x1p-53;
+
+/// In units of u of the magnitudes: a difference, two products, two sums, |n| and a maximum round at most 9 times.
+constexpr double kSupportUnits = 16.0;
+
+/// The radius is grown by so many units of the normal's precision before a normal is looked for, so that it stays valid
+/// when it is rounded: a component's rounding turns it by u at most.
+constexpr double kRoomUnits = 8.0;
+
+/// How far beyond a cell its edges are looked for: rounding moves a point by far less into the next one.
+constexpr double kHalfDiagonal = 0.7072;
+
+double squared_distance(const Segment& s) {
+  const Vec2 along = s.b - s.a;
+  const double length = geometry::squared_norm(along);
+  const double t = length > 0.0 ? std::clamp(-dot(s.a, along) / length, 0.0, 1.0) : 0.0;
+  return geometry::squared_norm(s.a + t * along);
+}
+
+Vec2 nearest_point(const Segment& s) {
+  const Vec2 along = s.b - s.a;
+  const double length = geometry::squared_norm(along);
+  return s.a + (length > 0.0 ? std::clamp(-dot(s.a, along) / length, 0.0, 1.0) : 0.0) * along;
+}
+
+double magnitude(const Segment& s) {
+  return std::fabs(s.a.x) + std::fabs(s.a.y) + std::fabs(s.b.x) + std::fabs(s.b.y);
+}
+
+/// Out of line, since GCC 12 drops such conversions where it sees two side by side.
+[[gnu::noinline]] double rounded_to_float(double x) {
+  return static_cast<double>(static_cast<float>(x));
+}
+
+/// The edge from the robot, and what is asked.
+class Cone {
+ public:
+  Cone(const Segment& seen, const EdgeQuery& query)
+      : seen_(seen), query_(query), size_(magnitude(seen) + query.radius) {
+    const double u = query.float_normals ? 0x1p-24 : kUnit;
+    grown_ = query.radius + kRoomUnits * u * size_;
+  }
+
+  /// At least h(n), exactly that of the doubles given.
+  double support_above(Vec2 n) const {
+    const double length = std::sqrt(geometry::squared_norm(n));
+    return std::max(dot(n, seen_.a), dot(n, seen_.b)) + query_.radius * length + kSupportUnits * kUnit * size_;
+  }
+
+  EdgeLine best_line() {
+    try_away_from(query_.horizon * query_.velocity - seen_.a);
+    try_away_from(query_.horizon * query_.velocity - seen_.b);
+    const Vec2 across = geometry::normalized(geometry::perp(seen_.b - seen_.a));
+    try_normal(across);
+    try_normal(-across);
+    try_legs(seen_.a);
+    try_legs(seen_.b);
+    EdgeLine line = rounded(found_);
+    if (least_ < std::numeric_limits<double>::infinity() && set_offset(line)) return line;
+    return facing();
+  }
+
+ private:
+  /// Cut-off at the end of the edge: along the way from it.
+  void try_away_from(Vec2 way) {
+    if (way != Vec2{}) try_normal(geometry::normalized(way));
+  }
+
+  /// The two tangents from the robot to the disc round an end.
+  void try_legs(Vec2 centre) {
+    const double squared = geometry::squared_norm(centre), square = squared - grown_ * grown_;
+    if (!(square > 0.0)) return;
+    const double leg = std::sqrt(square);
+    for (const double side : {leg, -leg}) {
+      const Vec2 n = {-(grown_ * centre.x + side * centre.y) / squared, (side * centre.x - grown_ * centre.y) / squared};
+      try_normal(n, 2.0 * kRoomUnits * kUnit * size_);
+    }
+  }
+
+  /// Valid where no point of the grown edge lies on its side of the robot; `room` for what a leg is rounded by.
+  void try_normal(Vec2 n, double room = 0.0) {
+    const double support = std::max(dot(n, seen_.a), dot(n, seen_.b)) + grown_;
+    if (!(support <= room)) return;
+    const double depth = support - query_.horizon * dot(n, query_.velocity);
+    if (!(depth < least_)) return;
+    least_ = depth;
+    found_ = n;
+  }
+
+  EdgeLine rounded(Vec2 n) const {
+    EdgeLine line;
+    line.normal = query_.float_normals ? Vec2{rounded_to_float(n.x), rounded_to_float(n.y)} : n;
+    return line;
+  }
+
+  /// False where the normal as rounded does not separate robot and edge.
+  bool set_offset(EdgeLine& line) const {
+    const double support = support_above(line.normal);
+    if (!(support <= 0.0)) return false;
+    line.offset = std::min(0.0, support / query_.horizon * (1.0 - 4.0 * kUnit));
+    return true;
+  }
+
+  /// Not nearer to the edge: where it is too near for anything else.
+  EdgeLine facing() const {
+    const Vec2 away = -nearest_point(seen_);
+    Vec2 n = away == Vec2{} ? geometry::normalized(geometry::perp(seen_.b - seen_.a)) : geometry::normalized(away);
+    if (n == Vec2{}) n = {1.0, 0.0};
+    EdgeLine line = rounded(n);
+    line.touching = !(support_above(line.normal) <= 0.0);
+    return line;
+  }
+
+  Segment seen_;
+  const EdgeQuery& query_;
+  double size_, grown_ = 0.0;
+  double least_ = std::numeric_limits<double>::infinity();
+  Vec2 found_;
+};
+
+/// Whether an earlier half-plane excludes all that meets this edge.
+bool is_covered(const Cone& cone, const std::vector<EdgeLine>& lines, double horizon) {
+  return std::any_of(lines.begin(), lines.end(), [&](const EdgeLine& line) {
+    const double support = cone.support_above(line.normal);
+    return !line.touching && support <= 0.0 && support * (1.0 - 4.0 * kUnit) <= horizon * line.offset;
+  });
+}
+
+}  // namespace
+
+template <class Do>
+void EdgeGrid::for_cells_of(const Segment& edge, const Do& what) const {
+  const auto column = [&](double x) { return std::clamp(std::floor((x - low_.x) * per_cell_), 0.0, columns_ - 1.0); };
+  const auto row = [&](double y) { return std::clamp(std::floor((y - low_.y) * per_cell_), 0.0, rows_ - 1.0); };
+  const double far = (reach_ + kHalfDiagonal * cell_) * (1.0 + 1e-9), left = std::min(edge.a.x, edge.b.x) - far,
+               right = std::max(edge.a.x, edge.b.x) + far;
+  for (double r = row(std::min(edge.a.y, edge.b.y) - far); r <= row(std::max(edge.a.y, edge.b.y) + far); ++r)
+    for (double c = column(left); c <= column(right); ++c) {
+      const Vec2 middle = low_ + cell_ * Vec2{c + 0.5, r + 0.5};
+      if (squared_distance({edge.a - middle, edge.b - middle}) <= far * far)
+        what(static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c));
+    }
+}
+
+void EdgeGrid::lay_out(double reach) {
+  start_.clear();
+  items_.clear();
+  columns_ = rows_ = 0.0;
+  if (edges_.empty()) return;
+  reach_ = reach;
+  low_ = edges_[0].a;
+  Vec2 high = low_;
+  for (const Segment& e : edges_)
+    for (const Vec2 p : {e.a, e.b}) {
+      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+  low_ = low_ - Vec2{reach, reach};
+  const Vec2 extent = high + Vec2{reach, reach} - low_;
+  // Small beside the reach, and not many more cells than edges.
+  const double fine = std::sqrt(extent.x * extent.y / (8.0 * static_cast<double>(edges_.size()) + 4096.0));
+  cell_ = std::max({reach / 4.0, fine, std::max(extent.x, extent.y) / 0x1p20});
+  per_cell_ = 1.0 / cell_;
+  columns_ = std::floor(extent.x * per_cell_) + 1.0;
+  rows_ = std::floor(extent.y * per_cell_) + 1.0;
+  start_.assign(static_cast<std::size_t>(columns_ * rows_) + 2, 0);
+  for (const Segment& e : edges_) for_cells_of(e, [&](std::size_t cell) { ++start_[cell + 2]; });
+  for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+  items_.resize(start_.back());
+  for (std::size_t k = 0; k < edges_.size(); ++k)
+    for_cells_of(edges_[k], [&](std::size_t cell) { items_[start_[cell + 1]++] = static_cast<std::uint32_t>(k); });
+}
+
+std::size_t EdgeGrid::bytes() const {
+  return edges_.capacity() * sizeof(Segment) + 4 * (start_.capacity() + items_.capacity());
+}
+
+void edge_lines(const EdgeGrid& grid, const EdgeQuery& query, std::vector<NearEdge>& near, std::vector<EdgeLine>& out) {
+  out.clear();
+  near.clear();
+  const double range = (query.horizon * query.max_speed + query.radius) * (1.0 + 0x1p-20);
+  const auto seen = [&](std::uint32_t edge) {
+    return Segment{grid.edges()[edge].a - query.position, grid.edges()[edge].b - query.position};
+  };
+  grid.for_near(query.position, [&](std::uint32_t edge) {
+    const double squared = squared_distance(seen(edge));
+    if (squared <= range * range) near.push_back({squared, edge});
+  });
+  std::sort(near.begin(), near.end());
+  for (const NearEdge& n : near) {
+    Cone cone(seen(n.edge), query);
+    if (is_covered(cone, out, query.horizon)) continue;
+    out.push_back(cone.best_line());
+    out.back().edge = n.edge;
+  }
+}
+
+}  // namespace exactvo::formation::crowd
