@@ -24,6 +24,7 @@ struct CrowdScene {
     KindId kind = 0;
   };
   std::vector<Robot> robots;
+  std::vector<geometry::Obstacle> obstacles;
   double preferred_speed = 1.2;  ///< m/s
 
   /// Straight for the goal, slower in the last metre.
@@ -105,6 +106,33 @@ inline void groups(CrowdScene& s, std::size_t count) {
   }
 }
 
+inline geometry::Obstacle square(Vec2 low, double side) {
+  return geometry::Polygon{{low, {low.x + side, low.y}, {low.x + side, low.y + side}, {low.x, low.y + side}}, {}};
+}
+
+/// The four groups, round four blocks.
+inline void blocks(CrowdScene& s, std::size_t count) {
+  groups(s, count);
+  const double scale = std::ceil(std::sqrt(static_cast<double>(count) / 4.0)) / 5.0;
+  for (const double x : {-40.0, 10.0})
+    for (const double y : {-40.0, 10.0}) s.obstacles.push_back(square(Vec2{x, y} * scale, 30.0 * scale));
+}
+
+/// A loose crowd among square pillars, one for every four robots, inside a wall.
+inline void pillars(CrowdScene& s, std::size_t count) {
+  SceneRandom random;
+  const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  const double width = 3.0 * static_cast<double>(side);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec2 at = {3.0 * static_cast<double>(i % side) + 0.3 * random(),
+                     3.0 * static_cast<double>(i / side) + 0.3 * random()};
+    s.robots.push_back({at, {width * random(), width * random()}});
+    if (i % side % 2 == 1 && i / side % 2 == 1) s.obstacles.push_back(square(at + Vec2{1.2, 1.2}, 0.5));
+  }
+  const double low = -1.5, high = width + 1.5;
+  s.obstacles.push_back(geometry::Polyline{{{low, low}, {high, low}, {high, high}, {low, high}, {low, low}}});
+}
+
 /// A crowd of large and slow, small and fast, far-sighted and near-sighted robots.
 inline void mixture(CrowdScene& s, std::size_t count) {
   crowd(s, count);
@@ -134,12 +162,13 @@ inline void clumps(CrowdScene& s, std::size_t count) {
 
 }  // namespace scenes
 
-/// "crowd", "ring", "streams", "groups", "mixture", "jam", "clumps".
+/// "crowd", "ring", "streams", "groups", "blocks", "pillars", "mixture", "jam", "clumps".
 inline CrowdScene crowd_scene(const std::string& kind, std::size_t count) {
   using Make = void (*)(CrowdScene&, std::size_t);
   static const std::vector<std::pair<std::string, Make>> kScenes = {
-      {"crowd", scenes::crowd},     {"ring", scenes::ring}, {"streams", scenes::streams}, {"groups", scenes::groups},
-      {"mixture", scenes::mixture}, {"jam", scenes::jam},   {"clumps", scenes::clumps}};
+      {"crowd", scenes::crowd},     {"ring", scenes::ring},     {"streams", scenes::streams},
+      {"groups", scenes::groups},   {"blocks", scenes::blocks}, {"pillars", scenes::pillars},
+      {"mixture", scenes::mixture}, {"jam", scenes::jam},       {"clumps", scenes::clumps}};
   CrowdScene s;
   s.kinds.emplace_back();
   for (const auto& [name, make] : kScenes) {
@@ -154,6 +183,7 @@ inline CrowdScene crowd_scene(const std::string& kind, std::size_t count) {
 inline Crowd crowd_of(const CrowdScene& scene) {
   Crowd crowd(scene.options);
   for (const CrowdKind& kind : scene.kinds) crowd.add_kind(kind);
+  for (const geometry::Obstacle& obstacle : scene.obstacles) crowd.add_obstacle(obstacle);
   crowd.reserve(scene.robots.size());
   for (const CrowdScene::Robot& robot : scene.robots) crowd.add_robot(robot.at, robot.kind);
   crowd.set_steering([&scene](CrowdSlice& slice) {

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <iosfwd>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -17,6 +18,9 @@ inline constexpr std::uint32_t kMostRobots = 1U << 30U;
 inline constexpr std::uint32_t kNowhere = 0xFFFFFFFFU;
 /// m/s; squares of speeds stay ordinary floats.
 inline constexpr double kFastest = 0x1p15;
+/// m; of edges.
+inline constexpr double kFarthestEdge = 0x1p40;
+inline constexpr std::size_t kMostEdgesOfAll = std::size_t{1} << 24U;
 /// m
 inline constexpr double kLeastStrip = 0x1p-6;
 
@@ -30,6 +34,8 @@ class CrowdBody {
   KindId add_kind(const CrowdKind& kind);
   RobotId add_robot(Vec2 position, KindId kind);
   void remove_robot(RobotId robot);
+  ObstacleId add_obstacle(const geometry::Obstacle& obstacle);
+  void remove_obstacle(ObstacleId obstacle);
   StepReport step();
   /// Sorts and lays out where something has changed. Calling it more often changes nothing.
   void make_ready();
@@ -41,13 +47,18 @@ class CrowdBody {
     const CrowdOptions& o = core->options;
     return {o.position_step * core->robots.mx[at] / o.time_step, o.position_step * core->robots.my[at] / o.time_step};
   }
-  std::size_t bytes() const { return core->bytes() + 4 * (places.capacity() + free_ids.capacity()); }
+  std::size_t bytes() const {
+    return core->bytes() + core->edges.bytes() + 4 * (places.capacity() + free_ids.capacity());
+  }
 
   std::unique_ptr<CrowdCore> core;
   std::uint64_t steps = 0;
   RobotId id_end = 0;
   std::vector<RobotId> free_ids;      ///< the last one is given first
   std::vector<std::uint32_t> places;  ///< by id, or empty
+  std::map<ObstacleId, std::vector<geometry::Segment>> obstacles;
+  ObstacleId next_obstacle = 0;
+  bool edges_changed = false;  ///< or the kinds, which say how far robots look
   bool unsorted = true;
   bool unchecked = true;  ///< robots are new
 
@@ -56,6 +67,7 @@ class CrowdBody {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }
   void find_places();
+  void lay_out_edges();
   void guess_hints();
   void follow_density();
   void require_apart() const;

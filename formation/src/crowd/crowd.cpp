@@ -54,8 +54,8 @@ bool parse(const std::string& text, CrowdPrecision& out) {
 }
 
 const char* name(CrowdProblem problem) {
-  constexpr const char* kNames[] = {"not-finite",    "out-of-range", "beyond-lattice", "coincident",  "too-many",
-                                    "unknown-robot", "unknown-kind", "wrong-count",    "bad-snapshot"};
+  constexpr const char* kNames[] = {"not-finite",    "out-of-range", "beyond-lattice",   "coincident",  "too-many",
+                                    "unknown-robot", "unknown-kind", "unknown-obstacle", "wrong-count", "bad-snapshot"};
   return kNames[static_cast<int>(problem)];
 }
 
@@ -95,6 +95,7 @@ KindId CrowdBody::add_kind(const CrowdKind& kind) {
   require_valid(kind, core->options);
   core->kinds.push_back(kind);
   core->take_kinds();
+  edges_changed = true;
   return static_cast<KindId>(core->kinds.size() - 1);
 }
 
@@ -191,7 +192,40 @@ bool CrowdBody::is_new(std::size_t at) const {
   return (core->robots.tag[at] & Robots::kSettled) == 0;
 }
 
+ObstacleId CrowdBody::add_obstacle(const geometry::Obstacle& obstacle) {
+  std::vector<geometry::Segment> added = geometry::edges_of(obstacle);
+  std::size_t count = added.size();
+  for (const auto& [id, edges] : obstacles) count += edges.size();
+  if (count > kMostEdgesOfAll)
+    throw CrowdError(CrowdProblem::too_many, "edges: found more than 2^24, expected 2^24 at most");
+  for (const geometry::Segment& e : added)
+    for (const double v : {e.a.x, e.a.y, e.b.x, e.b.y})
+      require_in_range("obstacle", v, std::fabs(v) < kFarthestEdge, "coordinates below 2^40 m");
+  obstacles.emplace(next_obstacle, std::move(added));
+  edges_changed = true;
+  return next_obstacle++;
+}
+
+void CrowdBody::remove_obstacle(ObstacleId obstacle) {
+  if (obstacles.erase(obstacle) == 0)
+    throw CrowdError(CrowdProblem::unknown_obstacle,
+                     "obstacle " + std::to_string(obstacle) + ": found no obstacle of this id");
+  edges_changed = true;
+}
+
+void CrowdBody::lay_out_edges() {
+  if (!edges_changed) return;
+  double reach = 0.0;
+  for (const CrowdKind& k : core->kinds) reach = std::max(reach, k.time_horizon * k.max_speed + k.radius);
+  std::vector<geometry::Segment> all;
+  for (const auto& [id, edges] : obstacles) all.insert(all.end(), edges.begin(), edges.end());
+  core->edges.set_edges(std::move(all));
+  core->edges.lay_out(reach * (1.0 + 0x1p-10));
+  edges_changed = false;
+}
+
 void CrowdBody::make_ready() {
+  lay_out_edges();
   if (!unsorted) return;
   Robots& r = core->robots;
   const double start = core->options.time_phases ? now() : 0.0;
@@ -276,6 +310,12 @@ void Crowd::reserve(std::size_t robots) {
 }
 void Crowd::remove_robot(RobotId robot) {
   engine_->remove_robot(robot);
+}
+ObstacleId Crowd::add_obstacle(const geometry::Obstacle& obstacle) {
+  return engine_->add_obstacle(obstacle);
+}
+void Crowd::remove_obstacle(ObstacleId obstacle) {
+  engine_->remove_obstacle(obstacle);
 }
 std::size_t Crowd::size() const {
   return engine_->core->robots.size();

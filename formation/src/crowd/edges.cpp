@@ -12,12 +12,13 @@ using geometry::dot;
 
 constexpr double kUnit = 0x1p-53;
 
-/// In units of u of the magnitudes: a difference, two products, two sums, |n| and a maximum round at most 9 times.
+/// In units of u of the magnitudes: a difference, an end that was cut (4), two products, two sums, |n| and a maximum
+/// round at most 13 times.
 constexpr double kSupportUnits = 16.0;
 
-/// The radius is grown by so many units of the normal's precision before a normal is looked for, so that it stays valid
-/// when it is rounded: a component's rounding turns it by u at most.
-constexpr double kRoomUnits = 8.0;
+/// The radius is grown before a normal is looked for, so that it stays valid once it is rounded (in units of its
+/// precision) and its support value is rounded up (in units of double).
+constexpr double kRoundingRoom = 8.0, kSupportRoom = 64.0;
 
 /// How far beyond a cell its edges are looked for: rounding moves a point by far less into the next one.
 constexpr double kHalfDiagonal = 0.7072;
@@ -44,13 +45,31 @@ double magnitude(const Segment& s) {
   return static_cast<double>(static_cast<float>(x));
 }
 
+/// The part of an edge within |x|, |y| <= far: what is beyond the range cannot be met, and a normal that is rounded
+/// turns the far end of a long wall across the way. A new end is off the edge by a rounding error of the old ones.
+Segment cut(const Segment& s, double far) {
+  if (std::max({std::fabs(s.a.x), std::fabs(s.a.y), std::fabs(s.b.x), std::fabs(s.b.y)}) <= far) return s;
+  double from = 0.0, to = 1.0;
+  const auto clip = [&](double a, double b) {
+    if (a == b) return;
+    const double one = (-far - a) / (b - a), other = (far - a) / (b - a);
+    from = std::max(from, std::min(one, other));
+    to = std::min(to, std::max(one, other));
+  };
+  clip(s.a.x, s.b.x);
+  clip(s.a.y, s.b.y);
+  if (!(from <= to)) return s;
+  const Vec2 along = s.b - s.a;
+  return {from > 0.0 ? s.a + from * along : s.a, to < 1.0 ? s.a + to * along : s.b};
+}
+
 /// The edge from the robot, and what is asked.
 class Cone {
  public:
-  Cone(const Segment& seen, const EdgeQuery& query)
-      : seen_(seen), query_(query), size_(magnitude(seen) + query.radius) {
+  Cone(const Segment& seen, double range, const EdgeQuery& query)
+      : seen_(cut(seen, 2.0 * range)), query_(query), size_(magnitude(seen) + query.radius) {
     const double u = query.float_normals ? 0x1p-24 : kUnit;
-    grown_ = query.radius + kRoomUnits * u * size_;
+    grown_ = query.radius + kRoundingRoom * u * (magnitude(seen_) + query.radius) + kSupportRoom * kUnit * size_;
   }
 
   /// At least h(n), exactly that of the doubles given.
@@ -84,8 +103,9 @@ class Cone {
     if (!(square > 0.0)) return;
     const double leg = std::sqrt(square);
     for (const double side : {leg, -leg}) {
-      const Vec2 n = {-(grown_ * centre.x + side * centre.y) / squared, (side * centre.x - grown_ * centre.y) / squared};
-      try_normal(n, 2.0 * kRoomUnits * kUnit * size_);
+      const Vec2 n = {-(grown_ * centre.x + side * centre.y) / squared,
+                      (side * centre.x - grown_ * centre.y) / squared};
+      try_normal(n, kSupportUnits * kUnit * size_);
     }
   }
 
@@ -200,7 +220,7 @@ void edge_lines(const EdgeGrid& grid, const EdgeQuery& query, std::vector<NearEd
   });
   std::sort(near.begin(), near.end());
   for (const NearEdge& n : near) {
-    Cone cone(seen(n.edge), query);
+    Cone cone(seen(n.edge), range, query);
     if (is_covered(cone, out, query.horizon)) continue;
     out.push_back(cone.best_line());
     out.back().edge = n.edge;

@@ -4,12 +4,12 @@
 /// \file
 /// Static edges: which are near a robot, and half-planes that keep it off them.
 ///
-/// Every cell of a grid lists all edges within reach of any of its points, so that a robot asks one cell. Each edge is a
-/// segment of its own, seen from both sides. With a and b its ends seen from the robot, r the radius and
-/// h(n) = max(n.a, n.b) + r |n|, the half-plane n.v >= c excludes what meets the edge within the horizon t iff h(n) <= 0
-/// and h(n) <= t c: for any n (docs/guide/velocity-obstacles.md). The best of finitely many n is that at which the
-/// velocity is deepest inside; the nearest edge comes first, and an edge that an earlier half-plane provably excludes
-/// needs none.
+/// Every cell of a grid lists all edges within reach of any of its points, so that a robot asks one cell. Each edge is
+/// a segment of its own, seen from both sides. With a and b its ends seen from the robot, r the radius and h(n) =
+/// max(n.a, n.b) + r |n|, the half-plane n.v >= c excludes what meets the edge within the horizon t iff h(n) <= 0 and
+/// h(n) <= t c: for any n (docs/guide/velocity-obstacles.md). The best of finitely many n is that at which the velocity
+/// is deepest inside; the nearest edge comes first, and an edge that an earlier half-plane provably excludes needs
+/// none.
 
 #include <cstdint>
 #include <vector>
@@ -51,16 +51,16 @@ class EdgeGrid {
 
 /// What asks for half-planes.
 struct EdgeQuery {
-  Vec2 position, velocity;      ///< m, m/s
-  double radius = 0.0;          ///< m
-  double horizon = 0.0;         ///< s
-  double max_speed = 0.0;       ///< m/s
-  bool float_normals = false;   ///< normals are to be floats
+  Vec2 position, velocity;     ///< m, m/s
+  double radius = 0.0;         ///< m
+  double horizon = 0.0;        ///< s
+  double max_speed = 0.0;      ///< m/s
+  bool float_normals = false;  ///< normals are to be floats
 };
 
 struct EdgeLine {
-  Vec2 normal;            ///< of the precision asked for
-  double offset = 0.0;    ///< m/s, <= 0, rounded up
+  Vec2 normal;          ///< of the precision asked for
+  double offset = 0.0;  ///< m/s, <= 0, rounded up
   std::uint32_t edge = 0;
   bool touching = false;  ///< the disc meets the edge, or all but: nothing is promised
 };
@@ -71,8 +71,8 @@ struct NearEdge {
   bool operator<(const NearEdge& o) const { return squared != o.squared ? squared < o.squared : edge < o.edge; }
 };
 
-/// Half-planes against all edges that can be met within the horizon, nearest first. Certified: a velocity that satisfies
-/// them all meets no edge within it that is not touching. `near` is scratch.
+/// Half-planes against all edges that can be met within the horizon, nearest first. Certified: a velocity that
+/// satisfies them all meets no edge within it that is not touching. `near` is scratch.
 void edge_lines(const EdgeGrid& grid, const EdgeQuery& query, std::vector<NearEdge>& near, std::vector<EdgeLine>& out);
 
 }  // namespace exactvo::formation::crowd

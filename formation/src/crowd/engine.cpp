@@ -59,11 +59,14 @@ void add(StepReport& sum, const StepReport& more) {
   sum.touching += more.touching;
   sum.widened += more.widened;
   sum.nudged += more.nudged;
+  sum.edges += more.edges;
+  sum.stopped += more.stopped;
 }
 
 void add(CrowdPhases& sum, const CrowdPhases& more) {
   sum.sort += more.sort;
   sum.search += more.search;
+  sum.edges += more.edges;
   sum.lines += more.lines;
   sum.solve += more.solve;
   sum.finish += more.finish;
@@ -93,19 +96,26 @@ struct Near {
 
 }  // namespace
 
+/// Rows of half-planes of a group: those of edges before those of robots.
+constexpr std::size_t kRows = kMostEdges + kMostNeighbours;
+constexpr std::size_t kRobotRows = kMostEdges * kSlots;
+
 /// Buffers of a thread.
 template <class T>
 struct CrowdScratch {
   Candidates others;
   Ranked ranked;
-  alignas(64) T x[kSlots * kMostNeighbours], y[kSlots * kMostNeighbours], c[kSlots * kMostNeighbours];
+  alignas(64) T x[kSlots * kRows], y[kSlots * kRows], c[kSlots * kRows];
   alignas(64) T px[kSlots], py[kSlots], disc[kSlots], vx[kSlots], vy[kSlots], violation[kSlots];
   alignas(64) float none[kPack];
   alignas(64) std::int32_t kind[kPack];
   std::int32_t self[kPack];
   std::uint8_t status[kSlots];
   Vec2 preferred[kSlots];
+  std::int32_t hard[kSlots];
   std::vector<Near> near;
+  std::vector<NearEdge> near_edges;
+  std::vector<EdgeLine> edge_lines, group_edges;  ///< of one robot, of all of a group
   Array<T> rows_x, rows_y, rows_c;
   StepReport counts;
   CrowdPhases phases;
@@ -191,8 +201,8 @@ class CrowdEngine final : public CrowdCore {
   struct Decision {
     std::int32_t mx, my;
     std::int32_t hint;
-    bool kept, nudged, touching, widened;
-    std::size_t neighbours;
+    bool kept, nudged, touching, widened, stopped;
+    std::size_t neighbours, edges;
   };
 
   /// A pack and what its search has found.
@@ -202,8 +212,9 @@ class CrowdEngine final : public CrowdCore {
     double reach;  ///< lattice steps, how far it looks
     Cells cells;
     std::size_t candidates;
-    int ranks = 0;            ///< the last at which a lane has somebody
-    std::uint32_t alone = 0;  ///< lanes that are decided alone
+    int ranks = 0;               ///< the last at which a lane has somebody
+    std::uint32_t alone = 0;     ///< lanes that are decided alone
+    std::uint32_t touching = 0;  ///< lanes that touch another robot
     std::uint8_t neighbours[kPack] = {};
 
     std::size_t size() const { return end - begin; }
@@ -262,9 +273,10 @@ class CrowdEngine final : public CrowdCore {
         lines_of(packs[count], count * kPack, s);
       }
       read_preferred(packs[0].begin, b, s);
-      const std::size_t lines = level_ranks(packs, count, s);
-      solve(packs, count, lines, s);
-      finish(packs, count, lines, s);
+      const std::size_t hard = edges_of(packs, count, s);
+      const std::size_t lines = hard + level_ranks(packs, count, s);
+      solve(packs, count, hard, lines, s);
+      finish(packs, count, hard, lines, s);
     }
     s.counts.robots += last - first;
   }
@@ -448,12 +460,94 @@ class CrowdEngine final : public CrowdCore {
     query.mx = &robots.mx[pack.begin];
     query.my = &robots.my[pack.begin];
     query.kind = s.kind;
-    const LineFlags flags = make_lines(rule_, query, LineRows<T>{s.x + slot, s.y + slot, s.c + slot, kSlots});
+    const LineFlags flags = make_lines(rule_, query, robot_rows(s, slot));
     const std::uint32_t lanes = (1U << pack.size()) - 1U;
     pack.alone |= flags.coincident & lanes;
-    s.counts.touching += static_cast<std::size_t>(__builtin_popcount(flags.touching & lanes & ~pack.alone));
+    pack.touching = flags.touching & lanes & ~pack.alone;
+    s.counts.touching += static_cast<std::size_t>(__builtin_popcount(pack.touching));
     for (std::size_t lane = 0; lane < pack.size(); ++lane)
       if (!(pack.alone >> lane & 1U)) s.counts.neighbours += pack.neighbours[lane];
+  }
+
+  static LineRows<T> robot_rows(Scratch& s, std::size_t slot) {
+    const std::size_t at = kRobotRows + slot;
+    return {s.x + at, s.y + at, s.c + at, kSlots};
+  }
+
+  // --- Edges ---
+
+  /// Into s.edge_lines.
+  void lines_of_edges(std::size_t robot, Scratch& s) const {
+    const CrowdKind& kind = kinds[kind_of(robot)];
+    EdgeQuery query;
+    query.position = {options.position_step * robots.x[robot], options.position_step * robots.y[robot]};
+    query.velocity = velocity_of(robots.mx[robot], robots.my[robot]);
+    query.radius = kind.radius;
+    query.horizon = kind.time_horizon;
+    query.max_speed = kind.max_speed;
+    query.float_normals = sizeof(T) == 4;
+    edge_lines(edges, query, s.near_edges, s.edge_lines);
+  }
+
+  void put(const EdgeLine& line, T& x, T& y, T& c, T least) const {
+    x = static_cast<T>(line.normal.x);
+    y = static_cast<T>(line.normal.y);
+    c = std::max(least, rounded_up<T>(line.offset + static_cast<double>(table_.lattice_slack)));
+  }
+
+  /// The half-planes of a group against edges, in the last rows before those of robots; how many rows.
+  std::size_t edges_of(Pack* packs, std::size_t count, Scratch& s) {
+    if (edges.empty()) return 0;
+    const Timed timed(options.time_phases, s.phases.edges);
+    s.group_edges.clear();
+    std::size_t most = 0;
+    for (std::size_t p = 0; p < count; ++p)
+      for (std::size_t lane = 0; lane < kPack; ++lane) {
+        std::int32_t& hard = s.hard[p * kPack + lane];
+        hard = 0;
+        if (lane >= packs[p].size() || (packs[p].alone >> lane & 1U)) continue;
+        lines_of_edges(packs[p].begin + lane, s);
+        if (s.edge_lines.size() > kMostEdges) {
+          be_alone(packs[p], lane, s);
+          continue;
+        }
+        hard = static_cast<std::int32_t>(s.edge_lines.size());
+        most = std::max(most, s.edge_lines.size());
+        s.group_edges.insert(s.group_edges.end(), s.edge_lines.begin(), s.edge_lines.end());
+      }
+    s.counts.edges += s.group_edges.size();
+    const std::size_t first = kRobotRows - most * kSlots;
+    const EdgeLine* next = s.group_edges.data();
+    for (std::size_t slot = 0; slot < count * kPack; ++slot) {
+      const Pack& pack = packs[slot / kPack];
+      const bool there = slot % kPack < pack.size();
+      const T least = there ? table_.least_offset[kind_of(pack.begin + slot % kPack)] : T(0);
+      for (std::size_t k = 0; k < most; ++k) {
+        const std::size_t at = first + k * kSlots + slot;
+        if (k < static_cast<std::size_t>(s.hard[slot]))
+          put(*next++, s.x[at], s.y[at], s.c[at], least);
+        else
+          s.x[at] = T(1), s.y[at] = T(0), s.c[at] = static_cast<T>(kNever);
+      }
+    }
+    return most;
+  }
+
+  /// Takes a robot out of its pack, and what was counted of it.
+  void be_alone(Pack& pack, std::size_t lane, Scratch& s) const {
+    pack.alone |= 1U << lane;
+    s.counts.neighbours -= pack.neighbours[lane];
+    s.counts.touching -= pack.touching >> lane & 1U;
+  }
+
+  /// No velocity may lead onto an edge, also where half-planes against robots had to give: another place of the lattice
+  /// nearby, or none. REQUIRES: the first `hard` lines are those of edges.
+  void keep_off_edges(std::size_t robot, Answers<T> in, std::size_t hard, Decision& d) const {
+    if (hard == 0 || !options.certified) return;
+    in.lines = hard;
+    if (keeps(in, d.mx, d.my, kinds[kind_of(robot)].max_speed) || nudge(robot, in, d.mx, d.my)) return;
+    d.mx = d.my = 0;
+    d.stopped = true;
   }
 
   /// The ranks that a pack of the group has; those of the others are filled up.
@@ -462,7 +556,7 @@ class CrowdEngine final : public CrowdCore {
     for (std::size_t p = 0; p < count; ++p) most = std::max(most, packs[p].ranks);
     for (std::size_t p = 0; p < count; ++p)
       for (int r = packs[p].ranks; r < most; ++r) {
-        const std::size_t at = static_cast<std::size_t>(r) * kSlots + p * kPack;
+        const std::size_t at = kRobotRows + static_cast<std::size_t>(r) * kSlots + p * kPack;
         std::fill(s.x + at, s.x + at + kPack, T(1));
         std::fill(s.y + at, s.y + at + kPack, T(0));
         std::fill(s.c + at, s.c + at + kPack, static_cast<T>(kNever));
@@ -470,7 +564,7 @@ class CrowdEngine final : public CrowdCore {
     return static_cast<std::size_t>(most);
   }
 
-  void solve(const Pack* packs, std::size_t count, std::size_t lines, Scratch& s) const {
+  void solve(const Pack* packs, std::size_t count, std::size_t hard, std::size_t lines, Scratch& s) const {
     const Timed timed(options.time_phases, s.phases.solve);
     for (std::size_t p = 0; p < count; ++p)
       for (std::size_t lane = 0; lane < kPack; ++lane) {
@@ -485,9 +579,11 @@ class CrowdEngine final : public CrowdCore {
     in.count = count * kPack;
     in.lines = lines;
     in.block = kSlots;
-    in.normal_x = s.x;
-    in.normal_y = s.y;
-    in.offset = s.c;
+    const std::size_t first = kRobotRows - hard * kSlots;
+    in.normal_x = s.x + first;
+    in.normal_y = s.y + first;
+    in.offset = s.c + first;
+    in.hard = hard > 0 ? s.hard : nullptr;
     in.preferred_x = s.px;
     in.preferred_y = s.py;
     in.disc = s.disc;
@@ -504,12 +600,12 @@ class CrowdEngine final : public CrowdCore {
     return out;
   }
 
-  void finish(const Pack* packs, std::size_t count, std::size_t lines, Scratch& s) {
+  void finish(const Pack* packs, std::size_t count, std::size_t hard, std::size_t lines, Scratch& s) {
     const Timed timed(options.time_phases, s.phases.finish);
     Rounded<T> rounded;
     for (std::size_t p = 0; p < count; ++p) {
-      const std::size_t slot = p * kPack;
-      const Answers<T> in{s.vx + slot, s.vy + slot, s.x + slot, s.y + slot, s.c + slot, lines, kSlots};
+      const std::size_t slot = p * kPack, at = kRobotRows - hard * kSlots + slot;
+      const Answers<T> in{s.vx + slot, s.vy + slot, s.x + at, s.y + at, s.c + at, lines, kSlots};
       round_to_lattice(rule_, in, rounded);
       for (std::size_t lane = 0; lane < packs[p].size(); ++lane) {
         const std::size_t robot = packs[p].begin + lane;
@@ -517,17 +613,26 @@ class CrowdEngine final : public CrowdCore {
           take(robot, decide_alone(robot, s.preferred[robot - packs[0].begin], s, nullptr), s);
           continue;
         }
-        bool kept = is_kept(rounded.excess[lane], s.status[slot + lane], robot);
-        if (!kept && s.status[slot + lane] == 0 && options.certified) {
-          kept = nudge(robot, offset(in, lane), rounded.mx[lane], rounded.my[lane]);
-          s.counts.nudged += kept;
-        }
-        robots.next_mx[robot] = rounded.mx[lane];
-        robots.next_my[robot] = rounded.my[lane];
-        robots.next_kept[robot] = kept;
-        s.counts.relaxed += !kept;
+        Decision d{};
+        d.mx = rounded.mx[lane];
+        d.my = rounded.my[lane];
+        d.kept = is_kept(rounded.excess[lane], s.status[slot + lane], robot);
+        if (!d.kept) settle(robot, offset(in, lane), s.status[slot + lane], hard > 0 ? s.hard[slot + lane] : 0, d);
+        robots.next_mx[robot] = d.mx;
+        robots.next_my[robot] = d.my;
+        robots.next_kept[robot] = d.kept;
+        s.counts.relaxed += !d.kept;
+        s.counts.nudged += d.nudged;
+        s.counts.stopped += d.stopped;
       }
     }
+  }
+
+  /// A velocity that, once rounded, does not keep all half-planes.
+  void settle(std::size_t robot, const Answers<T>& in, std::uint8_t status, std::int32_t hard, Decision& d) const {
+    if (!options.certified) return;
+    if (status == 0) d.kept = d.nudged = nudge(robot, in, d.mx, d.my);
+    if (!d.kept) keep_off_edges(robot, in, static_cast<std::size_t>(hard), d);
   }
 
   void take(std::size_t robot, const Decision& d, Scratch& s) {
@@ -540,6 +645,8 @@ class CrowdEngine final : public CrowdCore {
     s.counts.touching += d.touching;
     s.counts.widened += d.widened;
     s.counts.neighbours += d.neighbours;
+    s.counts.edges += d.edges;
+    s.counts.stopped += d.stopped;
   }
 
   bool is_kept(T excess, std::uint8_t status, std::size_t robot) const {
@@ -552,25 +659,28 @@ class CrowdEngine final : public CrowdCore {
     return a;
   }
 
-  /// The place of the lattice nearest to the answer, among those about, that keeps all lines. In double, where a line
-  /// is off by at most 2^-48 V.
+  /// Whether a motion keeps all lines. In double, where a line is off by at most 2^-48 V.
+  bool keeps(const Answers<T>& in, double mx, double my, double max_speed) const {
+    const double unit = table_.velocity_step, allowed = table_.spare - 0x1p-46 * max_speed;
+    for (std::size_t k = 0; k < in.lines; ++k) {
+      const std::size_t at = k * in.stride;
+      const double met = unit * mx * static_cast<double>(in.x[at]) + unit * my * static_cast<double>(in.y[at]);
+      if (static_cast<double>(in.c[at]) - met > allowed) return false;
+    }
+    return true;
+  }
+
+  /// The place of the lattice nearest to the answer, among those about, that keeps all lines.
   bool nudge(std::size_t robot, const Answers<T>& in, std::int32_t& mx, std::int32_t& my) const {
     const double speed = kinds[kind_of(robot)].max_speed, unit = table_.velocity_step;
-    const double allowed = table_.spare - 0x1p-46 * speed, limit = speed * speed * (1.0 - 0x1p-46);
+    const double limit = speed * speed * (1.0 - 0x1p-46);
     const double x0 = static_cast<double>(in.vx[0]) / unit, y0 = static_cast<double>(in.vy[0]) / unit;
     double least = std::numeric_limits<double>::infinity();
     const std::int32_t from_x = mx, from_y = my;
     for (int j = -kNudge; j <= kNudge; ++j)
       for (int i = -kNudge; i <= kNudge; ++i) {
         const double x = from_x + i, y = from_y + j, away = (x - x0) * (x - x0) + (y - y0) * (y - y0);
-        if (!(away < least) || (x * x + y * y) * unit * unit > limit) continue;
-        bool holds = true;
-        for (std::size_t k = 0; k < in.lines && holds; ++k) {
-          const std::size_t at = k * in.stride;
-          const double met = unit * x * static_cast<double>(in.x[at]) + unit * y * static_cast<double>(in.y[at]);
-          holds = static_cast<double>(in.c[at]) - met <= allowed;
-        }
-        if (!holds) continue;
+        if (!(away < least) || (x * x + y * y) * unit * unit > limit || !keeps(in, x, y, speed)) continue;
         least = away;
         mx = from_x + i;
         my = from_y + j;
@@ -623,10 +733,20 @@ class CrowdEngine final : public CrowdCore {
     d.widened = gather(robot, s.near, last);
     d.hint = hint_of(last, kind_of(robot));
     d.neighbours = s.near.size();
-    const std::size_t rows = std::max<std::size_t>(1, s.near.size());
+    lines_of_edges(robot, s);
+    d.edges = s.edge_lines.size();
+    const std::size_t lines = d.edges + d.neighbours, rows = std::max<std::size_t>(1, lines);
     s.rows_x.assign(rows * kPack, T(1));
     s.rows_y.assign(rows * kPack, T(0));
     s.rows_c.assign(rows * kPack, static_cast<T>(kNever));
+    for (std::size_t k = 0; k < d.edges; ++k) {
+      const EdgeLine& line = s.edge_lines[k];
+      const std::size_t to = k * kPack;
+      put(line, s.rows_x[to], s.rows_y[to], s.rows_c[to], table_.least_offset[kind_of(robot)]);
+      if (!words) continue;
+      const geometry::HalfPlane h{line.normal, static_cast<double>(s.rows_c[to]) - table_.spare};
+      words->edges.push_back({edges.edges()[line.edge], h, line.touching});
+    }
     for (std::size_t k = 0; k < s.near.size(); k += kPack) d.touching |= lines_alone(robot, k, s, words);
     alignas(64) T vx[kPack] = {}, vy[kPack] = {}, violation[kPack] = {}, px[kPack], py[kPack], disc[kPack];
     std::uint8_t status[kPack] = {};
@@ -635,8 +755,10 @@ class CrowdEngine final : public CrowdCore {
     std::fill(disc, disc + kPack, table_.disc[kind_of(robot)]);
     lp::BatchProblems<T> in;
     in.count = 1;
-    in.lines = s.near.size();
+    const std::int32_t hard[kPack] = {static_cast<std::int32_t>(d.edges)};
+    in.lines = lines;
     in.block = kPack;
+    in.hard = d.edges > 0 ? hard : nullptr;
     in.normal_x = s.rows_x.data();
     in.normal_y = s.rows_y.data();
     in.offset = s.rows_c.data();
@@ -650,13 +772,13 @@ class CrowdEngine final : public CrowdCore {
     out.status = status;
     out.stride = kPack;
     lp::solve_batch(in, out, 0, 1);
-    const Answers<T> answer{vx, vy, s.rows_x.data(), s.rows_y.data(), s.rows_c.data(), s.near.size(), kPack};
+    const Answers<T> answer{vx, vy, s.rows_x.data(), s.rows_y.data(), s.rows_c.data(), lines, kPack};
     Rounded<T> rounded;
     round_to_lattice(rule_, answer, rounded);
     d.mx = rounded.mx[0];
     d.my = rounded.my[0];
     d.kept = is_kept(rounded.excess[0], status[0], robot);
-    if (!d.kept && status[0] == 0 && options.certified) d.kept = d.nudged = nudge(robot, answer, d.mx, d.my);
+    if (!d.kept) settle(robot, answer, status[0], hard[0], d);
     return d;
   }
 
@@ -689,7 +811,7 @@ class CrowdEngine final : public CrowdCore {
     for (std::size_t lane = 0; lane < count; ++lane) {
       const auto other = static_cast<std::size_t>(s.near[k + lane].robot);
       if (flags.coincident >> lane & 1U) part(robot, other, x[lane], y[lane], c[lane]);
-      const std::size_t to = (k + lane) * kPack;
+      const std::size_t to = (s.edge_lines.size() + k + lane) * kPack;
       s.rows_x[to] = x[lane];
       s.rows_y[to] = y[lane];
       s.rows_c[to] = c[lane];

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "crowd/edges.h"
 #include "crowd/kinds.h"
 #include "crowd/lines.h"
 #include "crowd/robots.h"
@@ -36,6 +37,7 @@ class CrowdCore {
   CrowdOptions options;
   std::vector<CrowdKind> kinds;
   crowd::Robots robots;
+  crowd::EdgeGrid edges;  ///< laid out
   crowd::Tasks tasks;
   Steering steering;
   CrowdPhases phases;

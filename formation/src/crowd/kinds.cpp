@@ -2,9 +2,7 @@
 #include "crowd/kinds.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "crowd/layout.h"
 
@@ -19,12 +17,6 @@ constexpr double kSlackSteps = 0.75, kSpareSteps = 0.72;
 
 /// Checking a line rounds by at most 11 u V: three roundings a product, the velocity itself, the difference.
 constexpr double kCheckUnits = 16.0;
-
-template <class T>
-T rounded_up(double value) {
-  const T rounded = static_cast<T>(value);
-  return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<T>::infinity()) : rounded;
-}
 
 template <class T>
 T rounded_down(double value) {

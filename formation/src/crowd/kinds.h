@@ -4,7 +4,9 @@
 /// \file
 /// What the engine looks up by kind, in its own arithmetic and rounded to the safe side.
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "exactvo/formation/crowd.h"
@@ -30,6 +32,13 @@ struct KindTable {
 
 template <class T>
 KindTable<T> kind_table(const CrowdOptions& options, const std::vector<CrowdKind>& kinds);
+
+/// The least T that is at least `value`.
+template <class T>
+T rounded_up(double value) {
+  const T rounded = static_cast<T>(value);
+  return static_cast<double>(rounded) < value ? std::nextafter(rounded, std::numeric_limits<T>::infinity()) : rounded;
+}
 
 /// The bits of a squared distance that order neighbours.
 float without_number(float squared);

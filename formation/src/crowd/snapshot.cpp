@@ -108,6 +108,18 @@ CrowdKind get_kind(Reader& from) {
   return k;
 }
 
+std::vector<geometry::Segment> get_edges(Reader& from) {
+  const auto count = from.get<std::uint32_t>();
+  std::vector<double> numbers;
+  from.get_some(numbers, 4 * std::size_t{count});
+  std::vector<geometry::Segment> edges;
+  for (std::size_t k = 0; k < numbers.size(); k += 4) {
+    edges.push_back({{numbers[k], numbers[k + 1]}, {numbers[k + 2], numbers[k + 3]}});
+    for (std::size_t j = k; j < k + 4; ++j) require(std::fabs(numbers[j]) < kFarthestEdge, "an edge");
+  }
+  return edges;
+}
+
 bool on_lattice(std::int32_t v) {
   return v > -kLatticeEnd && v < kLatticeEnd;
 }
@@ -166,6 +178,14 @@ void write_snapshot(const CrowdBody& body, std::ostream& to) {
   const std::vector<Vec2> preferred = core.preferred();
   out.put(static_cast<std::uint32_t>(preferred.size()));
   for (const Vec2 v : preferred) out.put(v.x), out.put(v.y);
+  out.put(std::uint32_t{body.next_obstacle});
+  out.put(static_cast<std::uint32_t>(body.obstacles.size()));
+  for (const auto& [id, edges] : body.obstacles) {
+    out.put(std::uint32_t{id});
+    out.put(static_cast<std::uint32_t>(edges.size()));
+    for (const geometry::Segment& e : edges)
+      for (const double v : {e.a.x, e.a.y, e.b.x, e.b.y}) out.put(v);
+  }
   out.finish();
 }
 
@@ -209,11 +229,21 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
   const auto preferences = in.get<std::uint32_t>();
   std::vector<double> numbers;
   in.get_some(numbers, 2 * std::size_t{preferences});
+  std::map<ObstacleId, std::vector<geometry::Segment>> obstacles;
+  const auto next_obstacle = in.get<std::uint32_t>();
+  for (auto left = in.get<std::uint32_t>(); left > 0; --left) {
+    const auto id = in.get<std::uint32_t>();
+    require(id < next_obstacle && obstacles.count(id) == 0, "an obstacle");
+    obstacles.emplace(id, get_edges(in));
+  }
   in.finish();
   require_ids(c, body.free_ids, id_end);
   require_robots(c, core);
 
   core.take_kinds();
+  body.obstacles = std::move(obstacles);
+  body.next_obstacle = next_obstacle;
+  body.edges_changed = true;
   body.id_end = id_end;
   Robots& r = core.robots;
   r.reserve(count);

@@ -19,24 +19,32 @@ namespace exactvo::formation {
 
 /// The numbers of the properties are those of crowd.h.
 struct CrowdAudit {
-  std::size_t pairs = 0;      ///< looked at
-  std::size_t touching = 0;   ///< of them: nothing is promised
-  std::size_t one_sided = 0;  ///< only one of the two has the other among its neighbours
-  std::size_t both_kept = 0;  ///< of those that do not touch
-  std::size_t unsafe = 0;     ///< (2): the halves leave a velocity that collides within the horizon
-  std::size_t unequal = 0;    ///< (2): normals are not the negatives of each other
-  std::size_t broken = 0;     ///< a kept robot violates a half-plane
-  std::size_t met = 0;        ///< (1): two kept robots touch within the step
-  std::size_t fast = 0;       ///< (3)
-  std::size_t differing = 0;  ///< `explain` said another velocity than `step` chose
-  std::string first;          ///< the first that failed, in hexadecimal floats
+  std::size_t pairs = 0;           ///< looked at
+  std::size_t touching = 0;        ///< of them: nothing is promised
+  std::size_t one_sided = 0;       ///< only one of the two has the other among its neighbours
+  std::size_t both_kept = 0;       ///< of those that do not touch
+  std::size_t unsafe = 0;          ///< (2): the halves leave a velocity that collides within the horizon
+  std::size_t unequal = 0;         ///< (2): normals are not the negatives of each other
+  std::size_t broken = 0;          ///< a kept robot violates a half-plane
+  std::size_t met = 0;             ///< (1): two kept robots touch within the step
+  std::size_t fast = 0;            ///< (3)
+  std::size_t edges = 0;           ///< edges near robots that were looked at
+  std::size_t edges_touching = 0;  ///< of them: nothing is promised
+  std::size_t edges_open = 0;      ///< no half-plane of the robot excludes what meets the edge
+  std::size_t edges_met = 0;       ///< (7)
+  std::size_t differing = 0;       ///< `explain` said another velocity than `step` chose
+  std::string first;               ///< the first that failed, in hexadecimal floats
 
-  std::size_t failures() const { return unsafe + unequal + broken + met + fast + differing; }
+  std::size_t failures() const { return unsafe + unequal + broken + met + fast + edges_open + edges_met + differing; }
 };
 
 class CrowdAuditor {
  public:
-  explicit CrowdAuditor(Crowd& crowd) : crowd_(crowd) {}
+  /// With the obstacles of the crowd.
+  explicit CrowdAuditor(Crowd& crowd, const std::vector<geometry::Obstacle>& obstacles = {}) : crowd_(crowd) {
+    for (const auto& obstacle : obstacles)
+      for (const geometry::Segment& e : geometry::edges_of(obstacle)) edges_.push_back(e);
+  }
 
   /// Audits one step of the crowd, every pair of neighbours of it.
   void step(CrowdAudit& audit) {
@@ -53,6 +61,7 @@ class CrowdAuditor {
       const CrowdExplanation& e = before_[id];
       if (!(velocities[id] == e.chosen) || (kept_[id] != 0) != e.kept) fail(audit, audit.differing, e, nullptr);
       check_robot(audit, e);
+      for (const geometry::Segment& edge : edges_) check_edge(audit, e, edge);
       for (const auto& n : e.neighbours) check_pair(audit, e, n);
     }
   }
@@ -78,10 +87,79 @@ class CrowdAuditor {
     const mpq_class limit(crowd_.kind(crowd_.kind_of(e.robot)).max_speed);
     if (x * x + y * y > limit * limit) fail(audit, audit.fast, e, nullptr);
     if (!e.kept) return;
+    for (const auto& n : e.edges) {
+      const geometry::HalfPlane& h = n.half_plane;
+      if (mpq_class(h.normal.x) * x + mpq_class(h.normal.y) * y < mpq_class(h.offset))
+        fail(audit, audit.broken, e, nullptr);
+    }
     for (const auto& n : e.neighbours) {
       const geometry::HalfPlane& h = n.half_plane;
       if (mpq_class(h.normal.x) * x + mpq_class(h.normal.y) * y < mpq_class(h.offset)) fail(audit, audit.broken, e, &n);
     }
+  }
+
+  /// Squared distance of a point from a segment, exactly.
+  static mpq_class squared_distance(Vec2 p, const geometry::Segment& s) {
+    const mpq_class ax = mpq_class(p.x) - mpq_class(s.a.x), ay = mpq_class(p.y) - mpq_class(s.a.y);
+    const mpq_class dx = mpq_class(s.b.x) - mpq_class(s.a.x), dy = mpq_class(s.b.y) - mpq_class(s.a.y);
+    const mpq_class along = ax * dx + ay * dy, length = dx * dx + dy * dy;
+    if (along <= 0) return ax * ax + ay * ay;
+    if (along >= length) {
+      const mpq_class bx = mpq_class(p.x) - mpq_class(s.b.x), by = mpq_class(p.y) - mpq_class(s.b.y);
+      return bx * bx + by * by;
+    }
+    const mpq_class across = ax * dy - ay * dx;
+    return across * across / length;
+  }
+
+  static bool is_far(Vec2 p, const geometry::Segment& s, double range) {
+    const Vec2 along = s.b - s.a, from = p - s.a;
+    const double length = geometry::squared_norm(along);
+    const double t = length > 0.0 ? std::min(1.0, std::max(0.0, geometry::dot(from, along) / length)) : 0.0;
+    return geometry::norm(from - t * along) > range;
+  }
+
+  static int side(const geometry::Segment& s, Vec2 p) {
+    const mpq_class dx = mpq_class(s.b.x) - mpq_class(s.a.x), dy = mpq_class(s.b.y) - mpq_class(s.a.y);
+    return sgn(mpq_class(dx * (mpq_class(p.y) - mpq_class(s.a.y)) - dy * (mpq_class(p.x) - mpq_class(s.a.x))));
+  }
+
+  static bool farther_apart(const geometry::Segment& s, const geometry::Segment& t, double radius) {
+    const mpq_class limit = mpq_class(radius) * mpq_class(radius);
+    if (side(s, t.a) * side(s, t.b) < 0 && side(t, s.a) * side(t, s.b) < 0) return false;
+    return squared_distance(s.a, t) > limit && squared_distance(s.b, t) > limit && squared_distance(t.a, s) > limit &&
+           squared_distance(t.b, s) > limit;
+  }
+
+  void check_edge(CrowdAudit& audit, const CrowdExplanation& e, const geometry::Segment& edge) {
+    const CrowdKind& kind = crowd_.kind(crowd_.kind_of(e.robot));
+    const double range = kind.radius + kind.max_speed * kind.time_horizon;
+    if (is_far(e.position, edge, 1.001 * range)) return;  // by far: nobody needs rationals for it
+    if (squared_distance(e.position, edge) > range * range) return;
+    ++audit.edges;
+    bool excluded = false;
+    for (const auto& n : e.edges) {
+      const bool same = n.edge.a == edge.a && n.edge.b == edge.b;
+      if (same && n.touching) {
+        ++audit.edges_touching;
+        return;
+      }
+      excluded = excluded || excludes(e, kind, range, n.half_plane, edge);
+    }
+    if (!excluded) fail(audit, audit.edges_open, e, nullptr);
+    if (!farther_apart({e.position, moved_[e.robot]}, edge, kind.radius)) fail(audit, audit.edges_met, e, nullptr);
+  }
+
+  /// What can be met within the horizon is nearer than the range: the rest of a long edge does not count.
+  static bool excludes(const CrowdExplanation& e, const CrowdKind& kind, double range, const geometry::HalfPlane& h,
+                       const geometry::Segment& edge) {
+    const vo::HalfPlaneClaim claim{edge, e.position, kind.radius, kind.time_horizon, {}, h};
+    if (vo::is_true(claim)) return true;
+    const Vec2 along = edge.b - edge.a;
+    const double length = geometry::norm(along), foot = geometry::dot(e.position - edge.a, along) / length;
+    const double from = std::max(0.0, foot - 1.4 * range) / length, to = std::min(length, foot + 1.4 * range) / length;
+    const geometry::Segment near{edge.a + from * along, edge.a + to * along};
+    return vo::is_true({near, e.position, kind.radius, kind.time_horizon, {}, {h.normal, h.offset + 1e-9}});
   }
 
   void check_pair(CrowdAudit& audit, const CrowdExplanation& a, const CrowdExplanation::Neighbour& n) {
@@ -133,6 +211,7 @@ class CrowdAuditor {
   }
 
   Crowd& crowd_;
+  std::vector<geometry::Segment> edges_;
   std::vector<CrowdExplanation> before_;
   std::vector<Vec2> moved_;
   std::vector<std::uint8_t> kept_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -131,6 +132,83 @@ TEST(Crowd, ANewRobotOfAnOldIdPrefersNothing) {
   EXPECT_EQ(crowd.velocity(0), (Vec2{0.0, 0.0}));
 }
 
+TEST(CrowdEdges, ARobotStopsBeforeAWallUntilItIsRemoved) {
+  Crowd crowd = with_one_kind();
+  crowd.add_robot({0.0, 0.0});
+  crowd.set_preferred({{1.0, 0.0}});
+  const ObstacleId wall = crowd.add_obstacle(geometry::Polyline{{{5.0, -100.0}, {5.0, 100.0}}});
+  for (int k = 0; k < 200; ++k) crowd.step();
+  EXPECT_LT(crowd.position(0).x, 4.5);
+  EXPECT_GT(crowd.position(0).x, 4.499);
+  crowd.set_preferred({{1.0, 0.5}});
+  for (int k = 0; k < 8; ++k) crowd.step();
+  EXPECT_LT(crowd.position(0).x, 4.5);
+  EXPECT_NEAR(crowd.position(0).y, 1.0, 1e-3);
+  crowd.remove_obstacle(wall);
+  for (int k = 0; k < 8; ++k) crowd.step();
+  EXPECT_GT(crowd.position(0).x, 6.0);
+  expect_problem(CrowdProblem::unknown_obstacle, "obstacle 0", [&] { crowd.remove_obstacle(wall); });
+}
+
+TEST(CrowdEdges, ARobotPassesADoorThatIsWiderAndNoOther) {
+  for (const double half : {0.4999, 0.5001}) {
+    Crowd crowd = with_one_kind();
+    crowd.add_robot({-4.0, 0.0});
+    crowd.add_obstacle(geometry::Polyline{{{0.0, -50.0}, {0.0, -half}}});
+    crowd.add_obstacle(geometry::Polyline{{{0.0, half}, {0.0, 50.0}}});
+    crowd.set_preferred({{1.0, 0.0}});
+    for (int k = 0; k < 100; ++k) crowd.step();
+    EXPECT_EQ(crowd.position(0).x > 4.0, half > 0.5) << half << ' ' << crowd.position(0).x;
+  }
+}
+
+TEST(CrowdEdges, NobodyIsPushedThroughAWall) {
+  CrowdScene scene = crowd_scene("jam", 200);
+  for (auto& robot : scene.robots) robot.goal = {100.0, 0.0};
+  scene.obstacles.push_back(geometry::Polyline{{{16.0, -60.0}, {16.0, 60.0}}});
+  Crowd crowd = crowd_of(scene);
+  std::size_t relaxed = 0;
+  for (int k = 0; k < 300; ++k) relaxed += crowd.step().relaxed;
+  EXPECT_GT(relaxed, 100U);
+  for (RobotId id = 0; id < 200; ++id) EXPECT_LT(crowd.position(id).x, 15.5) << id;
+}
+
+TEST(CrowdEdges, TheGridKnowsAllWithinReachByBruteForce) {
+  SceneRandom random;
+  std::vector<geometry::Segment> edges;
+  for (int k = 0; k < 200; ++k) {
+    const Vec2 a = {100.0 * random(), 60.0 * random()};
+    const double length = k % 20 == 0 ? 60.0 : k % 7 == 0 ? 0.0 : 3.0;
+    edges.push_back({a, a + length * Vec2{random() - 0.5, random() - 0.5}});
+  }
+  crowd::EdgeGrid grid;
+  grid.set_edges(edges);
+  for (const double reach : {0.5, 5.0, 30.0}) {
+    grid.lay_out(reach);
+    for (int k = 0; k < 2000; ++k) {
+      const Vec2 p = {140.0 * random() - 20.0, 100.0 * random() - 20.0};
+      std::vector<bool> known(edges.size());
+      grid.for_near(p, [&](std::uint32_t e) { known[e] = true; });
+      for (std::size_t e = 0; e < edges.size(); ++e) {
+        const geometry::Segment& s = edges[e];
+        const double squared = geometry::squared_norm(s.b - s.a);
+        const double t = squared > 0.0 ? std::clamp(geometry::dot(p - s.a, s.b - s.a) / squared, 0.0, 1.0) : 0.0;
+        ASSERT_TRUE(known[e] || geometry::norm(p - (s.a + t * (s.b - s.a))) > reach) << p.x << ' ' << p.y << ' ' << e;
+      }
+    }
+  }
+}
+
+TEST(CrowdRefuses, ObstaclesThatAreNoPlaces) {
+  Crowd crowd;
+  expect_problem(CrowdProblem::not_finite, "obstacle", [&] {
+    crowd.add_obstacle(geometry::Polyline{{{0.0, 0.0}, {kNaN, 1.0}}});
+  });
+  expect_problem(CrowdProblem::out_of_range, "obstacle", [&] {
+    crowd.add_obstacle(geometry::Polyline{{{0.0, 0.0}, {1e13, 1.0}}});
+  });
+}
+
 TEST(Crowd, AnEmptyCrowdSteps) {
   Crowd crowd;
   EXPECT_EQ(crowd.step().robots, 0U);
@@ -257,7 +335,7 @@ class CrowdScenes : public testing::TestWithParam<Case> {
   CrowdScene scene() const { return crowd_scene(GetParam().scene, GetParam().robots); }
 };
 
-TEST_P(CrowdScenes, Properties1And2And3HoldInRationalsAndExplainSaysWhatStepChooses) {
+TEST_P(CrowdScenes, Properties1And2And3And7HoldInRationalsAndExplainSaysWhatStepChooses) {
   for (const CrowdPrecision precision : {CrowdPrecision::float_lines, CrowdPrecision::double_lines}) {
     CrowdScene s = scene();
     s.options.precision = precision;
@@ -265,11 +343,13 @@ TEST_P(CrowdScenes, Properties1And2And3HoldInRationalsAndExplainSaysWhatStepChoo
     CrowdAudit audit;
     for (int k = 0; k < 4; ++k) {
       run(crowd, GetParam().steps / 4);
-      CrowdAuditor(crowd).step(audit);
+      CrowdAuditor(crowd, s.obstacles).step(audit);
     }
-    EXPECT_EQ(audit.failures(), 0U) << audit.first << "\nunsafe " << audit.unsafe << " unequal " << audit.unequal
-                                    << " broken " << audit.broken << " met " << audit.met << " fast " << audit.fast
-                                    << " differing " << audit.differing;
+    EXPECT_EQ(audit.edges > 0, !s.obstacles.empty());
+    EXPECT_EQ(audit.failures(), 0U) << audit.first << "\nedges " << audit.edges << " open " << audit.edges_open
+                                    << " met " << audit.edges_met << "\nunsafe " << audit.unsafe << " unequal "
+                                    << audit.unequal << " broken " << audit.broken << " met " << audit.met << " fast "
+                                    << audit.fast << " differing " << audit.differing;
     EXPECT_GT(audit.both_kept, 100U);
   }
 }
@@ -313,6 +393,7 @@ TEST_P(CrowdScenes, Property5_TheNearestAndAllWithinReachAreNeighboursByBruteFor
   crowd::CrowdBody body(s.options);
   for (const CrowdKind& kind : s.kinds) body.add_kind(kind);
   for (const auto& robot : s.robots) body.add_robot(robot.at, robot.kind);
+  for (const auto& obstacle : s.obstacles) body.add_obstacle(obstacle);
   body.core->steering = [&s](CrowdSlice& slice) {
     for (std::size_t k = 0; k < slice.size(); ++k) slice.prefer(k, s.preferred(slice.id(k), slice.position(k)));
   };
@@ -349,6 +430,7 @@ TEST_P(CrowdScenes, Property4_RangesCutElsewhereGiveTheSameBits) {
     crowd::CrowdBody body(s.options);
     for (const CrowdKind& kind : s.kinds) body.add_kind(kind);
     for (const auto& robot : s.robots) body.add_robot(robot.at, robot.kind);
+    for (const auto& obstacle : s.obstacles) body.add_obstacle(obstacle);
     body.core->steering = [&s](CrowdSlice& slice) {
       for (std::size_t k = 0; k < slice.size(); ++k) slice.prefer(k, s.preferred(slice.id(k), slice.position(k)));
     };
@@ -409,11 +491,11 @@ TEST_P(CrowdScenes, Property6_ARunGoesOnFromASnapshotOfAnyStep) {
 INSTANTIATE_TEST_SUITE_P(All, CrowdScenes,
                          testing::Values(Case{"crowd", 1000, 40}, Case{"ring", 120, 300}, Case{"streams", 1000, 40},
                                          Case{"groups", 400, 200}, Case{"mixture", 1000, 60}, Case{"jam", 500, 80},
-                                         Case{"clumps", 1300, 12}),
+                                         Case{"blocks", 200, 160}, Case{"pillars", 400, 60}, Case{"clumps", 1300, 12}),
                          [](const auto& scene) { return std::string(scene.param.scene); });
 
 TEST(CrowdSnapshot, ChangedOrCutOffIsRefused) {
-  const CrowdScene scene = crowd_scene("mixture", 40);
+  const CrowdScene scene = crowd_scene("pillars", 40);
   Crowd crowd = crowd_of(scene);
   run(crowd, 3);
   crowd.remove_robot(7);

@@ -21,6 +21,8 @@
 ///  (4) The same calls give the same bits, on every SIMD target and with any number of threads.
 ///  (5) Every robot that could be met within the step is among the neighbours, however many they are.
 ///  (6) A crowd that was restored from a snapshot goes on with the same bits.
+///  (7) A robot that no edge of an obstacle touches at the beginning of a step (nearer than the radius and a rounding
+///      error) meets none in it, kept or not. Certified, for `CrowdOptions::certified`.
 /// A robot that is not kept (`StepReport::relaxed`) had to violate half-planes; it violates them as little as possible,
 /// up to rounding, and nothing is promised of it. Which velocity is best is heuristic in its last digits.
 ///
@@ -36,6 +38,7 @@
 #include <vector>
 
 #include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/vec2.h"
 
 namespace exactvo::formation {
@@ -45,6 +48,8 @@ using geometry::Vec2;
 /// Names a robot until it is removed; then it may be given to another. Small numbers: 0 ... id_end() - 1.
 using RobotId = std::uint32_t;
 using KindId = std::uint8_t;
+/// Names an obstacle until it is removed.
+using ObstacleId = std::uint32_t;
 
 /// What robots of a kind have in common.
 struct CrowdKind {
@@ -76,15 +81,16 @@ struct CrowdOptions {
 
 /// What is wrong with an argument, and with which robot.
 enum class CrowdProblem {
-  not_finite,      ///< a number is NaN or infinite
-  out_of_range,    ///< a number is outside the range that its field states
-  beyond_lattice,  ///< a position at or beyond 2^30 q
-  coincident,      ///< two robots in one place, one of them new
-  too_many,        ///< more than 2^30 robots, 256 kinds
-  unknown_robot,   ///< no robot has this id
-  unknown_kind,    ///< no kind has this number
-  wrong_count,     ///< an array is shorter than id_end()
-  bad_snapshot     ///< not a snapshot, cut off, or changed
+  not_finite,        ///< a number is NaN or infinite
+  out_of_range,      ///< a number is outside the range that its field states
+  beyond_lattice,    ///< a position at or beyond 2^30 q
+  coincident,        ///< two robots in one place, one of them new
+  too_many,          ///< more than 2^30 robots, 256 kinds, 2^24 edges
+  unknown_robot,     ///< no robot has this id
+  unknown_kind,      ///< no kind has this number
+  unknown_obstacle,  ///< no obstacle has this id
+  wrong_count,       ///< an array is shorter than id_end()
+  bad_snapshot       ///< not a snapshot, cut off, or changed
 };
 
 /// "not-finite", "out-of-range" and so on.
@@ -107,12 +113,14 @@ struct StepReport {
   std::size_t relaxed = 0;     ///< robots that are not kept: nothing is promised of them
   std::size_t touching = 0;    ///< robots that touched another at the beginning of the step
   std::size_t widened = 0;     ///< robots with more in reach of the step than their kind's neighbours: took more, (5)
-  std::size_t nudged = 0;      ///< kept robots whose velocity had to be rounded to another place of the lattice
+  std::size_t edges = 0;       ///< half-planes made against edges of obstacles
+  std::size_t stopped = 0;  ///< robots that stay where they are, since nothing else was found that leads onto no edge
+  std::size_t nudged = 0;   ///< kept robots whose velocity had to be rounded to another place of the lattice
 };
 
 /// Seconds of threads in each phase, summed over the steps; only with CrowdOptions::time_phases.
 struct CrowdPhases {
-  double sort = 0.0, search = 0.0, lines = 0.0, solve = 0.0, finish = 0.0;
+  double sort = 0.0, search = 0.0, lines = 0.0, edges = 0.0, solve = 0.0, finish = 0.0;
 };
 
 /// A stretch of robots that ask where they want to go. Positions and velocities are exact.
@@ -146,6 +154,11 @@ struct CrowdExplanation {
     geometry::HalfPlane half_plane;  ///< of the velocity; what is certified
     bool touching = false;           ///< nothing is promised of this pair
   };
+  struct Edge {
+    geometry::Segment edge;
+    geometry::HalfPlane half_plane;
+    bool touching = false;
+  };
   RobotId robot = 0;
   Vec2 position;   ///< m, exact
   Vec2 velocity;   ///< m/s, now
@@ -154,6 +167,7 @@ struct CrowdExplanation {
   bool kept = false;
   bool widened = false;
   std::vector<Neighbour> neighbours;  ///< nearest first
+  std::vector<Edge> edges;            ///< nearest first, without those that an earlier half-plane excludes
 };
 
 class Crowd {
@@ -170,6 +184,11 @@ class Crowd {
   void reserve(std::size_t robots);
   /// O(1), but O(n) the first time after a step.
   void remove_robot(RobotId robot);
+
+  /// Its edges are walls, seen from both sides; whether a robot stands inside is not asked. Coordinates below 2^40 m.
+  /// The grid of edges is laid out anew before the next step, in O(edges).
+  ObstacleId add_obstacle(const geometry::Obstacle& obstacle);
+  void remove_obstacle(ObstacleId obstacle);
 
   std::size_t size() const;
   /// Above every id: arrays by id have this length. Entries of ids that name nobody are neither read nor written.
