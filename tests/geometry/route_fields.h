@@ -34,10 +34,11 @@ enum class FieldKind {
   boxes,      ///< axis-parallel boxes on integers: ties of distance everywhere
   lattice,    ///< short walls between integer points: Pythagorean ties, crossings, T-junctions
   maze,       ///< a turned maze with doors of nearly one width
-  bars        ///< corridors that differ in width by 1e-12 at the most
+  bars,       ///< corridors that differ in width by 1e-12 at the most
+  rounded     ///< a turned occupancy grid with rounded digits: corners of neighbours that differ by 1e-6 to 1e-12
 };
-inline constexpr FieldKind kFieldKinds[] = {FieldKind::scattered, FieldKind::boxes, FieldKind::lattice, FieldKind::maze,
-                                            FieldKind::bars};
+inline constexpr FieldKind kFieldKinds[] = {FieldKind::scattered, FieldKind::boxes, FieldKind::lattice,
+                                            FieldKind::maze,      FieldKind::bars,  FieldKind::rounded};
 
 /// A closed wall, so that nothing leaves.
 inline Polyline fence(const std::vector<Vec2>& ring) {
@@ -161,7 +162,33 @@ inline RouteField bars_field(SeededRandom& random) {
   return f;
 }
 
+/// Rows of occupied cells as boxes, each rounded by itself as a file of so many digits has it.
+inline RouteField rounded_field(SeededRandom& random) {
+  const Turn turn(random.integer(0, 3) ? random.uniform(0, 2 * geometry::kPi) : 0.0);
+  const double digits = std::pow(10.0, random.integer(6, 12));
+  const double away = random.integer(0, 1) ? 0.0 : 100.0;
+  const auto at = [&](double x, double y) {
+    const Vec2 p = turn({x, y});
+    return Vec2{std::round((p.x + away) * digits) / digits, std::round((p.y + away) * digits) / digits};
+  };
+  const int n = 2 * random.integer(3, 5);
+  RouteField f;
+  f.obstacles.push_back(fence({at(-2, -2), at(n + 2, -2), at(n + 2, n + 2), at(-2, n + 2)}));
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) {
+      if (random.integer(0, 3)) continue;
+      const int length = random.integer(1, 3);
+      f.obstacles.push_back(Polygon{{at(x, y), at(x + length, y), at(x + length, y + 1), at(x, y + 1)}, {}});
+      x += length;
+    }
+  }
+  f.start = at(random.uniform(-1, n + 1), random.uniform(-1, n + 1));
+  f.goal = at(random.uniform(-1, n + 1), random.uniform(-1, n + 1));
+  return f;
+}
+
 inline RouteField route_field(SeededRandom& random, FieldKind kind) {
+  if (kind == FieldKind::rounded) return rounded_field(random);
   if (kind == FieldKind::maze) return maze_field(random);
   if (kind == FieldKind::bars) return bars_field(random);
   return scattered_field(random, kind);

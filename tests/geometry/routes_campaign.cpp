@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 
 int main(int argc, char** argv) {
   using namespace exactvo::test;
@@ -12,7 +13,9 @@ int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
   SeededRandom random(seed);
   RouteCampaign campaign;
-  for (int k = 0; k < worlds; ++k) check_field(route_field(random, kFieldKinds[k % 5]), random, campaign);
+  for (int k = 0; k < worlds; ++k)
+    check_field(route_field(random, kFieldKinds[static_cast<std::size_t>(k) % std::size(kFieldKinds)]), random,
+                campaign);
   for (std::size_t k = 0; k < campaign.failures.size() && k < 20; ++k)
     std::printf("%s\n", campaign.failures[k].c_str());
   std::printf(

@@ -13,6 +13,10 @@
 
 namespace exactvo::test {
 
+/// Of a route's length to its lower bound: more than ever seen in these worlds, and far from the way of a search that
+/// was given up or of a string that could not be proven.
+constexpr double kMostOverBound = 1.25;
+
 struct RouteCampaign {
   std::size_t cases = 0, routes = 0, chains = 0, blocked = 0;
   double worst_ratio = 1.0;  ///< of a route's length to its lower bound
@@ -37,6 +41,8 @@ inline void check_radius(const RouteField& f, const geometry::RouteMap& map, dou
     if (expected >= 0 && reached != (expected == 1)) fail(expected == 1 ? "not reached" : "reached");
     if (const auto* route = std::get_if<geometry::Route>(&answer)) {
       ++out.routes;
+      if (route->length > kMostOverBound * route->lower_bound && route->lower_bound > 0.0)
+        fail("longer than " + std::to_string(kMostOverBound) + " of its lower bound");
       out.sum_of_ratios += route->lower_bound > 0.0 ? route->length / route->lower_bound : 1.0;
       if (route->lower_bound > 0.0 && route->length / route->lower_bound > out.worst_ratio) {
         out.worst_ratio = route->length / route->lower_bound;

@@ -10,7 +10,8 @@
 namespace exactvo::geometry::routing {
 namespace {
 
-/// The path keeps to circles this much larger than the disc, which pays for the rounding of its corners.
+/// The path keeps to circles this much larger than the disc, which pays for the rounding of its corners. A vertex that
+/// the path cuts by no more than half of it needs no circle of its own: the other half still pays.
 constexpr double kRadiusSlack = 1e-11;
 constexpr double kCoordinateSlack = 0x1p-50;
 
@@ -25,6 +26,7 @@ struct Circle {
   Vec2 centre;
   int sense;  ///< 1: the route turns left round it, which lies to its left; -1: right
   int vertex;
+  std::size_t at = 0;  ///< its portal's place in the way
 };
 
 /// The shortest curve from one point to another that passes given circles on given sides, as a polyline outside of
@@ -38,11 +40,14 @@ class TautString {
   }
 
   /// Drops circles that the string does not touch and takes up those that it cuts, until neither is left. False where
-  /// that does not come to an end.
+  /// that does not come to an end. A round is linear; a row of vertices that are all cut takes the logarithm of them.
   bool pull() {
     constexpr int kMostRounds = 400;
-    for (int round = 0; round < kMostRounds; ++round)
-      if (find_tangents() && !drop_loose_circle() && !take_up_cut_vertex()) return true;
+    for (int round = 0; round < kMostRounds; ++round) {
+      drop_loose_circles();
+      find_tangents();
+      if (!take_up_cut_vertices()) return true;
+    }
     return false;
   }
 
@@ -63,67 +68,124 @@ class TautString {
   }
 
  private:
-  /// The directions of the straight pieces and their ends; false where two centres are one (one is dropped).
-  bool find_tangents() {
+  /// A straight piece of the string: from one circle, or end of the string (null), to the next.
+  struct Tangent {
+    double angle;  ///< rad
+    Segment piece;
+  };
+  Tangent tangent(const Circle* from, const Circle* to) const {
+    const Vec2 a = from ? from->centre : from_, b = to ? to->centre : to_;
+    const double ra = from ? from->sense * radius_ : 0.0, rb = to ? to->sense * radius_ : 0.0;
+    const double angle = std::atan2(b.y - a.y, b.x - a.x) + std::asin(std::clamp((ra - rb) / norm(b - a), -1.0, 1.0));
+    const Vec2 right{std::sin(angle), -std::cos(angle)};
+    return {angle, {a + ra * right, b + rb * right}};
+  }
+
+  void find_tangents() {
     const std::size_t n = circles_.size();
     angles_.assign(n + 1, 0.0);
     pieces_.assign(n + 1, {});
     for (std::size_t i = 0; i <= n; ++i) {
-      const Vec2 a = i > 0 ? circles_[i - 1].centre : from_, b = i < n ? circles_[i].centre : to_;
-      const double ra = i > 0 ? circles_[i - 1].sense * radius_ : 0.0, rb = i < n ? circles_[i].sense * radius_ : 0.0;
-      const double distance = norm(b - a);
-      if (distance == 0.0 && n > 0) {
-        circles_.erase(circles_.begin() + static_cast<std::ptrdiff_t>(std::min(i, n - 1)));
-        return false;
-      }
-      angles_[i] = std::atan2(b.y - a.y, b.x - a.x) + std::asin(std::clamp((ra - rb) / distance, -1.0, 1.0));
-      const Vec2 right{std::sin(angles_[i]), -std::cos(angles_[i])};
-      pieces_[i] = {a + ra * right, b + rb * right};
+      const Tangent t = tangent(i > 0 ? &circles_[i - 1] : nullptr, i < n ? &circles_[i] : nullptr);
+      angles_[i] = t.angle;
+      pieces_[i] = t.piece;
     }
-    return true;
   }
 
-  bool drop_loose_circle() {
-    constexpr double kAgainst = 1e-12;  // rad
-    for (std::size_t i = 0; i < circles_.size(); ++i) {
-      if (wrapped(angles_[i + 1] - angles_[i]) * circles_[i].sense >= -kAgainst) continue;
-      circles_.erase(circles_.begin() + static_cast<std::ptrdiff_t>(i));
-      return true;
+  /// Goes through the circles once: the string over those kept is taut before the next is looked at, which may let go
+  /// of some of the last.
+  void drop_loose_circles() {
+    std::vector<Circle> kept;
+    const auto is_loose = [&](const Circle* next) {
+      constexpr double kAgainst = 1e-12;  // rad
+      const Circle& last = kept.back();
+      if (next && next->centre == last.centre) return true;
+      const Circle* before = kept.size() > 1 ? &kept[kept.size() - 2] : nullptr;
+      return wrapped(tangent(&last, next).angle - tangent(before, &last).angle) * last.sense < -kAgainst;
+    };
+    for (const Circle& next : circles_) {
+      while (!kept.empty() && is_loose(&next)) kept.pop_back();
+      kept.push_back(next);
     }
-    return false;
+    while (!kept.empty() && is_loose(nullptr)) kept.pop_back();
+    circles_ = std::move(kept);
   }
 
-  /// The vertex that a straight piece cuts deepest becomes a circle of its own.
-  bool take_up_cut_vertex() {
-    double deepest = plan_.radius() * 1e-9 + (radius_ - plan_.radius());
-    Circle found{};
-    std::size_t where = 0;
-    bool any = false;
-    const CellMap& map = plan_.map();
+  /// The vertex that a straight piece cuts deepest becomes a circle of its own; one of each piece.
+  bool take_up_cut_vertices() {
+    std::vector<Circle> all;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      const Segment piece = pieces_[i];
-      const Vec2 d = piece.b - piece.a;
-      const double length = norm(d);
-      if (!(length > 0.0)) continue;
-      const auto consider = [&](int v) {
-        if ((i > 0 && circles_[i - 1].vertex == v) || (i < circles_.size() && circles_[i].vertex == v)) return;
-        const Vec2 p = map.vertex(v).rounded() - piece.a;
-        const double on = dot(p, d) / length, left = cross(d, p) / length;
-        if (on <= 0.0 || on >= length || !(radius_ - std::fabs(left) > deepest)) return;
-        deepest = radius_ - std::fabs(left);
-        found = {map.vertex(v).rounded(), left > 0.0 ? 1 : -1, v};
-        where = i;
-        any = true;
-      };
-      plan_.grid().for_each_near(piece.a, piece.b, plan_.radius(), [&](int k) {
-        const auto [a, b] = plan_.ends_of(k);
-        consider(a);
-        if (b != a) consider(b);
-        return true;
-      });
+      if (const std::optional<Circle> cut = deepest_cut(i)) all.push_back(*cut);
+      if (i == circles_.size()) break;
+      const std::optional<Circle> cut = cut_by_arc(i);
+      const Vec2 on{std::cos(angles_[i]), std::sin(angles_[i])};  // of two vertices in a lump, the first along the way
+      const bool before = cut && dot(cut->centre - circles_[i].centre, on) < 0.0;
+      if (before) all.push_back(*cut);
+      all.push_back(circles_[i]);
+      if (cut && !before) all.push_back(*cut);
     }
-    if (any) circles_.insert(circles_.begin() + static_cast<std::ptrdiff_t>(where), found);
+    const bool any = all.size() > circles_.size();
+    circles_ = std::move(all);
     return any;
+  }
+
+  /// A vertex so near to the circle's own that the search took both for one corner, and that the arc cuts though no
+  /// straight piece does: the way out to it from the centre leads through the arc.
+  std::optional<Circle> cut_by_arc(std::size_t i) const {
+    const Circle& circle = circles_[i];
+    const double slack = 0.5 * (radius_ - plan_.radius());
+    constexpr double kLump = 1e-3;  // of the radius; more is a corner of its own to the search
+    const double turn = wrapped(angles_[i + 1] - angles_[i]);
+    const auto is_neighbour = [&](int v) {
+      return v == circle.vertex || (i > 0 && circles_[i - 1].vertex == v) ||
+             (i + 1 < circles_.size() && circles_[i + 1].vertex == v);
+    };
+    double deepest = slack;
+    std::optional<Circle> found;
+    const auto consider = [&](int v) {
+      const Vec2 out = plan_.map().vertex(v).rounded() - circle.centre;
+      const double depth = norm(out);
+      if (!(depth > deepest) || depth > kLump * radius_ || is_neighbour(v)) return;
+      // The route's direction where it passes the point of the arc that is farthest out towards the vertex.
+      const double direction = std::atan2(circle.sense * out.x, -circle.sense * out.y);
+      const double after = wrapped(direction - angles_[i]) * circle.sense;
+      if (!(after > 0.0 && after < std::fabs(turn))) return;
+      deepest = depth;
+      found = Circle{plan_.map().vertex(v).rounded(), circle.sense, v};
+    };
+    if (!(turn * circle.sense > 0.0)) return found;
+    plan_.grid().for_each_near(circle.centre, circle.centre, kLump * radius_, [&](int k) {
+      const auto [a, b] = plan_.ends_of(k);
+      consider(a);
+      if (b != a) consider(b);
+      return true;
+    });
+    return found;
+  }
+
+  std::optional<Circle> deepest_cut(std::size_t i) const {
+    const CellMap& map = plan_.map();
+    const Segment piece = pieces_[i];
+    const Vec2 d = piece.b - piece.a;
+    const double length = norm(d);
+    double deepest = 0.5 * (radius_ - plan_.radius());
+    std::optional<Circle> found;
+    if (!(length > 0.0)) return found;
+    const auto consider = [&](int v) {
+      if ((i > 0 && circles_[i - 1].vertex == v) || (i < circles_.size() && circles_[i].vertex == v)) return;
+      const Vec2 p = map.vertex(v).rounded() - piece.a;
+      const double on = dot(p, d) / length, left = cross(d, p) / length;
+      if (on <= 0.0 || on >= length || !(radius_ - std::fabs(left) > deepest)) return;
+      deepest = radius_ - std::fabs(left);
+      found = Circle{map.vertex(v).rounded(), left > 0.0 ? 1 : -1, v};
+    };
+    plan_.grid().for_each_near(piece.a, piece.b, radius_, [&](int k) {
+      const auto [a, b] = plan_.ends_of(k);
+      consider(a);
+      if (b != a) consider(b);
+      return true;
+    });
+    return found;
   }
 
   const ClearancePlan& plan_;
@@ -157,7 +219,8 @@ class Realiser {
     for (std::size_t i = 0; i <= n; ++i) {
       const std::vector<Point> from = i > 0 ? after[i - 1] : departures(s);
       const std::vector<Point> to = i < n ? before[i] : departures(t);
-      if (!straight_to_next_gate(i) && !between(from, to, legs_[i]) && !by_the_middles(i, from, to))
+      if (!straight_to_next_gate(i) && !between(from, to, legs_[i]) && !in_parts(from, to, legs_[i]) &&
+          !by_the_middles(from, to, legs_[i]))
         return std::nullopt;
       append(i < n ? gates_[i].middle : Point(t));
     }
@@ -175,7 +238,8 @@ class Realiser {
     legs_.assign(1, {});
     for (const Waypoint& w : way_.waypoints) {
       if (w.portal < 0) {
-        legs_.back().circles.push_back({map_.vertex(w.vertex).rounded(), w.on_left ? 1 : -1, w.vertex});
+        legs_.back().circles.push_back(
+            {map_.vertex(w.vertex).rounded(), w.on_left ? 1 : -1, w.vertex, static_cast<std::size_t>(w.at)});
         continue;
       }
       const Gate gate = gate_of(w.portal, w.from_left);
@@ -337,12 +401,60 @@ class Realiser {
     return plan_.is_clear(*last, b);
   }
 
-  /// Where the taut string cannot be proven: through the middles of the portals, as far at a time as is clear, and taut
+  /// Where the string as a whole cannot be proven it is held at a point of a portal halfway, and either half is proven
+  /// by itself, so that only where the proof fails the route strays.
+  bool in_parts(const std::vector<Point>& from, const std::vector<Point>& to, const Leg& leg) {
+    if (leg.last <= leg.first) return false;
+    const std::size_t known = route_.size(), half = leg.first + (leg.last - leg.first) / 2;
+    const std::optional<Point> held = point_held(from.front(), to.front(), leg, half);
+    if (!held) return false;
+    Leg before{{}, leg.first, half}, after{{}, half + 1, leg.last};
+    for (const Circle& c : leg.circles) (c.at <= half ? before : after).circles.push_back(c);
+    const std::vector<Point> station{*held};
+    const auto proven = [&](const std::vector<Point>& a, const std::vector<Point>& b, const Leg& part) {
+      return between(a, b, part) || in_parts(a, b, part) || by_the_middles(a, b, part);
+    };
+    if (proven(from, station, before) && proven(station, to, after)) return true;
+    route_.resize(known);
+    return false;
+  }
+
+  /// A clear point of a portal, where the string round the leg's circles crosses it or near to that.
+  std::optional<Point> point_held(const Point& a, const Point& b, const Leg& leg, std::size_t place) const {
+    const ShrunkPortal& q = plan_.shrunk(way_.portals[place]);
+    const Vec2 middle = 0.5 * (q.from + q.to), d = q.to - q.from;
+    Vec2 best = middle;
+    TautString string(plan_, a.rounded(), b.rounded(), leg.circles);
+    if (string.pull()) {
+      std::vector<Point> corners = string.corners(kPi / 16.0);
+      corners.push_back(b);
+      Vec2 last = a.rounded();
+      for (const Point& p : corners) {
+        const double one = cross(d, last - q.from), two = cross(d, p.rounded() - q.from);
+        if ((one < 0.0) != (two < 0.0)) {
+          const Vec2 x = last + one / (one - two) * (p.rounded() - last);
+          const double share = dot(x - q.from, d) / squared_norm(d);
+          if (share > -0.5 && share < 1.5) best = q.from + std::clamp(share, 0.0, 1.0) * d;
+        }
+        last = p.rounded();
+      }
+    }
+    for (const double inward : {0.0, 1e-9, 1e-6, 1e-3, 0.1, 1.0}) {
+      const Point p = best + inward * (middle - best);
+      if (plan_.is_clear(p, p)) return p;
+    }
+    const Point exact = middle_of(way_.portals[place]);
+    if (plan_.is_clear(exact, exact)) return exact;
+    return std::nullopt;
+  }
+
+  /// Where that does not help either: through the middles of the portals, as far at a time as is clear, and taut
   /// in between where the next is not in sight.
-  bool by_the_middles(std::size_t i, const std::vector<Point>& from, const std::vector<Point>& to) {
+  bool by_the_middles(const std::vector<Point>& from, const std::vector<Point>& to, const Leg& leg) {
+    const std::size_t known = route_.size();
     std::vector<Point> stations{from.back()};
     for (std::size_t k = from.size() - 1; k-- > 0;) stations.push_back(from[k]);
-    for (std::size_t k = legs_[i].first; k < legs_[i].last; ++k) {
+    for (std::size_t k = leg.first; k < leg.last; ++k) {
       const Point m = middle_of(way_.portals[k]);
       if (plan_.is_clear(m, m)) stations.push_back(m);
     }
@@ -350,7 +462,10 @@ class Realiser {
     append(stations.front());
     for (std::size_t k = 0; k + 1 < stations.size();) {
       const std::size_t next = next_station(stations, k);
-      if (next == k) return false;
+      if (next == k) {
+        route_.resize(known);
+        return false;
+      }
       k = next;
     }
     return true;

@@ -2,8 +2,10 @@
 #include "routes/search.h"
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <queue>
+#include <unordered_map>
 
 #include "exactvo/geometry/pi.h"
 
@@ -14,6 +16,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// m, as a share of the coordinates involved: a ray that passes an end of a portal this closely goes through it. It is
 /// more than corners are off by, which come out of a division and a few products (2^-53 each).
 constexpr double kRounding = 0x1p-45;
+
+/// A share of a way's length that is more than the search's rounding makes of it.
+constexpr double kSearchRounding = 0x1p-30;
 
 double largest_of(Vec2 p) {
   return std::max(std::fabs(p.x), std::fabs(p.y));
@@ -57,6 +62,12 @@ double snapped(double share, double length, double snap) {
   return share;
 }
 
+Vec2 nearest_point(Vec2 a, Vec2 b, Vec2 x) {
+  const Vec2 d = b - a;
+  const double squared = squared_norm(d);
+  return squared > 0.0 ? a + std::clamp(dot(x - a, d) / squared, 0.0, 1.0) * d : a;
+}
+
 /// Too short to aim with: a ray that passes through its own corner.
 bool is_void(Vec2 ray, double size) {
   return norm(ray) <= 0x1p-51 * size;
@@ -64,22 +75,28 @@ bool is_void(Vec2 ray, double size) {
 
 }  // namespace
 
-WaySearch::WaySearch(const ClearancePlan& plan) : plan_(plan), map_(plan.map()) {
+WaySearch::WaySearch(const ClearancePlan& plan, std::size_t most) : plan_(plan), map_(plan.map()), most_(most) {
   const std::size_t ends = 2 * map_.portals.size();
   best_.assign(ends, kInfinity);
   best_in_sector_.assign(ends, kInfinity);
   seen_ = seen_in_sector_ = Marks(ends);
   allowed_ = Marks(map_.cell_portals.size());
+  corridor_of_.assign(ends, -1);
+  place_in_corridor_.assign(ends, 0);
+  in_corridor_ = Marks(ends);
 }
 
 std::optional<Way> WaySearch::find(Vec2 s, int start, Vec2 t, int goal) {
   Way way;
+  steps_ = 0;
+  was_second_search_ = false;
   if (start == goal) {
     way.lower_bound = norm(t - s);
     return way;
   }
   if (search(s, start, t, goal, way)) return way;
   way = {};
+  was_second_search_ = true;
   if (search_nearly_open(s, start, t, goal, way)) return way;
   return std::nullopt;
 }
@@ -100,13 +117,14 @@ bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
   queue_.clear();
   beside_root_.clear();
   fresh_ = 0;
-  for (Marks* marks : {&seen_, &seen_in_sector_, &allowed_}) marks->clear();
+  corridors_.clear();
+  goal_cell_ = goal;
+  for (Marks* marks : {&seen_, &seen_in_sector_, &allowed_, &in_corridor_}) marks->clear();
   for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_.add(c);
   open_start(s, start);
-  // Many times what any search was seen to take; one that rounding sends in circles ends here.
-  constexpr std::size_t kMostNodes = std::size_t{1} << 27;  // 16 GB, and far from the largest int
-  const std::size_t most = std::min(kMostNodes, 20000 + 50 * map_.cell_portals.size());
-  for (std::size_t taken = 0; taken < most && nodes_.size() < 4 * most; ++taken) {
+  const std::size_t most = std::min(most_, 1000000 + 1000 * map_.cell_portals.size());
+  bound_ = norm(t - s);
+  while (nodes_.size() <= most) {
     // A single successor is expanded at once, several wait in the queue.
     const bool single = nodes_.size() == fresh_ + 1 && nodes_[fresh_].cell != goal;
     int number = static_cast<int>(fresh_);
@@ -127,6 +145,9 @@ bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
     }
     expand(number);
   }
+  queue_fresh(t);
+  double bound = 0.0;
+  if (next_from_queue(bound) >= 0) bound_ = std::max(bound_, (1.0 - kSearchRounding) * bound);
   return false;
 }
 
@@ -198,12 +219,128 @@ double WaySearch::size_of_root(const Node& node) const {
   return node.corner < 0 ? largest_of(node.root) : plan_.shrunk(node.corner / 2).size;
 }
 
-void WaySearch::expand(int number) {
+// --- Leaps ---
+
+Crossing WaySearch::crossing_into(int portal, int cell) const {
+  const ShrunkPortal& q = plan_.shrunk(portal);
+  const bool from_left = map_.portals[portal].right == cell;
+  return {portal, cell, from_left ? q.to : q.from, from_left ? q.from : q.to, q.size};
+}
+
+/// The corridor that begins or goes on with this portal, crossed into `cell`, and the crossing's place in it.
+int WaySearch::corridor_from(int portal, int cell, int& place) {
+  const int key = 2 * portal + (map_.portals[portal].right == cell ? 1 : 0);
+  if (!in_corridor_.has(key)) {
+    in_corridor_.add(key);
+    corridor_of_[key] = static_cast<int>(corridors_.size());
+    place_in_corridor_[key] = 0;
+    corridors_.emplace_back();
+    corridors_.back().add(crossing_into(portal, cell));
+  }
+  place = place_in_corridor_[key];
+  return corridor_of_[key];
+}
+
+/// False where the corridor ends before: at the goal, where there are several ways on or none, or another corridor.
+bool WaySearch::grow(int number, int length) {
+  Corridor& corridor = corridors_[number];
+  while (corridor.size() < length) {
+    const Crossing last = corridor[corridor.size() - 1];
+    if (last.cell == goal_cell_) return false;
+    int portal = -1, cell = -1;
+    for (const CellMap::CellPortal& p : map_.cell_portals[last.cell]) {
+      const Portal& beyond = map_.portals[p.portal];
+      const int to = p.is_left ? beyond.right : beyond.left;
+      if (p.portal == last.portal || !plan_.shrunk(p.portal).open || !may_enter(last.cell, to)) continue;
+      if (portal >= 0) return false;
+      portal = p.portal;
+      cell = to;
+    }
+    if (portal < 0) return false;
+    const int key = 2 * portal + (map_.portals[portal].right == cell ? 1 : 0);
+    if (in_corridor_.has(key)) return false;
+    in_corridor_.add(key);
+    corridor_of_[key] = number;
+    place_in_corridor_[key] = corridor.size();
+    corridor.add(crossing_into(portal, cell));
+  }
+  return true;
+}
+
+/// Where the rays of the node's view meet the portal, as shares of it from right to left.
+std::pair<double, double> WaySearch::shares_seen(const Node& n, const Crossing& c) const {
+  const double snap = kRounding * std::max(size_of_root(n), c.size), width = norm(c.left - c.right);
+  if (width < snap) return {-1.0, -1.0};
+  const auto share = [&](Vec2 ray) { return snapped(share_met(n.root, ray, c.right, c.left, snap), width, snap); };
+  return {share(n.right_ray), share(n.left_ray)};
+}
+
+/// Whether the view between the rays passes the portal without meeting an end of it.
+bool WaySearch::passes(const Node& n, const Crossing& c) const {
+  const auto [right, left] = shares_seen(n, c);
+  return right > 0.0 && right < 1.0 && left > 0.0 && left < 1.0;
+}
+
+/// Takes the view on through the cell behind `at`, if it passes one portal of it as a whole: then it sees no other.
+bool WaySearch::pass_on(const Node& n, Crossing& at) const {
+  if (at.cell == goal_cell_) return false;
+  for (const CellMap::CellPortal& p : map_.cell_portals[at.cell]) {
+    const Portal& beyond = map_.portals[p.portal];
+    const int to = p.is_left ? beyond.right : beyond.left;
+    if (p.portal == at.portal || !plan_.shrunk(p.portal).open || !may_enter(at.cell, to)) continue;
+    const Crossing next = crossing_into(p.portal, to);
+    if (!passes(n, next)) continue;
+    at = next;
+    return true;
+  }
+  return false;
+}
+
+/// A view between two rays is taken through all portals that it passes without meeting an end: in between it has one
+/// successor each, with the same rays.
+void WaySearch::leap(int number) {
   const Node n = nodes_[number];
+  const double size = size_of_root(n), size_here = std::max(size, plan_.shrunk(n.portal).size);
+  if (n.left_turns || n.right_turns || n.cell == goal_cell_ || is_void(n.left_ray, size_here) ||
+      is_void(n.right_ray, size_here))
+    return;
+  if (norm(n.left - n.root) <= kRounding * size_here || norm(n.right - n.root) <= kRounding * size_here) return;
+  const View view{n.root, n.left_ray, n.right_ray, kRounding, size};
+  Crossing at = crossing_into(n.portal, n.cell);
+  do {
+    int first = 0;
+    const int corridor = corridor_from(at.portal, at.cell, first);
+    const auto grown = [&](int length) {
+      ++steps_;
+      return grow(corridor, length);
+    };
+    const auto passes_one = [&](const Crossing& c) { return passes(n, c); };
+    at = corridors_[corridor][corridors_[corridor].last_passed(first, view, grown, passes_one)];
+    ++steps_;
+  } while (pass_on(n, at));
+  if (at.portal == n.portal && at.cell == n.cell) return;
+  const auto [right, left] = shares_seen(n, at);
+  Node& node = nodes_[number];
+  node.first_portal = n.portal;
+  node.first_cell = n.cell;
+  node.portal = at.portal;
+  node.cell = at.cell;
+  node.right = at.right + right * (at.left - at.right);
+  node.left = at.right + left * (at.left - at.right);
+}
+
+void WaySearch::expand(int number) {
+  leap(number);
+  const Node n = nodes_[number];
+  if (n.cell == goal_cell_) {  // it has leapt there: to be taken in its turn
+    nodes_.push_back(n);
+    return;
+  }
   for (const CellMap::CellPortal& p : map_.cell_portals[n.cell]) {
     const Portal& portal = map_.portals[p.portal];
     const int to = p.is_left ? portal.right : portal.left;
     if (p.portal == n.portal || !plan_.shrunk(p.portal).open || !may_enter(n.cell, to)) continue;
+    ++steps_;
     const Ends e = ends_seen(p);
     const double width = norm(e.left - e.right);
     const double size = std::max(size_of_root(n), plan_.shrunk(p.portal).size), snap = kRounding * size;
@@ -279,16 +416,30 @@ void WaySearch::trace(int number, Vec2 t, Way& way) const {
   std::vector<const Node*> nodes;
   for (int k = number; k >= 0; k = nodes_[k].parent) nodes.push_back(&nodes_[k]);
   std::reverse(nodes.begin(), nodes.end());
-  for (const Node* n : nodes) way.portals.push_back(n->portal);
-
-  const auto crossed_from_left = [&](std::size_t k) { return map_.portals[way.portals[k]].right == nodes[k]->cell; };
+  std::vector<bool> from_left;       // of each portal of the way: whether it is crossed from its left cell
+  std::vector<std::size_t> last_of;  // of each node: the place of its last portal
+  std::unordered_map<int, std::size_t> first_place;  // of a portal
+  const auto pass = [&](int portal, int cell) {
+    first_place.emplace(portal, way.portals.size());
+    way.portals.push_back(portal);
+    from_left.push_back(map_.portals[portal].right == cell);
+  };
+  for (const Node* n : nodes) {
+    if (n->first_portal >= 0) {
+      Crossing at = crossing_into(n->first_portal, n->first_cell);
+      do pass(at.portal, at.cell);
+      while (pass_on(*n, at) && !(at.portal == n->portal && at.cell == n->cell));
+    }
+    pass(n->portal, n->cell);
+    last_of.push_back(way.portals.size() - 1);
+  }
   const auto vertex_at = [&](int corner) {
     const ShrunkPortal& q = plan_.shrunk(corner / 2);
     return corner % 2 ? q.to_corner : q.from_corner;
   };
   const auto place_of = [&](int portal, std::size_t otherwise) {
-    const auto found = std::find(way.portals.begin(), way.portals.end(), portal);
-    return found == way.portals.end() ? otherwise : static_cast<std::size_t>(found - way.portals.begin());
+    const auto found = first_place.find(portal);
+    return found == first_place.end() ? otherwise : found->second;
   };
   std::vector<Waypoint> list;
   const auto add_vertex = [&](int corner, std::size_t otherwise) {
@@ -296,17 +447,17 @@ void WaySearch::trace(int number, Vec2 t, Way& way) const {
     const int vertex = vertex_at(corner);
     if (vertex < 0 || plan_.shrunk(corner / 2).tight) return;
     // Its portal's left cell sees `to` on the left.
-    list.push_back({-1, false, vertex, crossed_from_left(at) == (corner % 2 == 1), static_cast<int>(at)});
+    list.push_back({-1, false, vertex, from_left[at] == (corner % 2 == 1), static_cast<int>(at)});
   };
 
-  for (std::size_t k = 0; k < nodes.size(); ++k)
+  for (std::size_t k = 0; k < way.portals.size(); ++k)
     if (plan_.shrunk(way.portals[k]).tight)
-      list.push_back({way.portals[k], crossed_from_left(k), -1, false, static_cast<int>(k)});
+      list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
   int last = -1;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (nodes[k]->corner < 0 || nodes[k]->corner == last) continue;
     last = nodes[k]->corner;
-    add_vertex(last, k);
+    add_vertex(last, last_of[k]);
   }
   // The last turn may be at an end of the last interval.
   const Node& n = *nodes.back();
@@ -317,23 +468,28 @@ void WaySearch::trace(int number, Vec2 t, Way& way) const {
     corner = corner_at(n.portal, n.left);
   else if (cross(n.right - n.root, goal - n.root) < 0.0)
     corner = corner_at(n.portal, n.right);
-  if (corner >= 0 && corner != last) add_vertex(corner, nodes.size() - 1);
+  if (corner >= 0 && corner != last) add_vertex(corner, way.portals.size() - 1);
 
   std::stable_sort(list.begin(), list.end(), [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
+  way.waypoints = std::move(list);
+  drop_repeated(way.waypoints);
+}
+
+/// Of waypoints in a row that are pieces of one gate, or the same turn, the first.
+void WaySearch::drop_repeated(std::vector<Waypoint>& list) const {
   const auto same = [&](const Waypoint& a, const Waypoint& b) {
     if ((a.portal < 0) != (b.portal < 0)) return false;
     if (a.portal < 0) return a.vertex == b.vertex && a.on_left == b.on_left;
     const Portal &p = map_.portals[a.portal], &q = map_.portals[b.portal];
-    return p.link >= 0 && p.link == q.link;  // two pieces of one gate
+    return p.link >= 0 && p.link == q.link;
   };
-  for (const Waypoint& w : list)
-    if (way.waypoints.empty() || !same(way.waypoints.back(), w)) way.waypoints.push_back(w);
+  list.erase(std::unique(list.begin(), list.end(), same), list.end());
 }
 
 // --- The second search ---
 
 bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way) {
-  way.lower_bound = norm(t - s);
+  way.lower_bound = bound_;
   // Portals that are clearly empty come last: a gate that the disc fits through may have some.
   using Cost = std::pair<int, double>;  // of those, how many; then the length, m
   struct Reached {
@@ -355,33 +511,76 @@ bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way
       if (portal.right < 0 || !plan_.admits(portal)) continue;
       const ShrunkPortal& q = plan_.shrunk(p.portal);
       const int to = p.is_left ? portal.right : portal.left;
-      const Vec2 middle = 0.5 * (q.from + q.to);
-      const Cost there{cost.first + (q.nearly ? 0 : 1), cost.second + norm(middle - reached[cell].at)};
+      const Vec2 next = nearest_point(q.from, q.to, reached[cell].at);
+      const Cost there{cost.first + (q.nearly ? 0 : 1), cost.second + norm(next - reached[cell].at)};
       if (!(there < reached[to].cost)) continue;
-      reached[to] = {there, p.portal, middle};
+      reached[to] = {there, p.portal, next};
       queue.emplace(there, to);
     }
   }
   if (reached[goal].through < 0) return false;
-  std::vector<std::pair<int, bool>> crossed;  // portal, from its left
+  std::vector<bool> from_left;
   for (int c = goal; c != start;) {
     const Portal& portal = map_.portals[reached[c].through];
-    const bool from_left = portal.right == c;
-    crossed.emplace_back(reached[c].through, from_left);
-    c = from_left ? portal.left : portal.right;
+    from_left.push_back(portal.right == c);
+    way.portals.push_back(reached[c].through);
+    c = from_left.back() ? portal.left : portal.right;
   }
-  std::reverse(crossed.begin(), crossed.end());
-  for (const auto& [portal, from_left] : crossed) {
-    const int at = static_cast<int>(way.portals.size());
-    way.portals.push_back(portal);
-    if (!plan_.shrunk(portal).tight) continue;
-    const auto same_gate = [&](const Waypoint& w) {
-      return map_.portals[portal].link >= 0 && map_.portals[w.portal].link == map_.portals[portal].link;
-    };
-    if (way.waypoints.empty() || !same_gate(way.waypoints.back()))
-      way.waypoints.push_back({portal, from_left, -1, false, at});
-  }
+  std::reverse(way.portals.begin(), way.portals.end());
+  std::reverse(from_left.begin(), from_left.end());
+  pull_through(s, t, from_left, way);
   return true;
+}
+
+/// The turns of the shortest curve through the portals of a way, by a funnel (Lee and Preparata 1984): between the apex
+/// and the last portal, the ends on either side that still bound what is seen.
+void WaySearch::pull_through(Vec2 s, Vec2 t, const std::vector<bool>& from_left, Way& way) const {
+  const std::size_t n = way.portals.size();
+  std::vector<Waypoint> list;
+  for (std::size_t k = 0; k < n; ++k)
+    if (plan_.shrunk(way.portals[k]).tight)
+      list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
+  const auto end_of = [&](std::size_t k, bool left) {
+    if (k == n) return t;
+    const ShrunkPortal& q = plan_.shrunk(way.portals[k]);
+    return left == from_left[k] ? q.to : q.from;
+  };
+  const auto turn_at = [&](std::size_t k, bool left) {
+    const ShrunkPortal& q = plan_.shrunk(way.portals[k]);
+    const int vertex = left == from_left[k] ? q.to_corner : q.from_corner;
+    if (vertex >= 0 && !q.tight) list.push_back({-1, false, vertex, left, static_cast<int>(k)});
+  };
+  // Of each side the bounding ends in order, by the portal; the first still bounds the apex's view.
+  std::deque<std::size_t> side[2];
+  Vec2 apex = s;
+  for (std::size_t k = 0; k <= n; ++k) {
+    for (const bool left : {true, false}) {
+      const double sense = left ? 1.0 : -1.0;
+      const Vec2 end = end_of(k, left);
+      std::deque<std::size_t>&mine = side[left ? 0 : 1], &other = side[left ? 1 : 0];
+      // Ends of this side behind which the new one is seen bound nothing any more.
+      while (!mine.empty()) {
+        const Vec2 last = end_of(mine.back(), left);
+        const Vec2 before = mine.size() > 1 ? end_of(mine[mine.size() - 2], left) : apex;
+        const bool is_same = norm(end - last) <= kRounding * std::max(largest_of(end), largest_of(last));
+        if (!is_same && sense * cross(last - before, end - before) > 0.0) break;
+        mine.pop_back();
+      }
+      if (mine.empty()) {
+        // Beyond ends of the other side: the curve turns at each of them.
+        while (!other.empty() && sense * cross(end_of(other.front(), !left) - apex, end - apex) < 0.0) {
+          apex = end_of(other.front(), !left);
+          turn_at(other.front(), !left);
+          other.pop_front();
+        }
+      }
+      mine.push_back(k);
+    }
+  }
+  for (const Waypoint& w : list) way.waypoints.push_back(w);
+  std::stable_sort(way.waypoints.begin(), way.waypoints.end(),
+                   [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
+  drop_repeated(way.waypoints);
 }
 
 }  // namespace exactvo::geometry::routing

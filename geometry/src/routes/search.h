@@ -6,15 +6,18 @@
 /// Rounded: it says through which portals and round which corners, and how long the shortest curve through the shrunk
 /// portals is, which no route undercuts. The route itself is made and proven in realise.h.
 ///
-/// Where rounding shuts what the exact rules leave open, a plain Dijkstra search over the portals finds a way.
+/// Where rounding shuts what the exact rules leave open, Dijkstra's search over the portals finds a way, and a funnel
+/// its turns. That way need not be the shortest; its bound is then no more than what is known of every way.
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "routes/corridors.h"
 #include "routes/marks.h"
 #include "routes/plan.h"
 
@@ -38,11 +41,20 @@ struct Way {
 /// Scratch memory of a search, to be used again and again by one thread.
 class WaySearch {
  public:
-  explicit WaySearch(const ClearancePlan& plan);
+  /// Only a search that rounding sends in circles makes so many: any other takes a few for each cell. 2 GB.
+  static constexpr std::size_t kMostNodes = std::size_t{1} << 24;
+
+  /// Gives up after `most` nodes and leaves it to the second search; for tests.
+  explicit WaySearch(const ClearancePlan& plan, std::size_t most = kMostNodes);
 
   /// From s in one cell to t in another. Nothing where neither search finds a way: a defect if the cells are in one
   /// component.
   std::optional<Way> find(Vec2 s, int start, Vec2 t, int goal);
+
+  /// Of the last question: portals looked at one by one, and boxes of portals in leaps (corridors.h).
+  std::size_t steps() const { return steps_; }
+  /// Whether the last question was answered by the second search.
+  bool was_second_search() const { return was_second_search_; }
 
  private:
   /// From `root`, reached after `length`, through the interval between `right` and `left` of a portal, into `cell`. The
@@ -54,6 +66,7 @@ class WaySearch {
     Vec2 left, right, root, left_ray, right_ray;
     bool left_turns, right_turns;
     double length;
+    int first_cell = -1, first_portal = -1;  ///< where it was before it leapt; -1: it did not
   };
   struct Ends {
     Vec2 right, left;
@@ -63,6 +76,13 @@ class WaySearch {
   bool search(Vec2 s, int start, Vec2 t, int goal, Way& way);
   bool search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way);
   void open_start(Vec2 s, int start);
+  void leap(int number);
+  bool pass_on(const Node& node, Crossing& at) const;
+  bool passes(const Node& node, const Crossing& c) const;
+  std::pair<double, double> shares_seen(const Node& node, const Crossing& c) const;
+  int corridor_from(int portal, int cell, int& place);
+  bool grow(int corridor, int length);
+  Crossing crossing_into(int portal, int cell) const;
   void expand(int number);
   void expand_to_point(int number, int portal, int to, const Ends& e, double size);
   double size_of_root(const Node& node) const;
@@ -80,13 +100,24 @@ class WaySearch {
   int corner_at(int portal, Vec2 x) const;
   void trace(int number, Vec2 t, Way& way) const;
 
+  void drop_repeated(std::vector<Waypoint>& list) const;
+  void pull_through(Vec2 s, Vec2 t, const std::vector<bool>& from_left, Way& way) const;
+
   const ClearancePlan& plan_;
   const CellMap& map_;
+  std::size_t most_;
+  double bound_ = 0.0;  ///< m: where the first search gives up, what its queue says of every way
   std::vector<Node> nodes_;
   std::size_t fresh_ = 0;  ///< nodes from here on were made by the expansion under way
   std::vector<std::pair<double, int>> queue_;
   std::vector<double> best_, best_in_sector_;
   Marks seen_, seen_in_sector_, allowed_;
+  std::vector<Corridor> corridors_;
+  std::vector<int> corridor_of_, place_in_corridor_;  ///< of a portal as it is crossed: 2 portal + (1: from its left)
+  Marks in_corridor_;
+  int goal_cell_ = -1;
+  std::size_t steps_ = 0;
+  bool was_second_search_ = false;
   /// Corner, portal, cell, interval and rays of a node.
   using Sight = std::array<double, 11>;
   std::map<Sight, double> beside_root_;  ///< lengths of nodes whose interval ends at their root
