@@ -111,7 +111,7 @@ bool solve_alone(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::si
   }
   const Proven answer = solve_certified(problem);
   put(answer.solution, out, i);
-  out.proven[i] = answer.certificate.has_value();
+  out.proven[i] = answer.certificate && is_tight(problem, *answer.certificate);
   return answer.exact_stage;
 }
 

@@ -126,48 +126,108 @@ struct Pack {
   }
 };
 
-/// The line violated most a lane. On the feasibility phase all lines carry the slack; on the second only the hard ones
-/// do, and soft ones count from `level` on. The level is taken off the soft ones rather than added to the hard ones: it
-/// may be many times the speed, and its rounding would then exceed the slack. Without kIndex the number of the line
-/// stays what it was: who asks for none is spared the cost. With kAsk each line goes with one of `ahead`, which a later
-/// pack will read.
-template <bool kHard, bool kIndex, bool kAsk, class D, class T>
-HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead = nullptr) {
+/// How the line violated most is remembered while lines are priced: as three numbers, which masked moves choose, or as
+/// its place in the order, by which it is fetched afterwards. A masked move is one operation of AVX-512; of AVX2 it is
+/// three on Intel's processors, and fetching four or eight lanes is cheaper.
+template <class D>
+inline constexpr bool kFetchByNumber = hn::MaxLanes(D()) > 1 && hn::MaxLanes(D()) * sizeof(hn::TFromD<D>) <= 32;
+
+/// What is asked of a line: violated by more than `allowed` after `soft` or, where it is hard, `hard` has been added.
+template <class D>
+struct Asked {
+  hn::Vec<D> allowed, hard, soft;
+};
+
+/// The line violated most a lane, found with the loop below. Where no lane relaxes nothing is added (kExtra false).
+template <bool kExtra, bool kIndex, bool kAsk, class D, class T>
+HWY_INLINE void find_most(const Rows<T>& rows, const Pack<D>& p, const Asked<D>& asked, const T* ahead,
+                          hn::Vec<D>& most, LineV<D>& line) {
   const D d;
   using V = hn::Vec<D>;
-  const V zero = hn::Zero(d);
-  const V enough = kHard ? p.noise : hn::Add(p.level, p.noise);
-  const V allowed = pick(p.relaxing, enough, hn::Sub(p.noise, p.slack));
-  const V hard_extra = hn::IfThenElseZero(p.relaxing, p.slack);
-  const V soft_extra = hn::IfThenElseZero(p.relaxing, hn::Neg(p.level));
-  const V vx = p.vx, vy = p.vy, one = hn::Set(d, T(1)), hard_count = p.hard_count;
-  V most = allowed;
-  V ex = zero, ey = zero, ec = zero, number = zero;
-  V index = hn::Set(d, T(kNoLine));
+  constexpr bool kNumber = kIndex || kFetchByNumber<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), vx = p.vx, vy = p.vy, hard_count = p.hard_count;
+  V number = zero, ex = zero, ey = zero, ec = zero, index = hn::Set(d, T(kNoLine));
+  most = asked.allowed;
   const T *nx = rows.x, *ny = rows.y, *c = rows.c;
 #pragma GCC unroll 5
   for (std::size_t k = 0; k < rows.count; ++k, nx += rows.stride, ny += rows.stride, c += rows.stride) {
     if (kAsk) hwy::Prefetch(ahead + k * rows.stride);
     const V x = hn::LoadU(d, nx), y = hn::LoadU(d, ny), offset = hn::LoadU(d, c);
     V by = hn::Sub(offset, dot(x, y, vx, vy));
-    if (kHard) by = hn::Add(by, pick(hn::Lt(number, hard_count), hard_extra, soft_extra));
+    if (kExtra) by = hn::Add(by, pick(hn::Lt(number, hard_count), asked.hard, asked.soft));
     const auto more = hn::Gt(by, most);
     most = hn::Max(most, by);
-    ex = pick(more, x, ex);
-    ey = pick(more, y, ey);
-    ec = pick(more, offset, ec);
-    if (kIndex) {
+    if (!kFetchByNumber<D>) {
+      ex = pick(more, x, ex);
+      ey = pick(more, y, ey);
+      ec = pick(more, offset, ec);
+    }
+    if (kNumber) {
       index = pick(more, number, index);
       number = hn::Add(number, one);
     }
   }
-  p.violated = hn::Gt(most, allowed);
+  line = {ex, ey, ec, index};
+}
+
+/// Copies the lines of line.index, lane by lane; `slack` is added to their offsets. No gather, which many processors
+/// execute slowly. Part by part is how it is stored: a load of the whole has to wait until that has left for the cache,
+/// and meanwhile other packs are priced.
+template <class D, class T>
+HWY_INLINE void fetch(const Rows<T>& rows, hn::Vec<D> slack, LineV<D>& line) {
+  const D d;
+  constexpr std::size_t kLanes = hn::MaxLanes(D());
+  const hn::Rebind<std::int32_t, D> words;
+  HWY_ALIGN std::int32_t numbers[kLanes];
+  HWY_ALIGN T added[kLanes];
+  const hn::Vec<D> some = hn::Max(line.index, hn::Zero(d));  // where none is violated, any line
+  if constexpr (sizeof(T) == 8)
+    hn::Store(hn::DemoteTo(words, some), words, numbers);
+  else
+    hn::Store(hn::ConvertTo(words, some), words, numbers);
+  hn::Store(slack, d, added);
+  char *x = reinterpret_cast<char*>(&line.x), *y = reinterpret_cast<char*>(&line.y);
+  char* c = reinterpret_cast<char*>(&line.c);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::size_t at = static_cast<std::size_t>(numbers[lane]) * rows.stride + lane;
+    const T offset = rows.c[at] + added[lane];
+    std::memcpy(x + lane * sizeof(T), rows.x + at, sizeof(T));
+    std::memcpy(y + lane * sizeof(T), rows.y + at, sizeof(T));
+    std::memcpy(c + lane * sizeof(T), &offset, sizeof(T));
+  }
+}
+
+/// The line violated most a lane, as the line that enters. On the feasibility phase all lines carry the slack; on the
+/// second only the hard ones do, and soft ones count from `level` on. The level is taken off the soft ones rather than
+/// added to the hard ones: it may be many times the speed, and its rounding would then exceed the slack. Without kIndex
+/// the number of the line stays what it was: who asks for none is spared the cost. With kAsk each line goes with one of
+/// `ahead`, which a later pack will read.
+template <bool kHard, bool kIndex, bool kAsk, class D, class T>
+HWY_INLINE void price(const Rows<T>& rows, Pack<D>& p, const T* ahead = nullptr) {
+  const D d;
+  using V = hn::Vec<D>;
+  const V enough = kHard ? p.noise : hn::Add(p.level, p.noise);
+  const Asked<D> asked = {pick(p.relaxing, enough, hn::Sub(p.noise, p.slack)), hn::IfThenElseZero(p.relaxing, p.slack),
+                          hn::IfThenElseZero(p.relaxing, hn::Neg(p.level))};
+  V most;
+  LineV<D> line;
+  if (kHard && !hn::AllFalse(d, p.relaxing))
+    find_most<true, kIndex, kAsk>(rows, p, asked, ahead, most, line);
+  else
+    find_most<false, kIndex, kAsk>(rows, p, asked, ahead, most, line);
+  p.violated = hn::Gt(most, asked.allowed);
   auto with_slack = hn::Not(p.relaxing);
-  if (kHard) with_slack = hn::Or(with_slack, hn::Lt(index, hard_count));
-  p.entering.x = ex;
-  p.entering.y = ey;
-  p.entering.c = pick(with_slack, hn::Add(ec, p.slack), ec);
-  if (kIndex) p.entering.index = index;
+  if (kHard) with_slack = hn::Or(with_slack, hn::Lt(line.index, p.hard_count));
+  const V index = kIndex ? line.index : p.entering.index, slack = hn::IfThenElseZero(with_slack, p.slack);
+  if (kFetchByNumber<D>) {
+    p.entering.index = line.index;
+    if (rows.count > 0) fetch<D>(rows, slack, p.entering);
+  } else {
+    p.entering.x = line.x;
+    p.entering.y = line.y;
+    p.entering.c = hn::Add(line.c, slack);
+  }
+  p.entering.index = index;
 }
 
 /// 1 / |n|^2 of a normal of length within 2^-10 of 1, by multiplying: a divider takes one register at a time, and a

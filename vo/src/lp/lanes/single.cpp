@@ -502,9 +502,10 @@ HWY_NOINLINE void solve_copied(const SingleProblem& problem, Solution& answer) {
 }
 
 HWY_NOINLINE bool certify_copied(const SingleProblem& problem, Solution& answer) {
-  const Proven proven = solve_certified(problem_of(problem));
+  const Problem copy = problem_of(problem);
+  const Proven proven = solve_certified(copy);
   answer = proven.solution;
-  return proven.certificate.has_value();
+  return proven.certificate && is_tight(copy, *proven.certificate);
 }
 
 }  // namespace
