@@ -20,17 +20,8 @@ using geometry::perp;
 using geometry::Segment;
 using geometry::squared_norm;
 
-constexpr Vec2 kAnyDirection{1.0, 0.0};  // where every direction is as good: the same on every machine
-
 Vec2 unit_or(Vec2 v, Vec2 fallback) {
   return v == Vec2{} ? fallback : normalized(v);
-}
-
-Vec2 nearest_on(Vec2 a, Vec2 b, Vec2 x) {
-  const Vec2 e = b - a;
-  const double length2 = squared_norm(e);
-  if (!(length2 > 0.0)) return a;
-  return a + std::clamp(dot(x - a, e) / length2, 0.0, 1.0) * e;
 }
 
 Normals of_segment(Vec2 a, Vec2 b, Vec2 y) {
@@ -144,44 +135,58 @@ Vec2 unfold(Vec2 n, double sign_x, double sign_y, const EllipseFrame& f) {
   return (n.x * sign_x) * f.major + (n.y * sign_y) * f.minor;
 }
 
-Normals of_ellipse(const Ellipse& e, Vec2 centre, Vec2 y) {
+}  // namespace
+
+EllipseNormals::EllipseNormals(const Ellipse& e, Vec2 centre, Vec2 y) {
   const EllipseFrame f = frame_of(e);
   constexpr double kFlat = 0x1p-40;  // thinner than this share of a, the ellipse is taken as its segment
-  if (!(f.b > kFlat * f.a)) return of_segment(centre - f.a * f.major, centre + f.a * f.major, y);
+  if (!(f.b > kFlat * f.a)) {
+    first_ = of_segment(centre - f.a * f.major, centre + f.a * f.major, y);
+    return;
+  }
+  a_ = f.a;
+  b_ = f.b;
+  major_ = f.major;
+  minor_ = f.minor;
   const Vec2 q = y - centre;
   const double qx = std::fabs(dot(q, f.major));
   const double qy = std::fabs(dot(q, f.minor));
-  const double sign_x = dot(q, f.major) < 0.0 ? -1.0 : 1.0;
-  const double sign_y = dot(q, f.minor) < 0.0 ? -1.0 : 1.0;
-  const double r0 = (f.a / f.b) * (f.a / f.b);
-  const double z1 = qy / f.b;
-  const double n0 = f.a * qx / (f.b * f.b);
-  Normals out;
-  if (z1 > 0.0) {
-    const double s = foot(n0, z1, r0);
-    out.add(unfold(normal_for(n0, z1, r0, s, f.a, f.b), sign_x, sign_y, f));
-  } else if (n0 < r0 - 1.0) {
+  sign_x_ = dot(q, f.major) < 0.0 ? -1.0 : 1.0;
+  sign_y_ = dot(q, f.minor) < 0.0 ? -1.0 : 1.0;
+  r0_ = (f.a / f.b) * (f.a / f.b);
+  z1_ = qy / f.b;
+  n0_ = f.a * qx / (f.b * f.b);
+  if (z1_ > 0.0) {
+    const double s = foot(n0_, z1_, r0_);
+    first_.add(unfold(normal_for(n0_, z1_, r0_, s, f.a, f.b), sign_x_, sign_y_, f));
+    may_have_second_ = true;
+  } else if (n0_ < r0_ - 1.0) {
     // On the major axis inside the evolute: the feet lie to both sides, at cos = n0 / (r0 - 1).
-    const double cx = n0 / (r0 - 1.0);
+    const double cx = n0_ / (r0_ - 1.0);
     const Vec2 n = normalized({cx * f.b, std::sqrt(1.0 - cx * cx) * f.a});
-    out.add(unfold(n, sign_x, 1.0, f));
-    out.add(unfold(n, sign_x, -1.0, f));
+    first_.add(unfold(n, sign_x_, 1.0, f));
+    first_.add(unfold(n, sign_x_, -1.0, f));
   } else {
-    out.add(unfold({1.0, 0.0}, sign_x, 1.0, f));
+    first_.add(unfold({1.0, 0.0}, sign_x_, 1.0, f));
   }
-  if (out.count == 1 && z1 > 0.0) {
-    // The second minimum, across the major axis: s in [s_m, -z1), where F has its least value at s_m.
-    const double k = std::cbrt((n0 / z1) * (n0 / z1));
-    const double s_m = 1.0 - (r0 + k) / (1.0 + k);
-    const double fx = n0 / (s_m + r0 - 1.0);
-    const double fy = z1 / s_m;
-    if (s_m < -z1 && s_m + r0 - 1.0 > 0.0 && fx * fx + fy * fy < 1.0) {
-      const double s = bisect_foot(n0, z1, r0, s_m, -z1, /*decreasing=*/false);
-      out.add(unfold(normal_for(n0, z1, r0, s, f.a, f.b), sign_x, sign_y, f));
-    }
+}
+
+Normals EllipseNormals::all() const {
+  Normals out = first_;
+  if (!may_have_second_) return out;
+  // The second minimum, across the major axis: s in [s_m, -z1), where F has its least value at s_m.
+  const double k = std::cbrt((n0_ / z1_) * (n0_ / z1_));
+  const double s_m = 1.0 - (r0_ + k) / (1.0 + k);
+  const double fx = n0_ / (s_m + r0_ - 1.0);
+  const double fy = z1_ / s_m;
+  if (s_m < -z1_ && s_m + r0_ - 1.0 > 0.0 && fx * fx + fy * fy < 1.0) {
+    const double s = bisect_foot(n0_, z1_, r0_, s_m, -z1_, /*decreasing=*/false);
+    out.add(unfold(normal_for(n0_, z1_, r0_, s, a_, b_), sign_x_, sign_y_, {a_, b_, major_, minor_}));
   }
   return out;
 }
+
+namespace {
 
 struct NormalsOf {
   const GrownShape& s;
@@ -193,7 +198,7 @@ struct NormalsOf {
   }
   Normals operator()(const Segment& g) const { return of_segment(g.a - s.origin, g.b - s.origin, y); }
   Normals operator()(const ConvexPolygon& p) const { return of_polygon(p.vertices, s.origin, s.radius, y); }
-  Normals operator()(const Ellipse& e) const { return of_ellipse(e, e.center - s.origin, y); }
+  Normals operator()(const Ellipse& e) const { return EllipseNormals(e, e.center - s.origin, y).all(); }
 };
 
 }  // namespace

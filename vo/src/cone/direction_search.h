@@ -4,7 +4,9 @@
 /// \file
 /// The local minima over |n| = 1 of f(n) = h_S(n) - n.y: the outward normals of S at the points nearest to y. Rounded.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "exactvo/geometry/support.h"
@@ -20,6 +22,48 @@ struct Normals {
   std::array<Vec2, 3> n{};
   std::size_t count = 0;
   void add(Vec2 normal) { n[count++] = normal; }
+};
+
+inline constexpr Vec2 kAnyDirection{1.0, 0.0};  // where every direction is as good: the same on every machine
+
+/// `geometry::normalized` in the same bits: along an axis the length is exact.
+inline Vec2 unit(Vec2 v) {
+  const double length = v.x == 0.0 || v.y == 0.0 ? std::fabs(v.x) + std::fabs(v.y) : std::hypot(v.x, v.y);
+  return length > 0.0 ? v / length : Vec2{};
+}
+
+inline Vec2 nearest_on(Vec2 a, Vec2 b, Vec2 x) {
+  const Vec2 e = b - a;
+  const double length2 = squared_norm(e);
+  if (!(length2 > 0.0)) return a;
+  return a + std::clamp(dot(x - a, e) / length2, 0.0, 1.0) * e;
+}
+
+/// The unit normal on the left of a segment.
+inline Vec2 side_of(Vec2 a, Vec2 b) {
+  return a == b ? kAnyDirection : unit(geometry::perp(b - a));
+}
+
+/// Those of an ellipse, the second looked for when it is asked for: with y outside, it is seldom needed.
+///
+/// In the ellipse's frame with y = (qx, qy), both >= 0, the first normal is that of the least f, and the second one
+/// (nx, -ny), nx and ny >= 0 however it was rounded. By symmetry f(nx, -ny) = f(nx, ny) + 2 ny qy >= f(first) + 2 ny
+/// qy.
+class EllipseNormals {
+ public:
+  EllipseNormals(const geometry::Ellipse& e, Vec2 centre, Vec2 y);
+
+  const Normals& first() const { return first_; }
+  /// `first` with the second where there is one.
+  Normals all() const;
+
+ private:
+  double a_ = 0.0, b_ = 0.0;  ///< m, the half-axes
+  Vec2 major_, minor_;
+  double sign_x_ = 1.0, sign_y_ = 1.0;
+  double r0_ = 0.0, z1_ = 0.0, n0_ = 0.0;
+  Normals first_;
+  bool may_have_second_ = false;
 };
 
 /// REQUIRES: nothing; degenerate positions (a centre, a vertex) give some unit normal, the same one on every machine.

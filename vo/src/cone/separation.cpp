@@ -23,7 +23,6 @@ using geometry::perp;
 using geometry::Segment;
 using geometry::squared_norm;
 using geometry::support;
-using geometry::support_upper_bound;
 using geometry::SupportValue;
 
 double error_of(const SupportValue& v) {
@@ -101,13 +100,74 @@ struct Middle {
   }
 };
 
+Vec2 middle_of(const GrownShape& s) {
+  return std::visit(Middle{}, s.shape);
+}
+
+Vec2 origin_of(const GrownShape& s) {
+  return s.origin;
+}
+Vec2 origin_of(const SeenSegment& s) {
+  return s.whole.origin;
+}
+
+/// Calls visit(normal) until it is true.
+template <class Visit>
+void for_each_nearest_normal(const GrownShape& s, Vec2 y, const Visit& visit) {
+  if (const Ellipse* e = std::get_if<Ellipse>(&s.shape)) {
+    const EllipseNormals normals(*e, e->center - s.origin, y);
+    for (std::size_t i = 0; i < normals.first().count; ++i)
+      if (visit(normals.first().n[i])) return;
+    const Normals all = normals.all();
+    for (std::size_t i = normals.first().count; i < all.count; ++i)
+      if (visit(all.n[i])) return;
+    return;
+  }
+  const Normals all = nearest_normals(s, y);
+  for (std::size_t i = 0; i < all.count; ++i)
+    if (visit(all.n[i])) return;
+}
+
+/// Whether no other normal can be as near as the first one, at `distance`: rounding leaves a doubt of the sides of a
+/// segment or polygon, but not of an ellipse's second normal (nx, -ny) if y is well outside. Where there is one, qx <
+/// a, so qy >= distance > d = 2^-20 of the size H. Either ny > 2^-25, and then f is larger by 2 ny qy > 2^-44 H, more
+/// than its rounding; or f(nx, ny) is within 2^-24 H of f(1, 0) = a + R - qx > 0, and that of the first is below -2^-20
+/// H.
+bool is_nearest(const GrownShape& s, Vec2 y, double distance) {
+  constexpr double kClear = 0x1p-20;
+  const Ellipse* e = std::get_if<Ellipse>(&s.shape);
+  if (!e || !(distance > 0.0)) return false;
+  const Vec2 q = y - (e->center - s.origin);
+  return distance > kClear * (std::fabs(q.x) + std::fabs(q.y) + std::fabs(e->center.x - s.origin.x) +
+                              std::fabs(e->center.y - s.origin.y) + std::fabs(e->l11) + std::fabs(e->l21) +
+                              std::fabs(e->l22) + s.radius);
+}
+bool is_nearest(const SeenSegment&, Vec2, double) {
+  return false;
+}
+
+template <class Seen>
+VelocityObstacle::Nearest nearest_among(const Seen& s, Vec2 y) {
+  VelocityObstacle::Nearest best{{}, 0.0};
+  bool is_first = true;
+  for_each_nearest_normal(s, y, [&](Vec2 n) {
+    const double at = dot(n, y) - support(s, n).h;
+    if (is_first || at > best.distance) best = {n, at};
+    const bool is_settled = is_first && is_nearest(s, y, at);
+    is_first = false;
+    return is_settled;
+  });
+  return best;
+}
+
 /// A direction m with h_S(m) = -depth < 0: away from the middle of S where that separates, else from its nearest point.
 struct Inward {
   Vec2 m;
   double depth;
 };
-std::optional<Inward> inward(const GrownShape& s) {
-  const Vec2 away = s.origin - std::visit(Middle{}, s.shape);
+template <class Seen>
+std::optional<Inward> inward(const Seen& s) {
+  const Vec2 away = origin_of(s) - middle_of(s);
   const double length = std::sqrt(squared_norm(away));
   if (length > 0.0) {
     const Vec2 m = away / length;
@@ -115,7 +175,7 @@ std::optional<Inward> inward(const GrownShape& s) {
     constexpr double kDeep = 0x1p-10;  // of H: shallower ones are left to the nearest normal, which is the deepest
     if (v.h < -kDeep * v.magnitude) return Inward{m, -v.h};
   }
-  const VelocityObstacle::Nearest nearest = nearest_to(s, {});
+  const VelocityObstacle::Nearest nearest = nearest_among(s, {});
   if (!(nearest.distance > 0.0)) return std::nullopt;
   return Inward{nearest.normal, nearest.distance};
 }
@@ -128,9 +188,34 @@ double first_tilt(double h, const SupportValue& v, double depth) {
   return std::max((std::max(h, 0.0) + 4.0 * error_of(v)) / depth, kLeastTilt);
 }
 
+/// At most 0, certified.
+template <class Seen>
+bool is_at_most_0(const Seen& s, Vec2 n) {
+  const SupportValue v = support(s, n);
+  return v.h + (kSupportError * v.magnitude + kSupportUnderflow) <= 0.0;
+}
+
+template <class Seen>
+std::optional<Vec2> tilted_until_inside(const Seen& s, Vec2 n, Vec2 m, double first) {
+  for (double kappa = std::max(first, kLeastTilt); kappa < 1.0; kappa *= 2.0) {
+    const Vec2 tilted = n + kappa * m;
+    if (is_at_most_0(s, tilted)) return tilted;
+  }
+  return std::nullopt;
+}
+
+template <class Seen>
+std::optional<Vec2> inside(const Seen& s, Vec2 n) {
+  const std::optional<Inward> in = inward(s);
+  if (!in) return std::nullopt;
+  const SupportValue v = support(s, n);
+  return tilted_until_inside(s, n, in->m, first_tilt(v.h, v, in->depth));
+}
+
 /// Half-planes through 0: the legs and the apex. Nudging an offset would not do, since the cone is unbounded.
-std::optional<HalfPlane> leg_half_plane(const GrownShape& s, Vec2 n) {
-  const std::optional<Vec2> tilted = certified_inside(s, n);
+template <class Seen>
+std::optional<HalfPlane> leg_half_plane(const Seen& s, Vec2 n) {
+  const std::optional<Vec2> tilted = inside(s, n);
   if (!tilted) return std::nullopt;
   return HalfPlane{*tilted, 0.0};
 }
@@ -151,14 +236,10 @@ std::optional<HalfPlane> contact(const GrownShape& s) {
 }  // namespace
 
 VelocityObstacle::Nearest nearest_to(const GrownShape& s, Vec2 y) {
-  const Normals candidates = nearest_normals(s, y);
-  const auto distance = [&](Vec2 n) { return dot(n, y) - support(s, n).h; };
-  VelocityObstacle::Nearest best{candidates.n[0], distance(candidates.n[0])};
-  for (std::size_t i = 1; i < candidates.count; ++i) {
-    const double at = distance(candidates.n[i]);
-    if (at > best.distance) best = {candidates.n[i], at};
-  }
-  return best;
+  return nearest_among(s, y);
+}
+VelocityObstacle::Nearest nearest_to(const SeenSegment& s, Vec2 y) {
+  return nearest_among(s, y);
 }
 
 namespace {
@@ -181,19 +262,32 @@ std::optional<Direction> best_direction_of_cone(const GrownShape& s, Vec2 v) {
   return best.direction;
 }
 
-std::optional<Direction> best_direction_truncated(const GrownShape& s, Vec2 y) {
+template <class Seen>
+std::optional<Direction> best_direction_truncated(const Seen& s, Vec2 y) {
   Best best;
-  const Normals inner = nearest_normals(s, y);
-  for (std::size_t i = 0; i < inner.count; ++i) {
-    const SupportValue v = support(s, inner.n[i]);
-    if (v.h > 0.0) continue;
-    best.offer(inner.n[i], v.h - dot(inner.n[i], y), v, BoundaryPart::cut_off);
+  bool is_first = true, is_settled = false;
+  for_each_nearest_normal(s, y, [&](Vec2 n) {
+    const SupportValue v = support(s, n);
+    if (v.h <= 0.0) best.offer(n, v.h - dot(n, y), v, BoundaryPart::cut_off);
     // y outside S, and its nearest point's normal separates: VO is convex, so that point is the nearest of VO too.
-    if (i == 0 && best.direction.f < 0.0) return best.direction;
-  }
+    is_settled = is_first && best.direction.f < 0.0;
+    is_first = false;
+    return is_settled;
+  });
+  if (is_settled) return best.direction;
   if (const std::optional<Tangents> legs = tangents(s)) offer_legs(*legs, y, best);
   if (!std::isfinite(best.direction.f)) return std::nullopt;
   return best.direction;
+}
+
+/// The certified half-plane in the best direction.
+template <class Seen>
+std::optional<HalfPlane> half_plane_along(const Seen& s, double tau, const Direction& best) {
+  if (best.part == BoundaryPart::cut_off) {
+    const double h_up = best.h + error_of({best.h, best.magnitude});
+    if (h_up <= 0.0) return HalfPlane{best.normal, offset_above(h_up, tau)};
+  }
+  return leg_half_plane(s, best.normal);
 }
 
 }  // namespace
@@ -203,18 +297,11 @@ std::optional<Direction> best_direction(const GrownShape& s, double tau, Vec2 v)
 }
 
 std::optional<Vec2> tilted_inside(const GrownShape& s, Vec2 n, Vec2 m, double first) {
-  for (double kappa = std::max(first, kLeastTilt); kappa < 1.0; kappa *= 2.0) {
-    const Vec2 tilted = n + kappa * m;
-    if (support_upper_bound(s, tilted) <= 0.0) return tilted;
-  }
-  return std::nullopt;
+  return tilted_until_inside(s, n, m, first);
 }
 
 std::optional<Vec2> certified_inside(const GrownShape& s, Vec2 n) {
-  const std::optional<Inward> in = inward(s);
-  if (!in) return std::nullopt;
-  const SupportValue v = support(s, n);
-  return tilted_inside(s, n, in->m, first_tilt(v.h, v, in->depth));
+  return inside(s, n);
 }
 
 std::optional<Vec2> certified_outside(const GrownShape& s, Vec2 n) {
@@ -238,12 +325,16 @@ std::optional<HalfPlane> separating_half_plane(const GrownShape& s, double tau, 
   }
   const std::optional<Direction> best = best_direction(s, tau, v);
   if (!best || !is_about_unit(best->normal)) return contact(s);
-  if (best->part == BoundaryPart::cut_off) {
-    const double h_up = best->h + error_of({best->h, best->magnitude});
-    if (h_up <= 0.0) return HalfPlane{best->normal, offset_above(h_up, tau)};
-  }
-  const std::optional<HalfPlane> leg = leg_half_plane(s, best->normal);
-  return leg ? leg : contact(s);
+  const std::optional<HalfPlane> h = half_plane_along(s, tau, *best);
+  return h ? h : contact(s);
+}
+
+std::optional<HalfPlane> separating_half_plane(const SeenSegment& s, double tau, Vec2 v) {
+  if (!std::isfinite(tau)) return separating_half_plane(s.whole, tau, v);
+  const std::optional<Direction> best = best_direction_truncated(s, tau * v);
+  if (!best || !is_about_unit(best->normal)) return contact(s.whole);
+  const std::optional<HalfPlane> h = half_plane_along(s, tau, *best);
+  return h ? h : contact(s.whole);
 }
 
 }  // namespace exactvo::vo::detail

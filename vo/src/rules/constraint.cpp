@@ -48,19 +48,35 @@ void BodyTable::move(Number body, geometry::ConvexShape shape, Vec2 velocity) {
 }
 
 Nearest clearance_of(const GrownShape& seen) {
-  return detail::nearest_to(seen, {});
+  return std::holds_alternative<geometry::Segment>(seen.shape) ? detail::nearest_to(detail::SeenSegment(seen), {})
+                                                               : detail::nearest_to(seen, {});
 }
+
+namespace {
+
+/// The first step of the sequence, for a robot grown already. `clearance` is that of the robot as it is.
+std::optional<HalfPlane> with_margin(const GrownShape& grown, double clearance, Vec2 velocity,
+                                     const ClearancePolicy& policy) {
+  if (std::holds_alternative<geometry::Segment>(grown.shape)) {
+    const detail::SeenSegment segment(grown);
+    if (!is_surely_apart(segment, policy.room, clearance) && !is_apart(grown)) return std::nullopt;
+    return detail::separating_half_plane(segment, policy.time_horizon, velocity);
+  }
+  if (!is_apart(grown)) return std::nullopt;
+  return detail::separating_half_plane(grown, policy.time_horizon, velocity);
+}
+
+}  // namespace
 
 ProvenHalfPlane half_plane_against(GrownShape& seen, const Nearest& nearest, Vec2 velocity,
                                    const ClearancePolicy& policy) {
   const double radius = seen.radius;
   seen.radius = radius + policy.room;
-  std::optional<HalfPlane> h;
-  if (is_apart(seen)) h = detail::separating_half_plane(seen, policy.time_horizon, velocity);
+  const std::optional<HalfPlane> h = with_margin(seen, nearest.distance, velocity, policy);
   if (!h && policy.restore_within > 0.0) {
-    h = parting(detail::nearest_to(seen, {}), policy.restore_within);
+    const HalfPlane back = parting(detail::nearest_to(seen, {}), policy.restore_within);
     seen.radius = radius;
-    return {*h, half_plane_is_safe(seen, policy.time_horizon, *h) ? Proof::alone : Proof::none};
+    return {back, half_plane_is_safe(seen, policy.time_horizon, back) ? Proof::alone : Proof::none};
   }
   seen.radius = radius;
   return h ? ProvenHalfPlane{*h, Proof::alone} : contact_or_push_out(seen, nearest, policy);
