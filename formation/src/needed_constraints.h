@@ -49,23 +49,29 @@ class NeededConstraints {
 /// there, nearest first.
 class NearConstraints {
  public:
-  /// Begins anew. `field` must outlive the questions; `reach` in m, from the rim.
+  /// Begins anew. `field` must outlive the questions, and be the same one every time; `reach` in m, from the rim.
   void look(const StaticField& field, const Viewpoint& from, double reach);
 
   /// The first that v violates, or null. Valid until the next question.
   const Constraint* first_violated(Vec2 v);
+  /// Whether v violates any.
+  bool any_violated(Vec2 v);
   /// That of a body, or null. Valid until the next question.
   const Constraint* of_body(vo::BodyTable::Number body);
 
  private:
-  template <class Wanted>
-  bool build_where(const Wanted& wanted);
+  struct Asked;  ///< a velocity
+  const Constraint* build(StaticField::Candidate& c);
+  StaticField::Candidate* next_for(const Asked& asked, double nearer);
 
   const StaticField* field_ = nullptr;
   Viewpoint from_;
   double reach_ = 0.0;
+  std::vector<StaticField::NearBody> bodies_;  ///< near `gathered_at_`
+  Vec2 gathered_at_;
+  double gathered_reach_ = -1.0;
   std::vector<StaticField::Candidate> candidates_;
-  std::vector<Constraint> lines_;
+  std::vector<Constraint> lines_;  ///< in the order in which they were built
 };
 
 }  // namespace exactvo::formation::detail

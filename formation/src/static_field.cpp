@@ -315,6 +315,93 @@ double StaticField::room_below(const geometry::Box& box, const Viewpoint& from) 
   return std::max(slow, (path - from.radius - kept) / tau);
 }
 
+// More is known of a segment or an ellipse than of its box. For a unit n, let every point x of the body have
+// n.x <= -(kept + g), seen from the robot, where `kept` is its radius and what it keeps away. With g > 0 the velocity
+// obstacle lies in { w : n.w <= -g / tau }, from which v has n.v + g / tau. `tau` may be too long, never too short.
+
+namespace {
+
+/// m/s: the room that such a line leaves, or nothing that counts.
+double room_beside(double gap, double along_normal, double tau) {
+  return gap > 0.0 ? along_normal + gap / tau : -std::numeric_limits<double>::infinity();
+}
+
+/// The half-plane against a segment seen from the robot, but for rounding: that of the cut-off's point nearest to u.
+/// With q the point of the segment nearest to y = tau u, where y is outside the grown segment and n = (y - q) / |y - q|
+/// separates it from the robot, the velocity obstacle, convex, has no nearer one. Nothing where that is in doubt.
+/// `kept` is the radius with what is kept away, rounded up by more than all rounding here.
+std::optional<geometry::HalfPlane> line_on_cut_off(Vec2 start, Vec2 along, double per_length2, double kept, double tau,
+                                                   Vec2 u) {
+  const Vec2 w = tau * u - start;
+  const Vec2 off = w - std::clamp(dot(w, along) * per_length2, 0.0, 1.0) * along;
+  const double length2 = squared_norm(off);
+  if (!(length2 > kept * kept)) return std::nullopt;
+  const Vec2 n = off / std::sqrt(length2);
+  const double at_start = dot(n, start);
+  const double h = std::max(at_start, at_start + dot(n, along)) + kept;
+  if (!(h < 0.0)) return std::nullopt;
+  return geometry::HalfPlane{n, h / tau};
+}
+
+double inverse_of_square(Vec2 along) {
+  const double length2 = squared_norm(along);
+  return length2 > 0.0 && std::isfinite(1.0 / length2) ? 1.0 / length2 : 0.0;
+}
+
+/// Of the cut-off where u is nearest to it, else of the line across the way to the nearest point.
+template <class Tau>
+double room_of_segment(const geometry::Segment& s, Vec2 x, Vec2 u, double kept, const Tau& tau_of) {
+  const Vec2 along = s.b - s.a, start = s.a - x;
+  const double per_length2 = inverse_of_square(along);
+  const Vec2 away = -(start + std::clamp(-dot(start, along) * per_length2, 0.0, 1.0) * along);
+  const double distance = norm(away);
+  if (!(distance > kept)) return -std::numeric_limits<double>::infinity();
+  const double tau = tau_of(distance);
+  if (const std::optional<geometry::HalfPlane> h = line_on_cut_off(start, along, per_length2, kept, tau, u))
+    return -violation(*h, u);
+  return room_beside(distance - kept, dot(away, u) / distance, tau);
+}
+
+/// The largest n.(x - centre) of an ellipse.
+double half_width(const geometry::Ellipse& e, Vec2 n) {
+  return norm(Vec2{e.l11 * n.x + e.l21 * n.y, e.l22 * n.y});
+}
+
+/// n: away from the centre, across the velocity. The ellipse begins no farther than on the way to its centre.
+template <class Tau>
+double room_of_ellipse(const geometry::Ellipse& e, Vec2 x, Vec2 u, double kept, const Tau& tau_of) {
+  const Vec2 to = e.center - x;
+  const double distance = norm(to);
+  if (!(distance > 0.0)) return -std::numeric_limits<double>::infinity();
+  const double tau = tau_of(distance);
+  const Vec2 n = to / distance;
+  double room = room_beside(distance - half_width(e, n) - kept, -dot(n, u), tau);
+  if (const double speed = norm(u); speed > 0.0) {
+    const Vec2 across = perp(u) / speed;
+    room = std::max(room, room_beside(std::fabs(dot(across, to)) - half_width(e, across) - kept, 0.0, tau));
+  }
+  return room;
+}
+
+}  // namespace
+
+/// m/s: less than n.v - c of the body's half-plane at v = from.velocity. Not looked for any more where it is `enough`.
+double StaticField::room_of(BodyTable::Number body, const Viewpoint& from, double enough) const {
+  constexpr double kRounding = 1e-12;  // of the coordinates
+  const geometry::Box& box = scene_->bodies().box(body);
+  const double room = room_below(box, from);
+  if (room >= enough) return room;
+  const double kept =
+      from.radius + margin_ + kContactSkin + kRounding * (largest_coordinate(box) + norm(from.position) + from.radius);
+  const auto tau_of = [&](double distance) { return (1.0 + kRounding) * horizon(distance - from.radius, from); };
+  const geometry::ConvexShape& shape = scene_->bodies()[body].shape;
+  if (const auto* s = std::get_if<geometry::Segment>(&shape))
+    return std::max(room, room_of_segment(*s, from.position, from.velocity, kept, tau_of));
+  if (const auto* e = std::get_if<geometry::Ellipse>(&shape))
+    return std::max(room, room_of_ellipse(*e, from.position, from.velocity, kept, tau_of));
+  return room;
+}
+
 /// m, from the rim: whatever is farther leaves a robot at rest at least that room.
 double StaticField::distance_of_room(const Viewpoint& from, double room) const {
   const Horizons& h = scenario_->horizons;
@@ -324,14 +411,6 @@ double StaticField::distance_of_room(const Viewpoint& from, double room) const {
   if (const double d = kept + least * room; d <= pace * least) return d;
   if (const double d = kept * pace / (pace - room); room < pace && d <= pace * h.most) return std::max(d, pace * least);
   return std::max(kept + h.most * room, pace * h.most);
-}
-
-bool StaticField::is_needed(const geometry::Box& box, const Viewpoint& from, const Need& need) const {
-  constexpr double kRounding = 1.0 + 1e-9;
-  if (need.within >= 0.0 &&
-      geometry::distance_below(box, from.position) <= kRounding * (need.within + from.radius + kContactSkin))
-    return true;
-  return need.room > 0.0 && room_below(box, from) < need.room;
 }
 
 /// Meets every box that is needed: boxes that meet each other in pairs have a place in common.
@@ -356,9 +435,21 @@ geometry::Box StaticField::window_of(const Viewpoint& from, const Need& need) co
 void StaticField::add_needed(const Viewpoint& from, const Need& had, const Need& need,
                              std::vector<Constraint>& out) const {
   EXACTVO_REQUIRE(rule_ == HorizonRule::clamped && method_ != Method::orca, "bounds of other horizons");
+  constexpr double kRounding = 1.0 + 1e-9;
+  const auto is_within = [&](const Need& n, double distance) {
+    return n.within >= 0.0 && distance <= kRounding * (n.within + from.radius + kContactSkin);
+  };
+  const auto is_new = [&](BodyTable::Number body) {
+    const double distance = geometry::distance_below(scene_->bodies().box(body), from.position);
+    if (is_within(had, distance)) return false;
+    const bool is_near = is_within(need, distance);
+    if (is_near && !(had.room > 0.0)) return true;
+    if (!is_near && !(need.room > 0.0)) return false;
+    const double room = room_of(body, from, std::max(need.room, had.room));
+    return !(had.room > 0.0 && room < had.room) && (is_near || room < need.room);
+  };
   const auto add_if_new = [&](BodyTable::Number body, const Name& name) {
-    const geometry::Box& box = scene_->bodies().box(body);
-    if (is_needed(box, from, need) && !is_needed(box, from, had)) add_body(body, name, from, out);
+    if (is_new(body)) add_body(body, name, from, out);
   };
   for_each_shape_meeting(window_of(from, need), [&](const Shape& s) {
     if (gives_way(s, from))
@@ -368,27 +459,100 @@ void StaticField::add_needed(const Viewpoint& from, const Need& had, const Need&
   });
 }
 
-void StaticField::candidates(const Viewpoint& from, double reach, std::vector<Candidate>& out) const {
-  EXACTVO_REQUIRE(rule_ == HorizonRule::clamped && method_ != Method::orca, "bounds of other horizons");
+StaticField::NearBody StaticField::near_body(BodyTable::Number body, const Name& name) const {
+  NearBody b;
+  b.body = body;
+  b.index = name.index;
+  b.piece = name.piece;
+  b.grade = name.grade;
+  b.box = scene_->bodies().box(body);
+  b.largest_coordinate = largest_coordinate(b.box);
+  if (const auto* s = std::get_if<geometry::Segment>(&scene_->bodies()[body].shape)) {
+    b.is_segment = true;
+    b.a = s->a;
+    b.along = s->b - s->a;
+    b.per_length2 = inverse_of_square(b.along);
+  }
+  return b;
+}
+
+void StaticField::bodies_near(const Viewpoint& from, double reach, double room_to_move,
+                              std::vector<NearBody>& out) const {
   out.clear();
-  const double within = distance_within(from, reach);
-  const auto add = [&](BodyTable::Number body, const Name& name) {
-    const geometry::Box& box = scene_->bodies().box(body);
-    const double distance = geometry::distance_below(box, from.position);
-    if (!(distance <= within)) return;
-    // In the box nothing is known of the depth; outside, clearances are rounded.
-    constexpr double kRounding = 1e-12;  // of the coordinates
-    const double rounding = kRounding * (largest_coordinate(box) + norm(from.position) + distance + from.radius);
-    const double nearest =
-        distance > 0.0 ? distance - from.radius - rounding : -std::numeric_limits<double>::infinity();
-    out.push_back({body, name.index, name.piece, name.grade, nearest, room_below(box, from), false});
-  };
-  for_each_shape_within(from.position, within, [&](const Shape& s) {
-    if (gives_way(s, from))
-      for_each_piece_of(s, add);
-    else
-      add(s.body, {s.index, 0, s.grade});
+  for_each_shape_within(from.position, distance_within(from, reach) + room_to_move, [&](const Shape& s) {
+    out.push_back(near_body(s.body, {s.index, 0, s.grade}));
+    out.back().gathered = geometry::distance_below(out.back().box, from.position);
   });
+  std::sort(out.begin(), out.end(), [](const NearBody& a, const NearBody& b) { return a.gathered < b.gathered; });
+}
+
+/// What all candidates of a look have in common.
+struct StaticField::Sight {
+  const Viewpoint& from;
+  double within;       ///< m, from the centre
+  double size;         ///< m, of the coordinates
+  double per_pace;     ///< s/m: tau = distance * per_pace between the least and the most
+  double least, most;  ///< s
+};
+
+/// False where the body is too far; `out` is filled otherwise.
+bool StaticField::see(const NearBody& b, const Sight& sight, Candidate& out) const {
+  constexpr double kRounding = 1e-12;  // of the coordinates
+  const Viewpoint& from = sight.from;
+  const Vec2 x = from.position - b.a;
+  const Vec2 away = b.is_segment ? x - std::clamp(dot(x, b.along) * b.per_length2, 0.0, 1.0) * b.along
+                                 : from.position - Vec2{std::clamp(from.position.x, b.box.low.x, b.box.high.x),
+                                                        std::clamp(from.position.y, b.box.low.y, b.box.high.y)};
+  const double distance2 = squared_norm(away);
+  if (!(distance2 <= sight.within * sight.within)) return false;
+  out.distance = std::sqrt(distance2);
+  const double rounding = kRounding * (b.largest_coordinate + sight.size + out.distance);
+  // In the box nothing is known of the depth; outside, clearances are rounded.
+  out.nearest = out.distance > 0.0 ? out.distance - from.radius - rounding : -std::numeric_limits<double>::infinity();
+  out.body = b.body;
+  out.index = b.index;
+  out.piece = b.piece;
+  out.grade = b.grade;
+  if (!b.is_segment) {
+    out.room = room_of(b.body, from, std::numeric_limits<double>::infinity());
+    return true;
+  }
+  out.is_segment = true;
+  out.away = away;
+  out.kept = from.radius + margin_ + kContactSkin + rounding;
+  out.tau = std::clamp((out.distance - from.radius) * sight.per_pace, sight.least, sight.most);
+  if (!(out.distance > out.kept)) return true;
+  if (const auto line = line_on_cut_off(-x, b.along, b.per_length2, out.kept, out.tau, from.velocity)) {
+    out.has_line = true;
+    out.line = *line;
+  }
+  return true;
+}
+
+void StaticField::candidates(const std::vector<NearBody>& near, double moved, const Viewpoint& from, double reach,
+                             std::vector<Candidate>& out) const {
+  EXACTVO_REQUIRE(rule_ == HorizonRule::clamped && method_ != Method::orca, "bounds of other horizons");
+  constexpr double kRounding = 1.0 + 1e-9;
+  out.clear();
+  const Horizons& h = scenario_->horizons;
+  const Sight sight{from,
+                    kRounding * distance_within(from, reach),
+                    norm(from.position) + from.radius,
+                    1.0 / std::max(norm(from.velocity), h.speed_floor * from.max_speed),
+                    std::max(h.least, 2.0 * scenario_->time_step),
+                    h.most};
+  const auto see_if_near = [&](const NearBody& b) {
+    if (!see(b, sight, out.emplace_back())) out.pop_back();
+  };
+  for (const NearBody& b : near) {
+    if (b.gathered > sight.within + kRounding * moved) break;
+    if (b.grade == EnclosureGrade::tight || !gives_way({b.body, b.index, b.grade}, from)) {
+      see_if_near(b);
+      continue;
+    }
+    for_each_piece_of({b.body, b.index, b.grade},
+                      [&](BodyTable::Number piece, const Name& name) { see_if_near(near_body(piece, name)); });
+  }
 }
 
 void StaticField::build(const Candidate& c, const Viewpoint& from, std::vector<Constraint>& out) const {

@@ -123,17 +123,43 @@ class StaticField {
   /// bound of that is certain beyond all rounding. REQUIRES: HorizonRule::clamped; a method other than orca.
   void add_needed(const Viewpoint& from, const Need& had, const Need& need, std::vector<Constraint>& out) const;
 
-  /// One body of the field as a robot sees it, before its half-plane is built.
+  /// A body of the field as it is looked at again and again, from places near each other.
+  struct NearBody {
+    vo::BodyTable::Number body = 0;
+    std::size_t index = 0, piece = 0;
+    geometry::EnclosureGrade grade = geometry::EnclosureGrade::tight;
+    geometry::Box box;
+    double largest_coordinate = 0.0;  ///< m, of the box
+    bool is_segment = false;          ///< a piece that is one: from `a`, along `along`
+    Vec2 a, along;                    ///< m
+    double per_length2 = 0.0;         ///< 1/m2, 1 / |along|^2; 0 of a point
+    double gathered = 0.0;            ///< m, from where it was looked for: no more than its distance
+  };
+  /// All whose box is within `reach` (m, from the rim) of a place at most `room_to_move` (m) away from the robot's,
+  /// nearest first.
+  void bodies_near(const Viewpoint& from, double reach, double room_to_move, std::vector<NearBody>& out) const;
+
+  /// One body of the field as a robot sees it, before its half-plane is built. Rounded.
   struct Candidate {
     vo::BodyTable::Number body = 0;
     std::size_t index = 0, piece = 0;
     geometry::EnclosureGrade grade = geometry::EnclosureGrade::tight;
     double nearest = 0.0;  ///< m, from the rim: no more than its clearance
     double room = 0.0;     ///< m/s: no more than n.v - c of its half-plane at v = from.velocity, where this is > 0
+    bool is_segment = false;
+    // Of a segment:
+    bool has_line = false;  ///< then its half-plane is this one but for rounding
+    geometry::HalfPlane line;
+    Vec2 away;              ///< m, from its nearest point to the robot
+    double distance = 0.0;  ///< m, |away|
+    double kept = 0.0;      ///< m, from the robot's centre: where less is left than this, nothing is known. Rounded up
+    double tau = 0.0;       ///< s, its time horizon
     bool is_built = false;
   };
-  /// What `constraints` would build within that reach, and its half-plane where it has one. The same REQUIRES.
-  void candidates(const Viewpoint& from, double reach, std::vector<Candidate>& out) const;
+  /// What `constraints` would build within that reach, and its half-plane where it has one. The same REQUIRES. `near`:
+  /// what `bodies_near` gave for that reach and a place `moved` (m) away, within its room to move.
+  void candidates(const std::vector<NearBody>& near, double moved, const Viewpoint& from, double reach,
+                  std::vector<Candidate>& out) const;
   void build(const Candidate& candidate, const Viewpoint& from, std::vector<Constraint>& out) const;
 
   /// The shapes by their number in this field, as bodies: `Constraint::index` counts them.
@@ -174,8 +200,11 @@ class StaticField {
 
   double distance_within(const Viewpoint& from, double reach) const;
   geometry::Box window_of(const Viewpoint& from, const Need& need) const;
-  bool is_needed(const geometry::Box& box, const Viewpoint& from, const Need& need) const;
   double room_below(const geometry::Box& box, const Viewpoint& from) const;
+  double room_of(vo::BodyTable::Number body, const Viewpoint& from, double enough) const;
+  NearBody near_body(vo::BodyTable::Number body, const Name& name) const;
+  struct Sight;
+  bool see(const NearBody& b, const Sight& sight, Candidate& out) const;
   double distance_of_room(const Viewpoint& from, double room) const;
 
   Scene* scene_;

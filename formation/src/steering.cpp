@@ -149,7 +149,7 @@ bool Follower::stalled(const Situation& s) {
 }
 
 bool Follower::may_leave(const Situation& s, NearConstraints& near) const {
-  return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !near.first_violated(s.preferred);
+  return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !near.any_violated(s.preferred);
 }
 
 Follower::Answer Follower::steer(const Situation& s) {
@@ -157,7 +157,7 @@ Follower::Answer Follower::steer(const Situation& s) {
   NearConstraints near;
   near.look(*s.field, s.robot, s.reach);
   if (!following_) {
-    if (!near.first_violated(s.preferred)) return {s.preferred, Mode::direct, 0, ""};
+    if (!near.any_violated(s.preferred)) return {s.preferred, Mode::direct, 0, ""};
     return begin(s, near);
   }
   if (!may_leave(s, near)) return follow(s, near);

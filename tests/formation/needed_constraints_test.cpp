@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -42,7 +43,25 @@ struct Sight {
   Viewpoint draw(datasets::CounterRandom& random) const {
     const double x = random.uniform(0.0, 1.0), y = random.uniform(0.0, 1.0);
     const Vec2 size = extent.high - extent.low;
-    return {extent.low + Vec2{x * size.x, y * size.y}, velocity(random), 0.2, 1.2};
+    const Viewpoint anywhere{extent.low + Vec2{x * size.x, y * size.y}, velocity(random), 0.2, 1.2};
+    return random.uniform(0.0, 1.0) < 0.5 ? anywhere : along_edge(random);
+  }
+
+  /// As a robot stands and moves that follows a boundary: beside an edge or a corner of it, at the margin or within
+  /// rounding of it, along the edge or a little off.
+  Viewpoint along_edge(datasets::CounterRandom& random) const {
+    const auto pick = [&](std::size_t n) {
+      return std::min(n - 1, static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(n))));
+    };
+    const std::vector<Vec2> corners = vertices_of(scenario.obstacles[pick(scenario.obstacles.size())].shape);
+    const std::size_t k = pick(corners.size());
+    const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
+    const Vec2 along = geometry::normalized(b - a);
+    constexpr double kOff[] = {0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.05, 0.3};
+    const double gap = 0.2 + scenario.margins.obstacle + kContactSkin + kOff[pick(std::size(kOff))];
+    const double turned = random.uniform(0.0, 1.0) < 0.5 ? 0.0 : kOff[pick(std::size(kOff))];
+    const Vec2 place = a + random.uniform(-0.1, 1.1) * (b - a) + (pick(2) == 0 ? -gap : gap) * geometry::perp(along);
+    return {place, 1.2 * geometry::rotated(along, turned), 0.2, 1.2};
   }
 
   static Vec2 velocity(datasets::CounterRandom& random) {
@@ -138,6 +157,34 @@ TEST_P(NeededHalfPlanes, NameTheFirstThatATurningVelocityViolates) {
   EXPECT_GT(met, 50u);
 }
 
+/// Whether any, asked of one sight after the other on a way, so that what is near is gathered now and then only.
+TEST_P(NeededHalfPlanes, SayWhetherAnyIsViolatedOnAWay) {
+  const Sight sight(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  datasets::CounterRandom random(6);
+  NearConstraints near;
+  std::vector<Constraint> all;
+  std::size_t met = 0, asked = 0;
+  for (int way = 0; way < 40; ++way) {
+    Viewpoint from = sight.draw(random);
+    for (int k = 0; k < 50; ++k) {
+      const double reach = 0.36;
+      sight.field->constraints(from, all);
+      near.look(*sight.field, from, reach);
+      const Vec2 v = k % 3 == 0 ? from.velocity : Sight::velocity(random);
+      const bool any = std::any_of(all.begin(), all.end(), [&](const Constraint& c) {
+        return c.clearance <= reach && violates(c.half_plane, v);
+      });
+      ASSERT_EQ(near.any_violated(v), any);
+      met += any;
+      ++asked;
+      from.velocity = k % 10 == 9 ? Sight::velocity(random) : from.velocity;
+      from.position += 0.02 * from.velocity;
+    }
+  }
+  EXPECT_GT(met, 50u);
+  EXPECT_LT(met, asked);
+}
+
 TEST_P(NeededHalfPlanes, GiveTheDecisionThatAllGive) {
   const Sight sight(std::get<0>(GetParam()), std::get<1>(GetParam()));
   datasets::CounterRandom random(4);
@@ -169,7 +216,7 @@ TEST_P(NeededHalfPlanes, GiveTheDecisionThatAllGive) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NeededHalfPlanes,
-                         testing::Combine(testing::Values("floor", "polygon", "field-open", "block"),
+                         testing::Combine(testing::Values("floor", "polygon", "field-open", "block", "maze"),
                                           testing::Values(Method::ivo, Method::ivo_edge)),
                          [](const auto& row) {
                            std::string text = std::string(std::get<0>(row.param)) + "_" + name(std::get<1>(row.param));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A segment seen from a robot answers in the same bits as any shape does: nearest point, half-plane, the whole sequence.
+// A segment seen from a robot answers in the same bits as any shape does: nearest point, half-plane, the whole
+// sequence.
 #include "cone/seen_segment.h"
 
 #include <gtest/gtest.h>
@@ -48,8 +49,8 @@ void print(const Case& c) {
               c.seen.origin.x, c.seen.origin.y, c.seen.radius, c.room, c.tau, c.v.x, c.v.y);
 }
 
-/// Segments of a grid of cells, slanting ones, points; robots beside them, on their lines, at the margin within rounding,
-/// touching, inside; coordinates small and large.
+/// Segments of a grid of cells, slanting ones, points; robots beside them, on their lines, at the margin within
+/// rounding, touching, inside; coordinates small and large.
 class Cases {
  public:
   explicit Cases(std::uint64_t seed) : random_(seed) {}
@@ -81,11 +82,16 @@ class Cases {
   Vec2 along(double size) {
     const double length = size * 0.05 * random_.integer(1, 40);
     switch (random_.integer(0, 5)) {
-      case 0: return {length, 0.0};
-      case 1: return {0.0, -length};
-      case 2: return {-length, 0.0};
-      case 3: return {};
-      default: return length * random_.direction();
+      case 0:
+        return {length, 0.0};
+      case 1:
+        return {0.0, -length};
+      case 2:
+        return {-length, 0.0};
+      case 3:
+        return {};
+      default:
+        return length * random_.direction();
     }
   }
   /// At about the distance `reach` of the segment, or anywhere.
@@ -94,10 +100,14 @@ class Cases {
     const Vec2 across = s.a == s.b ? random_.direction() : geometry::normalized(geometry::perp(s.b - s.a));
     constexpr double kGaps[] = {0.0, 1e-16, 1e-12, 1e-9, 1e-6, 0.01, 0.1, -1e-12, -0.01};
     switch (random_.integer(0, 4)) {
-      case 0: return on;
-      case 1: return on + size * random_.uniform(0.0, 5.0) * random_.direction();
-      case 2: return s.b + reach * random_.direction();
-      default: return on + (reach + size * kGaps[random_.integer(0, 8)]) * across;
+      case 0:
+        return on;
+      case 1:
+        return on + size * random_.uniform(0.0, 5.0) * random_.direction();
+      case 2:
+        return s.b + reach * random_.direction();
+      default:
+        return on + (reach + size * kGaps[random_.integer(0, 8)]) * across;
     }
   }
 
@@ -159,7 +169,8 @@ TEST(SeenSegment, GoesThroughTheWholeSequenceInTheSameBits) {
     grown.radius += c.room;
     std::optional<HalfPlane> h;
     if (locate(grown, Vec2{}) == Place::outside) h = separating_half_plane(grown, c.tau, c.v);
-    const ProvenHalfPlane expected = h ? ProvenHalfPlane{*h, Proof::alone} : contact_or_push_out(c.seen, nearest, policy);
+    const ProvenHalfPlane expected =
+        h ? ProvenHalfPlane{*h, Proof::alone} : contact_or_push_out(c.seen, nearest, policy);
     const ProvenHalfPlane found = half_plane_against(c.seen, nearest, c.v, policy);
     const bool same = same_bits(found.half_plane, expected.half_plane) && found.proof == expected.proof;
     if (!same) print(c);
