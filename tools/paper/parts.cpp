@@ -4,136 +4,69 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <exception>
-#include <fstream>
-#include <iterator>
-#include <mutex>
-#include <optional>
-#include <thread>
 
-#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/ordered_work.h"
+#include "exactvo/datasets/part_folder.h"
 #include "exactvo/datasets/provenance.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {
+namespace {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-fs::path file_of(const PartTask& task, const PartsOptions& options) {
-  return options.folder / (task.name + ".part");
-}
-
-/// The first line of a part: what it was made under, and a digest of the rest.
-std::string seal(const std::string& key, const std::string& text) {
-  return "exactvo-part " + datasets::sha256_of(key) + " " + datasets::sha256_of(text) + "\n";
-}
-
-std::optional<std::string> finished_part(const PartTask& task, const PartsOptions& options) {
-  std::ifstream file(file_of(task, options), std::ios::binary);
-  if (!file) return std::nullopt;
-  const std::string all{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const std::size_t end = all.find('\n');
-  if (end == std::string::npos) return std::nullopt;
-  const std::string text = all.substr(end + 1);
-  if (all.substr(0, end + 1) != seal(options.key, text)) return std::nullopt;
-  return text;
-}
-
-/// The parts still to do, handed out in order to however many threads.
-class Workers {
+/// How far the work has come: on a terminal always, elsewhere a line now and then.
+class PartsProgress {
  public:
-  Workers(const std::vector<PartTask>& tasks, const PartsOptions& options, std::vector<std::string>& texts)
-      : tasks_(tasks), options_(options), texts_(texts) {
-    for (std::size_t i = 0; i < tasks.size(); ++i) {
-      std::optional<std::string> text = finished_part(tasks[i], options);
-      if (text) {
-        texts_[i] = std::move(*text);
-      } else {
-        open_.push_back(i);
-      }
-    }
-  }
+  explicit PartsProgress(std::size_t parts) : parts_(parts), line_(static_cast<double>(parts), "parts") {}
 
-  std::size_t open() const { return open_.size(); }
-
-  void run() {
-    std::vector<std::thread> threads;
-    const std::size_t count = std::min<std::size_t>(std::max(options_.jobs, 1u), open_.size());
-    alive_ = count;
-    for (std::size_t i = 0; i < count; ++i) threads.emplace_back([this] { work(); });
-    watch();
-    for (std::thread& thread : threads) thread.join();
-    if (failure_) std::rethrow_exception(failure_);
-    if (interrupted()) throw Interrupted();
+  void show(std::size_t done, const std::string& doing) {
+    constexpr std::chrono::seconds kBetweenMessages{30};
+    line_.show(static_cast<double>(done), doing);
+    const auto now = std::chrono::steady_clock::now();
+    if (line_.enabled() || now - said_ < kBetweenMessages) return;
+    said_ = now;
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    message(fmt::format("{} of {} parts, about {:.0f} s left", done, parts_,
+                        elapsed * static_cast<double>(parts_ - done) / static_cast<double>(done)));
   }
 
  private:
-  void work() {
-    while (!stop_ && !interrupted()) {
-      const std::size_t next = next_++;
-      if (next >= open_.size()) break;
-      try {
-        do_part(open_[next]);
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        if (!failure_) failure_ = std::current_exception();
-        stop_ = true;
-      }
-    }
-    --alive_;
-  }
-
-  void do_part(std::size_t i) {
-    const std::string text = tasks_[i].work();
-    if (interrupted()) return;  // what was cut short is no part
-    datasets::write_file_atomically(file_of(tasks_[i], options_), seal(options_.key, text) + text);
-    texts_[i] = text;
-    ++done_;
-  }
-
-  /// Says how far the threads have come: on a terminal always, elsewhere a line now and then.
-  void watch() {
-    constexpr std::chrono::milliseconds kLook{100};
-    constexpr std::chrono::seconds kSay{30};
-    ProgressLine line(static_cast<double>(open_.size()), "parts");
-    const auto start = std::chrono::steady_clock::now();
-    auto said = start;
-    while (alive_ > 0) {
-      const std::size_t done = done_;
-      line.show(static_cast<double>(done), done < open_.size() ? tasks_[open_[done]].name : "");
-      const auto now = std::chrono::steady_clock::now();
-      if (now - said >= kSay && done > 0 && !line.enabled()) {
-        said = now;
-        const double elapsed = std::chrono::duration<double>(now - start).count();
-        message(fmt::format("{} of {} parts, about {:.0f} s left", done, open_.size(),
-                            elapsed * static_cast<double>(open_.size() - done) / static_cast<double>(done)));
-      }
-      std::this_thread::sleep_for(kLook);
-    }
-  }
-
-  const std::vector<PartTask>& tasks_;
-  const PartsOptions& options_;
-  std::vector<std::string>& texts_;
-  std::vector<std::size_t> open_;
-  std::atomic<std::size_t> next_{0}, done_{0}, alive_{0};
-  std::atomic<bool> stop_{false};
-  std::mutex mutex_;
-  std::exception_ptr failure_;
+  std::size_t parts_;
+  ProgressLine line_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point said_ = start_;
 };
 
 }  // namespace
 
 std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const PartsOptions& options) {
+  const datasets::PartFolder folder(options.folder);
+  folder.create();
+  const auto file_of = [&](std::size_t task) { return folder.path(tasks[task].name + ".part"); };
   std::vector<std::string> texts(tasks.size());
-  Workers workers(tasks, options, texts);
-  const std::size_t kept = tasks.size() - workers.open();
-  if (kept > 0 && workers.open() > 0) message(fmt::format("{} of {} parts are there already", kept, tasks.size()));
-  workers.run();
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    std::optional<std::string> text = folder.read_sealed(file_of(i), options.key);
+    if (!text) open.push_back(i);
+    texts[i] = std::move(text).value_or("");
+  }
+  if (!open.empty() && open.size() < tasks.size())
+    message(fmt::format("{} of {} parts are there already", tasks.size() - open.size(), tasks.size()));
+  PartsProgress progress(open.size());
+  std::size_t next = 0;
+  std::size_t done = 0;
+  datasets::run_in_order(static_cast<int>(options.jobs), [&]() -> std::optional<datasets::OrderedTask> {
+    if (interrupted() || next == open.size()) return std::nullopt;
+    const std::size_t i = open[next++];
+    const auto work = [&, i] {
+      texts[i] = tasks[i].work();
+      if (!interrupted()) folder.write_sealed(file_of(i), options.key, texts[i]);  // what was cut short is no part
+    };
+    return datasets::OrderedTask{work, [&, i] { progress.show(++done, tasks[i].name); }};
+  });
+  if (interrupted()) throw Interrupted();
   return texts;
 }
 

@@ -5,6 +5,7 @@
 
 #include "batch/merge/summary.h"
 #include "batch/session.h"
+#include "batch/work/coroutine.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::datasets {
@@ -22,6 +23,13 @@ void require_sensible(const BatchConfiguration& configuration, const BatchRun& r
                   std::string("a robot without position, radius or horizon"));
 }
 
+/// Every n-th input from the shard's on.
+std::vector<std::size_t> inputs_of(const BatchRun& run, std::size_t inputs) {
+  std::vector<std::size_t> mine;
+  for (std::size_t k = run.shard - 1; k < inputs; k += run.shards) mine.push_back(k);
+  return mine;
+}
+
 BatchResult run_share(Session& session, const BatchRun& run) {
   const bool joins = run.resume || run.shards > 1;
   if (session.journal().look(session.identity(), joins) == Journal::State::complete) {
@@ -29,13 +37,11 @@ BatchResult run_share(Session& session, const BatchRun& run) {
   }
   session.journal().begin(session.identity());
   if (run.shards == 1) session.merge_ahead();
-  std::vector<std::size_t> mine;
-  for (std::size_t k = run.shard - 1; k < session.identity().inputs.size(); k += run.shards) mine.push_back(k);
+  const std::vector<std::size_t> mine = inputs_of(run, session.identity().inputs.size());
   session.plan(mine);
   try {
-    for (const std::size_t input : mine) session.process(input);
+    session.process(mine);
   } catch (const batch::Stopped&) {
-    session.wait();
     return {BatchEnd::interrupted, {}, false};
   }
   return session.finish();
@@ -46,9 +52,7 @@ BatchResult run_alone(Session& session, const BatchRun& run) {
     const BatchResult result = run_share(session, run);
     if (result.end != BatchEnd::incomplete || !session.journal().another_finished(session.identity())) return result;
   } catch (const DataError&) {
-    // The same batch in another process may have put everything together under this one, which writes no more parts
-    // when it looks.
-    session.rest();
+    // The same batch in another process may have put everything together under this one.
     if (!session.journal().another_finished(session.identity())) throw;
   }
   return {BatchEnd::complete, batch::read_summary(run.out), true};

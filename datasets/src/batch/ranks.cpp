@@ -13,6 +13,7 @@
 #include "batch/merge/summary.h"
 #include "batch/plan/input_record.h"
 #include "batch/session.h"
+#include "batch/work/coroutine.h"
 #include "exactvo/geometry/counted.h"
 #include "mpi/rank_library.h"
 
@@ -27,32 +28,27 @@ enum Tag : int { kAsk = 1, kWork = 2 };
 enum Said : long { kReady = 0, kDone = 1, kStopped = 2, kFailed = 3 };
 constexpr long kNoMore = -1;
 
-/// A rank's report on its last input, and what it has processed since the report before.
+/// A rank's report: what became of its last input, and what it has made since the report before.
 struct Report {
   long said = kReady;
-  long obstacles = 0;
-  long vertices = 0;
-  long nanoseconds_of_jobs = 0;
+  batch::Counts made;
 };
 constexpr int kLongsOfReport = 4;
 
 /// MPI lives as long as the object; a failure in one rank ends all of them, as a scheduler expects.
 class World {
  public:
-  World() : mpi_(rank_library()) { mpi_.join(); }
-  ~World() { mpi_.leave(); }
+  World() {
+    rank_library().join();
+    rank = rank_library().rank();
+    size = rank_library().size();
+  }
+  ~World() { rank_library().leave(); }
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  int rank() const { return mpi_.rank(); }
-  int size() const { return mpi_.size(); }
-  /// From the first rank to all.
-  long broadcast(long value) const { return mpi_.broadcast(value); }
-  /// The least that any rank gives, to all.
-  long least(long value) const { return mpi_.least(value); }
-
- private:
-  const RankLibrary& mpi_;
+  int rank = 0;
+  int size = 1;
 };
 
 /// Whether `step` went well in every rank. The first rank in which it did not throws what it threw there; the others
@@ -65,9 +61,9 @@ bool all_manage(const World& world, const Step& step) {
   } catch (...) {
     failure = std::current_exception();
   }
-  const long first_failed = world.least(failure ? world.rank() : world.size());
-  if (first_failed == world.rank()) std::rethrow_exception(failure);
-  return first_failed == world.size();
+  const long first_failed = rank_library().least(failure ? world.rank : world.size);
+  if (first_failed == world.rank) std::rethrow_exception(failure);
+  return first_failed == world.size;
 }
 
 void send_work(long input, int to) {
@@ -81,15 +77,21 @@ long receive_work() {
 }
 
 void send_report(const Report& report) {
-  const std::array<long, kLongsOfReport> values{report.said, report.obstacles, report.vertices,
-                                                report.nanoseconds_of_jobs};
+  const std::array<long, kLongsOfReport> values{report.said, static_cast<long>(report.made.obstacles),
+                                                static_cast<long>(report.made.vertices),
+                                                static_cast<long>(report.made.nanoseconds)};
   rank_library().send(values.data(), kLongsOfReport, 0, kAsk);
 }
 
 Report receive_report(int& sender) {
   std::array<long, kLongsOfReport> values{};
   sender = rank_library().receive(values.data(), kLongsOfReport, kAsk);
-  return {values[0], values[1], values[2], values[3]};
+  Report report;
+  report.said = values[0];
+  report.made.obstacles = static_cast<std::uint64_t>(values[1]);
+  report.made.vertices = static_cast<std::uint64_t>(values[2]);
+  report.made.nanoseconds = static_cast<std::uint64_t>(values[3]);
+  return report;
 }
 
 std::vector<std::size_t> largest_first(const std::vector<batch::Input>& inputs) {
@@ -103,15 +105,16 @@ std::vector<std::size_t> largest_first(const std::vector<batch::Input>& inputs) 
 /// The first rank: answers whoever asks until all is handed out and every rank has been told so.
 class Coordinator {
  public:
-  Coordinator(Session& session, int ranks, BatchWatch watch)
-      : session_(session), watch_(std::move(watch)), at_work_(ranks - 1), last_(static_cast<std::size_t>(ranks)) {}
+  Coordinator(Session& session, int ranks)
+      : session_(session), at_work_(ranks - 1), last_(static_cast<std::size_t>(ranks)) {}
 
   /// False where the watch, or a rank, stopped it. A failure of its own is thrown once every rank was told to stop.
   bool hand_out() {
     try_to([&] { queue_inputs(); });
     while (at_work_ > 0) {
       int rank = 0;
-      hear(receive_report(rank), rank);
+      const Report report = receive_report(rank);
+      hear(report, last_[static_cast<std::size_t>(rank)]);
       answer(rank);
     }
     if (failure_) std::rethrow_exception(failure_);
@@ -120,8 +123,6 @@ class Coordinator {
   bool a_rank_failed() const { return a_rank_failed_; }
 
  private:
-  const std::vector<batch::Input>& inputs() const { return session_.identity().inputs; }
-
   template <class Action>
   void try_to(const Action& action) {
     try {
@@ -134,46 +135,36 @@ class Coordinator {
 
   /// What is through already is nobody's work.
   void queue_inputs() {
-    order_ = largest_first(inputs());
+    order_ = largest_first(session_.identity().inputs);
     const auto is_there = [&](std::size_t k) { return is_through(session_.journal(), k); };
     order_.erase(std::remove_if(order_.begin(), order_.end(), is_there), order_.end());
-    progress_.inputs = order_.size();
-    for (const std::size_t k : order_) bytes_planned_ += inputs()[k].size;
-    progress_.input_bytes = bytes_planned_;
+    session_.plan(order_);
   }
 
-  void hear(const Report& report, int rank) {
-    session_.count({static_cast<std::uint64_t>(report.obstacles), static_cast<std::uint64_t>(report.vertices),
-                    static_cast<std::uint64_t>(report.nanoseconds_of_jobs)});
-    if (report.said == kDone) {
-      ++progress_.inputs_done;
-      bytes_done_ += inputs()[last_[static_cast<std::size_t>(rank)]].size;
-    }
+  /// `input`: the rank's last one.
+  void hear(const Report& report, std::size_t input) {
+    session_.count(report.made);
+    if (report.said == kDone) session_.count_input(input);
     if (report.said == kStopped || report.said == kFailed) stopped_ = true;
     if (report.said == kFailed) a_rank_failed_ = true;
   }
 
   void answer(int rank) {
-    bool go_on = false;
-    try_to([&] { go_on = !stopped_ && next_ < order_.size() && look(order_[next_]); });
-    if (!go_on) {
+    long work = kNoMore;
+    try_to([&] {
+      if (stopped_ || next_ == order_.size()) return;
+      stopped_ = !session_.look(session_.identity().inputs[order_[next_]].name);
+      if (!stopped_) work = static_cast<long>(order_[next_++]);
+    });
+    if (work == kNoMore) {
       --at_work_;
-      return send_work(kNoMore, rank);
+    } else {
+      last_[static_cast<std::size_t>(rank)] = static_cast<std::size_t>(work);
     }
-    last_[static_cast<std::size_t>(rank)] = order_[next_];
-    send_work(static_cast<long>(order_[next_++]), rank);
-  }
-
-  bool look(std::size_t input) {
-    progress_.doing = inputs()[input].name;
-    progress_.obstacles = session_.counted().obstacles;
-    progress_.share_done = batch::share_of(bytes_done_, bytes_planned_);
-    stopped_ = watch_ && !watch_(progress_);
-    return !stopped_;
+    send_work(work, rank);
   }
 
   Session& session_;
-  BatchWatch watch_;
   std::vector<std::size_t> order_;
   std::size_t next_ = 0;
   int at_work_;
@@ -181,38 +172,25 @@ class Coordinator {
   bool stopped_ = false;
   bool a_rank_failed_ = false;
   std::exception_ptr failure_;
-  std::uint64_t bytes_planned_ = 0;
-  std::uint64_t bytes_done_ = 0;
-  BatchProgress progress_;
 };
-
-/// Says what was counted between this report and the last one.
-Report report_of(long said, const batch::Counts& now, batch::Counts& before) {
-  const Report report{said, static_cast<long>(now.obstacles - before.obstacles),
-                      static_cast<long>(now.vertices - before.vertices),
-                      static_cast<long>(now.nanoseconds_of_jobs - before.nanoseconds_of_jobs)};
-  before = now;
-  return report;
-}
 
 /// Another rank: asks, works, asks again. A failure of its own, of whatever kind, is thrown after the first rank was
 /// told: it sends nobody further work, and nobody waits for this one.
 void work(Session& session) {
-  long said = kReady;
-  batch::Counts before;
+  Report report;
   std::exception_ptr failure;
   for (;;) {
-    send_report(report_of(said, session.counted(), before));
+    report.made = session.take_counts();
+    send_report(report);
     const long input = receive_work();
     if (input == kNoMore) break;
-    said = kDone;
+    report.said = kDone;
     try {
-      session.process(static_cast<std::size_t>(input));
-      session.wait();
+      session.process({static_cast<std::size_t>(input)});
     } catch (const batch::Stopped&) {
-      said = kStopped;
+      report.said = kStopped;
     } catch (...) {
-      said = kFailed;
+      report.said = kFailed;
       failure = std::current_exception();
     }
   }
@@ -229,14 +207,14 @@ Verdict open_output(const Session& session, bool resume) {
 }
 
 /// Shares the work out; every rank has the same batch before it.
-BatchResult share_out(const World& world, Session& session, const BatchWatch& watch) {
+BatchResult share_out(const World& world, Session& session) {
   const BatchResult nothing{BatchEnd::incomplete, {}, false};
-  if (world.rank() > 0) {
+  if (world.rank > 0) {
     work(session);
     return nothing;
   }
-  session.joined_by(world.size() - 1);
-  Coordinator coordinator(session, world.size(), watch);
+  session.joined_by(world.size - 1);
+  Coordinator coordinator(session, world.size);
   if (coordinator.hand_out()) return session.finish();
   return coordinator.a_rank_failed() ? nothing : BatchResult{BatchEnd::interrupted, {}, false};
 }
@@ -261,29 +239,30 @@ bool under_mpi() {
 BatchResult run_batch_over_ranks(const BatchConfiguration& configuration, const BatchRun& run,
                                  const BatchWatch& watch) {
   const World world;
-  if (world.size() == 1) return run_batch(configuration, run, watch);
+  if (world.size == 1) return run_batch(configuration, run, watch);
   const BatchResult nothing{BatchEnd::incomplete, {}, false};
   std::optional<Session> session;
   batch::Inputs inputs;
   Verdict verdict = kGo;
   const bool opened = all_manage(world, [&] {
-    refuse_shards(run, world.size());
+    refuse_shards(run, world.size);
     inputs = batch::list_inputs(run.paths, run.out, configuration.reading.format);
-    session.emplace(configuration, run, batch::identity_of(configuration, std::move(inputs.files)), BatchWatch{});
+    session.emplace(configuration, run, batch::identity_of(configuration, std::move(inputs.files)),
+                    world.rank == 0 ? watch : BatchWatch{});
   });
   if (!opened || !all_manage(world, [&] {
-        if (world.rank() == 0) verdict = open_output(*session, run.resume);
+        if (world.rank == 0) verdict = open_output(*session, run.resume);
       })) {
     return nothing;
   }
-  if (world.broadcast(verdict) == kComplete) {
-    if (world.rank() > 0) return nothing;
+  if (rank_library().broadcast(verdict) == kComplete) {
+    if (world.rank > 0) return nothing;
     return {BatchEnd::complete, batch::read_summary(run.out), true, false, std::move(inputs.earlier)};
   }
   // Work is told by its number, so a rank that sees other files, or another folder, would do another's.
   if (!all_manage(world, [&] { session->journal().require_same(session->identity()); })) return nothing;
-  BatchResult result = share_out(world, *session, watch);
-  if (world.rank() == 0) result.earlier = std::move(inputs.earlier);
+  BatchResult result = share_out(world, *session);
+  if (world.rank == 0) result.earlier = std::move(inputs.earlier);
   return result;
 }
 

@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "batch/merge/assemble.h"
-#include "batch/plan/input_record.h"
+#include "batch/work/coroutine.h"
+#include "exactvo/datasets/ordered_work.h"
 #include "exactvo/datasets/provenance.h"
 #include "json_text.h"
 
@@ -73,11 +74,16 @@ void refuse_the_unavailable(const BatchConfiguration& configuration, const Batch
                   "a build with EXACTVO_WITH_GDAL=ON, or GeoJSON in metres");
 }
 
-}  // namespace
-
-double share_of(std::uint64_t part, std::uint64_t whole) {
-  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0;
+std::uint64_t nanoseconds_since(std::chrono::steady_clock::time_point start) {
+  const auto spent = std::chrono::steady_clock::now() - start;
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count());
 }
+
+double ratio(double part, std::uint64_t whole) {
+  return whole > 0 ? part / static_cast<double>(whole) : 1.0;
+}
+
+}  // namespace
 
 std::string to_json(const BatchConfiguration& c) {
   JsonWriter json(JsonWriter::Layout::compact);
@@ -103,121 +109,203 @@ Session::Session(const BatchConfiguration& configuration, const BatchRun& run, I
       provenance_(provenance_of(identity_, run)),
       watch_(std::move(watch)),
       journal_(run.out),
-      pool_(workers_of(run), configuration.memory_limit),
+      memory_(configuration.memory_limit),
       start_(std::chrono::steady_clock::now()) {
   refuse_the_unavailable(configuration, run);
 }
 
-void Session::plan(std::vector<std::size_t> inputs) {
+// --- Progress ---
+
+void Session::plan(const std::vector<std::size_t>& inputs) {
   progress_.inputs = inputs.size();
-  for (const std::size_t k : inputs) bytes_planned_ += identity_.inputs[k].size;
-  progress_.input_bytes = bytes_planned_;
+  for (const std::size_t k : inputs) progress_.input_bytes += identity_.inputs[k].size;
 }
 
-bool Session::look(const std::string& doing, double share) {
+bool Session::look(const std::string& doing, double input_bytes) {
   if (!watch_) return true;
   progress_.doing = doing;
-  progress_.obstacles = counters_.obstacles;
-  progress_.share_done = share;
+  progress_.obstacles = counted().obstacles;
+  progress_.share_done = ratio(static_cast<double>(bytes_done_) + input_bytes, progress_.input_bytes);
   return watch_(progress_);
 }
 
-void Session::merge_ahead() {
-  FileLock claim = journal_.claim_merge();
-  if (claim.is_held()) merge_.emplace(journal_, std::move(claim), configuration_, provenance_);
-}
-
-WorkContext Session::context() {
-  return {configuration_, journal_, counters_, pool_, merge_ ? &*merge_ : nullptr};
-}
-
-/// Of an input that another process has finished meanwhile.
-void Session::tell_merge_of(std::size_t input) {
-  const std::uint64_t chunks = read_facts(journal_, input).chunks;
-  for (std::size_t chunk = 0; chunk < chunks; ++chunk) merge_->found({input, chunk});
-  merge_->close(input, chunks);
-}
-
-void Session::process(std::size_t number) {
-  const Input& input = identity_.inputs[number];
-  if (!is_through(journal_, number)) {
-    const auto share_now = [&](double share) {
-      const auto of_input = static_cast<std::uint64_t>(share * static_cast<double>(input.size));
-      return share_of(bytes_done_ + of_input, bytes_planned_);
-    };
-    if (!look(input.name, share_now(0.0))) throw Stopped{};
-    process_input(input, number, context(), [&](double share) { return look(input.name, share_now(share)); });
-  } else if (merge_) {
-    tell_merge_of(number);
-  }
+void Session::count_input(std::size_t input) {
   ++progress_.inputs_done;
-  bytes_done_ += input.size;
-}
-
-void Session::wait() {
-  pool_.finish();
+  bytes_done_ += identity_.inputs[input].size;
 }
 
 Counts Session::counted() const {
-  return {counters_.obstacles, counters_.vertices, counters_.nanoseconds_of_jobs};
+  const std::lock_guard<std::mutex> lock(counting_);
+  return counts_;
+}
+
+Counts Session::take_counts() {
+  const std::lock_guard<std::mutex> lock(counting_);
+  return std::exchange(counts_, Counts{});
 }
 
 void Session::count(const Counts& more) {
-  counters_.obstacles += more.obstacles;
-  counters_.vertices += more.vertices;
-  counters_.nanoseconds_of_jobs += more.nanoseconds_of_jobs;
+  const std::lock_guard<std::mutex> lock(counting_);
+  counts_ += more;
 }
 
+// --- The pipeline ---
+
+void Session::merge_ahead() {
+  const auto do_not_wait = [] { return false; };
+  if (journal_.lock(do_not_wait) != Journal::Lock::held) return;
+  outputs_ = std::make_unique<Outputs>(journal_, configuration_, provenance_);
+  is_merging_ = true;
+}
+
+void Session::process(const std::vector<std::size_t>& inputs) {
+  std::exception_ptr failure;
+  try {
+    Coroutine<Piece> pieces([&](const GivePiece& give) {
+      for (const std::size_t input : inputs) read(input, give);
+    });
+    run_in_order(workers_of(run_), [&]() -> std::optional<OrderedTask> {
+      std::optional<Piece> next = pieces.next();
+      if (!next) return std::nullopt;
+      if (next->chunk) next->memory = memory_.take(memory_of(*next->chunk));
+      const auto piece = std::make_shared<Piece>(std::move(*next));
+      return OrderedTask{[this, piece] { work_on(*piece); }, [this, piece] { finish_piece(*piece); }};
+    });
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  disk_.finish();
+  if (failure) std::rethrow_exception(failure);
+}
+
+/// In the reader's thread. Of an input that another run, or another process, has finished, parts are merged if
+/// anybody's are.
+void Session::read(std::size_t number, const GivePiece& give) {
+  const Input& input = identity_.inputs[number];
+  if (!is_through(journal_, number)) {
+    if (!look(input.name)) throw Stopped{};
+    const auto size = static_cast<double>(input.size);
+    read_input(
+        input, number, configuration_, journal_, [&](double share) { return look(input.name, share * size); }, give);
+  } else if (is_merging_) {
+    const std::uint64_t chunks = read_facts(journal_, number).chunks;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+      Piece piece{number, chunk};
+      piece.has_part = true;
+      give(std::move(piece));
+    }
+  }
+  count_input(number);
+}
+
+void Session::work_on(Piece& piece) {
+  if (!piece.chunk) return;
+  const auto start = std::chrono::steady_clock::now();
+  Part part = part_of(*piece.chunk, configuration_);
+  piece.chunk.reset();
+  Counts counts = part.counts;
+  const auto bytes = std::make_shared<const std::string>(to_bytes(std::move(part)));
+  counts.nanoseconds = nanoseconds_since(start);
+  count(counts);
+  put_away(piece, bytes);
+}
+
+/// To the disk; and in memory until its turn to be merged, where there is room. Where there is none it is on disk when
+/// its turn comes.
+void Session::put_away(Piece& piece, const std::shared_ptr<const std::string>& part) {
+  const std::filesystem::path path =
+      piece.is_whole_input ? journal_.input_facts(piece.input) : journal_.part(piece.input, piece.number);
+  const std::string head = piece.is_whole_input ? to_json(*piece.facts) + "\n" : std::string();
+  const auto write = [this, path, head, part] { journal_.write(path, head.empty() ? *part : head + *part); };
+  piece.memory.reset();
+  if (is_merging_) {
+    piece.memory = waiting_.try_to_take(part->size());
+    if (!piece.memory) return write();
+    piece.part = part;
+  }
+  disk_.run(write, part->size());
+}
+
+void Session::finish_piece(Piece& piece) {
+  if (piece.has_changed) refuse_changed_input(piece.input);
+  if (piece.has_part && outputs_) merge(piece);
+  if (piece.facts) finish_input(piece);
+}
+
+void Session::merge(const Piece& piece) {
+  const std::filesystem::path path = journal_.part(piece.input, piece.number);
+  if (piece.part) {
+    outputs_->add(view_of_part(*piece.part, path));
+  } else {
+    outputs_->add(view_of_part(read_part_bytes(journal_, piece.input, piece.number), path));
+  }
+  last_merged_ = piece.input;
+}
+
+/// Its parts are with the thread that waits for the disk, or there. If they were merged and count for nothing, because
+/// the file is broken further on, what was merged is of no use.
+void Session::finish_input(const Piece& last) {
+  if (!last.is_whole_input) {
+    disk_.run([this, path = journal_.input_facts(last.input),
+               text = to_json(*last.facts) + "\n"] { journal_.write(path, text); },
+              0);
+  }
+  if (last.facts->chunks > 0 || last_merged_ != last.input) return;
+  is_merging_ = false;
+  outputs_.reset();
+}
+
+/// Parts of other bytes than the journal's must not be found by a resumption.
+void Session::refuse_changed_input(std::size_t input) {
+  disk_.run(
+      [folder = journal_.part(input, 0).parent_path()] {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder, ignored);
+      },
+      0);
+  throw DataError(DataCode::other_run, identity_.inputs[input].name, "", "a file that changed under the batch",
+                  "files that stay as they are; another --out, or an empty one");
+}
+
+// --- The end ---
+
 BatchResult Session::finish() {
-  pool_.finish();
   BatchResult result;
   result.end = BatchEnd::incomplete;
   if (!all_there(journal_, identity_.inputs.size()) && journal_.is_open()) return result;
-  const FileLock lock =
-      journal_.lock_end([this] { return look("waiting for the process that merges the parts", 1.0); });
+  const Journal::Lock lock = journal_.lock([this] { return look("waiting for the process that merges the parts"); });
   if (!journal_.is_open()) return result;  // another process was quicker
-  if (lock.state() == FileLock::State::taken) return {BatchEnd::interrupted, {}, false};
+  if (lock == Journal::Lock::taken) return {BatchEnd::interrupted, {}, false};
   try {
-    result.summary = put_together(result, lock.is_held());
+    result.summary = put_together(result);
   } catch (const Stopped&) {
     return {BatchEnd::interrupted, {}, false};
   } catch (const DataError&) {
-    if (journal_.is_open() || lock.is_held()) throw;
+    if (journal_.is_open() || lock == Journal::Lock::held) throw;
     return result;  // another process was quicker here as well
   }
   result.end = BatchEnd::complete;
   return result;
 }
 
-void Session::look_before_a_part() {
-  if (!look("putting the parts together", 1.0)) throw Stopped{};
-}
-
-/// What was merged while parts were made, if it is all of them; else all, from the disk.
-std::unique_ptr<Outputs> Session::merged(BatchResult& result, bool is_alone) {
-  const auto before_each = [this] { look_before_a_part(); };
-  if (merge_) {
-    std::unique_ptr<Outputs> outputs = merge_->finish(identity_.inputs.size(), before_each);
-    result.was_merged_ahead = outputs != nullptr;
-    if (outputs) return outputs;
-    merge_.reset();
-  }
-  journal_.start_final(is_alone ? Journal::LockState::end : Journal::LockState::neither);
-  return merge_all(journal_, identity_.inputs.size(), configuration_, provenance_, before_each);
-}
-
-BatchSummary Session::put_together(BatchResult& result, bool is_alone) {
+BatchSummary Session::put_together(BatchResult& result) {
+  const auto look_before_a_part = [this] {
+    if (!look("putting the parts together")) throw Stopped{};
+  };
   look_before_a_part();
-  std::unique_ptr<Outputs> outputs = merged(result, is_alone);
-  return finish_outputs(std::move(outputs), journal_, identity_, configuration_, provenance_, times());
+  result.was_merged_ahead = outputs_ != nullptr;
+  if (!outputs_)
+    outputs_ = merge_all(journal_, identity_.inputs.size(), configuration_, provenance_, look_before_a_part);
+  return publish(*outputs_, journal_, identity_, configuration_, provenance_, times());
 }
 
 Times Session::times() const {
+  const Counts made = counted();
   Times times;
-  times.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  times.seconds_of_jobs = 1e-9 * static_cast<double>(counters_.nanoseconds_of_jobs);
-  times.obstacles = counters_.obstacles;
-  times.vertices = counters_.vertices;
+  times.seconds = 1e-9 * static_cast<double>(nanoseconds_since(start_));
+  times.seconds_of_jobs = 1e-9 * static_cast<double>(made.nanoseconds);
+  times.obstacles = made.obstacles;
+  times.vertices = made.vertices;
   times.workers = processes_ * workers_of(run_);
   times.has_rates = run_.shards == 1;
   return times;

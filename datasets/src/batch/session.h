@@ -2,18 +2,30 @@
 #pragma once
 
 /// \file
-/// One process's part in a batch: what run_batch does alone and run_batch_over_ranks in company.
+/// One process's part in a batch, an ordered pipeline over one journal (docs/adr/0014-batch-pipeline.md):
+///
+///     claim    which inputs are this process's: all of them, every n-th (a shard), one after the other as the first
+///              rank says
+///     read     one at a time, in order: input -> chunks of obstacles; what the journal has is not read again
+///     work     any number at a time: chunk -> part (text, rows), which goes to the journal by a thread that waits for
+///              the disk
+///     finish   one at a time, in order: part -> outputs, if this process merges; the end of an input -> its facts
+///
+/// At the end one process puts the outputs in their place. Whatever a kill leaves, the journal says what is missing.
 
+#include <atomic>
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "batch/merge/ordered_merge.h"
+#include "batch/merge/outputs.h"
 #include "batch/merge/summary.h"
 #include "batch/plan/journal.h"
+#include "batch/work/async_writer.h"
 #include "batch/work/process.h"
-#include "batch/work/thread_pool.h"
 #include "exactvo/datasets/batch.h"
 
 namespace exactvo::datasets::batch {
@@ -23,16 +35,6 @@ std::string to_json(const BatchConfiguration& configuration);
 
 Identity identity_of(const BatchConfiguration& configuration, std::vector<Input> inputs);
 
-/// `part` of `whole`; of nothing, all.
-double share_of(std::uint64_t part, std::uint64_t whole);
-
-/// What was processed.
-struct Counts {
-  std::uint64_t obstacles = 0;
-  std::uint64_t vertices = 0;
-  std::uint64_t nanoseconds_of_jobs = 0;
-};
-
 class Session {
  public:
   /// `run` and `configuration` must outlive it.
@@ -41,20 +43,25 @@ class Session {
   const Journal& journal() const { return journal_; }
   const Identity& identity() const { return identity_; }
 
-  /// Says which inputs are this process's, for progress.
-  void plan(std::vector<std::size_t> inputs);
-  /// Has parts merged while others are made, unless another process does so. REQUIRES: all inputs are this
+  // --- Progress, for the watch ---
+
+  /// Which inputs are to be done.
+  void plan(const std::vector<std::size_t>& inputs);
+  /// Asks the watch whether to go on, with so much of the input under way read.
+  bool look(const std::string& doing, double input_bytes = 0.0);
+  void count_input(std::size_t input);
+
+  // --- Work ---
+
+  /// Has parts merged as soon as all before them are, unless another process does so. REQUIRES: all inputs are this
   /// process's, in order.
   void merge_ahead();
-  /// Reads an input and sets the pool to make what is missing of it. Throws Stopped.
-  void process(std::size_t input);
-  /// Until all that was processed is there.
-  void wait();
-  /// As `wait`, and says nothing of what failed.
-  void rest() noexcept { pool_.rest(); }
-  /// What was processed so far, here and by what `count` added.
-  Counts counted() const;
-  /// What another process processed for this one.
+  /// Makes what is missing of the inputs. All of it is on disk then, whatever is thrown: DataError for what is wrong
+  /// with the output, and where an input changed since it was listed (E_OTHER_RUN; its parts are then gone); Stopped.
+  void process(const std::vector<std::size_t>& inputs);
+  /// What was made since this was asked before, to be counted elsewhere.
+  Counts take_counts();
+  /// What another process made for this one.
   void count(const Counts& more);
   /// Says how many processes do the work instead of this one.
   void joined_by(int processes) { processes_ = processes; }
@@ -62,12 +69,15 @@ class Session {
   BatchResult finish();
 
  private:
-  bool look(const std::string& doing, double share);
-  WorkContext context();
-  void tell_merge_of(std::size_t input);
-  void look_before_a_part();
-  std::unique_ptr<Outputs> merged(BatchResult& result, bool is_alone);
-  BatchSummary put_together(BatchResult& result, bool is_alone);
+  Counts counted() const;
+  void read(std::size_t input, const GivePiece& give);
+  void work_on(Piece& piece);
+  void put_away(Piece& piece, const std::shared_ptr<const std::string>& part);
+  void finish_piece(Piece& piece);
+  void merge(const Piece& piece);
+  void finish_input(const Piece& last);
+  [[noreturn]] void refuse_changed_input(std::size_t input);
+  BatchSummary put_together(BatchResult& result);
   Times times() const;
 
   const BatchConfiguration& configuration_;
@@ -76,13 +86,17 @@ class Session {
   std::string provenance_;  ///< JSON
   BatchWatch watch_;
   Journal journal_;
-  Counters counters_;
-  std::optional<OrderedMerge> merge_;
-  ThreadPool pool_;  ///< after what its jobs write to: its destructor waits for them
+  Allowance memory_;  ///< of chunks that are processed
+  mutable std::mutex counting_;
+  Counts counts_;
+  std::unique_ptr<Outputs> outputs_;                   ///< where parts are merged while others are made
+  std::atomic<bool> is_merging_{false};                ///< the same, for any thread
+  Allowance waiting_{AsyncWriter::kMostBytesWaiting};  ///< of parts in memory that wait for their turn
+  std::optional<std::size_t> last_merged_;             ///< an input
+  AsyncWriter disk_;
   int processes_ = 1;
   BatchProgress progress_;
-  std::uint64_t bytes_planned_ = 0;
-  std::uint64_t bytes_done_ = 0;
+  std::uint64_t bytes_done_ = 0;  ///< of inputs
   std::chrono::steady_clock::time_point start_;
 };
 

@@ -52,6 +52,7 @@ class Campaign {
   bool run() {
     const auto start = Clock::now();
     if (!finishes(start_batch("whole", false))) return fail("the undisturbed run failed");
+    if (!fs::exists(folder_ / "whole" / "summary.json")) return fail("the undisturbed run left no summary");
     usual_ = std::chrono::duration<double>(Clock::now() - start).count();
     while (struck_ < plan_.kills) {
       if (!disturbed_run()) return false;

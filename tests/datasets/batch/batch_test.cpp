@@ -439,6 +439,27 @@ TEST_F(Batches, AFullDiskIsSaidAndLosesNothing) {
   EXPECT_EQ(difference(out("whole"), out("ahead")), "");
 }
 
+TEST_F(Batches, ADamagedPartIsSaidWhereItIsMergedAndNothingIsPublished) {
+  BatchRun shard = run_to("out");
+  shard.shards = shard.shard = 6;  // stars.wkt, of several parts
+  ASSERT_EQ(run_batch(plain_, shard).end, BatchEnd::incomplete);
+  const fs::path part = out("out") / ".parts" / "000005" / "000001";
+  const std::string whole = text_of(part);
+  ASSERT_FALSE(whole.empty());
+  write_text(part, "no part");
+  BatchRun run = run_to("out");
+  run.resume = true;
+  const DataError refused_part = refused(plain_, run);
+  EXPECT_EQ(refused_part.code(), DataCode::format_syntax);
+  EXPECT_EQ(refused_part.file(), part.string());
+  EXPECT_FALSE(fs::exists(out("out") / "summary.json"));
+  EXPECT_EQ(folders_on_their_way("out"), 0u);
+  write_text(part, whole);
+  EXPECT_TRUE(run_batch(plain_, run).was_merged_ahead) << "parts that are there are merged in their turn";
+  run_batch(plain_, run_to("whole"));
+  EXPECT_EQ(difference(out("whole"), out("out")), "");
+}
+
 TEST_F(Batches, AFileBrokenAfterPartsOfItWereBoundLeavesNothingOfThem) {
   if (!built_with_gdal()) GTEST_SKIP() << "a build without GDAL";
   const fs::path large = folder_ / "in" / "a" / "large.fgb";
@@ -446,7 +467,7 @@ TEST_F(Batches, AFileBrokenAfterPartsOfItWereBoundLeavesNothingOfThem) {
   write_obstacles(large, read_obstacles(folder_ / "in" / "stars.wkt").obstacles);
   fs::resize_file(large, fs::file_size(large) / 5 * 4);
   BatchRun one_worker = run_to("ahead");
-  one_worker.workers = 1;  // who binds a part as soon as it is made
+  one_worker.workers = 1;
   const BatchResult ahead = run_batch(plain_, one_worker);
   EXPECT_FALSE(ahead.was_merged_ahead);
   EXPECT_EQ(ahead.summary.rejected_files.front().path, large.generic_string());

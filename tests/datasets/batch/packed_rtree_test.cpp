@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "batch/formats/bytes.h"
 #include "batch/formats/features.h"
 #include "batch/formats/geopackage.h"
 #include "support/seeded_random.h"
@@ -152,43 +153,73 @@ TEST(PackedIndex, RoundedDownIsTheLargestFloatNotAbove) {
 class Packages : public TemporaryFolder {
  protected:
   /// Whether the package takes a row of the first layer with this geometry.
-  bool takes(std::string_view wkb) const {
+  bool takes(std::string_view geometry) const {
     const auto package = batch::make_geopackage(folder_ / "rows.gpkg", "{}");
     try {
-      package->add(row_with(wkb));
+      package->add(row_with(geometry));
     } catch (const std::logic_error&) {
       return false;
     }
     return true;
   }
 
+  static std::string with_head(const batch::GeometryHead& head, std::string_view wkb) {
+    std::string geometry;
+    batch::append_raw(geometry, head);
+    return geometry += wkb;
+  }
+
  private:
   /// As `append_row` lays it out: the layer, the geometry's length and bytes, the values.
-  static std::string row_with(std::string_view wkb) {
+  static std::string row_with(std::string_view geometry) {
     std::string row(1, '\0');
-    append_length(row, wkb.size());
-    row += wkb;
+    batch::append_text<std::uint32_t>(row, geometry);
     for (const batch::Field& field : batch::layers()[0].fields) {
       const std::size_t bytes = field.type == batch::FieldType::text ? sizeof(std::uint32_t) : sizeof(double);
       row.append(bytes, '\0');  // an empty text, or a nought
     }
     return row;
   }
-  static void append_length(std::string& row, std::size_t length) {
-    const auto count = static_cast<std::uint32_t>(length);
-    char raw[sizeof count];
-    std::memcpy(raw, &count, sizeof count);
-    row.append(raw, sizeof count);
-  }
 };
 
 TEST_F(Packages, HoldGeometriesToTheirForm) {
   // A line of one point at (0, 0): byte order, kind, count, coordinates.
   const std::string line = std::string("\1\2\0\0\0\1\0\0\0", 9) + std::string(16, '\0');
-  EXPECT_TRUE(takes(line));
-  EXPECT_FALSE(takes(std::string("\0\0\0\0\2\0\0\0\1", 9) + std::string(16, '\0'))) << "the other byte order";
-  EXPECT_FALSE(takes(std::string("\1\2\0\0\0\0\0\0\0", 9))) << "no point";
-  for (std::size_t length = 0; length < line.size(); ++length) EXPECT_FALSE(takes(line.substr(0, length))) << length;
+  batch::GeometryHead head;
+  EXPECT_FALSE(takes(with_head(head, line))) << "an extent of no point";
+  head.add({0.0, 0.0}, {0.0, 0.0});
+  const std::string whole = with_head(head, line);
+  EXPECT_TRUE(takes(whole));
+  std::string other = whole;
+  other[3] = 2;
+  EXPECT_FALSE(takes(other)) << "the other byte order";
+  for (std::size_t length = 0; length < sizeof head; ++length) EXPECT_FALSE(takes(whole.substr(0, length))) << length;
+}
+
+TEST_F(Packages, AFeaturesRowSaysItsExtentAndItsGeometry) {
+  batch::Feature feature;
+  feature.layer = 2;  // pieces
+  feature.is_polygon = true;
+  feature.rings = {{{0, 1}, {4, -2}, {3, 7}}, {{-100, -100}, {100, 0}, {0, 100}}};  // the second one is a hole
+  feature.values = {std::string("in#0"), std::int64_t{7}};
+  std::string bytes;
+  batch::append_row(bytes, feature);
+  std::string_view rest = bytes;
+  const batch::Row row = batch::read_row(rest);
+  EXPECT_TRUE(rest.empty());
+  EXPECT_EQ(row.layer, 2u);
+  EXPECT_EQ(row.values, feature.values);
+  std::string_view geometry = row.geometry;
+  const auto head = batch::take_raw<batch::GeometryHead>(geometry);
+  EXPECT_EQ(head.min_x, 0.0);
+  EXPECT_EQ(head.max_x, 4.0);
+  EXPECT_EQ(head.min_y, -2.0);
+  EXPECT_EQ(head.max_y, 7.0);
+  EXPECT_EQ(batch::take_raw<char>(geometry), batch::kLittleEndian);
+  EXPECT_EQ(batch::take_raw<std::uint32_t>(geometry), 3u) << "a polygon";
+  EXPECT_EQ(batch::take_raw<std::uint32_t>(geometry), 2u) << "rings";
+  EXPECT_EQ(batch::take_raw<std::uint32_t>(geometry), 4u) << "points of the first, closed";
+  EXPECT_EQ(geometry.size(), (4 + 4) * sizeof(geometry::Vec2) + sizeof(std::uint32_t));
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST_F(WithoutLocks, WhoComesLastTakesNothingAway) {
   batch::Journal last(out);
   first.begin({});
   for (const batch::Journal* journal : {&first, &last}) {
-    journal->start_final(batch::Journal::LockState::neither);
+    journal->start_final();
     AtomicFile file(journal->final_folder() / "figures.jsonl", MissingFolder::is_refused);
     file.commit();
   }

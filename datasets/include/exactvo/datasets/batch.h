@@ -9,10 +9,10 @@
 /// the rest. What is written does not depend on the number of workers, shards or ranks, nor on how often the batch was
 /// killed and gone on with: the bytes are the same but for the times, which stand on one line of summary.json.
 ///
-/// How: inputs are cut into chunks of obstacles; a chunk's results go to a file of their own under OUT/.parts
-/// (temporary file, fsync, rename), and are merged in order: by one process while others are being made, or when
-/// all are there (docs/adr/0010-bound-while-made.md). What is there is not made again. A streaming reader (WKT, and
-/// what GDAL reads feature by feature) keeps no more than a few chunks in memory.
+/// How: an ordered pipeline cuts inputs into chunks of obstacles; a chunk's results go to a file of their own under
+/// OUT/.parts (temporary file, fsync, rename), and are merged in order: by one process while others are being made, or
+/// when all are there (docs/adr/0014-batch-pipeline.md). What is there is not made again. A streaming reader (WKT, and
+/// what GDAL reads feature by feature) keeps no more than a chunk for each worker in memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -126,7 +126,7 @@ struct BatchResult {
   std::vector<EarlierBatch> earlier{};  ///< met on the way to the inputs; of ranks, the first one's
 };
 
-/// Called from time to time by one thread; false stops the batch after what is under way.
+/// Called from time to time, by one thread at a time; false stops the batch after what is under way.
 using BatchWatch = std::function<bool(const BatchProgress&)>;
 
 /// Runs it. Throws DataError where something can't be done at all: a path that is not there, or

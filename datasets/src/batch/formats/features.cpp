@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 
+#include "batch/formats/bytes.h"
 #include "exactvo/geometry/pi.h"
 #include "json_text.h"
 
@@ -20,6 +20,8 @@ using geometry::Segment;
 using geometry::Vec2;
 
 enum LayerNumber : std::size_t { kObstacles, kFacades, kPieces, kHulls, kEllipses };
+
+using Length = std::uint32_t;  // of a text in a row
 
 constexpr int kFinePoints = 48;    // round the whole obstacle
 constexpr int kCoarsePoints = 20;  // round a facade
@@ -173,55 +175,25 @@ void append_value(JsonWriter& json, const Value& value) {
 
 // --- Rows ---
 
-template <class T>
-void append_raw(std::string& bytes, T value) {
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));
-  bytes.append(raw, sizeof(T));
+void append_points(std::string& bytes, const Ring& ring, bool closed) {
+  append_raw(bytes, static_cast<std::uint32_t>(ring.size() + (closed ? 1 : 0)));
+  for (const Vec2 p : ring) append_raw(bytes, p);
+  if (closed) append_raw(bytes, ring.front());
 }
 
-template <class T>
-T take_raw(std::string_view& bytes) {
-  T value;
-  std::memcpy(&value, bytes.data(), sizeof(T));
-  bytes.remove_prefix(sizeof(T));
-  return value;
-}
-
-std::string_view take_bytes(std::string_view& bytes) {
-  const auto length = take_raw<std::uint32_t>(bytes);
-  const std::string_view taken = bytes.substr(0, length);
-  bytes.remove_prefix(length);
-  return taken;
-}
-
-void append_wkb_points(std::string& wkb, const Ring& ring, bool closed) {
-  append_raw(wkb, static_cast<std::uint32_t>(ring.size() + (closed ? 1 : 0)));
-  for (const Vec2 p : ring) {
-    append_raw(wkb, p.x);
-    append_raw(wkb, p.y);
-  }
-  if (closed) {
-    append_raw(wkb, ring.front().x);
-    append_raw(wkb, ring.front().y);
-  }
-}
-
-/// Little-endian, as the machines are that this runs on; OGC 06-103r4, 8.2.
-std::string wkb_of(const Feature& feature) {
-  constexpr char kLittleEndian = 1;
+/// The head as GeometryHead says, then well-known binary (OGC 06-103r4, 8.2).
+std::string geometry_of(const Feature& feature) {
   constexpr std::uint32_t kLineString = 2;
   constexpr std::uint32_t kPolygon = 3;
-  std::string wkb(1, kLittleEndian);
-  append_raw(wkb, feature.is_polygon ? kPolygon : kLineString);
-  if (feature.is_polygon) append_raw(wkb, static_cast<std::uint32_t>(feature.rings.size()));
-  for (const Ring& ring : feature.rings) append_wkb_points(wkb, ring, feature.is_polygon);
-  return wkb;
-}
-
-void append_bytes(std::string& bytes, std::string_view text) {
-  append_raw(bytes, static_cast<std::uint32_t>(text.size()));
-  bytes.append(text);
+  GeometryHead head;
+  for (const Vec2 p : feature.rings.front()) head.add(p, p);
+  std::string bytes;
+  append_raw(bytes, head);
+  bytes += kLittleEndian;
+  append_raw(bytes, feature.is_polygon ? kPolygon : kLineString);
+  if (feature.is_polygon) append_raw(bytes, static_cast<std::uint32_t>(feature.rings.size()));
+  for (const Ring& ring : feature.rings) append_points(bytes, ring, feature.is_polygon);
+  return bytes;
 }
 
 }  // namespace
@@ -284,14 +256,14 @@ std::string to_geojson(const Feature& feature, const Place& place) {
 
 void append_row(std::string& bytes, const Feature& feature) {
   append_raw(bytes, static_cast<std::uint8_t>(feature.layer));
-  append_bytes(bytes, wkb_of(feature));
+  append_text<Length>(bytes, geometry_of(feature));
   for (const Value& value : feature.values) {
     if (const auto* number = std::get_if<std::int64_t>(&value)) {
       append_raw(bytes, *number);
     } else if (const auto* real = std::get_if<double>(&value)) {
       append_raw(bytes, *real);
     } else {
-      append_bytes(bytes, std::get<std::string>(value));
+      append_text<Length>(bytes, std::get<std::string>(value));
     }
   }
 }
@@ -299,11 +271,11 @@ void append_row(std::string& bytes, const Feature& feature) {
 Row read_row(std::string_view& bytes) {
   Row row;
   row.layer = take_raw<std::uint8_t>(bytes);
-  row.wkb = take_bytes(bytes);
+  row.geometry = take_text<Length>(bytes);
   for (const Field& field : layers()[row.layer].fields) {
     switch (field.type) {
       case FieldType::text:
-        row.values.emplace_back(std::string(take_bytes(bytes)));
+        row.values.emplace_back(std::string(take_text<Length>(bytes)));
         break;
       case FieldType::real:
         row.values.emplace_back(take_raw<double>(bytes));

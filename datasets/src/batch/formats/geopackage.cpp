@@ -4,16 +4,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "batch/formats/bytes.h"
 #include "batch/formats/features.h"
 #include "batch/formats/package_schema.h"
 #include "batch/formats/packed_rtree.h"
@@ -24,73 +22,6 @@
 
 namespace exactvo::datasets::batch {
 namespace {
-
-// --- Geometries ---
-
-/// As the machines are that this runs on; the same number in well-known binary and in a GeoPackage's flags.
-constexpr char kLittleEndian = 1;
-
-struct Extent {
-  double min_x = std::numeric_limits<double>::infinity();
-  double max_x = -std::numeric_limits<double>::infinity();
-  double min_y = std::numeric_limits<double>::infinity();
-  double max_y = -std::numeric_limits<double>::infinity();
-
-  void add(double x, double y) {
-    min_x = std::min(min_x, x);
-    max_x = std::max(max_x, x);
-    min_y = std::min(min_y, y);
-    max_y = std::max(max_y, y);
-  }
-  void add(const Extent& other) {
-    add(other.min_x, other.min_y);
-    add(other.max_x, other.max_y);
-  }
-  Box box() const { return {rounded_down(min_x), rounded_up(max_x), rounded_down(min_y), rounded_up(max_y)}; }
-};
-
-template <class T>
-T take(std::string_view& bytes) {
-  EXACTVO_REQUIRE(bytes.size() >= sizeof(T), std::to_string(bytes.size()) + " bytes left of a geometry");
-  T value;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  bytes.remove_prefix(sizeof value);
-  return value;
-}
-
-/// Of the line, or of the first ring, which goes round the others. REQUIRES: a point in it, the byte order of `take`.
-Extent extent_of(std::string_view wkb) {
-  constexpr std::uint32_t kPolygon = 3;
-  const int order = take<char>(wkb);
-  EXACTVO_REQUIRE(order == kLittleEndian, "byte order " + std::to_string(order));
-  if (take<std::uint32_t>(wkb) == kPolygon) wkb.remove_prefix(sizeof(std::uint32_t));
-  Extent extent;
-  for (auto points = take<std::uint32_t>(wkb); points > 0; --points) {
-    const auto x = take<double>(wkb);
-    extent.add(x, take<double>(wkb));
-  }
-  EXACTVO_REQUIRE(extent.min_x <= extent.max_x && extent.min_y <= extent.max_y, "a geometry without a point");
-  return extent;
-}
-
-template <class T>
-void append(std::string& bytes, T value) {
-  char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);
-  bytes.append(raw, sizeof value);
-}
-
-/// OGC 12-128, 2.1.3: "GP", a version, flags, the reference system, the extent, well-known binary.
-void write_geometry(const Row& row, std::int32_t reference, const Extent& extent, std::string& bytes) {
-  constexpr char kVersion = 0;
-  constexpr char kExtentOfTwoDimensions = 1 << 1;
-  bytes = {'G', 'P', kVersion, kLittleEndian | kExtentOfTwoDimensions};
-  append(bytes, reference);
-  for (const double side : {extent.min_x, extent.max_x, extent.min_y, extent.max_y}) append(bytes, side);
-  bytes += row.wkb;
-}
-
-// --- Tables ---
 
 std::string insertion_into(const Layer& layer) {
   std::string columns = "INSERT INTO " + sql_name(layer.name) + " (fid, geom";
@@ -109,6 +40,9 @@ std::int32_t reference_of(SqliteFile& file, const Layer& layer) {
   return static_cast<std::int32_t>(find.integer(0));
 }
 
+/// Magic, version and flags.
+constexpr std::string_view kFixed{"GP\0\3", 4};
+
 class LayerTable {
  public:
   LayerTable(SqliteFile& file, const Layer& layer)
@@ -118,13 +52,20 @@ class LayerTable {
         reference_(reference_of(file, layer)) {}
 
   void add(const Row& row) {
-    const Extent extent = extent_of(row.wkb);
-    write_geometry(row, reference_, extent, geometry_);
+    std::string_view rest = row.geometry;
+    auto head = take_raw<GeometryHead>(rest);
+    EXACTVO_REQUIRE(row.geometry.substr(0, kFixed.size()) == kFixed, "no head of a geometry");
+    EXACTVO_REQUIRE(head.min_x <= head.max_x && head.min_y <= head.max_y, "a geometry without a point");
+    head.reference = reference_;
+    geometry_.clear();
+    append_raw(geometry_, head);
+    geometry_ += rest;
     insert_.bind(0, ++rows_).bind_bytes(1, geometry_);
     for (std::size_t k = 0; k < row.values.size(); ++k) bind(static_cast<int>(k) + 2, row.values[k]);
     insert_.run();
-    index_.add(rows_, extent.box());
-    extent_.add(extent);
+    index_.add(rows_,
+               {rounded_down(head.min_x), rounded_up(head.max_x), rounded_down(head.min_y), rounded_up(head.max_y)});
+    extent_.add({head.min_x, head.min_y}, {head.max_x, head.max_y});
   }
 
   void finish(SqliteFile& file) {
@@ -154,7 +95,7 @@ class LayerTable {
   PackedRtree index_;
   std::int32_t reference_;
   std::int64_t rows_ = 0;
-  Extent extent_;
+  GeometryHead extent_;  ///< of all
   std::string geometry_;
 };
 

@@ -50,7 +50,7 @@ bool all_there(const Journal& journal, std::size_t inputs) {
 
 std::unique_ptr<Outputs> merge_all(const Journal& journal, std::size_t inputs, const BatchConfiguration& configuration,
                                    const std::string& provenance, const std::function<void()>& before_each) {
-  auto outputs = std::make_unique<Outputs>(journal.final_folder(), configuration, provenance);
+  auto outputs = std::make_unique<Outputs>(journal, configuration, provenance);
   for (std::size_t input = 0; input < inputs; ++input) {
     const std::uint64_t chunks = read_facts(journal, input).chunks;
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
@@ -62,18 +62,17 @@ std::unique_ptr<Outputs> merge_all(const Journal& journal, std::size_t inputs, c
   return outputs;
 }
 
-BatchSummary finish_outputs(std::unique_ptr<Outputs> outputs, const Journal& journal, const Identity& identity,
-                            const BatchConfiguration& configuration, const std::string& provenance, Times times) {
+BatchSummary publish(Outputs& outputs, const Journal& journal, const Identity& identity,
+                     const BatchConfiguration& configuration, const std::string& provenance, Times times) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<InputFacts> facts = all_facts(journal, identity.inputs.size());
   BatchSummary summary = summary_of(identity, facts);
-  summary.obstacles_out = outputs->counts().obstacles;
-  summary.certified = outputs->counts().certified;
-  summary.uncertified = outputs->counts().obstacles - outputs->counts().certified;
-  summary.vertices = outputs->counts().vertices;
-  summary.no_half_plane = outputs->counts().no_half_plane;
-  outputs->finish();
-  outputs.reset();
+  summary.obstacles_out = outputs.counts().obstacles;
+  summary.certified = outputs.counts().certified;
+  summary.uncertified = outputs.counts().obstacles - outputs.counts().certified;
+  summary.vertices = outputs.counts().vertices;
+  summary.no_half_plane = outputs.counts().no_half_plane;
+  outputs.finish();
   if (configuration.pictures) {
     const std::string words = words_of(summary.files, "files") + ". " + words_of(summary.obstacles, "obstacles") + ".";
     write_pages(journal, identity, facts, words, provenance);

@@ -2,8 +2,7 @@
 #pragma once
 
 /// \file
-/// The end of a batch: what was merged and what is left, in order of inputs and chunks; memory holds one part at a
-/// time.
+/// The end of a batch: parts that nobody merged while others were made, one at a time; the summary; all in its place.
 
 #include <functional>
 #include <memory>
@@ -22,13 +21,12 @@ std::string provenance_of(const Identity& identity, const BatchRun& run);
 /// Whether every input has its facts.
 bool all_there(const Journal& journal, std::size_t inputs);
 
-/// Merges all parts of so many inputs from the disk, in `journal.final_folder()`, started before. What `before_each`
-/// part throws, it throws.
+/// Merges all parts of so many inputs from the disk. What `before_each` part throws, it throws.
 std::unique_ptr<Outputs> merge_all(const Journal& journal, std::size_t inputs, const BatchConfiguration& configuration,
                                    const std::string& provenance, const std::function<void()>& before_each);
 
-/// Finishes `outputs`, which hold all parts, writes what is missing beside them, and publishes everything.
-BatchSummary finish_outputs(std::unique_ptr<Outputs> outputs, const Journal& journal, const Identity& identity,
-                            const BatchConfiguration& configuration, const std::string& provenance, Times times);
+/// Finishes `outputs`, which hold all parts, writes what is missing beside them, and moves everything to its place.
+BatchSummary publish(Outputs& outputs, const Journal& journal, const Identity& identity,
+                     const BatchConfiguration& configuration, const std::string& provenance, Times times);
 
 }  // namespace exactvo::datasets::batch

@@ -48,24 +48,39 @@ class GeoJsonLayers {
   std::vector<Open> files_;
 };
 
+/// The final folder, which goes unless .parts went with it.
+struct StartedFolder {
+  explicit StartedFolder(const Journal& journal) : path(journal.final_folder()) { journal.start_final(); }
+  ~StartedFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  StartedFolder(const StartedFolder&) = delete;
+  StartedFolder& operator=(const StartedFolder&) = delete;
+
+  const fs::path& path;
+};
+
 }  // namespace
 
 struct Outputs::Inside {
-  Inside(const fs::path& folder, const BatchConfiguration& configuration, const std::string& provenance)
-      : figures(output_file(folder / "figures.jsonl")) {
+  Inside(const Journal& journal, const BatchConfiguration& configuration, const std::string& provenance)
+      : folder(journal), figures(output_file(folder.path / "figures.jsonl")) {
     figures->write("{\"provenance\":" + provenance + "}\n");
-    if (configuration.geojson) geojson.emplace(folder, configuration.geojson_in_metres, provenance);
-    if (configuration.geopackage) geopackage = vector_library().make_geopackage(folder / "obstacles.gpkg", provenance);
+    if (configuration.geojson) geojson.emplace(folder.path, configuration.geojson_in_metres, provenance);
+    if (configuration.geopackage)
+      geopackage = vector_library().make_geopackage(folder.path / "obstacles.gpkg", provenance);
   }
 
-  PartCounts counts;
+  Counts counts;
+  StartedFolder folder;  ///< before the files, which are closed first
   std::unique_ptr<AtomicFile> figures;
   std::optional<GeoJsonLayers> geojson;
   std::unique_ptr<GeoPackage> geopackage;
 };
 
-Outputs::Outputs(const fs::path& folder, const BatchConfiguration& configuration, const std::string& provenance)
-    : inside_(std::make_unique<Inside>(folder, configuration, provenance)) {}
+Outputs::Outputs(const Journal& journal, const BatchConfiguration& configuration, const std::string& provenance)
+    : inside_(std::make_unique<Inside>(journal, configuration, provenance)) {}
 
 Outputs::~Outputs() = default;
 
@@ -73,10 +88,7 @@ void Outputs::add(const PartView& part) {
   inside_->figures->write(part.figures);
   if (inside_->geojson) inside_->geojson->add(part);
   if (inside_->geopackage) inside_->geopackage->add(part.rows);
-  inside_->counts.obstacles += part.counts.obstacles;
-  inside_->counts.certified += part.counts.certified;
-  inside_->counts.vertices += part.counts.vertices;
-  inside_->counts.no_half_plane += part.counts.no_half_plane;
+  inside_->counts += part.counts;
 }
 
 void Outputs::finish() {
@@ -85,7 +97,7 @@ void Outputs::finish() {
   if (inside_->geopackage) inside_->geopackage->finish();
 }
 
-const PartCounts& Outputs::counts() const {
+const Counts& Outputs::counts() const {
   return inside_->counts;
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "batch/plan/journal.h"
 #include "batch/work/part.h"
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/batch.h"
@@ -18,8 +19,9 @@ namespace exactvo::datasets::batch {
 
 class Outputs {
  public:
-  /// Starts them in `folder`, which must be there. Throws DataError (E_FILE_UNWRITABLE), as the others do.
-  Outputs(const std::filesystem::path& folder, const BatchConfiguration& configuration, const std::string& provenance);
+  /// Starts them in `journal.final_folder()`. Throws DataError (E_FILE_UNWRITABLE), as the others do.
+  Outputs(const Journal& journal, const BatchConfiguration& configuration, const std::string& provenance);
+  /// Takes the folder away, unless it was published.
   ~Outputs();
   Outputs(const Outputs&) = delete;
   Outputs& operator=(const Outputs&) = delete;
@@ -30,7 +32,7 @@ class Outputs {
   void finish();
 
   /// Of the parts added.
-  const PartCounts& counts() const;
+  const Counts& counts() const;
 
  private:
   struct Inside;

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/plan/journal.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
+#include <thread>
 #include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
@@ -21,8 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFinal = "final.";
-constexpr const char* kMerge = "merge";
-constexpr const char* kLock = "lock";
+/// Between two questions for the lock: short to who presses a key, long to a processor.
+constexpr std::chrono::milliseconds kBetweenLooks{20};
 
 std::string number_text(std::size_t number) {
   char text[24];
@@ -145,7 +151,7 @@ std::string to_json(const Identity& identity) {
 }
 
 Journal::Journal(fs::path out)
-    : out_(std::move(out)), parts_(out_ / ".parts"), final_(parts_ / (kFinal + unique_word())) {}
+    : out_(std::move(out)), parts_(out_ / ".parts"), final_(parts_.path() / (kFinal + unique_word())) {}
 
 Journal::State Journal::look(const Identity& identity, bool resume) const {
   std::error_code error;
@@ -168,7 +174,7 @@ Journal::State Journal::look(const Identity& identity, bool resume) const {
     refuse_other_batch(parse_json(read_text_file(summary), summary.string()), identity, summary);
     return State::complete;
   }
-  if (holds_nothing_but(out_, parts_)) return State::fresh;
+  if (holds_nothing_but(out_, parts_.path())) return State::fresh;
   throw DataError(DataCode::file_unwritable, out_.string(), "",
                   "a folder with other files in it, and no summary.json of a batch",
                   "a folder that does not exist, is empty, or holds an earlier output");
@@ -176,7 +182,7 @@ Journal::State Journal::look(const Identity& identity, bool resume) const {
 
 void Journal::begin(const Identity& identity) const {
   std::error_code error;
-  fs::create_directories(parts_, error);
+  fs::create_directories(parts_.path(), error);
   if (error) throw cannot_write(out_, error.value());
   if (!is_open()) write_file_atomically(run_file(), to_json(identity));
 }
@@ -186,16 +192,11 @@ void Journal::require_same(const Identity& identity) const {
 }
 
 fs::path Journal::part(std::size_t input, std::size_t chunk) const {
-  return parts_ / number_text(input) / number_text(chunk);
+  return parts_.path() / number_text(input) / number_text(chunk);
 }
 
 fs::path Journal::input_facts(std::size_t input) const {
-  return parts_ / (number_text(input) + ".input");
-}
-
-bool Journal::is_there(const fs::path& path) const {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
+  return parts_.path() / (number_text(input) + ".input");
 }
 
 bool Journal::is_open() const {
@@ -211,31 +212,33 @@ bool Journal::another_finished(const Identity& identity) const {
   }
 }
 
-void Journal::write(const fs::path& path, const std::string& bytes) const {
-  if (!is_open()) {
-    throw DataError(DataCode::file_unwritable, path.string(), "", "the output folder removed under the batch",
-                    "a folder that stays where it is");
+Journal::~Journal() {
+  if (lock_file_ >= 0) ::close(lock_file_);
+}
+
+// Asked again and again: a call that waits is resumed after a signal, and the user could not stop it.
+Journal::Lock Journal::lock(const std::function<bool()>& keep_waiting) {
+  if (lock_file_ >= 0) return Lock::held;
+  const fs::path path = parts_.path() / "lock";
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0 && !is_there(path) && is_open()) throw cannot_write(path, errno);
+  Lock state = Lock::unlockable;
+  while (file >= 0) {
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) {
+      lock_file_ = file;
+      return Lock::held;
+    }
+    const bool is_taken = errno == EWOULDBLOCK || errno == EINTR;
+    if (is_taken) state = Lock::taken;
+    if (!is_taken || !keep_waiting()) break;
+    std::this_thread::sleep_for(kBetweenLooks);
   }
-  // A rename that a power cut takes back is a part that is made again; no need to sync the folder each time.
-  write_file_atomically(path, bytes, Durability::content);
+  if (file >= 0) ::close(file);
+  return state;
 }
 
-FileLock Journal::claim_merge() const {
-  return FileLock::try_on(parts_ / kMerge);
-}
-
-FileLock Journal::lock_end(const std::function<bool()>& keep_waiting) const {
-  const fs::path path = parts_ / kLock;
-  errno = 0;
-  FileLock lock = FileLock::wait_on(path, keep_waiting);
-  if (lock.state() == FileLock::State::unlockable && !is_there(path) && is_open()) throw cannot_write(path, errno);
-  return lock;
-}
-
-void Journal::start_final(LockState held) const {
-  const FileLock claim = held == LockState::claim ? FileLock() : claim_merge();
-  const FileLock end = held == LockState::end ? FileLock() : FileLock::try_on(parts_ / kLock);
-  if ((held == LockState::claim || claim.is_held()) && (held == LockState::end || end.is_held())) remove_finals();
+void Journal::start_final() const {
+  if (lock_file_ >= 0) remove_finals();
   std::error_code error;
   fs::create_directory(final_, error);
   if (error) throw cannot_write(final_, error.value());
@@ -243,8 +246,8 @@ void Journal::start_final(LockState held) const {
 
 void Journal::remove_finals() const {
   std::error_code ignored;
-  for (const std::string& name : names_in(parts_)) {
-    if (name.rfind(kFinal, 0) == 0) fs::remove_all(parts_ / name, ignored);
+  for (const std::string& name : names_in(parts_.path())) {
+    if (name.rfind(kFinal, 0) == 0) fs::remove_all(parts_.path() / name, ignored);
   }
 }
 
@@ -258,7 +261,7 @@ void Journal::publish(const std::string& last, const std::function<bool(const st
   }
   rename_or_throw(final_ / last, out_ / last);
   sync_directory(out_);
-  rename_or_throw(parts_, stale_parts());
+  rename_or_throw(parts_.path(), stale_parts());
   std::error_code ignored;
   fs::remove_all(stale_parts(), ignored);
 }

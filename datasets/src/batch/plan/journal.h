@@ -8,7 +8,7 @@
 ///     NNNNNN/KKKKKK     what was made of chunk K of input N
 ///     NNNNNN.input      the input's facts, written when all its chunks are there; an only chunk stands in it
 ///     final.WORD/       the outputs on their way; each process has a folder of its own
-///     merge, lock      files to lock: who merges parts while others are made, who merges everything at the end
+///     lock              locked by the one process that merges parts
 ///
 /// Every file appears whole (atomic_file.h). When the outputs stand in OUT, summary.json last, .parts is renamed to
 /// .parts.old in one step and removed; what a kill leaves of that, the next look removes.
@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "batch/plan/file_lock.h"
 #include "batch/plan/inputs.h"
+#include "exactvo/datasets/part_folder.h"
 
 namespace exactvo::datasets::batch {
 
@@ -39,6 +39,10 @@ bool is_of_a_batch(const std::filesystem::path& file);
 class Journal {
  public:
   explicit Journal(std::filesystem::path out);
+  /// Lets go of the lock.
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
 
   enum class State {
     fresh,       ///< nothing is there, or a complete output that is to be replaced
@@ -60,41 +64,42 @@ class Journal {
   const std::filesystem::path& final_folder() const { return final_; }
   const std::filesystem::path& out() const { return out_; }
 
-  bool is_there(const std::filesystem::path& path) const;
+  bool is_there(const std::filesystem::path& path) const { return parts_.has(path); }
   /// Writes one of the files above. Throws DataError (E_FILE_UNWRITABLE), also where .parts was removed meanwhile.
-  void write(const std::filesystem::path& path, const std::string& bytes) const;
+  void write(const std::filesystem::path& path, const std::string& bytes) const { parts_.write(path, bytes); }
 
-  /// Held by the one process that merges parts while others are being made.
-  FileLock claim_merge() const;
-
-  /// Held while the parts are merged at the end; other processes wait as long as `keep_waiting` says so. On a file
-  /// system without locks nobody waits: several may merge the parts at once, each in its own folder, and what they move
+  enum class Lock {
+    held,       ///< by this process, from now on and until the journal goes or the process ends, however it ends
+    taken,      ///< by another process, when waiting ended
+    unlockable  ///< the file system has no locks: nobody holds one
+  };
+  /// Asks for the right to merge parts, many times a second as long as `keep_waiting` says so. On a file system without
+  /// locks nobody waits: several processes may merge all parts at the end, each in its own folder, and what they move
   /// to OUT is the same but for the times; the last of them finds .parts gone (`is_open`), and must not make it anew.
   /// Throws DataError (E_FILE_UNWRITABLE) where the file can't be made in a journal that is open.
-  FileLock lock_end(const std::function<bool()>& keep_waiting) const;
+  Lock lock(const std::function<bool()>& keep_waiting);
+
   /// Whether run.json still stands: no other process has put the parts together meanwhile.
   bool is_open() const;
   /// Whether an output of just this batch stands in OUT and nothing is under way there.
   bool another_finished(const Identity& identity) const;
 
-  /// Which of the two locks this process holds.
-  enum class LockState { claim, end, neither };
-  /// Makes `final_folder`, where .parts still stands; else throws DataError (E_FILE_UNWRITABLE). The folders of killed
-  /// processes are removed where it is certain that they are dead: where this process holds, or can get at once, both
-  /// locks.
-  void start_final(LockState held) const;
+  /// Makes `final_folder`, where .parts still stands; else throws DataError (E_FILE_UNWRITABLE). Where this process has
+  /// the lock, the folders of killed processes are removed.
+  void start_final() const;
   /// Moves the files of `final_folder` to OUT, takes away those of an earlier output (`is_output` knows their names)
   /// that this one does not have, moves `last`, and takes .parts away.
   void publish(const std::string& last, const std::function<bool(const std::string& name)>& is_output) const;
 
  private:
   void remove_finals() const;
-  std::filesystem::path run_file() const { return parts_ / "run.json"; }
+  std::filesystem::path run_file() const { return parts_.path() / "run.json"; }
   std::filesystem::path stale_parts() const { return out_ / ".parts.old"; }
 
   std::filesystem::path out_;
-  std::filesystem::path parts_;
+  PartFolder parts_;
   std::filesystem::path final_;
+  int lock_file_ = -1;  ///< where the lock is held
 };
 
 }  // namespace exactvo::datasets::batch

@@ -2,11 +2,12 @@
 #include "batch/work/part.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
 #include <functional>
 #include <memory>
 #include <utility>
 
+#include "batch/formats/bytes.h"
 #include "batch/formats/picture.h"
 #include "batch/work/half_planes.h"
 #include "exactvo/geometry/require.h"
@@ -19,8 +20,6 @@ namespace {
 /// A feature as a line of GeoJSON.
 using ToGeoJson = std::function<std::string(const Feature& feature)>;
 
-constexpr char kMagic[] = "EXACTVO PART 3\n";
-
 // --- Making ---
 
 void append_rejection(const Chunk& chunk, const ChunkItem& item, Part& part) {
@@ -32,7 +31,7 @@ void append_rejection(const Chunk& chunk, const ChunkItem& item, Part& part) {
 }
 
 std::string record_of(const FeatureHead& head, const geometry::ObstacleShapes& shapes,
-                      const BatchConfiguration& configuration, PartCounts& counts) {
+                      const BatchConfiguration& configuration, Counts& counts) {
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object().member("file", head.file).member("id", head.id).member("key", head.key);
   json.member("outcome", head.outcome);
@@ -75,75 +74,30 @@ geometry::ShapeOptions options_for(const BatchConfiguration& configuration) {
   return options;
 }
 
-// --- Bytes: the magic line, four counts, then every text after its length ---
+// --- Bytes: the magic line, the counts, then every text after its length ---
 
-void append_count(std::string& bytes, std::uint64_t count) {
-  char raw[sizeof count];
-  std::memcpy(raw, &count, sizeof count);
-  bytes.append(raw, sizeof count);
+constexpr std::string_view kMagic = "EXACTVO PART 4\n";
+using Number = std::uint64_t;
+
+constexpr std::size_t kNumbers = 4;
+
+std::array<Number*, kNumbers> numbers_of(Counts& counts) {
+  return {&counts.obstacles, &counts.certified, &counts.vertices, &counts.no_half_plane};
 }
 
-/// Takes the text, so that it is not held twice for long.
-void append_text(std::string& bytes, std::string text) {
-  append_count(bytes, text.size());
-  bytes += text;
-}
+/// The pictures come first: they alone are wanted again.
+constexpr std::size_t kBytesBeforePictures = kMagic.size() + (kNumbers + 1) * sizeof(Number);
 
-/// The pictures come first of the texts: they alone are wanted again.
-constexpr std::size_t kCounts = 4;
-constexpr std::size_t kBytesBeforePictures = sizeof kMagic - 1 + (kCounts + 1) * sizeof(std::uint64_t);
-
-/// To the byte, so that a part is not moved while it grows.
-std::size_t size_of_bytes(const Part& part) {
-  constexpr std::size_t kTextsBesideLayers = 3;
-  const std::size_t numbers = kCounts + kTextsBesideLayers + part.features.size();
-  std::size_t size = sizeof kMagic - 1 + numbers * sizeof(std::uint64_t);
-  size += part.figures.size() + part.rows.size() + part.pictures.size();
-  for (const std::string& layer : part.features) size += layer.size();
-  return size;
+template <class Text>
+std::vector<Text*> texts_of(PartOf<Text>& part) {
+  std::vector<Text*> texts{&part.pictures, &part.figures};
+  for (Text& layer : part.features) texts.push_back(&layer);
+  texts.push_back(&part.rows);
+  return texts;
 }
 
 [[noreturn]] void refuse_part(const std::filesystem::path& path) {
   throw DataError(DataCode::format_syntax, path.string(), "", "no part of a batch", "what a batch has written");
-}
-
-class PartReader {
- public:
-  PartReader(std::string_view bytes, const std::filesystem::path& path) : bytes_(bytes), path_(path) {
-    if (bytes_.substr(0, sizeof kMagic - 1) != kMagic) refuse();
-    bytes_.remove_prefix(sizeof kMagic - 1);
-  }
-
-  std::uint64_t count() {
-    std::uint64_t value = 0;
-    if (bytes_.size() < sizeof value) refuse();
-    std::memcpy(&value, bytes_.data(), sizeof value);
-    bytes_.remove_prefix(sizeof value);
-    return value;
-  }
-
-  std::string_view text() {
-    const std::uint64_t length = count();
-    if (bytes_.size() < length) refuse();
-    const std::string_view taken = bytes_.substr(0, length);
-    bytes_.remove_prefix(length);
-    return taken;
-  }
-
- private:
-  [[noreturn]] void refuse() const { refuse_part(path_); }
-
-  std::string_view bytes_;
-  const std::filesystem::path& path_;
-};
-
-PartCounts counts_of(PartReader& reader) {
-  PartCounts counts;
-  counts.obstacles = reader.count();
-  counts.certified = reader.count();
-  counts.vertices = reader.count();
-  counts.no_half_plane = reader.count();
-  return counts;
 }
 
 /// So many more. A length that is no length must not be believed: what is there is taken bit by bit.
@@ -159,6 +113,15 @@ std::string take_from(std::istream& bytes, std::uint64_t length, const std::file
 }
 
 }  // namespace
+
+Counts& Counts::operator+=(const Counts& more) {
+  obstacles += more.obstacles;
+  certified += more.certified;
+  vertices += more.vertices;
+  no_half_plane += more.no_half_plane;
+  nanoseconds += more.nanoseconds;
+  return *this;
+}
 
 Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
   Part part;
@@ -190,35 +153,44 @@ Part part_of(const Chunk& chunk, const BatchConfiguration& configuration) {
 
 std::string to_bytes(Part part) {
   EXACTVO_REQUIRE(part.features.size() == layers().size(), std::to_string(part.features.size()));
+  const auto numbers = numbers_of(part.counts);
+  const std::vector<std::string*> texts = texts_of(part);
+  // To the byte, so that a part is not moved while it grows.
+  std::size_t size = kMagic.size() + (numbers.size() + texts.size()) * sizeof(Number);
+  for (const std::string* text : texts) size += text->size();
   std::string bytes;
-  bytes.reserve(size_of_bytes(part));
+  bytes.reserve(size);
   bytes += kMagic;
-  const PartCounts& counts = part.counts;
-  for (const std::uint64_t count : {counts.obstacles, counts.certified, counts.vertices, counts.no_half_plane})
-    append_count(bytes, count);
-  append_text(bytes, std::move(part.pictures));
-  append_text(bytes, std::move(part.figures));
-  for (std::string& layer : part.features) append_text(bytes, std::move(layer));
-  append_text(bytes, std::move(part.rows));
+  for (const Number* number : numbers) append_raw(bytes, *number);
+  for (std::string* text : texts) {
+    append_text<Number>(bytes, *text);
+    std::string().swap(*text);  // so that it is not held twice for long
+  }
   return bytes;
 }
 
 PartView view_of_part(std::string_view bytes, const std::filesystem::path& path) {
-  PartReader reader(bytes, path);
+  const auto take = [&](std::size_t length) {
+    if (bytes.size() < length) refuse_part(path);
+    return take_bytes(bytes, length);
+  };
+  const auto take_number = [&] {
+    std::string_view raw = take(sizeof(Number));
+    return take_raw<Number>(raw);
+  };
+  if (take(std::min(bytes.size(), kMagic.size())) != kMagic) refuse_part(path);
   PartView part;
-  part.counts = counts_of(reader);
-  part.pictures = reader.text();
-  part.figures = reader.text();
-  for (std::size_t k = 0; k < layers().size(); ++k) part.features.push_back(reader.text());
-  part.rows = reader.text();
+  part.features.resize(layers().size());
+  for (Number* number : numbers_of(part.counts)) *number = take_number();
+  for (std::string_view* text : texts_of(part)) *text = take(take_number());
   return part;
 }
 
 std::string pictures_at_start(std::istream& bytes, const std::filesystem::path& path) {
   const std::string head = take_from(bytes, kBytesBeforePictures, path);
-  PartReader reader(head, path);
-  counts_of(reader);
-  return take_from(bytes, reader.count(), path);
+  if (head.compare(0, kMagic.size(), kMagic) != 0) refuse_part(path);
+  std::string_view length = std::string_view(head).substr(head.size() - sizeof(Number));
+  return take_from(bytes, take_raw<Number>(length), path);
 }
 
 }  // namespace exactvo::datasets::batch

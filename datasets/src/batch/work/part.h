@@ -32,34 +32,33 @@ struct Chunk {
   LocalPlane plane;  ///< of all items
 };
 
-struct PartCounts {
+/// What was made of obstacles: of a part, of all outputs, or in a run.
+struct Counts {
   std::uint64_t obstacles = 0;
   std::uint64_t certified = 0;
   std::uint64_t vertices = 0;
   std::uint64_t no_half_plane = 0;  ///< null among the half-planes of the robot
+  std::uint64_t nanoseconds = 0;    ///< that it took, of all workers together; stands in no part
+
+  Counts& operator+=(const Counts& more);
 };
 
-struct Part {
-  PartCounts counts;
-  std::string pictures;               ///< SVG
-  std::string figures;                ///< JSON Lines
-  std::vector<std::string> features;  ///< a layer each: GeoJSON features, a comma and a newline between them
-  std::string rows;                   ///< features.h
+template <class Text>
+struct PartOf {
+  Counts counts;
+  Text pictures;               ///< SVG
+  Text figures;                ///< JSON Lines
+  std::vector<Text> features;  ///< a layer each: GeoJSON features, a comma and a newline between them
+  Text rows;                   ///< features.h
 };
+using Part = PartOf<std::string>;
+using PartView = PartOf<std::string_view>;  ///< looks into a part's bytes
 
 /// Deterministic: depends on the chunk and the configuration only.
 Part part_of(const Chunk& chunk, const BatchConfiguration& configuration);
 
 std::string to_bytes(Part part);
 
-/// A part as it stands in its bytes, which it looks into.
-struct PartView {
-  PartCounts counts;
-  std::string_view pictures;
-  std::string_view figures;
-  std::vector<std::string_view> features;
-  std::string_view rows;
-};
 /// Throws DataError (E_FORMAT_SYNTAX) where the bytes are no part; `path` is where they came from.
 PartView view_of_part(std::string_view bytes, const std::filesystem::path& path);
 /// The pictures of the part that `bytes` are about to give, which stand in its beginning. Throws as `view_of_part`.

@@ -2,45 +2,45 @@
 #pragma once
 
 /// \file
-/// One input of a batch, from the file to its parts.
+/// One input of a batch, from the file to pieces of work: chunks of its obstacles, and what is known of it at its end.
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <string>
 
-#include "batch/merge/ordered_merge.h"
+#include "batch/plan/input_record.h"
 #include "batch/plan/journal.h"
-#include "batch/work/thread_pool.h"
+#include "batch/work/allowance.h"
+#include "batch/work/part.h"
 #include "exactvo/datasets/batch.h"
 
 namespace exactvo::datasets::batch {
 
-/// What the jobs of a run count together.
-struct Counters {
-  std::atomic<std::uint64_t> obstacles{0};
-  std::atomic<std::uint64_t> vertices{0};
-  std::atomic<std::uint64_t> nanoseconds_of_jobs{0};
+/// A chunk on its way from the reader to the outputs, the end of an input, or both.
+struct Piece {
+  std::size_t input = 0;
+  std::size_t number = 0;                     ///< of the chunk
+  bool has_part = false;                      ///< of a chunk: its part is on disk, or will be
+  std::optional<Chunk> chunk{};               ///< to be processed; none where the part is on disk
+  std::optional<InputFacts> facts{};          ///< this is the last piece of its input
+  bool is_whole_input = false;                ///< its only chunk: facts and part stand in one file
+  bool has_changed = false;                   ///< the input, since it was listed: what was given of it is worth nothing
+  Allowance::Taken memory{};                  ///< of a chunk that is to be processed, or of its part in memory
+  std::shared_ptr<const std::string> part{};  ///< while it waits in memory for its turn
 };
 
-/// What an input is processed with. All of it outlives the pool's jobs.
-struct WorkContext {
-  const BatchConfiguration& configuration;
-  const Journal& journal;
-  Counters& counters;
-  ThreadPool& pool;
-  OrderedMerge* merge = nullptr;  ///< where parts are merged while others are made
-};
+/// What a chunk takes until its part is made.
+std::uint64_t memory_of(const Chunk& chunk);
 
-/// Leaves an input where it is when the batch is to stop.
-struct Stopped {};
-
-/// Asked while an input is read, with the share that is through; false stops: `process_input` throws Stopped.
+/// Asked while an input is read, with the share that is through; false stops: `read_input` throws Stopped.
 using InputWatch = std::function<bool(double share)>;
+using GivePiece = std::function<void(Piece)>;
 
-/// Reads the input and has the pool make every part that is not there, then its facts: all is there when the pool has
-/// finished, and the merge was told of it. Throws DataError for what is wrong with the output, and where the input
-/// changed since it was listed (E_OTHER_RUN); its parts are then gone. Whatever else is wrong with the input becomes
-/// its facts.
-void process_input(const Input& input, std::size_t number, const WorkContext& context, const InputWatch& watch);
+/// Gives the pieces of the input in order. What is wrong with it becomes its facts; of one that turns out to be broken
+/// after some of its chunks, these have no chunks. What `give` throws is thrown.
+void read_input(const Input& input, std::size_t number, const BatchConfiguration& configuration, const Journal& journal,
+                const InputWatch& watch, const GivePiece& give);
 
 }  // namespace exactvo::datasets::batch

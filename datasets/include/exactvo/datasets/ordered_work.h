@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// An ordered pipeline: tasks come one at a time, are worked on by several threads, and are finished one at a time in
+/// the order in which they came. What depends on the order, such as a file to which every task appends, is the same for
+/// any number of threads (oneTBB's parallel_pipeline).
+
+#include <functional>
+#include <optional>
+
+namespace exactvo::datasets {
+
+struct OrderedTask {
+  std::function<void()> work;    ///< in any thread, at the same time as that of others
+  std::function<void()> finish;  ///< in any thread, after that of all tasks before this one
+};
+
+/// Runs what `next` gives, until it gives nothing, on `workers` threads (1 or more), the caller's among them. `next`,
+/// too, is called by any of them, one at a time; a task that it gives is worked on at once. At most a thousand tasks
+/// are unfinished at a time.
+///
+/// If `next`, `work` or `finish` throws: no further tasks are asked for, those before the first one that failed are
+/// finished, those after it are not; what that one threw is thrown when nothing runs any more.
+void run_in_order(int workers, const std::function<std::optional<OrderedTask>()>& next);
+
+}  // namespace exactvo::datasets

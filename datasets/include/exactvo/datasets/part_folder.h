@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The parts of long work as files in a folder, so that work that was killed goes on: each part appears whole or not at
+/// all. (A power cut may take back the last ones, which are then made again.)
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace exactvo::datasets {
+
+class PartFolder {
+ public:
+  explicit PartFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Makes the folder, unless it is there. Throws DataError (E_FILE_UNWRITABLE).
+  void create() const;
+  const std::filesystem::path& path() const { return folder_; }
+  std::filesystem::path path(std::string_view name) const { return folder_ / name; }
+
+  // `file` stands in the folder, or in one below it.
+
+  bool has(const std::filesystem::path& file) const;
+  /// Throws DataError (E_FILE_UNWRITABLE), also where the folder is gone: it is not made anew.
+  void write(const std::filesystem::path& file, std::string_view bytes) const;
+
+  /// A text with the digest of itself and of `key`, what it depends on beside its name.
+  void write_sealed(const std::filesystem::path& file, std::string_view key, std::string_view text) const;
+  /// None where no such text is there, or one of another key, or a damaged one.
+  std::optional<std::string> read_sealed(const std::filesystem::path& file, std::string_view key) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Memory that several threads may take together.
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+namespace exactvo::datasets::batch {
+
+class Allowance {
+ public:
+  /// Held by who has taken some, and free again when it is gone.
+  using Taken = std::shared_ptr<const void>;
+
+  /// 0: as much as they want.
+  explicit Allowance(std::uint64_t most_bytes) : most_(most_bytes) {}
+  Allowance(const Allowance&) = delete;
+  Allowance& operator=(const Allowance&) = delete;
+
+  /// Waits until so much is free. What is more than all there is goes alone.
+  Taken take(std::uint64_t bytes) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [&] { return has_room(bytes); });
+    return take_now(bytes);
+  }
+  /// Null where `take` would wait.
+  Taken try_to_take(std::uint64_t bytes) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return has_room(bytes) ? take_now(bytes) : nullptr;
+  }
+
+ private:
+  bool has_room(std::uint64_t bytes) const { return most_ == 0 || taken_ == 0 || taken_ + bytes <= most_; }
+  Taken take_now(std::uint64_t bytes) {
+    taken_ += bytes;
+    return {this, [this, bytes](const void*) { give_back(bytes); }};
+  }
+  void give_back(std::uint64_t bytes) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    taken_ -= bytes;
+    changed_.notify_all();
+  }
+
+  std::uint64_t most_;
+  std::uint64_t taken_ = 0;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+};
+
+}  // namespace exactvo::datasets::batch
