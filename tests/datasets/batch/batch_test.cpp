@@ -13,10 +13,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "batch_files.h"
+#include "batch_folder.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/obstacle_write.h"
-#include "temporary_folder.h"
 
 namespace exactvo::datasets::test {
 namespace {
@@ -24,20 +23,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-class Batches : public TemporaryFolder {
+class Batches : public BatchFolder {
  protected:
+  Batches() : BatchFolder(2) {}
   void SetUp() override {
-    TemporaryFolder::SetUp();
+    BatchFolder::SetUp();
     write_inputs(folder_ / "in", 1300);
   }
 
-  BatchRun run_to(const std::string& out) const {
-    BatchRun run;
-    run.paths = {folder_ / "in"};
-    run.out = folder_ / out;
-    run.workers = 2;
-    return run;
-  }
   fs::path out(const std::string& name) const { return folder_ / name; }
   Json summary_of(const std::string& name) const { return Json::parse(text_of(out(name) / "summary.json")); }
 
@@ -74,8 +67,6 @@ class Batches : public TemporaryFolder {
   static DataCode refusal(const BatchConfiguration& configuration, const BatchRun& run, const BatchWatch& watch = {}) {
     return refused(configuration, run, watch).code();
   }
-
-  BatchConfiguration plain_;
 };
 
 TEST_F(Batches, EveryInputAndObstacleEndsInOneWay) {

@@ -4,30 +4,21 @@
 
 #include <gtest/gtest.h>
 
-#include "batch_files.h"
-#include "exactvo/datasets/batch.h"
+#include "batch_folder.h"
 #include "refusal.h"
-#include "temporary_folder.h"
 
 namespace exactvo::datasets::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Inputs : public TemporaryFolder {
+class Inputs : public BatchFolder {
  protected:
+  Inputs() : BatchFolder(1) {}
   void SetUp() override {
-    TemporaryFolder::SetUp();
+    BatchFolder::SetUp();
     write_text(folder_ / "in" / "walls.wkt", "LINESTRING (5 5, 6 6)\n");
     run_batch(plain_, run_to("in/earlier"));
-  }
-
-  BatchRun run_to(const std::string& out) const {
-    BatchRun run;
-    run.paths = {folder_ / "in"};
-    run.out = folder_ / out;
-    run.workers = 1;
-    return run;
   }
 
   /// Names below the folder, in order.
@@ -41,8 +32,6 @@ class Inputs : public TemporaryFolder {
   static std::vector<EarlierBatch> earlier(const BatchRun& run) {
     return batch::list_inputs(run.paths, run.out).earlier;
   }
-
-  BatchConfiguration plain_;
 };
 
 using Names = std::vector<std::string>;

@@ -13,10 +13,8 @@
 #include <utility>
 
 #include "batch/plan/journal.h"
-#include "batch_files.h"
+#include "batch_folder.h"
 #include "exactvo/datasets/atomic_file.h"
-#include "exactvo/datasets/batch.h"
-#include "temporary_folder.h"
 
 namespace {
 bool locks_are_known = true;
@@ -36,31 +34,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class WithoutLocks : public TemporaryFolder {
+class WithoutLocks : public BatchFolder {
  protected:
+  WithoutLocks() : BatchFolder(1) {}  // a child of fork has no threads but its own
   void SetUp() override {
-    TemporaryFolder::SetUp();
+    BatchFolder::SetUp();
     write_inputs(folder_ / "in", 700);
     locks_asked_for = 0;
   }
   void TearDown() override {
     locks_are_known = true;
-    TemporaryFolder::TearDown();
+    BatchFolder::TearDown();
   }
 
   BatchRun run_to(const std::string& out) const {
-    BatchRun run;
-    run.paths = {folder_ / "in"};
-    run.out = folder_ / out;
-    run.workers = 1;  // a child of fork has no threads but its own
+    BatchRun run = BatchFolder::run_to(out);
     run.resume = true;
     return run;
   }
   std::string difference_from_whole(const std::string& out) const {
     return difference(folder_ / "whole", folder_ / out);
   }
-
-  BatchConfiguration plain_;
 };
 
 TEST_F(WithoutLocks, OneProcessWritesTheSame) {

@@ -34,13 +34,6 @@ void count_file(BatchTally& files, const InputFacts& facts) {
 
 // --- Writing ---
 
-void append_tally(JsonWriter& json, const BatchTally& tally) {
-  json.member("read", tally.read).member("done", tally.done).member("repaired", tally.repaired);
-  json.key("rejected").begin_object();
-  for (const auto& [code, count] : tally.rejected) json.member(code, count);
-  json.end_object();
-}
-
 std::optional<double> rate(std::uint64_t count, const Times& times) {
   if (!times.has_rates || count == 0 || !(times.seconds > 0.0)) return std::nullopt;
   return static_cast<double>(count) / times.seconds;
@@ -52,21 +45,6 @@ void append_times(JsonWriter& json, const Times& times) {
   json.member("workers", times.workers).member("obstacles", times.obstacles).member("vertices", times.vertices);
   json.member("obstacles_per_second", rate(times.obstacles, times));
   json.member("vertices_per_second", rate(times.vertices, times)).end_object();
-}
-
-// --- Reading ---
-
-std::uint64_t sum_of(const Json& rejected, std::map<std::string, std::uint64_t>& out) {
-  std::uint64_t sum = 0;
-  for (const auto& [code, count] : rejected.items()) sum += out[code] = count.get<std::uint64_t>();
-  return sum;
-}
-
-void parse_tally(const Json& json, BatchTally& tally) {
-  json.at("read").get_to(tally.read);
-  json.at("done").get_to(tally.done);
-  json.at("repaired").get_to(tally.repaired);
-  sum_of(json.at("rejected"), tally.rejected);
 }
 
 }  // namespace
@@ -126,8 +104,8 @@ BatchSummary read_summary(const fs::path& out) {
   const Json json = parse_json(read_text_file(path), path.string());
   BatchSummary summary;
   try {
-    parse_tally(json, summary.obstacles);
-    parse_tally(json.at("files"), summary.files);
+    summary.obstacles = tally_of(json);
+    summary.files = tally_of(json.at("files"));
     json.at("passed_over").get_to(summary.passed_over);
     json.at("obstacles").get_to(summary.obstacles_out);
     json.at("certified").get_to(summary.certified);

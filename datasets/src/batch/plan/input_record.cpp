@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <fstream>
 
-#include "json_text.h"
 #include "system_error.h"
 #include "text_file.h"
 
@@ -68,15 +67,28 @@ class RecordFile {
 
 }  // namespace
 
+void append_tally(JsonWriter& json, const BatchTally& tally) {
+  json.member("read", tally.read).member("done", tally.done).member("repaired", tally.repaired);
+  json.key("rejected").begin_object();
+  for (const auto& [code, count] : tally.rejected) json.member(code, count);
+  json.end_object();
+}
+
+BatchTally tally_of(const Json& object) {
+  BatchTally tally;
+  object.at("read").get_to(tally.read);
+  object.at("done").get_to(tally.done);
+  object.at("repaired").get_to(tally.repaired);
+  for (const auto& [code, count] : object.at("rejected").items()) tally.rejected[code] = count.get<std::uint64_t>();
+  return tally;
+}
+
 std::string to_json(const InputFacts& facts) {
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object().member("outcome", facts.outcome);
   if (!facts.code.empty()) json.member("code", facts.code).member("message", facts.message);
   if (!facts.format.empty()) json.member("format", facts.format);
-  json.member("read", facts.tally.read).member("done", facts.tally.done).member("repaired", facts.tally.repaired);
-  json.key("rejected").begin_object();
-  for (const auto& [code, count] : facts.tally.rejected) json.member(code, count);
-  json.end_object();
+  append_tally(json, facts.tally);
   json.member("passed_over", facts.passed_over).member("chunks", facts.chunks);
   append_optional_facts(json, facts);
   json.key("notes").begin_array();
@@ -92,12 +104,7 @@ InputFacts parse_facts(std::string_view text, const std::string& file) {
     facts.code = json.value("code", "");
     facts.message = json.value("message", "");
     facts.format = json.value("format", "");
-    json.at("read").get_to(facts.tally.read);
-    json.at("done").get_to(facts.tally.done);
-    json.at("repaired").get_to(facts.tally.repaired);
-    for (const auto& [code, count] : json.at("rejected").items()) {
-      facts.tally.rejected[code] = count.get<std::uint64_t>();
-    }
+    facts.tally = tally_of(json);
     json.at("passed_over").get_to(facts.passed_over);
     json.at("chunks").get_to(facts.chunks);
     parse_optional_facts(json, facts);

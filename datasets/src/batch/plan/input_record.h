@@ -14,6 +14,7 @@
 #include "batch/plan/journal.h"
 #include "batch/work/part.h"
 #include "exactvo/datasets/batch.h"
+#include "json_text.h"
 
 namespace exactvo::datasets::batch {
 
@@ -33,6 +34,9 @@ struct InputFacts {
 };
 /// One JSON object on one line, and back.
 std::string to_json(const InputFacts& facts);
+/// Members of the object that is open, and back. The latter throws what nlohmann's accessors throw.
+void append_tally(JsonWriter& json, const BatchTally& tally);
+BatchTally tally_of(const Json& object);
 InputFacts parse_facts(std::string_view json, const std::string& file);
 
 // The following throw DataError: of the file (missing, unreadable), E_FORMAT_SYNTAX or E_WRONG_TYPE where it holds
