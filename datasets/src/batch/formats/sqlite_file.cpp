@@ -17,7 +17,7 @@ constexpr const char* kWithoutLocks = "unix-none";
 }  // namespace
 
 SqliteFile::SqliteFile(std::filesystem::path path) : path_(std::move(path)) {
-  // Threads take turns at it (OrderedMerge), so that it need not look after them at every call.
+  // Threads take turns at it (Session::finish_piece), so that it need not look after them at every call.
   constexpr int kHow = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX;
   const int status = sqlite3_open_v2(path_.c_str(), &database_, kHow, kWithoutLocks);
   if (status == SQLITE_OK) {
