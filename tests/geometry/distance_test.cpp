@@ -52,6 +52,30 @@ TEST(Distance, NeitherOverflowsNorUnderflows) {
   EXPECT_EQ(nearest_point({{3, 4}, {3, 4}}, {0, 0}), (Vec2{3, 4}));
 }
 
+/// Squares rule out three of the four lengths, and change no bit: at every scale, with ties, and where squares
+/// overflow.
+TEST(Distance, BetweenSegmentsIsTheLeastOfTheFourFromEnds) {
+  test::SeededRandom random(test::seed_of_run(7));
+  int apart = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const double scale = k % 3 == 0 ? 1.0 : std::ldexp(1.0, random.integer(-1060, 900));
+    const auto point = [&] {
+      const Vec2 p =
+          k % 2 == 0 ? random.in_box(4.0) : Vec2{std::round(random.in_box(3.0).x), std::round(random.in_box(3.0).y)};
+      return scale * p;
+    };
+    const Segment s{point(), point()}, t{point(), k % 5 == 0 ? s.b : point()};
+    if (intersect(s, t)) {
+      EXPECT_EQ(distance(s, t), 0.0);
+      continue;
+    }
+    ++apart;
+    EXPECT_EQ(distance(s, t), std::min({distance(s, t.a), distance(s, t.b), distance(t, s.a), distance(t, s.b)}))
+        << "case " << k;
+  }
+  EXPECT_GT(apart, 5000);
+}
+
 TEST(Distance, IntersectIsExactOnAGrid) {
   SeededRandom random(test::seed_of_run(22));
   for (int i = 0; i < 100000; ++i) {

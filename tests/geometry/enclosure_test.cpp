@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "exactvo/geometry/predicates.h"
+#include "geometry/plain_fit.h"
 #include "geometry/rational_oracle.h"
 #include "support/seeded_random.h"
 
@@ -76,6 +77,42 @@ TEST(FitTrapFree, WhatIsReturnedHolds) {
   }
   EXPECT_GT(free, 40);
   EXPECT_LT(refused, 60);
+}
+
+/// Bounds and estimates rule out candidates, and no ellipse that would have been taken: against every candidate asked
+/// in full. Walls, needles, symmetric and repeated points, ends so near that the evolute or the ends themselves decide.
+TEST(FitTrapFree, IsThePlainFitBitForBit) {
+  SeededRandom random(test::seed_of_run(31));
+  const auto bits = [](const std::optional<FittedEllipse>& f) {
+    if (!f) return std::vector<double>{};
+    const Ellipse& e = f->ellipse;
+    return std::vector<double>{static_cast<double>(f->grade), e.center.x, e.center.y, e.l11, e.l21, e.l22};
+  };
+  int grades[5] = {};
+  for (int k = 0; k < 2000; ++k) {
+    const Vec2 middle = random.in_box(k % 7 == 0 ? 1e3 : 3.0), along = k % 3 == 0 ? Vec2{1, 0} : random.direction();
+    const double length = k % 11 == 0 ? 0.0 : random.uniform(0.05, 3.0),
+                 height = k % 4 == 0 ? 0.0 : random.uniform(0.0, 2.0);
+    std::vector<Vec2> points;
+    const int count = k % 20 == 0 ? 16 : 1 + k % 5;
+    for (int i = 0; i < count; ++i) {
+      Vec2 p = random.in_box(1.0);
+      if (k % 6 == 1) p = {i % 2 == 0 ? 1.0 : -1.0, i / 2 % 2 == 0 ? 1.0 : -1.0};
+      points.push_back(middle + p.x * length * along + p.y * height * perp(along));
+    }
+    const double near = k % 5 == 0 ? 0.5 : 4.0;
+    const Vec2 start = middle + random.uniform(0.3, near + 1.0) * random.direction();
+    const Vec2 goal = middle + random.uniform(0.3, near) * (k % 9 == 0 ? along : random.direction());
+    EnclosureOptions options;
+    if (k % 8 == 0) options.margin = options.least_margin = 1e-3;
+    if (k % 13 == 0) options.slack = 3.0;
+    const double radius = k % 10 == 0 ? 0.0 : random.uniform(0.05, 0.5);
+    const auto fast = fit_trap_free(points, radius, start, goal, options);
+    const auto plain = test::PlainFit(points, radius, start, goal, options).run();
+    EXPECT_EQ(bits(fast), bits(plain)) << "case " << k;
+    ++grades[fast ? static_cast<int>(fast->grade) : 4];
+  }
+  for (const int grade : {0, 1, 2, 4}) EXPECT_GT(grades[grade], 20) << grade;
 }
 
 // Ties (a wall seen at right angles) and near ties included: no double of the moved scene is rounded.

@@ -7,6 +7,7 @@
 /// semi-axes (a, b), a point at (x, y) from the middle allows centres within a w of x, w = sqrt(1 - (y/b)^2), so that
 /// two points ask for a (w + w') >= x - x'. Where a pair is asked beside all points the answer is the same.
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -26,7 +27,14 @@ struct Frame {
   std::size_t leftmost = 0, rightmost = 0;  ///< points
 };
 
-void turn(const std::vector<Vec2>& points, double angle, Frame& f);
+/// The cosine and the sine of -angle: what turns points into a frame.
+struct Turn {
+  double cosine = 1.0, sine = 0.0;
+  Vec2 operator()(Vec2 p) const { return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y}; }
+};
+Turn turn_by(double angle);
+
+void turn(const std::vector<Vec2>& points, double angle, const Turn& by, Frame& f);
 
 /// Two points that bound the centre: the one on the right from below, the one on the left from above. At the least axis
 /// those that touch.
@@ -66,7 +74,10 @@ class PairView {
         left_(width(f.y[pair.left], centre_y, minor)) {}
 
   /// sqrt(1 - t^2); nothing comparable beyond the minor axis.
-  static double width(double y, double centre_y, double minor);
+  static double width(double y, double centre_y, double minor) {
+    const double t = (y - centre_y) / minor;
+    return std::sqrt(1.0 - t * t);
+  }
 
   double right_width() const { return right_; }
   double left_width() const { return left_; }
@@ -96,8 +107,37 @@ enum class AxisAnswer {
   never      ///< a point lies beyond the minor axis
 };
 
-/// `pair` is where to look first, and becomes the pair that touches. `width` is memory for the points' widths.
-AxisAnswer least_major(const Frame& f, double centre_y, double minor, const AreaLimit& limit, Touching& pair,
-                       std::vector<double>& width, MajorFit& out);
+/// The search for the least axis of one candidate, in two steps: most candidates are refused after the first. `pair` is
+/// where to look first, and becomes the pair that touches. `width` is memory for the points' widths.
+class LeastMajor {
+ public:
+  LeastMajor(const Frame& f, double centre_y, double minor, Touching& pair, std::vector<double>& width)
+      : f_(f), centre_y_(centre_y), minor_(minor), pair_(pair), width_(width) {}
+
+  /// Whether it fits, and about how.
+  AxisAnswer bracket(const AreaLimit& limit);
+  /// After `fits`: about what `exact` is. Axis and centre are off by `doubt()` of the axis at most.
+  MajorFit about() const { return about_; }
+  double doubt() const { return doubt_; }
+  /// After `fits`: the axis by bisection.
+  MajorFit exact();
+
+ private:
+  bool pair_is_apart(double major) const;
+  double least_of_pair() const;
+  bool has_centre(double major);
+  bool is_long_enough(double major);
+  void approach(double at);
+
+  const Frame& f_;
+  double centre_y_, minor_;
+  Touching& pair_;
+  std::vector<double>& width_;
+  double high_ = 0.0;  ///< m, where the bisection begins
+  double too_short_ = -1.0;
+  double long_enough_ = std::numeric_limits<double>::infinity();
+  MajorFit about_;
+  double doubt_ = std::numeric_limits<double>::infinity();
+};
 
 }  // namespace exactvo::geometry::detail

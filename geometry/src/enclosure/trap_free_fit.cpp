@@ -2,6 +2,7 @@
 // The smallest ellipse round some points at which a robot cannot come to rest: a search over orientation, offset and
 // semi-minor axis.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -24,9 +25,12 @@ using detail::AreaLimit;
 using detail::AxisAnswer;
 using detail::Frame;
 using detail::inflate_to_contain;
+using detail::LeastMajor;
 using detail::MajorFit;
 using detail::PairView;
 using detail::Touching;
+using detail::Turn;
+using detail::turn_by;
 
 struct FitGoal {
   double robot_radius;
@@ -62,21 +66,28 @@ constexpr double kMinorShares[] = {0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.
 constexpr double kOffsetShares[] = {0.0, -0.25, 0.25, -0.5, 0.5, -0.9, 0.9};
 constexpr std::size_t kMinors = std::size(kMinorShares), kOffsets = std::size(kOffsetShares);
 
-/// What is known of a candidate whatever its margin and slack.
+/// What is known of a candidate whatever its margin and slack, where a fit keeps it.
 struct Known {
   enum class State : unsigned char {
     nothing,
-    fitted,   ///< `major` is known
-    hopeless  ///< no ellipse, or one that the start or the goal lies in
+    estimated,  ///< `major` is known to kEstimate
+    fitted,     ///< `major` is known
+    hopeless    ///< no ellipse, or one that the start or the goal lies in
   };
-  State state = State::nothing;
-  MajorFit major;
+  State& state;
+  MajorFit& major;
+
+  void set(State now, const MajorFit& then) const {
+    state = now;
+    major = then;
+  }
 };
 
 /// Start and goal, drawn towards the points by a little less than they must stay clear: an ellipse that holds such a
 /// place does not leave the end itself outside. NaN where nothing follows from it.
 struct Ends {
   Vec2 start, goal;
+  Vec2 whole_goal;  ///< where it is
 };
 
 /// The points in one orientation, and what it was last like there.
@@ -85,9 +96,9 @@ struct Orientation {
   Ends ends;                ///< in the frame
   Touching pair[kOffsets];  ///< what touched last at each offset
 
-  void turn_to(double angle, const std::vector<Vec2>& points, const Ends& from) {
-    turn(points, angle, frame);
-    ends = {rotated(from.start, -angle), rotated(from.goal, -angle)};
+  void turn_to(double angle, const Turn& by, const std::vector<Vec2>& points, const Ends& from) {
+    turn(points, angle, by, frame);
+    ends = {by(from.start), by(from.goal), by(from.whole_goal)};
     for (Touching& p : pair) p = {frame.rightmost, frame.leftmost};
   }
 };
@@ -140,20 +151,56 @@ bool surely_holds(Vec2 centre, double major, double minor, Vec2 place) {
   return x * x + y * y < 1.0 - kDoubt;
 }
 
+/// Shares of an axis, by which estimates may be off, and what is allowed for that and for all rounding.
+constexpr double kEstimate = 1e-9;
+constexpr double kAllowance = 1e-7;
+
+/// Whether a place lies inside the evolute beyond doubt, in the ellipse's frame. With A = a^2 x^2, B = b^2 y^2 and C =
+/// factor (a^2 - b^2)^2 it does where (A + B - C)^3 + 27 A B C < 0 (predicates.cpp), so that larger A and B and a
+/// smaller C err towards no.
+bool surely_inside_evolute(Vec2 centre, double a, double b, Vec2 place, double slack) {
+  const double most = a + b;
+  const double x = (1.0 + kAllowance) * a * (std::fabs(place.x - centre.x) + kAllowance * most);
+  const double y = (1.0 + kAllowance) * b * (std::fabs(place.y - centre.y) + kAllowance * most);
+  const double spread = std::fabs(a - b) * most - kAllowance * most * most;
+  if (!(spread > 0.0)) return false;
+  const double factor = (1.0 + slack) * (1.0 + slack) * (1.0 + slack);
+  const double A = x * x, B = y * y, C = (1.0 - kAllowance) * factor * spread * spread;
+  const double beyond = C - A - B;
+  return beyond > 0.0 && beyond * beyond * beyond > 27.0 * A * B * C;
+}
+
 /// What a fit leaves to the next: memory.
 struct FitMemory {
   std::vector<Vec2> points;    ///< the hull's corners from the first of them
   std::vector<double> angles;  ///< of the coarse search
   std::vector<Orientation> orientations;
-  std::vector<Known> known;  ///< orientation x semi-minor axis x offset across
-  Orientation here, aside;   ///< of the pattern search
+  // Of each candidate: orientation x semi-minor axis x offset across.
+  std::vector<Known::State> state;
+  std::vector<MajorFit> major;  ///< read where the state says so
+  Orientation here, aside;      ///< of the pattern search
   std::vector<double> width;
 };
 
+constexpr std::size_t kAngles = 18;
+
+double coarse_angle(std::size_t i) {
+  return kPi * static_cast<double>(i) / static_cast<double>(kAngles);
+}
+
+const std::array<Turn, kAngles>& coarse_turns() {
+  static const std::array<Turn, kAngles> all = [] {
+    std::array<Turn, kAngles> turns;
+    for (std::size_t i = 0; i < kAngles; ++i) turns[i] = turn_by(coarse_angle(i));
+    return turns;
+  }();
+  return all;
+}
+
+/// All round, and along the hull's edges.
 void set_coarse_angles(const std::vector<Vec2>& hull, std::vector<double>& angles) {
-  constexpr int kAngles = 18;
   angles.clear();
-  for (int i = 0; i < kAngles; ++i) angles.push_back(kPi * i / kAngles);
+  for (std::size_t i = 0; i < kAngles; ++i) angles.push_back(coarse_angle(i));
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Vec2 e = hull[(i + 1) % hull.size()] - hull[i];
     if (e != Vec2{}) angles.push_back(std::atan2(e.y, e.x));
@@ -176,17 +223,30 @@ class Search {
     return limit(minor, or_equal).is_too_long(f.half_width);
   }
 
+  /// Whether every ellipse of a row of candidates, of that minor axis and whatever offset, is: with a pair of points
+  /// d apart in height the sum of their half chords is largest midway between them, 2 sqrt(1 - (d / 2b)^2).
+  bool is_row_too_large(const Orientation& o, double minor, bool or_equal) const {
+    constexpr double kRounding = 4e-12;
+    const Frame& f = o.frame;
+    const AreaLimit area = limit(minor, or_equal);
+    const double longest = area.longest();
+    const auto asks_for_more = [&](const Touching& pair) {
+      const double t = 0.5 * (f.y[pair.right] - f.y[pair.left]) / minor;
+      return f.x[pair.right] - f.x[pair.left] > 2.0 * longest * std::sqrt(1.0 - t * t) + kRounding * f.extent;
+    };
+    return area.is_too_long(longest) && (asks_for_more(o.pair[0]) || asks_for_more(recent_));
+  }
+
   /// Whether it is smaller than the best so far (`or_equal`: or as large) and will do: then it is the best. `pair` is
   /// where to look first, and is kept up.
-  bool improves(const Orientation& o, const Candidate& c, bool or_equal, Known& known, Touching& pair) {
+  bool improves(const Orientation& o, const Candidate& c, bool or_equal, const Known& known, Touching& pair) {
     if (known.state == Known::State::hopeless) return false;
     const AreaLimit area = limit(c.minor, or_equal);
-    if (known.state == Known::State::nothing && !is_fitted(o, c, area, known, pair)) return false;
-    if (area.is_too_long(known.major.major)) return false;
+    if (known.state == Known::State::estimated && is_surely_refused(o, c, area, known.major)) return false;
+    if (known.state != Known::State::fitted && !is_fitted(o, c, area, known, pair)) return false;
+    if (area.is_too_long(known.major.major) || is_refused(o, c, area, known.major)) return false;
     const double a = known.major.major + want_.margin, b = area.minor;
-    const Vec2 turned_centre{known.major.centre, o.frame.middle + c.offset};
-    if (surely_holds(turned_centre, a, b, o.ends.start) || surely_holds(turned_centre, a, b, o.ends.goal)) return false;
-    const Vec2 centre = rotated(turned_centre, c.angle);
+    const Vec2 centre = rotated({known.major.centre, o.frame.middle + c.offset}, c.angle);
     const bool upright = a >= b;
     const Ellipse ellipse =
         ellipse_from_axes(centre, {std::max(a, b), std::min(a, b), upright ? c.angle : c.angle + 0.5 * kPi});
@@ -202,9 +262,21 @@ class Search {
     return {minor + want_.margin, want_.margin, want_.most_area, best_.area, or_equal};
   }
 
+  /// Whether the ends are beyond doubt where they may not be. A glance in doubles, for most candidates.
+  bool is_refused(const Orientation& o, const Candidate& c, const AreaLimit& area, const MajorFit& major) const {
+    const double a = major.major + want_.margin, b = area.minor;
+    const Vec2 centre{major.centre, o.frame.middle + c.offset};
+    return (want_.slack && surely_inside_evolute(centre, a, b, o.ends.whole_goal, *want_.slack)) ||
+           surely_holds(centre, a, b, o.ends.start) || surely_holds(centre, a, b, o.ends.goal);
+  }
+  /// The same of an estimate.
+  bool is_surely_refused(const Orientation& o, const Candidate& c, const AreaLimit& area, const MajorFit& major) const {
+    return area.is_too_long((1.0 - 2.0 * kEstimate) * major.major) || is_refused(o, c, area, major);
+  }
+
   /// Two points tell of most candidates that they are too long or hold an end.
   bool is_ruled_out(const Orientation& o, const Candidate& c, const AreaLimit& area, const Touching& pair,
-                    Known& known) const {
+                    const Known& known) const {
     const PairView view(o.frame, o.frame.middle + c.offset, c.minor, pair);
     if (const double longest = area.longest(); view.asks_for_more_than(longest) && area.is_too_long(longest))
       return true;
@@ -215,27 +287,25 @@ class Search {
     return true;
   }
 
-  bool is_fitted(const Orientation& o, const Candidate& c, const AreaLimit& area, Known& known, Touching& pair) {
+  bool is_fitted(const Orientation& o, const Candidate& c, const AreaLimit& area, const Known& known, Touching& pair) {
     const Frame& f = o.frame;
     if (area.is_too_long(f.half_width) || is_ruled_out(o, c, area, pair, known)) return false;
     if (recent_ != pair && is_ruled_out(o, c, area, recent_, known)) {
       pair = recent_;
       return false;
     }
-    const double centre_y = f.middle + c.offset;
-    const AxisAnswer answer = least_major(f, centre_y, c.minor, area, pair, width_, known.major);
+    LeastMajor least(f, f.middle + c.offset, c.minor, pair, width_);
+    const AxisAnswer answer = least.bracket(area);
     recent_ = pair;
-    switch (answer) {
-      case AxisAnswer::too_long:
-        return false;
-      case AxisAnswer::never:
-        known.state = Known::State::hopeless;
-        return false;
-      case AxisAnswer::fits:
-        known.state = Known::State::fitted;
-        return true;
+    if (answer == AxisAnswer::never) known.state = Known::State::hopeless;
+    if (answer != AxisAnswer::fits) return false;
+    if (least.doubt() <= kEstimate) {
+      known.set(Known::State::estimated, least.about());
+      if (is_surely_refused(o, c, area, known.major)) return false;
     }
-    return false;
+    known.set(Known::State::fitted, least.exact());
+    recent_ = pair;
+    return true;
   }
 
   const FitGoal& want_;
@@ -251,19 +321,36 @@ class CoarseSearch {
     set_coarse_angles(memory.points, memory.angles);
     if (memory.orientations.size() < memory.angles.size()) memory.orientations.resize(memory.angles.size());
     for (std::size_t k = 0; k < memory.angles.size(); ++k)
-      memory.orientations[k].turn_to(memory.angles[k], memory.points, ends);
-    memory.known.assign(memory.angles.size() * kMinors * kOffsets, {});
+      memory.orientations[k].turn_to(memory.angles[k], k < kAngles ? coarse_turns()[k] : turn_by(memory.angles[k]),
+                                     memory.points, ends);
+    const std::size_t count = memory.angles.size() * kMinors * kOffsets;
+    memory.state.assign(count, Known::State::nothing);
+    if (memory.major.size() < count) memory.major.resize(count);
+    first_ = promising_orientation();
   }
 
-  /// The smallest of all, of equals the first. Central ones are tried first, so that most others are seen at once to be
-  /// larger.
+  /// The smallest of all, of equals the first. Central ones are tried first, and of these those along the smallest box
+  /// round the points, so that most others are seen at once to be larger.
   void run(Search& search) {
-    best_ = memory_.known.size();
-    for (std::size_t k = 0; k < memory_.angles.size(); ++k) try_orientation(k, 0, 1, search);
+    best_ = memory_.state.size();
+    try_orientation(first_, 0, 1, search);
+    for (std::size_t k = 0; k < memory_.angles.size(); ++k)
+      if (k != first_) try_orientation(k, 0, 1, search);
     for (std::size_t k = 0; k < memory_.angles.size(); ++k) try_orientation(k, 1, kOffsets, search);
   }
 
  private:
+  std::size_t promising_orientation() const {
+    std::size_t best = 0;
+    const auto box = [&](std::size_t k) {
+      const Frame& f = memory_.orientations[k].frame;
+      return f.half_width * (f.half_height + kMinorShares[0] * size_);
+    };
+    for (std::size_t k = 1; k < memory_.angles.size(); ++k)
+      if (box(k) < box(best)) best = k;
+    return best;
+  }
+
   /// From the smallest minor axis up: once the points' own extent makes too large an ellipse, it does so for all
   /// others.
   void try_orientation(std::size_t k, std::size_t first_offset, std::size_t last_offset, Search& search) {
@@ -271,16 +358,21 @@ class CoarseSearch {
     for (std::size_t m = 0; m < kMinors; ++m) {
       const std::size_t number = (k * kMinors + m) * kOffsets;
       const double minor = coarse_candidate(o.frame, size_, m, 0).minor;
-      if (search.is_too_large(o.frame, minor, number + first_offset < best_)) return;
+      const bool or_equal = number + first_offset < best_;
+      if (search.is_too_large(o.frame, minor, or_equal)) return;
+      if (first_offset > 0 && search.is_row_too_large(o, minor, or_equal)) continue;
       for (std::size_t i = first_offset; i < last_offset; ++i) {
         const Candidate c = coarse_candidate(o.frame, size_, m, i);
-        if (search.improves(o, c, number + i < best_, memory_.known[number + i], o.pair[i])) best_ = number + i;
+        if (search.improves(o, c, number + i < best_, known(number + i), o.pair[i])) best_ = number + i;
       }
     }
   }
 
+  Known known(std::size_t number) { return {memory_.state[number], memory_.major[number]}; }
+
   FitMemory& memory_;
   double size_;
+  std::size_t first_ = 0;  ///< orientation
   std::size_t best_ = 0;
 };
 
@@ -320,9 +412,10 @@ class Refinement {
  private:
   bool improves(const Candidate& c, double present_angle, Touching& pair, Search& search) {
     Orientation& o = c.angle == present_angle ? memory_.here : memory_.aside;
-    if (o.frame.angle != c.angle) o.turn_to(c.angle, memory_.points, ends_);
-    Known known;
-    return search.improves(o, c, false, known, pair);
+    if (o.frame.angle != c.angle) o.turn_to(c.angle, turn_by(c.angle), memory_.points, ends_);
+    Known::State state = Known::State::nothing;
+    MajorFit major;
+    return search.improves(o, c, false, {state, major}, pair);
   }
 
   FitMemory& memory_;
@@ -392,7 +485,7 @@ class LocalFit {
       return std::nullopt;
     if (!coarse_) {
       const double clear = want.robot_radius + want.clear;
-      ends_ = {drawn_in(memory_.points, local.start, clear), drawn_in(memory_.points, local.goal, clear)};
+      ends_ = {drawn_in(memory_.points, local.start, clear), drawn_in(memory_.points, local.goal, clear), local.goal};
       coarse_.emplace(memory_, size_, ends_);
     }
     Search search(local, memory_.width);

@@ -72,7 +72,7 @@ Box BoxGrid::window_round(Vec2 x, double reach) {
 // The same rounding for boxes and windows, and monotone: what meets has a cell in common.
 BoxGrid::Cells BoxGrid::cells_of(const Box& box) const {
   const auto index = [&](double x, double low, std::int32_t count) {
-    return static_cast<std::int32_t>(std::clamp(std::floor((x - low) / side_), 0.0, static_cast<double>(count - 1)));
+    return static_cast<std::int32_t>(std::clamp((x - low) / side_, 0.0, static_cast<double>(count - 1)));
   };
   if (boxes_.empty()) return {};
   return {index(box.low.x, extent_.low.x, columns_), index(box.low.y, extent_.low.y, rows_),

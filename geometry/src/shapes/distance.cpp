@@ -2,7 +2,9 @@
 #include "exactvo/geometry/distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "exactvo/geometry/require.h"
@@ -85,6 +87,19 @@ double signed_distance(const Obstacle& obstacle, Vec2 x, bool inside) {
   return inside ? -d : d;
 }
 
+/// The least of the four lengths. Only those are taken that its square, which is quick, does not show to be longer.
+double least_length(const std::array<Vec2, 4>& all) {
+  constexpr double kRounding = 1.0 + 1e-12;
+  constexpr double kLeastSquare = 0x1p-900, kMostSquare = 0x1p900;
+  const double squares[] = {squared_norm(all[0]), squared_norm(all[1]), squared_norm(all[2]), squared_norm(all[3])};
+  const double least_square = *std::min_element(std::begin(squares), std::end(squares));
+  const bool is_sound = least_square > kLeastSquare && least_square < kMostSquare;
+  double least = kInfinity;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (!is_sound || squares[i] <= kRounding * least_square) least = std::min(least, length(all[i]));
+  return least;
+}
+
 }  // namespace
 
 // Differences are scaled by the longer side, so neither a tiny nor a huge segment loses its squares.
@@ -109,7 +124,8 @@ bool intersect(const Segment& s, const Segment& t) {
 
 double distance(const Segment& s, const Segment& t) {
   if (intersect(s, t)) return 0.0;
-  return std::min({distance(s, t.a), distance(s, t.b), distance(t, s.a), distance(t, s.b)});
+  return least_length({t.a - nearest_point(s, t.a), t.b - nearest_point(s, t.b), s.a - nearest_point(t, s.a),
+                       s.b - nearest_point(t, s.b)});
 }
 
 double signed_distance(const Obstacle& obstacle, Vec2 x) {

@@ -28,6 +28,14 @@ Box grown(const Box& box, double by) {
   return {box.low - Vec2{by, by}, box.high + Vec2{by, by}};
 }
 
+/// Whether every two points of the boxes are farther from each other than that, beyond the rounding of it.
+bool are_apart(const Box& a, const Box& b, double distance) {
+  constexpr double kRounding = 1.0 + 1e-12;
+  const double x = std::max({a.low.x - b.high.x, b.low.x - a.high.x, 0.0});
+  const double y = std::max({a.low.y - b.high.y, b.low.y - a.high.y, 0.0});
+  return x * x + y * y > kRounding * (distance * distance);
+}
+
 double largest(Vec2 v) {
   return std::max(std::fabs(v.x), std::fabs(v.y));
 }
@@ -98,8 +106,10 @@ double ObstacleIndex::edge_distance(const Segment& path, double enough) const {
   const double rounding = rounding_of_distance(std::max({largest_, largest(path.a), largest(path.b)}));
   double least = kInfinity;
   for (double reach = std::min(std::max({size.x, size.y, 1.0}), std::max(enough, 0.0));; reach *= 2.0) {
-    edges_by_place_.for_each_meeting(grown(round, reach * (1.0 + kRounding) + 2.0 * rounding),
-                                     [&](std::size_t e) { least = std::min(least, distance(edges_[e], path)); });
+    edges_by_place_.for_each_meeting(grown(round, reach * (1.0 + kRounding) + 2.0 * rounding), [&](std::size_t e) {
+      if (!are_apart(edges_by_place_.box(e), round, std::min(least, enough) + 2.0 * rounding))
+        least = std::min(least, distance(edges_[e], path));
+    });
     if (least <= reach || reach >= enough || !std::isfinite(reach)) return least;
   }
 }
