@@ -10,6 +10,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -20,6 +21,7 @@
 #include "exactvo/geometry/support.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
+#include "support/fields.h"
 #include "support/route_certificates.h"
 #include "support/unsigned_zero.h"
 #include "support/usage.h"
@@ -31,7 +33,8 @@ namespace {
 constexpr const char* kFirstWords[] = {"half-plane-certificate ", "containment-certificate "};
 
 std::string text_of(const std::string& file) {
-  return file == "-" ? datasets::read_standard_input() : datasets::read_text_file(file);
+  const std::string text = file == "-" ? datasets::read_standard_input() : datasets::read_text_file(file);
+  return std::string(without_mark(text, 1));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -81,15 +84,21 @@ constexpr const char* kHalfPlanes[] = {"half_plane", "contact_half_plane"};
 /// What `exactvo vo` prints is far from so deep, and what walks the tree calls itself.
 constexpr int kDeepest = 100;
 
-/// Nothing where it is none, or too deep.
+/// Nothing where it is none, or too deep, or an object has a member twice: readers differ in which of the two counts.
 std::optional<Json> parsed(const std::string& text) {
-  bool too_deep = false;
-  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
-    too_deep = too_deep || depth > kDeepest;
-    return !too_deep;
+  bool refused = false;
+  std::vector<std::set<std::string>> members;  // of the objects that are open
+  const auto look = [&](int depth, Json::parse_event_t event, const Json& json) {
+    using Event = Json::parse_event_t;
+    refused = refused || depth > kDeepest;
+    if (event == Event::object_start) members.emplace_back();
+    if (event == Event::object_end && !members.empty()) members.pop_back();
+    if (event == Event::key && !members.empty())
+      refused = !members.back().insert(json.get_ref<const std::string&>()).second || refused;
+    return !refused;
   };
-  Json json = Json::parse(text, shallow, false);
-  if (too_deep || json.is_discarded()) return std::nullopt;
+  Json json = Json::parse(text, look, false);
+  if (refused || json.is_discarded()) return std::nullopt;
   return json;
 }
 
@@ -218,6 +227,7 @@ class TreeJudge {
       for (const Json& item : value) walk(item);
     if (!value.is_object()) return;
     if (RouteJudge::is_one(value)) return judged_.all.push_back(routes_.judge(value, nullptr));
+    if (RouteJudge::lacks_one(value)) return judged_.all.push_back({"no certificate", "", false});
     for (const auto& [key, member] : value.items()) {
       if (key == "certificate") {
         add(member, value);

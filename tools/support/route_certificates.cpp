@@ -142,6 +142,7 @@ std::optional<std::vector<Vec2>> points_in(const RouteJson* json, std::size_t le
 
 std::optional<Obstacle> obstacle_in(const RouteJson* json) {
   constexpr std::size_t kLeastOfWall = 2, kLeastOfRing = 3;
+  if (member(*json, "polyline") && member(*json, "polygon")) return std::nullopt;
   if (const RouteJson* wall = member(*json, "polyline")) {
     auto points = points_in(wall, kLeastOfWall);
     return points ? std::optional<Obstacle>(Polyline{std::move(*points)}) : std::nullopt;
@@ -216,6 +217,11 @@ std::optional<RouteQuestion> question_in(const RouteJson& json) {
   return RouteQuestion{*radius, *start, *goal};
 }
 
+bool is_status(const RouteJson* json) {
+  return json != nullptr &&
+         std::any_of(std::begin(kStatuses), std::end(kStatuses), [&](const char* status) { return *json == status; });
+}
+
 // --- What stands beside it ---
 
 /// Whether `beside` has no such member, or it is `value`.
@@ -224,14 +230,48 @@ bool agrees(const RouteJson& beside, const char* key, const RouteJson& value) {
   return said == nullptr || *said == value;
 }
 
-bool is_of_this_answer(const RouteJson& beside, const RouteJson& certificate, const RouteAnswer& answer) {
+/// Whether the widest radius, where it stands beside, has a route exactly if it is no less than that of the question.
+bool agrees_in_widest(const RouteJson& beside, double radius, bool is_route) {
+  const RouteJson* widest = member(beside, "widest_radius");
+  if (widest == nullptr) return true;
+  const std::optional<double> number = number_in(widest);
+  return number && (*number >= radius) == is_route;
+}
+
+/// Whether the gaps that stand beside start at those points of the chain behind which there is one.
+bool agrees_in_gaps(const RouteJson& beside, const RouteAnswer& answer) {
+  const RouteJson* gaps = member(beside, "gaps");
+  if (gaps == nullptr) return true;
+  std::vector<Vec2> expected;
+  if (const auto* separated = std::get_if<Separated>(&answer))
+    for (const ChainPoint& p : separated->chain)
+      if (p.gap_follows) expected.push_back(p.point.rounded);
+  const auto from_of = [](const RouteJson* gap) { return pair_in(member(*gap, "from")); };
+  const std::optional<std::vector<Vec2>> found = list_in<Vec2>(gaps, 0, from_of);
+  return found && *found == expected;
+}
+
+bool agrees_in_end(const RouteJson& beside, const RouteJson& certificate) {
+  const RouteJson* blocked = member(beside, "blocked");
+  if (blocked == nullptr) return true;
+  const auto same = [&](const char* key) {
+    const RouteJson *said = member(*blocked, key), *proven = member(certificate, key);
+    return said && proven && *said == *proven;
+  };
+  return same("end") && same("inside");
+}
+
+bool is_of_this_answer(const RouteJson& beside, const RouteJson& certificate, const RouteQuestion& question,
+                       const RouteAnswer& answer) {
   const auto* route = std::get_if<Route>(&answer);
   const RouteJson none = nullptr;
   return agrees(beside, "status", certificate.at("kind")) && agrees(beside, "radius", certificate.at("radius")) &&
          agrees(beside, "start", certificate.at("start")) && agrees(beside, "goal", certificate.at("goal")) &&
          agrees(beside, "length", route ? certificate.at("length") : none) &&
          agrees(beside, "lower_bound", route ? certificate.at("lower_bound") : none) &&
-         agrees(beside, "points", route ? rounded_json(route->points) : none);
+         agrees(beside, "points", route ? rounded_json(route->points) : none) &&
+         agrees(beside, "needed_width", 2.0 * question.radius) && agrees_in_gaps(beside, answer) &&
+         agrees_in_end(beside, certificate) && agrees_in_widest(beside, question.radius, route != nullptr);
 }
 
 std::string claim_words(const RouteQuestion& q, const RouteAnswer& answer, std::size_t obstacles) {
@@ -273,9 +313,12 @@ RouteJson certificate_json(const RouteQuestion& question, const RouteAnswer& ans
 }
 
 bool RouteJudge::is_one(const RouteJson& certificate) {
-  const RouteJson* kind = member(certificate, "kind");
-  return kind != nullptr &&
-         std::any_of(std::begin(kStatuses), std::end(kStatuses), [&](const char* status) { return *kind == status; });
+  return is_status(member(certificate, "kind"));
+}
+
+bool RouteJudge::lacks_one(const RouteJson& object) {
+  const RouteJson* certificate = member(object, "certificate");
+  return is_status(member(object, "status")) && (certificate == nullptr || certificate->is_null());
 }
 
 JudgedCertificate RouteJudge::judge(const RouteJson& certificate, const RouteJson& beside) {
@@ -290,7 +333,7 @@ JudgedCertificate RouteJudge::judge(const RouteJson& certificate, const RouteJso
   const std::string claim = claim_words(*question, *answer, obstacles_->size());
   const std::string why = geometry::check(*obstacles_, *question, *answer);
   if (!why.empty()) return {"not proven: " + why, claim, false};
-  if (!is_of_this_answer(beside, certificate, *answer)) return {"of another answer", claim, false};
+  if (!is_of_this_answer(beside, certificate, *question, *answer)) return {"of another answer", claim, false};
   return {"valid", claim, true};
 }
 

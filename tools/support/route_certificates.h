@@ -37,8 +37,12 @@ class RouteJudge {
   /// Whether an object claims to be one: it has a `kind` that is a status.
   static bool is_one(const RouteJson& certificate);
 
-  /// `beside`: the object whose `certificate` it is. What it says of status, radius, start, goal, points and lengths
-  /// must be what the certificate says; else the verdict is "of another answer". REQUIRES: is_one(certificate).
+  /// Whether an object answers a question of a route, by its `status`, and has no certificate for it.
+  static bool lacks_one(const RouteJson& object);
+
+  /// `beside`: the object whose `certificate` it is. What it says of status, radius, start, goal, points, lengths,
+  /// gaps, the blocked end and the widest radius must agree with the certificate; else the verdict is "of another
+  /// answer". REQUIRES: is_one(certificate).
   JudgedCertificate judge(const RouteJson& certificate, const RouteJson& beside);
 
  private:

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/routes.h"
+#include "support/fields.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -74,11 +76,12 @@ void check(const Flags& flags) {
 // --- Points ---
 
 Vec2 pair_in(const char* option, const std::string& text, const AskedMap& map) {
-  Vec2 v;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2)
-    throw UsageError(option, text, map.accepted_points());
-  return v;
+  const std::vector<std::string_view> fields = fields_of(text);
+  const bool are_two = fields.size() == 2 && text.find(',') != std::string::npos;
+  const std::optional<double> x = are_two ? number_in(fields[0]) : std::nullopt;
+  const std::optional<double> y = are_two ? number_in(fields[1]) : std::nullopt;
+  if (!x || !y) throw UsageError(option, text, map.accepted_points());
+  return {*x, *y};
 }
 
 Vec2 point_in(const char* option, const std::string& text, const AskedMap& map) {
@@ -124,11 +127,12 @@ class Answers {
   bool covers(Vec2 point) const { return routes_.covers(point); }
 
   AnsweredRoute answer(std::size_t index, Vec2 start, Vec2 goal) const {
-    AnsweredRoute answered{index, {flags_.radius.value_or(0.0), start, goal}, std::nullopt, std::nullopt, false};
+    AnsweredRoute answered{index, {flags_.radius.value_or(0.0), start, goal}, std::nullopt, std::nullopt, false, false};
     if (plan_) answered.answer = plan_->query(start, goal);
     if (!flags_.widest) return answered;
     answered.widest = routes_.widest_radius(start, goal);
     answered.is_widest_of_map = *answered.widest == routes_.largest_radius();
+    answered.has_no_obstacle = asked_.shapes.empty();
     return answered;
   }
 
@@ -168,12 +172,15 @@ Vec2 place_of(Vec2 given, const char* end, const AskedMap& map, const Answers& a
 
 /// Of the longer side of the obstacles' box.
 constexpr double kFarthestOfQueries = 4.0;
+/// m; all that --from and --to take.
+constexpr double kFarthestOfEmptyMap = kLargestNumber;
 
 ExitCode answer_many(const AskedMap& map, const Flags& flags) {
   RouteQueries queries(flags.queries, map);
   const geometry::Box box = box_of(map);
   const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
-  const Answers answers(map, flags, options_for(flags, box, kFarthestOfQueries * side));
+  const double farthest = map.shapes.empty() ? kFarthestOfEmptyMap : kFarthestOfQueries * side;
+  const Answers answers(map, flags, options_for(flags, box, farthest));
   bool all = true;
   while (const std::optional<RouteQuery> query = queries.next()) {
     const Vec2 start = place_of(query->start, "start", map, answers, queries);
@@ -230,7 +237,9 @@ Verb route_verb() {
           "  exactvo route office.geojson --from 2,3 --to 18,7 --widest\n"
           "  exactvo route arena.map --queries arena.map.scen --radius 0.3 --json > answers.jsonl\n"
           "  exactvo audit --certificate answers.jsonl\n"
-          "    (status 1: for one question at least there is no route)\n",
+          "    (status 1: for one question at least there is no route; answers of --queries are printed as the "
+          "questions are\n"
+          "    read, so those before a bad line stay)\n",
           declare};
 }
 

@@ -207,12 +207,12 @@ std::string words_of(const AnsweredRoute& answered, const AskedMap& map, bool in
     if (const auto* blocked = std::get_if<Blocked>(&*answered.answer)) text = words(*blocked, map, answered.question);
     text = shown_lines(text);
   }
-  if (answered.widest)
-    text += fmt::format("{}widest radius: {}{} m",
-                        !answered.answer ? ""
-                        : in_full        ? "\n"
-                                         : "; ",
-                        answered.is_widest_of_map ? "at least " : "", *answered.widest);
+  if (answered.widest) {
+    if (answered.answer) text += in_full ? "\n" : "; ";
+    text += answered.has_no_obstacle
+                ? "widest radius: any, there is no obstacle"
+                : fmt::format("widest radius: {}{} m", answered.is_widest_of_map ? "at least " : "", *answered.widest);
+  }
   return text + "\n";
 }
 

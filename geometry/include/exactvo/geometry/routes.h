@@ -15,7 +15,9 @@
 /// (route_certificate.h, which shares no code with this). Rounded: lengths. A route is short, not proven shortest: its
 /// `lower_bound` says by how much at most it could be shortened.
 ///
-/// The same obstacles and the same question give the same answer, bit for bit, on any number of threads.
+/// The same obstacles, options and question give the same answer, bit for bit, on any number of threads. Options decide
+/// how the plane outside of the obstacles is cut: with others the answer is of the same kind, a route and its bound may
+/// differ.
 ///
 /// Neighbours: route_certificate.h (checks answers), datasets/obstacle_file.h (obstacles from files).
 
