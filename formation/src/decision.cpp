@@ -177,6 +177,11 @@ lp::Solution Decider::solution_of(const DecisionInput& in) {
   }
 }
 
+bool Decider::has_fallen_back(const Constraint& c, const DecisionInput& in) const {
+  return in.fallen_back && (*bodies_)[c.body].kind == vo::BodyKind::robot &&
+         std::find(in.fallen_back->begin(), in.fallen_back->end(), c.index) != in.fallen_back->end();
+}
+
 void Decider::decide(const DecisionInput& in, RobotStep& step) {
   const lp::Solution solution = solution_of(in);
   step.preferred = in.preferred;
@@ -193,7 +198,7 @@ void Decider::decide(const DecisionInput& in, RobotStep& step) {
     for (const Constraint& c : *some) {
       const lp::ActiveConstraint* active = active_at(solution, number++);
       if (c.proof == vo::Proof::none) ++step.uncertified;
-      if (in.keep_all || active || c.clearance <= reach_of(c, in.from))
+      if (in.keep_all || active || has_fallen_back(c, in) || c.clearance <= reach_of(c, in.from))
         step.constraints.push_back(recorded(c, in.from, active));
     }
   }

@@ -43,6 +43,7 @@ struct DecisionInput {
   const std::vector<Constraint>* statics = nullptr;
   const std::vector<Constraint>* others = nullptr;  ///< robots and moving obstacles
   bool keep_all = false;
+  const std::vector<std::size_t>* fallen_back = nullptr;  ///< robots whose constraints are kept in any case
   NeededConstraints* more = nullptr;  ///< grows `statics` by what the decision needs; none: they are all there
 };
 
@@ -58,6 +59,7 @@ class Decider {
 
  private:
   lp::Solution solution_of(const DecisionInput& in);
+  bool has_fallen_back(const Constraint& c, const DecisionInput& in) const;
   double reach_of(const Constraint& c, const Viewpoint& from) const;
   RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, const lp::ActiveConstraint* active) const;
 

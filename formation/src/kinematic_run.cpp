@@ -144,14 +144,16 @@ class KinematicRun {
     std::set<std::size_t> contradicted;
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (is_relaxed(row.robots[i])) contradicted.insert(i);
-    std::set<std::pair<std::size_t, std::size_t>> fallen;
+    std::vector<std::vector<std::size_t>> fallen(robots_.size());  // with whom
     while (!contradicted.empty()) {
       std::set<std::size_t> changed;
       for (const std::size_t i : contradicted) {
         for (const std::size_t j : robots_met_by(i)) {
           const bool both_yield = scenario_.robots[i].cooperates && scenario_.robots[j].cooperates;
-          if (!both_yield || !fallen.insert(std::minmax(i, j)).second) continue;
+          if (!both_yield || std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end()) continue;
           fall_back(scenario_, anchors_, scene_, i, j, others_);
+          fallen[i].push_back(j);
+          fallen[j].push_back(i);
           changed.insert(i);
           changed.insert(j);
         }
@@ -159,7 +161,7 @@ class KinematicRun {
       contradicted.clear();
       for (const std::size_t i : changed) {
         look(i);
-        choose(i, row.robots[i].preferred, time, row.robots[i]);
+        choose(i, row.robots[i].preferred, time, row.robots[i], &fallen[i]);
         if (is_relaxed(row.robots[i])) contradicted.insert(i);
       }
     }
@@ -201,12 +203,12 @@ class KinematicRun {
   }
 
   /// REQUIRES: it has looked, and nobody after it.
-  void choose(std::size_t i, Vec2 preferred, double time, RobotStep& step) {
-    const bool keep_all = clock_.keeps_all(time);
-    if (options_.method == Method::orca)
-      decider_.decide({preferred, viewpoint(i), &all_, &others_[i], keep_all, nullptr}, step);
-    else
-      decider_.decide({preferred, viewpoint(i), &statics_.lines(), &others_[i], keep_all, &statics_}, step);
+  void choose(std::size_t i, Vec2 preferred, double time, RobotStep& step,
+              const std::vector<std::size_t>* fallen_back = nullptr) {
+    const bool is_orca = options_.method == Method::orca;
+    decider_.decide({preferred, viewpoint(i), is_orca ? &all_ : &statics_.lines(), &others_[i], clock_.keeps_all(time),
+                     fallen_back, is_orca ? nullptr : &statics_},
+                    step);
   }
 
   /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).

@@ -259,7 +259,7 @@ bool DecisionAudit::holds(const Seen& s, const RecordedConstraint& c) const {
     return vo::is_true({file_.recording.bodies[c.body].shape, at, radius, c.tau, {}, c.half_plane});
   const formation::Robot& other = file_.scenario.robots[c.index];
   const RobotStep& them = s.step->robots[c.index];
-  if (other.cooperates) return takes_its_share(s, c);
+  if (other.cooperates) return takes_its_share(s, c) || adds_up(s, c);
   const geometry::Disc disc{them.anchor, other.radius};
   return vo::is_true({disc, at, radius, c.tau, them.anchor_velocity, c.half_plane});
 }
@@ -274,6 +274,21 @@ bool DecisionAudit::takes_its_share(const Seen& s, const RecordedConstraint& c) 
   const Rational offset = 2 * Rational(c.half_plane.offset) - exact::dot(n, both);
   const Rational reach = s.radius + Rational(file_.scenario.robots[c.index].radius);
   return exact::excludes_disc(exactly(them.anchor) - s.at, reach, n, offset, Rational(c.tau));
+}
+
+/// With the half-plane that the other robot has against this one, of the opposite normal: any two velocities that keep
+/// both do not collide within tau. So do pairs that fell back (liveness).
+bool DecisionAudit::adds_up(const Seen& s, const RecordedConstraint& c) const {
+  if (!has_numbers(c.half_plane) || !(c.tau > 0.0) || !std::isfinite(c.tau)) return false;
+  const RobotStep& them = s.step->robots[c.index];
+  const Rational reach = s.radius + Rational(file_.scenario.robots[c.index].radius);
+  const Point n = exactly(c.half_plane.normal);
+  return std::any_of(them.constraints.begin(), them.constraints.end(), [&](const RecordedConstraint& theirs) {
+    if (theirs.source != BodyKind::robot || theirs.index != s.robot || !has_numbers(theirs.half_plane)) return false;
+    if (theirs.half_plane.normal != -c.half_plane.normal) return false;
+    const Rational offset = Rational(c.half_plane.offset) + Rational(theirs.half_plane.offset);
+    return exact::excludes_disc(exactly(them.anchor) - s.at, reach, n, offset, Rational(c.tau));
+  });
 }
 
 // --- (5) Choices ---

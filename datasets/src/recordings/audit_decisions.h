@@ -59,6 +59,7 @@ class DecisionAudit {
   std::string misnamed(const Seen& s, const formation::RecordedConstraint& c) const;
   bool holds(const Seen& s, const formation::RecordedConstraint& c) const;
   bool takes_its_share(const Seen& s, const formation::RecordedConstraint& c) const;
+  bool adds_up(const Seen& s, const formation::RecordedConstraint& c) const;
 
   // Point (5).
   void choice_is_best(const Seen& s);
