@@ -62,11 +62,15 @@ void run_case(benchmark::State& state, const Case& c) {
   state.counters["robot_steps"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
 }
 
-void add(const Scenario& scenario, Method method) {
+/// As in the paper; `along_routes` as programs do by default.
+void add(const Scenario& scenario, Method method, bool along_routes) {
   for (const bool measured : {false, true}) {
     Case c{scenario, {}, measured};
     c.options.method = method;
-    const std::string title = std::string(name(method)) + "/" + scenario.name + (measured ? "/measured" : "");
+    c.options.guidance = along_routes ? formation::Guidance::route : formation::Guidance::none;
+    c.options.liveness = along_routes ? formation::Liveness::bias : formation::Liveness::off;
+    const std::string title = std::string(name(method)) + (along_routes ? "+route/" : "/") + scenario.name +
+                              (measured ? "/measured" : "");
     benchmark::RegisterBenchmark(title.c_str(), run_case, c)->Unit(benchmark::kMillisecond);
   }
 }
@@ -101,7 +105,9 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
   for (const auto& scenes : {bench::generated_scenes(), bench::public_scenes(), bench::project_scenes()})
     for (const formation::Scenario& scene : scenes)
-      for (const auto method : {formation::Method::ivo, formation::Method::orca}) bench::add(scene, method);
+      for (const auto method : {formation::Method::ivo, formation::Method::orca})
+        for (const bool along_routes : {false, true})
+          if (!along_routes || !scene.formation) bench::add(scene, method, along_routes);
   benchmark::RunSpecifiedBenchmarks();
   return EXIT_SUCCESS;
 }
