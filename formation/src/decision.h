@@ -43,8 +43,8 @@ struct DecisionInput {
   const std::vector<Constraint>* statics = nullptr;
   const std::vector<Constraint>* others = nullptr;  ///< robots and moving obstacles
   bool keep_all = false;
-  const std::vector<std::size_t>* fallen_back = nullptr;  ///< robots whose constraints are kept in any case
   NeededConstraints* more = nullptr;  ///< grows `statics` by what the decision needs; none: they are all there
+  const std::vector<std::size_t>* fallen_back = nullptr;  ///< robots whose constraints are kept in any case
 };
 
 /// Makes decisions one after the other in memory of its own.

@@ -207,7 +207,7 @@ class KinematicRun {
               const std::vector<std::size_t>* fallen_back = nullptr) {
     const bool is_orca = options_.method == Method::orca;
     decider_.decide({preferred, viewpoint(i), is_orca ? &all_ : &statics_.lines(), &others_[i], clock_.keeps_all(time),
-                     fallen_back, is_orca ? nullptr : &statics_},
+                     is_orca ? nullptr : &statics_, fallen_back},
                     step);
   }
 
