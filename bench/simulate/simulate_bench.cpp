@@ -5,11 +5,15 @@
 //
 //   bench_simulate --benchmark_filter=ivo/willow
 //   bench_simulate --table --against OTHER/bench_simulate       # two builds side by side, as ratios (table.h)
+//   bench_simulate --duration=0.5 --benchmark_filter=ivo/barn   # s: shorter runs; what comes before a first step
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
 #include <string>
 
 #include "exactvo/datasets/provenance.h"
@@ -62,8 +66,30 @@ void run_case(benchmark::State& state, const Case& c) {
   state.counters["robot_steps"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
 }
 
+double seconds_of(const std::string& text) {
+  char* end = nullptr;
+  const double seconds = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(seconds > 0.0) || !std::isfinite(seconds))
+    throw std::runtime_error("--duration is a number of seconds above 0, not '" + text + "'");
+  return seconds;
+}
+
+/// Takes "--duration=S" out of the arguments. 0: there is none.
+double duration_among(int& argc, char** argv) {
+  const std::string key = "--duration=";
+  double duration = 0.0;
+  char** const end = std::remove_if(argv + 1, argv + argc, [&](const char* argument) {
+    if (std::string(argument).rfind(key, 0) != 0) return false;
+    duration = seconds_of(argument + key.size());
+    return true;
+  });
+  argc = static_cast<int>(end - argv);
+  return duration;
+}
+
 /// As in the paper; `along_routes` as programs do by default.
-void add(const Scenario& scenario, Method method, bool along_routes) {
+void add(Scenario scenario, Method method, bool along_routes, double duration) {
+  if (duration > 0.0) scenario.time_limit = std::min(scenario.time_limit, duration);
   for (const bool measured : {false, true}) {
     Case c{scenario, {}, measured};
     c.options.method = method;
@@ -89,8 +115,23 @@ int print_table_as_asked(int argc, char** argv) {
   options.flag("--table", table, "Print a table of all scenes instead");
   options.text("--against", asked.against, "Another build's bench_simulate, to be compared with");
   options.text("--scenes", asked.scenes, "Regular expression of the scenes' names");
+  std::string duration;
+  options.text("--duration", duration, "No run is longer than this, s; OTHER must know the option too");
   options.word("--method", asked.method, {"ivo", "orca"}, "Method");
-  if (options.parse(argc, argv)) print_table(asked);
+  if (!options.parse(argc, argv)) return EXIT_SUCCESS;
+  if (!duration.empty()) asked.duration = seconds_of(duration);
+  print_table(asked);
+  return EXIT_SUCCESS;
+}
+
+int run_benchmarks(int argc, char** argv) {
+  const double duration = duration_among(argc, argv);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
+  for (const auto& scenes : {generated_scenes(), public_scenes(), project_scenes()})
+    for (const Scenario& scene : scenes)
+      for (const Method method : {Method::ivo, Method::orca}) add(scene, method, duration);
+  benchmark::RunSpecifiedBenchmarks();
   return EXIT_SUCCESS;
 }
 
@@ -99,15 +140,8 @@ int print_table_as_asked(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace exactvo;
-  if (argc > 1 && std::string(argv[1]) == "--table")
-    return tools::run_program("bench_simulate", [&] { return bench::print_table_as_asked(argc, argv); });
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
-  for (const auto& scenes : {bench::generated_scenes(), bench::public_scenes(), bench::project_scenes()})
-    for (const formation::Scenario& scene : scenes)
-      for (const auto method : {formation::Method::ivo, formation::Method::orca})
-        for (const bool along_routes : {false, true})
-          if (!along_routes || !scene.formation) bench::add(scene, method, along_routes);
-  benchmark::RunSpecifiedBenchmarks();
-  return EXIT_SUCCESS;
+  return tools::run_program("bench_simulate", [&] {
+    const bool table = argc > 1 && std::string(argv[1]) == "--table";
+    return table ? bench::print_table_as_asked(argc, argv) : bench::run_benchmarks(argc, argv);
+  });
 }

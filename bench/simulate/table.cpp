@@ -47,8 +47,9 @@ std::vector<std::string> names_in(const std::string& program, const TableOptions
 }
 
 /// Of a run with its metrics: what the verb `simulate` takes before it writes. Nothing where the program lacks it.
-std::optional<Rate> rate_of(const std::string& program, const std::string& name) {
-  const std::string text = output_of(quoted(program) + " --benchmark_format=json --benchmark_min_time=0.2 " +
+std::optional<Rate> rate_of(const std::string& program, const std::string& name, double duration) {
+  const std::string cut = duration > 0.0 ? fmt::format(" --duration={}", duration) : "";
+  const std::string text = output_of(quoted(program) + cut + " --benchmark_format=json --benchmark_min_time=0.2 " +
                                      quoted("--benchmark_filter=^" + name + "/measured$") + " 2>/dev/null");
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || json.value("benchmarks", nlohmann::json::array()).empty()) return std::nullopt;
@@ -72,8 +73,8 @@ void print_table(const TableOptions& options) {
              both ? "| scene | before [robot steps/s] | now [robot steps/s] | ratio | runs |\n|---|---|---|---|---|\n"
                   : "| scene | [robot steps/s] |\n|---|---|\n");
   for (const std::string& name : names_in(options.self, options)) {
-    const std::optional<Rate> now = rate_of(options.self, name);
-    const std::optional<Rate> before = both ? rate_of(options.against, name) : std::nullopt;
+    const std::optional<Rate> now = rate_of(options.self, name, options.duration);
+    const std::optional<Rate> before = both ? rate_of(options.against, name, options.duration) : std::nullopt;
     if (!now) throw std::runtime_error(options.self + " gave nothing for " + name);
     const std::string scene = name.substr(name.find('/') + 1);
     if (!both) {

@@ -14,6 +14,7 @@ struct TableOptions {
   std::string against;  ///< another build's bench_simulate; empty: none
   std::string scenes;   ///< a regular expression of scene names; empty: all
   std::string method = "ivo";
+  double duration = 0.0;  ///< s, that no run is longer than; 0: as the scenes are
 };
 
 /// Runs the programs scene by scene, one after the other, and prints the table as Markdown, the CPU above it. Where the
