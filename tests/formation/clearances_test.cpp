@@ -219,6 +219,51 @@ TEST(MovingClearance, IsBelowEverySampleAndNotFarBelow) {
   }
 }
 
+/// What is known round a place spares later steps a look at obstacles, and changes no bit: robots that come near, go
+/// away, rest, slide along walls, go through them and stay inside.
+TEST(StaticClearance, IsTheLeastOfEachStepMeasuredAlone) {
+  SeededRandom random(exactvo::test::seed_of_run(93));
+  int touching = 0, clear = 0;
+  for (int round = 0; round < 60; ++round) {
+    Scenario s;
+    s.time_step = 0.1;
+    s.robots = {robot("R1", {0, 0}, {0, 0})};
+    const int obstacles = round % 7;
+    for (int o = 0; o < obstacles; ++o) {
+      const Vec2 at = random.in_box(8.0);
+      const double side = random.uniform(0.2, 3.0);
+      if (o % 2 == 0)
+        s.obstacles.push_back({"wall", geometry::Polyline{{at, at + random.in_box(6.0), at + random.in_box(6.0)}}});
+      else
+        s.obstacles.push_back(
+            {"box", geometry::Polygon{{at, at + Vec2{side, 0}, at + Vec2{side, side}, at + Vec2{0, side}}, {}}});
+    }
+    Recording rec = resting(s, 150);
+    Vec2 place = random.in_box(8.0), velocity = random.in_box(1.0);
+    for (Step& row : rec.steps) {
+      if (random.uniform(0.0, 1.0) < 0.05) velocity = random.uniform(0.0, 1.0) < 0.3 ? Vec2{} : random.in_box(1.5);
+      row.robots[0].position = place;
+      row.robots[0].velocity = velocity;
+      place += s.time_step * velocity;
+    }
+    std::optional<double> least;
+    std::size_t steps_in_contact = 0;
+    for (std::size_t k = 0; k + 1 < rec.steps.size(); ++k) {
+      Recording alone = rec;
+      alone.steps = {rec.steps[k], rec.steps[k + 1]};
+      const std::optional<double> c = measure(s, alone).min_obstacle_clearance;
+      if (c) least = std::min(least.value_or(*c), *c);
+      if (touched(c)) ++steps_in_contact;
+    }
+    const Metrics whole = measure(s, rec);
+    EXPECT_EQ(whole.min_obstacle_clearance, least) << "round " << round;
+    EXPECT_EQ(whole.collisions.empty(), steps_in_contact == 0) << "round " << round;
+    (steps_in_contact > 0 ? touching : clear) += 1;
+  }
+  EXPECT_GT(touching, 10);
+  EXPECT_GT(clear, 10);
+}
+
 TEST(Collisions, ACartThatRunsARobotOverIsNamedWithTimeAndDepth) {
   // Its front is at 2 t - 4; the robot's disc spans from -0.5 to 0.5, so contact is from 1.75 s on.
   Scenario s;
