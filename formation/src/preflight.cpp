@@ -14,6 +14,7 @@
 #include "leader.h"
 #include "moving_way.h"
 #include "obstacle_boxes.h"
+#include "open_way.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -68,8 +69,9 @@ void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which,
 }
 
 /// Returns where the robot gets to.
-std::optional<Vec2> warn_of_ways(const Robot& robot, Vec2 from, const Target& t, Reachability& reach,
-                                 std::vector<std::string>& out) {
+std::optional<Vec2> warn_of_ways(const Robot& robot, Vec2 from, const Target& t, const OpenWay& open,
+                                 Reachability& reach, std::vector<std::string>& out) {
+  if (open.is_found(from, t.place, robot.radius)) return t.place;
   const Destination to{t.place, t.reach};
   if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
   if (reach.is_proven_out_of_reach(robot.radius, from, to))
@@ -210,13 +212,14 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
   std::vector<std::string> out;
   std::vector<Target> last;
   const ObstacleBoxes boxes(scenario.obstacles);
+  const OpenWay open(scenario.obstacles);
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::vector<Target> targets = targets_of(scenario, offsets, i);
     std::optional<Vec2> from = scenario.robots[i].position;
     for (const Target& t : targets) {
       const std::vector<std::size_t> in_the_way = blocking(scenario, boxes, scenario.robots[i], t);
       warn_of_obstacles(scenario, in_the_way, t, out);
-      from = from && in_the_way.empty() ? warn_of_ways(scenario.robots[i], *from, t, reach, out) : std::nullopt;
+      from = from && in_the_way.empty() ? warn_of_ways(scenario.robots[i], *from, t, open, reach, out) : std::nullopt;
     }
     warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
     warn_of_fast_start(scenario, scenario.robots[i], out);

@@ -91,16 +91,21 @@ bool winds_round(const std::vector<Vec2>& chain, Vec2 place) {
 }  // namespace
 
 Reachability::Reachability(const Scenario& scenario, double most_extra)
-    : scenario_(scenario), map_(shapes_of(scenario), extent_of(scenario, most_extra)) {}
+    : scenario_(scenario), most_extra_(most_extra) {}
+
+const geometry::RouteMap& Reachability::map() {
+  if (!map_) map_.emplace(shapes_of(scenario_), extent_of(scenario_, most_extra_));
+  return *map_;
+}
 
 const geometry::RoutePlan& Reachability::plan(double radius) {
   const double r = std::max(radius, kLeastRadius);
-  return plans_.try_emplace(r, map_, r).first->second;
+  return plans_.try_emplace(r, map(), r).first->second;
 }
 
 std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, const Destination& to) {
   if (scenario_.obstacles.empty()) return to.place;
-  if (!map_.covers(from) || !map_.covers(to.place)) return std::nullopt;
+  if (!map().covers(from) || !map().covers(to.place)) return std::nullopt;
   const geometry::RoutePlan& of_robot = plan(radius);
   if (of_robot.is_reachable(from, to.place)) return to.place;
   if (to.reach == 0.0 || !of_robot.is_reachable(from, from)) return std::nullopt;
@@ -110,14 +115,14 @@ std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, cons
   for (const double ring : kRings) {
     for (int k = 0; k < kDirections; ++k) {
       const Vec2 place = to.place + ring * to.reach * geometry::rotated({1.0, 0.0}, k * kTurn / kDirections);
-      if (map_.covers(place) && of_robot.is_reachable(from, place)) return place;
+      if (map().covers(place) && of_robot.is_reachable(from, place)) return place;
     }
   }
   return std::nullopt;
 }
 
 bool Reachability::is_proven_out_of_reach(double radius, Vec2 from, const Destination& to) {
-  if (scenario_.obstacles.empty() || !map_.covers(from) || !map_.covers(to.place)) return false;
+  if (scenario_.obstacles.empty() || !map().covers(from) || !map().covers(to.place)) return false;
   const RouteAnswer answer = plan(radius).query(from, to.place);
   if (const auto* separated = std::get_if<Separated>(&answer)) {
     // The disc lies on the same side of the chain as its centre.
@@ -132,7 +137,7 @@ bool Reachability::is_proven_out_of_reach(double radius, Vec2 from, const Destin
 }
 
 std::string Reachability::why_not(double radius, Vec2 from, const Destination& to, const std::string& goal) {
-  if (!map_.covers(from) || !map_.covers(to.place)) return goal + " is too far from all obstacles";
+  if (!map().covers(from) || !map().covers(to.place)) return goal + " is too far from all obstacles";
   const RouteAnswer answer = plan(radius).query(from, to.place);
   if (const auto* blocked = std::get_if<Blocked>(&answer)) {
     const bool of_start = blocked->end == Blocked::End::start;

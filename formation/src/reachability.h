@@ -27,7 +27,8 @@ class Reachability {
   /// `most_extra`: what a robot may be asked to keep beside its radius, m, >= 0.
   explicit Reachability(const Scenario& scenario, double most_extra = 0.0);
 
-  const geometry::RouteMap& map() const { return map_; }
+  /// Made at the first question and kept: of many scenes nobody asks for it.
+  const geometry::RouteMap& map();
 
   /// Made at the first question and kept. REQUIRES: no more than the largest radius of the robots and `most_extra`.
   const geometry::RoutePlan& plan(double radius);
@@ -46,7 +47,8 @@ class Reachability {
   std::string words_of(const geometry::Separated& answer, double radius, const std::string& goal, Vec2 place) const;
 
   const Scenario& scenario_;
-  geometry::RouteMap map_;
+  double most_extra_;  ///< m
+  std::optional<geometry::RouteMap> map_;
   std::map<double, geometry::RoutePlan> plans_;  ///< by radius
 };
 
