@@ -95,8 +95,8 @@ void add(Scenario scenario, Method method, bool along_routes, double duration) {
     c.options.method = method;
     c.options.guidance = along_routes ? formation::Guidance::route : formation::Guidance::none;
     c.options.liveness = along_routes ? formation::Liveness::bias : formation::Liveness::off;
-    const std::string title = std::string(name(method)) + (along_routes ? "+route/" : "/") + scenario.name +
-                              (measured ? "/measured" : "");
+    const std::string title =
+        std::string(name(method)) + (along_routes ? "+route/" : "/") + scenario.name + (measured ? "/measured" : "");
     benchmark::RegisterBenchmark(title.c_str(), run_case, c)->Unit(benchmark::kMillisecond);
   }
 }
@@ -130,7 +130,9 @@ int run_benchmarks(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
   for (const auto& scenes : {generated_scenes(), public_scenes(), project_scenes()})
     for (const Scenario& scene : scenes)
-      for (const Method method : {Method::ivo, Method::orca}) add(scene, method, duration);
+      for (const Method method : {Method::ivo, Method::orca})
+        for (const bool along_routes : {false, true})
+          if (!along_routes || !scene.formation) add(scene, method, along_routes, duration);
   benchmark::RunSpecifiedBenchmarks();
   return EXIT_SUCCESS;
 }
