@@ -139,6 +139,22 @@ TEST(RouteCurves, TheSecondSearchIsPulledTautToo) {
   }
 }
 
+// Each pair of equal edges was looked at: a thousand squares took ten seconds.
+TEST(RouteLumps, EqualObstaclesCountOnce) {
+  const Polygon square{{{2, 2}, {4, 2}, {4, 4}, {2, 4}}, {}};
+  const Polygon hole{{{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}, {{{2, 2}, {2, 4}, {4, 4}, {4, 2}}}};
+  const std::vector<Obstacle> many(20000, Obstacle(square));
+  EXPECT_EQ(RouteMap(many).vertex_count(), 4u);
+  EXPECT_TRUE(std::holds_alternative<Route>(RoutePlan(RouteMap(many), 0.5).query({1, 1}, {5, 5})));
+  EXPECT_TRUE(std::holds_alternative<Blocked>(RoutePlan(RouteMap(many), 0.5).query({1, 1}, {3, 3})));
+  // A square that fills a hole lies on the other side of its edges than the solid round it; so do walls on neither.
+  const std::vector<Obstacle> filled{square, hole, Polyline{{{4, 2}, {2, 2}}}};
+  for (const Vec2 inside : {Vec2{3, 3}, Vec2{0, 0}})
+    EXPECT_TRUE(std::holds_alternative<Blocked>(RoutePlan(RouteMap(filled), 0.1).query({20, 0}, inside)));
+  const std::vector<Obstacle> open{hole, Polyline{{{4, 2}, {2, 2}}}};
+  EXPECT_TRUE(std::holds_alternative<Separated>(RoutePlan(RouteMap(open), 0.1).query({20, 0}, {3, 3})));
+}
+
 // --- Vertices almost in one point ---
 
 // Two houses side by side whose common corners differ: a route three hundred times too long went through the middles of

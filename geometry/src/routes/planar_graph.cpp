@@ -16,19 +16,38 @@
 namespace exactvo::geometry::routing {
 namespace {
 
-/// An edge of an obstacle with the points at which it is cut, besides its ends.
+/// An edge of one or several obstacles with the points at which it is cut, besides its ends.
 struct CutEdge {
   Segment segment;
-  bool solid;  ///< of a polygon: the solid lies on its left
-  EdgeName name;
+  int winding;    ///< how many more solids lie on its left than on its right, of those that it bounds
+  EdgeName name;  ///< of the first
   std::vector<Point> cuts;
 };
 
+using Bits = std::pair<std::uint64_t, std::uint64_t>;
+
+Bits bits_of(Vec2 p) {
+  const double x = p.x + 0.0, y = p.y + 0.0;  // -0 is 0
+  Bits bits;
+  std::memcpy(&bits.first, &x, sizeof x);
+  std::memcpy(&bits.second, &y, sizeof y);
+  return bits;
+}
+
+/// Equal ones once: each pair of edges that meet is looked at.
 std::vector<CutEdge> edges_of_all(const std::vector<Obstacle>& obstacles) {
   std::vector<CutEdge> all;
+  std::map<std::pair<Bits, Bits>, std::size_t> by_ends;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const std::vector<Segment> edges = edges_of(obstacles[i]);
-    for (std::size_t k = 0; k < edges.size(); ++k) all.push_back({edges[k], has_interior(obstacles[i]), {i, k}, {}});
+    const int solids = has_interior(obstacles[i]) ? 1 : 0;
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      const Bits a = bits_of(edges[k].a), b = bits_of(edges[k].b);
+      const auto [known, fresh] = by_ends.emplace(std::minmax(a, b), all.size());
+      if (fresh) all.push_back({edges[k], 0, {i, k}, {}});
+      CutEdge& edge = all[known->second];
+      edge.winding += bits_of(edge.segment.a) == a ? solids : -solids;
+    }
   }
   return all;
 }
@@ -94,7 +113,6 @@ class Vertices {
   }
 
  private:
-  using Bits = std::pair<std::uint64_t, std::uint64_t>;
   struct Hash {
     std::size_t operator()(const Bits& b) const {
       return static_cast<std::size_t>((b.first * 0x9E3779B97F4A7C15u ^ b.second) * 0xD6E8FEB86659FD93u >> 7);
@@ -106,14 +124,6 @@ class Vertices {
       return x < 0 || (x == 0 && cmp(p.y, q.y) < 0);
     }
   };
-  static Bits bits_of(Vec2 p) {
-    const double x = p.x + 0.0, y = p.y + 0.0;  // -0 is 0
-    Bits bits;
-    std::memcpy(&bits.first, &x, sizeof x);
-    std::memcpy(&bits.second, &y, sizeof y);
-    return bits;
-  }
-
   PlanarGraph& graph_;
   std::unordered_map<Bits, int, Hash> doubles_;
   std::map<Vector<Rational>, int, Less> fractions_;
@@ -132,7 +142,7 @@ void add_pieces(CutEdge& edge, Vertices& vertices, std::map<std::pair<int, int>,
     const auto [known, fresh] = by_ends.emplace(std::minmax(from, to), graph.edges.size());
     if (fresh) graph.edges.push_back({from, to, 0, edge.name});
     PlanarGraph::Edge& piece = graph.edges[known->second];
-    if (edge.solid) piece.winding += piece.a == from ? 1 : -1;
+    piece.winding += piece.a == from ? edge.winding : -edge.winding;
     from = to;
   }
 }
