@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -565,6 +566,16 @@ class Opinion {
       wrong(k, i, "multipliers do not balance");
   }
 
+  /// Of the half-plane that robot j has against robot i, of the opposite normal; -infinity where there is none.
+  double offset_of_other(const Row& row, std::size_t i, std::size_t j, const Line& line) const {
+    for (const Line& theirs : row.robots[j].lines) {
+      const auto body = bodies_.find(theirs.body);
+      if (body == bodies_.end() || body->second.kind != "robot" || body->second.owners.at(0) != i) continue;
+      if (theirs.normal == -line.normal) return theirs.offset;
+    }
+    return -std::numeric_limits<double>::infinity();
+  }
+
   /// What a constraint is against, seen in the row: points of it, and how much it is grown.
   void half_plane(std::size_t k, std::size_t i, const Line& line) {
     const Row& row = rows_[k];
@@ -599,8 +610,13 @@ class Opinion {
         const double t = share_of_tau * line.tau;
         const Vec2 v = (p + grown * geometry::normalized(line.normal) - s.anchor) / t;
         const double at = dot(line.normal, v) / share + dot(line.normal, u);
-        if (at > line.offset + kClose * (1.0 + norm(v)))
-          return wrong(k, i, "a half-plane cuts into its velocity obstacle");
+        const double close = kClose * (1.0 + norm(v));
+        if (at <= line.offset + close) continue;
+        // The two of a pair may also share otherwise: then their sum decides.
+        if (share == 2.0 &&
+            dot(line.normal, v) <= line.offset + offset_of_other(row, i, body.owners.at(0), line) + close)
+          continue;
+        return wrong(k, i, "a half-plane cuts into its velocity obstacle");
       }
   }
 
