@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -20,12 +19,6 @@ using geometry::Segment;
 /// m: a route keeps this much more than the radius and the margin. Half-planes keep one skin more than both, so they
 /// close no gap that the route passes, and one skin is left for rounding.
 constexpr double kSkins = 2.0 * kContactSkin;
-
-std::string metres(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g m", x);
-  return text;
-}
 
 /// Whether the course goes on with less room at its next point, which the robot has not come to yet.
 bool is_before_narrow(const Course& course, std::size_t next, Vec2 here) {
@@ -88,17 +81,11 @@ Course Guide::planned(double radius, Vec2 from, Vec2 end, const Destination& to)
 
 /// The place, or one in sight of it that leaves a robot there the margin; the place again where none is found.
 Vec2 Guide::roomy_place_near(double radius, Vec2 place) const {
-  constexpr int kRings = 4, kDirections = 16;
-  constexpr double kTurn = 6.283185307179586, kFarthest = 2.0;  // margins: enough for a corner
+  constexpr double kFarthest = 2.0;  // margins: enough for a corner
   const double least = radius + kSkins, wanted = least + most_margin_;
   if (clearance_at(place, wanted) >= wanted) return place;
-  for (int ring = 1; ring <= kRings; ++ring) {
-    for (int k = 0; k < kDirections; ++k) {
-      const double distance = kFarthest * most_margin_ * ring / kRings;
-      const Vec2 near = place + distance * geometry::rotated({1.0, 0.0}, k * kTurn / kDirections);
-      if (clearance_at(near, wanted) >= wanted && is_in_sight(place, near, least)) return near;
-    }
-  }
+  for (const Vec2 near : places_about(place, kFarthest * most_margin_))
+    if (clearance_at(near, wanted) >= wanted && is_in_sight(place, near, least)) return near;
   return place;
 }
 

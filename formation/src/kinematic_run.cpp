@@ -271,11 +271,10 @@ class KinematicRun {
     if (guide_) return guided(i, step);
     if (options_.method == Method::orca) return preferred;
     if (options_.method != Method::ivo) return ties_broken(i, preferred, step);
-    const Robot& spec = scenario_.robots[i];
-    const Viewpoint here{robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
+    const Viewpoint here = viewpoint(i);
     const Follower::Answer answer =
         robots_[i].follower.steer({time, scenario_.time_step, here, goal_of(i),
-                                   spec.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field});
+                                   here.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field});
     step.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
     step.side = answer.side;
     step.note = joined_notes(step.note, answer.note);

@@ -58,12 +58,6 @@ geometry::RouteMapOptions extent_of(const Scenario& scenario, double extra) {
   return options;
 }
 
-std::string metres(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g m", x);
-  return text;
-}
-
 std::vector<Vec2> corners_of(const Separated& answer) {
   std::vector<Vec2> corners;
   for (const geometry::ChainPoint& p : answer.chain) corners.push_back(p.point.rounded);
@@ -90,6 +84,23 @@ bool winds_round(const std::vector<Vec2>& chain, Vec2 place) {
 
 }  // namespace
 
+std::string metres(double length) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g m", length);
+  return text;
+}
+
+std::vector<Vec2> places_about(Vec2 place, double reach) {
+  constexpr double kRings[] = {0.25, 0.5, 0.75, 0.99};  // of the reach; less than 1, for rounding
+  constexpr int kDirections = 16;
+  constexpr double kTurn = 6.283185307179586;
+  std::vector<Vec2> places;
+  for (const double ring : kRings)
+    for (int k = 0; k < kDirections; ++k)
+      places.push_back(place + ring * reach * geometry::rotated({1.0, 0.0}, k * kTurn / kDirections));
+  return places;
+}
+
 Reachability::Reachability(const Scenario& scenario, double most_extra)
     : scenario_(scenario), most_extra_(most_extra) {}
 
@@ -109,15 +120,8 @@ std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, cons
   const geometry::RoutePlan& of_robot = plan(radius);
   if (of_robot.is_reachable(from, to.place)) return to.place;
   if (to.reach == 0.0 || !of_robot.is_reachable(from, from)) return std::nullopt;
-  constexpr double kRings[] = {0.25, 0.5, 0.75, 0.99};  // of the reach; less than 1, for rounding
-  constexpr int kDirections = 16;
-  constexpr double kTurn = 6.283185307179586;
-  for (const double ring : kRings) {
-    for (int k = 0; k < kDirections; ++k) {
-      const Vec2 place = to.place + ring * to.reach * geometry::rotated({1.0, 0.0}, k * kTurn / kDirections);
-      if (map().covers(place) && of_robot.is_reachable(from, place)) return place;
-    }
-  }
+  for (const Vec2 place : places_about(to.place, to.reach))
+    if (map().covers(place) && of_robot.is_reachable(from, place)) return place;
   return std::nullopt;
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/routes.h"
@@ -21,6 +22,12 @@ struct Destination {
   Vec2 place;          ///< m
   double reach = 0.0;  ///< m, >= 0
 };
+
+/// "0.158 m".
+std::string metres(double length);
+
+/// 64 places on four rings about a place, less than `reach` m from it, the nearest first.
+std::vector<Vec2> places_about(Vec2 place, double reach);
 
 class Reachability {
  public:

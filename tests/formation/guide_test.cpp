@@ -93,6 +93,7 @@ TEST(Guidance, AGoalOutOfReachIsProvenSoAndTheRobotStays) {
     for (const Step& step : run.recording.steps) EXPECT_EQ(step.robots[0].position, (Vec2{-4, 3}));
     EXPECT_THAT(run.metrics.outcome, AllOf(HasSubstr("R cannot reach its goal: obstacles 'wall 1', 'wall 2' "),
                                            HasSubstr("enclose the goal, with a gap of"), Not(HasSubstr("no proof"))));
+    EXPECT_THAT(run.metrics.stuck, testing::ElementsAre(HasSubstr("it stays, since its goal is out of reach")));
   }
 }
 
@@ -256,8 +257,8 @@ TEST(Guidance, AGoalOnTheWayThatIsPassedAndANextThatIsOutOfReachAreBothNoted) {
   bool noted = false;
   for (const Step& step : run.recording.steps) {
     const std::string& note = step.robots[0].note;
-    noted =
-        noted || (note.find("goal 1 passed") != std::string::npos && note.find("cannot reach its goal 2") != std::string::npos);
+    noted = noted || (note.find("goal 1 passed") != std::string::npos &&
+                      note.find("cannot reach its goal 2") != std::string::npos);
   }
   EXPECT_TRUE(noted);
   EXPECT_THAT(run.metrics.outcome, HasSubstr("R cannot reach its goal 2: "));

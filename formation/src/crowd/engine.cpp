@@ -782,7 +782,7 @@ class CrowdEngine final : public CrowdCore {
     return d;
   }
 
-  /// The lines of neighbours k to k + 15, a neighbour a lane; whether one of them touches.
+  /// The lines of neighbours k to k + 15, one per lane; whether one of them touches.
   bool lines_alone(std::size_t robot, std::size_t k, Scratch& s, CrowdExplanation* words) const {
     const std::size_t count = std::min(kPack, s.near.size() - k);
     Candidates others;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The half-plane of one robot against another, a pair a lane. Compiled once a SIMD target, hence the toggling guard.
+// The half-plane of one robot against another, one pair per lane. Compiled once per SIMD target, hence the toggling
+// guard.
 //
 // With p the position of the other seen from here, R the sum of the radii, n the normal, h(n) = n.p + R |n|, and the
 // velocities v_a (own) and v_b: while n.(v_a' - v_b') >= h(n) / t and h(n) <= 0, the two do not touch within t,

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The nearest of a table of candidates to each of up to sixteen robots, a robot a SIMD lane.
+/// The nearest of a table of candidates to each of up to sixteen robots, one per SIMD lane.
 
 #include "crowd/layout.h"
 

@@ -12,7 +12,8 @@
 ///                    its row, for the step at least: obstacles edge by edge, moving obstacles at their present
 ///                    velocity, robots by both halves of the pair;
 ///  (4) half-planes   every certified half-plane excludes the interior of its body's velocity obstacle, for the robot's
-///                    radius, where the row has both, and looks a time step ahead; a robot's half takes its share;
+///                    radius, where the row has both, and looks a time step ahead; a robot's half takes its share,
+///                    or the halves of the pair add up;
 ///  (5) choices       the velocity chosen satisfies the recorded half-planes and the speed bound, and the recorded
 ///                    multipliers prove that none is better (or, relaxed, that none violates less);
 ///  (6) sequence      the first row is the scenario's start; the next follows from the choice by the law of motion (bit

@@ -3,7 +3,8 @@
 
 /// \file
 /// A scenario as plain data: robots, obstacles, and, for a formation, who hears whom and whom they follow.
-/// Defaults are those of the paper's Section V with the corrections of docs/guide/errata.md. SI units throughout.
+/// Defaults are those of the paper's Section V with the corrections of docs/guide/errata.md, but for `guidance` and
+/// `liveness`, which the paper has not. SI units throughout.
 ///
 /// Neighbours: simulation.h runs one; datasets/scenario_file.h reads one from JSON.
 

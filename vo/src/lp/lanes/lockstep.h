@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How packs of problems travel. A round is a chain of divisions and comparisons that a processor cannot look past, so
 // some packs make each round together: the gaps of one are filled by the others. Both walks go on side by side in a
-// pack, each lane on its own; what it computes does not depend on its company. Compiled once a SIMD target, hence the
+// pack, each lane on its own; what it computes does not depend on its company. Compiled once per SIMD target, hence the
 // toggling guard.
 #if defined(EXACTVO_BATCH_CONVEYOR_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef EXACTVO_BATCH_CONVEYOR_H

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A register full of problems and the feasibility phase. Compiled once a SIMD target, hence the toggling guard.
+// A register full of problems and the feasibility phase. Compiled once per SIMD target, hence the toggling guard.
 #if defined(EXACTVO_BATCH_WALK_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef EXACTVO_BATCH_WALK_H
 #undef EXACTVO_BATCH_WALK_H

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The inequalities of certificate.h in lanes. Compiled once a SIMD target, hence the toggling guard.
+// The inequalities of certificate.h in lanes. Compiled once per SIMD target, hence the toggling guard.
 #if defined(EXACTVO_BATCH_PROOF_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef EXACTVO_BATCH_PROOF_H
 #undef EXACTVO_BATCH_PROOF_H

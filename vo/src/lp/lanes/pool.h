@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where rare lanes wait for a full register. Compiled once a SIMD target, hence the toggling guard.
+// Where rare lanes wait for a full register. Compiled once per SIMD target, hence the toggling guard.
 #if defined(EXACTVO_BATCH_POOL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef EXACTVO_BATCH_POOL_H
 #undef EXACTVO_BATCH_POOL_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The relaxation phase: the least violation, in the space (v_x, v_y, t) where a soft line is the plane t = c - n.v and
-// a hard one a wall. Compiled once a SIMD target, hence the toggling guard.
+// a hard one a wall. Compiled once per SIMD target, hence the toggling guard.
 #if defined(EXACTVO_BATCH_RELAX_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef EXACTVO_BATCH_RELAX_H
 #undef EXACTVO_BATCH_RELAX_H

@@ -50,7 +50,7 @@ double length_of_giving(const Problem& problem, Scope scope, const Multipliers& 
   return longest;
 }
 
-/// What the gap of a claim is measured by, V the largest speed in play. Without a bound a vertex may lie far beyond it,
+/// The unit of a claim's gap. V is the largest speed that occurs in the problem. Without a bound a vertex may lie far beyond it,
 /// where it is |v| of the exact optimum; a velocity in doubles that lies there is more likely wrong.
 class UnitOfGap {
  public:
