@@ -210,6 +210,46 @@ TEST(Certificate, AnInfiniteViolationIsNotProven) {
   EXPECT_FALSE(certify(problem, {{std::nan(""), 0.0}, Status::relaxed, both, 2, 0.0}));
 }
 
+// The exact multipliers left a gap of 7.1e-12 below the widest, 1.4e-11: 1.7e-15 times 4, 4 and so on stepped over it,
+// and the bound that remained was 30 wide.
+TEST(Certificate, OfALeastViolationWhereHardLinesCrossFarAwayIsTight) {
+  Problem problem;
+  problem.preferred = {2.2067721694595904, 2.416043541523261};
+  problem.constraints = {constraint(Priority::hard, {0.9571279813485627, 0.28966537128145875}, 0.2998870687176116),
+                         constraint(Priority::hard, {-0.9543472416109954, -0.2986994181940844}, -0.15717084720552843),
+                         constraint(Priority::soft, {-0.2124139349107307, 0.9771797788819312}, -0.23601460684345743)};
+  for (const Proven& answer : {solve_certified(problem), solve_exact(problem)}) {
+    EXPECT_STREQ(name(answer.solution.status), "relaxed");
+    ASSERT_TRUE(answer.certificate.has_value());
+    EXPECT_EQ(check(problem, *answer.certificate), CertificateError::none);
+    EXPECT_LE(answer.certificate->gap, 1e-11);
+    EXPECT_TRUE(is_tight(problem, *answer.certificate));
+  }
+}
+
+// Two hard lines cross at an angle of 2 to 2e-4 and are the only bound; what a soft line asks for lies beyond. The
+// velocity lay farther from where they cross than it had to, and below an angle of 5e-3 the gap showed it.
+TEST(Certificate, OfALeastViolationInANeedleIsTight) {
+  test::SeededRandom random(test::seed_of_run(83));
+  for (int k = 0; k < 2000; ++k) {
+    const double along = random.uniform(-3.2, 3.2), half = std::pow(10.0, random.uniform(-4.0, 0.0));
+    const auto line = [&](Priority priority, double angle) {
+      return constraint(priority, {std::cos(angle), std::sin(angle)}, random.uniform(-1.0, 1.0));
+    };
+    constexpr double kRight = 1.5707963267948966;
+    Problem problem;
+    problem.preferred = {random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)};
+    problem.constraints = {line(Priority::hard, along + kRight - half), line(Priority::hard, along - kRight + half),
+                           line(Priority::soft, along + 3.1415926 + random.uniform(-0.9, 0.9) * half)};
+    for (const Proven& answer : {solve_certified(problem), solve_exact(problem)}) {
+      ASSERT_TRUE(answer.certificate.has_value()) << text_of(problem);
+      EXPECT_EQ(check(problem, *answer.certificate), CertificateError::none) << text_of(problem);
+      EXPECT_TRUE(is_tight(problem, *answer.certificate))
+          << half << ' ' << answer.certificate->gap << ' ' << answer.certificate->violation << text_of(problem);
+    }
+  }
+}
+
 TEST(Certificate, FlawsHaveNames) {
   EXPECT_STREQ(name(CertificateError::contradiction), "contradiction");
 }

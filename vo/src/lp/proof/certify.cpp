@@ -16,6 +16,8 @@
 namespace exactvo::lp {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 bool usable(const Multipliers& m) {
   return std::all_of(m.value.begin(), m.value.begin() + m.count, [](double x) { return std::isfinite(x) && x >= 0.0; });
 }
@@ -50,8 +52,8 @@ double length_of_giving(const Problem& problem, Scope scope, const Multipliers& 
   return longest;
 }
 
-/// The unit of a claim's gap. V is the largest speed that occurs in the problem. Without a bound a vertex may lie far beyond it,
-/// where it is |v| of the exact optimum; a velocity in doubles that lies there is more likely wrong.
+/// The unit of a claim's gap. V is the largest speed that occurs in the problem. Without a bound a vertex may lie far
+/// beyond it, where it is |v| of the exact optimum; a velocity in doubles that lies there is more likely wrong.
 class UnitOfGap {
  public:
   UnitOfGap(const Problem& problem, Scope scope, const Claim& claim, Stage stage)
@@ -124,9 +126,7 @@ class Search {
  private:
   bool settled() const { return found_ && gap_ <= 64.0 * least_gap(unit_.of(best_)); }
 
-  double widest(const Multipliers& m) const {
-    return stage_ == Stage::exact ? std::numeric_limits<double>::infinity() : kWidestGap * unit_.of(m);
-  }
+  double widest(const Multipliers& m) const { return stage_ == Stage::exact ? kInfinity : kWidestGap * unit_.of(m); }
 
   void attempt(const std::array<Binding, 3>& candidates, std::size_t count) {
     Chosen chosen;
@@ -250,6 +250,13 @@ struct Bound {
   double gap = 0.0;
 };
 
+/// The gap of (2) where the normals of `sum` cancel: violation - offset / giving, rounded up. Infinite or no number
+/// where that leaves the range of double.
+double gap_where_cancelling(const Claim& claim, const Combination& sum) {
+  constexpr double kUp = 1.0 + 8.0 * kUnitRoundoff;  // of two conversions, a division and this product
+  return kUp * ((Exact(claim.violation) * sum.giving - sum.offset).to_double() / sum.giving.to_double());
+}
+
 /// Multipliers in double leave a sum of normals of about u, which an unbounded velocity multiplies by more than any
 /// number. With exact multipliers the sum of two or three lines is 0.
 std::optional<Bound> exact_bound(const Problem& problem, Scope scope, const Claim& claim,
@@ -259,12 +266,14 @@ std::optional<Bound> exact_bound(const Problem& problem, Scope scope, const Clai
   const auto consider = [&](const std::vector<Binding>& chosen) {
     Multipliers names;
     for (const Binding& line : chosen) names.add(line, 1.0);
-    const double least = least_gap(unit.of(names)), limit = best ? 0.5 * best->gap : kWidestGap * unit.of(names);
+    const double least = least_gap(unit.of(names)), limit = best ? 0.5 * best->gap : kInfinity;
     if (best && best->gap <= 64.0 * least) return;
     const std::vector<Term> terms = cancelling_terms(problem, chosen);
-    if (terms.empty()) return;
-    if (const auto gap = exact_gap(problem, scope, claim, combine(problem, terms, scope), least, limit))
-      best = Bound{terms, *gap};
+    const Combination sum = combine(problem, terms, scope);
+    if (terms.empty() || sign_of(sum.giving) <= 0) return;
+    const double estimate = gap_where_cancelling(claim, sum);
+    const double first = estimate > least && estimate < kInfinity ? estimate : least;
+    if (const auto gap = exact_gap(problem, scope, claim, sum, first, limit)) best = Bound{terms, *gap};
   };
   for (std::size_t i = 0; i < lines.size(); ++i)
     for (std::size_t j = i + 1; j < lines.size(); ++j) {
@@ -282,8 +291,8 @@ std::optional<Bound> bound_of(const Problem& problem, Scope scope, const Claim& 
   if (search.found()) bound = Bound{terms_of(search.best()), search.gap()};
   if (stage == Stage::doubles || scope == Scope::all_must_hold || search.is_tight()) return bound;
   candidates.erase(std::remove(candidates.begin(), candidates.end(), kDisc), candidates.end());
-  const std::optional<Bound> exact = exact_bound(problem, scope, claim, candidates);
-  return exact ? exact : bound;
+  std::optional<Bound> exact = exact_bound(problem, scope, claim, candidates);
+  return exact && !(bound && bound->gap <= exact->gap) ? exact : bound;
 }
 
 }  // namespace

@@ -31,6 +31,17 @@ std::optional<Vec2> neighbour_inside(const Problem& problem, Status status, Vec2
   return std::nullopt;
 }
 
+/// From `v` that holds to `target` that does not: the middle, or what holds beside it, while that is nearer.
+Vec2 brought_nearer(const Problem& problem, Status status, Vec2 target, Vec2 v) {
+  for (;;) {
+    const Vec2 middle = target + 0.5 * (v - target);
+    const std::optional<Vec2> next =
+        holds(problem, status, middle) ? std::optional<Vec2>(middle) : neighbour_inside(problem, status, middle);
+    if (!next || !(squared_norm(*next - target) < squared_norm(v - target))) return v;
+    v = *next;
+  }
+}
+
 /// Out of line, since GCC 12 drops such conversions where it sees two side by side.
 [[gnu::noinline]] double rounded_to_float(double x) {
   return static_cast<double>(static_cast<float>(x));
@@ -82,7 +93,7 @@ std::optional<Vec2> nearest_double_inside(const Problem& problem, Status status,
   for (const double slack : kSlacks) {
     const Found found = best_velocity(region_of(mandatory, slack), Objective::nearest, target);
     const Vec2 v = into_box(found.velocity, problem.bound);
-    if (found.feasible && holds(problem, status, v)) return v;
+    if (found.feasible && holds(problem, status, v)) return brought_nearer(problem, status, target, v);
   }
   return std::nullopt;
 }
