@@ -164,17 +164,30 @@ RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from,
   return r;
 }
 
-lp::Solution Decider::solution_of(const DecisionInput& in) {
+void Decider::state_problem(const DecisionInput& in) {
   problem_.bound = speed_bound(*scenario_, in.from.max_speed);
   problem_.preferred = in.preferred;
-  if (in.more && in.keep_all) in.more->need_all();
+  problem_.constraints.clear();
+  for (const std::vector<Constraint>* some : {in.statics, in.others})
+    for (const Constraint& c : *some) problem_.constraints.push_back({c.half_plane, c.priority});
+}
+
+lp::Solution Decider::rounded_solution(const DecisionInput& in) {
   for (;;) {
-    problem_.constraints.clear();
-    for (const std::vector<Constraint>* some : {in.statics, in.others})
-      for (const Constraint& c : *some) problem_.constraints.push_back({c.half_plane, c.priority});
+    state_problem(in);
     const lp::Solution solution = lp::solve(problem_, pricing_);
     if (!in.more || !in.more->need_for(solution, pricing_)) return solution;
   }
+}
+
+/// What the rounded solution lacks in proof the exact one has, which needs all half-planes.
+lp::Proven Decider::proven_solution(const DecisionInput& in) {
+  if (in.more && in.keep_all) in.more->need_all();
+  const lp::Solution rounded = rounded_solution(in);
+  lp::Proven proven = lp::certified(problem_, rounded);
+  if (!proven.exact_stage || !in.more || !in.more->need_all()) return proven;
+  state_problem(in);
+  return lp::solve_certified(problem_);
 }
 
 bool Decider::has_fallen_back(const Constraint& c, const DecisionInput& in) const {
@@ -183,7 +196,12 @@ bool Decider::has_fallen_back(const Constraint& c, const DecisionInput& in) cons
 }
 
 void Decider::decide(const DecisionInput& in, RobotStep& step) {
-  const lp::Solution solution = solution_of(in);
+  const lp::Proven proven = proven_solution(in);
+  lp::Solution solution = proven.solution;
+  step.exact_multipliers = proven.exact_stage && solution.status != lp::Status::no_interior &&
+                           lp::check(problem_, lp::claim_of(problem_, solution)) != lp::CertificateError::none;
+  if (step.exact_multipliers)
+    for (lp::ActiveConstraint& active : solution.active) active.multiplier = 0.0;
   step.preferred = in.preferred;
   step.chosen = solution.velocity;
   step.status = solution.status;

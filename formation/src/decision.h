@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "exactvo/vo/lp/certificate.h"
 #include "needed_constraints.h"
 #include "static_field.h"
 
@@ -52,13 +53,15 @@ class Decider {
  public:
   Decider(const Scenario& scenario, const vo::BodyTable& bodies) : scenario_(&scenario), bodies_(&bodies) {}
 
-  /// Fills `chosen`, `status`, `violation`, `constraints` and `uncertified` of the step; the other fields are the
+  /// Fills `chosen`, `status`, `violation`, `exact_multipliers`, `bound`, `constraints` and `uncertified` of the step; the other fields are the
   /// caller's. Keeps the constraints that bind and those against what can be met within a step: with these alone an
   /// audit sees that none is missing.
   void decide(const DecisionInput& in, RobotStep& step);
 
  private:
-  lp::Solution solution_of(const DecisionInput& in);
+  void state_problem(const DecisionInput& in);
+  lp::Solution rounded_solution(const DecisionInput& in);
+  lp::Proven proven_solution(const DecisionInput& in);
   bool has_fallen_back(const Constraint& c, const DecisionInput& in) const;
   double reach_of(const Constraint& c, const Viewpoint& from) const;
   RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, const lp::ActiveConstraint* active) const;

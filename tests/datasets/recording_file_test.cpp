@@ -86,6 +86,7 @@ RobotStep robot_step(int k, SeededRandom& random) {
   if (k % 6 == 0) robot.bound = {{lp::kDisc, random.uniform(0, 2)}};
   if (k % 6 == 1) robot.bound = {{lp::kBoxSides[0], 0.25}, {lp::kBoxSides[3], random.uniform(0, 2)}};
   robot.violation = k % 3 == 1 ? random.uniform(0, 1) : 0.0;
+  robot.exact_multipliers = k % 5 == 2;
   robot.mode = static_cast<formation::Mode>(k % 5);
   robot.side = k % 3 - 1;
   robot.note = k % 4 == 0 ? "turned \"left\", because" : "";

@@ -112,6 +112,33 @@ TEST(Multipliers, AloneProveTheAnswer) {
   EXPECT_GE(1000 * proven, 999 * problems) << "plain answers: their multipliers are rounded, not chosen";
 }
 
+/// A robot that others and walls touch all around to within a rounding error: what is allowed is no larger than that.
+Problem robot_in_contact(SeededRandom& random) {
+  Problem problem;
+  problem.bound.disc = 1.5;
+  problem.preferred = {random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5)};
+  const int touching = random.integer(3, 6), beside = random.integer(0, 3);
+  for (int k = 0; k < touching + beside; ++k) {
+    const Vec2 normal = geometry::rotated({1.0, 0.0}, random.integer(0, 11) * 0.5235987755982988);
+    const double offset = k < touching ? -5e-15 * random.uniform(0.0, 1.0) : -random.uniform(0.0, 2.0);
+    problem.constraints.push_back({{normal, offset}, random.integer(0, 2) == 0 ? Priority::hard : Priority::soft});
+  }
+  return problem;
+}
+
+TEST(Multipliers, OfARobotThatIsTouchedAllAroundProveItsVelocity) {
+  SeededRandom random(test::seed_of_run(86));
+  int by_doubles = 0, exactly = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const Problem problem = robot_in_contact(random);
+    const Proven proven = certified(problem, solve(problem));
+    ASSERT_TRUE(proven.certificate.has_value()) << text_of(problem);
+    EXPECT_STREQ(name(check(problem, *proven.certificate)), "none") << text_of(problem);
+    ++(proven.exact_stage ? exactly : by_doubles);
+  }
+  EXPECT_GT(by_doubles, 3000) << exactly << " exactly";
+}
+
 TEST(Multipliers, OfAnotherVelocityProveNothing) {
   for_each_kind(85, [](const Problem& problem) {
     Solution s = solve_certified(problem).solution;

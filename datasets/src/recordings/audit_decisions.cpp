@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "exactvo/vo/certificate.h"
@@ -40,6 +41,21 @@ const RecordedConstraint* half_against(const RobotStep& robot, std::size_t other
 Rational violation_at(const geometry::HalfPlane& h, const Point& v) {
   return Rational(h.offset) - exact::dot(exactly(h.normal), v);
 }
+
+/// The exact multipliers of the problem, as a claim of the velocity that was chosen. Nothing where they do not prove
+/// their own answer tightly, or that one has another status.
+std::optional<lp::Certificate> exact_claim_of(const lp::Problem& problem, const lp::Solution& chosen) {
+  const lp::Proven exact = lp::solve_exact(problem);
+  if (!exact.certificate || exact.solution.status != chosen.status) return std::nullopt;
+  if (!lp::is_tight(problem, *exact.certificate)) return std::nullopt;
+  lp::Certificate claim = lp::claim_of(problem, chosen);
+  claim.bound = exact.certificate->bound;
+  claim.contradiction = exact.certificate->contradiction;
+  claim.gap = std::max(exact.certificate->gap, lp::claim_of(problem, exact.solution).gap);
+  return claim;
+}
+
+constexpr const char* kBesideExact = " has multipliers, and says that none in double prove it";
 
 /// Share of the largest speed: what is said to bind does so to within this (lp/certificate.h has the same for gaps).
 constexpr double kBindsWithin = lp::kWidestGap;
@@ -313,7 +329,9 @@ void DecisionAudit::choice_is_best(const Seen& s) {
   if (!why.empty()) return answer(why, false);
   // What has no room is held to its rounding error; that nothing is better is not proven by its numbers.
   if (r.status == lp::Status::no_interior) return answer(" has no room: that it is the best is not proven", true);
-  const lp::CertificateError flaw = lp::check(problem, lp::claim_of(problem, solution));
+  const std::optional<lp::Certificate> claim =
+      r.exact_multipliers ? exact_claim_of(problem, solution) : lp::claim_of(problem, solution);
+  const lp::CertificateError flaw = claim ? lp::check(problem, *claim) : lp::CertificateError::bound;
   if (flaw == lp::CertificateError::none) return answer("", false);
   answer(flaw == lp::CertificateError::velocity ? " breaks a half-plane or the speed bound"
                                                 : " is not proven the best by its multipliers",
@@ -346,7 +364,10 @@ std::string DecisionAudit::misstated(const Seen& s, const Violations& most) cons
     return "";
   }
   if (abs(Rational(r.violation) - most.given) > near) return " states another violation than it has";
+  for (const lp::ActiveConstraint& part : r.bound)
+    if (r.exact_multipliers && part.multiplier != 0.0) return kBesideExact;
   for (const RecordedConstraint& c : r.constraints) {
+    if (r.exact_multipliers && c.multiplier != 0.0) return kBesideExact;
     if (!c.active && c.multiplier != 0.0) return " is pressed by a half-plane that does not bind";
     if (c.active && r.status == lp::Status::optimal && violation_at(c.half_plane, chosen) < -near)
       return " is bound by a half-plane that it does not touch";

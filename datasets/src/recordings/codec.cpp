@@ -107,6 +107,14 @@ vo::Body to_body(const JsonCursor& at) {
   return body;
 }
 
+/// Of multipliers that are no doubles and follow from the half-planes.
+constexpr const char* kExact = "exact";
+
+bool is_exact(const JsonCursor& at) {
+  if (at.text() != kExact) at.refuse("\"exact\"");
+  return true;
+}
+
 void append_robot(JsonWriter& json, const RobotStep& robot) {
   json.begin_object();
   json.member("position", robot.position).member("velocity", robot.velocity);
@@ -124,6 +132,7 @@ void append_robot(JsonWriter& json, const RobotStep& robot) {
     json.end_array();
   }
   if (robot.violation != 0.0) json.member("violation", robot.violation);
+  if (robot.exact_multipliers) json.member("multipliers", kExact);
   json.member("mode", word_for(robot.mode));
   if (robot.side != 0) json.member("side", robot.side);
   if (!robot.note.empty()) json.member("note", robot.note);
@@ -151,6 +160,7 @@ RobotStep to_robot(const JsonCursor& at) {
     robot.bound.push_back({{enumerator<lp::BindingKind>(part.at("part")), 0}, part.at("multiplier").number()});
   }
   if (at.has("violation")) robot.violation = at.at("violation").number();
+  if (at.has("multipliers")) robot.exact_multipliers = is_exact(at.at("multipliers"));
   if (at.has("side")) robot.side = at.at("side").integer();
   if (at.has("note")) robot.note = at.at("note").text();
   if (at.has("uncertified")) robot.uncertified = at.at("uncertified").count();

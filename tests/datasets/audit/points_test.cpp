@@ -114,6 +114,55 @@ TEST(AuditPoints, AreAllAskedAndProvenOfARunAsItWasMade) {
   }
 }
 
+/// Two groups that meet in a street too narrow to pass, and stay there in contact.
+Scenario jam(double pitch) {
+  Scenario s;
+  s.time_limit = 14.0;
+  const auto wall = [](double y) { return geometry::Polyline{{{-20, y}, {20, y}}}; };
+  s.obstacles = {{"left", wall(2.0)}, {"right", wall(-2.0)}};
+  for (int k = 0; k < 14; ++k) {
+    formation::Robot r;
+    r.id = "R" + std::to_string(k + 1);
+    const double side = k % 2 == 0 ? -1.0 : 1.0;
+    r.position = {side * (4.0 + pitch * (k / 6)), -1.3 + 1.3 * (k / 2 % 3)};
+    r.goals = {{-side * 15.0, r.position.y}};
+    r.max_speed = 1.5;
+    s.robots.push_back(r);
+  }
+  return s;
+}
+
+TEST(AuditPoints, ChoicesOfRobotsInContactAreProven) {
+  std::size_t exact = 0;
+  for (const formation::Liveness liveness : {formation::Liveness::bias, formation::Liveness::off}) {
+    for (const double pitch : {1.2, 1.7}) {
+      formation::SimulationOptions options;
+      options.liveness = liveness;
+      const RecordingFile file = recorded(jam(pitch), options);
+      const PointCount choices = audit(file)[AuditPoint::choices];
+      EXPECT_EQ(choices.asked(), choices.proven) << name(liveness) << ' ' << pitch;
+      for (const Step& row : file.recording.steps)
+        for (const RobotStep& robot : row.robots) exact += robot.exact_multipliers;
+    }
+  }
+  RecordProperty("exact", static_cast<int>(exact));
+}
+
+TEST(AuditPoints, MultipliersThatAreSaidToBeExactAreNotWritten) {
+  const AuditReport report =
+      forged_constraint([](const RecordedConstraint& c) { return c.multiplier > 1e-3; },
+                        [](RobotStep& robot, RecordedConstraint&) { robot.exact_multipliers = true; });
+  EXPECT_EQ(report[AuditPoint::choices].refuted, 1u);
+  RecordingFile file = clean();
+  RobotStep& robot = file.recording.steps[3].robots[0];
+  robot.exact_multipliers = true;
+  for (RecordedConstraint& c : robot.constraints) c.multiplier = 0.0;
+  for (lp::ActiveConstraint& part : robot.bound) part.multiplier = 0.0;
+  EXPECT_TRUE(audit(file).clean()) << "they follow from the half-planes";
+  robot.chosen = 0.999 * robot.chosen;
+  EXPECT_EQ(audit(file)[AuditPoint::choices].refuted, 1u);
+}
+
 TEST(AuditPoints, AnotherScenarioIsRefused) {
   Scenario other = scene();
   other.robots[0].radius = std::nextafter(0.5, 0.0);

@@ -265,6 +265,7 @@ struct State {
   Vec2 position, velocity, anchor, anchor_velocity, preferred, chosen;
   std::string status;
   double violation = 0.0;
+  bool exact_multipliers = false;  ///< they are not written: no doubles prove the choice
   std::vector<Line> lines;
   std::vector<std::pair<std::string, double>> bound;
 };
@@ -292,6 +293,7 @@ State state_of(const json& j) {
   s.chosen = point(j.at("chosen"));
   s.status = j.at("status");
   s.violation = j.value("violation", 0.0);
+  s.exact_multipliers = j.contains("multipliers");
   if (j.contains("bound"))
     for (const json& b : j["bound"]) s.bound.emplace_back(b.at("part"), number(b.at("multiplier")));
   if (j.contains("constraints"))
@@ -561,6 +563,8 @@ class Opinion {
       sum += multiplier * n;
       weight += multiplier;
     }
+    if (s.exact_multipliers && weight > 0.0) return wrong(k, i, "a multiplier beside exact ones");
+    if (s.exact_multipliers) return;
     const Vec2 left = s.status == "optimal" ? sum - (s.chosen - s.preferred) : sum;
     if (norm(left) > 1e-4 * (1.0 + (s.status == "optimal" ? norm(s.preferred) : weight)))
       wrong(k, i, "multipliers do not balance");

@@ -8,8 +8,12 @@
 namespace exactvo::lp {
 
 Proven solve_certified(const Problem& problem) {
+  return certified(problem, solve(problem));
+}
+
+Proven certified(const Problem& problem, const Solution& solution) {
   Proven answer;
-  answer.solution = solve(problem);
+  answer.solution = solution;
   answer.certificate = certify(problem, answer.solution);
   if (!answer.certificate) return solve_exactly(problem, active_bindings(answer.solution));
   if (!has_multipliers_of(*answer.certificate, answer.solution))

@@ -67,6 +67,9 @@ struct RobotStep {
   Vec2 chosen;  ///< m/s: the LP's optimum; what a kinematic robot does, what a second-order one tracks
   lp::Status status = lp::Status::optimal;
   double violation = 0.0;  ///< m/s, of the soft half-planes
+  /// No multipliers in double prove the choice: they are left at 0. The exact ones follow from the half-planes
+  /// (lp::solve_exact). Seen where robots rest in contact and their half-planes leave a rounding error of room.
+  bool exact_multipliers = false;
   Mode mode = Mode::direct;
   int side = 0;      ///< +1 left, -1 right, 0 none: the side kept while blocked
   std::string note;  ///< why a mode began or ended, empty otherwise

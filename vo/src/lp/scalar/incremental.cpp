@@ -100,18 +100,31 @@ Solution without_answer(const Problem& problem) {
   return s;
 }
 
-Solution relaxed(const Problem& problem, const Region& region) {
+/// Where the inward slack alone left no room, the least violation says little of the optimum: what binds there is what
+/// binds with the slack put on outward, a rounding error away.
+void bind_as_with_room(const Problem& problem, double slack, Solution& s) {
+  const Region wider = region_of(problem, -slack);
+  const Found best = best_velocity(wider, problem.objective, problem.preferred);
+  if (!best.feasible || !is_finite(best.velocity)) return;
+  const Solution there = solution_of(problem, wider, best, Status::optimal);
+  s.active = there.active;
+  s.active_count = there.active_count;
+}
+
+Solution relaxed(const Problem& problem, const Region& region, double slack) {
   const Found least = least_violation_nearest(problem, region);
   if (!is_finite(least.velocity)) return without_answer(problem);
   Solution s = solution_of(problem, region, least, Status::relaxed);
   s.violation = violation_that_counts(problem, Status::relaxed, s.velocity);
   if (!holds(problem, Status::relaxed, s.velocity)) s.status = Status::no_interior;
-  if (s.status == Status::relaxed && s.violation == 0.0 && holds(problem, Status::optimal, s.velocity))
+  if (s.status == Status::relaxed && s.violation == 0.0 && holds(problem, Status::optimal, s.velocity)) {
     s.status = Status::optimal;
+    bind_as_with_room(problem, slack, s);
+  }
   return s;
 }
 
-Solution infeasible(const Problem& problem, const Region& hard) {
+Solution infeasible(const Problem& problem, const Region& hard, double slack) {
   const Region soft = softened(hard);
   const Found least = least_violation_nearest(problem, soft);
   if (!is_finite(least.velocity)) return without_answer(problem);
@@ -120,6 +133,7 @@ Solution infeasible(const Problem& problem, const Region& hard) {
   if (holds(problem, Status::relaxed, s.velocity)) {
     s.status = holds(problem, Status::optimal, s.velocity) ? Status::optimal : Status::relaxed;
     s.violation = violation_that_counts(problem, Status::relaxed, s.velocity);
+    if (s.status == Status::optimal) bind_as_with_room(problem, slack, s);
   }
   return s;
 }
@@ -139,7 +153,7 @@ Solution solve_with_slack(const Problem& problem, double slack, Pricing& pricing
   const Region hard = hard_only(region);
   const bool hard_hold =
       has_priority(problem, Priority::soft) && best_velocity(hard, Objective::nearest, Vec2{}).feasible;
-  return hard_hold ? relaxed(problem, region) : infeasible(problem, hard);
+  return hard_hold ? relaxed(problem, region, slack) : infeasible(problem, hard, slack);
 }
 
 bool preferred_is_allowed(const Problem& problem) {

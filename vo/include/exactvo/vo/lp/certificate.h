@@ -94,6 +94,9 @@ struct Proven {
 /// REQUIRES: a well-formed problem.
 Proven solve_certified(const Problem& problem);
 
+/// The same of an answer that is there already: of `solve`, say.
+Proven certified(const Problem& problem, const Solution& solution);
+
 /// The exact answer: every branch decided in exact arithmetic, the optimum an algebraic point, rounded inward.
 /// REQUIRES: a well-formed problem.
 Proven solve_exact(const Problem& problem);
