@@ -111,7 +111,11 @@ void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, con
   options.time_horizon = options.contact_time = contact_time(scenario);
   const vo::MovingDisc a{anchors[i].position, {}, scenario.robots[i].radius};
   const vo::MovingDisc b{anchors[j].position, {}, scenario.robots[j].radius};
-  const PairConstraints pair = against_each_other(scene, i, a, j, b, options);
+  const bool is_in_contact = norm(a.position - b.position) - (a.radius + b.radius) <= kContactSkin;
+  if (!is_in_contact) options.margin = kContactSkin;
+  PairConstraints pair = against_each_other(scene, i, a, j, b, options);
+  if (is_in_contact)  // do not use up the rest
+    for (Constraint* c : {&pair.of_a, &pair.of_b}) c->half_plane.offset = std::max(0.0, c->half_plane.offset);
   *mine = pair.of_a;
   *theirs = pair.of_b;
 }

@@ -25,8 +25,8 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
                        Scene& scene, std::vector<std::vector<Constraint>>& out);
 
 /// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far
-/// as `contact_time`: v = 0 satisfies them as long as the robots do not overlap, and they are as certain (liveness,
-/// rule R0).
+/// as `contact_time` and leaving `kContactSkin` between them: v = 0 satisfies them as long as the robots do not overlap,
+/// and they are as certain (liveness, rule R0).
 void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
                std::size_t j, std::vector<std::vector<Constraint>>& constraints);
 

@@ -9,6 +9,7 @@
 #include "divergence.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/formation/stuck.h"
+#include "exactvo/formation/waiting.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/require.h"
 #include "lyapunov_accumulator.h"
@@ -96,7 +97,10 @@ Evaluation Evaluator::finish(const Recording& run) {
   m.warnings = run.warnings;
   for (const StuckReport& report : found.stuck) m.stuck.push_back(report.text);
   if (parts_->lyapunov) m.lyapunov = parts_->lyapunov->summary();
-  m.outcome = detail::outcome_words(m, run.outcome);
+  const std::vector<std::size_t> deadlock = parts_->stuck.deadlock();
+  for (const std::size_t robot : deadlock) m.deadlock.push_back(parts_->scenario.robots[robot].id);
+  m.outcome = detail::outcome_words(
+      m, run.outcome + (deadlock.empty() ? "" : "; " + deadlock_words(parts_->scenario, deadlock)));
   return found;
 }
 

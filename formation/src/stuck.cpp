@@ -9,6 +9,7 @@
 #include "boundary.h"
 #include "exactvo/formation/balance.h"
 #include "exactvo/formation/constraint_name.h"
+#include "exactvo/formation/waiting.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/velocity_obstacle.h"
 #include "leader.h"
@@ -28,6 +29,7 @@ struct RunEnd {
   const Recording& run;  ///< without its rows
   const Step& last;
   const Step* decided;  ///< the row of the last decisions: the last row has none. Null where none were taken
+  WaitForGraph waits;   ///< of that row
 };
 
 Vec2 target_of(const RunEnd& end, std::size_t i) {
@@ -143,27 +145,27 @@ std::string equilibrium_words(const StuckReport& r) {
   return (rests ? ": an unstable equilibrium " : ", sliding off an unstable equilibrium ") + curvature_words(e);
 }
 
-bool is_pressed_by(const RunEnd& end, std::size_t robot, std::size_t other) {
-  const RobotStep* decision = last_decision(end, robot);
-  return decision && std::any_of(decision->constraints.begin(), decision->constraints.end(), [&](const auto& c) {
-           return c.active && c.source == ConstraintSource::robot && c.index == other;
-         });
-}
-
 /// What the one robot that is in the way does itself.
-std::string other_words(const RunEnd& end, const StuckReport& r, const RecordedConstraint& by) {
+std::string other_words(const RunEnd& end, const RecordedConstraint& by) {
   const RobotStep& other = end.last.robots.at(by.index);
   if (norm(target_of(end, by.index) - other.position) <= end.scenario.arrival_tolerance)
     return end.scenario.formation ? ", which is at its slot" : ", which is at its goal";
-  if (norm(other.velocity) >= kAtRest) return ", which is moving";
-  return is_pressed_by(end, by.index, r.robot) ? ": each stands in the other's way" : ", which is at rest";
+  return norm(other.velocity) >= kAtRest ? ", which is moving" : ", which is at rest";
+}
+
+/// Whom it waits for beyond the robots that block it; empty where the next one waits for nobody.
+std::string waiting_of(const RunEnd& end, std::size_t robot) {
+  if (end.waits.empty() || end.waits[robot].empty() || end.waits[end.waits[robot].front()].empty()) return "";
+  return waiting_words(end.scenario, *end.decided, end.waits, robot);
 }
 
 std::string blocked_words(const RunEnd& end, const StuckReport& r) {
   const std::vector<RecordedConstraint> by = pressing_of(r);
   const bool walls = by.size() > 1 && std::all_of(by.begin(), by.end(), is_static);
   std::string text = (walls ? "blocked between " : "blocked by ") + name_of(by, end.scenario);
-  if (by.size() == 1 && by.front().source == ConstraintSource::robot) text += other_words(end, r, by.front());
+  const std::string waiting = waiting_of(end, r.robot);
+  if (!waiting.empty()) return text + "; " + waiting;
+  if (by.size() == 1 && by.front().source == ConstraintSource::robot) text += other_words(end, by.front());
   if (r.equilibrium) text += equilibrium_words(r);
   return text;
 }
@@ -249,7 +251,8 @@ void detail::StuckAccumulator::add(std::shared_ptr<const Step> row) {
 
 std::vector<StuckReport> detail::StuckAccumulator::reports(const Recording& run) const {
   EXACTVO_REQUIRE(last_ != nullptr, "an empty recording");
-  const RunEnd end{scenario_, run, *last_, decided_.get()};
+  const RunEnd end{scenario_, run, *last_, decided_.get(),
+                   decided_ ? waiting_in(scenario_, *decided_) : WaitForGraph{}};
   std::vector<StuckReport> reports;
   if (!is_settled(end)) return reports;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
@@ -258,6 +261,14 @@ std::vector<StuckReport> detail::StuckAccumulator::reports(const Recording& run)
     reports.push_back(report_on(end, i, robots_[i], target));
   }
   return reports;
+}
+
+std::vector<std::size_t> detail::StuckAccumulator::deadlock() const {
+  if (!decided_) return {};
+  const auto rests = [&](std::size_t i) { return norm(last_->robots[i].velocity) < kAtRest; };
+  for (std::vector<std::size_t>& cycle : deadlocks_in(waiting_in(scenario_, *decided_)))
+    if (std::all_of(cycle.begin(), cycle.end(), rests)) return std::move(cycle);
+  return {};
 }
 
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording) {

@@ -20,6 +20,8 @@ class StuckAccumulator {
   void add(std::shared_ptr<const Step> row);
   /// `run` has how the run ended, and what was known before it. REQUIRES: a row.
   std::vector<StuckReport> reports(const Recording& run) const;
+  /// Robots at rest at the end of which each waits for the next (waiting.h); empty where there are none.
+  std::vector<std::size_t> deadlock() const;
 
   /// A robot's least distance from its last goal, and when that was.
   struct Nearest {

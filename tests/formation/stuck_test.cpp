@@ -163,8 +163,9 @@ TEST(Stuck, RobotsThatStandHeadOnAreNotSlidingOffABoundary) {
     EXPECT_FALSE(r.equilibrium.has_value());
     EXPECT_DOUBLE_EQ(r.rest_time, kEnd);
     EXPECT_THAT(r.text, HasSubstr("at rest for 55 s (1.5e-13 m/s)"));
-    EXPECT_THAT(r.text, HasSubstr(std::string("blocked by robot R") + (r.robot == 0 ? "2" : "1") +
-                                  ": each stands in the other's way"));
+    EXPECT_THAT(r.text, HasSubstr(r.robot == 0
+                                      ? "blocked by robot R2; R1 waits for R2, which waits for R1: a deadlock of two"
+                                      : "blocked by robot R1; R2 waits for R1, which waits for R2: a deadlock of two"));
     for (const char* untrue : {"unstable", "sliding", "curvature", "trap"}) EXPECT_THAT(r.text, Not(HasSubstr(untrue)));
   }
 }

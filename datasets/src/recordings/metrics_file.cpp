@@ -82,6 +82,10 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.member("steps", m.steps).member("wall_time", m.wall_time);
   json.member("outcome", m.outcome);
   append_texts(json, "warnings", m.warnings);
+  if (m.deadlock.empty())
+    json.key("deadlock").null();
+  else
+    append_texts(json, "deadlock", m.deadlock);
   append_texts(json, "stuck", m.stuck);
   append_lyapunov(json, m.lyapunov);
   json.key("robots").begin_array();

@@ -82,6 +82,7 @@ struct Metrics {
   std::vector<Collision> collisions;                ///< in the order of their beginnings
   std::string outcome;  ///< how it ended, in words: collisions first, then what the recording says, then long detours
   std::vector<std::string> warnings;  ///< the recording's
+  std::vector<std::string> deadlock;  ///< ids of robots at rest at the end, each waiting for the next (waiting.h)
   std::vector<std::string> stuck;     ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };
 

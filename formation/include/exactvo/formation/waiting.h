@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Which robots with goals wait for which, from the half-planes that a row was decided on.
+///
+/// Robot i waits for robot j where j's half-plane cuts off what i prefers or presses on its choice, i gets less than
+/// `kHeldBelow` of what it prefers, and the two are nearer than a radius of i, rim to rim. A cycle of such robots is a
+/// deadlock: none goes before the next does. Exact about what was recorded; that a cycle stays one is a prediction.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/recording.h"
+#include "exactvo/formation/scenario.h"
+
+namespace exactvo::formation {
+
+/// Of the preferred velocity: a robot that gets less of it is held up.
+inline constexpr double kHeldBelow = 0.3;
+
+/// Of each robot, whom it waits for; the one that holds it most comes first.
+using WaitForGraph = std::vector<std::vector<std::size_t>>;
+
+/// REQUIRES: a row of a run of this scenario. Its last row, which decides nothing, gives a graph without edges.
+WaitForGraph waiting_in(const Scenario& scenario, const Step& row);
+
+/// The cycles that are met by going from each robot to the one that holds it most: disjoint, each from its lowest
+/// number on, in the order of these.
+std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph);
+
+/// Whether all robots that this one waits for, and those that they wait for in turn, wait too or have arrived.
+bool is_dead(const WaitForGraph& graph, const Step& row, std::size_t robot);
+
+/// "R13 waits for R6, which waits for R13: a deadlock of two"; of a long cycle the first ones by name.
+std::string deadlock_words(const Scenario& scenario, const std::vector<std::size_t>& cycle);
+
+/// The same of a robot in a deadlock, beginning with it; of others "R3 waits for R1, which rests at its goal", "queue
+/// of 4: R9 waits for R2, which moves". Empty where the robot waits for nobody.
+std::string waiting_words(const Scenario& scenario, const Step& row, const WaitForGraph& graph, std::size_t robot);
+
+}  // namespace exactvo::formation
