@@ -98,8 +98,11 @@ class ClearanceSweep::Sweep {
       for (std::size_t i = 0; i < least_.size(); ++i) lower_to_obstacles(step, row.time, i);
       lower_between(step, row.time);
     }
-    if (rows_.size() == 2) rows_.erase(rows_.begin());
-    rows_.push_back(state_of(row));
+    if (rows_.size() == 2)
+      std::swap(rows_.front(), rows_.back());
+    else
+      rows_.emplace_back();
+    rows_.back().take(row);
   }
 
   Clearances result() const {
@@ -119,14 +122,13 @@ class ClearanceSweep::Sweep {
     };
     double time = 0.0;
     std::vector<Robot> robots;
-  };
 
-  static State state_of(const Step& row) {
-    State state{row.time, {}};
-    for (const RobotStep& r : row.robots)
-      state.robots.push_back({r.position, r.velocity, r.status != lp::Status::optimal});
-    return state;
-  }
+    void take(const Step& row) {
+      time = row.time;
+      robots.clear();
+      for (const RobotStep& r : row.robots) robots.push_back({r.position, r.velocity, r.status != lp::Status::optimal});
+    }
+  };
 
   /// From the last row to this one.
   Motion motion_to(const Step& row, std::size_t robot) const {
@@ -308,13 +310,13 @@ class ClearanceSweep::Sweep {
 
   /// Pairs that stay farther apart than the least so far are skipped: twice their ways would not bring them nearer.
   void lower_between(std::size_t step, double end) {
-    std::vector<double> ways;
-    for (const Motion& m : motions_) ways.push_back(strays(m));
+    ways_of_step_.clear();
+    for (const Motion& m : motions_) ways_of_step_.push_back(strays(m));
     for (std::size_t i = 0; i < motions_.size(); ++i) {
       for (std::size_t j = i + 1; j < motions_.size(); ++j) {
         const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
         const double apart = norm(motions_[i].from - motions_[j].from) - radii;
-        if (apart > enough(between_) + 2.0 * (ways[i] + ways[j])) continue;
+        if (apart > enough(between_) + 2.0 * (ways_of_step_[i] + ways_of_step_[j])) continue;
         note(i, {CollisionKind::robot, j}, step, end, pair_clearance(motions_[i], motions_[j], radii, enough(between_)),
              between_);
       }
@@ -401,6 +403,7 @@ class ClearanceSweep::Sweep {
   std::size_t count_ = 0;    ///< steps
   // Memory that a step leaves to the next.
   std::vector<Motion> motions_;
+  std::vector<double> ways_of_step_;  ///< m
   std::vector<std::size_t> near_;
   std::vector<Quiet> quiet_;  ///< of each robot
 };

@@ -215,15 +215,18 @@ void Decider::decide(const DecisionInput& in, RobotStep& step) {
     if (lp::is_speed_bound(solution.active[k].binding)) step.bound.push_back(solution.active[k]);
   step.uncertified = 0;
   step.constraints.clear();
+  kept_.clear();
   std::size_t number = 0;
   for (const std::vector<Constraint>* some : {in.statics, in.others}) {
     for (const Constraint& c : *some) {
       const lp::ActiveConstraint* active = active_at(solution, number++);
       if (c.proof == vo::Proof::none) ++step.uncertified;
       if (in.keep_all || active || has_fallen_back(c, in) || c.clearance <= reach_of(c, in.from))
-        step.constraints.push_back(recorded(c, in.from, active));
+        kept_.emplace_back(&c, active);
     }
   }
+  step.constraints.reserve(kept_.size());
+  for (const auto& [constraint, active] : kept_) step.constraints.push_back(recorded(*constraint, in.from, active));
 }
 
 }  // namespace exactvo::formation::detail

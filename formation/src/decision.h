@@ -4,6 +4,7 @@
 /// \file
 /// Equation (12)/(13): from half-planes and a preferred velocity to the chosen one, with the record of why.
 
+#include <utility>
 #include <vector>
 
 #include "exactvo/vo/lp/certificate.h"
@@ -70,6 +71,7 @@ class Decider {
   const vo::BodyTable* bodies_;
   lp::Problem problem_;
   lp::Pricing pricing_;
+  std::vector<std::pair<const Constraint*, const lp::ActiveConstraint*>> kept_;  ///< of one decision
 };
 
 }  // namespace exactvo::formation::detail

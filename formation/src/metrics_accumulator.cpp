@@ -17,10 +17,11 @@ namespace {
 /// rad: smaller turns have no sign worth counting.
 constexpr double kLeastTurn = 1e-3;
 
-/// A row without its decisions.
+/// What a formation is measured by of a row.
 Step state_of(const Step& row) {
   Step state;
   state.time = row.time;
+  state.robots.reserve(row.robots.size());
   state.leader_position = row.leader_position;
   state.leader_velocity = row.leader_velocity;
   for (const RobotStep& r : row.robots) {
@@ -53,7 +54,7 @@ void MetricsAccumulator::add(const Step& row) {
     r.velocity = step.velocity;
   }
   if (scenario_.formation) add_to_course(row);
-  last_ = state_of(row);
+  if (scenario_.formation) last_ = state_of(row);
   ++rows_;
 }
 

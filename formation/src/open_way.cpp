@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <queue>
 #include <tuple>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 
 #include "exactvo/geometry/distance.h"
@@ -89,6 +89,11 @@ class OpenWay::Search {
     }
   };
 
+  struct Seen {
+    double clearance = 0.0;  ///< m
+    bool is_reached = false;
+  };
+
   static std::uint64_t key(Cell c) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c.x)) << 32 | static_cast<std::uint32_t>(c.y);
   }
@@ -99,9 +104,10 @@ class OpenWay::Search {
   }
 
   void visit(Cell cell) {
-    seen_.insert(key(cell));
     const Vec2 place = place_of(cell);
-    push(cell, place, map_.clearance_below(place, enough_));
+    const double clearance = map_.clearance_below(place, enough_);
+    looked_at_.insert({key(cell), {clearance, true}});
+    push(cell, place, clearance);
   }
   void push(Cell cell, Vec2 place, double clearance) {
     if (clearance >= radius_ + slack_) open_.push({norm(place - to_), cell, place, clearance});
@@ -109,12 +115,14 @@ class OpenWay::Search {
 
   /// A cell that cannot be moved to from here may be from another side.
   void move(const Node& node, Cell cell) {
-    if (seen_.count(key(cell)) != 0) return;
+    const auto [found, is_new] = looked_at_.try_emplace(key(cell));
+    Seen& seen = found->second;
+    if (seen.is_reached) return;
     const Vec2 place = place_of(cell);
-    const double clearance = map_.clearance_below(place, enough_);
-    if (!covers(node.clearance, clearance, norm(place - node.place))) return;
-    seen_.insert(key(cell));
-    push(cell, place, clearance);
+    if (is_new) seen.clearance = map_.clearance_below(place, enough_);
+    if (!covers(node.clearance, seen.clearance, norm(place - node.place))) return;
+    seen.is_reached = true;
+    push(cell, place, seen.clearance);
   }
 
   const OpenWay& map_;
@@ -123,7 +131,7 @@ class OpenWay::Search {
   double slack_ = 0.0;    ///< m, more than every rounding
   double enough_ = 0.0;   ///< m
   std::priority_queue<Node> open_;
-  std::unordered_set<std::uint64_t> seen_;
+  std::unordered_map<std::uint64_t, Seen> looked_at_;
 };
 
 OpenWay::OpenWay(const std::vector<SceneObstacle>& obstacles) {

@@ -176,36 +176,78 @@ void Follower::commit(const Situation& s, int side, std::size_t followed) {
   followed_ = followed;
 }
 
-/// The time, s, until the boundary can be left on this side plus the straight way from there, in the static scene
-/// alone.
-double Follower::rehearse(Situation s) const {
-  constexpr double kHorizon = 60.0;  // s: a boundary longer than that ranks by how far the goal is then
-  Follower actor = *this;
-  NearConstraints near;
-  const double start = s.time;
-  for (; s.time - start < kHorizon; s.time += s.time_step) {
-    const Vec2 to_goal = s.goal - s.robot.position;
-    s.preferred = s.robot.max_speed * geometry::normalized(to_goal);
-    near.look(*s.field, s.robot, s.reach);
-    if (actor.may_leave(s, near)) break;
-    s.robot.velocity = actor.follow(s, near).preferred;
-    if (actor.circled_) return std::numeric_limits<double>::infinity();
-    s.robot.position += s.time_step * s.robot.velocity;
+/// One side of a boundary in the static scene alone: the time until it can be left plus the straight way from there.
+///
+/// Nothing is faster than max_speed, so that `time` never falls, but for rounding: while it runs it is a lower bound of
+/// what it will be at the end.
+class Follower::Rehearsal {
+ public:
+  Rehearsal(const Follower& actor, const Situation& s) : actor_(actor), s_(s), start_(s.time) {}
+
+  bool has_ended() const { return has_ended_; }
+  /// s; infinite where the boundary leads round to where it was met.
+  double time() const { return time_; }
+
+  void step() {
+    constexpr double kHorizon = 60.0;  // s: a boundary longer than that ranks by how far the goal is then
+    if (!(s_.time - start_ < kHorizon)) return end();
+    const Vec2 to_goal = s_.goal - s_.robot.position;
+    s_.preferred = s_.robot.max_speed * geometry::normalized(to_goal);
+    near_.look(*s_.field, s_.robot, s_.reach);
+    if (actor_.may_leave(s_, near_)) return end();
+    s_.robot.velocity = actor_.follow(s_, near_).preferred;
+    if (actor_.circled_) {
+      has_ended_ = true;
+      time_ = std::numeric_limits<double>::infinity();
+      return;
+    }
+    s_.robot.position += s_.time_step * s_.robot.velocity;
+    s_.time += s_.time_step;
+    time_ = time_from_here();
   }
-  return s.time - start + norm(s.goal - s.robot.position) / s.robot.max_speed;
-}
+
+ private:
+  void end() {
+    has_ended_ = true;
+    time_ = time_from_here();
+  }
+  double time_from_here() const { return s_.time - start_ + norm(s_.goal - s_.robot.position) / s_.robot.max_speed; }
+
+  Follower actor_;
+  Situation s_;
+  NearConstraints near_;
+  double start_, time_ = 0.0;  ///< s
+  bool has_ended_ = false;
+};
 
 namespace {
 
-/// "left (12.3 s to go that way, 15.1 s the other)".
-std::string side_words(bool left, double left_time, double right_time) {
-  const auto time = [](double t) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.1f s", t);
-    return std::isfinite(t) ? std::string(text) : std::string("no end");
-  };
-  const std::string mine = time(left ? left_time : right_time), other = time(left ? right_time : left_time);
-  return (left ? "left (" : "right (") + mine + " to go that way, " + other + " the other)";
+std::string seconds(double t) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.1f s", t);
+  return std::isfinite(t) ? std::string(text) : std::string("no end");
+}
+
+/// "left (12.3 s to go that way, 15.1 s the other)"; of one that was not rehearsed to its end "at least 12.4 s".
+template <class Rehearsal>
+std::string side_words(bool left, const Rehearsal& taken, const Rehearsal& other) {
+  const std::string there =
+      other.has_ended() ? seconds(other.time()) : "at least " + seconds(std::floor(10.0 * other.time()) / 10.0);
+  return (left ? "left (" : "right (") + seconds(taken.time()) + " to go that way, " + there + " the other)";
+}
+
+/// Whether the left is taken: within a time step of the right or faster. The one that may be faster goes on, until the
+/// other has ended and it is too late for it, beyond all rounding: to the end both would say the same.
+template <class Rehearsal>
+bool left_is_better(Rehearsal& left, Rehearsal& right, double time_step) {
+  constexpr double kRounding = 1e-6;  // s
+  for (;;) {
+    if (left.has_ended() && right.has_ended()) return left.time() <= right.time() + time_step;
+    if (left.has_ended() && right.time() + time_step > left.time() + kRounding) return true;
+    if (right.has_ended() && left.time() > right.time() + time_step + kRounding) return false;
+    const bool take_left = right.has_ended() || (!left.has_ended() && left.time() <= right.time());
+    (take_left ? left : right).step();
+  }
 }
 
 }  // namespace
@@ -219,11 +261,12 @@ Follower::Answer Follower::begin(const Situation& s, NearConstraints& near) {
   Follower to_left, to_right;
   to_left.commit(s, 1, left->last);
   to_right.commit(s, -1, right->last);
-  const double left_time = to_left.rehearse(s), right_time = to_right.rehearse(s);
-  const bool go_left = left_time <= right_time + s.time_step;
+  Rehearsal on_left(to_left, s), on_right(to_right, s);
+  const bool go_left = left_is_better(on_left, on_right, s.time_step);
   *this = go_left ? to_left : to_right;
+  const std::string words = side_words(go_left, go_left ? on_left : on_right, go_left ? on_right : on_left);
   return {(go_left ? left : right)->velocity, Mode::following, side_,
-          "stalled: follows the boundary, turning " + side_words(go_left, left_time, right_time)};
+          "stalled: follows the boundary, turning " + words};
 }
 
 Follower::Answer Follower::follow(const Situation& s, NearConstraints& near) {

@@ -78,11 +78,12 @@ class Follower {
   bool circled() const { return circled_; }
 
  private:
+  class Rehearsal;
+
   bool stalled(const Situation& s);
   Answer begin(const Situation& s, NearConstraints& near);
   Answer follow(const Situation& s, NearConstraints& near);
   void commit(const Situation& s, int side, std::size_t followed);
-  double rehearse(Situation s) const;
   bool may_leave(const Situation& s, NearConstraints& near) const;
 
   bool following_ = false;
