@@ -59,3 +59,5 @@ endif()
 if(EXACTVO_BENCH)
   exactvo_need(benchmark libbenchmark-dev CONFIG)
 endif()
+
+include(ExactVOPython)

@@ -14,6 +14,8 @@ packages=(
   libopenmpi-dev openmpi-bin                                        # a batch over several machines
   libgtest-dev libgmock-dev librapidcheck-dev libvalijson-dev       # tests
   libbenchmark-dev                                                  # benchmarks
+  python3-dev pybind11-dev python3-numpy                            # the Python package
+  python3-pytest mypy python3-matplotlib python3-pandas python3-shapely  # its tests
   gnuplot-nox fonts-dejavu-core                                     # figures
 )
 

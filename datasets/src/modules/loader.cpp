@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // GDAL, SQLite and MPI as modules beside the program, loaded when they are first needed: PREFIX/bin/PROGRAM finds them
-// in the library folder of PREFIX, and nowhere else.
+// in the library folder of PREFIX, and nowhere else. A library that a foreign program has loaded (the Python extension)
+// finds them in its own folder, or in the one that it was built with.
 #include <dlfcn.h>
 
 #include <filesystem>
@@ -19,11 +20,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+#ifdef EXACTVO_MODULES_BESIDE_LIBRARY
+fs::path module_path(const std::string& name) {
+  Dl_info self;
+  if (::dladdr(reinterpret_cast<const void*>(&module_path), &self) == 0) return name + ".so";
+  const fs::path folder = fs::absolute(self.dli_fname).parent_path();
+  std::error_code error;
+  const fs::path beside = folder / (name + ".so");
+  return fs::exists(beside, error) ? beside : (folder / EXACTVO_MODULE_FOLDER / (name + ".so")).lexically_normal();
+}
+#else
 fs::path module_path(const std::string& name) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   return (program.parent_path() / EXACTVO_MODULE_FOLDER / (name + ".so")).lexically_normal();
 }
+#endif
 
 [[noreturn]] void refuse(const fs::path& module, const std::string& purpose, const std::string& found) {
   throw DataError(DataCode::format_unavailable, module.string(), "", found,

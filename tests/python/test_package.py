@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What holds for the package as a whole: its types, its documentation, its memory."""
+import doctest
+import importlib
+import inspect
+import os
+import pkgutil
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import exactvo
+from exactvo import errors
+
+FOLDER = Path(exactvo.__file__).parent
+MODULES = sorted(m.name for m in pkgutil.iter_modules([str(FOLDER)]) if not m.name.startswith("_"))
+
+
+def test_the_package_passes_mypy_strict(source):
+    mypy = shutil.which("mypy", path="/usr/bin") or shutil.which("mypy")
+    if mypy is None:
+        pytest.skip("mypy is missing (Debian: mypy)")
+    done = subprocess.run(
+        [mypy, "--config-file", source / "tools/python/mypy.ini", "--cache-dir", FOLDER.parent / ".mypy_cache", FOLDER, *(source / "examples/python").glob("*.py")],
+        cwd=FOLDER.parent, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (FOLDER / "py.typed").exists()
+
+
+def test_the_stub_names_what_the_extension_has():
+    from exactvo import _exactvo
+
+    stub = (FOLDER / "_exactvo.pyi").read_text()
+    for name, value in vars(_exactvo).items():
+        if name.startswith("__"):
+            continue
+        assert any(text in stub for text in (f"def {name}(", f"class {name}:", f"{name}: ")), name
+        if inspect.isclass(value):
+            for member in vars(value):
+                if not member.startswith("_"):
+                    assert f"def {member}(" in stub, f"{name}.{member}"
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_every_public_name_is_documented(name):
+    module = importlib.import_module(f"exactvo.{name}")
+    assert module.__doc__
+    for public in getattr(module, "__all__", []):
+        value = getattr(module, public)
+        if not (inspect.isclass(value) or inspect.isfunction(value)):
+            continue
+        assert value.__doc__ and not value.__doc__.startswith(f"{public}("), public
+        for member, descriptor in vars(value).items() if inspect.isclass(value) else ():
+            if member.startswith("_") or not (inspect.isfunction(descriptor) or isinstance(descriptor, property)):
+                continue
+            assert inspect.getdoc(getattr(value, member)), f"{public}.{member}"
+
+
+@pytest.mark.parametrize("name", ["__init__", *MODULES])
+def test_the_examples_in_the_documentation_are_true(name):
+    module = exactvo if name == "__init__" else importlib.import_module(f"exactvo.{name}")
+    assert doctest.testmod(module, optionflags=doctest.ELLIPSIS).failed == 0
+
+
+def test_every_error_is_raised_in_a_test(source):
+    text = "".join(p.read_text() for p in (source / "tests/python").glob("test_*.py") if p.name != "test_package.py")
+    for name in errors.__all__:
+        if name not in ("ExactVOError", "RouteNotProvenError"):  # a base; a defect of the library, raised below
+            assert f"raises(exactvo.{name}" in text, name
+
+
+def test_errors_have_one_base_and_the_standard_ones():
+    error = errors.RouteNotProvenError("words")
+    assert isinstance(error, exactvo.ExactVOError) and isinstance(error, RuntimeError) and error.code == "E_ROUTE_NOT_PROVEN"
+    for kind in (exactvo.ArgumentError, exactvo.DataError, exactvo.CrowdError):
+        assert issubclass(kind, exactvo.ExactVOError) and issubclass(kind, ValueError)
+
+
+def resident():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def calls():
+    wall = exactvo.VelocityObstacle(exactvo.Segment((4, -3), (4, 3)), position=(0, 0), radius=0.5, time_horizon=2)
+    problems = exactvo.lp.batch_arrays(4, 4)
+    crowd = exactvo.Crowd()
+    crowd.add_robots([(0, 0), (5, 0)])
+
+    def refused():
+        try:
+            wall.contains("no velocity")
+        except exactvo.ArgumentError:
+            pass
+
+    return {
+        "contains": lambda: wall.contains((1, 0)),
+        "half_plane": lambda: wall.half_plane((3, 0)),
+        "solve": lambda: exactvo.lp.solve([(-1, 0)], [-0.5], (2, 0), max_speed=2),
+        "solve_batch": lambda: exactvo.lp.solve_batch(*problems, max_speed=1.0).velocity,
+        "positions": lambda: crowd.positions,
+        "step": lambda: crowd.step(),
+        "refused": refused,
+        "cone": lambda: exactvo.VelocityObstacle(np.eye(3, 2) + 5, position=(0, 0), radius=0.5, time_horizon=2),
+    }
+
+
+@pytest.mark.parametrize("name", calls())
+def test_memory_is_flat_over_many_calls(name):
+    """10^5 calls of what takes a microsecond, fewer of what takes ten or more: enough to see 16 bytes a call in 4 kB pages."""
+    call = calls()[name]
+    count = 100_000 if name in ("contains", "positions", "solve_batch") else 10_000
+    for _ in range(3000):
+        call()
+    before = resident()
+    for _ in range(count):
+        call()
+    assert resident() - before <= 16 * count
+
+
+def test_it_is_imported_from_anywhere(tmp_path):
+    code = "import exactvo, sys; print(exactvo.__version__, len(exactvo.datasets.readable_formats()))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith(exactvo.__version__)

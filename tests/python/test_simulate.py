@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+import exactvo
+
+TWO = {
+    "name": "two",
+    "time_limit": 20,
+    "robots": [
+        {"id": "R1", "position": [0, 0], "goal": [6, 0]},
+        {"id": "R2", "position": [6, 0.5], "goal": [0, 0.5]},
+    ],
+    "obstacles": [{"id": "wall", "polyline": [[3, -3], [3, -1]]}],
+}
+RUN_DEPENDENT = ("wall_time", "provenance")
+
+
+def comparable(metrics):
+    return {key: value for key, value in metrics.items() if key not in RUN_DEPENDENT}
+
+
+@pytest.mark.parametrize("method", exactvo.METHODS)
+def test_the_program_gives_the_same_metrics(program, source, method):
+    scenario = source / "datasets/data/paper/A2.json"
+    printed = json.loads(program("simulate", scenario, "--method", method, "--json"))
+    run = exactvo.simulate(scenario, method=method)
+    assert comparable(run.metrics) == comparable(printed)
+    assert run.method == method and run.outcome == printed["outcome"]
+
+
+def test_the_program_records_the_same_rows(program, source, tmp_path):
+    program("simulate", source / "datasets/data/paper/B1.json", "--out", tmp_path / "B1", "--no-figures")
+    theirs = exactvo.read_recording(tmp_path / "B1")
+    ours = exactvo.simulate(source / "datasets/data/paper/B1.json")
+    for name in ("time", "position", "velocity", "preferred", "chosen", "status"):
+        assert getattr(ours, name).tobytes() == getattr(theirs, name).tobytes(), name
+    assert ours.metrics["formation_position_error"] == theirs.metrics["formation_position_error"]
+
+
+def test_arrays_are_views_a_row_a_step():
+    run = exactvo.simulate(TWO)
+    steps = len(run)
+    assert run.time.shape == (steps,) and run.position.shape == (steps, 2, 2) and run.status.shape == (steps, 2)
+    assert run.position.tobytes() == run.position.tobytes()
+    assert run.position.__array_interface__["data"] == run.position.__array_interface__["data"]
+    assert not run.position.flags.owndata and not run.position.flags.writeable
+    assert run.position[0].tolist() == [[0, 0], [6, 0.5]] and run.metrics["all_arrived"]
+    step = np.diff(run.time)[:, None, None]
+    assert np.allclose(np.diff(run.position, axis=0), step * run.chosen[:-1], atol=1e-9)
+    position = run.position
+    del run
+    assert np.isfinite(position).all()
+
+
+def test_decisions_carry_their_half_planes_and_pass_the_audit(tmp_path):
+    run = exactvo.simulate(TWO, record_all=True)
+    k = int(np.argmax([len(run.half_planes(step, 0)) for step in range(len(run) - 1)]))
+    planes = run.half_planes(k, 0)
+    assert planes and {p.source for p in planes} <= {"enclosure", "obstacle edge", "robot", "moving obstacle"}
+    for p in planes:
+        assert p.certified and p.half_plane.violation(run.chosen[k, 0]) <= 1e-9
+    report = run.audit()
+    assert report["unsafe"] == 0 and report["collisions"] == 0
+    run.write(tmp_path / "recording.jsonl")
+    again = exactvo.read_recording(tmp_path)
+    assert again.position.tobytes() == run.position.tobytes() and comparable(again.metrics) == comparable(run.metrics)
+    with pytest.raises(IndexError):
+        run.half_planes(10**9, 0)
+    with pytest.raises(IndexError):
+        run.half_planes(0, 2)
+
+
+def test_the_dataframe_has_a_row_for_each_robot_and_step():
+    pytest.importorskip("pandas")
+    run = exactvo.simulate(TWO)
+    frame = run.to_dataframe()
+    assert len(frame) == 2 * len(run) and list(frame["robot"][:2]) == ["R1", "R2"]
+    last = frame[frame["robot"] == "R2"].iloc[-1]
+    assert (last["x"], last["y"]) == tuple(run.position[-1, 1]) and last["mode"] == "arrived"
+    assert (frame["time"].to_numpy()[::2] == run.time).all()
+
+
+def test_runs_are_drawn_and_animated(tmp_path):
+    pytest.importorskip("matplotlib")
+    run = exactvo.simulate(dict(TWO, obstacles=TWO["obstacles"] + [{"id": "box", "polygon": [[2, 2], [4, 2], [4, 4], [2, 4]]}]))
+    axes = run.plot()
+    assert axes.get_xlabel() == "x [m]" and axes.get_aspect() in (1.0, "equal")
+    assert len(axes.lines) >= 4
+    axes.figure.savefig(tmp_path / "run.png")
+    assert (tmp_path / "run.png").stat().st_size > 5000
+    run.animate(speed=10, frames_per_second=5).save(tmp_path / "run.gif", writer="pillow")
+    assert (tmp_path / "run.gif").stat().st_size > 5000
+
+
+def test_scenarios_are_built_from_arrays():
+    wall = exactvo.Wall([(3, -3), (3, -1)])
+    built = exactvo.Scenario.build([(0, 0), (6, 0.5)], [(6, 0), (0, 0.5)], obstacles=[wall], name="two", time_limit=20)
+    assert len(built.robots) == 2 and built.obstacles[0] == wall
+    assert exactvo.simulate(built).position.tobytes() == exactvo.simulate(TWO).position.tobytes()
+    again = pickle.loads(pickle.dumps(built))
+    assert again.to_json() == built.to_json()
+    with pytest.raises(exactvo.ArgumentError, match="goals"):
+        exactvo.Scenario.build([(0, 0)], [(1, 1), (2, 2)])
+    with pytest.raises(exactvo.ArgumentError, match="starts"):
+        exactvo.Scenario.build([0, 0], [(1, 1)])
+
+
+def test_goals_out_of_reach_are_said_before_the_run():
+    ring = exactvo.Wall([(4, -1), (6, -1), (6, 1), (4, 1), (4, -1)])
+    scenario = exactvo.Scenario.build([(0, 0)], [(5, 0)], obstacles=[ring], time_limit=5)
+    assert len(scenario.warnings) == 1 and "R1" in scenario.warnings[0]
+    assert exactvo.simulate(scenario).warnings == scenario.warnings
+
+
+def test_a_run_is_stopped_by_its_progress():
+    long = dict(TWO, time_limit=1e5, arrival_tolerance=1e-3, guidance="none")
+    long["robots"] = [{"id": "R1", "position": [0, 0], "goal": [1e5, 0]}]
+    seen = []
+
+    def stop(time):
+        seen.append(time)
+        return False
+
+    run = exactvo.simulate(long, progress=stop)
+    assert len(seen) == 1 and run.time[-1] < 1e5 / 3
+
+    def fail(time):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        exactvo.simulate(long, progress=fail)
+
+
+@pytest.mark.parametrize("option", ["method", "guidance", "liveness", "controller", "integrator"])
+def test_an_unknown_word_is_refused_with_the_known_ones(option):
+    with pytest.raises(exactvo.ArgumentError, match="one of") as caught:
+        exactvo.simulate(TWO, **{option: "nonsense"})
+    assert caught.value.where == option
+
+
+def test_a_mistyped_method_gets_a_suggestion():
+    with pytest.raises(exactvo.ArgumentError, match='did you mean "ivo-edge"'):
+        exactvo.simulate(TWO, method="ivo_edge")
+
+
+@pytest.mark.parametrize(
+    "change, code, where",
+    [
+        (dict(robots=[{"id": "R1", "position": [0, 0], "goal": [1, 0], "radius": -1}]), "E_RANGE", "/robots/0/radius"),
+        (dict(robts=[]), "E_KEY_UNKNOWN", "/robts"),
+        (dict(time_limit="long"), "E_TYPE", "/time_limit"),
+        (dict(robots=[TWO["robots"][0], dict(TWO["robots"][0], id="R2")]), "E_SCENARIO", None),
+    ],
+)
+def test_wrong_data_says_which_field(change, code, where):
+    with pytest.raises(exactvo.DataError) as caught:
+        exactvo.simulate(TWO | change)
+    assert caught.value.code == code and (where is None or caught.value.where == where)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (again.code, again.file, again.where, str(again)) == (code, "<dict>", caught.value.where, str(caught.value))
+
+
+def test_files_that_are_missing_or_no_json_are_refused(tmp_path):
+    with pytest.raises(exactvo.MissingFileError) as caught:
+        exactvo.simulate(tmp_path / "absent.json")
+    assert isinstance(caught.value, FileNotFoundError) and caught.value.file.endswith("absent.json")
+    assert caught.value.code == "E_FILE_MISSING"
+    (tmp_path / "cut.json").write_text('{"name": "x", ')
+    with pytest.raises(exactvo.DataError) as caught:
+        exactvo.simulate(tmp_path / "cut.json")
+    assert caught.value.code == "E_JSON_SYNTAX" and "line" in caught.value.where
+    with pytest.raises(exactvo.ArgumentError, match="scenario"):
+        exactvo.simulate(3)
+    with pytest.raises(exactvo.MissingFileError):
+        exactvo.read_recording(tmp_path)
+    (tmp_path / "recording.jsonl").write_text("{}\n")
+    with pytest.raises(exactvo.DataError):
+        exactvo.read_recording(tmp_path)

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exact velocity obstacles, certified steering, and answers that can be checked.
+
+>>> import exactvo
+>>> run = exactvo.simulate("datasets/data/paper/A2.json")      # doctest: +SKIP
+>>> run.plot()                                                 # doctest: +SKIP
+
+`exactvo.vo` velocity obstacles and free velocities, `exactvo.lp` the best velocity, `exactvo.routes` from A to B with proof,
+`exactvo.Crowd` many robots, `exactvo.simulate` scenarios, `exactvo.datasets` obstacle files. SI units: metres, seconds,
+radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``code``, ``file`` and ``where``. docs/guide/python.md.
+"""
+
+from . import datasets, lp, routes, shapes, vo
+from ._exactvo import version as __version__
+from .crowd import Crowd, RobotKind, StepReport
+from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError
+from .routes import Route, RouteMap, RoutePlan, Unreachable
+from .shapes import Disc, Ellipse, Obstacles, Polygon, Segment, Wall, hull, obstacles
+from .simulation import METHODS, Recording, Scenario, read_recording, simulate
+from .vo import VelocityObstacle, free_velocities, velocity_obstacles
+
+__all__ = [
+    "METHODS",
+    "ArgumentError",
+    "Crowd",
+    "CrowdError",
+    "DataError",
+    "Disc",
+    "Ellipse",
+    "ExactVOError",
+    "MissingFileError",
+    "Obstacles",
+    "Polygon",
+    "Recording",
+    "RobotKind",
+    "Route",
+    "RouteMap",
+    "RouteNotProvenError",
+    "RoutePlan",
+    "Scenario",
+    "Segment",
+    "StepReport",
+    "Unreachable",
+    "VelocityObstacle",
+    "Wall",
+    "__version__",
+    "datasets",
+    "free_velocities",
+    "hull",
+    "lp",
+    "obstacles",
+    "read_recording",
+    "routes",
+    "shapes",
+    "simulate",
+    "velocity_obstacles",
+    "vo",
+]

@@ -1,0 +1,319 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scenarios run, and recordings as arrays."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _exactvo
+from .errors import ArgumentError
+from .shapes import Floats, Obstacles, Polygon, ShapeLike, obstacles
+from .vo import HalfPlane
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.animation
+    import pandas
+
+__all__ = ["METHODS", "RecordedHalfPlane", "Recording", "Scenario", "ScenarioRobot", "read_recording", "simulate"]
+
+#: What `simulate(method=...)` takes: the textbook's baseline, the paper's, with merged enclosures, and the default.
+METHODS: tuple[str, ...] = tuple(_exactvo.method_names())
+
+_SOURCES = ("enclosure", "obstacle edge", "robot", "moving obstacle")
+_STATUSES = ("optimal", "relaxed", "infeasible", "no-interior")
+
+
+@dataclass(frozen=True, eq=False)
+class ScenarioRobot:
+    """A robot of a scenario as it starts."""
+
+    id: str
+    position: tuple[float, float]  #: m
+    goals: Floats  #: n x 2, m; none in a formation
+    radius: float  #: m
+    max_speed: float  #: m/s
+
+
+class Scenario:
+    """Robots, obstacles and how they move, from a JSON file (datasets/schema/scenario.schema.json), its text, a dict of the
+    same form, or `Scenario.build`. Raises `DataError`, or `MissingFileError`, with a JSON pointer in ``where``."""
+
+    __slots__ = ("_native",)
+
+    def __init__(self, source: str | os.PathLike[str] | dict[str, Any]) -> None:
+        if isinstance(source, dict):
+            self._native = _exactvo.Scenario.parse(json.dumps(source), "<dict>", os.getcwd())
+        elif isinstance(source, str) and source.lstrip().startswith("{"):
+            self._native = _exactvo.Scenario.parse(source, "<text>", os.getcwd())
+        else:
+            try:
+                path = os.fspath(source)
+            except TypeError:
+                raise ArgumentError("scenario", repr(source)[:60], "a path, JSON text, a dict or a Scenario") from None
+            self._native = _exactvo.Scenario.load(path)
+
+    @staticmethod
+    def build(
+        starts: npt.ArrayLike,
+        goals: npt.ArrayLike,
+        *,
+        obstacles: Obstacles | ShapeLike | Sequence[Any] = (),
+        radius: float = 0.5,
+        max_speed: float = 3.0,
+        name: str = "unnamed",
+        **fields: Any,
+    ) -> Scenario:
+        """n robots from n x 2 starts to n x 2 goals (m) among obstacles. Further fields are those of a scenario file:
+        time_step=0.05 (s), time_limit=120 (s), ..."""
+        return Scenario(_scenario_dict(starts, goals, obstacles, radius, max_speed, name, fields))
+
+    @property
+    def name(self) -> str:
+        """As the file gives it."""
+        return self._native.name
+
+    @property
+    def robots(self) -> tuple[ScenarioRobot, ...]:
+        """In the order of a recording's columns."""
+        return tuple(ScenarioRobot(*fields) for fields in self._native.robots())
+
+    @property
+    def obstacles(self) -> Obstacles:
+        """Those that stand still."""
+        return Obstacles._of(self._native.obstacles())
+
+    @property
+    def notes(self) -> list[str]:
+        """What reading its obstacle files had to decide."""
+        return self._native.notes
+
+    @property
+    def warnings(self) -> list[str]:
+        """What can be said before a run: goals out of reach, and what encloses them."""
+        return self._native.warnings()
+
+    def to_json(self) -> str:
+        """Every field, obstacles inline, numbers that read back to the same doubles."""
+        return self._native.to_json()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scenario, (self.to_json(),)
+
+    def __repr__(self) -> str:
+        return f"Scenario({self.name!r}, {len(self.robots)} robots, {len(self.obstacles)} obstacles)"
+
+
+def _scenario_dict(
+    starts: npt.ArrayLike, goals: npt.ArrayLike, given: Any, radius: float, max_speed: float, name: str, fields: dict[str, Any]
+) -> dict[str, Any]:
+    a, b = np.asarray(starts, dtype=np.float64), np.asarray(goals, dtype=np.float64)
+    if a.ndim != 2 or a.shape[1:] != (2,):
+        raise ArgumentError("starts", f"an array of shape {a.shape}", "an array of shape (n, 2)")
+    if b.shape != a.shape:
+        raise ArgumentError("goals", f"an array of shape {b.shape}", f"an array of shape {a.shape}, as starts have")
+    robots = [
+        {"id": f"R{k + 1}", "position": s, "goal": g, "radius": radius, "max_speed": max_speed}
+        for k, (s, g) in enumerate(zip(a.tolist(), b.tolist()))
+    ]
+    listed = obstacles(given)
+    items: list[dict[str, Any]] = []
+    for ident, shape in zip(listed.ids, listed):
+        if isinstance(shape, Polygon):
+            item: dict[str, Any] = {"id": ident, "polygon": shape.outer.tolist()}
+            if shape.holes:
+                item["holes"] = [hole.tolist() for hole in shape.holes]
+        else:
+            item = {"id": ident, "polyline": shape.points.tolist()}
+        items.append(item)
+    return {"name": name, "robots": robots, "obstacles": items, **fields}
+
+
+@dataclass(frozen=True)
+class RecordedHalfPlane:
+    """A half-plane behind a decision."""
+
+    half_plane: HalfPlane
+    source: str  #: "enclosure", "obstacle edge", "robot" or "moving obstacle"
+    index: int  #: which of them
+    certified: bool
+    hard: bool
+    active: bool  #: binds the chosen velocity
+    multiplier: float  #: m/s, of its normal in chosen - preferred
+    clearance: float  #: m, rim to body; negative in overlap
+
+
+class Recording:
+    """What happened in a run. The arrays are read-only views, a row a step, a column a robot; the last row is the final
+    state, whose decisions are empty."""
+
+    __slots__ = ("_metrics", "_native")
+
+    def __init__(self, native: _exactvo.Run) -> None:
+        self._native = native
+        self._metrics: dict[str, Any] | None = None
+
+    @property
+    def time(self) -> Floats:
+        """steps, s."""
+        return self._native.time
+
+    @property
+    def position(self) -> Floats:
+        """steps x robots x 2, m."""
+        return self._native.position
+
+    @property
+    def velocity(self) -> Floats:
+        """steps x robots x 2, m/s."""
+        return self._native.velocity
+
+    @property
+    def preferred(self) -> Floats:
+        """steps x robots x 2, m/s: what each robot would have liked."""
+        return self._native.preferred
+
+    @property
+    def chosen(self) -> Floats:
+        """steps x robots x 2, m/s: what was decided."""
+        return self._native.chosen
+
+    @property
+    def status(self) -> npt.NDArray[np.uint8]:
+        """steps x robots, numbers into `exactvo.lp.STATUSES`."""
+        return self._native.status
+
+    @property
+    def mode(self) -> npt.NDArray[np.str_]:
+        """steps x robots: "direct", "guided", "staying", "boost", "following", "pushing-out", "arrived"."""
+        return np.asarray(_exactvo.mode_names)[self._native.mode]
+
+    @property
+    def metrics(self) -> dict[str, Any]:
+        """The run in numbers, as metrics.json has them (docs/guide/outputs.md)."""
+        if self._metrics is None:
+            self._metrics = json.loads(self._native.metrics_json())
+        return self._metrics
+
+    @property
+    def outcome(self) -> str:
+        """How it ended, in words."""
+        return self._native.outcome
+
+    @property
+    def warnings(self) -> list[str]:
+        """What could be said before the run."""
+        return self._native.warnings
+
+    @property
+    def method(self) -> str:
+        """One of `METHODS`."""
+        return self._native.method
+
+    @property
+    def scenario(self) -> Scenario:
+        """What was run."""
+        scenario = object.__new__(Scenario)
+        scenario._native = self._native.scenario()
+        return scenario
+
+    def half_planes(self, step: int, robot: int) -> tuple[RecordedHalfPlane, ...]:
+        """The recorded half-planes of a decision: those that bind, or all with `simulate(..., record_all=True)`. Raises
+        `IndexError`."""
+        step = range(len(self))[step]
+        return tuple(
+            RecordedHalfPlane(HalfPlane(*h), _SOURCES[source], index, certified, hard, active, multiplier, clearance)
+            for h, source, index, certified, hard, active, multiplier, clearance in self._native.half_planes(step, robot)
+        )
+
+    def audit(self) -> dict[str, Any]:
+        """Verifies the recording in exact rational arithmetic, as `exactvo audit` does; "points" has the counts."""
+        report: dict[str, Any] = json.loads(self._native.audit())
+        return report
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """recording.jsonl, which every verb of the program reads. Raises `DataError`."""
+        self._native.write(os.fspath(path))
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """A row for each robot and step: time (s), robot, x, y (m), vx, vy, preferred_x, preferred_y, chosen_x, chosen_y
+        (m/s), status, mode. Needs pandas."""
+        import pandas
+
+        steps, robots = len(self), self.position.shape[1]
+        ids = [robot.id for robot in self.scenario.robots]
+        columns: dict[str, Any] = {"time": np.repeat(self.time, robots), "robot": np.tile(np.array(ids, dtype=object), steps)}
+        for names, array in (
+            (("x", "y"), self.position),
+            (("vx", "vy"), self.velocity),
+            (("preferred_x", "preferred_y"), self.preferred),
+            (("chosen_x", "chosen_y"), self.chosen),
+        ):
+            for k, name in enumerate(names):
+                columns[name] = array[..., k].ravel()
+        columns["status"] = np.array(_STATUSES, dtype=object)[self.status].ravel()
+        columns["mode"] = self.mode.ravel()
+        return pandas.DataFrame(columns)
+
+    def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
+        """Obstacles, paths, and where the robots end, drawn to scale in m. Needs matplotlib."""
+        from ._drawing import plot
+
+        return plot(self, ax)
+
+    def animate(self, *, speed: float = 1.0, frames_per_second: float = 20.0) -> matplotlib.animation.FuncAnimation:
+        """The run as a moving picture, `speed` times as fast as it was. In a notebook: HTML(run.animate().to_jshtml()).
+        Needs matplotlib."""
+        from ._drawing import animate
+
+        return animate(self, speed, frames_per_second)
+
+    def __len__(self) -> int:
+        return len(self._native.time)
+
+    def __repr__(self) -> str:
+        return f"Recording({self.scenario.name!r}, method {self.method}, {len(self)} steps: {self.outcome})"
+
+
+def simulate(
+    scenario: Scenario | str | os.PathLike[str] | dict[str, Any],
+    *,
+    method: str = "ivo",
+    guidance: str | None = None,
+    liveness: str | None = None,
+    controller: str = "default",
+    integrator: str = "exact",
+    record_all: bool = False,
+    progress: Callable[[float], Union[bool, None]] | None = None,
+) -> Recording:
+    """Runs a scenario: a `Scenario`, a path, JSON text or a dict. The same scenario and options give the same numbers as
+    `exactvo simulate`, bit for bit.
+
+    method       "orca" (the textbook's baseline), "ivo-edge" (the paper), "ivo-cluster", "ivo"
+    guidance     "route" or "none" instead of the scenario's
+    liveness     "bias" or "off" instead of the scenario's
+    controller   of formations: "paper-literal", "paper-signs", "corrected", "default"
+    integrator   of formations: "exact", "euler", "rk4", "dopri5", "rosenbrock4"
+    record_all   keep every half-plane of every decision, not only those that bind
+    progress     called with the simulated time (s) about ten times a second; False ends the run there
+
+    Raises `ArgumentError`, `DataError`, `MissingFileError`. Ctrl-C ends it. Releases the interpreter's lock.
+    """
+    given = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
+    return Recording(
+        _exactvo.simulate(given._native, method, guidance, liveness, controller, integrator, record_all, progress)
+    )
+
+
+def read_recording(path: str | os.PathLike[str]) -> Recording:
+    """A recording.jsonl, or the folder of a run that has one. Raises `DataError`, `MissingFileError`."""
+    given = Path(path)
+    return Recording(_exactvo.Run.read(os.fspath(given / "recording.jsonl" if given.is_dir() else given)))

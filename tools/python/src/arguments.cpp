@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arguments.h"
+
+#include <cmath>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/formation/crowd.h"
+#include "exactvo/geometry/routes.h"
+#include "module.h"
+
+namespace exactvo::python {
+
+namespace {
+
+constexpr std::size_t kLongest = 60;
+
+/// Raises the class of that name of exactvo.errors.
+void raise(const char* type, const py::tuple& arguments) {
+  const py::object raised = py::module_::import("exactvo.errors").attr(type);
+  const py::object error = raised(*arguments);
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const ArgumentError& e) {
+    raise("ArgumentError", py::make_tuple(e.where, e.found, e.expected));
+  } catch (const datasets::DataError& e) {
+    raise(e.code() == datasets::DataCode::file_missing ? "MissingFileError" : "DataError",
+          py::make_tuple(datasets::code_name(e.code()), e.file(), e.place(), e.found(), e.expected()));
+  } catch (const formation::CrowdError& e) {
+    raise("CrowdError", py::make_tuple(name(e.problem()), std::string(e.what())));
+  } catch (const geometry::RouteNotProven& e) {
+    raise("RouteNotProvenError", py::make_tuple(std::string(e.what())));
+  } catch (const std::logic_error& e) {  // a requirement of the library's that was not asked here
+    const std::string text = e.what();
+    raise("ArgumentError", py::make_tuple(text.substr(0, text.find(':')), text, "what the message requires"));
+  }
+}
+
+std::string expected_shape(const std::vector<py::ssize_t>& shape) {
+  std::string text;
+  for (const py::ssize_t n : shape) text += (text.empty() ? "" : ", ") + (n < 0 ? std::string("n") : std::to_string(n));
+  return "an array of numbers of shape (" + text + (shape.size() == 1 ? ",)" : ")");
+}
+
+}  // namespace
+
+ArgumentError::ArgumentError(std::string where_, std::string found_, std::string expected_)
+    : std::invalid_argument(where_ + ": found " + found_ + ", expected " + expected_),
+      where(std::move(where_)),
+      found(std::move(found_)),
+      expected(std::move(expected_)) {}
+
+std::string shown(py::handle object) {
+  if (py::isinstance<py::array>(object)) {
+    const auto array = py::reinterpret_borrow<py::array>(object);
+    return "an array of shape " + shape_words(array) + " and type " + std::string(py::str(array.dtype()));
+  }
+  std::string text = py::repr(object);
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
+}
+
+double number(py::handle object, const char* name) {
+  const double value = PyFloat_AsDouble(object.ptr());
+  if (value == -1.0 && PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    throw ArgumentError(name, shown(object), "a number");
+  }
+  return value;
+}
+
+double finite(py::handle object, const char* name) {
+  const double value = number(object, name);
+  if (!std::isfinite(value)) throw ArgumentError(name, shown(object), "a finite number");
+  return value;
+}
+
+double at_least_zero(py::handle object, const char* name) {
+  const double value = finite(object, name);
+  if (value < 0.0) throw ArgumentError(name, shown(object), "a finite number, 0 or more");
+  return value;
+}
+
+double positive(py::handle object, const char* name) {
+  const double value = finite(object, name);
+  if (!(value > 0.0)) throw ArgumentError(name, shown(object), "a finite number above 0");
+  return value;
+}
+
+double positive_or_infinite(py::handle object, const char* name) {
+  const double value = number(object, name);
+  if (!(value > 0.0)) throw ArgumentError(name, shown(object), "a number above 0, or infinity");
+  return value;
+}
+
+Vec2 vector(py::handle object, const char* name) {
+  const auto refuse = [&]() -> Vec2 { throw ArgumentError(name, shown(object), "two finite numbers (x, y)"); };
+  if (py::isinstance<py::str>(object) || PySequence_Check(object.ptr()) == 0) return refuse();
+  const Py_ssize_t size = PySequence_Size(object.ptr());
+  if (size < 0) PyErr_Clear();
+  if (size != 2) return refuse();
+  double xy[2];
+  for (int k = 0; k < 2; ++k) {
+    const auto item = py::reinterpret_steal<py::object>(PySequence_GetItem(object.ptr(), k));
+    xy[k] = item ? PyFloat_AsDouble(item.ptr()) : -1.0;
+    if (PyErr_Occurred() != nullptr) {
+      PyErr_Clear();
+      return refuse();
+    }
+  }
+  if (!std::isfinite(xy[0]) || !std::isfinite(xy[1])) return refuse();
+  return {xy[0], xy[1]};
+}
+
+std::string shape_words(const py::array& array) {
+  std::string text;
+  for (py::ssize_t k = 0; k < array.ndim(); ++k) text += (k > 0 ? ", " : "") + std::to_string(array.shape(k));
+  return "(" + text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+Doubles doubles(py::handle object, const char* name, const std::vector<py::ssize_t>& shape) {
+  const Doubles array = Doubles::ensure(object);
+  if (!array) {
+    PyErr_Clear();
+    throw ArgumentError(name, shown(object), expected_shape(shape));
+  }
+  bool fits = array.ndim() == static_cast<py::ssize_t>(shape.size());
+  for (std::size_t k = 0; fits && k < shape.size(); ++k)
+    fits = shape[k] < 0 || array.shape(static_cast<py::ssize_t>(k)) == shape[k];
+  if (!fits) throw ArgumentError(name, "an array of shape " + shape_words(array), expected_shape(shape));
+  return array;
+}
+
+std::vector<Vec2> points(py::handle object, const char* name) {
+  const Doubles array = doubles(object, name, {-1, 2});
+  const double* xy = array.data();
+  std::vector<Vec2> result(static_cast<std::size_t>(array.shape(0)));
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    result[k] = {xy[2 * k], xy[2 * k + 1]};
+    if (!geometry::is_finite(result[k]))
+      throw ArgumentError(name, "a row that is not finite, number " + std::to_string(k), "finite numbers");
+  }
+  return result;
+}
+
+py::array_t<double> as_array(const std::vector<Vec2>& points) {
+  py::array_t<double> array({static_cast<py::ssize_t>(points.size()), py::ssize_t{2}});
+  double* xy = array.mutable_data();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    xy[2 * k] = points[k].x;
+    xy[2 * k + 1] = points[k].y;
+  }
+  return array;
+}
+
+void bind_errors(py::module_&) {
+  py::register_exception_translator(&translate);
+}
+
+}  // namespace exactvo::python

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Python objects as arguments, each with its name: what does not fit becomes an `exactvo.ArgumentError` that says
+/// which argument, what was found and what was expected. And values as Python objects.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "exactvo/geometry/half_plane.h"
+#include "exactvo/geometry/vec2.h"
+
+namespace exactvo::python {
+
+namespace py = pybind11;
+using geometry::Vec2;
+
+/// Becomes exactvo.ArgumentError (arguments.cpp).
+struct ArgumentError : std::invalid_argument {
+  ArgumentError(std::string where, std::string found, std::string expected);
+  std::string where, found, expected;
+};
+
+/// repr(object), shortened to a line.
+std::string shown(py::handle object);
+
+double number(py::handle object, const char* name);
+double finite(py::handle object, const char* name);
+double at_least_zero(py::handle object, const char* name);
+double positive(py::handle object, const char* name);
+double positive_or_infinite(py::handle object, const char* name);
+Vec2 vector(py::handle object, const char* name);
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// An array of doubles with so many dimensions, C order; -1 among `shape` is any length. Copies where it must.
+Doubles doubles(py::handle object, const char* name, const std::vector<py::ssize_t>& shape);
+/// The rows of an n x 2 array, finite.
+std::vector<Vec2> points(py::handle object, const char* name);
+
+/// "(3, 2)".
+std::string shape_words(const py::array& array);
+
+inline py::tuple as_tuple(Vec2 v) {
+  return py::make_tuple(v.x, v.y);
+}
+inline py::tuple as_tuple(const geometry::HalfPlane& h) {
+  return py::make_tuple(as_tuple(h.normal), h.offset);
+}
+/// Such a view is what an answer shows of its memory. (The attribute `flags` does the same, a microsecond slower.)
+inline void make_read_only(py::array& array) {
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+}
+/// n x 2.
+py::array_t<double> as_array(const std::vector<Vec2>& points);
+
+/// The word's value, or an ArgumentError that lists `words`.
+template <class T>
+T word(const std::string& text, const char* name, const std::vector<std::string>& words,
+       bool (*parse)(const std::string&, T&)) {
+  T value{};
+  if (parse(text, value)) return value;
+  std::string list;
+  for (const std::string& w : words) list += (list.empty() ? "" : ", ") + ("\"" + w + "\"");
+  throw ArgumentError(name, "\"" + text + "\"", "one of " + list);
+}
+
+}  // namespace exactvo::python

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Crowds of robots. Positions and velocities are numpy arrays that the crowd owns and `step` fills in place: what
+// Python sees is a view of them, at the same address from step to step.
+#include "exactvo/formation/crowd.h"
+
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <sstream>
+
+#include "module.h"
+#include "shapes.h"
+
+namespace exactvo::python {
+
+namespace {
+
+using formation::RobotId;
+
+/// Numbers by id that Python sees. They grow by a new allocation; what saw the old one keeps it alive.
+template <class T>
+class Column {
+ public:
+  explicit Column(py::ssize_t columns) : columns_(columns) {}
+
+  void grow(std::size_t rows, T value) {
+    if (rows <= rows_) return;
+    view_ = py::none();
+    if (rows > capacity_) {
+      const std::size_t capacity = std::max(rows, 2 * capacity_);
+      const std::size_t size = capacity * static_cast<std::size_t>(columns_);
+      auto memory = std::make_unique<T[]>(size);
+      std::fill_n(memory.get(), size, value);
+      std::copy_n(data_, rows_ * static_cast<std::size_t>(columns_), memory.get());
+      data_ = memory.get();
+      owner_ = py::capsule(memory.release(), [](void* p) { delete[] static_cast<T*>(p); });
+      capacity_ = capacity;
+    }
+    rows_ = rows;
+  }
+
+  T* data() { return data_; }
+  std::size_t rows() const { return rows_; }
+
+  py::object view(bool is_writable) {
+    if (!view_.is_none()) return view_;
+    const auto n = static_cast<py::ssize_t>(rows_);
+    const auto size = static_cast<py::ssize_t>(sizeof(T));
+    py::array array =
+        rows_ == 0      ? (columns_ == 1 ? py::array(py::array_t<T>(n)) : py::array(py::array_t<T>({n, columns_})))
+        : columns_ == 1 ? py::array(py::dtype::of<T>(), {n}, {size}, data_, owner_)
+                        : py::array(py::dtype::of<T>(), {n, columns_}, {columns_ * size, size}, data_, owner_);
+    if (!is_writable) make_read_only(array);
+    view_ = array;
+    return view_;
+  }
+
+ private:
+  py::ssize_t columns_;
+  std::size_t rows_ = 0, capacity_ = 0;
+  T* data_ = nullptr;
+  py::object owner_ = py::none(), view_ = py::none();
+};
+
+class PythonCrowd {
+ public:
+  explicit PythonCrowd(formation::Crowd crowd) : crowd_(std::move(crowd)) { grow(); }
+
+  /// One thread at a time: another that calls meanwhile, while the interpreter's lock is released, is refused.
+  class Use {
+   public:
+    explicit Use(PythonCrowd& crowd) : busy_(crowd.busy_) {
+      if (busy_.exchange(true))
+        throw ArgumentError("crowd", "a crowd that another thread is using", "one thread at a time for each crowd");
+    }
+    ~Use() { busy_ = false; }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    std::atomic<bool>& busy_;
+  };
+
+  formation::Crowd& crowd() { return crowd_; }
+
+  RobotId add_robot(Vec2 position, formation::KindId kind) {
+    const RobotId id = crowd_.add_robot(position, kind);
+    grow();
+    take(id);
+    return id;
+  }
+
+  void remove_robot(RobotId id) {
+    crowd_.remove_robot(id);
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    for (double* xy : {positions_.data() + 2 * id, velocities_.data() + 2 * id}) xy[0] = xy[1] = kNone;
+    double* const preferred = preferred_.data() + 2 * id;
+    preferred[0] = preferred[1] = 0.0;
+    kept_.data()[id] = 0;
+  }
+
+  /// After a change of the crowd: rows for new ids.
+  void grow() {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const std::size_t rows = crowd_.id_end();
+    positions_.grow(rows, kNone);
+    velocities_.grow(rows, kNone);
+    preferred_.grow(rows, 0.0);
+    goals_.grow(rows, kNone);
+    kept_.grow(rows, false);
+  }
+
+  void take(RobotId id) {
+    const Vec2 p = crowd_.position(id), v = crowd_.velocity(id);
+    positions_.data()[2 * id] = p.x;
+    positions_.data()[2 * id + 1] = p.y;
+    velocities_.data()[2 * id] = v.x;
+    velocities_.data()[2 * id + 1] = v.y;
+  }
+
+  /// Everything that the robots have now into the arrays.
+  void take_all() {
+    write(&formation::Crowd::positions, positions_.data());
+    write(&formation::Crowd::velocities, velocities_.data());
+    crowd_.kept(kept_now_);
+    std::copy(kept_now_.begin(), kept_now_.end(), kept_.data());
+  }
+
+  formation::StepReport step(std::size_t count) {
+    const Use use(*this);
+    const std::size_t rows = crowd_.id_end();
+    const double* const xy = preferred_.data();
+    const py::gil_scoped_release released;
+    formation::StepReport sum;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!heads_for_goals_) {
+        preferred_now_.resize(rows);
+        for (std::size_t r = 0; r < rows; ++r) preferred_now_[r] = {xy[2 * r], xy[2 * r + 1]};
+        crowd_.set_preferred(preferred_now_);
+      }
+      try {
+        add(sum, crowd_.step());
+      } catch (...) {
+        take_all();  // of the steps before the one that failed
+        throw;
+      }
+      ++steps_;
+    }
+    take_all();
+    return sum;
+  }
+
+  /// Each robot prefers its goal at `speed`, slower where it would pass it in a step. NaN: it prefers to stand.
+  void head_for(const Doubles& goals, double speed) {
+    const Use use(*this);
+    const std::size_t rows = std::min(goals_.rows(), static_cast<std::size_t>(goals.shape(0)));
+    std::copy_n(goals.data(), 2 * rows, goals_.data());
+    goal_copy_.assign(goals.data(), goals.data() + 2 * rows);
+    goal_copy_.resize(2 * goals_.rows(), std::numeric_limits<double>::quiet_NaN());
+    const double time_step = crowd_.options().time_step;
+    crowd_.set_steering([this, speed, time_step](formation::CrowdSlice& slice) {
+      for (std::size_t k = 0; k < slice.size(); ++k) {
+        const std::size_t id = slice.id(k);
+        if (2 * id + 1 >= goal_copy_.size() || !std::isfinite(goal_copy_[2 * id]) ||
+            !std::isfinite(goal_copy_[2 * id + 1]))
+          continue;
+        const Vec2 way = Vec2{goal_copy_[2 * id], goal_copy_[2 * id + 1]} - slice.position(k);
+        const double most = std::isinf(speed) ? crowd_.kind(slice.kind(k)).max_speed : speed;
+        const double length = std::hypot(way.x, way.y);
+        if (length > 0.0) slice.prefer(k, way * (std::fmin(most, length / time_step) / length));
+      }
+    });
+    heads_for_goals_ = true;
+  }
+  void follow_preferred() { heads_for_goals_ = false; }
+
+  Column<double>& positions() { return positions_; }
+  Column<double>& velocities() { return velocities_; }
+  Column<double>& preferred() { return preferred_; }
+  Column<bool>& kept() { return kept_; }
+  std::size_t steps() const { return steps_; }
+  void set_steps(std::size_t steps) { steps_ = steps; }
+
+ private:
+  static void add(formation::StepReport& sum, const formation::StepReport& step) {
+    sum.robots = step.robots;
+    sum.neighbours += step.neighbours;
+    sum.relaxed += step.relaxed;
+    sum.touching += step.touching;
+    sum.widened += step.widened;
+    sum.edges += step.edges;
+    sum.stopped += step.stopped;
+    sum.nudged += step.nudged;
+  }
+
+  /// By way of an array that is kept: entries of ids that name nobody are not written.
+  void write(void (formation::Crowd::*fill)(std::vector<Vec2>&) const, double* out) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    by_id_.assign(crowd_.id_end(), {kNone, kNone});
+    (crowd_.*fill)(by_id_);
+    for (std::size_t k = 0; k < by_id_.size(); ++k) {
+      out[2 * k] = by_id_[k].x;
+      out[2 * k + 1] = by_id_[k].y;
+    }
+  }
+
+  formation::Crowd crowd_;
+  Column<double> positions_{2}, velocities_{2}, preferred_{2}, goals_{2};
+  Column<bool> kept_{1};
+  std::vector<Vec2> by_id_, preferred_now_;
+  std::vector<double> goal_copy_;
+  std::vector<std::uint8_t> kept_now_;
+  std::atomic<bool> busy_{false};
+  bool heads_for_goals_ = false;
+  std::size_t steps_ = 0;
+};
+
+RobotId robot_id(const py::int_& id) {
+  const long long value = PyLong_AsLongLong(id.ptr());
+  PyErr_Clear();
+  if (value < 0 || value > std::numeric_limits<RobotId>::max())
+    throw formation::CrowdError(formation::CrowdProblem::unknown_robot,
+                                "no robot has the id " + std::string(py::repr(id)));
+  return static_cast<RobotId>(value);
+}
+
+formation::KindId kind_id(const py::int_& id) {
+  const long long value = PyLong_AsLongLong(id.ptr());
+  PyErr_Clear();
+  if (value < 0 || value > 255)
+    throw formation::CrowdError(formation::CrowdProblem::unknown_kind,
+                                "no kind has the number " + std::string(py::repr(id)));
+  return static_cast<formation::KindId>(value);
+}
+
+py::tuple as_tuple(const formation::StepReport& r) {
+  return py::make_tuple(r.robots, r.neighbours, r.relaxed, r.touching, r.widened, r.edges, r.stopped, r.nudged);
+}
+
+py::dict as_dict(const formation::CrowdExplanation& e) {
+  py::list neighbours, edges;
+  for (const auto& n : e.neighbours)
+    neighbours.append(py::make_tuple(n.robot, python::as_tuple(n.half_plane), n.touching));
+  for (const auto& n : e.edges)
+    edges.append(py::make_tuple(python::as_tuple(n.edge.a), python::as_tuple(n.edge.b), python::as_tuple(n.half_plane),
+                                n.touching));
+  py::dict result;
+  result["robot"] = e.robot;
+  result["position"] = python::as_tuple(e.position);
+  result["velocity"] = python::as_tuple(e.velocity);
+  result["preferred"] = python::as_tuple(e.preferred);
+  result["chosen"] = python::as_tuple(e.chosen);
+  result["kept"] = e.kept;
+  result["widened"] = e.widened;
+  result["neighbours"] = neighbours;
+  result["edges"] = edges;
+  return result;
+}
+
+std::unique_ptr<PythonCrowd> make_crowd(py::handle time_step, py::handle position_step, const std::string& precision,
+                                        bool certified, int threads) {
+  formation::CrowdOptions options;
+  options.time_step = number(time_step, "time_step");
+  options.position_step = number(position_step, "position_step");
+  options.precision = word<formation::CrowdPrecision>(precision, "precision", {"float", "double"}, &formation::parse);
+  options.certified = certified;
+  options.threads = threads;
+  return std::make_unique<PythonCrowd>(formation::Crowd(options));
+}
+
+py::bytes snapshot(PythonCrowd& crowd) {
+  const PythonCrowd::Use use(crowd);
+  std::ostringstream out;
+  crowd.crowd().snapshot(out);
+  return out.str();
+}
+
+std::unique_ptr<PythonCrowd> restored(const py::bytes& bytes, int threads) {
+  std::istringstream in{std::string(bytes)};
+  auto crowd = std::make_unique<PythonCrowd>(formation::Crowd::restored(in, threads));
+  crowd->take_all();
+  return crowd;
+}
+
+py::array_t<std::uint32_t> add_robots(PythonCrowd& self, py::handle positions, const py::int_& kind) {
+  const PythonCrowd::Use use(self);
+  const std::vector<Vec2> all = points(positions, "positions");
+  const formation::KindId k = kind_id(kind);
+  py::array_t<std::uint32_t> ids(static_cast<py::ssize_t>(all.size()));
+  self.crowd().reserve(self.crowd().size() + all.size());
+  std::size_t done = 0;
+  try {
+    for (; done < all.size(); ++done) ids.mutable_data()[done] = self.crowd().add_robot(all[done], k);
+  } catch (...) {  // all or none
+    while (done > 0) self.crowd().remove_robot(ids.data()[--done]);
+    self.grow();
+    throw;
+  }
+  self.grow();
+  for (std::size_t r = 0; r < all.size(); ++r) self.take(ids.data()[r]);
+  return ids;
+}
+
+}  // namespace
+
+void bind_crowd(py::module_& module) {
+  py::class_<PythonCrowd>(module, "Crowd")
+      .def(py::init(&make_crowd))
+      .def_static("restored", &restored)
+      .def("add_kind",
+           [](PythonCrowd& self, py::handle radius, py::handle max_speed, py::handle time_horizon,
+              py::handle neighbour_distance, int neighbours) {
+             const PythonCrowd::Use use(self);
+             return self.crowd().add_kind({number(radius, "radius"), number(max_speed, "max_speed"),
+                                           number(time_horizon, "time_horizon"),
+                                           number(neighbour_distance, "neighbour_distance"), neighbours});
+           })
+      .def("kind",
+           [](PythonCrowd& self, const py::int_& kind) {
+             const formation::CrowdKind& k = self.crowd().kind(kind_id(kind));
+             return py::make_tuple(k.radius, k.max_speed, k.time_horizon, k.neighbour_distance, k.neighbours);
+           })
+      .def("kind_of", [](PythonCrowd& self, const py::int_& id) { return self.crowd().kind_of(robot_id(id)); })
+      .def("add_robot",
+           [](PythonCrowd& self, py::handle position, const py::int_& kind) {
+             const PythonCrowd::Use use(self);
+             return self.add_robot(vector(position, "position"), kind_id(kind));
+           })
+      .def("add_robots", &add_robots)
+      .def("remove_robot",
+           [](PythonCrowd& self, const py::int_& id) {
+             const PythonCrowd::Use use(self);
+             self.remove_robot(robot_id(id));
+           })
+      .def("add_obstacles",
+           [](PythonCrowd& self, const Obstacles& obstacles) {
+             const PythonCrowd::Use use(self);
+             std::vector<formation::ObstacleId> ids;
+             for (const formation::SceneObstacle& obstacle : obstacles.list)
+               ids.push_back(self.crowd().add_obstacle(obstacle.shape));
+             return ids;
+           })
+      .def("remove_obstacle",
+           [](PythonCrowd& self, std::uint32_t id) {
+             const PythonCrowd::Use use(self);
+             self.crowd().remove_obstacle(id);
+           })
+      .def("__len__", [](PythonCrowd& self) { return self.crowd().size(); })
+      .def("step", [](PythonCrowd& self, std::size_t count) { return as_tuple(self.step(count)); })
+      .def("head_for",
+           [](PythonCrowd& self, py::handle goals, py::handle speed) {
+             const Doubles array = doubles(goals, "goals", {static_cast<py::ssize_t>(self.crowd().id_end()), 2});
+             self.head_for(array, positive_or_infinite(speed, "speed"));
+           })
+      .def("follow_preferred", &PythonCrowd::follow_preferred)
+      .def_property_readonly("positions", [](PythonCrowd& self) { return self.positions().view(false); })
+      .def_property_readonly("velocities", [](PythonCrowd& self) { return self.velocities().view(false); })
+      .def_property_readonly("kept", [](PythonCrowd& self) { return self.kept().view(false); })
+      .def_property_readonly("preferred", [](PythonCrowd& self) { return self.preferred().view(true); })
+      .def_property_readonly("steps", &PythonCrowd::steps)
+      .def("set_steps", &PythonCrowd::set_steps)
+      .def_property_readonly("time_step", [](PythonCrowd& self) { return self.crowd().options().time_step; })
+      .def_property_readonly("digest", [](PythonCrowd& self) { return self.crowd().digest(); })
+      .def("explain",
+           [](PythonCrowd& self, const py::int_& id) {
+             const PythonCrowd::Use use(self);
+             return as_dict(self.crowd().explain(robot_id(id)));
+           })
+      .def("snapshot", &snapshot);
+  module.attr("crowd_target") = formation::crowd_target();
+}
+
+}  // namespace exactvo::python

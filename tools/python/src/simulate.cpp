@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scenarios run, and what happened as arrays: steps x robots.
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <cmath>
+#include <memory>
+
+#include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/metrics_file.h"
+#include "exactvo/datasets/recording_file.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/simulation.h"
+#include "module.h"
+#include "shapes.h"
+
+namespace exactvo::python {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ScenarioHandle {
+  formation::Scenario scenario;
+  std::vector<std::string> notes;
+  std::vector<fs::path> files;
+};
+
+/// A run with its columns: [step][robot][xy].
+struct Run {
+  datasets::RecordingFile file;
+  formation::Metrics metrics;
+  std::vector<double> time, position, velocity, preferred, chosen;
+  std::vector<std::uint8_t> status, mode;
+  std::size_t robots() const { return file.scenario.robots.size(); }
+};
+
+void fill_columns(Run& run) {
+  for (const formation::Step& step : run.file.recording.steps) {
+    run.time.push_back(step.time);
+    for (const formation::RobotStep& robot : step.robots) {
+      for (auto [column, value] : {std::pair{&run.position, robot.position}, std::pair{&run.velocity, robot.velocity},
+                                   std::pair{&run.preferred, robot.preferred}, std::pair{&run.chosen, robot.chosen}}) {
+        column->push_back(value.x);
+        column->push_back(value.y);
+      }
+      run.status.push_back(static_cast<std::uint8_t>(robot.status));
+      run.mode.push_back(static_cast<std::uint8_t>(robot.mode));
+    }
+  }
+}
+
+datasets::RunInfo info_of(const formation::Scenario& scenario, const formation::SimulationOptions& options,
+                          const std::vector<fs::path>& files) {
+  datasets::RunInfo info{scenario.name, name(options.method), std::nullopt, std::nullopt,
+                         datasets::make_provenance({"exactvo.simulate"}, 0, files)};
+  if (scenario.formation) {
+    info.controller = name(options.controller);
+    info.integrator = name(options.integrator);
+    return info;
+  }
+  const formation::Guidance guidance = guidance_of(scenario, options);
+  const formation::Liveness liveness = liveness_of(scenario, options);
+  if (guidance != formation::Guidance::none) info.guidance = name(guidance);
+  if (liveness != formation::Liveness::off) info.liveness = name(liveness);
+  return info;
+}
+
+std::unique_ptr<Run> simulate(const ScenarioHandle& handle, const std::string& method, const py::object& guidance,
+                              const py::object& liveness, const std::string& controller, const std::string& integrator,
+                              bool record_all, const py::object& progress) {
+  using namespace formation;
+  SimulationOptions options;
+  options.method = word<Method>(method, "method", method_names(), &parse);
+  if (!guidance.is_none()) options.guidance = word<Guidance>(py::str(guidance), "guidance", guidance_names(), &parse);
+  if (!liveness.is_none()) options.liveness = word<Liveness>(py::str(liveness), "liveness", liveness_names(), &parse);
+  options.controller = word<Controller>(controller, "controller", controller_names(), &parse);
+  options.integrator = word<Integrator>(integrator, "integrator", integrator_names(), &parse);
+  options.record_all = record_all;
+  // Python is asked about ten times a second: for Ctrl-C, and whether to go on. What it raises ends the run.
+  options.progress = [&](double time) {
+    const py::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    return progress.is_none() || py::bool_(!progress(time).equal(py::bool_(false)));
+  };
+  auto run = std::make_unique<Run>();
+  run->file.scenario = handle.scenario;
+  {
+    const py::gil_scoped_release released;
+    run->file.info = info_of(handle.scenario, options, handle.files);
+    run->file.recording = formation::simulate(handle.scenario, options);
+    Evaluation evaluation = evaluate(handle.scenario, run->file.recording);
+    run->metrics = std::move(evaluation.metrics);
+    run->file.lyapunov = std::move(evaluation.lyapunov);
+    run->file.stuck = std::move(evaluation.stuck);
+    run->file.collisions = run->metrics.collisions;
+    run->file.outcome = run->metrics.outcome;
+    fill_columns(*run);
+  }
+  return run;
+}
+
+std::unique_ptr<Run> read_run(const std::string& path) {
+  auto run = std::make_unique<Run>();
+  const py::gil_scoped_release released;
+  run->file = datasets::read_recording(path);
+  run->metrics = formation::measure(run->file.scenario, run->file.recording);
+  fill_columns(*run);
+  return run;
+}
+
+py::array view(const std::vector<double>& data, const std::vector<py::ssize_t>& shape, const py::object& owner) {
+  py::array_t<double> array(shape, data.data(), owner);
+  make_read_only(array);
+  return std::move(array);
+}
+
+py::array view(const std::vector<std::uint8_t>& data, const std::vector<py::ssize_t>& shape, const py::object& owner) {
+  py::array_t<std::uint8_t> array(shape, data.data(), owner);
+  make_read_only(array);
+  return std::move(array);
+}
+
+template <class T>
+void def_column(py::class_<Run>& run_class, const char* name, std::vector<T> Run::*column, bool is_vector) {
+  run_class.def_property_readonly(name, [column, is_vector](const py::object& self) {
+    const Run& run = self.cast<const Run&>();
+    std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(run.time.size()), static_cast<py::ssize_t>(run.robots())};
+    if (is_vector) shape.push_back(2);
+    return view(run.*column, shape, self);
+  });
+}
+
+/// The half-planes of one decision that were recorded.
+py::list half_planes(const Run& run, std::size_t step, std::size_t robot) {
+  const auto& steps = run.file.recording.steps;
+  if (step >= steps.size())
+    throw py::index_error("no step " + std::to_string(step) + ": there are " + std::to_string(steps.size()));
+  if (robot >= steps[step].robots.size()) throw py::index_error("no robot " + std::to_string(robot));
+  py::list result;
+  for (const formation::RecordedConstraint& c : steps[step].robots[robot].constraints)
+    result.append(py::make_tuple(as_tuple(c.half_plane), static_cast<int>(c.source), c.index, c.certified, c.hard,
+                                 c.active, c.multiplier, c.clearance));
+  return result;
+}
+
+py::list problems_of(const formation::Scenario& scenario) {
+  py::list result;
+  for (const formation::ScenarioProblem& p : formation::validate(scenario))
+    result.append(py::make_tuple(p.pointer, p.found, p.expected));
+  return result;
+}
+
+}  // namespace
+
+void bind_simulate(py::module_& module) {
+  py::class_<ScenarioHandle>(module, "Scenario")
+      .def_static("load",
+                  [](const std::string& path) {
+                    const py::gil_scoped_release released;
+                    datasets::LoadedScenario loaded = datasets::load_scenario_with_notes(path);
+                    return ScenarioHandle{std::move(loaded.scenario), std::move(loaded.notes), std::move(loaded.files)};
+                  })
+      .def_static("parse",
+                  [](const std::string& text, const std::string& file_name, const std::string& base_dir) {
+                    const py::gil_scoped_release released;
+                    datasets::LoadedScenario loaded = datasets::parse_scenario_with_notes(text, file_name, base_dir);
+                    return ScenarioHandle{std::move(loaded.scenario), std::move(loaded.notes), std::move(loaded.files)};
+                  })
+      .def("to_json", [](const ScenarioHandle& s) { return datasets::write_scenario(s.scenario); })
+      .def("problems", [](const ScenarioHandle& s) { return problems_of(s.scenario); })
+      .def("warnings",
+           [](const ScenarioHandle& s) {
+             const py::gil_scoped_release released;
+             return formation::warnings_before(s.scenario);
+           })
+      .def_property_readonly("name", [](const ScenarioHandle& s) { return s.scenario.name; })
+      .def_property_readonly("notes", [](const ScenarioHandle& s) { return s.notes; })
+      .def("obstacles", [](const ScenarioHandle& s) { return Obstacles{s.scenario.obstacles}; })
+      .def("robots", [](const ScenarioHandle& s) {
+        py::list result;
+        for (const formation::Robot& r : s.scenario.robots)
+          result.append(py::make_tuple(r.id, as_tuple(r.position), as_array(r.goals), r.radius, r.max_speed));
+        return result;
+      });
+  py::class_<Run> run_class(module, "Run");
+  run_class.def_static("read", &read_run)
+      .def("write", [](const Run& run, const std::string& path) { datasets::write_recording(path, run.file); })
+      .def_property_readonly("time",
+                             [](const py::object& self) {
+                               const Run& run = self.cast<const Run&>();
+                               return view(run.time, {static_cast<py::ssize_t>(run.time.size())}, self);
+                             })
+      .def("metrics_json", [](const Run& run) { return datasets::metrics_json(run.file.info, run.metrics); })
+      .def_property_readonly("outcome", [](const Run& run) { return run.metrics.outcome; })
+      .def_property_readonly("method", [](const Run& run) { return run.file.info.method; })
+      .def_property_readonly("warnings", [](const Run& run) { return run.metrics.warnings; })
+      .def("scenario",
+           [](const Run& run) {
+             return ScenarioHandle{run.file.scenario, {}, {}};
+           })
+      .def("half_planes", &half_planes)
+      .def("audit", [](const Run& run) {
+        const py::gil_scoped_release released;
+        return datasets::to_json(datasets::audit(run.file));
+      });
+  def_column(run_class, "position", &Run::position, true);
+  def_column(run_class, "velocity", &Run::velocity, true);
+  def_column(run_class, "preferred", &Run::preferred, true);
+  def_column(run_class, "chosen", &Run::chosen, true);
+  def_column(run_class, "status", &Run::status, false);
+  def_column(run_class, "mode", &Run::mode, false);
+  module.def("simulate", &simulate);
+  module.def("method_names", &formation::method_names);
+  module.attr("mode_names") = [] {
+    std::vector<std::string> names;
+    for (int k = 0; k <= static_cast<int>(formation::Mode::arrived); ++k)
+      names.emplace_back(name(static_cast<formation::Mode>(k)));
+    return py::tuple(py::cast(names));
+  }();
+}
+
+}  // namespace exactvo::python

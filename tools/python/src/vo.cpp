@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Velocity obstacles, their half-planes with certificates, and what several of them leave.
+#include <pybind11/stl.h>
+
+#include <cmath>
+
+#include "exactvo/vo/certificate.h"
+#include "exactvo/vo/free_arrangement.h"
+#include "exactvo/vo/free_velocities.h"
+#include "exactvo/vo/reciprocal.h"
+#include "exactvo/vo/velocity_obstacle.h"
+#include "module.h"
+#include "shapes.h"
+
+namespace exactvo::python {
+
+using geometry::HalfPlane;
+
+namespace {
+
+/// A velocity obstacle of a convex shape, with what it was made of, and the velocity of the shape.
+struct Cone {
+  geometry::ConvexShape shape;
+  Vec2 position;
+  double radius;
+  double time_horizon;
+  Vec2 shape_velocity;
+  vo::ShiftedCone shifted;
+
+  const vo::VelocityObstacle& obstacle() const { return shifted.cone; }
+  bool moves() const { return shape_velocity != Vec2{}; }
+};
+
+Cone make_cone(py::handle shape, py::handle position, py::handle radius, py::handle time_horizon, py::handle velocity) {
+  const geometry::ConvexShape s = convex_shape(shape, "obstacle");
+  const Vec2 p = vector(position, "position");
+  const double r = at_least_zero(radius, "radius");
+  const double tau = positive_or_infinite(time_horizon, "time_horizon");
+  const Vec2 u = vector(velocity, "obstacle_velocity");
+  geometry::VectorSum minus_apex;
+  minus_apex.terms[0] = -u;
+  return {s, p, r, tau, u, {vo::VelocityObstacle(s, p, r, tau), minus_apex, u}};
+}
+
+void require_apart(const Cone& cone, const char* what) {
+  if (cone.obstacle().overlaps())
+    throw ArgumentError(what, "a robot that touches or overlaps the obstacle: it has no velocity obstacle",
+                        "a robot apart from it (see `overlaps`); `contact_half_plane()` leads away");
+}
+
+py::object as_object(const std::optional<HalfPlane>& h) {
+  return h ? py::object(as_tuple(*h)) : py::none();
+}
+
+/// The half-plane of the obstacle at rest, moved by the obstacle's velocity and rounded up: still certified, by
+/// `is_true`.
+std::optional<HalfPlane> half_plane(const Cone& cone, Vec2 v, double alpha) {
+  if (!cone.moves()) return cone.obstacle().half_plane(v, alpha);
+  std::optional<HalfPlane> h = cone.obstacle().half_plane(v - cone.shape_velocity, alpha);
+  if (!h) return h;
+  const double moved = dot(h->normal, cone.shape_velocity);
+  h->offset += moved;
+  for (double step = std::ldexp(std::fabs(h->offset) + std::fabs(moved), -52); alpha >= 1.0; step *= 2.0) {
+    if (vo::is_true({cone.shape, cone.position, cone.radius, cone.time_horizon, cone.shape_velocity, *h})) break;
+    if (!(step < 1.0)) return std::nullopt;
+    h->offset += std::fmax(step, 0x1p-1070);
+  }
+  return h;
+}
+
+py::object certificate_text(const Cone& cone, const HalfPlane& h) {
+  const auto c = vo::certify({cone.shape, cone.position, cone.radius, cone.time_horizon, cone.shape_velocity, h});
+  return c ? py::object(py::str(write_certificate(*c))) : py::none();
+}
+
+py::dict fields_of(const vo::Certificate& c) {
+  py::dict fields;
+  fields["shape"] = as_tuple(c.claim.shape);
+  fields["position"] = as_tuple(c.claim.position);
+  fields["radius"] = c.claim.radius;
+  fields["time_horizon"] = c.claim.time_horizon;
+  fields["obstacle_velocity"] = as_tuple(c.claim.shape_velocity);
+  fields["half_plane"] = as_tuple(c.claim.half_plane);
+  fields["margin"] = c.margin;
+  return fields;
+}
+
+py::tuple leg_tuple(const vo::Leg& leg) {
+  return py::make_tuple(as_tuple(leg.normal), as_tuple(leg.normal_outside), as_tuple(leg.direction),
+                        as_tuple(leg.touch));
+}
+
+const char* name_of(vo::BoundaryPart part) {
+  switch (part) {
+    case vo::BoundaryPart::left_leg:
+      return "left leg";
+    case vo::BoundaryPart::right_leg:
+      return "right leg";
+    case vo::BoundaryPart::cut_off:
+      return "cut-off";
+    case vo::BoundaryPart::apex:
+      break;
+  }
+  return "apex";
+}
+
+py::array_t<bool> contains_many(const Cone& cone, py::handle velocities) {
+  require_apart(cone, "contains");
+  const std::vector<Vec2> all = points(velocities, "velocities");
+  py::array_t<bool> result(static_cast<py::ssize_t>(all.size()));
+  bool* const out = result.mutable_data();
+  const py::gil_scoped_release released;
+  for (std::size_t k = 0; k < all.size(); ++k) out[k] = cone.shifted.contains(all[k]);
+  return result;
+}
+
+std::vector<vo::ShiftedCone> cones_of(const py::list& cones) {
+  std::vector<vo::ShiftedCone> result;
+  for (const py::handle cone : cones) result.push_back(cone.cast<const Cone&>().shifted);
+  return result;
+}
+
+py::tuple bracket(const geometry::Bracket& b) {
+  return py::make_tuple(b.low, b.high);
+}
+
+py::list pieces_of(const geometry::Region& region) {
+  py::list result;
+  for (const geometry::Region::Piece& piece : region.pieces())
+    result.append(py::make_tuple(rings_of(piece.polygon), bracket(piece.area)));
+  return result;
+}
+
+std::vector<HalfPlane> half_planes_of(py::handle normals, py::handle offsets) {
+  const std::vector<Vec2> n = points(normals, "normals");
+  const Doubles c = doubles(offsets, "offsets", {static_cast<py::ssize_t>(n.size())});
+  std::vector<HalfPlane> result;
+  for (std::size_t k = 0; k < n.size(); ++k) {
+    if (!std::isfinite(c.data()[k])) throw ArgumentError("offsets", "a number that is not finite", "finite numbers");
+    result.push_back({n[k], c.data()[k]});
+  }
+  return result;
+}
+
+py::tuple compare(const vo::FreeVelocities& free, py::handle normals, py::handle offsets) {
+  const std::vector<HalfPlane> half_planes = half_planes_of(normals, offsets);
+  const vo::RegionReport report = [&] {
+    const py::gil_scoped_release released;
+    return free.compare(half_planes);
+  }();
+  py::list lost;
+  for (const vo::LostPiece& piece : report.lost)
+    lost.append(
+        py::make_tuple(rings_of(piece.polygon), bracket(piece.area), as_tuple(piece.farthest), piece.half_plane));
+  return py::make_tuple(name(report.inside), bracket(report.area), bracket(report.given_away), lost);
+}
+
+vo::FreeVelocities make_free(const py::list& cones, py::handle max_speed, py::handle tolerance) {
+  vo::FreeVelocityOptions options;
+  options.max_speed = positive(max_speed, "max_speed");
+  options.relative_tolerance = finite(tolerance, "relative_tolerance");
+  if (options.max_speed < vo::kLeastMaxSpeed || options.max_speed > vo::kMostMaxSpeed)
+    throw ArgumentError("max_speed", shown(max_speed), "2^-60 to 2^60 m/s");
+  if (options.relative_tolerance < 1e-7 || options.relative_tolerance > 0.1)
+    throw ArgumentError("relative_tolerance", shown(tolerance), "1e-7 to 0.1");
+  std::vector<vo::ShiftedCone> shifted = cones_of(cones);
+  const py::gil_scoped_release released;
+  return {std::move(shifted), options};
+}
+
+/// The number of components and the bracket of the area, exactly; or the word why not.
+py::object exact_free(const py::list& cones, py::handle max_speed) {
+  std::vector<vo::ShiftedCone> shifted = cones_of(cones);
+  const double speed = positive(max_speed, "max_speed");
+  const vo::FreeArrangement::Attempt attempt = [&] {
+    const py::gil_scoped_release released;
+    return vo::FreeArrangement::attempt(std::move(shifted), speed);
+  }();
+  if (!attempt.free) return py::str(name(attempt.refusal));
+  return py::make_tuple(attempt.free->pieces().size(), bracket(attempt.free->area()));
+}
+
+}  // namespace
+
+void bind_vo(py::module_& module) {
+  py::class_<Cone>(module, "Cone")
+      .def(py::init(&make_cone))
+      .def("overlaps", [](const Cone& c) { return c.obstacle().overlaps(); })
+      .def("contains",
+           [](const Cone& c, py::handle v) {
+             require_apart(c, "contains");
+             return c.shifted.contains(vector(v, "velocity"));
+           })
+      .def("contains_many", &contains_many)
+      .def("nearest",
+           [](const Cone& c) {
+             const auto n = c.obstacle().nearest();
+             return py::make_tuple(as_tuple(n.normal), n.distance);
+           })
+      .def("legs",
+           [](const Cone& c) -> py::object {
+             const auto legs = c.obstacle().legs();
+             return legs ? py::object(py::make_tuple(leg_tuple(legs->left), leg_tuple(legs->right))) : py::none();
+           })
+      .def("nearest_boundary",
+           [](const Cone& c, py::handle velocity) {
+             require_apart(c, "nearest_boundary");
+             const auto b = c.obstacle().nearest_boundary(vector(velocity, "velocity") - c.shape_velocity);
+             return py::make_tuple(as_tuple(b.normal), b.signed_distance, as_tuple(b.u), name_of(b.part));
+           })
+      .def("half_plane",
+           [](const Cone& c, py::handle velocity, py::handle responsibility) {
+             const double alpha = finite(responsibility, "responsibility");
+             if (!(alpha > 0.0) || alpha > 1.0)
+               throw ArgumentError("responsibility", shown(responsibility), "a number above 0, at most 1");
+             return as_object(half_plane(c, vector(velocity, "velocity"), alpha));
+           })
+      .def("contact_half_plane",
+           [](const Cone& c) {
+             std::optional<HalfPlane> h = c.obstacle().contact_half_plane();
+             if (h && c.moves()) h->offset += dot(h->normal, c.shape_velocity);
+             return as_object(h);
+           })
+      .def("certificate", [](const Cone& c, py::handle normal, py::handle offset) {
+        return certificate_text(c, {vector(normal, "normal"), finite(offset, "offset")});
+      });
+  module.def("check_certificate", [](const std::string& text) {
+    const auto certificate = vo::read_certificate(text);
+    return std::string(certificate ? name(check(*certificate)) : "malformed");
+  });
+  module.def("read_certificate", [](const std::string& text) -> py::object {
+    const auto certificate = vo::read_certificate(text);
+    return certificate ? py::object(fields_of(*certificate)) : py::none();
+  });
+  module.def("reciprocal_half_planes",
+             [](py::handle position_a, py::handle velocity_a, py::handle radius_a, py::handle position_b,
+                py::handle velocity_b, py::handle radius_b, py::handle time_horizon, py::handle share) {
+               const vo::MovingDisc a{vector(position_a, "position_a"), vector(velocity_a, "velocity_a"),
+                                      at_least_zero(radius_a, "radius_a")};
+               const vo::MovingDisc b{vector(position_b, "position_b"), vector(velocity_b, "velocity_b"),
+                                      at_least_zero(radius_b, "radius_b")};
+               vo::ReciprocalOptions options;
+               options.time_horizon = positive(time_horizon, "time_horizon");
+               options.share_of_a = finite(share, "share_of_a");
+               if (options.share_of_a < 0.0 || options.share_of_a > 1.0)
+                 throw ArgumentError("share_of_a", shown(share), "0 to 1");
+               const vo::ReciprocalHalfPlanes halves = reciprocal_half_planes(a, b, options);
+               return py::make_tuple(as_tuple(halves.a), as_tuple(halves.b), halves.certified);
+             });
+  py::class_<vo::FreeVelocities>(module, "FreeVelocities")
+      .def(py::init(&make_free))
+      .def("contains", [](const vo::FreeVelocities& f, py::handle v) { return f.contains(vector(v, "velocity")); })
+      .def("area", [](const vo::FreeVelocities& f) { return bracket(f.area()); })
+      .def("least_components", &vo::FreeVelocities::least_components)
+      .def("inner", [](const vo::FreeVelocities& f) { return pieces_of(f.inner()); })
+      .def("outer", [](const vo::FreeVelocities& f) { return pieces_of(f.outer()); })
+      .def("compare", &compare);
+  module.def("exact_free", &exact_free);
+}
+
+}  // namespace exactvo::python
