@@ -15,6 +15,7 @@
 namespace exactvo::formation::crowd {
 
 inline constexpr std::uint32_t kMostRobots = 1U << 30U;
+inline constexpr std::size_t kMostKinds = Robots::kKind + std::size_t{1};
 inline constexpr std::uint32_t kNowhere = 0xFFFFFFFFU;
 /// m/s; squares of speeds stay ordinary floats.
 inline constexpr double kFastest = 0x1p15;
@@ -32,7 +33,7 @@ class CrowdBody {
   explicit CrowdBody(const CrowdOptions& options);
 
   KindId add_kind(const CrowdKind& kind);
-  RobotId add_robot(Vec2 position, KindId kind);
+  RobotId add_robot(Vec2 position, KindId kind, Vec2 velocity = {});
   void remove_robot(RobotId robot);
   ObstacleId add_obstacle(const geometry::Obstacle& obstacle);
   void remove_obstacle(ObstacleId obstacle);
@@ -58,11 +59,16 @@ class CrowdBody {
   std::vector<std::uint32_t> places;  ///< by id, or empty
   std::map<ObstacleId, std::vector<geometry::Segment>> obstacles;
   ObstacleId next_obstacle = 0;
+  bool kinds_changed = false;
   bool edges_changed = false;  ///< or the kinds, which say how far robots look
   bool unsorted = true;
   bool unchecked = true;  ///< robots are new
 
  private:
+  struct Motion {
+    std::int32_t x, y;
+  };
+  Motion motion_of(Vec2 velocity, const CrowdKind& kind) const;
   static double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }

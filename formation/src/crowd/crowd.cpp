@@ -82,6 +82,9 @@ void require_valid(const CrowdKind& k, const CrowdOptions& o) {
   require_in_range("time_horizon", k.time_horizon, k.time_horizon >= o.time_step && k.time_horizon <= 0x1p20,
                    "the time step, " + number(o.time_step) + ", to 2^20 s");
   require_in_range("neighbour_distance", k.neighbour_distance, k.neighbour_distance > 0.0, "above 0 m");
+  require_in_range("edge_horizon", k.edge_horizon,
+                   k.edge_horizon == 0.0 || (k.edge_horizon >= o.time_step && k.edge_horizon <= 0x1p20),
+                   "0 or the time step, " + number(o.time_step) + ", to 2^20 s");
   require_in_range("neighbours", k.neighbours, k.neighbours >= 1 && k.neighbours <= kMostNeighbours, "1 to 15");
 }
 
@@ -91,15 +94,15 @@ CrowdBody::CrowdBody(const CrowdOptions& options) {
 }
 
 KindId CrowdBody::add_kind(const CrowdKind& kind) {
-  if (core->kinds.size() == 256) throw CrowdError(CrowdProblem::too_many, "kinds: found a 257th, expected 256 at most");
+  if (core->kinds.size() == kMostKinds)
+    throw CrowdError(CrowdProblem::too_many, "kinds: found one more than 2^14, expected 2^14 at most");
   require_valid(kind, core->options);
   core->kinds.push_back(kind);
-  core->take_kinds();
-  edges_changed = true;
+  kinds_changed = edges_changed = true;
   return static_cast<KindId>(core->kinds.size() - 1);
 }
 
-RobotId CrowdBody::add_robot(Vec2 position, KindId kind) {
+RobotId CrowdBody::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
   if (kind >= core->kinds.size())
     throw CrowdError(CrowdProblem::unknown_kind,
                      words("kind", kind, "below " + std::to_string(core->kinds.size()) + ", the number of kinds"));
@@ -112,6 +115,7 @@ RobotId CrowdBody::add_robot(Vec2 position, KindId kind) {
     throw CrowdError(CrowdProblem::beyond_lattice,
                      words("position", std::fabs(x) < kLatticeEnd ? position.y : position.x,
                            "less than " + number(kLatticeEnd * core->options.position_step) + " m from 0"));
+  const Motion motion = motion_of(velocity, core->kinds[kind]);
   if (free_ids.empty() && id_end == kMostRobots)
     throw CrowdError(CrowdProblem::too_many, "robots: found one more than 2^30, expected 2^30 at most");
   RobotId id = id_end;
@@ -120,6 +124,8 @@ RobotId CrowdBody::add_robot(Vec2 position, KindId kind) {
   else
     id = free_ids.back(), free_ids.pop_back();
   core->robots.append(static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(id), kind);
+  core->robots.mx[core->robots.size() - 1] = motion.x;
+  core->robots.my[core->robots.size() - 1] = motion.y;
   if (!places.empty()) {
     if (places.size() <= id) places.resize(id + 1, kNowhere);
     places[id] = static_cast<std::uint32_t>(core->robots.size() - 1);
@@ -127,6 +133,18 @@ RobotId CrowdBody::add_robot(Vec2 position, KindId kind) {
   unsorted = unchecked = true;
   core->forget_preference(id);
   return id;
+}
+
+/// The motion of the lattice nearest to the velocity, within the speed limit.
+CrowdBody::Motion CrowdBody::motion_of(Vec2 velocity, const CrowdKind& kind) const {
+  const double per_speed = core->options.time_step / core->options.position_step, speed = geometry::norm(velocity);
+  require_in_range("velocity", speed, speed <= kind.max_speed, "at most " + number(kind.max_speed) + " m/s, max_speed");
+  double x = std::nearbyint(per_speed * velocity.x), y = std::nearbyint(per_speed * velocity.y);
+  if (std::hypot(x, y) > per_speed * kind.max_speed) {
+    x = std::trunc(per_speed * velocity.x);
+    y = std::trunc(per_speed * velocity.y);
+  }
+  return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
 }
 
 void CrowdBody::find_places() {
@@ -162,7 +180,7 @@ void CrowdBody::guess_hints() {
   const double each = area / (3.14159 * static_cast<double>(r.size()));
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (!is_new(i)) continue;  // a guess does not hang on earlier ones
-    const CrowdKind& kind = core->kinds[r.tag[i] & 0xFFU];
+    const CrowdKind& kind = core->kinds[r.tag[i] & Robots::kKind];
     const double guess = kFirstGuess * std::sqrt(each * kind.neighbours);
     r.hint[i] = static_cast<std::int32_t>(
         std::clamp(guess, 1.0, std::min(0x1p30, kind.neighbour_distance / core->options.position_step + 1.0)));
@@ -216,7 +234,7 @@ void CrowdBody::remove_obstacle(ObstacleId obstacle) {
 void CrowdBody::lay_out_edges() {
   if (!edges_changed) return;
   double reach = 0.0;
-  for (const CrowdKind& k : core->kinds) reach = std::max(reach, k.time_horizon * k.max_speed + k.radius);
+  for (const CrowdKind& k : core->kinds) reach = std::max(reach, edge_horizon(k) * k.max_speed + k.radius);
   std::vector<geometry::Segment> all;
   for (const auto& [id, edges] : obstacles) all.insert(all.end(), edges.begin(), edges.end());
   core->edges.set_edges(std::move(all));
@@ -225,6 +243,8 @@ void CrowdBody::lay_out_edges() {
 }
 
 void CrowdBody::make_ready() {
+  if (kinds_changed) core->take_kinds();
+  kinds_changed = false;
   lay_out_edges();
   if (!unsorted) return;
   Robots& r = core->robots;
@@ -280,8 +300,8 @@ std::uint64_t CrowdBody::digest() const {
       add(-1);
       continue;
     }
-    for (const std::int32_t value : {r.x[i], r.y[i], r.mx[i], r.my[i], static_cast<std::int32_t>(r.tag[i] & 0x1FFU)})
-      add(value);
+    const std::int32_t kept = (r.tag[i] & Robots::kKept) != 0;
+    for (const std::int32_t value : {r.x[i], r.y[i], r.mx[i], r.my[i], r.tag[i] & Robots::kKind, kept}) add(value);
   }
   return hash;
 }
@@ -303,7 +323,10 @@ KindId Crowd::add_kind(const CrowdKind& kind) {
   return engine_->add_kind(kind);
 }
 RobotId Crowd::add_robot(Vec2 position, KindId kind) {
-  return engine_->add_robot(position, kind);
+  return engine_->add_robot(position, kind, {});
+}
+RobotId Crowd::add_robot(Vec2 position, KindId kind, Vec2 velocity) {
+  return engine_->add_robot(position, kind, velocity);
 }
 void Crowd::reserve(std::size_t robots) {
   engine_->core->robots.reserve(robots);
@@ -381,7 +404,7 @@ Vec2 Crowd::velocity(RobotId robot) const {
 }
 
 KindId Crowd::kind_of(RobotId robot) const {
-  return static_cast<KindId>(engine_->core->robots.tag[engine_->place_of(robot)] & 0xFFU);
+  return static_cast<KindId>(engine_->core->robots.tag[engine_->place_of(robot)] & Robots::kKind);
 }
 
 CrowdExplanation Crowd::explain(RobotId robot) const {

@@ -224,7 +224,7 @@ class CrowdEngine final : public CrowdCore {
     return {options.position_step * mx / options.time_step, options.position_step * my / options.time_step};
   }
 
-  std::size_t kind_of(std::size_t robot) const { return robots.tag[robot] & 0xFFU; }
+  std::size_t kind_of(std::size_t robot) const { return robots.tag[robot] & Robots::kKind; }
 
   void require_preference(Vec2 v, std::size_t robot) const {
     if (geometry::is_finite(v) && std::max(std::fabs(v.x), std::fabs(v.y)) < kFastestPreference) return;
@@ -483,7 +483,7 @@ class CrowdEngine final : public CrowdCore {
     query.position = {options.position_step * robots.x[robot], options.position_step * robots.y[robot]};
     query.velocity = velocity_of(robots.mx[robot], robots.my[robot]);
     query.radius = kind.radius;
-    query.horizon = kind.time_horizon;
+    query.horizon = edge_horizon(kind);
     query.max_speed = kind.max_speed;
     query.float_normals = sizeof(T) == 4;
     edge_lines(edges, query, s.near_edges, s.edge_lines);

@@ -44,6 +44,11 @@ class CrowdCore {
   std::size_t range = 0;  ///< robots a task; 0: as it thinks best. The results are the same.
 };
 
+/// s
+inline double edge_horizon(const CrowdKind& kind) {
+  return kind.edge_horizon > 0.0 ? kind.edge_horizon : kind.time_horizon;
+}
+
 std::unique_ptr<CrowdCore> make_float_core(const CrowdOptions& options);
 std::unique_ptr<CrowdCore> make_double_core(const CrowdOptions& options);
 

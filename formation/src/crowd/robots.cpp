@@ -40,7 +40,7 @@ void Robots::shrink() {
   if (x.capacity() > x.size() + x.size() / 4) for_fields([](auto& field) { field.shrink_to_fit(); });
 }
 
-void Robots::append(std::int32_t at_x, std::int32_t at_y, std::int32_t robot, std::uint8_t kind) {
+void Robots::append(std::int32_t at_x, std::int32_t at_y, std::int32_t robot, KindId kind) {
   const std::size_t i = size_;
   resize(size_ + 1);
   x[i] = at_x;
@@ -62,7 +62,7 @@ void Robots::move(Tasks& tasks) {
     for (std::size_t i = first; i < last; ++i) {
       x[i] += next_mx[i];
       y[i] += next_my[i];
-      tag[i] = static_cast<std::uint16_t>((tag[i] & 0xFFU) | kSettled | (next_kept[i] ? kKept : 0U));
+      tag[i] = static_cast<std::uint16_t>((tag[i] & kKind) | kSettled | (next_kept[i] ? kKept : 0U));
     }
   });
   mx.swap(next_mx);

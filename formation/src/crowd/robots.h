@@ -12,6 +12,7 @@
 
 #include "crowd/layout.h"
 #include "crowd/tasks.h"
+#include "exactvo/formation/crowd.h"
 
 namespace exactvo::formation::crowd {
 
@@ -38,7 +39,7 @@ class Robots {
   Array<std::int32_t> next_mx, next_my;
   Array<std::uint8_t> next_kept;
 
-  static constexpr std::uint16_t kKept = 0x100, kSettled = 0x200;
+  static constexpr std::uint16_t kKind = 0x3FFF, kKept = 0x4000, kSettled = 0x8000;
 
   std::size_t size() const { return size_; }
   double strip() const { return strip_; }
@@ -48,7 +49,7 @@ class Robots {
   void reserve(std::size_t robots);
   /// Gives back what is far more than robots need.
   void shrink();
-  void append(std::int32_t at_x, std::int32_t at_y, std::int32_t robot, std::uint8_t kind);
+  void append(std::int32_t at_x, std::int32_t at_y, std::int32_t robot, KindId kind);
   /// The last one takes its place; unsorted from then on.
   void remove(std::size_t at);
   void sort(Tasks& tasks);

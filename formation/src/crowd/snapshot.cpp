@@ -12,7 +12,7 @@
 namespace exactvo::formation::crowd {
 namespace {
 
-constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '1'};
+constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '2'};
 constexpr std::size_t kAtOnce = 1 << 16;
 
 [[noreturn]] void refuse(const std::string& found) {
@@ -97,13 +97,15 @@ class Reader {
 };
 
 void put(Writer& to, const CrowdKind& k) {
-  for (const double field : {k.radius, k.max_speed, k.time_horizon, k.neighbour_distance}) to.put(field);
+  for (const double field : {k.radius, k.max_speed, k.time_horizon, k.neighbour_distance, k.edge_horizon})
+    to.put(field);
   to.put(std::int32_t{k.neighbours});
 }
 
 CrowdKind get_kind(Reader& from) {
   CrowdKind k;
-  for (double* field : {&k.radius, &k.max_speed, &k.time_horizon, &k.neighbour_distance}) *field = from.get<double>();
+  for (double* field : {&k.radius, &k.max_speed, &k.time_horizon, &k.neighbour_distance, &k.edge_horizon})
+    *field = from.get<double>();
   k.neighbours = from.get<std::int32_t>();
   return k;
 }
@@ -143,8 +145,8 @@ void require_ids(const Columns& c, const std::vector<RobotId>& free_ids, RobotId
 void require_robots(const Columns& c, const CrowdCore& core) {
   for (std::size_t i = 0; i < c.x.size(); ++i) {
     require(on_lattice(c.x[i]) && on_lattice(c.y[i]), "a position");
-    const std::size_t kind = c.tag[i] & 0xFFU;
-    require(kind < core.kinds.size() && (c.tag[i] >> 10U) == 0, "a kind");
+    const std::size_t kind = c.tag[i] & Robots::kKind;
+    require(kind < core.kinds.size(), "a kind");
     const double speed = core.kinds[kind].max_speed * core.options.time_step / core.options.position_step;
     require(std::hypot(c.mx[i], c.my[i]) <= speed * (1.0 + 0x1p-40), "a motion");
     require(c.hint[i] >= 0 && c.hint[i] <= 1 << 30, "a distance");
@@ -209,7 +211,7 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
   CrowdCore& core = *body.core;
   Reader in(from);
   const auto kinds = in.get<std::uint32_t>();
-  require(kinds <= 256, "a number of kinds");
+  require(kinds <= kMostKinds, "a number of kinds");
   for (std::uint32_t k = 0; k < kinds; ++k) {
     const CrowdKind kind = get_kind(in);
     require_valid(kind, core.options);

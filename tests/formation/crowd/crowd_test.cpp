@@ -132,6 +132,78 @@ TEST(Crowd, ANewRobotOfAnOldIdPrefersNothing) {
   EXPECT_EQ(crowd.velocity(0), (Vec2{0.0, 0.0}));
 }
 
+TEST(Crowd, ARobotMayBeginInMotionWithinItsSpeedLimit) {
+  Crowd crowd = with_one_kind();
+  EXPECT_EQ(crowd.velocity(crowd.add_robot({0.0, 0.0}, 0, {0.5, -0.25})), (Vec2{0.5, -0.25}));
+  const double share = (1.0 - 0x1p-50) * std::sqrt(0.5) * 1.5;
+  EXPECT_LE(geometry::norm(crowd.velocity(crowd.add_robot({9.0, 0.0}, 0, {share, share}))), 1.5);
+  expect_problem(CrowdProblem::out_of_range, "velocity", [&] { crowd.add_robot({20.0, 0.0}, 0, {1.5, 0.1}); });
+  expect_problem(CrowdProblem::not_finite, "velocity", [&] { crowd.add_robot({20.0, 0.0}, 0, {kNaN, 0.1}); });
+  EXPECT_EQ(crowd.size(), 2U);
+}
+
+/// Two head on: whoever sees the other move gives way at the first step.
+TEST(Crowd, OthersSeeTheVelocityThatARobotBeginsWith) {
+  for (const double speed : {0.0, 1.0}) {
+    Crowd crowd = with_one_kind();
+    crowd.add_robot({0.0, 0.0}, 0, {speed, 0.0});
+    crowd.add_robot({5.0, 0.1}, 0, {-speed, 0.0});
+    crowd.set_preferred({{0.2 * speed, 0.0}, {-0.2 * speed, 0.0}});
+    const CrowdExplanation e = crowd.explain(0);
+    ASSERT_EQ(e.neighbours.size(), 1U);
+    const bool binds =
+        geometry::dot(e.neighbours[0].half_plane.normal, {speed, 0.0}) < e.neighbours[0].half_plane.offset;
+    EXPECT_EQ(binds, speed > 0.0);
+  }
+}
+
+TEST(Crowd, AKindBeyondThe255thIsTheOneThatWasAsked) {
+  Crowd few = with_one_kind(), many = with_one_kind();
+  CrowdKind kind;
+  for (int k = 1; k <= 300; ++k) {
+    kind.radius = 0.5 + 0.001 * k;
+    many.add_kind(kind);
+  }
+  const KindId asked = 300;
+  EXPECT_EQ(few.add_kind(kind), 1U);
+  for (int i = 0; i < 60; ++i) {
+    const Vec2 at = {1.7 * (i % 8), 1.7 * (i / 8)};
+    few.add_robot(at, i % 2 ? 1 : 0);
+    many.add_robot(at, i % 2 ? asked : 0);
+  }
+  const std::vector<Vec2> preferred(60, Vec2{0.7, 0.3});
+  few.set_preferred(preferred);
+  many.set_preferred(preferred);
+  EXPECT_EQ(many.kind_of(1), asked);
+  run(few, 10);
+  run(many, 10);
+  std::vector<Vec2> a, b;
+  few.positions(a);
+  many.positions(b);
+  EXPECT_EQ(a, b);
+  std::stringstream stream;
+  many.snapshot(stream);
+  EXPECT_EQ(Crowd::restored(stream).kind_of(59), asked);
+}
+
+TEST(CrowdEdges, TheHorizonOfEdgesIsOneOfItsOwn) {
+  std::vector<double> speeds;
+  for (const double horizon : {0.0, 5.0, 1.0}) {
+    Crowd crowd;
+    CrowdKind kind;
+    kind.edge_horizon = horizon;
+    crowd.add_kind(kind);
+    crowd.add_robot({0.0, 0.0});
+    crowd.add_obstacle(geometry::Polyline{{{3.0, -9.0}, {3.0, 9.0}}});
+    crowd.set_preferred({{1.5, 0.0}});
+    crowd.step();
+    speeds.push_back(crowd.velocity(0).x);
+  }
+  EXPECT_NEAR(speeds[0], 0.5, 1e-4);  // 2.5 m in 5 s
+  EXPECT_EQ(speeds[1], speeds[0]);
+  EXPECT_NEAR(speeds[2], 1.5, 1e-4);
+}
+
 TEST(CrowdEdges, ARobotStopsBeforeAWallUntilItIsRemoved) {
   Crowd crowd = with_one_kind();
   crowd.add_robot({0.0, 0.0});
@@ -245,9 +317,10 @@ TEST(CrowdRefuses, OptionsAndKindsOutOfRange) {
   expect_problem(CrowdProblem::not_finite, "neighbour_distance",
                  kind([](CrowdKind& k) { k.neighbour_distance = kNaN; }));
   expect_problem(CrowdProblem::out_of_range, "neighbours", kind([](CrowdKind& k) { k.neighbours = 16; }));
+  expect_problem(CrowdProblem::out_of_range, "edge_horizon", kind([](CrowdKind& k) { k.edge_horizon = 0.2; }));
   Crowd crowd;
-  for (int k = 0; k < 256; ++k) crowd.add_kind({});
-  expect_problem(CrowdProblem::too_many, "257th", [&] { crowd.add_kind({}); });
+  for (int k = 0; k < 1 << 14; ++k) crowd.add_kind({});
+  expect_problem(CrowdProblem::too_many, "2^14", [&] { crowd.add_kind({}); });
 }
 
 TEST(CrowdRefuses, PositionsThatAreNoPlaceOfTheLattice) {
@@ -381,7 +454,7 @@ struct Oracle {
   double distance(std::size_t i, std::size_t j) const {
     return options.position_step * std::hypot(double(robots.x[i]) - robots.x[j], double(robots.y[i]) - robots.y[j]);
   }
-  const CrowdKind& kind(std::size_t i) const { return kinds[robots.tag[i] & 0xFFU]; }
+  const CrowdKind& kind(std::size_t i) const { return kinds[robots.tag[i] & crowd::Robots::kKind]; }
 
   const crowd::Robots& robots;
   const std::vector<CrowdKind>& kinds;

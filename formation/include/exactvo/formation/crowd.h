@@ -47,7 +47,7 @@ using geometry::Vec2;
 
 /// Names a robot until it is removed; then it may be given to another. Small numbers: 0 ... id_end() - 1.
 using RobotId = std::uint32_t;
-using KindId = std::uint8_t;
+using KindId = std::uint16_t;
 /// Names an obstacle until it is removed.
 using ObstacleId = std::uint32_t;
 
@@ -58,6 +58,7 @@ struct CrowdKind {
   double time_horizon = 5.0;         ///< s, at least the time step; a pair looks ahead the shorter of its two
   double neighbour_distance = 15.0;  ///< m, > 0; taken as the distance within which robots can meet if that is more
   int neighbours = 10;               ///< 1 ... 15: the nearest within the distance, and all that could be met, (5)
+  double edge_horizon = 0.0;         ///< s, of edges of obstacles: at least the time step; 0: time_horizon
 };
 
 /// The arithmetic of half-planes and linear programs.
@@ -85,7 +86,7 @@ enum class CrowdProblem {
   out_of_range,      ///< a number is outside the range that its field states
   beyond_lattice,    ///< a position at or beyond 2^30 q
   coincident,        ///< two robots in one place, one of them new
-  too_many,          ///< more than 2^30 robots, 256 kinds, 2^24 edges
+  too_many,          ///< more than 2^30 robots, 2^14 kinds, 2^24 edges
   unknown_robot,     ///< no robot has this id
   unknown_kind,      ///< no kind has this number
   unknown_obstacle,  ///< no obstacle has this id
@@ -128,7 +129,7 @@ class CrowdSlice {
  public:
   std::size_t size() const { return count_; }
   RobotId id(std::size_t k) const { return static_cast<RobotId>(id_[k]); }
-  KindId kind(std::size_t k) const { return static_cast<KindId>(tag_[k] & 0xFFU); }
+  KindId kind(std::size_t k) const { return static_cast<KindId>(tag_[k] & kKindBits); }
   Vec2 position(std::size_t k) const { return {step_ * x_[k], step_ * y_[k]}; }
   Vec2 velocity(std::size_t k) const { return {step_ * mx_[k] / time_step_, step_ * my_[k] / time_step_}; }
   /// m/s, finite, below 2^20. What is not set is 0.
@@ -137,6 +138,7 @@ class CrowdSlice {
  private:
   template <class T>
   friend class CrowdEngine;
+  static constexpr std::uint16_t kKindBits = 0x3FFF;
   std::size_t count_ = 0;
   const std::int32_t *id_ = nullptr, *x_ = nullptr, *y_ = nullptr, *mx_ = nullptr, *my_ = nullptr;
   const std::uint16_t* tag_ = nullptr;
@@ -180,6 +182,9 @@ class Crowd {
   KindId add_kind(const CrowdKind& kind);
   /// At rest, at the place of the lattice nearest to `position`. O(1); two robots in one place are found by `step`.
   RobotId add_robot(Vec2 position, KindId kind = 0);
+  /// In motion, at the velocity of the lattice that is nearest among those within the kind's speed limit. |velocity| <=
+  /// max_speed.
+  RobotId add_robot(Vec2 position, KindId kind, Vec2 velocity);
   /// Memory for so many, where it is known how many there will be.
   void reserve(std::size_t robots);
   /// O(1), but O(n) the first time after a step.

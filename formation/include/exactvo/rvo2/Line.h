@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// For programs that include "Line.h": put this folder on the include path.
+
+#include "exactvo/rvo2.h"
