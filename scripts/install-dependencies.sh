@@ -9,10 +9,11 @@ packages=(
   g++ cmake ninja-build ccache git ca-certificates                  # to build
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev                  # exact geometry, linear algebra
   libboost-dev libboost-graph-dev libtbb-dev libhwy-dev             # ODE, graphs, threads, SIMD
-  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev             # command line, JSON, text, SHA-256
+  libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev zlib1g-dev  # command line, JSON, text, SHA-256, pages
   libgdal-dev libsqlite3-dev libyaml-cpp-dev libpugixml-dev         # files in and out
   libopenmpi-dev openmpi-bin                                        # a batch over several machines
   libgtest-dev libgmock-dev librapidcheck-dev libvalijson-dev       # tests
+  chromium chromium-driver python3-selenium                         # tests of the explorer's page in a browser
   libbenchmark-dev                                                  # benchmarks
   python3-dev pybind11-dev python3-numpy                            # the Python package
   python3-pytest mypy python3-matplotlib python3-pandas python3-shapely  # its tests

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
+#include "explorer/page.h"
 
 namespace exactvo::tools {
 
@@ -101,6 +102,7 @@ void check_figure_folder(const fs::path& target) {
 
 void remove_figures(const fs::path& target) {
   std::error_code error;
+  fs::remove(target / kPageName, error);
   const fs::path folder = target / "figures";
   if (!fs::is_directory(folder, error)) return;
   std::vector<fs::path> ours, folders{folder};

@@ -46,7 +46,9 @@ datasets::RunInfo run_info(const Scenario& scenario, const SimulationOptions& op
 class WarningRecorder : public RunRecorder {
  public:
   WarningRecorder(datasets::RecordingFile about, const RunOutput& output)
-      : RunRecorder(std::move(about), output.folder, output.figures), warnings_(output.warnings) {}
+      : RunRecorder(std::move(about), output.folder, output.figures,
+                    output.page ? std::optional(output.page_limits) : std::nullopt),
+        warnings_(output.warnings) {}
   void begin(const formation::Recording& run) override {
     if (warnings_) warnings_(run.warnings);
     RunRecorder::begin(run);
@@ -82,6 +84,7 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
   if (interrupted()) throw Interrupted();
   FinishedRun finished;
   finished.metrics = recorder.finish(std::move(recording), finished.file);
+  if (output.page) finished.packed = recorder.packed(finished.file, finished.metrics_json());
   if (!output.folder.empty()) write_text(output.folder / "metrics.json", finished.metrics_json());
   return finished;
 }

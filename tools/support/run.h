@@ -14,12 +14,14 @@
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "explorer/packed_run.h"
 
 namespace exactvo::tools {
 
 struct FinishedRun {
   datasets::RecordingFile file;  ///< of the rows those that figures show (run_recorder.h)
   formation::Metrics metrics;
+  std::string packed = {};  ///< for a page (explorer/page.h), where one was asked for
   std::string metrics_json() const;
 };
 
@@ -29,6 +31,8 @@ struct RunOutput {
   std::function<void(double)> progress = nullptr;  ///< gets the simulated time, s
   /// Gets, before the first row, what can be said before the run (formation::warnings_before).
   std::function<void(const std::vector<std::string>&)> warnings = nullptr;
+  bool page = false;                 ///< whether a page will be made (explorer/page.h)
+  PackedRunLimits page_limits = {};  ///< of what it holds
 };
 
 /// Runs the scenario and measures it, and writes recording.jsonl, trajectory.csv, metrics.json and, of a formation,

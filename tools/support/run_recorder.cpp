@@ -72,8 +72,11 @@ struct RunRecorder::Files {
   std::optional<datasets::AtomicFile> lyapunov;
 };
 
-RunRecorder::RunRecorder(RecordingFile about, std::filesystem::path folder, bool has_figures)
-    : about_(std::move(about)), folder_(std::move(folder)), has_figures_(has_figures) {}
+RunRecorder::RunRecorder(RecordingFile about, std::filesystem::path folder, bool has_figures,
+                         std::optional<PackedRunLimits> page)
+    : about_(std::move(about)), folder_(std::move(folder)), has_figures_(has_figures) {
+  if (page) packer_.emplace(*page);
+}
 
 void RunRecorder::begin(const formation::Recording& run) {
   about_.recording = run;
@@ -89,11 +92,16 @@ void RunRecorder::add_row(Step row) {
 
 void RunRecorder::take(const Step& row, const LyapunovRow* lyapunov) {
   if (has_figures_) shown_.add(row, lyapunov);
+  if (packer_) packer_->add(row);
   if (!files_) return;
   for (const formation::Outlook& outlook : outlooks_of_last_) files_->recording.add(outlook, bodies_);
   files_->recording.add(row, bodies_, lyapunov);
   files_->trajectory.add(row);
   if (files_->lyapunov && lyapunov) files_->lyapunov->write(lyapunov_csv_line(*lyapunov));
+}
+
+std::string RunRecorder::packed(const RecordingFile& file, const std::string& metrics_json) const {
+  return packer_ ? packer_->finish(file, metrics_json) : std::string();
 }
 
 formation::Metrics RunRecorder::finish(formation::Recording run, RecordingFile& file) {

@@ -17,6 +17,7 @@
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "explorer/packed_run.h"
 
 namespace exactvo::tools {
 
@@ -43,8 +44,9 @@ class ShownRows {
 class RunRecorder : public formation::RunSink {
  public:
   /// `about`: what is known before the run. `folder` must exist; nothing is written where it is empty. Without
-  /// `has_figures` no row is kept for them.
-  RunRecorder(datasets::RecordingFile about, std::filesystem::path folder, bool has_figures = true);
+  /// `has_figures` no row is kept for them, without `page` none for a page.
+  RunRecorder(datasets::RecordingFile about, std::filesystem::path folder, bool has_figures = true,
+              std::optional<PackedRunLimits> page = std::nullopt);
 
   void begin(const formation::Recording& run) override;
   void add_body(const vo::Body& body) override { bodies_.push_back(body); }
@@ -54,6 +56,9 @@ class RunRecorder : public formation::RunSink {
   /// `run` is what the simulation returned. Afterwards recording.jsonl, trajectory.csv and, of a formation,
   /// lyapunov.csv stand in the folder, and `file` has the whole but for the rows that no figure shows.
   formation::Metrics finish(formation::Recording run, datasets::RecordingFile& file);
+
+  /// The run for a page (explorer/page.h); empty where none was asked for. REQUIRES: `file` is what `finish` gave.
+  std::string packed(const datasets::RecordingFile& file, const std::string& metrics_json) const;
 
  private:
   struct Files;
@@ -65,6 +70,7 @@ class RunRecorder : public formation::RunSink {
   std::shared_ptr<Files> files_;
   std::optional<formation::Evaluator> evaluator_;
   ShownRows shown_;
+  std::optional<RunPacker> packer_;
   std::vector<vo::Body> bodies_;
   /// A row is written when the next one comes, and the outlooks that came before it stand before it in the file.
   std::vector<formation::Outlook> outlooks_of_last_, outlooks_of_next_;

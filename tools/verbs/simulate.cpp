@@ -8,6 +8,7 @@
 
 #include "exactvo/formation/stability.h"
 #include "exactvo/geometry/counted.h"
+#include "explorer/page.h"
 #include "support/escape.h"
 #include "support/files.h"
 #include "support/run.h"
@@ -127,7 +128,7 @@ FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read, cons
   const TerminateOnSignal terminate_on_signal;
   const bool figures = !folder.empty() && !flags.no_figures;
   return run(scenario, options, provenance,
-             {folder, figures, [&](double time) { line.show(time, scenario.name); }, warn});
+             {folder, figures, [&](double time) { line.show(time, scenario.name); }, warn, figures});
 }
 
 void print_results(const Flags& flags, const FinishedRun& finished) {
@@ -142,6 +143,8 @@ FinishedRun run_into_folder(const Flags& flags, const ReadScenario& read, const 
   if (!flags.no_figures) {
     const TerminateOnSignal terminate_on_signal;
     draw(write_figures(finished.file, folder.path() / "figures"));
+    const std::string title = in_words(name_of(read.scenario, options));
+    write_text(folder.path() / kPageName, explorer_page({{page_key(title), title, "", finished.packed}}));
   }
   if (interrupted()) throw Interrupted();
   print_results(flags, finished);
@@ -178,14 +181,14 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags->simulation);
-  declare_out(
-      app, flags->out,
-      "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations) and figures/; whole or "
-      "not at all");
+  declare_out(app, flags->out,
+              "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations), figures/ and "
+              "explorer.html; "
+              "whole or not at all");
   app.add_flag("--record-all", flags->record_all,
                "Keep every half-plane of every decision, so that `audit` verifies the whole run");
   app.add_flag("--json", flags->json, "Print the metrics as JSON");
-  app.add_flag("--no-figures", flags->no_figures, "Write no figures");
+  app.add_flag("--no-figures", flags->no_figures, "Write no figures and no explorer.html");
   app.add_flag("--fail-on-collision", flags->fail_on_collision, "Exit status 1 if a robot overlaps anything");
   app.add_flag("--force", flags->force,
                "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller");

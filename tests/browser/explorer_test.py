@@ -1,0 +1,507 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page of `exactvo view` in a headless Chromium.
+
+explorer_test.py --program EXACTVO --cases CERTIFICATE_CASES --data datasets/data PART, PART one of runs, page, proofs.
+Exit status 77 where Chromium, its driver or Selenium is missing.
+"""
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.etree.ElementTree as xml
+import zlib
+from base64 import b64decode, b64encode
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+except ImportError:
+    webdriver = None
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+DRIVER = shutil.which("chromedriver")
+ARGS = None
+ROBOTS_AT_A_TIME = 2.0**-13  # m: what positions are rounded to in a page
+
+
+def start_browser(profile):
+    options = Options()
+    options.binary_location = CHROMIUM
+    for flag in ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+                 "--disable-background-networking", "--disable-component-update", "--disable-sync",
+                 "--disable-dev-shm-usage", "--window-size=1280,900", f"--user-data-dir={profile}"]:
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(service=Service(DRIVER), options=options)
+    driver.set_script_timeout(120)
+    return driver
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(prefix="exactvo_browser_")
+        cls.place = pathlib.Path(cls.folder.name)
+        cls.browser = start_browser(cls.place / "profile")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()
+        time.sleep(0.2)
+        shutil.rmtree(cls.place, ignore_errors=True)
+
+    def tearDown(self):
+        errors = [entry["message"] for entry in self.browser.get_log("browser") if entry["level"] == "SEVERE"]
+        self.assertEqual(errors, [], "the console has errors")
+
+    def run_program(self, *arguments, status=0):
+        done = subprocess.run([ARGS.program, *map(str, arguments)], cwd=self.place, capture_output=True, text=True)
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done
+
+    def open(self, name, address=""):
+        self.browser.get("about:blank")
+        self.browser.get(f"file://{self.place / name}{address}")
+        self.browser.execute_async_script(
+            "const done = arguments[0]; exactvo.ready.then(() => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def settle(self):
+        """Waits until what changed is painted."""
+        self.browser.execute_async_script("const d = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => d()))")
+
+    def run_script(self, script, *arguments):
+        return self.browser.execute_script(script, *arguments)
+
+    def await_script(self, script, *arguments):
+        """A script that gives a promise."""
+        result = self.browser.execute_async_script(
+            "const done = arguments[arguments.length - 1];"
+            f"(async function() {{ {script} }}).apply(null, arguments).then((value) => done({{value}}), (error) => done({{error: String(error)}}))",
+            *arguments)
+        self.assertNotIn("error", result)
+        return result.get("value")
+
+    def text(self, selector):
+        return self.run_script("const e = document.querySelector(arguments[0]); return e ? e.textContent : null", selector)
+
+    def requests(self):
+        """Addresses asked for over a network since the log was last read."""
+        found = []
+        for entry in self.browser.get_log("performance"):
+            message = json.loads(entry["message"])["message"]
+            if message["method"] == "Network.requestWillBeSent":
+                address = message["params"]["request"]["url"]
+                if not address.startswith(("file:", "data:", "blob:", "about:")):
+                    found.append(address)
+        return found
+
+    def press(self, key):
+        self.browser.switch_to.active_element.send_keys(key)
+        self.settle()
+
+
+class Runs(Page):
+    """Every scenario of the paper: what the page says is what the run wrote."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.names = sorted(path.stem for path in (ARGS.data / "paper").glob("*.json"))
+        for name in cls.names:
+            subprocess.run([ARGS.program, "--quiet", "simulate", ARGS.data / "paper" / f"{name}.json", "--no-figures", "--out", name],
+                           cwd=cls.place, check=True, capture_output=True)
+        subprocess.run([ARGS.program, "view", *cls.names, "--out", "paper.html"], cwd=cls.place, check=True, capture_output=True)
+
+    def test_numbers_in_the_page_are_those_of_metrics_json(self):
+        self.browser.get_log("performance")
+        self.open("paper.html")
+        keys = self.run_script("return exactvo.page.list.map((r) => r.key)")
+        self.assertEqual(len(keys), len(self.names))
+        for name, key in zip(self.names, keys):
+            with self.subTest(name):
+                self.await_script("await exactvo.openRun(arguments[0])", key)
+                self.settle()
+                self.compare(name, json.loads((self.place / name / "metrics.json").read_text()))
+        self.assertEqual(self.requests(), [], "the page asked a network for something")
+
+    def compare(self, name, metrics):
+        shown = self.run_script(
+            "return Object.fromEntries([...document.querySelectorAll('td[data-metric]')].map((td) => [td.dataset.metric, td.textContent]))")
+        for key in ["jitter", "min_obstacle_clearance", "min_robot_clearance", "steps", "relaxed_steps"]:
+            if metrics[key] is not None:
+                self.assertAlmostEqual(float(shown[key].split()[0]), metrics[key], delta=1e-5 * (1 + abs(metrics[key])))
+        step = json.loads((ARGS.data / "paper" / f"{name}.json").read_text())["time_step"]
+        for i, robot in enumerate(metrics["robots"]):
+            self.run_script("exactvo.chooseRobot(arguments[0])", i)
+            self.settle()
+            shown = self.run_script(
+                "return Object.fromEntries([...document.querySelectorAll('tr.robot td[data-metric]')].map((td) => [td.dataset.metric, parseFloat(td.textContent)]))")
+            # Chords of curves are shorter; rounded positions wander by a quantum a row.
+            rounding = 2 * ROBOTS_AT_A_TIME * metrics["steps"] + 0.001
+            self.assertLess(abs(shown["page.path_length"] - robot["path_length"]), 0.002 * robot["path_length"] + rounding)
+            if robot["min_obstacle_clearance"] is not None:
+                # At rows, so no less than over the whole motion, and by no more than a step's way.
+                over = shown["page.obstacle_clearance"] - robot["min_obstacle_clearance"]
+                self.assertGreater(over, -0.002)
+                self.assertLess(over, step * 6 * 1.5 + 0.002)
+
+    def test_the_clearance_that_the_page_computes_is_the_runs(self):
+        self.open("paper.html")
+        key = [k for k in self.run_script("return exactvo.page.list.map((r) => r.key)") if k.startswith("A1-")][0]
+        self.await_script("await exactvo.openRun(arguments[0])", key)
+        self.settle()
+        metrics = json.loads((self.place / "A1" / "metrics.json").read_text())
+        least = self.run_script("return Math.min(...[0, 1].map((i) => { exactvo.chooseRobot(i); let least = Infinity; const run = exactvo.page.run;"
+                                "for (let row = 0; row < run.rows; ++row) least = Math.min(least, exactvo.obstacleClearance(run, row, i)); return least; }))")
+        self.assertAlmostEqual(least, metrics["min_obstacle_clearance"], delta=0.02)
+
+    def test_decisions_are_the_recordings_bit_for_bit(self):
+        self.open("paper.html")
+        key = [k for k in self.run_script("return exactvo.page.list.map((r) => r.key)") if k.startswith("A7-")][0]
+        self.await_script("await exactvo.openRun(arguments[0])", key)
+        rows = []
+        for line in (self.place / "A7" / "recording.jsonl").read_text().splitlines():
+            value = json.loads(line)
+            if "row" in value:
+                rows.append(value["row"])
+        for k in [0, 33, 66, len(rows) - 2]:
+            for i, robot in enumerate(rows[k]["robots"]):
+                d = self.run_script("const d = exactvo.page.run.decision(arguments[0], arguments[1]); return [d.time, d.position, d.velocity, "
+                                    "d.preferred, d.chosen, d.status, d.halfPlanes.map((h) => [h.body, h.nx, h.ny, h.c, h.multiplier, h.tau])]", k, i)
+                self.assertEqual(d[:6], [rows[k]["time"], robot["position"], robot["velocity"], robot["preferred"], robot["chosen"], robot["status"]])
+                expected = [[c["body"], *c["normal"], c["offset"], c.get("multiplier", 0), c["tau"]] for c in robot.get("constraints", [])]
+                self.assertEqual(d[6], expected)
+
+    def test_plays_scrubs_steps_and_selects(self):
+        self.open("paper.html")
+        self.assertEqual(self.text("#time"), "0.00 s")
+        self.run_script("document.getElementById('play').click()")
+        self.await_script("await new Promise((r) => setTimeout(r, 500))")
+        self.run_script("document.getElementById('play').click()")
+        self.settle()
+        played = self.run_script("return exactvo.ui.t")
+        self.assertGreater(played, 0.05)
+        self.run_script("const s = document.getElementById('scrub'); s.value = 2.0; s.dispatchEvent(new Event('input'))")
+        self.settle()
+        self.assertEqual(self.text("#time"), "2.00 s")
+        self.assertEqual(self.text("[data-fact=time]"), "2.00 s")
+        self.run_script("document.getElementById('step').click()")
+        self.settle()
+        self.assertEqual(self.text("[data-fact=time]"), "2.05 s")
+        self.run_script("document.getElementById('back').click(); document.getElementById('back').click()")
+        self.settle()
+        self.assertEqual(self.text("[data-fact=time]"), "1.95 s")
+        robots = self.run_script("return [...document.querySelectorAll('#robot option')].map((o) => o.textContent)")
+        self.run_script("const s = document.getElementById('robot'); s.value = '1'; s.dispatchEvent(new Event('change'))")
+        self.settle()
+        self.assertEqual(self.text("#space-robot"), robots[1])
+
+    def test_a_long_run_is_thinned_and_the_page_says_so(self):
+        self.run_program("view", "A7", "--most-states", "100", "--most-numbers", "2000", "--out", "thin.html")
+        self.open("thin.html")
+        rows, decisions, end = self.run_script("const r = exactvo.page.run; return [r.rows, r.decisionTime.length, r.end]")
+        whole = self.run_script("return exactvo.page.run.head.rows.of")
+        self.assertLessEqual(rows * 4, 100 + 4)
+        self.assertGreater(rows, 8)
+        self.assertLess(decisions * 4 * 14, 2000)
+        self.assertAlmostEqual(end, 0.05 * (whole - 1), places=6, msg="the last row is kept")
+        self.assertRegex(self.text("#partial"), r"One row in \d+ has its decisions.*One row in \d+ is in")
+
+    def test_a_click_on_a_robot_selects_it(self):
+        self.open("paper.html")
+        at = self.run_script("const p = exactvo.page, b = document.getElementById('world').getBoundingClientRect();"
+                             "return [b.left + p.world.px(p.positions.x[1]), b.top + p.world.py(p.positions.y[1])]")
+        for kind in ["mousePressed", "mouseReleased"]:
+            self.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, "x": at[0], "y": at[1], "button": "left", "clickCount": 1})
+        self.settle()
+        self.assertEqual(self.run_script("return exactvo.ui.robot"), 1)
+
+    def test_a_scenario_can_be_viewed_without_a_run(self):
+        self.run_program("view", ARGS.data / "paper" / "A1.json", "--method", "orca", "--out", "a1.html")
+        self.open("a1.html", "#t=10&robot=R1")
+        explained = self.run_program("explain", ARGS.data / "paper" / "A1.json", "--method", "orca", "--time", "10", "--robot", "R1").stdout
+        for fact, line in [("preferred", "preferred"), ("position", "position")]:
+            self.assertIn(self.text(f"[data-fact={fact}]"), explained)
+        self.assertIn("held by an edge of obstacle wall", self.text("#why"))
+        self.assertEqual(len(self.run_script("return exactvo.page.space.decision.halfPlanes.map((h) => h.body)")), explained.count("\n  ["))
+
+
+class PageItself(Page):
+    """What the page does with any run: keys, the address, names, damage, files that it saves."""
+
+    HOSTILE = ["</script><script>window.broken = 1</script>", "\"'`&<>${1}", "n" * 200, "\u202e\u05e9\u05dc\u05d5\u05dd\u202c", "__RUNS__ <!-- ]]>"]
+
+    def test_without_a_run_three_scenes_are_shown(self):
+        self.browser.get_log("performance")
+        self.run_program("view", "--out", "start.html")
+        self.open("start.html")
+        titles = self.run_script("return [...document.querySelectorAll('#guide button')].map((b) => b.textContent)")
+        self.assertEqual(len(titles), 3)
+        for k in range(3):
+            self.run_script("document.querySelectorAll('#guide button')[arguments[0]].click()", k)
+            self.await_script("await new Promise((r) => setTimeout(r, 200))")
+            self.settle()
+            self.assertEqual(self.text("#name"), titles[k])
+            self.assertEqual(self.text("#guide p").count(". ") + 1, 2, "two sentences each")
+            self.assertEqual(self.text("#verdict"), "\u2713 proven")
+        self.assertEqual(self.requests(), [])
+        self.assertLess((self.place / "start.html").stat().st_size - self.size_of_data("start.html"), 1_000_000)
+
+    def size_of_data(self, name):
+        text = (self.place / name).read_text()
+        return sum(len(part.split("</script>")[0]) for part in text.split('<script type="text/plain"')[1:])
+
+    def test_keys(self):
+        self.run_program("view", "--out", "start.html")
+        self.open("start.html", "#run=circle&t=3")
+        body = "document.body.dispatchEvent(new KeyboardEvent('keydown', {key: arguments[0], bubbles: true, cancelable: true, shiftKey: !!arguments[1]}))"
+
+        def press(key, shift=False):
+            self.run_script(body, key, shift)
+            self.settle()
+
+        press("ArrowRight")
+        self.assertAlmostEqual(self.run_script("return exactvo.ui.t"), 3.05, places=9)
+        press("ArrowLeft", True)
+        self.assertAlmostEqual(self.run_script("return exactvo.ui.t"), 2.05, places=9)
+        press("]")
+        self.assertEqual(self.run_script("return exactvo.ui.robot"), 1)
+        press("ArrowDown")
+        self.assertEqual(self.run_script("return exactvo.ui.pinned"), 0)
+        self.assertEqual(self.run_script("return document.querySelectorAll('#half-planes li.chosen').length"), 1)
+        press("Escape")
+        self.assertIsNone(self.run_script("return exactvo.ui.pinned"))
+        press("n")
+        self.assertEqual(self.text("#event").split(": ")[1], "arrived")
+        press("f")
+        self.assertTrue(self.run_script("return exactvo.page.follow"))
+        theme = self.run_script("return document.documentElement.dataset.theme")
+        press("t")
+        self.assertNotEqual(self.run_script("return document.documentElement.dataset.theme"), theme)
+        press("Home")
+        press(" ")
+        self.assertTrue(self.run_script("return exactvo.page.isPlaying"))
+
+    def test_the_address_holds_what_is_seen(self):
+        self.run_program("view", "--out", "start.html")
+        self.open("start.html", "#run=circle&t=3.3&robot=west")
+        self.assertEqual([self.text("#time"), self.text("#space-robot")], ["3.30 s", "west"])
+        self.run_script("exactvo.seek(4.25); exactvo.chooseRobot(3)")
+        self.await_script("await new Promise((r) => setTimeout(r, 400))")
+        self.assertEqual(self.run_script("return location.hash"), "#run=circle&t=4.25&robot=south")
+        for strange in ["#t=NaN&robot=nobody", "#%%%&t=1e999", "#run=nothing", "#t=-5&robot=%00"]:
+            self.open("start.html", strange)
+            self.assertTrue(self.run_script("return document.getElementById('problem').hidden"), strange)
+
+    def test_hostile_names_change_nothing(self):
+        scenario = {"name": self.HOSTILE[0], "description": self.HOSTILE[1] * 1000, "time_limit": 3, "guidance": "none",
+                    "robots": [{"id": name, "position": [0, 2 * k], "goal": [6, 2 * k]} for k, name in enumerate(self.HOSTILE)],
+                    "obstacles": [{"id": name, "polyline": [[9 + k, 0], [9 + k, 1]]} for k, name in enumerate(self.HOSTILE)]}
+        (self.place / "hostile.json").write_text(json.dumps(scenario))
+        self.run_program("view", "hostile.json", "--out", "hostile.html")
+        self.assertNotIn("window.broken = 1", (self.place / "hostile.html").read_text())
+        self.open("hostile.html")
+        for k in range(len(self.HOSTILE)):
+            self.run_script("exactvo.chooseRobot(arguments[0])", k)
+            self.settle()
+            self.assertTrue(self.run_script("return document.getElementById('problem').hidden"))
+            for svg in ["svgOfMoment", "svgOfRun"]:
+                xml.fromstring(self.run_script(f"return exactvo.{svg}()"))
+        self.assertIsNone(self.run_script("return window.broken || null"))
+        self.assertEqual(self.run_script("return document.querySelectorAll('script').length"), 3)
+        self.assertLessEqual(self.run_script("return document.documentElement.scrollWidth"), 1280)
+
+    def damaged(self, name, change):
+        """The page with its run's data changed: `change` takes and gives base64."""
+        text = (self.place / "start.html").read_text()
+        head, rest = text.split('<script type="text/plain" class="run">', 1)
+        data, tail = rest.split("</script>", 1)
+        (self.place / name).write_text(head + '<script type="text/plain" class="run">' + change(data) + "</script>" + tail)
+        self.open(name)
+        self.assertFalse(self.run_script("return document.getElementById('problem').hidden"), name)
+        return self.text("#problem")
+
+    def test_damaged_data_is_said(self):
+        self.run_program("view", "--out", "start.html")
+        self.assertIn("cut short", self.damaged("cut.html", lambda data: data[:len(data) // 2 // 4 * 4]))
+        self.assertIn("not base64", self.damaged("letters.html", lambda data: data[:99] + "\u00e4" + data[100:]))
+
+        def changed(at):
+            return lambda data: data[:at] + ("A" if data[at] != "A" else "B") + data[at + 1:]
+
+        self.assertIn("damaged", self.damaged("bit.html", changed(5000)))
+
+        def repacked(change):
+            return lambda data: b64encode(zlib.compress(change(zlib.decompress(b64decode(data))))).decode()
+
+        self.assertIn("another version", self.damaged("version.html", repacked(lambda b: b"EXVIEW99" + b[8:])))
+        self.assertIn("not a packed run", self.damaged("other.html", repacked(lambda b: b"something else" * 10)))
+        self.assertIn("cut short in column", self.damaged("column.html", repacked(lambda b: b[:len(b) * 3 // 4])))
+        self.assertIn("cut short", self.damaged("head.html", repacked(lambda b: b[:400])))
+
+    def test_a_page_that_is_cut_short_says_so(self):
+        self.run_program("view", "--out", "start.html")
+        text = (self.place / "start.html").read_text()
+        head, rest = text.split('<script type="text/plain" class="run">', 1)
+        script = rest[rest.rindex("<script>"):]
+        (self.place / "none.html").write_text(head + script)
+        self.open("none.html")
+        self.assertIn("a run is missing", self.text("#problem"))
+
+    def test_the_moment_as_svg(self):
+        self.run_program("view", "--out", "start.html")
+        self.open("start.html", "#run=gap&t=3&robot=R3")
+        svg = xml.fromstring(self.run_script("return exactvo.svgOfMoment()"))
+        texts = [e.text for e in svg.iter("{http://www.w3.org/2000/svg}text")]
+        self.assertTrue(any("R3 at 3.00 s" in text for text in texts))
+        self.assertGreater(len(list(svg.iter("{http://www.w3.org/2000/svg}path"))), 20)
+
+    def test_the_run_as_an_animation(self):
+        self.run_program("view", "--out", "start.html")
+        self.open("start.html", "#run=circle")
+        svg = xml.fromstring(self.run_script("return exactvo.svgOfRun()"))
+        animated = list(svg.iter("{http://www.w3.org/2000/svg}animate"))
+        self.assertEqual(len(animated), 2 * 4)
+        for a in animated:
+            self.assertEqual(len(a.get("values").split(";")), len(a.get("keyTimes").split(";")))
+
+    def test_the_run_as_a_film(self):
+        self.run_program("view", "--out", "start.html")
+        self.open("start.html", "#run=circle&t=7.6")
+        size = self.await_script("document.getElementById('film').click(); for (let k = 0; k < 100; ++k) {"
+                                 "await new Promise((r) => setTimeout(r, 100)); if (exactvo.page.film !== undefined) break; }"
+                                 "return exactvo.page.film ? exactvo.page.film.size : 0")
+        self.assertGreater(size, 1000)
+
+    def test_nothing_is_wider_than_a_narrow_screen(self):
+        self.run_program("view", "--out", "start.html")
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 390, "height": 800, "deviceScaleFactor": 2, "mobile": True})
+        try:
+            self.open("start.html", "#run=gap&t=3")
+            self.assertLessEqual(self.run_script("return document.documentElement.scrollWidth"), 390)
+            small = self.run_script("return [...document.querySelectorAll('button, select')].filter((e) => e.offsetParent && "
+                                    "e.getBoundingClientRect().height < 24).map((e) => e.id)")
+            self.assertEqual(small, [])
+        finally:
+            self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+class Proofs(Page):
+    """The page's own checker: the verdicts of C++, and what it says of a recording that was altered."""
+
+    def test_verdicts_are_those_of_the_library(self):
+        count, seed = 20000, int(os.environ.get("EXACTVO_TEST_SEED", "18"))
+        print(f"seed {seed}")
+        lines = subprocess.run([ARGS.cases, str(count), str(seed)], capture_output=True, text=True, check=True).stdout.splitlines()
+        self.assertEqual(len(lines), count)
+        self.run_program("view", "--out", "start.html")
+        self.open("start.html")
+        tally, wrong = {}, []
+        for begin in range(0, count, 2000):
+            cases = "[" + ",".join(lines[begin:begin + 2000]) + "]"
+            verdicts = self.run_script("return JSON.parse(arguments[0]).map((c) => c.claim ? exactvo.checkHalfPlane(c.claim).ok "
+                                       ": exactvo.checkDecision(c.problem, c.answer).ok)", cases)
+            for line, verdict in zip(lines[begin:begin + 2000], verdicts):
+                case = json.loads(line)
+                kind = "half-plane" if "claim" in case else case["answer"]["status"]
+                tally[kind, case["holds"]] = tally.get((kind, case["holds"]), 0) + 1
+                if verdict is not case["holds"]:
+                    wrong.append(line)
+        self.assertEqual(wrong[:3], [], f"{len(wrong)} verdicts differ")
+        print(tally)
+        for kind in ["half-plane", "optimal", "relaxed", "infeasible"]:
+            for holds in [True, False]:
+                self.assertGreater(tally.get((kind, holds), 0), 50, f"{kind} {holds}")
+
+    def record(self):
+        if not (self.place / "A7").exists():
+            self.run_program("simulate", ARGS.data / "paper" / "A7.json", "--record-all", "--no-figures", "--out", "A7")
+        return (self.place / "A7" / "recording.jsonl").read_text().splitlines()
+
+    def altered(self, change):
+        """The counts of the page for the recording with one robot of one row changed."""
+        lines = self.record()
+        for k, line in enumerate(lines):
+            value = json.loads(line)
+            if "row" in value and any(len([c for c in r.get("constraints", []) if c.get("multiplier")]) > 0 for r in value["row"]["robots"]):
+                robot = next(r for r in value["row"]["robots"] if any(c.get("multiplier") for c in r.get("constraints", [])))
+                change(robot, next(c for c in robot["constraints"] if c.get("multiplier")))
+                lines[k] = json.dumps(value)
+                break
+        (self.place / "altered.jsonl").write_text("\n".join(lines) + "\n")
+        self.run_program("view", "altered.jsonl", "--out", "altered.html")
+        self.open("altered.html")
+        return self.await_script("return await exactvo.checkAll()")
+
+    def test_every_proof_of_a_run_holds(self):
+        self.record()
+        self.run_program("view", "A7", "--out", "a7.html")
+        self.open("a7.html")
+        counts = self.await_script("return await exactvo.checkAll()")
+        audit = json.loads(self.run_program("audit", "A7", "--json").stdout)
+        text = json.dumps(audit)
+        self.assertEqual(counts["choices"][1:], [0, 0])
+        self.assertEqual(counts["halfPlanes"][1:], [0, 0])
+        self.assertIn(f'"asked": {counts["choices"][0]}', text)
+        self.assertIn(f'"asked": {counts["halfPlanes"][0]}', text)
+
+    def test_a_multiplier_that_was_altered_is_refuted(self):
+        def change(robot, c):
+            c["multiplier"] *= 1.01
+
+        counts = self.altered(change)
+        self.assertEqual(counts["choices"][1], 1)
+        self.settle()
+        self.assertEqual(self.text("#verdict"), "\u2717 refuted")
+        self.assertIn("do not prove", self.text("#why"))
+
+    def test_a_velocity_beyond_its_half_plane_is_refuted(self):
+        def change(robot, c):
+            robot["chosen"] = [robot["chosen"][k] - 1e-6 * c["normal"][k] for k in range(2)]
+
+        counts = self.altered(change)
+        self.assertEqual(counts["choices"][1], 1)
+        self.settle()
+        self.assertIn("breaks half-plane", self.text("#why"))
+
+    def test_a_half_plane_that_allows_too_much_is_refuted(self):
+        def change(robot, c):
+            c["offset"] -= 0.5  # beyond the margin, which would cover less
+
+        counts = self.altered(change)
+        self.assertGreaterEqual(counts["halfPlanes"][1], 1)
+        self.settle()
+        self.assertGreaterEqual(self.run_script("return document.querySelectorAll('#half-planes .bad').length"), 1)
+
+
+def main():
+    global ARGS
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--cases", required=True)
+    parser.add_argument("--data", required=True, type=pathlib.Path)
+    parser.add_argument("part", choices=["runs", "page", "proofs"])
+    parser.add_argument("names", nargs="*")
+    ARGS = parser.parse_args()
+    missing = [name for name, there in [("chromium", CHROMIUM), ("chromedriver (chromium-driver)", DRIVER), ("python3-selenium", webdriver)] if not there]
+    if missing:
+        print(f"skipped: {', '.join(missing)} not found")
+        sys.exit(77)
+    case = {"runs": Runs, "page": PageItself, "proofs": Proofs}[ARGS.part]
+    suite = unittest.TestLoader().loadTestsFromTestCase(case)
+    if ARGS.names:
+        suite = unittest.TestSuite(case(name) for name in ARGS.names)
+    sys.exit(0 if unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful() else 1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "explorer/packed_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <variant>
+
+#include "exactvo/formation/simulation.h"
+#include "explorer/deflate.h"
+
+namespace exactvo::tools {
+
+using formation::RecordedConstraint;
+using formation::RobotStep;
+using formation::Step;
+using geometry::Vec2;
+using Json = nlohmann::ordered_json;
+
+/// Columns one after the other, each beginning at a multiple of 8 bytes.
+class RunPacker::Columns {
+ public:
+  /// Each entry XORed with the one `stride` before it, which leaves few bits of what changes slowly; then the bytes of
+  /// all entries by their place in the entry. `stride` 0: no XOR.
+  void add(const char* name, const std::vector<double>& values, std::size_t stride) {
+    std::vector<std::uint64_t> bits(values.size());
+    if (!values.empty()) std::memcpy(bits.data(), values.data(), 8 * values.size());
+    const std::vector<std::uint64_t> plain = bits;
+    if (stride > 0)
+      for (std::size_t k = stride; k < bits.size(); ++k) bits[k] ^= plain[k - stride];
+    append(name, "f64", stride, bits);
+  }
+
+  /// The zigzag of each entry's second difference along `stride`: 0 of what moves evenly.
+  void add(const char* name, const std::vector<std::int32_t>& values, std::size_t stride) {
+    std::vector<std::uint32_t> coded(values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const auto at = [&](std::size_t back) {
+        return k < back * stride ? 0U : static_cast<std::uint32_t>(values[k - back * stride]);
+      };
+      const auto difference = static_cast<std::int32_t>(k < 2 * stride ? at(0) - at(1) : at(0) - 2 * at(1) + at(2));
+      coded[k] = (static_cast<std::uint32_t>(difference) << 1) ^ static_cast<std::uint32_t>(difference >> 31);
+    }
+    append(name, "i32", stride, coded);
+  }
+
+  void add(const char* name, const std::vector<std::uint32_t>& values) { append(name, "u32", 0, values); }
+
+  void add(const char* name, const std::vector<std::uint8_t>& values, std::size_t stride) {
+    std::vector<std::uint8_t> coded = values;
+    for (std::size_t k = stride; k < values.size() && stride > 0; ++k)
+      coded[k] = static_cast<std::uint8_t>(values[k] - values[k - stride]);
+    append(name, "u8", stride, coded);
+  }
+
+  const Json& names() const { return names_; }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  template <class Word>
+  void append(const char* name, const char* type, std::size_t stride, const std::vector<Word>& words) {
+    names_.push_back({{"name", name}, {"type", type}, {"count", words.size()}, {"stride", stride}});
+    const std::size_t begin = bytes_.size();
+    bytes_.resize(begin + words.size() * sizeof(Word));
+    for (std::size_t plane = 0; plane < sizeof(Word); ++plane)
+      for (std::size_t k = 0; k < words.size(); ++k)
+        bytes_[begin + plane * words.size() + k] =
+            static_cast<char>(static_cast<std::uint64_t>(words[k]) >> (8 * plane));
+    bytes_.resize((bytes_.size() + 7) / 8 * 8);
+  }
+
+  Json names_ = Json::array();
+  std::string bytes_;
+};
+
+namespace {
+
+constexpr char kMagic[] = "EXVIEW01";
+constexpr std::size_t kMagicLength = sizeof kMagic - 1;
+constexpr std::size_t kMostEvents = 2000;
+/// m and m/s: what a picture does not show.
+constexpr double kFinestQuantum = 0x1p-13;
+/// Doubles of a decision beside its half-planes, and of a half-plane.
+constexpr std::size_t kNumbersOfDecision = 14, kNumbersOfHalfPlane = 6;
+
+// --- The head ---
+
+Json to_json(Vec2 p) {
+  return Json::array({p.x, p.y});
+}
+
+Json flat(const std::vector<Vec2>& points) {
+  Json all = Json::array();
+  for (const Vec2 p : points) {
+    all.push_back(p.x);
+    all.push_back(p.y);
+  }
+  return all;
+}
+
+struct ShapeToJson {
+  Json operator()(const geometry::Disc& d) const { return {{"disc", {d.center.x, d.center.y, d.radius}}}; }
+  Json operator()(const geometry::Segment& s) const { return {{"segment", {s.a.x, s.a.y, s.b.x, s.b.y}}}; }
+  Json operator()(const geometry::ConvexPolygon& p) const { return {{"polygon", flat(p.vertices)}}; }
+  Json operator()(const geometry::Ellipse& e) const {
+    return {{"ellipse", {e.center.x, e.center.y, e.l11, e.l21, e.l22}}};
+  }
+};
+
+Json to_json(const std::string& id, const geometry::Obstacle& shape) {
+  Json rings = Json::array();
+  if (const auto* line = std::get_if<geometry::Polyline>(&shape)) {
+    rings.push_back(flat(line->points));
+  } else {
+    const auto& polygon = std::get<geometry::Polygon>(shape);
+    rings.push_back(flat(polygon.outer));
+    for (const geometry::Ring& hole : polygon.holes) rings.push_back(flat(hole));
+  }
+  return {{"id", id}, {"solid", geometry::has_interior(shape)}, {"rings", std::move(rings)}};
+}
+
+const char* name(vo::BodyKind kind) {
+  switch (kind) {
+    case vo::BodyKind::enclosure:
+      return "enclosure";
+    case vo::BodyKind::obstacle_edge:
+      return "edge";
+    case vo::BodyKind::robot:
+      return "robot";
+    case vo::BodyKind::moving_obstacle:
+      return "moving";
+  }
+  return "";
+}
+
+Json to_json(const vo::Body& body) {
+  Json json = {{"kind", name(body.kind)}, {"owners", body.owners}};
+  const bool is_placed = body.kind == vo::BodyKind::enclosure || body.kind == vo::BodyKind::obstacle_edge;
+  if (is_placed) json["shape"] = std::visit(ShapeToJson{}, body.shape);
+  return json;
+}
+
+Json robots_json(const formation::Scenario& scenario) {
+  Json robots = Json::array();
+  for (const formation::Robot& robot : scenario.robots)
+    robots.push_back({{"id", robot.id},
+                      {"radius", robot.radius},
+                      {"max_speed", robot.max_speed},
+                      {"goals", flat(robot.goals)},
+                      {"cooperates", robot.cooperates}});
+  return robots;
+}
+
+Json scene_json(const formation::Scenario& scenario) {
+  Json obstacles = Json::array(), moving = Json::array();
+  for (const formation::SceneObstacle& o : scenario.obstacles) obstacles.push_back(to_json(o.id, o.shape));
+  for (const formation::MovingObstacle& o : scenario.moving_obstacles) moving.push_back(to_json(o.id, o.shape));
+  return {{"robots", robots_json(scenario)}, {"obstacles", std::move(obstacles)}, {"moving", std::move(moving)}};
+}
+
+template <class Text>
+Json or_null(const std::optional<Text>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json about_json(const datasets::RecordingFile& file) {
+  const formation::Scenario& scenario = file.scenario;
+  const formation::Recording& run = file.recording;
+  Json json = {{"name", scenario.name},
+               {"description", scenario.description},
+               {"method", file.info.method},
+               {"controller", or_null(file.info.controller)},
+               {"guidance", or_null(file.info.guidance)},
+               {"liveness", or_null(file.info.liveness)},
+               {"time_step", run.time_step},
+               {"straight", run.motion == formation::MotionLaw::straight},
+               {"relative_frame", run.relative_frame},
+               {"all_half_planes", run.all_half_planes},
+               {"speed_bound", scenario.speed_bound == formation::SpeedBoundKind::disc ? "disc" : "box"},
+               {"arrival_tolerance", scenario.arrival_tolerance},
+               {"version", file.info.provenance.version},
+               {"commit", file.info.provenance.commit},
+               {"outcome", file.outcome.empty() ? run.outcome : file.outcome},
+               {"warnings", run.warnings}};
+  if (scenario.formation)
+    json["formation"] = {{"offsets", flat(run.offsets)}, {"path", flat(scenario.formation->leader.path)}};
+  json["stuck"] = Json::array();
+  for (const formation::StuckReport& report : file.stuck)
+    json["stuck"].push_back({{"robot", report.robot}, {"text", report.text}});
+  json["collisions"] = Json::array();
+  for (const formation::Collision& c : file.collisions)
+    json["collisions"].push_back({{"robot", c.robot},
+                                  {"kind", name(c.kind)},
+                                  {"with", c.with},
+                                  {"from", c.from},
+                                  {"until", c.until},
+                                  {"at", c.deepest_at},
+                                  {"depth", c.depth},
+                                  {"place", to_json(c.place)}});
+  return json;
+}
+
+Json bodies_json(const formation::Recording& run) {
+  Json bodies = Json::array();
+  for (const vo::Body& body : run.bodies) bodies.push_back(to_json(body));
+  return bodies;
+}
+
+Json outlooks_json(const formation::Recording& run) {
+  Json outlooks = Json::array();
+  for (const formation::Outlook& o : run.outlooks)
+    outlooks.push_back({{"time", o.time}, {"robot", o.robot}, {"goal", o.goal}, {"bodies", o.bodies}});
+  return outlooks;
+}
+
+// --- Rounding ---
+
+/// The finest power of two, at least kFinestQuantum, in which the values take 30 bits.
+double quantum_for(double largest) {
+  double quantum = kFinestQuantum;
+  while (largest / quantum > 0x1p29) quantum *= 2.0;
+  return quantum;
+}
+
+std::int32_t in_quanta(double value, double quantum) {
+  return std::isfinite(value) ? static_cast<std::int32_t>(std::llround(value / quantum)) : 0;
+}
+
+/// Of values that need not be finite: a run may have diverged.
+double larger(double largest, double value) {
+  return std::isfinite(value) ? std::max(largest, std::fabs(value)) : largest;
+}
+
+// --- Decisions ---
+
+std::size_t numbers_in(const Step& row) {
+  std::size_t count = 0;
+  for (const RobotStep& robot : row.robots)
+    count += kNumbersOfDecision + kNumbersOfHalfPlane * robot.constraints.size();
+  return count;
+}
+
+Step without_shapes(Step row) {
+  for (RobotStep& robot : row.robots)
+    for (RecordedConstraint& c : robot.constraints) c.shape = geometry::Disc{};
+  return row;
+}
+
+std::uint8_t flags_of(const RecordedConstraint& c) {
+  return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0));
+}
+
+template <class Value>
+void keep_every_second(std::vector<Value>& all) {
+  for (std::size_t k = 1; 2 * k < all.size(); ++k) all[k] = std::move(all[2 * k]);
+  all.resize((all.size() + 1) / 2);
+}
+
+template <class Columns>
+void add_decisions(const std::vector<Step>& rows, Columns& columns) {
+  std::vector<double> time, moving, state, violation, pressed, line, tau, clearance, multiplier;
+  std::vector<std::uint32_t> counts, parts, body, index, piece;
+  std::vector<std::uint8_t> flags, kinds, status, exact;
+  for (const Step& row : rows) {
+    time.push_back(row.time);
+    for (const RobotStep& r : row.robots) {
+      for (const Vec2 v : {r.anchor, r.anchor_velocity, r.position, r.velocity, r.preferred, r.chosen}) {
+        state.push_back(v.x);
+        state.push_back(v.y);
+      }
+      violation.push_back(r.violation);
+      status.push_back(static_cast<std::uint8_t>(r.status));
+      exact.push_back(r.exact_multipliers ? 1 : 0);
+      counts.push_back(static_cast<std::uint32_t>(r.constraints.size()));
+      parts.push_back(static_cast<std::uint32_t>(r.bound.size()));
+      for (const lp::ActiveConstraint& part : r.bound) {
+        kinds.push_back(static_cast<std::uint8_t>(part.binding.kind));
+        pressed.push_back(part.multiplier);
+      }
+      for (const RecordedConstraint& c : r.constraints) {
+        body.push_back(static_cast<std::uint32_t>(c.body));
+        index.push_back(static_cast<std::uint32_t>(c.index));
+        piece.push_back(static_cast<std::uint32_t>(c.piece));
+        flags.push_back(flags_of(c));
+        line.insert(line.end(), {c.half_plane.normal.x, c.half_plane.normal.y, c.half_plane.offset});
+        tau.push_back(c.tau);
+        clearance.push_back(c.clearance);
+        multiplier.push_back(c.multiplier);
+      }
+    }
+    for (const formation::MovedObstacle& o : row.moving)
+      moving.insert(moving.end(), {o.displacement.x, o.displacement.y, o.velocity.x, o.velocity.y});
+  }
+  const std::size_t robots = rows.empty() ? 0 : rows.front().robots.size();
+  columns.add("decision.time", time, 0);
+  columns.add("decision.state", state, 12 * robots);
+  columns.add("decision.violation", violation, 0);
+  columns.add("decision.status", status, 0);
+  columns.add("decision.exact_multipliers", exact, 0);
+  columns.add("decision.half_planes", counts);
+  columns.add("decision.parts", parts);
+  columns.add("decision.moving", moving, 0);
+  columns.add("part.kind", kinds, 0);
+  columns.add("part.multiplier", pressed, 0);
+  columns.add("half_plane.body", body);
+  columns.add("half_plane.index", index);
+  columns.add("half_plane.piece", piece);
+  columns.add("half_plane.flags", flags, 0);
+  columns.add("half_plane.line", line, 0);
+  columns.add("half_plane.tau", tau, 0);
+  columns.add("half_plane.clearance", clearance, 0);
+  columns.add("half_plane.multiplier", multiplier, 0);
+}
+
+/// Without what differs between equal runs, so that their pages do not.
+Json shown_metrics(const std::string& text) {
+  Json metrics = Json::parse(text, nullptr, false);
+  if (!metrics.is_object()) return nullptr;
+  metrics.erase("wall_time");
+  metrics.erase("provenance");
+  return metrics;
+}
+
+std::string whole(const Json& head, const std::string& columns) {
+  // Names are what their files hold: bytes that are no UTF-8 become U+FFFD.
+  const std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string all(kMagic, kMagicLength);
+  const auto length = static_cast<std::uint32_t>(text.size());
+  for (int shift = 0; shift < 32; shift += 8) all.push_back(static_cast<char>(length >> shift));
+  all += text;
+  all.resize((all.size() + 7) / 8 * 8);
+  return deflated(all + columns);
+}
+
+}  // namespace
+
+// --- RunPacker ---
+
+void RunPacker::add_event(double time, std::size_t robot, const char* kind, std::string text) {
+  if (events_.size() == kMostEvents) {
+    ++events_left_out_;
+    return;
+  }
+  events_.push_back({time, robot, kind, std::move(text)});
+}
+
+void RunPacker::note_events(const Step& row) {
+  const bool first = modes_.empty();
+  modes_.resize(row.robots.size());
+  is_relaxed_.resize(row.robots.size());
+  for (std::size_t i = 0; i < row.robots.size(); ++i) {
+    const RobotStep& r = row.robots[i];
+    const bool relaxed = r.status != lp::Status::optimal;
+    if (!r.note.empty()) add_event(row.time, i, "note", r.note);
+    if (relaxed && !is_relaxed_[i]) add_event(row.time, i, "relaxed", lp::name(r.status));
+    if (!first && r.mode == formation::Mode::arrived && modes_[i] != r.mode)
+      add_event(row.time, i, "arrived", "arrived");
+    modes_[i] = r.mode;
+    is_relaxed_[i] = relaxed;
+  }
+}
+
+void RunPacker::keep_row(const Step& row) {
+  if (last_row_is_extra_) rows_.pop_back();
+  if ((rows_.size() + 1) * row.robots.size() > limits_.states && rows_.size() > 2) {
+    keep_every_second(rows_);
+    every_row_ *= 2;
+  }
+  Row& kept = rows_.emplace_back();
+  kept.time = row.time;
+  kept.leader = row.leader_position;
+  // The final row has none: they stay where they were.
+  kept.moving = row.moving.empty() && rows_.size() > 1 ? rows_[rows_.size() - 2].moving : row.moving;
+  kept.states.reserve(row.robots.size());
+  for (const RobotStep& r : row.robots)
+    kept.states.push_back({r.position.x, r.position.y, r.velocity.x, r.velocity.y, static_cast<std::uint8_t>(r.mode),
+                           static_cast<std::uint8_t>(r.status), static_cast<std::int8_t>(r.side)});
+  last_row_is_extra_ = count_ % every_row_ != 0;
+}
+
+/// The final row of a run has no decisions, and is kept all the same until it is known to be the final one.
+void RunPacker::keep_decisions(const Step& row) {
+  if (count_ % every_decision_ != 0) return;
+  decisions_.push_back(without_shapes(row));
+  decision_numbers_ += numbers_in(row);
+  while (decision_numbers_ > limits_.decision_numbers && decisions_.size() > 1) {
+    keep_every_second(decisions_);
+    every_decision_ *= 2;
+    decision_numbers_ = 0;
+    for (const Step& kept : decisions_) decision_numbers_ += numbers_in(kept);
+  }
+}
+
+void RunPacker::add(const Step& row) {
+  note_events(row);
+  keep_row(row);
+  keep_decisions(row);
+  ++count_;
+}
+
+/// Of the rows the columns, and the quanta they are rounded to.
+Json RunPacker::add_rows(std::size_t robots, Columns& columns) const {
+  double reach = 0.0, speed = 0.0;
+  for (const Row& row : rows_)
+    for (const State& s : row.states) {
+      reach = larger(larger(reach, s.x), s.y);
+      speed = larger(larger(speed, s.vx), s.vy);
+    }
+  const double metres = quantum_for(reach), per_second = quantum_for(speed);
+  std::vector<double> time, leader, moving;
+  std::vector<std::int32_t> x, y, vx, vy;
+  std::vector<std::uint8_t> mode, status, side;
+  for (const Row& row : rows_) {
+    time.push_back(row.time);
+    leader.insert(leader.end(), {row.leader.x, row.leader.y});
+    for (const formation::MovedObstacle& o : row.moving)
+      moving.insert(moving.end(), {o.displacement.x, o.displacement.y});
+    for (const State& s : row.states) {
+      x.push_back(in_quanta(s.x, metres));
+      y.push_back(in_quanta(s.y, metres));
+      vx.push_back(in_quanta(s.vx, per_second));
+      vy.push_back(in_quanta(s.vy, per_second));
+      mode.push_back(s.mode);
+      status.push_back(s.status);
+      side.push_back(static_cast<std::uint8_t>(s.side + 1));
+    }
+  }
+  columns.add("time", time, 0);
+  columns.add("x", x, robots);
+  columns.add("y", y, robots);
+  columns.add("vx", vx, robots);
+  columns.add("vy", vy, robots);
+  columns.add("mode", mode, robots);
+  columns.add("status", status, robots);
+  columns.add("side", side, robots);
+  columns.add("leader", leader, 2);
+  columns.add("moving", moving, 0);
+  return {{"position", metres}, {"velocity", per_second}};
+}
+
+/// The final row of a run has no decisions.
+std::vector<Step> RunPacker::decided() const {
+  std::vector<Step> rows = decisions_;
+  if (rows.size() > 1 && rows.back().time == rows_.back().time) rows.pop_back();
+  return rows;
+}
+
+Json RunPacker::events_json() const {
+  Json events = Json::array();
+  for (const Event& e : events_)
+    events.push_back({{"time", e.time}, {"robot", e.robot}, {"kind", e.kind}, {"text", e.text}});
+  return events;
+}
+
+std::string RunPacker::finish(const datasets::RecordingFile& about, const std::string& metrics_json) const {
+  Columns columns;
+  const Json quantum = add_rows(about.scenario.robots.size(), columns);
+  const std::vector<Step> decisions = decided();
+  add_decisions(decisions, columns);
+  Json head = {{"run", about_json(about)}, {"scene", scene_json(about.scenario)}};
+  head["bodies"] = bodies_json(about.recording);
+  head["outlooks"] = outlooks_json(about.recording);
+  head["events"] = events_json();
+  head["events_left_out"] = events_left_out_;
+  head["metrics"] = shown_metrics(metrics_json);
+  head["rows"] = {{"count", rows_.size()}, {"of", count_}, {"every", every_row_}};
+  head["decisions"] = {{"count", decisions.size()}, {"every", every_decision_}};
+  head["quantum"] = quantum;
+  head["modes"] = Json::array();
+  for (int k = 0; k <= static_cast<int>(formation::Mode::arrived); ++k)
+    head["modes"].push_back(formation::name(static_cast<formation::Mode>(k)));
+  head["statuses"] = Json::array();
+  for (int k = 0; k <= static_cast<int>(lp::Status::no_interior); ++k)
+    head["statuses"].push_back(lp::name(static_cast<lp::Status>(k)));
+  head["columns"] = columns.names();
+  return whole(head, columns.bytes());
+}
+
+std::string packed_run(const datasets::RecordingFile& file, const std::string& metrics_json, PackedRunLimits limits) {
+  RunPacker packer(limits);
+  for (const Step& row : file.recording.steps) packer.add(row);
+  return packer.finish(file, metrics_json);
+}
+
+}  // namespace exactvo::tools

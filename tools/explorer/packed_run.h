@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A run as the page of `exactvo view` reads it: a JSON head and columns of numbers, deflated.
+///
+///     "EXVIEW01" | length of the head (uint32) | head (JSON) | zeros to a multiple of 8 | columns
+///
+/// little endian, in zlib's format, so that a browser inflates it by itself and notices bytes that are missing or
+/// changed. The head names each column with its type, its number of entries and how it is coded; page/columns.js reads
+/// them. Positions and velocities of all rows are rounded (to 2^-13 m, 2^-13 m/s or coarser in a wide scene), which is
+/// what a picture shows. Decisions (velocities, half-planes, multipliers) are the recording's doubles, bit for bit, so
+/// that the page can check their proofs.
+///
+/// Long runs are thinned: of rows and of decisions every second, fourth and so on is kept, and always the last one. The
+/// head says which.
+///
+/// Neighbours: page.h puts it into a page; support/run_recorder.h fills one while a run is made.
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/recording_file.h"
+
+namespace exactvo::tools {
+
+/// What a page holds at most. A state is one robot in one row.
+struct PackedRunLimits {
+  std::size_t states = 1U << 20;            ///< positions and velocities
+  std::size_t decision_numbers = 1U << 20;  ///< doubles of decisions: about twenty a robot and six a half-plane
+};
+
+/// Takes rows as they are made, in memory bounded by its limits.
+class RunPacker {
+ public:
+  explicit RunPacker(PackedRunLimits limits = {}) : limits_(limits) {}
+
+  /// In the order of time. Shapes of half-planes are not kept: their bodies have them.
+  void add(const formation::Step& row);
+
+  /// Of `about` everything but the rows. `metrics_json` as datasets::metrics_json writes it; empty where there is none.
+  std::string finish(const datasets::RecordingFile& about, const std::string& metrics_json) const;
+
+ private:
+  struct State {
+    double x = 0.0, y = 0.0, vx = 0.0, vy = 0.0;
+    std::uint8_t mode = 0, status = 0;
+    std::int8_t side = 0;
+  };
+  struct Row {
+    double time = 0.0;
+    geometry::Vec2 leader;
+    std::vector<State> states;
+    std::vector<formation::MovedObstacle> moving;
+  };
+  struct Event {
+    double time = 0.0;
+    std::size_t robot = 0;
+    std::string kind, text;
+  };
+
+  class Columns;
+
+  nlohmann::ordered_json add_rows(std::size_t robots, Columns& columns) const;
+  nlohmann::ordered_json events_json() const;
+  std::vector<formation::Step> decided() const;
+  void note_events(const formation::Step& row);
+  void add_event(double time, std::size_t robot, const char* kind, std::string text);
+  void keep_row(const formation::Step& row);
+  void keep_decisions(const formation::Step& row);
+
+  PackedRunLimits limits_;
+  std::size_t count_ = 0;  ///< rows so far
+  std::vector<Row> rows_;
+  std::size_t every_row_ = 1;
+  bool last_row_is_extra_ = false;
+  std::vector<formation::Step> decisions_;
+  std::size_t every_decision_ = 1, decision_numbers_ = 0;
+  std::vector<formation::Mode> modes_;  ///< of the row before, by robot, as the next
+  std::vector<bool> is_relaxed_;
+  std::vector<Event> events_;
+  std::size_t events_left_out_ = 0;
+};
+
+/// The whole of a recording that was read.
+std::string packed_run(const datasets::RecordingFile& file, const std::string& metrics_json,
+                       PackedRunLimits limits = {});
+
+}  // namespace exactvo::tools

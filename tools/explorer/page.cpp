@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "explorer/page.h"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "paper/document.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+/// Nothing but base64 reaches the markup, whatever names and titles hold.
+std::string element(const char* kind, const std::string& bytes) {
+  return std::string("<script type=\"text/plain\" class=\"") + kind + "\">" + base64(bytes) + "</script>\n";
+}
+
+}  // namespace
+
+std::string page_key(const std::string& text) {
+  constexpr std::size_t kLongest = 80;
+  std::string key;
+  for (const char c : text) {
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_';
+    key += plain ? c : '-';
+  }
+  return key.substr(0, kLongest);
+}
+
+std::string explorer_page(const std::vector<PageRun>& runs, bool is_guide) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  std::string elements;
+  for (const PageRun& run : runs) {
+    list.push_back({{"key", run.key}, {"title", run.title}, {"description", run.description}});
+    elements += element("run", run.packed);
+  }
+  const nlohmann::ordered_json about = {{"guide", is_guide}, {"runs", list}};
+  const std::string words = about.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const std::string shell = kExplorerShell, mark = "__RUNS__";
+  const std::size_t place = shell.find(mark);
+  if (place == std::string::npos) throw std::logic_error("the page has no place for runs");
+  return shell.substr(0, place) + element("runs", words) + elements + shell.substr(place + mark.size());
+}
+
+}  // namespace exactvo::tools

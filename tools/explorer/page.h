@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The page of `exactvo view`: one HTML file with its program, its style and its runs, which needs no network. Its
+/// sources are in page/; cmake/EmbedExplorer.cmake joins them and puts them into the program.
+///
+/// Neighbours: packed_run.h (how a run stands in it).
+
+#include <string>
+#include <vector>
+
+namespace exactvo::tools {
+
+/// A run of a page. Title and words are shown as text, whatever they hold.
+struct PageRun {
+  std::string key;          ///< in the page's address: letters, digits, '-', '.' and '_' only
+  std::string title;        ///< in the list of runs
+  std::string description;  ///< what to look at, a few sentences; may be empty
+  std::string packed;       ///< RunPacker::finish
+};
+
+/// Whole. `is_guide`: the runs are scenes to start from, listed with their words, rather than the user's own.
+std::string explorer_page(const std::vector<PageRun>& runs, bool is_guide = false);
+
+/// The page's name beside other output.
+inline constexpr const char* kPageName = "explorer.html";
+
+/// `text` as a key: other characters become '-'.
+std::string page_key(const std::string& text);
+
+/// The page without runs, with __RUNS__ where they go. Made by cmake/EmbedExplorer.cmake.
+extern const char* const kExplorerShell;
+
+}  // namespace exactvo::tools

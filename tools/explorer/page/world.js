@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The world: obstacles, enclosures, robots with heading and trail, goals, who presses on whom.
+import {drawGrid, label, line, arrow, shortName, tracePoints} from './draw.js';
+import {distanceToSegment} from './shapes.js';
+
+const CROWD = 60;          // robots: more than this are drawn in bulk, without names and trails
+const MOST_TRAIL = 4000;   // points of a trail
+
+// Positions of all robots at a time, between two rows where it lies there. No allocation per frame.
+class Positions {
+  constructor(run) {
+    this.run = run;
+    this.x = new Float64Array(run.n);
+    this.y = new Float64Array(run.n);
+    this.row = 0;
+  }
+  at(t) {
+    const run = this.run, row = run.rowAt(t), next = Math.min(row + 1, run.rows - 1);
+    const span = run.time[next] - run.time[row];
+    const f = span > 0 ? Math.max(0, Math.min(1, (t - run.time[row]) / span)) : 0;
+    const xs = run.columns['x'], ys = run.columns['y'], a = row * run.n, b = next * run.n;
+    for (let i = 0; i < run.n; ++i) {
+      this.x[i] = ((1 - f) * xs[a + i] + f * xs[b + i]) * run.scale;
+      this.y[i] = ((1 - f) * ys[a + i] + f * ys[b + i]) * run.scale;
+    }
+    this.row = row;
+    return this;
+  }
+}
+
+// All that a run touches, for the first view.
+function extentOf(run) {
+  const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+  const add = (x, y, r) => {
+    if (!Number.isFinite(x) || !Number.isFinite(y)) return;
+    low[0] = Math.min(low[0], x - r);
+    low[1] = Math.min(low[1], y - r);
+    high[0] = Math.max(high[0], x + r);
+    high[1] = Math.max(high[1], y + r);
+  };
+  const stride = Math.max(1, Math.floor(run.rows / 400));
+  for (let row = 0; row < run.rows; row += stride)
+    for (let i = 0; i < run.n; ++i) add(run.x(row, i), run.y(row, i), run.robots[i].radius);
+  for (const o of [...run.obstacles, ...run.moving])
+    for (const ring of o.rings) for (let k = 0; k < ring.length; k += 2) add(ring[k], ring[k + 1], 0);
+  for (const r of run.robots) for (let k = 0; k < r.goals.length; k += 2) add(r.goals[k], r.goals[k + 1], 0.3);
+  return {low, high};
+}
+
+function colourOf(colours, i) {
+  return colours.series[i % colours.series.length];
+}
+
+function traceRings(ctx, view, obstacle, ox, oy) {
+  ctx.beginPath();
+  for (const ring of obstacle.rings) {
+    for (let k = 0; k < ring.length; k += 2) {
+      const x = view.px(ring[k] + ox), y = view.py(ring[k + 1] + oy);
+      if (k === 0) ctx.moveTo(x, y);
+      else ctx.lineTo(x, y);
+    }
+    if (obstacle.solid) ctx.closePath();
+  }
+}
+
+function drawObstacle(ctx, view, colours, obstacle, ox, oy, isMarked) {
+  traceRings(ctx, view, obstacle, ox, oy);
+  if (obstacle.solid) {
+    ctx.fillStyle = colours.obstacle;
+    ctx.fill('evenodd');
+  }
+  ctx.strokeStyle = isMarked ? colours.active : colours.obstacleLine;
+  ctx.lineWidth = (obstacle.solid ? 1.5 : 3.5) + (isMarked ? 1.5 : 0);
+  ctx.lineJoin = 'round';
+  ctx.stroke();
+}
+
+function outlineOf(shape) {
+  if (shape.segment || shape.polygon) {
+    const numbers = shape.segment || shape.polygon, points = [];
+    for (let k = 0; k < numbers.length; k += 2) points.push([numbers[k], numbers[k + 1]]);
+    return points;
+  }
+  const [cx, cy, a, b, c] = shape.ellipse || [shape.disc[0], shape.disc[1], shape.disc[2], 0, shape.disc[2]];
+  const points = [];
+  for (let i = 0; i < 96; ++i) {
+    const u = Math.cos(i * Math.PI / 48), w = Math.sin(i * Math.PI / 48);
+    points.push([cx + a * u, cy + b * u + c * w]);
+  }
+  return points;
+}
+
+// The enclosures that the chosen robot sees at a time.
+function outlookAt(run, robot, t) {
+  let found = null;
+  for (const o of run.head.outlooks) if (o.robot === robot && o.time <= t + 1e-9) found = o;
+  return found;
+}
+
+function drawEnclosures(ctx, view, colours, run, ui) {
+  const outlook = outlookAt(run, ui.robot, ui.t);
+  if (!outlook) return;
+  ctx.strokeStyle = colours.enclosure;
+  ctx.lineWidth = 1.2;
+  ctx.setLineDash([5, 4]);
+  for (const number of outlook.bodies) {
+    const shape = run.bodies[number].shape;
+    if (!shape || !shape.ellipse) continue;  // others are the obstacle's own lines
+    tracePoints(ctx, view, outlineOf(shape), true);
+    ctx.stroke();
+  }
+  ctx.setLineDash([]);
+}
+
+function drawTrail(ctx, view, run, robot, from, until) {
+  const stride = Math.max(1, Math.ceil((until - from) / MOST_TRAIL));
+  ctx.beginPath();
+  let lastX = NaN, lastY = NaN;
+  for (let row = from; row <= until; row += stride) {
+    const x = view.px(run.x(row, robot)), y = view.py(run.y(row, robot));
+    if (Math.abs(x - lastX) + Math.abs(y - lastY) < 1.5) continue;
+    if (row === from) ctx.moveTo(x, y);
+    else ctx.lineTo(x, y);
+    lastX = x;
+    lastY = y;
+  }
+  ctx.stroke();
+}
+
+function drawTrails(ctx, view, colours, run, ui, row) {
+  ctx.lineJoin = 'round';
+  const recent = run.rowAt(Math.max(0, run.time[row] - 4));
+  for (let i = 0; i < run.n; ++i) {
+    if (run.n > CROWD && i !== ui.robot) continue;
+    ctx.strokeStyle = colourOf(colours, i);
+    ctx.globalAlpha = 0.3;
+    ctx.lineWidth = 1.2;
+    drawTrail(ctx, view, run, i, 0, run.rows - 1);
+    ctx.globalAlpha = 1;
+    ctx.lineWidth = 2.2;
+    drawTrail(ctx, view, run, i, recent, row);
+  }
+  ctx.globalAlpha = 1;
+}
+
+function drawGoals(ctx, view, colours, run, ui) {
+  ctx.lineWidth = 1.5;
+  for (let i = 0; i < run.n; ++i) {
+    if (run.n > CROWD && i !== ui.robot) continue;
+    const goals = run.robots[i].goals;
+    ctx.strokeStyle = colourOf(colours, i);
+    for (let k = 0; k < goals.length; k += 2) {
+      const x = view.px(goals[k]), y = view.py(goals[k + 1]), s = k + 2 === goals.length ? 5 : 3;
+      line(ctx, x - s, y - s, x + s, y + s);
+      line(ctx, x - s, y + s, x + s, y - s);
+    }
+  }
+}
+
+function drawLeader(ctx, view, colours, run, row) {
+  if (!run.about.formation) return;
+  const path = run.about.formation.path;
+  ctx.strokeStyle = colours.axis;
+  ctx.lineWidth = 1;
+  ctx.setLineDash([2, 4]);
+  ctx.beginPath();
+  for (let k = 0; k < path.length; k += 2) {
+    if (k === 0) ctx.moveTo(view.px(path[k]), view.py(path[k + 1]));
+    else ctx.lineTo(view.px(path[k]), view.py(path[k + 1]));
+  }
+  ctx.stroke();
+  ctx.setLineDash([]);
+  const leader = run.columns['leader'], x = leader[2 * row], y = leader[2 * row + 1], offsets = run.about.formation.offsets;
+  ctx.strokeStyle = colours.faint;
+  for (let i = 0; i < run.n; ++i) {
+    ctx.beginPath();
+    ctx.arc(view.px(x + offsets[2 * i]), view.py(y + offsets[2 * i + 1]), 4, 0, 2 * Math.PI);
+    ctx.stroke();
+  }
+  ctx.fillStyle = colours.faint;
+  ctx.beginPath();
+  ctx.arc(view.px(x), view.py(y), 3, 0, 2 * Math.PI);
+  ctx.fill();
+}
+
+// In bulk: one path a colour.
+function drawCrowd(ctx, view, colours, run, positions) {
+  const modes = run.columns['mode'], statuses = run.columns['status'], at = positions.row * run.n;
+  const arrived = run.head.modes.indexOf('arrived');
+  for (let group = 0; group < 3; ++group) {
+    ctx.fillStyle = group === 0 ? colours.series[0] : group === 1 ? colours.axis : colours.bad;
+    ctx.beginPath();
+    for (let i = 0; i < run.n; ++i) {
+      const kind = statuses[at + i] !== 0 ? 2 : modes[at + i] === arrived ? 1 : 0;
+      if (kind !== group) continue;
+      const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = run.robots[i].radius * view.scale;
+      if (x < -r || y < -r || x > view.width + r || y > view.height + r) continue;
+      if (r < 2.5) {
+        ctx.rect(x - r, y - r, 2 * r, 2 * r);
+      } else {
+        ctx.moveTo(x + r, y);
+        ctx.arc(x, y, r, 0, 2 * Math.PI);
+      }
+    }
+    ctx.fill();
+  }
+}
+
+function drawRobot(ctx, view, colours, run, ui, positions, i) {
+  const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = Math.max(2.5, run.robots[i].radius * view.scale);
+  ctx.fillStyle = colourOf(colours, i);
+  ctx.globalAlpha = 0.85;
+  ctx.beginPath();
+  ctx.arc(x, y, r, 0, 2 * Math.PI);
+  ctx.fill();
+  ctx.globalAlpha = 1;
+  if (i === ui.robot) {
+    ctx.strokeStyle = colours.selected;
+    ctx.lineWidth = 2.5;
+    ctx.beginPath();
+    ctx.arc(x, y, r + 3, 0, 2 * Math.PI);
+    ctx.stroke();
+  }
+  const vx = run.vx(positions.row, i), vy = run.vy(positions.row, i), speed = Math.hypot(vx, vy);
+  if (speed > 1e-3) {
+    ctx.strokeStyle = ctx.fillStyle = colours.text;
+    ctx.lineWidth = 1.6;
+    arrow(ctx, x, y, x + vx * view.scale * 0.6, y - vy * view.scale * 0.6, 8);
+  }
+}
+
+// Whose half-planes press on whom (multiplier above 0): thin arrows between robots.
+function drawPressure(ctx, view, colours, run, ui, positions) {
+  const row = run.decisionRowAt(ui.t);
+  if (row < 0 || run.n > 200) return;
+  const index = run.columns['half_plane.index'], lambda = run.columns['half_plane.multiplier'];
+  const body = run.columns['half_plane.body'];
+  ctx.strokeStyle = ctx.fillStyle = colours.active;
+  ctx.setLineDash([3, 3]);
+  for (let i = 0; i < run.n; ++i) {
+    ctx.lineWidth = i === ui.robot ? 1.8 : 0.9;
+    ctx.globalAlpha = i === ui.robot ? 1 : 0.55;
+    for (let k = run.starts[row * run.n + i]; k < run.starts[row * run.n + i + 1]; ++k) {
+      if (!(lambda[k] > 1e-6) || run.bodies[body[k]].kind !== 'robot') continue;
+      const j = index[k];
+      arrow(ctx, view.px(positions.x[i]), view.py(positions.y[i]), view.px(positions.x[j]), view.py(positions.y[j]), 7);
+    }
+  }
+  ctx.globalAlpha = 1;
+  ctx.setLineDash([]);
+}
+
+// Obstacles that press on the chosen robot, by index.
+function pressingObstacles(run, decision) {
+  const marked = new Set();
+  if (!decision) return marked;
+  for (const h of decision.halfPlanes)
+    if (h.multiplier > 1e-6 && (h.kind === 'edge' || h.kind === 'enclosure')) for (const o of run.bodies[h.body].owners) marked.add(o);
+  return marked;
+}
+
+function drawPinnedBody(ctx, view, colours, ui, decision) {
+  const h = decision && ui.halfPlane !== null ? decision.halfPlanes[ui.halfPlane] : null;
+  if (!h) return;
+  ctx.strokeStyle = colours.active;
+  ctx.lineWidth = 3;
+  tracePoints(ctx, view, outlineOf(h.shape), !h.shape.segment);
+  ctx.stroke();
+}
+
+function drawCollisions(ctx, view, colours, run, t) {
+  ctx.strokeStyle = colours.bad;
+  ctx.lineWidth = 2.5;
+  for (const c of run.about.collisions) {
+    if (c.from > t + 1e-9) continue;
+    const x = view.px(c.place[0]), y = view.py(c.place[1]);
+    line(ctx, x - 7, y, x + 7, y);
+    line(ctx, x, y - 7, x, y + 7);
+  }
+}
+
+function drawNames(ctx, view, colours, run, ui, positions) {
+  ctx.font = 'bold 12px system-ui, sans-serif';
+  ctx.textAlign = 'left';
+  for (let i = 0; i < run.n; ++i) {
+    if (run.n > CROWD && i !== ui.robot) continue;
+    const r = run.robots[i].radius * view.scale;
+    label(ctx, shortName(run.robots[i].id, 18), view.px(positions.x[i]) + r + 5, view.py(positions.y[i]) - r - 1,
+      colours.text, colours.label);
+  }
+}
+
+// ui: {t, robot, halfPlane, colours}; decision: of the chosen robot, or null.
+function drawWorld(ctx, view, run, positions, ui, decision) {
+  const colours = ui.colours;
+  ctx.fillStyle = colours.ground;
+  ctx.fillRect(0, 0, view.width, view.height);
+  const numbers = drawGrid(ctx, view, colours, 'm');
+  const marked = pressingObstacles(run, decision);
+  for (let k = 0; k < run.obstacles.length; ++k) drawObstacle(ctx, view, colours, run.obstacles[k], 0, 0, marked.has(k));
+  const moved = run.columns['moving'];
+  for (let k = 0; k < run.moving.length; ++k) {
+    const at = 2 * (positions.row * run.moving.length + k);
+    drawObstacle(ctx, view, colours, run.moving[k], moved[at], moved[at + 1], false);
+  }
+  drawEnclosures(ctx, view, colours, run, ui);
+  drawGoals(ctx, view, colours, run, ui);
+  drawTrails(ctx, view, colours, run, ui, positions.row);
+  drawLeader(ctx, view, colours, run, positions.row);
+  if (run.n > CROWD) drawCrowd(ctx, view, colours, run, positions);
+  for (let i = 0; i < run.n; ++i) if (run.n <= CROWD || i === ui.robot) drawRobot(ctx, view, colours, run, ui, positions, i);
+  drawPressure(ctx, view, colours, run, ui, positions);
+  drawPinnedBody(ctx, view, colours, ui, decision);
+  drawCollisions(ctx, view, colours, run, ui.t);
+  drawNames(ctx, view, colours, run, ui, positions);
+  numbers();
+}
+
+// What does not move: for an animation.
+function drawStill(ctx, view, run, ui) {
+  const colours = ui.colours;
+  ctx.fillStyle = colours.ground;
+  ctx.fillRect(0, 0, view.width, view.height);
+  const numbers = drawGrid(ctx, view, colours, 'm');
+  for (const o of run.obstacles) drawObstacle(ctx, view, colours, o, 0, 0, false);
+  drawGoals(ctx, view, colours, run, ui);
+  drawTrails(ctx, view, colours, run, ui, 0);
+  numbers();
+}
+
+// What lies under a point of the screen: {robot}, {obstacle} or {moving}; null where nothing does.
+function pickInWorld(view, run, positions, px, py) {
+  let best = null, nearest = 14;
+  for (let i = 0; i < run.n; ++i) {
+    const d = Math.hypot(view.px(positions.x[i]) - px, view.py(positions.y[i]) - py) - run.robots[i].radius * view.scale;
+    if (d < Math.min(nearest, 6)) {
+      nearest = d;
+      best = {robot: i};
+    }
+  }
+  if (best) return best;
+  const x = view.x(px), y = view.y(py);
+  const near = (o, ox, oy) => {
+    for (const ring of o.rings)
+      for (let k = 0; k + (o.solid ? 0 : 2) < ring.length; k += 2) {
+        const j = (k + 2) % ring.length;
+        if (distanceToSegment(x, y, ring[k] + ox, ring[k + 1] + oy, ring[j] + ox, ring[j + 1] + oy) * view.scale < 7) return true;
+      }
+    return false;
+  };
+  for (let k = 0; k < run.obstacles.length; ++k) if (near(run.obstacles[k], 0, 0)) return {obstacle: k};
+  const moved = run.columns['moving'];
+  for (let k = 0; k < run.moving.length; ++k) {
+    const at = 2 * (positions.row * run.moving.length + k);
+    if (near(run.moving[k], moved[at], moved[at + 1])) return {moving: k};
+  }
+  return null;
+}
+
+export {Positions, extentOf, drawWorld, drawStill, pickInWorld, colourOf, CROWD};
