@@ -268,7 +268,7 @@ TEST(Simulate, OutputIsComplete) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   const auto files = here.files("out");
-  for (const char* name : {"recording.jsonl", "metrics.json", "trajectory.csv", "lyapunov.csv"})
+  for (const char* name : {"recording.jsonl", "metrics.json", "trajectory.csv", "lyapunov.csv", "explorer.html"})
     EXPECT_EQ(files.count(name), 1u) << name;
   for (const char* figure :
        {"paths", "obstacle_distance", "robot_distance", "velocity", "formation_error", "lyapunov"}) {
@@ -280,7 +280,7 @@ TEST(Simulate, OutputIsComplete) {
     EXPECT_THAT(files.at(std::string("figures/") + figure + ".svg"), HasSubstr("</svg>"));
   }
   EXPECT_TRUE(json::accept(files.at("metrics.json")));
-  EXPECT_EQ(files.size(), 4u + 6u * 5u) << "nothing else";
+  EXPECT_EQ(files.size(), 5u + 6u * 5u) << "nothing else";
 }
 
 TEST(Simulate, SaysWhatAFormationIsBeforeAndWhyARobotStopped) {
