@@ -162,8 +162,8 @@ def raises_beyond_lattice_in_a_step(crowd):
 
 
 def too_many_kinds(crowd):
-    for k in range(257):
-        crowd.add_kind(exactvo.RobotKind(radius=1 + k / 1000))
+    for k in range(2**14 + 1):
+        crowd.add_kind(exactvo.RobotKind(radius=1 + k / 2**14))
 
 
 @pytest.mark.parametrize(
@@ -178,7 +178,7 @@ def too_many_kinds(crowd):
         (lambda c: c.add_robot((0, 0), radius=-1), "out-of-range"),
         (lambda c: c.add_robot((0, 0), radius=math.nan), "not-finite"),
         (lambda c: c.add_robot((0, 0), kind=7), "unknown-kind"),
-        (lambda c: c.add_robot((0, 0), kind=700), "unknown-kind"),
+        (lambda c: c.add_robot((0, 0), kind=70000), "unknown-kind"),
         (lambda c: c.remove_robot(3), "unknown-robot"),
         (lambda c: c.explain(-1), "unknown-robot"),
         (lambda c: c.remove_obstacle(3), "unknown-obstacle"),

@@ -230,7 +230,7 @@ RobotId robot_id(const py::int_& id) {
 formation::KindId kind_id(const py::int_& id) {
   const long long value = PyLong_AsLongLong(id.ptr());
   PyErr_Clear();
-  if (value < 0 || value > 255)
+  if (value < 0 || value > std::numeric_limits<formation::KindId>::max())
     throw formation::CrowdError(formation::CrowdProblem::unknown_kind,
                                 "no kind has the number " + std::string(py::repr(id)));
   return static_cast<formation::KindId>(value);

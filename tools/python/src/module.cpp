@@ -14,4 +14,5 @@ PYBIND11_MODULE(_exactvo, module) {
   bind_crowd(module);
   bind_simulate(module);
   bind_obstacle_files(module);
+  bind_rvo2(module);
 }
