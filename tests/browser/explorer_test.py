@@ -357,6 +357,26 @@ class PageItself(Page):
         self.open("none.html")
         self.assertIn("a run is missing", self.text("#problem"))
 
+    def test_a_long_wall_fills_the_view_behind_its_cut_off(self):
+        """Its legs open by nearly 180 degrees; a ring that ended on them left velocities beyond unpainted."""
+        scenario = {"name": "long wall", "time_limit": 1, "guidance": "none", "robots": [{"id": "R1", "position": [0, 0], "goal": [0, -9]}],
+                    "obstacles": [{"id": "wall", "polyline": [[-60, -0.7], [60, -0.7]]}]}
+        (self.place / "wall.json").write_text(json.dumps(scenario))
+        self.run_program("view", "wall.json", "--method", "orca", "--out", "wall.html")
+        self.open("wall.html", "#t=0.5&theme=light")
+        painted = self.run_script("""const c = document.getElementById('space'), p = exactvo.page.plane, ctx = c.getContext('2d');
+            return [[0.4, -1], [-0.4, -2.5], [1.1, -3.4], [-1.7, -3.3]].map(([x, y]) => ctx.getImageData(Math.round(p.px(x)), Math.round(p.py(y)), 1, 1).data.join())""")
+        self.assertNotIn("255,255,255,255", painted)
+
+    def test_who_waits_for_whom(self):
+        scenario = {"name": "narrow", "time_limit": 12, "guidance": "none",
+                    "robots": [{"id": "left", "position": [-4, 0], "goal": [4, 0]}, {"id": "right", "position": [4, 0], "goal": [-4, 0]}],
+                    "obstacles": [{"id": f"wall {y}", "polyline": [[-6, y], [6, y]]} for y in (-0.7, 0.7)]}
+        (self.place / "narrow.json").write_text(json.dumps(scenario))
+        self.run_program("view", "narrow.json", "--out", "narrow.html")
+        self.open("narrow.html", "#t=9&robot=left")
+        self.assertEqual(self.text("[data-fact=waiting]"), "waits for right, which waits for left: a deadlock")
+
     def test_the_moment_as_svg(self):
         self.run_program("view", "--out", "start.html")
         self.open("start.html", "#run=gap&t=3&robot=R3")

@@ -32,6 +32,10 @@ TEST(Paper, EveryRunIsInTheSummaryAndEveryFigureIsDrawnTwiceTheSame) {
     EXPECT_TRUE(without_times(text) == without_times(b.at(name))) << name << " differs";
   }
 
+  EXPECT_EQ(a.count("explorer.html"), 1u);
+  EXPECT_THAT(a.at("report.html"), testing::HasSubstr("<a href=\"explorer.html\">"));
+  EXPECT_THAT(a.at("report.md"), testing::HasSubstr("](explorer.html)"));
+
   std::set<std::string> runs;
   for (const json& run : json::parse(a.at("summary.json"))) {
     runs.insert(run["scenario"].get<std::string>() + " " + run["method"].get<std::string>() + " " +

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "exactvo/formation/simulation.h"
+#include "exactvo/formation/waiting.h"
 #include "explorer/deflate.h"
 
 namespace exactvo::tools {
@@ -260,12 +261,15 @@ void keep_every_second(std::vector<Value>& all) {
 }
 
 template <class Columns>
-void add_decisions(const std::vector<Step>& rows, Columns& columns) {
+void add_decisions(const std::vector<Step>& rows, const formation::Scenario& scenario, Columns& columns) {
   std::vector<double> time, moving, state, violation, pressed, line, tau, clearance, multiplier;
-  std::vector<std::uint32_t> counts, parts, body, index, piece;
+  std::vector<std::uint32_t> counts, parts, waits, body, index, piece;
   std::vector<std::uint8_t> flags, kinds, status, exact;
   for (const Step& row : rows) {
     time.push_back(row.time);
+    // Of each robot the one that holds it most, by its number from 1 on.
+    for (const std::vector<std::size_t>& by : formation::waiting_in(scenario, row))
+      waits.push_back(by.empty() ? 0 : static_cast<std::uint32_t>(by.front() + 1));
     for (const RobotStep& r : row.robots) {
       for (const Vec2 v : {r.anchor, r.anchor_velocity, r.position, r.velocity, r.preferred, r.chosen}) {
         state.push_back(v.x);
@@ -303,6 +307,7 @@ void add_decisions(const std::vector<Step>& rows, Columns& columns) {
   columns.add("decision.half_planes", counts);
   columns.add("decision.parts", parts);
   columns.add("decision.moving", moving, 0);
+  columns.add("decision.waits", waits);
   columns.add("part.kind", kinds, 0);
   columns.add("part.multiplier", pressed, 0);
   columns.add("half_plane.body", body);
@@ -459,7 +464,7 @@ std::string RunPacker::finish(const datasets::RecordingFile& about, const std::s
   Columns columns;
   const Json quantum = add_rows(about.scenario.robots.size(), columns);
   const std::vector<Step> decisions = decided();
-  add_decisions(decisions, columns);
+  add_decisions(decisions, about.scenario, columns);
   Json head = {{"run", about_json(about)}, {"scene", scene_json(about.scenario)}};
   head["bodies"] = bodies_json(about.recording);
   head["outlooks"] = outlooks_json(about.recording);

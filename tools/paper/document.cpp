@@ -73,6 +73,7 @@ struct MarkdownWriter {
     return std::string(static_cast<std::size_t>(h.level), '#') + " " + escaped_markdown(h.text) + "\n\n";
   }
   std::string operator()(const Paragraph& p) const { return escaped_markdown(p.text) + "\n\n"; }
+  std::string operator()(const Link& l) const { return "[" + escaped_markdown(l.text) + "](" + l.file + ")\n\n"; }
   std::string operator()(const Table& t) const {
     std::string text = markdown_row(t.head) + "|";
     for (std::size_t i = 0; i < t.head.size(); ++i) text += "---|";
@@ -106,6 +107,9 @@ struct HtmlWriter {
     return fmt::format("<h{0}>{1}</h{0}>\n", h.level, escaped_html(h.text));
   }
   std::string operator()(const Paragraph& p) const { return "<p>" + escaped_html(p.text) + "</p>\n"; }
+  std::string operator()(const Link& l) const {
+    return fmt::format("<p><a href=\"{}\">{}</a></p>\n", l.file, escaped_html(l.text));
+  }
   std::string operator()(const Table& t) const {
     std::string text = "<table>\n<thead>" + html_row(t.head, "th") + "</thead>\n<tbody>\n";
     for (const auto& row : t.rows) text += html_row(row, "td");

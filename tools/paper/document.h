@@ -28,7 +28,12 @@ struct Picture {
   std::string file;  ///< a PNG, relative to the folder of the document
   std::string caption;
 };
-using Block = std::variant<Heading, Paragraph, Table, Picture>;
+/// A paragraph that leads to a file beside the document.
+struct Link {
+  std::string file;  ///< a plain name, relative to the folder of the document
+  std::string text;
+};
+using Block = std::variant<Heading, Paragraph, Table, Picture, Link>;
 
 struct Document {
   std::string title;

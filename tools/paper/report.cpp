@@ -12,6 +12,7 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/stability.h"
+#include "explorer/page.h"
 #include "paper/claims.h"
 #include "paper/equations.h"
 #include "paper/expected.h"
@@ -402,7 +403,10 @@ Document reproduction_report(const ReportData& data) {
 }
 
 void write_report(const ReportData& data, const fs::path& folder) {
-  const Document document = reproduction_report(data);
+  Document document = reproduction_report(data);
+  if (fs::exists(folder / kPageName))
+    document.blocks.insert(document.blocks.begin() + 1,
+                           Link{kPageName, "Every run of Section V, to play and to look into, in a browser"});
   datasets::write_file_atomically(folder / "report.md", markdown(document));
   datasets::write_file_atomically(folder / "report.html", html(document, folder));
 }

@@ -9,6 +9,7 @@
 
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/scenario_file.h"
+#include "explorer/page.h"
 #include "figures/paths_figure.h"
 #include "figures/style.h"
 #include "figures/template.h"
@@ -49,6 +50,8 @@ class Experiments {
   }
 
   std::string summary() const { return datasets::summary_json(metrics_); }
+
+  void write_page() const { write_text(out_ / kPageName, explorer_page(pages_)); }
 
   /// All figures in one run of gnuplot.
   void draw_figures() {
@@ -98,9 +101,19 @@ class Experiments {
     options.controller = controller;
     const auto provenance = datasets::make_provenance(flags_.command_line, flags_.seed, {file});
     line_.show(static_cast<double>(metrics_.size()), scenario_name + " " + name(method));
-    FinishedRun finished = run(datasets::load_scenario(file), options, provenance, {{}, !flags_.no_figures, {}});
+    FinishedRun finished =
+        run(datasets::load_scenario(file), options, provenance, {{}, !flags_.no_figures, {}, {}, !flags_.no_figures});
     metrics_.push_back(finished.metrics_json());
+    keep_for_page(scenario_name, finished);
     return finished;
+  }
+
+  /// A run keeps its own name: two of another --data may have the same.
+  void keep_for_page(const std::string& scenario, FinishedRun& finished) {
+    if (flags_.no_figures) return;
+    const datasets::RunInfo& info = finished.file.info;
+    const std::string how = info.controller ? *info.controller : info.method;
+    pages_.push_back({page_key(scenario + "-" + how), scenario + ", " + how, "", std::move(finished.packed)});
   }
 
   static std::string number_or_dash(const std::optional<double>& value, const char* format) {
@@ -234,6 +247,7 @@ class Experiments {
   fs::path out_;
   ProgressLine line_;
   std::vector<std::string> metrics_;
+  std::vector<PageRun> pages_;                         ///< every run
   std::vector<datasets::RecordingFile> avoidance_[4];  ///< by method
   std::vector<datasets::RecordingFile> formation_;
   std::vector<fs::path> scripts_;
@@ -247,7 +261,10 @@ std::string run_section_five(const SectionFiveOptions& options, const fs::path& 
   experiments.run_all();
   const std::string summary = experiments.summary();
   write_text(out / "summary.json", summary);
-  if (!options.no_figures) experiments.draw_figures();
+  if (!options.no_figures) {
+    experiments.write_page();
+    experiments.draw_figures();
+  }
   return summary;
 }
 

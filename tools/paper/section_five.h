@@ -19,7 +19,8 @@ struct SectionFiveOptions {
   bool no_figures = false;
 };
 
-/// Runs all, prints the tables as they grow, writes summary.json and figures/ into `out`, and returns the summary.
+/// Runs all, prints the tables as they grow, writes summary.json, figures/ and explorer.html into `out`, and returns
+/// the summary.
 std::string run_section_five(const SectionFiveOptions& options, const std::filesystem::path& out);
 
 }  // namespace exactvo::tools

@@ -82,7 +82,7 @@ ExitCode section_five(const Flags& flags) {
   if (flags.json) print(summary);
   if (flags.no_figures) remove_figures(flags.out);
   folder.publish("summary.json");
-  message("wrote " + flags.out + "/summary.json, report.html, report.md" + (flags.no_figures ? "" : " and figures/"));
+  message("wrote " + flags.out + "/summary.json, report.html, report.md" + (flags.no_figures ? "" : ", explorer.html and figures/"));
   return ExitCode::success;
 }
 
@@ -135,7 +135,7 @@ ExitCode paper(const Flags& flags) {
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  declare_out(app, flags->out, "Folder for summary.json, report.html, report.md and figures/; random/ or ablations/")
+  declare_out(app, flags->out, "Folder for summary.json, report.html, report.md, explorer.html and figures/; random/ or ablations/")
       ->required();
   app.add_option("--data", flags->data,
                  "Folder that contains paper/A1.json and so on; by default the one installed with the program");
@@ -155,7 +155,7 @@ Action declare(CLI::App& app) {
           ->check(whole_number(1, 1024));
   declare_seed(app, flags->seed, "Seed of the random fields; recorded in the provenance");
   app.add_flag("--json", flags->json, "Print the JSON instead of the tables");
-  app.add_flag("--no-figures", flags->no_figures, "Write no figures");
+  app.add_flag("--no-figures", flags->no_figures, "Write no figures and no explorer.html");
   return [flags] { return paper(*flags); };
 }
 

@@ -162,6 +162,11 @@ class Run {
     return decision;
   }
 
+  // The robot that holds this one most, in a row with decisions (formation/waiting.h); -1 where it waits for none.
+  waitsFor(row, robot) {
+    return this.columns['decision.waits'][row * this.n + robot] - 1;
+  }
+
   halfPlane(i, row, robot) {
     const c = this.columns, line = c['half_plane.line'], flags = c['half_plane.flags'][i];
     const number = c['half_plane.body'][i], body = this.bodies[number];
@@ -205,7 +210,7 @@ class Run {
 }
 
 const COLUMNS = ['time', 'x', 'y', 'vx', 'vy', 'mode', 'status', 'side', 'leader', 'moving', 'decision.time', 'decision.state',
-  'decision.violation', 'decision.status', 'decision.exact_multipliers', 'decision.half_planes', 'decision.parts', 'decision.moving',
+  'decision.violation', 'decision.status', 'decision.exact_multipliers', 'decision.half_planes', 'decision.parts', 'decision.moving', 'decision.waits',
   'part.kind', 'part.multiplier', 'half_plane.body', 'half_plane.index', 'half_plane.piece', 'half_plane.flags', 'half_plane.line',
   'half_plane.tau', 'half_plane.clearance', 'half_plane.multiplier'];
 const PART_KINDS = ['line', 'disc', 'right', 'left', 'top', 'bottom'];

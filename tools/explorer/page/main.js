@@ -6,7 +6,7 @@ import {distanceToObstacle, obstacleClearance} from './shapes.js';
 import {Positions, extentOf, drawWorld, pickInWorld, drawStill} from './world.js';
 import {spaceOf, reachOf, drawSpace, pickInSpace} from './space.js';
 import {seriesOf, pathLength, eventsOf, drawCharts, drawCursor, pickEvent, pxToTime} from './charts.js';
-import {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, whyWords} from './words.js';
+import {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, waitWords, whyWords} from './words.js';
 import {checkDecision, checkHalfPlane, checkHalfOfPair, checkChoice, checkConstraint} from './proof.js';
 import {download, fileName, momentSvg, animatedSvg, recordFilm} from './export.js';
 
@@ -285,6 +285,8 @@ function fillWords() {
   fact(facts, 'chosen', speedWords(d.chosen), 'chosen');
   fact(facts, 'difference', shift < 0.005 ? 'the preferred one itself' : `${number(shift)} m/s from the preferred one`);
   fact(facts, 'status', statusWords(d), 'status');
+  const waits = waitWords(run, d.row, ui.robot);
+  if (waits) fact(facts, 'waiting', waits, 'waiting');
   $('facts').replaceChildren(...facts);
   $('why').textContent = whyWords(run, d, mode).join('\n');
   const result = checkChoice(run, d);

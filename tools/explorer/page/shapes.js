@@ -68,8 +68,8 @@ function rootOfHeight(seen, below, above) {
   return below;
 }
 
-// The velocity obstacle { w + u : t w in S, 0 < t <= tau }: its legs as angles of their normals, its cut-off as points,
-// and S / tau + u. Null where the robot overlaps the shape: there is no cone.
+// The velocity obstacle { w + u : t w in S, 0 < t <= tau }: its legs (where each starts, and where to), its cut-off and
+// S / tau + u as points, the direction into it. Null where the robot overlaps the shape: there is no cone.
 function velocityObstacle(h, anchor) {
   const seen = {shape: h.shape, x: anchor[0], y: anchor[1], radius: h.radius};
   const away = separatingAngle(seen);
@@ -88,7 +88,7 @@ function velocityObstacle(h, anchor) {
     const outwards = (foot[0] - h.ux) * d[0] + (foot[1] - h.uy) * d[1] >= 0 ? 1 : -1;
     return {foot, direction: [d[0] * outwards, d[1] * outwards]};
   });
-  return {legs, cutOff, outline, apex: [h.ux, h.uy]};
+  return {legs, cutOff, outline, inwards: [-Math.cos(away), -Math.sin(away)]};
 }
 
 // The velocity obstacle as a ring that reaches beyond a disc of radius `reach` round the origin.
@@ -97,7 +97,11 @@ function ringOf(obstacle, reach) {
     const length = 4 * (reach + Math.hypot(leg.foot[0], leg.foot[1]));
     return [leg.foot[0] + length * leg.direction[0], leg.foot[1] + length * leg.direction[1]];
   };
-  return [far(obstacle.legs[0]), ...obstacle.cutOff, far(obstacle.legs[1])];
+  const a = far(obstacle.legs[0]), b = far(obstacle.legs[1]);
+  // A cone that opens by nearly 180 degrees reaches far beyond the line between its legs' ends.
+  const length = Math.hypot(a[0] - b[0], a[1] - b[1]) + 4 * reach;
+  const beyond = (p) => [p[0] + length * obstacle.inwards[0], p[1] + length * obstacle.inwards[1]];
+  return [beyond(a), a, ...obstacle.cutOff, b, beyond(b)];
 }
 
 // The part of a convex ring where n.v >= c.

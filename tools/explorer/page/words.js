@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A decision in words, with the facts that `exactvo explain` prints. Numbers are rounded; proofs are in proof.js.
 import {distanceOf, timeToContact} from './shapes.js';
+import {shortName} from './draw.js';
 
 const NOT_SEEN = 0.005;  // m/s: a difference that two decimals do not show
 
@@ -75,6 +76,21 @@ const TURNED = {
   'pushing-out': 'the robot is in contact, and the preferred velocity leads away from it',
 };
 
+// "R1 waits for R2, which waits for R1: a deadlock"; empty where it waits for nobody.
+function waitWords(run, row, robot) {
+  const most = 6, chain = [robot];
+  for (;;) {
+    const next = run.waitsFor(row, chain[chain.length - 1]);
+    if (next < 0) break;
+    chain.push(next);
+    if (chain.indexOf(next) < chain.length - 1 || chain.length > most) break;
+  }
+  if (chain.length < 2) return '';
+  const id = (i) => shortName(run.robots[i].id, 40), last = chain[chain.length - 1];
+  const words = chain.slice(1).map((i, k) => `${k ? 'which waits' : 'waits'} for ${id(i)}`).join(', ');
+  return words + (chain.indexOf(last) < chain.length - 1 ? ': a deadlock' : '');
+}
+
 // Why the chosen velocity is what it is, in a few sentences.
 function whyWords(run, d, mode) {
   const violated = d.halfPlanes.map((h, k) => (effectOf(d, h) === 'violated' ? `[${k + 1}]` : '')).filter(Boolean);
@@ -104,4 +120,4 @@ function whyWords(run, d, mode) {
   return words;
 }
 
-export {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, whyWords};
+export {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, waitWords, whyWords};

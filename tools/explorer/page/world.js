@@ -193,7 +193,7 @@ function drawCrowd(ctx, view, colours, run, positions) {
     for (let i = 0; i < run.n; ++i) {
       const kind = statuses[at + i] !== 0 ? 2 : modes[at + i] === arrived ? 1 : 0;
       if (kind !== group) continue;
-      const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = run.robots[i].radius * view.scale;
+      const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = Math.max(1.3, run.robots[i].radius * view.scale);
       if (x < -r || y < -r || x > view.width + r || y > view.height + r) continue;
       if (r < 2.5) {
         ctx.rect(x - r, y - r, 2 * r, 2 * r);
@@ -248,6 +248,21 @@ function drawPressure(ctx, view, colours, run, ui, positions) {
   }
   ctx.globalAlpha = 1;
   ctx.setLineDash([]);
+}
+
+// Who waits for whom: thick arrows from rim to rim.
+function drawWaits(ctx, view, colours, run, ui, positions) {
+  const row = run.decisionRowAt(ui.t);
+  if (row < 0 || run.n > 1000) return;
+  ctx.strokeStyle = ctx.fillStyle = colours.bad;
+  ctx.lineWidth = 3;
+  for (let i = 0; i < run.n; ++i) {
+    const j = run.waitsFor(row, i);
+    if (j < 0) continue;
+    const x1 = view.px(positions.x[i]), y1 = view.py(positions.y[i]), x2 = view.px(positions.x[j]), y2 = view.py(positions.y[j]);
+    const length = Math.hypot(x2 - x1, y2 - y1), rim = run.robots[j].radius * view.scale;
+    if (length > rim) arrow(ctx, x1, y1, x2 - (x2 - x1) * rim / length, y2 - (y2 - y1) * rim / length, 11);
+  }
 }
 
 // Obstacles that press on the chosen robot, by index.
@@ -310,6 +325,7 @@ function drawWorld(ctx, view, run, positions, ui, decision) {
   if (run.n > CROWD) drawCrowd(ctx, view, colours, run, positions);
   for (let i = 0; i < run.n; ++i) if (run.n <= CROWD || i === ui.robot) drawRobot(ctx, view, colours, run, ui, positions, i);
   drawPressure(ctx, view, colours, run, ui, positions);
+  drawWaits(ctx, view, colours, run, ui, positions);
   drawPinnedBody(ctx, view, colours, ui, decision);
   drawCollisions(ctx, view, colours, run, ui.t);
   drawNames(ctx, view, colours, run, ui, positions);
