@@ -21,7 +21,9 @@ inline DataError cannot_write(const std::filesystem::path& path, int error) {
 inline DataError cannot_read(const std::filesystem::path& path, int error) {
   const bool missing = error == ENOENT || error == ENOTDIR;
   return {missing ? DataCode::file_missing : DataCode::file_unreadable, path.string(), "",
-          missing ? "no such file" : std::generic_category().message(error), "a file that can be read"};
+          missing ? "no such file" : std::generic_category().message(error),
+          missing && path == "-" ? "a file that can be read; standard input is read as /dev/stdin"
+                                 : "a file that can be read"};
 }
 
 }  // namespace exactvo::datasets

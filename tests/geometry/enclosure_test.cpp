@@ -151,6 +151,22 @@ TEST(FitTrapFree, NoEllipseWhereTheGoalIsAtTheWall) {
   EXPECT_FALSE(fit_trap_free({{-1, 0}, {1, 0}}, 0.3, {0, -3}, {0, 0.2}));
 }
 
+// The smallest ellipse was a segment, which holds no point: an internal error, of a straight wall and a margin of 0
+// too.
+TEST(FitTrapFree, OfCollinearPointsWithoutAMarginIsAnEllipse) {
+  EnclosureOptions options;
+  options.margin = options.least_margin = 0.0;
+  const std::vector<std::vector<Vec2>> flat{{{3.0, 0.1}, {3.0, 0.1000001}},
+                                            {{6.0, -2.0}, {6.0, 2.0}},
+                                            {{6.0, 2.2}, {6.0, 3.0}, {6.0, 5.0}},
+                                            {{1.0, 1.0}, {2.0, 2.0}, {4.0, 4.0}}};
+  for (const std::vector<Vec2>& points : flat) {
+    const auto fitted = fit_trap_free(points, 0.5, {0.0, 0.0}, {12.0, 0.0}, options);
+    ASSERT_TRUE(fitted.has_value()) << points.back().x << ' ' << points.back().y;
+    for (const Vec2 p : points) EXPECT_TRUE(contains(fitted->ellipse, p));
+  }
+}
+
 TEST(Enclose, EveryObstacleIsCovered) {
   SeededRandom random(test::seed_of_run(93));
   for (int i = 0; i < 6; ++i) {

@@ -162,6 +162,19 @@ TEST(VelocitySpace, DrawsEveryLayerOnce) {
   EXPECT_THAT(figure.data, testing::Not(HasSubstr("nan")));
 }
 
+// Inside an obstacle: all that was seen was forbidden, and no line said by what.
+TEST(VelocitySpace, ShowsALineThatIsViolatedByFar) {
+  Decision d = before_a_cart();
+  d.step.constraints.pop_back();
+  d.step.constraints[0].active = true;
+  const auto has_line = [&] { return velocity_space_figure(d).body.find("half-plane, violated") != std::string::npos; };
+  EXPECT_TRUE(has_line());
+  d.step.constraints[0].half_plane.offset = 15.0;
+  EXPECT_TRUE(has_line());
+  d.step.constraints[0].half_plane.offset = 1e6;  // all else would be a dot beside it
+  EXPECT_FALSE(has_line());
+}
+
 TEST(Decision, NamesAtMostThreeObstacles) {
   Decision d = with_two_walls();
   for (const char* id : {"a", "b", "c"})

@@ -108,6 +108,17 @@ TEST(Lp, AFolderAMissingFileAndAFullDiskAreNoDefectsOfTheProgram) {
   EXPECT_THAT(here.read("words"), HasSubstr("E_FILE_UNWRITABLE"));
 }
 
+// "Input/output error" where the disk filled up before the end.
+TEST(Lp, AFullDiskIsCalledOneAfterManyAnswersToo) {
+  const Workplace here;
+  std::string lines;
+  for (int k = 0; k < 4000; ++k) lines += on_one_line(kGood);
+  here.write("many.jsonl", lines);
+  here.run("lp many.jsonl --json 2>words >/dev/full; echo $? >status; } ; true", "{");
+  EXPECT_EQ(here.read("status"), "2\n");
+  EXPECT_THAT(here.read("words"), HasSubstr("No space left on device"));
+}
+
 TEST(Lp, AReaderThatLeavesIsNoError) {
   const Workplace here;
   std::string lines;

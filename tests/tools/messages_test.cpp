@@ -334,6 +334,25 @@ TEST(Messages, ObstaclesInPlaceOfAScenarioAreCalledThatWithTheWayToUseThem) {
   EXPECT_THAT(place().run("simulate -", "cat o.geojson | ").err, HasSubstr("-: found a file of obstacles, GeoJSON"));
 }
 
+TEST(Messages, WhereStandardInputIsNotReadTheMessageSaysWhatIs) {
+  for (const char* command : {"validate -", "convert - out.wkt", "repair - --out out.wkt", "segment -",
+                              "audit --scenario - .", "route - --from 0,0 --to 1,1 --radius 1"})
+    EXPECT_THAT(place().run(command).err + place().run(command).out, HasSubstr("standard input is read as /dev/stdin"))
+        << command;
+  EXPECT_THAT(place().run("batch - --out out").err, HasSubstr("a batch does not read standard input"));
+  EXPECT_EQ(place().run("validate --format wkt /dev/stdin", "echo 'POLYGON((0 0, 1 0, 1 1, 0 0))' | ").status, 0);
+}
+
+// It was taken for the name of a file.
+TEST(Messages, AnEmptyObstacleOnTheCommandLineIsNamedForWhatItIs) {
+  for (const char* empty : {"POLYGON EMPTY", "LINESTRING EMPTY", "multipolygon empty", "POINT EMPTY"})
+    EXPECT_THAT(place()
+                    .run("vo --obstacle '" + std::string(empty) +
+                         "' --position 0,0 --radius 0.5 --time-horizon 2 --velocity 1,0")
+                    .err,
+                HasSubstr("found '" + std::string(empty) + "', expected a polygon or a line"));
+}
+
 TEST(Messages, AGuessedFormatIsNamedWhereReadingFails) {
   place().write("g.txt", "POLYGON((0 0, 1 0, 1 x))\n");
   EXPECT_THAT(place().run("validate g.txt").out, Not(HasSubstr("guessed"))) << "one obstacle of a file that was read";

@@ -51,6 +51,45 @@ TEST(Properties, GeoJsonKeepsThemAndFeatureIds) {
   }
 }
 
+// They became 1 and 2, without a word.
+TEST(Properties, NumbersOfFeaturesSurviveGeoPackage) {
+  const Workplace here;
+  std::string town = kTown;
+  for (const auto& [id, number] : {std::pair{"\"way/7\"", "70000000000"}, std::pair{"\"way/8\"", "3"}})
+    town.replace(town.find(id), std::string(id).size(), number);
+  here.write("town.geojson", town);
+  const Outcome there = here.run("convert town.geojson out.gpkg");
+  ASSERT_EQ(there.status, 0) << there.err;
+  EXPECT_THAT(there.err, Not(HasSubstr("lost")));
+  ASSERT_EQ(here.run("convert out.gpkg back.geojson").status, 0);
+  const json back = features_of(here, "back.geojson");
+  ASSERT_EQ(back.size(), 2u);
+  for (const json& feature : back) {
+    const bool is_mill = feature.at("properties").at("levels") == 3;
+    EXPECT_EQ(feature.at("id"), is_mill ? 70000000000 : 3);
+  }
+}
+
+TEST(Properties, IdsOfFeaturesThatAreNoNumbersAreSaidToStandInAColumn) {
+  for (const std::string format : {"gpkg", "fgb"}) {
+    const Workplace here;
+    here.write("town.geojson", kTown);
+    const Outcome there = here.run("convert town.geojson out." + format);
+    ASSERT_EQ(there.status, 0) << there.err;
+    EXPECT_THAT(there.err, AllOf(HasSubstr("lost: feature ids"), HasSubstr("column \"feature_id\""))) << there.err;
+  }
+}
+
+// 1e-16 of a degree apart: the same decimals.
+TEST(Properties, GeoJsonInDegreesRepeatsNoVertex) {
+  const Workplace here;
+  here.write("room.wkt", "POLYGON ((0 0, 6 0, 6.000000000001 0.000000000001, 6 4, 0 4, 0 0))\n");
+  ASSERT_EQ(here.run("convert room.wkt room.geojson").status, 0);
+  const json ring = features_of(here, "room.geojson").at(0).at("geometry").at("coordinates").at(0);
+  for (std::size_t k = 0; k + 1 < ring.size(); ++k) EXPECT_NE(ring.at(k), ring.at(k + 1)) << ring;
+  EXPECT_EQ(here.run("validate room.geojson").status, 0);
+}
+
 TEST(Properties, SurviveGeoPackageFlatGeobufAndCsv) {
   for (const std::string format : {"gpkg", "fgb", "csv"}) {
     const Workplace here;

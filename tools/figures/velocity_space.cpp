@@ -32,6 +32,7 @@ constexpr double kTitleRoom = 800.0;     // px over the axes and a little beyond
 constexpr int kArcPoints = 200;
 /// More velocity obstacles than this are drawn paler and thinner.
 constexpr int kFewCones = 4;
+constexpr double kOnLine = 1e-6;    // m/s: a velocity this near a line lies on it
 constexpr int kHatchesAcross = 45;  // over the width of the view
 
 class VelocitySpace {
@@ -60,6 +61,13 @@ class VelocitySpace {
     for (const Vec2 corner : corners(Box{{-limit(), -limit()}, {limit(), limit()}})) box.add(1.35 * corner);
     for (const Vec2 v : {d_.step.preferred, d_.step.chosen, d_.step.velocity}) {
       if (is_finite(v)) box.add(1.1 * v);
+    }
+    // The line of a half-plane that the chosen velocity violates: without it all that is seen is forbidden.
+    constexpr double kFarthestLine = 40.0;  // of the speed bound
+    for (const RecordedConstraint& c : constraints()) {
+      if (!is_violated(c)) continue;
+      const Vec2 foot = (c.half_plane.offset / squared_norm(c.half_plane.normal)) * c.half_plane.normal;
+      if (norm(foot) <= kFarthestLine * limit()) box.add(1.1 * foot);
     }
     const double reach = std::max({-box.low.x, -box.low.y, box.high.x, box.high.y});
     return {{-reach, -reach}, {reach, reach}};
@@ -210,7 +218,20 @@ class VelocitySpace {
   }
 
   void add_slack_half_planes() { add_half_planes(false, kSlackColour, 1.5, "half-plane, slack"); }
-  void add_active_half_planes() { add_half_planes(true, kActiveColour, 3.0, "half-plane, binding"); }
+  void add_active_half_planes() { add_half_planes(true, kActiveColour, 3.0, "half-plane, " + active_words()); }
+
+  bool is_violated(const RecordedConstraint& c) const {
+    return geometry::violation(c.half_plane, d_.step.chosen) > kOnLine * norm(c.half_plane.normal);
+  }
+
+  /// Of a compromise between half-planes that contradict each other, what is active is violated.
+  std::string active_words() const {
+    bool binds = false, is_missed = false;
+    for (const RecordedConstraint& c : constraints())
+      if (c.active) (is_violated(c) ? is_missed : binds) = true;
+    if (!is_missed) return "binding";
+    return binds ? "binding or violated" : "violated";
+  }
 
   void add_speed_bound() {
     const int index = data_.begin("speed bound", "v_x [m/s], v_y [m/s]");

@@ -108,9 +108,14 @@ bool begins_wkt(const std::string& word) {
   return false;
 }
 
+bool ends_in_empty(const std::string& text) {
+  const std::string word = "EMPTY", whole = word_before_bracket(text);
+  return whole.size() > word.size() && whole.compare(whole.size() - word.size(), word.size(), word) == 0;
+}
+
 datasets::ObstacleFile read(const std::string& option, const std::string& text, const datasets::ReadOptions& reading) {
   if (is_there(text)) return read_file(text, reading);
-  if (text.find('(') == std::string::npos || !begins_wkt(word_before_bracket(text)))
+  if ((text.find('(') == std::string::npos && !ends_in_empty(text)) || !begins_wkt(word_before_bracket(text)))
     throw UsageError(option, text, std::string("a file that is there, WKT (POLYGON(...), ...), ") + kShapeWords);
   return datasets::parse_wkt(text, option, {});
 }

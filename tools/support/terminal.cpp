@@ -24,6 +24,7 @@ namespace {
 
 bool quiet = false;
 bool reader_left = false;
+int write_error = 0;  ///< errno of the last write to stdout that failed
 volatile std::sig_atomic_t interrupt_seen = 0;
 
 /// Seconds that a program has to end by itself.
@@ -88,6 +89,7 @@ void print(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) < text.size()) {
     if (errno == EPIPE) reader_left = true;
     if (errno == EINTR) throw_if_interrupted();
+    write_error = errno;
   }
   check_stdout();
 }
@@ -98,7 +100,7 @@ void check_stdout() {
   if (!flushed && errno == EINTR) throw_if_interrupted();
   if (errno == EPIPE) reader_left = true;
   if (reader_left || (flushed && std::ferror(stdout) == 0)) return;
-  const int error = errno != 0 ? errno : EIO;
+  const int error = errno != 0 ? errno : write_error != 0 ? write_error : EIO;
   std::clearerr(stdout);
   throw datasets::DataError(datasets::DataCode::file_unwritable, "standard output", "",
                             std::generic_category().message(error), "a place to write to");

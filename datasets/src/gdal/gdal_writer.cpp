@@ -86,11 +86,15 @@ class LayerWriter {
     refuse_unless(true);
     std::string bytes = memory.bytes();
     if (bytes.empty()) throw DataError(DataCode::wrong_count, file_, "", "no obstacles", "one at least: " + driver_);
-    return {std::move(bytes), table_.renamed()};
+    Written written{std::move(bytes), table_.renamed()};
+    if (has_id_column_)
+      written.losses.push_back(std::string("feature ids as such: they are not distinct whole numbers from 1 on, or ") +
+                               driver_ + " numbers features itself; they stand in column \"" + kFeatureId + "\"");
+    return written;
   }
 
  private:
-  /// The column of feature ids that are no numbers, or not of a GeoPackage.
+  /// The column of feature ids that are not distinct numbers, or not of a GeoPackage.
   static constexpr const char* kFeatureId = "feature_id";
 
   /// That of the plane. One without a place on earth has a system of its own: without it GeoPackage takes numbers for
@@ -125,13 +129,28 @@ class LayerWriter {
     return OFTString;
   }
 
+  /// The ids where a GeoPackage can have them as its own: distinct whole numbers from 1 on. Else none.
+  static std::vector<GIntBig> feature_numbers(const std::vector<FeatureProperties>& all) {
+    std::vector<GIntBig> numbers;
+    for (const FeatureProperties& p : all) {
+      const Json id = p.id.empty() ? Json() : Json::parse(p.id, nullptr, false);
+      if (!id.is_number_integer() || id.get<double>() < 1.0 || id.get<double>() > 0x1p62) return {};
+      numbers.push_back(id.get<GIntBig>());
+    }
+    std::vector<GIntBig> sorted = numbers;
+    std::sort(sorted.begin(), sorted.end());
+    return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end() ? numbers : std::vector<GIntBig>{};
+  }
+
   void create_fields(OGRLayer& layer) {
     OGRFieldDefn id("id", OFTString);
     refuse_unless(layer.CreateField(&id) == OGRERR_NONE);
     const std::vector<FeatureProperties>& all = options_.properties;
-    has_ids_ = std::any_of(all.begin(), all.end(), [](const FeatureProperties& p) { return !p.id.empty(); });
+    const bool has_ids = std::any_of(all.begin(), all.end(), [](const FeatureProperties& p) { return !p.id.empty(); });
+    if (has_ids && driver_ == "GPKG") numbers_ = feature_numbers(all);
+    has_id_column_ = has_ids && numbers_.empty();
     OGRFieldDefn feature_id(kFeatureId, OFTString);
-    if (has_ids_) refuse_unless(layer.CreateField(&feature_id) == OGRERR_NONE);
+    if (has_id_column_) refuse_unless(layer.CreateField(&feature_id) == OGRERR_NONE);
     for (const PropertyTable::Column& column : table_.columns()) {
       OGRFieldDefn field(column.name.c_str(), type_of(column.type));
       if (column.type == PropertyTable::Type::boolean) field.SetSubType(OFSTBoolean);
@@ -156,7 +175,8 @@ class LayerWriter {
     OGRFeature feature(layer.GetLayerDefn());
     const Json row = table_.row(number);
     feature.SetField("id", PropertyTable::id_of(row, obstacle.id).c_str());
-    if (has_ids_ && !options_.properties[number].id.empty())
+    if (!numbers_.empty()) feature.SetFID(numbers_[number]);
+    if (has_id_column_ && !options_.properties[number].id.empty())
       feature.SetField(kFeatureId, PropertyTable::text_of(Json::parse(options_.properties[number].id)).c_str());
     const int first = feature.GetFieldCount() - static_cast<int>(table_.columns().size());
     for (std::size_t k = 0; k < table_.columns().size(); ++k) {
@@ -192,7 +212,8 @@ class LayerWriter {
   std::string file_;
   const WriteOptions& options_;
   PropertyTable table_;
-  bool has_ids_ = false;
+  std::vector<GIntBig> numbers_;  ///< of the features, where their ids are that
+  bool has_id_column_ = false;
   GdalComplaints complaints_;
 };
 

@@ -60,6 +60,16 @@ void append_geometry(JsonWriter& json, const geometry::Polygon& polygon, const P
   json.end_array();
 }
 
+/// Longitudes and latitudes are rounded, and neighbours may become one: a point twice running is left out, unless too
+/// few would stay for a line or a ring.
+Points without_repeats(Points points) {
+  Points kept;
+  for (const geometry::Vec2 p : points)
+    if (kept.empty() || !(kept.back() == p)) kept.push_back(p);
+  const bool is_closed = points.size() > 1 && points.front() == points.back();
+  return kept.size() < (is_closed ? 4 : 2) ? points : kept;
+}
+
 /// Those of the input, and `id` where none of them is called so.
 std::string members_of(const formation::SceneObstacle& obstacle, const FeatureProperties& properties) {
   Json members = properties.members.empty() ? Json::object() : Json::parse(properties.members, nullptr, false);
@@ -278,7 +288,9 @@ std::string to_geojson(const Obstacles& obstacles, const WriteOptions& options, 
   const LocalPlane plane = plane_for(obstacles, options.plane);
   std::optional<MetresToDegrees> to_degrees;
   if (!options.metres) to_degrees.emplace(plane, file);
-  const Place place = [&](Points points) { return to_degrees ? (*to_degrees)(std::move(points)) : points; };
+  const Place place = [&](Points points) {
+    return to_degrees ? without_repeats((*to_degrees)(std::move(points))) : points;
+  };
   JsonWriter json(JsonWriter::Layout::indented);
   json.begin_object().member("type", "FeatureCollection");
   if (options.metres) {

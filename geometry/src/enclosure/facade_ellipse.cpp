@@ -12,15 +12,14 @@ namespace exactvo::geometry {
 
 namespace detail {
 
-Ellipse inflate_to_contain(Ellipse e, const std::vector<Vec2>& points) {
+std::optional<Ellipse> inflate_to_contain(Ellipse e, const std::vector<Vec2>& points) {
   constexpr double kFirstStep = 0x1p-50;
   for (double step = kFirstStep; step < 1.0; step *= 2.0) {
     if (std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(e, p); })) return e;
     const double f = 1.0 + step;
     e = {e.center, e.l11 * f, e.l21 * f, e.l22 * f};
   }
-  EXACTVO_REQUIRE(false, to_string(ConvexShape{e}));
-  return e;
+  return std::nullopt;
 }
 
 }  // namespace detail
@@ -33,7 +32,9 @@ Ellipse facade_ellipse(const Segment& facade, const FacadeEllipseOptions& option
   const double a = half + options.margin;
   const double b = options.fixed_minor > 0.0 ? std::min(options.fixed_minor, a) : options.minor_to_major * a;
   const Ellipse e = ellipse_from_axes(facade.a + 0.5 * along, {a, b, std::atan2(along.y, along.x)});
-  return detail::inflate_to_contain(e, {facade.a, facade.b});
+  const std::optional<Ellipse> whole = detail::inflate_to_contain(e, {facade.a, facade.b});
+  EXACTVO_REQUIRE(whole.has_value(), to_string(ConvexShape{e}));
+  return *whole;
 }
 
 double clearance_of_equation_8(const Segment& facade, const Ellipse& enclosure, double robot_radius) {

@@ -216,7 +216,9 @@ Candidate coarse_candidate(const Frame& f, double size, std::size_t minor, std::
 /// Tries candidates on one set of points; keeps the smallest that will do.
 class Search {
  public:
-  Search(const FitGoal& want, std::vector<double>& width) : want_(want), width_(width) {}
+  /// `least_width`: of the length of an ellipse.
+  Search(const FitGoal& want, std::vector<double>& width, double least_width)
+      : want_(want), width_(width), least_width_(least_width) {}
 
   /// Whether the ellipse of a candidate of that minor axis is larger than the best, whatever else it is.
   bool is_too_large(const Frame& f, double minor, bool or_equal) const {
@@ -246,6 +248,7 @@ class Search {
     if (known.state != Known::State::fitted && !is_fitted(o, c, area, known, pair)) return false;
     if (area.is_too_long(known.major.major) || is_refused(o, c, area, known.major)) return false;
     const double a = known.major.major + want_.margin, b = area.minor;
+    if (std::min(a, b) < least_width_ * std::max(a, b)) return false;
     const Vec2 centre = rotated({known.major.centre, o.frame.middle + c.offset}, c.angle);
     const bool upright = a >= b;
     const Ellipse ellipse =
@@ -310,6 +313,7 @@ class Search {
 
   const FitGoal& want_;
   std::vector<double>& width_;
+  double least_width_;
   Scored best_;
   Touching recent_;  ///< what touched last
 };
@@ -488,15 +492,19 @@ class LocalFit {
       ends_ = {drawn_in(memory_.points, local.start, clear), drawn_in(memory_.points, local.goal, clear), local.goal};
       coarse_.emplace(memory_, size_, ends_);
     }
-    Search search(local, memory_.width);
-    coarse_->run(search);
-    if (!std::isfinite(search.best().area)) return std::nullopt;
-    Refinement(memory_, size_, ends_).run(search);
-    Ellipse e = search.best().ellipse;
-    e.center = e.center + hull_.front();
-    e = inflate_to_contain(e, hull_);
-    if (!admissible(e, want)) return std::nullopt;
-    return e;
+    // Without a margin the smallest ellipse round collinear points is a segment to rounding, and contains nothing.
+    constexpr double kLeastWidth = 1e-9;
+    for (const double least_width : {0.0, kLeastWidth}) {
+      Search search(local, memory_.width, least_width);
+      coarse_->run(search);
+      if (!std::isfinite(search.best().area)) return std::nullopt;
+      Refinement(memory_, size_, ends_).run(search);
+      Ellipse e = search.best().ellipse;
+      e.center = e.center + hull_.front();
+      if (const std::optional<Ellipse> whole = inflate_to_contain(e, hull_))
+        return admissible(*whole, want) ? whole : std::nullopt;
+    }
+    return std::nullopt;
   }
 
  private:

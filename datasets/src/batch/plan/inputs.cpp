@@ -58,7 +58,8 @@ class Listing {
   void add(const fs::path& path) {
     std::error_code error;
     if (!fs::exists(fs::symlink_status(path, error))) {
-      throw DataError(DataCode::file_missing, path.string(), "", "no such file or folder", "something to read");
+      throw DataError(DataCode::file_missing, path.string(), "", "no such file or folder",
+                      path == "-" ? "files or folders: a batch does not read standard input" : "something to read");
     }
     if (fs::is_directory(path, error)) return add_folder(path);
     files_.push_back(path);
