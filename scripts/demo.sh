@@ -23,5 +23,6 @@ say "Figures"
 echo "Every figure is .png, .svg and .pdf, with its data (.dat) and gnuplot script (.gp) beside it."
 ls out/paper/figures/*.png
 echo "out/paper/report.html: equations, claims with their verdicts, tables and pictures, in one file"
+echo "out/paper/explorer.html, out/office/explorer.html: every run in a browser, with velocity space and proofs"
 echo "out/paper/figures/{fig5-orca,fig6-ivo}/A0..A15/ and fig8-formation/B0..B3/: paths, distances, velocities, errors"
 ls out/office/figures/*.png

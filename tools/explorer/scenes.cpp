@@ -18,9 +18,9 @@ struct Scene {
 
 const Scene kScenes[] = {
     {"wall", "A wall, and why ORCA stops",
-     "The robot heads straight for its goal; where the wall's half-plane meets the line to the goal at a right angle, "
-     "the best allowed velocity is zero, and the robot stays there. Step through the last second before it stops and "
-     "watch the chosen velocity slide down the half-plane's line to the origin.",
+     "The robot heads straight for its goal, and the wall's half-plane lies at right angles to that way. As the robot "
+     "comes nearer, the line of the half-plane moves to the origin and takes the best allowed velocity along to zero: "
+     "play, and watch the green arrow shrink.",
      formation::Method::orca,
      R"({"name": "A wall, and why ORCA stops", "guidance": "none", "liveness": "off", "time_limit": 20,
          "robots": [{"id": "R1", "position": [0, 0], "goal": [12, 0], "max_speed": 2}],

@@ -124,7 +124,7 @@ function fillMetrics() {
   for (const [key, name, unit] of metrics ? METRICS : []) {
     const value = metrics[key];
     if (value === null || value === undefined) continue;
-    rows.push(metricRow(name, `${Number(value.toPrecision(6))}${unit ? ` ${unit}` : ''}`, key));
+    rows.push(metricRow(name, `${Number(value.toPrecision(5))}${unit ? ` ${unit}` : ''}`, key));
   }
   $('metrics').replaceChildren(...rows);
 }

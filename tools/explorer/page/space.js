@@ -89,7 +89,8 @@ function numberPlace(view, ends, taken) {
   let best = null, room = -1;
   for (let k = 1; k < 40; ++k) {
     const x = x1 + (x2 - x1) * k / 40, y = y1 + (y2 - y1) * k / 40;
-    if (x < 16 || y < 30 || x > view.width - 16 || y > view.height - 26) continue;
+    const isInLegend = x > view.width - 100 && y < 68;
+    if (isInLegend || x < 16 || y < 30 || x > view.width - 16 || y > view.height - 26) continue;
     let here = 60;
     for (const [tx, ty] of taken) here = Math.min(here, Math.hypot(tx - x, ty - y));
     if (here > room) {
