@@ -34,21 +34,37 @@ foreach(component IN LISTS EXACTVO_BUILT_COMPONENTS)
   string(APPEND EXACTVO_NEEDS "${needs}")
   # A file each, so that a consumer of one component meets no target of another one's libraries.
   install(EXPORT ExactVO-${component} FILE ExactVO-${component}.cmake NAMESPACE exactvo::
-    DESTINATION ${EXACTVO_PACKAGE_DIR})
+    DESTINATION ${EXACTVO_PACKAGE_DIR} COMPONENT dev)
 endforeach()
 string(REGEX REPLACE "\n$" "" EXACTVO_NEEDS "${EXACTVO_NEEDS}")
 configure_package_config_file(cmake/ExactVOConfig.cmake.in ExactVOConfig.cmake
   INSTALL_DESTINATION ${EXACTVO_PACKAGE_DIR})
 write_basic_package_version_file(ExactVOConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ExactVOConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/ExactVOConfigVersion.cmake
-  DESTINATION ${EXACTVO_PACKAGE_DIR})
+  DESTINATION ${EXACTVO_PACKAGE_DIR} COMPONENT dev)
+
+# For builds without CMake: `pkg-config --cflags --libs exactvo` is the component formation with those before it.
+if("formation" IN_LIST EXACTVO_BUILT_COMPONENTS)
+  file(RELATIVE_PATH EXACTVO_PREFIX_SEEN_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" EXACTVO_PREFIX_SEEN_FROM_PC "${EXACTVO_PREFIX_SEEN_FROM_PC}")
+  configure_file(cmake/exactvo.pc.in exactvo.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/exactvo.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+endif()
 
 if(TARGET exactvo)
-  install(TARGETS exactvo RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(DIRECTORY datasets/data datasets/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/exactvo)
+  install(TARGETS exactvo RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+  install(DIRECTORY datasets/data datasets/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/exactvo COMPONENT runtime)
+  set(pages ${PROJECT_BINARY_DIR}/help_pages)
+  install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime OPTIONAL)
+  install(FILES ${pages}/completions/exactvo.bash RENAME exactvo
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime OPTIONAL)
+  install(FILES ${pages}/completions/_exactvo
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT runtime OPTIONAL)
 endif()
 # The README's links hold where it is installed as well.
-install(FILES LICENSE README.md CITATION.cff CHANGELOG.md HACKING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs/guide docs/images docs/adr docs/design DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY datasets/data datasets/schema DESTINATION ${CMAKE_INSTALL_DOCDIR}/datasets)
+install(FILES LICENSE README.md CITATION.cff CHANGELOG.md HACKING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+install(DIRECTORY docs/guide docs/images docs/adr docs/design DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+install(DIRECTORY datasets/data datasets/schema DESTINATION ${CMAKE_INSTALL_DOCDIR}/datasets COMPONENT runtime)
+
+include(ExactVOPackages)

@@ -25,8 +25,8 @@ function(exactvo_add_module name)
     set_source_files_properties(${arg_CGAL_SOURCES} PROPERTIES COMPILE_OPTIONS "-frounding-math;-Wno-conversion;-Wno-shadow")
   endif()
   install(TARGETS ${target} EXPORT ExactVO-${name}
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 endfunction()
 
 # exactvo_add_part(<module> <name> SOURCES ... [PRIVATE targets...])
@@ -42,7 +42,7 @@ function(exactvo_add_part module name)
   target_link_libraries(exactvo_${module}
     INTERFACE $<$<NOT:$<BOOL:$<TARGET_PROPERTY:EXACTVO_LOADS_PARTS>>>:$<TARGET_NAME:${target}>>)
   set_property(GLOBAL APPEND PROPERTY EXACTVO_PARTS_OF_${module} ${name})
-  install(TARGETS ${target} EXPORT ExactVO-${module} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS ${target} EXPORT ExactVO-${module} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 endfunction()
 
 # exactvo_add_test(<name> SOURCES ... [LIBS ...] [LABELS ...] [TIMEOUT s])

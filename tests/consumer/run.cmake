@@ -113,6 +113,22 @@ if(formation IN_LIST COMPONENTS)
   run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/examples --no-tests=error)
 endif()
 
+# Without CMake, by pkg-config.
+find_program(pkg_config pkg-config)
+if(formation IN_LIST COMPONENTS AND pkg_config)
+  file(GLOB_RECURSE pc ${WORK}/prefix/*/exactvo.pc)
+  get_filename_component(folder "${pc}" DIRECTORY)
+  set(ENV{PKG_CONFIG_PATH} ${folder})
+  run(${pkg_config} --cflags --libs exactvo)
+  separate_arguments(arguments UNIX_COMMAND "${output}")
+  separate_arguments(sanitizing UNIX_COMMAND "${flags}")
+  run(${COMPILER} -std=c++17 ${sanitizing} ${WORK}/source/formation.cpp -o ${WORK}/by_pkg_config ${arguments})
+  run(${WORK}/by_pkg_config)
+  if(NOT output STREQUAL "1\n")
+    message(FATAL_ERROR "the consumer by pkg-config printed '${output}'")
+  endif()
+endif()
+
 # The installed program finds the scenarios that were installed with it.
 if(EXISTS ${WORK}/prefix/${BINDIR}/exactvo)
   run(${WORK}/prefix/${BINDIR}/exactvo --version)

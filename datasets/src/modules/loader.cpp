@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // GDAL, SQLite and MPI as modules beside the program, loaded when they are first needed: PREFIX/bin/PROGRAM finds them
 // in the library folder of PREFIX, and nowhere else. A library that a foreign program has loaded (the Python extension)
-// finds them in its own folder, or in the one that it was built with.
+// finds them in its own folder, or where they are installed or were built.
 #include <dlfcn.h>
 
 #include <filesystem>
@@ -25,9 +25,12 @@ fs::path module_path(const std::string& name) {
   Dl_info self;
   if (::dladdr(reinterpret_cast<const void*>(&module_path), &self) == 0) return name + ".so";
   const fs::path folder = fs::absolute(self.dli_fname).parent_path();
-  std::error_code error;
-  const fs::path beside = folder / (name + ".so");
-  return fs::exists(beside, error) ? beside : (folder / EXACTVO_MODULE_FOLDER / (name + ".so")).lexically_normal();
+  for (const char* place : {".", EXACTVO_INSTALLED_MODULE_FOLDER}) {
+    std::error_code error;
+    const fs::path there = (folder / place / (name + ".so")).lexically_normal();
+    if (fs::exists(there, error)) return there;
+  }
+  return (folder / EXACTVO_MODULE_FOLDER / (name + ".so")).lexically_normal();
 }
 #else
 fs::path module_path(const std::string& name) {

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Debian packages: `cpack -G DEB` in the build folder makes exactvo, libexactvo-dev and, where it is built, python3-exactvo.
+set(CPACK_PACKAGE_NAME exactvo)
+set(CPACK_PACKAGE_VENDOR "ExactVO")
+set(CPACK_PACKAGE_CONTACT "The ExactVO maintainers <maintainers@exactvo.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "velocity obstacles with exact geometry and certificates")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_GENERATOR DEB)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_COMPONENTS_ALL runtime dev)
+
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME exactvo)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS gnuplot-nox)
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "The program exactvo, its scenarios and its guide.")
+
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libexactvo-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+# What the installed CMake package looks for (ExactVOConfig.cmake), component by component.
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libgmp-dev, libmpfr-dev, libtbb-dev, libhwy-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS
+  "libgdal-dev, libsqlite3-dev, libopenmpi-dev, libpugixml-dev, libyaml-cpp-dev, libssl-dev")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "Static libraries and headers; find_package(ExactVO) and pkg-config find them.")
+
+if(EXACTVO_BUILDS_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-exactvo)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+  # GDAL's module is the program's.
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "exactvo (= ${PROJECT_VERSION}), python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-pandas, python3-shapely")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python package exactvo.")
+endif()
+include(CPack)
