@@ -57,7 +57,8 @@ void check_robots(const Scenario& s, Checker& c) {
     for (Vec2 g : r.goals) c.finite(g, at + "/goal");
     for (std::size_t j = 0; j < i; ++j) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
-      c.require(!(gap < 0.0), at + "/position", show(r.position) + ", overlapping robot " + std::to_string(j),
+      if (!(gap < 0.0)) continue;  // words are made for what is wrong only: a crowd has very many pairs
+      c.require(false, at + "/position", show(r.position) + ", overlapping robot " + std::to_string(j),
                 "robots that do not overlap at the start");
     }
   }

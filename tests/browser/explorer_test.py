@@ -216,6 +216,42 @@ class Runs(Page):
         self.assertAlmostEqual(end, 0.05 * (whole - 1), places=6, msg="the last row is kept")
         self.assertRegex(self.text("#partial"), r"One row in \d+ has its decisions.*One row in \d+ is in")
 
+    def test_a_crowd_of_ten_thousand_plays(self):
+        side, rows = 100, 4
+        lines = (self.place / "A7" / "recording.jsonl").read_text().splitlines()
+        header, end = json.loads(lines[0]), json.loads(lines[-1])
+        scenario = header["header"]["scenario"]
+        starts = [(4 * (i % side), 4 * (i // side)) for i in range(side * side)]
+        robot = scenario["robots"][0]
+        scenario["obstacles"] = []
+        scenario["robots"] = [{**robot, "id": f"r{i}", "position": at, "goals": [[at[0] + 30, at[1]]]} for i, at in enumerate(starts)]
+        end["end"].update(rows=rows, stuck=[], collisions=[])
+        step = header["header"]["time_step"]
+        crowd = [{"row": {"time": k * step, "robots": [{"position": [x + k * step, y], "velocity": [1, 0], "preferred": [1, 0], "chosen": [1, 0],
+                                                        "status": "optimal", "mode": "direct"} for x, y in starts]}} for k in range(rows)]
+        (self.place / "crowd").mkdir()
+        (self.place / "crowd" / "recording.jsonl").write_text("\n".join(json.dumps(value) for value in [header, *crowd, end]) + "\n")
+        (self.place / "crowd" / "metrics.json").write_text("{}")
+        self.run_program("view", "crowd", "--out", "crowd.html")
+        self.open("crowd.html")
+        self.run_script("document.getElementById('speed').selectedIndex = 0; document.getElementById('speed').dispatchEvent(new Event('change'));"
+                        "document.getElementById('play').click()")
+        self.await_script("await new Promise((r) => setTimeout(r, 500))")
+        self.run_script("exactvo.page.isPlaying && document.getElementById('play').click()")
+        self.settle()
+        now, x = self.run_script("return [exactvo.ui.t, exactvo.page.positions.x[5050]]")
+        self.assertGreater(now, 0.01)
+        self.assertAlmostEqual(x, starts[5050][0] + now, delta=0.01)
+        self.run_script("const v = exactvo.page.world; v.scale = 40; [v.cx, v.cy] = arguments[0]; exactvo.page.dirty = true", starts[5050])
+        self.settle()
+        at = self.run_script("const b = document.getElementById('world').getBoundingClientRect(), v = exactvo.page.world;"
+                             "return [b.left + v.px(exactvo.page.positions.x[5050]), b.top + v.py(exactvo.page.positions.y[5050])]")
+        for kind in ["mousePressed", "mouseReleased"]:
+            self.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, "x": at[0], "y": at[1], "button": "left", "clickCount": 1})
+        self.settle()
+        self.assertEqual(self.text("#space-robot"), "r5050")
+        self.assertEqual(self.run_script("return document.getElementById('problem').hidden"), True)
+
     def test_a_click_on_a_robot_selects_it(self):
         self.open("paper.html")
         at = self.run_script("const p = exactvo.page, b = document.getElementById('world').getBoundingClientRect();"
