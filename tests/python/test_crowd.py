@@ -136,7 +136,7 @@ def test_kinds_have_one_number_and_options_are_theirs():
     a = crowd.add_robot((0, 0), radius=0.3)
     b = crowd.add_robot((5, 0), kind=exactvo.RobotKind(radius=0.3))
     assert crowd.kind_of(a) == crowd.kind_of(b) == exactvo.RobotKind(radius=0.3)
-    with pytest.raises(TypeError, match="radios"):
+    with pytest.raises(TypeError, match="radios.*did you mean 'radius'"):
         crowd.add_robot((9, 0), radios=0.3)
 
 

@@ -127,3 +127,9 @@ def test_it_is_imported_from_anywhere(tmp_path):
     code = "import exactvo, sys; print(exactvo.__version__, len(exactvo.datasets.readable_formats()))"
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.startswith(exactvo.__version__)
+
+
+def test_a_mistyped_name_gets_a_suggestion():
+    with pytest.raises(AttributeError, match="did you mean 'simulate'"):
+        exactvo.Simulate
+    assert exactvo.rvo2.PyRVOSimulator and not hasattr(exactvo, "__wrapped__")

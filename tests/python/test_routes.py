@@ -134,3 +134,10 @@ def test_obstacles_of_shapely_are_taken_and_given():
     assert geometry.shape(shapes[0]).equals(donut)
     with pytest.raises(exactvo.ArgumentError, match="a Point"):
         exactvo.obstacles(geometry.Point(1, 2))
+
+
+def test_a_list_of_points_is_one_polygon_and_a_list_of_lists_several():
+    triangle = [(0, 0), (2, 0), (1, 1)]
+    assert len(exactvo.obstacles(triangle)) == len(exactvo.obstacles([triangle])) == 1
+    assert len(exactvo.obstacles([triangle, [(5, 5), (6, 5), (6, 6)]])) == 2
+    assert len(exactvo.obstacles([])) == 0 and exactvo.RouteMap([]).plan(0.5).route((0, 0), (1, 1))

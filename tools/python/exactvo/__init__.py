@@ -11,6 +11,8 @@ Python-RVO2, `exactvo.simulate` scenarios, `exactvo.datasets` obstacle files. SI
 radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``code``, ``file`` and ``where``. docs/guide/python.md.
 """
 
+import typing as _typing
+
 from . import datasets, lp, routes, shapes, vo
 from ._exactvo import version as __version__
 from .crowd import Crowd, RobotKind, StepReport
@@ -57,3 +59,18 @@ __all__ = [
     "velocity_obstacles",
     "vo",
 ]
+
+if _typing.TYPE_CHECKING:
+    from . import rvo2 as rvo2
+
+
+def __getattr__(name: str) -> _typing.Any:
+    """`exactvo.rvo2` when it is first asked for (it is run as a program too), and a suggestion for a mistyped name."""
+    import difflib
+    import importlib
+
+    if name == "rvo2":
+        return importlib.import_module("exactvo.rvo2")
+    near = {known.lower(): known for known in __all__}
+    found = difflib.get_close_matches(name.lower(), near, n=1, cutoff=0.6)
+    raise AttributeError(f"module 'exactvo' has no attribute {name!r}" + (f"; did you mean {near[found[0]]!r}?" if found else ""))

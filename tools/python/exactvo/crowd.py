@@ -11,9 +11,10 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -134,6 +135,12 @@ class Crowd:
             if options:
                 raise TypeError("a kind's number and " + ", ".join(options))
             return kind
+        known = [option.name for option in fields(RobotKind)]
+        for name in options:
+            if name not in known:
+                near = difflib.get_close_matches(name, known, n=1, cutoff=0.4)
+                words = f"; did you mean {near[0]!r}?" if near else ""
+                raise TypeError(f"a robot has no option {name!r}: expected {', '.join(known)}{words}")
         return self.add_kind(RobotKind(**options) if kind is None else kind)
 
     def add_robot(self, position: Point, *, kind: int | RobotKind | None = None, **options: Any) -> int:
@@ -209,10 +216,10 @@ class Crowd:
     def explain(self, robot: int) -> Explanation:
         """What the robot will choose in the next step, and each half-plane behind it. Call `step` or `step(0)` first where
         `preferred` has been written."""
-        fields = self._native.explain(robot)
-        fields["neighbours"] = tuple(NeighbourHalfPlane(r, HalfPlane(*h), t) for r, h, t in fields["neighbours"])
-        fields["edges"] = tuple(EdgeHalfPlane(a, b, HalfPlane(*h), t) for a, b, h, t in fields["edges"])
-        return Explanation(**fields)
+        told = self._native.explain(robot)
+        told["neighbours"] = tuple(NeighbourHalfPlane(r, HalfPlane(*h), t) for r, h, t in told["neighbours"])
+        told["edges"] = tuple(EdgeHalfPlane(a, b, HalfPlane(*h), t) for a, b, h, t in told["edges"])
+        return Explanation(**told)
 
     @property
     def digest(self) -> int:

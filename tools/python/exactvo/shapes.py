@@ -309,6 +309,15 @@ class Obstacles(Sequence[Union[Polygon, Wall]]):
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
+def _is_list_of_points(shapes: Any) -> bool:
+    """Whether they are pairs of numbers: one polygon's vertices rather than several obstacles."""
+    try:
+        x, y = shapes[0]
+        return not np.ndim(x) and not np.ndim(y) and not isinstance(x, str) and float(x) == x
+    except (TypeError, ValueError, IndexError, KeyError):
+        return False
+
+
 def obstacles(shapes: Obstacles | ShapeLike | Sequence[Any], *, ids: Sequence[str] | None = None) -> Obstacles:
     """`Obstacles` of one shape or a sequence of shapes (module docstring). Several polygons of one Multi... become several
     obstacles. Winding, closing points and repeated vertices are put right, exactly; what crosses itself is refused
@@ -318,8 +327,7 @@ def obstacles(shapes: Obstacles | ShapeLike | Sequence[Any], *, ids: Sequence[st
             shapes.coordinates, shapes.ring_offsets, shapes.obstacle_offsets, shapes.is_polygon, tuple(ids)
         )
     is_one = isinstance(shapes, (Segment, Wall, Polygon, Disc, Ellipse)) or _geo(shapes) is not None
-    if not is_one and isinstance(shapes, np.ndarray) and shapes.ndim == 2:
-        is_one = True
+    is_one = is_one or _is_list_of_points(shapes)
     if isinstance(shapes, str):
         raise ArgumentError("obstacles", repr(shapes), "shapes; exactvo.datasets.read(path) reads a file")
     try:
