@@ -15,10 +15,10 @@ using geometry::norm;
 /// The farthest velocity of a box bound, in sides of it.
 const double kFastest = std::sqrt(2.0);
 
-/// m: how much nearer the robot and something of that speed can come within a step.
-double reach_within(double time_step, const Viewpoint& from, double other) {
+/// m: how much nearer two that have these speeds together can come within a step.
+double reach_within(double time_step, double speeds) {
   constexpr double kRounding = 1.0 + 1e-6;  // clearances are rounded
-  return kRounding * time_step * (kFastest * from.max_speed + other);
+  return kRounding * time_step * speeds;
 }
 
 Constraint against_robot(const geometry::HalfPlane& h, bool certified, std::size_t other, const Scene& scene,
@@ -71,6 +71,42 @@ Constraint* against(std::size_t robot, const Scene& scene, std::vector<Constrain
   return nullptr;
 }
 
+/// The half-planes of two robots that stand still, which keep a skin between them. Where it is used up, neither comes
+/// nearer.
+PairConstraints at_rest(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
+                        std::size_t j, double time_horizon) {
+  vo::ReciprocalOptions options;
+  options.time_horizon = options.contact_time = time_horizon;
+  const vo::MovingDisc a{anchors[i].position, {}, scenario.robots[i].radius};
+  const vo::MovingDisc b{anchors[j].position, {}, scenario.robots[j].radius};
+  const bool is_in_contact = norm(a.position - b.position) - (a.radius + b.radius) <= kContactSkin;
+  if (!is_in_contact) options.margin = kContactSkin;
+  PairConstraints pair = against_each_other(scene, i, a, j, b, options);
+  if (is_in_contact)
+    for (Constraint* c : {&pair.of_a, &pair.of_b}) c->half_plane.offset = std::max(0.0, c->half_plane.offset);
+  return pair;
+}
+
+/// Both go by a plan.
+PairConstraints with_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
+                           std::size_t i, Vec2 of_i, std::size_t j, Vec2 of_j) {
+  vo::ReciprocalOptions options;
+  options.time_horizon = options.contact_time = scenario.time_step;
+  const vo::MovingDisc a{anchors[i].position, of_i, scenario.robots[i].radius};
+  const vo::MovingDisc b{anchors[j].position, of_j, scenario.robots[j].radius};
+  return against_each_other(scene, i, a, j, b, options);
+}
+
+/// One of them goes by a plan: the whole gap is its.
+PairConstraints with_a_plan(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
+                            std::size_t i, std::size_t j, bool it_is_i) {
+  PairConstraints pair = at_rest(scenario, anchors, scene, i, j, scenario.time_step);
+  const double whole = 2.0 * std::max(pair.of_a.half_plane.offset, pair.of_b.half_plane.offset);
+  pair.of_a.half_plane.offset = it_is_i ? whole : 0.0;
+  pair.of_b.half_plane.offset = it_is_i ? 0.0 : whole;
+  return pair;
+}
+
 }  // namespace
 
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
@@ -107,17 +143,46 @@ void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, con
   Constraint* mine = against(j, scene, constraints[i]);
   Constraint* theirs = against(i, scene, constraints[j]);
   if (!mine || !theirs) return;
-  vo::ReciprocalOptions options;
-  options.time_horizon = options.contact_time = contact_time(scenario);
-  const vo::MovingDisc a{anchors[i].position, {}, scenario.robots[i].radius};
-  const vo::MovingDisc b{anchors[j].position, {}, scenario.robots[j].radius};
-  const bool is_in_contact = norm(a.position - b.position) - (a.radius + b.radius) <= kContactSkin;
-  if (!is_in_contact) options.margin = kContactSkin;
-  PairConstraints pair = against_each_other(scene, i, a, j, b, options);
-  if (is_in_contact)  // do not use up the rest
-    for (Constraint* c : {&pair.of_a, &pair.of_b}) c->half_plane.offset = std::max(0.0, c->half_plane.offset);
+  const PairConstraints pair = at_rest(scenario, anchors, scene, i, j, contact_time(scenario));
   *mine = pair.of_a;
   *theirs = pair.of_b;
+}
+
+void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
+                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints) {
+  const auto yields = [&](std::size_t i) { return scenario.robots[i].cooperates; };
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    std::vector<Constraint>& mine = constraints[i];
+    const auto is_theirs = [&](const Constraint& c) {
+      return scene.bodies()[c.body].kind == vo::BodyKind::robot && yields(c.index) && (planned[i] || planned[c.index]);
+    };
+    const auto is_far = [&](const Constraint& c) {
+      const double speeds = scenario.robots[i].max_speed + scenario.robots[c.index].max_speed;
+      return is_theirs(c) && c.clearance > reach_within(scenario.time_step, kFastest * speeds);
+    };
+    mine.erase(std::remove_if(mine.begin(), mine.end(), is_far), mine.end());
+    for (Constraint& c : mine) {
+      if (!is_theirs(c)) continue;
+      const std::size_t j = c.index;
+      c = planned[i] && planned[j] ? with_plans(scenario, anchors, scene, i, *planned[i], j, *planned[j]).of_a
+                                   : with_a_plan(scenario, anchors, scene, i, j, planned[i].has_value()).of_a;
+    }
+  }
+}
+
+std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>& statics,
+                                    const std::vector<Constraint>& others) {
+  constexpr double kRounding = 1e-9;  // m/s: the linear program sees to the rest
+  double least = 0.0, most = 1.0;
+  for (const std::vector<Constraint>* some : {&statics, &others})
+    for (const Constraint& c : *some) {
+      const double along = dot(c.half_plane.normal, velocity), offset = c.half_plane.offset - kRounding;
+      if (along < offset && along < 0.0) most = std::min(most, offset / along);
+      if (offset > 0.0 && along > 0.0) least = std::max(least, offset / along);
+      if (offset > 0.0 && along <= 0.0) return std::nullopt;
+    }
+  if (!(least <= most) || most < 0.0) return std::nullopt;
+  return most;
 }
 
 double contact_time(const Scenario& scenario) {
@@ -135,7 +200,7 @@ lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {
 }
 
 double reach_of_step(const Scenario& scenario, const Viewpoint& from) {
-  return reach_within(scenario.time_step, from, 0.0);
+  return reach_within(scenario.time_step, kFastest * from.max_speed);
 }
 
 /// m: how much nearer the robot and the body can come within a step, whatever is decided.
@@ -143,7 +208,7 @@ double Decider::reach_of(const Constraint& c, const Viewpoint& from) const {
   const vo::Body& body = (*bodies_)[c.body];
   const double other =
       body.kind == vo::BodyKind::robot ? kFastest * scenario_->robots[c.index].max_speed : norm(body.velocity);
-  return reach_within(scenario_->time_step, from, other);
+  return reach_within(scenario_->time_step, kFastest * from.max_speed + other);
 }
 
 RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from,

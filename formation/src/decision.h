@@ -4,6 +4,7 @@
 /// \file
 /// Equation (12)/(13): from half-planes and a preferred velocity to the chosen one, with the record of why.
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,10 +27,22 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
                        Scene& scene, std::vector<std::vector<Constraint>>& out);
 
 /// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far
-/// as `contact_time` and leaving `kContactSkin` between them: v = 0 satisfies them as long as the robots do not overlap,
-/// and they are as certain (liveness, rule R0).
+/// as `contact_time` and leaving `kContactSkin` between them: v = 0 satisfies them as long as the robots do not
+/// overlap, and they are as certain (liveness, rule R0).
 void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
                std::size_t j, std::vector<std::vector<Constraint>>& constraints);
+
+/// The same of all pairs of which one goes by a plan, for robots that both yield (liveness, rule R4). `planned`: m/s,
+/// what those who go by a plan want. Two that do have the half-plane nearest to what they want, split there with half
+/// the slack each, so that both keep it where the plan is free of collision (lemma 2). Of one that does and one that
+/// does not the first takes the whole gap, and the other does not come nearer. Pairs that cannot meet within a step
+/// have none.
+void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
+                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints);
+
+/// The largest share of a velocity, in [0, 1], that all these allow; nothing where none does.
+std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>& statics,
+                                    const std::vector<Constraint>& others);
 
 /// s: within this a robot in contact is asked to part: never less than a step.
 double contact_time(const Scenario& scenario);
@@ -54,9 +67,9 @@ class Decider {
  public:
   Decider(const Scenario& scenario, const vo::BodyTable& bodies) : scenario_(&scenario), bodies_(&bodies) {}
 
-  /// Fills `chosen`, `status`, `violation`, `exact_multipliers`, `bound`, `constraints` and `uncertified` of the step; the other fields are the
-  /// caller's. Keeps the constraints that bind and those against what can be met within a step: with these alone an
-  /// audit sees that none is missing.
+  /// Fills `chosen`, `status`, `violation`, `exact_multipliers`, `bound`, `constraints` and `uncertified` of the step;
+  /// the other fields are the caller's. Keeps the constraints that bind and those against what can be met within a
+  /// step: with these alone an audit sees that none is missing.
   void decide(const DecisionInput& in, RobotStep& step);
 
  private:

@@ -163,6 +163,13 @@ Heading Guide::heading(Course& course, double radius, Vec2 here) {
   return {course.points[std::min<std::size_t>(1, course.points.size() - 1)]};
 }
 
+double Guide::way_left(const Course& course, Vec2 here) const {
+  double way = norm(course.points[course.next] - here);
+  for (std::size_t k = course.next; k + 1 < course.points.size(); ++k)
+    way += norm(course.points[k + 1] - course.points[k]);
+  return way;
+}
+
 bool Guide::has_room(double radius, Vec2 here) const {
   const double enough = radius + kSkins;
   return clearance_at(here, enough) >= enough;

@@ -16,6 +16,7 @@
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/obstacle_index.h"
 #include "exactvo/geometry/routes.h"
+#include "liveness/roadmap.h"
 #include "reachability.h"
 
 namespace exactvo::formation::detail {
@@ -43,7 +44,7 @@ struct Heading {
   double margin = 0.0;  ///< m: what is kept from obstacles beside the radius on the way there
 };
 
-class Guide {
+class Guide : public FreeSpace {
  public:
   /// `most_margin`: what robots keep beside their radius where there is room, m. The scenario must outlive the guide.
   Guide(const Scenario& scenario, double most_margin);
@@ -58,6 +59,13 @@ class Guide {
   /// The farthest point of the course that a robot can see: the straight way there stays clear of obstacles. Where none
   /// is in sight, the robot was pushed off, and the course is planned again from where it is.
   Heading heading(Course& course, double radius, Vec2 here);
+
+  /// m, along the rest of the course.
+  double way_left(const Course& course, Vec2 here) const;
+
+  bool is_open() const override { return obstacles_.empty(); }
+  double clearance(Vec2 here, double enough) const override { return clearance_at(here, enough); }
+  bool is_clear(Vec2 from, Vec2 to, double least) const override { return is_in_sight(from, to, least); }
 
   /// Whether a robot has room to plan a course.
   bool has_room(double radius, Vec2 here) const;

@@ -8,6 +8,7 @@
 #include "decision.h"
 #include "goals.h"
 #include "guide.h"
+#include "liveness/groups.h"
 #include "moving.h"
 #include "needed_constraints.h"
 #include "rows.h"
@@ -46,7 +47,12 @@ class KinematicRun {
         scene_(scenario, options),
         clock_(scenario, options),
         decider_(scenario, scene_.bodies()),
-        anchors_(scenario.robots.size()) {
+        anchors_(scenario.robots.size()),
+        planned_(scenario.robots.size()),
+        held_by_all_(scenario.robots.size(), 0) {
+    if (liveness_ != Liveness::off && scenario.robots.size() > 1)
+      groups_.emplace(scenario, guide ? static_cast<const FreeSpace&>(*guide) : open_space_,
+                      liveness_ == Liveness::plan);
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
       robot.position = scenario.robots[i].position;
@@ -68,6 +74,7 @@ class KinematicRun {
     }
     rows.add(final_row(clock_.time(k)));
     recording.outcome = outcome();
+    if (liveness_ == Liveness::plan) recording.liveness = groups_ ? groups_->course() : LivenessCourse{};
     recording.outlooks = std::move(outlooks_);
     recording.bodies = scene_.copied_bodies();
   }
@@ -123,19 +130,84 @@ class KinematicRun {
   }
 
   Step decide_all(double time) {
+    if (groups_) look_at_groups(time);
     for (std::size_t i = 0; i < robots_.size(); ++i) anchors_[i] = {robots_[i].position, robots_[i].velocity};
-    robot_constraints(scenario_, options_, anchors_, scene_, others_);
+    look_at_robots();
     Step row;
     row.time = time;
     move_obstacles(scenario_, time, scene_, row.moving);
     row.robots.reserve(robots_.size());
     for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time));
-    if (liveness_ != Liveness::off) repair(time, row);
+    if (!groups_) return row;
+    repair(time, row);
+    while (groups_->any() && groups_->halt_those_held_back(row)) decide_again(time, row);
+    groups_->end_step(row);
     return row;
   }
 
-  static bool is_relaxed(const RobotStep& step) {
-    return step.status == lp::Status::relaxed || step.status == lp::Status::infeasible;
+  // --- Robots that go by plan ---
+
+  void look_at_groups(double time) {
+    std::vector<RobotNow> now;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      const KinematicRobot& r = robots_[i];
+      const bool has_way = guide_ ? r.course.has_value() && !r.waits_for_room : true;
+      const Vec2 goal = guide_ && r.course ? r.course->points.back() : goal_of(i);
+      now.push_back({r.position, goal, at_goal(i), has_way && scenario_.robots[i].cooperates});
+    }
+    groups_->begin_step(time, std::move(now), [&](std::size_t i) {
+      const KinematicRobot& r = robots_[i];
+      return r.course ? guide_->way_left(*r.course, r.position) : norm(goal_of(i) - r.position);
+    });
+  }
+
+  bool goes_by_plan(std::size_t i) const { return groups_ && groups_->is_member(i); }
+
+  /// Half-planes of robots against robots, as they are or as plans have them.
+  void look_at_robots() {
+    robot_constraints(scenario_, options_, anchors_, scene_, others_);
+    if (!groups_ || !groups_->any()) return;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      planned_[i] = goes_by_plan(i) ? std::optional<Vec2>(groups_->wanted(i)) : std::nullopt;
+    follow_plans(scenario_, anchors_, scene_, planned_, others_);
+  }
+
+  /// With other wishes of those who go by plan.
+  void decide_again(double time, Step& row) {
+    look_at_robots();
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
+      choose_again(i, time, row.robots[i], nullptr);
+    }
+    repair(time, row);
+  }
+
+  void choose_again(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    if (goes_by_plan(i)) return choose_by_plan(i, time, step, fallen_back);
+    look(i);
+    choose(i, step.preferred, time, step, fallen_back);
+  }
+
+  /// Along the plan, as fast as all half-planes allow. Those of obstacles look a time step ahead: nearer to what is
+  /// wanted than they need not be.
+  void choose_by_plan(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    Viewpoint here = viewpoint(i);
+    const Vec2 wanted = groups_->wanted(i);
+    here.velocity = wanted;
+    here.horizon = scenario_.time_step;
+    robots_[i].field->set_margin(0.0);
+    robots_[i].field->constraints(here, all_, reach_of_step(scenario_, here));
+    const std::optional<double> share = allowed_share(wanted, all_, others_[i]);
+    held_by_all_[i] = !share;
+    decider_.decide(
+        {share.value_or(0.0) * wanted, here, &all_, &others_[i], clock_.keeps_all(time), nullptr, fallen_back}, step);
+  }
+
+  // --- Repair ---
+
+  bool is_contradicted(std::size_t i, const RobotStep& step) const {
+    return step.status == lp::Status::relaxed || step.status == lp::Status::infeasible ||
+           (goes_by_plan(i) && held_by_all_[i]);
   }
 
   /// Instead of relaxing: all pairs of a robot whose half-planes contradict each other fall back, until none does. Each
@@ -143,7 +215,7 @@ class KinematicRun {
   void repair(double time, Step& row) {
     std::set<std::size_t> contradicted;
     for (std::size_t i = 0; i < robots_.size(); ++i)
-      if (is_relaxed(row.robots[i])) contradicted.insert(i);
+      if (is_contradicted(i, row.robots[i])) contradicted.insert(i);
     std::vector<std::vector<std::size_t>> fallen(robots_.size());  // with whom
     while (!contradicted.empty()) {
       std::set<std::size_t> changed;
@@ -160,9 +232,8 @@ class KinematicRun {
       }
       contradicted.clear();
       for (const std::size_t i : changed) {
-        look(i);
-        choose(i, row.robots[i].preferred, time, row.robots[i], &fallen[i]);
-        if (is_relaxed(row.robots[i])) contradicted.insert(i);
+        choose_again(i, time, row.robots[i], &fallen[i]);
+        if (is_contradicted(i, row.robots[i])) contradicted.insert(i);
       }
     }
   }
@@ -176,13 +247,19 @@ class KinematicRun {
 
   RobotStep decide_one(std::size_t i, double time) {
     pass_waypoint(i, time);
-    look(i);
+    if (!goes_by_plan(i)) look(i);
     add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
     KinematicRobot& r = robots_[i];
     RobotStep step;
     step.position = step.anchor = r.position;
     step.velocity = step.anchor_velocity = r.velocity;
     step.note = std::exchange(r.note, {});
+    if (groups_) step.note = joined_notes(step.note, groups_->note(i));
+    if (goes_by_plan(i)) {
+      step.mode = groups_->goes_back(i) ? Mode::going_back : Mode::by_plan;
+      choose_by_plan(i, time, step, nullptr);
+      return step;
+    }
     const Vec2 preferred = steer(i, time, step);
     choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), time, step);
     return step;
@@ -326,7 +403,8 @@ class KinematicRun {
                 " completed a full circuit of the obstacle without finding a way to its goal";
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!robots_[i].no_way.empty() && !at_goal(i)) text += "; " + scenario_.robots[i].id + " " + robots_[i].no_way;
-    return text;
+    const std::string without_plan = groups_ && !all_arrived() ? groups_->no_plan_words() : "";
+    return without_plan.empty() ? text : text + "; " + without_plan;
   }
 
   std::string arrivals() const {
@@ -349,9 +427,13 @@ class KinematicRun {
   RunClock clock_;
   Decider decider_;
   std::vector<KinematicRobot> robots_;
+  OpenSpace open_space_;
+  std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
   std::vector<Outlook> outlooks_;
   // Memory that a step leaves to the next.
   std::vector<Anchor> anchors_;
+  std::vector<std::optional<Vec2>> planned_;     ///< m/s, what those who go by plan want
+  std::vector<char> held_by_all_;                ///< of those: no share of it is allowed
   NeededConstraints statics_;                    ///< of the methods that have static fields of shapes
   std::vector<Constraint> all_;                  ///< of Method::orca
   std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles

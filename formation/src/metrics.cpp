@@ -93,6 +93,13 @@ Evaluation Evaluator::finish(const Recording& run) {
   for (const Robot& r : parts_->scenario.robots) m.robots.emplace_back().id = r.id;
   parts_->measures.write_to(m);
   write_clearances(parts_->clearances.result(), m);
+  if (run.liveness) {
+    m.plans->groups = run.liveness->groups;
+    m.plans->largest = run.liveness->largest;
+    m.plans->search_nodes = run.liveness->search_nodes;
+  } else {
+    m.plans.reset();
+  }
   m.wall_time = run.wall_time;
   m.warnings = run.warnings;
   for (const StuckReport& report : found.stuck) m.stuck.push_back(report.text);

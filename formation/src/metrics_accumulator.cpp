@@ -42,6 +42,11 @@ void MetricsAccumulator::add(const Step& row) {
   counted_.uncertified += of_last_row_.uncertified;
   counted_.switches += of_last_row_.switches;
   of_last_row_ = {};
+  const auto any = [&](Mode mode) {
+    return std::any_of(row.robots.begin(), row.robots.end(), [&](const RobotStep& r) { return r.mode == mode; });
+  };
+  rows_by_plan_ += any(Mode::by_plan);
+  rows_back_ += any(Mode::going_back);
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     OfRobot& r = robots_[i];
     const RobotStep& step = row.robots[i];
@@ -137,6 +142,9 @@ void MetricsAccumulator::write_to(Metrics& m) const {
   }
   if (scenario_.formation) write_course(m);
   write_detours(m);
+  m.plans.emplace();
+  m.plans->time_by_plan = static_cast<double>(rows_by_plan_) * run_.time_step;
+  m.plans->time_back = static_cast<double>(rows_back_) * run_.time_step;
   m.relaxed_steps = counted_.relaxed;
   m.uncertified_half_planes = counted_.uncertified;
   m.active_set_switches = counted_.switches;

@@ -76,7 +76,7 @@ class MetricsAccumulator {
   const Scenario& scenario_;
   const Recording& run_;
   std::vector<OfRobot> robots_;
-  std::size_t rows_ = 0;
+  std::size_t rows_ = 0, rows_by_plan_ = 0, rows_back_ = 0;
   Counts counted_, of_last_row_;
   std::optional<double> first_formed_;
   SettledSince formed_;

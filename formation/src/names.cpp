@@ -24,9 +24,11 @@ constexpr Names<Integrator, 5> kIntegrators{{{Integrator::exact, "exact"},
                                              {Integrator::dopri5, "dopri5"},
                                              {Integrator::rosenbrock4, "rosenbrock4"}}};
 constexpr Names<Guidance, 2> kGuidances{{{Guidance::none, "none"}, {Guidance::route, "route"}}};
-constexpr Names<Liveness, 2> kLivenesses{{{Liveness::off, "off"}, {Liveness::bias, "bias"}}};
-constexpr Names<Mode, 7> kModes{{{Mode::direct, "direct"},
+constexpr Names<Liveness, 3> kLivenesses{{{Liveness::off, "off"}, {Liveness::bias, "bias"}, {Liveness::plan, "plan"}}};
+constexpr Names<Mode, 9> kModes{{{Mode::direct, "direct"},
                                  {Mode::guided, "guided"},
+                                 {Mode::by_plan, "by-plan"},
+                                 {Mode::going_back, "going-back"},
                                  {Mode::staying, "staying"},
                                  {Mode::boost, "boost"},
                                  {Mode::following, "following"},

@@ -90,7 +90,10 @@ Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options)
 }
 
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options) {
-  return scenario.formation ? Liveness::off : options.liveness.value_or(scenario.liveness);
+  if (scenario.formation) return Liveness::off;
+  const Liveness wanted = options.liveness.value_or(scenario.liveness);
+  const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
+  return wanted == Liveness::plan && !is_guided ? Liveness::bias : wanted;
 }
 
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {

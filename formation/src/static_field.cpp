@@ -183,6 +183,7 @@ std::vector<Enclosure> StaticField::enclosures() const {
 }
 
 double StaticField::horizon(double distance, const Viewpoint& from) const {
+  if (from.horizon > 0.0) return from.horizon;
   const Horizons& h = scenario_->horizons;
   const double speed = norm(from.velocity);
   if (rule_ == HorizonRule::literal)
@@ -596,7 +597,7 @@ void StaticField::add_edges(const Viewpoint& from, double reach, std::vector<Con
       of_chain.push_back(near[first] - scene_->first_edge(chain));
     for (const vo::OrcaHalfPlane& found :
          vo::orca_half_planes(scene_->chains()[chain], of_chain, from.position, from.velocity,
-                              from.radius + kContactSkin, scenario_->horizons.orca))
+                              from.radius + kContactSkin, from.horizon > 0.0 ? from.horizon : scenario_->horizons.orca))
       add_edge(chain, found, from, out);
   }
   std::stable_sort(out.begin(), out.end(),
@@ -605,7 +606,7 @@ void StaticField::add_edges(const Viewpoint& from, double reach, std::vector<Con
 
 void StaticField::add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, const Viewpoint& from,
                            std::vector<Constraint>& out) const {
-  const double tau = scenario_->horizons.orca;
+  const double tau = from.horizon > 0.0 ? from.horizon : scenario_->horizons.orca;
   const std::size_t number = scene_->first_edge(chain) + found.edge;
   const BodyTable::Number body = scene_->edge(number);
   const auto& edge = std::get<geometry::Segment>(scene_->bodies()[body].shape);

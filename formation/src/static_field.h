@@ -33,6 +33,7 @@ struct Viewpoint {
   Vec2 velocity;         ///< m/s, v_opt
   double radius = 0.0;   ///< m
   double max_speed = 0;  ///< m/s
+  double horizon = 0.0;  ///< s: instead of what the scenario says; 0: none
 };
 
 /// The bodies of a run: convex pieces or edges of the obstacles, robots, moving obstacles, and the enclosures that

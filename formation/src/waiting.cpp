@@ -11,7 +11,7 @@ using geometry::norm;
 
 /// m/s: who wants less is not held up.
 constexpr double kWantsNothing = 1e-3;
-/// m/s: a robot that waits for nobody and is faster moves.
+/// m/s: a faster robot moves: a ring of robots that wait for each other may turn slowly, and get apart.
 constexpr double kMoves = 0.1;
 /// Robots of a chain that are named one by one.
 constexpr std::size_t kNamed = 6;
@@ -117,7 +117,7 @@ bool is_dead(const WaitForGraph& graph, const Step& row, std::size_t robot) {
     const std::size_t i = open.back();
     open.pop_back();
     const RobotStep& r = row.robots[i];
-    if (graph[i].empty() && r.mode != Mode::arrived && norm(r.chosen) >= kMoves) return false;
+    if (r.mode != Mode::arrived && norm(r.chosen) >= kMoves) return false;
     for (const std::size_t j : graph[i])
       if (!met[j]) {
         met[j] = 1;

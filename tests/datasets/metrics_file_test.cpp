@@ -56,6 +56,7 @@ TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
                                                      "wall_time",
                                                      "outcome",
                                                      "warnings",
+                                                     "plans",
                                                      "deadlock",
                                                      "stuck",
                                                      "lyapunov",

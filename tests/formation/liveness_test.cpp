@@ -7,12 +7,14 @@
 #include "decision.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "liveness_scenes.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation {
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
+using test_scenes::circle;
+using test_scenes::kTurn;
 
 Robot robot(const std::string& id, Vec2 from, Vec2 to) {
   Robot r;
@@ -21,19 +23,6 @@ Robot robot(const std::string& id, Vec2 from, Vec2 to) {
   r.max_speed = 1.5;
   r.goals = {to};
   return r;
-}
-
-/// Every robot crosses a circle to the opposite place, exactly symmetric; starts are three diameters apart.
-Scenario circle(int count) {
-  Scenario s;
-  s.name = "circle";
-  s.time_limit = 120.0;
-  const double radius = std::max(4.0, 3.0 * count / kTurn);
-  for (int i = 0; i < count; ++i) {
-    const Vec2 p = radius * geometry::rotated({1.0, 0.0}, kTurn * i / count);
-    s.robots.push_back(robot("R" + std::to_string(i + 1), p, -p));
-  }
-  return s;
 }
 
 std::size_t relaxed(const Recording& run) {
@@ -65,7 +54,7 @@ TEST(Liveness, OffIsThePapersWayInWhichFourWaitForEver) {
   off.liveness = Liveness::off;
   EXPECT_FALSE(measure(circle(4), simulate(circle(4), off)).all_arrived);
   Scenario s = circle(4);
-  EXPECT_EQ(liveness_of(s, {}), Liveness::bias);
+  EXPECT_EQ(liveness_of(s, {}), Liveness::plan);
   EXPECT_EQ(liveness_of(s, off), Liveness::off);
   s.liveness = Liveness::off;
   EXPECT_EQ(liveness_of(s, {}), Liveness::off);
@@ -82,6 +71,7 @@ TEST(Liveness, NothingBetweenRobotsIsRelaxedInACrowd) {
   test::SeededRandom random(test::seed_of_run(17));
   for (int k = 0; k < 3; ++k) {
     Scenario s;
+    s.liveness = Liveness::bias;  // goals may overlap: there is no plan to look for
     s.name = "box";
     s.time_limit = 20.0;
     s.obstacles = {{"box", geometry::Polyline{{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}, {-5, -5}}}}};
@@ -98,6 +88,101 @@ TEST(Liveness, NothingBetweenRobotsIsRelaxedInACrowd) {
     off.liveness = Liveness::off;
     EXPECT_GT(relaxed(simulate(s, off)), 0u) << "the crowd is no test";
   }
+}
+
+void expect_all_arrive(Scenario s, const SimulationOptions& options = {}) {
+  s.time_limit = 400.0;
+  const Recording run = simulate(s, options);
+  const Metrics m = measure(s, run);
+  EXPECT_TRUE(m.all_arrived) << s.name << " " << s.robots.size() << ": " << m.outcome;
+  EXPECT_TRUE(m.collisions.empty()) << s.name;
+  EXPECT_EQ(relaxed(run), 0u) << s.name;
+  EXPECT_EQ(m.uncertified_half_planes, 0u) << s.name;
+}
+
+/// Streets of fourteen and eighteen in both directions waited for ever.
+TEST(Liveness, Lemma5_StreetsInBothDirectionsArriveByPlan) {
+  expect_all_arrive(test_scenes::street(14, 3.0));
+  expect_all_arrive(test_scenes::street(18, 4.0));
+  SimulationOptions orca;
+  orca.method = Method::orca;
+  expect_all_arrive(test_scenes::street(14, 3.0), orca);
+  SimulationOptions bias;
+  bias.liveness = Liveness::bias;
+  const Scenario s = test_scenes::street(14, 3.0);
+  EXPECT_FALSE(measure(s, simulate(s, bias)).all_arrived) << "the street is no test";
+}
+
+/// They can only pass where there is a niche: one of them goes back.
+TEST(Liveness, Lemma5_TwoHeadOnInACorridorPassAtItsSiding) {
+  expect_all_arrive(test_scenes::siding());
+}
+
+TEST(Liveness, Lemma5_RoomsChangeRobotsThroughADoorOfOneAndAHalf) {
+  test::SeededRandom random(test::seed_of_run(20));
+  expect_all_arrive(test_scenes::door(12, 1.5, random));
+}
+
+/// One whose goal lies behind robots that rest at theirs across a street: they make way and come back.
+TEST(Liveness, WhoRestsAtItsGoalMakesWay) {
+  Scenario s;
+  s.name = "resting";
+  test_scenes::add_wall(s, {{-8, 0}, {12, 0}, {12, 4}, {-8, 4}, {-8, 0}});
+  for (const double y : {0.65, 1.7, 2.75}) test_scenes::add_robot(s, {4.0, y}, {4.0, y});
+  test_scenes::add_robot(s, {-5.0, 2.0}, {9.0, 2.0});
+  expect_all_arrive(s);
+}
+
+TEST(Liveness, ARunByPlanSaysSo) {
+  const Scenario s = test_scenes::street(14, 3.0);
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  ASSERT_TRUE(m.plans.has_value());
+  EXPECT_GE(m.plans->groups, 1u);
+  EXPECT_EQ(m.plans->largest, 14u);
+  EXPECT_GT(m.plans->search_nodes, 0u);
+  EXPECT_GT(m.plans->time_by_plan, 0.0);
+  std::string notes;
+  bool went_back = false;
+  for (const Step& row : run.steps)
+    for (const RobotStep& r : row.robots) {
+      notes += r.note;
+      went_back = went_back || r.mode == Mode::going_back;
+    }
+  EXPECT_NE(notes.find("14 robots go by plan: "), std::string::npos) << notes;
+  EXPECT_NE(notes.find(" waits for "), std::string::npos) << notes;
+  EXPECT_EQ(went_back, m.plans->time_back > 0.0);
+  EXPECT_EQ(went_back, notes.find("they first go back ") != std::string::npos);
+}
+
+TEST(Liveness, PlansAreTheSameEveryTime) {
+  const Scenario s = test_scenes::street(14, 3.0);
+  const Recording a = simulate(s), b = simulate(s);
+  ASSERT_EQ(a.steps.size(), b.steps.size());
+  for (std::size_t k = 0; k < a.steps.size(); ++k)
+    for (std::size_t i = 0; i < s.robots.size(); ++i)
+      ASSERT_EQ(a.steps[k].robots[i].chosen, b.steps[k].robots[i].chosen) << k << " " << i;
+}
+
+/// A corridor in which nobody can pass: the run ends at its time limit and says that there is no plan.
+TEST(Liveness, WhereThereIsNoPlanItIsSaid) {
+  Scenario s;
+  s.time_limit = 30.0;
+  test_scenes::add_wall(s, {{-8, 0}, {8, 0}, {8, 1.4}, {-8, 1.4}, {-8, 0}});
+  test_scenes::add_robot(s, {-6.0, 0.7}, {6.0, 0.7});
+  test_scenes::add_robot(s, {6.0, 0.7}, {-6.0, 0.7});
+  const Metrics m = measure(s, simulate(s));
+  EXPECT_FALSE(m.all_arrived);
+  EXPECT_NE(m.outcome.find("no plan was found on the roadmap for R1 and R2"), std::string::npos) << m.outcome;
+  EXPECT_NE(m.outcome.find("a deadlock of two"), std::string::npos) << m.outcome;
+}
+
+TEST(Liveness, AmongObstaclesPlansNeedGuidance) {
+  Scenario s = test_scenes::street(2, 3.0);
+  s.guidance = Guidance::none;
+  EXPECT_EQ(liveness_of(s, {}), Liveness::bias);
+  s.obstacles.clear();
+  EXPECT_EQ(liveness_of(s, {}), Liveness::plan);
 }
 
 /// What a pair falls back to is satisfied at rest, opposite bit for bit, and proven.

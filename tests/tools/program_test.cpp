@@ -744,7 +744,7 @@ TEST(Simulate, FollowsProvenRoutes) {
   here.write("shut.json", door("0.3"));
   const Outcome open = here.run("simulate open.json --out open --no-figures");
   ASSERT_EQ(open.status, 0) << open.err;
-  EXPECT_THAT(open.out, HasSubstr("method ivo, guidance route, liveness bias: the robot arrived"));
+  EXPECT_THAT(open.out, HasSubstr("method ivo, guidance route, liveness plan: the robot arrived"));
   EXPECT_EQ(json::parse(here.read("open/metrics.json"))["guidance"], "route");
   EXPECT_THAT(here.read("open/trajectory.csv"), HasSubstr(",guided,"));
   EXPECT_EQ(here.run("audit open --scenario open.json").status, 0);

@@ -197,6 +197,10 @@ std::string turned_words(const Decision& d) {
   switch (d.step.mode) {
     case formation::Mode::guided:
       return "the preferred velocity leads along a proven route to the goal";
+    case formation::Mode::by_plan:
+      return "the preferred velocity follows a joint plan of several robots";
+    case formation::Mode::going_back:
+      return "the robot goes back the way it came, to where its plan begins";
     case formation::Mode::staying:
       return "the robot stays, since its goal is out of reach";
     case formation::Mode::boost:

@@ -26,6 +26,17 @@ void append_course(JsonWriter& json, const std::optional<formation::FormationCou
   json.member("first_formed", course->first_formed).member("formed_since", course->formed_since).end_object();
 }
 
+void append_plans(JsonWriter& json, const std::optional<formation::PlanMetrics>& plans) {
+  json.key("plans");
+  if (!plans) {
+    json.null();
+    return;
+  }
+  json.begin_inline_object().member("groups", plans->groups).member("largest", plans->largest);
+  json.member("time_by_plan", plans->time_by_plan).member("time_back", plans->time_back);
+  json.member("search_nodes", plans->search_nodes).end_object();
+}
+
 void append_texts(JsonWriter& json, const char* key, const std::vector<std::string>& texts) {
   json.key(key).begin_array();
   for (const std::string& text : texts) json.value(text);
@@ -82,6 +93,7 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.member("steps", m.steps).member("wall_time", m.wall_time);
   json.member("outcome", m.outcome);
   append_texts(json, "warnings", m.warnings);
+  append_plans(json, m.plans);
   if (m.deadlock.empty())
     json.key("deadlock").null();
   else

@@ -119,7 +119,7 @@ class Reader {
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
     if (tree.value("guidance", "route") == "none") scenario.guidance = formation::Guidance::none;
-    if (tree.value("liveness", "bias") == "off") scenario.liveness = formation::Liveness::off;
+    if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
     read_figures(tree, scenario);
     refuse_repeated_ids(scenario);
     refuse_what_cannot_run(scenario);

@@ -304,6 +304,45 @@ TEST(AuditPoints, MultipliersThatDoNotProveTheChoiceAreRefused) {
   }
 }
 
+/// Eight robots in a street, four from each end, who wait for each other, go back and pass by a joint plan.
+Scenario street() {
+  Scenario s;
+  s.time_limit = 120.0;
+  for (const double y : {-1.5, 1.5})
+    s.obstacles.push_back({y < 0 ? "south" : "north", geometry::Polyline{{{-30, y}, {30, y}}}});
+  for (int k = 0; k < 8; ++k) {
+    formation::Robot& r = s.robots.emplace_back();
+    r.id = "R" + std::to_string(k + 1);
+    const double side = k % 2 == 0 ? -1.0 : 1.0;
+    r.position = {side * (6.0 + 1.5 * (k / 4)), side * (k / 2 % 2 == 0 ? 0.9 : -0.9)};
+    r.max_speed = 1.5;
+    r.goals = {{-r.position.x, r.position.y}};
+  }
+  return s;
+}
+
+TEST(AuditPoints, AreProvenOfRunsByPlan) {
+  const RecordingFile file = recorded(street());
+  const AuditReport report = audit(file);
+  EXPECT_TRUE(report.clean()) << to_json(report);
+  bool by_plan = false;
+  for (const Step& step : file.recording.steps)
+    for (const RobotStep& r : step.robots) {
+      by_plan = by_plan || r.mode == formation::Mode::by_plan;
+      EXPECT_NE(r.status, lp::Status::relaxed) << step.time;
+    }
+  EXPECT_TRUE(by_plan) << "the street is no test";
+  // A half-plane of a pair that goes by plan which gives more than its share is refuted.
+  RecordingFile forged = file;
+  for (Step& step : forged.recording.steps)
+    for (RobotStep& r : step.robots)
+      if (r.mode == formation::Mode::by_plan)
+        for (RecordedConstraint& c : r.constraints)
+          if (c.source == ConstraintSource::robot) c.half_plane.offset -= 1.0;
+  EXPECT_GT(audit(forged)[AuditPoint::half_planes].refuted, 0u);
+  EXPECT_GT(audit(forged)[AuditPoint::completeness].refuted, 0u);
+}
+
 TEST(AuditPoints, AnAnchorElsewhereIsRefused) {
   RecordingFile file = clean();
   file.recording.steps[5].robots[0].anchor.x += 0x1p-50;

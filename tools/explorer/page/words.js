@@ -70,6 +70,8 @@ function enumerated(words) {
 
 const TURNED = {
   guided: 'the preferred velocity leads along a proven route to the goal',
+  'by-plan': 'the preferred velocity follows a joint plan of several robots',
+  'going-back': 'the robot goes back the way it came, to where its plan begins',
   staying: 'the robot stays, since its goal is out of reach',
   boost: 'boost turned the preferred velocity onto the tangent of the enclosure in the way',
   following: 'the preferred velocity follows the boundary, after a stall',

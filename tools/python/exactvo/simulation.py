@@ -193,7 +193,8 @@ class Recording:
 
     @property
     def mode(self) -> npt.NDArray[np.str_]:
-        """steps x robots: "direct", "guided", "staying", "boost", "following", "pushing-out", "arrived"."""
+        """steps x robots: "direct", "guided", "by-plan", "going-back", "staying", "boost", "following", "pushing-out",
+        "arrived"."""
         return np.asarray(_exactvo.mode_names)[self._native.mode]
 
     @property
@@ -299,7 +300,7 @@ def simulate(
 
     method       "orca" (the textbook's baseline), "ivo-edge" (the paper), "ivo-cluster", "ivo"
     guidance     "route" or "none" instead of the scenario's
-    liveness     "bias" or "off" instead of the scenario's
+    liveness     "plan", "bias" or "off" instead of the scenario's
     controller   of formations: "paper-literal", "paper-signs", "corrected", "default"
     integrator   of formations: "exact", "euler", "rk4", "dopri5", "rosenbrock4"
     record_all   keep every half-plane of every decision, not only those that bind

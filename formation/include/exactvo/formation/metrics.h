@@ -59,6 +59,15 @@ struct FormationCourse {
   std::optional<double> formed_since;  ///< s: since when they are to the end
 };
 
+/// Joint plans of robots that waited for each other (liveness).
+struct PlanMetrics {
+  std::size_t groups = 0;        ///< that went by a plan
+  std::size_t largest = 0;       ///< robots in one
+  double time_by_plan = 0.0;     ///< s, in which some robot went by plan
+  double time_back = 0.0;        ///< s, in which some robot went back to where its plan begins
+  std::size_t search_nodes = 0;  ///< joint places that were looked at
+};
+
 struct Metrics {
   bool all_arrived = false;
   std::optional<double> last_arrival_time;         ///< s
@@ -82,6 +91,7 @@ struct Metrics {
   std::vector<Collision> collisions;                ///< in the order of their beginnings
   std::string outcome;  ///< how it ended, in words: collisions first, then what the recording says, then long detours
   std::vector<std::string> warnings;  ///< the recording's
+  std::optional<PlanMetrics> plans;   ///< where robots may go by plan
   std::vector<std::string> deadlock;  ///< ids of robots at rest at the end, each waiting for the next (waiting.h)
   std::vector<std::string> stuck;     ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };

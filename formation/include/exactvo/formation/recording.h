@@ -46,6 +46,8 @@ struct RecordedConstraint {
 enum class Mode {
   direct,       ///< straight for the goal or slot
   guided,       ///< along a proven route
+  by_plan,      ///< along a joint plan of several robots
+  going_back,   ///< the way it came, to where its plan begins
   staying,      ///< its goal is out of reach: the run's outcome says why
   boost,        ///< turned onto the tangent of a certified trap-free enclosure
   following,    ///< along a boundary: after a stall, or (formations) on the side committed to
@@ -110,6 +112,13 @@ struct Outlook {
   std::vector<std::size_t> bodies;  ///< of `Recording::bodies`; `RecordedConstraint::index` counts them
 };
 
+/// Joint plans of a run (liveness).
+struct LivenessCourse {
+  std::size_t groups = 0;        ///< that went by a plan
+  std::size_t largest = 0;       ///< robots in one
+  std::size_t search_nodes = 0;  ///< joint places that were looked at
+};
+
 struct Recording {
   std::vector<Step> steps;  ///< the last row is the final state: its decisions are empty
   MotionLaw motion = MotionLaw::straight;
@@ -126,8 +135,9 @@ struct Recording {
   /// What half-planes were built on, by number. Of robots and moving obstacles the shape is as at the end of the run.
   std::vector<vo::Body> bodies;
   std::vector<Outlook> outlooks;  ///< in order of time: of every robot's first goal, then of others as they came up
-  bool all_half_planes = false;   ///< every half-plane of every decision was kept
-  double wall_time = 0.0;         ///< s: duration of `simulate` without the time spent in the sink
+  std::optional<LivenessCourse> liveness;  ///< where robots may go by plan
+  bool all_half_planes = false;            ///< every half-plane of every decision was kept
+  double wall_time = 0.0;                  ///< s: duration of `simulate` without the time spent in the sink
 };
 
 }  // namespace exactvo::formation

@@ -50,11 +50,13 @@ enum class Guidance {
 
 /// What is done so that robots with goals do not wait for each other for ever.
 enum class Liveness {
-  off,  ///< nothing: the paper's way. In a crowd half-planes between robots are relaxed where they contradict each
-        ///< other
-  bias  ///< robots in each other's way turn to the right, the more the longer they are held up; and instead of
-        ///< relaxing, the half-planes of a pair give way to those it would have at rest: no robots that cooperate
-        ///< overlap
+  off,   ///< nothing: the paper's way. In a crowd half-planes between robots are relaxed where they contradict each
+         ///< other
+  bias,  ///< robots in each other's way turn to the right, the more the longer they are held up; and instead of
+         ///< relaxing, the half-planes of a pair give way to those it would have at rest: no robots that cooperate
+         ///< overlap
+  plan   ///< beside that, robots that wait for each other go by a joint plan, from where they are or from where they
+         ///< were before
 };
 
 /// tau of the velocity obstacles, s. IVO: tau = clamp(dist / max(|v|, speed_floor max_speed), least, most); ORCA uses
@@ -126,7 +128,7 @@ struct Scenario {
   std::vector<SceneObstacle> obstacles;
   std::optional<FormationSpec> formation;  ///< none: kinematic robots with goals (Section V.A)
   Guidance guidance = Guidance::route;     ///< of robots with goals
-  Liveness liveness = Liveness::bias;      ///< of robots with goals
+  Liveness liveness = Liveness::plan;      ///< of robots with goals
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;
   Horizons horizons;
   Margins margins;

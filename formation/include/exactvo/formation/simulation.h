@@ -74,7 +74,7 @@ struct SimulationOptions {
 /// whose ellipses would close what a route passes.
 Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options);
 
-/// What is done against waiting in a run: nothing in a formation.
+/// What is done against waiting in a run: nothing in a formation, no plans without guidance among obstacles.
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options);
 
 /// What can be said before a run, a line each: a step beyond the integrator's limit, goals, slots or a leader's end

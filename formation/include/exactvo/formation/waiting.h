@@ -30,7 +30,7 @@ WaitForGraph waiting_in(const Scenario& scenario, const Step& row);
 /// number on, in the order of these.
 std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph);
 
-/// Whether all robots that this one waits for, and those that they wait for in turn, wait too or have arrived.
+/// Whether this robot, those that it waits for, and those that they wait for in turn, all stand.
 bool is_dead(const WaitForGraph& graph, const Step& row, std::size_t robot);
 
 /// "R13 waits for R6, which waits for R13: a deadlock of two"; of a long cycle the first ones by name.

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Who is stalled, and groups of robots that go by a joint plan (liveness, rules R2 to R4): when a plan is made, for
+/// whom, from where, and what each member wants in a step. Decides nothing about safety: half-planes do.
+///
+/// Deterministic: budgets of searches are counted.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/recording.h"
+#include "exactvo/formation/waiting.h"
+#include "liveness/plan.h"
+
+namespace exactvo::formation::detail {
+
+/// A robot at the beginning of a step.
+struct RobotNow {
+  Vec2 position;             ///< m
+  Vec2 goal;                 ///< m, a place that counts as its present goal
+  bool has_arrived = false;  ///< at its last goal
+  bool may_join = false;     ///< it cooperates and has a way to its goal
+};
+
+class Groups {
+ public:
+  /// `space` must outlive the groups. Without `plans` stalls are noted and nothing is done about them.
+  Groups(const Scenario& scenario, const FreeSpace& space, bool plans);
+
+  /// Makes plans where they are due, and what members want. `way_left`: m, of a robot from where it is to its goal.
+  void begin_step(double time, std::vector<RobotNow> now, const std::function<double(std::size_t)>& way_left);
+
+  bool any() const { return !groups_.empty(); }
+  bool is_member(std::size_t robot) const { return group_of_[robot] != kNone; }
+  bool goes_back(std::size_t robot) const { return is_member(robot) && group(robot).back_at > group(robot).back_to; }
+  /// m/s. REQUIRES: a member.
+  Vec2 wanted(std::size_t robot) const { return wanted_[robot]; }
+  /// Going back is in step or not at all: the groups of which some robot was not let go as it wanted stand still.
+  /// Whether there are any; their members want nothing then.
+  bool halt_those_held_back(const Step& row);
+  /// What there is to be said of the robot in this row; empty otherwise.
+  std::string note(std::size_t robot);
+
+  /// Takes a row with its decisions: who is stalled, and dead.
+  void end_step(const Step& row);
+
+  const LivenessCourse& course() const { return course_; }
+  /// "no plan on the roadmap brings R1 and R2 to their goals"; empty where none was missing to the end.
+  std::string no_plan_words() const;
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  using Members = std::vector<std::size_t>;  ///< sorted
+
+  struct Group {
+    Members who;
+    Following following;
+    std::size_t back_at = 0, back_to = 0;  ///< rows of the history: going back while the first is above the second
+    double progress = 0.0;                 ///< s, when something was done last
+    int tries = 0;
+    bool is_over = false;
+    bool stands_still = false;  ///< in this step
+  };
+  struct OfRobot {
+    double shortest = 0.0;    ///< m, its way to the goal, since it was made shorter last
+    double since = 0.0;       ///< s
+    double planned_at = 0.0;  ///< s, the last plan or attempt
+    int attempts = 0;         ///< that failed in a row
+    bool is_named = false;    ///< its stall was noted
+  };
+  enum class Attempt { planned, none_on_map, out_of_budget };
+
+  Group& group(std::size_t robot) { return groups_[group_of_[robot]]; }
+  const Group& group(std::size_t robot) const { return groups_[group_of_[robot]]; }
+  double stalled_for(std::size_t robot) const { return time_ - of_robot_[robot].since; }
+
+  void advance();
+  void advance(Group& g);
+  void watch(const std::function<double(std::size_t)>& way_left);
+  void make_due_plans();
+  void want();
+  Vec2 wanted_by(std::size_t robot) const;
+  void restart_watch(std::size_t robot);
+
+  Members everyone() const;
+  Members cluster_of(Members seeds) const;
+  Members with_groups_of(Members who) const;
+  Members with_those_in_the_way_back(Members who, std::size_t to) const;
+  bool plan_for(Members who, int tries);
+  Attempt attempt(const Members& who, int tries, std::size_t to);
+  Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int tries) const;
+  geometry::Box region_for(const Members& who, const std::vector<Vec2>& from, int tries) const;
+  std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
+  std::optional<std::vector<PlannedMove>> search(JointProblem problem, std::size_t to, Attempt& end);
+  void dissolve(std::size_t group);
+  std::string plan_words(const Group& g) const;
+
+  const Scenario& scenario_;
+  const FreeSpace* space_;
+  bool plans_;
+  double largest_radius_ = 0.0;  ///< m
+  double patience_ = 0.0;        ///< s, that the slowest needs for its diameter
+  double time_ = 0.0;
+  std::size_t row_ = 0;
+  std::vector<RobotNow> now_;
+  std::vector<std::vector<Vec2>> history_;  ///< m, of each row
+  std::vector<OfRobot> of_robot_;
+  std::vector<std::size_t> group_of_;
+  std::vector<Group> groups_;
+  std::vector<Vec2> wanted_;
+  std::vector<std::string> notes_;
+  struct Due {
+    std::size_t robot = 0;
+    bool is_dead = false;
+  };
+  std::vector<Due> due_;  ///< who was stalled in the last row
+  mutable std::optional<Roadmap> whole_map_;
+  Members without_plan_;
+  LivenessCourse course_;
+  std::size_t seed_ = 0;
+};
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Roadmaps, joint search and plans: what they promise, asked in rationals.
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "decision.h"
+#include "exactvo/formation/simulation.h"
+#include "exactvo/vo/reciprocal.h"
+#include "liveness/plan.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using Rational = mpq_class;
+using test::SeededRandom;
+
+struct ExactPoint {
+  Rational x, y;
+};
+ExactPoint exactly(Vec2 p) {
+  return {Rational(p.x), Rational(p.y)};
+}
+ExactPoint operator-(const ExactPoint& a, const ExactPoint& b) {
+  return {a.x - b.x, a.y - b.y};
+}
+Rational dot(const ExactPoint& a, const ExactPoint& b) {
+  return a.x * b.x + a.y * b.y;
+}
+
+Rational exact_squared_distance(Vec2 point, Vec2 from, Vec2 to) {
+  const ExactPoint p = exactly(point), a = exactly(from), d = exactly(to) - a;
+  const Rational length2 = dot(d, d);
+  Rational t = sgn(length2) > 0 ? Rational(dot(p - a, d) / length2) : Rational(0);
+  t = std::max(Rational(0), std::min(Rational(1), t));
+  const ExactPoint gap = p - ExactPoint{a.x + t * d.x, a.y + t * d.y};
+  return dot(gap, gap);
+}
+
+/// A box with a wall in it that has a gap, as segments that discs keep away from.
+class Walls : public FreeSpace {
+ public:
+  explicit Walls(std::vector<Segment> walls) : walls_(std::move(walls)) {}
+  bool is_open() const override { return walls_.empty(); }
+  double clearance(Vec2 place, double enough) const override {
+    double least = enough * enough;
+    for (const Segment& w : walls_) least = std::min(least, squared_distance(place, w.a, w.b));
+    return std::sqrt(least);
+  }
+  bool is_clear(Vec2 from, Vec2 to, double least) const override {
+    return std::all_of(walls_.begin(), walls_.end(), [&](const Segment& w) {
+      return squared_distance(Segment{from, to}, w) >= least * least;
+    });
+  }
+  const std::vector<Segment>& all() const { return walls_; }
+
+ private:
+  std::vector<Segment> walls_;
+};
+
+Walls two_rooms(double gap) {
+  const Vec2 a{-6, -4}, b{6, -4}, c{6, 4}, d{-6, 4};
+  return Walls({{a, b}, {b, c}, {c, d}, {d, a}, {{0, -4}, {0, -0.5 * gap}}, {{0, 0.5 * gap}, {0, 4}}});
+}
+
+/// Discs of two sizes at random free places, and other such places for goals.
+struct Problem {
+  Roadmap map;
+  JointProblem joint;
+
+  Problem(const Walls& walls, std::size_t count, SeededRandom& random) : map(walls, {{-5.4, -3.4}, {5.4, 3.4}}, 0.5) {
+    joint.map = &map;
+    for (std::size_t i = 0; i < count; ++i) joint.radii.push_back(i % 3 == 2 ? 0.4 : 0.5);
+    joint.starts = places(walls, random);
+    joint.goals = places(walls, random);
+  }
+
+  std::vector<PlaceNumber> places(const Walls& walls, SeededRandom& random) {
+    std::vector<PlaceNumber> chosen;
+    while (chosen.size() < joint.radii.size()) {
+      const Vec2 p{random.uniform(-5.4, 5.4), random.uniform(-3.4, 3.4)};
+      const double radius = joint.radii[chosen.size()];
+      bool is_free = walls.clearance(p, 1.0) >= 0.55;
+      for (std::size_t j = 0; j < chosen.size(); ++j)
+        is_free = is_free && norm(map.place(chosen[j]) - p) > 1.02 * (radius + joint.radii[j]);
+      if (is_free) chosen.push_back(map.attach(p));
+    }
+    return chosen;
+  }
+};
+
+/// Single moves in sequence: the others stand where they are then. In rationals.
+void expect_apart(const std::vector<Vec2>& starts, const std::vector<double>& radii,
+                  const std::vector<PlannedMove>& moves, const Walls& walls) {
+  std::vector<Vec2> at = starts;
+  for (const PlannedMove& m : moves) {
+    ASSERT_EQ(at[m.robot], m.from) << "Property 2";
+    for (std::size_t j = 0; j < at.size(); ++j) {
+      if (j == m.robot) continue;
+      const Rational reach = Rational(radii[m.robot]) + Rational(radii[j]);
+      ASSERT_GE(exact_squared_distance(at[j], m.from, m.to), reach * reach) << "Property 1";
+    }
+    for (const Segment& w : walls.all())
+      for (const Vec2 end : {w.a, w.b})
+        ASSERT_GE(exact_squared_distance(end, m.from, m.to), Rational(radii[m.robot]) * Rational(radii[m.robot]));
+    at[m.robot] = m.to;
+  }
+}
+
+std::vector<Vec2> positions(const Roadmap& map, const std::vector<PlaceNumber>& places) {
+  std::vector<Vec2> all;
+  for (const PlaceNumber p : places) all.push_back(map.place(p));
+  return all;
+}
+
+TEST(JointSearch, Properties1To3_EveryPlanIsASequenceOfClearMovesToTheGoals) {
+  SeededRandom random(test::seed_of_run(31));
+  std::size_t found = 0;
+  for (int k = 0; k < 40; ++k) {
+    const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
+    Problem p(walls, 2 + random.integer(0, 12), random);
+    const JointAnswer answer = JointSearch(p.joint).run(k, {200000, 3000});
+    if (answer.end != SearchEnd::found) continue;
+    ++found;
+    const std::vector<Vec2> starts = positions(p.map, p.joint.starts);
+    std::vector<PlannedMove> as_found;
+    for (const JointMove& m : answer.moves) as_found.push_back({m.robot, p.map.place(m.from), p.map.place(m.to)});
+    const std::vector<PlannedMove> plan = plan_of(p.map, answer.moves, p.joint.radii);
+    for (const auto* moves : {static_cast<const std::vector<PlannedMove>*>(&as_found), &plan}) {
+      expect_apart(starts, p.joint.radii, *moves, walls);
+      std::vector<Vec2> at = starts;
+      for (const PlannedMove& m : *moves) at[m.robot] = m.to;
+      EXPECT_EQ(at, positions(p.map, p.joint.goals)) << "Property 3";
+    }
+    EXPECT_LE(plan.size(), answer.moves.size());
+  }
+  EXPECT_GE(found, 35u);
+}
+
+TEST(JointSearch, Property4_TheSameSeedGivesTheSameMoves) {
+  SeededRandom random(test::seed_of_run(32));
+  Problem p(two_rooms(1.5), 10, random);
+  JointSearch search(p.joint);
+  const auto moves_of = [](const JointAnswer& a) {
+    std::vector<std::size_t> flat;
+    for (const JointMove& m : a.moves) flat.insert(flat.end(), {m.robot, m.from, m.to});
+    return flat;
+  };
+  const JointAnswer a = search.run(5, {200000, 3000}), b = search.run(5, {200000, 3000});
+  ASSERT_EQ(a.end, SearchEnd::found);
+  EXPECT_EQ(moves_of(a), moves_of(b));
+  EXPECT_EQ(a.calls, b.calls);
+}
+
+/// Two in a dead end cannot change their order: every joint place is tried, and that there is no plan is said.
+TEST(JointSearch, InACorridorWithoutASidingThereIsNoneOnTheMap) {
+  const Walls walls({{{-4, 0.6}, {4, 0.6}}, {{-4, -0.6}, {4, -0.6}}, {{-4, -0.6}, {-4, 0.6}}, {{4, -0.6}, {4, 0.6}}});
+  Roadmap map(walls, {{-3.4, -0.05}, {3.4, 0.05}}, 0.5);
+  JointProblem p;
+  p.map = &map;
+  p.radii = {0.5, 0.5};
+  p.starts = {map.attach({-2, 0}), map.attach({2, 0})};
+  p.goals = {p.starts[1], p.starts[0]};
+  const JointAnswer answer = JointSearch(p).run(1, {1000000, 100000});
+  EXPECT_EQ(answer.end, SearchEnd::none_on_map);
+  EXPECT_GT(answer.nodes, 10u);
+}
+
+TEST(Roadmap, EveryFreePointOfANarrowPlaceSeesAPlace) {
+  const Walls walls = two_rooms(1.1);  // a lattice alone may miss it
+  const Roadmap map(walls, {{-5.4, -3.4}, {5.4, 3.4}}, 0.5);
+  for (double x = -0.5; x <= 0.5; x += 0.125) {
+    bool sees = false;
+    map.for_each_near({x, 0.0}, 1.6, [&](PlaceNumber p) {
+      sees = sees || walls.is_clear({x, 0.0}, map.place(p), 0.5);
+    });
+    EXPECT_TRUE(sees) << x;
+  }
+}
+
+/// Lemma 2: the half-planes of two that go by a plan which is free of collision hold what they want, in rationals; and
+/// where they do not, it was not.
+TEST(Lemmas, Lemma2_APairKeepsTheVelocitiesOfACollisionFreePlan) {
+  SeededRandom random(test::seed_of_run(33));
+  std::size_t held = 0, cut = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const double tau = 0.05, radius = 0.5;
+    const Vec2 apart = (1.0 + std::ldexp(random.uniform(0.5, 1.0), random.integer(-20, 0))) *
+                       geometry::rotated({1.0, 0.0}, random.uniform(0.0, 6.28));
+    const Vec2 a = random.in_box(1.5), b = random.in_box(1.5);
+    vo::ReciprocalOptions options;
+    options.time_horizon = options.contact_time = tau;
+    const auto pair = vo::reciprocal_half_planes({{}, a, radius}, {apart, b, radius}, options);
+    ASSERT_TRUE(pair.certified);
+    const auto keeps = [](const geometry::HalfPlane& h, Vec2 v) {
+      return dot(exactly(h.normal), exactly(v)) >= Rational(h.offset);
+    };
+    const bool both = keeps(pair.a, a) && keeps(pair.b, b);
+    // The way of a relative to b within tau, against a disc of both radii.
+    const Rational distance2 = exact_squared_distance(apart, {}, tau * (a - b));
+    const double clear = std::sqrt(distance2.get_d()) - 2.0 * radius;
+    if (clear > 1e-9) {
+      EXPECT_TRUE(both) << clear;
+      ++held;
+    } else if (clear < -1e-9) {
+      EXPECT_FALSE(both) << clear;
+      ++cut;
+    }
+  }
+  EXPECT_GT(held, 1000u);
+  EXPECT_GT(cut, 1000u);
+}
+
+/// Lemma 3: robots that pause as they like keep their distances, the earliest move is never held back, and all arrive.
+TEST(Lemmas, Lemma3_FollowingKeepsDistancesAndEnds) {
+  SeededRandom random(test::seed_of_run(34));
+  for (int k = 0; k < 12; ++k) {
+    const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
+    Problem p(walls, 8, random);
+    const JointAnswer answer = JointSearch(p.joint).run(k, {200000, 3000});
+    if (answer.end != SearchEnd::found) continue;
+    std::vector<Vec2> at = positions(p.map, p.joint.starts);
+    Following following(plan_of(p.map, answer.moves, p.joint.radii), p.joint.radii);
+    double length = 0.0, least = std::numeric_limits<double>::infinity();
+    for (const PlannedMove& m : following.plan()) length += norm(m.to - m.from);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        least = std::min(least, norm(at[i] - at[j]) / (p.joint.radii[i] + p.joint.radii[j]));
+    least = std::min(least, 1.0 + kPlannedGap);
+    const double stride = 0.075;
+    std::size_t steps = 0;
+    const std::size_t most = 40 * (following.plan().size() + static_cast<std::size_t>(length / stride) + 1);
+    while (following.moves_left() > 0 && steps++ < most) {
+      std::vector<Vec2> next = at;
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        if (random.integer(0, 9) < 3) continue;  // pauses
+        const Vec2 way = following.within_reach(i, at) - at[i];
+        const double size = norm(way);
+        next[i] = size <= stride ? at[i] + way : at[i] + stride / size * way;
+      }
+      for (std::size_t i = 0; i < at.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+          const double distance = std::sqrt(squared_distance(at[j] - at[i], {}, (next[i] - at[i]) - (next[j] - at[j])));
+          ASSERT_GE(distance, (least - 1e-6) * (p.joint.radii[i] + p.joint.radii[j]));
+        }
+      at = next;
+      following.advance(at);
+    }
+    EXPECT_EQ(following.moves_left(), 0u);
+  }
+}
+
+/// Lemma 4: a run backwards is a run: from where it ended, each robot may go back as it came, and keeps the half-planes
+/// of a pair that plans to.
+TEST(Lemmas, Lemma4_EveryStepOfARunMayBeGoneBackwards) {
+  Scenario s;
+  s.time_limit = 12.0;
+  s.liveness = Liveness::bias;
+  for (int i = 0; i < 8; ++i) {
+    Robot& r = s.robots.emplace_back();
+    r.id = "R" + std::to_string(i);
+    r.position = 4.0 * geometry::rotated({1.0, 0.0}, 6.283185307179586 * i / 8);
+    r.max_speed = 1.5;
+    r.goals = {-r.position};
+  }
+  const Recording run = simulate(s);
+  const SimulationOptions options;
+  Scene scene(s, options);
+  std::vector<std::vector<Constraint>> constraints;
+  std::size_t pairs = 0;
+  for (std::size_t k = run.steps.size() - 1; k > 0; --k) {
+    std::vector<Anchor> anchors;
+    std::vector<std::optional<Vec2>> back;
+    for (std::size_t i = 0; i < s.robots.size(); ++i) {
+      const Vec2 here = run.steps[k].robots[i].position;
+      anchors.push_back({here, {}});
+      back.emplace_back((run.steps[k - 1].robots[i].position - here) / s.time_step);
+    }
+    robot_constraints(s, options, anchors, scene, constraints);
+    follow_plans(s, anchors, scene, back, constraints);
+    for (std::size_t i = 0; i < s.robots.size(); ++i) {
+      pairs += constraints[i].size();
+      EXPECT_EQ(allowed_share(*back[i], {}, constraints[i]), 1.0) << run.steps[k].time << " " << i;
+    }
+  }
+  EXPECT_GT(pairs, 10u);
+}
+
+}  // namespace
+}  // namespace exactvo::formation::detail
