@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
-#include "exactvo/geometry/box.h"
+#include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/distance.h"
 
 namespace exactvo::formation::detail {
@@ -22,6 +23,30 @@ class ObstacleBoxes {
       geometry::Box& box = boxes_.emplace_back();
       for (const geometry::Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
     }
+    std::vector<geometry::Box> placed;
+    for (std::size_t k = 0; k < boxes_.size(); ++k) {
+      if (boxes_[k].is_empty()) continue;
+      if (!geometry::is_finite(boxes_[k].low) || !geometry::is_finite(boxes_[k].high)) {
+        anywhere_.push_back(k);
+        continue;
+      }
+      obstacle_of_.push_back(k);
+      placed.push_back(boxes_[k]);
+      largest_ = std::max({largest_, std::fabs(boxes_[k].low.x), std::fabs(boxes_[k].low.y),
+                           std::fabs(boxes_[k].high.x), std::fabs(boxes_[k].high.y)});
+    }
+    by_place_ = geometry::BoxGrid(std::move(placed));
+  }
+
+  /// All that are not `is_beyond`, in order.
+  std::vector<std::size_t> near(geometry::Vec2 x, double distance) const {
+    std::vector<std::size_t> found = anywhere_;
+    const double largest = std::max({largest_, std::fabs(x.x), std::fabs(x.y)});
+    by_place_.for_each_within(x, distance + 2.0 * geometry::rounding_of_distance(largest), [&](std::size_t k) {
+      if (!is_beyond(obstacle_of_[k], x, distance)) found.push_back(obstacle_of_[k]);
+    });
+    std::sort(found.begin(), found.end());
+    return found;
   }
 
   /// Whether `signed_distance` from x to that obstacle is at least that, rounding and all.
@@ -34,6 +59,9 @@ class ObstacleBoxes {
 
  private:
   std::vector<geometry::Box> boxes_;
+  std::vector<std::size_t> obstacle_of_, anywhere_;  ///< of the grid; whose box is not finite
+  geometry::BoxGrid by_place_;
+  double largest_ = 0.0;  ///< m, coordinate
 };
 
 }  // namespace exactvo::formation::detail

@@ -2,10 +2,14 @@
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/counted.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <unordered_map>
+#include <utility>
 
 #include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/distance.h"
 #include "obstacle_boxes.h"
 
@@ -44,8 +48,45 @@ struct Checker {
   }
 };
 
+/// Robots by place, those whose numbers are none left out.
+class RobotBoxes {
+ public:
+  explicit RobotBoxes(const std::vector<Robot>& robots) {
+    constexpr double kRounding = 0x1p-40;  // far more than the gap of a pair is off by
+    std::vector<geometry::Box> boxes;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const Robot& r = robots[i];
+      const double reach = std::fabs(r.radius) + kRounding * (std::fabs(r.position.x) + std::fabs(r.position.y));
+      const Vec2 corner{reach, reach};
+      if (!geometry::is_finite(r.position - corner) || !geometry::is_finite(r.position + corner)) continue;
+      box_of_.emplace(i, boxes.size());
+      robot_of_.push_back(i);
+      boxes.push_back({r.position - corner, r.position + corner});
+    }
+    by_place_ = geometry::BoxGrid(std::move(boxes));
+  }
+
+  /// Every robot before i that could overlap it, in order.
+  std::vector<std::size_t> before(std::size_t i) const {
+    std::vector<std::size_t> found;
+    const auto box = box_of_.find(i);
+    if (box == box_of_.end()) return found;
+    by_place_.for_each_meeting(by_place_.box(box->second), [&](std::size_t k) {
+      if (robot_of_[k] < i) found.push_back(robot_of_[k]);
+    });
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  std::unordered_map<std::size_t, std::size_t> box_of_;
+  std::vector<std::size_t> robot_of_;
+  geometry::BoxGrid by_place_;
+};
+
 void check_robots(const Scenario& s, Checker& c) {
   c.require(!s.robots.empty(), "/robots", "no robots", "at least one robot");
+  const RobotBoxes boxes(s.robots);
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
     const Robot& r = s.robots[i];
     const std::string at = "/robots/" + std::to_string(i);
@@ -55,7 +96,7 @@ void check_robots(const Scenario& s, Checker& c) {
     c.finite(r.velocity, at + "/velocity");
     c.require(s.formation || !r.goals.empty(), at + "/goal", "no goal", "a goal, since the scenario has no formation");
     for (Vec2 g : r.goals) c.finite(g, at + "/goal");
-    for (std::size_t j = 0; j < i; ++j) {
+    for (const std::size_t j : boxes.before(i)) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
       if (!(gap < 0.0)) continue;  // words are made for what is wrong only: a crowd has very many pairs
       c.require(false, at + "/position", show(r.position) + ", overlapping robot " + std::to_string(j),
@@ -75,9 +116,8 @@ void check_starts(const Scenario& s, Checker& c) {
                 show(s.robots[i].position) + ", " + show(-gap) + " m inside " + kind + " '" + id + "'",
                 "a start that is clear of every obstacle");
     };
-    for (std::size_t k = 0; k < s.obstacles.size(); ++k)
-      if (!boxes.is_beyond(k, s.robots[i].position, s.robots[i].radius))
-        require_clear(s.obstacles[k].shape, "obstacle", s.obstacles[k].id);
+    for (const std::size_t k : boxes.near(s.robots[i].position, s.robots[i].radius))
+      require_clear(s.obstacles[k].shape, "obstacle", s.obstacles[k].id);
     for (const MovingObstacle& o : s.moving_obstacles) require_clear(o.shape, "moving obstacle", o.id);
   }
 }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
 #include "support/certificates.h"
@@ -27,6 +28,7 @@ struct Flags {
   std::string path;
   std::string certificates;
   std::string scenario;
+  std::size_t sample = 0;
   bool json = false;
 };
 
@@ -106,6 +108,39 @@ ExitCode audit_recordings(const Flags& flags) {
   return sum.clean() ? ExitCode::success : ExitCode::negative;
 }
 
+// --- Recordings of crowds ---
+
+bool is_crowd_recording(const std::string& path) {
+  return fs::path(path).extension() == ".evr";
+}
+
+std::string in_words(const datasets::CrowdAuditReport& r) {
+  std::string text = fmt::format(
+      "{} of {}, {} judged: {} too fast\n"
+      "pairs that were near, apart at the row before, and both kept: {}, {} overlapped; {} more not kept, nothing is "
+      "promised of them\n"
+      "robots near edges that they did not touch at the row before: {}, {} overlapped\n",
+      counted(r.rows, "row"), counted(r.robots, "robot"), counted(r.motions, "motion"), r.too_fast, r.pairs,
+      r.pairs_met, r.pairs_open, r.near_edges, r.edges_met);
+  for (const std::string& finding : r.findings) text += "  " + finding + "\n";
+  if (r.cut_off) text += "the file was cut off after the last row\n";
+  return text;
+}
+
+std::string to_json(const datasets::CrowdAuditReport& r) {
+  return fmt::format(
+      "{{\"rows\": {}, \"robots\": {}, \"motions\": {}, \"too_fast\": {}, \"pairs\": {}, \"pairs_met\": {}, "
+      "\"pairs_open\": {}, \"near_edges\": {}, \"edges_met\": {}, \"cut_off\": {}, \"clean\": {}}}\n",
+      r.rows, r.robots, r.motions, r.too_fast, r.pairs, r.pairs_met, r.pairs_open, r.near_edges, r.edges_met, r.cut_off,
+      r.clean());
+}
+
+ExitCode audit_crowd(const Flags& flags) {
+  const datasets::CrowdAuditReport report = datasets::audit_crowd_recording(flags.path, flags.sample);
+  print(flags.json ? to_json(report) : in_words(report));
+  return report.clean() && !report.cut_off ? ExitCode::success : ExitCode::negative;
+}
+
 // --- Certificates ---
 
 ExitCode audit_certificates(const Flags& flags) {
@@ -123,12 +158,19 @@ ExitCode audit(const Flags& flags) {
                      "one of the two: a recording (or a folder of them), or --certificate FILE");
   if (!flags.certificates.empty() && !flags.scenario.empty())
     throw UsageError("--scenario", flags.scenario, "a recording to compare it with, not --certificate");
+  const bool is_crowd = is_crowd_recording(flags.path);
+  if (is_crowd && !flags.scenario.empty())
+    throw UsageError("--scenario", flags.scenario, "a recording.jsonl to compare it with");
+  if (!is_crowd && flags.sample > 0)
+    throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
+  if (is_crowd) return audit_crowd(flags);
   return flags.path.empty() ? audit_certificates(flags) : audit_recordings(flags);
 }
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("path", flags->path, "A recording.jsonl, or a folder searched for them");
+  app.add_option("path", flags->path, "A recording.jsonl, a folder searched for them, or a crowd's FILE.evr");
+  app.add_option("--sample", flags->sample, "Of a crowd: judge about so many motions; 0 for all");
   app.add_option("--scenario", flags->scenario, "FILE that the recordings must be of, with its obstacle files");
   app.add_option("--certificate", flags->certificates,
                  "FILE with one certificate per line, or the output of vo --json or route --json; - for stdin");

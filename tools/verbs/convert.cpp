@@ -2,10 +2,12 @@
 // exactvo convert: obstacles from one format to another, with what is lost said.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/geometry/counted.h"
 #include "support/projection.h"
@@ -60,7 +62,18 @@ std::optional<datasets::ObstacleFile> read(const Flags& flags) {
   }
 }
 
+ExitCode convert_crowd(const Flags& flags) {
+  if (std::filesystem::path(flags.out).extension() != ".csv")
+    throw UsageError("out", flags.out, "FILE.csv, for a recording of a crowd");
+  datasets::AtomicFile table(flags.out);
+  const std::size_t rows = datasets::write_crowd_csv(flags.in, table);
+  table.commit();
+  message(fmt::format("{} -> {}: {}", flags.in, flags.out, counted(rows, "row")));
+  return ExitCode::success;
+}
+
 ExitCode convert(const Flags& flags) {
+  if (std::filesystem::path(flags.in).extension() == ".evr") return convert_crowd(flags);
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = output_format(flags.out, flags.to);
   refuse_input_as_output(flags.in, flags.reading.format, "out", flags.out);
@@ -83,7 +96,8 @@ std::string listed(const std::vector<std::string>& words) {
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("in", flags->in, "An obstacle file of any readable format")->required();
+  app.add_option("in", flags->in, "An obstacle file of any readable format, or a crowd's recording, .evr, for FILE.csv")
+      ->required();
   app.add_option("out", flags->out,
                  "The file to write; its extension says the format. - is stdout (wkt, or as --to says)")
       ->required();

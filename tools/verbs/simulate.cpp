@@ -16,6 +16,7 @@
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "verb.h"
+#include "verbs/simulate_crowd.h"
 
 namespace exactvo::tools {
 
@@ -24,6 +25,7 @@ namespace {
 struct Flags {
   std::string scenario;
   SimulationFlags simulation;
+  CrowdFlags crowd;
   std::string out;
   bool record_all = false;
   bool json = false;
@@ -161,9 +163,11 @@ FinishedRun run_and_print(const Flags& flags, const ReadScenario& read, const fo
 }
 
 ExitCode simulate(const Flags& flags) {
+  const bool is_crowd = wants_crowd(flags.crowd, flags.simulation, flags.out);
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = flags.record_all;
   const ReadScenario read = read_scenario(flags.scenario);
+  if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json);
   const formation::Scenario& scenario = read.scenario;
   note_unused(flags.simulation, scenario);
   if (!flags.out.empty()) {
@@ -181,6 +185,7 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags->simulation);
+  declare_crowd_flags(app, flags->crowd);
   declare_out(app, flags->out,
               "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations), figures/ and "
               "explorer.html; "
@@ -203,6 +208,7 @@ Verb simulate_verb() {
           "  exactvo simulate datasets/data/office/office.json --out out/office\n"
           "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
           "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
+          "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
           declare};
 }

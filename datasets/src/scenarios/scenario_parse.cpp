@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "exactvo/formation/simulation.h"
 #include "json_text.h"
 #include "readers/raw_geometry.h"
+#include "scenarios/scenario_robots.h"
 #include "scenarios/scenario_values.h"
 #include "scenarios/schema_check.h"
 #include "text_file.h"
@@ -26,19 +28,6 @@ const Json& parsed_schema() {
 }
 
 // The schema has been held against the text: types and required keys are as they should be from here on.
-
-formation::Robot to_robot(const Json& object) {
-  formation::Robot robot;
-  robot.id = object.at("id").get<std::string>();
-  robot.position = to_point(object.at("position"));
-  if (object.contains("velocity")) robot.velocity = to_point(object.at("velocity"));
-  take(object, "radius", robot.radius);
-  take(object, "max_speed", robot.max_speed);
-  if (object.contains("goal")) robot.goals = {to_point(object.at("goal"))};
-  if (object.contains("goals")) robot.goals = to_points(object.at("goals"));
-  robot.cooperates = object.value("cooperates", robot.cooperates);
-  return robot;
-}
 
 /// The member, uncopied; an empty list where there is none.
 const Json& list_in(const Json& object, const char* key) {
@@ -113,9 +102,9 @@ class Reader {
     Scenario scenario;
     scenario.name = tree.at("name").get<std::string>();
     scenario.description = tree.value("description", std::string());
-    for (const Json& robot : tree.at("robots")) scenario.robots.push_back(to_robot(robot));
     read_obstacle_list(list_in(tree, "obstacles"), scenario);
     read_moving_obstacles(list_in(tree, "moving_obstacles"), scenario);
+    read_robot_list(tree.at("robots"), scenario);
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
     if (tree.value("guidance", "route") == "none") scenario.guidance = formation::Guidance::none;
@@ -132,6 +121,13 @@ class Reader {
     if (type == tree.end() || !type->is_string() || tree.contains("robots")) return;
     const bool is_topology = *type == "Topology";
     throw no_scenario(file_, (is_topology ? "TopoJSON" : "GeoJSON") + (" (" + type->get<std::string>()) + ")");
+  }
+
+  void read_robot_list(const Json& list, Scenario& scenario) {
+    RobotList read = read_robots(list, scenario.obstacles, file_, base_dir_);
+    scenario.robots = std::move(read.robots);
+    origin_of_robot_ = std::move(read.origins);
+    for (std::filesystem::path& table : read.tables) files_.push_back(std::move(table));
   }
 
   void read_obstacle_list(const Json& list, Scenario& scenario) {
@@ -245,7 +241,8 @@ class Reader {
     std::set<std::string> seen;
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       const std::string& id = scenario.robots[i].id;
-      if (!seen.insert(id).second) refuse("/robots/" + std::to_string(i) + "/id", "\"" + id + "\" a second time");
+      if (seen.insert(id).second) continue;
+      refuse(in_the_text("/robots/" + std::to_string(i) + "/id"), "\"" + id + "\" a second time");
     }
     seen.clear();
     for (std::size_t k = 0; k < scenario.obstacles.size(); ++k) {
@@ -270,8 +267,8 @@ class Reader {
     const std::vector<formation::ScenarioProblem> problems = formation::validate(scenario);
     if (problems.empty()) return;
     const formation::ScenarioProblem& first = problems.front();
-    throw DataError(DataCode::scenario, file_, in_the_text(first.pointer), first.found + words_of_projection(),
-                    first.expected);
+    throw DataError(DataCode::scenario, file_, in_the_text(first.pointer),
+                    words_of_robot(scenario, first.pointer) + first.found + words_of_projection(), first.expected);
   }
 
   /// Numbers that were no degrees are the likeliest reason why robots and obstacles do not fit together.
@@ -283,6 +280,11 @@ class Reader {
 
   /// Problems name obstacles by their place in the scenario; in the text one entry may stand for a file of many.
   std::string in_the_text(const std::string& pointer) const {
+    if (const auto robot = robot_in(pointer)) {
+      const RobotOrigin& origin = origin_of_robot_.at(*robot);
+      const std::string entry = "/robots/" + std::to_string(origin.entry);
+      return origin.is_one_of_many ? entry : entry + pointer.substr(pointer.find('/', kRobots.size()));
+    }
     const std::string prefix = "/obstacles/";
     if (pointer.compare(0, prefix.size(), prefix) != 0) return pointer;
     const std::size_t end = pointer.find('/', prefix.size());
@@ -290,8 +292,23 @@ class Reader {
     return origin_of_.at(k).pointer + (end == std::string::npos ? "" : pointer.substr(end));
   }
 
+  /// The robot that "/robots/17/position" names.
+  static std::optional<std::size_t> robot_in(const std::string& pointer) {
+    if (pointer.compare(0, kRobots.size(), kRobots) != 0) return std::nullopt;
+    return std::stoul(pointer.substr(kRobots.size()));
+  }
+
+  /// Names a robot that no entry of its own names.
+  std::string words_of_robot(const Scenario& scenario, const std::string& pointer) const {
+    const auto robot = robot_in(pointer);
+    if (!robot || !origin_of_robot_.at(*robot).is_one_of_many) return "";
+    return "robot '" + scenario.robots[*robot].id + "' at ";
+  }
+
+  inline static const std::string kRobots = "/robots/";
   std::string file_;
   std::filesystem::path base_dir_;
+  std::vector<RobotOrigin> origin_of_robot_;
   /// An obstacle's entry in the text, and whether that has an id.
   struct Origin {
     std::string pointer;
@@ -330,8 +347,9 @@ Scenario load_scenario(const std::filesystem::path& path) {
 std::vector<std::filesystem::path> files_of_scenario(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files{path};
   const Json tree = parse_json(read_text_file(path), path.string());
-  for (const Json& obstacle : tree.value("obstacles", Json::array()))
-    if (obstacle.contains("file")) files.push_back(path.parent_path() / obstacle.at("file").get<std::string>());
+  for (const char* list : {"robots", "obstacles"})
+    for (const Json& entry : list_in(tree, list))
+      if (entry.contains("file")) files.push_back(path.parent_path() / entry.at("file").get<std::string>());
   return files;
 }
 

@@ -90,6 +90,7 @@ class Checker {
     if (type == "array") return value.is_array();
     if (type == "string") return value.is_string();
     if (type == "number") return value.is_number();
+    if (type == "integer") return value.is_number_integer();
     if (type == "boolean") return value.is_boolean();
     if (type == "null") return value.is_null();
     throw std::logic_error("schema type not supported: " + type);
@@ -101,6 +102,7 @@ class Checker {
     if (type == "string") return "text in quotes";
     if (type == "boolean") return "true or false";
     if (type == "null") return "null";
+    if (type == "integer") return "a whole number";
     return "a " + type;
   }
 
@@ -239,12 +241,32 @@ class Checker {
     if (!value.is_object()) refuse(DataCode::wrong_type, at, described(value), "an object");
     std::vector<const Json*> meant;
     std::string keys;
-    for (const Json& alternative : rule) {
+    for (const Json& reference : rule) {
+      const Json& alternative = resolved(reference);
       if (has_required_keys(value, alternative)) meant.push_back(&alternative);
       keys += (keys.empty() ? "" : ", or ") + listed_keys(alternative);
     }
+    if (meant.empty())
+      if (const Json* likely = likeliest(rule, value)) meant.push_back(likely);
     if (meant.size() == 1) return check(value, *meant.front(), at);
     refuse(DataCode::no_alternative, at, meant.empty() ? "none of these keys" : "the keys of more than one kind", keys);
+  }
+
+  /// Where no alternative has its required keys: the one that knows most of the value's, if there is one.
+  const Json* likeliest(const Json& rule, const Json& value) const {
+    const Json* likely = nullptr;
+    std::size_t most = 0;
+    for (const Json& reference : rule) {
+      const Json& alternative = resolved(reference);
+      const auto known = alternative.find("properties");
+      if (known == alternative.end()) return nullptr;
+      std::size_t count = 0;
+      for (const auto& [key, member] : value.items()) count += known->contains(key);
+      if (count < most || count == 0) continue;
+      likely = count > most ? &alternative : nullptr;
+      most = count;
+    }
+    return likely;
   }
 
   /// "\"polyline\" with \"path\" and \"speed\"".

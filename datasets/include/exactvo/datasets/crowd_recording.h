@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Recordings of crowds, `.evr`: positions of many robots on their lattice, every n-th step, without loss, in columns
+/// (docs/guide/crowd-recordings.md has the format). Written and read a row at a time: memory does not grow with the
+/// run.
+///
+/// Properties (tests quote the numbers):
+///  (1) what is read is what was written, every position and every mark;
+///  (2) a file that was cut off reads up to its last whole row, and says that it was cut off; a changed one is refused.
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/formation/crowd_run.h"
+#include "exactvo/geometry/shapes.h"
+
+namespace exactvo::datasets {
+
+struct CrowdKindRecord {
+  double radius = 0.0;     ///< m
+  double max_speed = 0.0;  ///< m/s
+};
+
+/// What stands before the rows.
+struct CrowdRecordingHead {
+  std::string scenario;        ///< its name
+  double time_step = 0.0;      ///< s
+  double position_step = 0.0;  ///< m, q
+  std::uint32_t every = 1;     ///< steps from row to row; the last row may follow sooner
+  std::vector<CrowdKindRecord> kinds;
+  std::vector<std::uint16_t> kind_of;    ///< of each robot
+  std::vector<geometry::Segment> edges;  ///< of obstacles
+};
+
+/// The robots at a time, in the order of the scenario.
+struct CrowdRow {
+  std::uint32_t step = 0;
+  std::vector<std::int32_t> x, y;  ///< lattice steps
+  std::vector<std::uint8_t> kept;  ///< 1: provably kept all its half-planes in every step since the row before
+};
+
+/// Takes a run; the file appears as a whole at `finish`.
+class CrowdRecorder : public formation::CrowdSink {
+ public:
+  /// Throws DataError (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
+  CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario, std::uint32_t every);
+  void begin(const formation::Crowd& crowd) override;
+  void add_step(const formation::Crowd& crowd, std::size_t steps) override;
+  /// Writes the last row, if it is due, and publishes the file.
+  void finish();
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  void put(const std::string& bytes);
+  void take(const formation::Crowd& crowd);
+  void write_row();
+
+  AtomicFile file_;
+  CrowdRecordingHead head_;
+  CrowdRow row_;
+  std::vector<std::int32_t> last_x_, last_y_;
+  std::vector<geometry::Vec2> at_;
+  std::vector<std::uint8_t> kept_;
+  std::uint64_t bytes_ = 0;
+  bool is_due_ = false;
+};
+
+class CrowdRecordingReader {
+ public:
+  /// Throws DataError: E_FILE_MISSING, E_FORMAT_SYNTAX with the byte.
+  explicit CrowdRecordingReader(const std::filesystem::path& path);
+  ~CrowdRecordingReader();
+
+  const CrowdRecordingHead& head() const;
+  /// False at the end. Throws DataError where a row was changed.
+  bool next(CrowdRow& row);
+  /// After the last row: the file has no proper end.
+  bool is_cut_off() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// What an audit found. Everything is exact.
+struct CrowdAuditReport {
+  std::size_t rows = 0, robots = 0;
+  std::size_t motions = 0;     ///< of robots from row to row that were looked at
+  std::size_t too_fast = 0;    ///< longer than the speed limit allows
+  std::size_t pairs = 0;       ///< that both kept, came near and did not overlap at the row before
+  std::size_t pairs_met = 0;   ///< of these: that overlap on the way (of rows of consecutive steps) or at its end
+  std::size_t pairs_open = 0;  ///< that were near, but one of them was not kept: nothing is promised
+  std::size_t near_edges = 0;  ///< robots and edges near enough to ask, that did not overlap at the row before
+  std::size_t edges_met = 0;   ///< of these: that overlap on the way or at its end
+  bool cut_off = false;
+  std::vector<std::string> findings;  ///< the first few of what is wrong, in words
+  bool clean() const { return too_fast + pairs_met + edges_met == 0; }
+};
+
+/// Judges positions and motions from the file alone, in exact predicates. Of rows of consecutive steps the straight
+/// motion is judged, of others its ends. `sample`: about so many motions, spread evenly over robots and rows; 0: all.
+CrowdAuditReport audit_crowd_recording(const std::filesystem::path& path, std::size_t sample = 0);
+
+/// "step,time,robot,x,y,kept", a line a robot and row. The number of rows.
+std::size_t write_crowd_csv(const std::filesystem::path& from, AtomicFile& to);
+
+}  // namespace exactvo::datasets

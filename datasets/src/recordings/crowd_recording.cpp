@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/crowd_recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include "exactvo/geometry/require.h"
+
+namespace exactvo::datasets {
+namespace {
+
+constexpr std::string_view kMark = "EXACTVR1";
+constexpr char kRow = 'R', kEnd = 'E';
+constexpr std::uint32_t kMostKinds = 1U << 14U, kMostRobots = 1U << 30U, kMostEdges = 1U << 24U;
+constexpr std::size_t kLongestName = 1000;
+
+std::uint64_t checksum(std::string_view bytes) {
+  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash;
+}
+
+template <class T>
+void append(std::string& to, T value) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  to.append(bytes, sizeof value);
+}
+
+/// Zigzag, seven bits a byte, the lowest first.
+void append_difference(std::string& to, std::int64_t difference) {
+  auto left = (static_cast<std::uint64_t>(difference) << 1U) ^ static_cast<std::uint64_t>(difference >> 63);
+  for (; left >= 0x80; left >>= 7U) to.push_back(static_cast<char>(left | 0x80U));
+  to.push_back(static_cast<char>(left));
+}
+
+/// Bytes of a row or head that has been checked.
+class Bytes {
+ public:
+  Bytes(std::string_view left, const std::string& file, std::uint64_t at) : left_(left), file_(file), at_(at) {}
+
+  template <class T>
+  T get() {
+    need(sizeof(T));
+    T value{};
+    std::memcpy(&value, left_.data(), sizeof value);
+    skip(sizeof value);
+    return value;
+  }
+  std::string text(std::size_t size) {
+    need(size);
+    std::string out(left_.substr(0, size));
+    skip(size);
+    return out;
+  }
+  std::int64_t difference() {
+    std::uint64_t value = 0;
+    for (unsigned shift = 0;; shift += 7) {
+      const auto byte = get<std::uint8_t>();
+      if (shift >= 63) refuse("a number of more than nine bytes");
+      value |= std::uint64_t{byte & 0x7FU} << shift;
+      if (byte < 0x80) break;
+    }
+    return static_cast<std::int64_t>(value >> 1U) ^ -static_cast<std::int64_t>(value & 1U);
+  }
+  void require_end() const {
+    if (!left_.empty()) refuse("more bytes than it needs");
+  }
+  void require(bool holds, const char* found) const {
+    if (!holds) refuse(found);
+  }
+  [[noreturn]] void refuse(const std::string& found) const {
+    throw DataError(DataCode::format_syntax, file_, "byte " + std::to_string(at_), found,
+                    "what simulate --record has written");
+  }
+
+ private:
+  void need(std::size_t size) const {
+    if (left_.size() < size) refuse("its end too early");
+  }
+  void skip(std::size_t size) {
+    left_.remove_prefix(size);
+    at_ += size;
+  }
+
+  std::string_view left_;
+  const std::string& file_;
+  std::uint64_t at_;
+};
+
+std::string to_bytes(const CrowdRecordingHead& head) {
+  std::string out;
+  append(out, static_cast<std::uint32_t>(head.scenario.size()));
+  out += head.scenario;
+  append(out, head.time_step);
+  append(out, head.position_step);
+  append(out, head.every);
+  append(out, static_cast<std::uint32_t>(head.kinds.size()));
+  for (const CrowdKindRecord& kind : head.kinds) append(out, kind.radius), append(out, kind.max_speed);
+  append(out, static_cast<std::uint32_t>(head.kind_of.size()));
+  for (const std::uint16_t kind : head.kind_of) append(out, kind);
+  append(out, static_cast<std::uint32_t>(head.edges.size()));
+  for (const geometry::Segment& e : head.edges)
+    for (const double v : {e.a.x, e.a.y, e.b.x, e.b.y}) append(out, v);
+  return out;
+}
+
+bool is_positive(double v) {
+  return std::isfinite(v) && v > 0.0;
+}
+
+CrowdRecordingHead to_head(Bytes in) {
+  CrowdRecordingHead head;
+  const auto length = in.get<std::uint32_t>();
+  in.require(length <= kLongestName, "a name of more than 1000 bytes");
+  head.scenario = in.text(length);
+  head.time_step = in.get<double>();
+  head.position_step = in.get<double>();
+  in.require(is_positive(head.time_step) && is_positive(head.position_step), "a step that is not positive");
+  head.every = in.get<std::uint32_t>();
+  in.require(head.every > 0, "a row every 0 steps");
+  const auto kinds = in.get<std::uint32_t>();
+  in.require(kinds <= kMostKinds, "more than 2^14 kinds");
+  for (std::uint32_t k = 0; k < kinds; ++k) {
+    const auto radius = in.get<double>(), speed = in.get<double>();
+    in.require(is_positive(radius) && is_positive(speed), "a kind that no crowd has");
+    head.kinds.push_back({radius, speed});
+  }
+  const auto robots = in.get<std::uint32_t>();
+  in.require(robots <= kMostRobots, "more than 2^30 robots");
+  for (std::uint32_t i = 0; i < robots; ++i) {
+    head.kind_of.push_back(in.get<std::uint16_t>());
+    in.require(head.kind_of.back() < kinds, "a robot of an unknown kind");
+  }
+  const auto edges = in.get<std::uint32_t>();
+  in.require(edges <= kMostEdges, "more than 2^24 edges");
+  for (std::uint32_t k = 0; k < edges; ++k) {
+    double v[4];
+    for (double& number : v) {
+      number = in.get<double>();
+      in.require(std::isfinite(number), "an edge that is nowhere");
+    }
+    head.edges.push_back({{v[0], v[1]}, {v[2], v[3]}});
+  }
+  in.require_end();
+  return head;
+}
+
+}  // namespace
+
+CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario,
+                             std::uint32_t every)
+    : file_(path) {
+  EXACTVO_REQUIRE(every > 0, "every 0");
+  head_.scenario = scenario.name;
+  head_.every = every;
+  for (const formation::SceneObstacle& o : scenario.obstacles) {
+    const std::vector<geometry::Segment> edges = geometry::edges_of(o.shape);
+    head_.edges.insert(head_.edges.end(), edges.begin(), edges.end());
+  }
+}
+
+void CrowdRecorder::put(const std::string& bytes) {
+  file_.write(bytes);
+  bytes_ += bytes.size();
+}
+
+void CrowdRecorder::begin(const formation::Crowd& crowd) {
+  head_.time_step = crowd.options().time_step;
+  head_.position_step = crowd.options().position_step;
+  const std::size_t robots = crowd.id_end();
+  std::size_t kinds = 0;
+  for (std::size_t i = 0; i < robots; ++i) {
+    head_.kind_of.push_back(crowd.kind_of(static_cast<formation::RobotId>(i)));
+    kinds = std::max<std::size_t>(kinds, head_.kind_of.back() + 1U);
+  }
+  for (std::size_t k = 0; k < kinds; ++k) {
+    const formation::CrowdKind& kind = crowd.kind(static_cast<formation::KindId>(k));
+    head_.kinds.push_back({kind.radius, kind.max_speed});
+  }
+  const std::string head = to_bytes(head_);
+  std::string out(kMark);
+  append(out, static_cast<std::uint64_t>(head.size()));
+  append(out, checksum(head));
+  put(out + head);
+  row_.x.assign(robots, 0);
+  row_.y.assign(robots, 0);
+  last_x_ = last_y_ = row_.x;
+  row_.kept.assign(robots, 1);
+  take(crowd);
+  write_row();
+}
+
+void CrowdRecorder::take(const formation::Crowd& crowd) {
+  crowd.positions(at_);
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    row_.x[i] = static_cast<std::int32_t>(at_[i].x / head_.position_step);
+    row_.y[i] = static_cast<std::int32_t>(at_[i].y / head_.position_step);
+  }
+}
+
+void CrowdRecorder::add_step(const formation::Crowd& crowd, std::size_t steps) {
+  crowd.kept(kept_);
+  for (std::size_t i = 0; i < kept_.size(); ++i) row_.kept[i] &= kept_[i];
+  row_.step = static_cast<std::uint32_t>(steps);
+  take(crowd);
+  is_due_ = true;
+  if (steps % head_.every == 0) write_row();
+}
+
+void CrowdRecorder::write_row() {
+  std::string out;
+  append(out, row_.step);
+  for (auto [now, last] : {std::pair(&row_.x, &last_x_), std::pair(&row_.y, &last_y_)}) {
+    for (std::size_t i = 0; i < now->size(); ++i)
+      append_difference(out, std::int64_t{(*now)[i]} - std::int64_t{(*last)[i]});
+    *last = *now;
+  }
+  for (std::size_t first = 0; first < row_.kept.size(); first += 8) {
+    unsigned bits = 0;
+    for (std::size_t k = first; k < std::min(first + 8, row_.kept.size()); ++k)
+      bits |= unsigned{row_.kept[k]} << (k - first);
+    out.push_back(static_cast<char>(bits));
+  }
+  std::string before(1, kRow);
+  append(before, static_cast<std::uint64_t>(out.size()));
+  append(before, checksum(out));
+  put(before);
+  put(out);
+  row_.kept.assign(row_.kept.size(), 1);
+  is_due_ = false;
+}
+
+void CrowdRecorder::finish() {
+  if (is_due_) write_row();
+  put(std::string(1, kEnd));
+  file_.commit();
+}
+
+struct CrowdRecordingReader::Parts {
+  std::string name;
+  std::ifstream in;
+  CrowdRecordingHead head;
+  std::vector<std::int32_t> x, y;
+  std::string block;
+  std::uint64_t at = 0;  ///< bytes read
+  bool cut_off = false, ended = false;
+
+  /// False where the file ends before.
+  bool read(char* to, std::size_t size) {
+    in.read(to, static_cast<std::streamsize>(size));
+    at += static_cast<std::uint64_t>(in.gcount());
+    return static_cast<std::size_t>(in.gcount()) == size;
+  }
+
+  /// A block behind its size and checksum. In pieces: a size that was changed asks for no more memory than there is.
+  bool read_block() {
+    constexpr std::uint64_t kAtOnce = 1U << 20U;
+    std::uint64_t size = 0, sum = 0;
+    if (!read(reinterpret_cast<char*>(&size), sizeof size) || !read(reinterpret_cast<char*>(&sum), sizeof sum))
+      return false;
+    block.clear();
+    while (block.size() < size) {
+      const std::size_t had = block.size();
+      block.resize(had + static_cast<std::size_t>(std::min(kAtOnce, size - had)));
+      if (!read(block.data() + had, block.size() - had)) return false;
+    }
+    if (checksum(block) != sum) bytes().refuse("another checksum than its content has");
+    return true;
+  }
+  Bytes bytes() const { return {block, name, at - block.size()}; }
+};
+
+CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : parts_(std::make_unique<Parts>()) {
+  Parts& p = *parts_;
+  p.name = path.string();
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    throw DataError(DataCode::file_missing, p.name, "", "no such file", "a recording of a crowd");
+  p.in.open(path, std::ios::binary);
+  if (!p.in)
+    throw DataError(DataCode::file_unreadable, p.name, "", "a file that cannot be read", "a recording of a crowd");
+  char mark[kMark.size()] = {};
+  if (!p.read(mark, sizeof mark) || std::string_view(mark, sizeof mark) != kMark)
+    throw DataError(DataCode::format_syntax, p.name, "byte 0", "another beginning",
+                    "\"EXACTVR1\", of a recording of a crowd");
+  if (!p.read_block()) p.bytes().refuse("its end within the head");
+  p.head = to_head(p.bytes());
+  p.x.assign(p.head.kind_of.size(), 0);
+  p.y = p.x;
+}
+
+CrowdRecordingReader::~CrowdRecordingReader() = default;
+
+const CrowdRecordingHead& CrowdRecordingReader::head() const {
+  return parts_->head;
+}
+
+bool CrowdRecordingReader::is_cut_off() const {
+  return parts_->cut_off;
+}
+
+bool CrowdRecordingReader::next(CrowdRow& row) {
+  Parts& p = *parts_;
+  if (p.ended) return false;
+  char tag = 0;
+  if (!p.read(&tag, 1) || (tag == kRow && !p.read_block())) {
+    p.cut_off = p.ended = true;
+    return false;
+  }
+  if (tag == kEnd) {
+    p.ended = true;
+    return false;
+  }
+  if (tag != kRow) p.bytes().refuse("what begins neither a row nor the end");
+  Bytes in = p.bytes();
+  row.step = in.get<std::uint32_t>();
+  for (std::vector<std::int32_t>* column : {&p.x, &p.y})
+    for (std::int32_t& value : *column) {
+      const std::int64_t next = value + in.difference();
+      in.require(std::abs(next) <= std::int64_t{1} << 30, "a position beyond the lattice");
+      value = static_cast<std::int32_t>(next);
+    }
+  row.x = p.x;
+  row.y = p.y;
+  row.kept.resize(p.x.size());
+  for (std::size_t first = 0; first < row.kept.size(); first += 8) {
+    const auto bits = in.get<std::uint8_t>();
+    for (std::size_t k = first; k < std::min(first + 8, row.kept.size()); ++k) row.kept[k] = bits >> (k - first) & 1U;
+  }
+  in.require_end();
+  return true;
+}
+
+std::size_t write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {
+  CrowdRecordingReader reader(from);
+  const CrowdRecordingHead& head = reader.head();
+  to.write("step,time,robot,x,y,kept\n");
+  CrowdRow row;
+  std::size_t rows = 0;
+  for (; reader.next(row); ++rows) {
+    char line[160];
+    for (std::size_t i = 0; i < row.x.size(); ++i) {
+      const int size =
+          std::snprintf(line, sizeof line, "%u,%.17g,%zu,%.17g,%.17g,%u\n", row.step, row.step * head.time_step, i,
+                        head.position_step * row.x[i], head.position_step * row.y[i], unsigned{row.kept[i]});
+      to.write({line, static_cast<std::size_t>(size)});
+    }
+  }
+  return rows;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scenarios/scenario_robots.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/input_text.h"
+#include "exactvo/geometry/box_grid.h"
+#include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/obstacle_index.h"
+#include "exactvo/geometry/pi.h"
+#include "generators/counter_random.h"
+#include "readers/line_reader.h"
+#include "scenarios/scenario_values.h"
+#include "text_file.h"
+
+namespace exactvo::datasets {
+namespace {
+
+using formation::Robot;
+using geometry::Vec2;
+
+/// Robots of a scenario.
+constexpr std::size_t kMostRobots = 10'000'000;
+
+/// Places drawn for a robot until one is free.
+constexpr int kDraws = 1000;
+
+/// Of random_key: what these draws share with no others.
+constexpr std::uint64_t kStream = 0x726f626f7473;  // "robots"
+
+/// m; the schema's bound of coordinates. m and m/s; of radii and speeds.
+constexpr double kFarthest = 1e9, kLargest = 1e6;
+
+Robot to_robot(const Json& object) {
+  Robot robot;
+  robot.id = object.at("id").get<std::string>();
+  robot.position = to_point(object.at("position"));
+  if (object.contains("velocity")) robot.velocity = to_point(object.at("velocity"));
+  take(object, "radius", robot.radius);
+  take(object, "max_speed", robot.max_speed);
+  if (object.contains("goal")) robot.goals = {to_point(object.at("goal"))};
+  if (object.contains("goals")) robot.goals = to_points(object.at("goals"));
+  robot.cooperates = object.value("cooperates", robot.cooperates);
+  return robot;
+}
+
+Vec2 point_or(const Json& object, const char* key, Vec2 otherwise) {
+  return object.contains(key) ? to_point(object.at(key)) : otherwise;
+}
+
+/// What is free of obstacles and of the robots there are.
+class FreeRoom {
+ public:
+  FreeRoom(const std::vector<formation::SceneObstacle>& obstacles, const std::vector<Robot>& robots, double radius,
+           double apart)
+      : radius_(radius), apart_(apart), cell_(2.0 * radius + apart) {
+    std::vector<geometry::Box> boxes;
+    obstacles_.reserve(obstacles.size());
+    for (const formation::SceneObstacle& o : obstacles) {
+      obstacles_.emplace_back(o.shape);
+      boxes.push_back(obstacles_.back().box());
+    }
+    by_place_ = geometry::BoxGrid(std::move(boxes));
+    boxes.clear();
+    for (const Robot& r : robots) {
+      const Vec2 reach{r.radius, r.radius};
+      boxes.push_back({r.position - reach, r.position + reach});
+      others_.push_back({r.position, r.radius});
+    }
+    others_by_place_ = geometry::BoxGrid(std::move(boxes));
+  }
+
+  bool is_clear_of_obstacles(Vec2 x, double room) const {
+    bool clear = true;
+    by_place_.for_each_within(x, room, [&](std::size_t k) {
+      clear = clear && obstacles_[k].swept_distance({x, x}, room) >= room;
+    });
+    return clear;
+  }
+
+  bool is_free(Vec2 x) const {
+    bool free = is_clear_of_obstacles(x, radius_ + apart_);
+    others_by_place_.for_each_within(x, radius_ + apart_, [&](std::size_t k) {
+      free = free && geometry::norm(x - others_[k].center) >= radius_ + apart_ + others_[k].radius;
+    });
+    const auto [column, row] = cell_of(x);
+    for (std::int64_t c = column - 1; c <= column + 1; ++c)
+      for (std::int64_t r = row - 1; r <= row + 1; ++r) {
+        const auto cell = taken_.find({c, r});
+        if (cell == taken_.end()) continue;
+        for (const Vec2 y : cell->second) free = free && geometry::norm(x - y) >= cell_;
+      }
+    return free;
+  }
+
+  void take(Vec2 x) { taken_[cell_of(x)].push_back(x); }
+
+ private:
+  using Cell = std::pair<std::int64_t, std::int64_t>;
+  struct HashOfCell {
+    std::size_t operator()(const Cell& c) const {
+      return mixed(static_cast<std::uint64_t>(c.first) * kRandomStride + static_cast<std::uint64_t>(c.second));
+    }
+  };
+  Cell cell_of(Vec2 x) const {
+    return {static_cast<std::int64_t>(std::floor(x.x / cell_)), static_cast<std::int64_t>(std::floor(x.y / cell_))};
+  }
+
+  double radius_, apart_, cell_;
+  std::vector<geometry::ObstacleIndex> obstacles_;
+  std::vector<geometry::Disc> others_;
+  geometry::BoxGrid by_place_, others_by_place_;
+  std::unordered_map<Cell, std::vector<Vec2>, HashOfCell> taken_;
+};
+
+/// The columns of a table of robots.
+struct Columns {
+  explicit Columns(const LineReader& lines) {
+    const std::vector<std::string_view> names = fields_of(lines.line(), ',');
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const std::string name(names[k]);
+      if (std::find(std::begin(kKnown), std::end(kKnown), name) == std::end(kKnown))
+        lines.refuse(DataCode::key_unknown, "an unknown column \"" + name + "\"",
+                     "columns out of id, x, y, goal_x, goal_y, vx, vy, radius, max_speed");
+      if (!at.emplace(name, k).second)
+        lines.refuse(DataCode::json_duplicate_key, "column \"" + name + "\" a second time", "each column once");
+    }
+    for (const char* name : {"x", "y", "goal_x", "goal_y"})
+      if (at.count(name) == 0)
+        lines.refuse(DataCode::key_missing, std::string("no column \"") + name + "\"",
+                     "a header with x, y, goal_x and goal_y");
+  }
+
+  static constexpr const char* kKnown[] = {"id", "x", "y", "goal_x", "goal_y", "vx", "vy", "radius", "max_speed"};
+  std::map<std::string, std::size_t> at;
+};
+
+class RobotsReader {
+ public:
+  RobotsReader(const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
+               const std::filesystem::path& base_dir)
+      : obstacles_(obstacles), file_(file), base_dir_(base_dir) {}
+
+  RobotList read(const Json& list) {
+    for (std::size_t k = 0; k < list.size(); ++k) read_entry(list[k], k);
+    return std::move(out_);
+  }
+
+ private:
+  void read_entry(const Json& entry, std::size_t k) {
+    entry_ = k;
+    pointer_ = "/robots/" + std::to_string(k);
+    if (entry.contains("position")) {
+      out_.robots.push_back(to_robot(entry));
+      out_.origins.push_back({k, false});
+      return;
+    }
+    prefix_ = entry.value("prefix", "G" + std::to_string(k + 1)) + "/";
+    pattern_ = Robot{};
+    take(entry, "radius", pattern_.radius);
+    take(entry, "max_speed", pattern_.max_speed);
+    pattern_.cooperates = entry.value("cooperates", pattern_.cooperates);
+    made_ = 0;
+    if (entry.contains("circle")) make_circle(entry.at("circle"));
+    if (entry.contains("grid")) make_grid(entry.at("grid"));
+    if (entry.contains("random")) make_random(entry.at("random"));
+    if (entry.contains("file")) read_table(entry.at("file").get<std::string>());
+  }
+
+  [[noreturn]] void refuse(DataCode code, const char* key, const std::string& found,
+                           const std::string& expected) const {
+    throw DataError(code, file_, pointer_ + "/" + key, found, expected);
+  }
+
+  void require_room_for(std::uint64_t more, const char* key) const {
+    if (more + out_.robots.size() > kMostRobots)
+      refuse(DataCode::size, key, std::to_string(more + out_.robots.size()) + " robots so far", "at most 10^7");
+  }
+
+  Robot& add(Vec2 position, Vec2 goal) {
+    Robot& robot = out_.robots.emplace_back(pattern_);
+    robot.id = prefix_ + std::to_string(++made_);
+    robot.position = position;
+    robot.goals = {goal};
+    out_.origins.push_back({entry_, true});
+    return robot;
+  }
+
+  void make_circle(const Json& rule) {
+    const auto count = rule.at("count").get<std::size_t>();
+    require_room_for(count, "circle");
+    const double radius = rule.at("radius").get<double>();
+    const Vec2 centre = point_or(rule, "centre", {});
+    for (std::size_t i = 0; i < count; ++i) {
+      const double angle = 2.0 * geometry::kPi * static_cast<double>(i) / static_cast<double>(count);
+      const Vec2 out = radius * Vec2{std::cos(angle), std::sin(angle)};
+      add(centre + out, centre - out);
+    }
+  }
+
+  void make_grid(const Json& rule) {
+    const auto columns = rule.at("columns").get<std::uint64_t>(), rows = rule.at("rows").get<std::uint64_t>();
+    require_room_for(columns * rows, "grid");
+    const double spacing = rule.at("spacing").get<double>();
+    const Vec2 corner = point_or(rule, "corner", {}), way = to_point(rule.at("goal"));
+    for (std::uint64_t row = 0; row < rows; ++row)
+      for (std::uint64_t column = 0; column < columns; ++column) {
+        const Vec2 at = corner + spacing * Vec2{static_cast<double>(column), static_cast<double>(row)};
+        add(at, at + way);
+      }
+  }
+
+  void make_random(const Json& rule) {
+    const auto count = rule.at("count").get<std::size_t>();
+    require_room_for(count, "random");
+    const auto seed = rule.value("seed", std::uint64_t{0});
+    const double apart = rule.value("apart", 0.0);
+    const Vec2 low = to_point(rule.at("low")), high = to_point(rule.at("high"));
+    const Vec2 goal_low = point_or(rule, "goal_low", low), goal_high = point_or(rule, "goal_high", high);
+    FreeRoom room(obstacles_, out_.robots, pattern_.radius, apart);
+    for (std::size_t i = 0; i < count; ++i) {
+      CounterRandom random(random_key(kStream, i, seed));
+      const std::optional<Vec2> at = drawn(random, low, high, [&](Vec2 x) { return room.is_free(x); });
+      if (!at) refuse_narrow("place", i, count);
+      const std::optional<Vec2> goal = drawn(
+          random, goal_low, goal_high, [&](Vec2 x) { return room.is_clear_of_obstacles(x, pattern_.radius + apart); });
+      if (!goal) refuse_narrow("goal", i, count);
+      room.take(*at);
+      add(*at, *goal);
+    }
+  }
+
+  template <class IsFree>
+  static std::optional<Vec2> drawn(CounterRandom& random, Vec2 low, Vec2 high, const IsFree& is_free) {
+    for (int k = 0; k < kDraws; ++k) {
+      const double x = random.uniform(low.x, high.x), y = random.uniform(low.y, high.y);
+      if (is_free(Vec2{x, y})) return Vec2{x, y};
+    }
+    return std::nullopt;
+  }
+
+  [[noreturn]] void refuse_narrow(const char* what, std::size_t have, std::size_t wanted) const {
+    refuse(DataCode::scenario, "random",
+           "a free " + std::string(what) + " for " + std::to_string(have) + " of " +
+               geometry::counted(wanted, "robot") + ", none for the next in " + std::to_string(kDraws) + " draws",
+           "a larger box, fewer or smaller robots, or fewer obstacles");
+  }
+
+  std::string text_of(const std::filesystem::path& path) const {
+    try {
+      return read_text_file(path);
+    } catch (const DataError& error) {
+      refuse(error.code(), "file", error.found() + " (" + path.string() + ")", error.expected());
+    }
+  }
+
+  void read_table(const std::string& name) {
+    const std::filesystem::path path = base_dir_ / name;
+    const std::string text = text_of(path), shown = path.string();
+    if (std::find(out_.tables.begin(), out_.tables.end(), path) == out_.tables.end()) out_.tables.push_back(path);
+    LineReader lines(text, shown);
+    if (!lines.next())
+      throw DataError(DataCode::format_syntax, shown, "", "an empty file", "a header and a robot a line");
+    const Columns columns(lines);
+    const std::size_t before = out_.robots.size();
+    while (lines.next()) {
+      if (trimmed(lines.line()).empty()) continue;
+      require_room_for(1, "file");
+      read_row(lines, columns);
+    }
+    if (out_.robots.size() == before)
+      throw DataError(DataCode::wrong_count, shown, "", "a header without robots", "at least one robot");
+  }
+
+  void read_row(const LineReader& lines, const Columns& columns) {
+    const std::vector<std::string_view> fields = fields_of(lines.line(), ',');
+    if (fields.size() != columns.at.size())
+      lines.refuse(DataCode::wrong_count, geometry::counted(fields.size(), "field"),
+                   std::to_string(columns.at.size()) + ", as many as the header has");
+    const auto number = [&](const char* name, double otherwise, double least, double most) {
+      const auto column = columns.at.find(name);
+      if (column == columns.at.end()) return otherwise;
+      const double value = lines.to_number(fields[column->second]);
+      if (!(value >= least && value <= most))
+        lines.refuse(DataCode::out_of_range, std::string(name) + " " + std::string(fields[column->second]),
+                     "a number from " + in_words(least) + " to " + in_words(most));
+      return value;
+    };
+    const auto coordinate = [&](const char* name) { return number(name, 0.0, -kFarthest, kFarthest); };
+    Robot& robot = add({coordinate("x"), coordinate("y")}, {coordinate("goal_x"), coordinate("goal_y")});
+    robot.velocity = {number("vx", 0.0, -kLargest, kLargest), number("vy", 0.0, -kLargest, kLargest)};
+    robot.radius = number("radius", robot.radius, 1e-300, kLargest);
+    robot.max_speed = number("max_speed", robot.max_speed, 1e-300, kLargest);
+    const auto id = columns.at.find("id");
+    if (id == columns.at.end()) return;
+    if (fields[id->second].empty()) lines.refuse(DataCode::wrong_count, "an empty id", "at least 1 character");
+    robot.id = std::string(fields[id->second]);
+  }
+
+  static std::string in_words(double bound) {
+    if (bound == 1e-300) return "above 0";
+    return (bound < 0.0 ? "-" : "") + std::string(std::fabs(bound) == kFarthest ? "1e9" : "1e6");
+  }
+
+  const std::vector<formation::SceneObstacle>& obstacles_;
+  const std::string& file_;
+  const std::filesystem::path& base_dir_;
+  RobotList out_;
+  std::size_t entry_ = 0, made_ = 0;
+  std::string pointer_, prefix_;
+  Robot pattern_;
+};
+
+}  // namespace
+
+RobotList read_robots(const Json& list, const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
+                      const std::filesystem::path& base_dir) {
+  return RobotsReader(obstacles, file, base_dir).read(list);
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Runs a scenario of many robots on the certified crowd (crowd.h), for robots with goals among static obstacles: the
+/// rule is ORCA's, as of Method::orca, with the promises of the crowd. What differs from Method::orca: half-planes
+/// against obstacles are never relaxed, neighbours are the nearest 10 (and all that can be met within a step), motions
+/// are whole steps of a lattice.
+///
+/// Along routes (Guidance::route) a robot heads for the farthest point of its route that it sees, looked for at every
+/// eighth step; a robot whose goal is proven out of reach stays. Deterministic, with any number of threads.
+///
+/// Neighbours: simulation.h runs everything else; datasets/crowd_recording.h records.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/crowd.h"
+#include "exactvo/formation/scenario.h"
+#include "exactvo/formation/simulation.h"
+
+namespace exactvo::formation {
+
+struct CrowdRunOptions {
+  std::optional<Guidance> guidance;  ///< instead of the scenario's
+  CrowdPrecision precision = CrowdPrecision::float_lines;
+  int threads = 1;  ///< as CrowdOptions::threads
+  /// Called after every step with the simulated time, s; returning false stops the run.
+  std::function<bool(double)> progress;
+};
+
+/// Why a scenario cannot be run on a crowd: the pointer of the field, what it has and what it may have.
+std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
+
+/// What a run came to. Times in s, lengths in m.
+struct CrowdRunReport {
+  std::size_t robots = 0;
+  std::size_t arrived = 0;  ///< were within the arrival tolerance of their last goal
+  std::size_t staying = 0;  ///< have no route to a goal
+  std::size_t steps = 0;
+  double time = 0.0;  ///< simulated
+  std::optional<double> median_arrival, last_arrival;
+  double path_length = 0.0;                ///< of all robots together
+  std::size_t relaxed = 0;                 ///< decisions that are not kept: nothing is promised of them
+  std::size_t touching = 0;                ///< decisions of robots that touched another
+  std::size_t widened = 0;                 ///< decisions with more than 10 neighbours
+  std::size_t stopped = 0;                 ///< decisions to stay, for lack of anything else that meets no edge
+  std::size_t half_planes = 0, edges = 0;  ///< against robots, against edges
+  std::uint64_t digest = 0;                ///< Crowd::digest at the end
+  bool interrupted = false;                ///< progress stopped it
+  double wall_time = 0.0;
+};
+
+/// Takes the states of a run: robot i of the scenario has id i.
+class CrowdSink {
+ public:
+  virtual ~CrowdSink() = default;
+  /// The start, before the first step.
+  virtual void begin(const Crowd& crowd) = 0;
+  virtual void add_step(const Crowd& crowd, std::size_t steps) = 0;
+};
+
+/// REQUIRES: a valid scenario (`validate`) without `crowd_problems`. Throws CrowdError, which names a robot by number,
+/// where one leaves the lattice or two start in one place.
+CrowdRunReport run_crowd(const Scenario& scenario, const CrowdRunOptions& options, CrowdSink* sink = nullptr);
+
+}  // namespace exactvo::formation

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/crowd_recording.h"
+
+#include <gtest/gtest.h>
+
+#include "exactvo/datasets/scenario_file.h"
+#include "refusal.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+using formation::CrowdRunOptions;
+using formation::CrowdRunReport;
+using formation::Scenario;
+
+/// Sixty through sixty, round two blocks; denser than half-planes hold.
+Scenario crossing(const std::string& guidance = "none") {
+  return parse_scenario(R"({"name": "crossing", "guidance": ")" + guidance + R"(", "time_step": 0.1, "time_limit": 12,
+      "horizons": {"least": 0.3},
+      "robots": [{"grid": {"columns": 6, "rows": 10, "spacing": 1.2, "corner": [-14, -6], "goal": [28, 0]}, "max_speed": 1.5},
+                 {"grid": {"columns": 6, "rows": 10, "spacing": 1.2, "corner": [8, -6], "goal": [-28, 0]}, "max_speed": 1.7,
+                  "radius": 0.4}],
+      "obstacles": [{"polygon": [[-2, -4], [1, -4], [1, -2], [-2, -2]]}, {"polyline": [[0, 4], [0, 1], [2, 1]]}]})",
+                        "crossing.json", {});
+}
+
+class CrowdRecordings : public TemporaryFolder {
+ protected:
+  CrowdRunReport record(const Scenario& scenario, std::uint32_t every, int threads = 1) {
+    CrowdRecorder recorder(folder_ / "c.evr", scenario, every);
+    CrowdRunOptions options;
+    options.threads = threads;
+    const CrowdRunReport report = run_crowd(scenario, options, &recorder);
+    recorder.finish();
+    return report;
+  }
+};
+
+/// How many rows there are, and whether the file is cut off.
+std::pair<std::size_t, bool> rows_of(const std::filesystem::path& path) {
+  CrowdRecordingReader reader(path);
+  CrowdRow row;
+  std::size_t rows = 0;
+  while (reader.next(row)) ++rows;
+  return {rows, reader.is_cut_off()};
+}
+
+/// Keeps what a run shows.
+struct Kept : formation::CrowdSink {
+  void begin(const formation::Crowd& crowd) override { add_step(crowd, 0); }
+  void add_step(const formation::Crowd& crowd, std::size_t) override {
+    rows.emplace_back();
+    crowd.positions(rows.back());
+    marks.emplace_back();
+    crowd.kept(marks.back());
+  }
+  std::vector<std::vector<geometry::Vec2>> rows;
+  std::vector<std::vector<std::uint8_t>> marks;
+};
+
+TEST_F(CrowdRecordings, Property1_WhatIsReadIsWhatWasRun) {
+  const Scenario scenario = crossing();
+  Kept kept;
+  run_crowd(scenario, {}, &kept);
+  for (const std::uint32_t every : {1U, 7U}) {
+    record(scenario, every);
+    CrowdRecordingReader reader(folder_ / "c.evr");
+    EXPECT_EQ(reader.head().scenario, "crossing");
+    EXPECT_EQ(reader.head().kind_of.size(), 120U);
+    EXPECT_EQ(reader.head().edges.size(), 6U);
+    CrowdRow row;
+    std::size_t last = 0;
+    while (reader.next(row)) {
+      for (std::size_t i = 0; i < row.x.size(); ++i) {
+        const geometry::Vec2 at{row.x[i] * reader.head().position_step, row.y[i] * reader.head().position_step};
+        ASSERT_EQ(at, kept.rows[row.step][i]);
+        bool all = true;
+        for (std::size_t step = last + 1; step <= row.step; ++step) all = all && kept.marks[step][i];
+        ASSERT_EQ(row.kept[i] != 0, all) << row.step << ' ' << i;
+      }
+      last = row.step;
+    }
+    EXPECT_FALSE(reader.is_cut_off());
+    EXPECT_EQ(last + 1, kept.rows.size());
+  }
+}
+
+TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
+  const CrowdRunReport run = record(crossing(), 1);
+  EXPECT_GT(run.relaxed, 0U);
+  const CrowdAuditReport audit = audit_crowd_recording(folder_ / "c.evr");
+  EXPECT_TRUE(audit.clean()) << (audit.findings.empty() ? "" : audit.findings.front());
+  EXPECT_EQ(audit.rows, run.steps + 1);
+  EXPECT_EQ(audit.motions, run.steps * 120);
+  EXPECT_GT(audit.pairs, 1000U);
+  EXPECT_GT(audit.pairs_open, 0U);
+  EXPECT_GT(audit.near_edges, 100U);
+  const CrowdAuditReport some = audit_crowd_recording(folder_ / "c.evr", 2000);
+  EXPECT_TRUE(some.clean());
+  EXPECT_GT(some.motions, 1000U);
+  EXPECT_LT(some.motions, 4000U);
+}
+
+/// Robots put elsewhere by other means than the crowd's.
+struct Moved : formation::CrowdSink {
+  explicit Moved(CrowdRecorder& to) : to_(to) {}
+  void begin(const formation::Crowd& crowd) override { to_.begin(crowd); }
+  void add_step(const formation::Crowd&, std::size_t steps) override {
+    formation::Crowd other;
+    other.add_kind({0.5, 1.0, 5.0, 15.0, 10});
+    other.add_robot({0.1 * static_cast<double>(steps), 0.0});
+    other.add_robot({3.0 - 0.1 * static_cast<double>(steps), 0.4});
+    other.step();  // with marks of what is kept
+    to_.add_step(other, steps);
+  }
+  CrowdRecorder& to_;
+};
+
+TEST_F(CrowdRecordings, AnAuditFindsOverlapsSpeedAndWalls) {
+  const Scenario scenario = parse_scenario(R"({"name": "two", "time_step": 0.25, "time_limit": 5, "guidance": "none",
+      "horizons": {"least": 0.5}, "obstacles": [{"polyline": [[2.2, -3], [2.2, -0.4]]}],
+      "robots": [{"id": "a", "position": [0, 0], "goal": [30, 0], "max_speed": 1},
+                 {"id": "b", "position": [3, 0.4], "goal": [-30, 0.4], "max_speed": 0.3}]})",
+                                           "two.json", {});
+  CrowdRecorder recorder(folder_ / "c.evr", scenario, 1);
+  Moved sink(recorder);
+  run_crowd(scenario, {}, &sink);
+  recorder.finish();
+  const CrowdAuditReport audit = audit_crowd_recording(folder_ / "c.evr");
+  EXPECT_GT(audit.too_fast, 0U);
+  EXPECT_GT(audit.pairs_met, 0U);
+  EXPECT_GT(audit.edges_met, 0U);
+  EXPECT_FALSE(audit.clean());
+  EXPECT_FALSE(audit.findings.empty());
+}
+
+TEST_F(CrowdRecordings, ThreadsDoNotChangeARunNorDoesRecordingIt) {
+  const CrowdRunReport one = record(crossing("route"), 5), two = record(crossing("route"), 5, 2);
+  EXPECT_EQ(one.digest, two.digest);
+  EXPECT_EQ(one.digest, run_crowd(crossing("route"), {}).digest);
+  EXPECT_EQ(one.steps, two.steps);
+}
+
+TEST_F(CrowdRecordings, AlongRoutesAllArriveAndWhoHasNoneStays) {
+  const Scenario scenario = parse_scenario(R"({"name": "rooms", "time_step": 0.1, "time_limit": 120,
+      "horizons": {"least": 0.3},
+      "robots": [{"random": {"count": 20, "low": [-9, -9], "high": [-3, 9], "goal_low": [3, -9], "goal_high": [9, 9], "apart": 0.3},
+                  "radius": 0.3, "max_speed": 1.5},
+                 {"id": "locked", "position": [20, 0], "goal": [0, 8]}],
+      "obstacles": [{"polyline": [[0, -10], [0, -2]]}, {"polyline": [[0, 2], [0, 10]]},
+                    {"polyline": [[18, -2], [22, -2], [22, 2], [18, 2], [18, -2]]}]})",
+                                           "rooms.json", {});
+  const CrowdRunReport run = run_crowd(scenario, {});
+  EXPECT_EQ(run.arrived, 20U);
+  EXPECT_EQ(run.staying, 1U);
+  ASSERT_TRUE(run.last_arrival && run.median_arrival);
+  EXPECT_LE(*run.median_arrival, *run.last_arrival);
+  EXPECT_GT(run.path_length, 20 * 6.0);
+}
+
+TEST_F(CrowdRecordings, Property2_ACutOffFileReadsUpToThereAndAChangedOneIsRefused) {
+  const CrowdRunReport run = record(crossing(), 1);
+  const std::string whole = content_of(folder_ / "c.evr");
+  for (const std::size_t size : {whole.size() - 1, whole.size() - 2, whole.size() / 2}) {
+    const auto [rows, cut_off] = rows_of(put("cut.evr", whole.substr(0, size)));
+    EXPECT_TRUE(cut_off);
+    EXPECT_LE(rows, run.steps + 1);
+    EXPECT_GT(rows, run.steps / 3);
+  }
+  std::size_t tried = 0, refused = 0;
+  for (std::size_t at = 0; at < whole.size(); at += 1 + whole.size() / 97, ++tried) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    try {
+      refused += rows_of(put("changed.evr", changed)).second;  // a changed size reads as an end
+    } catch (const DataError& error) {
+      EXPECT_EQ(error.code(), DataCode::format_syntax) << error.what();
+      ++refused;
+    }
+  }
+  EXPECT_EQ(refused, tried);
+  expect_refusal(refusal_of([&] { audit_crowd_recording(folder_ / "none.evr"); }), DataCode::file_missing, "");
+  expect_refusal(refusal_of([&] { audit_crowd_recording(put("short.evr", "EXA")); }), DataCode::format_syntax,
+                 "byte 0");
+}
+
+TEST_F(CrowdRecordings, ATableHasALineARobotAndRow) {
+  record(crossing(), 50);
+  AtomicFile table(folder_ / "c.csv");
+  const std::size_t rows = write_crowd_csv(folder_ / "c.evr", table);
+  table.commit();
+  const std::string text = content_of(folder_ / "c.csv");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')), 1 + 120 * rows);
+  EXPECT_EQ(text.find("step,time,robot,x,y,kept\n0,0,0,-14,-6,1\n"), 0U);
+}
+
+TEST(CrowdProblems, WhatACrowdCannotRunIsNamed) {
+  Scenario s = crossing();
+  EXPECT_TRUE(crowd_problems(s).empty());
+  s.robots[3].cooperates = false;
+  ASSERT_EQ(crowd_problems(s).size(), 1U);
+  EXPECT_EQ(crowd_problems(s)[0].pointer, "/robots/3/cooperates");
+  s = crossing();
+  s.speed_bound = formation::SpeedBoundKind::box;
+  EXPECT_EQ(crowd_problems(s)[0].pointer, "/speed_bound");
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test

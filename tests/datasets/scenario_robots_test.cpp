@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Robots of a scenario by generators and tables.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/geometry/distance.h"
+#include "refusal.h"
+#include "same_scenario.h"
+#include "temporary_folder.h"
+
+namespace exactvo::datasets::test {
+namespace {
+
+using formation::Robot;
+using formation::Scenario;
+using geometry::norm;
+using geometry::Vec2;
+
+std::string with(const std::string& robots, const std::string& more = "") {
+  return R"({"name": "n", "robots": [)" + robots + "]" + more + "}";
+}
+
+Scenario read(const std::string& robots, const std::string& more = "", const std::filesystem::path& folder = {}) {
+  return parse_scenario(with(robots, more), "s.json", folder);
+}
+
+DataError refused(const std::string& robots, const std::string& more = "", const std::filesystem::path& folder = {}) {
+  return refusal_of([&] { read(robots, more, folder); });
+}
+
+TEST(ScenarioRobots, ACircleOfRobotsHasTheOppositePlacesAsGoals) {
+  const Scenario s = read(R"({"circle": {"count": 8, "radius": 10, "centre": [1, 2]}, "radius": 0.3, "max_speed": 2,
+                              "prefix": "ring", "cooperates": false})");
+  ASSERT_EQ(s.robots.size(), 8U);
+  for (const Robot& r : s.robots) {
+    EXPECT_NEAR(norm(r.position - Vec2{1, 2}), 10.0, 1e-12);
+    ASSERT_EQ(r.goals.size(), 1U);
+    EXPECT_NEAR(norm(r.position + r.goals[0] - Vec2{2, 4}), 0.0, 1e-12);
+    EXPECT_EQ(r.radius, 0.3);
+    EXPECT_EQ(r.max_speed, 2.0);
+    EXPECT_FALSE(r.cooperates);
+  }
+  EXPECT_EQ(s.robots[0].id, "ring/1");
+  EXPECT_EQ(s.robots[7].id, "ring/8");
+}
+
+TEST(ScenarioRobots, EntriesOfAllKindsStandBesideEachOther) {
+  const Scenario s = read(R"({"id": "R", "position": [0, 0], "goal": [9, 0]},
+      {"grid": {"columns": 3, "rows": 2, "spacing": 1.5, "corner": [20, 0], "goal": [0, 30]}},
+      {"grid": {"columns": 1, "rows": 1, "spacing": 1, "corner": [50, 0], "goal": [0, 30]}, "prefix": "last"})");
+  ASSERT_EQ(s.robots.size(), 8U);
+  EXPECT_EQ(s.robots[1].id, "G2/1");
+  EXPECT_EQ(s.robots[6].position, (Vec2{23, 1.5}));
+  EXPECT_EQ(s.robots[6].goals[0], (Vec2{23, 31.5}));
+  EXPECT_EQ(s.robots[7].id, "last/1");
+}
+
+const char* const kWall = R"(, "obstacles": [{"polygon": [[5, 5], [15, 5], [15, 15], [5, 15]]}])";
+
+TEST(ScenarioRobots, RandomRobotsAreApartAndClearAndTheSameForASeed) {
+  const std::string group = R"({"id": "R", "position": [2, 2], "goal": [9, 2]},
+      {"random": {"count": 60, "seed": 7, "low": [0, 0], "high": [30, 30], "apart": 0.2}, "radius": 0.4})";
+  const Scenario s = read(group, kWall), again = read(group, kWall);
+  ASSERT_EQ(s.robots.size(), 61U);
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    EXPECT_TRUE(same_bits(s.robots[i].position, again.robots[i].position));
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GE(norm(s.robots[i].position - s.robots[j].position),
+                s.robots[i].radius + s.robots[j].radius + 0.2 - 1e-12);
+    if (i == 0) continue;
+    EXPECT_GE(geometry::signed_distance(s.obstacles[0].shape, s.robots[i].position), 0.6);
+    EXPECT_GE(geometry::signed_distance(s.obstacles[0].shape, s.robots[i].goals[0]), 0.6);
+  }
+  const Scenario other = read(R"({"random": {"count": 60, "seed": 8, "low": [0, 0], "high": [30, 30]}})");
+  EXPECT_FALSE(other.robots[0].position == s.robots[1].position);
+}
+
+class ScenarioRobotTables : public TemporaryFolder {};
+
+TEST_F(ScenarioRobotTables, AThousandRobotsAreRead) {
+  std::ofstream table(folder_ / "robots.csv");
+  table << "goal_x,goal_y,x,y,radius,id,vx\n";
+  for (int i = 0; i < 1000; ++i) table << i << ",5," << 2 * i << ",0.5,0.25,r" << i << ",0.125\r\n";
+  table.close();
+  std::ofstream(folder_ / "s.json") << with(R"({"file": "robots.csv", "max_speed": 1})");
+  const LoadedScenario loaded = load_scenario_with_notes(folder_ / "s.json");
+  ASSERT_EQ(loaded.scenario.robots.size(), 1000U);
+  const Robot& r = loaded.scenario.robots[999];
+  EXPECT_EQ(r.id, "r999");
+  EXPECT_EQ(r.position, (Vec2{1998, 0.5}));
+  EXPECT_EQ(r.goals[0], (Vec2{999, 5}));
+  EXPECT_EQ(r.velocity, (Vec2{0.125, 0}));
+  EXPECT_EQ(r.radius, 0.25);
+  EXPECT_EQ(r.max_speed, 1.0);
+  EXPECT_EQ(loaded.files, (std::vector{folder_ / "s.json", folder_ / "robots.csv"}));
+  EXPECT_EQ(files_of_scenario(folder_ / "s.json"), loaded.files);
+}
+
+TEST(ScenarioRobots, Property2_EntriesThatAreNoRobotsArePlaced) {
+  expect_refusal(refused(R"({"id": "R"})"), DataCode::key_missing, "/robots/0");
+  expect_refusal(refused(R"({"circel": {}})"), DataCode::no_alternative, "/robots/0");
+  expect_refusal(refused(R"({"circle": {"count": 0, "radius": 1}})"), DataCode::out_of_range, "/robots/0/circle/count");
+  expect_refusal(refused(R"({"circle": {"count": 2.5, "radius": 1}})"), DataCode::wrong_type, "/robots/0/circle/count");
+  expect_refusal(refused(R"({"circle": {"count": 3}})"), DataCode::key_missing, "/robots/0/circle");
+  expect_refusal(refused(R"({"circle": {"count": 3, "radius": 9}, "grid": {}})"), DataCode::no_alternative,
+                 "/robots/0");
+  expect_refusal(refused(R"({"grid": {"columns": 1000000, "rows": 1000000, "spacing": 1, "goal": [1, 0]}})"),
+                 DataCode::size, "/robots/0/grid");
+  expect_refusal(refused(R"({"random": {"count": 99, "low": [0, 0], "high": [3, 3]}})"), DataCode::scenario,
+                 "/robots/0/random");
+  expect_refusal(refused(R"({"file": "none.csv"})", "", "/nowhere"), DataCode::file_missing, "/robots/0/file");
+}
+
+TEST(ScenarioRobots, RobotsOfAGeneratorThatCannotStartAreNamed) {
+  const DataError tight = refused(R"({"id": "R", "position": [90, 90], "goal": [91, 0]},
+                                     {"circle": {"count": 20, "radius": 1}, "prefix": "ring"})");
+  expect_refusal(tight, DataCode::scenario, "/robots/1");
+  EXPECT_EQ(tight.found().find("robot 'ring/2' at "), 0U) << tight.found();
+  expect_refusal(
+      refused(R"({"grid": {"columns": 1, "rows": 1, "spacing": 1, "corner": [9, 9], "goal": [1, 0]}})", kWall),
+      DataCode::scenario, "/robots/0");
+  expect_refusal(refused(R"({"circle": {"count": 2, "radius": 9}, "prefix": "a"},
+                            {"circle": {"count": 2, "radius": 20}, "prefix": "a"})"),
+                 DataCode::scenario, "/robots/1");
+}
+
+struct Table {
+  const char* text;
+  DataCode code;
+  const char* place;
+};
+
+TEST_F(ScenarioRobotTables, Property2_MistakesArePlaced) {
+  for (const Table& table :
+       {Table{"", DataCode::format_syntax, ""}, Table{"x,y,goal_x\n1,2,3\n", DataCode::key_missing, "line 1"},
+        Table{"x,y,goal_x,goal_y,colour\n", DataCode::key_unknown, "line 1"},
+        Table{"x,y,goal_x,goal_y,x\n", DataCode::json_duplicate_key, "line 1"},
+        Table{"x,y,goal_x,goal_y\n", DataCode::wrong_count, ""},
+        Table{"x,y,goal_x,goal_y\n1,2,3\n", DataCode::wrong_count, "line 2"},
+        Table{"x,y,goal_x,goal_y\n1,2,3,4\n\n1,2,a,4\n", DataCode::number, "line 4"},
+        Table{"x,y,goal_x,goal_y\n1,nan,3,4\n", DataCode::out_of_range, "line 2"},
+        Table{"x,y,goal_x,goal_y,radius\n1,2,3,4,0\n", DataCode::out_of_range, "line 2"}}) {
+    std::ofstream(folder_ / "t.csv") << table.text;
+    const DataError error = refused(R"({"file": "t.csv"})", "", folder_);
+    EXPECT_EQ(error.code(), table.code) << error.what();
+    EXPECT_EQ(error.file(), (folder_ / "t.csv").string());
+    EXPECT_EQ(error.place(), table.place) << error.what();
+  }
+}
+
+/// Ten thousand, quickly: no pair of robots, nor of robot and obstacle, is looked at that is far apart.
+TEST(ScenarioRobots, ManyAreReadAndWrittenOutOneByOne) {
+  const Scenario s = read(R"({"grid": {"columns": 100, "rows": 100, "spacing": 2, "goal": [500, 0]}})");
+  ASSERT_EQ(s.robots.size(), 10000U);
+  EXPECT_EQ(parse_scenario(write_scenario(s), "w.json", {}).robots.size(), 10000U);
+}
+
+}  // namespace
+}  // namespace exactvo::datasets::test

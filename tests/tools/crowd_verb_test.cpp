@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// simulate --engine crowd as a user meets it, with audit and convert of what it records.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace exactvo::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr const char* kRing = R"({"name": "ring", "time_step": 0.25, "time_limit": 60, "horizons": {"least": 0.5},
+  "robots": [{"circle": {"count": 40, "radius": 20}, "max_speed": 1.5}],
+  "obstacles": [{"polygon": [[4, 4], [6, 4], [6, 6], [4, 6]]}]})";
+
+TEST(CrowdVerb, ARunIsRecordedAuditedAndConverted) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const Outcome run = here.run("simulate ring.json --engine crowd --record ring.evr --json");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json metrics = json::parse(run.out);
+  EXPECT_EQ(metrics["robots"], 40);
+  EXPECT_EQ(metrics["arrived"], 40);
+  EXPECT_EQ(metrics["provenance"]["inputs"][0]["path"], "ring.json");
+  const json same = json::parse(here.run("simulate ring.json --engine crowd --threads 2 --json").out);
+  EXPECT_EQ(same["digest"], metrics["digest"]);
+
+  const Outcome audit = here.run("audit ring.evr --json");
+  EXPECT_EQ(audit.status, 0) << audit.out;
+  EXPECT_EQ(json::parse(audit.out)["motions"], 40 * metrics["steps"].get<int>());
+  EXPECT_EQ(here.run("audit ring.evr --sample 100").status, 0);
+  EXPECT_EQ(here.run("convert ring.evr ring.csv").status, 0);
+  EXPECT_THAT(here.read("ring.csv"), HasSubstr("\n0,0,0,20,0,1\n"));
+
+  const std::string whole = here.read("ring.evr");
+  here.write("cut.evr", whole.substr(0, whole.size() / 2));
+  EXPECT_EQ(here.run("audit cut.evr").status, 1);
+}
+
+TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  here.write("box.json",
+             R"({"name": "b", "speed_bound": "box", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}]})");
+  const std::pair<const char*, const char*> cases[] = {
+      {"simulate ring.json --engine crwd", "standard or crowd"},
+      {"simulate ring.json --record out.evr", "--engine crowd"},
+      {"simulate ring.json --engine crowd --method ivo", "orca"},
+      {"simulate ring.json --engine crowd --out out", "--record FILE.evr"},
+      {"simulate ring.json --engine crowd --precision half", "float or double"},
+      {"simulate ring.json --engine crowd --every 0 --record out.evr", "--every"},
+      {"simulate box.json --engine crowd --record out.evr", "/speed_bound"},
+      {"audit ring.json --sample 3", ".evr"},
+      {"audit none.evr", "E_FILE_MISSING"},
+      {"convert none.evr out.geojson", "FILE.csv"},
+      {"convert none.evr out.csv", "E_FILE_MISSING"}};
+  for (const auto& [arguments, words] : cases) {
+    const Outcome outcome = here.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(words)) << arguments;
+    EXPECT_TRUE(outcome.out.empty()) << arguments;
+    EXPECT_FALSE(here.has("out") || here.has("out.evr") || here.has("out.csv")) << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace exactvo::test

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// simulate --engine crowd: a scenario on the certified crowd (formation/crowd_run.h), recorded as .evr.
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+#include "support/run.h"
+#include "support/simulation_flags.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+struct CrowdFlags {
+  std::string engine = "standard";
+  std::string record;
+  std::uint32_t every = 1;
+  int threads = 1;
+  std::string precision = "float";
+  CLI::Option* method = nullptr;  ///< of the verb
+};
+
+/// After `declare_simulation_flags`.
+void declare_crowd_flags(CLI::App& app, CrowdFlags& flags);
+
+/// Throws UsageError where options of one engine are given for the other. `out`: of --out.
+bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& out);
+
+ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& file,
+                        const ReadScenario& read, bool json);
+
+}  // namespace exactvo::tools
