@@ -37,4 +37,23 @@ if(EXACTVO_BUILDS_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-pandas, python3-shapely")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python package exactvo.")
 endif()
+
+# What Debian's policy wants in every package: its licence and its changes.
+find_program(EXACTVO_GZIP gzip)
+if(EXACTVO_GZIP)
+  set(changes ${PROJECT_BINARY_DIR}/debian/changelog)
+  file(WRITE ${changes} "exactvo (${PROJECT_VERSION}) stable; urgency=medium
+
+  * See /usr/share/doc/ExactVO/CHANGELOG.md in the package exactvo.
+
+ -- ${CPACK_PACKAGE_CONTACT}  Thu, 01 Jan 2026 00:00:00 +0000
+")
+  execute_process(COMMAND ${EXACTVO_GZIP} --best --no-name --force ${changes})
+  foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+    string(TOUPPER ${component} upper)
+    set(folder ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+    install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian_copyright RENAME copyright DESTINATION ${folder} COMPONENT ${component})
+    install(FILES ${changes}.gz DESTINATION ${folder} COMPONENT ${component})
+  endforeach()
+endif()
 include(CPack)

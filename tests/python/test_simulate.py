@@ -67,7 +67,10 @@ def test_decisions_carry_their_half_planes_and_pass_the_audit(tmp_path):
     assert report["unsafe"] == 0 and report["collisions"] == 0
     run.write(tmp_path / "recording.jsonl")
     again = exactvo.read_recording(tmp_path)
-    assert again.position.tobytes() == run.position.tobytes() and comparable(again.metrics) == comparable(run.metrics)
+    assert again.position.tobytes() == run.position.tobytes()
+    ours, read = comparable(run.metrics), comparable(again.metrics)
+    assert ours.pop("plans") is not None and read.pop("plans") is None  # what planning cost stands in no recording
+    assert read == ours
     with pytest.raises(IndexError):
         run.half_planes(10**9, 0)
     with pytest.raises(IndexError):
