@@ -199,6 +199,11 @@ lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed) {
   return bound;
 }
 
+double reach_of_pair(const Scenario& scenario, std::size_t i, std::size_t j) {
+  return reach_within(scenario.time_step,
+                      kFastest * scenario.robots[i].max_speed + kFastest * scenario.robots[j].max_speed);
+}
+
 double reach_of_step(const Scenario& scenario, const Viewpoint& from) {
   return reach_within(scenario.time_step, kFastest * from.max_speed);
 }

@@ -50,6 +50,9 @@ double contact_time(const Scenario& scenario);
 /// m: how much nearer a robot and what stands still can come within a step, whatever is decided.
 double reach_of_step(const Scenario& scenario, const Viewpoint& from);
 
+/// m: how much nearer two robots can come within a step, whatever they decide.
+double reach_of_pair(const Scenario& scenario, std::size_t i, std::size_t j);
+
 lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed);
 
 struct DecisionInput {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "decision.h"
+
 namespace exactvo::formation {
 namespace {
 
@@ -22,16 +24,18 @@ bool is_held_up(const RobotStep& r) {
          dot(r.chosen, r.preferred) < kHeldBelow * wanted;
 }
 
-bool holds(const RecordedConstraint& c, const RobotStep& r, double radius) {
-  return c.source == ConstraintSource::robot && c.clearance < radius &&
+/// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.
+bool holds(const RecordedConstraint& c, const RobotStep& r, const Scenario& scenario, std::size_t robot) {
+  return c.source == ConstraintSource::robot && c.clearance < scenario.robots[robot].radius &&
+         (c.active || c.clearance <= detail::reach_of_pair(scenario, robot, c.index)) &&
          (c.multiplier > 0.0 || geometry::violation(c.half_plane, r.preferred) > 0.0);
 }
 
-std::vector<std::size_t> held_by(const RobotStep& r, double radius) {
+std::vector<std::size_t> held_by(const RobotStep& r, const Scenario& scenario, std::size_t robot) {
   std::vector<const RecordedConstraint*> by;
   if (is_held_up(r))
     for (const RecordedConstraint& c : r.constraints)
-      if (holds(c, r, radius)) by.push_back(&c);
+      if (holds(c, r, scenario, robot)) by.push_back(&c);
   std::stable_sort(by.begin(), by.end(), [](const auto* a, const auto* b) { return a->multiplier > b->multiplier; });
   std::vector<std::size_t> robots;
   for (const RecordedConstraint* c : by) robots.push_back(c->index);
@@ -71,6 +75,7 @@ std::string chained(const Scenario& scenario, const std::vector<std::size_t>& ch
   for (std::size_t k = 1; k < named; ++k)
     text += (k == 1 ? " waits for " : ", which waits for ") + scenario.robots[chain[k]].id;
   if (named == chain.size()) return text;
+  if (named + 1 == chain.size()) return text + ", which waits for " + scenario.robots[chain.back()].id;
   return text + " and so on through " + count(chain.size() - named - 1) + " more to " +
          scenario.robots[chain.back()].id;
 }
@@ -86,7 +91,7 @@ std::string end_words(const RobotStep& r) {
 WaitForGraph waiting_in(const Scenario& scenario, const Step& row) {
   WaitForGraph graph(row.robots.size());
   if (scenario.formation) return graph;
-  for (std::size_t i = 0; i < graph.size(); ++i) graph[i] = held_by(row.robots[i], scenario.robots[i].radius);
+  for (std::size_t i = 0; i < graph.size(); ++i) graph[i] = held_by(row.robots[i], scenario, i);
   return graph;
 }
 

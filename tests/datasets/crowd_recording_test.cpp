@@ -180,6 +180,17 @@ TEST_F(CrowdRecordings, Property2_ACutOffFileReadsUpToThereAndAChangedOneIsRefus
     }
   }
   EXPECT_EQ(refused, tried);
+  // A row that becomes the end hides those behind it.
+  for (std::size_t at = whole.find('R', 200), found = 0; at != std::string::npos && found < 400;
+       at = whole.find('R', at + 1), ++found) {
+    std::string ended = whole;
+    ended[at] = 'E';
+    EXPECT_THROW(rows_of(put("ended.evr", ended)), DataError) << at;
+  }
+  expect_refusal(refusal_of([&] { rows_of(put("longer.evr", whole + "x")); }), DataCode::format_syntax,
+                 "byte " + std::to_string(whole.size() - 16));
+  expect_refusal(refusal_of([&] { audit_crowd_recording(put("head.evr", whole.substr(0, 40))); }),
+                 DataCode::format_syntax, "byte 24");
   expect_refusal(refusal_of([&] { audit_crowd_recording(folder_ / "none.evr"); }), DataCode::file_missing, "");
   expect_refusal(refusal_of([&] { audit_crowd_recording(put("short.evr", "EXA")); }), DataCode::format_syntax,
                  "byte 0");

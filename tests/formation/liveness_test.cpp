@@ -164,6 +164,47 @@ TEST(Liveness, PlansAreTheSameEveryTime) {
       ASSERT_EQ(a.steps[k].robots[i].chosen, b.steps[k].robots[i].chosen) << k << " " << i;
 }
 
+/// Who waits for whom must not depend on what is recorded beside what binds and what is in reach: here a half-plane
+/// beyond reach made the difference between a plan and none.
+TEST(Liveness, PlansAreTheSameWithEveryHalfPlaneRecorded) {
+  struct Start {
+    Vec2 from, to;
+    double max_speed;
+  };
+  const Start starts[] = {
+      {{5.2584388925238725, -4.250350929947464}, {2.6041263331907496, 4.3332786886028485}, 1.5},
+      {{2.329718447292536, -4.718367602059284}, {-2.438117010301775, -1.6300227866780839}, 1.5},
+      {{-2.872767485182778, 5.677406675942346}, {4.300483545787563, -4.152019069808673}, 1.0},
+      {{-3.3054968716608224, 1.6137021572343295}, {2.163243047160547, 2.2993310136732292}, 0.5},
+      {{-0.46483867351264685, -0.5331016511055973}, {5.118584257911942, 3.9071083015554633}, 1.5},
+      {{-0.057070043032643625, -3.500762897333343}, {0.041192161790137405, -3.4391429232067727}, 1.0},
+      {{-3.0235727311934255, -5.459925347337295}, {-3.979305015775978, 0.32668183143170726}, 1.5},
+      {{-2.652935807215216, -1.0502901752236493}, {4.586488885471543, 0.08436832267947203}, 0.5},
+      {{4.573336053163529, -1.3754733683458191}, {2.289655304442177, -3.1854102888904894}, 1.5},
+      {{-4.393671048835232, -2.7486051041538455}, {-2.913200924844085, -5.551777014922184}, 0.5},
+      {{1.3668671209992516, -1.3967472022390401}, {-5.536973505381689, 3.0062960849288034}, 0.5},
+      {{1.7030264022077075, 4.565495055261294}, {-1.7992866635484992, -3.7518446496411286}, 0.5},
+      {{-4.955093970931951, 5.073673794000862}, {-1.0225688688589942, -0.6136234529210673}, 0.5},
+      {{5.073592929719431, 0.898161762532971}, {-4.717564488619057, -4.475653977893573}, 1.0}};
+  Scenario s;
+  s.time_step = 0.02;
+  s.time_limit = 40.0;
+  s.arrival_tolerance = 0.05;
+  for (const Start& start : starts) {
+    Robot r = robot("R" + std::to_string(s.robots.size()), start.from, start.to);
+    r.radius = 0.8;
+    r.max_speed = start.max_speed;
+    s.robots.push_back(r);
+  }
+  SimulationOptions all;
+  all.record_all = true;
+  const Recording a = simulate(s), b = simulate(s, all);
+  ASSERT_EQ(a.steps.size(), b.steps.size());
+  for (std::size_t k = 0; k < a.steps.size(); ++k)
+    for (std::size_t i = 0; i < s.robots.size(); ++i)
+      ASSERT_EQ(a.steps[k].robots[i].chosen, b.steps[k].robots[i].chosen) << k << " " << i;
+}
+
 /// A corridor in which nobody can pass: the run ends at its time limit and says that there is no plan.
 TEST(Liveness, WhereThereIsNoPlanItIsSaid) {
   Scenario s;

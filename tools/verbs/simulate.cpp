@@ -185,7 +185,6 @@ Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags->simulation);
-  declare_crowd_flags(app, flags->crowd);
   declare_out(app, flags->out,
               "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations), figures/ and "
               "explorer.html; "
@@ -197,6 +196,7 @@ Action declare(CLI::App& app) {
   app.add_flag("--fail-on-collision", flags->fail_on_collision, "Exit status 1 if a robot overlaps anything");
   app.add_flag("--force", flags->force,
                "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller");
+  declare_crowd_flags(app, flags->crowd);
   return [flags] { return simulate(*flags); };
 }
 

@@ -52,7 +52,7 @@ std::string summary(const CrowdRunReport& r, const std::string& scenario) {
   return fmt::format(
       "{}, engine crowd, method orca: {} of {} arrived, {} without a route\n"
       "  arrival      median {}, last {}\n"
-      "  decisions    {:.3g} % relaxed, {:.3g} % touching another, {:.3g} % stopped before an edge\n"
+      "  decisions    {:.3g} % relaxed, {:.3g} % touching or overlapping another, {:.3g} % stopped before an edge\n"
       "  half-planes  {:.3g} against robots and {:.3g} against edges in a decision\n"
       "  path length  {:.4g} m on average\n"
       "  steps        {} in {:.3g} s of wall time, {:.3g} robot steps a second\n",
@@ -83,6 +83,9 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   app.add_option("--precision", flags.precision, "With --engine crowd: float or double, both certified")
       ->capture_default_str();
   flags.method = app.get_option("--method");
+  for (const char* option : {"--every", "--threads", "--precision"}) flags.of_crowd.push_back(app.get_option(option));
+  for (const char* option : {"--liveness", "--record-all", "--fail-on-collision", "--no-figures", "--force"})
+    flags.of_standard.push_back(app.get_option(option));
 }
 
 bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& out) {
@@ -91,6 +94,10 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
   const bool is_crowd = flags.engine == "crowd";
   if (!is_crowd && !flags.record.empty())
     throw UsageError("--record", flags.record, "--engine crowd with it, or --out DIR");
+  for (const CLI::Option* option : is_crowd ? flags.of_standard : flags.of_crowd)
+    if (option->count() > 0)
+      throw UsageError(option->get_name(), "--engine " + flags.engine + " with it",
+                       is_crowd ? "--engine standard" : "--engine crowd");
   if (is_crowd && flags.method->count() > 0 && simulation.method != "orca") refuse("--method", "orca");
   if (is_crowd && !out.empty()) refuse("--out", "--record FILE.evr, and --json for the metrics");
   return is_crowd;

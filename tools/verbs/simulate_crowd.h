@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "support/run.h"
 #include "support/simulation_flags.h"
@@ -20,7 +21,8 @@ struct CrowdFlags {
   std::uint32_t every = 1;
   int threads = 1;
   std::string precision = "float";
-  CLI::Option* method = nullptr;  ///< of the verb
+  CLI::Option* method = nullptr;                    ///< of the verb
+  std::vector<CLI::Option*> of_crowd, of_standard;  ///< options that the other engine does not have
 };
 
 /// After `declare_simulation_flags`.

@@ -114,8 +114,26 @@ bool has_arrived(const formation::Robot& robot, const formation::RobotStep& stat
   return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));  // distances in a run are rounded
 }
 
-/// A run ends at its time limit, or before if everybody has arrived or a formation has left every bound.
-bool is_whole(const RecordingFile& file) {
+/// In the row before the last, which has no decisions.
+bool stayed(const RecordingFile& file, std::size_t robot) {
+  const std::vector<Step>& rows = file.recording.steps;
+  return rows.size() > 1 && rows[rows.size() - 2].robots[robot].mode == formation::Mode::staying;
+}
+
+/// Without a formation a run ends before its time limit where all robots have arrived or, as nothing comes to push
+/// them, stay because their goals are out of reach.
+bool has_ended(const RecordingFile& file, bool& somebody_stays) {
+  const formation::Scenario& s = file.scenario;
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    if (has_arrived(s.robots[i], file.recording.steps.back().robots[i], s.arrival_tolerance)) continue;
+    if (!stayed(file, i) || !s.moving_obstacles.empty()) return false;
+    somebody_stays = true;
+  }
+  return true;
+}
+
+/// A run ends at its time limit, when nobody goes on, or when a formation has left every bound.
+bool is_whole(const RecordingFile& file, bool& somebody_stays) {
   constexpr double kSameRow = 1e-6;     // of a step
   constexpr double kOutOfBounds = 1e6;  // m and m/s
   const formation::Scenario& s = file.scenario;
@@ -127,14 +145,11 @@ bool is_whole(const RecordingFile& file) {
     return std::any_of(last.begin(), last.end(), [](const formation::RobotStep& r) {
       return !(geometry::norm(r.position) < kOutOfBounds && geometry::norm(r.velocity) < kOutOfBounds);
     });
-  return std::equal(s.robots.begin(), s.robots.end(), last.begin(), last.end(),
-                    [&](const formation::Robot& robot, const formation::RobotStep& state) {
-                      return has_arrived(robot, state, s.arrival_tolerance);
-                    });
+  return s.robots.size() == last.size() && has_ended(file, somebody_stays);
 }
 
 void check_end(const RecordingFile& file, AuditTally& tally) {
-  is_whole(file)
+  is_whole(file, tally.report.has_staying)
       ? tally.proven(AuditPoint::sequence)
       : tally.refuted(AuditPoint::sequence, "the last row is before the time limit, and not every robot has arrived");
 }
@@ -236,8 +251,8 @@ void add(AuditReport& sum, const AuditReport& other) {
         &AuditReport::unproven, &AuditReport::inconsistencies, &AuditReport::curved_steps,
         &AuditReport::obstacle_questions, &AuditReport::moving_questions, &AuditReport::robot_questions})
     sum.*count += other.*count;
-  for (bool AuditReport::*some :
-       {&AuditReport::scenario_was_given, &AuditReport::has_sums, &AuditReport::has_integrated})
+  for (bool AuditReport::*some : {&AuditReport::scenario_was_given, &AuditReport::has_staying, &AuditReport::has_sums,
+                                  &AuditReport::has_integrated})
     sum.*some = sum.*some || other.*some;
   sum.largest_bulge = std::max(sum.largest_bulge, other.largest_bulge);
   sum.largest_violation = std::max(sum.largest_violation, other.largest_violation);
@@ -252,6 +267,10 @@ std::vector<std::string> not_audited(const AuditReport& report) {
       "why a velocity was preferred, and what is said beside the numbers: mode, side, note, clearance, "
       "method, controller, outcome, warnings, stuck, collisions, lyapunov, provenance, wall time");
   words.emplace_back("whether the rows have the half-planes against what is out of reach of a time step");
+  if (report.has_staying)
+    words.emplace_back(
+        "that the goals of robots that stay are out of reach (`route` proves it, and `audit --certificate` its "
+        "answer)");
   if (report.has_sums)
     words.emplace_back(
         "what robots track whose controller adds to the choice, or bounds its change: that they track "

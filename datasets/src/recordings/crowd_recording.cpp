@@ -110,6 +110,14 @@ std::string to_bytes(const CrowdRecordingHead& head) {
   return out;
 }
 
+/// Of all blocks so far, and of one more.
+std::uint64_t chained(std::uint64_t sum, std::uint64_t next) {
+  std::string both;
+  append(both, sum);
+  append(both, next);
+  return checksum(both);
+}
+
 bool is_positive(double v) {
   return std::isfinite(v) && v > 0.0;
 }
@@ -186,7 +194,8 @@ void CrowdRecorder::begin(const formation::Crowd& crowd) {
   const std::string head = to_bytes(head_);
   std::string out(kMark);
   append(out, static_cast<std::uint64_t>(head.size()));
-  append(out, checksum(head));
+  sum_ = checksum(head);
+  append(out, sum_);
   put(out + head);
   row_.x.assign(robots, 0);
   row_.y.assign(robots, 0);
@@ -230,6 +239,8 @@ void CrowdRecorder::write_row() {
   std::string before(1, kRow);
   append(before, static_cast<std::uint64_t>(out.size()));
   append(before, checksum(out));
+  sum_ = chained(sum_, checksum(out));
+  ++rows_;
   put(before);
   put(out);
   row_.kept.assign(row_.kept.size(), 1);
@@ -238,7 +249,13 @@ void CrowdRecorder::write_row() {
 
 void CrowdRecorder::finish() {
   if (is_due_) write_row();
-  put(std::string(1, kEnd));
+  std::string seal;
+  append(seal, rows_);
+  append(seal, sum_);
+  std::string end(1, kEnd);
+  append(end, static_cast<std::uint64_t>(seal.size()));
+  append(end, checksum(seal));
+  put(end + seal);
   file_.commit();
 }
 
@@ -248,7 +265,8 @@ struct CrowdRecordingReader::Parts {
   CrowdRecordingHead head;
   std::vector<std::int32_t> x, y;
   std::string block;
-  std::uint64_t at = 0;  ///< bytes read
+  std::uint64_t at = 0, block_at = 0;  ///< bytes read, and before the block
+  std::uint64_t rows = 0, sum = 0;     ///< of the blocks read
   bool cut_off = false, ended = false;
 
   /// False where the file ends before.
@@ -261,19 +279,29 @@ struct CrowdRecordingReader::Parts {
   /// A block behind its size and checksum. In pieces: a size that was changed asks for no more memory than there is.
   bool read_block() {
     constexpr std::uint64_t kAtOnce = 1U << 20U;
-    std::uint64_t size = 0, sum = 0;
-    if (!read(reinterpret_cast<char*>(&size), sizeof size) || !read(reinterpret_cast<char*>(&sum), sizeof sum))
-      return false;
+    std::uint64_t size = 0, stated = 0;
     block.clear();
+    block_at = at;
+    if (!read(reinterpret_cast<char*>(&size), sizeof size) || !read(reinterpret_cast<char*>(&stated), sizeof stated))
+      return false;
+    block_at = at;
     while (block.size() < size) {
       const std::size_t had = block.size();
       block.resize(had + static_cast<std::size_t>(std::min(kAtOnce, size - had)));
       if (!read(block.data() + had, block.size() - had)) return false;
     }
-    if (checksum(block) != sum) bytes().refuse("another checksum than its content has");
+    if (checksum(block) != stated) bytes().refuse("another checksum than its content has");
     return true;
   }
-  Bytes bytes() const { return {block, name, at - block.size()}; }
+  /// Behind the last row. REQUIRES: its block was read.
+  void check_end() {
+    Bytes seal = bytes();
+    const auto all_rows = seal.get<std::uint64_t>(), all_sum = seal.get<std::uint64_t>();
+    seal.require_end();
+    if (all_rows != rows || all_sum != sum) bytes().refuse("an end of other rows than these");
+    if (in.peek() != std::ifstream::traits_type::eof()) bytes().refuse("bytes after the end");
+  }
+  Bytes bytes() const { return {block, name, block_at}; }
 };
 
 CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : parts_(std::make_unique<Parts>()) {
@@ -291,6 +319,7 @@ CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : 
                     "\"EXACTVR1\", of a recording of a crowd");
   if (!p.read_block()) p.bytes().refuse("its end within the head");
   p.head = to_head(p.bytes());
+  p.sum = checksum(p.block);
   p.x.assign(p.head.kind_of.size(), 0);
   p.y = p.x;
 }
@@ -309,11 +338,12 @@ bool CrowdRecordingReader::next(CrowdRow& row) {
   Parts& p = *parts_;
   if (p.ended) return false;
   char tag = 0;
-  if (!p.read(&tag, 1) || (tag == kRow && !p.read_block())) {
+  if (!p.read(&tag, 1) || ((tag == kRow || tag == kEnd) && !p.read_block())) {
     p.cut_off = p.ended = true;
     return false;
   }
   if (tag == kEnd) {
+    p.check_end();
     p.ended = true;
     return false;
   }
@@ -334,6 +364,8 @@ bool CrowdRecordingReader::next(CrowdRow& row) {
     for (std::size_t k = first; k < std::min(first + 8, row.kept.size()); ++k) row.kept[k] = bits >> (k - first) & 1U;
   }
   in.require_end();
+  p.sum = chained(p.sum, checksum(p.block));
+  ++p.rows;
   return true;
 }
 

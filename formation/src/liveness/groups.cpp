@@ -214,36 +214,36 @@ void Groups::make_due_plans() {
   const std::vector<Due> due = std::exchange(due_, {});
   for (const Due& d : due) {
     if (is_member(d.robot) || !(time_ - of_robot_[d.robot].planned_at > 0.0)) continue;
-    Members who = cluster_of({d.robot});
+    const Members who = cluster_of({d.robot});
     const double anyway = kActsAnyway + kForEachRobot * static_cast<double>(who.size());
-    if (d.is_dead || stalled_for(d.robot) >= anyway * patience_) plan_for(std::move(who), 0);
+    if (d.is_dead || stalled_for(d.robot) >= anyway * patience_) plan_for(who, who, 0);
   }
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     if (groups_[g].is_over || time_ - groups_[g].progress < kNoProgress * patience_) continue;
     const int tries = groups_[g].tries + 1;
     constexpr int kThenAll = 3;
     const Members who = groups_[g].who;
-    plan_for(tries >= kThenAll && now_.size() <= kEveryoneUpTo ? everyone() : cluster_of(who), tries);
+    plan_for(tries >= kThenAll && now_.size() <= kEveryoneUpTo ? everyone() : cluster_of(who), who, tries);
   }
 }
 
 /// From now, else from where the members were a while ago: they can go back as they came (lemma 4).
-bool Groups::plan_for(Members who, int tries) {
+bool Groups::plan_for(Members who, const Members& seeds, int tries) {
   const std::size_t now = history_.size() - 1;
   const auto rows_back = [&](double back) { return static_cast<std::size_t>(back / scenario_.time_step); };
   for (double back = 0.0;; back = back == 0.0 ? kFirstBack * patience_ : 2.0 * back) {
     const std::size_t to = now - std::min(now, rows_back(back));
     if (back > 0.0) who = with_those_in_the_way_back(std::move(who), to);
-    Attempt got = attempt(who, tries, to);
+    Attempt got = attempt(who, seeds, tries, to);
     if (got == Attempt::none_on_map && who.size() < everyone().size() && now_.size() <= kEveryoneUpTo) {
       who = everyone();
-      got = attempt(who, tries, to);
+      got = attempt(who, seeds, tries, to);
     }
     if (got == Attempt::planned) return true;
     if (to == 0) break;
   }
-  for (const std::size_t i : who) ++of_robot_[i].attempts;
-  without_plan_ = who;
+  for (const std::size_t i : seeds) ++of_robot_[i].attempts;
+  without_plan_ = seeds;
   return false;
 }
 
@@ -362,13 +362,17 @@ std::optional<std::vector<PlannedMove>> Groups::search(JointProblem problem, std
   return best;
 }
 
-Groups::Attempt Groups::attempt(const Members& members, int tries, std::size_t to) {
-  const Members who = with_groups_of(members);
-  const std::vector<Vec2>& from = history_[to];
+void Groups::dissolve_those_of(const Members& who) {
   for (const std::size_t i : who) {
     if (is_member(i)) dissolve(group_of_[i]);
     of_robot_[i].planned_at = time_;
   }
+}
+
+Groups::Attempt Groups::attempt(const Members& members, const Members& seeds, int tries, std::size_t to) {
+  const Members who = with_groups_of(members);
+  const std::vector<Vec2>& from = history_[to];
+  dissolve_those_of(seeds);
   Roadmap map = map_for(who, from, tries);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
@@ -384,6 +388,7 @@ Groups::Attempt Groups::attempt(const Members& members, int tries, std::size_t t
   Attempt end;
   std::optional<std::vector<PlannedMove>> plan = search(std::move(problem), to, end);
   if (!plan) return end;
+  dissolve_those_of(who);
   Group& g = groups_.emplace_back(Group{who, Following(std::move(*plan), radii)});
   g.back_at = history_.size() - 1;
   g.back_to = to;

@@ -90,8 +90,11 @@ class Groups {
   Members cluster_of(Members seeds) const;
   Members with_groups_of(Members who) const;
   Members with_those_in_the_way_back(Members who, std::size_t to) const;
-  bool plan_for(Members who, int tries);
-  Attempt attempt(const Members& who, int tries, std::size_t to);
+  /// `seeds`: those who wait. Only their groups end, and only their patience, where no plan is found.
+  bool plan_for(Members who, const Members& seeds, int tries);
+  Attempt attempt(const Members& who, const Members& seeds, int tries, std::size_t to);
+  /// Ends the groups of these, who are planned for now.
+  void dissolve_those_of(const Members& who);
   Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int tries) const;
   geometry::Box region_for(const Members& who, const std::vector<Vec2>& from, int tries) const;
   std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;

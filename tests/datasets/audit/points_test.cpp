@@ -163,6 +163,24 @@ TEST(AuditPoints, MultipliersThatAreSaidToBeExactAreNotWritten) {
   EXPECT_EQ(audit(file)[AuditPoint::choices].refuted, 1u);
 }
 
+TEST(AuditPoints, ARunThatEndsSinceItsRobotStaysIsWhole) {
+  Scenario s;
+  s.time_limit = 20.0;
+  s.obstacles = {{"box", geometry::Polygon{{{4, -2}, {8, -2}, {8, 2}, {4, 2}}, {}}}};
+  formation::Robot r;
+  r.id = "R";
+  r.goals = {{6, 0}};
+  s.robots = {r};
+  RecordingFile file = recorded(s);
+  EXPECT_LT(file.recording.steps.size(), 10u) << "the goal lies inside the box";
+  const AuditReport report = audit(file);
+  EXPECT_TRUE(report.clean()) << to_json(report);
+  EXPECT_TRUE(report.has_staying);
+  EXPECT_EQ(not_audited(report).size(), not_audited(audit(clean())).size() + 1);
+  for (Step& row : file.recording.steps) row.robots[0].mode = formation::Mode::guided;
+  EXPECT_EQ(audit(file)[AuditPoint::sequence].refuted, 1u) << "a robot that goes on is not at its end";
+}
+
 TEST(AuditPoints, AnotherScenarioIsRefused) {
   Scenario other = scene();
   other.robots[0].radius = std::nextafter(0.5, 0.0);

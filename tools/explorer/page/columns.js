@@ -205,7 +205,7 @@ class Run {
     const names = some.length > 1 ? `${some.slice(0, -1).join(', ')} and ${some[some.length - 1]}` : some.join('');
     const of = `of obstacle${ids.length > 1 ? 's' : ''} ${names}`;
     if (h.kind === 'edge') return `an edge ${of}`;
-    return `enclosure ${h.index + 1}${h.piece > 0 ? `, piece ${h.piece},` : ''} ${of}`;
+    return `enclosure ${h.index}${h.piece > 0 ? `, piece ${h.piece},` : ''} ${of}`;
   }
 }
 

@@ -69,7 +69,8 @@ class CrowdRecorder : public formation::CrowdSink {
   std::vector<std::int32_t> last_x_, last_y_;
   std::vector<geometry::Vec2> at_;
   std::vector<std::uint8_t> kept_;
-  std::uint64_t bytes_ = 0;
+  std::uint64_t bytes_ = 0, rows_ = 0;
+  std::uint64_t sum_ = 0;  ///< of all blocks
   bool is_due_ = false;
 };
 
