@@ -205,6 +205,28 @@ TEST(Liveness, PlansAreTheSameWithEveryHalfPlaneRecorded) {
       ASSERT_EQ(a.steps[k].robots[i].chosen, b.steps[k].robots[i].chosen) << k << " " << i;
 }
 
+/// Two meet in a corridor between two rooms; a third, too large for it, is at home in one of them.
+TEST(Liveness, ALargerRobotElsewhereDoesNotKeepSmallOnesFromTheirPlan) {
+  Scenario s;
+  s.time_step = 0.1;
+  s.time_limit = 200.0;
+  const auto box = [&s](const std::string& id, Vec2 low, Vec2 high) {
+    s.obstacles.push_back({id, geometry::Polygon{{low, {high.x, low.y}, high, {low.x, high.y}}, {}}});
+  };
+  box("north", {-10, 0.65}, {10, 6});
+  box("south", {-10, -6}, {10, -0.65});
+  box("left", {-21, -6}, {-20, 6});
+  box("right", {20, -6}, {21, 6});
+  box("top", {-21, 6}, {21, 7});
+  box("bottom", {-21, -7}, {21, -6});
+  s.robots = {robot("A", {-12, 0}, {14, 0}), robot("B", {12, 0}, {-14, 0}), robot("large", {-17, 4}, {-17, -4})};
+  for (Robot& r : s.robots) r.max_speed = 1.0;
+  s.robots.back().radius = 1.0;
+  const Metrics m = measure(s, simulate(s));
+  EXPECT_TRUE(m.all_arrived) << m.outcome;
+  EXPECT_TRUE(m.collisions.empty());
+}
+
 /// A corridor in which nobody can pass: the run ends at its time limit and says that there is no plan.
 TEST(Liveness, WhereThereIsNoPlanItIsSaid) {
   Scenario s;

@@ -72,10 +72,7 @@ Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans)
       group_of_(scenario.robots.size(), kNone),
       wanted_(scenario.robots.size()),
       notes_(scenario.robots.size()) {
-  for (const Robot& r : scenario.robots) {
-    largest_radius_ = std::max(largest_radius_, r.radius);
-    patience_ = std::max(patience_, 2.0 * r.radius / r.max_speed);
-  }
+  for (const Robot& r : scenario.robots) patience_ = std::max(patience_, 2.0 * r.radius / r.max_speed);
   for (OfRobot& r : of_robot_) {
     r.shortest = kInfinity;
     r.planned_at = -kInfinity;
@@ -248,7 +245,7 @@ bool Groups::plan_for(Members who, const Members& seeds, int tries) {
 }
 
 geometry::Box Groups::region_for(const Members& who, const std::vector<Vec2>& from, int tries) const {
-  const double diameter = 2.0 * largest_radius_;
+  const double diameter = 2.0 * largest_radius(who);
   geometry::Box here, both;
   for (const std::size_t i : who) {
     here.add(from[i]);
@@ -264,9 +261,16 @@ geometry::Box Groups::region_for(const Members& who, const std::vector<Vec2>& fr
   return grown(here, (4.0 + 0.5 * std::sqrt(static_cast<double>(who.size())) + 3.0 * tries) * diameter);
 }
 
+double Groups::largest_radius(const Members& who) const {
+  double largest = 0.0;
+  for (const std::size_t i : who) largest = std::max(largest, scenario_.robots[i].radius);
+  return largest;
+}
+
+/// For the largest of the members: who is larger and not among them needs no room.
 Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int tries) const {
-  const double diameter = 2.0 * largest_radius_;
-  if (space_->is_open()) return Roadmap(*space_, region_for(who, from, tries), largest_radius_);
+  const double radius = largest_radius(who), diameter = 2.0 * radius;
+  if (space_->is_open()) return Roadmap(*space_, region_for(who, from, tries), radius);
   geometry::Box scene;
   for (const SceneObstacle& o : scenario_.obstacles)
     for (const Segment& edge : geometry::edges_of(o.shape)) {
@@ -280,10 +284,10 @@ Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int t
   const Vec2 margin{kSceneMargin * diameter, kSceneMargin * diameter};
   scene = {scene.low - margin, scene.high + margin};
   const Vec2 size = (scene.high - scene.low) / diameter;
-  if (kFinePoints * size.x * size.y > kMostPoints)
-    return Roadmap(*space_, region_for(who, from, tries), largest_radius_);
-  if (!whole_map_) whole_map_.emplace(*space_, scene, largest_radius_);
-  return *whole_map_;
+  if (kFinePoints * size.x * size.y > kMostPoints) return Roadmap(*space_, region_for(who, from, tries), radius);
+  const auto known = whole_maps_.find(radius);
+  return known != whole_maps_.end() ? known->second
+                                    : whole_maps_.emplace(radius, Roadmap(*space_, scene, radius)).first->second;
 }
 
 /// Each member's goal, or, where that is outside the map or taken, the nearest place that is free.
@@ -376,7 +380,7 @@ Groups::Attempt Groups::attempt(const Members& members, const Members& seeds, in
   Roadmap map = map_for(who, from, tries);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
-      map.block(now_[j].position, (1.0 + kPlannedGap) * (largest_radius_ + scenario_.robots[j].radius));
+      map.block(now_[j].position, (1.0 + kPlannedGap) * (largest_radius(who) + scenario_.robots[j].radius));
   JointProblem problem;
   problem.map = &map;
   problem.goals = targets_for(who, from, map);

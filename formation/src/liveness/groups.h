@@ -8,6 +8,7 @@
 /// Deterministic: budgets of searches are counted.
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -87,6 +88,7 @@ class Groups {
   void restart_watch(std::size_t robot);
 
   Members everyone() const;
+  double largest_radius(const Members& who) const;  ///< m
   Members cluster_of(Members seeds) const;
   Members with_groups_of(Members who) const;
   Members with_those_in_the_way_back(Members who, std::size_t to) const;
@@ -105,8 +107,7 @@ class Groups {
   const Scenario& scenario_;
   const FreeSpace* space_;
   bool plans_;
-  double largest_radius_ = 0.0;  ///< m
-  double patience_ = 0.0;        ///< s, that the slowest needs for its diameter
+  double patience_ = 0.0;  ///< s, that the slowest needs for its diameter
   double time_ = 0.0;
   std::size_t row_ = 0;
   std::vector<RobotNow> now_;
@@ -120,8 +121,8 @@ class Groups {
     std::size_t robot = 0;
     bool is_dead = false;
   };
-  std::vector<Due> due_;  ///< who was stalled in the last row
-  mutable std::optional<Roadmap> whole_map_;
+  std::vector<Due> due_;                          ///< who was stalled in the last row
+  mutable std::map<double, Roadmap> whole_maps_;  // by radius
   Members without_plan_;
   LivenessCourse course_;
   std::size_t seed_ = 0;
