@@ -12,11 +12,11 @@
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo_commit.h"
+#include "files/sha256.h"
+#include "files/system_error.h"
+#include "files/text_file.h"
 #include "gdal/gdal_facts.h"
-#include "json_text.h"
-#include "sha256.h"
-#include "system_error.h"
-#include "text_file.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 namespace {

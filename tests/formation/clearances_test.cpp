@@ -11,8 +11,8 @@
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/distance.h"
 #include "formation/moving_scenes.h"
-#include "motion.h"
-#include "moving_way.h"
+#include "motion/motion.h"
+#include "motion/moving_way.h"
 
 namespace exactvo::formation {
 namespace {

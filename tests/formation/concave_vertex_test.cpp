@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "concave_vertex.h"
+#include "traps/concave_vertex.h"
 
 #include <gtest/gtest.h>
 

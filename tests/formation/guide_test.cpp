@@ -11,7 +11,7 @@
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/routes.h"
-#include "guide.h"
+#include "steering/guide.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "integrators.h"
+#include "motion/integrators.h"
 
 #include <gtest/gtest.h>
 

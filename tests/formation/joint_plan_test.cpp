@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "decision.h"
+#include "decision/decision.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/vo/reciprocal.h"
 #include "liveness/plan.h"

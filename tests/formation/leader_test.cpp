@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A leader along a polyline with any speed profile.
-#include "leader.h"
+#include "motion/leader.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "decision.h"
+#include "decision/decision.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "liveness_scenes.h"

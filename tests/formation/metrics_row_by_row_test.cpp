@@ -10,7 +10,7 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
-#include "leader.h"
+#include "motion/leader.h"
 
 namespace exactvo::formation {
 namespace {

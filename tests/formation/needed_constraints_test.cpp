@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Half-planes that are built on demand: what is left out changes no bit of a decision.
-#include "needed_constraints.h"
+#include "decision/needed_constraints.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "decision.h"
+#include "decision/decision.h"
 #include "exactvo/datasets/generators.h"
 #include "generators/counter_random.h"
 #include "paper_scenes.h"

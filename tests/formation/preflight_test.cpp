@@ -8,8 +8,8 @@
 
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/distance.h"
-#include "open_way.h"
-#include "reachability.h"
+#include "preflight/open_way.h"
+#include "preflight/reachability.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation {

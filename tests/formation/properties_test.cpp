@@ -7,7 +7,7 @@
 
 #include "exactvo/geometry/predicates.h"
 #include "paper_scenes.h"
-#include "steering.h"
+#include "steering/steering.h"
 
 namespace exactvo::formation {
 namespace {

@@ -7,7 +7,7 @@
 /// that folder draws the pictures again.
 ///
 /// gnuplot runs what stands in the name of a file behind `<` or `|`. So a script names plain files only (`plain_name`),
-/// and whoever was asked for another name renames the pictures once they are drawn (verbs/figure_file.h).
+/// and whoever was asked for another name renames the pictures once they are drawn (figures/figure_file.h).
 ///
 /// Neighbours: template.h has the scripts as files to edit; gnuplot.h runs them; style.h has the colours; run_figures.h
 /// and velocity_space.h make figures.

@@ -9,7 +9,7 @@
 #include "batch/work/coroutine.h"
 #include "exactvo/datasets/ordered_work.h"
 #include "exactvo/datasets/provenance.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets::batch {
 namespace {

@@ -10,14 +10,14 @@
 
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/geometry/box.h"
+#include "files/text_file.h"
 #include "gdal/gdal_session.h"
 #include "gdal/geojson_sequence.h"
 #include "gdal/geojson_shape.h"
 #include "gdal/plane_system.h"
 #include "gdal/properties.h"
-#include "json_text.h"
+#include "json/json_text.h"
 #include "readers/readers.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

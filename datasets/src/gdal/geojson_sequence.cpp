@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "exactvo/datasets/input_text.h"
+#include "files/text_file.h"
 #include "gdal/geojson_shape.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "json_if_any.h"
+#include "json/json_if_any.h"
 #include "readers/readers.h"
 
 namespace exactvo::datasets {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 

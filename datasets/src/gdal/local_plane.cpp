@@ -10,7 +10,7 @@
 #include "gdal/gdal_session.h"
 #include "gdal/plane_system.h"
 #include "gdal/plane_transform.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "json_cursor.h"
-#include "json_if_any.h"
+#include "json/json_cursor.h"
+#include "json/json_if_any.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "exactvo/datasets/obstacle_file.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // CARMEN logs: "FLASER n r1 .. rn x y theta odom_x odom_y odom_theta ..." among lines of other kinds.
+#include "files/text_file.h"
 #include "readers/hits.h"
 #include "readers/line_reader.h"
 #include "readers/readers.h"
-#include "text_file.h"
 
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/pi.h"

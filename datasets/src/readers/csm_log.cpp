@@ -5,10 +5,10 @@
 #include <string_view>
 
 #include "exactvo/geometry/counted.h"
-#include "json_cursor.h"
+#include "files/text_file.h"
+#include "json/json_cursor.h"
 #include "readers/hits.h"
 #include "readers/readers.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -3,10 +3,10 @@
 // and planar straight line graphs as triangulators' tests hold them.
 #include <map>
 
+#include "files/text_file.h"
 #include "readers/line_reader.h"
 #include "readers/plane_graph.h"
 #include "readers/xml_file.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

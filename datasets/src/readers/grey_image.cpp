@@ -5,10 +5,10 @@
 #include <cctype>
 
 #include "exactvo/datasets/data_error.h"
+#include "files/text_file.h"
 #include "gdal/vector_library.h"
 #include "readers/grid.h"
 #include "readers/png_chunks.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

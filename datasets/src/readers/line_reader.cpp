@@ -3,7 +3,7 @@
 
 #include <charconv>
 
-#include "text_file.h"
+#include "files/text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -4,10 +4,10 @@
 
 #include "exactvo/datasets/moving_ai.h"
 #include "exactvo/geometry/counted.h"
+#include "files/text_file.h"
 #include "readers/grid.h"
 #include "readers/line_reader.h"
 #include "readers/readers.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

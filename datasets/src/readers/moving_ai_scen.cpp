@@ -2,9 +2,9 @@
 // Moving AI tasks: "version 1", then a line a task: bucket, map, width, height, start x y, goal x y, optimal length.
 #include "exactvo/datasets/moving_ai.h"
 #include "exactvo/geometry/counted.h"
+#include "files/text_file.h"
 #include "readers/line_reader.h"
 #include "readers/readers.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/geometry/require.h"
+#include "files/system_error.h"
+#include "files/text_file.h"
 #include "gdal/vector_library.h"
 #include "readers/readers.h"
-#include "system_error.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes of motion planners and trajectory collections: OMPL's circles and grids, OpenTraj's line segments.
 #include "exactvo/geometry/counted.h"
+#include "files/text_file.h"
 #include "readers/discs.h"
 #include "readers/grid.h"
 #include "readers/line_reader.h"
 #include "readers/xml_file.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

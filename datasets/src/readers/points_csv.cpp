@@ -5,10 +5,10 @@
 #include <cctype>
 
 #include "exactvo/geometry/counted.h"
+#include "files/text_file.h"
 #include "readers/hits.h"
 #include "readers/line_reader.h"
 #include "readers/readers.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -8,7 +8,7 @@
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/geometry/even_odd.h"
 #include "exactvo/geometry/too_many_contacts.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 namespace {

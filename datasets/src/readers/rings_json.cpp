@@ -2,9 +2,9 @@
 // One polygon as nested lists, [shell, hole, ...], each a list of [x, y]; often unclosed, either winding.
 #include <cctype>
 
-#include "json_cursor.h"
+#include "files/text_file.h"
+#include "json/json_cursor.h"
 #include "readers/readers.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "exactvo/geometry/counted.h"
+#include "files/text_file.h"
 #include "readers/grey_image.h"
 #include "readers/grid.h"
 #include "readers/readers.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

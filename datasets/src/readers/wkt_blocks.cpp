@@ -3,8 +3,8 @@
 
 #include <cctype>
 
-#include "system_error.h"
-#include "text_file.h"
+#include "files/system_error.h"
+#include "files/text_file.h"
 
 namespace exactvo::datasets {
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cstdlib>
 
-#include "text_file.h"
+#include "files/text_file.h"
 
 namespace exactvo::datasets {
 namespace {

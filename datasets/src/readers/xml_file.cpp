@@ -5,8 +5,8 @@
 #include <cctype>
 #include <iterator>
 
+#include "files/text_file.h"
 #include "readers/line_reader.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 

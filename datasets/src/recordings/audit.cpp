@@ -8,13 +8,13 @@
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
-#include "json_text.h"
+#include "files/sha256.h"
+#include "files/text_file.h"
+#include "json/json_text.h"
 #include "recordings/audit_bodies.h"
 #include "recordings/audit_decisions.h"
 #include "recordings/audit_motions.h"
 #include "recordings/audit_sequence.h"
-#include "sha256.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

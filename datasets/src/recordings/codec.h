@@ -5,7 +5,7 @@
 /// Shapes, bodies, half-planes and decisions as JSON, both ways: what lines of recordings are made of.
 
 #include "exactvo/formation/recording.h"
-#include "json_cursor.h"
+#include "json/json_cursor.h"
 
 namespace exactvo::datasets {
 

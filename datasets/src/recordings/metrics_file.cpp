@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/metrics_file.h"
 
-#include "json_text.h"
+#include "json/json_text.h"
 #include "recordings/recording_extras.h"
 
 namespace exactvo::datasets {

@@ -5,7 +5,7 @@
 /// What a recording says beside its rows: the Lyapunov functions term by term, who collided, and why robots stopped.
 
 #include "exactvo/datasets/recording_file.h"
-#include "json_cursor.h"
+#include "json/json_cursor.h"
 
 namespace exactvo::datasets {
 

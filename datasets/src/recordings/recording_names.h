@@ -9,7 +9,7 @@
 
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/recording.h"
-#include "json_cursor.h"
+#include "json/json_cursor.h"
 
 namespace exactvo::datasets {
 

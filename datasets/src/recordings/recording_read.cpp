@@ -4,11 +4,11 @@
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
-#include "json_cursor.h"
+#include "files/text_file.h"
+#include "json/json_cursor.h"
 #include "recordings/codec.h"
 #include "recordings/recording_extras.h"
 #include "recordings/recording_names.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

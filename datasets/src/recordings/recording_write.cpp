@@ -4,11 +4,11 @@
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/geometry/require.h"
+#include "files/sha256.h"
 #include "recordings/codec.h"
 #include "recordings/recording_extras.h"
 #include "recordings/recording_names.h"
 #include "scenarios/scenario_json.h"
-#include "sha256.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/recording_file.h"
-#include "json_text.h"
+#include "json/json_text.h"
 #include "recordings/recording_names.h"
 
 namespace exactvo::datasets {

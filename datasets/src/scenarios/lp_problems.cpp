@@ -10,10 +10,10 @@
 #include <string_view>
 
 #include "exactvo/vo/lp/instances.h"
-#include "json_if_any.h"
-#include "json_text.h"
+#include "files/text_file.h"
+#include "json/json_if_any.h"
+#include "json/json_text.h"
 #include "scenarios/schema_check.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

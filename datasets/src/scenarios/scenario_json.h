@@ -2,7 +2,7 @@
 #pragma once
 
 #include "exactvo/formation/scenario.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 

@@ -9,12 +9,12 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/simulation.h"
-#include "json_text.h"
+#include "files/text_file.h"
+#include "json/json_text.h"
 #include "readers/raw_geometry.h"
 #include "scenarios/scenario_robots.h"
 #include "scenarios/scenario_values.h"
 #include "scenarios/schema_check.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -16,10 +16,10 @@
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/obstacle_index.h"
 #include "exactvo/geometry/pi.h"
+#include "files/text_file.h"
 #include "generators/counter_random.h"
 #include "readers/line_reader.h"
 #include "scenarios/scenario_values.h"
-#include "text_file.h"
 
 namespace exactvo::datasets {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <string>
 
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 

@@ -13,7 +13,7 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/require.h"
 #include "gdal/vector_library.h"
-#include "json_text.h"
+#include "json/json_text.h"
 #include "scenarios/scenario_json.h"
 #include "writers/property_table.h"
 #include "writers/writers.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "exactvo/datasets/obstacle_file.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets {
 

@@ -3,7 +3,7 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/markup.h"
 #include "exactvo/geometry/counted.h"
-#include "json_text.h"
+#include "json/json_text.h"
 #include "scenarios/scenario_json.h"
 #include "writers/writers.h"
 

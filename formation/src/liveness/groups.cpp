@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "exactvo/formation/constraint_name.h"
-#include "steering.h"
+#include "steering/steering.h"
 
 namespace exactvo::formation::detail {
 namespace {

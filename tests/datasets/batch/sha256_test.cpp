@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // SHA-256 in pieces of any length: what one machine has written another must know again.
-#include "sha256.h"
+#include "files/sha256.h"
 
 #include <gtest/gtest.h>
 

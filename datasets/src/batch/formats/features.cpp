@@ -7,7 +7,7 @@
 
 #include "batch/formats/bytes.h"
 #include "exactvo/geometry/pi.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets::batch {
 namespace {

@@ -18,7 +18,7 @@
 #include "batch/formats/sqlite_file.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/geometry/require.h"
-#include "system_error.h"
+#include "files/system_error.h"
 
 namespace exactvo::datasets::batch {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "batch/formats/features.h"
 #include "exactvo/datasets/data_error.h"
+#include "files/unique_word.h"
 #include "gdal/gdal_session.h"
-#include "unique_word.h"
 
 namespace exactvo::datasets::batch {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "exactvo/datasets/provenance.h"
-#include "json_text.h"
-#include "text_file.h"
+#include "files/text_file.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets::batch {
 namespace {

@@ -4,8 +4,8 @@
 #include <cerrno>
 #include <fstream>
 
-#include "system_error.h"
-#include "text_file.h"
+#include "files/system_error.h"
+#include "files/text_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {

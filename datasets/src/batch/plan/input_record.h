@@ -14,7 +14,7 @@
 #include "batch/plan/journal.h"
 #include "batch/work/part.h"
 #include "exactvo/datasets/batch.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets::batch {
 

@@ -9,7 +9,7 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/provenance.h"
-#include "file_names.h"
+#include "files/file_names.h"
 
 namespace exactvo::datasets::batch {
 namespace {

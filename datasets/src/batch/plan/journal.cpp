@@ -16,10 +16,10 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/geometry/counted.h"
-#include "json_text.h"
-#include "system_error.h"
-#include "text_file.h"
-#include "unique_word.h"
+#include "files/system_error.h"
+#include "files/text_file.h"
+#include "files/unique_word.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets::batch {
 namespace {

@@ -5,7 +5,7 @@
 /// The velocity obstacles of a batch's robot: one half-plane for each of its positions.
 
 #include "exactvo/datasets/batch.h"
-#include "json_text.h"
+#include "json/json_text.h"
 
 namespace exactvo::datasets::batch {
 

@@ -11,8 +11,8 @@
 #include "batch/formats/picture.h"
 #include "batch/work/half_planes.h"
 #include "exactvo/geometry/require.h"
-#include "json_text.h"
-#include "obstacle_record_json.h"
+#include "json/json_text.h"
+#include "obstacles/obstacle_record_json.h"
 
 namespace exactvo::datasets::batch {
 namespace {

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "exactvo/geometry/require.h"
+#include "files/system_error.h"
+#include "files/unique_word.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// Bytes kept back before a write call.
+constexpr std::size_t kBufferSize = std::size_t{1} << 18;
+/// Of a large file, so many bytes are sent on to the disk while the rest is being made; `commit` waits for less then.
+constexpr std::size_t kSentAtOnce = std::size_t{1} << 22;
+
+void make_directories(const std::filesystem::path& directory) {
+  if (directory.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw cannot_write(directory, error.value());
+}
+
+/// The rename would put a file in the place of a pipe or a device: /dev/null would be one from then on.
+void refuse_irregular(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
+  const char* found = std::filesystem::is_directory(status) ? "a directory" : "a pipe, a socket or a device";
+  throw DataError(DataCode::file_unwritable, path.string(), "", found, "the name of a file");
+}
+
+void write_fully(const std::filesystem::path& path, int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw cannot_write(path, errno);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing) : path_(std::move(path)) {
+  refuse_irregular(path_);
+  if (missing == MissingFolder::is_made) make_directories(path_.parent_path());
+  // A name of its own keeps programs that write the same file apart, on whatever machines; the later rename wins,
+  // whole.
+  do {
+    temporary_ = path_;
+    temporary_ += ".part." + unique_word();
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
+  if (descriptor_ < 0) throw cannot_write(path_, errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::flush() {
+  put(buffer_);
+  buffer_.clear();
+}
+
+void AtomicFile::put(std::string_view bytes) {
+  write_fully(path_, descriptor_, bytes);
+  unsent_ += bytes.size();
+  if (unsent_ < kSentAtOnce) return;
+  ::sync_file_range(descriptor_, 0, 0, SYNC_FILE_RANGE_WRITE);  // a hint: its failure is fsync's to find
+  unsent_ = 0;
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  EXACTVO_REQUIRE(descriptor_ >= 0, "a write after commit to " + path_.string());
+  if (buffer_.size() + bytes.size() >= kBufferSize) flush();
+  if (bytes.size() >= kBufferSize) return put(bytes);  // uncopied
+  buffer_ += bytes;
+}
+
+void AtomicFile::commit(Durability durability) {
+  EXACTVO_REQUIRE(descriptor_ >= 0, "a second commit of " + path_.string());
+  flush();
+  if (::fsync(descriptor_) != 0) throw cannot_write(path_, errno);
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) throw cannot_write(path_, errno);
+  ::close(std::exchange(descriptor_, -1));
+  if (durability == Durability::name) sync_directory(path_.parent_path());
+}
+
+// A rename is durable only once its directory is.
+void sync_directory(const std::filesystem::path& directory) {
+  const int descriptor = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes, Durability durability) {
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit(durability);
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "files/text_file.h"
+
+#include <fcntl.h>
+#include <linux/magic.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "files/system_error.h"
+
+namespace exactvo::datasets {
+namespace {
+
+std::atomic<void (*)()> wait_hook{nullptr};
+
+/// Between two calls of the hook.
+constexpr int kWaitMilliseconds = 50;
+
+/// Null for what can be read.
+const char* word_for_irregular(mode_t mode) {
+  if (S_ISREG(mode) || S_ISFIFO(mode)) return nullptr;
+  if (S_ISDIR(mode)) return "a directory";
+  if (S_ISSOCK(mode)) return "a socket";
+  return "a device";
+}
+
+void refuse_irregular(const std::filesystem::path& path, mode_t mode) {
+  if (const char* word = word_for_irregular(mode))
+    throw DataError(DataCode::file_unreadable, path.string(), "", word, "a file or a pipe");
+}
+
+/// A regular file or a pipe, open for reading without ever blocking.
+class Input {
+ public:
+  explicit Input(const std::filesystem::path& path) : path_(path) {
+    struct stat facts {};
+    // Asked before it is opened: opening a device may do something.
+    if (::stat(path.c_str(), &facts) != 0) throw cannot_read(path, errno);
+    refuse_irregular(path, facts.st_mode);
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (descriptor_ < 0) throw cannot_read(path, errno);
+    try {
+      learn();
+    } catch (...) {
+      ::close(descriptor_);
+      throw;
+    }
+  }
+  ~Input() { ::close(descriptor_); }
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+
+  bool is_pipe() const { return is_pipe_; }
+  std::uint64_t size() const { return size_; }  ///< of a regular file
+
+  /// Appends at most `count` bytes; false at the end.
+  bool append(std::string& text, std::size_t count) {
+    const std::size_t before = text.size();
+    text.resize(before + count);
+    ssize_t got = 0;
+    while ((got = read_once(text.data() + before, count)) < 0) wait();
+    text.resize(before + static_cast<std::size_t>(got));
+    has_begun_ = has_begun_ || got > 0;
+    return got > 0;
+  }
+
+ private:
+  void learn() {
+    struct stat facts {};
+    struct statfs system {};
+    if (::fstat(descriptor_, &facts) != 0 || ::fstatfs(descriptor_, &system) != 0) throw cannot_read(path_, errno);
+    refuse_irregular(path_, facts.st_mode);
+    is_pipe_ = S_ISFIFO(facts.st_mode);
+    size_ = is_pipe_ ? 0 : static_cast<std::uint64_t>(facts.st_size);
+    // A nameless pipe was made with both ends. One with a name may have had no writer yet: then reading it gives
+    // nothing at once, which is not its end.
+    has_begun_ = !is_pipe_ || system.f_type == PIPEFS_MAGIC;
+  }
+
+  /// Below 0: nothing there yet.
+  ssize_t read_once(char* to, std::size_t count) {
+    const ssize_t got = ::read(descriptor_, to, count);
+    if (got < 0 && errno != EINTR && errno != EAGAIN) throw cannot_read(path_, errno);
+    return got == 0 && !has_begun_ ? -1 : got;
+  }
+
+  void wait() {
+    call_wait_hook();
+    pollfd one{descriptor_, POLLIN, 0};
+    if (::poll(&one, 1, kWaitMilliseconds) > 0) has_begun_ = true;  // there was a writer, who may have left
+  }
+
+  const std::filesystem::path& path_;
+  int descriptor_ = -1;
+  bool is_pipe_ = false;
+  bool has_begun_ = true;  ///< from then on, nothing to read is the end
+  std::uint64_t size_ = 0;
+};
+
+constexpr std::size_t kBlock = std::size_t{1} << 16;
+
+[[noreturn]] void refuse_size(const std::filesystem::path& path, const std::string& found) {
+  throw DataError(DataCode::size, path.string(), "", found,
+                  "at most " + std::to_string(kLargestWholeFile) + " bytes: it is read whole");
+}
+
+}  // namespace
+
+void set_wait_hook(void (*hook)()) {
+  wait_hook = hook;
+}
+
+void call_wait_hook() {
+  if (void (*const hook)() = wait_hook) hook();
+}
+
+bool is_pipe(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_fifo(path, error);
+}
+
+std::string read_beginning(const std::filesystem::path& path, std::size_t count) {
+  Input input(path);
+  if (input.is_pipe()) throw DataError(DataCode::file_unreadable, path.string(), "", "a pipe", "a regular file");
+  std::string text;
+  while (text.size() < count && input.append(text, std::min(kBlock, count - text.size()))) continue;
+  return text;
+}
+
+std::string read_text_file(const std::filesystem::path& path) {
+  Input input(path);
+  if (input.size() > kLargestWholeFile) refuse_size(path, std::to_string(input.size()) + " bytes");
+  std::string text;
+  text.reserve(input.size() + kBlock);
+  while (input.append(text, kBlock)) {
+    if (text.size() > kLargestWholeFile) refuse_size(path, "more than that in a pipe");
+    call_wait_hook();
+  }
+  return text;
+}
+
+std::string read_standard_input() {
+  std::string text;
+  char block[kBlock];
+  for (;;) {
+    call_wait_hook();
+    pollfd one{STDIN_FILENO, POLLIN, 0};
+    if (::poll(&one, 1, kWaitMilliseconds) <= 0) continue;
+    const ssize_t got = ::read(STDIN_FILENO, block, sizeof block);
+    if (got == 0) return text;
+    if (got < 0 && errno != EINTR && errno != EAGAIN) throw cannot_read("standard input", errno);
+    if (got > 0) text.append(block, static_cast<std::size_t>(got));
+    if (text.size() > kLargestWholeFile) refuse_size("standard input", "more than that");
+  }
+}
+
+std::string line_and_column(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, std::min(byte, text.size()));
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t newline = before.rfind('\n');
+  const std::size_t column = newline == std::string_view::npos ? before.size() + 1 : before.size() - newline;
+  return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+std::string excerpt(std::string_view text, std::size_t byte, std::size_t length) {
+  if (text.empty()) return "nothing";
+  if (byte >= text.size()) return "the end of the file";
+  std::string shown = "\"";
+  for (const char c : text.substr(byte, length)) {
+    if (c == '\n' || c == '\r') break;
+    shown += c >= 0x20 && c < 0x7f ? c : '?';
+  }
+  return shown + "\"";
+}
+
+}  // namespace exactvo::datasets

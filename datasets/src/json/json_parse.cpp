@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/datasets/input_text.h"
+#include "files/text_file.h"
+#include "json/json_builder.h"
+#include "json/json_if_any.h"
+#include "json/json_text.h"
+
+namespace exactvo::datasets {
+namespace {
+
+/// Walks the text, notes how far the parser has come, since nlohmann does not say, and lets a signal
+/// end a long parse.
+class CountingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  CountingIterator(const char* at, const char* begin, std::size_t* position)
+      : at_(at), begin_(begin), position_(position) {}
+  const char& operator*() const { return *at_; }
+  CountingIterator& operator++() {
+    ++at_;
+    *position_ = static_cast<std::size_t>(at_ - begin_);
+    if (*position_ % kBlock == 0) call_wait_hook();
+    return *this;
+  }
+  CountingIterator operator++(int) {
+    CountingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const CountingIterator& other) const { return at_ == other.at_; }
+  bool operator!=(const CountingIterator& other) const { return at_ != other.at_; }
+
+ private:
+  static constexpr std::size_t kBlock = std::size_t{1} << 16;  ///< bytes between two calls of the wait hook
+
+  const char* at_;
+  const char* begin_;
+  std::size_t* position_;
+};
+
+/// What stood where the parser stopped, by what it says it wanted: its words are for those who know its grammar.
+std::string expected_instead(const std::string& message) {
+  struct Meaning {
+    const char* said;
+    const char* expected;
+  };
+  static constexpr Meaning kOfTexts[] = {
+      {"missing closing quote", "a closing double quote"},
+      {"must be escaped", "text without line breaks and control characters (\\n and \\u000a stand for a line break)"},
+      {"must be followed by 4 hex digits", "four hexadecimal digits after \\u"},
+      {"forbidden character after backslash", "one of \" \\ / b f n r t u after a backslash"},
+      {"surrogate", "a surrogate pair: \\ud800 to \\udbff, then \\udc00 to \\udfff"},
+      {"ill-formed UTF-8", "text in UTF-8"},
+      {"invalid BOM", "text in UTF-8"},
+      {"invalid number", "a number as JSON writes it: 0.5, -3, 1e-9"}};
+  static constexpr Meaning kOfTokens[] = {{"expected end of input", "the end of the file after one JSON value"},
+                                          {"expected string literal", "a key in double quotes"},
+                                          {"expected ':'", "a colon after the key"},
+                                          {"expected ']'", "a comma or \"]\""},
+                                          {"expected '}'", "a comma or \"}\""}};
+  // What was read last is the file's, and may hold anything.
+  const std::string reason = message.substr(0, message.find("last read: "));
+  for (const Meaning& m : kOfTexts)
+    if (reason.find(m.said) != std::string::npos) return m.expected;
+  const std::size_t last = message.rfind("; expected ");
+  for (const Meaning& m : kOfTokens)
+    if (last != std::string::npos && message.compare(last + 2, std::string::npos, m.said) == 0) return m.expected;
+  return "a JSON value: an object, a list, a number, text in double quotes, true, false or null";
+}
+
+/// "the number 1e999".
+std::string number_in(const std::string& message) {
+  const std::size_t first = message.find('\''), last = message.rfind('\'');
+  return first < last ? "the number " + message.substr(first + 1, last - first - 1) : "a number that is too large";
+}
+
+/// What is wrong with a text, by line and column.
+class SyntaxErrors {
+ public:
+  SyntaxErrors(std::string_view text, const std::string& file, const std::size_t& position)
+      : text_(text), file_(file), position_(position) {}
+
+  [[noreturn]] void refuse(std::size_t bytes, const nlohmann::detail::exception& error) const {
+    if (dynamic_cast<const nlohmann::detail::out_of_range*>(&error) != nullptr)
+      throw here(DataCode::number, number_in(error.what()), "a number that a finite double can hold");
+    const std::size_t byte = bytes > 0 ? bytes - 1 : 0;
+    throw DataError(DataCode::json_syntax, file_, line_and_column(text_, byte), excerpt(text_, byte),
+                    expected_instead(error.what()));
+  }
+  DataError here(DataCode code, const std::string& found, const std::string& expected) const {
+    return {code, file_, line_and_column(text_, position_), found, expected};
+  }
+
+ private:
+  std::string_view text_;
+  const std::string& file_;
+  const std::size_t& position_;
+};
+
+/// Refuses what the parser would accept: duplicate keys and bottomless nesting.
+class GuardedBuilder : public JsonBuilder {
+ public:
+  explicit GuardedBuilder(const SyntaxErrors& errors) : errors_(errors) {}
+
+  bool parse_error(std::size_t bytes, const std::string&, const nlohmann::detail::exception& error) override {
+    errors_.refuse(bytes, error);
+  }
+
+ private:
+  void on_open(std::size_t depth) override {
+    if (depth >= kDeepestJson)
+      throw errors_.here(DataCode::nesting, "more than 100 levels of nesting", "a file that nests less deeply");
+  }
+  void on_second(const std::string& key) override {
+    throw errors_.here(DataCode::json_duplicate_key, "the key \"" + key + "\" a second time",
+                       "each key once in an object");
+  }
+
+  const SyntaxErrors& errors_;
+};
+
+/// Keeps nothing.
+class SyntaxCheck : public nlohmann::json_sax<Json> {
+ public:
+  explicit SyntaxCheck(const SyntaxErrors& errors) : errors_(errors) {}
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t bytes, const std::string&, const nlohmann::detail::exception& error) override {
+    errors_.refuse(bytes, error);
+  }
+
+ private:
+  const SyntaxErrors& errors_;
+};
+
+bool parse_into(nlohmann::json_sax<Json>& events, std::string_view text, std::size_t& position) {
+  const char* begin = text.data();
+  return Json::sax_parse(CountingIterator(begin, begin, &position),
+                         CountingIterator(begin + text.size(), begin, &position), &events);
+}
+
+}  // namespace
+
+Json parse_json(std::string_view text, const std::string& file_name) {
+  std::size_t position = 0;
+  const SyntaxErrors errors(text, file_name, position);
+  GuardedBuilder builder(errors);
+  parse_into(builder, text, position);
+  return builder.take();
+}
+
+void check_json_syntax(std::string_view text, const std::string& file_name) {
+  std::size_t position = 0;
+  const SyntaxErrors errors(text, file_name, position);
+  SyntaxCheck check(errors);
+  parse_into(check, text, position);
+}
+
+Json parse_json_if_any(std::string_view text) {
+  std::size_t position = 0;
+  JsonBuilder builder;
+  return parse_into(builder, text, position) ? builder.take() : Json(Json::value_t::discarded);
+}
+
+Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number) {
+  try {
+    return parse_json(line, file_name);
+  } catch (const DataError& error) {
+    const std::string column = error.place().substr(error.place().find(", ") + 2);
+    throw DataError(error.code(), file_name, "line " + std::to_string(number) + ", " + column, error.found(),
+                    error.expected());
+  }
+}
+
+std::string described(const Json& value) {
+  if (value.is_object()) return "an object";
+  if (value.is_array()) return "a list of " + std::to_string(value.size());
+  constexpr std::size_t kLongest = 60;
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+std::string pointer_token(std::string_view key) {
+  std::string token;
+  for (const char c : key) {
+    if (c == '~') {
+      token += "~0";
+    } else if (c == '/') {
+      token += "~1";
+    } else {
+      token += c;
+    }
+  }
+  return token;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <charconv>
+#include <cmath>
+
+#include "json/json_text.h"
+
+namespace exactvo::datasets {
+namespace {
+
+template <class T>
+void append_chars(std::string& text, T number) {
+  char digits[40];
+  const std::to_chars_result result = std::to_chars(digits, digits + sizeof digits, number);
+  text.append(digits, result.ptr);
+}
+
+const char* word_for_non_finite(double number) {
+  if (std::isnan(number)) return "nan";
+  return number > 0.0 ? "inf" : "-inf";
+}
+
+void append_escaped(std::string& text, std::string_view raw) {
+  text += '"';
+  for (const char c : raw) {
+    switch (c) {
+      case '"':
+        text += "\\\"";
+        break;
+      case '\\':
+        text += "\\\\";
+        break;
+      case '\n':
+        text += "\\n";
+        break;
+      case '\t':
+        text += "\\t";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) < 0x20) {
+          text += "\\u00";
+          text += "0123456789abcdef"[(c >> 4) & 0xf];
+          text += "0123456789abcdef"[c & 0xf];
+        } else {
+          text += c;
+        }
+    }
+  }
+  text += '"';
+}
+
+}  // namespace
+
+void append_number(std::string& text, double number) {
+  // Integer text would lose the sign of zero: readers take "-0" for an integer.
+  if (number == 0.0 && std::signbit(number)) {
+    text += "-0.0";
+  } else {
+    append_chars(text, number);
+  }
+}
+
+void JsonWriter::new_line(std::size_t depth) {
+  text_ += '\n';
+  text_.append(2 * depth, ' ');
+}
+
+void JsonWriter::separate() {
+  if (after_key_) {
+    after_key_ = false;
+    return;
+  }
+  if (levels_.empty()) return;
+  Level& level = levels_.back();
+  if (!level.empty) text_ += ',';
+  if (level.layout == Layout::indented) {
+    new_line(levels_.size());
+  } else if (!level.empty && layout_ == Layout::indented) {
+    text_ += ' ';
+  }
+  level.empty = false;
+}
+
+JsonWriter& JsonWriter::open(char bracket, Layout layout) {
+  separate();
+  text_ += bracket;
+  const bool nested_inline = !levels_.empty() && levels_.back().layout == Layout::compact;
+  levels_.push_back({nested_inline ? Layout::compact : layout, true});
+  return *this;
+}
+
+JsonWriter& JsonWriter::close(char bracket) {
+  const Level level = levels_.back();
+  levels_.pop_back();
+  if (level.layout == Layout::indented && !level.empty) new_line(levels_.size());
+  text_ += bracket;
+  return *this;
+}
+
+JsonWriter& JsonWriter::key(std::string_view name) {
+  separate();
+  append_escaped(text_, name);
+  text_ += layout_ == Layout::indented ? ": " : ":";
+  after_key_ = true;
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(double number) {
+  if (!std::isfinite(number)) return value(word_for_non_finite(number));
+  separate();
+  append_number(text_, number);
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(bool truth) {
+  return raw(truth ? "true" : "false");
+}
+
+JsonWriter& JsonWriter::value(std::uint64_t number) {
+  separate();
+  append_chars(text_, number);
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(int number) {
+  separate();
+  append_chars(text_, number);
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(std::string_view text) {
+  separate();
+  append_escaped(text_, text);
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(geometry::Vec2 point) {
+  return begin_inline_array().value(point.x).value(point.y).end_array();
+}
+
+JsonWriter& JsonWriter::null() {
+  return raw("null");
+}
+
+JsonWriter& JsonWriter::raw(std::string_view json) {
+  separate();
+  text_ += json;
+  return *this;
+}
+
+}  // namespace exactvo::datasets

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The consensus law (14) and the preferences of the three controllers (paper, Section IV; docs/guide/errata.md).
+
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "exactvo/formation/simulation.h"
+#include "motion/leader.h"
+
+namespace exactvo::formation::detail {
+
+/// Positions and velocities relative to each robot's slot: x^ = x_i - x_L - Delta_i, v^ = v_i - v_L.
+struct RelativeState {
+  std::vector<Vec2> position;  ///< m
+  std::vector<Vec2> velocity;  ///< m/s
+};
+
+/// Delta_i as the controller uses them: recentred where the scenario and the remedies both say so.
+std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies);
+
+/// u_c of equation (14), m/s^2, with `position_sign` = -1, or +1 as (15) prints it.
+Vec2 consensus_input(const FormationSpec& spec, const RelativeState& state, std::size_t robot, double position_sign);
+
+/// v_pref of equation (17) under the remedies: printed, away from the slot at full speed (0 at the slot, where the
+/// quotient is undefined); saturated, -min(kappa |x^|, v_s) x^ / |x^|; in the absolute frame v_L is added.
+Vec2 preference(const FormationSpec& spec, const Remedies& remedies, Vec2 relative_position, Vec2 leader_velocity,
+                double max_speed);
+
+}  // namespace exactvo::formation::detail

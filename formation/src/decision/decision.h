@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Equation (12)/(13): from half-planes and a preferred velocity to the chosen one, with the record of why.
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "decision/needed_constraints.h"
+#include "exactvo/vo/lp/certificate.h"
+#include "scene/static_field.h"
+
+namespace exactvo::formation::detail {
+
+/// A robot that half-planes are built for: its brake point in a formation, else itself.
+struct Anchor {
+  Vec2 position;  ///< m
+  Vec2 velocity;  ///< m/s
+};
+
+/// All half-planes of every robot against every other within `neighbour_distance`, nearest first: entry i belongs to
+/// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who
+/// meets it takes the whole avoiding. Moves the robots' bodies to their anchors.
+void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
+                       Scene& scene, std::vector<std::vector<Constraint>>& out);
+
+/// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far
+/// as `contact_time` and leaving `kContactSkin` between them: v = 0 satisfies them as long as the robots do not
+/// overlap, and they are as certain (liveness, rule R0).
+void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
+               std::size_t j, std::vector<std::vector<Constraint>>& constraints);
+
+/// The same of all pairs of which one goes by a plan, for robots that both yield (liveness, rule R4). `planned`: m/s,
+/// what those who go by a plan want. Two that do have the half-plane nearest to what they want, split there with half
+/// the slack each, so that both keep it where the plan is free of collision (lemma 2). Of one that does and one that
+/// does not the first takes the whole gap, and the other does not come nearer. Pairs that cannot meet within a step
+/// have none.
+void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
+                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints);
+
+/// The largest share of a velocity, in [0, 1], that all these allow; nothing where none does.
+std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>& statics,
+                                    const std::vector<Constraint>& others);
+
+/// s: within this a robot in contact is asked to part: never less than a step.
+double contact_time(const Scenario& scenario);
+
+/// m: how much nearer a robot and what stands still can come within a step, whatever is decided.
+double reach_of_step(const Scenario& scenario, const Viewpoint& from);
+
+/// m: how much nearer two robots can come within a step, whatever they decide.
+double reach_of_pair(const Scenario& scenario, std::size_t i, std::size_t j);
+
+lp::SpeedBound speed_bound(const Scenario& scenario, double max_speed);
+
+struct DecisionInput {
+  Vec2 preferred;  ///< m/s
+  Viewpoint from;
+  const std::vector<Constraint>* statics = nullptr;
+  const std::vector<Constraint>* others = nullptr;  ///< robots and moving obstacles
+  bool keep_all = false;
+  NeededConstraints* more = nullptr;  ///< grows `statics` by what the decision needs; none: they are all there
+  const std::vector<std::size_t>* fallen_back = nullptr;  ///< robots whose constraints are kept in any case
+};
+
+/// Makes decisions one after the other in memory of its own.
+class Decider {
+ public:
+  Decider(const Scenario& scenario, const vo::BodyTable& bodies) : scenario_(&scenario), bodies_(&bodies) {}
+
+  /// Fills `chosen`, `status`, `violation`, `exact_multipliers`, `bound`, `constraints` and `uncertified` of the step;
+  /// the other fields are the caller's. Keeps the constraints that bind and those against what can be met within a
+  /// step: with these alone an audit sees that none is missing.
+  void decide(const DecisionInput& in, RobotStep& step);
+
+ private:
+  void state_problem(const DecisionInput& in);
+  lp::Solution rounded_solution(const DecisionInput& in);
+  lp::Proven proven_solution(const DecisionInput& in);
+  bool has_fallen_back(const Constraint& c, const DecisionInput& in) const;
+  double reach_of(const Constraint& c, const Viewpoint& from) const;
+  RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, const lp::ActiveConstraint* active) const;
+
+  const Scenario* scenario_;
+  const vo::BodyTable* bodies_;
+  lp::Problem problem_;
+  lp::Pricing pricing_;
+  std::vector<std::pair<const Constraint*, const lp::ActiveConstraint*>> kept_;  ///< of one decision
+};
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/waiting.h"
+
+#include <algorithm>
+#include <array>
+
+#include "decision/decision.h"
+
+namespace exactvo::formation {
+namespace {
+
+using geometry::norm;
+
+/// m/s: who wants less is not held up.
+constexpr double kWantsNothing = 1e-3;
+/// m/s: a faster robot moves: a ring of robots that wait for each other may turn slowly, and get apart.
+constexpr double kMoves = 0.1;
+/// Robots of a chain that are named one by one.
+constexpr std::size_t kNamed = 6;
+
+bool is_held_up(const RobotStep& r) {
+  const double wanted = geometry::squared_norm(r.preferred);
+  return r.mode != Mode::arrived && wanted > kWantsNothing * kWantsNothing &&
+         dot(r.chosen, r.preferred) < kHeldBelow * wanted;
+}
+
+/// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.
+bool holds(const RecordedConstraint& c, const RobotStep& r, const Scenario& scenario, std::size_t robot) {
+  return c.source == ConstraintSource::robot && c.clearance < scenario.robots[robot].radius &&
+         (c.active || c.clearance <= detail::reach_of_pair(scenario, robot, c.index)) &&
+         (c.multiplier > 0.0 || geometry::violation(c.half_plane, r.preferred) > 0.0);
+}
+
+std::vector<std::size_t> held_by(const RobotStep& r, const Scenario& scenario, std::size_t robot) {
+  std::vector<const RecordedConstraint*> by;
+  if (is_held_up(r))
+    for (const RecordedConstraint& c : r.constraints)
+      if (holds(c, r, scenario, robot)) by.push_back(&c);
+  std::stable_sort(by.begin(), by.end(), [](const auto* a, const auto* b) { return a->multiplier > b->multiplier; });
+  std::vector<std::size_t> robots;
+  for (const RecordedConstraint* c : by) robots.push_back(c->index);
+  return robots;
+}
+
+/// The robots met by going on to the one that holds each most, until one that waits for nobody or was met before.
+std::vector<std::size_t> chain_from(const WaitForGraph& graph, std::size_t robot) {
+  std::vector<std::size_t> chain{robot};
+  std::vector<char> met(graph.size(), 0);
+  met[robot] = 1;
+  while (!graph[chain.back()].empty()) {
+    const std::size_t next = graph[chain.back()].front();
+    chain.push_back(next);
+    if (met[next]) break;
+    met[next] = 1;
+  }
+  return chain;
+}
+
+/// The end of a chain that comes back to where it has been; empty where it does not.
+std::vector<std::size_t> cycle_of(const std::vector<std::size_t>& chain) {
+  const auto first = std::find(chain.begin(), chain.end() - 1, chain.back());
+  return {first, chain.end() - 1};
+}
+
+std::string count(std::size_t n) {
+  constexpr std::array<const char*, 10> kWords{"none", "one", "two",   "three", "four",
+                                               "five", "six", "seven", "eight", "nine"};
+  return n < kWords.size() ? kWords[n] : std::to_string(n);
+}
+
+/// "R3 waits for R4, which waits for R1".
+std::string chained(const Scenario& scenario, const std::vector<std::size_t>& chain) {
+  std::string text = scenario.robots[chain.front()].id;
+  const std::size_t named = std::min(chain.size(), kNamed);
+  for (std::size_t k = 1; k < named; ++k)
+    text += (k == 1 ? " waits for " : ", which waits for ") + scenario.robots[chain[k]].id;
+  if (named == chain.size()) return text;
+  if (named + 1 == chain.size()) return text + ", which waits for " + scenario.robots[chain.back()].id;
+  return text + " and so on through " + count(chain.size() - named - 1) + " more to " +
+         scenario.robots[chain.back()].id;
+}
+
+std::string end_words(const RobotStep& r) {
+  if (r.mode == Mode::arrived) return ", which rests at its goal";
+  if (r.mode == Mode::staying) return ", which stays, since its goal is out of reach";
+  return norm(r.chosen) >= kMoves ? ", which moves" : ", which is held up by no robot near it";
+}
+
+}  // namespace
+
+WaitForGraph waiting_in(const Scenario& scenario, const Step& row) {
+  WaitForGraph graph(row.robots.size());
+  if (scenario.formation) return graph;
+  for (std::size_t i = 0; i < graph.size(); ++i) graph[i] = held_by(row.robots[i], scenario, i);
+  return graph;
+}
+
+std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph) {
+  std::vector<std::vector<std::size_t>> cycles;
+  std::vector<char> known(graph.size(), 0);
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    std::vector<std::size_t> chain{i};
+    while (!known[chain.back()] && !graph[chain.back()].empty()) {
+      known[chain.back()] = 1;
+      chain.push_back(graph[chain.back()].front());
+    }
+    known[chain.back()] = 1;
+    std::vector<std::size_t> cycle = cycle_of(chain);
+    if (cycle.empty()) continue;
+    std::rotate(cycle.begin(), std::min_element(cycle.begin(), cycle.end()), cycle.end());
+    cycles.push_back(std::move(cycle));
+  }
+  std::sort(cycles.begin(), cycles.end());
+  return cycles;
+}
+
+bool is_dead(const WaitForGraph& graph, const Step& row, std::size_t robot) {
+  std::vector<std::size_t> open{robot};
+  std::vector<char> met(graph.size(), 0);
+  met[robot] = 1;
+  while (!open.empty()) {
+    const std::size_t i = open.back();
+    open.pop_back();
+    const RobotStep& r = row.robots[i];
+    if (r.mode != Mode::arrived && norm(r.chosen) >= kMoves) return false;
+    for (const std::size_t j : graph[i])
+      if (!met[j]) {
+        met[j] = 1;
+        open.push_back(j);
+      }
+  }
+  return true;
+}
+
+std::string deadlock_words(const Scenario& scenario, const std::vector<std::size_t>& cycle) {
+  std::vector<std::size_t> chain = cycle;
+  chain.push_back(cycle.front());
+  return chained(scenario, chain) + ": a deadlock of " + count(cycle.size());
+}
+
+std::string waiting_words(const Scenario& scenario, const Step& row, const WaitForGraph& graph, std::size_t robot) {
+  if (graph[robot].empty()) return "";
+  const std::vector<std::size_t> chain = chain_from(graph, robot), cycle = cycle_of(chain);
+  if (!cycle.empty() && cycle.front() == robot) return deadlock_words(scenario, cycle);
+  if (!cycle.empty()) {
+    std::vector<std::size_t> way(chain.begin(), std::find(chain.begin(), chain.end(), chain.back()) + 1);
+    return chained(scenario, way) + ", which is in a deadlock of " + count(cycle.size());
+  }
+  const std::string queue = chain.size() > 2 ? "queue of " + std::to_string(chain.size()) + ": " : "";
+  return queue + chained(scenario, chain) + end_words(row.robots[chain.back()]);
+}
+
+}  // namespace exactvo::formation

@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "metrics/clearances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/obstacle_index.h"
+#include "motion/motion.h"
+#include "motion/moving_way.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::norm;
+using geometry::Segment;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double largest(Vec2 v) {
+  return std::max(std::fabs(v.x), std::fabs(v.y));
+}
+double largest(const Segment& s) {
+  return std::max(largest(s.a), largest(s.b));
+}
+double largest(const geometry::Obstacle& shape) {
+  double most = 0.0;
+  for (Vec2 p : geometry::vertices_of(shape)) most = std::max(most, largest(p));
+  return most;
+}
+
+/// m: what a swept clearance may be off by. The distance's own bound, and as much again for the chords' ends, the
+/// displacement, the stray and the radii: fewer than 64 roundings of at most the coordinates between them, and the
+/// bound is 128 units of them.
+double rounding(double shape, const Segment& chord, double others) {
+  return 2.0 * geometry::rounding_of_distance(std::max(shape, largest(chord)) + others);
+}
+
+/// Who may not be touched: an obstacle, a moving obstacle or another robot, by its number.
+using Other = std::pair<CollisionKind, std::size_t>;
+
+/// What is known round a place where a robot was: no static obstacle is nearer.
+struct Quiet {
+  Vec2 place;
+  double room = 0.0;    ///< m
+  int steps_until = 0;  ///< before it is looked at again
+  int patience = 1;     ///< how many steps to wait if it is worth nothing again
+};
+
+/// Where something was between two rows.
+struct Moment {
+  double time = 0.0;  ///< s, of the first
+  Motion robot, other;
+};
+
+/// Consecutive steps in which a pair touches: one collision.
+struct Contact {
+  std::size_t last = 0;  ///< step
+  double from = 0.0, until = 0.0;
+  double clearance = kInfinity;  ///< m, the least
+  Moment deepest;
+  bool relaxed = false;  ///< a decision of one of the two could not keep every half-plane before or meanwhile
+};
+
+}  // namespace
+
+class ClearanceSweep::Sweep {
+ public:
+  Sweep(const Scenario& scenario, const Recording& run)
+      : scenario_(scenario), run_(run), least_(scenario.robots.size(), kInfinity) {
+    std::vector<geometry::Box> boxes;
+    for (const SceneObstacle& o : scenario.obstacles) {
+      largest_.push_back(largest(o.shape));
+      geometry::Box& box = boxes.emplace_back();
+      for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
+    }
+    obstacles_.resize(scenario.obstacles.size());
+    quiet_.resize(scenario.robots.size());
+    by_place_ = geometry::BoxGrid(std::move(boxes));
+    for (const double x : largest_) largest_of_all_ = std::max(largest_of_all_, x);
+    constexpr double kToTheEnd = std::numeric_limits<double>::max();
+    for (const MovingObstacle& o : scenario.moving_obstacles) {
+      ways_.push_back(way_of(o.motion, kToTheEnd));
+      moving_largest_.push_back(largest(o.shape));
+    }
+  }
+
+  void add(const Step& row) {
+    if (!rows_.empty()) {
+      const std::size_t step = count_++;
+      motions_.clear();
+      for (std::size_t i = 0; i < least_.size(); ++i) motions_.push_back(motion_to(row, i));
+      for (std::size_t i = 0; i < least_.size(); ++i) lower_to_obstacles(step, row.time, i);
+      lower_between(step, row.time);
+    }
+    if (rows_.size() == 2)
+      std::swap(rows_.front(), rows_.back());
+    else
+      rows_.emplace_back();
+    rows_.back().take(row);
+  }
+
+  Clearances result() const {
+    Clearances out;
+    for (double x : least_) out.to_obstacles.push_back(std::isfinite(x) ? std::optional<double>(x) : std::nullopt);
+    if (std::isfinite(between_)) out.between_robots = between_;
+    out.collisions = collisions();
+    return out;
+  }
+
+ private:
+  /// What is kept of a row.
+  struct State {
+    struct Robot {
+      Vec2 position, velocity;
+      bool relaxed = false;
+    };
+    double time = 0.0;
+    std::vector<Robot> robots;
+
+    void take(const Step& row) {
+      time = row.time;
+      robots.clear();
+      for (const RobotStep& r : row.robots) robots.push_back({r.position, r.velocity, r.status != lp::Status::optimal});
+    }
+  };
+
+  /// From the last row to this one.
+  Motion motion_to(const Step& row, std::size_t robot) const {
+    const State::Robot& from = rows_.back().robots[robot];
+    const RobotStep& to = row.robots[robot];
+    return {run_.motion, run_.time_step, run_.tracking_gain, from.position, from.velocity, to.position, to.velocity};
+  }
+
+  /// What is not touched need not be known beyond the least so far.
+  static double enough(double least) { return std::max(least, 0.0); }
+
+  void lower_to_obstacles(std::size_t step, double end, std::size_t robot) {
+    double& least = least_[robot];
+    if (!stays_quiet(robot, enough(least))) {
+      for (const std::size_t o : near_obstacles(robot, reach_that_matters(robot, enough(least))))
+        note(robot, {CollisionKind::obstacle, o}, step, end,
+             obstacle_clearance(o, robot, motions_[robot], enough(least)), least);
+      look_round(robot, enough(least));
+    }
+    for (std::size_t o = 0; o < scenario_.moving_obstacles.size(); ++o)
+      note(robot, {CollisionKind::moving_obstacle, o}, step, end,
+           moving_clearance(o, robot, motions_[robot], enough(least)), least);
+  }
+
+  /// m: nothing farther from the motion's chord can bring its clearance below `enough`.
+  double reach_that_matters(std::size_t robot, double enough) const {
+    const Motion& motion = motions_[robot];
+    return (1.0 + 1e-9) * (enough + most_off(robot, motion, motion.chord(0.0, 1.0)) + motion.stray(1.0));
+  }
+
+  /// Obstacles whose boxes are that near to the motion's chord, by number.
+  const std::vector<std::size_t>& near_obstacles(std::size_t robot, double reach) {
+    near_.clear();
+    const Segment chord = motions_[robot].chord(0.0, 1.0);
+    geometry::Box box;
+    box.add(chord.a);
+    box.add(chord.b);
+    by_place_.for_each_meeting({box.low - Vec2{reach, reach}, box.high + Vec2{reach, reach}},
+                               [&](std::size_t o) { near_.push_back(o); });
+    std::sort(near_.begin(), near_.end());
+    return near_;
+  }
+
+  /// Whether what is known round a place says that no obstacle matters to this step.
+  bool stays_quiet(std::size_t robot, double enough) const {
+    constexpr double kRounding = 1.0 + 1e-9;
+    const Quiet& quiet = quiet_[robot];
+    if (!(quiet.room > 0.0)) return false;
+    const Segment chord = motions_[robot].chord(0.0, 1.0);
+    const double away = std::max(norm(chord.a - quiet.place), norm(chord.b - quiet.place));
+    return quiet.room > kRounding * (away + reach_that_matters(robot, enough));
+  }
+
+  /// Looks as far round the end of the step as pays for some steps to come. Where obstacles are too near for that it is
+  /// tried again after 1, 2, 4, ... steps.
+  void look_round(std::size_t robot, double enough) {
+    constexpr double kSteps = 10.0;
+    constexpr int kMostPatience = 16;
+    Quiet& quiet = quiet_[robot];
+    quiet.room = 0.0;
+    if (--quiet.steps_until > 0 || !std::isfinite(enough)) return;
+    const double step = strays(motions_[robot]), reach = reach_that_matters(robot, enough);
+    const double worth = reach + 3.0 * step, most = reach + kSteps * step + scenario_.robots[robot].radius;
+    quiet.place = motions_[robot].chord(0.0, 1.0).b;
+    double room = most;
+    for (const std::size_t o : near_obstacles(robot, most)) {
+      const double rounding = 2.0 * geometry::rounding_of_distance(std::max(largest_[o], largest(quiet.place)));
+      room = std::min(room, index_of(o).swept_distance({quiet.place, quiet.place}, most + rounding) - rounding);
+      if (room < worth) break;
+    }
+    if (room >= worth) {
+      quiet.room = room;
+      quiet.patience = 1;
+    } else {
+      quiet.steps_until = quiet.patience;
+      quiet.patience = std::min(2 * quiet.patience, kMostPatience);
+    }
+  }
+
+  const geometry::ObstacleIndex& index_of(std::size_t obstacle) const {
+    std::optional<geometry::ObstacleIndex>& index = obstacles_[obstacle];
+    if (!index) index.emplace(scenario_.obstacles[obstacle].shape);
+    return *index;
+  }
+
+  /// m: no chord of the motion has more taken off its distance.
+  double most_off(std::size_t robot, const Motion& motion, const Segment& chord) const {
+    const double radius = scenario_.robots[robot].radius, reach = radius + motion.reach();
+    return 2.0 * rounding(largest_of_all_, chord, reach + motion.stray(1.0)) + radius;
+  }
+
+  /// m, the least clearance that there can be: the centre at no distance from a line or another centre. The bounds of
+  /// roundings and curves may lie below it.
+  double least_possible(std::size_t robot, Other other) const {
+    const double radius = scenario_.robots[robot].radius;
+    const auto [kind, index] = other;
+    if (kind == CollisionKind::robot) return -(radius + scenario_.robots[index].radius);
+    const geometry::Obstacle& shape =
+        kind == CollisionKind::obstacle ? scenario_.obstacles[index].shape : scenario_.moving_obstacles[index].shape;
+    return std::holds_alternative<geometry::Polyline>(shape) ? -radius : -kInfinity;
+  }
+
+  void note(std::size_t robot, Other other, std::size_t step, double end, double bound, double& least) {
+    const double clearance = std::max(bound, least_possible(robot, other));
+    least = std::min(least, clearance);
+    if (!touched(clearance)) return;
+    std::vector<Contact>& all = contacts_[{robot, other}];
+    if (all.empty() || all.back().last + 1 < step) {
+      all.emplace_back().from = rows_.back().time;
+      all.back().relaxed = was_relaxed(rows_.front(), robot, other);
+    }
+    Contact& now = all.back();
+    now.last = step;
+    now.until = end;
+    now.relaxed = now.relaxed || was_relaxed(rows_.back(), robot, other);
+    if (!(clearance < now.clearance)) return;
+    now.clearance = clearance;
+    now.deepest = {rows_.back().time, motions_[robot],
+                   motions_[other.first == CollisionKind::robot ? other.second : robot]};
+  }
+
+  static bool was_relaxed(const State& row, std::size_t robot, Other other) {
+    return row.robots[robot].relaxed || (other.first == CollisionKind::robot && row.robots[other.second].relaxed);
+  }
+
+  /// Beyond `enough` any number that is not less.
+  double obstacle_clearance(std::size_t obstacle, std::size_t robot, const Motion& motion, double enough) const {
+    constexpr double kRounding = 1e-12;
+    const double radius = scenario_.robots[robot].radius, reach = radius + motion.reach();
+    return least_clearance(
+        [&](double start, double end) {
+          const Segment chord = motion.chord(start, end);
+          const double off = rounding(largest_[obstacle], chord, reach) + radius;
+          const double stray = motion.stray(end - start);
+          const double distance = index_of(obstacle).swept_distance(chord, (1.0 + kRounding) * (enough + off + stray));
+          return ChordClearance{distance - off, stray};
+        },
+        0.0, 1.0, enough);
+  }
+
+  /// Piece after piece of the obstacle's way.
+  double moving_clearance(std::size_t obstacle, std::size_t robot, const Motion& motion, double enough) const {
+    const std::vector<WayPiece>& way = ways_[obstacle];
+    const double time = rows_.back().time, end = time + motion.duration;
+    double least = kInfinity;
+    for (std::size_t p = piece_at(way, time); p < way.size() && way[p].from < end; ++p) {
+      const double from = std::clamp((way[p].from - time) / motion.duration, 0.0, 1.0);
+      const double to = std::clamp((way[p].to - time) / motion.duration, 0.0, 1.0);
+      least = std::min(least, along_piece(obstacle, way[p], time, robot, motion, from, to, std::min(enough, least)));
+    }
+    return least;
+  }
+
+  double along_piece(std::size_t obstacle, const WayPiece& piece, double time, std::size_t robot, const Motion& motion,
+                     double from, double to, double enough) const {
+    // Shares of the step become times, and times shares: 8 roundings of the time, which both spend moving.
+    constexpr double kRoundingOfTime = 8 * 0x1p-53;
+    const double end = time + motion.duration;
+    const double late =
+        kRoundingOfTime * end * (motion.speed_bound() + 2.0 * piece.speed_bound(std::min(end, piece.to)));
+    const double radius = scenario_.robots[robot].radius, off = radius + late + piece.error;
+    const geometry::Obstacle& shape = scenario_.moving_obstacles[obstacle].shape;
+    return least_clearance(
+        [&](double start, double stop) {
+          const double t0 = time + start * motion.duration, t1 = time + stop * motion.duration;
+          const Segment chord = motion.chord(start, stop);
+          const Segment seen{chord.a - piece.at(t0), chord.b - piece.at(t1)};
+          const double others = radius + motion.reach() + largest(chord);
+          const double bend = std::fabs(piece.rate) * (t1 - t0) * (t1 - t0) / 8.0;
+          return ChordClearance{
+              geometry::swept_distance(shape, seen) - off - rounding(moving_largest_[obstacle], seen, others),
+              motion.stray(stop - start) + bend};
+        },
+        from, to, enough);
+  }
+
+  /// How far a robot gets from where it starts, m.
+  static double strays(const Motion& m) { return norm(m.to - m.from) + m.stray(1.0); }
+
+  /// Pairs that stay farther apart than the least so far are skipped: twice their ways would not bring them nearer.
+  void lower_between(std::size_t step, double end) {
+    ways_of_step_.clear();
+    for (const Motion& m : motions_) ways_of_step_.push_back(strays(m));
+    for (std::size_t i = 0; i < motions_.size(); ++i) {
+      for (std::size_t j = i + 1; j < motions_.size(); ++j) {
+        const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
+        const double apart = norm(motions_[i].from - motions_[j].from) - radii;
+        if (apart > enough(between_) + 2.0 * (ways_of_step_[i] + ways_of_step_[j])) continue;
+        note(i, {CollisionKind::robot, j}, step, end, pair_clearance(motions_[i], motions_[j], radii, enough(between_)),
+             between_);
+      }
+    }
+  }
+
+  static double pair_clearance(const Motion& a, const Motion& b, double radii, double enough) {
+    const Motion motion = relative(a, b);
+    const double coordinates = std::max({largest(a.from), largest(a.to), largest(b.from), largest(b.to)});
+    const Segment still{{0.0, 0.0}, {0.0, 0.0}};
+    return least_clearance(
+        [&](double start, double end) {
+          const Segment chord = motion.chord(start, end);
+          const double off = rounding(coordinates, chord, radii + a.reach() + b.reach());
+          return ChordClearance{geometry::swept_distance(chord, still) - off - radii, motion.stray(end - start)};
+        },
+        0.0, 1.0, enough);
+  }
+
+  // --- Collisions ---
+
+  /// m: the clearance at one moment, a share of the way through the step.
+  double clearance_at(std::size_t robot, Other other, const Moment& moment, double share) const {
+    const Vec2 place = moment.robot.at(share);
+    const double radius = scenario_.robots[robot].radius;
+    const double time = moment.time + share * run_.time_step;
+    const auto [kind, index] = other;
+    if (kind == CollisionKind::robot)
+      return norm(place - moment.other.at(share)) - radius - scenario_.robots[index].radius;
+    if (kind == CollisionKind::obstacle)
+      return geometry::signed_distance(scenario_.obstacles[index].shape, place) - radius;
+    const std::vector<WayPiece>& way = ways_[index];
+    const Vec2 moved = way[std::min(piece_at(way, time), way.size() - 1)].at(time);
+    return geometry::signed_distance(scenario_.moving_obstacles[index].shape, place - moved) - radius;
+  }
+
+  std::string name_of(Other other) const {
+    const auto [kind, index] = other;
+    if (kind == CollisionKind::robot) return scenario_.robots[index].id;
+    return kind == CollisionKind::obstacle ? scenario_.obstacles[index].id : scenario_.moving_obstacles[index].id;
+  }
+
+  Collision collision(std::size_t robot, Other other, const Contact& contact) const {
+    constexpr int kMoments = 64;  // of the deepest step
+    Collision c;
+    c.robot = scenario_.robots[robot].id;
+    c.kind = other.first;
+    c.with = name_of(other);
+    c.from = contact.from;
+    c.until = contact.until;
+    double least = kInfinity;
+    for (int m = 0; m <= kMoments; ++m) {
+      const double share = static_cast<double>(m) / kMoments;
+      const double clearance = clearance_at(robot, other, contact.deepest, share);
+      if (!(clearance < least)) continue;
+      least = clearance;
+      c.deepest_at = contact.deepest.time + share * run_.time_step;
+      c.place = contact.deepest.robot.at(share);
+    }
+    c.depth = -std::min(least, contact.clearance);
+    c.relaxed = contact.relaxed;
+    return c;
+  }
+
+  std::vector<Collision> collisions() const {
+    std::vector<Collision> out;
+    for (const auto& [pair, contacts] : contacts_)
+      for (const Contact& contact : contacts) out.push_back(collision(pair.first, pair.second, contact));
+    std::stable_sort(out.begin(), out.end(), [](const Collision& a, const Collision& b) { return a.from < b.from; });
+    return out;
+  }
+
+  const Scenario& scenario_;
+  const Recording& run_;
+  std::vector<double> largest_, moving_largest_;
+  double largest_of_all_ = 0.0;
+  mutable std::vector<std::optional<geometry::ObstacleIndex>> obstacles_;  ///< of those that were near
+  geometry::BoxGrid by_place_;
+  std::vector<std::vector<WayPiece>> ways_;
+  std::vector<double> least_;  ///< m, of each robot to obstacles
+  double between_ = kInfinity;
+  std::map<std::pair<std::size_t, Other>, std::vector<Contact>> contacts_;
+  std::vector<State> rows_;  ///< the last two
+  std::size_t count_ = 0;    ///< steps
+  // Memory that a step leaves to the next.
+  std::vector<Motion> motions_;
+  std::vector<double> ways_of_step_;  ///< m
+  std::vector<std::size_t> near_;
+  std::vector<Quiet> quiet_;  ///< of each robot
+};
+
+ClearanceSweep::ClearanceSweep(const Scenario& scenario, const Recording& run)
+    : sweep_(std::make_unique<Sweep>(scenario, run)) {}
+ClearanceSweep::~ClearanceSweep() = default;
+
+void ClearanceSweep::add(const Step& row) {
+  sweep_->add(row);
+}
+
+Clearances ClearanceSweep::result() const {
+  return sweep_->result();
+}
+
+}  // namespace exactvo::formation::detail

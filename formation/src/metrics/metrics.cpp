@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/metrics.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "control/lyapunov_accumulator.h"
+#include "exactvo/formation/speed_profile.h"
+#include "exactvo/formation/stuck.h"
+#include "exactvo/formation/waiting.h"
+#include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/require.h"
+#include "metrics/clearances.h"
+#include "metrics/divergence.h"
+#include "metrics/metrics_accumulator.h"
+#include "metrics/outcome_words.h"
+#include "metrics/stuck_accumulator.h"
+#include "runs/rows.h"
+
+namespace exactvo::formation {
+namespace {
+
+using geometry::norm;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void write_clearances(detail::Clearances clearances, Metrics& m) {
+  for (std::size_t i = 0; i < m.robots.size(); ++i) {
+    const std::optional<double>& mine = clearances.to_obstacles[i];
+    m.robots[i].min_obstacle_clearance = mine;
+    if (mine) m.min_obstacle_clearance = std::min(*mine, m.min_obstacle_clearance.value_or(kInfinity));
+  }
+  m.min_robot_clearance = clearances.between_robots;
+  m.collisions = std::move(clearances.collisions);
+}
+
+/// What is known of a run before its first row.
+Recording beginning_of(const Recording& run) {
+  Recording known;
+  known.motion = run.motion;
+  known.time_step = run.time_step;
+  known.tracking_gain = run.tracking_gain;
+  known.relative_frame = run.relative_frame;
+  known.offsets = run.offsets;
+  return known;
+}
+
+}  // namespace
+
+struct Evaluator::Parts {
+  Parts(const Scenario& s, const Recording& r, TakeRow take)
+      : scenario(s), run(beginning_of(r)), take_row(std::move(take)), clearances(s, run), measures(s, run), stuck(s) {
+    if (s.formation) lyapunov.emplace(s, run);
+  }
+
+  void settle(const std::optional<LyapunovRow>& values) {
+    if (take_row && last) take_row(*last, values ? &*values : nullptr);
+  }
+
+  const Scenario& scenario;
+  const Recording run;
+  TakeRow take_row;
+  detail::ClearanceSweep clearances;
+  detail::MetricsAccumulator measures;
+  detail::StuckAccumulator stuck;
+  std::optional<detail::LyapunovAccumulator> lyapunov;
+  std::shared_ptr<const Step> last;
+};
+
+Evaluator::Evaluator(const Scenario& scenario, const Recording& run, TakeRow take_row)
+    : parts_(std::make_unique<Parts>(scenario, run, std::move(take_row))) {}
+Evaluator::~Evaluator() = default;
+
+void Evaluator::add(std::shared_ptr<const Step> row) {
+  parts_->clearances.add(*row);
+  parts_->measures.add(*row);
+  parts_->stuck.add(row);
+  std::optional<LyapunovRow> before;
+  if (parts_->lyapunov) before = parts_->lyapunov->add(row);
+  parts_->settle(before);
+  parts_->last = std::move(row);
+}
+
+Evaluation Evaluator::finish(const Recording& run) {
+  EXACTVO_REQUIRE(parts_->last != nullptr, "an empty recording");
+  std::optional<LyapunovRow> last;
+  if (parts_->lyapunov) last = parts_->lyapunov->last();
+  parts_->settle(last);
+  Evaluation found;
+  found.stuck = parts_->stuck.reports(run);
+  Metrics& m = found.metrics;
+  for (const Robot& r : parts_->scenario.robots) m.robots.emplace_back().id = r.id;
+  parts_->measures.write_to(m);
+  write_clearances(parts_->clearances.result(), m);
+  if (run.liveness) {
+    m.plans->groups = run.liveness->groups;
+    m.plans->largest = run.liveness->largest;
+    m.plans->search_nodes = run.liveness->search_nodes;
+  } else {
+    m.plans.reset();
+  }
+  m.wall_time = run.wall_time;
+  m.warnings = run.warnings;
+  for (const StuckReport& report : found.stuck) m.stuck.push_back(report.text);
+  if (parts_->lyapunov) m.lyapunov = parts_->lyapunov->summary();
+  const std::vector<std::size_t> deadlock = parts_->stuck.deadlock();
+  for (const std::size_t robot : deadlock) m.deadlock.push_back(parts_->scenario.robots[robot].id);
+  m.outcome = detail::outcome_words(
+      m, run.outcome + (deadlock.empty() ? "" : "; " + deadlock_words(parts_->scenario, deadlock)));
+  return found;
+}
+
+Metrics measure(const Scenario& scenario, const Recording& recording) {
+  return evaluate(scenario, recording).metrics;
+}
+
+Evaluation evaluate(const Scenario& scenario, const Recording& recording) {
+  std::vector<LyapunovRow> lyapunov;
+  Evaluator evaluator(scenario, recording, [&](const Step&, const LyapunovRow* values) {
+    if (values) lyapunov.push_back(*values);
+  });
+  for (const Step& row : recording.steps) evaluator.add(detail::borrowed(row));
+  Evaluation found = evaluator.finish(recording);
+  found.lyapunov = std::move(lyapunov);
+  return found;
+}
+
+bool has_diverged(const Recording& recording) {
+  EXACTVO_REQUIRE(!recording.steps.empty(), "an empty recording");
+  if (recording.offsets.empty()) return false;
+  const Step &first = recording.steps.front(), &last = recording.steps.back();
+  const bool is_out = std::any_of(last.robots.begin(), last.robots.end(),
+                                  [](const RobotStep& r) { return detail::is_out_of_bounds(r.position, r.velocity); });
+  return is_out || detail::has_diverged(detail::formation_error(first, recording.offsets),
+                                        detail::formation_error(last, recording.offsets));
+}
+
+bool touched(const std::optional<double>& clearance) {
+  return clearance && !(*clearance >= -kContactDepth);
+}
+
+bool touched(const Metrics& m) {
+  return touched(m.min_obstacle_clearance) || touched(m.min_robot_clearance);
+}
+
+bool is_safe(const Metrics& m) {
+  const auto clear = [](const std::optional<double>& clearance) { return !clearance || *clearance > 0.0; };
+  return clear(m.min_obstacle_clearance) && clear(m.min_robot_clearance) && m.uncertified_half_planes == 0;
+}
+
+std::vector<double> obstacle_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot) {
+  std::vector<double> series;
+  for (const Step& row : recording.steps) {
+    double least = kInfinity;
+    const Vec2 place = row.robots[robot].position;
+    for (const SceneObstacle& o : scenario.obstacles)
+      least = std::min(least, geometry::signed_distance(o.shape, place));
+    for (const MovingObstacle& o : scenario.moving_obstacles)
+      least = std::min(least, geometry::signed_distance(o.shape, place - displacement_at(o, row.time)));
+    series.push_back(least - scenario.robots[robot].radius);
+  }
+  return series;
+}
+
+std::vector<double> robot_distance_series(const Scenario& scenario, const Recording& recording, std::size_t a,
+                                          std::size_t b) {
+  std::vector<double> series;
+  const double radii = scenario.robots[a].radius + scenario.robots[b].radius;
+  for (const Step& row : recording.steps)
+    series.push_back(norm(row.robots[a].position - row.robots[b].position) - radii);
+  return series;
+}
+
+std::vector<double> formation_error_series(const Scenario& scenario, const Recording& recording, std::size_t robot) {
+  EXACTVO_REQUIRE(scenario.formation.has_value(), "a scenario without a formation");
+  std::vector<double> series;
+  for (const Step& row : recording.steps) series.push_back(detail::slot_error(row, recording.offsets, robot));
+  return series;
+}
+
+}  // namespace exactvo::formation

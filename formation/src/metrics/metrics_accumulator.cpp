@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "metrics/metrics_accumulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "metrics/divergence.h"
+#include "motion/leader.h"
+
+namespace exactvo::formation::detail {
+
+using geometry::norm;
+
+namespace {
+
+/// rad: smaller turns have no sign worth counting.
+constexpr double kLeastTurn = 1e-3;
+
+/// What a formation is measured by of a row.
+Step state_of(const Step& row) {
+  Step state;
+  state.time = row.time;
+  state.robots.reserve(row.robots.size());
+  state.leader_position = row.leader_position;
+  state.leader_velocity = row.leader_velocity;
+  for (const RobotStep& r : row.robots) {
+    RobotStep& robot = state.robots.emplace_back();
+    robot.position = r.position;
+    robot.velocity = r.velocity;
+  }
+  return state;
+}
+
+}  // namespace
+
+MetricsAccumulator::MetricsAccumulator(const Scenario& scenario, const Recording& run)
+    : scenario_(scenario), run_(run), robots_(scenario.robots.size()) {}
+
+void MetricsAccumulator::add(const Step& row) {
+  counted_.relaxed += of_last_row_.relaxed;
+  counted_.uncertified += of_last_row_.uncertified;
+  counted_.switches += of_last_row_.switches;
+  of_last_row_ = {};
+  const auto any = [&](Mode mode) {
+    return std::any_of(row.robots.begin(), row.robots.end(), [&](const RobotStep& r) { return r.mode == mode; });
+  };
+  rows_by_plan_ += any(Mode::by_plan);
+  rows_back_ += any(Mode::going_back);
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    OfRobot& r = robots_[i];
+    const RobotStep& step = row.robots[i];
+    if (scenario_.formation)
+      r.direct_way += rows_ == 0 ? slot_error(row, run_.offsets, i) : norm(row.leader_position - last_.leader_position);
+    if (rows_ > 0) add_motion(r, step);
+    add_decision(r, step);
+    add_arrival(i, row);
+    r.position = step.position;
+    r.velocity = step.velocity;
+  }
+  if (scenario_.formation) add_to_course(row);
+  if (scenario_.formation) last_ = state_of(row);
+  ++rows_;
+}
+
+void MetricsAccumulator::add_motion(OfRobot& r, const RobotStep& step) const {
+  r.path_length += norm(step.position - r.position);
+  const Vec2 acceleration = (step.velocity - r.velocity) / run_.time_step;
+  if (r.acceleration) r.jitter += norm(acceleration - *r.acceleration);
+  r.acceleration = acceleration;
+  const double size = norm(acceleration);
+  r.peak_acceleration = std::max(r.peak_acceleration, size);
+  r.velocity_variation += size * run_.time_step;
+  add_turn(r, step.velocity);
+}
+
+void MetricsAccumulator::add_turn(OfRobot& r, Vec2 velocity) const {
+  const double turn = std::atan2(cross(r.velocity, velocity), dot(r.velocity, velocity));
+  if (std::fabs(turn) < kLeastTurn) {
+    r.last_turn = 0.0;
+    return;
+  }
+  if (turn * r.last_turn < 0.0) ++r.reversals;
+  r.last_turn = turn;
+}
+
+MetricsAccumulator::ActiveSet MetricsAccumulator::active_set(const RobotStep& step) {
+  ActiveSet active;
+  for (const RecordedConstraint& c : step.constraints)
+    if (c.active) active.emplace_back(c.source, c.index, c.piece);
+  std::sort(active.begin(), active.end());
+  return active;
+}
+
+void MetricsAccumulator::add_decision(OfRobot& r, const RobotStep& step) {
+  if (step.status != lp::Status::optimal) ++of_last_row_.relaxed;
+  of_last_row_.uncertified += step.uncertified;
+  ActiveSet active = active_set(step);
+  if (rows_ > 0 && active != r.active) ++of_last_row_.switches;
+  r.active = std::move(active);
+}
+
+/// A kinematic run passes at most one goal on the way a row, within the tolerance or the robot's radius.
+void MetricsAccumulator::add_arrival(std::size_t robot, const Step& row) {
+  OfRobot& r = robots_[robot];
+  const Robot& spec = scenario_.robots[robot];
+  double error = std::numeric_limits<double>::infinity();
+  if (scenario_.formation) {
+    error = slot_error(row, run_.offsets, robot);
+  } else if (r.goal + 1 < spec.goals.size()) {
+    const double reach = std::max(scenario_.arrival_tolerance, spec.radius);
+    if (norm(row.robots[robot].position - spec.goals[r.goal]) <= reach) ++r.goal;
+  } else {
+    error = norm(row.robots[robot].position - spec.goals.back());
+  }
+  r.settled.add(row.time, error, scenario_.arrival_tolerance);
+}
+
+void MetricsAccumulator::add_to_course(const Step& row) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const double error = slot_error(row, run_.offsets, i);
+    worst = std::max(worst, error);
+    if (rows_ == 0 || !(error > robots_[i].largest_slot_error)) continue;
+    robots_[i].largest_slot_error = error;
+    robots_[i].largest_slot_error_at = row.time;
+  }
+  if (!first_formed_ && worst <= scenario_.arrival_tolerance) first_formed_ = row.time;
+  formed_.add(row.time, worst, scenario_.arrival_tolerance);
+}
+
+void MetricsAccumulator::write_to(Metrics& m) const {
+  if (scenario_.formation) write_formation(m);
+  write_arrivals(m);
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const OfRobot& r = robots_[i];
+    m.robots[i].path_length = r.path_length;
+    m.jitter += r.jitter;
+    m.velocity_variation += r.velocity_variation;
+    m.peak_acceleration = std::max(m.peak_acceleration, r.peak_acceleration);
+    m.heading_reversals += r.reversals;
+  }
+  if (scenario_.formation) write_course(m);
+  write_detours(m);
+  m.plans.emplace();
+  m.plans->time_by_plan = static_cast<double>(rows_by_plan_) * run_.time_step;
+  m.plans->time_back = static_cast<double>(rows_back_) * run_.time_step;
+  m.relaxed_steps = counted_.relaxed;
+  m.uncertified_half_planes = counted_.uncertified;
+  m.active_set_switches = counted_.switches;
+  m.steps = rows_ - 1;
+}
+
+void MetricsAccumulator::write_formation(Metrics& m) const {
+  const double arrival = leader_arrival(scenario_.formation->leader);
+  if (arrival <= last_.time) m.leader_arrival_time = arrival;
+  double velocity = 0.0;
+  for (const RobotStep& r : last_.robots) velocity = std::max(velocity, norm(r.velocity - last_.leader_velocity));
+  m.formation_position_error = formation_error(last_, run_.offsets);
+  m.formation_velocity_error = velocity;
+}
+
+void MetricsAccumulator::write_arrivals(Metrics& m) const {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    RobotMetrics& out = m.robots[i];
+    out.arrival_time = robots_[i].settled.since();
+    if (m.leader_arrival_time && out.arrival_time)
+      out.arrival_time = std::max(*out.arrival_time, *m.leader_arrival_time);
+    out.arrived = out.arrival_time.has_value() && (!scenario_.formation || m.leader_arrival_time.has_value());
+    if (!out.arrived) out.arrival_time.reset();
+  }
+  m.all_arrived = std::all_of(m.robots.begin(), m.robots.end(), [](const auto& r) { return r.arrived; });
+  if (!m.all_arrived) return;
+  m.last_arrival_time = 0.0;
+  for (const RobotMetrics& r : m.robots) m.last_arrival_time = std::max(*m.last_arrival_time, *r.arrival_time);
+}
+
+/// Whom the formation lost, and since when it holds.
+void MetricsAccumulator::write_course(Metrics& m) const {
+  FormationCourse& course = m.formation_course.emplace();
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const OfRobot& r = robots_[i];
+    m.robots[i].largest_slot_error = r.largest_slot_error;
+    if (!(r.largest_slot_error > course.largest_error)) continue;
+    course.largest_error = r.largest_slot_error;
+    course.largest_error_at = r.largest_slot_error_at;
+    course.largest_error_of = m.robots[i].id;
+  }
+  course.first_formed = first_formed_;
+  course.formed_since = formed_.since();
+}
+
+void MetricsAccumulator::write_detours(Metrics& m) const {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    if (!scenario_.formation && !m.robots[i].arrived) continue;
+    m.robots[i].detour = std::max(0.0, m.robots[i].path_length - direct_way(i));
+  }
+}
+
+/// m: from a robot's start to its goals, or to its slot and on with the leader.
+double MetricsAccumulator::direct_way(std::size_t robot) const {
+  if (scenario_.formation) return robots_[robot].direct_way;
+  double way = 0.0;
+  Vec2 here = scenario_.robots[robot].position;
+  for (const Vec2 goal : scenario_.robots[robot].goals) {
+    way += norm(goal - here);
+    here = goal;
+  }
+  return way;
+}
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "motion/leader.h"
+
+#include <limits>
+
+#include "exactvo/formation/speed_profile.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+/// Share of the path: a profile that covers all but this covers it; sums over knots round by less.
+constexpr double kWholePath = 1e-12;
+
+/// `covered` along the path, m, at `speed`.
+LeaderState on_path(const Leader& leader, double covered, double speed) {
+  for (std::size_t i = 1; i < leader.path.size(); ++i) {
+    const Vec2 leg = leader.path[i] - leader.path[i - 1];
+    const double length = norm(leg);
+    if (covered < length) {
+      const Vec2 direction = leg / length;
+      return {leader.path[i - 1] + covered * direction, speed * direction};
+    }
+    covered -= length;
+  }
+  return {leader.path.back(), {}};
+}
+
+}  // namespace
+
+LeaderState leader_at(const Leader& leader, double time) {
+  if (leader.profile.empty()) return on_path(leader, leader.speed * time, leader.speed);
+  if (time >= leader_arrival(leader)) return {leader.path.back(), {}};
+  return on_path(leader, distance_at(leader.profile, time), speed_at(leader.profile, time));
+}
+
+double leader_arrival(const Leader& leader) {
+  const double length = length_of(leader.path);
+  if (!(length > 0.0)) return 0.0;
+  if (!leader.profile.empty()) return time_to_cover(leader.profile, length * (1.0 - kWholePath));
+  return leader.speed > 0.0 ? length / leader.speed : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace exactvo::formation::detail

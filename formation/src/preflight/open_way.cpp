@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "preflight/open_way.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <queue>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+#include "exactvo/geometry/distance.h"
+
+namespace exactvo::formation::detail {
+
+using geometry::norm;
+using geometry::Segment;
+
+enum class OpenWay::Answer {
+  open,
+  shut,    // nothing is left to look at on this lattice, or the places are too far apart for one
+  gave_up  // more was left than there is time for
+};
+
+/// Best first, in one direction: what is easy from one end may lead into every pocket from the other. A place x with
+/// the clearance c(x) has the disc of c(x) - r round it free for the centre; a move of length d is proven where the
+/// discs at its ends cover it: (c(x) - r) + (c(y) - r) >= d.
+class OpenWay::Search {
+ public:
+  Search(const OpenWay& map, Vec2 from, Vec2 to, double radius)
+      : map_(map), from_(from), to_(to), radius_(radius), step_(radius) {
+    constexpr double kRounding = 1e-9;
+    const double largest = std::max({std::fabs(from.x), std::fabs(from.y), std::fabs(to.x), std::fabs(to.y)});
+    slack_ = kRounding * (radius + 0x1p-20 * largest) + 8.0 * geometry::rounding_of_distance(largest);
+    // Beyond this a clearance proves every move from there.
+    enough_ = radius_ + kDiagonal * step_ + slack_;
+  }
+
+  Answer run() {
+    constexpr double kMostSteps = 1e4;  // between the two: beyond that a look at the walls is cheaper
+    if (!(norm(to_ - from_) < kMostSteps * step_)) return Answer::shut;
+    return goes_straight() ? Answer::open : search();
+  }
+
+ private:
+  static constexpr double kDiagonal = 1.5;  // more than the root of 2
+
+  /// From disc to disc along the straight way.
+  bool goes_straight() const {
+    constexpr double kFarthest = 4.0, kLeastShare = 0.1;  // of the radius: a look, and what it has to be worth
+    const double length = norm(to_ - from_);
+    for (double done = 0.0;;) {
+      const Vec2 place = done == 0.0 ? from_ : from_ + (done / length) * (to_ - from_);
+      const double free = map_.clearance_below(place, kFarthest * radius_) - radius_ - slack_;
+      if (!(free >= kLeastShare * radius_)) return false;
+      if (norm(to_ - place) <= free) return true;
+      done = std::min(done + free, length);
+    }
+  }
+
+  Answer search() {
+    constexpr double kNodes = 2000.0, kNodesAStep = 4.0;
+    const double steps = norm(to_ - from_) / step_;
+    const double at_goal = map_.clearance_below(to_, enough_);
+    visit({0, 0});
+    auto left = static_cast<std::size_t>(kNodes + kNodesAStep * steps);
+    for (; !open_.empty() && left > 0; --left) {
+      const Node node = open_.top();
+      open_.pop();
+      const double d = norm(node.place - to_);
+      if (d <= kDiagonal * step_ && covers(node.clearance, at_goal, d)) return Answer::open;
+      for (std::int32_t dy = -1; dy <= 1; ++dy)
+        for (std::int32_t dx = -1; dx <= 1; ++dx)
+          if (dx != 0 || dy != 0) move(node, {node.cell.x + dx, node.cell.y + dy});
+    }
+    return open_.empty() ? Answer::shut : Answer::gave_up;
+  }
+
+  struct Cell {
+    std::int32_t x, y;
+  };
+  struct Node {
+    double to_go;  ///< m
+    Cell cell;
+    Vec2 place;
+    double clearance;  ///< m
+    bool operator<(const Node& other) const {
+      return std::make_tuple(-to_go, cell.y, cell.x) < std::make_tuple(-other.to_go, other.cell.y, other.cell.x);
+    }
+  };
+
+  struct Seen {
+    double clearance = 0.0;  ///< m
+    bool is_reached = false;
+  };
+
+  static std::uint64_t key(Cell c) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c.x)) << 32 | static_cast<std::uint32_t>(c.y);
+  }
+  Vec2 place_of(Cell c) const { return from_ + step_ * Vec2{static_cast<double>(c.x), static_cast<double>(c.y)}; }
+
+  bool covers(double clearance, double other, double length) const {
+    return clearance + other >= 2.0 * radius_ + length + slack_;
+  }
+
+  void visit(Cell cell) {
+    const Vec2 place = place_of(cell);
+    const double clearance = map_.clearance_below(place, enough_);
+    looked_at_.insert({key(cell), {clearance, true}});
+    push(cell, place, clearance);
+  }
+  void push(Cell cell, Vec2 place, double clearance) {
+    if (clearance >= radius_ + slack_) open_.push({norm(place - to_), cell, place, clearance});
+  }
+
+  /// A cell that cannot be moved to from here may be from another side.
+  void move(const Node& node, Cell cell) {
+    const auto [found, is_new] = looked_at_.try_emplace(key(cell));
+    Seen& seen = found->second;
+    if (seen.is_reached) return;
+    const Vec2 place = place_of(cell);
+    if (is_new) seen.clearance = map_.clearance_below(place, enough_);
+    if (!covers(node.clearance, seen.clearance, norm(place - node.place))) return;
+    seen.is_reached = true;
+    push(cell, place, seen.clearance);
+  }
+
+  const OpenWay& map_;
+  Vec2 from_, to_;
+  double radius_, step_;  ///< m
+  double slack_ = 0.0;    ///< m, more than every rounding
+  double enough_ = 0.0;   ///< m
+  std::priority_queue<Node> open_;
+  std::unordered_map<std::uint64_t, Seen> looked_at_;
+};
+
+OpenWay::OpenWay(const std::vector<SceneObstacle>& obstacles) {
+  std::vector<geometry::Box> boxes;
+  for (const SceneObstacle& o : obstacles) {
+    for (const Segment& s : geometry::edges_of(o.shape)) {
+      edges_.push_back(s);
+      geometry::Box& box = boxes.emplace_back();
+      for (const Vec2 p : {s.a, s.b}) {
+        box.add(p);
+        largest_ = std::max({largest_, std::fabs(p.x), std::fabs(p.y)});
+      }
+    }
+  }
+  edges_by_place_ = geometry::BoxGrid(std::move(boxes));
+}
+
+double OpenWay::clearance_below(Vec2 x, double enough) const {
+  const double rounding = geometry::rounding_of_distance(std::max({largest_, std::fabs(x.x), std::fabs(x.y)}));
+  double least = enough;
+  edges_by_place_.for_each_within(x, enough + rounding, [&](std::size_t k) {
+    if (distance_below(edges_by_place_.box(k), x) - rounding < least)
+      least = std::min(least, geometry::distance(edges_[k], x) - rounding);
+  });
+  return least;
+}
+
+bool OpenWay::is_found(Vec2 start, Vec2 goal, double radius) const {
+  if (!(radius > 0.0)) return false;
+  const Answer from_goal = Search(*this, goal, start, radius).run();
+  if (from_goal != Answer::gave_up) return from_goal == Answer::open;
+  return Search(*this, start, goal, radius).run() == Answer::open;
+}
+
+}  // namespace exactvo::formation::detail

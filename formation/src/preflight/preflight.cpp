@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "preflight/preflight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "exactvo/formation/constraint_name.h"
+#include "exactvo/formation/speed_profile.h"
+#include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/hull.h"
+#include "motion/leader.h"
+#include "motion/moving_way.h"
+#include "preflight/open_way.h"
+#include "scene/obstacle_boxes.h"
+#include "steering/goals.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+struct Target {
+  Vec2 place;    ///< m
+  double reach;  ///< m
+  std::string name;
+};
+
+std::string printed(Vec2 v) {
+  char text[80];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g)", v.x, v.y);
+  return text;
+}
+
+std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offsets, std::size_t i) {
+  const Robot& robot = s.robots[i];
+  std::vector<Target> targets;
+  if (s.formation) {
+    const Vec2 slot = s.formation->leader.path.back() + offsets[i];
+    return {{slot, s.arrival_tolerance, "the slot of " + robot.id + " at the leader's end, " + printed(slot)}};
+  }
+  for (std::size_t g = 0; g < robot.goals.size(); ++g) {
+    const std::string number = robot.goals.size() > 1 ? " " + std::to_string(g + 1) : "";
+    targets.push_back(
+        {robot.goals[g], reach_of(s, robot, g), "goal" + number + " of " + robot.id + ", " + printed(robot.goals[g])});
+  }
+  return targets;
+}
+
+bool is_blocked(const SceneObstacle& o, const Robot& robot, const Target& t) {
+  return geometry::signed_distance(o.shape, t.place) + t.reach < robot.radius;
+}
+
+/// Those that block a target, ascending.
+std::vector<std::size_t> blocking(const Scenario& s, const ObstacleBoxes& boxes, const Robot& robot, const Target& t) {
+  std::vector<std::size_t> found;
+  for (std::size_t k = 0; k < s.obstacles.size(); ++k)
+    if (!boxes.is_beyond(k, t.place, robot.radius) && is_blocked(s.obstacles[k], robot, t)) found.push_back(k);
+  return found;
+}
+
+void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which, const Target& t,
+                       std::vector<std::string>& out) {
+  for (const std::size_t k : which) {
+    const SceneObstacle& o = s.obstacles[k];
+    const bool inside = geometry::signed_distance(o.shape, t.place) < 0.0;
+    out.push_back(t.name + (inside ? ", lies inside obstacle '" : ", is too near to obstacle '") + o.id +
+                  "' for the robot's radius: it cannot be reached");
+  }
+}
+
+/// Returns where the robot gets to. Where the map is there already, asking it is cheaper than looking for an open way.
+std::optional<Vec2> warn_of_ways(const Robot& robot, Vec2 from, const Target& t, const OpenWay& open,
+                                 Reachability& reach, std::vector<std::string>& out) {
+  if (!reach.has_map() && open.is_found(from, t.place, robot.radius)) return t.place;
+  const Destination to{t.place, t.reach};
+  if (const std::optional<Vec2> end = reach.reachable_place(robot.radius, from, to)) return end;
+  if (reach.is_proven_out_of_reach(robot.radius, from, to))
+    out.push_back(t.name + ", cannot be reached: " + reach.why_not(robot.radius, from, to, "it"));
+  return std::nullopt;
+}
+
+void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double room = norm(last[i].place - last[j].place) + last[i].reach + last[j].reach;
+      if (room < s.robots[i].radius + s.robots[j].radius)
+        out.push_back(last[i].name + ", and " + last[j].name + ", are too near to each other for both robots");
+    }
+  }
+}
+
+void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
+  const double arrival = leader_arrival(s.formation->leader);
+  if (!(arrival > s.time_limit)) return;
+  char when[80];
+  std::snprintf(when, sizeof when, "only after %.6g s, beyond the time limit of %.6g s", arrival, s.time_limit);
+  out.push_back(std::string("the leader reaches the end of its path ") + (std::isfinite(arrival) ? when : "never"));
+}
+
+std::string rounded(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", x);
+  return text;
+}
+
+/// Of a speed: what is exactly as fast as a robot may go does not count as faster, however its direction was rounded.
+constexpr double kRounding = 1e-12;
+
+bool exceeds(double speed, double max_speed) {
+  return speed > max_speed * (1.0 + kRounding);
+}
+
+/// How much of a speed the bound counts: all of it, or its larger component.
+double counted(const Scenario& s, Vec2 velocity) {
+  return s.speed_bound == SpeedBoundKind::disc ? norm(velocity)
+                                               : std::max(std::fabs(velocity.x), std::fabs(velocity.y));
+}
+
+/// Where the speed bound of a robot is asked for most.
+struct TopSpeed {
+  double speed = 0.0;    ///< m/s, along the path
+  double counted = 0.0;  ///< m/s, of it
+};
+
+/// Of the time: a jump of speed at a corner comes before or after it by a rounding, and what is shorter is not driven.
+constexpr double kInstant = 1e-9;
+
+/// Over the part of the motion that happens: up to the path's end and the time limit.
+TopSpeed top_speed(const Scenario& s, const Leader& motion) {
+  const double end = std::min(leader_arrival(motion), s.time_limit);
+  TopSpeed top;
+  for (const WayPiece& piece : way_of(motion, end)) {
+    if (!(piece.from < end)) break;
+    if (piece.to - piece.from <= kInstant * piece.to) continue;
+    const double speed = piece.speed_bound(std::min(piece.to, end));
+    const double part = s.speed_bound == SpeedBoundKind::disc ? speed : counted(s, speed * piece.direction);
+    if (part > top.counted) top = {speed, part};
+  }
+  return top;
+}
+
+void warn_of_fast_leader(const Scenario& s, std::vector<std::string>& out) {
+  const TopSpeed top = top_speed(s, s.formation->leader);
+  for (const Robot& robot : s.robots) {
+    if (!exceeds(top.counted, robot.max_speed)) continue;
+    out.push_back("the leader moves at up to " + rounded(top.speed) + " m/s, faster than " + robot.id +
+                  " can (max_speed " + rounded(robot.max_speed) + " m/s): the formation falls behind");
+    return;
+  }
+}
+
+void warn_of_fast_start(const Scenario& s, const Robot& robot, std::vector<std::string>& out) {
+  const double speed = counted(s, robot.velocity);
+  if (exceeds(speed, robot.max_speed))
+    out.push_back(robot.id + " starts at " + rounded(speed) + " m/s, beyond its max_speed of " +
+                  rounded(robot.max_speed) + " m/s");
+}
+
+/// Moving obstacles are avoided by their convex hulls, and only by robots that can get away.
+void warn_of_moving(const Scenario& s, const MovingObstacle& o, std::vector<std::string>& out) {
+  const geometry::Obstacle hull = geometry::Polygon{geometry::convex_hull(geometry::vertices_of(o.shape)).vertices, {}};
+  const bool has_inside = std::get<geometry::Polygon>(hull).outer.size() > 2;
+  for (const Robot& robot : s.robots) {
+    if (has_inside && geometry::signed_distance(hull, robot.position) < robot.radius)
+      out.push_back(robot.id + " starts inside the convex hull of moving obstacle '" + o.id +
+                    "', as which it is avoided: the run begins in contact");
+  }
+  const TopSpeed top = top_speed(s, o.motion);
+  for (const Robot& robot : s.robots) {
+    if (!exceeds(top.counted, robot.max_speed)) continue;
+    out.push_back("moving obstacle '" + o.id + "' moves at up to " + rounded(top.speed) + " m/s, faster than " +
+                  robot.id + " (max_speed " + rounded(robot.max_speed) + " m/s): it can be run over");
+    return;
+  }
+}
+
+/// Where and since when a moving obstacle stands still for good.
+struct Rest {
+  double since = 0.0;  ///< s
+  Vec2 moved;          ///< m
+};
+
+/// Nothing where it still moves at the time limit.
+std::optional<Rest> rest_of(const Scenario& s, const MovingObstacle& o) {
+  const double arrival = leader_arrival(o.motion);
+  if (arrival <= s.time_limit) return Rest{arrival, o.motion.path.back() - o.motion.path.front()};
+  if (o.motion.profile.empty()) return o.motion.speed == 0.0 ? std::optional<Rest>(Rest{}) : std::nullopt;
+  // The last knot's speed is held.
+  const std::vector<SpeedKnot>& knots = o.motion.profile;
+  std::size_t first = knots.size();
+  while (first > 0 && knots[first - 1].speed == 0.0) --first;
+  if (first == knots.size() || knots[first].time > s.time_limit) return std::nullopt;
+  const double since = first == 0 ? 0.0 : knots[first].time;
+  return Rest{since, displacement_at(o, since)};
+}
+
+/// Goals that a moving obstacle covers for good where it comes to rest, or never leaves.
+void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, std::vector<std::string>& out) {
+  for (const MovingObstacle& o : s.moving_obstacles) {
+    const std::optional<Rest> rest = rest_of(s, o);
+    if (!rest || geometry::signed_distance(o.shape, last.place - rest->moved) + last.reach >= robot.radius) continue;
+    out.push_back(last.name + ", lies where moving obstacle '" + o.id + "' comes to rest" +
+                  (rest->since > 0.0 ? " after " + rounded(rest->since) + " s" : "") +
+                  ": from then on it cannot be reached");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> preflight_warnings(const Scenario& scenario, const std::vector<Vec2>& offsets,
+                                            Reachability& reach) {
+  std::vector<std::string> out;
+  std::vector<Target> last;
+  const ObstacleBoxes boxes(scenario.obstacles);
+  const OpenWay open(scenario.obstacles);
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const std::vector<Target> targets = targets_of(scenario, offsets, i);
+    std::optional<Vec2> from = scenario.robots[i].position;
+    for (const Target& t : targets) {
+      const std::vector<std::size_t> in_the_way = blocking(scenario, boxes, scenario.robots[i], t);
+      warn_of_obstacles(scenario, in_the_way, t, out);
+      from = from && in_the_way.empty() ? warn_of_ways(scenario.robots[i], *from, t, open, reach, out) : std::nullopt;
+    }
+    warn_of_rests(scenario, scenario.robots[i], targets.back(), out);
+    warn_of_fast_start(scenario, scenario.robots[i], out);
+    last.push_back(targets.back());
+  }
+  warn_of_pairs(scenario, last, out);
+  for (const MovingObstacle& o : scenario.moving_obstacles) warn_of_moving(scenario, o, out);
+  if (!scenario.formation) return out;
+  warn_of_leader(scenario, out);
+  warn_of_fast_leader(scenario, out);
+  return out;
+}
+
+}  // namespace exactvo::formation::detail

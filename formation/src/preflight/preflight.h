@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "preflight/reachability.h"
+
+namespace exactvo::formation::detail {
+
+/// Warnings about what a scenario asks for and cannot get, one line each:
+///   - a goal, or a slot at the leader's end, that lies inside an obstacle or nearer to one than the robot's radius;
+///     that is proven out of reach (reachability.h); or that a moving obstacle covers where it comes to rest;
+///   - two goals or slots too near to each other for both robots;
+///   - a leader that reaches its end after the time limit, or that moves faster than a robot can;
+///   - a robot that starts faster than its max_speed, or inside the hull of a moving obstacle;
+///   - a moving obstacle that is faster than a robot.
+/// Speeds count over the part of a motion that happens before the path's end and the time limit. `offsets` are the
+/// formation's in use; empty without one. Rounded but for `reach`. Where nothing is said a goal may still be out of
+/// reach: margins, the other robots and the limits of a method are not considered.
+std::vector<std::string> preflight_warnings(const Scenario& scenario, const std::vector<Vec2>& offsets,
+                                            Reachability& reach);
+
+}  // namespace exactvo::formation::detail

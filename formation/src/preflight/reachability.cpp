@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "preflight/reachability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <set>
+#include <variant>
+#include <vector>
+
+#include "exactvo/formation/constraint_name.h"
+#include "exactvo/geometry/box.h"
+#include "exactvo/geometry/distance.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::Blocked;
+using geometry::norm;
+using geometry::RouteAnswer;
+using geometry::Separated;
+
+constexpr double kLeastRadius = 0x1p-100;  // m, of a plan
+
+std::vector<geometry::Obstacle> shapes_of(const Scenario& scenario) {
+  std::vector<geometry::Obstacle> all;
+  for (const SceneObstacle& o : scenario.obstacles) all.push_back(o.shape);
+  return all;
+}
+
+/// Where robots start and have to go.
+geometry::Box places_of(const Scenario& scenario) {
+  geometry::Box box;
+  for (const Robot& r : scenario.robots) {
+    box.add(r.position);
+    for (const Vec2 p : r.goals) box.add(p);
+  }
+  if (!scenario.formation) return box;
+  double offset = 0.0;
+  for (const Vec2 o : scenario.formation->offsets) offset = std::max(offset, norm(o));
+  const Vec2 around{2.0 * offset, 2.0 * offset};  // twice: recentring moves them
+  for (const Vec2 p : scenario.formation->leader.path) {
+    box.add(p - around);
+    box.add(p + around);
+  }
+  return box;
+}
+
+/// Starts, goals and their surroundings, where robots may be pushed.
+geometry::RouteMapOptions extent_of(const Scenario& scenario, double extra) {
+  geometry::Box box = places_of(scenario);
+  for (const SceneObstacle& o : scenario.obstacles)
+    for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
+  geometry::RouteMapOptions options;
+  for (const Robot& r : scenario.robots) options.largest_radius = std::max(options.largest_radius, r.radius + extra);
+  options.largest_distance = 2.0 * norm(box.high - box.low) + 100.0 * options.largest_radius;
+  return options;
+}
+
+std::vector<Vec2> corners_of(const Separated& answer) {
+  std::vector<Vec2> corners;
+  for (const geometry::ChainPoint& p : answer.chain) corners.push_back(p.point.rounded);
+  return corners;
+}
+
+/// m, from the closed chain.
+double distance_to(const std::vector<Vec2>& chain, Vec2 place) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < chain.size(); ++k)
+    least = std::min(least, geometry::distance({chain[k], chain[(k + 1) % chain.size()]}, place));
+  return least;
+}
+
+/// By the parity of the crossings with a ray; rounded.
+bool winds_round(const std::vector<Vec2>& chain, Vec2 place) {
+  bool inside = false;
+  for (std::size_t k = 0; k < chain.size(); ++k) {
+    const Vec2 a = chain[k] - place, b = chain[(k + 1) % chain.size()] - place;
+    if ((a.y > 0.0) != (b.y > 0.0) && (geometry::cross(a, b) > 0.0) == (b.y > a.y)) inside = !inside;
+  }
+  return inside;
+}
+
+}  // namespace
+
+std::string metres(double length) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g m", length);
+  return text;
+}
+
+std::vector<Vec2> places_about(Vec2 place, double reach) {
+  constexpr double kRings[] = {0.25, 0.5, 0.75, 0.99};  // of the reach; less than 1, for rounding
+  constexpr int kDirections = 16;
+  constexpr double kTurn = 6.283185307179586;
+  std::vector<Vec2> places;
+  for (const double ring : kRings)
+    for (int k = 0; k < kDirections; ++k)
+      places.push_back(place + ring * reach * geometry::rotated({1.0, 0.0}, k * kTurn / kDirections));
+  return places;
+}
+
+Reachability::Reachability(const Scenario& scenario, double most_extra)
+    : scenario_(scenario), most_extra_(most_extra) {}
+
+const geometry::RouteMap& Reachability::map() {
+  if (!map_) map_.emplace(shapes_of(scenario_), extent_of(scenario_, most_extra_));
+  return *map_;
+}
+
+const geometry::RoutePlan& Reachability::plan(double radius) {
+  const double r = std::max(radius, kLeastRadius);
+  return plans_.try_emplace(r, map(), r).first->second;
+}
+
+std::optional<Vec2> Reachability::reachable_place(double radius, Vec2 from, const Destination& to) {
+  if (scenario_.obstacles.empty()) return to.place;
+  if (!map().covers(from) || !map().covers(to.place)) return std::nullopt;
+  const geometry::RoutePlan& of_robot = plan(radius);
+  if (of_robot.is_reachable(from, to.place)) return to.place;
+  if (to.reach == 0.0 || !of_robot.is_reachable(from, from)) return std::nullopt;
+  for (const Vec2 place : places_about(to.place, to.reach))
+    if (map().covers(place) && of_robot.is_reachable(from, place)) return place;
+  return std::nullopt;
+}
+
+bool Reachability::is_proven_out_of_reach(double radius, Vec2 from, const Destination& to) {
+  if (scenario_.obstacles.empty() || !map().covers(from) || !map().covers(to.place)) return false;
+  const RouteAnswer answer = plan(radius).query(from, to.place);
+  if (const auto* separated = std::get_if<Separated>(&answer)) {
+    // The disc lies on the same side of the chain as its centre.
+    if (to.reach == 0.0 || distance_to(corners_of(*separated), to.place) > 1.0001 * to.reach) return true;
+  } else if (!std::holds_alternative<Blocked>(answer) || std::get<Blocked>(answer).end == Blocked::End::start) {
+    return false;
+  }
+  // A robot that is free at a place p within reach: from p to the destination nothing comes nearer than its radius
+  // less the reach. A robot so much smaller would have a route.
+  const double less = std::nextafter(radius - to.reach, 0.0);
+  return less > kLeastRadius && !plan(less).is_reachable(from, to.place);
+}
+
+std::string Reachability::why_not(double radius, Vec2 from, const Destination& to, const std::string& goal) {
+  if (!map().covers(from) || !map().covers(to.place)) return goal + " is too far from all obstacles";
+  const RouteAnswer answer = plan(radius).query(from, to.place);
+  if (const auto* blocked = std::get_if<Blocked>(&answer)) {
+    const bool of_start = blocked->end == Blocked::End::start;
+    const std::string what = of_start ? "the robot" : goal, id = scenario_.obstacles[blocked->by.obstacle].id;
+    return blocked->inside ? what + " lies inside obstacle '" + id + "'"
+                           : what + " is nearer than the robot's radius to obstacle '" + id + "'";
+  }
+  return words_of(std::get<Separated>(answer), radius, goal, to.place);
+}
+
+std::string Reachability::words_of(const Separated& answer, double radius, const std::string& goal, Vec2 place) const {
+  const std::vector<Vec2> corners = corners_of(answer);
+  std::set<std::size_t> obstacles;
+  std::size_t gaps = 0;
+  double widest = 0.0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    obstacles.insert(answer.chain[k].on.obstacle);
+    if (!answer.chain[k].gap_follows) continue;
+    ++gaps;
+    widest = std::max(widest, norm(corners[(k + 1) % corners.size()] - corners[k]));
+  }
+  std::vector<std::string> ids;
+  for (const std::size_t o : obstacles) ids.push_back("'" + scenario_.obstacles[o].id + "'");
+  const bool one = ids.size() == 1;
+  std::string text = (one ? "obstacle " : "obstacles ") + abridged(ids) + (one ? " encloses " : " enclose ") +
+                     (winds_round(corners, place) ? goal : "the start");
+  if (gaps == 0) return text;
+  return text + (gaps == 1 ? ", with a gap of " : ", with " + std::to_string(gaps) + " gaps of at most ") +
+         metres(widest) + " for a robot " + metres(2.0 * radius) + " wide";
+}
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/crowd_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/require.h"
+#include "steering/guide.h"
+
+namespace exactvo::formation {
+namespace {
+
+using namespace detail;
+using geometry::norm;
+using Clock = std::chrono::steady_clock;
+
+/// Steps after which a robot looks along its route again.
+constexpr std::size_t kLookAgain = 8;
+
+/// Neighbours of a robot, the number of RVO2's examples and of the published comparisons.
+constexpr int kNeighbours = 10;
+
+/// m: the finest lattice; steps of it that must lie between a robot and its end.
+constexpr double kFinest = 0x1p-18, kReach = 0x1p29;
+/// Steps of the lattice that a robot makes in a time step at most.
+constexpr double kLongestMotion = 0x1p22;
+
+/// m: what lies farther out than robots, goals and obstacles is not gone to.
+double extent(const Scenario& s) {
+  double most = 1.0;
+  const auto add = [&](Vec2 p) { most = std::max({most, std::fabs(p.x), std::fabs(p.y)}); };
+  for (const Robot& r : s.robots) {
+    add(r.position);
+    for (const Vec2 goal : r.goals) add(goal);
+  }
+  for (const SceneObstacle& o : s.obstacles)
+    for (const Vec2 p : geometry::vertices_of(o.shape)) add(p);
+  return most;
+}
+
+double fastest(const Scenario& s) {
+  double most = 0.0;
+  for (const Robot& r : s.robots) most = std::max(most, r.max_speed);
+  return most;
+}
+
+CrowdOptions options_of(const Scenario& s, const CrowdRunOptions& options) {
+  CrowdOptions out;
+  out.time_step = s.time_step;
+  out.precision = options.precision;
+  out.threads = options.threads;
+  out.position_step = kFinest;
+  while (out.position_step < 1.0 &&
+         (extent(s) >= kReach * out.position_step || fastest(s) * s.time_step > kLongestMotion * out.position_step))
+    out.position_step *= 2.0;
+  return out;
+}
+
+class CrowdRun {
+ public:
+  CrowdRun(const Scenario& scenario, const CrowdRunOptions& options, CrowdSink* sink)
+      : scenario_(scenario), options_(options), sink_(sink), crowd_(options_of(scenario, options)) {
+    add_robots();
+    for (const SceneObstacle& o : scenario.obstacles) crowd_.add_obstacle(o.shape);
+    if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide_.emplace(scenario, 0.0);
+    ways_.resize(scenario.robots.size());
+    preferred_.resize(scenario.robots.size());
+    crowd_.positions(at_);
+  }
+
+  CrowdRunReport run() {
+    const Clock::time_point start = Clock::now();
+    for (std::size_t i = 0; i < ways_.size(); ++i) set_out(i);
+    if (sink_) sink_->begin(crowd_);
+    const auto most = static_cast<std::size_t>(std::ceil(scenario_.time_limit / scenario_.time_step - 1e-9));
+    report_.robots = ways_.size();
+    while (report_.steps < most && someone_goes_on()) {
+      step();
+      if (!options_.progress || options_.progress(report_.time)) continue;
+      report_.interrupted = true;
+      break;
+    }
+    finish();
+    report_.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
+    return report_;
+  }
+
+ private:
+  /// How far a robot has come.
+  struct Way {
+    std::size_t goal = 0;
+    std::optional<Course> course;
+    Vec2 heading;
+    std::optional<double> arrived;  ///< s
+    bool stays = false;
+  };
+
+  void add_robots() {
+    std::map<std::tuple<double, double>, KindId> kinds;
+    crowd_.reserve(scenario_.robots.size());
+    for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
+      const Robot& r = scenario_.robots[i];
+      auto known = kinds.find({r.radius, r.max_speed});
+      if (known == kinds.end())
+        known = kinds.emplace(std::tuple(r.radius, r.max_speed), crowd_.add_kind(kind_of(r))).first;
+      const double speed = norm(r.velocity), share = speed > r.max_speed ? r.max_speed / speed * (1.0 - 0x1p-40) : 1.0;
+      crowd_.add_robot(r.position, known->second, share * r.velocity);
+    }
+  }
+
+  CrowdKind kind_of(const Robot& r) const {
+    CrowdKind kind;
+    kind.radius = r.radius;
+    kind.max_speed = r.max_speed;
+    kind.time_horizon = scenario_.horizons.orca;
+    kind.neighbour_distance = scenario_.neighbour_distance;
+    kind.neighbours = kNeighbours;
+    return kind;
+  }
+
+  Vec2 goal_of(std::size_t i) const { return scenario_.robots[i].goals[ways_[i].goal]; }
+
+  /// For the present goal.
+  void set_out(std::size_t i) {
+    Way& way = ways_[i];
+    way.heading = goal_of(i);
+    if (!guide_) return;
+    way.course = guide_->course(scenario_.robots[i].radius, at_[i], {goal_of(i), scenario_.arrival_tolerance}).course;
+    way.stays = !way.course;
+  }
+
+  void look(std::size_t i) {
+    Way& way = ways_[i];
+    if (norm(at_[i] - goal_of(i)) <= scenario_.arrival_tolerance) pass(i);
+    const bool looks = way.course && !way.arrived && (report_.steps + i) % kLookAgain == 0;
+    if (looks) way.heading = guide_->heading(*way.course, scenario_.robots[i].radius, at_[i]).place;
+  }
+
+  /// Its goal is reached: on to the next.
+  void pass(std::size_t i) {
+    Way& way = ways_[i];
+    if (way.goal + 1 < scenario_.robots[i].goals.size()) {
+      ++way.goal;
+      set_out(i);
+    } else if (!way.arrived) {
+      way.arrived = report_.time;
+      way.heading = goal_of(i);
+      ++report_.arrived;
+    }
+  }
+
+  void step() {
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      look(i);
+      const Vec2 way = ways_[i].heading - at_[i];
+      const double length = norm(way);
+      const double speed = std::min(scenario_.robots[i].max_speed, length / scenario_.time_step);
+      preferred_[i] = ways_[i].stays || length == 0.0 ? Vec2{} : (speed / length) * way;
+    }
+    crowd_.set_preferred(preferred_);
+    const StepReport s = crowd_.step();
+    ++report_.steps;
+    report_.time = static_cast<double>(report_.steps) * scenario_.time_step;
+    report_.relaxed += s.relaxed;
+    report_.touching += s.touching;
+    report_.widened += s.widened;
+    report_.stopped += s.stopped;
+    report_.half_planes += s.neighbours;
+    report_.edges += s.edges;
+    before_.swap(at_);
+    crowd_.positions(at_);
+    for (std::size_t i = 0; i < at_.size(); ++i) report_.path_length += norm(at_[i] - before_[i]);
+    if (sink_) sink_->add_step(crowd_, report_.steps);
+  }
+
+  bool someone_goes_on() const {
+    return std::any_of(ways_.begin(), ways_.end(), [](const Way& w) { return !w.arrived && !w.stays; });
+  }
+
+  void finish() {
+    std::vector<double> times;
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      look(i);
+      report_.staying += ways_[i].stays;
+      if (ways_[i].arrived) times.push_back(*ways_[i].arrived);
+    }
+    std::sort(times.begin(), times.end());
+    if (2 * times.size() > ways_.size()) report_.median_arrival = times[ways_.size() / 2];
+    if (!times.empty()) report_.last_arrival = times.back();
+    report_.digest = crowd_.digest();
+  }
+
+  const Scenario& scenario_;
+  const CrowdRunOptions& options_;
+  CrowdSink* sink_;
+  Crowd crowd_;
+  std::optional<Guide> guide_;
+  std::vector<Way> ways_;
+  std::vector<Vec2> at_, before_, preferred_;
+  CrowdRunReport report_;
+};
+
+}  // namespace
+
+std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
+  std::vector<ScenarioProblem> problems;
+  const auto require = [&](bool holds, const std::string& pointer, const char* found, const char* expected) {
+    if (!holds && problems.empty()) problems.push_back({pointer, found, expected});
+  };
+  require(!s.formation, "/formation", "a formation", "robots with goals, for a crowd");
+  require(s.moving_obstacles.empty(), "/moving_obstacles", "moving obstacles", "none, for a crowd");
+  require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
+  require(s.horizons.orca >= s.time_step, "/horizons/orca", "less than /time_step", "at least /time_step, for a crowd");
+  for (std::size_t i = 0; i < s.robots.size() && problems.empty(); ++i)
+    require(s.robots[i].cooperates, "/robots/" + std::to_string(i) + "/cooperates", "false", "true, for a crowd");
+  return problems;
+}
+
+CrowdRunReport run_crowd(const Scenario& scenario, const CrowdRunOptions& options, CrowdSink* sink) {
+  const std::vector<ScenarioProblem> problems = crowd_problems(scenario);
+  EXACTVO_REQUIRE(problems.empty(), problems.front().pointer + ": " + problems.front().found);
+  return CrowdRun(scenario, options, sink).run();
+}
+
+}  // namespace exactvo::formation

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Formations: Sections IV and V.B, with the remedies of remedies.h.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "control/consensus.h"
+#include "decision/decision.h"
+#include "metrics/divergence.h"
+#include "motion/integrators.h"
+#include "motion/leader.h"
+#include "runs/rows.h"
+#include "runs/run_clock.h"
+#include "runs/runs.h"
+#include "scene/moving.h"
+#include "scene/static_field.h"
+#include "steering/remedies.h"
+#include "steering/slot_follower.h"
+#include "steering/steering.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::norm;
+
+struct FormationRobot {
+  BodyState body;
+  Vec2 tracked;  ///< w of the step before
+  StaticField field;
+  SideCommitment side;
+  SlotFollower slot;
+};
+
+Scenario with_margins(Scenario scenario, const Remedies& remedies) {
+  if (!remedies.margins) scenario.margins.robot = 0.0;
+  return scenario;
+}
+
+std::string metres(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g m", x);
+  return text;
+}
+
+class FormationRun {
+ public:
+  FormationRun(const Scenario& scenario, const SimulationOptions& options)
+      : remedies_(remedies_in_use(scenario, options)),
+        scenario_(with_margins(scenario, remedies_)),
+        spec_(*scenario_.formation),
+        options_(options),
+        scene_(scenario_, options),
+        clock_(scenario_, options),
+        decider_(scenario_, scene_.bodies()),
+        offsets_(offsets_in_use(spec_, remedies_)) {
+    const HorizonRule rule = remedies_.tau_clamp ? HorizonRule::clamped : HorizonRule::literal;
+    for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
+      const Robot& r = scenario_.robots[i];
+      const Vec2 slot = spec_.leader.path.back() + offsets_[i];
+      robots_.push_back({{r.position, r.velocity},
+                         r.velocity,
+                         StaticField(scene_, scenario_, options, r.radius, r.position, slot, rule),
+                         {},
+                         {}});
+    }
+  }
+
+  void run(Recording& recording, RunSink& sink) {
+    recording.motion = motion_of(options_.integrator);
+    recording.time_step = scenario_.time_step;
+    recording.tracking_gain = spec_.gains.k3;
+    recording.relative_frame = !remedies_.absolute_frame;
+    recording.remedies = remedies_;
+    recording.offsets = offsets_;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      recording.outlooks.push_back({0.0, i, 0, robots_[i].field.shapes()});
+    sink.begin(recording);
+    RowFeed rows(scene_.bodies(), recording.outlooks, sink);
+    const double first_error = formation_error(state_row(0.0), offsets_);
+    std::size_t k = 0;
+    for (; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
+      Step row = decide_all(clock_.time(k));
+      move(row);
+      rows.add(std::move(row));
+    }
+    const Step last = state_row(clock_.time(k));
+    rows.add(last);
+    recording.bodies = scene_.copied_bodies();
+    judge(first_error, last, recording);
+  }
+
+ private:
+  /// Where half-planes are built: the brake point x + v / k3, whose velocity is exactly w; the paper builds them at x.
+  Vec2 anchor(std::size_t i) const {
+    const BodyState& b = robots_[i].body;
+    return remedies_.brake_point ? b.position + b.velocity / spec_.gains.k3 : b.position;
+  }
+  Vec2 anchor_velocity(std::size_t i) const {
+    return remedies_.brake_point ? robots_[i].tracked : robots_[i].body.velocity;
+  }
+
+  RelativeState relative_to(const LeaderState& leader) const {
+    RelativeState s;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      s.position.push_back(robots_[i].body.position - leader.position - offsets_[i]);
+      s.velocity.push_back(robots_[i].body.velocity - leader.velocity);
+    }
+    return s;
+  }
+
+  Step decide_all(double time) {
+    Step row = state_row(time);
+    const LeaderState leader{row.leader_position, row.leader_velocity};
+    const RelativeState relative = relative_to(leader);
+    anchors_.clear();
+    for (std::size_t i = 0; i < robots_.size(); ++i) anchors_.push_back({anchor(i), anchor_velocity(i)});
+    robot_constraints(scenario_, options_, anchors_, scene_, others_);
+    move_obstacles(scenario_, time, scene_, row.moving);
+    for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, relative, row.robots[i]);
+    return row;
+  }
+
+  void decide_one(std::size_t i, double time, const LeaderState& leader, const RelativeState& relative,
+                  RobotStep& step) {
+    const Robot& spec = scenario_.robots[i];
+    const Viewpoint here{anchor(i), anchor_velocity(i), spec.radius, spec.max_speed};
+    step.anchor = here.position;
+    step.anchor_velocity = here.velocity;
+    robots_[i].field.constraints(here, statics_);
+    add_moving_constraints(scenario_, here, scene_, others_[i]);
+    const Vec2 wanted = wanted_velocity(i, leader, relative);
+    const SlotFollower::Situation situation{
+        time,  norm(relative.position[i]), scenario_.arrival_tolerance, spec_.catch_up_speed, leader.velocity == Vec2{},
+        wanted};
+    DecisionInput in{steered(i, situation, statics_, others_[i], step), here, &statics_, &others_[i],
+                     clock_.keeps_all(time)};
+    decider_.decide(in, step);
+    if (!remedies_.smoothing) return;
+    // Math: v_pref <- (v_pref + 4 w_prev) / 5, projected.
+    in.preferred = (in.preferred + 4.0 * robots_[i].tracked) / 5.0;
+    decider_.decide(in, step);
+  }
+
+  /// The preference, with the consensus term in it where the filter comes last.
+  Vec2 wanted_velocity(std::size_t i, const LeaderState& leader, const RelativeState& relative) const {
+    const Vec2 slotwards =
+        preference(spec_, remedies_, relative.position[i], leader.velocity, scenario_.robots[i].max_speed);
+    if (!remedies_.filter_last) return slotwards;
+    return slotwards + consensus_input(spec_, relative, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
+  }
+
+  Vec2 steered(std::size_t i, SlotFollower::Situation situation, const std::vector<Constraint>& statics,
+               const std::vector<Constraint>& others, RobotStep& step) {
+    const Vec2 wanted = situation.preferred;
+    if (!remedies_.side_commitment) return wanted;
+    const double speed = std::min(norm(wanted), scenario_.robots[i].max_speed);
+    const SideCommitment::Answer answer = robots_[i].side.steer(wanted, speed, statics);
+    step.side = answer.side;
+    if (answer.side != 0) step.mode = Mode::following;
+    situation.preferred = answer.preferred;
+    const Follower::Answer round = robots_[i].slot.steer(situation, statics, others);
+    step.note = joined_notes(answer.note, round.note);
+    if (round.mode != Mode::following) return answer.preferred;
+    step.mode = Mode::following;
+    step.side = round.side;
+    return round.preferred;
+  }
+
+  /// What v follows: the filter's answer itself, or, in the paper's order, the sum in which it is one term.
+  Vec2 tracked_velocity(std::size_t i, const Step& row, const RelativeState& relative) const {
+    Vec2 w = row.robots[i].chosen;
+    if (!remedies_.filter_last) w += consensus_input(spec_, relative, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
+    if (!remedies_.absolute_frame) w += row.leader_velocity;
+    return bounded_change(i, w);
+  }
+
+  /// w drawn towards v so that |k3 (v - w)| keeps the bound. Between two allowed velocities all are allowed; from a
+  /// velocity that is not, this may stay outside a half-plane for as long as the bound needs.
+  Vec2 bounded_change(std::size_t i, Vec2 w) const {
+    if (!(remedies_.acceleration_bound > 0.0)) return w;
+    const Vec2 v = robots_[i].body.velocity;
+    const double most = remedies_.acceleration_bound / spec_.gains.k3;
+    const double asked = norm(w - v);
+    return asked <= most ? w : v + (most / asked) * (w - v);
+  }
+
+  void move(const Step& row) {
+    const RelativeState relative = relative_to({row.leader_position, row.leader_velocity});
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      robots_[i].tracked = tracked_velocity(i, row, relative);
+      robots_[i].body =
+          step_body(options_.integrator, robots_[i].body, robots_[i].tracked, spec_.gains.k3, scenario_.time_step);
+    }
+  }
+
+  Step state_row(double time) const {
+    Step row;
+    row.time = time;
+    const LeaderState leader = leader_at(spec_.leader, time);
+    row.leader_position = leader.position;
+    row.leader_velocity = leader.velocity;
+    for (const FormationRobot& r : robots_) {
+      RobotStep step;
+      step.position = r.body.position;
+      step.velocity = r.body.velocity;
+      step.anchor = step.position;
+      step.anchor_velocity = step.velocity;
+      row.robots.push_back(step);
+    }
+    return row;
+  }
+
+  bool out_of_bounds() const {
+    for (const FormationRobot& r : robots_)
+      if (is_out_of_bounds(r.body.position, r.body.velocity)) return true;
+    return false;
+  }
+
+  void judge(double first, const Step& end, Recording& recording) const {
+    const double last = formation_error(end, offsets_);
+    recording.diverged = out_of_bounds() || has_diverged(first, last);
+    recording.outcome = recording.diverged
+                            ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
+                            : "formation error " + metres(last) + " at the end";
+    if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
+  }
+
+  Remedies remedies_;
+  Scenario scenario_;
+  const FormationSpec& spec_;
+  const SimulationOptions& options_;
+  Scene scene_;
+  RunClock clock_;
+  Decider decider_;
+  std::vector<Vec2> offsets_;
+  std::vector<FormationRobot> robots_;
+  // Memory that a step leaves to the next.
+  std::vector<Anchor> anchors_;
+  std::vector<Constraint> statics_;
+  std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
+};
+
+}  // namespace
+
+void run_formation(const Scenario& scenario, const SimulationOptions& options, Recording& recording, RunSink& sink) {
+  FormationRun(scenario, options).run(recording, sink);
+}
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,449 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Kinematic robots with goals: Section V.A.
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "decision/decision.h"
+#include "decision/needed_constraints.h"
+#include "liveness/groups.h"
+#include "runs/rows.h"
+#include "runs/run_clock.h"
+#include "runs/runs.h"
+#include "scene/moving.h"
+#include "scene/static_field.h"
+#include "steering/goals.h"
+#include "steering/guide.h"
+#include "steering/steering.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::norm;
+
+struct KinematicRobot {
+  Vec2 position;
+  Vec2 velocity;
+  std::size_t goal = 0;
+  std::optional<StaticField> field;
+  Follower follower;
+  std::optional<Course> course = {};  ///< with guidance: to its present goal
+  std::string no_way = {};            ///< with guidance: why it has no course
+  bool waits_for_room = false;        ///< with guidance: it has to be pushed out before its course can be planned
+  double held_up = 0.0;               ///< 0 .. 1: how little of its preference it drove of late
+  bool tied = false;                  ///< the last preference was turned to break a tie
+  std::string note = {};              ///< for the next row
+};
+
+class KinematicRun {
+ public:
+  /// Without a guide robots head straight for their goals.
+  KinematicRun(const Scenario& scenario, const SimulationOptions& options, Guide* guide)
+      : scenario_(scenario),
+        options_(options),
+        guide_(guide),
+        liveness_(liveness_of(scenario, options)),
+        scene_(scenario, options),
+        clock_(scenario, options),
+        decider_(scenario, scene_.bodies()),
+        anchors_(scenario.robots.size()),
+        planned_(scenario.robots.size()),
+        held_by_all_(scenario.robots.size(), 0) {
+    if (liveness_ != Liveness::off && scenario.robots.size() > 1)
+      groups_.emplace(scenario, guide ? static_cast<const FreeSpace&>(*guide) : open_space_,
+                      liveness_ == Liveness::plan);
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+      KinematicRobot& robot = robots_.emplace_back();
+      robot.position = scenario.robots[i].position;
+      robot.velocity = scenario.robots[i].velocity;
+      look_at_goal(i, 0.0);
+    }
+  }
+
+  void run(Recording& recording, RunSink& sink) {
+    recording.motion = MotionLaw::straight;
+    recording.time_step = scenario_.time_step;
+    sink.begin(recording);
+    RowFeed rows(scene_.bodies(), outlooks_, sink);
+    std::size_t k = 0;
+    for (; !clock_.ends_at(k) && !all_arrived() && (k == 0 || !nobody_goes_on()); ++k) {
+      Step row = decide_all(clock_.time(k));
+      move(row);
+      rows.add(std::move(row));
+    }
+    rows.add(final_row(clock_.time(k)));
+    recording.outcome = outcome();
+    if (liveness_ == Liveness::plan) recording.liveness = groups_ ? groups_->course() : LivenessCourse{};
+    recording.outlooks = std::move(outlooks_);
+    recording.bodies = scene_.copied_bodies();
+  }
+
+ private:
+  Vec2 goal_of(std::size_t i) const { return scenario_.robots[i].goals[robots_[i].goal]; }
+
+  void look_at_goal(std::size_t i, double time) {
+    const Robot& spec = scenario_.robots[i];
+    robots_[i].field.emplace(scene_, scenario_, options_, spec.radius, robots_[i].position, goal_of(i),
+                             HorizonRule::clamped);
+    robots_[i].follower.reset();
+    if (guide_) plan_course(i);
+    outlooks_.push_back({time, i, robots_[i].goal, robots_[i].field->shapes()});
+  }
+
+  void plan_course(std::size_t i) {
+    KinematicRobot& r = robots_[i];
+    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, {goal_of(i), reach_of_goal(i)});
+    r.course = std::move(answer.course);
+    r.no_way = answer.defect.empty()
+                   ? "cannot reach " + name_of_goal(i) + ": " + answer.why_not
+                   : "stays: a way exists, and by a defect of the program no route could be proven: " + answer.defect;
+    if (r.course) r.no_way.clear();
+    r.waits_for_room = answer.start_is_blocked;
+    if (r.course) return;
+    r.note = joined_notes(r.note, r.waits_for_room ? "has no room: moves away before its route is planned" : r.no_way);
+  }
+
+  std::string name_of_goal(std::size_t i) const {
+    return scenario_.robots[i].goals.size() == 1 ? "its goal" : "its goal " + std::to_string(robots_[i].goal + 1);
+  }
+
+  bool has_last_goal(std::size_t i) const { return robots_[i].goal + 1 == scenario_.robots[i].goals.size(); }
+
+  double reach_of_goal(std::size_t i) const { return reach_of(scenario_, scenario_.robots[i], robots_[i].goal); }
+
+  bool is_within_reach(std::size_t i) const { return norm(goal_of(i) - robots_[i].position) <= reach_of_goal(i); }
+
+  bool at_goal(std::size_t i) const { return has_last_goal(i) && is_within_reach(i); }
+
+  bool all_arrived() const {
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!at_goal(i)) return false;
+    return true;
+  }
+
+  void pass_waypoint(std::size_t i, double time) {
+    if (has_last_goal(i) || !is_within_reach(i)) return;
+    ++robots_[i].goal;
+    robots_[i].note = "goal " + std::to_string(robots_[i].goal) + " passed: heads for the next";
+    look_at_goal(i, time);  // which may note that the next one is out of reach
+  }
+
+  Step decide_all(double time) {
+    if (groups_) look_at_groups(time);
+    for (std::size_t i = 0; i < robots_.size(); ++i) anchors_[i] = {robots_[i].position, robots_[i].velocity};
+    look_at_robots();
+    Step row;
+    row.time = time;
+    move_obstacles(scenario_, time, scene_, row.moving);
+    row.robots.reserve(robots_.size());
+    for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time));
+    if (!groups_) return row;
+    repair(time, row);
+    while (groups_->any() && groups_->halt_those_held_back(row)) decide_again(time, row);
+    groups_->end_step(row);
+    return row;
+  }
+
+  // --- Robots that go by plan ---
+
+  void look_at_groups(double time) {
+    std::vector<RobotNow> now;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      const KinematicRobot& r = robots_[i];
+      const bool has_way = guide_ ? r.course.has_value() && !r.waits_for_room : true;
+      const Vec2 goal = guide_ && r.course ? r.course->points.back() : goal_of(i);
+      now.push_back({r.position, goal, at_goal(i), has_way && scenario_.robots[i].cooperates});
+    }
+    groups_->begin_step(time, std::move(now), [&](std::size_t i) {
+      const KinematicRobot& r = robots_[i];
+      return r.course ? guide_->way_left(*r.course, r.position) : norm(goal_of(i) - r.position);
+    });
+  }
+
+  bool goes_by_plan(std::size_t i) const { return groups_ && groups_->is_member(i); }
+
+  /// Half-planes of robots against robots, as they are or as plans have them.
+  void look_at_robots() {
+    robot_constraints(scenario_, options_, anchors_, scene_, others_);
+    if (!groups_ || !groups_->any()) return;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      planned_[i] = goes_by_plan(i) ? std::optional<Vec2>(groups_->wanted(i)) : std::nullopt;
+    follow_plans(scenario_, anchors_, scene_, planned_, others_);
+  }
+
+  /// With other wishes of those who go by plan.
+  void decide_again(double time, Step& row) {
+    look_at_robots();
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
+      choose_again(i, time, row.robots[i], nullptr);
+    }
+    repair(time, row);
+  }
+
+  void choose_again(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    if (goes_by_plan(i)) return choose_by_plan(i, time, step, fallen_back);
+    look(i);
+    choose(i, step.preferred, time, step, fallen_back);
+  }
+
+  /// Along the plan, as fast as all half-planes allow. Those of obstacles look a time step ahead: nearer to what is
+  /// wanted than they need not be.
+  void choose_by_plan(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    Viewpoint here = viewpoint(i);
+    const Vec2 wanted = groups_->wanted(i);
+    here.velocity = wanted;
+    here.horizon = scenario_.time_step;
+    robots_[i].field->set_margin(0.0);
+    robots_[i].field->constraints(here, all_, reach_of_step(scenario_, here));
+    const std::optional<double> share = allowed_share(wanted, all_, others_[i]);
+    held_by_all_[i] = !share;
+    decider_.decide(
+        {share.value_or(0.0) * wanted, here, &all_, &others_[i], clock_.keeps_all(time), nullptr, fallen_back}, step);
+  }
+
+  // --- Repair ---
+
+  bool is_contradicted(std::size_t i, const RobotStep& step) const {
+    return step.status == lp::Status::relaxed || step.status == lp::Status::infeasible ||
+           (goes_by_plan(i) && held_by_all_[i]);
+  }
+
+  /// Instead of relaxing: all pairs of a robot whose half-planes contradict each other fall back, until none does. Each
+  /// round a pair falls back for good. What moving obstacles and robots that do not yield ask for may still be relaxed.
+  void repair(double time, Step& row) {
+    std::set<std::size_t> contradicted;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (is_contradicted(i, row.robots[i])) contradicted.insert(i);
+    std::vector<std::vector<std::size_t>> fallen(robots_.size());  // with whom
+    while (!contradicted.empty()) {
+      std::set<std::size_t> changed;
+      for (const std::size_t i : contradicted) {
+        for (const std::size_t j : robots_met_by(i)) {
+          const bool both_yield = scenario_.robots[i].cooperates && scenario_.robots[j].cooperates;
+          if (!both_yield || std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end()) continue;
+          fall_back(scenario_, anchors_, scene_, i, j, others_);
+          fallen[i].push_back(j);
+          fallen[j].push_back(i);
+          changed.insert(i);
+          changed.insert(j);
+        }
+      }
+      contradicted.clear();
+      for (const std::size_t i : changed) {
+        choose_again(i, time, row.robots[i], &fallen[i]);
+        if (is_contradicted(i, row.robots[i])) contradicted.insert(i);
+      }
+    }
+  }
+
+  std::vector<std::size_t> robots_met_by(std::size_t i) const {
+    std::vector<std::size_t> all;
+    for (const Constraint& c : others_[i])
+      if (scene_.bodies()[c.body].kind == vo::BodyKind::robot) all.push_back(c.index);
+    return all;
+  }
+
+  RobotStep decide_one(std::size_t i, double time) {
+    pass_waypoint(i, time);
+    if (!goes_by_plan(i)) look(i);
+    add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
+    KinematicRobot& r = robots_[i];
+    RobotStep step;
+    step.position = step.anchor = r.position;
+    step.velocity = step.anchor_velocity = r.velocity;
+    step.note = std::exchange(r.note, {});
+    if (groups_) step.note = joined_notes(step.note, groups_->note(i));
+    if (goes_by_plan(i)) {
+      step.mode = groups_->goes_back(i) ? Mode::going_back : Mode::by_plan;
+      choose_by_plan(i, time, step, nullptr);
+      return step;
+    }
+    const Vec2 preferred = steer(i, time, step);
+    choose(i, liveness_ == Liveness::off ? preferred : biased(i, preferred, step.mode), time, step);
+    return step;
+  }
+
+  Viewpoint viewpoint(std::size_t i) const {
+    const Robot& spec = scenario_.robots[i];
+    return {robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
+  }
+
+  /// At the static obstacles: `statics_` or, of Method::orca, `all_`.
+  void look(std::size_t i) {
+    const Viewpoint here = viewpoint(i);
+    if (options_.method == Method::orca)
+      robots_[i].field->constraints(here, all_);
+    else
+      statics_.look(*robots_[i].field, here, reach_of_step(scenario_, here));
+  }
+
+  /// REQUIRES: it has looked, and nobody after it.
+  void choose(std::size_t i, Vec2 preferred, double time, RobotStep& step,
+              const std::vector<std::size_t>* fallen_back = nullptr) {
+    const bool is_orca = options_.method == Method::orca;
+    decider_.decide({preferred, viewpoint(i), is_orca ? &all_ : &statics_.lines(), &others_[i], clock_.keeps_all(time),
+                     is_orca ? nullptr : &statics_, fallen_back},
+                    step);
+  }
+
+  /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).
+  /// Less near the goal: else it could go round and round it.
+  Vec2 biased(std::size_t i, Vec2 preferred, Mode mode) {
+    constexpr double kSmoothing = 0.1, kLeast = 0.03, kMost = 1.3;  // of a step; rad; rad
+    constexpr double kNearGoal = 4.0;                               // radii
+    const bool is_free = mode == Mode::direct || mode == Mode::guided;
+    if (!is_free || preferred == Vec2{} || robots_met_by(i).empty()) return preferred;
+    KinematicRobot& r = robots_[i];
+    const double missing = 1.0 - dot(r.velocity, preferred) / squared_norm(preferred);
+    r.held_up += kSmoothing * (std::clamp(missing, 0.0, 1.0) - r.held_up);
+    const double far = std::min(1.0, norm(goal_of(i) - r.position) / (kNearGoal * scenario_.robots[i].radius));
+    return geometry::rotated(preferred, -far * (kLeast + kMost * r.held_up));
+  }
+
+  Vec2 straight_for(std::size_t i, Vec2 place) const {
+    const Vec2 way = place - robots_[i].position;
+    const double speed = std::min(scenario_.robots[i].max_speed, norm(way) / scenario_.time_step);
+    return speed * geometry::normalized(way);
+  }
+
+  bool stays(std::size_t i) const { return guide_ && !robots_[i].course && !robots_[i].waits_for_room; }
+
+  /// Whether all robots have arrived or stay, and nothing comes to push them.
+  bool nobody_goes_on() const {
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!at_goal(i) && !stays(i)) return false;
+    return scenario_.moving_obstacles.empty();
+  }
+
+  /// Along its course; a robot without one stays.
+  Vec2 guided(std::size_t i, RobotStep& step) {
+    KinematicRobot& r = robots_[i];
+    const double radius = scenario_.robots[i].radius;
+    if (r.waits_for_room) {
+      if (!guide_->has_room(radius, r.position)) return straight_for(i, guide_->way_out(radius, r.position));
+      plan_course(i);
+    }
+    if (step.mode == Mode::direct) step.mode = r.course ? Mode::guided : Mode::staying;
+    if (!r.course) return {};
+    const Heading to = guide_->heading(*r.course, radius, r.position);
+    r.field->set_margin(to.margin);  // from the next step on
+    return straight_for(i, to.place);
+  }
+
+  bool is_in_contact() const {
+    const std::vector<Constraint>& statics = options_.method == Method::orca ? all_ : statics_.lines();
+    return !statics.empty() && statics.front().clearance < 0.0;
+  }
+
+  Vec2 steer(std::size_t i, double time, RobotStep& step) {
+    const Vec2 preferred = straight_for(i, goal_of(i));
+    if (at_goal(i)) {
+      step.mode = Mode::arrived;
+      return preferred;
+    }
+    const bool in_contact = is_in_contact();
+    if (in_contact) step.mode = Mode::pushing_out;
+    if (guide_) return guided(i, step);
+    if (options_.method == Method::orca) return preferred;
+    if (options_.method != Method::ivo) return ties_broken(i, preferred, step);
+    const Viewpoint here = viewpoint(i);
+    const Follower::Answer answer =
+        robots_[i].follower.steer({time, scenario_.time_step, here, goal_of(i),
+                                   here.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field});
+    step.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
+    step.side = answer.side;
+    step.note = joined_notes(step.note, answer.note);
+    if (answer.mode == Mode::following) return answer.preferred;
+    statics_.need_at(preferred);
+    const std::optional<Vec2> boost = boosted(statics_.lines(), preferred);
+    if (!boost) return ties_broken(i, preferred, step);
+    step.mode = Mode::boost;
+    return *boost;
+  }
+
+  /// Says so when a tie begins.
+  Vec2 ties_broken(std::size_t i, Vec2 preferred, RobotStep& step) {
+    statics_.need_at(preferred);
+    const Vec2 turned = with_tie_broken(statics_.lines(), preferred);
+    const bool tied = !(turned == preferred);
+    if (tied && !robots_[i].tied) step.note = joined_notes(step.note, "head-on: the tie between the sides goes left");
+    robots_[i].tied = tied;
+    return turned;
+  }
+
+  void move(const Step& row) {
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      robots_[i].velocity = row.robots[i].chosen;
+      robots_[i].position += scenario_.time_step * row.robots[i].chosen;
+    }
+  }
+
+  Step final_row(double time) const {
+    Step row;
+    row.time = time;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      RobotStep step;
+      step.position = robots_[i].position;
+      step.velocity = robots_[i].velocity;
+      step.anchor = step.position;
+      step.anchor_velocity = step.velocity;
+      if (at_goal(i)) step.mode = Mode::arrived;
+      row.robots.push_back(step);
+    }
+    return row;
+  }
+
+  std::string outcome() const {
+    std::string text = arrivals();
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!at_goal(i) && robots_[i].follower.circled())
+        text += "; " + scenario_.robots[i].id +
+                " completed a full circuit of the obstacle without finding a way to its goal";
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!robots_[i].no_way.empty() && !at_goal(i)) text += "; " + scenario_.robots[i].id + " " + robots_[i].no_way;
+    const std::string without_plan = groups_ && !all_arrived() ? groups_->no_plan_words() : "";
+    return without_plan.empty() ? text : text + "; " + without_plan;
+  }
+
+  std::string arrivals() const {
+    std::size_t arrived = 0;
+    for (std::size_t i = 0; i < robots_.size(); ++i) arrived += at_goal(i);
+    const std::size_t all = robots_.size();
+    if (arrived == all) return all == 1 ? "the robot arrived" : "all robots arrived";
+    const std::string until = nobody_goes_on() ? "" : " within the time limit";
+    if (all == 1) return "the robot did not arrive" + until;
+    return (arrived == 0 ? "none of " + std::to_string(all) + " robots arrived"
+                         : std::to_string(all - arrived) + " of " + std::to_string(all) + " robots did not arrive") +
+           until;
+  }
+
+  const Scenario& scenario_;
+  const SimulationOptions& options_;
+  Guide* guide_;
+  Liveness liveness_;
+  Scene scene_;
+  RunClock clock_;
+  Decider decider_;
+  std::vector<KinematicRobot> robots_;
+  OpenSpace open_space_;
+  std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
+  std::vector<Outlook> outlooks_;
+  // Memory that a step leaves to the next.
+  std::vector<Anchor> anchors_;
+  std::vector<std::optional<Vec2>> planned_;     ///< m/s, what those who go by plan want
+  std::vector<char> held_by_all_;                ///< of those: no share of it is allowed
+  NeededConstraints statics_;                    ///< of the methods that have static fields of shapes
+  std::vector<Constraint> all_;                  ///< of Method::orca
+  std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
+};
+
+}  // namespace
+
+void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Guide* guide, Recording& recording,
+                   RunSink& sink) {
+  KinematicRun(scenario, options, guide).run(recording, sink);
+}
+
+}  // namespace exactvo::formation::detail

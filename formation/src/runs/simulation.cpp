@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/simulation.h"
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include "control/consensus.h"
+#include "exactvo/formation/stability.h"
+#include "exactvo/geometry/require.h"
+
+#include "preflight/preflight.h"
+#include "preflight/reachability.h"
+#include "runs/runs.h"
+#include "scene/static_field.h"
+#include "steering/goals.h"
+#include "steering/guide.h"
+#include "steering/remedies.h"
+
+namespace exactvo::formation {
+namespace {
+
+using namespace detail;
+using geometry::norm;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::vector<Vec2> offsets_of(const Scenario& scenario, const SimulationOptions& options) {
+  if (!scenario.formation) return {};
+  return offsets_in_use(*scenario.formation, remedies_in_use(scenario, options));
+}
+
+std::vector<std::string> warnings_with(const Scenario& scenario, const SimulationOptions& options,
+                                       Reachability& reach) {
+  std::vector<std::string> warnings;
+  if (scenario.formation) warnings = step_warnings(*scenario.formation, options.integrator, scenario.time_step);
+  for (std::string& warning : preflight_warnings(scenario, offsets_of(scenario, options), reach))
+    warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+/// All rows: the recording has the rest.
+struct RowsKept : RunSink {
+  void begin(const Recording&) override {}
+  void add_body(const vo::Body&) override {}
+  void add_outlook(const Outlook&) override {}
+  void add_row(Step row) override { rows.push_back(std::move(row)); }
+
+  std::vector<Step> rows;
+};
+
+/// Measures the time spent in the sink, to subtract it from `wall_time`.
+class TimedSink : public RunSink {
+ public:
+  explicit TimedSink(RunSink& sink) : sink_(sink) {}
+  void begin(const Recording& run) override {
+    timed([&] { sink_.begin(run); });
+  }
+  void add_body(const vo::Body& body) override {
+    timed([&] { sink_.add_body(body); });
+  }
+  void add_outlook(const Outlook& outlook) override {
+    timed([&] { sink_.add_outlook(outlook); });
+  }
+  void add_row(Step row) override {
+    timed([&] { sink_.add_row(std::move(row)); });
+  }
+  double seconds() const { return seconds_; }
+
+ private:
+  template <class Work>
+  void timed(const Work& work) {
+    const Clock::time_point start = Clock::now();
+    work();
+    seconds_ += seconds_since(start);
+  }
+
+  RunSink& sink_;
+  double seconds_ = 0.0;
+};
+
+}  // namespace
+
+Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options) {
+  if (scenario.formation || options.method == Method::ivo_edge) return Guidance::none;
+  return options.guidance.value_or(scenario.guidance);
+}
+
+Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options) {
+  if (scenario.formation) return Liveness::off;
+  const Liveness wanted = options.liveness.value_or(scenario.liveness);
+  const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
+  return wanted == Liveness::plan && !is_guided ? Liveness::bias : wanted;
+}
+
+std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {
+  Reachability reach(scenario);
+  return warnings_with(scenario, options, reach);
+}
+
+Recording simulate(const Scenario& scenario, const SimulationOptions& options) {
+  RowsKept rows;
+  Recording recording = simulate(scenario, options, rows);
+  recording.steps = std::move(rows.rows);
+  return recording;
+}
+
+Recording simulate(const Scenario& scenario, const SimulationOptions& options, RunSink& sink) {
+  const std::vector<ScenarioProblem> problems = validate(scenario);
+  EXACTVO_REQUIRE(problems.empty(),
+                  problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
+  const Clock::time_point start = Clock::now();
+  Recording recording;
+  std::optional<Guide> guide = guide_for(scenario, options);
+  recording.warnings =
+      guide ? warnings_with(scenario, options, guide->reachability()) : warnings_before(scenario, options);
+  recording.all_half_planes = options.record_all;
+  TimedSink timed(sink);
+  scenario.formation ? run_formation(scenario, options, recording, timed)
+                     : run_kinematic(scenario, options, guide ? &*guide : nullptr, recording, timed);
+  recording.wall_time = seconds_since(start) - timed.seconds();
+  return recording;
+}
+
+std::vector<geometry::ConvexShape> enclosures_for(const Scenario& scenario, const SimulationOptions& options,
+                                                  std::size_t robot) {
+  EXACTVO_REQUIRE(robot < scenario.robots.size(), std::to_string(robot));
+  const Robot& r = scenario.robots[robot];
+  Scene scene(scenario, options);
+  const Vec2 goal = first_goal(scenario, options, robot);
+  const StaticField field(scene, scenario, options, r.radius, r.position, goal, HorizonRule::clamped);
+  std::vector<geometry::ConvexShape> shapes;
+  for (const vo::BodyTable::Number body : field.shapes()) shapes.push_back(scene.bodies()[body].shape);
+  return shapes;
+}
+
+}  // namespace exactvo::formation

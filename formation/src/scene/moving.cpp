@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/moving.h"
+
+#include "decision/decision.h"
+#include "exactvo/formation/speed_profile.h"
+#include "exactvo/geometry/hull.h"
+#include "motion/leader.h"
+
+namespace exactvo::formation::detail {
+
+geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time) {
+  return hull_of(obstacle, displacement_at(obstacle, time));
+}
+
+void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved) {
+  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
+    const MovingObstacle& obstacle = scenario.moving_obstacles[k];
+    const MovedObstacle& at =
+        moved.emplace_back(MovedObstacle{displacement_at(obstacle, time), leader_at(obstacle.motion, time).velocity});
+    scene.bodies().move(scene.moving_obstacle(k), hull_of(obstacle, at.displacement), at.velocity);
+  }
+}
+
+void add_moving_constraints(const Scenario& scenario, const Viewpoint& from, Scene& scene,
+                            std::vector<Constraint>& out) {
+  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
+    const vo::BodyTable::Number body = scene.moving_obstacle(k);
+    const Vec2 u = scene.bodies()[body].velocity;
+    geometry::GrownShape& seen = scene.bodies().seen(body, from.position, from.radius);
+    const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);
+    if (nearest.distance > scenario.neighbour_distance) continue;
+    vo::ClearancePolicy policy;
+    policy.time_horizon = scenario.horizons.robots;
+    policy.room = scenario.margins.robot;
+    policy.push_out_time = contact_time(scenario);
+    const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity - u, policy);
+    Constraint& c = out.emplace_back();
+    c.half_plane = vo::shifted_by(found.half_plane, u);
+    c.proof = found.proof;
+    c.priority = lp::Priority::soft;
+    c.body = body;
+    c.clearance = nearest.distance;
+    c.normal = nearest.normal;
+    c.time_horizon = policy.time_horizon;
+    c.index = k;
+  }
+}
+
+}  // namespace exactvo::formation::detail
+
+namespace exactvo::formation {
+
+geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement) {
+  std::vector<Vec2> points = geometry::vertices_of(obstacle.shape);
+  for (Vec2& p : points) p += displacement;
+  return geometry::convex_hull(points);
+}
+
+Vec2 displacement_at(const MovingObstacle& obstacle, double time) {
+  return detail::leader_at(obstacle.motion, time).position - obstacle.motion.path.front();
+}
+
+}  // namespace exactvo::formation

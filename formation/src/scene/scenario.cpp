@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/counted.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/box_grid.h"
+#include "exactvo/geometry/distance.h"
+#include "scene/obstacle_boxes.h"
+
+namespace exactvo::formation {
+namespace {
+
+using Problems = std::vector<ScenarioProblem>;
+
+std::string show(double x) {
+  std::string text = std::to_string(x);
+  while (text.find('.') != std::string::npos && (text.back() == '0' || text.back() == '.')) {
+    const bool point = text.back() == '.';
+    text.pop_back();
+    if (point) break;
+  }
+  return text;
+}
+std::string show(Vec2 v) {
+  return "[" + show(v.x) + ", " + show(v.y) + "]";
+}
+
+struct Checker {
+  Problems problems;
+
+  void require(bool ok, const std::string& pointer, const std::string& found, const std::string& expected) {
+    if (!ok) problems.push_back({pointer, found, expected});
+  }
+  void positive(double x, const std::string& pointer, const char* unit) {
+    require(std::isfinite(x) && x > 0.0, pointer, show(x), std::string("a finite number above 0 (") + unit + ")");
+  }
+  void not_negative(double x, const std::string& pointer, const char* unit) {
+    require(std::isfinite(x) && x >= 0.0, pointer, show(x), std::string("a finite number, 0 or more (") + unit + ")");
+  }
+  void finite(Vec2 v, const std::string& pointer) {
+    require(geometry::is_finite(v), pointer, show(v), "two finite numbers (m or m/s)");
+  }
+};
+
+/// Robots by place, those whose numbers are none left out.
+class RobotBoxes {
+ public:
+  explicit RobotBoxes(const std::vector<Robot>& robots) {
+    constexpr double kRounding = 0x1p-40;  // far more than the gap of a pair is off by
+    std::vector<geometry::Box> boxes;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const Robot& r = robots[i];
+      const double reach = std::fabs(r.radius) + kRounding * (std::fabs(r.position.x) + std::fabs(r.position.y));
+      const Vec2 corner{reach, reach};
+      if (!geometry::is_finite(r.position - corner) || !geometry::is_finite(r.position + corner)) continue;
+      box_of_.emplace(i, boxes.size());
+      robot_of_.push_back(i);
+      boxes.push_back({r.position - corner, r.position + corner});
+    }
+    by_place_ = geometry::BoxGrid(std::move(boxes));
+  }
+
+  /// Every robot before i that could overlap it, in order.
+  std::vector<std::size_t> before(std::size_t i) const {
+    std::vector<std::size_t> found;
+    const auto box = box_of_.find(i);
+    if (box == box_of_.end()) return found;
+    by_place_.for_each_meeting(by_place_.box(box->second), [&](std::size_t k) {
+      if (robot_of_[k] < i) found.push_back(robot_of_[k]);
+    });
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  std::unordered_map<std::size_t, std::size_t> box_of_;
+  std::vector<std::size_t> robot_of_;
+  geometry::BoxGrid by_place_;
+};
+
+void check_robots(const Scenario& s, Checker& c) {
+  c.require(!s.robots.empty(), "/robots", "no robots", "at least one robot");
+  const RobotBoxes boxes(s.robots);
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    const Robot& r = s.robots[i];
+    const std::string at = "/robots/" + std::to_string(i);
+    c.positive(r.radius, at + "/radius", "m");
+    c.positive(r.max_speed, at + "/max_speed", "m/s");
+    c.finite(r.position, at + "/position");
+    c.finite(r.velocity, at + "/velocity");
+    c.require(s.formation || !r.goals.empty(), at + "/goal", "no goal", "a goal, since the scenario has no formation");
+    for (Vec2 g : r.goals) c.finite(g, at + "/goal");
+    for (const std::size_t j : boxes.before(i)) {
+      const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
+      if (!(gap < 0.0)) continue;  // words are made for what is wrong only: a crowd has very many pairs
+      c.require(false, at + "/position", show(r.position) + ", overlapping robot " + std::to_string(j),
+                "robots that do not overlap at the start");
+    }
+  }
+}
+
+/// Moving obstacles stand at t = 0 as their shapes say.
+void check_starts(const Scenario& s, Checker& c) {
+  const detail::ObstacleBoxes boxes(s.obstacles);
+  for (std::size_t i = 0; i < s.robots.size(); ++i) {
+    const auto require_clear = [&](const geometry::Obstacle& shape, const char* kind, const std::string& id) {
+      const double gap = geometry::signed_distance(shape, s.robots[i].position) - s.robots[i].radius;
+      if (!(gap < 0.0)) return;
+      c.require(false, "/robots/" + std::to_string(i) + "/position",
+                show(s.robots[i].position) + ", " + show(-gap) + " m inside " + kind + " '" + id + "'",
+                "a start that is clear of every obstacle");
+    };
+    for (const std::size_t k : boxes.near(s.robots[i].position, s.robots[i].radius))
+      require_clear(s.obstacles[k].shape, "obstacle", s.obstacles[k].id);
+    for (const MovingObstacle& o : s.moving_obstacles) require_clear(o.shape, "moving obstacle", o.id);
+  }
+}
+
+void check_profile(const Leader& leader, const std::string& at, Checker& c) {
+  for (std::size_t k = 0; k < leader.profile.size(); ++k) {
+    const SpeedKnot& knot = leader.profile[k];
+    const std::string pointer = at + "/profile/" + std::to_string(k);
+    c.not_negative(knot.time, pointer + "/0", "s");
+    c.not_negative(knot.speed, pointer + "/1", "m/s");
+    c.require(k == 0 || !(knot.time < leader.profile[k - 1].time), pointer + "/0", show(knot.time),
+              "times that do not fall");
+  }
+}
+
+void check_moving(const Scenario& s, Checker& c) {
+  for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k) {
+    const MovingObstacle& o = s.moving_obstacles[k];
+    const std::string at = "/moving_obstacles/" + std::to_string(k);
+    c.require(!geometry::vertices_of(o.shape).empty(), at, "no points", "a polyline or polygon");
+    for (Vec2 p : geometry::vertices_of(o.shape)) c.finite(p, at);
+    c.require(!o.motion.path.empty(), at + "/path", "no points", "at least one point");
+    for (Vec2 p : o.motion.path) c.finite(p, at + "/path");
+    c.not_negative(o.motion.speed, at + "/speed", "m/s");
+    check_profile(o.motion, at, c);
+  }
+}
+
+/// Said of the one of the two that is not the default, where that is one.
+void require_step_within_horizon(const Scenario& s, Checker& c) {
+  const bool holds = s.horizons.least >= 2.0 * s.time_step;
+  if (s.time_step > Scenario{}.time_step)
+    return c.require(holds, "/time_step", show(s.time_step),
+                     "at most half of /horizons/least, which is " + show(s.horizons.least) + " (s)");
+  c.require(holds, "/horizons/least", show(s.horizons.least),
+            "at least twice /time_step, " + show(2.0 * s.time_step) + " (s)");
+}
+
+void check_times(const Scenario& s, Checker& c) {
+  c.positive(s.time_step, "/time_step", "s");
+  c.positive(s.time_limit, "/time_limit", "s");
+  c.positive(s.arrival_tolerance, "/arrival_tolerance", "m");
+  c.positive(s.neighbour_distance, "/neighbour_distance", "m");
+  c.positive(s.horizons.least, "/horizons/least", "s");
+  constexpr double kMostSteps = 1e7;  // rows that a recording can hold in memory
+  c.require(!(s.time_step > 0.0) || s.time_limit / s.time_step <= kMostSteps, "/time_limit", show(s.time_limit),
+            "at most 10^7 steps of /time_step, " + show(1e7 * s.time_step) + " (s)");
+  c.positive(s.horizons.most, "/horizons/most", "s");
+  c.require(s.horizons.most >= s.horizons.least, "/horizons/most", show(s.horizons.most),
+            "at least /horizons/least, " + show(s.horizons.least));
+  require_step_within_horizon(s, c);
+  c.positive(s.horizons.speed_floor, "/horizons/speed_floor", "share of max_speed");
+  c.positive(s.horizons.orca, "/horizons/orca", "s");
+  c.positive(s.horizons.robots, "/horizons/robots", "s");
+  c.not_negative(s.margins.obstacle, "/margins/obstacle", "m");
+  c.not_negative(s.margins.robot, "/margins/robot", "m");
+}
+
+/// Every robot must hear, over edges of positive weight, somebody who hears the leader.
+bool reaches_leader(const Topology& t) {
+  const std::size_t n = t.pinning.size();
+  std::vector<bool> heard(n);
+  for (std::size_t i = 0; i < n; ++i) heard[i] = t.pinning[i] > 0.0;
+  for (std::size_t round = 0; round < n; ++round)
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        if (t.adjacency[i][j] > 0.0 && heard[j]) heard[i] = true;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!heard[i]) return false;
+  return true;
+}
+
+void check_topology(const Topology& t, std::size_t n, Checker& c) {
+  const std::string at = "/formation/topology";
+  bool shaped = t.adjacency.size() == n && t.pinning.size() == n;
+  for (const auto& row : t.adjacency) shaped = shaped && row.size() == n;
+  c.require(shaped, at,
+            "adjacency with " + geometry::counted(t.adjacency.size(), "row") + ", pinning with " +
+                geometry::counted(t.pinning.size(), "entry", "entries"),
+            "an n x n adjacency and n pinning gains, n = " + geometry::counted(n, "robot"));
+  if (!shaped) return;
+  for (std::size_t i = 0; i < n; ++i) {
+    c.not_negative(t.pinning[i], at + "/pinning/" + std::to_string(i), "gain");
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::string entry = at + "/adjacency/" + std::to_string(i) + "/" + std::to_string(j);
+      c.not_negative(t.adjacency[i][j], entry, "weight");
+      c.require(t.adjacency[i][j] == t.adjacency[j][i], entry, show(t.adjacency[i][j]),
+                "a symmetric matrix: the same as its mirror entry, " + show(t.adjacency[j][i]));
+    }
+  }
+  c.require(reaches_leader(t), at, "a robot that hears the leader neither directly nor through others",
+            "every robot connected to one with pinning > 0");
+}
+
+void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
+  check_topology(f.topology, n, c);
+  c.require(f.offsets.size() == n, "/formation/offsets", geometry::counted(f.offsets.size(), "offset"),
+            "one a robot: " + std::to_string(n));
+  for (std::size_t i = 0; i < f.offsets.size(); ++i) c.finite(f.offsets[i], "/formation/offsets/" + std::to_string(i));
+  c.require(!f.leader.path.empty(), "/formation/leader/path", "no points", "at least one point");
+  for (Vec2 p : f.leader.path) c.finite(p, "/formation/leader/path");
+  c.not_negative(f.leader.speed, "/formation/leader/speed", "m/s");
+  check_profile(f.leader, "/formation/leader", c);
+  c.not_negative(f.remedies.acceleration_bound.value_or(0.0), "/formation/remedies/acceleration_bound", "m/s^2");
+  c.positive(f.gains.k1, "/formation/gains/k1", "gain");
+  c.positive(f.gains.k2, "/formation/gains/k2", "gain");
+  c.positive(f.gains.k3, "/formation/gains/k3", "1/s");
+  c.positive(f.gains.kappa, "/formation/gains/kappa", "1/s");
+  c.positive(f.catch_up_speed, "/formation/catch_up_speed", "m/s");
+}
+
+}  // namespace
+
+std::vector<ScenarioProblem> validate(const Scenario& scenario) {
+  Checker c;
+  check_robots(scenario, c);
+  check_moving(scenario, c);
+  check_times(scenario, c);
+  if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
+  if (c.problems.empty()) check_starts(scenario, c);
+  return std::move(c.problems);
+}
+
+}  // namespace exactvo::formation

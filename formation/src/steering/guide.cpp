@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "steering/guide.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "exactvo/geometry/distance.h"
+#include "scene/static_field.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::norm;
+using geometry::RouteAnswer;
+using geometry::Segment;
+
+/// m: a route keeps this much more than the radius and the margin. Half-planes keep one skin more than both, so they
+/// close no gap that the route passes, and one skin is left for rounding.
+constexpr double kSkins = 2.0 * kContactSkin;
+
+/// Whether the course goes on with less room at its next point, which the robot has not come to yet.
+bool is_before_narrow(const Course& course, std::size_t next, Vec2 here) {
+  constexpr double kThere = 1e-3;  // m
+  return next + 1 < course.points.size() && course.keeps[next + 1] < course.keeps[next] &&
+         norm(here - course.points[next]) > kThere;
+}
+
+}  // namespace
+
+Guide::Guide(const Scenario& scenario, double most_margin)
+    : most_margin_(most_margin), reach_(scenario, most_margin + kSkins) {
+  std::vector<geometry::Box> boxes;
+  for (const SceneObstacle& o : scenario.obstacles) {
+    edges_.push_back(geometry::edges_of(o.shape));
+    obstacles_.emplace_back(o.shape);
+    boxes.push_back(obstacles_.back().box());
+  }
+  by_place_ = geometry::BoxGrid(std::move(boxes));
+}
+
+CourseAnswer Guide::course(double radius, Vec2 from, const Destination& to) {
+  if (obstacles_.empty()) return {direct(radius, from, to)};
+  const std::optional<Vec2> end = reach_.reachable_place(radius + kSkins, from, to);
+  if (!end) return {std::nullopt, why_not(radius, from, to), "", !has_room(radius, from)};
+  try {
+    return {planned(radius, from, *end, to)};
+  } catch (const geometry::RouteNotProven& e) {
+    return {std::nullopt, "", e.what()};
+  }
+}
+
+/// Without obstacles.
+Course Guide::direct(double radius, Vec2 from, const Destination& to) const {
+  const double keeps = radius + most_margin_ + kSkins;
+  return {{from, to.place}, {keeps, keeps}, to};
+}
+
+/// REQUIRES: a way from `from` to `end` for `radius` and the skins.
+Course Guide::planned(double radius, Vec2 from, Vec2 end, const Destination& to) {
+  const double least = radius + kSkins, wanted = least + most_margin_;
+  const Vec2 first = roomy_place_near(radius, from), last = roomy_place_near(radius, end);
+  const bool has_margin = reach_.plan(wanted).is_reachable(first, last);
+  const double keeps = has_margin ? wanted : reach_.map().widest_radius(first, last);
+  // The widest radius is another for every place: such plans are not kept.
+  const RouteAnswer answer =
+      (has_margin ? reach_.plan(wanted) : geometry::RoutePlan(reach_.map(), keeps)).query(first, last);
+  Course course;
+  course.to = to;
+  const auto add = [&](Vec2 point, double kept) {
+    course.points.push_back(point);
+    course.keeps.push_back(kept);
+  };
+  if (first != from) add(from, least);
+  for (const geometry::ExactPoint& p : std::get<geometry::Route>(answer).points)
+    add(p.rounded, course.points.size() == 1 && first != from ? least : keeps);
+  if (last != end) add(end, least);
+  return course;
+}
+
+/// The place, or one in sight of it that leaves a robot there the margin; the place again where none is found.
+Vec2 Guide::roomy_place_near(double radius, Vec2 place) const {
+  constexpr double kFarthest = 2.0;  // margins: enough for a corner
+  const double least = radius + kSkins, wanted = least + most_margin_;
+  if (clearance_at(place, wanted) >= wanted) return place;
+  for (const Vec2 near : places_about(place, kFarthest * most_margin_))
+    if (clearance_at(near, wanted) >= wanted && is_in_sight(place, near, least)) return near;
+  return place;
+}
+
+/// Why there is no route.
+std::string Guide::why_not(double radius, Vec2 from, const Destination& to) {
+  if (reach_.reachable_place(radius, from, to))
+    return "the widest way leaves the robot less than " + metres(kSkins) + " of room, too little to drive";
+  std::string text = reach_.why_not(radius, from, to, "the goal");
+  if (to.reach > 0.0 && has_room(radius, from) && !reach_.is_proven_out_of_reach(radius, from, to))
+    text += "; no place within " + metres(to.reach) + " of it was found that can be reached, which is no proof";
+  return text;
+}
+
+/// m, from the centre; beyond `enough` any number that is not less.
+double Guide::clearance_at(Vec2 here, double enough) const {
+  double least = enough;
+  by_place_.for_each_within(here, enough, [&](std::size_t o) {
+    least = std::min(least, obstacles_[o].swept_distance({here, here}, enough));
+  });
+  return least;
+}
+
+bool Guide::is_in_sight(Vec2 here, Vec2 there, double clearance) const {
+  const Vec2 reach{clearance, clearance};
+  geometry::Box box;
+  box.add(here);
+  box.add(there);
+  bool clear = true;
+  by_place_.for_each_meeting({box.low - reach, box.high + reach}, [&](std::size_t o) {
+    clear = clear && obstacles_[o].swept_distance(Segment{here, there}, clearance) >= clearance;
+  });
+  return clear;
+}
+
+/// Whether a point of the course is in sight; `next` becomes the farthest of them, counted on from where it was. A
+/// robot that was pushed nearer to an obstacle sees past it as near as it stands.
+bool Guide::look_ahead(Course& course, double radius, Vec2 here) const {
+  const double stands = clearance_at(here, radius + most_margin_ + kSkins);
+  const auto sees = [&](std::size_t k) {
+    return is_in_sight(here, course.points[k], std::max(radius, std::min(course.keeps[k], stands)) - 0.5 * kSkins);
+  };
+  std::size_t next = course.next;
+  while (!sees(next))
+    if (next-- == 0) return false;
+  while (next + 1 < course.points.size() && !is_before_narrow(course, next, here) && sees(next + 1)) ++next;
+  course.next = next;
+  return true;
+}
+
+/// Along the piece after the farthest point in sight as far as it is in sight.
+Heading Guide::heading_on(const Course& course, double radius, Vec2 here) const {
+  constexpr int kHalvings = 6;  // of a piece: where a robot heads for need not be the very farthest point
+  const std::size_t next = course.next;
+  const auto margin = [&](std::size_t k) { return std::max(0.0, course.keeps[k] - radius - kSkins); };
+  const Vec2 from = course.points[next];
+  if (next + 1 == course.points.size() || is_before_narrow(course, next, here)) return {from, margin(next)};
+  const double stands = clearance_at(here, radius + most_margin_ + kSkins);
+  const double clearance = std::max(radius, std::min(course.keeps[next + 1], stands)) - 0.5 * kSkins;
+  const Vec2 piece = course.points[next + 1] - from;
+  double seen = 0.0, hidden = 1.0;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (seen + hidden);
+    (is_in_sight(here, from + middle * piece, clearance) ? seen : hidden) = middle;
+  }
+  return {from + seen * piece, margin(next + 1)};
+}
+
+Heading Guide::heading(Course& course, double radius, Vec2 here) {
+  if (look_ahead(course, radius, here)) return heading_on(course, radius, here);
+  if (!has_room(radius, here)) return {way_out(radius, here)};
+  CourseAnswer again = this->course(radius, here, course.to);
+  if (!again.course) return {course.points[course.next]};
+  course = std::move(*again.course);
+  if (look_ahead(course, radius, here)) return heading_on(course, radius, here);
+  return {course.points[std::min<std::size_t>(1, course.points.size() - 1)]};
+}
+
+double Guide::way_left(const Course& course, Vec2 here) const {
+  double way = norm(course.points[course.next] - here);
+  for (std::size_t k = course.next; k + 1 < course.points.size(); ++k)
+    way += norm(course.points[k + 1] - course.points[k]);
+  return way;
+}
+
+bool Guide::has_room(double radius, Vec2 here) const {
+  const double enough = radius + kSkins;
+  return clearance_at(here, enough) >= enough;
+}
+
+Vec2 Guide::way_out(double radius, Vec2 here) const {
+  const double wanted = radius + 2.0 * kSkins;
+  double least = wanted;
+  Vec2 away;
+  by_place_.for_each_within(here, wanted, [&](std::size_t o) {
+    for (const Segment& edge : edges_[o]) {
+      const Vec2 from = here - geometry::nearest_point(edge, here);
+      if (!(norm(from) < least)) continue;
+      least = norm(from);
+      away = from;
+    }
+  });
+  return here + (wanted - least) * geometry::normalized(away);
+}
+
+std::optional<Guide> guide_for(const Scenario& scenario, const SimulationOptions& options) {
+  if (guidance_of(scenario, options) == Guidance::none) return std::nullopt;
+  return std::optional<Guide>(std::in_place, scenario,
+                              options.method == Method::orca ? 0.0 : scenario.margins.obstacle);
+}
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Where robots head that follow proven routes (geometry/routes.h) among the static obstacles of a scene. That a route
+/// exists, and that none does, is exact; which of its points a robot heads for is decided in doubles, and safety is up
+/// to the half-planes, as for every preferred velocity.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+#include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/box_grid.h"
+#include "exactvo/geometry/obstacle_index.h"
+#include "exactvo/geometry/routes.h"
+#include "liveness/roadmap.h"
+#include "preflight/reachability.h"
+
+namespace exactvo::formation::detail {
+
+/// A robot's route to one of its goals, and how far it has come.
+struct Course {
+  std::vector<Vec2> points;   ///< m, with start and end
+  std::vector<double> keeps;  ///< m, of each point: how far the piece that leads there stays from obstacles, up to
+                              ///< the rounding of its ends
+  Destination to;             ///< the end is its place, or one within reach of it
+  std::size_t next = 0;       ///< the farthest of the points that was in sight
+};
+
+/// A course, or why there is none.
+struct CourseAnswer {
+  std::optional<Course> course;
+  std::string why_not = {};       ///< why the goal is out of reach
+  std::string defect = {};        ///< why a way that exists could not be proven: never to be seen
+  bool start_is_blocked = false;  ///< it has no room where it is: moved away it may have a course
+};
+
+/// Where a robot heads now.
+struct Heading {
+  Vec2 place;           ///< m
+  double margin = 0.0;  ///< m: what is kept from obstacles beside the radius on the way there
+};
+
+class Guide : public FreeSpace {
+ public:
+  /// `most_margin`: what robots keep beside their radius where there is room, m. The scenario must outlive the guide.
+  Guide(const Scenario& scenario, double most_margin);
+
+  /// Which places can be reached at all.
+  Reachability& reachability() { return reach_; }
+
+  /// The route that leaves a robot of `radius` the margin, or as much of it as the widest way has. Where an end leaves
+  /// less, the margin is kept on the way between.
+  CourseAnswer course(double radius, Vec2 from, const Destination& to);
+
+  /// The farthest point of the course that a robot can see: the straight way there stays clear of obstacles. Where none
+  /// is in sight, the robot was pushed off, and the course is planned again from where it is.
+  Heading heading(Course& course, double radius, Vec2 here);
+
+  /// m, along the rest of the course.
+  double way_left(const Course& course, Vec2 here) const;
+
+  bool is_open() const override { return obstacles_.empty(); }
+  double clearance(Vec2 here, double enough) const override { return clearance_at(here, enough); }
+  bool is_clear(Vec2 from, Vec2 to, double least) const override { return is_in_sight(from, to, least); }
+
+  /// Whether a robot has room to plan a course.
+  bool has_room(double radius, Vec2 here) const;
+
+  /// A place straight away from the nearest obstacle, at which a robot has room. REQUIRES: it has none here.
+  Vec2 way_out(double radius, Vec2 here) const;
+
+ private:
+  Course direct(double radius, Vec2 from, const Destination& to) const;
+  Course planned(double radius, Vec2 from, Vec2 end, const Destination& to);
+  Vec2 roomy_place_near(double radius, Vec2 place) const;
+  std::string why_not(double radius, Vec2 from, const Destination& to);
+  double clearance_at(Vec2 here, double enough) const;
+  bool is_in_sight(Vec2 here, Vec2 there, double clearance) const;
+  bool look_ahead(Course& course, double radius, Vec2 here) const;
+  Heading heading_on(const Course& course, double radius, Vec2 here) const;
+
+  double most_margin_;
+  Reachability reach_;
+  std::vector<std::vector<geometry::Segment>> edges_;  ///< of each obstacle
+  std::vector<geometry::ObstacleIndex> obstacles_;
+  geometry::BoxGrid by_place_;
+};
+
+/// The guide of a run; nothing where its robots go without.
+std::optional<Guide> guide_for(const Scenario& scenario, const SimulationOptions& options);
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo batch: every obstacle of every file taken apart, enclosed and certified.
+#include "exactvo/datasets/batch.h"
+#include "exactvo/geometry/counted.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "exactvo/datasets/input_text.h"
+#include "support/parse_errors.h"
+#include "support/robot_limits.h"
+#include "support/simulation_flags.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+using geometry::counted;
+
+namespace {
+
+using datasets::BatchConfiguration;
+using datasets::BatchEnd;
+using datasets::BatchProgress;
+using datasets::BatchRun;
+using datasets::BatchSummary;
+using datasets::BatchTally;
+using geometry::Vec2;
+
+struct Flags {
+  std::vector<std::string> paths;
+  std::string out;
+  int workers = 0;
+  bool resume = false;
+  bool repair = false;
+  std::uint64_t limit_memory = 0;
+  std::string shard;
+  std::string format;
+  std::string units = "automatic";
+  double cell_size = 0.0;
+  double tolerance = 0.0;
+  std::string partition = "triangles";
+  std::string write = "figures,pictures";
+  bool metres = false;
+  std::optional<double> time_horizon;
+  double radius = 0.0;
+  std::string velocity = "0,0";
+  std::vector<std::string> positions;
+  std::string goal;
+};
+
+Vec2 parse_point(const std::string& option, const std::string& text) {
+  Vec2 v;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_in_range(v)) {
+    throw UsageError(option, text, fmt::format("two numbers within {:g}, X,Y", kLargestNumber));
+  }
+  return v;
+}
+
+datasets::Units units_named(const std::string& text) {
+  if (text == "automatic") return datasets::Units::automatic;
+  if (text == "metres") return datasets::Units::metres;
+  if (text == "degrees") return datasets::Units::degrees;
+  throw UsageError("--units", text, "automatic, metres or degrees");
+}
+
+geometry::PartitionMethod partition_named(const std::string& text) {
+  using geometry::PartitionMethod;
+  static const std::vector<std::pair<std::string, PartitionMethod>> kMethods{
+      {"automatic", PartitionMethod::automatic},
+      {"greene", PartitionMethod::greene},
+      {"approximate", PartitionMethod::approximate},
+      {"optimal", PartitionMethod::optimal},
+      {"triangles", PartitionMethod::triangles}};
+  std::vector<std::string> names;
+  for (const auto& [name, method] : kMethods) {
+    if (text == name) return method;
+    names.push_back(name);
+  }
+  throw UsageError("--partition", text, fmt::format("one of {}{}", fmt::join(names, " "), suggestion(text, names)));
+}
+
+void choose_outputs(const std::string& text, BatchConfiguration& configuration) {
+  const std::vector<std::string> known{"geopackage", "geojson", "pictures", "figures"};
+  configuration.geopackage = configuration.geojson = configuration.pictures = false;
+  std::size_t start = 0;
+  while (start <= text.size()) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    const std::string word = text.substr(start, end - start);
+    if (word == "geopackage")
+      configuration.geopackage = true;
+    else if (word == "geojson")
+      configuration.geojson = true;
+    else if (word == "pictures")
+      configuration.pictures = true;
+    else if (word != "figures") {
+      throw UsageError("--write", word, "geopackage, geojson, pictures, figures" + suggestion(word, known));
+    }
+    start = end + 1;
+  }
+}
+
+void check_numbers(const Flags& flags) {
+  require_length("--cell-size", flags.cell_size);
+  require_length("--tolerance", flags.tolerance);
+  if (!is_radius(flags.radius)) throw UsageError("--radius", fmt::format("{}", flags.radius), kRadii);
+  const std::optional<double>& horizon = flags.time_horizon;
+  if (horizon && !is_horizon(*horizon))
+    throw UsageError("--time-horizon", fmt::format("{}", *horizon), "a time from 2^-100 s to 2^100 s");
+}
+
+std::optional<datasets::BatchRobot> robot_of(const Flags& flags) {
+  const bool given = flags.time_horizon || flags.radius > 0.0 || !flags.positions.empty() || !flags.goal.empty();
+  if (!given) return std::nullopt;
+  if (!flags.time_horizon) throw UsageError("--time-horizon", "none", "seconds, more than 0, with a robot");
+  if (flags.positions.empty()) throw UsageError("--position", "none", "X,Y, once or more, with a robot");
+  datasets::BatchRobot robot;
+  robot.radius = flags.radius;
+  robot.time_horizon = *flags.time_horizon;
+  robot.velocity = parse_point("--velocity", flags.velocity);
+  for (const std::string& text : flags.positions) robot.positions.push_back(parse_point("--position", text));
+  if (!flags.goal.empty()) robot.goal = parse_point("--goal", flags.goal);
+  return robot;
+}
+
+BatchConfiguration configuration_of(const Flags& flags) {
+  check_numbers(flags);
+  BatchConfiguration configuration;
+  configuration.reading.format = flags.format;
+  configuration.reading.repair = flags.repair;
+  configuration.reading.cell_size = flags.cell_size;
+  configuration.reading.units = units_named(flags.units);
+  configuration.shapes.facades.tolerance = flags.tolerance;
+  configuration.shapes.partition = partition_named(flags.partition);
+  configuration.memory_limit = flags.limit_memory;
+  configuration.robot = robot_of(flags);
+  choose_outputs(flags.write, configuration);
+  configuration.geojson_in_metres = flags.metres;
+  if (configuration.geopackage && !datasets::built_with_gdal()) {
+    message("note: built without GDAL, so no GeoPackage is written");
+    configuration.geopackage = false;
+  }
+  return configuration;
+}
+
+void parse_shard(const std::string& text, BatchRun& run) {
+  if (text.empty()) return;
+  char rest = 0;
+  const bool two = std::sscanf(text.c_str(), "%zu/%zu%c", &run.shard, &run.shards, &rest) == 2;
+  if (!two || run.shard < 1 || run.shard > run.shards) throw UsageError("--shard", text, "i/n with 1 <= i <= n");
+}
+
+/// The command line without what leaves the results as they are, so that a resumed run's provenance is the same: how
+/// it is run, and where the results lie.
+std::vector<std::string> lasting_words(const std::vector<std::string>& words) {
+  const auto takes_value = [](const std::string& w) {
+    return w == "-j" || w == "--jobs" || w == "--shard" || w == "--out" || w == "-o";
+  };
+  const auto stands_alone = [](const std::string& w) {
+    const auto begins = [&](const char* start) { return w.rfind(start, 0) == 0; };
+    return w == "--resume" || w == "--quiet" || w == "-q" || begins("--jobs=") || begins("--shard=") ||
+           begins("--out=") || begins("-j") || begins("-o");
+  };
+  std::vector<std::string> kept;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (takes_value(words[i])) {
+      ++i;
+    } else if (!stands_alone(words[i])) {
+      kept.push_back(i == 0 ? "exactvo" : words[i]);
+    }
+  }
+  return kept;
+}
+
+BatchRun run_of(const Flags& flags) {
+  BatchRun run;
+  run.paths.assign(flags.paths.begin(), flags.paths.end());
+  run.out = flags.out;
+  run.workers = flags.workers == 0 && datasets::under_mpi() ? 1 : flags.workers;  // ranks share a machine's processors
+  run.resume = flags.resume;
+  run.command_line = lasting_words(command_line());
+  parse_shard(flags.shard, run);
+  return run;
+}
+
+std::string size_text(double bytes) {
+  const char* const units[] = {"B", "kB", "MB", "GB", "TB"};
+  std::size_t k = 0;
+  for (; bytes >= 1000.0 && k + 1 < std::size(units); ++k) bytes /= 1000.0;
+  return fmt::format("{:.3g} {}", bytes, units[k]);
+}
+
+/// What is written, times the input: measured on 20,000 polygons of 14 corners as WKT. Grids and compressed files may
+/// give much more.
+constexpr double kFiguresOfInput = 1.3;
+constexpr double kGeoPackageOfInput = 31.0;
+constexpr double kGeoJsonOfInput = 41.0;
+
+/// Sizes to expect, before the work; twice as much stands on the disk while parts and outputs do.
+void say_sizes(const BatchConfiguration& c, const BatchProgress& progress, const std::string& out) {
+  const auto input = static_cast<double>(progress.input_bytes);
+  const double factor =
+      kFiguresOfInput + (c.geopackage ? kGeoPackageOfInput : 0.0) + (c.geojson ? kGeoJsonOfInput : 0.0);
+  std::string text = fmt::format("{}, {}: about {} in {}", counted(progress.inputs, "file"), size_text(input),
+                                 size_text(factor * input), out);
+  if (!c.geopackage) text += fmt::format("; --write geopackage adds about {}", size_text(kGeoPackageOfInput * input));
+  if (!c.geojson) text += fmt::format("; --write geojson adds about {}", size_text(kGeoJsonOfInput * input));
+  message(text);
+  std::error_code error;
+  const std::filesystem::space_info disk = std::filesystem::space(out, error);
+  if (!error && 2.0 * factor * input > static_cast<double>(disk.available))
+    message(fmt::format("warning: {} are free there, and twice the results are needed meanwhile",
+                        size_text(static_cast<double>(disk.available))));
+}
+
+/// A line that is written over on a terminal, a line now and then in a log.
+class Reporter {
+ public:
+  Reporter() : line_(1.0, "of the input"), last_(std::chrono::steady_clock::now()), start_(last_) {}
+
+  void show(const BatchProgress& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    const bool on_terminal = ::isatty(STDERR_FILENO) != 0;
+    if (seconds(now - last_) < (on_terminal ? 0.2 : kLogEvery)) return;
+    last_ = now;
+    const double elapsed = seconds(now - start_);
+    const double left = progress.share_done > 0.0 ? elapsed * (1.0 / progress.share_done - 1.0) : 0.0;
+    const std::string text = fmt::format("{} of {}, {:.0f} %, {}, {:.0f}/s, {:.0f} s left: {}", progress.inputs_done,
+                                         counted(progress.inputs, "file"), 100.0 * progress.share_done,
+                                         counted(progress.obstacles, "obstacle"),
+                                         static_cast<double>(progress.obstacles) / elapsed, left, progress.doing);
+    if (on_terminal) {
+      line_.show(progress.share_done, text);
+    } else {
+      message(text);
+    }
+  }
+  void clear() { line_.clear(); }
+
+ private:
+  static constexpr double kLogEvery = 30.0;  // s
+  template <class Duration>
+  static double seconds(Duration d) {
+    return std::chrono::duration<double>(d).count();
+  }
+
+  ProgressLine line_;
+  std::chrono::steady_clock::time_point last_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+std::string words_of(const BatchTally& tally, const char* what) {
+  std::string text = fmt::format("{}: {} done, {} repaired, {} rejected", counted(tally.read, what), tally.done,
+                                 tally.repaired, tally.rejected_in_all());
+  for (const auto& [code, count] : tally.rejected) text += fmt::format(", {} {}", code, count);
+  return text;
+}
+
+/// Of a shard only what the last one did is known, and how long that took: no rate of the whole.
+std::string words_of(const BatchSummary& s, const std::string& out, bool with_rates) {
+  std::string text = words_of(s.files, "file") + "\n" + words_of(s.obstacles, "obstacle");
+  text += fmt::format("\n{} skipped (points, empty geometries)\n", counted(s.passed_over, "input"));
+  text += fmt::format("{} in {}: {} certified, {} uncertified, {}\n", counted(s.obstacles_out, "obstacle"), out,
+                      s.certified, s.uncertified, counted(s.vertices, "vertex", "vertices"));
+  if (with_rates && s.obstacles_now > 0 && s.seconds > 0.0) {
+    text +=
+        fmt::format("{:.3g} s, {:.0f} obstacles/s, {:.0f} vertices/s\n", s.seconds,
+                    static_cast<double>(s.obstacles_now) / s.seconds, static_cast<double>(s.vertices_now) / s.seconds);
+  }
+  return text;
+}
+
+std::string words_of_shard(const BatchRun& run) {
+  return fmt::format("shard {}/{} is through, others are not: nothing is put together yet; the last one does that",
+                     run.shard, run.shards);
+}
+
+/// On stderr, so that nobody takes a batch of bad files for a good one; all of them are in summary.json.
+void name_rejected(const BatchSummary& summary, const std::string& out) {
+  constexpr std::size_t kMostNamed = 20;
+  const std::vector<datasets::RejectedFile>& all = summary.rejected_files;
+  for (std::size_t k = 0; k < std::min(all.size(), kMostNamed); ++k)
+    message(fmt::format("rejected: {}: {}", all[k].path, all[k].code));
+  if (all.size() > kMostNamed) message(fmt::format("and {} more, see {}/summary.json", all.size() - kMostNamed, out));
+}
+
+/// Whether this batch goes where an earlier one is, and does not go on with it.
+bool goes_over_another(const Flags& flags) {
+  std::error_code error;
+  return !flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error);
+}
+
+/// Folders that were named or walked and are not read.
+void note_earlier_batches(const datasets::BatchResult& result) {
+  for (const datasets::EarlierBatch& earlier : result.earlier)
+    message(fmt::format("note: not read: {} holds an earlier batch ({}); a file that is named is read", earlier.folder,
+                        counted(earlier.files, "file")));
+}
+
+/// Nothing of this process's own to tell: the last of several puts the parts together.
+void say_incomplete(const Flags& flags, const BatchRun& run) {
+  if (run.shards > 1) return message(words_of_shard(run));
+  if (!datasets::under_mpi())
+    message("another process took the parts of this batch from " + flags.out + " and left no summary");
+}
+
+/// Nothing of them is wrong, and yet whoever takes half-planes from figures.jsonl must know.
+void note_missing_half_planes(const BatchSummary& summary, const std::string& out) {
+  if (summary.no_half_plane == 0) return;
+  message(
+      fmt::format("note: {} of the half-planes in {}/figures.jsonl {} null: the robot overlaps the obstacle at that "
+                  "position, or is too near to prove one",
+                  summary.no_half_plane, out, summary.no_half_plane == 1 ? "is" : "are"));
+}
+
+ExitCode verdict(const BatchSummary& s) {
+  if (s.obstacles_out == 0) message("warning: no obstacle came out");
+  return s.uncertified == 0 && s.obstacles_out > 0 ? ExitCode::success : ExitCode::negative;
+}
+
+ExitCode batch(const Flags& flags) {
+  std::signal(SIGXFSZ, SIG_IGN);     // a file size limit is then an error of the write, and said as one
+  datasets::set_wait_hook(nullptr);  // it reads no pipes, and looks for interrupts itself
+  const BatchConfiguration configuration = configuration_of(flags);
+  const BatchRun run = run_of(flags);
+  const bool over_another = goes_over_another(flags);
+  Reporter reporter;
+  bool has_said_sizes = false;
+  const auto watch = [&](const BatchProgress& progress) {
+    if (!std::exchange(has_said_sizes, true)) say_sizes(configuration, progress, flags.out);
+    reporter.show(progress);
+    return !interrupted();
+  };
+  const datasets::BatchResult result = datasets::under_mpi() ? datasets::run_batch_over_ranks(configuration, run, watch)
+                                                             : datasets::run_batch(configuration, run, watch);
+  reporter.clear();
+  note_earlier_batches(result);
+  if (result.end == BatchEnd::interrupted) {
+    error_message("interrupted; --resume goes on");
+    return ExitCode::interrupted;
+  }
+  if (result.end == BatchEnd::incomplete) {
+    say_incomplete(flags, run);
+    return ExitCode::success;
+  }
+  if (result.was_complete) message("nothing left to do");
+  if (over_another && !result.was_complete) message("note: replaced the earlier batch in " + flags.out);
+  print(words_of(result.summary, flags.out, run.shards == 1));
+  name_rejected(result.summary, flags.out);
+  note_missing_half_planes(result.summary, flags.out);
+  return verdict(result.summary);
+}
+
+void declare_run(CLI::App& app, Flags& flags) {
+  app.add_option("paths", flags.paths, "Files and folders; outputs of earlier batches inside the folders are ignored")
+      ->required();
+  declare_out(app, flags.out, "Folder for the results")->required();
+  app.add_option("-j,--jobs", flags.workers,
+                 "Worker threads; by default one per processor, or one per rank under mpirun")
+      ->check(whole_number(1, 4096));
+  app.add_flag("--resume", flags.resume, "Continue an interrupted batch in the folder, or join one that is running");
+  app.add_option("--limit-memory", flags.limit_memory, "Memory for obstacles being processed, such as 2GB")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--shard", flags.shard,
+                 "i/n: every n-th file from the i-th on; the last shard to finish merges the results");
+  app.add_option("--write", flags.write,
+                 "Outputs, from figures (always), pictures, geopackage, geojson; the last two are some 30 and 40 times "
+                 "the input")
+      ->capture_default_str();
+  app.add_flag("--metres", flags.metres,
+               "GeoJSON in metres, which other programs read as degrees; by default longitude and latitude");
+}
+
+void declare_reading(CLI::App& app, Flags& flags) {
+  app.add_flag("--repair", flags.repair, "Repair invalid geometry: self-crossings, overlaps, misplaced holes");
+  app.add_option("--format", flags.format, "Format of all files; by default detected from content and name");
+  app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
+  app.add_option("--cell-size", flags.cell_size, "m; of grids without a scale (1) and of scans (0.05)");
+  app.add_option("--partition", flags.partition,
+                 "Of polygons into convex pieces: triangles (quick), automatic (fewest up to 32 vertices), greene, "
+                 "approximate, optimal")
+      ->capture_default_str();
+  app.add_option("--tolerance", flags.tolerance, "Largest distance of a facade from its obstacle, m")
+      ->capture_default_str();
+}
+
+void declare_robot(CLI::App& app, Flags& flags) {
+  app.add_option("--time-horizon", flags.time_horizon, "s; horizon of the velocity obstacles");
+  app.add_option("--radius", flags.radius, "Radius of the robot, m");
+  app.add_option("--position", flags.positions, "X,Y of the robot, m; may be repeated")->allow_extra_args(false);
+  app.add_option("--velocity", flags.velocity, "X,Y, m/s; half-planes are nearest to this velocity")
+      ->capture_default_str();
+  app.add_option("--goal", flags.goal,
+                 "X,Y, m; trap-free ellipses are fitted for a robot going there from the first position");
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  declare_run(app, *flags);
+  declare_reading(app, *flags);
+  declare_robot(app, *flags);
+  return [flags] { return batch(*flags); };
+}
+
+}  // namespace
+
+Verb batch_verb() {
+  return {"batch", "Decompose, enclose and certify every obstacle of every file",
+          "  exactvo batch maps --out out/maps -j 4 --repair\n"
+          "  exactvo batch maps --out out/maps -j 4 --repair --resume     (after an interruption, or beside a running "
+          "batch)\n"
+          "    (status 1: a result is not certified, or no obstacle was produced; rejected files are listed)\n"
+          "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"
+          "  exactvo batch map.yaml --out out/map --time-horizon 3 --radius 0.3 --position 1,2 --position 4,2\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

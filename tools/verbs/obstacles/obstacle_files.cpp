@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/obstacles/obstacle_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "exactvo/datasets/input_files.h"
+#include "exactvo/datasets/obstacle_write.h"
+#include "support/escape.h"
+#include "support/files.h"
+#include "support/projection.h"
+#include "support/terminal.h"
+#include "support/unsigned_zero.h"
+#include "support/usage.h"
+
+namespace exactvo::tools {
+
+using datasets::DataError;
+using datasets::ObstacleFile;
+using datasets::RingFinding;
+
+namespace {
+
+const std::vector<std::string> kUnits{"automatic", "metres", "degrees"};
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + word;
+  return text;
+}
+
+void check_word(const std::string& option, const std::string& word, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return;
+  throw UsageError(option, word, "one of" + listed(known) + suggestion(word, known));
+}
+
+FileAnswer read_one(const std::string& file, const datasets::ReadOptions& options) {
+  try {
+    FileAnswer answer{file, datasets::read_obstacles(file, options), std::nullopt};
+    say_projection(*answer.content);
+    return answer;
+  } catch (const DataError& error) {
+    return {file, std::nullopt, error, options.format.empty() ? guessed_format(file) : ""};
+  }
+}
+
+OrderedJson pair_json(geometry::Vec2 p) {
+  return {json_number(p.x), json_number(p.y)};
+}
+
+/// The place in the file's own numbers, which are metres unless said.
+OrderedJson in_file_json(const RingFinding& f) {
+  return pair_json(f.in_file ? f.in_file->where : f.where);
+}
+
+OrderedJson problem_json(const RingFinding& f) {
+  return {{"code", datasets::code_name(f.code)},
+          {"place", f.place},
+          {"feature", f.feature},
+          {"ring", f.ring},
+          {"vertex", f.vertex},
+          {"x", json_number(f.where.x)},
+          {"y", json_number(f.where.y)},
+          {"in_file", in_file_json(f)},
+          {"at_vertex", pair_json(f.at_vertex)},
+          {"found", datasets::words_of(f)},
+          {"mended", f.mended}};
+}
+
+/// A refusal that is no ring's finding: of the text, or of the file.
+OrderedJson problem_json(const DataError& error) {
+  return {{"code", datasets::code_name(error.code())},
+          {"place", error.place()},
+          {"found", error.found()},
+          {"expected", error.expected()},
+          {"mended", false}};
+}
+
+/// What was refused and is no ring's finding.
+std::vector<const DataError*> other_refusals(const ObstacleFile& content) {
+  std::set<std::pair<datasets::DataCode, std::string_view>> of_rings;
+  for (const RingFinding& f : content.findings) {
+    if (!f.mended) of_rings.emplace(f.code, f.place);
+  }
+  std::vector<const DataError*> others;
+  for (const DataError& error : content.rejected) {
+    if (of_rings.count({error.code(), error.place()}) == 0) others.push_back(&error);
+  }
+  return others;
+}
+
+OrderedJson problems_json(const FileAnswer& answer) {
+  OrderedJson problems = OrderedJson::array();
+  if (answer.error) problems.push_back(problem_json(*answer.error));
+  if (!answer.content) return problems;
+  for (const RingFinding& f : answer.content->findings) problems.push_back(problem_json(f));
+  for (const DataError* error : other_refusals(*answer.content)) problems.push_back(problem_json(*error));
+  return problems;
+}
+
+OrderedJson unlisted_json(const FileAnswer& answer) {
+  OrderedJson counts = OrderedJson::object();
+  if (!answer.content) return counts;
+  for (const auto& [code, count] : answer.content->unlisted) counts[datasets::code_name(code)] = count;
+  return counts;
+}
+
+OrderedJson notes_json(const FileAnswer& answer) {
+  OrderedJson notes = OrderedJson::array();
+  if (!answer.content) return notes;
+  for (const datasets::DataNote& note : answer.content->notes) {
+    if (!note.code) notes.push_back(note.place.empty() ? note.text : note.place + ": " + note.text);
+  }
+  return notes;
+}
+
+/// Where degrees were projected to metres: round what place.
+OrderedJson origin_json(const FileAnswer& answer) {
+  if (!answer.content || !answer.content->origin) return nullptr;
+  return {{"longitude", json_number(answer.content->origin->longitude)},
+          {"latitude", json_number(answer.content->origin->latitude)}};
+}
+
+OrderedJson code_of(const FileAnswer& answer) {
+  if (answer.error) return datasets::code_name(answer.error->code());
+  if (answer.is_whole()) return nullptr;
+  return datasets::code_name(answer.content->rejected.front().code());
+}
+
+}  // namespace
+
+void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string& format_name) {
+  app.add_option(
+      format_name, flags.format,
+      "Input format:" + listed(datasets::readable_formats()) + "; by default detected from content, then name");
+  app.add_option("--units", flags.units, "Units of coordinates: automatic, metres or degrees");
+  app.add_option("--cell-size", flags.cell_size, "Cell size of scans, point lists and grids without a scale, m");
+}
+
+void check_format(const std::string& option, const std::string& format, const std::vector<std::string>& known) {
+  if (!format.empty()) check_word(option, format, known);
+}
+
+datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::string& format_name) {
+  check_format(format_name, flags.format, datasets::readable_formats());
+  check_word("--units", flags.units, kUnits);
+  if (!(flags.cell_size >= 0.0) || std::isinf(flags.cell_size))
+    throw UsageError("--cell-size", fmt::format("{}", flags.cell_size), "a length in m, or 0 for the default");
+  datasets::ReadOptions options;
+  options.format = flags.format;
+  if (flags.units == "metres") options.units = datasets::Units::metres;
+  if (flags.units == "degrees") options.units = datasets::Units::degrees;
+  options.cell_size = flags.cell_size;
+  options.keep_going = true;
+  return options;
+}
+
+void refuse_input_as_output(const std::string& in, const std::string& format, const std::string& option,
+                            const std::string& out) {
+  for (const std::filesystem::path& file : datasets::files_read_with(in, format)) {
+    std::error_code error;
+    if (std::filesystem::equivalent(file, out, error))
+      throw UsageError(option, out, "another file than the input " + file.string());
+  }
+}
+
+std::vector<std::filesystem::path> all_read_with(const std::vector<std::string>& files, const std::string& format) {
+  std::vector<std::filesystem::path> all;
+  for (const std::string& file : files)
+    for (std::filesystem::path& read : datasets::files_read_with(file, format)) all.push_back(std::move(read));
+  return all;
+}
+
+void declare_metres(CLI::App& app, bool& metres) {
+  app.add_flag("--metres", metres,
+               "GeoJSON in metres, which other programs take for degrees; without it longitude and latitude");
+}
+
+void note_place_on_earth(const datasets::LocalPlane& plane) {
+  if (plane.is_placed()) return;
+  message("note: no place on earth is known: the GeoJSON lies round longitude 0, latitude 0; --metres writes metres");
+}
+
+std::string output_format(const std::string& out, const std::string& to) {
+  return datasets::format_to_write(out == "-" ? "stdout.wkt" : out, to);
+}
+
+void write_or_print(const std::string& out, const std::vector<formation::SceneObstacle>& obstacles,
+                    const datasets::WriteOptions& options) {
+  if (options.format == "geojson" && !options.metres) note_place_on_earth(options.plane);
+  const auto write = [&](const std::filesystem::path& file) {
+    for (const std::string& loss : datasets::write_obstacles(file, obstacles, options)) message("lost: " + loss);
+  };
+  if (out != "-") return write(out);
+  const StagedFolder folder(std::filesystem::temp_directory_path() / "exactvo");
+  const std::filesystem::path file = folder.path() / ("obstacles." + options.format);
+  write(file);
+  std::ifstream written(file, std::ios::binary);
+  print({std::istreambuf_iterator<char>(written), std::istreambuf_iterator<char>()});
+}
+
+std::string guessed_format(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return "";  // a pipe is empty by now
+  try {
+    return datasets::format_of(file);
+  } catch (const DataError&) {
+    return "";
+  }
+}
+
+std::string guess_words(const FileAnswer& answer, const std::string& option) {
+  using datasets::DataCode;
+  const DataCode code = answer.error ? answer.error->code() : DataCode::size;
+  // Another format would not help.
+  if (code == DataCode::size || code == DataCode::file_unreadable || answer.guessed_format.empty()) return "";
+  return fmt::format("; read as {}, which is guessed from its content and name: {} names another format",
+                     answer.guessed_format, option);
+}
+
+std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options) {
+  std::vector<FileAnswer> answers;
+  for (const std::string& file : files) {
+    if (interrupted()) throw Interrupted();
+    answers.push_back(read_one(file, options));
+  }
+  if (interrupted()) throw Interrupted();
+  return answers;
+}
+
+std::string verdict_of(const FileAnswer& answer) {
+  if (!answer.content) return "unreadable";
+  const datasets::ReadCounts& n = answer.content->counts;
+  if (n.rejected > 0) return "invalid";
+  return n.repaired > 0 ? "mended" : "valid";
+}
+
+OrderedJson json_of(const datasets::ReadCounts& n) {
+  return {{"read", n.read},
+          {"done", n.done},
+          {"repaired", n.repaired},
+          {"passed_over", n.passed_over},
+          {"rejected", n.rejected}};
+}
+
+OrderedJson json_of(const FileAnswer& answer) {
+  OrderedJson json;
+  json["file"] = answer.file;
+  json["format"] = answer.content ? OrderedJson(answer.content->format) : OrderedJson(nullptr);
+  json["verdict"] = verdict_of(answer);
+  json["code"] = code_of(answer);
+  json["counts"] = answer.content ? json_of(answer.content->counts) : OrderedJson(nullptr);
+  json["problems"] = problems_json(answer);
+  json["unlisted"] = unlisted_json(answer);
+  json["origin"] = origin_json(answer);
+  json["notes"] = notes_json(answer);
+  return json;
+}
+
+std::string lines_of(const FileAnswer& answer, bool with_mended) {
+  if (answer.error) return shown(answer.error->what() + guess_words(answer)) + "\n";
+  std::string text;
+  for (const RingFinding& f : answer.content->findings) {
+    if (f.mended && !with_mended) continue;
+    text += shown(fmt::format("{}: {}: {}: {} [{}]{}", answer.file, f.place, datasets::words_of_place(f),
+                              datasets::words_of(f), datasets::code_name(f.code), f.mended ? ", repaired" : "")) +
+            "\n";
+  }
+  for (const DataError* error : other_refusals(*answer.content)) text += shown(error->what()) + "\n";
+  for (const auto& [code, count] : answer.content->unlisted)
+    text += shown(fmt::format("{}: {} more, not listed [{}]", answer.file, count, datasets::code_name(code))) + "\n";
+  return text;
+}
+
+std::string counts_line(const FileAnswer& answer) {
+  if (!answer.content) return shown(answer.file) + ": refused";
+  const datasets::ReadCounts& n = answer.content->counts;
+  const std::string text =
+      fmt::format("{}: {}, {} read: {} valid, {} repaired, {} skipped, {} rejected", shown(answer.file),
+                  answer.content->format, n.read, n.done, n.repaired, n.passed_over, n.rejected);
+  // A table without geometry is what a list of points looks like.
+  const bool is_table = answer.content->format == "gdal" && std::filesystem::path(answer.file).extension() == ".csv";
+  if (!is_table || n.read == 0 || n.passed_over < n.read) return text;
+  return text +
+         "; it has no column of geometry: of points give two columns, x and y in metres, and --format points-csv";
+}
+
+std::string text_of(const OrderedJson& json) {
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+OrderedJson json_number(double x) {
+  return std::isfinite(x) ? OrderedJson(unsigned_zero(x)) : OrderedJson(nullptr);
+}
+
+}  // namespace exactvo::tools

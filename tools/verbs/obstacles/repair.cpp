@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo repair: mends obstacle files and says what was done: before, after, and what can't be mended.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "exactvo/datasets/obstacle_write.h"
+#include "exactvo/geometry/counted.h"
+#include "figures/figure_file.h"
+#include "support/escape.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/obstacles/obstacle_files.h"
+#include "verbs/obstacles/repair_figure.h"
+
+namespace exactvo::tools {
+
+using datasets::ObstacleFile;
+using datasets::RepairFacts;
+using datasets::RepairRecord;
+using formation::SceneObstacle;
+
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  ReadingFlags reading;
+  std::string out, to, figure;
+  bool json = false;
+  bool metres = false;
+};
+
+// --- What comes out ---
+
+/// What the ids of each file's obstacles begin with: of several files the name without its extension, and a number
+/// where an earlier one has that already.
+std::vector<std::string> prefixes_of(const std::vector<FileAnswer>& answers) {
+  std::vector<std::string> prefixes;
+  std::set<std::string> taken;
+  for (const FileAnswer& answer : answers) {
+    const std::string stem = std::filesystem::path(answer.file).stem().string();
+    std::string name = stem;
+    for (int number = 2; !taken.insert(name).second; ++number) name = stem + "-" + std::to_string(number);
+    prefixes.push_back(answers.size() > 1 ? name + "/" : "");
+  }
+  return prefixes;
+}
+
+std::vector<SceneObstacle> all_obstacles(const std::vector<FileAnswer>& answers) {
+  const std::vector<std::string> prefixes = prefixes_of(answers);
+  std::vector<SceneObstacle> all;
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    if (!answers[k].content) continue;
+    for (const SceneObstacle& o : answers[k].content->obstacles) all.push_back({prefixes[k] + o.id, o.shape});
+  }
+  return all;
+}
+
+/// Beside `all_obstacles`; none where no file has any.
+std::vector<datasets::FeatureProperties> all_properties(const std::vector<FileAnswer>& answers) {
+  std::vector<datasets::FeatureProperties> all;
+  bool any = false;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    const ObstacleFile& file = *answer.content;
+    any = any || !file.properties.empty();
+    all.insert(all.end(), file.properties.begin(), file.properties.end());
+    if (file.properties.empty()) all.resize(all.size() + file.obstacles.size());
+  }
+  if (!any) all.clear();
+  return all;
+}
+
+bool same_origin(const ObstacleFile& a, const ObstacleFile& b) {
+  if (!a.origin || !b.origin) return !a.origin && !b.origin;
+  return a.origin->longitude == b.origin->longitude && a.origin->latitude == b.origin->latitude;
+}
+
+std::string words_of_origin(const ObstacleFile& file) {
+  if (!file.origin) return file.file + " (metres as they stand)";
+  return fmt::format("{} (round {:.9g}, {:.9g} degrees)", file.file, file.origin->longitude, file.origin->latitude);
+}
+
+/// Degrees are projected round the middle of their own file: what lies side by side on earth would lie on one heap.
+void refuse_several_planes(const std::vector<FileAnswer>& answers) {
+  const ObstacleFile* first = nullptr;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content || answer.content->obstacles.empty()) continue;
+    if (first == nullptr) first = &*answer.content;
+    if (same_origin(*first, *answer.content)) continue;
+    throw UsageError("files", words_of_origin(*first) + " and " + words_of_origin(*answer.content),
+                     "one projection: cannot write one output from files in different projections");
+  }
+}
+
+/// That of all files with obstacles; nowhere on earth where they lie on several.
+datasets::LocalPlane common_plane(const std::vector<FileAnswer>& answers) {
+  const ObstacleFile* first = nullptr;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content || answer.content->obstacles.empty()) continue;
+    if (first == nullptr) first = &*answer.content;
+    const datasets::LocalPlane& plane = answer.content->plane;
+    if (plane.reference_system != first->plane.reference_system || plane.offset != first->plane.offset) return {};
+  }
+  return first == nullptr ? datasets::LocalPlane{} : first->plane;
+}
+
+ExitCode exit_code(const std::vector<FileAnswer>& answers) {
+  const auto is_unread = [](const FileAnswer& a) { return a.error.has_value(); };
+  if (std::any_of(answers.begin(), answers.end(), is_unread)) return ExitCode::bad_input;
+  const auto is_whole = [](const FileAnswer& a) { return a.is_whole(); };
+  return std::all_of(answers.begin(), answers.end(), is_whole) ? ExitCode::success : ExitCode::negative;
+}
+
+// --- The report ---
+
+OrderedJson json_of(const RepairFacts& facts) {
+  return {{"polygons", facts.polygons},
+          {"rings", facts.rings},
+          {"vertices", facts.vertices},
+          {"area", facts.area < 0.0 ? OrderedJson(nullptr) : json_number(facts.area)},
+          {"outer_area", json_number(facts.outer_area)},
+          {"hole_area", json_number(facts.hole_area)}};
+}
+
+OrderedJson json_of(const RepairRecord& r) {
+  OrderedJson codes = OrderedJson::array();
+  for (const datasets::DataCode code : r.codes) codes.push_back(datasets::code_name(code));
+  OrderedJson json;
+  json["feature"] = r.place;
+  json["id"] = r.id;
+  json["codes"] = codes;
+  json["refused"] = r.refused ? OrderedJson(datasets::code_name(*r.refused)) : OrderedJson(nullptr);
+  json["recombined"] = r.recombined;
+  json["moved"] = json_number(r.moved);
+  json["before"] = json_of(r.before);
+  json["after"] = r.refused ? OrderedJson(nullptr) : json_of(r.after);
+  return json;
+}
+
+std::string to_json(const std::vector<FileAnswer>& answers) {
+  OrderedJson json;
+  json["mended"] = exit_code(answers) == ExitCode::success;
+  json["files"] = OrderedJson::array();
+  for (const FileAnswer& answer : answers) {
+    OrderedJson file = tools::json_of(answer);
+    file["repairs"] = OrderedJson::array();
+    if (answer.content) {
+      for (const RepairRecord& record : answer.content->repairs) file["repairs"].push_back(json_of(record));
+    }
+    json["files"].push_back(file);
+  }
+  return text_of(json);
+}
+
+std::string codes_of(const RepairRecord& r) {
+  std::string text;
+  for (const datasets::DataCode code : r.codes) text += (text.empty() ? "" : " ") + std::string(code_name(code));
+  return text;
+}
+
+/// Where each feature's first problem is that has more than one right answer.
+using FirstProblems = std::map<std::string, std::string>;
+
+FirstProblems first_problems(const ObstacleFile& file) {
+  using datasets::DataCode;
+  FirstProblems first;
+  for (const datasets::RingFinding& f : file.findings) {
+    const bool is_plain =
+        f.code == DataCode::unclosed || f.code == DataCode::repeated_vertex || f.code == DataCode::clockwise;
+    if (is_plain || first.count(f.feature) > 0) continue;
+    first[f.feature] = fmt::format("ring {}, vertex {}, {}", f.ring, f.vertex, words_of_place(f));
+  }
+  return first;
+}
+
+std::string words_of_holes(const RepairFacts& before, const RepairFacts& after) {
+  const auto holes = [](const RepairFacts& facts) { return facts.rings - facts.polygons; };
+  if (holes(before) + holes(after) == 0) return "";
+  return fmt::format("; holes {} -> {}, within them {:.9g} -> {:.9g} m^2", holes(before), holes(after),
+                     before.hole_area, after.hole_area);
+}
+
+std::string words_of(const std::string& file, const RepairRecord& r, const FirstProblems& problems) {
+  const auto problem = problems.find(r.place);
+  const std::string where = problem == problems.end() ? "" : problem->second;
+  const std::string start = shown(file + ": " + r.place + ": " + codes_of(r) + ": " + where);
+  return fmt::format("{}: polygons {} -> {}, vertices {} -> {}, within outer rings {:.9g} -> {:.9g} m^2{}{}\n", start,
+                     r.before.polygons, r.after.polygons, r.before.vertices, r.after.vertices, r.before.outer_area,
+                     r.after.outer_area, words_of_holes(r.before, r.after),
+                     r.moved > 0.0 ? fmt::format("; crossings moved by {:.3g} m at most", r.moved) : "");
+}
+
+/// The codes of all repairs with how often each was met: what most people want of a file with thousands.
+std::string tally_of(const ObstacleFile& file) {
+  std::map<datasets::DataCode, std::size_t> counts = file.unlisted;
+  for (const datasets::RingFinding& f : file.findings) ++counts[f.code];
+  std::string text;
+  for (const auto& [code, count] : counts) text += fmt::format(" {} x {}", count, datasets::code_name(code));
+  return text;
+}
+
+/// More than its winding, closure and repeated vertices: those are told by their number only.
+bool is_told(const RepairRecord& r) {
+  return !r.refused && (r.recombined || r.before.rings != r.after.rings);
+}
+
+void note_areas(const ObstacleFile& file) {
+  const auto is_cut = [](const RepairRecord& r) { return is_told(r) && r.recombined; };
+  if (std::any_of(file.repairs.begin(), file.repairs.end(), is_cut))
+    message("note: areas before are by the shoelace formula, in which loops of opposite winding cancel");
+}
+
+void print_report(const std::vector<FileAnswer>& answers) {
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;  // said as an error
+    const FirstProblems problems = first_problems(*answer.content);
+    for (const RepairRecord& record : answer.content->repairs) {
+      if (is_told(record)) print(words_of(answer.content->file, record, problems));
+    }
+    for (const datasets::DataError& error : answer.content->rejected)
+      print("not repaired: " + shown(error.what()) + "\n");
+    note_areas(*answer.content);
+    const std::string tally = tally_of(*answer.content);
+    message(counts_line(answer) + (tally.empty() ? "" : ";" + tally));
+  }
+}
+
+// --- The figure ---
+
+/// What became of one polygon: the obstacles "7", "7-2", "7-3".
+std::vector<geometry::Polygon> outcome(const ObstacleFile& file, const RepairRecord& record) {
+  std::vector<geometry::Polygon> polygons;
+  if (record.refused) return polygons;
+  const auto first = std::find_if(file.obstacles.begin(), file.obstacles.end(),
+                                  [&](const SceneObstacle& o) { return o.id == record.id; });
+  for (auto o = first; o != file.obstacles.end() && polygons.size() < record.after.polygons; ++o) {
+    // A wall may bear the same id.
+    if (const auto* polygon = std::get_if<geometry::Polygon>(&o->shape)) polygons.push_back(*polygon);
+  }
+  return polygons;
+}
+
+std::vector<geometry::Vec2> places_of_problems(const ObstacleFile& file, const RepairRecord& record) {
+  std::vector<geometry::Vec2> places;
+  for (const datasets::RingFinding& f : file.findings) {
+    const bool is_grave = f.code == datasets::DataCode::self_intersection || f.code == datasets::DataCode::hole_outside;
+    if (f.feature == record.place && is_grave) places.push_back(f.where);
+  }
+  return places;
+}
+
+std::size_t number_recombined(const std::vector<FileAnswer>& answers) {
+  std::size_t count = 0;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    for (const RepairRecord& r : answer.content->repairs) count += r.recombined ? 1 : 0;
+  }
+  return count;
+}
+
+/// Those that are drawn: each takes a look at all findings and obstacles.
+std::vector<MendedPolygon> recombined(const std::vector<FileAnswer>& answers) {
+  std::vector<MendedPolygon> polygons;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    for (const RepairRecord& r : answer.content->repairs) {
+      if (!r.recombined) continue;
+      if (polygons.size() == kMostMendedDrawn) return polygons;
+      const std::string name = std::filesystem::path(answer.file).filename().string();
+      polygons.push_back(
+          {name + ", " + r.place, r.given, places_of_problems(*answer.content, r), outcome(*answer.content, r)});
+    }
+  }
+  return polygons;
+}
+
+void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out) {
+  const std::vector<MendedPolygon> polygons = recombined(answers);
+  if (polygons.empty()) return message("no figure: nothing had to be cut");
+  const std::size_t number = number_recombined(answers);
+  if (number > polygons.size())
+    message(
+        fmt::format("the figure shows {} of {} that were cut", polygons.size(), geometry::counted(number, "polygon")));
+  write_figure(repair_figure(polygons), out);
+}
+
+// --- The verb ---
+
+/// What is read, and written beside the figure.
+std::vector<std::filesystem::path> other_files(const Flags& flags) {
+  std::vector<std::filesystem::path> files = all_read_with(flags.files, flags.reading.format);
+  files.emplace_back(flags.out);
+  return files;
+}
+
+ExitCode repair(const Flags& flags) {
+  datasets::ReadOptions options = reading_options(flags.reading);
+  options.repair = true;
+  options.keep_properties = true;
+  if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, other_files(flags));
+  if (flags.out == "-") throw UsageError("--out", "-", "a file: stdout has the report");
+  check_format("--to", flags.to, datasets::writable_formats());
+  const std::string to = datasets::format_to_write(flags.out, flags.to);
+  for (const std::string& file : flags.files) refuse_input_as_output(file, flags.reading.format, "--out", flags.out);
+  const std::vector<FileAnswer> answers = read_each(flags.files, options);
+  const ExitCode code = exit_code(answers);
+  if (flags.json) {
+    print(to_json(answers));
+  } else {
+    print_report(answers);
+  }
+  if (code == ExitCode::bad_input) {
+    for (const FileAnswer& answer : answers) {
+      if (answer.error) error_message(answer.error->what() + guess_words(answer));
+    }
+    return code;
+  }
+  refuse_several_planes(answers);
+  write_or_print(flags.out, all_obstacles(answers), {to, common_plane(answers), flags.metres, all_properties(answers)});
+  message("wrote " + flags.out);
+  if (!flags.figure.empty()) draw_figure(answers, flags.figure);
+  return code;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
+  app.add_option("--out", flags->out,
+                 "Output file for the repaired obstacles of all inputs; its extension selects the format")
+      ->required();
+  app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
+  declare_reading_flags(app, flags->reading);
+  declare_metres(app, flags->metres);
+  app.add_flag("--json", flags->json, "The report as JSON on stdout");
+  app.add_option("--figure", flags->figure, std::string("Every changed polygon before and after. ") + kFigureFileHelp);
+  return [flags] { return repair(*flags); };
+}
+
+}  // namespace
+
+Verb repair_verb() {
+  return {"repair", "Repair invalid obstacle files: winding, closure, spikes, self-crossings, overlaps",
+          "  exactvo repair countries.geojson --out repaired.geojson --figure repaired.svg\n"
+          "    (status 1: some obstacles cannot be repaired; the others are written)\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo segment: obstacles taken apart: facades, convex pieces, hulls, ellipses, each with its certificate.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "exactvo/datasets/atomic_file.h"
+#include "exactvo/datasets/obstacle_record.h"
+#include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/obstacle_shapes.h"
+#include "figures/figure_file.h"
+#include "figures/outlines.h"
+#include "support/escape.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/obstacles/map_figure.h"
+#include "verbs/obstacles/obstacle_files.h"
+
+namespace exactvo::tools {
+
+using geometry::counted;
+
+using geometry::ObstacleShapes;
+using geometry::Vec2;
+
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  ReadingFlags reading;
+  double tolerance = 0.0;
+  double radius = 0.0;
+  double facade_margin = geometry::FacadeEllipseOptions{}.margin;
+  bool repair = false;
+  bool json = false;
+  bool metres = false;
+  std::string out, figure;
+};
+
+struct TakenApart {
+  datasets::RecordHead head;
+  ObstacleShapes shapes;
+  const datasets::ObstacleFile* file = nullptr;
+};
+
+// --- The work ---
+
+/// What is read, and written beside the figure.
+std::vector<std::filesystem::path> other_files(const Flags& flags) {
+  std::vector<std::filesystem::path> files = all_read_with(flags.files, flags.reading.format);
+  if (!flags.out.empty()) files.emplace_back(flags.out);
+  return files;
+}
+
+void check(const Flags& flags) {
+  require_length("--tolerance", flags.tolerance);
+  require_length("--radius", flags.radius);
+  require_length("--facade-margin", flags.facade_margin);
+  if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, other_files(flags));
+  const std::string extension = std::filesystem::path(flags.out).extension().string();
+  if (!flags.out.empty() && extension != ".jsonl" && extension != ".geojson")
+    throw UsageError("--out", flags.out, "a name that ends in .jsonl or .geojson");
+}
+
+std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const Flags& flags) {
+  geometry::ShapeOptions options;
+  options.facades.tolerance = flags.tolerance;
+  options.robot_radius = flags.radius;
+  options.facade_ellipses.margin = flags.facade_margin;
+  options.check_validity = false;  // the reader did
+  std::vector<TakenApart> all;
+  for (const FileAnswer& answer : answers) {
+    if (!answer.content) continue;
+    for (const formation::SceneObstacle& o : answer.content->obstacles) {
+      if (interrupted()) throw Interrupted();
+      all.push_back({{answer.file, o.id, ""}, geometry::shapes_of(o.shape, options), &*answer.content});
+    }
+  }
+  return all;
+}
+
+// --- Records and features ---
+
+std::string records(const std::vector<TakenApart>& all) {
+  std::string text;
+  for (const TakenApart& t : all) text += datasets::to_json(t.head, t.shapes) + "\n";
+  return text;
+}
+
+OrderedJson positions(const Points& points) {
+  OrderedJson list = OrderedJson::array();
+  for (const Vec2 p : points) list.push_back({p.x, p.y});
+  return list;
+}
+
+/// Of points that are metres or degrees already.
+OrderedJson ring_geometry(const Points& ring) {
+  if (ring.size() == 1) return {{"type", "Point"}, {"coordinates", positions(ring)[0]}};
+  if (ring.size() == 2) return {{"type", "LineString"}, {"coordinates", positions(ring)}};
+  Points closed = ring;
+  closed.push_back(ring.front());
+  return {{"type", "Polygon"}, {"coordinates", OrderedJson::array({positions(closed)})}};
+}
+
+/// In degrees each file's obstacles lie where its plane does.
+class Features {
+ public:
+  explicit Features(bool metres) : metres_(metres) {}
+
+  void add(const TakenApart& t) {
+    choose_plane(*t.file);
+    const ObstacleShapes& s = t.shapes;
+    for (const geometry::Segment& f : s.facades.facades) feature(t, "facade", s.facades_follow, {f.a, f.b});
+    for (const geometry::ConvexShape& piece : s.pieces) feature(t, "piece", s.pieces_cover, outline(piece));
+    feature(t, "hull", s.hull_contains, s.hull.vertices);
+    ellipse(t, "smallest ellipse", s.ellipse_contains, s.smallest_ellipse);
+    for (const geometry::FacadeEnclosure& e : s.facade_ellipses)
+      ellipse(t, "facade ellipse", s.facade_ellipses_contain, e.ellipse);
+    if (s.trap_free.ellipse) ellipse(t, "trap-free ellipse", s.trap_free_contains, *s.trap_free.ellipse);
+  }
+
+  /// "local_metres" stands there where all lie on one plane.
+  std::string text() const {
+    OrderedJson collection{{"type", "FeatureCollection"}};
+    if (metres_) {
+      collection["units"] = "m";
+    } else if (planes_ == 1) {
+      collection["local_metres"] = OrderedJson::parse(datasets::local_metres_member(plane_, -1));
+    }
+    collection["features"] = features_;
+    return text_of(collection);
+  }
+
+ private:
+  void choose_plane(const datasets::ObstacleFile& file) {
+    if (metres_ || file_ == &file) return;
+    file_ = &file;
+    ++planes_;
+    plane_ = file.plane;
+    if (!plane_.is_placed() && file.extent) plane_.offset = datasets::offset_for(file.extent->low, file.extent->high);
+    note_place_on_earth(plane_);
+    to_degrees_ = std::make_unique<datasets::MetresToDegrees>(plane_, file.file);
+  }
+
+  static OrderedJson head(const TakenApart& t, const char* what) {
+    OrderedJson properties;
+    properties["file"] = t.head.file;
+    properties["id"] = t.head.id;
+    properties["shape"] = what;
+    return properties;
+  }
+
+  void add(OrderedJson properties, const Points& points) {
+    OrderedJson feature;
+    feature["type"] = "Feature";
+    feature["properties"] = std::move(properties);
+    feature["geometry"] = ring_geometry(to_degrees_ ? (*to_degrees_)(points) : points);
+    features_.push_back(std::move(feature));
+  }
+
+  void feature(const TakenApart& t, const char* what, const geometry::Verdict& verdict, const Points& points) {
+    OrderedJson properties = head(t, what);
+    properties["certified"] = verdict.certified;
+    add(std::move(properties), points);
+  }
+
+  /// The drawn outline has its corners on the ellipse and so lies within it: the certificate is the ellipse's, whose
+  /// numbers, m, stand beside it.
+  void ellipse(const TakenApart& t, const char* what, const geometry::Verdict& verdict, const geometry::Ellipse& e) {
+    OrderedJson properties = head(t, what);
+    properties["ellipse_certified"] = verdict.certified;
+    properties["center_x"] = e.center.x;
+    properties["center_y"] = e.center.y;
+    properties["l11"] = e.l11;
+    properties["l21"] = e.l21;
+    properties["l22"] = e.l22;
+    add(std::move(properties), outline(e));
+  }
+
+  bool metres_;
+  const datasets::ObstacleFile* file_ = nullptr;  ///< of the obstacle before
+  datasets::LocalPlane plane_;
+  int planes_ = 0;
+  std::unique_ptr<datasets::MetresToDegrees> to_degrees_;
+  OrderedJson features_ = OrderedJson::array();
+};
+
+void write_out(const std::vector<TakenApart>& all, const Flags& flags) {
+  const std::string& out = flags.out;
+  if (std::filesystem::path(out).extension() == ".jsonl") return datasets::write_file_atomically(out, records(all));
+  Features features(flags.metres);
+  for (const TakenApart& t : all) features.add(t);
+  datasets::write_file_atomically(out, features.text());
+}
+
+// --- Words ---
+
+const char* word(const geometry::Verdict& verdict) {
+  return verdict.certified ? "certified" : "NOT certified";
+}
+
+std::string words_of(const TakenApart& t) {
+  const ObstacleShapes& s = t.shapes;
+  const geometry::ShapeFigures& f = s.figures;
+  return fmt::format(
+      "{} {}: {}, {:.6g} m^2; {} within {:.3g} m ({}), {} ({}), hull {:.6g} m^2 ({}), "
+      "ellipse {:.6g} m^2 ({}), facade ellipses ({}), trap-free {}\n",
+      shown(t.head.file), shown(t.head.id), counted(f.vertices, "vertex", "vertices"), f.area,
+      counted(s.facades.facades.size(), "facade"), s.facades.deviation, word(s.facades_follow),
+      counted(s.pieces.size(), "piece"), word(s.pieces_cover), f.hull_area, word(s.hull_contains), f.ellipse_area,
+      word(s.ellipse_contains), word(s.facade_ellipses_contain),
+      s.trap_free.ellipse ? fmt::format("{:.6g} m^2 ({})", f.trap_free_area, word(s.trap_free_contains)) : "none");
+}
+
+std::string title_of(const std::vector<std::string>& files, std::size_t obstacles) {
+  const std::string name = std::filesystem::path(files.front()).filename().string();
+  return fmt::format("{}{}: {}", name, files.size() > 1 ? " and others" : "", counted(obstacles, "obstacle"));
+}
+
+void draw_figure(const std::vector<TakenApart>& all, const Flags& flags) {
+  if (all.empty()) return message("no figure: no obstacle");
+  std::vector<ObstacleShapes> shapes;
+  for (const TakenApart& t : all) shapes.push_back(t.shapes);
+  write_figure(shapes_figure(shapes, title_of(flags.files, all.size())), flags.figure);
+}
+
+// --- The verb ---
+
+ExitCode exit_code(const std::vector<FileAnswer>& answers, const std::vector<TakenApart>& all) {
+  const bool all_read = std::all_of(answers.begin(), answers.end(), [](const FileAnswer& a) { return a.is_whole(); });
+  const bool proved = std::all_of(all.begin(), all.end(), [](const TakenApart& t) { return t.shapes.certified(); });
+  return all_read && proved ? ExitCode::success : ExitCode::negative;
+}
+
+ExitCode segment(const Flags& flags) {
+  check(flags);
+  datasets::ReadOptions reading = reading_options(flags.reading);
+  reading.repair = flags.repair;
+  for (const std::string& file : flags.files) refuse_input_as_output(file, flags.reading.format, "--out", flags.out);
+  const std::vector<FileAnswer> answers = read_each(flags.files, reading);
+  for (const FileAnswer& answer : answers) {
+    if (!answer.error) continue;
+    error_message(answer.error->what() + guess_words(answer));
+    return ExitCode::bad_input;
+  }
+  for (const FileAnswer& answer : answers) {
+    for (const datasets::DataError& error : answer.content->rejected) message(std::string("left out: ") + error.what());
+  }
+  const std::vector<TakenApart> all = take_apart(answers, flags);
+  for (const FileAnswer& answer : answers) {
+    if (answer.content->obstacles.empty()) message("no obstacle in " + counts_line(answer));
+  }
+  if (!flags.out.empty()) {
+    write_out(all, flags);
+    message("wrote " + flags.out);
+  }
+  if (!flags.figure.empty()) draw_figure(all, flags);
+  if (flags.json) print(records(all));
+  if (!flags.json && flags.out.empty()) {
+    for (const TakenApart& t : all) print(words_of(t));
+  }
+  return exit_code(answers, all);
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
+  declare_reading_flags(app, flags->reading);
+  app.add_option("--tolerance", flags->tolerance, "Largest distance of a facade from its obstacle, m");
+  app.add_option("--radius", flags->radius, "Of the robot, for clearances by equation (8), m");
+  app.add_option("--facade-margin", flags->facade_margin,
+                 "Least depth of a facade inside its ellipse, m; choose a smaller value for obstacles of millimetres")
+      ->capture_default_str();
+  app.add_flag("--repair", flags->repair, "Repair invalid geometry first");
+  app.add_flag("--json", flags->json, "One JSON record per obstacle and line on stdout");
+  declare_metres(app, flags->metres);
+  app.add_option("--out", flags->out, "FILE.jsonl: the records; FILE.geojson: every shape as a feature");
+  app.add_option("--figure", flags->figure, kFigureFileHelp);
+  return [flags] { return segment(*flags); };
+}
+
+}  // namespace
+
+Verb segment_verb() {
+  return {"segment", "Decompose obstacles: facades, convex pieces, hulls, ellipses, with certificates",
+          "  exactvo segment floor.geojson --figure floor.svg\n"
+          "  exactvo segment city.gpkg --repair --tolerance 0.1 --out city.jsonl\n"
+          "    (status 1: an obstacle is invalid, or a result is not certified)\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo validate: every problem of obstacle files, with its place, code and coordinates.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "support/terminal.h"
+#include "verb.h"
+#include "verbs/obstacles/obstacle_files.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+struct Flags {
+  std::vector<std::string> files;
+  ReadingFlags reading;
+  bool json = false;
+  bool strict = false;
+};
+
+bool has_findings(const FileAnswer& answer) {
+  return answer.content && !answer.content->findings.empty();
+}
+
+/// Mended problems have one right answer: they fail only where asked.
+bool passes(const FileAnswer& answer, bool strict) {
+  return answer.is_whole() && !(strict && has_findings(answer));
+}
+
+ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict) {
+  const auto is_unread = [](const FileAnswer& a) { return a.error.has_value(); };
+  if (std::any_of(answers.begin(), answers.end(), is_unread)) return ExitCode::bad_input;
+  const bool all = std::all_of(answers.begin(), answers.end(), [&](const FileAnswer& a) { return passes(a, strict); });
+  return all ? ExitCode::success : ExitCode::negative;
+}
+
+std::string to_json(const std::vector<FileAnswer>& answers, bool strict) {
+  OrderedJson json;
+  json["valid"] = exit_code(answers, strict) == ExitCode::success;
+  json["files"] = OrderedJson::array();
+  for (const FileAnswer& answer : answers) json["files"].push_back(json_of(answer));
+  return text_of(json);
+}
+
+ExitCode validate(const Flags& flags) {
+  const std::vector<FileAnswer> answers = read_each(flags.files, reading_options(flags.reading));
+  if (flags.json) {
+    print(to_json(answers, flags.strict));
+  } else {
+    for (const FileAnswer& answer : answers) {
+      print(lines_of(answer, true));
+      if (answer.content) message(counts_line(answer));
+    }
+  }
+  return exit_code(answers, flags.strict);
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
+  declare_reading_flags(app, flags->reading);
+  app.add_flag("--json", flags->json, "Everything as JSON on stdout");
+  app.add_flag("--strict", flags->strict,
+               "Status 1 also for what is repaired silently: winding, closure, repeated vertices");
+  return [flags] { return validate(*flags); };
+}
+
+}  // namespace
+
+Verb validate_verb() {
+  return {"validate", "List every problem of obstacle files with place, code and coordinates",
+          "  exactvo validate buildings.geojson walls.wkt\n"
+          "  exactvo validate --json --strict maps/*.yaml\n"
+          "    (status 0: every obstacle can be used; 1: some cannot; 2: a file cannot be read. Codes: "
+          "docs/guide/codes.md)\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

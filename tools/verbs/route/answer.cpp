@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/route/answer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/predicates.h"
+#include "support/escape.h"
+#include "support/route_certificates.h"
+
+namespace exactvo::tools {
+
+using geometry::Blocked;
+using geometry::ChainPoint;
+using geometry::Route;
+using geometry::Separated;
+using geometry::Vec2;
+
+namespace {
+
+/// Listed in words; further ones are counted.
+constexpr std::size_t kMostListed = 20;
+
+const Gap& widest_of(const std::vector<Gap>& gaps) {
+  return *std::max_element(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.width < b.width; });
+}
+
+std::string between(const Gap& gap, const AskedMap& map) {
+  if (gap.from_obstacle == gap.to_obstacle) return "between two parts of " + map.name_of(gap.from_obstacle);
+  return "between " + map.name_of(gap.from_obstacle) + " and " + map.name_of(gap.to_obstacle);
+}
+
+// --- Words ---
+
+/// As WKT has them, every digit.
+std::string line_string(const Route& route) {
+  std::string text;
+  for (const geometry::ExactPoint& p : route.points)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", p.rounded.x, p.rounded.y);
+  return "LINESTRING (" + text + ")";
+}
+
+std::string words(const Route& route, bool in_full) {
+  const std::size_t corners = route.points.size() < 2 ? 0 : route.points.size() - 2;
+  const std::string text = fmt::format("route: {:.6g} m, no route is shorter than {:.6g} m, {} corner{}", route.length,
+                                       route.lower_bound, corners, corners == 1 ? "" : "s");
+  return in_full ? text + "\n" + line_string(route) : text;
+}
+
+std::string closed_by_obstacles(const Separated& separated, const AskedMap& map) {
+  std::set<std::size_t> all;
+  for (const ChainPoint& p : separated.chain) all.insert(p.on.obstacle);
+  if (all.size() == 1) return "closed by " + map.name_of(*all.begin()) + " alone";
+  std::string names;
+  std::size_t listed = 0;
+  for (const std::size_t obstacle : all) {
+    if (listed++ == kMostListed) break;
+    names += (names.empty() ? "" : ", ") + map.name_of(obstacle);
+  }
+  return fmt::format("closed by {} obstacles without a gap: {}{}", all.size(), names,
+                     all.size() > kMostListed ? ", ..." : "");
+}
+
+std::string listed(const std::vector<Gap>& gaps, const AskedMap& map) {
+  std::string text;
+  for (std::size_t k = 0; k < std::min(gaps.size(), kMostListed); ++k)
+    text += fmt::format("\n  gap of {:.6g} m {}, from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g})", gaps[k].width,
+                        between(gaps[k], map), gaps[k].from.x, gaps[k].from.y, gaps[k].to.x, gaps[k].to.y);
+  if (gaps.size() > kMostListed) text += fmt::format("\n  ... and {} more", gaps.size() - kMostListed);
+  return text;
+}
+
+/// By the parity of crossings of the chain as rounded.
+bool goes_round(const std::vector<ChainPoint>& chain, Vec2 p) {
+  bool inside = false;
+  for (std::size_t k = 0; k < chain.size(); ++k) {
+    const Vec2 a = chain[k].point.rounded, b = chain[(k + 1) % chain.size()].point.rounded;
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    inside ^= (geometry::orientation(a, b, p) == geometry::Sign::positive) == (b.y > a.y);
+  }
+  return inside;
+}
+
+/// "start" or "goal"; nothing where the rounded chain cannot tell.
+const char* enclosed_end(const Separated& separated, const geometry::RouteQuestion& question) {
+  const bool start = goes_round(separated.chain, question.start), goal = goes_round(separated.chain, question.goal);
+  if (start == goal) return nullptr;
+  return start ? "start" : "goal";
+}
+
+std::string words(const Separated& separated, const AskedMap& map, const geometry::RouteQuestion& question,
+                  bool in_full) {
+  const std::vector<Gap> gaps = gaps_of(separated);
+  const char* const enclosed = enclosed_end(separated, question);
+  const std::string begin = enclosed ? fmt::format("separated, the {} is enclosed: ", enclosed) : "separated: ";
+  if (gaps.empty()) return begin + closed_by_obstacles(separated, map);
+  const Gap& widest = widest_of(gaps);
+  const auto [width, needed] = widths_told_apart(widest.width, 2.0 * question.radius);
+  const std::string text = gaps.size() == 1
+                               ? begin + fmt::format("closed by 1 gap, {} m, {}, which would have to be {} m", width,
+                                                     between(widest, map), needed)
+                               : begin + fmt::format("closed by {} gaps; the widest, {} m, {}, would have to be {} m",
+                                                     gaps.size(), width, between(widest, map), needed);
+  return in_full ? text + listed(gaps, map) : text;
+}
+
+double distance_to(const Blocked& blocked, const AskedMap& map, Vec2 end) {
+  return geometry::distance(geometry::edges_of(map.shapes[blocked.by.obstacle])[blocked.by.edge], end);
+}
+
+Vec2 end_of(const Blocked& blocked, const geometry::RouteQuestion& question) {
+  return blocked.end == Blocked::End::start ? question.start : question.goal;
+}
+
+const char* end_name(const Blocked& blocked) {
+  return blocked.end == Blocked::End::start ? "start" : "goal";
+}
+
+std::string words(const Blocked& blocked, const AskedMap& map, const geometry::RouteQuestion& question) {
+  const std::string by = map.name_of(blocked.by.obstacle);
+  if (blocked.inside) return fmt::format("blocked: the {} is inside {}", end_name(blocked), by);
+  const double distance = distance_to(blocked, map, end_of(blocked, question));
+  if (distance == 0.0) return fmt::format("blocked: the {} is on {}", end_name(blocked), by);
+  const auto [near, needed] = widths_told_apart(distance, question.radius);
+  return fmt::format("blocked: the {} is {} m from {} and would have to be {} m", end_name(blocked), near, by, needed);
+}
+
+// --- JSON ---
+
+OrderedJson pair_json(Vec2 p) {
+  return OrderedJson::array({p.x, p.y});
+}
+
+/// For people and their programs: the certificate alone is what is proven.
+OrderedJson gaps_json(const Separated& separated, const AskedMap& map) {
+  OrderedJson list = OrderedJson::array();
+  for (const Gap& gap : gaps_of(separated))
+    list.push_back({{"width", gap.width},
+                    {"from", pair_json(gap.from)},
+                    {"to", pair_json(gap.to)},
+                    {"between", {map.obstacles[gap.from_obstacle].id, map.obstacles[gap.to_obstacle].id}}});
+  return list;
+}
+
+OrderedJson blocked_json(const Blocked& blocked, const AskedMap& map, const geometry::RouteQuestion& question) {
+  const OrderedJson distance =
+      blocked.inside ? OrderedJson(nullptr) : OrderedJson(distance_to(blocked, map, end_of(blocked, question)));
+  return {{"end", end_name(blocked)},
+          {"inside", blocked.inside},
+          {"obstacle", map.obstacles[blocked.by.obstacle].id},
+          {"distance", distance}};
+}
+
+void add_answer(const AnsweredRoute& answered, const AskedMap& map, bool with_obstacles, OrderedJson& json) {
+  const geometry::RouteAnswer& answer = *answered.answer;
+  const auto* route = std::get_if<Route>(&answer);
+  json["length"] = route ? OrderedJson(route->length) : OrderedJson(nullptr);
+  json["lower_bound"] = route ? OrderedJson(route->lower_bound) : OrderedJson(nullptr);
+  json["points"] = route ? rounded_json(route->points) : OrderedJson(nullptr);
+  if (const auto* separated = std::get_if<Separated>(&answer)) {
+    const char* const enclosed = enclosed_end(*separated, answered.question);
+    json["enclosed"] = enclosed ? OrderedJson(enclosed) : OrderedJson(nullptr);
+    json["needed_width"] = 2.0 * answered.question.radius;
+    json["gaps"] = gaps_json(*separated, map);
+  }
+  if (const auto* blocked = std::get_if<Blocked>(&answer))
+    json["blocked"] = blocked_json(*blocked, map, answered.question);
+  json["certificate"] = certificate_json(answered.question, answer, with_obstacles ? &map.obstacles : nullptr);
+}
+
+}  // namespace
+
+bool AnsweredRoute::is_route() const {
+  return answer ? std::holds_alternative<Route>(*answer) : widest.value_or(0.0) > 0.0;
+}
+
+std::vector<Gap> gaps_of(const Separated& separated) {
+  std::vector<Gap> gaps;
+  const std::vector<ChainPoint>& chain = separated.chain;
+  for (std::size_t k = 0; k < chain.size(); ++k) {
+    if (!chain[k].gap_follows) continue;
+    const ChainPoint& next = chain[(k + 1) % chain.size()];
+    const Vec2 from = chain[k].point.rounded, to = next.point.rounded;
+    gaps.push_back({from, to, chain[k].on.obstacle, next.on.obstacle, geometry::norm(to - from)});
+  }
+  return gaps;
+}
+
+std::pair<std::string, std::string> widths_told_apart(double width, double needed) {
+  constexpr int kLeastDigits = 3, kMostDigits = 17;
+  for (int digits = kLeastDigits; digits <= kMostDigits; ++digits) {
+    std::string a = fmt::format("{:.{}g}", width, digits), b = fmt::format("{:.{}g}", needed, digits);
+    if (a != b) return {std::move(a), std::move(b)};
+  }
+  return {fmt::format("less than {}", width), fmt::format("{}", needed)};
+}
+
+std::string words_of(const AnsweredRoute& answered, const AskedMap& map, bool in_full) {
+  std::string text;
+  if (answered.answer) {
+    if (const auto* route = std::get_if<Route>(&*answered.answer)) text = words(*route, in_full);
+    if (const auto* separated = std::get_if<Separated>(&*answered.answer))
+      text = words(*separated, map, answered.question, in_full);
+    if (const auto* blocked = std::get_if<Blocked>(&*answered.answer)) text = words(*blocked, map, answered.question);
+    text = shown_lines(text);
+  }
+  if (answered.widest) {
+    if (answered.answer) text += in_full ? "\n" : "; ";
+    text += answered.has_no_obstacle
+                ? "widest radius: any, there is no obstacle"
+                : fmt::format("widest radius: {}{} m", answered.is_widest_of_map ? "at least " : "", *answered.widest);
+  }
+  return text + "\n";
+}
+
+std::string json_of(const AnsweredRoute& answered, const AskedMap& map, bool with_obstacles) {
+  OrderedJson json;
+  json["index"] = answered.index;
+  if (answered.answer) {
+    json["status"] = status_of(*answered.answer);
+    json["radius"] = answered.question.radius;
+  }
+  json["start"] = pair_json(answered.question.start);
+  json["goal"] = pair_json(answered.question.goal);
+  if (answered.widest) json["widest_radius"] = *answered.widest;
+  if (answered.is_widest_of_map) json["widest_radius_is_bound_of_map"] = true;
+  if (answered.answer) add_answer(answered, map, with_obstacles, json);
+  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo route: whether a disc gets from A to B among obstacles, by a route or a reason why not, with certificates.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "exactvo/geometry/box.h"
+#include "exactvo/geometry/routes.h"
+#include "figures/figure_file.h"
+#include "support/fields.h"
+#include "support/robot_limits.h"
+#include "support/stop.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/route/answer.h"
+#include "verbs/route/map.h"
+#include "verbs/route/queries.h"
+
+namespace exactvo::tools {
+
+using geometry::RouteMap;
+using geometry::RoutePlan;
+using geometry::Vec2;
+
+namespace {
+
+struct Flags {
+  std::string map;
+  ReadingFlags reading;
+  std::string cell_point = kCellPoints[0];
+  std::string from, to, queries, figure;
+  std::optional<double> radius;
+  bool widest = false;
+  bool repair = false;
+  bool json = false;
+};
+
+// --- What goes together ---
+
+void require(bool ok, const char* option, const std::string& found, const char* expected) {
+  if (!ok) throw UsageError(option, found, expected);
+}
+
+void check_radius(const Flags& flags) {
+  require(flags.radius || flags.widest, "--radius", "nothing", "the radius of the disc in m, or --widest");
+  if (!flags.radius) return;
+  constexpr double kLeast = 0x1p-100;
+  require(*flags.radius >= kLeast && *flags.radius <= kLargestNumber, "--radius", fmt::format("{}", *flags.radius),
+          "a length from 2^-100 m to 2^100 m (for a point give a radius that is small for the map, such as 1e-9)");
+}
+
+void check(const Flags& flags) {
+  if (flags.queries.empty()) {
+    require(!flags.from.empty(), "--from", "nothing", "the start, X,Y, or --queries FILE for many questions");
+    require(!flags.to.empty(), "--to", "nothing", "the goal, X,Y");
+  } else {
+    require(flags.from.empty() && flags.to.empty(), "--queries",
+            std::string("--queries beside ") + (flags.from.empty() ? "--to" : "--from"), "one of the two");
+    require(flags.figure.empty(), "--figure", "--figure beside --queries", "one question: --from and --to");
+  }
+  check_radius(flags);
+  require(flags.figure.empty() || flags.radius, "--figure", "--figure without --radius", "the radius of the disc in m");
+  const bool known = std::any_of(std::begin(kCellPoints), std::end(kCellPoints),
+                                 [&](const char* word) { return flags.cell_point == word; });
+  require(known, "--cell-point", flags.cell_point, "one of middle corner");
+  if (flags.figure.empty()) return;
+  check_figure_name("--figure", flags.figure, all_read_with({flags.map}, flags.reading.format));
+}
+
+// --- Points ---
+
+Vec2 pair_in(const char* option, const std::string& text, const AskedMap& map) {
+  const std::vector<std::string_view> fields = fields_of(text);
+  const bool are_two = fields.size() == 2 && text.find(',') != std::string::npos;
+  const std::optional<double> x = are_two ? number_in(fields[0]) : std::nullopt;
+  const std::optional<double> y = are_two ? number_in(fields[1]) : std::nullopt;
+  if (!x || !y) throw UsageError(option, text, map.accepted_points());
+  return {*x, *y};
+}
+
+Vec2 point_in(const char* option, const std::string& text, const AskedMap& map) {
+  const std::optional<Vec2> metres = map.in_metres(pair_in(option, text, map));
+  if (!metres) throw UsageError(option, text, map.accepted_points());
+  return *metres;
+}
+
+geometry::Box box_of(const AskedMap& map) {
+  geometry::Box box;
+  for (const geometry::Obstacle& obstacle : map.shapes)
+    for (const Vec2 p : geometry::vertices_of(obstacle)) box.add(p);
+  return box.is_empty() ? geometry::Box{{0.0, 0.0}, {0.0, 0.0}} : box;
+}
+
+/// m: how far outside of the obstacles' box the points lie, in x or in y.
+double distance_of(const geometry::Box& box, std::initializer_list<Vec2> points) {
+  double distance = 0.0;
+  for (const Vec2 p : points)
+    distance = std::max({distance, box.low.x - p.x, p.x - box.high.x, box.low.y - p.y, p.y - box.high.y});
+  return distance;
+}
+
+/// What a map has to cover for points so far outside of the obstacles' box.
+geometry::RouteMapOptions options_for(const Flags& flags, const geometry::Box& box, double distance) {
+  // No point keeps farther from all obstacles than sqrt 2 (distance + side): no wider disc is free anywhere.
+  const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+  const double widest = flags.widest ? 2.0 * (distance + side) : 0.0;
+  const auto within_range = [](double length) { return std::min(length, kLargestNumber); };
+  return {within_range(std::max(flags.radius.value_or(0.0), widest)),
+          within_range(2.0 * distance)};  // twice: more than is needed, whatever is rounded
+}
+
+// --- Answering ---
+
+class Answers {
+ public:
+  Answers(const AskedMap& asked, const Flags& flags, const geometry::RouteMapOptions& options)
+      : asked_(asked), flags_(flags), routes_(asked.shapes, options) {
+    if (flags.radius) plan_.emplace(routes_, *flags.radius);
+  }
+
+  bool covers(Vec2 point) const { return routes_.covers(point); }
+
+  AnsweredRoute answer(std::size_t index, Vec2 start, Vec2 goal) const {
+    AnsweredRoute answered{index, {flags_.radius.value_or(0.0), start, goal}, std::nullopt, std::nullopt, false, false};
+    if (plan_) answered.answer = plan_->query(start, goal);
+    if (!flags_.widest) return answered;
+    answered.widest = routes_.widest_radius(start, goal);
+    answered.is_widest_of_map = *answered.widest == routes_.largest_radius();
+    answered.has_no_obstacle = asked_.shapes.empty();
+    return answered;
+  }
+
+  /// Obstacles go with the first certificate.
+  void print_answer(const AnsweredRoute& answered) const {
+    if (flags_.json) return print(json_of(answered, asked_, answered.index == 0));
+    const bool is_one_of_many = !flags_.queries.empty();
+    print((is_one_of_many ? fmt::format("{}: ", answered.index) : "") + words_of(answered, asked_, !is_one_of_many));
+  }
+
+ private:
+  const AskedMap& asked_;
+  const Flags& flags_;
+  RouteMap routes_;
+  std::optional<RoutePlan> plan_;
+};
+
+ExitCode answer_one(const AskedMap& map, const Flags& flags) {
+  const Vec2 start = point_in("--from", flags.from, map), goal = point_in("--to", flags.to, map);
+  const geometry::Box box = box_of(map);
+  const Answers answers(map, flags, options_for(flags, box, distance_of(box, {start, goal})));
+  const AnsweredRoute answered = answers.answer(0, start, goal);
+  if (!flags.figure.empty()) write_figure(route_figure(answered, map), flags.figure);
+  answers.print_answer(answered);
+  return answered.is_route() ? ExitCode::success : ExitCode::negative;
+}
+
+Vec2 place_of(Vec2 given, const char* end, const AskedMap& map, const Answers& answers, const RouteQueries& queries) {
+  const std::optional<Vec2> metres = map.in_metres(given);
+  const std::string found = fmt::format("the {} {},{}", end, given.x, given.y);
+  if (!metres) queries.refuse(datasets::DataCode::out_of_range, found, map.accepted_points());
+  if (!answers.covers(*metres))
+    queries.refuse(datasets::DataCode::out_of_range, found,
+                   "a point within four times the size of the map from it (--from and --to take any)");
+  return *metres;
+}
+
+/// Of the longer side of the obstacles' box.
+constexpr double kFarthestOfQueries = 4.0;
+/// m; all that --from and --to take.
+constexpr double kFarthestOfEmptyMap = kLargestNumber;
+
+ExitCode answer_many(const AskedMap& map, const Flags& flags) {
+  RouteQueries queries(flags.queries, map);
+  const geometry::Box box = box_of(map);
+  const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+  const double farthest = map.shapes.empty() ? kFarthestOfEmptyMap : kFarthestOfQueries * side;
+  const Answers answers(map, flags, options_for(flags, box, farthest));
+  bool all = true;
+  while (const std::optional<RouteQuery> query = queries.next()) {
+    const Vec2 start = place_of(query->start, "start", map, answers, queries);
+    const Vec2 goal = place_of(query->goal, "goal", map, answers, queries);
+    const AnsweredRoute answered = answers.answer(query->index, start, goal);
+    answers.print_answer(answered);
+    all = all && answered.is_route();
+  }
+  return all ? ExitCode::success : ExitCode::negative;
+}
+
+ExitCode route(const Flags& flags) {
+  check(flags);
+  datasets::ReadOptions reading = reading_options(flags.reading);
+  reading.keep_going = false;
+  reading.repair = flags.repair;
+  const AskedMap map = read_asked_map(flags.map, reading, flags.cell_point);
+  if (map.cells)
+    message(
+        fmt::format("{}: points are {}s of cells, columns from the left and rows from the top, from 0; answers are "
+                    "in m, y upward",
+                    map.file, flags.cell_point));
+  const TerminateOnSignal terminate_on_signal;
+  return flags.queries.empty() ? answer_one(map, flags) : answer_many(map, flags);
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("map", flags->map, "An obstacle file of any readable format, or a scenario")->required();
+  app.add_option("--from", flags->from,
+                 "Start X,Y: m as the reader lays the file out (degrees are projected first, and it says how); on a "
+                 "Moving AI map cells, as in its .scen");
+  app.add_option("--to", flags->to, "Goal X,Y, likewise");
+  app.add_option("--radius", flags->radius, "Of the disc, m, > 0");
+  app.add_flag("--widest", flags->widest, "The largest radius for which there is a route, an exact double");
+  app.add_option("--queries", flags->queries,
+                 "FILE, or - for stdin: many questions, one line of answer each. CSV with the columns "
+                 "start_x,start_y,goal_x,goal_y, or a .scen of the Moving AI benchmarks");
+  app.add_option("--cell-point", flags->cell_point,
+                 "What of a cell of a Moving AI map is meant: middle, or corner (its top left one)")
+      ->capture_default_str();
+  declare_reading_flags(app, flags->reading);
+  app.add_flag("--repair", flags->repair, "Repair invalid geometry first");
+  app.add_flag("--json", flags->json, "One line of JSON per question, with its certificate");
+  app.add_option("--figure", flags->figure, kFigureFileHelp);
+  return [flags] { return route(*flags); };
+}
+
+}  // namespace
+
+Verb route_verb() {
+  return {"route", "Decide whether a disc gets from A to B: a route, or the closed chain of obstacles and gaps",
+          "  exactvo route office.geojson --from 2,3 --to 18,7 --radius 0.4 --figure out/route.svg\n"
+          "  exactvo route office.geojson --from 2,3 --to 18,7 --widest\n"
+          "  exactvo route arena.map --queries arena.map.scen --radius 0.3 --json > answers.jsonl\n"
+          "  exactvo audit --certificate answers.jsonl\n"
+          "    (status 1: for one question at least there is no route; answers of --queries are printed as the "
+          "questions are\n"
+          "    read, so those before a bad line stay)\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

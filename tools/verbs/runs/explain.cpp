@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo explain: one robot's velocity space at one moment, drawn and in words.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "exactvo/datasets/input_files.h"
+#include "exactvo/datasets/recording_file.h"
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/stuck.h"
+#include "explain/explanation.h"
+#include "figures/figure_file.h"
+#include "figures/velocity_space.h"
+#include "support/escape.h"
+#include "support/run.h"
+#include "support/simulation_flags.h"
+#include "support/stop.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+using formation::Scenario;
+
+namespace {
+
+struct Flags {
+  std::string scenario;
+  SimulationFlags simulation;
+  double time = 0.0;
+  std::string robot;
+  std::string out;
+};
+
+std::vector<std::string> robot_ids(const Scenario& scenario) {
+  std::vector<std::string> ids;
+  for (const auto& robot : scenario.robots) ids.push_back(robot.id);
+  return ids;
+}
+
+/// By id, or by number counted from 0 where no robot has that id.
+std::size_t find_robot(const Scenario& scenario, const std::string& text) {
+  const std::vector<std::string> ids = robot_ids(scenario);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (ids[i] == text || (std::to_string(i) == text && std::find(ids.begin(), ids.end(), text) == ids.end())) return i;
+  }
+  throw UsageError(
+      "--robot", text,
+      fmt::format("a number from 0 to {} or one of {}{}", ids.size() - 1, fmt::join(ids, " "), suggestion(text, ids)));
+}
+
+/// Throws UsageError for a time after the end of the run.
+void check_time(const formation::Recording& recording, double time) {
+  if (recording.steps.size() < 2)
+    throw UsageError("--time", fmt::format("{}", time), "a time before the end of the run");
+  const double end = recording.steps.back().time;
+  if (time > end + 0.5 * recording.time_step)
+    throw UsageError("--time", fmt::format("{}", time), fmt::format("at most {:.6g} s, when the run ends", end));
+}
+
+/// The last row in which a decision was taken: the final row of a recording has none.
+const formation::Step& last_decision(const formation::Recording& recording) {
+  return recording.steps[recording.steps.size() - 2];
+}
+
+std::string method_words(const Scenario& scenario, const formation::SimulationOptions& options) {
+  const std::string method = std::string("method ") + name(options.method);
+  if (scenario.formation) return method + ", controller " + name(options.controller);
+  const formation::Guidance guidance = guidance_of(scenario, options);
+  const formation::Liveness liveness = liveness_of(scenario, options);
+  return method + (guidance == formation::Guidance::none ? "" : std::string(", guidance ") + name(guidance)) +
+         (liveness == formation::Liveness::off ? "" : std::string(", liveness ") + name(liveness));
+}
+
+struct Explained {
+  Decision decision;
+  std::vector<std::string> remarks;  ///< of the run so far
+};
+
+/// Warnings of the run, and, of a robot that hardly moves, what it rests on.
+std::vector<std::string> remarks_on(const Scenario& scenario, const formation::Recording& recording,
+                                    std::size_t robot) {
+  constexpr double kAtRest = 0.01;  // of its greatest speed
+  std::vector<std::string> remarks;
+  for (const std::string& warning : recording.warnings) remarks.push_back("Warning: " + warning + ".");
+  for (const formation::StuckReport& report : formation::explain_stuck(scenario, recording))
+    if (report.robot == robot && report.speed < kAtRest * scenario.robots[robot].max_speed)
+      remarks.push_back("Stuck: " + report.text + ".");
+  return remarks;
+}
+
+Explained decide(const Flags& flags, const Scenario& scenario) {
+  formation::SimulationOptions options = simulation_options(flags.simulation);
+  options.stop_at = flags.time;
+  options.progress = [](double) { return !interrupted(); };
+  const std::size_t robot = find_robot(scenario, flags.robot);
+  const TerminateOnSignal terminate_on_signal;
+  const formation::Recording recording = formation::simulate(scenario, options);
+  if (interrupted()) throw Interrupted();
+  check_time(recording, flags.time);
+  const formation::Step& step = last_decision(recording);
+  return {{scenario, method_words(scenario, options), robot, step.time, step.robots.at(robot)},
+          remarks_on(scenario, recording, robot)};
+}
+
+/// The run as it was at a time: up to the row after the last one at or before it.
+void cut_after(formation::Recording& run, double time) {
+  constexpr double kSameRow = 1e-6;  // of a step: 6 * 0.05 is not 0.3 in doubles
+  std::size_t last = 0;
+  while (last + 2 < run.steps.size() && run.steps[last + 1].time <= time + kSameRow * run.time_step) ++last;
+  if (last + 2 == run.steps.size()) return;
+  run.steps.resize(last + 2);
+  run.diverged = formation::has_diverged(run);
+}
+
+Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
+  datasets::RecordingFile file = datasets::read_recording(path);
+  const std::size_t robot = find_robot(file.scenario, flags.robot);
+  check_time(file.recording, flags.time);
+  cut_after(file.recording, flags.time);
+  const formation::Step& step = last_decision(file.recording);
+  const std::string method = "method " + file.info.method +
+                             (file.info.controller ? ", controller " + *file.info.controller : "") +
+                             (file.info.guidance ? ", guidance " + *file.info.guidance : "") +
+                             (file.info.liveness ? ", liveness " + *file.info.liveness : "");
+  Explained explained{{file.scenario, method, robot, step.time, step.robots.at(robot)},
+                      remarks_on(file.scenario, file.recording, robot)};
+  if (!file.recording.all_half_planes)
+    explained.remarks.push_back(
+        "The recording has only the half-planes that bind and those against what could be met within a time step: "
+        "simulate --record-all keeps the others too.");
+  return explained;
+}
+
+/// Of a recording, or of a scenario that is run until then.
+Explained explained_by(const Flags& flags) {
+  if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time of at least 0 s");
+  if (const auto recording = recording_at(flags.scenario)) {
+    check_figure_name("--out", flags.out, {*recording});
+    note_recorded(flags.simulation);
+    return decision_in(flags, *recording);
+  }
+  check_figure_name("--out", flags.out, datasets::files_read_with(flags.scenario, "scenario"));
+  const Scenario scenario = read_scenario(flags.scenario).scenario;
+  note_unused(flags.simulation, scenario);
+  return decide(flags, scenario);
+}
+
+ExitCode explain(const Flags& flags) {
+  const Explained explained = explained_by(flags);
+  print(shown_lines(explanation(explained.decision)));
+  for (const std::string& remark : explained.remarks) print(shown(remark) + "\n");
+  if (!flags.out.empty()) write_figure(velocity_space_figure(explained.decision), flags.out);
+  return ExitCode::success;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin; or the recording of a run, or its folder")
+      ->required();
+  app.add_option("--time,-t", flags->time, "Time of the decision, s")->required();
+  app.add_option("--robot,-r", flags->robot, "The robot: its id, or its index from 0")->required();
+  declare_out(app, flags->out, kFigureFileHelp);
+  declare_simulation_flags(app, flags->simulation);
+  return [flags] { return explain(*flags); };
+}
+
+}  // namespace
+
+Verb explain_verb() {
+  return {"explain", "Draw one robot's velocity space at one moment and explain which constraints are binding",
+          "  exactvo explain datasets/data/paper/A1.json --method orca --time 10 --robot R1 --out out/stuck.svg\n"
+          "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
+          "  exactvo explain out/A7 --time 3 --robot R1\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo paper: Section V of the paper from one command; on request the random fields and the ladder of remedies.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "paper/campaign.h"
+#include "paper/campaign_tables.h"
+#include "paper/report.h"
+#include "paper/section_five.h"
+#include "support/data_folder.h"
+#include "support/files.h"
+#include "support/parse_errors.h"
+#include "support/simulation_flags.h"
+#include "support/terminal.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Flags {
+  std::string out;
+  std::string data;
+  std::uint64_t seed = datasets::kFieldSeed;
+  std::uint64_t random = 0;
+  bool ablations = false;
+  std::uint64_t fields = 100;
+  unsigned jobs = 0;
+  bool json = false;
+  bool no_figures = false;
+  const CLI::Option* fields_given = nullptr;
+  const CLI::Option* jobs_given = nullptr;
+};
+
+void note_unused(const Flags& flags) {
+  if (flags.fields_given->count() > 0 && !flags.ablations)
+    message("note: --fields does nothing here: it is of --ablations");
+  if (flags.jobs_given->count() > 0 && !flags.ablations && flags.random == 0)
+    message("note: --jobs does nothing here: it is of --random and --ablations");
+}
+
+/// The pictures of an earlier --ablations, put where the report in the making looks for them.
+bool copy_pictures(const fs::path& from, const fs::path& to) {
+  bool any = false;
+  for (const char* name : {"ablations/remedies.png", "ablations/remedies_jitter.png"}) {
+    if (!fs::exists(from / name)) continue;
+    make_folder((to / name).parent_path());
+    fs::copy_file(from / name, to / name);
+    any = true;
+  }
+  return any;
+}
+
+/// What the report will be made of, read before the work: a damaged file is told at once.
+void check_earlier_files(const Flags& flags) {
+  ReportData(flags.out, flags.out, {});
+}
+
+/// What the report says of the campaigns changes with them.
+void renew_report(const Flags& flags) {
+  const ReportData data(flags.out, flags.out, data_folder(flags.data, "paper"));
+  if (!data.has_runs()) return;
+  write_report(data, flags.out);
+  message("renewed " + flags.out + "/report.html and report.md");
+}
+
+ExitCode section_five(const Flags& flags) {
+  StagedFolder folder(flags.out);
+  const SectionFiveOptions options{data_folder(flags.data, "paper"), command_line(), flags.seed, flags.json,
+                                   flags.no_figures};
+  const std::string summary = run_section_five(options, folder.path());
+  if (interrupted()) throw Interrupted();
+  // The campaigns' pictures, where an earlier command left some, are found beside those of this one.
+  const bool campaigns_before = copy_pictures(flags.out, folder.path());
+  write_report(ReportData(folder.path(), flags.out, options.scenarios), folder.path());
+  if (campaigns_before) fs::remove_all(folder.path() / "ablations");
+  if (flags.json) print(summary);
+  if (flags.no_figures) remove_figures(flags.out);
+  folder.publish("summary.json");
+  message("wrote " + flags.out + "/summary.json, report.html, report.md" +
+          (flags.no_figures ? "" : ", explorer.html and figures/"));
+  return ExitCode::success;
+}
+
+CampaignOptions campaign_options(const Flags& flags, const char* folder, std::uint64_t fields) {
+  const unsigned jobs = flags.jobs > 0 ? flags.jobs : std::max(1u, std::thread::hardware_concurrency());
+  return {fs::path(flags.out) / folder / "parts", fields, flags.seed, jobs};
+}
+
+void say(const Flags& flags, const CampaignFiles& files) {
+  print(flags.json ? files.json : files.table);
+}
+
+/// What a request to stop leaves: the parts that are done.
+ExitCode kept_parts(const Flags& flags) {
+  std::error_code error;
+  const bool any = fs::exists(flags.out, error);
+  error_message(any ? "interrupted; what was finished is kept in " + flags.out + ": the same command goes on from there"
+                    : std::string("interrupted; nothing was finished, so nothing is kept"));
+  return ExitCode::interrupted;
+}
+
+ExitCode campaigns(const Flags& flags) try {
+  if (flags.random > 0) {
+    const CampaignOptions options = campaign_options(flags, "random", flags.random);
+    const CampaignFiles files = random_fields(options);
+    write_campaign(files, fs::path(flags.out) / "random", "random");
+    say(flags, files);
+    message("wrote " + flags.out + "/random/");
+  }
+  if (flags.ablations) {
+    const CampaignOptions options = campaign_options(flags, "ablations", flags.fields);
+    const CampaignFiles files = ablations(options, data_folder(flags.data, "paper"));
+    write_campaign(files, fs::path(flags.out) / "ablations", "ablations");
+    if (!flags.no_figures) draw_campaign(files, fs::path(flags.out) / "ablations");
+    say(flags, files);
+    message("wrote " + flags.out + "/ablations/");
+  }
+  renew_report(flags);
+  return ExitCode::success;
+} catch (const Interrupted&) {
+  return kept_parts(flags);
+}
+
+ExitCode paper(const Flags& flags) {
+  check_output_folder(flags.out);
+  note_unused(flags);
+  check_earlier_files(flags);
+  return flags.random > 0 || flags.ablations ? campaigns(flags) : section_five(flags);
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  declare_out(app, flags->out,
+              "Folder for summary.json, report.html, report.md, explorer.html and figures/; random/ or ablations/")
+      ->required();
+  app.add_option("--data", flags->data,
+                 "Folder that contains paper/A1.json and so on; by default the one installed with the program");
+  app.add_option(
+         "--random", flags->random,
+         "Instead of Section V: run this many random fields of each kind and count those each method crosses safely")
+      ->check(whole_number(1, 1000000));
+  app.add_flag("--ablations", flags->ablations,
+               "Instead of Section V: the controller options added one by one, and the default less one at a time");
+  flags->fields_given =
+      app.add_option("--fields", flags->fields, "Random formations for each set of controller options of --ablations")
+          ->capture_default_str()
+          ->check(whole_number(1, 1000000));
+  flags->jobs_given =
+      app.add_option("--jobs,-j", flags->jobs,
+                     "Threads for --random and --ablations, by default one per processor; results do not depend on it")
+          ->check(whole_number(1, 1024));
+  declare_seed(app, flags->seed, "Seed of the random fields; recorded in the provenance");
+  app.add_flag("--json", flags->json, "Print the JSON instead of the tables");
+  app.add_flag("--no-figures", flags->no_figures, "Write no figures and no explorer.html");
+  return [flags] { return paper(*flags); };
+}
+
+}  // namespace
+
+Verb paper_verb() {
+  return {"paper", "Run the paper's experiments (Section V) and draw its figures; count random fields",
+          "  exactvo paper --out out/paper\n"
+          "  exactvo paper --out out/paper --random 1000 --jobs 2\n"
+          "  exactvo paper --out out/paper --ablations\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo simulate: one scenario, one method, its metrics, recording and figures.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "exactvo/formation/stability.h"
+#include "exactvo/geometry/counted.h"
+#include "explorer/page.h"
+#include "support/escape.h"
+#include "support/files.h"
+#include "support/run.h"
+#include "support/simulation_flags.h"
+#include "support/stop.h"
+#include "support/terminal.h"
+#include "verb.h"
+#include "verbs/runs/simulate_crowd.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+struct Flags {
+  std::string scenario;
+  SimulationFlags simulation;
+  CrowdFlags crowd;
+  std::string out;
+  bool record_all = false;
+  bool json = false;
+  bool no_figures = false;
+  bool fail_on_collision = false;
+  bool force = false;
+};
+
+std::string or_dash(const std::optional<double>& value, const char* unit) {
+  return value ? fmt::format("{:.4g} {}", *value, unit) : "-";
+}
+
+/// A robot of a formation has no goal to arrive at.
+std::string robot_line(const formation::RobotMetrics& robot, bool has_goal) {
+  std::string arrival = robot.arrived ? "arrived at " + or_dash(robot.arrival_time, "s") + ", " : "did not arrive, ";
+  if (!has_goal) arrival.clear();
+  const std::string detour = robot.detour ? fmt::format(" ({:.3g} m of it a detour)", *robot.detour) : "";
+  const std::string slot =
+      robot.largest_slot_error ? fmt::format(", up to {:.3g} m from its slot", *robot.largest_slot_error) : "";
+  return fmt::format("  {:<12} {}path length {:.4g} m{}{}, minimum clearance to obstacles {}{}\n", shown(robot.id),
+                     arrival, robot.path_length, detour, slot, or_dash(robot.min_obstacle_clearance, "m"),
+                     formation::touched(robot.min_obstacle_clearance) ? ": overlapped an obstacle" : "");
+}
+
+/// The first of them; metrics.json has all.
+std::string collision_lines(const std::vector<formation::Collision>& all) {
+  constexpr std::size_t kMost = 10;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(all.size(), kMost); ++k) {
+    const formation::Collision& c = all[k];
+    text += fmt::format("  collision    {} with {} {} from {:.4g} s to {:.4g} s, {:.3g} m deep at {:.4g} s\n",
+                        shown(c.robot), name(c.kind), shown(c.with), c.from, c.until, c.depth, c.deepest_at);
+  }
+  if (all.size() > kMost) text += fmt::format("  collision    and {} more: see metrics.json\n", all.size() - kMost);
+  return text;
+}
+
+std::string formation_lines(const formation::Metrics& m) {
+  const formation::FormationCourse& course = *m.formation_course;
+  return fmt::format(
+      "  formation    position error {}, velocity error {} at the end; leader arrived at {}\n"
+      "  formation    largest error {:.3g} m, of {} at {:.4g} s; first formed at {}, holds since {}\n",
+      or_dash(m.formation_position_error, "m"), or_dash(m.formation_velocity_error, "m/s"),
+      or_dash(m.leader_arrival_time, "s"), course.largest_error, shown(course.largest_error_of),
+      course.largest_error_at, or_dash(course.first_formed, "s"), or_dash(course.formed_since, "s"));
+}
+
+std::string course_words(const formation::LyapunovCourse& c) {
+  const std::string rise =
+      c.largest_rise > 0.0 ? fmt::format("rises by up to {:.3g} per step", c.largest_rise) : std::string("never rises");
+  return fmt::format("{:.4g} -> {:.4g}, minimum {:.4g}, {}", c.first, c.last, c.least, rise);
+}
+
+std::string lyapunov_lines(const formation::LyapunovSummary& s) {
+  return fmt::format("  V of (18)    {}\n  valid V      {}\n", course_words(s.paper), course_words(s.sound));
+}
+
+std::string summary(const FinishedRun& run) {
+  const formation::Metrics& m = run.metrics;
+  std::string text = fmt::format("{}, method {}", shown(run.file.info.scenario), run.file.info.method);
+  if (run.file.info.guidance) text += fmt::format(", guidance {}", *run.file.info.guidance);
+  if (run.file.info.liveness) text += fmt::format(", liveness {}", *run.file.info.liveness);
+  if (run.file.info.controller) text += fmt::format(", controller {}", *run.file.info.controller);
+  text += ": " + shown(m.outcome) + "\n" + collision_lines(m.collisions);
+  for (const auto& robot : m.robots) text += robot_line(robot, !run.file.scenario.formation);
+  if (run.file.scenario.formation) text += formation_lines(m) + lyapunov_lines(*m.lyapunov);
+  for (const std::string& words : m.stuck) text += fmt::format("  stuck        {}\n", shown(words));
+  return text + fmt::format(
+                    "  clearance    to obstacles {}, between robots {}\n"
+                    "  jitter       {:.4g} m/s^2, {}, {}\n"
+                    "  velocity     total variation {:.4g} m/s, peak acceleration {:.4g} m/s^2\n"
+                    "  half-planes  {} not certified, relaxed in {}\n"
+                    "  steps        {} in {:.3g} s of wall time\n",
+                    or_dash(m.min_obstacle_clearance, "m"), or_dash(m.min_robot_clearance, "m"), m.jitter,
+                    geometry::counted(m.heading_reversals, "heading reversal"),
+                    geometry::counted(m.active_set_switches, "active-set switch", "active-set switches"),
+                    m.velocity_variation, m.peak_acceleration, m.uncertified_half_planes,
+                    geometry::counted(m.relaxed_steps, "decision"), m.steps, m.wall_time);
+}
+
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) message("warning: " + warning);
+}
+
+/// How fast a formation can form, said before the run.
+void announce(const formation::Scenario& scenario) {
+  if (!scenario.formation) return;
+  const formation::Stability s = stability_of(*scenario.formation);
+  message(fmt::format(
+      "formation: eigenvalues of L + B from {:.4g} to {:.4g}; the slowest mode decays at {:.4g} 1/s; "
+      "explicit Euler's step limit is {:.4g} s, the step {:.4g} s",
+      s.eigenvalues.front(), s.eigenvalues.back(), s.convergence_rate, s.euler_step_limit, scenario.time_step));
+}
+
+/// Into the folder, which may be none.
+FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options,
+                              const std::filesystem::path& folder) {
+  const formation::Scenario& scenario = read.scenario;
+  const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
+  ProgressLine line(scenario.time_limit, "s simulated");
+  line.show(0.0, scenario.name);  // the shapes of many robots take a while before the first step
+  const TerminateOnSignal terminate_on_signal;
+  const bool figures = !folder.empty() && !flags.no_figures;
+  return run(scenario, options, provenance,
+             {folder, figures, [&](double time) { line.show(time, scenario.name); }, warn, figures});
+}
+
+void print_results(const Flags& flags, const FinishedRun& finished) {
+  print(flags.json ? finished.metrics_json() : summary(finished));
+}
+
+/// Printed before it is published: where stdout takes no more, nothing is written at all.
+FinishedRun run_into_folder(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options) {
+  const std::optional<RunName> replaced = run_in(flags.out);
+  StagedFolder folder(flags.out);
+  FinishedRun finished = run_with_progress(flags, read, options, folder.path());
+  if (!flags.no_figures) {
+    const TerminateOnSignal terminate_on_signal;
+    draw(write_figures(finished.file, folder.path() / "figures"));
+    const std::string title = in_words(name_of(read.scenario, options));
+    write_text(folder.path() / kPageName, explorer_page({{page_key(title), title, "", finished.packed}}));
+  }
+  if (interrupted()) throw Interrupted();
+  print_results(flags, finished);
+  if (flags.no_figures) remove_figures(flags.out);
+  folder.publish("metrics.json");
+  message("wrote " + flags.out + (replaced ? ", in place of an earlier run of " + in_words(*replaced) : ""));
+  return finished;
+}
+
+FinishedRun run_and_print(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options) {
+  FinishedRun finished = run_with_progress(flags, read, options, {});
+  print_results(flags, finished);
+  return finished;
+}
+
+ExitCode simulate(const Flags& flags) {
+  const bool is_crowd = wants_crowd(flags.crowd, flags.simulation, flags.out);
+  formation::SimulationOptions options = simulation_options(flags.simulation);
+  options.record_all = flags.record_all;
+  const ReadScenario read = read_scenario(flags.scenario);
+  if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json);
+  const formation::Scenario& scenario = read.scenario;
+  note_unused(flags.simulation, scenario);
+  if (!flags.out.empty()) {
+    check_output_folder(flags.out);
+    if (!flags.force) check_same_run(flags.out, name_of(scenario, options));
+  }
+  announce(scenario);
+  const FinishedRun finished =
+      flags.out.empty() ? run_and_print(flags, read, options) : run_into_folder(flags, read, options);
+  const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
+  return failed ? ExitCode::negative : ExitCode::success;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
+  declare_simulation_flags(app, flags->simulation);
+  declare_out(app, flags->out,
+              "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations), figures/ and "
+              "explorer.html; "
+              "whole or not at all");
+  app.add_flag("--record-all", flags->record_all,
+               "Keep every half-plane of every decision, so that `audit` verifies the whole run");
+  app.add_flag("--json", flags->json, "Print the metrics as JSON");
+  app.add_flag("--no-figures", flags->no_figures, "Write no figures and no explorer.html");
+  app.add_flag("--fail-on-collision", flags->fail_on_collision, "Exit status 1 if a robot overlaps anything");
+  app.add_flag("--force", flags->force,
+               "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller");
+  declare_crowd_flags(app, flags->crowd);
+  return [flags] { return simulate(*flags); };
+}
+
+}  // namespace
+
+Verb simulate_verb() {
+  return {"simulate", "Run one scenario",
+          "  exactvo simulate datasets/data/paper/A2.json --method ivo --out out/A2\n"
+          "  exactvo simulate datasets/data/office/office.json --out out/office\n"
+          "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
+          "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
+          "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
+          "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
+          declare};
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/runs/simulate_crowd.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "exactvo/datasets/crowd_recording.h"
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/formation/crowd_run.h"
+#include "exactvo/geometry/counted.h"
+#include "support/escape.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+
+namespace exactvo::tools {
+namespace {
+
+using formation::CrowdRunReport;
+using geometry::counted;
+
+std::string or_null(const std::optional<double>& value) {
+  return value ? fmt::format("{}", *value) : "null";
+}
+
+std::string or_dash(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4g} s", *value) : "-";
+}
+
+double share(std::size_t count, const CrowdRunReport& r) {
+  const double decisions = static_cast<double>(r.robots) * static_cast<double>(r.steps);
+  return decisions > 0.0 ? static_cast<double>(count) / decisions : 0.0;
+}
+
+std::string to_json(const CrowdRunReport& r, const std::string& scenario, const datasets::Provenance& provenance) {
+  return fmt::format(
+      "{{\"scenario\": {}, \"engine\": \"crowd\", \"method\": \"orca\", \"robots\": {}, \"arrived\": {}, \"staying\": "
+      "{}, "
+      "\"steps\": {}, \"time\": {}, \"median_arrival_time\": {}, \"last_arrival_time\": {}, \"path_length\": {}, "
+      "\"decisions\": {{\"relaxed\": {}, \"touching\": {}, \"widened\": {}, \"stopped\": {}}}, "
+      "\"half_planes\": {{\"robots\": {}, \"edges\": {}}}, \"digest\": \"{:016x}\", \"wall_time\": {}, "
+      "\"provenance\": {}}}\n",
+      nlohmann::json(scenario).dump(), r.robots, r.arrived, r.staying, r.steps, r.time, or_null(r.median_arrival),
+      or_null(r.last_arrival), r.path_length, r.relaxed, r.touching, r.widened, r.stopped, r.half_planes, r.edges,
+      r.digest, r.wall_time, datasets::to_json(provenance));
+}
+
+std::string summary(const CrowdRunReport& r, const std::string& scenario) {
+  const double decisions = static_cast<double>(r.robots) * static_cast<double>(r.steps);
+  return fmt::format(
+      "{}, engine crowd, method orca: {} of {} arrived, {} without a route\n"
+      "  arrival      median {}, last {}\n"
+      "  decisions    {:.3g} % relaxed, {:.3g} % touching or overlapping another, {:.3g} % stopped before an edge\n"
+      "  half-planes  {:.3g} against robots and {:.3g} against edges in a decision\n"
+      "  path length  {:.4g} m on average\n"
+      "  steps        {} in {:.3g} s of wall time, {:.3g} robot steps a second\n",
+      shown(scenario), r.arrived, counted(r.robots, "robot"), r.staying, or_dash(r.median_arrival),
+      or_dash(r.last_arrival), 100.0 * share(r.relaxed, r), 100.0 * share(r.touching, r), 100.0 * share(r.stopped, r),
+      share(r.half_planes, r), share(r.edges, r), r.path_length / static_cast<double>(r.robots), r.steps, r.wall_time,
+      decisions / r.wall_time);
+}
+
+[[noreturn]] void refuse(const std::string& option, const char* expected) {
+  throw UsageError(option, "--engine crowd with it", expected);
+}
+
+}  // namespace
+
+void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
+  app.add_option("--engine", flags.engine,
+                 "standard: everything; crowd: many robots with goals among static obstacles, method orca, every step "
+                 "certified")
+      ->capture_default_str();
+  app.add_option("--record", flags.record, "With --engine crowd: FILE.evr for positions, whole or not at all");
+  app.add_option("--every", flags.every, "With --record: a row every N steps")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--threads", flags.threads, "With --engine crowd; 0: all there are. The result is the same")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1024));
+  app.add_option("--precision", flags.precision, "With --engine crowd: float or double, both certified")
+      ->capture_default_str();
+  flags.method = app.get_option("--method");
+  for (const char* option : {"--every", "--threads", "--precision"}) flags.of_crowd.push_back(app.get_option(option));
+  for (const char* option : {"--liveness", "--record-all", "--fail-on-collision", "--no-figures", "--force"})
+    flags.of_standard.push_back(app.get_option(option));
+}
+
+bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& out) {
+  if (flags.engine != "crowd" && flags.engine != "standard")
+    throw UsageError("--engine", flags.engine, "standard or crowd");
+  const bool is_crowd = flags.engine == "crowd";
+  if (!is_crowd && !flags.record.empty())
+    throw UsageError("--record", flags.record, "--engine crowd with it, or --out DIR");
+  for (const CLI::Option* option : is_crowd ? flags.of_standard : flags.of_crowd)
+    if (option->count() > 0)
+      throw UsageError(option->get_name(), "--engine " + flags.engine + " with it",
+                       is_crowd ? "--engine standard" : "--engine crowd");
+  if (is_crowd && flags.method->count() > 0 && simulation.method != "orca") refuse("--method", "orca");
+  if (is_crowd && !out.empty()) refuse("--out", "--record FILE.evr, and --json for the metrics");
+  return is_crowd;
+}
+
+ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& file,
+                        const ReadScenario& read, bool json) {
+  const formation::Scenario& scenario = read.scenario;
+  for (const formation::ScenarioProblem& p : crowd_problems(scenario))
+    throw datasets::DataError(datasets::DataCode::scenario, file, p.pointer, p.found, p.expected);
+  formation::CrowdRunOptions options;
+  if (!simulation.guidance.empty())
+    options.guidance =
+        parse_choice<formation::Guidance>("--guidance", simulation.guidance, formation::guidance_names());
+  if (!parse(flags.precision, options.precision)) throw UsageError("--precision", flags.precision, "float or double");
+  options.threads = flags.threads;
+  const datasets::Provenance provenance = datasets::make_provenance(command_line(), simulation.seed, read.files);
+  ProgressLine line(scenario.time_limit, "s simulated");
+  line.show(0.0, scenario.name);
+  options.progress = [&](double time) {
+    line.show(time, scenario.name);
+    return !interrupted();
+  };
+  std::optional<datasets::CrowdRecorder> recorder;
+  if (!flags.record.empty()) recorder.emplace(flags.record, scenario, flags.every);
+  CrowdRunReport report;
+  try {
+    report = run_crowd(scenario, options, recorder ? &*recorder : nullptr);
+  } catch (const formation::CrowdError& e) {
+    throw datasets::DataError(datasets::DataCode::scenario, file, "", e.what(), "a scenario that a crowd can run");
+  }
+  line.clear();
+  if (interrupted()) throw Interrupted();
+  if (recorder) {
+    recorder->finish();
+    message(fmt::format("wrote {}: {} bytes", flags.record, recorder->bytes()));
+  }
+  print(json ? to_json(report, scenario.name, provenance) : summary(report, scenario.name));
+  return ExitCode::success;
+}
+
+}  // namespace exactvo::tools

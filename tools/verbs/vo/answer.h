@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What `exactvo vo` answers, as JSON and in words.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactvo/vo/certificate.h"
+#include "exactvo/vo/containment.h"
+#include "exactvo/vo/free_velocities.h"
+#include "verbs/vo/exact_free.h"
+#include "verbs/vo/exact_legs.h"
+#include "verbs/vo/question.h"
+
+namespace exactvo::tools {
+
+/// About one obstacle. Velocities are absolute; the cone is for velocities relative to the obstacle's.
+struct ConeAnswer {
+  vo::Encounter encounter;
+  vo::VelocityObstacle cone;
+  bool overlaps = false;
+  bool contains = false;
+  std::optional<vo::NearestBoundary> nearest;
+  std::optional<geometry::HalfPlane> half_plane;  ///< with alpha = 1: it holds whatever the obstacle's side does
+  std::optional<geometry::HalfPlane> shared;   ///< with the asked alpha < 1: holds only if the other side does its part
+  std::optional<geometry::HalfPlane> contact;  ///< away from the nearest point, where there is no other
+  std::optional<vo::Certificate> certificate;  ///< of `half_plane`, or of `contact`
+  std::optional<vo::ExactLegs> exact_legs;     ///< where they are asked for, and there is a cone
+};
+
+ConeAnswer answer_of(const vo::Encounter& encounter, double alpha);
+
+/// About all of them. Nothing is compared with half-planes where a cone has none.
+struct FreeAnswer {
+  vo::FreeVelocities free;
+  double max_speed = 0.0;
+  std::vector<geometry::HalfPlane> half_planes;
+  std::vector<std::size_t> cone_of;  ///< of each half-plane
+  std::optional<vo::RegionReport> report;
+  ExactFree exact;
+};
+
+FreeAnswer free_answer_of(const std::vector<ConeAnswer>& cones, const VoQuestion& question);
+
+/// Whether the ellipse round an obstacle contains it: asked of every vertex by the exact predicate.
+struct Enclosed {
+  std::size_t vertices = 0;
+  std::size_t contained = 0;
+  std::optional<vo::Containment> certificate;  ///< of the vertices; nothing for a flat ellipse
+};
+std::optional<Enclosed> enclosed_of(const VoQuestion& question, const AskedObstacle& obstacle);
+
+struct VoAnswer {
+  VoQuestion question;
+  std::vector<ConeAnswer> cones;
+  std::vector<vo::Member> members;  ///< the variants asked for
+  std::optional<FreeAnswer> free;
+};
+
+VoAnswer answer_of(const VoQuestion& question);
+
+bool any_overlaps(const VoAnswer& answer);
+bool any_contains(const VoAnswer& answer);
+
+/// What a rule says of a velocity (`Member::allows`): "allows", "forbids" or "no cone".
+const char* word_of_allowed(const std::optional<bool>& allowed);
+
+/// Why there is no certificate: "contact" or "rounding"; nothing where there is one.
+const char* why_no_certificate(const ConeAnswer& answer);
+
+/// Whose half-plane excludes the piece.
+Place place_of(const VoAnswer& answer, const vo::LostPiece& piece);
+
+/// "cut-off", "apex", "left leg", "right leg".
+const char* name(vo::BoundaryPart part);
+
+/// "its 3 convex pieces", "the smallest ellipse round it".
+std::string in_words(const AskedObstacle& obstacle);
+
+std::string to_json(const VoAnswer& answer);
+std::string in_words(const VoAnswer& answer);
+
+}  // namespace exactvo::tools

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/vo/question.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/enclosure.h"
+#include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/pieces.h"
+#include "exactvo/vo/free_velocities.h"
+#include "figures/figure_file.h"
+#include "support/robot_limits.h"
+#include "support/usage.h"
+
+namespace exactvo::tools {
+
+using geometry::ConvexPolygon;
+using geometry::ConvexShape;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr const char* kHorizons = "a time from 2^-100 s to 2^100 s, or infinite, paper or clamped";
+
+Vec2 parse_point(const std::string& option, const std::string& text) {
+  Vec2 v;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_in_range(v))
+    throw UsageError(option, text, fmt::format("two numbers within {:g}, X,Y", kLargestNumber));
+  return v;
+}
+
+// --- The obstacles ---
+
+ConvexShape trap_free(const std::vector<Vec2>& points, const VoFlags& flags) {
+  if (flags.goal.empty()) throw UsageError("--enclose", "trap-free without --goal", "a goal, X,Y");
+  const auto fitted = geometry::fit_trap_free(
+      points, flags.radius.value_or(0.0), parse_point("--position", flags.position), parse_point("--goal", flags.goal));
+  if (!fitted) throw UsageError("--enclose", "trap-free", "a robot and a goal farther from the obstacle");
+  return fitted->ellipse;
+}
+
+/// A velocity obstacle is built of convex shapes.
+struct Shapes {
+  Taken taken = Taken::itself;
+  std::vector<ConvexShape> shapes;
+};
+
+Shapes shapes_of(const geometry::Obstacle& obstacle, const VoFlags& flags) {
+  if (flags.enclose == "ellipse") return {Taken::smallest_ellipse, {geometry::smallest_ellipse(vertices_of(obstacle))}};
+  if (flags.enclose == "trap-free") return {Taken::trap_free_ellipse, {trap_free(vertices_of(obstacle), flags)}};
+  if (geometry::is_convex(obstacle)) return {Taken::itself, geometry::convex_cover(obstacle)};
+  if (flags.pieces == "hull") return {Taken::convex_hull, {geometry::hull_shape(vertices_of(obstacle))}};
+  return {Taken::convex_pieces, geometry::convex_cover(obstacle)};
+}
+
+Shapes shapes_of(const GivenObstacle& given, const VoFlags& flags) {
+  if (const auto* obstacle = std::get_if<geometry::Obstacle>(&given)) return shapes_of(*obstacle, flags);
+  if (flags.enclose != "none")
+    throw UsageError("--enclose", flags.enclose, "a polygon or a wall to enclose: a disc or an ellipse is one already");
+  return {Taken::itself, {std::get<ConvexShape>(given)}};
+}
+
+/// One bad obstacle refuses its file.
+datasets::ReadOptions whole_files(const ReadingFlags& reading) {
+  datasets::ReadOptions options = reading_options(reading);
+  options.keep_going = false;
+  return options;
+}
+
+/// The hull of a robot that is its own hull.
+ConvexPolygon robot_of(const std::string& text, const ReadingFlags& reading) {
+  const std::vector<GivenObstacle> given = obstacles_in("--robot", text, whole_files(reading));
+  if (given.size() != 1)
+    throw UsageError("--robot", geometry::counted(given.size(), "geometry", "geometries"), "one convex polygon");
+  const auto* polygon = std::get_if<geometry::Obstacle>(&given.front());
+  if (!polygon) throw UsageError("--robot", text, "a convex polygon (a disc is given by --radius)");
+  if (!geometry::is_convex(*polygon))
+    throw UsageError("--robot", "a shape that is not convex", "a convex polygon without holes, or --radius");
+  return geometry::convex_hull(vertices_of(*polygon));
+}
+
+// --- The horizon ---
+
+/// The paper's rule gives no horizon to a robot whose distance rounds to nothing, and an infinite one at rest.
+double paper_horizon(const vo::VelocityObstacle& cone, Vec2 relative) {
+  const double seconds = vo::paper_time_horizon(cone, relative);
+  if (!is_horizon(seconds) && seconds != kInfinity)
+    throw UsageError("--time-horizon", fmt::format("paper, which is {:g} s here", std::fabs(seconds)), kHorizons);
+  return seconds;
+}
+
+/// The rule takes the distance over the speed: nothing for a piece in contact, which has no cone to measure it from.
+std::optional<double> horizon_by_rule(const std::string& rule, vo::Encounter e) {
+  e.time_horizon = 1.0;  // any: the distance does not depend on it
+  const vo::VelocityObstacle cone = cone_of(e);
+  if (cone.overlaps()) return std::nullopt;
+  const Vec2 relative = e.velocity - e.obstacle_velocity;
+  return rule == "paper" ? paper_horizon(cone, relative) : vo::clamped_time_horizon(cone, relative);
+}
+
+double horizon_in_seconds(const std::string& text) {
+  double seconds = 0.0;
+  char rest = 0;
+  const bool is_number = std::sscanf(text.c_str(), "%lf%c", &seconds, &rest) == 1;
+  if (!is_number || !is_horizon(seconds)) throw UsageError("--time-horizon", text, kHorizons);
+  return seconds;
+}
+
+/// A number of seconds, or a rule.
+std::optional<double> horizon_of(const std::string& text, const vo::Encounter& encounter) {
+  if (text == "infinite") return kInfinity;
+  if (text == "paper" || text == "clamped") return horizon_by_rule(text, encounter);
+  return horizon_in_seconds(text);
+}
+
+std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
+  std::vector<vo::Variant> variants;
+  for (const std::string& word : names) {
+    std::string upper = word;
+    std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return std::toupper(c); });
+    const auto* found = std::find_if(std::begin(vo::kVariants), std::end(vo::kVariants),
+                                     [&](vo::Variant v) { return upper == name(v); });
+    if (upper == "ALL") {
+      variants.assign(std::begin(vo::kVariants), std::end(vo::kVariants));
+    } else if (found != std::end(vo::kVariants)) {
+      variants.push_back(*found);
+    } else {
+      throw UsageError("--variant", word, "one of vo rvo hrvo orca ivo all");
+    }
+  }
+  return variants;
+}
+
+void require(bool ok, const char* option, const std::string& found, const char* expected) {
+  if (!ok) throw UsageError(option, found, expected);
+}
+
+/// Many velocities are answered by whether they collide, and by nothing else.
+void check_company_of_velocities(const VoFlags& flags) {
+  const bool by_rule = flags.time_horizon == "paper" || flags.time_horizon == "clamped";
+  require(!by_rule, "--time-horizon", flags.time_horizon + " beside --velocities",
+          "a time in s, or infinite: the rule gives each velocity its own");
+  const std::pair<bool, const char*> others[] = {
+      {!flags.velocity.empty(), "--velocity"}, {flags.free, "--free"},          {flags.exact_legs, "--exact-legs"},
+      {!flags.variants.empty(), "--variant"},  {flags.alpha != 1.0, "--alpha"}, {!flags.figure.empty(), "--figure"}};
+  for (const auto& [is_there, option] : others)
+    require(!is_there, "--velocities", fmt::format("--velocities beside {}", option), "one of the two");
+}
+
+/// What goes with what, and what would be ignored.
+void check_company(const VoFlags& flags) {
+  require(flags.radius || !flags.robot.empty(), "--radius", "nothing", "the robot's radius in m (or --robot WKT)");
+  require(!flags.radius || flags.robot.empty(), "--radius", "--radius beside --robot", "one of the two");
+  require(flags.max_speed || !flags.free, "--max-speed", "nothing", "a speed in m/s, which --free needs");
+  require(!flags.max_speed || flags.free, "--max-speed", "--max-speed without --free", "both or neither");
+  require(flags.goal.empty() || flags.enclose == "trap-free", "--goal", flags.goal, "--enclose trap-free beside it");
+  require(flags.enclose != "trap-free" || flags.robot.empty(), "--robot", "--robot beside --enclose trap-free",
+          "--radius, which the enclosure is fitted for");
+  require(!flags.velocity.empty() || !flags.velocities.empty(), "--velocity", "nothing",
+          "X,Y in m/s, or --velocities FILE for many");
+  if (!flags.velocities.empty()) check_company_of_velocities(flags);
+  require(flags.alpha == 1.0 || !flags.free, "--alpha", "--alpha beside --free", "one of the two");
+  require(flags.variants.empty() || !flags.free, "--variant", "--variant beside --free", "one of the two");
+}
+
+/// Of the obstacles and the robot, those that are files, with what is read with them.
+std::vector<std::filesystem::path> files_named_in(const VoFlags& flags) {
+  std::vector<std::string> texts = flags.obstacles;
+  texts.push_back(flags.robot);
+  texts.erase(std::remove_if(texts.begin(), texts.end(), [](const std::string& t) { return !is_there(t); }),
+              texts.end());
+  return all_read_with(texts, flags.reading.format);
+}
+
+void check_words(const VoFlags& flags) {
+  const bool known = flags.enclose == "none" || flags.enclose == "ellipse" || flags.enclose == "trap-free";
+  require(known, "--enclose", flags.enclose, "one of none ellipse trap-free");
+  require(flags.pieces.empty() || flags.pieces == "convex" || flags.pieces == "hull", "--pieces", flags.pieces,
+          "one of convex hull");
+  require(flags.pieces.empty() || flags.enclose == "none", "--pieces", "--pieces beside --enclose", "one of the two");
+  if (!flags.figure.empty()) check_figure_name("--figure", flags.figure, files_named_in(flags));
+}
+
+void check_numbers(const VoFlags& flags) {
+  const double radius = flags.radius.value_or(0.0), speed = flags.max_speed.value_or(vo::kLeastMaxSpeed);
+  require(is_radius(radius), "--radius", fmt::format("{}", radius), kRadii);
+  require(flags.alpha > 0.0 && flags.alpha <= 1.0, "--alpha", fmt::format("{}", flags.alpha), "a number in (0, 1]");
+  require(speed >= vo::kLeastMaxSpeed && speed <= vo::kMostMaxSpeed, "--max-speed", fmt::format("{}", speed),
+          "a speed from 2^-60 to 2^60 m/s, with --free");
+}
+
+/// What all obstacles share.
+vo::Encounter robot_alone(const VoFlags& flags) {
+  vo::Encounter e;
+  e.position = parse_point("--position", flags.position);
+  if (flags.velocities.empty()) e.velocity = parse_point("--velocity", flags.velocity);
+  e.radius = flags.radius.value_or(0.0);
+  e.share = flags.alpha;
+  if (!flags.robot.empty()) e.robot = robot_of(flags.robot, flags.reading);
+  return e;
+}
+
+/// All pieces of an obstacle look as far ahead as the free one with the shortest horizon: for a rule that is the
+/// nearest. Where a rule finds all of them in contact there is none: what is proven of contact holds for any time.
+void add_obstacle(const GivenObstacle& given, vo::Encounter e, const VoFlags& flags, VoQuestion& q) {
+  Shapes taken = shapes_of(given, flags);
+  const std::size_t first = q.encounters.size();
+  double horizon = kInfinity;
+  for (ConvexShape& shape : taken.shapes) {
+    e.obstacle = std::move(shape);
+    horizon = std::min(horizon, horizon_of(flags.time_horizon, e).value_or(kInfinity));
+    q.encounters.push_back(e);
+  }
+  for (std::size_t k = first; k < q.encounters.size(); ++k) q.encounters[k].time_horizon = horizon;
+  q.obstacles.push_back({given, taken.taken, first, q.encounters.size() - first});
+}
+
+void check_obstacles(const VoFlags& flags, const VoQuestion& q) {
+  if (q.obstacles.size() != 1 && !q.free && flags.velocities.empty())
+    throw UsageError("--obstacle", geometry::counted(q.obstacles.size(), "obstacle"),
+                     "one obstacle (several go with --free and --velocities)");
+  if (q.encounters.size() != 1 && !q.variants.empty())
+    throw UsageError("--variant", fmt::format("an obstacle of {} convex pieces", q.encounters.size()),
+                     "a convex shape: add --pieces hull or --enclose ellipse");
+  if (flags.obstacle_velocities.size() > flags.obstacles.size())
+    throw UsageError("--obstacle-velocity",
+                     geometry::counted(flags.obstacle_velocities.size(), "velocity", "velocities"),
+                     "at most one an --obstacle");
+}
+
+}  // namespace
+
+Place place_of(const VoQuestion& question, std::size_t encounter) {
+  const std::vector<AskedObstacle>& all = question.obstacles;
+  std::size_t k = 0;
+  while (k + 1 < all.size() && all[k + 1].first_encounter <= encounter) ++k;
+  return {k, encounter - all[k].first_encounter};
+}
+
+VoQuestion question_of(const VoFlags& flags) {
+  check_company(flags);
+  check_words(flags);
+  check_numbers(flags);
+  VoQuestion q;
+  q.variants = variants_of(flags.variants);
+  q.alpha = flags.alpha;
+  q.exact_legs = flags.exact_legs;
+  q.free = flags.free;
+  q.max_speed = flags.max_speed.value_or(0.0);
+  const vo::Encounter alone = robot_alone(flags);
+  q.velocity = alone.velocity;
+  for (std::size_t i = 0; i < flags.obstacles.size(); ++i) {
+    vo::Encounter e = alone;
+    if (i < flags.obstacle_velocities.size())
+      e.obstacle_velocity = parse_point("--obstacle-velocity", flags.obstacle_velocities[i]);
+    for (const GivenObstacle& given : obstacles_in("--obstacle", flags.obstacles[i], whole_files(flags.reading)))
+      add_obstacle(given, e, flags, q);
+  }
+  check_obstacles(flags, q);
+  return q;
+}
+
+void declare_options(CLI::App& app, VoFlags& flags) {
+  app.add_option("--obstacle", flags.obstacles,
+                 "WKT; a file with one obstacle; 'DISC(x y, r)'; 'ELLIPSE(cx cy, l11 l21 l22)', the image of the unit "
+                 "disc under [l11 0; l21 l22]; 'ELLIPSE(cx cy, a b, degrees)'. Several with --free and --velocities")
+      ->required()
+      ->allow_extra_args(false);
+  declare_reading_flags(app, flags.reading);
+  app.add_option("--obstacle-velocity", flags.obstacle_velocities,
+                 "X,Y in m/s, one an --obstacle; at rest where missing")
+      ->allow_extra_args(false);
+  app.add_option("--pieces", flags.pieces,
+                 "For a non-convex obstacle: convex (default: all of its convex pieces) or hull");
+  app.add_option("--enclose", flags.enclose, "none, ellipse (the smallest) or trap-free (needs --goal)");
+  app.add_option("--position", flags.position, "Position of the robot, X,Y in m")->required();
+  app.add_option("--velocity", flags.velocity, "X,Y in m/s; required unless --velocities is given");
+  app.add_option("--velocities", flags.velocities,
+                 "FILE, or - for stdin: which of many velocities collide, one line of answer each (with --json JSON "
+                 "Lines). The file: vx,vy on each line, CSV with columns vx and vy, or JSON Lines");
+  app.add_option("--radius", flags.radius, "Radius of the robot, m; required unless --robot is given");
+  app.add_option("--robot", flags.robot,
+                 "A robot that is a convex polygon, in place of --radius: WKT round 0,0, its reference point");
+  app.add_option(
+         "--time-horizon", flags.time_horizon,
+         "s, from 2^-100 to 2^100; or infinite, paper (distance over speed) or clamped (the same within 0.3 s and 3 s)")
+      ->required();
+  app.add_option("--alpha", flags.alpha,
+                 "The share of the change that the robot takes, in (0, 1]. Below 1 a second half-plane is "
+                 "given, which holds only if the other side takes its share");
+  app.add_option("--goal", flags.goal, "X,Y in m, for --enclose trap-free");
+  app.add_option("--variant", flags.variants, "vo, rvo, hrvo, orca, ivo or all: the family, side by side in the figure")
+      ->allow_extra_args(false);
+  app.add_flag("--exact-legs", flags.exact_legs,
+               "The legs as algebraic numbers: polynomial, interval; with --free also which cones share one");
+  app.add_flag(
+      "--free", flags.free,
+      "The free velocities of all obstacles: their area and pieces, between bounds and (without ellipses) exactly; "
+      "what the half-planes give away");
+  app.add_option("--max-speed", flags.max_speed, "m/s, required by --free");
+  app.add_flag("--json", flags.json, "Everything as JSON on stdout");
+  app.add_option("--figure", flags.figure, kFigureFileHelp);
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo vo: velocity obstacles, their answers and certificates; the family; the free velocities.
+#include <cstdio>
+#include <memory>
+
+#include "figures/figure_file.h"
+#include "verb.h"
+#include "verbs/vo/figure.h"
+#include "verbs/vo/velocities.h"
+
+namespace exactvo::tools {
+
+namespace {
+
+ExitCode show(const VoFlags& flags) {
+  const VoQuestion question = question_of(flags);
+  if (!flags.velocities.empty()) {
+    answer_velocities(question, flags.velocities, flags.json);
+    return ExitCode::success;
+  }
+  const VoAnswer answer = answer_of(question);
+  if (!flags.figure.empty()) write_figure(vo_figure(answer), flags.figure);
+  const std::string text = flags.json ? to_json(answer) : in_words(answer);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return ExitCode::success;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<VoFlags>();
+  declare_options(app, *flags);
+  return [flags] { return show(*flags); };
+}
+
+}  // namespace
+
+Verb vo_verb() {
+  return {"vo", "One velocity obstacle or several: legs, certified half-planes, the family, free velocities",
+          "  exactvo vo --obstacle 'POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))' --enclose ellipse --position 0,0 \\\n"
+          "      --velocity 1,0.2 --radius 0.5 --time-horizon 2 --json --figure out/cone.svg\n"
+          "  exactvo vo --obstacle 'POLYGON((2 -1, 4 -1, 4 1, 2 1, 2 -1))' --obstacle-velocity=-0.6,0.1 \\\n"
+          "      --position 0,0 --velocity 1,0.2 --radius 0.5 --time-horizon 2 --alpha 0.5 --variant all \\\n"
+          "      --figure out/family.svg\n"
+          "  exactvo vo --obstacle 'POLYGON((2 -1, 3 -1, 3 1, 2 1, 2 -1))' --free \\\n"
+          "      --obstacle 'LINESTRING(-1 2, 0 2)' --max-speed 1.5 --position 0,0 \\\n"
+          "      --velocity 1,0.2 --radius 0.5 --time-horizon 2 --figure out/free.svg\n"
+          "  printf '1,0.2\\n0,1\\n' | exactvo vo --obstacle 'DISC(4 0, 1)' --velocities - --position 0,0 \\\n"
+          "      --radius 0.5 --time-horizon 2\n",
+          declare};
+}
+
+}  // namespace exactvo::tools
