@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
 #include "exactvo/datasets/scenario_file.h"
 #include "refusal.h"
 #include "temporary_folder.h"
@@ -13,6 +16,7 @@ namespace {
 using formation::CrowdRunOptions;
 using formation::CrowdRunReport;
 using formation::Scenario;
+using geometry::Vec2;
 
 /// Sixty through sixty, round two blocks; denser than half-planes hold.
 Scenario crossing(const std::string& guidance = "none") {
@@ -96,6 +100,8 @@ TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
   EXPECT_GT(audit.pairs, 1000U);
   EXPECT_GT(audit.pairs_open, 0U);
   EXPECT_GT(audit.near_edges, 100U);
+  EXPECT_GT(audit.touching_pairs, 0U);
+  EXPECT_GT(audit.touching_pairs_open, 0U);
   const CrowdAuditReport some = audit_crowd_recording(folder_ / "c.evr", 2000);
   EXPECT_TRUE(some.clean());
   EXPECT_GT(some.motions, 1000U);
@@ -133,6 +139,75 @@ TEST_F(CrowdRecordings, AnAuditFindsOverlapsSpeedAndWalls) {
   EXPECT_GT(audit.edges_met, 0U);
   EXPECT_FALSE(audit.clean());
   EXPECT_FALSE(audit.findings.empty());
+}
+
+/// Two robots that are where they are put, with marks as if they had kept everything.
+struct Put : formation::CrowdSink {
+  using Places = std::function<std::pair<geometry::Vec2, geometry::Vec2>(double steps)>;
+  Put(CrowdRecorder& to, Places places) : to_(to), places_(std::move(places)) {}
+  void begin(const formation::Crowd& crowd) override { to_.begin(crowd); }
+  void add_step(const formation::Crowd&, std::size_t steps) override {
+    formation::Crowd other;
+    other.add_kind({0.01, 1.0, 5.0, 15.0, 10});  // so small that nothing touches
+    const auto [a, b] = places_(static_cast<double>(steps));
+    other.add_robot(a);
+    other.add_robot(b);
+    other.step();
+    to_.add_step(other, steps);
+  }
+  CrowdRecorder& to_;
+  Places places_;
+};
+
+class PutRobots : public CrowdRecordings {
+ protected:
+  /// A wall at x = 2, robots of radius 0.5.
+  CrowdAuditReport audit_of(const Put::Places& places, std::uint32_t every = 1) {
+    const Scenario scenario = parse_scenario(R"({"name": "two", "time_step": 0.25, "time_limit": 5, "guidance": "none",
+        "horizons": {"least": 0.5}, "obstacles": [{"polyline": [[2, -3], [2, 3]]}],
+        "robots": [{"id": "a", "position": [0, 0], "goal": [-300, 0], "max_speed": 20},
+                   {"id": "b", "position": [8, 0], "goal": [300, 0.4], "max_speed": 20}]})",
+                                             "two.json", {});
+    CrowdRecorder recorder(folder_ / "c.evr", scenario, every);
+    Put sink(recorder, places);
+    run_crowd(scenario, {}, &sink);
+    recorder.finish();
+    return audit_crowd_recording(folder_ / "c.evr");
+  }
+};
+
+TEST_F(PutRobots, AnAuditFindsKeptPairsThatTouchedAndStillOverlap) {
+  for (const std::uint32_t every : {1U, 4U}) {
+    const CrowdAuditReport stay = audit_of([](double) { return std::pair(Vec2{-5, 0}, Vec2{-4.2, 0}); }, every);
+    EXPECT_GT(stay.pairs_not_parted, 2U);
+    EXPECT_FALSE(stay.clean());
+    ASSERT_FALSE(stay.findings.empty());
+    EXPECT_NE(stay.findings.back().find("touched robot 1, and still overlaps it"), std::string::npos);
+  }
+  // In turns overlapping and apart: nobody overlaps who did so at the row before.
+  const CrowdAuditReport part = audit_of([](double k) {
+    return std::pair(Vec2{-5, 0}, Vec2{std::fmod(k, 2.0) > 0.0 ? -4.2 : -3.9, 0});
+  });
+  EXPECT_GT(part.touching_pairs, 5U);
+  EXPECT_EQ(part.pairs_not_parted, 0U);
+}
+
+TEST_F(PutRobots, AnAuditFindsRobotsThatComeNearerToAnEdgeThatTheyTouched) {
+  for (const std::uint32_t every : {1U, 4U}) {
+    const auto far = [](double x) { return std::pair(Vec2{x, 0}, Vec2{30, 0}); };
+    const CrowdAuditReport nearer = audit_of([&](double k) { return far(1.7 + 0.01 * k); }, every);
+    EXPECT_GT(nearer.edges_neared, 2U);
+    EXPECT_FALSE(nearer.clean());
+    EXPECT_NE(nearer.findings.back().find("comes nearer to edge 0, which it touched"), std::string::npos);
+    const CrowdAuditReport rests = audit_of([&](double) { return far(1.7); }, every);
+    EXPECT_GT(rests.touching_edges, 3U);
+    EXPECT_EQ(rests.edges_neared, 0U);
+    const CrowdAuditReport leaves = audit_of([&](double k) { return far(1.7 - 0.01 * k); }, every);
+    EXPECT_GT(leaves.touching_edges, 3U);
+    EXPECT_EQ(leaves.edges_neared, 0U);
+    const CrowdAuditReport on_it = audit_of([&](double) { return far(2.0); }, every);
+    EXPECT_GT(on_it.touching_edges_open, 3U);
+  }
 }
 
 TEST_F(CrowdRecordings, ThreadsDoNotChangeARunNorDoesRecordingIt) {
@@ -199,7 +274,8 @@ TEST_F(CrowdRecordings, Property2_ACutOffFileReadsUpToThereAndAChangedOneIsRefus
 TEST_F(CrowdRecordings, ATableHasALineARobotAndRow) {
   record(crossing(), 50);
   AtomicFile table(folder_ / "c.csv");
-  const std::size_t rows = write_crowd_csv(folder_ / "c.evr", table);
+  const auto [rows, cut_off] = write_crowd_csv(folder_ / "c.evr", table);
+  EXPECT_FALSE(cut_off);
   table.commit();
   const std::string text = content_of(folder_ / "c.csv");
   EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')), 1 + 120 * rows);

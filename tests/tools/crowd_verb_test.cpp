@@ -38,7 +38,47 @@ TEST(CrowdVerb, ARunIsRecordedAuditedAndConverted) {
 
   const std::string whole = here.read("ring.evr");
   here.write("cut.evr", whole.substr(0, whole.size() / 2));
-  EXPECT_EQ(here.run("audit cut.evr").status, 1);
+  const Outcome cut = here.run("audit cut.evr");
+  EXPECT_EQ(cut.status, 1);
+  EXPECT_THAT(cut.out, HasSubstr("cut.evr: the file was cut off after the last row"));
+  const Outcome table = here.run("convert cut.evr cut.csv");
+  EXPECT_EQ(table.status, 1);
+  EXPECT_THAT(table.err, HasSubstr("cut.evr: the file was cut off after the last of these rows"));
+  EXPECT_TRUE(here.has("cut.csv"));
+}
+
+TEST(CrowdVerb, AuditOfAFolderTakesRecordingsOfBothKinds) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  here.write("one.json", R"({"name": "one", "robots": [{"id": "R", "position": [0, 0], "goal": [3, 0]}]})");
+  ASSERT_EQ(here.run("simulate one.json --no-figures --out all/one").status, 0);
+  ASSERT_EQ(here.run("simulate ring.json --engine crowd --record all/ring.evr").status, 0);
+  const Outcome both = here.run("audit all --json");
+  EXPECT_EQ(both.status, 0) << both.err;
+  const json verdict = json::parse(both.out);
+  EXPECT_GT(verdict["steps"].get<int>(), 10);
+  EXPECT_GT(verdict["crowds"]["motions"].get<int>(), 1000);
+  EXPECT_TRUE(verdict["crowds"]["clean"].get<bool>());
+  EXPECT_EQ(here.run("audit all --sample 100").status, 0);
+  here.write("all/b.evr", here.read("all/ring.evr").substr(0, 3000));
+  const Outcome cut = here.run("audit all");
+  EXPECT_EQ(cut.status, 1);
+  EXPECT_THAT(cut.out, HasSubstr("all/b.evr: the file was cut off"));
+  EXPECT_EQ(here.run("audit all --scenario one.json").status, 2);
+  EXPECT_EQ(here.run("audit all/one --sample 100").status, 2);
+}
+
+TEST(CrowdVerb, VerbsThatNeedDecisionsOrAScenarioSayWhatARecordingOfACrowdIs) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  ASSERT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr --every 100").status, 0);
+  for (const char* arguments : {"explain ring.evr --time 1 --robot 0", "draw ring.evr --out figures", "trap ring.evr",
+                                "simulate ring.evr --out out"}) {
+    const Outcome outcome = here.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr("the recording of a crowd (.evr)")) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr("audit, convert and view read recordings of crowds")) << arguments;
+  }
 }
 
 TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {

@@ -369,13 +369,17 @@ bool CrowdRecordingReader::next(CrowdRow& row) {
   return true;
 }
 
-std::size_t write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {
+bool begins_crowd_recording(std::string_view bytes) {
+  return bytes.substr(0, kMark.size()) == kMark;
+}
+
+CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {
   CrowdRecordingReader reader(from);
   const CrowdRecordingHead& head = reader.head();
   to.write("step,time,robot,x,y,kept\n");
   CrowdRow row;
-  std::size_t rows = 0;
-  for (; reader.next(row); ++rows) {
+  CrowdTable table;
+  for (; reader.next(row); ++table.rows) {
     char line[160];
     for (std::size_t i = 0; i < row.x.size(); ++i) {
       const int size =
@@ -384,7 +388,8 @@ std::size_t write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {
       to.write({line, static_cast<std::size_t>(size)});
     }
   }
-  return rows;
+  table.cut_off = reader.is_cut_off();
+  return table;
 }
 
 }  // namespace exactvo::datasets

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The audit of recordings of crowds (crowd_recording.h): shares nothing with the engine that made them.
+//
+// What it asks of robots that touch follows from the half-planes (formation/src/crowd/pair_line.h, edges.cpp). A pair
+// that touches has a cut-off for one time step: n.(v_a - v_b) dt >= n.p + R|n|. So p - (v_a - v_b) dt, where the other
+// is afterwards, has -n.p' >= R|n|, and |p'| >= R. For an edge that is touched the half-plane is n.v >= 0 with n from
+// its nearest point q to the robot. The edge lies in n.(x - q) <= 0, so that no motion in the half-plane leads nearer.
 #include <algorithm>
 #include <cmath>
 
@@ -17,13 +22,18 @@ using geometry::GrownShape;
 using geometry::Segment;
 using geometry::Vec2;
 
-/// Nothing is promised of what is nearer than this share of the numbers involved (formation/crowd.h: 40 u in float).
+/// Nearer than this share of the numbers involved, the engine may take two robots, or a robot and an edge, for touching
+/// (formation/crowd.h: 40 u in float). Of such an edge it promises less: a robot comes no nearer to it, up to this
+/// share again. There the normal of the half-plane is off by at most 2 u, and so is the distance of what is within a
+/// length L.
 constexpr double kTouches = 40.0 * 0x1p-24;
 
 /// A limit of speed times a time, rounded twice, and a length, rounded four times.
 constexpr double kSpeedRounding = 8.0 * 0x1p-53;
 
-constexpr std::size_t kMostFindings = 20;
+double one_norm(Vec2 v) {
+  return std::fabs(v.x) + std::fabs(v.y);
+}
 
 class CrowdAuditor {
  public:
@@ -67,7 +77,7 @@ class CrowdAuditor {
   }
 
   void find(std::size_t i, const std::string& words) {
-    if (report.findings.size() < kMostFindings)
+    if (report.findings.size() < kMostCrowdFindings)
       report.findings.push_back("step " + std::to_string(to_->step) + ": robot " + std::to_string(i) + words);
   }
 
@@ -92,18 +102,38 @@ class CrowdAuditor {
     const double radius = kind(i).radius, reach = radius + norm(motion) * (1.0 + kTouches);
     edges_by_place_.for_each_within(at, reach, [&](std::size_t k) {
       const Segment& edge = head_.edges[k];
-      const double rounding = kTouches * (std::fabs(at.x) + std::fabs(at.y) + std::fabs(edge.a.x - at.x) +
-                                          std::fabs(edge.a.y - at.y) + radius);
+      const double lengths = one_norm(edge.a - at) + one_norm(edge.b - at) + radius, rounding = kTouches * lengths;
       const double distance = geometry::distance(edge, at);
-      if (distance < radius + rounding || distance > reach + rounding) return;
+      if (distance > reach + rounding) return;
+      if (distance < radius + rounding) return judge_touching_edge(i, k, distance, lengths);
       ++report.near_edges;
-      const bool met = steps_ == 1
-                           ? segment_meets({edge, at, radius}, motion, 1.0)
-                           : geometry::locate(GrownShape{edge, at + motion, radius}, Vec2{}) == geometry::Place::inside;
-      if (!met) return;
+      if (!meets_edge(edge, at, motion, radius)) return;
       ++report.edges_met;
       find(i, ": meets edge " + std::to_string(k));
     });
+  }
+
+  /// No step leads nearer to an edge that is touched, kept or not: the half-plane is that of the nearest point, the
+  /// edge lies behind it, and standing still satisfies it.
+  void judge_touching_edge(std::size_t i, std::size_t k, double distance, double lengths) {
+    const double radius = kind(i).radius;
+    const double rounding = kTouches * steps_ * (lengths + 4.0 * time_ * kind(i).max_speed);
+    const double nearest = std::min(distance, radius) - rounding;
+    if (!(nearest > 0.0)) {
+      ++report.touching_edges_open;
+      return;
+    }
+    ++report.touching_edges;
+    const Vec2 at = place(*from_, i), motion = place(*to_, i) - at;
+    if (!meets_edge(head_.edges[k], at, motion, nearest)) return;
+    ++report.edges_neared;
+    find(i, ": comes nearer to edge " + std::to_string(k) + ", which it touched");
+  }
+
+  /// On the way, of consecutive steps; else at the end of it.
+  bool meets_edge(const Segment& edge, Vec2 at, Vec2 motion, double radius) const {
+    return steps_ == 1 ? segment_meets({edge, at, radius}, motion, 1.0)
+                       : geometry::locate(GrownShape{edge, at + motion, radius}, Vec2{}) == geometry::Place::inside;
   }
 
   void judge_pairs(std::size_t i) {
@@ -112,21 +142,31 @@ class CrowdAuditor {
       if (j == i || (one_of_ == 1 && j < i)) return;
       const Vec2 d = place(*from_, j) - at, relative = motion - (place(*to_, j) - place(*from_, j));
       const double sum = kind(i).radius + kind(j).radius;
-      const double rounding = kTouches * (std::fabs(d.x) + std::fabs(d.y) + sum), distance = norm(d);
-      if (distance < sum + rounding || distance > sum + norm(relative) + rounding) return;
-      if (!to_->kept[i] || !to_->kept[j]) {
-        ++report.pairs_open;
-        return;
-      }
+      const double rounding = kTouches * (one_norm(d) + sum), distance = norm(d);
+      if (distance > sum + norm(relative) + rounding) return;
+      const bool touches = distance < sum + rounding, both_kept = to_->kept[i] && to_->kept[j];
+      if (!both_kept) return void(++(touches ? report.touching_pairs_open : report.pairs_open));
+      if (touches) return judge_touching_pair(i, j, d - relative);
       ++report.pairs;
-      const bool met = steps_ == 1
-                           ? segment_meets({Disc{d, kind(j).radius}, {}, kind(i).radius}, relative, 1.0)
-                           : geometry::locate(GrownShape{Disc{d - relative, kind(j).radius}, {}, kind(i).radius},
-                                              Vec2{}) == geometry::Place::inside;
+      const bool met = steps_ == 1 ? segment_meets({Disc{d, kind(j).radius}, {}, kind(i).radius}, relative, 1.0)
+                                   : overlap_at(d - relative, i, j);
       if (!met) return;
       ++report.pairs_met;
       find(i, " overlaps robot " + std::to_string(j));
     });
+  }
+
+  /// Half-planes of a pair that touches lead apart within the step: both kept, it does not overlap at the end.
+  void judge_touching_pair(std::size_t i, std::size_t j, Vec2 apart) {
+    ++report.touching_pairs;
+    if (!overlap_at(apart, i, j)) return;
+    ++report.pairs_not_parted;
+    find(i, " touched robot " + std::to_string(j) + ", and still overlaps it");
+  }
+
+  bool overlap_at(Vec2 apart, std::size_t i, std::size_t j) const {
+    return geometry::locate(GrownShape{Disc{apart, kind(j).radius}, {}, kind(i).radius}, Vec2{}) ==
+           geometry::Place::inside;
   }
 
   const CrowdRecordingHead& head_;
@@ -146,6 +186,19 @@ std::size_t motions_in(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+void add(CrowdAuditReport& sum, const CrowdAuditReport& other) {
+  using Count = std::size_t CrowdAuditReport::*;
+  for (const Count count :
+       {&CrowdAuditReport::rows, &CrowdAuditReport::robots, &CrowdAuditReport::motions, &CrowdAuditReport::too_fast,
+        &CrowdAuditReport::pairs, &CrowdAuditReport::pairs_met, &CrowdAuditReport::pairs_open,
+        &CrowdAuditReport::touching_pairs, &CrowdAuditReport::pairs_not_parted, &CrowdAuditReport::touching_pairs_open,
+        &CrowdAuditReport::near_edges, &CrowdAuditReport::edges_met, &CrowdAuditReport::touching_edges,
+        &CrowdAuditReport::edges_neared, &CrowdAuditReport::touching_edges_open})
+    sum.*count += other.*count;
+  sum.cut_off = sum.cut_off || other.cut_off;
+  sum.findings.insert(sum.findings.end(), other.findings.begin(), other.findings.end());
+}
 
 CrowdAuditReport audit_crowd_recording(const std::filesystem::path& path, std::size_t sample) {
   const std::size_t one_of = sample == 0 ? 1 : std::max<std::size_t>(1, motions_in(path) / sample);

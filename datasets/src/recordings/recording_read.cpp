@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string_view>
 
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
@@ -203,6 +204,10 @@ std::string_view next_line(std::string_view& text) {
 /// A file of another kind is refused as a whole: what is wrong in its first line tells nobody anything.
 void require_recording(std::string_view text, const std::string& name) {
   if (text.substr(0, text.find('\n')).find(kKind) != std::string_view::npos) return;
+  if (begins_crowd_recording(text))
+    throw DataError(
+        DataCode::format_unknown, name, "", "the recording of a crowd (.evr), which has no decisions",
+        "a recording.jsonl, as simulate --out writes it; audit, convert and view read recordings of crowds");
   throw DataError(DataCode::format_unknown, name, "", text.empty() ? "an empty file" : "no recording",
                   "a recording.jsonl, as simulate --out writes it");
 }

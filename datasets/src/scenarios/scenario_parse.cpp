@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
@@ -69,6 +70,9 @@ DataError no_scenario(const std::string& file, const std::string& format) {
 
 /// Says so of text in another format than JSON, and of a bare list in one of obstacles.
 void refuse_other_formats(const std::filesystem::path& path, const std::string& text) {
+  if (begins_crowd_recording(text))
+    throw DataError(DataCode::format_unknown, path.string(), "", "the recording of a crowd (.evr)",
+                    "a scenario in JSON; audit, convert and view read recordings of crowds");
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   std::error_code error;
   if (first == std::string::npos || text[first] == '{' || !std::filesystem::is_regular_file(path, error)) return;

@@ -827,8 +827,10 @@ class CrowdEngine final : public CrowdCore {
   void part(std::size_t robot, std::size_t other, T& x, T& y, T& c) const {
     x = robots.id[robot] < robots.id[other] ? T(-1) : T(1);
     y = T(0);
-    const T radius = table_.radius[kind_of(robot)] + table_.radius[kind_of(other)];
-    c = x * static_cast<T>(robots.mx[robot]) * rule_.velocity_step + radius * rule_.inverse_time / 2;
+    const double radius = static_cast<double>(table_.radius[kind_of(robot)]) + table_.radius[kind_of(other)];
+    const double own = static_cast<double>(x) * robots.mx[robot] * table_.velocity_step;
+    const double half = radius / (2.0 * options.time_step) * (1.0 + 0x1p-50);
+    c = rounded_up<T>(own + half + static_cast<double>(table_.lattice_slack));
   }
 
   KindTable<T> table_;

@@ -66,10 +66,12 @@ ExitCode convert_crowd(const Flags& flags) {
   if (std::filesystem::path(flags.out).extension() != ".csv")
     throw UsageError("out", flags.out, "FILE.csv, for a recording of a crowd");
   datasets::AtomicFile table(flags.out);
-  const std::size_t rows = datasets::write_crowd_csv(flags.in, table);
+  const datasets::CrowdTable written = datasets::write_crowd_csv(flags.in, table);
   table.commit();
-  message(fmt::format("{} -> {}: {}", flags.in, flags.out, counted(rows, "row")));
-  return ExitCode::success;
+  message(fmt::format("{} -> {}: {}", flags.in, flags.out, counted(written.rows, "row")));
+  if (!written.cut_off) return ExitCode::success;
+  message(flags.in + ": the file was cut off after the last of these rows");
+  return ExitCode::negative;
 }
 
 ExitCode convert(const Flags& flags) {

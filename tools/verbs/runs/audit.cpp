@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "exactvo/datasets/audit.h"
@@ -34,15 +35,21 @@ struct Flags {
 
 // --- Recordings ---
 
-/// The file itself, or every recording.jsonl below the folder, in the order of their names.
+bool is_crowd_recording(const fs::path& path) {
+  return path.extension() == ".evr";
+}
+
+/// The file itself, or every recording.jsonl and recording of a crowd below the folder, in the order of their names.
 std::vector<fs::path> recordings_in(const std::string& path) {
   if (!fs::is_directory(path)) return {path};
   std::vector<fs::path> found;
   for (const auto& entry : fs::recursive_directory_iterator(path)) {
-    if (entry.is_regular_file() && entry.path().filename() == "recording.jsonl") found.push_back(entry.path());
+    const fs::path& file = entry.path();
+    if (entry.is_regular_file() && (file.filename() == "recording.jsonl" || is_crowd_recording(file)))
+      found.push_back(file);
   }
   std::sort(found.begin(), found.end());
-  if (found.empty()) throw UsageError("path", path, "a folder that contains a recording.jsonl");
+  if (found.empty()) throw UsageError("path", path, "a folder that contains a recording.jsonl or a crowd's FILE.evr");
   return found;
 }
 
@@ -93,52 +100,111 @@ std::string summary(const datasets::AuditReport& report) {
   return text;
 }
 
-ExitCode audit_recordings(const Flags& flags) {
-  std::optional<formation::Scenario> scenario;
-  if (!flags.scenario.empty()) scenario = datasets::load_scenario(flags.scenario);
-  datasets::AuditReport sum;
-  for (const fs::path& file : recordings_in(flags.path)) {
-    datasets::AuditReport report = datasets::audit_recording(file, scenario ? &*scenario : nullptr);
-    for (std::string& finding : report.findings) finding = file.string() + ": " + finding;
-    datasets::add(sum, report);
-    if (interrupted()) throw Interrupted();
-  }
-  const std::string text = flags.json ? datasets::to_json(sum) + "\n" : summary(sum);
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  return sum.clean() ? ExitCode::success : ExitCode::negative;
-}
-
 // --- Recordings of crowds ---
-
-bool is_crowd_recording(const std::string& path) {
-  return fs::path(path).extension() == ".evr";
-}
 
 std::string in_words(const datasets::CrowdAuditReport& r) {
   std::string text = fmt::format(
       "{} of {}, {} judged: {} too fast\n"
       "pairs that were near, apart at the row before, and both kept: {}, {} overlapped; {} more not kept, nothing is "
       "promised of them\n"
-      "robots near edges that they did not touch at the row before: {}, {} overlapped\n",
+      "pairs that touched at the row before, and both kept: {}, {} still overlap; {} more not kept, nothing is "
+      "promised "
+      "of them\n"
+      "robots near edges that they did not touch at the row before: {}, {} overlapped\n"
+      "robots that touched an edge at the row before: {}, {} came nearer; {} more stand on the edge, not proven\n",
       counted(r.rows, "row"), counted(r.robots, "robot"), counted(r.motions, "motion"), r.too_fast, r.pairs,
-      r.pairs_met, r.pairs_open, r.near_edges, r.edges_met);
+      r.pairs_met, r.pairs_open, r.touching_pairs, r.pairs_not_parted, r.touching_pairs_open, r.near_edges, r.edges_met,
+      r.touching_edges, r.edges_neared, r.touching_edges_open);
   for (const std::string& finding : r.findings) text += "  " + finding + "\n";
-  if (r.cut_off) text += "the file was cut off after the last row\n";
   return text;
 }
 
-std::string to_json(const datasets::CrowdAuditReport& r) {
-  return fmt::format(
-      "{{\"rows\": {}, \"robots\": {}, \"motions\": {}, \"too_fast\": {}, \"pairs\": {}, \"pairs_met\": {}, "
-      "\"pairs_open\": {}, \"near_edges\": {}, \"edges_met\": {}, \"cut_off\": {}, \"clean\": {}}}\n",
-      r.rows, r.robots, r.motions, r.too_fast, r.pairs, r.pairs_met, r.pairs_open, r.near_edges, r.edges_met, r.cut_off,
-      r.clean());
+nlohmann::ordered_json as_json(const datasets::CrowdAuditReport& r) {
+  return {{"rows", r.rows},
+          {"robots", r.robots},
+          {"motions", r.motions},
+          {"too_fast", r.too_fast},
+          {"pairs", r.pairs},
+          {"pairs_met", r.pairs_met},
+          {"pairs_open", r.pairs_open},
+          {"touching_pairs", r.touching_pairs},
+          {"pairs_not_parted", r.pairs_not_parted},
+          {"touching_pairs_open", r.touching_pairs_open},
+          {"near_edges", r.near_edges},
+          {"edges_met", r.edges_met},
+          {"touching_edges", r.touching_edges},
+          {"edges_neared", r.edges_neared},
+          {"touching_edges_open", r.touching_edges_open},
+          {"cut_off", r.cut_off},
+          {"clean", r.clean()},
+          {"findings", r.findings}};
 }
 
-ExitCode audit_crowd(const Flags& flags) {
-  const datasets::CrowdAuditReport report = datasets::audit_crowd_recording(flags.path, flags.sample);
-  print(flags.json ? to_json(report) : in_words(report));
-  return report.clean() && !report.cut_off ? ExitCode::success : ExitCode::negative;
+// --- All of them ---
+
+struct Audited {
+  std::optional<datasets::AuditReport> runs;
+  std::optional<datasets::CrowdAuditReport> crowds;
+  std::vector<std::string> cut_off;  ///< recordings of crowds
+};
+
+template <class Report>
+void take(std::optional<Report>& sum, Report report, const std::string& file) {
+  for (std::string& finding : report.findings) finding = file + ": " + finding;
+  if (!sum) sum.emplace();
+  add(*sum, report);
+}
+
+Audited audited(const Flags& flags, const std::vector<fs::path>& files) {
+  std::optional<formation::Scenario> scenario;
+  if (!flags.scenario.empty()) scenario = datasets::load_scenario(flags.scenario);
+  Audited all;
+  for (const fs::path& file : files) {
+    if (is_crowd_recording(file)) {
+      const datasets::CrowdAuditReport report = datasets::audit_crowd_recording(file, flags.sample);
+      if (report.cut_off) all.cut_off.push_back(file.string());
+      take(all.crowds, report, file.string());
+    } else {
+      take(all.runs, datasets::audit_recording(file, scenario ? &*scenario : nullptr), file.string());
+    }
+    if (interrupted()) throw Interrupted();
+  }
+  return all;
+}
+
+std::string in_words(const Audited& all) {
+  std::string text;
+  if (all.runs) text += summary(*all.runs);
+  if (all.crowds) text += in_words(*all.crowds);
+  for (const std::string& file : all.cut_off) text += file + ": the file was cut off after the last row\n";
+  return text;
+}
+
+/// Names of files are bytes, and JSON is UTF-8.
+std::string text_of(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+/// The object of recordings, of crowds, or of recordings with a member "crowds".
+std::string to_json(const Audited& all) {
+  if (!all.crowds) return datasets::to_json(*all.runs) + "\n";
+  if (!all.runs) return text_of(as_json(*all.crowds), -1);
+  auto both = nlohmann::ordered_json::parse(datasets::to_json(*all.runs));
+  both["crowds"] = as_json(*all.crowds);
+  return text_of(both, 2);
+}
+
+ExitCode audit_recordings(const Flags& flags) {
+  const std::vector<fs::path> files = recordings_in(flags.path);
+  const auto crowds = static_cast<std::size_t>(std::count_if(files.begin(), files.end(), is_crowd_recording));
+  if (crowds > 0 && !flags.scenario.empty())
+    throw UsageError("--scenario", flags.scenario, "a recording.jsonl to compare it with, not one of a crowd");
+  if (crowds == 0 && flags.sample > 0)
+    throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
+  const Audited all = audited(flags, files);
+  print(flags.json ? to_json(all) : in_words(all));
+  const bool clean = (!all.runs || all.runs->clean()) && (!all.crowds || all.crowds->clean()) && all.cut_off.empty();
+  return clean ? ExitCode::success : ExitCode::negative;
 }
 
 // --- Certificates ---
@@ -158,18 +224,14 @@ ExitCode audit(const Flags& flags) {
                      "one of the two: a recording (or a folder of them), or --certificate FILE");
   if (!flags.certificates.empty() && !flags.scenario.empty())
     throw UsageError("--scenario", flags.scenario, "a recording to compare it with, not --certificate");
-  const bool is_crowd = is_crowd_recording(flags.path);
-  if (is_crowd && !flags.scenario.empty())
-    throw UsageError("--scenario", flags.scenario, "a recording.jsonl to compare it with");
-  if (!is_crowd && flags.sample > 0)
-    throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
-  if (is_crowd) return audit_crowd(flags);
-  return flags.path.empty() ? audit_certificates(flags) : audit_recordings(flags);
+  if (!flags.path.empty()) return audit_recordings(flags);
+  if (flags.sample > 0) throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
+  return audit_certificates(flags);
 }
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("path", flags->path, "A recording.jsonl, a folder searched for them, or a crowd's FILE.evr");
+  app.add_option("path", flags->path, "A recording.jsonl, a crowd's FILE.evr, or a folder searched for both");
   app.add_option("--sample", flags->sample, "Of a crowd: judge about so many motions; 0 for all");
   app.add_option("--scenario", flags->scenario, "FILE that the recordings must be of, with its obstacle files");
   app.add_option("--certificate", flags->certificates,

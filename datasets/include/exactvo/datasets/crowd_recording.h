@@ -15,6 +15,7 @@
 #include <iosfwd>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "exactvo/datasets/atomic_file.h"
@@ -91,26 +92,47 @@ class CrowdRecordingReader {
   std::unique_ptr<Parts> parts_;
 };
 
-/// What an audit found. Everything is exact.
+/// Of a recording an audit lists this many findings.
+inline constexpr std::size_t kMostCrowdFindings = 20;
+
+/// What an audit found. Everything is exact. To touch is to be nearer than the radii and a rounding error
+/// (formation/crowd.h).
 struct CrowdAuditReport {
   std::size_t rows = 0, robots = 0;
-  std::size_t motions = 0;     ///< of robots from row to row that were looked at
-  std::size_t too_fast = 0;    ///< longer than the speed limit allows
-  std::size_t pairs = 0;       ///< that both kept, came near and did not overlap at the row before
-  std::size_t pairs_met = 0;   ///< of these: that overlap on the way (of rows of consecutive steps) or at its end
-  std::size_t pairs_open = 0;  ///< that were near, but one of them was not kept: nothing is promised
-  std::size_t near_edges = 0;  ///< robots and edges near enough to ask, that did not overlap at the row before
-  std::size_t edges_met = 0;   ///< of these: that overlap on the way or at its end
+  std::size_t motions = 0;         ///< of robots from row to row that were looked at
+  std::size_t too_fast = 0;        ///< longer than the speed limit allows
+  std::size_t pairs = 0;           ///< that both kept, came near and did not touch at the row before
+  std::size_t pairs_met = 0;       ///< of these: that overlap on the way (of rows of consecutive steps) or at its end
+  std::size_t pairs_open = 0;      ///< that were near, but one of them was not kept: nothing is promised
+  std::size_t touching_pairs = 0;  ///< that both kept, and touched at the row before: they must not overlap at its end
+  std::size_t pairs_not_parted = 0;     ///< of these: that do
+  std::size_t touching_pairs_open = 0;  ///< that touched, but one of them was not kept: nothing is promised
+  std::size_t near_edges = 0;           ///< robots and edges near enough to ask, that did not touch at the row before
+  std::size_t edges_met = 0;            ///< of these: that overlap on the way or at its end
+  std::size_t touching_edges = 0;       ///< robots and edges that touched: a robot must not come nearer
+  std::size_t edges_neared = 0;         ///< of these: that come nearer, by more than rounding
+  std::size_t touching_edges_open = 0;  ///< whose centre is on the edge up to rounding: nothing is promised
   bool cut_off = false;
   std::vector<std::string> findings;  ///< the first few of what is wrong, in words
-  bool clean() const { return too_fast + pairs_met + edges_met == 0; }
+  bool clean() const { return too_fast + pairs_met + pairs_not_parted + edges_met + edges_neared == 0; }
 };
+
+/// Counts added up, findings joined.
+void add(CrowdAuditReport& sum, const CrowdAuditReport& other);
 
 /// Judges positions and motions from the file alone, in exact predicates. Of rows of consecutive steps the straight
 /// motion is judged, of others its ends. `sample`: about so many motions, spread evenly over robots and rows; 0: all.
 CrowdAuditReport audit_crowd_recording(const std::filesystem::path& path, std::size_t sample = 0);
 
-/// "step,time,robot,x,y,kept", a line a robot and row. The number of rows.
-std::size_t write_crowd_csv(const std::filesystem::path& from, AtomicFile& to);
+struct CrowdTable {
+  std::size_t rows = 0;
+  bool cut_off = false;  ///< the recording was: these are the rows before
+};
+
+/// "step,time,robot,x,y,kept", a line a robot and row.
+CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to);
+
+/// Whether these are the first bytes of a recording of a crowd.
+bool begins_crowd_recording(std::string_view bytes);
 
 }  // namespace exactvo::datasets

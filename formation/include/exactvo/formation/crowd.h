@@ -23,6 +23,9 @@
 ///  (6) A crowd that was restored from a snapshot goes on with the same bits.
 ///  (7) A robot that no edge of an obstacle touches at the beginning of a step (nearer than the radius and a rounding
 ///      error) meets none in it, kept or not. Certified, for `CrowdOptions::certified`.
+///  (8) Two kept robots that touch at the beginning of a step do not overlap at its end, and no robot comes nearer to
+///  an
+///      edge that touches it, up to the same rounding error. Certified, for `CrowdOptions::certified`.
 /// A robot that is not kept (`StepReport::relaxed`) had to violate half-planes; it violates them as little as possible,
 /// up to rounding, and nothing is promised of it. Which velocity is best is heuristic in its last digits.
 ///
@@ -154,7 +157,7 @@ struct CrowdExplanation {
   struct Neighbour {
     RobotId robot = 0;
     geometry::HalfPlane half_plane;  ///< of the velocity; what is certified
-    bool touching = false;           ///< nothing is promised of this pair
+    bool touching = false;           ///< what is promised of this pair is (8), not (1)
   };
   struct Edge {
     geometry::Segment edge;
