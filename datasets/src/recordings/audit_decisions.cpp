@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/vo/certificate.h"
 #include "recordings/exact_shapes.h"
 
@@ -55,10 +56,38 @@ std::optional<lp::Certificate> exact_claim_of(const lp::Problem& problem, const 
   return claim;
 }
 
-constexpr const char* kBesideExact = " has multipliers, and says that none in double prove it";
+/// What is wrong with a choice, or cannot be proven; empty where nothing is.
+struct Refuted {
+  std::string why;
+  bool is_open = false;
+};
 
 /// Share of the largest speed: what is said to bind does so to within this (lp/certificate.h has the same for gaps).
 constexpr double kBindsWithin = lp::kWidestGap;
+
+/// A choice that is said to have no room. The problem is solved again, exactly: no double may be found that satisfies
+/// what must hold, and the choice is the best point of what there is, up to rounding.
+Refuted without_room(const lp::Problem& problem, const lp::Solution& chosen, double fastest) {
+  const lp::Proven exact = lp::solve_exact(problem);
+  if (exact.solution.status != lp::Status::no_interior) return {" is said to have no room, and has"};
+  if (norm(exact.solution.velocity - chosen.velocity) > kBindsWithin * fastest)
+    return {" has no room, and is not the best of what there is"};
+  if (!exact.certificate) return {" has no room: that it is the best is not proven", true};
+  return {};
+}
+
+/// Whether a choice is as good as the exact solution, and that has no proof but a wide gap: a region as sharp as a
+/// needle, whose tip no double is near to.
+bool is_beyond_proof(const lp::Problem& problem, const lp::Solution& chosen) {
+  const lp::Proven exact = lp::solve_exact(problem);
+  if (exact.solution.status != chosen.status || (exact.certificate && lp::is_tight(problem, *exact.certificate)))
+    return false;
+  constexpr double kRounding = 1.0 + 0x1p-40;
+  return chosen.violation <= kRounding * exact.solution.violation &&
+         norm(chosen.velocity - problem.preferred) <= kRounding * norm(exact.solution.velocity - problem.preferred);
+}
+
+constexpr const char* kBesideExact = " has multipliers, and says that none in double prove it";
 
 }  // namespace
 
@@ -217,15 +246,19 @@ void DecisionAudit::half_planes_hold(const Seen& s) {
     const std::string wrong = misnamed(s, c);
     if (!wrong.empty()) {
       tally_.refuted(AuditPoint::half_planes, at_row(s.row, "a half-plane of " + id(s) + wrong));
-    } else if (!c.certified) {
-      ++uncertified;
-      tally_.open(AuditPoint::half_planes, at_row(s.row, "a half-plane of " + id(s) + " is not certified"));
+      continue;
+    }
+    const bool is_true = holds(s, c);
+    if (!c.certified) ++uncertified;
+    tally_.report.half_planes += (c.certified || is_true) && c.source != BodyKind::robot;
+    if (is_true) {
+      tally_.proven(AuditPoint::half_planes);
+    } else if (c.certified || is_clear_of(s, c)) {
+      tally_.refuted(AuditPoint::half_planes,
+                     at_row(s.row, "a half-plane of " + id(s) + " is not disjoint from its velocity obstacle"));
     } else {
-      tally_.report.half_planes += c.source != BodyKind::robot;
-      holds(s, c)
-          ? tally_.proven(AuditPoint::half_planes)
-          : tally_.refuted(AuditPoint::half_planes,
-                           at_row(s.row, "a half-plane of " + id(s) + " is not disjoint from its velocity obstacle"));
+      tally_.open(AuditPoint::half_planes,
+                  at_row(s.row, "a half-plane of " + id(s) + " is not certified: it overlaps the body"));
     }
   }
   const bool counts =
@@ -264,6 +297,20 @@ std::string DecisionAudit::misnamed(const Seen& s, const RecordedConstraint& c) 
     return std::find(owners.begin(), owners.end(), owner) != owners.end();
   });
   return is_piece ? "" : " is no piece of its enclosure";
+}
+
+/// By more than rounding: then a half-plane can be certified, and one that is said to be uncertified was forged.
+bool DecisionAudit::is_clear_of(const Seen& s, const RecordedConstraint& c) const {
+  constexpr double kRounding = 0x1p-40;  // of the coordinates
+  const Vec2 at = s.state->anchor;
+  double radius = file_.scenario.robots[s.robot].radius;
+  radius += kRounding * (std::fabs(at.x) + std::fabs(at.y) + radius);
+  const auto is_outside = [&](const geometry::ConvexShape& shape) {
+    return !geometry::is_valid(shape) || geometry::locate({shape, at, radius}, Vec2{}) == geometry::Place::outside;
+  };
+  if (c.source == BodyKind::moving_obstacle) return is_outside(moved_[c.index]);
+  if (c.source != BodyKind::robot) return is_outside(file_.recording.bodies[c.body].shape);
+  return is_outside(geometry::Disc{s.step->robots[c.index].anchor, file_.scenario.robots[c.index].radius});
 }
 
 bool DecisionAudit::holds(const Seen& s, const RecordedConstraint& c) const {
@@ -327,12 +374,16 @@ void DecisionAudit::choice_is_best(const Seen& s) {
   std::string why = misstated(s, most);
   if (why.empty()) why = stated(s, problem, solution);
   if (!why.empty()) return answer(why, false);
-  // What has no room is held to its rounding error; that nothing is better is not proven by its numbers.
-  if (r.status == lp::Status::no_interior) return answer(" has no room: that it is the best is not proven", true);
+  if (r.status == lp::Status::no_interior) {
+    const Refuted no_room = without_room(problem, solution, fastest(s.robot));
+    return answer(no_room.why, no_room.is_open);
+  }
   const std::optional<lp::Certificate> claim =
       r.exact_multipliers ? exact_claim_of(problem, solution) : lp::claim_of(problem, solution);
   const lp::CertificateError flaw = claim ? lp::check(problem, *claim) : lp::CertificateError::bound;
   if (flaw == lp::CertificateError::none) return answer("", false);
+  if (flaw == lp::CertificateError::bound && is_beyond_proof(problem, solution))
+    return answer(" is that of the exact solution, which no doubles prove to be the best", true);
   answer(flaw == lp::CertificateError::velocity ? " breaks a half-plane or the speed bound"
                                                 : " is not proven the best by its multipliers",
          false);

@@ -57,6 +57,7 @@ class DecisionAudit {
   // Point (4).
   void half_planes_hold(const Seen& s);
   std::string misnamed(const Seen& s, const formation::RecordedConstraint& c) const;
+  bool is_clear_of(const Seen& s, const formation::RecordedConstraint& c) const;
   bool holds(const Seen& s, const formation::RecordedConstraint& c) const;
   bool takes_its_share(const Seen& s, const formation::RecordedConstraint& c) const;
   bool adds_up(const Seen& s, const formation::RecordedConstraint& c) const;

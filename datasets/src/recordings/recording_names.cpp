@@ -27,9 +27,9 @@ template <>
 const std::vector<Word<formation::Mode>>& words() {
   using formation::Mode;
   static const std::vector<Word<Mode>> kWords{
-      {Mode::direct, "direct"},       {Mode::guided, "guided"},           {Mode::boost, "boost"},
-      {Mode::by_plan, "by-plan"},     {Mode::going_back, "going-back"},
-      {Mode::following, "following"}, {Mode::pushing_out, "pushing-out"}, {Mode::staying, "staying"}, {Mode::arrived, "arrived"}};
+      {Mode::direct, "direct"},           {Mode::guided, "guided"},         {Mode::boost, "boost"},
+      {Mode::by_plan, "by-plan"},         {Mode::going_back, "going-back"}, {Mode::following, "following"},
+      {Mode::pushing_out, "pushing-out"}, {Mode::staying, "staying"},       {Mode::arrived, "arrived"}};
   return kWords;
 }
 

@@ -269,13 +269,23 @@ bool Decider::has_fallen_back(const Constraint& c, const DecisionInput& in) cons
          std::find(in.fallen_back->begin(), in.fallen_back->end(), c.index) != in.fallen_back->end();
 }
 
+Decider::Proof Decider::proof_of(const lp::Proven& proven) const {
+  if (!proven.exact_stage) return Proof::multipliers;
+  if (proven.solution.status == lp::Status::no_interior) return Proof::whole_problem;
+  if (lp::check(problem_, lp::claim_of(problem_, proven.solution)) == lp::CertificateError::none)
+    return Proof::multipliers;
+  return proven.certificate && lp::is_tight(problem_, *proven.certificate) ? Proof::exact_multipliers
+                                                                           : Proof::whole_problem;
+}
+
 void Decider::decide(const DecisionInput& in, RobotStep& step) {
   const lp::Proven proven = proven_solution(in);
   lp::Solution solution = proven.solution;
-  step.exact_multipliers = proven.exact_stage && solution.status != lp::Status::no_interior &&
-                           lp::check(problem_, lp::claim_of(problem_, solution)) != lp::CertificateError::none;
+  const Proof proof = proof_of(proven);
+  step.exact_multipliers = proof == Proof::exact_multipliers;
   if (step.exact_multipliers)
     for (lp::ActiveConstraint& active : solution.active) active.multiplier = 0.0;
+  const bool keep_all = in.keep_all || proof == Proof::whole_problem;
   step.preferred = in.preferred;
   step.chosen = solution.velocity;
   step.status = solution.status;
@@ -291,7 +301,7 @@ void Decider::decide(const DecisionInput& in, RobotStep& step) {
     for (const Constraint& c : *some) {
       const lp::ActiveConstraint* active = active_at(solution, number++);
       if (c.proof == vo::Proof::none) ++step.uncertified;
-      if (in.keep_all || active || has_fallen_back(c, in) || c.clearance <= reach_of(c, in.from))
+      if (keep_all || active || has_fallen_back(c, in) || c.clearance <= reach_of(c, in.from))
         kept_.emplace_back(&c, active);
     }
   }

@@ -72,10 +72,17 @@ class Decider {
 
   /// Fills `chosen`, `status`, `violation`, `exact_multipliers`, `bound`, `constraints` and `uncertified` of the step;
   /// the other fields are the caller's. Keeps the constraints that bind and those against what can be met within a
-  /// step: with these alone an audit sees that none is missing.
+  /// step: with these alone an audit sees that none is missing. Keeps all where no multipliers prove the choice.
   void decide(const DecisionInput& in, RobotStep& step);
 
  private:
+  /// What shows that a choice is the best.
+  enum class Proof {
+    multipliers,        ///< its own
+    exact_multipliers,  ///< no doubles, but those of the exact solution
+    whole_problem       ///< solving the problem again: there is no room, or only a wide gap can be proven
+  };
+  Proof proof_of(const lp::Proven& proven) const;
   void state_problem(const DecisionInput& in);
   lp::Solution rounded_solution(const DecisionInput& in);
   lp::Proven proven_solution(const DecisionInput& in);

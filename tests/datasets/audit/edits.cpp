@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -351,6 +352,8 @@ json moved_by(const json& point, Vec2 by) {
   return {point[0].get<double>() + by.x, point[1].get<double>() + by.y};
 }
 
+constexpr const char* kStatusWords[] = {"optimal", "relaxed", "infeasible", "no-interior"};
+
 /// Edits of one who knows the format: what follows from the forged number is forged too.
 Edit change_consistently(Lines& lines, SeededRandom& random) {
   const std::vector<json*> rows = rows_of(lines);
@@ -361,7 +364,7 @@ Edit change_consistently(Lines& lines, SeededRandom& random) {
   const double size = std::pow(10.0, random.uniform(-9.0, 0.0));
   const Vec2 by = size * random.direction();
   const std::string place = "row " + std::to_string(k) + " robot " + std::to_string(i);
-  switch (random.integer(0, 4)) {
+  switch (random.integer(0, 6)) {
     case 0: {  // another choice, and the kinematic row after it
       robot["chosen"] = moved_by(robot["chosen"], by);
       json& next = (*rows[k + 1])["robots"][i];
@@ -403,6 +406,20 @@ Edit change_consistently(Lines& lines, SeededRandom& random) {
           return {"(body made smaller)", "changed", "body " + line["body"]["number"].dump()};
         }
       break;
+    case 4: {  // all choices of a robot are said to be of one kind
+      const char* status = kStatusWords[any(random, std::size(kStatusWords))];
+      for (json* row : rows) (*row)["robots"][i]["status"] = status;
+      robot["chosen"] = moved_by(robot["chosen"], by);
+      return {"(status of every row)", status, place};
+    }
+    case 5: {  // nothing is certified, and one half-plane gives more
+      if (!robot.contains("constraints")) break;
+      robot["uncertified"] = robot["constraints"].size();
+      for (json& c : robot["constraints"]) c["certified"] = false;
+      json& one = robot["constraints"][any(random, robot["constraints"].size())];
+      one["offset"] = one["offset"].get<double>() - size;
+      return {"(uncertified half-planes)", "changed", place};
+    }
     default:  // everything before or after is another place
       for (json* row : rows) {
         json& r = (*row)["robots"][i];

@@ -294,16 +294,71 @@ TEST(AuditPoints, AChoiceBeyondAHalfPlaneOrTheSpeedLimitIsRefused) {
   EXPECT_GT(audit(file)[AuditPoint::choices].refuted, 0u);
 }
 
-TEST(AuditPoints, AChoiceThatIsSaidToHaveNoRoomIsHeldToItsRounding) {
+/// A robot in a corridor as wide as itself, up to 1e-13 m: no double keeps clear of both walls but by rounding.
+Scenario corridor() {
+  Scenario s;
+  s.guidance = formation::Guidance::none;
+  s.liveness = formation::Liveness::off;
+  s.time_limit = 1.0;
+  s.margins.obstacle = s.margins.robot = 0.0;
+  formation::Robot r;
+  r.id = "R";
+  r.position = {0.8892168273742458, -1.2330433374031655};
+  r.goals = {{2.7383534027677423, 6.550316729145344}};
+  s.robots = {r};
+  s.obstacles = {
+      {"a", geometry::Polyline{{{-0.2906693925575987, -4.036232326396762}, {2.4830354705326463, 7.638807773426002}}}},
+      {"b", geometry::Polyline{{{0.6822506157609678, -4.26737439832095}, {3.455955478851213, 7.407665701501813}}}}};
+  return s;
+}
+
+TEST(AuditPoints, AChoiceWithoutRoomIsDecidedAgain) {
+  formation::SimulationOptions options;
+  options.method = formation::Method::orca;
+  const RecordingFile good = recorded(corridor(), options);
+  const auto has_no_room = [](const RobotStep& r) { return r.status == lp::Status::no_interior; };
+  std::size_t without_room = 0;
+  for (const Step& row : good.recording.steps) without_room += has_no_room(row.robots[0]);
+  EXPECT_GT(without_room, 5u);
+  const AuditReport report = audit(good);
+  EXPECT_TRUE(report.clean()) << to_json(report);
+  EXPECT_EQ(report[AuditPoint::choices].proven, report[AuditPoint::choices].asked());
+  // Another point of the same corridor.
+  RecordingFile forged = good;
+  RobotStep& robot = *std::find_if(forged.recording.steps.begin(), forged.recording.steps.end(), [&](const Step& row) {
+                        return has_no_room(row.robots[0]);
+                      })->robots.begin();
+  robot.chosen = 0.99 * robot.chosen;
+  EXPECT_EQ(audit(forged)[AuditPoint::choices].refuted, 1u);
+}
+
+TEST(AuditPoints, AChoiceWithRoomThatIsSaidToHaveNoneIsRefused) {
   const auto binds = [](const RecordedConstraint& c) { return c.active && c.hard; };
-  const AuditReport open =
+  const AuditReport one =
       forged_constraint(binds, [](RobotStep& robot, RecordedConstraint&) { robot.status = lp::Status::no_interior; });
-  EXPECT_EQ(open[AuditPoint::choices].open, 1u);
-  const AuditReport report = forged_constraint(binds, [](RobotStep& robot, RecordedConstraint& c) {
-    robot.status = lp::Status::no_interior;
-    robot.chosen -= 1e-9 * c.half_plane.normal;
+  EXPECT_EQ(one[AuditPoint::choices].refuted, 1u);
+  RecordingFile all = clean();
+  for (Step& row : all.recording.steps)
+    for (RobotStep& robot : row.robots) robot.status = lp::Status::no_interior;
+  const PointCount choices = audit(all)[AuditPoint::choices];
+  EXPECT_EQ(choices.refuted, choices.asked());
+}
+
+TEST(AuditPoints, HalfPlanesThatAreSaidToBeUncertifiedArePutToTheProof) {
+  RecordingFile file = clean();
+  for (Step& row : file.recording.steps)
+    for (RobotStep& robot : row.robots) {
+      robot.uncertified = robot.constraints.size();
+      for (RecordedConstraint& c : robot.constraints) c.certified = false;
+    }
+  const PointCount half_planes = audit(file)[AuditPoint::half_planes];
+  EXPECT_EQ(half_planes.proven, half_planes.asked()) << "they are true, whatever is said of them";
+  const AuditReport report = forged_constraint(is_hard, [](RobotStep& robot, RecordedConstraint& c) {
+    c.certified = false;
+    robot.uncertified = 1;
+    c.half_plane.offset -= 0.1;
   });
-  EXPECT_EQ(report[AuditPoint::choices].refuted, 1u);
+  EXPECT_EQ(report[AuditPoint::half_planes].refuted, 1u) << "the robot is clear of the body";
 }
 
 TEST(AuditPoints, AChoiceThatIsNotTheBestIsRefused) {

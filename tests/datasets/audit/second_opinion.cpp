@@ -211,6 +211,19 @@ struct Shape {
         all.push_back(corners[k] + s * (corners[(k + 1) % corners.size()] - corners[k]));
     return all;
   }
+  /// How far p is from the shape; 0 inside. Of an ellipse up to a share of its size.
+  double away(Vec2 p) const {
+    if (contains(p)) return 0.0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; ellipse && k < 720; ++k) {
+      const Vec2 w{std::cos(k * 0.008726646259971648), std::sin(k * 0.008726646259971648)};
+      least = std::min(least, norm(p - center - Vec2{l11 * w.x, l21 * w.x + l22 * w.y}));
+    }
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      least =
+          std::min(least, static_cast<double>(distance_from_edge({corners[k], corners[(k + 1) % corners.size()]}, p)));
+    return std::max(0.0, least - radius);
+  }
   bool contains(Vec2 p) const {
     if (ellipse) {
       const Vec2 d = p - center;
@@ -498,7 +511,7 @@ class Opinion {
     if (!geometry::is_finite(s.chosen) || !within_bound(i, s.chosen)) return wrong(k, i, "faster than it may be");
     double worst = 0.0;
     for (const Line& line : s.lines) {
-      if (line.certified) half_plane(k, i, line);
+      half_plane(k, i, line);
       const bool gives = s.status == "infeasible" || (s.status == "relaxed" && !line.hard);
       if (s.status == "no-interior" && line.hard && line.slack(s.chosen) < -kClose) wrong(k, i, "breaks a half-plane");
       if (gives)
@@ -519,7 +532,7 @@ class Opinion {
   /// Velocities beside the chosen one that are allowed and better.
   void optimum(std::size_t k, std::size_t i, double worst) {
     const State& s = rows_[k].robots[i];
-    if (s.status == "no-interior") return;
+    if (s.status == "no-interior") return no_room(k, i);
     const bool gives = s.status != "optimal";
     const Vec2 to = s.preferred - s.chosen;
     for (int m = 0; m < 360; ++m) {
@@ -537,6 +550,18 @@ class Opinion {
       if (!keeps) continue;
       if (gives ? most < worst - kClose : squared_norm(v - s.preferred) < squared_norm(to) - kClose)
         return wrong(k, i, "a better velocity was allowed");
+    }
+  }
+
+  /// No velocity satisfies everything with room to spare.
+  void no_room(std::size_t k, std::size_t i) {
+    const State& s = rows_[k].robots[i];
+    for (int m = 0; m < 720; ++m) {
+      const double angle = m * 0.10471975511965977, size = std::pow(10.0, 0.5 - 0.5 * (m / 60));
+      const Vec2 v = s.chosen + size * Vec2{std::cos(angle), std::sin(angle)};
+      const auto has_room = [&](const Line& line) { return line.slack(v) >= kClose; };
+      if (within_bound(i, v) && std::all_of(s.lines.begin(), s.lines.end(), has_room))
+        return wrong(k, i, "there was room");
     }
   }
 
@@ -591,9 +616,11 @@ class Opinion {
     double grown = radius_[i];
     Vec2 u{};
     double share = 1.0;  // a robot's half: of the relative velocity
+    double away = 0.0;   // m, of the body from the anchor
     if (body.kind == "robot") {
       const std::size_t j = body.owners.at(0);
       all = {row.robots[j].anchor};
+      away = norm(all[0] - s.anchor);
       grown += radius_[j];
       u = row.robots[j].anchor_velocity;
       if (cooperates_[j]) {
@@ -605,9 +632,14 @@ class Opinion {
       for (const auto& edge : moving_[m].edges) all.push_back(edge.first + row.moving[m].first);
       all.push_back(moving_[m].edges.back().second + row.moving[m].first);
       u = row.moving[m].second;
+      away = distance(moving_[m], s.anchor - row.moving[m].first);
     } else {
       all = body.shape.samples();
+      away = body.shape.away(s.anchor);
     }
+    // What overlaps may be uncertified.
+    constexpr double kSampled = 0.01;  // m
+    if (!line.certified && away <= grown + kSampled) return;
     for (const Vec2 p : all)
       for (const double share_of_tau : {0.1, 0.3, 1.0}) {
         // The velocity with which the robot's rim just reaches p, on the side of the half-plane.
