@@ -293,5 +293,23 @@ TEST(CrowdProblems, WhatACrowdCannotRunIsNamed) {
   EXPECT_EQ(crowd_problems(s)[0].pointer, "/speed_bound");
 }
 
+/// Robots of a crowd stand on a lattice: none can come as near to a goal between its points as a finer tolerance asks.
+TEST(CrowdProblems, AToleranceBelowTheLatticeIsNamed) {
+  Scenario s = crossing();
+  s.arrival_tolerance = 0x1p-18;
+  EXPECT_TRUE(crowd_problems(s).empty());
+  s.arrival_tolerance = 1e-6;
+  ASSERT_EQ(crowd_problems(s).size(), 1U);
+  EXPECT_EQ(crowd_problems(s)[0].pointer, "/arrival_tolerance");
+  EXPECT_EQ(crowd_problems(s)[0].found, "1e-06 m");
+  EXPECT_NE(crowd_problems(s)[0].expected.find("at least 3.8147e-06 m"), std::string::npos);
+  s = crossing();
+  s.arrival_tolerance = 1e-3;
+  EXPECT_TRUE(crowd_problems(s).empty());
+  s.robots[0].goals[0] = {4e6, 0.0};  // a wider scene has a coarser lattice
+  ASSERT_EQ(crowd_problems(s).size(), 1U);
+  EXPECT_EQ(crowd_problems(s)[0].pointer, "/arrival_tolerance");
+}
+
 }  // namespace
 }  // namespace exactvo::datasets::test

@@ -2,14 +2,17 @@
 // Roadmaps, joint search and plans: what they promise, asked in rationals.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "decision/decision.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/vo/reciprocal.h"
+#include "liveness/groups.h"
 #include "liveness/plan.h"
 #include "support/seeded_random.h"
 
@@ -87,7 +90,7 @@ struct Problem {
       bool is_free = walls.clearance(p, 1.0) >= 0.55;
       for (std::size_t j = 0; j < chosen.size(); ++j)
         is_free = is_free && norm(map.place(chosen[j]) - p) > 1.02 * (radius + joint.radii[j]);
-      if (is_free) chosen.push_back(map.attach(p));
+      if (is_free) chosen.push_back(map.attach(p, radius));
     }
     return chosen;
   }
@@ -163,7 +166,7 @@ TEST(JointSearch, InACorridorWithoutASidingThereIsNoneOnTheMap) {
   JointProblem p;
   p.map = &map;
   p.radii = {0.5, 0.5};
-  p.starts = {map.attach({-2, 0}), map.attach({2, 0})};
+  p.starts = {map.attach({-2, 0}, 0.5), map.attach({2, 0}, 0.5)};
   p.goals = {p.starts[1], p.starts[0]};
   const JointAnswer answer = JointSearch(p).run(1, {1000000, 100000});
   EXPECT_EQ(answer.end, SearchEnd::none_on_map);
@@ -180,6 +183,177 @@ TEST(Roadmap, EveryFreePointOfANarrowPlaceSeesAPlace) {
     });
     EXPECT_TRUE(sees) << x;
   }
+}
+
+/// A place that is added after a robot was found to stay somewhere had ways through that robot.
+TEST(Roadmap, WaysOfPlacesThatAreAddedKeepClearOfWhatBlocks) {
+  SeededRandom random(test::seed_of_run(35));
+  const Walls open({});
+  std::size_t ways = 0;
+  for (int k = 0; k < 100; ++k) {
+    Roadmap map(open, {{-4, -4}, {4, 4}}, 0.5);
+    const Vec2 parked = random.in_box(2.0), start = parked + random.in_box(1.5);
+    const double keep = 1.04;
+    map.block(parked, keep);
+    const PlaceNumber added = map.attach(start, 0.5);
+    const double least = std::min(keep, norm(start - parked));
+    for (const PlaceNumber p : map.ways(added)) {
+      EXPECT_GE(std::sqrt(squared_distance(parked, start, map.place(p))), least * (1.0 - 1e-9));
+      EXPECT_FALSE(map.is_blocked(p));
+      ++ways;
+    }
+  }
+  EXPECT_GT(ways, 300u);
+}
+
+/// A robot that stands on a place of the lattice too near to one that stays was left without any way.
+TEST(Roadmap, WhoStandsOnABlockedPlaceMayLeave) {
+  const Walls open({});
+  Roadmap map(open, {{-4, -4}, {4, 4}}, 0.5);
+  const Vec2 start = map.place(20);
+  map.block(start + Vec2{1.01, 0.0}, 1.04);
+  ASSERT_TRUE(map.is_blocked(20));
+  const PlaceNumber own = map.attach(start, 0.5);
+  EXPECT_NE(own, 20u);
+  EXPECT_FALSE(map.ways(own).empty());
+}
+
+/// The place of a small robot near a wall is none for a large one.
+TEST(JointSearch, NobodyGoesWhereOnlyASmallerRobotHasRoom) {
+  SeededRandom random(test::seed_of_run(36));
+  const Walls walls(std::vector<Segment>{{{-5, 0}, {5, 0}}});
+  std::size_t found = 0;
+  for (int k = 0; k < 20; ++k) {
+    Roadmap map(walls, {{-5, 0.1}, {5, 2.2}}, 0.5);
+    JointProblem p;
+    p.map = &map;
+    p.radii = {0.1, 0.5};
+    const double x = random.uniform(-1.0, 1.0);
+    p.starts = {map.attach({x, 0.15}, 0.1), map.attach({x + 1.0, 0.8}, 0.5)};
+    p.goals = {map.attach({x + 1.0, 1.5}, 0.1), map.attach({x - 1.0, 0.8}, 0.5)};
+    const JointAnswer answer = JointSearch(p).run(k, {20000, 2000});
+    found += answer.end == SearchEnd::found;
+    for (const JointMove& m : answer.moves) EXPECT_GE(walls.clearance(map.place(m.to), 1.0), p.radii[m.robot]);
+  }
+  EXPECT_GE(found, 15u);
+}
+
+/// Cell numbers of 32 bits overflowed where robots are small and far from the origin.
+TEST(Cells, FarFromTheOriginOnlyWhatIsNearIsVisited) {
+  for (const double far : {0.0, 5e6, 1e12, 1e300}) {
+    Cells<int> cells(4e-4);
+    cells.add(Vec2{far, -far}, 1);
+    cells.add(Vec2{-far - 1.0, far}, 2);
+    std::multiset<int> seen;
+    cells.for_each_about({far, -far}, 1e-3, [&](int n) { seen.insert(n); });
+    EXPECT_EQ(seen, std::multiset<int>{1}) << far;
+  }
+}
+
+/// Planning takes seconds, in which a user may want to stop.
+TEST(JointSearch, EndsWhenItIsStopped) {
+  SeededRandom random(test::seed_of_run(37));
+  Problem p(two_rooms(1.5), 12, random);
+  for (const int most : {0, 3, 15}) {
+    int asked = 0;
+    p.joint.is_stopped = [&] { return asked++ >= most; };
+    const JointAnswer answer = JointSearch(p.joint).run(1, {200000, 3000});
+    EXPECT_EQ(answer.end, SearchEnd::out_of_budget);
+    EXPECT_TRUE(answer.moves.empty());
+    EXPECT_EQ(asked, most + 1);
+  }
+}
+
+/// Thousands in a row that all have to go on by one: each asks the next to go first, on the stack of a thread.
+TEST(JointSearch, ALongRowOfRobotsNeedsLittleStack) {
+  constexpr std::size_t kRow = 2000;
+  const auto plan = [](void*) -> void* {
+    const Walls open({});
+    Roadmap map(open, {{0.0, 0.0}, {1.06 * (kRow + 2), 0.1}}, 0.5);
+    JointProblem p;
+    p.map = &map;
+    for (std::size_t i = 0; i < kRow; ++i) {
+      p.radii.push_back(0.5);
+      p.starts.push_back(static_cast<PlaceNumber>(i));
+      p.goals.push_back(static_cast<PlaceNumber>(i + 1));
+    }
+    const JointAnswer answer = JointSearch(p).run(1, {10 * kRow, 3});
+    return reinterpret_cast<void*>(answer.calls);
+  };
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, std::size_t{1} << 19);
+  pthread_t thread;
+  ASSERT_EQ(pthread_create(&thread, &attributes, plan, nullptr), 0);
+  void* calls = nullptr;
+  pthread_join(thread, &calls);
+  pthread_attr_destroy(&attributes);
+  EXPECT_GE(reinterpret_cast<std::size_t>(calls), kRow);
+}
+
+TEST(History, ForgetsTheOldestRowsThatAreNotNeeded) {
+  History history(20);  // ten rows of two
+  for (int k = 0; k < 100; ++k) {
+    history.add({{1.0 * k, 0.0}, {0.0, 1.0 * k}});
+    history.forget_before(k < 50 ? 5 : history.last());
+    EXPECT_EQ(history.last(), static_cast<std::size_t>(k));
+    EXPECT_EQ(history.first(), static_cast<std::size_t>(k < 15 ? std::max(0, k - 9) : k < 50 ? 5 : k - 9));
+    EXPECT_EQ(history[history.first()][0].x, static_cast<double>(history.first()));
+  }
+  History one(1);
+  one.add({{}, {}, {}});
+  one.forget_before(0);
+  EXPECT_EQ(one.last(), 0u);
+}
+
+/// A robot whose speed is bounded by a box drives faster than `max_speed` along the diagonal. Going back at `max_speed`
+/// it fell behind its own way.
+TEST(Groups, AStepOfABoxBoundIsGoneBackInOneStep) {
+  Scenario s;
+  Robot& r = s.robots.emplace_back();
+  const Vec2 fastest{r.max_speed * s.time_step, -r.max_speed * s.time_step};
+  s.speed_bound = SpeedBoundKind::box;
+  constexpr double kRounding = 1e-12;
+  for (const double share : {0.5, 1.0, 4.0}) {
+    const Vec2 expected = std::min(1.0, share) / s.time_step * fastest;
+    EXPECT_NEAR(norm(velocity_along(s, 0, share * fastest) - expected), 0.0, kRounding) << share;
+  }
+  s.speed_bound = SpeedBoundKind::disc;
+  EXPECT_NEAR(norm(velocity_along(s, 0, fastest)), r.max_speed, kRounding);
+}
+
+/// A map of all that stand together on a large ring had more places than memory.
+TEST(Groups, OnALargeRingPlansAreMadeForAsManyAsFit) {
+  constexpr std::size_t kCount = 2000;
+  Scenario s;
+  Step row;
+  std::vector<RobotNow> now;
+  const double around = 1.2 * kCount / 6.283185307179586;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    Robot& r = s.robots.emplace_back();
+    r.id = "R" + std::to_string(i);
+    r.position = around * geometry::rotated({1.0, 0.0}, 6.283185307179586 * static_cast<double>(i) / kCount);
+    r.goals = {r.position + Vec2{3.0, 0.0}};
+    now.push_back({r.position, r.goals[0], false, true});
+    RobotStep& step = row.robots.emplace_back();
+    step.position = r.position;
+    step.preferred = {1.0, 0.0};
+    RecordedConstraint& c = step.constraints.emplace_back();
+    c.source = vo::BodyKind::robot;
+    c.index = (i + 1) % kCount;
+    c.half_plane = {{-1.0, 0.0}, 0.0};
+  }
+  const OpenSpace open;
+  int asked = 0;
+  Groups groups(s, open, true, [&] { return ++asked > 300; });  // a few plans are enough
+  const auto way_left = [](std::size_t) { return 3.0; };
+  groups.begin_step(0.0, now, way_left);
+  groups.end_step(row);
+  groups.begin_step(100.0, now, way_left);
+  groups.end_step(row);
+  groups.begin_step(100.05, now, way_left);
+  EXPECT_GT(groups.course().search_nodes, 0u);
+  EXPECT_LT(groups.course().largest, 1000u);
 }
 
 /// Lemma 2: the half-planes of two that go by a plan which is free of collision hold what they want, in rationals; and

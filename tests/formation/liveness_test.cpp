@@ -236,8 +236,52 @@ TEST(Liveness, WhereThereIsNoPlanItIsSaid) {
   test_scenes::add_robot(s, {6.0, 0.7}, {-6.0, 0.7});
   const Metrics m = measure(s, simulate(s));
   EXPECT_FALSE(m.all_arrived);
-  EXPECT_NE(m.outcome.find("no plan was found on the roadmap for R1 and R2"), std::string::npos) << m.outcome;
+  EXPECT_NE(m.outcome.find("there is no plan on the roadmap for R1 and R2"), std::string::npos) << m.outcome;
   EXPECT_NE(m.outcome.find("a deadlock of two"), std::string::npos) << m.outcome;
+}
+
+/// Only the robots of the last plan that was not found were named, and none where another plan was found after it.
+TEST(Liveness, AllThatHaveNoPlanAreNamed) {
+  Scenario s;
+  s.time_limit = 12.0;
+  for (const double y : {0.0, 10.0}) {
+    test_scenes::add_wall(s, {{-8, y}, {8, y}, {8, y + 1.4}, {-8, y + 1.4}, {-8, y}});
+    test_scenes::add_robot(s, {-6.0, y + 0.7}, {6.0, y + 0.7});
+    test_scenes::add_robot(s, {6.0, y + 0.7}, {-6.0, y + 0.7});
+  }
+  const Metrics m = measure(s, simulate(s));
+  EXPECT_NE(m.outcome.find("for R1 and R2"), std::string::npos) << m.outcome;
+  EXPECT_NE(m.outcome.find("for R3 and R4"), std::string::npos) << m.outcome;
+}
+
+/// The same in millimetres and in kilometres, and far from the origin, as surveyors count.
+TEST(Liveness, PlansDependNeitherOnTheUnitNorOnTheOrigin) {
+  const Scenario s = test_scenes::siding();
+  const auto moved = [&](double scale, Vec2 by) {
+    Scenario other = s;
+    const auto put = [&](Vec2& p) { p = scale * p + by; };
+    for (SceneObstacle& o : other.obstacles)
+      for (Vec2& p : std::get<geometry::Polyline>(o.shape).points) put(p);
+    for (Robot& r : other.robots) {
+      put(r.position);
+      for (Vec2& goal : r.goals) put(goal);
+      r.radius *= scale;
+      r.max_speed *= scale;
+    }
+    other.arrival_tolerance *= scale;
+    other.neighbour_distance *= scale;
+    other.margins.obstacle *= scale;
+    other.margins.robot *= scale;
+    return other;
+  };
+  for (const Scenario& other : {moved(0.03125, {}), moved(1024.0, {}), moved(1.0, {500000.0, 5700000.0})}) {
+    const Recording run = simulate(other);
+    const Metrics m = measure(other, run);
+    EXPECT_TRUE(m.all_arrived) << m.outcome;
+    EXPECT_TRUE(m.collisions.empty());
+    EXPECT_EQ(relaxed(run), 0u);
+    EXPECT_EQ(m.plans->groups, 1u);
+  }
 }
 
 TEST(Liveness, AmongObstaclesPlansNeedGuidance) {

@@ -42,7 +42,7 @@ TEST(Waiting, ACycleIsADeadlockThatEachOfItsRobotsNames) {
   EXPECT_THAT(deadlocks_in(row.graph()), ElementsAre(ElementsAre(0, 1, 2)));
   EXPECT_EQ(row.words(1), "R2 waits for R3, which waits for R1, which waits for R2: a deadlock of three");
   EXPECT_EQ(row.words(3), "R4 waits for R2, which is in a deadlock of three");
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(is_dead(row.graph(), row.step, i));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(is_dead(row.scenario, row.graph(), row.step, i));
 }
 
 TEST(Waiting, TheRobotThatPressesMostComesFirst) {
@@ -56,7 +56,7 @@ TEST(Waiting, ARobotThatRestsAtItsGoalIsNoDeadlockAndMakesOne) {
   Row row({{1}, {}});
   row.step.robots[1].mode = Mode::arrived;
   EXPECT_EQ(row.words(0), "R1 waits for R2, which rests at its goal");
-  EXPECT_TRUE(is_dead(row.graph(), row.step, 0));
+  EXPECT_TRUE(is_dead(row.scenario, row.graph(), row.step, 0));
   EXPECT_THAT(deadlocks_in(row.graph()), IsEmpty());
 }
 
@@ -64,7 +64,19 @@ TEST(Waiting, AQueueBehindOneThatMovesIsAlive) {
   Row row({{1}, {2}, {3}, {}});
   row.step.robots[3].chosen = {1.0, 0.0};
   EXPECT_EQ(row.words(0), "queue of 4: R1 waits for R2, which waits for R3, which waits for R4, which moves");
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(is_dead(row.graph(), row.step, i));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(is_dead(row.scenario, row.graph(), row.step, i));
+}
+
+/// What counts as standing was a speed in m/s: slow robots stood, whatever they did.
+TEST(Waiting, ASlowRobotThatDrivesAsFastAsItCanMoves) {
+  Row row({{1}, {}});
+  for (Robot& r : row.scenario.robots) r.max_speed = 0.05;
+  for (RobotStep& r : row.step.robots) r.preferred = {0.05, 0.0};
+  row.step.robots[1].chosen = {0.05, 0.0};
+  EXPECT_FALSE(is_dead(row.scenario, row.graph(), row.step, 0));
+  EXPECT_EQ(row.words(0), "R1 waits for R2, which moves");
+  for (RobotStep& r : row.step.robots) r.preferred = {1e-3, 0.0};
+  EXPECT_THAT(row.graph()[0], ElementsAre(1));
 }
 
 TEST(Waiting, WhoGetsWhatItPrefersOrIsFarWaitsForNobody) {

@@ -39,11 +39,12 @@ constexpr std::size_t kChoosesUpTo = 100;  ///< robots
 constexpr std::size_t kCalls = 75000, kCallsGoingBack = 175000, kCallsFromTheStart = 1000000;
 /// The whole scene is planned for at most that many robots.
 constexpr std::size_t kEveryoneUpTo = 200;
-/// Places times robots that distances are kept of.
+/// A map of the whole scene or of all goals has at most this many places, which take 0.1 s to a second, and this many
+/// distances from places to goals.
+constexpr double kMostPlaces = 6e4;
 constexpr double kMostDistances = 4e6;
-/// Points of the fine grid of a map of the whole scene.
-constexpr double kMostPoints = 1.5e6;
-constexpr double kFinePoints = 64.0;  ///< a squared diameter
+/// A plan is made for fewer robots where its map would have more distances than that: they take 40 MB and a second.
+constexpr double kLargestMap = 1e7;
 
 std::vector<std::size_t> merged(std::vector<std::size_t> a, const std::vector<std::size_t>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -64,14 +65,31 @@ std::string seconds(double t) {
 
 }  // namespace
 
-Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans)
+Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way) {
+  const double fastest = scenario.robots[robot].max_speed;
+  const double length =
+      scenario.speed_bound == SpeedBoundKind::box ? std::max(std::fabs(way.x), std::fabs(way.y)) : norm(way);
+  return length > fastest * scenario.time_step ? fastest / length * way : way / scenario.time_step;
+}
+
+Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans, std::function<bool()> is_stopped)
     : scenario_(scenario),
       space_(&space),
       plans_(plans),
+      is_stopped_(std::move(is_stopped)),
       of_robot_(scenario.robots.size()),
       group_of_(scenario.robots.size(), kNone),
       wanted_(scenario.robots.size()),
       notes_(scenario.robots.size()) {
+  for (const SceneObstacle& o : scenario.obstacles)
+    for (const Segment& edge : geometry::edges_of(o.shape)) {
+      scene_.add(edge.a);
+      scene_.add(edge.b);
+    }
+  for (const Robot& r : scenario.robots) {
+    scene_.add(r.position);
+    for (const Vec2 goal : r.goals) scene_.add(goal);
+  }
   for (const Robot& r : scenario.robots) patience_ = std::max(patience_, 2.0 * r.radius / r.max_speed);
   for (OfRobot& r : of_robot_) {
     r.shortest = kInfinity;
@@ -83,9 +101,14 @@ void Groups::begin_step(double time, std::vector<RobotNow> now, const std::funct
   time_ = time;
   now_ = std::move(now);
   if (plans_) {
-    std::vector<Vec2>& here = history_.emplace_back();
+    std::vector<Vec2> here;
     for (const RobotNow& r : now_) here.push_back(r.position);
+    history_.add(std::move(here));
     advance();
+    std::size_t needed = history_.last();
+    for (const Group& g : groups_)
+      if (!g.is_over && g.back_at > g.back_to) needed = std::min(needed, g.back_to);
+    history_.forget_before(needed);
   }
   watch(way_left);
   if (plans_) make_due_plans();
@@ -113,7 +136,7 @@ void Groups::watch(const std::function<double(std::size_t)>& way_left) {
       if (!(left < r.shortest - kNearer * 2.0 * scenario_.robots[i].radius)) continue;
       r.shortest = left;
       r.since = time_;
-      r.attempts = 0;
+      r.failures = 0;
       r.is_named = false;
     }
   }
@@ -126,10 +149,10 @@ void Groups::end_step(const Step& row) {
     OfRobot& r = of_robot_[i];
     if (is_member(i) || now_[i].has_arrived || !now_[i].may_join || (!plans_ && r.is_named)) continue;
     const double stalled = stalled_for(i);
-    const double pause = kBetweenPlans * patience_ * static_cast<double>(1 << std::min(r.attempts, 6));
+    const double pause = kBetweenPlans * patience_ * static_cast<double>(1 << std::min(r.failures, 6));
     if (stalled < kStalledAfter * patience_ || time_ - r.planned_at < pause) continue;
     if (!graph) graph = waiting_in(scenario_, row);
-    const bool dead = is_dead(*graph, row, i);
+    const bool dead = is_dead(scenario_, *graph, row, i);
     if (!r.is_named && dead && !(*graph)[i].empty()) {
       r.is_named = true;
       notes_[i] = waiting_words(scenario_, row, *graph, i);
@@ -158,29 +181,59 @@ Groups::Members Groups::with_groups_of(Members who) const {
   return merged(std::move(who), more);
 }
 
-/// All that are joined to the seeds by gaps under a diameter.
-Groups::Members Groups::cluster_of(Members seeds) const {
+/// All that are joined to the seeds by gaps under a diameter, those next: over one gap, over two, and so on.
+std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
+  double largest = 0.0;
+  for (const Robot& r : scenario_.robots) largest = std::max(largest, r.radius);
+  const double farthest = (1.0 + kTogether) * 2.0 * largest;
+  Cells<std::size_t> by_place(farthest);
+  for (std::size_t j = 0; j < now_.size(); ++j)
+    if (now_[j].may_join) by_place.add(now_[j].position, j);
   std::vector<char> in(now_.size(), 0);
-  std::vector<std::size_t> open = with_groups_of(std::move(seeds));
-  for (const std::size_t i : open) in[i] = 1;
-  while (!open.empty()) {
-    const std::size_t i = open.back();
-    open.pop_back();
-    for (std::size_t j = 0; j < now_.size(); ++j) {
-      if (in[j] || !now_[j].may_join) continue;
+  std::vector<std::size_t> found;
+  const auto take = [&](const Members& some) {
+    for (const std::size_t k : with_groups_of(some))
+      if (!in[k]) {
+        in[k] = 1;
+        found.push_back(k);
+      }
+  };
+  take(seeds);
+  for (std::size_t next = 0; next < found.size(); ++next) {
+    const std::size_t i = found[next];
+    Members near;
+    by_place.for_each_about(now_[i].position, farthest, [&](std::size_t j) {
       const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
-      if (!(norm(now_[i].position - now_[j].position) < (1.0 + kTogether) * radii)) continue;
-      for (const std::size_t k : with_groups_of({j}))
-        if (!in[k]) {
-          in[k] = 1;
-          open.push_back(k);
-        }
-    }
+      if (!in[j] && norm(now_[i].position - now_[j].position) < (1.0 + kTogether) * radii) near.push_back(j);
+    });
+    std::sort(near.begin(), near.end());
+    take(near);
   }
-  Members all;
-  for (std::size_t i = 0; i < in.size(); ++i)
-    if (in[i]) all.push_back(i);
+  return found;
+}
+
+Groups::Members Groups::cluster_of(const Members& seeds) const {
+  Members all = by_nearness_to(seeds);
+  std::sort(all.begin(), all.end());
   return all;
+}
+
+/// Whether a map for these is of a size that can be searched.
+bool Groups::fits(const Members& who, const std::vector<Vec2>& from, int replans) const {
+  if (uses_whole_map(who)) return true;
+  return Roadmap::lattice_places(region_for(who, from, replans), largest_radius(who)) *
+             static_cast<double>(who.size()) <=
+         kLargestMap;
+}
+
+/// The nearest of a very large cluster.
+Groups::Members Groups::as_many_as_fit(std::vector<std::size_t> nearest_first, int replans) const {
+  for (;;) {
+    Members who = nearest_first;
+    std::sort(who.begin(), who.end());
+    if (who.size() < 2 || fits(who, history_.back(), replans)) return who;
+    nearest_first.resize((nearest_first.size() + 1) / 2);
+  }
 }
 
 /// Who stands now where the members would go back through joins, as do those in its way.
@@ -193,7 +246,7 @@ Groups::Members Groups::with_those_in_the_way_back(Members who, std::size_t to) 
       if (has(who, j) || !now_[j].may_join) continue;
       const auto is_in_the_way_of = [&](std::size_t i) {
         const double near = (1.0 + kBesideTheWayBack) * (scenario_.robots[i].radius + scenario_.robots[j].radius);
-        for (std::size_t x = history_.size() - 1; x > to + kStride; x -= kStride)
+        for (std::size_t x = history_.last(); x > to + kStride; x -= kStride)
           if (squared_norm(history_[x][i] - now_[j].position) < near * near) return true;
         return squared_norm(history_[to][i] - now_[j].position) < near * near;
       };
@@ -209,42 +262,53 @@ Groups::Members Groups::with_those_in_the_way_back(Members who, std::size_t to) 
 
 void Groups::make_due_plans() {
   const std::vector<Due> due = std::exchange(due_, {});
+  std::vector<std::size_t> size_of_cluster(now_.size(), 0);  // since the last plan
   for (const Due& d : due) {
-    if (is_member(d.robot) || !(time_ - of_robot_[d.robot].planned_at > 0.0)) continue;
-    const Members who = cluster_of({d.robot});
-    const double anyway = kActsAnyway + kForEachRobot * static_cast<double>(who.size());
-    if (d.is_dead || stalled_for(d.robot) >= anyway * patience_) plan_for(who, who, 0);
+    if (is_member(d.robot) || !(time_ - of_robot_[d.robot].planned_at > 0.0) || is_stopped_()) continue;
+    std::vector<std::size_t> cluster;
+    if (d.is_dead || size_of_cluster[d.robot] == 0) {
+      cluster = by_nearness_to({d.robot});
+      for (const std::size_t i : cluster) size_of_cluster[i] = cluster.size();
+    }
+    const double anyway = kActsAnyway + kForEachRobot * static_cast<double>(size_of_cluster[d.robot]);
+    if (!d.is_dead && stalled_for(d.robot) < anyway * patience_) continue;
+    if (cluster.empty()) cluster = by_nearness_to({d.robot});
+    const Members who = as_many_as_fit(std::move(cluster), 0);
+    if (plan_for(who, who, 0)) size_of_cluster.assign(now_.size(), 0);
   }
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    if (groups_[g].is_over || time_ - groups_[g].progress < kNoProgress * patience_) continue;
-    const int tries = groups_[g].tries + 1;
+    if (groups_[g].is_over || time_ - groups_[g].progress < kNoProgress * patience_ || is_stopped_()) continue;
+    const int replans = groups_[g].replans + 1;
     constexpr int kThenAll = 3;
     const Members who = groups_[g].who;
-    plan_for(tries >= kThenAll && now_.size() <= kEveryoneUpTo ? everyone() : cluster_of(who), who, tries);
+    const bool all = replans >= kThenAll && now_.size() <= kEveryoneUpTo && fits(everyone(), history_.back(), replans);
+    plan_for(all ? everyone() : as_many_as_fit(by_nearness_to(who), replans), who, replans);
   }
 }
 
 /// From now, else from where the members were a while ago: they can go back as they came (lemma 4).
-bool Groups::plan_for(Members who, const Members& seeds, int tries) {
-  const std::size_t now = history_.size() - 1;
+bool Groups::plan_for(Members who, const Members& seeds, int replans) {
+  const std::size_t now = history_.last();
   const auto rows_back = [&](double back) { return static_cast<std::size_t>(back / scenario_.time_step); };
-  for (double back = 0.0;; back = back == 0.0 ? kFirstBack * patience_ : 2.0 * back) {
-    const std::size_t to = now - std::min(now, rows_back(back));
+  PlanEnd end = PlanEnd::too_large;
+  for (double back = 0.0; !is_stopped_(); back = back == 0.0 ? kFirstBack * patience_ : 2.0 * back) {
+    const std::size_t to = now - std::min(now - history_.first(), rows_back(back));
     if (back > 0.0) who = with_those_in_the_way_back(std::move(who), to);
-    Attempt got = attempt(who, seeds, tries, to);
-    if (got == Attempt::none_on_map && who.size() < everyone().size() && now_.size() <= kEveryoneUpTo) {
+    end = plan_from(who, seeds, replans, to);
+    if (end == PlanEnd::none_on_map && who.size() < everyone().size() && now_.size() <= kEveryoneUpTo) {
       who = everyone();
-      got = attempt(who, seeds, tries, to);
+      end = plan_from(who, seeds, replans, to);
     }
-    if (got == Attempt::planned) return true;
-    if (to == 0) break;
+    if (end == PlanEnd::planned) return true;
+    if (to == history_.first()) break;
   }
-  for (const std::size_t i : seeds) ++of_robot_[i].attempts;
-  without_plan_ = seeds;
+  for (const std::size_t i : seeds) ++of_robot_[i].failures;
+  forget_without_plan(seeds);
+  without_plan_.push_back({seeds, end});
   return false;
 }
 
-geometry::Box Groups::region_for(const Members& who, const std::vector<Vec2>& from, int tries) const {
+geometry::Box Groups::region_for(const Members& who, const std::vector<Vec2>& from, int replans) const {
   const double diameter = 2.0 * largest_radius(who);
   geometry::Box here, both;
   for (const std::size_t i : who) {
@@ -256,9 +320,9 @@ geometry::Box Groups::region_for(const Members& who, const std::vector<Vec2>& fr
     return geometry::Box{b.low - Vec2{by, by}, b.high + Vec2{by, by}};
   };
   const geometry::Box all = grown(both, kOpenMargin * diameter);
-  const double places = (all.high.x - all.low.x) * (all.high.y - all.low.y) / (diameter * diameter);
-  if (places * static_cast<double>(who.size()) <= kMostDistances) return all;
-  return grown(here, (4.0 + 0.5 * std::sqrt(static_cast<double>(who.size())) + 3.0 * tries) * diameter);
+  const double places = Roadmap::lattice_places(all, 0.5 * diameter);
+  if (places <= kMostPlaces && places * static_cast<double>(who.size()) <= kMostDistances) return all;
+  return grown(here, (4.0 + 0.5 * std::sqrt(static_cast<double>(who.size())) + 3.0 * replans) * diameter);
 }
 
 double Groups::largest_radius(const Members& who) const {
@@ -267,27 +331,25 @@ double Groups::largest_radius(const Members& who) const {
   return largest;
 }
 
+geometry::Box Groups::whole_scene(double radius) const {
+  const Vec2 corner{2.0 * kSceneMargin * radius, 2.0 * kSceneMargin * radius};
+  return {scene_.low - corner, scene_.high + corner};
+}
+
+bool Groups::uses_whole_map(const Members& who) const {
+  if (space_->is_open()) return false;
+  const double radius = largest_radius(who);
+  const double places = Roadmap::lattice_places(whole_scene(radius), radius);
+  return places <= kMostPlaces && places * static_cast<double>(who.size()) <= kLargestMap;
+}
+
 /// For the largest of the members: who is larger and not among them needs no room.
-Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int tries) const {
-  const double radius = largest_radius(who), diameter = 2.0 * radius;
-  if (space_->is_open()) return Roadmap(*space_, region_for(who, from, tries), radius);
-  geometry::Box scene;
-  for (const SceneObstacle& o : scenario_.obstacles)
-    for (const Segment& edge : geometry::edges_of(o.shape)) {
-      scene.add(edge.a);
-      scene.add(edge.b);
-    }
-  for (const Robot& r : scenario_.robots) {
-    scene.add(r.position);
-    for (const Vec2 goal : r.goals) scene.add(goal);
-  }
-  const Vec2 margin{kSceneMargin * diameter, kSceneMargin * diameter};
-  scene = {scene.low - margin, scene.high + margin};
-  const Vec2 size = (scene.high - scene.low) / diameter;
-  if (kFinePoints * size.x * size.y > kMostPoints) return Roadmap(*space_, region_for(who, from, tries), radius);
+Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int replans) const {
+  const double radius = largest_radius(who);
+  if (!uses_whole_map(who)) return Roadmap(*space_, region_for(who, from, replans), radius);
   const auto known = whole_maps_.find(radius);
-  return known != whole_maps_.end() ? known->second
-                                    : whole_maps_.emplace(radius, Roadmap(*space_, scene, radius)).first->second;
+  if (known != whole_maps_.end()) return known->second;
+  return whole_maps_.emplace(radius, Roadmap(*space_, whole_scene(radius), radius)).first->second;
 }
 
 /// Each member's goal, or, where that is outside the map or taken, the nearest place that is free.
@@ -312,10 +374,7 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
     };
     const Vec2 goal = now_[i].goal;
     std::optional<PlaceNumber> target;
-    if (is_free(goal) && space_->clearance(goal, radius) >= radius) {
-      const PlaceNumber own = map.attach(goal);
-      if (!map.ways(own).empty()) target = own;
-    }
+    if (is_free(goal) && space_->clearance(goal, radius) >= radius) target = map.attach_where_joined(goal, radius);
     double least = kInfinity;
     for (PlaceNumber p = 0; !target && p < places; ++p) {
       const double distance = squared_norm(map.place(p) - goal);
@@ -327,27 +386,29 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
     if (target)
       targets[k] = *target;
     else if (least == kInfinity)
-      targets[k] = map.attach(from[i]);
+      targets[k] = map.attach(from[i], radius);
     taken.emplace_back(map.place(targets[k]), radius);
   }
   return targets;
 }
 
-std::optional<std::vector<PlannedMove>> Groups::search(JointProblem problem, std::size_t to, Attempt& end) {
+std::optional<std::vector<PlannedMove>> Groups::search(JointProblem problem, std::size_t row, PlanEnd& end) {
   const std::vector<double> radii = problem.radii;
   const Roadmap& map = *problem.map;
   JointSearch joint(std::move(problem));
-  const std::size_t most = to == 0 ? kCallsFromTheStart : to + 1 == history_.size() ? kCalls : kCallsGoingBack;
+  const std::size_t most = row == history_.last()    ? kCalls
+                           : row == history_.first() ? kCallsFromTheStart
+                                                     : kCallsGoingBack;
   std::optional<std::vector<PlannedMove>> best;
   double shortest = kInfinity, nodes = kFirstNodes;
   int found = 0;
-  end = Attempt::out_of_budget;
+  end = PlanEnd::out_of_budget;
   for (std::size_t calls = 0; calls < most && found < (radii.size() <= kChoosesUpTo ? kPlansToChooseFrom : 1);) {
     const JointAnswer answer = joint.run(++seed_, {most - calls, static_cast<std::size_t>(nodes)});
     calls += answer.calls + 1;
     course_.search_nodes += answer.nodes;
     if (answer.end == SearchEnd::none_on_map) {
-      end = Attempt::none_on_map;
+      end = PlanEnd::none_on_map;
       break;
     }
     if (answer.end == SearchEnd::out_of_budget) {
@@ -362,7 +423,7 @@ std::optional<std::vector<PlannedMove>> Groups::search(JointProblem problem, std
     shortest = length;
     best = std::move(plan);
   }
-  if (best) end = Attempt::planned;
+  if (best) end = PlanEnd::planned;
   return best;
 }
 
@@ -373,40 +434,42 @@ void Groups::dissolve_those_of(const Members& who) {
   }
 }
 
-Groups::Attempt Groups::attempt(const Members& members, const Members& seeds, int tries, std::size_t to) {
+Groups::PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int replans, std::size_t row) {
   const Members who = with_groups_of(members);
-  const std::vector<Vec2>& from = history_[to];
+  const std::vector<Vec2>& from = history_[row];
+  if (!fits(who, from, replans)) return PlanEnd::too_large;
   dissolve_those_of(seeds);
-  Roadmap map = map_for(who, from, tries);
+  Roadmap map = map_for(who, from, replans);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
       map.block(now_[j].position, (1.0 + kPlannedGap) * (largest_radius(who) + scenario_.robots[j].radius));
   JointProblem problem;
   problem.map = &map;
+  problem.is_stopped = is_stopped_;
   problem.goals = targets_for(who, from, map);
   for (const std::size_t i : who) {
     problem.radii.push_back(scenario_.robots[i].radius);
-    problem.starts.push_back(map.attach(from[i]));
+    problem.starts.push_back(map.attach(from[i], scenario_.robots[i].radius));
   }
   const std::vector<double> radii = problem.radii;
-  Attempt end;
-  std::optional<std::vector<PlannedMove>> plan = search(std::move(problem), to, end);
+  PlanEnd end;
+  std::optional<std::vector<PlannedMove>> plan = search(std::move(problem), row, end);
   if (!plan) return end;
   dissolve_those_of(who);
   Group& g = groups_.emplace_back(Group{who, Following(std::move(*plan), radii)});
-  g.back_at = history_.size() - 1;
-  g.back_to = to;
+  g.back_at = history_.last();
+  g.back_to = row;
   g.progress = time_;
-  g.tries = tries;
+  g.replans = replans;
   for (const std::size_t i : who) {
     group_of_[i] = groups_.size() - 1;
-    of_robot_[i].attempts = 0;
+    of_robot_[i].failures = 0;
   }
   ++course_.groups;
   course_.largest = std::max(course_.largest, who.size());
-  without_plan_.clear();
+  forget_without_plan(who);
   notes_[who.front()] = joined_notes(notes_[who.front()], plan_words(g));
-  return Attempt::planned;
+  return PlanEnd::planned;
 }
 
 std::string Groups::plan_words(const Group& g) const {
@@ -426,10 +489,29 @@ void Groups::dissolve(std::size_t number) {
   g.is_over = true;
 }
 
-std::string Groups::no_plan_words() const {
-  std::vector<std::string> names;
-  for (const std::size_t i : without_plan_) names.push_back(scenario_.robots[i].id);
-  return names.empty() ? "" : "no plan was found on the roadmap for " + abridged(std::move(names));
+/// They were planned for again.
+void Groups::forget_without_plan(const Members& who) {
+  const auto is_of_these = [&](const WithoutPlan& w) {
+    return std::any_of(w.who.begin(), w.who.end(), [&](std::size_t i) { return has(who, i); });
+  };
+  without_plan_.erase(std::remove_if(without_plan_.begin(), without_plan_.end(), is_of_these), without_plan_.end());
+}
+
+std::string Groups::no_plan_words(const Members& robots) const {
+  std::vector<std::string> texts;
+  for (const WithoutPlan& w : without_plan_) {
+    std::vector<std::string> names;
+    for (const std::size_t i : w.who)
+      if (has(robots, i)) names.push_back(scenario_.robots[i].id);
+    if (names.empty()) continue;
+    const std::string who = abridged(std::move(names));
+    texts.push_back(w.why == PlanEnd::none_on_map     ? "there is no plan on the roadmap for " + who
+                    : w.why == PlanEnd::out_of_budget ? "no plan was found on the roadmap for " + who
+                                                      : "too many robots stand together to plan for " + who);
+  }
+  std::string text;
+  for (const std::string& t : texts) text += (text.empty() ? "" : "; ") + t;
+  return text;
 }
 
 // --- Following ---
@@ -473,7 +555,6 @@ void Groups::want() {
 Vec2 Groups::wanted_by(std::size_t robot) const {
   const Group& g = group(robot);
   const std::vector<Vec2>& here = history_.back();
-  const double dt = scenario_.time_step, fastest = scenario_.robots[robot].max_speed;
   Vec2 to;
   if (g.back_at > g.back_to) {
     to = history_[g.back_at - 1][robot];
@@ -483,18 +564,16 @@ Vec2 Groups::wanted_by(std::size_t robot) const {
     const auto k = std::lower_bound(g.who.begin(), g.who.end(), robot) - g.who.begin();
     to = g.following.within_reach(static_cast<std::size_t>(k), at);
   }
-  const Vec2 way = to - here[robot];
-  const double length = norm(way);
-  return length > fastest * dt ? fastest / length * way : way / dt;
+  return velocity_along(scenario_, robot, to - here[robot]);
 }
 
 bool Groups::halt_those_held_back(const Step& row) {
-  constexpr double kAsWanted = 1e-9;  // m/s
+  constexpr double kAsWanted = 1e-9;  // of the speed
   bool any = false;
   for (Group& g : groups_) {
     if (g.is_over || g.stands_still || g.back_at <= g.back_to) continue;
     const bool as_wanted = std::all_of(g.who.begin(), g.who.end(), [&](std::size_t i) {
-      return norm(row.robots[i].chosen - wanted_[i]) <= kAsWanted;
+      return norm(row.robots[i].chosen - wanted_[i]) <= kAsWanted * scenario_.robots[i].max_speed;
     });
     if (as_wanted) continue;
     g.stands_still = any = true;

@@ -15,6 +15,7 @@
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/waiting.h"
+#include "liveness/history.h"
 #include "liveness/plan.h"
 
 namespace exactvo::formation::detail {
@@ -27,10 +28,14 @@ struct RobotNow {
   bool may_join = false;     ///< it cooperates and has a way to its goal
 };
 
+/// m/s: gets as far along `way` (m) within a time step as the robot's speed bound allows.
+Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way);
+
 class Groups {
  public:
-  /// `space` must outlive the groups. Without `plans` stalls are noted and nothing is done about them.
-  Groups(const Scenario& scenario, const FreeSpace& space, bool plans);
+  /// `space` must outlive the groups. Without `plans` stalls are noted and nothing is done about them. `is_stopped` is
+  /// asked while plans are made, which can take seconds: true ends that without a plan.
+  Groups(const Scenario& scenario, const FreeSpace& space, bool plans, std::function<bool()> is_stopped);
 
   /// Makes plans where they are due, and what members want. `way_left`: m, of a robot from where it is to its goal.
   void begin_step(double time, std::vector<RobotNow> now, const std::function<double(std::size_t)>& way_left);
@@ -40,18 +45,19 @@ class Groups {
   bool goes_back(std::size_t robot) const { return is_member(robot) && group(robot).back_at > group(robot).back_to; }
   /// m/s. REQUIRES: a member.
   Vec2 wanted(std::size_t robot) const { return wanted_[robot]; }
-  /// Going back is in step or not at all: the groups of which some robot was not let go as it wanted stand still.
-  /// Whether there are any; their members want nothing then.
+  /// A group goes back in step or not at all. If half-planes kept one of its robots from what it wanted, the whole
+  /// group stands still in this step: its members want nothing. Whether there is such a group.
   bool halt_those_held_back(const Step& row);
-  /// What there is to be said of the robot in this row; empty otherwise.
+  /// The robot's note for this row, which is often empty.
   std::string note(std::size_t robot);
 
   /// Takes a row with its decisions: who is stalled, and dead.
   void end_step(const Step& row);
 
   const LivenessCourse& course() const { return course_; }
-  /// "no plan on the roadmap brings R1 and R2 to their goals"; empty where none was missing to the end.
-  std::string no_plan_words() const;
+  /// "no plan was found on the roadmap for R1 and R2", of those of the given robots; empty where none was missing to
+  /// the end.
+  std::string no_plan_words(const std::vector<std::size_t>& robots) const;
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -62,18 +68,22 @@ class Groups {
     Following following;
     std::size_t back_at = 0, back_to = 0;  ///< rows of the history: going back while the first is above the second
     double progress = 0.0;                 ///< s, when something was done last
-    int tries = 0;
+    int replans = 0;                       ///< of its robots, since they had a plan that went on
     bool is_over = false;
     bool stands_still = false;  ///< in this step
   };
   struct OfRobot {
     double shortest = 0.0;    ///< m, its way to the goal, since it was made shorter last
     double since = 0.0;       ///< s
-    double planned_at = 0.0;  ///< s, the last plan or attempt
-    int attempts = 0;         ///< that failed in a row
+    double planned_at = 0.0;  ///< s, when a plan for it was looked for last
+    int failures = 0;         ///< of planning, in a row
     bool is_named = false;    ///< its stall was noted
   };
-  enum class Attempt { planned, none_on_map, out_of_budget };
+  enum class PlanEnd { planned, none_on_map, out_of_budget, too_large };
+  struct WithoutPlan {
+    Members who;
+    PlanEnd why;
+  };
 
   Group& group(std::size_t robot) { return groups_[group_of_[robot]]; }
   const Group& group(std::size_t robot) const { return groups_[group_of_[robot]]; }
@@ -89,29 +99,37 @@ class Groups {
 
   Members everyone() const;
   double largest_radius(const Members& who) const;  ///< m
-  Members cluster_of(Members seeds) const;
+  Members cluster_of(const Members& seeds) const;
+  std::vector<std::size_t> by_nearness_to(const Members& seeds) const;
+  Members as_many_as_fit(std::vector<std::size_t> nearest_first, int replans) const;
+  bool fits(const Members& who, const std::vector<Vec2>& from, int replans) const;
   Members with_groups_of(Members who) const;
   Members with_those_in_the_way_back(Members who, std::size_t to) const;
   /// `seeds`: those who wait. Only their groups end, and only their patience, where no plan is found.
-  bool plan_for(Members who, const Members& seeds, int tries);
-  Attempt attempt(const Members& who, const Members& seeds, int tries, std::size_t to);
+  bool plan_for(Members who, const Members& seeds, int replans);
+  PlanEnd plan_from(const Members& who, const Members& seeds, int replans, std::size_t row);
   /// Ends the groups of these, who are planned for now.
   void dissolve_those_of(const Members& who);
-  Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int tries) const;
-  geometry::Box region_for(const Members& who, const std::vector<Vec2>& from, int tries) const;
+  void forget_without_plan(const Members& who);
+  geometry::Box whole_scene(double radius) const;
+  bool uses_whole_map(const Members& who) const;
+  Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int replans) const;
+  geometry::Box region_for(const Members& who, const std::vector<Vec2>& from, int replans) const;
   std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
-  std::optional<std::vector<PlannedMove>> search(JointProblem problem, std::size_t to, Attempt& end);
+  std::optional<std::vector<PlannedMove>> search(JointProblem problem, std::size_t row, PlanEnd& end);
   void dissolve(std::size_t group);
   std::string plan_words(const Group& g) const;
 
   const Scenario& scenario_;
   const FreeSpace* space_;
   bool plans_;
+  std::function<bool()> is_stopped_;
+  geometry::Box scene_;    ///< m, of obstacles, robots and goals
   double patience_ = 0.0;  ///< s, that the slowest needs for its diameter
   double time_ = 0.0;
   std::size_t row_ = 0;
   std::vector<RobotNow> now_;
-  std::vector<std::vector<Vec2>> history_;  ///< m, of each row
+  History history_;
   std::vector<OfRobot> of_robot_;
   std::vector<std::size_t> group_of_;
   std::vector<Group> groups_;
@@ -123,7 +141,7 @@ class Groups {
   };
   std::vector<Due> due_;                          ///< who was stalled in the last row
   mutable std::map<double, Roadmap> whole_maps_;  // by radius
-  Members without_plan_;
+  std::vector<WithoutPlan> without_plan_;
   LivenessCourse course_;
   std::size_t seed_ = 0;
 };

@@ -15,12 +15,15 @@ namespace {
 using Joint = std::vector<PlaceNumber>;
 
 constexpr float kFarAway = std::numeric_limits<float>::infinity();
+/// Of robots that push each other within a joint step, since each takes some of the stack. More can still move, in
+/// several steps: sequences of single moves need no chains at all, so that the search stays complete.
+constexpr std::size_t kLongestChain = 256;
 constexpr PlaceNumber kNowhere = static_cast<PlaceNumber>(-1);
 
-/// splitmix64 (Steele, Lea and Flood 2014): the same numbers everywhere.
-class Dice {
+/// Steele, Lea and Flood 2014: the same numbers everywhere.
+class SplitMix64 {
  public:
-  explicit Dice(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15u) {}
+  explicit SplitMix64(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15u) {}
   std::uint64_t next() {
     std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
@@ -34,8 +37,8 @@ class Dice {
   std::uint64_t state_;
 };
 
-/// m: from every place to the goal along ways (Dijkstra).
-std::vector<float> distances_to(const Roadmap& map, PlaceNumber goal) {
+/// m: from every place to the goal along ways that have room for the radius (Dijkstra).
+std::vector<float> distances_to(const Roadmap& map, PlaceNumber goal, double radius) {
   std::vector<float> distance(map.size(), kFarAway);
   using Entry = std::pair<float, PlaceNumber>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> open;
@@ -47,7 +50,7 @@ std::vector<float> distances_to(const Roadmap& map, PlaceNumber goal) {
     if (so_far > distance[at]) continue;
     for (const PlaceNumber next : map.ways(at)) {
       const float all = so_far + static_cast<float>(norm(map.place(at) - map.place(next)));
-      if (!(all < distance[next])) continue;
+      if (!(all < distance[next]) || map.room(next) < radius) continue;
       distance[next] = all;
       open.push({all, next});
     }
@@ -56,12 +59,16 @@ std::vector<float> distances_to(const Roadmap& map, PlaceNumber goal) {
 }
 
 /// Robots by where they are, in square cells.
-class Crowd {
+class RobotGrid {
  public:
-  Crowd(const Roadmap& map, double reach) : side_(reach) {
+  RobotGrid(const Roadmap& map, double reach) : reach_(reach) {
+    constexpr double kMostCells = 4.0;  // a place: cells are larger where places are far apart
     geometry::Box all;
     for (PlaceNumber p = 0; p < map.size(); ++p) all.add(map.place(p));
     low_ = all.low;
+    const Vec2 size = all.high - all.low;
+    const double most = kMostCells * static_cast<double>(map.size());
+    side_ = std::max({reach, std::sqrt(size.x) * std::sqrt(size.y / most), std::max(size.x, size.y) / most});
     columns_ = static_cast<std::size_t>((all.high.x - all.low.x) / side_) + 1;
     rows_ = static_cast<std::size_t>((all.high.y - all.low.y) / side_) + 1;
     cells_.resize(columns_ * rows_);
@@ -79,11 +86,11 @@ class Crowd {
     auto& cell = cells_[row(at.y) * columns_ + column(at.x)];
     cell.erase(std::find(cell.begin(), cell.end(), robot));
   }
-  /// All within a side of the cells from the box of the segment, and some more. Ends where visit gives false.
+  /// All within reach of the box of the segment, and some more. Ends where visit gives false.
   template <class Visit>
   bool all_near(Vec2 a, Vec2 b, const Visit& visit) const {
-    const std::size_t x0 = column(std::min(a.x, b.x) - side_), x1 = column(std::max(a.x, b.x) + side_);
-    const std::size_t y0 = row(std::min(a.y, b.y) - side_), y1 = row(std::max(a.y, b.y) + side_);
+    const std::size_t x0 = column(std::min(a.x, b.x) - reach_), x1 = column(std::max(a.x, b.x) + reach_);
+    const std::size_t y0 = row(std::min(a.y, b.y) - reach_), y1 = row(std::max(a.y, b.y) + reach_);
     for (std::size_t y = y0; y <= y1; ++y)
       for (std::size_t x = x0; x <= x1; ++x)
         for (const std::size_t robot : cells_[y * columns_ + x])
@@ -98,15 +105,15 @@ class Crowd {
   std::size_t column(double x) const { return number(x - low_.x, columns_); }
   std::size_t row(double y) const { return number(y - low_.y, rows_); }
 
-  double side_;
+  double reach_, side_;
   Vec2 low_;
   std::size_t columns_ = 0, rows_ = 0;
   std::vector<std::vector<std::size_t>> cells_;
   std::vector<std::size_t> used_;
 };
 
-/// Who must go where, of the first robots in a node's order.
-struct Demand {
+/// A low-level node of LaCAM: who must go where, of the first robots in a node's order.
+struct Constraints {
   std::vector<std::pair<std::size_t, PlaceNumber>> goes;
 };
 
@@ -120,22 +127,23 @@ class Generator {
         before_(map_, reach_of(problem)),
         after_(map_, reach_of(problem)) {}
 
-  /// Whether there is a step as demanded; then `next` and `order` (who moves first) hold it.
-  bool generate(const Joint& at, const std::vector<std::size_t>& priority, const Demand& demand, Dice& dice) {
+  /// Whether there is a step that keeps the constraints; then `next` and `order` (who moves first) hold it.
+  bool generate(const Joint& at, const std::vector<std::size_t>& priority, const Constraints& constraints,
+                SplitMix64& random) {
     const std::size_t n = at.size();
     at_ = &at;
     next_.assign(n, kNowhere);
     state_.assign(n, State::open);
-    demanded_.assign(n, kNowhere);
+    must_go_to_.assign(n, kNowhere);
     order_.clear();
     before_.clear();
     after_.clear();
     for (std::size_t i = 0; i < n; ++i) before_.put(map_.place(at[i]), i);
-    for (const auto& [robot, place] : demand.goes) demanded_[robot] = place;
-    for (const auto& demanded : demand.goes)
-      if (state_[demanded.first] == State::open && !moves(demanded.first, dice, true)) return false;
+    for (const auto& [robot, place] : constraints.goes) must_go_to_[robot] = place;
+    for (const auto& entry : constraints.goes)
+      if (state_[entry.first] == State::open && !moves(entry.first, random, true)) return false;
     for (const std::size_t i : priority)
-      if (state_[i] == State::open && !moves(i, dice, true)) settle(i, at[i]);  // who stays is in nobody's way
+      if (state_[i] == State::open && !moves(i, random, true)) settle(i, at[i]);  // who stays is in nobody's way
     return true;
   }
 
@@ -176,29 +184,31 @@ class Generator {
     }
   }
 
-  std::vector<std::pair<float, PlaceNumber>> candidates(std::size_t i, Dice& dice) const {
-    constexpr float kShuffle = 1e-3f;  // m: among places about as good
+  std::vector<std::pair<float, PlaceNumber>> candidates(std::size_t i, SplitMix64& random) const {
+    constexpr float kShuffle = 1e-3f;  // diameters: among places about as good
     const PlaceNumber at = (*at_)[i];
-    if (demanded_[i] != kNowhere) return {{0.0f, demanded_[i]}};
+    if (must_go_to_[i] != kNowhere) return {{0.0f, must_go_to_[i]}};
     std::vector<std::pair<float, PlaceNumber>> all;
-    for (const PlaceNumber to : map_.ways(at)) all.emplace_back(distances_[i][to] + kShuffle * dice.fraction(), to);
+    const float shuffle = kShuffle * 2.0f * static_cast<float>(problem_.radii[i]);
+    for (const PlaceNumber to : map_.ways(at))
+      if (map_.room(to) >= problem_.radii[i]) all.emplace_back(distances_[i][to] + shuffle * random.fraction(), to);
     all.emplace_back(distances_[i][at], at);
     std::stable_sort(all.begin(), all.end());
     return all;
   }
 
   /// Settles the robot and all that it pushes. `is_first`: nobody asked it to.
-  bool moves(std::size_t i, Dice& dice, bool is_first) {
+  bool moves(std::size_t i, SplitMix64& random, bool is_first) {
     if (is_first) refused_.assign(at_->size(), 0);
     ++calls_;
     state_[i] = State::asks;
-    for (const auto& candidate : candidates(i, dice))
-      if (moves_to(i, candidate.second, dice)) return true;
+    for (const auto& candidate : candidates(i, random))
+      if (moves_to(i, candidate.second, random)) return true;
     state_[i] = State::open;
     return false;
   }
 
-  bool moves_to(std::size_t i, PlaceNumber to, Dice& dice) {
+  bool moves_to(std::size_t i, PlaceNumber to, SplitMix64& random) {
     const Vec2 a = here(i), b = map_.place(to);
     const bool clear_of_moved = after_.all_near(a, b, [&](std::size_t j) { return keeps_clear(i, a, b, j, there(j)); });
     if (!clear_of_moved || !leaves_askers_their_way(i, b)) return false;
@@ -210,7 +220,7 @@ class Generator {
     });
     if (!can_ask) return false;
     const std::size_t mark = order_.size();
-    if (!in_the_way.empty() && !pushes(i, to, in_the_way, dice)) return false;
+    if (!in_the_way.empty() && !pushes(i, to, in_the_way, random)) return false;
     for (std::size_t k = mark; k < order_.size(); ++k)
       if (!keeps_clear(i, a, b, order_[k], there(order_[k]))) {
         unsettle_since(mark);
@@ -226,14 +236,15 @@ class Generator {
                        [&](std::size_t j) { return keeps_clear(j, here(j), there(j), i, b); });
   }
 
-  bool pushes(std::size_t i, PlaceNumber to, const std::vector<std::size_t>& others, Dice& dice) {
+  bool pushes(std::size_t i, PlaceNumber to, const std::vector<std::size_t>& others, SplitMix64& random) {
+    if (askers_.size() >= kLongestChain) return false;
     const std::size_t mark = order_.size();
     next_[i] = to;
     askers_.push_back(i);
     bool all = true;
     for (const std::size_t j : others) {
       if (state_[j] != State::open) continue;  // pushed by another meanwhile
-      if (!refused_[j] && moves(j, dice, false)) continue;
+      if (!refused_[j] && moves(j, random, false)) continue;
       refused_[j] = 1;
       all = false;
       break;
@@ -247,9 +258,9 @@ class Generator {
   const JointProblem& problem_;
   const Roadmap& map_;
   const std::vector<std::vector<float>>& distances_;
-  Crowd before_, after_;
+  RobotGrid before_, after_;
   const Joint* at_ = nullptr;
-  Joint next_, demanded_;
+  Joint next_, must_go_to_;
   std::vector<State> state_;
   std::vector<char> refused_;
   std::vector<std::size_t> order_, askers_;
@@ -261,9 +272,13 @@ struct Node {
   std::size_t parent = 0;          ///< itself: the first
   std::vector<std::size_t> order;  ///< who moved first on the way here
   std::vector<std::size_t> priority;
-  std::vector<double> waited;  ///< steps away from the goal, the more the sooner served
-  std::deque<Demand> demands;
+  std::vector<double> waited;    ///< steps away from the goal, the more the sooner served
+  std::deque<Constraints> open;  ///< to be tried, the least constrained first
 };
+
+bool is_stopped(const JointProblem& problem) {
+  return problem.is_stopped && problem.is_stopped();
+}
 
 std::uint64_t digest_of(const Joint& at) {
   std::uint64_t h = 1469598103934665603u;  // FNV-1a, word by word
@@ -273,9 +288,10 @@ std::uint64_t digest_of(const Joint& at) {
 
 }  // namespace
 
-struct JointSearch::Parts {
-  explicit Parts(JointProblem p) : problem(std::move(p)) {
-    for (const PlaceNumber goal : problem.goals) distances.push_back(distances_to(*problem.map, goal));
+struct JointSearch::Data {
+  explicit Data(JointProblem p) : problem(std::move(p)) {
+    for (std::size_t i = 0; i < problem.goals.size() && !is_stopped(problem); ++i)
+      distances.push_back(distances_to(*problem.map, problem.goals[i], problem.radii[i]));
   }
   bool can_each_alone() const {
     for (std::size_t i = 0; i < problem.starts.size(); ++i)
@@ -311,14 +327,15 @@ class Tree {
     Node& node = nodes_.back();
     node.parent = parent;
     node.order = std::move(order);
-    node.demands.emplace_back();
+    node.open.emplace_back();
     node.waited.resize(n);
     node.priority.resize(n);
-    constexpr double kFarFirst = 1e-4;  // of a step: the far ones go before the near
+    constexpr double kFarFirst = 1e-4;  // of a step and a diameter: the far ones go before the near
+    constexpr double kMostForFar = 0.999;
     for (std::size_t i = 0; i < n; ++i) {
       const double before = number == 0 ? 0.0 : nodes_[parent].waited[i];
       if (number == 0)
-        node.waited[i] = kFarFirst * distances_[i][at[i]];
+        node.waited[i] = std::min(kMostForFar, kFarFirst * distances_[i][at[i]] / (2.0 * problem_.radii[i]));
       else
         node.waited[i] = at[i] == problem_.goals[i] ? before - std::floor(before) : before + 1.0;
       node.priority[i] = i;
@@ -350,34 +367,37 @@ class Tree {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> known_;
 };
 
-/// What else can be demanded: every way of the next robot in order.
-void add_demands(Node& node, const Demand& so_far, const Roadmap& map, Dice& dice) {
+/// What else can be constrained: every way of the next robot in order.
+void add_constraints(Node& node, const Constraints& so_far, const JointProblem& problem, SplitMix64& random) {
   if (so_far.goes.size() == node.at.size()) return;
   const std::size_t robot = node.priority[so_far.goes.size()];
-  std::vector<PlaceNumber> places = map.ways(node.at[robot]);
+  std::vector<PlaceNumber> places;
+  for (const PlaceNumber p : problem.map->ways(node.at[robot]))
+    if (problem.map->room(p) >= problem.radii[robot]) places.push_back(p);
   places.push_back(node.at[robot]);
-  for (std::size_t k = places.size(); k > 1; --k) std::swap(places[k - 1], places[dice.below(k)]);
+  for (std::size_t k = places.size(); k > 1; --k) std::swap(places[k - 1], places[random.below(k)]);
   for (const PlaceNumber place : places) {
-    node.demands.push_back(so_far);
-    node.demands.back().goes.emplace_back(robot, place);
+    node.open.push_back(so_far);
+    node.open.back().goes.emplace_back(robot, place);
   }
 }
 
 }  // namespace
 
-JointSearch::JointSearch(JointProblem problem) : parts_(std::make_unique<Parts>(std::move(problem))) {}
+JointSearch::JointSearch(JointProblem problem) : data_(std::make_unique<Data>(std::move(problem))) {}
 JointSearch::~JointSearch() = default;
 
 JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget) {
   JointAnswer answer;
-  if (!parts_->can_each_alone()) {
+  if (data_->distances.size() < data_->problem.goals.size()) return answer;  // stopped
+  if (!data_->can_each_alone()) {
     answer.end = SearchEnd::none_on_map;
     return answer;
   }
-  const JointProblem& problem = parts_->problem;
-  Dice dice(seed);
-  Generator generator(problem, parts_->distances);
-  Tree tree(problem, parts_->distances);
+  const JointProblem& problem = data_->problem;
+  SplitMix64 random(seed);
+  Generator generator(problem, data_->distances);
+  Tree tree(problem, data_->distances);
   std::vector<std::size_t> open{tree.add(problem.starts, 0, {})};
   answer.end = SearchEnd::none_on_map;
   while (!open.empty()) {
@@ -388,18 +408,18 @@ JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget) {
       answer.moves = tree.moves_to(number);
       break;
     }
-    if (tree.size() > budget.nodes || generator.calls() > budget.calls) {
+    if (tree.size() > budget.nodes || generator.calls() > budget.calls || is_stopped(problem)) {
       answer.end = SearchEnd::out_of_budget;
       break;
     }
-    if (node.demands.empty()) {
+    if (node.open.empty()) {
       open.pop_back();
       continue;
     }
-    const Demand demand = std::move(node.demands.front());
-    node.demands.pop_front();
-    add_demands(node, demand, *problem.map, dice);
-    if (!generator.generate(node.at, node.priority, demand, dice)) continue;
+    const Constraints constraints = std::move(node.open.front());
+    node.open.pop_front();
+    add_constraints(node, constraints, problem, random);
+    if (!generator.generate(node.at, node.priority, constraints, random)) continue;
     const std::size_t known = tree.find(generator.next());
     if (known == number) continue;
     open.push_back(known < tree.size() ? known : tree.add(generator.next(), number, generator.order()));

@@ -19,6 +19,7 @@
 ///  (4) the same problem and seed give the same answer; budgets are counted, not timed.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -28,9 +29,10 @@ namespace exactvo::formation::detail {
 
 struct JointProblem {
   const Roadmap* map = nullptr;
-  std::vector<double> radii;        ///< m, of each robot
-  std::vector<PlaceNumber> starts;  ///< whose discs do not overlap
-  std::vector<PlaceNumber> goals;   ///< the same
+  std::vector<double> radii;              ///< m, of each robot
+  std::vector<PlaceNumber> starts;        ///< whose discs do not overlap
+  std::vector<PlaceNumber> goals;         ///< the same
+  std::function<bool()> is_stopped = {};  ///< asked now and then: true ends every search out of budget
 };
 
 struct JointMove {
@@ -65,8 +67,8 @@ class JointSearch {
   JointAnswer run(std::uint64_t seed, const SearchBudget& budget);
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Data;
+  std::unique_ptr<Data> data_;
 };
 
 }  // namespace exactvo::formation::detail

@@ -54,44 +54,23 @@ bool drop_loops_once(Moves& moves, const std::vector<double>& radii) {
   return any;
 }
 
-/// Moves by the cells that they pass.
-class MovesByPlace {
- public:
-  explicit MovesByPlace(double side) : side_(side) {}
-  void add(const PlannedMove& m, std::size_t number) {
-    for_each_cell(m, 0.0, [&](std::uint64_t key) { cells_[key].push_back(number); });
-  }
-  /// Those that may come within `reach` (m) of the move; some more than once.
-  template <class Visit>
-  void for_each_near(const PlannedMove& m, double reach, const Visit& visit) const {
-    for_each_cell(m, reach, [&](std::uint64_t key) {
-      const auto found = cells_.find(key);
-      if (found == cells_.end()) return;
-      for (const std::size_t number : found->second) visit(number);
-    });
-  }
-
- private:
-  template <class Visit>
-  void for_each_cell(const PlannedMove& m, double reach, const Visit& visit) const {
-    const auto cell = [&](double x) { return static_cast<std::int32_t>(std::floor(x / side_)); };
-    const std::int32_t x1 = cell(std::max(m.from.x, m.to.x) + reach), y1 = cell(std::max(m.from.y, m.to.y) + reach);
-    for (std::int32_t y = cell(std::min(m.from.y, m.to.y) - reach); y <= y1; ++y)
-      for (std::int32_t x = cell(std::min(m.from.x, m.to.x) - reach); x <= x1; ++x)
-        visit((static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x));
-  }
-  double side_;
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells_;
-};
+geometry::Box box_of(const PlannedMove& m) {
+  geometry::Box box;
+  box.add(m.from);
+  box.add(m.to);
+  return box;
+}
 
 void order(Moves& moves, const std::vector<double>& radii) {
   const double largest = *std::max_element(radii.begin(), radii.end());
   const double farthest = 2.0 * (1.0 + kPlannedGap) * largest;
-  MovesByPlace earlier(3.0 * largest);
+  const Vec2 reach{farthest, farthest};
+  Cells<std::size_t> earlier(3.0 * largest);
   for (std::size_t k = 0; k < moves.size(); ++k) {
     PlannedMove& m = moves[k];
+    const geometry::Box box = box_of(m);
     std::map<std::size_t, std::size_t> last;  // of each other robot
-    earlier.for_each_near(m, farthest, [&](std::size_t j) {
+    earlier.for_each_in({box.low - reach, box.high + reach}, [&](std::size_t j) {
       const PlannedMove& o = moves[j];
       const auto known = last.find(o.robot);
       if (o.robot == m.robot || (known != last.end() && known->second >= j)) return;
@@ -99,7 +78,7 @@ void order(Moves& moves, const std::vector<double>& radii) {
       if (squared_distance(Segment{m.from, m.to}, Segment{o.from, o.to}) < wanted * wanted) last[o.robot] = j;
     });
     for (const auto& of_robot : last) m.after.push_back(of_robot.second);
-    earlier.add(m, k);
+    earlier.add(box, k);
   }
 }
 

@@ -20,9 +20,9 @@ constexpr double kWayGap = 0.01;
 constexpr double kNarrow = 1.5;  ///< where clearance is more, the lattice is enough
 
 /// Which places are joined by ways.
-class Parts {
+class DisjointSets {
  public:
-  explicit Parts(std::size_t size) : up_(size) { std::iota(up_.begin(), up_.end(), 0u); }
+  explicit DisjointSets(std::size_t size) : up_(size) { std::iota(up_.begin(), up_.end(), 0u); }
   PlaceNumber of(PlaceNumber p) {
     while (up_[p] != p) p = up_[p] = up_[up_[p]];
     return p;
@@ -40,7 +40,8 @@ Roadmap::Roadmap(const FreeSpace& space, const geometry::Box& region, double rad
     : space_(&space),
       diameter_(2.0 * radius),
       way_clearance_(radius + kWayGap * diameter_),
-      longest_(kLongestWay * diameter_) {
+      longest_(kLongestWay * diameter_),
+      cells_(kCell * diameter_) {
   add_lattice(region);
   const std::vector<FreePoint> narrow = space.is_open() ? std::vector<FreePoint>{} : narrow_points(region);
   add_guards(narrow);
@@ -48,13 +49,9 @@ Roadmap::Roadmap(const FreeSpace& space, const geometry::Box& region, double rad
   add_connectors(narrow);
 }
 
-Roadmap::Cell Roadmap::cell_of(Vec2 p) const {
-  const double side = kCell * diameter_;
-  return {static_cast<std::int32_t>(std::floor(p.x / side)), static_cast<std::int32_t>(std::floor(p.y / side))};
-}
-
-std::uint64_t Roadmap::key_of(Cell c) {
-  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(c.x)) << 32) | static_cast<std::uint32_t>(c.y);
+double Roadmap::lattice_places(const geometry::Box& region, double radius) {
+  const Vec2 size = (region.high - region.low) / (kPitch * 2.0 * radius);
+  return (size.x + 1.0) * (size.y + 1.0);
 }
 
 PlaceNumber Roadmap::add(Vec2 place) {
@@ -62,7 +59,8 @@ PlaceNumber Roadmap::add(Vec2 place) {
   places_.push_back(place);
   ways_.emplace_back();
   blocked_.push_back(0);
-  cells_[key_of(cell_of(place))].push_back(number);
+  room_.push_back(0.5 * diameter_);
+  cells_.add(place, number);
   return number;
 }
 
@@ -82,20 +80,66 @@ void Roadmap::add_lattice(const geometry::Box& region) {
     }
 }
 
-/// Points of a fine grid that are not far from what stands, the roomiest first.
+namespace {
+
+/// Points of a grid, by column and row.
+struct GridBlock {
+  int x0, y0, x1, y1;  // both included
+  bool is_empty() const { return x0 > x1 || y0 > y1; }
+};
+
+/// Calls visit(point, clearance) for every point of the block whose clearance is in [least, most). Quarters at whose
+/// middle the clearance says that there is no such point are left out, so that large rooms and large obstacles cost
+/// little.
+template <class PointAt, class Clearance, class Visit>
+void for_each_between(const GridBlock& block, double step, double least, double most, const PointAt& point_at,
+                      const Clearance& clearance, const Visit& visit) {
+  constexpr int kSmall = 3;
+  constexpr double kRounding = 1.0 + 1e-6;
+  if (block.is_empty()) return;
+  const int width = block.x1 - block.x0, height = block.y1 - block.y0;
+  if (std::max(width, height) < kSmall) {
+    for (int y = block.y0; y <= block.y1; ++y)
+      for (int x = block.x0; x <= block.x1; ++x) {
+        const double c = clearance(point_at(x, y), most);
+        if (c >= least && c < most) visit(x, y, c);
+      }
+    return;
+  }
+  const int x = block.x0 + width / 2, y = block.y0 + height / 2;
+  const double reach = kRounding * step * std::hypot(width / 2 + 1, height / 2 + 1);
+  const double c = clearance(point_at(x, y), most + reach);
+  if (c >= most + reach || c < least - reach) return;
+  for (const GridBlock& quarter :
+       {GridBlock{block.x0, block.y0, x, y}, GridBlock{x + 1, block.y0, block.x1, y},
+        GridBlock{block.x0, y + 1, x, block.y1}, GridBlock{x + 1, y + 1, block.x1, block.y1}})
+    for_each_between(quarter, step, least, most, point_at, clearance, visit);
+}
+
+}  // namespace
+
+/// Points of a fine grid that are not far from what stands, the roomiest first; of equals those of lower rows.
 std::vector<Roadmap::FreePoint> Roadmap::narrow_points(const geometry::Box& region) const {
   const double step = kFine * diameter_, least = 0.5 * diameter_ + kGuardGap * diameter_, most = kNarrow * diameter_;
-  const auto columns = static_cast<int>((region.high.x - region.low.x) / step);
-  const auto rows = static_cast<int>((region.high.y - region.low.y) / step);
+  struct Found {
+    int x, y;
+    double clearance;
+  };
+  std::vector<Found> found;
+  const auto point_at = [&](int x, int y) { return region.low + Vec2{x * step, y * step}; };
+  for_each_between(
+      {0, 0, static_cast<int>((region.high.x - region.low.x) / step),
+       static_cast<int>((region.high.y - region.low.y) / step)},
+      step, least, most, point_at, [&](Vec2 p, double enough) { return space_->clearance(p, enough); },
+      [&](int x, int y, double clearance) {
+        found.push_back({x, y, clearance});
+      });
+  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+    if (a.clearance != b.clearance) return a.clearance > b.clearance;
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
+  });
   std::vector<FreePoint> points;
-  for (int y = 0; y <= rows; ++y)
-    for (int x = 0; x <= columns; ++x) {
-      const Vec2 p = region.low + Vec2{x * step, y * step};
-      const double clearance = space_->clearance(p, most);
-      if (clearance >= least && clearance < most) points.push_back({clearance, p});
-    }
-  std::stable_sort(points.begin(), points.end(),
-                   [](const FreePoint& a, const FreePoint& b) { return a.clearance > b.clearance; });
+  for (const Found& f : found) points.push_back({f.clearance, point_at(f.x, f.y)});
   return points;
 }
 
@@ -117,7 +161,7 @@ void Roadmap::add_ways() {
 }
 
 void Roadmap::add_connectors(const std::vector<FreePoint>& narrow) {
-  Parts parts(places_.size());
+  DisjointSets parts(places_.size());
   for (PlaceNumber a = 0; a < places_.size(); ++a)
     for (const PlaceNumber b : ways_[a]) parts.join(a, b);
   constexpr int kRounds = 2;  // what one connector joins another may join with more
@@ -141,24 +185,54 @@ void Roadmap::add_connectors(const std::vector<FreePoint>& narrow) {
     }
 }
 
-PlaceNumber Roadmap::attach(Vec2 place) {
-  constexpr double kSame = 1e-9;  // diameters
-  std::vector<PlaceNumber> near, same;
-  for_each_near(place, longest_, [&](PlaceNumber p) {
-    if (squared_norm(places_[p] - place) <= kSame * kSame * diameter_ * diameter_) same.push_back(p);
-    near.push_back(p);
+/// Whether the straight way from a place keeps clear of what blocks, or comes no nearer than the place is.
+bool Roadmap::is_clear_of_blocked(Vec2 place, Vec2 to) const {
+  return std::all_of(blocking_.begin(), blocking_.end(), [&](const Blocked& b) {
+    const double keep2 = std::min(b.keep * b.keep, squared_norm(place - b.centre));
+    return squared_distance(b.centre, place, to) >= (1.0 - kSweepRounding) * keep2;
   });
-  if (!same.empty()) return same.front();
+}
+
+Roadmap::Neighbours Roadmap::neighbours_of(Vec2 place) const {
+  constexpr double kSame = 1e-9;  // diameters
   // A disc that stands nearer to something leaves as it stands.
   const double stands = space_->clearance(place, way_clearance_) - kSame * diameter_;
   const double least = std::min(way_clearance_, stands);
+  Neighbours found;
+  found.is_tight = least < way_clearance_ || std::any_of(blocking_.begin(), blocking_.end(), [&](const Blocked& b) {
+                     return squared_norm(place - b.centre) < b.keep * b.keep;
+                   });
+  for_each_near(place, longest_, [&](PlaceNumber p) {
+    if (blocked_[p]) return;
+    if (!found.same && squared_norm(places_[p] - place) <= kSame * kSame * diameter_ * diameter_) found.same = p;
+    if (space_->is_clear(place, places_[p], least) && is_clear_of_blocked(place, places_[p])) found.joined.push_back(p);
+  });
+  return found;
+}
+
+PlaceNumber Roadmap::attach(Vec2 place, double radius, const Neighbours& neighbours) {
+  if (neighbours.same) {
+    room_[*neighbours.same] = std::max(room_[*neighbours.same], radius);
+    return *neighbours.same;
+  }
   const PlaceNumber number = add(place);
-  for (const PlaceNumber p : near)
-    if (!blocked_[p] && space_->is_clear(place, places_[p], least)) link(number, p);
+  if (neighbours.is_tight) room_[number] = radius;
+  for (const PlaceNumber p : neighbours.joined) link(number, p);
   return number;
 }
 
+PlaceNumber Roadmap::attach(Vec2 place, double radius) {
+  return attach(place, radius, neighbours_of(place));
+}
+
+std::optional<PlaceNumber> Roadmap::attach_where_joined(Vec2 place, double radius) {
+  const Neighbours neighbours = neighbours_of(place);
+  const bool is_joined = neighbours.same ? !ways_[*neighbours.same].empty() : !neighbours.joined.empty();
+  return is_joined ? std::optional<PlaceNumber>(attach(place, radius, neighbours)) : std::nullopt;
+}
+
 void Roadmap::block(Vec2 centre, double keep) {
+  blocking_.push_back({centre, keep});
   const auto drop = [&](PlaceNumber a, PlaceNumber b) {
     ways_[a].erase(std::remove(ways_[a].begin(), ways_[a].end(), b), ways_[a].end());
   };

@@ -11,10 +11,11 @@
 /// over a grid instead of samples). Heuristic: where there is no plan on a map there may be one off it.
 
 #include <cstdint>
-#include <unordered_map>
+#include <optional>
 #include <vector>
 
 #include "exactvo/geometry/box.h"
+#include "liveness/cells.h"
 #include "liveness/sweeps.h"
 
 namespace exactvo::formation::detail {
@@ -24,7 +25,7 @@ class FreeSpace {
  public:
   virtual ~FreeSpace() = default;
   virtual bool is_open() const = 0;  ///< nothing stands anywhere
-  /// m, from the place to what stands nearest; beyond `enough` any number that is not less.
+  /// m, from the place to what stands nearest, negative inside it; beyond `enough` any number that is not less.
   virtual double clearance(Vec2 place, double enough) const = 0;
   /// Whether the straight way stays `least` (m) from everything.
   virtual bool is_clear(Vec2 from, Vec2 to, double least) const = 0;
@@ -49,8 +50,17 @@ class Roadmap {
   Vec2 place(PlaceNumber p) const { return places_[p]; }
   const std::vector<PlaceNumber>& ways(PlaceNumber p) const { return ways_[p]; }
 
-  /// The number of that place, which is added with ways to those about it if the map does not have it.
-  PlaceNumber attach(Vec2 place);
+  /// Places that the lattice of such a map can have.
+  static double lattice_places(const geometry::Box& region, double radius);
+
+  /// The number of that place, which is added with ways to those about it if the map does not have it, for a disc of
+  /// that radius, m. These keep clear of what blocks as `block` says. A place that is nearer to something than places
+  /// of the map are has ways that come no nearer, and no larger disc has room there.
+  PlaceNumber attach(Vec2 place, double radius);
+  /// The same; nothing, and nothing added, where no way would lead there.
+  std::optional<PlaceNumber> attach_where_joined(Vec2 place, double radius);
+  /// m: the largest radius that has room there.
+  double room(PlaceNumber p) const { return room_[p]; }
   /// No way leads within `keep` (m) of a disc's centre that stays there, nor to a place there.
   void block(Vec2 centre, double keep);
   bool is_blocked(PlaceNumber p) const { return blocked_[p] != 0; }
@@ -58,29 +68,31 @@ class Roadmap {
   /// Calls visit(number) for every place within `reach` (m).
   template <class Visit>
   void for_each_near(Vec2 here, double reach, const Visit& visit) const {
-    const Cell low = cell_of(here - Vec2{reach, reach}), high = cell_of(here + Vec2{reach, reach});
-    for (std::int32_t y = low.y; y <= high.y; ++y)
-      for (std::int32_t x = low.x; x <= high.x; ++x) {
-        const auto found = cells_.find(key_of({x, y}));
-        if (found == cells_.end()) continue;
-        for (const PlaceNumber p : found->second)
-          if (squared_norm(places_[p] - here) <= reach * reach) visit(p);
-      }
+    cells_.for_each_about(here, reach, [&](PlaceNumber p) {
+      if (squared_norm(places_[p] - here) <= reach * reach) visit(p);
+    });
   }
 
   /// m: as long as a way may be.
   double longest_way() const { return longest_; }
 
  private:
-  struct Cell {
-    std::int32_t x, y;
-  };
   struct FreePoint {
     double clearance;
     Vec2 place;
   };
-  Cell cell_of(Vec2 p) const;
-  static std::uint64_t key_of(Cell c);
+  struct Blocked {
+    Vec2 centre;
+    double keep;
+  };
+  struct Neighbours {
+    std::optional<PlaceNumber> same;  ///< already there
+    std::vector<PlaceNumber> joined;  ///< those that a way leads to
+    bool is_tight = false;            ///< nearer to something than places of the map are
+  };
+  Neighbours neighbours_of(Vec2 place) const;
+  PlaceNumber attach(Vec2 place, double radius, const Neighbours& neighbours);
+  bool is_clear_of_blocked(Vec2 place, Vec2 to) const;
   PlaceNumber add(Vec2 place);
   void link(PlaceNumber a, PlaceNumber b);
   void add_lattice(const geometry::Box& region);
@@ -94,7 +106,9 @@ class Roadmap {
   std::vector<Vec2> places_;
   std::vector<std::vector<PlaceNumber>> ways_;
   std::vector<char> blocked_;
-  std::unordered_map<std::uint64_t, std::vector<PlaceNumber>> cells_;
+  std::vector<double> room_;
+  std::vector<Blocked> blocking_;
+  Cells<PlaceNumber> cells_;
 };
 
 }  // namespace exactvo::formation::detail

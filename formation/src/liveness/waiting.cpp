@@ -11,17 +11,20 @@ namespace {
 
 using geometry::norm;
 
-/// m/s: who wants less is not held up.
-constexpr double kWantsNothing = 1e-3;
-/// m/s: a faster robot moves: a ring of robots that wait for each other may turn slowly, and get apart.
-constexpr double kMoves = 0.1;
+// Shares of a robot's own fastest speed.
+constexpr double kWantsNothing = 1e-3;  ///< who wants less is not held up
+/// A faster robot moves: a ring of robots that wait for each other may turn slowly, and get apart.
+constexpr double kMoves = 1.0 / 15.0;
 /// Robots of a chain that are named one by one.
 constexpr std::size_t kNamed = 6;
 
-bool is_held_up(const RobotStep& r) {
-  const double wanted = geometry::squared_norm(r.preferred);
-  return r.mode != Mode::arrived && wanted > kWantsNothing * kWantsNothing &&
-         dot(r.chosen, r.preferred) < kHeldBelow * wanted;
+bool moves(const RobotStep& r, const Robot& robot) {
+  return norm(r.chosen) >= kMoves * robot.max_speed;
+}
+
+bool is_held_up(const RobotStep& r, const Robot& robot) {
+  const double wanted = geometry::squared_norm(r.preferred), nothing = kWantsNothing * robot.max_speed;
+  return r.mode != Mode::arrived && wanted > nothing * nothing && dot(r.chosen, r.preferred) < kHeldBelow * wanted;
 }
 
 /// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.
@@ -33,7 +36,7 @@ bool holds(const RecordedConstraint& c, const RobotStep& r, const Scenario& scen
 
 std::vector<std::size_t> held_by(const RobotStep& r, const Scenario& scenario, std::size_t robot) {
   std::vector<const RecordedConstraint*> by;
-  if (is_held_up(r))
+  if (is_held_up(r, scenario.robots[robot]))
     for (const RecordedConstraint& c : r.constraints)
       if (holds(c, r, scenario, robot)) by.push_back(&c);
   std::stable_sort(by.begin(), by.end(), [](const auto* a, const auto* b) { return a->multiplier > b->multiplier; });
@@ -80,10 +83,10 @@ std::string chained(const Scenario& scenario, const std::vector<std::size_t>& ch
          scenario.robots[chain.back()].id;
 }
 
-std::string end_words(const RobotStep& r) {
+std::string end_words(const RobotStep& r, const Robot& robot) {
   if (r.mode == Mode::arrived) return ", which rests at its goal";
   if (r.mode == Mode::staying) return ", which stays, since its goal is out of reach";
-  return norm(r.chosen) >= kMoves ? ", which moves" : ", which is held up by no robot near it";
+  return moves(r, robot) ? ", which moves" : ", which is held up by no robot near it";
 }
 
 }  // namespace
@@ -114,7 +117,7 @@ std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph) {
   return cycles;
 }
 
-bool is_dead(const WaitForGraph& graph, const Step& row, std::size_t robot) {
+bool is_dead(const Scenario& scenario, const WaitForGraph& graph, const Step& row, std::size_t robot) {
   std::vector<std::size_t> open{robot};
   std::vector<char> met(graph.size(), 0);
   met[robot] = 1;
@@ -122,7 +125,7 @@ bool is_dead(const WaitForGraph& graph, const Step& row, std::size_t robot) {
     const std::size_t i = open.back();
     open.pop_back();
     const RobotStep& r = row.robots[i];
-    if (r.mode != Mode::arrived && norm(r.chosen) >= kMoves) return false;
+    if (r.mode != Mode::arrived && moves(r, scenario.robots[i])) return false;
     for (const std::size_t j : graph[i])
       if (!met[j]) {
         met[j] = 1;
@@ -147,7 +150,7 @@ std::string waiting_words(const Scenario& scenario, const Step& row, const WaitF
     return chained(scenario, way) + ", which is in a deadlock of " + count(cycle.size());
   }
   const std::string queue = chain.size() > 2 ? "queue of " + std::to_string(chain.size()) + ": " : "";
-  return queue + chained(scenario, chain) + end_words(row.robots[chain.back()]);
+  return queue + chained(scenario, chain) + end_words(row.robots[chain.back()], scenario.robots[chain.back()]);
 }
 
 }  // namespace exactvo::formation

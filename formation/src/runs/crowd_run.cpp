@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -49,16 +51,26 @@ double fastest(const Scenario& s) {
   return most;
 }
 
+/// m, of the lattice of positions.
+double position_step_for(const Scenario& s) {
+  double step = kFinest;
+  while (step < 1.0 && (extent(s) >= kReach * step || fastest(s) * s.time_step > kLongestMotion * step)) step *= 2.0;
+  return step;
+}
+
 CrowdOptions options_of(const Scenario& s, const CrowdRunOptions& options) {
   CrowdOptions out;
   out.time_step = s.time_step;
   out.precision = options.precision;
   out.threads = options.threads;
-  out.position_step = kFinest;
-  while (out.position_step < 1.0 &&
-         (extent(s) >= kReach * out.position_step || fastest(s) * s.time_step > kLongestMotion * out.position_step))
-    out.position_step *= 2.0;
+  out.position_step = position_step_for(s);
   return out;
+}
+
+std::string in_metres(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g m", x);
+  return text;
 }
 
 class CrowdRun {
@@ -209,13 +221,17 @@ class CrowdRun {
 
 std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
   std::vector<ScenarioProblem> problems;
-  const auto require = [&](bool holds, const std::string& pointer, const char* found, const char* expected) {
+  const auto require = [&](bool holds, const std::string& pointer, const std::string& found,
+                           const std::string& expected) {
     if (!holds && problems.empty()) problems.push_back({pointer, found, expected});
   };
   require(!s.formation, "/formation", "a formation", "robots with goals, for a crowd");
   require(s.moving_obstacles.empty(), "/moving_obstacles", "moving obstacles", "none, for a crowd");
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
   require(s.horizons.orca >= s.time_step, "/horizons/orca", "less than /time_step", "at least /time_step, for a crowd");
+  const double step = position_step_for(s);
+  require(s.arrival_tolerance >= step, "/arrival_tolerance", in_metres(s.arrival_tolerance),
+          "at least " + in_metres(step) + ", the lattice of positions of a crowd of this extent and speed");
   for (std::size_t i = 0; i < s.robots.size() && problems.empty(); ++i)
     require(s.robots[i].cooperates, "/robots/" + std::to_string(i) + "/cooperates", "false", "true, for a crowd");
   return problems;

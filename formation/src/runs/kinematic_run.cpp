@@ -52,7 +52,7 @@ class KinematicRun {
         held_by_all_(scenario.robots.size(), 0) {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
       groups_.emplace(scenario, guide ? static_cast<const FreeSpace&>(*guide) : open_space_,
-                      liveness_ == Liveness::plan);
+                      liveness_ == Liveness::plan, [this] { return clock_.is_stopped(now_); });
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
       robot.position = scenario.robots[i].position;
@@ -130,6 +130,7 @@ class KinematicRun {
   }
 
   Step decide_all(double time) {
+    now_ = time;
     if (groups_) look_at_groups(time);
     for (std::size_t i = 0; i < robots_.size(); ++i) anchors_[i] = {robots_[i].position, robots_[i].velocity};
     look_at_robots();
@@ -172,7 +173,7 @@ class KinematicRun {
     follow_plans(scenario_, anchors_, scene_, planned_, others_);
   }
 
-  /// With other wishes of those who go by plan.
+  /// After groups were halted: their robots want something else.
   void decide_again(double time, Step& row) {
     look_at_robots();
     for (std::size_t i = 0; i < robots_.size(); ++i) {
@@ -210,8 +211,9 @@ class KinematicRun {
            (goes_by_plan(i) && held_by_all_[i]);
   }
 
-  /// Instead of relaxing: all pairs of a robot whose half-planes contradict each other fall back, until none does. Each
-  /// round a pair falls back for good. What moving obstacles and robots that do not yield ask for may still be relaxed.
+  /// Instead of relaxing. As long as there are robots whose half-planes contradict each other, all pairs of these fall
+  /// back. In each round some pair does so for good, so that it ends. Half-planes of moving obstacles and of robots
+  /// that do not yield may still be relaxed.
   void repair(double time, Step& row) {
     std::set<std::size_t> contradicted;
     for (std::size_t i = 0; i < robots_.size(); ++i)
@@ -403,7 +405,10 @@ class KinematicRun {
                 " completed a full circuit of the obstacle without finding a way to its goal";
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!robots_[i].no_way.empty() && !at_goal(i)) text += "; " + scenario_.robots[i].id + " " + robots_[i].no_way;
-    const std::string without_plan = groups_ && !all_arrived() ? groups_->no_plan_words() : "";
+    std::vector<std::size_t> not_there;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (!at_goal(i)) not_there.push_back(i);
+    const std::string without_plan = groups_ ? groups_->no_plan_words(not_there) : "";
     return without_plan.empty() ? text : text + "; " + without_plan;
   }
 
@@ -425,6 +430,7 @@ class KinematicRun {
   Liveness liveness_;
   Scene scene_;
   RunClock clock_;
+  double now_ = 0.0;  ///< s, of the present row
   Decider decider_;
   std::vector<KinematicRobot> robots_;
   OpenSpace open_space_;

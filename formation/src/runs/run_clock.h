@@ -28,7 +28,13 @@ class RunClock {
   /// Whether `step` is the last row: the time is up, `stop_at` is passed, or the caller wants to stop.
   bool ends_at(std::size_t step) {
     const bool passed = last_decision_ && step > *last_decision_;
-    return step == steps_ || passed || !beat(time(step));
+    return step == steps_ || passed || is_stopped(time(step));
+  }
+
+  /// Whether the caller wants to stop. Cheap: to be asked by what takes long within a step.
+  bool is_stopped(double time) {
+    is_stopped_ = is_stopped_ || !beat(time);
+    return is_stopped_;
   }
 
   /// Whether the decision at `time` keeps every half-plane: all do where asked for, and the last one of `stop_at`.
@@ -57,6 +63,7 @@ class RunClock {
   double dt_;
   std::size_t steps_;
   std::optional<std::size_t> last_decision_;
+  bool is_stopped_ = false;
   Clock::time_point last_ = Clock::now();
 };
 

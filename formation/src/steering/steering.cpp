@@ -176,10 +176,12 @@ void Follower::commit(const Situation& s, int side, std::size_t followed) {
   followed_ = followed;
 }
 
+constexpr double kRehearsalHorizon = 60.0;  ///< s: a boundary longer than that ranks by how far the goal is then
+
 /// One side of a boundary in the static scene alone: the time until it can be left plus the straight way from there.
 ///
-/// Nothing is faster than max_speed, so that `time` never falls, but for rounding: while it runs it is a lower bound of
-/// what it will be at the end.
+/// Nothing is faster than max_speed. Therefore `time` never falls by more than rounding: while the rehearsal runs, it
+/// is a lower bound of what it will be at the end.
 class Follower::Rehearsal {
  public:
   Rehearsal(const Follower& actor, const Situation& s) : actor_(actor), s_(s), start_(s.time) {}
@@ -189,8 +191,7 @@ class Follower::Rehearsal {
   double time() const { return time_; }
 
   void step() {
-    constexpr double kHorizon = 60.0;  // s: a boundary longer than that ranks by how far the goal is then
-    if (!(s_.time - start_ < kHorizon)) return end();
+    if (!(s_.time - start_ < kRehearsalHorizon)) return end();
     const Vec2 to_goal = s_.goal - s_.robot.position;
     s_.preferred = s_.robot.max_speed * geometry::normalized(to_goal);
     near_.look(*s_.field, s_.robot, s_.reach);
@@ -236,15 +237,28 @@ std::string side_words(bool left, const Rehearsal& taken, const Rehearsal& other
   return (left ? "left (" : "right (") + seconds(taken.time()) + " to go that way, " + there + " the other)";
 }
 
-/// Whether the left is taken: within a time step of the right or faster. The one that may be faster goes on, until the
-/// other has ended and it is too late for it, beyond all rounding: to the end both would say the same.
+/// s: by how much the time of a rehearsal can fall by rounding.
+///
+/// A step rounds a velocity and its length (8 u of max_speed), a position and the distance to the goal (8 u of the
+/// largest coordinate) and a time (4 u). The bound leaves a factor of two, and is never less than a microsecond.
+double rehearsal_rounding(const Follower::Situation& s) {
+  constexpr double kUnit = 0x1p-53, kLeast = 1e-6;
+  const auto largest = [](Vec2 p) { return std::max(std::fabs(p.x), std::fabs(p.y)); };
+  const double fastest = s.robot.max_speed;
+  const double farthest = std::max(largest(s.robot.position), largest(s.goal)) + fastest * kRehearsalHorizon;
+  const double steps = kRehearsalHorizon / s.time_step + 2.0;
+  const double a_step = kUnit * (8.0 * s.time_step + 8.0 * farthest / fastest + 4.0 * (s.time + kRehearsalHorizon));
+  return std::max(kLeast, 2.0 * steps * a_step);
+}
+
+/// Whether the left is taken: within a time step of the right or faster. Steps the side that may be faster. Stops when
+/// one side has ended and the other is later by more than rounding: the end of the other would not change the answer.
 template <class Rehearsal>
-bool left_is_better(Rehearsal& left, Rehearsal& right, double time_step) {
-  constexpr double kRounding = 1e-6;  // s
+bool left_is_better(Rehearsal& left, Rehearsal& right, double time_step, double rounding) {
   for (;;) {
     if (left.has_ended() && right.has_ended()) return left.time() <= right.time() + time_step;
-    if (left.has_ended() && right.time() + time_step > left.time() + kRounding) return true;
-    if (right.has_ended() && left.time() > right.time() + time_step + kRounding) return false;
+    if (left.has_ended() && right.time() + time_step > left.time() + rounding) return true;
+    if (right.has_ended() && left.time() > right.time() + time_step + rounding) return false;
     const bool take_left = right.has_ended() || (!left.has_ended() && left.time() <= right.time());
     (take_left ? left : right).step();
   }
@@ -262,7 +276,7 @@ Follower::Answer Follower::begin(const Situation& s, NearConstraints& near) {
   to_left.commit(s, 1, left->last);
   to_right.commit(s, -1, right->last);
   Rehearsal on_left(to_left, s), on_right(to_right, s);
-  const bool go_left = left_is_better(on_left, on_right, s.time_step);
+  const bool go_left = left_is_better(on_left, on_right, s.time_step, rehearsal_rounding(s));
   *this = go_left ? to_left : to_right;
   const std::string words = side_words(go_left, go_left ? on_left : on_right, go_left ? on_right : on_left);
   return {(go_left ? left : right)->velocity, Mode::following, side_,

@@ -30,8 +30,9 @@ WaitForGraph waiting_in(const Scenario& scenario, const Step& row);
 /// number on, in the order of these.
 std::vector<std::vector<std::size_t>> deadlocks_in(const WaitForGraph& graph);
 
-/// Whether this robot, those that it waits for, and those that they wait for in turn, all stand.
-bool is_dead(const WaitForGraph& graph, const Step& row, std::size_t robot);
+/// Whether this robot, those that it waits for, and those that they wait for in turn, all stand: each drives at less
+/// than a fifteenth of its fastest speed.
+bool is_dead(const Scenario& scenario, const WaitForGraph& graph, const Step& row, std::size_t robot);
 
 /// "R13 waits for R6, which waits for R13: a deadlock of two"; of a long cycle the first ones by name.
 std::string deadlock_words(const Scenario& scenario, const std::vector<std::size_t>& cycle);
