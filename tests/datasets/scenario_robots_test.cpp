@@ -69,6 +69,9 @@ TEST(ScenarioRobots, RandomRobotsAreApartAndClearAndTheSameForASeed) {
     for (std::size_t j = 0; j < i; ++j)
       EXPECT_GE(norm(s.robots[i].position - s.robots[j].position),
                 s.robots[i].radius + s.robots[j].radius + 0.2 - 1e-12);
+    for (std::size_t j = 0; j < i; ++j)  // at their goals they have room as well
+      EXPECT_GE(norm(s.robots[i].goals[0] - s.robots[j].goals[0]),
+                s.robots[i].radius + s.robots[j].radius + 0.2 - 1e-12);
     if (i == 0) continue;
     EXPECT_GE(geometry::signed_distance(s.obstacles[0].shape, s.robots[i].position), 0.6);
     EXPECT_GE(geometry::signed_distance(s.obstacles[0].shape, s.robots[i].goals[0]), 0.6);
@@ -77,7 +80,20 @@ TEST(ScenarioRobots, RandomRobotsAreApartAndClearAndTheSameForASeed) {
   EXPECT_FALSE(other.robots[0].position == s.robots[1].position);
 }
 
+TEST(ScenarioRobots, RobotsThatOverlapAtTheStartAreNamedByTheirIds) {
+  const DataError overlap = refused(R"({"id": "left", "position": [0, 0], "goal": [9, 0]},
+                                       {"id": "right", "position": [0.3, 0], "goal": [-9, 0]})");
+  EXPECT_NE(overlap.found().find("overlapping robot left"), std::string::npos) << overlap.found();
+}
+
 class ScenarioRobotTables : public TemporaryFolder {};
+
+TEST_F(ScenarioRobotTables, AByteOrderMarkIsLeftOut) {
+  std::ofstream(folder_ / "robots.csv") << "\xEF\xBB\xBFx,y,goal_x,goal_y\r\n1,2,3,4\r\n";
+  const Scenario s = read(R"({"file": "robots.csv"})", "", folder_);
+  ASSERT_EQ(s.robots.size(), 1U);
+  EXPECT_EQ(s.robots[0].position, (Vec2{1, 2}));
+}
 
 TEST_F(ScenarioRobotTables, AThousandRobotsAreRead) {
   std::ofstream table(folder_ / "robots.csv");

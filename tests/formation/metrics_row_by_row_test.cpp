@@ -148,14 +148,15 @@ Vec2 acceleration(const Recording& recording, std::size_t k, std::size_t i) {
 /// rad: smaller turns have no sign worth counting.
 constexpr double kLeastTurn = 1e-3;
 
-std::size_t reversals_of(const Recording& recording, std::size_t i) {
+/// `at_rest`: m/s, what is slower has no heading.
+std::size_t reversals_of(const Recording& recording, std::size_t i, double at_rest) {
   std::size_t reversals = 0;
   double last_turn = 0.0;
   for (std::size_t k = 1; k < recording.steps.size(); ++k) {
     const Vec2 a = recording.steps[k - 1].robots[i].velocity;
     const Vec2 b = recording.steps[k].robots[i].velocity;
     const double turn = std::atan2(cross(a, b), dot(a, b));
-    if (std::fabs(turn) < kLeastTurn) {
+    if (std::fabs(turn) < kLeastTurn || !(norm(a) > at_rest) || !(norm(b) > at_rest)) {
       last_turn = 0.0;
       continue;
     }
@@ -175,7 +176,7 @@ ActiveSet active_set(const RobotStep& step) {
   return active;
 }
 
-void measure_jitter(const Recording& recording, Metrics& m) {
+void measure_jitter(const Scenario& scenario, const Recording& recording, Metrics& m) {
   const std::size_t rows = recording.steps.size();
   for (std::size_t i = 0; i < m.robots.size(); ++i) {
     for (std::size_t k = 0; k + 2 < rows; ++k)
@@ -185,7 +186,7 @@ void measure_jitter(const Recording& recording, Metrics& m) {
       m.peak_acceleration = std::max(m.peak_acceleration, a);
       m.velocity_variation += a * recording.time_step;
     }
-    m.heading_reversals += reversals_of(recording, i);
+    m.heading_reversals += reversals_of(recording, i, 1e-3 * scenario.robots[i].max_speed);
     for (std::size_t k = 1; k + 1 < rows; ++k)
       if (active_set(recording.steps[k].robots[i]) != active_set(recording.steps[k - 1].robots[i]))
         ++m.active_set_switches;
@@ -210,7 +211,7 @@ Metrics measured_at_once(const Scenario& scenario, const Recording& recording) {
   measure_paths(recording, m);
   measure_course(scenario, recording, m);
   measure_detours(scenario, recording, m);
-  measure_jitter(recording, m);
+  measure_jitter(scenario, recording, m);
   count_decisions(recording, m);
   return m;
 }

@@ -130,6 +130,17 @@ TEST(Metrics, HeadingReversalsCountChangesOfTurningSense) {
   EXPECT_EQ(measure(scene_of({{9.0, 0.0}}), below_notice).heading_reversals, 0u);
 }
 
+TEST(Metrics, HeadingReversalsLeaveOutRobotsAtRest) {
+  const auto heading = [](double angle, double speed) {
+    return at({0, 0}, {speed * std::cos(angle), speed * std::sin(angle)});
+  };
+  std::vector<std::vector<RobotStep>> rows;
+  for (int k = 0; k < 20; ++k) rows.push_back({heading(k % 2 == 0 ? 0.0 : 2.0, 1e-12)});
+  EXPECT_EQ(measure(scene_of({{9.0, 0.0}}), recording_of(rows)).heading_reversals, 0u);
+  for (std::vector<RobotStep>& row : rows) row[0].velocity = 1e12 * row[0].velocity;
+  EXPECT_GT(measure(scene_of({{9.0, 0.0}}), recording_of(rows)).heading_reversals, 10u);
+}
+
 RobotStep with_active(std::vector<std::size_t> indices) {
   RobotStep r = at({0, 0});
   for (std::size_t i : indices) {

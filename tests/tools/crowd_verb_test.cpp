@@ -86,13 +86,20 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   here.write("ring.json", kRing);
   here.write("box.json",
              R"({"name": "b", "speed_bound": "box", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}]})");
+  here.write("slow.json", R"({"name": "s", "robots": [{"id": "A", "position": [0, 0], "goal": [9, 0]},
+      {"id": "B", "position": [5, 5], "goal": [9, 0], "max_speed": 1e-6}]})");
+  here.write("plan.json", R"({"name": "p", "liveness": "plan",
+      "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}]})");
   const std::pair<const char*, const char*> cases[] = {
       {"simulate ring.json --engine crwd", "standard or crowd"},
       {"simulate ring.json --record out.evr", "--engine crowd"},
       {"simulate ring.json --engine crowd --method ivo", "orca"},
       {"simulate ring.json --engine crowd --out out", "--record FILE.evr"},
       {"simulate ring.json --engine crowd --precision half", "float or double"},
-      {"simulate ring.json --engine crowd --every 0 --record out.evr", "--every"},
+      {"simulate ring.json --engine crowd --every 0 --record out.evr",
+       "--every: found '0', expected a whole number from 1 to 1000000"},
+      {"simulate slow.json --engine crowd", "slow.json: robot B: max_speed: found "},
+      {"simulate plan.json --engine crowd --record out.evr", "plan.json: /liveness: found \"plan\""},
       {"simulate box.json --engine crowd --record out.evr", "/speed_bound"},
       {"audit ring.json --sample 3", ".evr"},
       {"audit none.evr", "E_FILE_MISSING"},
@@ -105,6 +112,27 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
     EXPECT_TRUE(outcome.out.empty()) << arguments;
     EXPECT_FALSE(here.has("out") || here.has("out.evr") || here.has("out.csv")) << arguments;
   }
+}
+
+TEST(CrowdVerb, ARunSaysWhoHasNoRouteAndWhyAndWhoWasPushedOff) {
+  const Workplace here;
+  here.write("locked.json", R"({"name": "locked", "time_limit": 20, "horizons": {"least": 0.5}, "liveness": "off",
+      "robots": [{"id": "free", "position": [-3, 0], "goal": [-9, 0]}, {"id": "locked", "position": [20, 0], "goal": [0, 8]}],
+      "obstacles": [{"id": "box", "polyline": [[18, -2], [22, -2], [22, 2], [18, 2], [18, -2]]}]})");
+  const Outcome words = here.run("simulate locked.json --engine crowd");
+  EXPECT_EQ(words.status, 0) << words.err;
+  EXPECT_THAT(words.out, HasSubstr("1 of 2 robots arrived, 1 without a route\n  no route     locked: "));
+  EXPECT_THAT(words.out, HasSubstr("box"));
+  const json metrics = json::parse(here.run("simulate locked.json --engine crowd --json").out);
+  ASSERT_EQ(metrics["without_route"].size(), 1U);
+  EXPECT_EQ(metrics["without_route"][0]["robot"], "locked");
+  EXPECT_FALSE(metrics["without_route"][0]["why"].get<std::string>().empty());
+  EXPECT_EQ(metrics["pushed_off"], 0);
+  // Both goals are one place: who comes second pushes off who came first.
+  here.write("one.json", R"({"name": "one", "time_limit": 60, "guidance": "none", "horizons": {"least": 0.5},
+      "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
+  const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
+  EXPECT_EQ(one["pushed_off"].get<int>(), one["arrived"].get<int>() - 1) << one;
 }
 
 }  // namespace

@@ -799,6 +799,32 @@ TEST(Program, WhatIsPrintedForEverEndsWhenNobodyReadsIt) {
   EXPECT_EQ(here.read("status"), "0\n");
 }
 
+// What is longer than stdout's buffer fails where it is written, not at the flush.
+TEST(Program, AReaderThatLeavesALongAnswerIsNoError) {
+  const Workplace here;
+  std::string obstacles;
+  for (int k = 0; k < 120; ++k)
+    obstacles += (k ? "," : "") + std::string(R"({"id": "a wall with a name that takes room, number )") +
+                 std::to_string(k) + R"(", "polyline": [[4, )" + std::to_string(3 * k) + R"(], [6, )" +
+                 std::to_string(3 * k + 1) + "]]}";
+  here.write("s.json", R"({"name": "s", "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}], "obstacles": [)" +
+                           obstacles + "]}");
+  const Outcome one =
+      here.run("vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2");
+  ASSERT_EQ(one.status, 0) << one.err;
+  const json answer = json::parse(
+      here.run("vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --json").out);
+  std::string certificates;
+  for (int k = 0; k < 1000; ++k) certificates += answer.dump() + "\n";
+  here.write("c.jsonl", certificates);
+  for (const char* arguments : {"trap s.json", "audit --certificate c.jsonl", "audit --certificate c.jsonl --json"}) {
+    ASSERT_GT(here.run(arguments).out.size(), 5000U) << arguments;
+    here.run(std::string(arguments) + " 2>words; echo $? >status; } | true", "{ sleep 0.2;");
+    EXPECT_EQ(here.read("words"), "") << arguments;
+    EXPECT_NE(here.read("status"), "2\n") << arguments;
+  }
+}
+
 TEST(Explain, SaysWhatHoldsARobotAndDrawsIt) {
   const Workplace here;
   here.write("s.json", kOneRobot);

@@ -90,9 +90,22 @@ std::string value_of(const CLI::Option& option, const std::vector<std::string>& 
   return parsed;
 }
 
+/// Of an option with a CLI::Range, whose type is called "UINT:INT in [1 - 1000000]", or so; else empty.
+std::string range_words(const std::string& type) {
+  const std::string before = " in [", between = " - ";
+  const std::size_t at = type.find(before), end = type.find(']', at);
+  const std::size_t middle = type.find(between, at);
+  if (at == std::string::npos || end == std::string::npos || middle > end) return "";
+  const std::size_t low = at + before.size(), high = middle + between.size();
+  return fmt::format("{} from {} to {}", type.find("INT") < at ? "a whole number" : "a number",
+                     type.substr(low, middle - low), type.substr(high, end - high));
+}
+
 std::string kind_of_value(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   if (is_flag(option)) return "no value, since it is a switch";
+  const std::string range = range_words(type);
+  if (!range.empty()) return range;
   if (type.find("SIZE") != std::string::npos) return "a number of bytes, such as 2GB";
   if (type.rfind("FLOAT", 0) == 0) return "a number";
   if (type.rfind("UINT", 0) == 0) return "a whole number from 0 on";

@@ -154,7 +154,7 @@ void draw(const std::vector<fs::path>& scripts) {
 ReadScenario read_scenario(const std::string& path) {
   datasets::LoadedScenario loaded = load(path);
   for (const std::string& note : loaded.notes) message(note);
-  return {std::move(loaded.scenario), std::move(loaded.files)};
+  return {std::move(loaded.scenario), std::move(loaded.files), loaded.names_liveness};
 }
 
 }  // namespace exactvo::tools

@@ -72,6 +72,7 @@ void draw(const std::vector<std::filesystem::path>& scripts);
 struct ReadScenario {
   formation::Scenario scenario;
   std::vector<std::filesystem::path> files;  ///< for provenance: the file itself and those it names; none where stdin
+  bool names_liveness = false;               ///< else the scenario has the default
 };
 
 /// A scenario from a file or a pipe, which is read once, or from stdin where `path` is "-".

@@ -15,7 +15,11 @@ namespace exactvo::datasets {
 
 class LineReader {
  public:
-  LineReader(std::string_view text, const std::string& file) : rest_(text), file_(file) {}
+  /// A byte order mark before the text, as spreadsheets write it, is left out.
+  LineReader(std::string_view text, const std::string& file) : rest_(text), file_(file) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    if (rest_.substr(0, kMark.size()) == kMark) rest_.remove_prefix(kMark.size());
+  }
 
   /// Moves to the next line, its end (\n or \r\n) taken off; false at the end.
   bool next();

@@ -96,7 +96,7 @@ class Reader {
 
   LoadedScenario read(const Json& tree) {
     Scenario scenario = read_scenario(tree);
-    return {std::move(scenario), std::move(notes_), std::move(files_)};
+    return {std::move(scenario), std::move(notes_), std::move(files_), tree.contains("liveness")};
   }
 
  private:

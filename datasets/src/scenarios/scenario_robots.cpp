@@ -56,11 +56,19 @@ Vec2 point_or(const Json& object, const char* key, Vec2 otherwise) {
   return object.contains(key) ? to_point(object.at(key)) : otherwise;
 }
 
-/// What is free of obstacles and of the robots there are.
+/// Where robots stand: at the start, or at their last goals.
+Vec2 start_of(const Robot& robot) {
+  return robot.position;
+}
+Vec2 end_of(const Robot& robot) {
+  return robot.goals.empty() ? robot.position : robot.goals.back();
+}
+
+/// What is free of obstacles and of the robots there are, where `place` says.
 class FreeRoom {
  public:
-  FreeRoom(const std::vector<formation::SceneObstacle>& obstacles, const std::vector<Robot>& robots, double radius,
-           double apart)
+  FreeRoom(const std::vector<formation::SceneObstacle>& obstacles, const std::vector<Robot>& robots,
+           Vec2 (*place)(const Robot&), double radius, double apart)
       : radius_(radius), apart_(apart), cell_(2.0 * radius + apart) {
     std::vector<geometry::Box> boxes;
     obstacles_.reserve(obstacles.size());
@@ -72,8 +80,8 @@ class FreeRoom {
     boxes.clear();
     for (const Robot& r : robots) {
       const Vec2 reach{r.radius, r.radius};
-      boxes.push_back({r.position - reach, r.position + reach});
-      others_.push_back({r.position, r.radius});
+      boxes.push_back({place(r) - reach, place(r) + reach});
+      others_.push_back({place(r), r.radius});
     }
     others_by_place_ = geometry::BoxGrid(std::move(boxes));
   }
@@ -225,15 +233,16 @@ class RobotsReader {
     const double apart = rule.value("apart", 0.0);
     const Vec2 low = to_point(rule.at("low")), high = to_point(rule.at("high"));
     const Vec2 goal_low = point_or(rule, "goal_low", low), goal_high = point_or(rule, "goal_high", high);
-    FreeRoom room(obstacles_, out_.robots, pattern_.radius, apart);
+    FreeRoom starts(obstacles_, out_.robots, start_of, pattern_.radius, apart);
+    FreeRoom ends(obstacles_, out_.robots, end_of, pattern_.radius, apart);
     for (std::size_t i = 0; i < count; ++i) {
       CounterRandom random(random_key(kStream, i, seed));
-      const std::optional<Vec2> at = drawn(random, low, high, [&](Vec2 x) { return room.is_free(x); });
+      const std::optional<Vec2> at = drawn(random, low, high, [&](Vec2 x) { return starts.is_free(x); });
       if (!at) refuse_narrow("place", i, count);
-      const std::optional<Vec2> goal = drawn(
-          random, goal_low, goal_high, [&](Vec2 x) { return room.is_clear_of_obstacles(x, pattern_.radius + apart); });
+      const std::optional<Vec2> goal = drawn(random, goal_low, goal_high, [&](Vec2 x) { return ends.is_free(x); });
       if (!goal) refuse_narrow("goal", i, count);
-      room.take(*at);
+      starts.take(*at);
+      ends.take(*goal);
       add(*at, *goal);
     }
   }

@@ -17,6 +17,9 @@ namespace {
 /// rad: smaller turns have no sign worth counting.
 constexpr double kLeastTurn = 1e-3;
 
+/// Of the greatest speed: what is slower rests, and its heading is noise.
+constexpr double kLeastHeadway = 1e-3;
+
 /// What a formation is measured by of a row.
 Step state_of(const Step& row) {
   Step state;
@@ -52,7 +55,7 @@ void MetricsAccumulator::add(const Step& row) {
     const RobotStep& step = row.robots[i];
     if (scenario_.formation)
       r.direct_way += rows_ == 0 ? slot_error(row, run_.offsets, i) : norm(row.leader_position - last_.leader_position);
-    if (rows_ > 0) add_motion(r, step);
+    if (rows_ > 0) add_motion(r, step, kLeastHeadway * scenario_.robots[i].max_speed);
     add_decision(r, step);
     add_arrival(i, row);
     r.position = step.position;
@@ -63,7 +66,7 @@ void MetricsAccumulator::add(const Step& row) {
   ++rows_;
 }
 
-void MetricsAccumulator::add_motion(OfRobot& r, const RobotStep& step) const {
+void MetricsAccumulator::add_motion(OfRobot& r, const RobotStep& step, double at_rest) const {
   r.path_length += norm(step.position - r.position);
   const Vec2 acceleration = (step.velocity - r.velocity) / run_.time_step;
   if (r.acceleration) r.jitter += norm(acceleration - *r.acceleration);
@@ -71,12 +74,12 @@ void MetricsAccumulator::add_motion(OfRobot& r, const RobotStep& step) const {
   const double size = norm(acceleration);
   r.peak_acceleration = std::max(r.peak_acceleration, size);
   r.velocity_variation += size * run_.time_step;
-  add_turn(r, step.velocity);
+  add_turn(r, step.velocity, at_rest);
 }
 
-void MetricsAccumulator::add_turn(OfRobot& r, Vec2 velocity) const {
+void MetricsAccumulator::add_turn(OfRobot& r, Vec2 velocity, double at_rest) const {
   const double turn = std::atan2(cross(r.velocity, velocity), dot(r.velocity, velocity));
-  if (std::fabs(turn) < kLeastTurn) {
+  if (std::fabs(turn) < kLeastTurn || !(norm(r.velocity) > at_rest) || !(norm(velocity) > at_rest)) {
     r.last_turn = 0.0;
     return;
   }

@@ -57,8 +57,9 @@ class MetricsAccumulator {
     ActiveSet active;
   };
 
-  void add_motion(OfRobot& r, const RobotStep& step) const;
-  void add_turn(OfRobot& r, Vec2 velocity) const;
+  /// `at_rest`: m/s, what is slower has no heading.
+  void add_motion(OfRobot& r, const RobotStep& step, double at_rest) const;
+  void add_turn(OfRobot& r, Vec2 velocity, double at_rest) const;
   void add_decision(OfRobot& r, const RobotStep& step);
   void add_arrival(std::size_t robot, const Step& row);
   void add_to_course(const Step& row);

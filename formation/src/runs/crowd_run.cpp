@@ -110,6 +110,7 @@ class CrowdRun {
     Vec2 heading;
     std::optional<double> arrived;  ///< s
     bool stays = false;
+    std::string why_not;  ///< it stays
   };
 
   void add_robots() {
@@ -117,12 +118,20 @@ class CrowdRun {
     crowd_.reserve(scenario_.robots.size());
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const Robot& r = scenario_.robots[i];
-      auto known = kinds.find({r.radius, r.max_speed});
-      if (known == kinds.end())
-        known = kinds.emplace(std::tuple(r.radius, r.max_speed), crowd_.add_kind(kind_of(r))).first;
-      const double speed = norm(r.velocity), share = speed > r.max_speed ? r.max_speed / speed * (1.0 - 0x1p-40) : 1.0;
-      crowd_.add_robot(r.position, known->second, share * r.velocity);
+      try {
+        auto known = kinds.find({r.radius, r.max_speed});
+        if (known == kinds.end())
+          known = kinds.emplace(std::tuple(r.radius, r.max_speed), crowd_.add_kind(kind_of(r))).first;
+        add_robot(r, known->second);
+      } catch (const CrowdError& e) {
+        throw CrowdError(e.problem(), "robot " + r.id + ": " + e.what());
+      }
     }
+  }
+
+  void add_robot(const Robot& r, KindId kind) {
+    const double speed = norm(r.velocity), share = speed > r.max_speed ? r.max_speed / speed * (1.0 - 0x1p-40) : 1.0;
+    crowd_.add_robot(r.position, kind, share * r.velocity);
   }
 
   CrowdKind kind_of(const Robot& r) const {
@@ -142,8 +151,10 @@ class CrowdRun {
     Way& way = ways_[i];
     way.heading = goal_of(i);
     if (!guide_) return;
-    way.course = guide_->course(scenario_.robots[i].radius, at_[i], {goal_of(i), scenario_.arrival_tolerance}).course;
+    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, at_[i], {goal_of(i), scenario_.arrival_tolerance});
+    way.course = std::move(answer.course);
     way.stays = !way.course;
+    way.why_not = answer.defect.empty() ? std::move(answer.why_not) : std::move(answer.defect);
   }
 
   void look(std::size_t i) {
@@ -198,9 +209,11 @@ class CrowdRun {
     std::vector<double> times;
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       look(i);
-      report_.staying += ways_[i].stays;
+      report_.pushed_off += ways_[i].arrived && norm(at_[i] - goal_of(i)) > scenario_.arrival_tolerance;
+      if (ways_[i].stays) report_.without_route.push_back({i, ways_[i].why_not});
       if (ways_[i].arrived) times.push_back(*ways_[i].arrived);
     }
+    report_.staying = report_.without_route.size();
     std::sort(times.begin(), times.end());
     if (2 * times.size() > ways_.size()) report_.median_arrival = times[ways_.size() / 2];
     if (!times.empty()) report_.last_arrival = times.back();

@@ -99,7 +99,7 @@ void check_robots(const Scenario& s, Checker& c) {
     for (const std::size_t j : boxes.before(i)) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
       if (!(gap < 0.0)) continue;  // words are made for what is wrong only: a crowd has very many pairs
-      c.require(false, at + "/position", show(r.position) + ", overlapping robot " + std::to_string(j),
+      c.require(false, at + "/position", show(r.position) + ", overlapping robot " + s.robots[j].id,
                 "robots that do not overlap at the start");
     }
   }

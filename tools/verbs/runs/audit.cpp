@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -212,7 +211,7 @@ ExitCode audit_recordings(const Flags& flags) {
 ExitCode audit_certificates(const Flags& flags) {
   const JudgedCertificates judged = judge_certificates(flags.certificates);
   const std::string text = flags.json ? to_json(judged) : in_words(judged);
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  print(text);
   const bool all =
       std::all_of(judged.all.begin(), judged.all.end(), [](const JudgedCertificate& c) { return c.valid; });
   return all ? ExitCode::success : ExitCode::negative;

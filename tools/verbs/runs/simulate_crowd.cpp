@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -34,32 +35,66 @@ double share(std::size_t count, const CrowdRunReport& r) {
   return decisions > 0.0 ? static_cast<double>(count) / decisions : 0.0;
 }
 
-std::string to_json(const CrowdRunReport& r, const std::string& scenario, const datasets::Provenance& provenance) {
+nlohmann::ordered_json without_route(const CrowdRunReport& r, const formation::Scenario& scenario) {
+  auto list = nlohmann::ordered_json::array();
+  for (const formation::RobotWithoutRoute& stays : r.without_route)
+    list.push_back({{"robot", scenario.robots[stays.robot].id}, {"why", stays.why}});
+  return list;
+}
+
+std::string to_json(const CrowdRunReport& r, const formation::Scenario& scenario,
+                    const datasets::Provenance& provenance) {
   return fmt::format(
-      "{{\"scenario\": {}, \"engine\": \"crowd\", \"method\": \"orca\", \"robots\": {}, \"arrived\": {}, \"staying\": "
-      "{}, "
+      "{{\"scenario\": {}, \"engine\": \"crowd\", \"method\": \"orca\", \"robots\": {}, \"arrived\": {}, "
+      "\"pushed_off\": {}, "
+      "\"staying\": {}, \"without_route\": {}, "
       "\"steps\": {}, \"time\": {}, \"median_arrival_time\": {}, \"last_arrival_time\": {}, \"path_length\": {}, "
       "\"decisions\": {{\"relaxed\": {}, \"touching\": {}, \"widened\": {}, \"stopped\": {}}}, "
       "\"half_planes\": {{\"robots\": {}, \"edges\": {}}}, \"digest\": \"{:016x}\", \"wall_time\": {}, "
       "\"provenance\": {}}}\n",
-      nlohmann::json(scenario).dump(), r.robots, r.arrived, r.staying, r.steps, r.time, or_null(r.median_arrival),
-      or_null(r.last_arrival), r.path_length, r.relaxed, r.touching, r.widened, r.stopped, r.half_planes, r.edges,
-      r.digest, r.wall_time, datasets::to_json(provenance));
+      nlohmann::json(scenario.name).dump(), r.robots, r.arrived, r.pushed_off, r.staying,
+      without_route(r, scenario).dump(), r.steps, r.time, or_null(r.median_arrival), or_null(r.last_arrival),
+      r.path_length, r.relaxed, r.touching, r.widened, r.stopped, r.half_planes, r.edges, r.digest, r.wall_time,
+      datasets::to_json(provenance));
 }
 
-std::string summary(const CrowdRunReport& r, const std::string& scenario) {
+/// The first of them; --json has all.
+std::string lines_without_route(const CrowdRunReport& r, const formation::Scenario& scenario) {
+  constexpr std::size_t kMost = 10;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(r.staying, kMost); ++k)
+    text += fmt::format("  no route     {}: {}\n", shown(scenario.robots[r.without_route[k].robot].id),
+                        shown(r.without_route[k].why));
+  if (r.staying > kMost) text += fmt::format("  no route     and {} more: --json has all\n", r.staying - kMost);
+  return text;
+}
+
+std::string summary(const CrowdRunReport& r, const formation::Scenario& scenario) {
   const double decisions = static_cast<double>(r.robots) * static_cast<double>(r.steps);
   return fmt::format(
-      "{}, engine crowd, method orca: {} of {} arrived, {} without a route\n"
+      "{}, engine crowd, method orca: {} of {} arrived{}, {} without a route\n"
+      "{}"
       "  arrival      median {}, last {}\n"
       "  decisions    {:.3g} % relaxed, {:.3g} % touching or overlapping another, {:.3g} % stopped before an edge\n"
       "  half-planes  {:.3g} against robots and {:.3g} against edges in a decision\n"
       "  path length  {:.4g} m on average\n"
       "  steps        {} in {:.3g} s of wall time, {:.3g} robot steps a second\n",
-      shown(scenario), r.arrived, counted(r.robots, "robot"), r.staying, or_dash(r.median_arrival),
-      or_dash(r.last_arrival), 100.0 * share(r.relaxed, r), 100.0 * share(r.touching, r), 100.0 * share(r.stopped, r),
-      share(r.half_planes, r), share(r.edges, r), r.path_length / static_cast<double>(r.robots), r.steps, r.wall_time,
-      decisions / r.wall_time);
+      shown(scenario.name), r.arrived, counted(r.robots, "robot"),
+      r.pushed_off > 0 ? fmt::format(" ({} of them pushed off their goals again)", r.pushed_off) : "", r.staying,
+      lines_without_route(r, scenario), or_dash(r.median_arrival), or_dash(r.last_arrival), 100.0 * share(r.relaxed, r),
+      100.0 * share(r.touching, r), 100.0 * share(r.stopped, r), share(r.half_planes, r), share(r.edges, r),
+      r.path_length / static_cast<double>(r.robots), r.steps, r.wall_time, decisions / r.wall_time);
+}
+
+/// What a crowd says of a scenario, "robot R: max_speed: found 0, expected ...", in the parts of a DataError.
+datasets::DataError refusal(const std::string& file, const formation::CrowdError& e) {
+  const std::string words = e.what(), before = ": found ", between = ", expected ";
+  const std::size_t found = words.find(before), expected = words.find(between);
+  if (found == std::string::npos || expected == std::string::npos)
+    return {datasets::DataCode::scenario, file, "", words, "a scenario that a crowd can run"};
+  const std::size_t from = found + before.size();
+  return {datasets::DataCode::scenario, file, words.substr(0, found), words.substr(from, expected - from),
+          words.substr(expected + between.size()) + ", for a crowd"};
 }
 
 [[noreturn]] void refuse(const std::string& option, const char* expected) {
@@ -108,6 +143,10 @@ ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulati
   const formation::Scenario& scenario = read.scenario;
   for (const formation::ScenarioProblem& p : crowd_problems(scenario))
     throw datasets::DataError(datasets::DataCode::scenario, file, p.pointer, p.found, p.expected);
+  if (read.names_liveness && scenario.liveness != formation::Liveness::off)
+    throw datasets::DataError(datasets::DataCode::scenario, file, "/liveness",
+                              std::string("\"") + name(scenario.liveness) + "\", which a crowd does not do",
+                              "\"off\", or none, for a crowd");
   formation::CrowdRunOptions options;
   if (!simulation.guidance.empty())
     options.guidance =
@@ -127,7 +166,7 @@ ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulati
   try {
     report = run_crowd(scenario, options, recorder ? &*recorder : nullptr);
   } catch (const formation::CrowdError& e) {
-    throw datasets::DataError(datasets::DataCode::scenario, file, "", e.what(), "a scenario that a crowd can run");
+    throw refusal(file, e);
   }
   line.clear();
   if (interrupted()) throw Interrupted();
@@ -135,7 +174,7 @@ ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulati
     recorder->finish();
     message(fmt::format("wrote {}: {} bytes", flags.record, recorder->bytes()));
   }
-  print(json ? to_json(report, scenario.name, provenance) : summary(report, scenario.name));
+  print(json ? to_json(report, scenario, provenance) : summary(report, scenario));
   return ExitCode::success;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -164,7 +163,7 @@ ExitCode trap(const Flags& flags) {
     for (const TrapFinding& f : findings) text += words_of(scenario, f, orca);
     if (findings.empty()) text = "no obstacles: nothing to stall at\n";
   }
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  print(text);
   return ExitCode::success;
 }
 

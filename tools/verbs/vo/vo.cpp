@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // exactvo vo: velocity obstacles, their answers and certificates; the family; the free velocities.
-#include <cstdio>
 #include <memory>
 
 #include "figures/figure_file.h"
+#include "support/terminal.h"
 #include "verb.h"
 #include "verbs/vo/figure.h"
 #include "verbs/vo/velocities.h"
@@ -21,7 +21,7 @@ ExitCode show(const VoFlags& flags) {
   const VoAnswer answer = answer_of(question);
   if (!flags.figure.empty()) write_figure(vo_figure(answer), flags.figure);
   const std::string text = flags.json ? to_json(answer) : in_words(answer);
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  print(text);
   return ExitCode::success;
 }
 

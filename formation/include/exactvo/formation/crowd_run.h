@@ -34,11 +34,19 @@ struct CrowdRunOptions {
 /// Why a scenario cannot be run on a crowd: the pointer of the field, what it has and what it may have.
 std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
 
+/// A robot that stays, as its goal is proven out of reach.
+struct RobotWithoutRoute {
+  std::size_t robot = 0;
+  std::string why;  ///< in words, for people
+};
+
 /// What a run came to. Times in s, lengths in m.
 struct CrowdRunReport {
   std::size_t robots = 0;
-  std::size_t arrived = 0;  ///< were within the arrival tolerance of their last goal
-  std::size_t staying = 0;  ///< have no route to a goal
+  std::size_t arrived = 0;                       ///< were within the arrival tolerance of their last goal
+  std::size_t pushed_off = 0;                    ///< of these: are farther from it at the end
+  std::size_t staying = 0;                       ///< have no route to a goal
+  std::vector<RobotWithoutRoute> without_route;  ///< these, in the order of the scenario
   std::size_t steps = 0;
   double time = 0.0;  ///< simulated
   std::optional<double> median_arrival, last_arrival;
