@@ -106,13 +106,14 @@ class RVOSimulator {
   std::size_t addAgent(const Vector2& position, float neighborDist, std::size_t maxNeighbors, float timeHorizon,
                        float timeHorizonObst, float radius, float maxSpeed, const Vector2& velocity = {});
   /// A closed polygon, or with two vertices a wall: the number of its first vertex; RVO_ERROR for fewer than two.
+  /// Throws CrowdError where a coordinate is no number.
   std::size_t addObstacle(const std::vector<Vector2>& vertices);
   /// From now on the obstacles added so far are in the way of agents and of queryVisibility.
   void processObstacles();
   /// Throws CrowdError; the agents are then as they were before.
   void doStep();
 
-  /// Of the last step, with the parameters as they are now. The first query after a step costs O(agents). Neighbours:
+  /// Of the last step, whatever was set or added since. The first query after a step costs O(agents). Neighbours:
   /// nearest first; of obstacles those with a half-plane of their own, by the vertex that begins the edge. Lines: of
   /// obstacles, then of agents.
   std::size_t getAgentNumAgentNeighbors(std::size_t agentNo) const;

@@ -70,15 +70,23 @@ struct Vertex {
   std::size_t previous, next;
 };
 
-/// The agents before a step, enough to explain it.
+/// The agents before a step, enough to explain it, whatever is set or added after it.
 struct Before {
   std::vector<Vec2> at, moves, preferred;
+  std::vector<Parameters> parameters;
+  std::size_t processed = 0;  ///< vertices that were in the way: there are only more later
 };
 
 struct Explained {
   std::vector<std::size_t> agents, vertices;
   std::vector<Line> lines;
 };
+
+void require_numbers(const std::string& what, const Vector2& v) {
+  if (std::isfinite(v.x()) && std::isfinite(v.y())) return;
+  throw CrowdError(CrowdProblem::not_finite,
+                   what + ": found (" + std::to_string(v.x()) + ", " + std::to_string(v.y()) + "), expected numbers");
+}
 
 Line to_line(const exactvo::geometry::HalfPlane& h) {
   Line line;
@@ -159,10 +167,13 @@ class RVOSimulator::State {
     crowd_->set_preferred(preferred);
     Before before;
     before.preferred = std::move(preferred);
+    before.parameters = parameters_of_agents();
+    before.processed = processed;
     crowd_->positions(before.at);
     crowd_->velocities(before.moves);
     report = crowd_->step();
     before_ = std::move(before);
+    before_options_ = crowd_->options();
     before_crowd_.reset();
     explained_.clear();
     read();
@@ -174,12 +185,13 @@ class RVOSimulator::State {
     const std::lock_guard<std::mutex> lock(explaining_);
     const auto known = explained_.find(number);
     if (known != explained_.end()) return known->second;
-    Explained& words = explained_[number];
-    if (number >= before_.at.size()) return words;  // no step since it was added
+    Explained words;
+    if (number >= before_.at.size()) return none_;  // no step since it was added
     if (!before_crowd_) {
-      before_crowd_.emplace(crowd_->options());
-      fill(*before_crowd_, before_.at, before_.moves);
-      before_crowd_->set_preferred(before_.preferred);
+      Crowd made(before_options_);
+      fill(made, before_);
+      made.set_preferred(before_.preferred);
+      before_crowd_ = std::move(made);
     }
     const CrowdExplanation e = before_crowd_->explain(static_cast<exactvo::formation::RobotId>(number));
     for (const CrowdExplanation::Edge& edge : e.edges) {
@@ -191,7 +203,7 @@ class RVOSimulator::State {
       words.agents.push_back(neighbour.robot);
       words.lines.push_back(to_line(neighbour.half_plane));
     }
-    return words;
+    return explained_.emplace(number, std::move(words)).first->second;
   }
 
   bool is_visible(Vec2 from, Vec2 to, double radius) const {
@@ -266,15 +278,24 @@ class RVOSimulator::State {
     options.position_step = lattice_for(options.time_step * fastest());
     options.threads = threads;
     Crowd made(options);
-    std::vector<Vec2> at, moves;
-    for (const Agent& a : agents) at.push_back(a.at), moves.push_back(a.moves);
-    fill(made, at, moves);
+    Before now;
+    for (const Agent& a : agents) now.at.push_back(a.at), now.moves.push_back(a.moves);
+    now.parameters = parameters_of_agents();
+    now.processed = processed;
+    fill(made, now);
     crowd_ = std::move(made);
     is_changed = false;
   }
 
-  void fill(Crowd& crowd, const std::vector<Vec2>& at, const std::vector<Vec2>& moves) const {
-    for (std::size_t first = 0; first < processed;) {
+  std::vector<Parameters> parameters_of_agents() const {
+    std::vector<Parameters> all;
+    all.reserve(agents.size());
+    for (const Agent& a : agents) all.push_back(a.parameters);
+    return all;
+  }
+
+  void fill(Crowd& crowd, const Before& state) const {
+    for (std::size_t first = 0; first < state.processed;) {
       exactvo::geometry::Polyline line;
       std::size_t k = first;
       do {
@@ -286,16 +307,18 @@ class RVOSimulator::State {
       crowd.add_obstacle(line);
       first += count;
     }
-    crowd.reserve(at.size());
+    const std::vector<Vec2>& moves = state.moves;
+    crowd.reserve(state.at.size());
     std::map<Parameters, KindId> kinds;
-    for (std::size_t i = 0; i < at.size(); ++i) {
+    for (std::size_t i = 0; i < state.at.size(); ++i) {
       try {
-        const CrowdKind kind = kind_of(agents[i].parameters, crowd.options());
-        auto known = kinds.find(agents[i].parameters);
-        if (known == kinds.end()) known = kinds.emplace(agents[i].parameters, crowd.add_kind(kind)).first;
+        const Parameters& parameters = state.parameters[i];
+        const CrowdKind kind = kind_of(parameters, crowd.options());
+        auto known = kinds.find(parameters);
+        if (known == kinds.end()) known = kinds.emplace(parameters, crowd.add_kind(kind)).first;
         const double speed = exactvo::geometry::norm(moves[i]);
         const double share = speed > kind.max_speed ? kind.max_speed / speed * (1.0 - 0x1p-40) : 1.0;
-        crowd.add_robot(at[i], known->second, share * moves[i]);
+        crowd.add_robot(state.at[i], known->second, share * moves[i]);
       } catch (const CrowdError& e) {
         throw CrowdError(e.problem(), "agent " + std::to_string(i) + ": " + e.what());
       }
@@ -319,6 +342,8 @@ class RVOSimulator::State {
 
   std::optional<Crowd> crowd_, before_crowd_;
   Before before_;
+  CrowdOptions before_options_;
+  const Explained none_;
   std::mutex explaining_;
   std::map<std::size_t, Explained> explained_;
   std::vector<Segment> edges_;  ///< by the vertex that begins them
@@ -351,6 +376,7 @@ std::size_t RVOSimulator::addAgent(const Vector2& position, float neighborDist, 
 std::size_t RVOSimulator::addObstacle(const std::vector<Vector2>& vertices) {
   const std::size_t first = state_->vertices.size(), count = vertices.size();
   if (count < 2) return RVO_ERROR;
+  for (std::size_t k = 0; k < count; ++k) require_numbers("obstacle vertex " + std::to_string(k), vertices[k]);
   for (std::size_t k = 0; k < count; ++k)
     state_->vertices.push_back({vertices[k], first + (k + count - 1) % count, first + (k + 1) % count});
   return first;
@@ -435,6 +461,9 @@ bool RVOSimulator::queryVisibility(const Vector2& point1, const Vector2& point2)
   return queryVisibility(point1, point2, 0.0F);
 }
 bool RVOSimulator::queryVisibility(const Vector2& point1, const Vector2& point2, float radius) const {
+  require_numbers("point1", point1);
+  require_numbers("point2", point2);
+  require_numbers("radius", {radius, 0.0F});
   return state_->is_visible(exact(point1), exact(point2), static_cast<double>(radius));
 }
 

@@ -196,6 +196,40 @@ TEST(Rvo2, LinesAreThoseOfTheLastStepAndTheVelocityKeepsThem) {
   EXPECT_EQ(sim.getStepReport().robots, 3U);
 }
 
+TEST(Rvo2, LinesOfTheLastStepStayWhateverIsSetAfterIt) {
+  const auto after_a_step = [](RVOSimulator& sim) {
+    sim.addAgent({0.0F, 0.0F});
+    sim.addAgent({2.0F, 0.1F});
+    sim.addAgent({4.0F, 3.0F});
+    sim.addObstacle({{0.0F, 2.0F}, {5.0F, 2.0F}});
+    sim.processObstacles();
+    sim.setAgentPrefVelocity(0, {1.0F, 0.0F});
+    sim.doStep();
+  };
+  RVOSimulator one(0.25F, 10.0F, 8, 4.0F, 4.0F, 0.4F, 1.5F), other(0.25F, 10.0F, 8, 4.0F, 4.0F, 0.4F, 1.5F);
+  after_a_step(one);
+  after_a_step(other);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  other.setAgentRadius(1, 0.9F);
+  other.setAgentMaxNeighbors(0, 1);
+  other.setAgentTimeHorizon(0, nan);  // the next step refuses it
+  other.setTimeStep(0.5F);
+  other.addAgent({-2.0F, 0.0F});
+  other.addObstacle({{0.0F, -2.0F}, {5.0F, -2.0F}});
+  other.processObstacles();
+  for (int again = 0; again < 2; ++again)
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_EQ(one.getAgentNumORCALines(i), other.getAgentNumORCALines(i));
+      EXPECT_EQ(one.getAgentNumAgentNeighbors(i), other.getAgentNumAgentNeighbors(i));
+      EXPECT_EQ(one.getAgentNumObstacleNeighbors(i), other.getAgentNumObstacleNeighbors(i));
+      for (std::size_t k = 0; k < one.getAgentNumORCALines(i); ++k) {
+        EXPECT_EQ(one.getAgentORCALine(i, k).point, other.getAgentORCALine(i, k).point);
+        EXPECT_EQ(one.getAgentORCALine(i, k).direction, other.getAgentORCALine(i, k).direction);
+      }
+    }
+  EXPECT_EQ(other.getAgentNumORCALines(3), 0U) << "added after the step";
+}
+
 TEST(Rvo2, WhatIsSetBetweenStepsHolds) {
   RVOSimulator sim(0.25F, 10.0F, 8, 4.0F, 4.0F, 0.4F, 1.5F);
   sim.addAgent({0.0F, 0.0F});
@@ -259,6 +293,15 @@ TEST(Rvo2, WhatRvo2LeavesUndefinedIsRefused) {
   sim.addAgent({0.0F, 0.0F});
   expect_problem(CrowdProblem::coincident, [&] { sim.doStep(); });
   sim.setAgentPosition(1, {5.0F, 0.0F});
+  sim.doStep();
+  expect_problem(CrowdProblem::not_finite, [&] { sim.addObstacle({{0.0F, 0.0F}, {nan, 1.0F}}); });
+  const float infinite = std::numeric_limits<float>::infinity();
+  expect_problem(CrowdProblem::not_finite, [&] { sim.addObstacle({{0.0F, 0.0F}, {1.0F, 1.0F}, {0.0F, -infinite}}); });
+  EXPECT_EQ(sim.getNumObstacleVertices(), 0U);
+  expect_problem(CrowdProblem::not_finite, [&] { sim.queryVisibility({nan, 0.0F}, {1.0F, 0.0F}); });
+  expect_problem(CrowdProblem::not_finite, [&] { sim.queryVisibility({0.0F, 0.0F}, {1.0F, 0.0F}, nan); });
+  sim.addObstacle({{9.0F, 9.0F}, {9.0F, 9.0F}, {10.0F, 9.0F}});  // an edge of length 0
+  sim.processObstacles();
   sim.doStep();
   RVOSimulator no_time;
   no_time.addAgent({0.0F, 0.0F}, 10.0F, 8, 4.0F, 4.0F, 0.4F, 1.5F);
