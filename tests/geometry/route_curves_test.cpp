@@ -5,16 +5,20 @@
 
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/route_certificate.h"
 #include "exactvo/geometry/routes.h"
 #include "route_fields.h"
+#include "routes/links.h"
 #include "routes/planar_graph.h"
 #include "routes/realise.h"
 
 namespace exactvo::geometry {
 namespace {
+
+using test::SeededRandom;
 
 std::vector<Vec2> circle(double radius, int vertices) {
   std::vector<Vec2> out;
@@ -79,7 +83,7 @@ class Searched {
   }
 
   routing::CellMap cells_;
-  routing::EdgeGrid grid_;
+  routing::PieceTree grid_;
   routing::ClearancePlan plan_;
 };
 
@@ -122,6 +126,74 @@ TEST(RouteCurves, ABulgeInACorridorIsPassedAlongItsTangents) {
     const double most = length_round(around, distance) - 2.0 * around * std::atan2(kHeight, kEnd);
     EXPECT_GE(route.length, most * (1.0 - 1e-5)) << n;
     EXPECT_LE(route.length, most * 1.0001) << n;
+  }
+}
+
+// --- Two curves that face each other ---
+
+std::vector<Obstacle> ring_road(double outer, int vertices) {
+  return {Polygon{circle(100.0, vertices), {}}, test::fence(circle(outer, vertices))};
+}
+
+constexpr Vec2 kSquare[4] = {{-6000, -6000}, {6000, -6000}, {6000, 6000}, {-6000, 6000}};
+
+// A vertex of one curve sees as many sides of triangles as the other has, and no wall behind them: maps took quadratic
+// time, and walls were cut at fractions in vain.
+TEST(RouteCurves, LinksBetweenTwoCirclesTakeALittleMoreThanLinearlyManySteps) {
+  for (const double outer : {110.0, 200.0, 1000.0}) {
+    for (const std::size_t n : {500, 2000}) {
+      const routing::CellMap map(routing::planar_graph(ring_road(outer, static_cast<int>(n))), kSquare);
+      EXPECT_EQ(map.graph.vertices.size(), 2 * n) << outer;  // no wall was cut
+      const routing::LinkBounds bounds{200 * n, 10 * n};     // 119 n and 3 n for 1000 vertices each
+      EXPECT_TRUE(routing::gabriel_links(map, bounds, routing::LinksFrom::walls)) << outer << " " << n;
+    }
+  }
+}
+
+TEST(RouteLinks, AreTheSameFromVerticesAsFromWalls) {
+  SeededRandom random(test::seed_of_run(12));
+  for (int k = 0; k < 60; ++k) {
+    const test::RouteField f =
+        test::route_field(random, test::kFieldKinds[static_cast<std::size_t>(k) % std::size(test::kFieldKinds)]);
+    const routing::CellMap map(routing::planar_graph(f.obstacles), kSquare);
+    const auto found = [&](routing::LinksFrom from) {
+      std::vector<std::tuple<int, int, int, int, std::vector<std::pair<int, int>>>> out;
+      const std::optional<std::vector<routing::Link>> links = routing::gabriel_links(map, {}, from);
+      for (const routing::Link& link : *links) {
+        std::vector<std::pair<int, int>> exits;
+        for (const routing::Link::Exit& e : link.exits) exits.emplace_back(e.triangle, e.side);
+        out.emplace_back(link.vertex, link.wall, link.a, link.b, exits);
+      }
+      std::sort(out.begin(), out.end());
+      return out;
+    };
+    EXPECT_EQ(found(routing::LinksFrom::vertices), found(routing::LinksFrom::walls)) << k;
+  }
+}
+
+// --- What lies far away ---
+
+// Beside one wall far away all others lay in one cell of a grid, and each question looked at all of them.
+TEST(RoutePieces, NearAPlaceAreFewWhereverTheOthersLie) {
+  SeededRandom random(test::seed_of_run(13));
+  std::vector<Obstacle> obstacles;
+  for (int k = 0; k < 2000; ++k)
+    obstacles.push_back(test::box_at(random.uniform(0, 200), random.uniform(0, 200), 1, 1));
+  obstacles.push_back(Polyline{{{1e9, 1e9}, {1e9 + 1.0, 1e9}}});
+  constexpr double h = 1e10;
+  const Vec2 square[4] = {{-h, -h}, {h, -h}, {h, h}, {-h, h}};
+  const routing::CellMap map(routing::planar_graph(obstacles), square);
+  const routing::PieceTree pieces(map);
+  for (int k = 0; k < 100; ++k) {
+    const Vec2 a = random.in_box(200), b = a + 3.0 * random.direction();
+    std::size_t named = 0, near = 0;
+    pieces.for_each_near(a, b, 0.5, [&](int) { return ++named > 0; });
+    for (std::size_t e = 0; e < map.graph.edges.size(); ++e) {
+      const auto [i, j] = map.ends_of(static_cast<int>(e));
+      near += distance(Segment{a, b}, Segment{map.vertex(i).rounded(), map.vertex(j).rounded()}) < 0.5 ? 1 : 0;
+    }
+    EXPECT_GE(named, near);
+    EXPECT_LT(named, 100u);
   }
 }
 

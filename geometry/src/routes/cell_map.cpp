@@ -235,6 +235,7 @@ void CellMap::triangulate_and_link(const Vec2 (&corners)[4]) {
     LinkBounds bounds{steps, kCrossingsAVertex * vertices.size() + kSmall};
     if (round == kMostRounds) bounds = {};
     std::optional<std::vector<Link>> found = gabriel_links(*this, bounds);
+    if (!found) found = gabriel_links(*this, bounds, LinksFrom::walls);
     if (!found && !cut_crowded_walls(*this, steps, graph)) found = gabriel_links(*this, {});
     if (!found) continue;
     links = std::move(*found);

@@ -166,6 +166,24 @@ class LinkSearch {
     }
   }
 
+  /// The same from a wall, a side of a triangle: through all sides of which a piece is seen straight across from it, to
+  /// the vertices that are seen so. Around a curve that faces another, a vertex sees many sides and no wall behind
+  /// them.
+  void from_wall(int triangle, int side) {
+    const Triangle& t = map_.triangles[triangle];
+    if (!t.free || t.wall[side] < 0) return;
+    const Facing wall{t.wall[side], t.vertex[(side + 1) % 3], t.vertex[(side + 2) % 3]};
+    path_.clear();
+    todo_.clear();
+    todo_.push_back({triangle, side, 0, wall.b, wall.a});
+    while (!todo_.empty()) {
+      const Step step = todo_.back();
+      todo_.pop_back();
+      path_.resize(step.depth);
+      away_from(wall, step);
+    }
+  }
+
   std::vector<Link> links;
   std::vector<Crowd> crowds;  ///< of every long way to a wall
   std::size_t steps = 0;      ///< triangles looked at
@@ -223,10 +241,74 @@ class LinkSearch {
     const Point &v = point(vertex_), &a = point(x), &b = point(y);
     if (along(point(step.right), v, a, b) >= 0 || along(point(step.left), v, a, b) <= 0) return;
     if (path_.size() > kLongWay) crowds.push_back({wall, share_of_foot(wall)});
+    add_if_gabriel(wall, x, y);
+  }
+
+  void add_if_gabriel(int wall, int x, int y) {
     if (!is_gabriel(x, y)) return;
-    const Vec2 d = b.rounded() - a.rounded();
-    links.push_back({vertex_, wall, x, y, std::fabs(cross(d, v.rounded() - a.rounded())) / norm(d), path_});
+    const Vec2 a = point(x).rounded(), d = point(y).rounded() - a;
+    links.push_back({vertex_, wall, x, y, std::fabs(cross(d, point(vertex_).rounded() - a)) / norm(d), path_});
     crossings += path_.size();
+  }
+
+  /// A wall whose free triangle lies to the left of ab.
+  struct Facing {
+    int wall, a, b;
+  };
+
+  /// Into the step's triangle through its side; `left` and `right` bound what is seen, from the wall's a to its b.
+  void away_from(const Facing& wall, const Step& step) {
+    ++steps;
+    const Triangle& t = map_.triangles[step.triangle];
+    const int apex = t.vertex[step.side];
+    if (!map_.is_site(apex)) return;
+    path_.push_back({step.triangle, step.side});
+    const Point &a = point(wall.a), &b = point(wall.b);
+    const bool after_left = along(point(apex), point(step.left), a, b) > 0;
+    const bool before_right = along(point(apex), point(step.right), a, b) < 0;
+    if (after_left && before_right) link_to(wall, apex);
+    // The side from the apex on is seen beyond it towards b, the other one towards a.
+    const int towards_b = (step.side + 1) % 3, towards_a = (step.side + 2) % 3;
+    if (before_right)
+      leave(wall, t, {step.triangle, towards_b, path_.size(), step.right, after_left ? apex : step.left});
+    if (after_left)
+      leave(wall, t, {step.triangle, towards_a, path_.size(), before_right ? apex : step.right, step.left});
+  }
+
+  void leave(const Facing& wall, const Triangle& t, Step seen) {
+    const int x = t.vertex[(seen.side + 1) % 3], y = t.vertex[(seen.side + 2) % 3];
+    const int beyond = t.neighbour[seen.side];
+    if (t.wall[seen.side] >= 0 || beyond < 0 || !map_.is_site(x) || !map_.is_site(y)) return;
+    if (is_too_deep(wall, seen, seen.left, x, y) || is_too_deep(wall, seen, seen.right, x, y)) return;
+    const int* back = map_.triangles[beyond].neighbour;
+    seen.side = static_cast<int>(std::find(back, back + 3, seen.triangle) - back);
+    seen.triangle = beyond;
+    todo_.push_back(seen);
+  }
+
+  /// Whether u, which bounds what is seen, lies in the disc over every point of the side xy that is seen and its foot:
+  /// with positions along the wall and heights above it, (position - u's)^2 <= u's height (height - u's height).
+  bool is_too_deep(const Facing& wall, const Step& seen, int u, int x, int y) const {
+    const Point &a = point(wall.a), &b = point(wall.b);
+    if (u == wall.a || u == wall.b) return false;
+    const auto holds = [&](int top) {
+      return sign_of([&](auto to) -> NumberOf<decltype(to)> {
+               const auto origin = to(a), d = minus(to(b), origin), at = to(point(u));
+               const auto width = dot_of(minus(to(point(seen.right)), to(point(seen.left))), d);
+               const auto height = cross_of(d, minus(at, origin));
+               return squared(width) - height * (cross_of(d, minus(to(point(top)), origin)) - height);
+             }) <= 0;
+    };
+    return holds(x) && holds(y);
+  }
+
+  void link_to(const Facing& wall, int vertex) {
+    vertex_ = vertex;
+    const std::vector<Link::Exit> inward = path_;
+    std::reverse(path_.begin(), path_.end());
+    if (path_.size() > kLongWay) crowds.push_back({wall.wall, share_of_foot(wall.wall)});
+    add_if_gabriel(wall.wall, wall.a, wall.b);
+    path_ = inward;
   }
 
   double share_of_foot(int wall) const {
@@ -326,10 +408,15 @@ Point point_at(const Point& a, const Point& b, double share) {
 
 }  // namespace
 
-std::optional<std::vector<Link>> gabriel_links(const CellMap& map, LinkBounds bounds) {
+std::optional<std::vector<Link>> gabriel_links(const CellMap& map, LinkBounds bounds, LinksFrom from) {
   LinkSearch search(map);
   for (std::size_t f = 0; f < map.triangles.size(); ++f) {
-    for (int corner = 0; corner < 3; ++corner) search.from(static_cast<int>(f), corner);
+    for (int k = 0; k < 3; ++k) {
+      if (from == LinksFrom::vertices)
+        search.from(static_cast<int>(f), k);
+      else
+        search.from_wall(static_cast<int>(f), k);
+    }
     if (search.steps > bounds.steps || search.crossings > bounds.crossings) return std::nullopt;
   }
   return std::move(search.links);

@@ -18,8 +18,14 @@ struct LinkBounds {
   std::size_t crossings = std::numeric_limits<std::size_t>::max();  ///< of links with sides of triangles
 };
 
+/// Where the search for links starts. Both find all of them; one may take linearly many steps where the other takes
+/// quadratically many: between two curves that face each other a vertex sees many sides of triangles and no wall behind
+/// them, and many short walls may see the same sides below one long wall.
+enum class LinksFrom { vertices, walls };
+
 /// All of them, or nothing where that takes more than the bounds allow. REQUIRES: `map` has triangles and sides.
-std::optional<std::vector<Link>> gabriel_links(const CellMap& map, LinkBounds bounds);
+std::optional<std::vector<Link>> gabriel_links(const CellMap& map, LinkBounds bounds,
+                                               LinksFrom from = LinksFrom::vertices);
 
 /// Cuts walls that very many triangles lie in front of. Where n vertices face one long wall, the triangles fan out from
 /// its ends, and n links cross n/2 sides each:

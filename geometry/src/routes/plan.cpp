@@ -97,7 +97,7 @@ MovedEnd moved_from_link(const CellMap& map, int link, Vec2 x, Vec2 u, double di
 
 }  // namespace
 
-ClearancePlan::ClearancePlan(const CellMap& map, const EdgeGrid& grid, double radius)
+ClearancePlan::ClearancePlan(const CellMap& map, const PieceTree& grid, double radius)
     : map_(&map), grid_(&grid), radius_(radius) {
   decide_gates();
   find_components();
@@ -304,8 +304,9 @@ int ClearancePlan::piece_too_near(const Point& x) const {
   int found = -1;
   grid_->for_each_near(x.rounded(), x.rounded(), radius_, [&](int piece) {
     const auto [a, b] = ends_of(piece);
-    if (compare_segment_distance(x, map_->vertex(a), map_->vertex(b), radius_) < 0) found = piece;
-    return found < 0;
+    if ((found < 0 || piece < found) && compare_segment_distance(x, map_->vertex(a), map_->vertex(b), radius_) < 0)
+      found = piece;
+    return true;
   });
   return found;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "routes/cell_map.h"
-#include "routes/edge_grid.h"
+#include "routes/piece_tree.h"
 
 namespace exactvo::geometry::routing {
 
@@ -31,10 +31,10 @@ struct ShrunkPortal {
 class ClearancePlan {
  public:
   /// REQUIRES: radius >= 0, finite.
-  ClearancePlan(const CellMap& map, const EdgeGrid& grid, double radius);
+  ClearancePlan(const CellMap& map, const PieceTree& grid, double radius);
 
   const CellMap& map() const { return *map_; }
-  const EdgeGrid& grid() const { return *grid_; }
+  const PieceTree& grid() const { return *grid_; }
   double radius() const { return radius_; }
   bool admits(const Portal& portal) const {
     return portal.link >= 0 ? link_admits_[portal.link] : side_admits_[portal.side];
@@ -50,7 +50,7 @@ class ClearancePlan {
   /// A cell that leads nowhere but to one other: that one; -1 elsewhere.
   int way_out(int cell) const { return way_out_[cell]; }
 
-  /// A piece nearer to x than the radius, -1 where there is none. Exact.
+  /// The first piece nearer to x than the radius, -1 where there is none. Exact.
   int piece_too_near(const Point& x) const;
   /// Whether the disc can move straight from p to q: every piece stays at least a radius away. Exact. REQUIRES: radius
   /// > 0.
@@ -71,7 +71,7 @@ class ClearancePlan {
   ShrunkPortal shrunk_side(const Portal& portal) const;
 
   const CellMap* map_;
-  const EdgeGrid* grid_;
+  const PieceTree* grid_;
   double radius_;
   std::vector<char> link_admits_, side_admits_;
   std::vector<ShrunkPortal> shrunk_;

@@ -65,7 +65,7 @@ struct RouteMap::Parts {
   double largest_radius;
   double margin;  ///< m: how far outside of the box a start or goal may lie
   CellMap cells;
-  routing::EdgeGrid grid;
+  routing::PieceTree grid;
   mutable std::once_flag gates_made;
   mutable std::optional<routing::GateTree> gates;  ///< made when the widest radius is first asked for
 
@@ -147,7 +147,7 @@ struct Located {
   Blocked blocked;
 };
 
-int triangle_of(const CellMap& map, const routing::EdgeGrid& grid, const Point& x) {
+int triangle_of(const CellMap& map, const routing::PieceTree& grid, const Point& x) {
   int triangle = grid.triangle_near(x.rounded()), before = -1;
   // A walk towards x through the sides that it lies beyond. It may run in circles where the triangulation is not
   // Delaunay: the side to begin with changes from step to step, and after as many steps as triangles all are tried.

@@ -123,7 +123,7 @@ double GateTree::widest_radius(int one, int other) const {
                       [&](double r) { return map_->side_admits(side, r); });
 }
 
-double clearance_of(const CellMap& map, const EdgeGrid& grid, Vec2 x) {
+double clearance_of(const CellMap& map, const PieceTree& grid, Vec2 x) {
   if (map.graph.vertices.empty()) return kInfinity;
   const Point p = x;
   const auto is_clear = [&](double r) {

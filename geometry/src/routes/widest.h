@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "routes/cell_map.h"
-#include "routes/edge_grid.h"
+#include "routes/piece_tree.h"
 
 namespace exactvo::geometry::routing {
 
@@ -32,6 +32,6 @@ class GateTree {
 };
 
 /// The largest double r such that every piece stays at least r away from x; infinite where there are none.
-double clearance_of(const CellMap& map, const EdgeGrid& grid, Vec2 x);
+double clearance_of(const CellMap& map, const PieceTree& grid, Vec2 x);
 
 }  // namespace exactvo::geometry::routing
