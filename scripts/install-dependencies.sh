@@ -18,6 +18,7 @@ packages=(
   python3-dev pybind11-dev python3-numpy                            # the Python package
   python3-pytest mypy python3-matplotlib python3-pandas python3-shapely  # its tests
   gnuplot-nox fonts-dejavu-core                                     # figures
+  doxygen pandoc                                                    # the site
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

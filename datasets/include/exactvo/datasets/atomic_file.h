@@ -14,12 +14,17 @@
 
 namespace exactvo::datasets {
 
-/// What survives a crash of the machine. `content`: the file is complete, old or new. `name`: after `commit` it is the
-/// new one. A crash of the program alone loses neither.
-enum class Durability { content, name };
+/// What survives a crash of the machine. A crash of the program alone loses nothing.
+enum class Durability {
+  content,  ///< the file is complete, old or new
+  name      ///< after `commit` it is the new one
+};
 
-/// A folder that is not there: made, or a reason not to write. The latter where somebody else may have taken it away.
-enum class MissingFolder { is_made, is_refused };
+/// What happens where the folder is not there.
+enum class MissingFolder {
+  is_made,    ///< with those above it
+  is_refused  ///< DataError: somebody else may have taken it away
+};
 
 /// A file in the making. Nothing stands at `path` until `commit`; without it the temporary file goes with the object.
 class AtomicFile {

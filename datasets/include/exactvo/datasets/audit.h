@@ -42,7 +42,17 @@
 
 namespace exactvo::datasets {
 
-enum class AuditPoint { scenario, bodies, completeness, half_planes, choices, sequence, motions };
+/// The seven points, numbered in the head of this file.
+enum class AuditPoint {
+  scenario,      ///< (1)
+  bodies,        ///< (2)
+  completeness,  ///< (3)
+  half_planes,   ///< (4)
+  choices,       ///< (5)
+  sequence,      ///< (6)
+  motions        ///< (7)
+};
+/// How many points there are.
 inline constexpr std::size_t kAuditPoints = 7;
 
 /// "scenario", "bodies" and so on, as in JSON.
@@ -50,16 +60,20 @@ const char* name(AuditPoint point);
 
 /// asked = proven + refuted + open.
 struct PointCount {
-  std::size_t proven = 0;
-  std::size_t refuted = 0;
-  std::size_t open = 0;
+  std::size_t proven = 0;    ///< hold, by exact arithmetic
+  std::size_t refuted = 0;   ///< do not hold
+  std::size_t open = 0;      ///< neither: exact arithmetic did not decide them
   std::size_t unlisted = 0;  ///< of the refuted and the open, those that have no line among AuditReport::findings
+  /// How many questions were put.
   std::size_t asked() const { return proven + refuted + open; }
 };
 
+/// What an audit found.
 struct AuditReport {
   std::array<PointCount, kAuditPoints> points{};  ///< in the order of AuditPoint
+  /// The count of one point.
   PointCount& operator[](AuditPoint point) { return points[static_cast<std::size_t>(point)]; }
+  /// The count of one point.
   const PointCount& operator[](AuditPoint point) const { return points[static_cast<std::size_t>(point)]; }
 
   std::size_t half_planes = 0;        ///< of (4): certified ones of obstacles
@@ -72,10 +86,10 @@ struct AuditReport {
 
   std::size_t curved_steps = 0;        ///< of the steps, those that were not driven in a straight line
   std::size_t obstacle_questions = 0;  ///< pairs of a step and an obstacle, a moving obstacle, another robot
-  std::size_t moving_questions = 0;
-  std::size_t robot_questions = 0;
-  double largest_bulge = 0.0;      ///< m: no curve strays farther from the straight way between its rows
-  double largest_violation = 0.0;  ///< m/s: of a half-plane that must hold, by the choice; 0 where all hold
+  std::size_t moving_questions = 0;    ///< of them, a step and a moving obstacle
+  std::size_t robot_questions = 0;     ///< of them, a step and another robot
+  double largest_bulge = 0.0;          ///< m: no curve strays farther from the straight way between its rows
+  double largest_violation = 0.0;      ///< m/s: of a half-plane that must hold, by the choice; 0 where all hold
 
   bool scenario_was_given = false;  ///< the recorded scenario was compared with a file
   bool has_staying = false;         ///< a run ended early, as what did not arrive stays: its goal is not asked about
@@ -102,8 +116,8 @@ void add(AuditReport& sum, const AuditReport& other);
 std::vector<std::string> not_audited(const AuditReport& report);
 
 /// One JSON object: `half_planes`, `unsafe`, `steps`, `collisions`, `unproven`, `inconsistencies`, `points` (of each
-/// point `asked`, `proven`, `refuted`, `open`, `unlisted`), `largest_violation`, `proved` (how much of what was proven),
-/// `not_audited`, `findings`.
+/// point `asked`, `proven`, `refuted`, `open`, `unlisted`), `largest_violation`, `proved` (how much of what was
+/// proven), `not_audited`, `findings`.
 std::string to_json(const AuditReport& report);
 
 }  // namespace exactvo::datasets

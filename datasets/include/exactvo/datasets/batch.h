@@ -39,6 +39,7 @@ struct BatchRobot {
 
 /// What changes the results.
 struct BatchConfiguration {
+  /// The defaults below.
   BatchConfiguration() { shapes.partition = geometry::PartitionMethod::triangles; }
 
   ReadOptions reading;            ///< keep_going is implied
@@ -46,7 +47,7 @@ struct BatchConfiguration {
   /// Bytes for obstacles under way; 0: no limit but the chunks' own. Files that are read whole and larger than a 20th
   /// of it are refused: so it belongs to what is written.
   std::uint64_t memory_limit = 0;
-  std::optional<BatchRobot> robot;
+  std::optional<BatchRobot> robot;      ///< none: no half-planes
   bool geopackage = built_with_gdal();  ///< obstacles.gpkg; E_FORMAT_UNAVAILABLE in a build without GDAL
   bool geojson = true;                  ///< obstacles.geojson, facades.geojson, ...; without GDAL E_FORMAT_UNAVAILABLE,
                                         ///< unless `geojson_in_metres`
@@ -57,53 +58,57 @@ struct BatchConfiguration {
 /// How it is run; none of it changes the results.
 struct BatchRun {
   std::vector<std::filesystem::path> paths;  ///< files, and folders whose files are taken (`EarlierBatch`)
-  std::filesystem::path out;
-  int workers = 0;        ///< 0: as many as there are processors
-  bool resume = false;    ///< go on with what is in `out`
-  std::size_t shard = 1;  ///< this process's share of the inputs, from 1
-  std::size_t shards = 1;
-  std::vector<std::string> command_line;  ///< for provenance, without what does not change the results
+  std::filesystem::path out;                 ///< folder of the outputs
+  int workers = 0;                           ///< 0: as many as there are processors
+  bool resume = false;                       ///< go on with what is in `out`
+  std::size_t shard = 1;                     ///< this process's share of the inputs, from 1
+  std::size_t shards = 1;                    ///< how many processes share the inputs
+  std::vector<std::string> command_line;     ///< for provenance, without what does not change the results
 };
 
+/// How far a batch is.
 struct BatchProgress {
   std::size_t inputs = 0;         ///< of this process
   std::uint64_t input_bytes = 0;  ///< of them
-  std::size_t inputs_done = 0;
-  double share_done = 0.0;      ///< 0 to 1, by size of the inputs
-  std::uint64_t obstacles = 0;  ///< so far, in this run
-  std::string doing;            ///< the file under way
+  std::size_t inputs_done = 0;    ///< of them, read to the end
+  double share_done = 0.0;        ///< 0 to 1, by size of the inputs
+  std::uint64_t obstacles = 0;    ///< so far, in this run
+  std::string doing;              ///< the file under way
 };
 
 /// How many, by how they ended.
 struct BatchTally {
-  std::uint64_t read = 0;  ///< done + repaired + all of rejected
-  std::uint64_t done = 0;
-  std::uint64_t repaired = 0;
+  std::uint64_t read = 0;                         ///< done + repaired + all of rejected
+  std::uint64_t done = 0;                         ///< as they were
+  std::uint64_t repaired = 0;                     ///< after a repair
   std::map<std::string, std::uint64_t> rejected;  ///< by code
+  /// The sum of `rejected` over all codes.
   std::uint64_t rejected_in_all() const;
 };
 
 /// A file of which nothing could be used.
 struct RejectedFile {
-  std::string path;
+  std::string path;  ///< as it was given or found in a folder
   std::string code;  ///< "E_FORMAT_UNKNOWN"
 };
 
+/// What a batch came to: the numbers of its summary.json.
 struct BatchSummary {
-  BatchTally files;
+  BatchTally files;                          ///< by how their reading ended
   std::vector<RejectedFile> rejected_files;  ///< in the order of the inputs
-  BatchTally obstacles;
-  std::uint64_t passed_over = 0;    ///< points and empty geometries: no obstacles, not among `read`
-  std::uint64_t obstacles_out = 0;  ///< of what was done or repaired; a repair may make several of one
-  std::uint64_t certified = 0;      ///< of them
-  std::uint64_t uncertified = 0;
-  std::uint64_t vertices = 0;
-  std::uint64_t no_half_plane = 0;  ///< null among the robot's half-planes: it overlaps the shape
-  double seconds = 0.0;             ///< of this run
-  std::uint64_t obstacles_now = 0;  ///< processed in this run; less than all after a resumption
-  std::uint64_t vertices_now = 0;
+  BatchTally obstacles;                      ///< by how their processing ended
+  std::uint64_t passed_over = 0;             ///< points and empty geometries: no obstacles, not among `read`
+  std::uint64_t obstacles_out = 0;           ///< of what was done or repaired; a repair may make several of one
+  std::uint64_t certified = 0;               ///< of them
+  std::uint64_t uncertified = 0;             ///< of them, with a failed verdict
+  std::uint64_t vertices = 0;                ///< of `obstacles_out`
+  std::uint64_t no_half_plane = 0;           ///< null among the robot's half-planes: it overlaps the shape
+  double seconds = 0.0;                      ///< of this run
+  std::uint64_t obstacles_now = 0;           ///< processed in this run; less than all after a resumption
+  std::uint64_t vertices_now = 0;            ///< of `obstacles_now`
 };
 
+/// How a batch ended.
 enum class BatchEnd {
   complete,    ///< everything is in `out`
   incomplete,  ///< this shard, or this rank, is through; others are not
@@ -114,13 +119,14 @@ enum class BatchEnd {
 /// are not read: they are outputs, and their obstacles come from other files. It is known by the summary.json of a
 /// finished batch or the .parts/run.json of an unfinished one. `BatchRun::out` is never read and never listed here.
 struct EarlierBatch {
-  std::string folder;
+  std::string folder;     ///< its path
   std::size_t files = 0;  ///< that are not read, as far as they can be counted
 };
 
+/// How a batch ended, with what it came to.
 struct BatchResult {
-  BatchEnd end = BatchEnd::complete;
-  BatchSummary summary;       ///< of a complete one
+  BatchEnd end = BatchEnd::complete;  ///< complete, incomplete or interrupted
+  BatchSummary summary;               ///< of a complete one
   bool was_complete = false;  ///< nothing was left to do, or another process of the same batch was quicker to end it
   bool was_merged_ahead = false;        ///< the outputs grew while parts were being made
   std::vector<EarlierBatch> earlier{};  ///< met on the way to the inputs; of ranks, the first one's

@@ -25,6 +25,7 @@
 
 namespace exactvo::datasets {
 
+/// What a recording keeps of a kind of robots.
 struct CrowdKindRecord {
   double radius = 0.0;     ///< m
   double max_speed = 0.0;  ///< m/s
@@ -32,18 +33,19 @@ struct CrowdKindRecord {
 
 /// What stands before the rows.
 struct CrowdRecordingHead {
-  std::string scenario;        ///< its name
-  double time_step = 0.0;      ///< s
-  double position_step = 0.0;  ///< m, q
-  std::uint32_t every = 1;     ///< steps from row to row; the last row may follow sooner
-  std::vector<CrowdKindRecord> kinds;
+  std::string scenario;                  ///< its name
+  double time_step = 0.0;                ///< s
+  double position_step = 0.0;            ///< m, q
+  std::uint32_t every = 1;               ///< steps from row to row; the last row may follow sooner
+  std::vector<CrowdKindRecord> kinds;    ///< by number, as in the crowd
   std::vector<std::uint16_t> kind_of;    ///< of each robot
   std::vector<geometry::Segment> edges;  ///< of obstacles
 };
 
 /// The robots at a time, in the order of the scenario.
 struct CrowdRow {
-  std::uint32_t step = 0;
+  std::uint32_t step = 0;  ///< time steps from the start
+  /// Positions, in lattice steps.
   std::vector<std::int32_t> x, y;  ///< lattice steps
   std::vector<std::uint8_t> kept;  ///< 1: provably kept all its half-planes in every step since the row before
 };
@@ -54,9 +56,11 @@ class CrowdRecorder : public formation::CrowdSink {
   /// Throws DataError (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
   CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario, std::uint32_t every);
   void begin(const formation::Crowd& crowd) override;
+  /// Called after every step; writes a row where one is due.
   void add_step(const formation::Crowd& crowd, std::size_t steps) override;
   /// Writes the last row, if it is due, and publishes the file.
   void finish();
+  /// How much was written so far.
   std::uint64_t bytes() const { return bytes_; }
 
  private:
@@ -75,12 +79,14 @@ class CrowdRecorder : public formation::CrowdSink {
   bool is_due_ = false;
 };
 
+/// Reads a recording row by row, in constant memory.
 class CrowdRecordingReader {
  public:
   /// Throws DataError: E_FILE_MISSING, E_FORMAT_SYNTAX with the byte.
   explicit CrowdRecordingReader(const std::filesystem::path& path);
   ~CrowdRecordingReader();
 
+  /// What stands before the rows. Valid as long as the reader.
   const CrowdRecordingHead& head() const;
   /// False at the end. Throws DataError where a row was changed.
   bool next(CrowdRow& row);
@@ -98,7 +104,8 @@ inline constexpr std::size_t kMostCrowdFindings = 20;
 /// What an audit found. Everything is exact. To touch is to be nearer than the radii and a rounding error
 /// (formation/crowd.h).
 struct CrowdAuditReport {
-  std::size_t rows = 0, robots = 0;
+  std::size_t rows = 0;            ///< of the file
+  std::size_t robots = 0;          ///< of the file
   std::size_t motions = 0;         ///< of robots from row to row that were looked at
   std::size_t too_fast = 0;        ///< longer than the speed limit allows
   std::size_t pairs = 0;           ///< that both kept, came near and did not touch at the row before
@@ -112,8 +119,9 @@ struct CrowdAuditReport {
   std::size_t touching_edges = 0;       ///< robots and edges that touched: a robot must not come nearer
   std::size_t edges_neared = 0;         ///< of these: that come nearer, by more than rounding
   std::size_t touching_edges_open = 0;  ///< whose centre is on the edge up to rounding: nothing is promised
-  bool cut_off = false;
-  std::vector<std::string> findings;  ///< the first few of what is wrong, in words
+  bool cut_off = false;                 ///< the file has no proper end
+  std::vector<std::string> findings;    ///< the first few of what is wrong, in words
+  /// Nothing is wrong with what was judged.
   bool clean() const { return too_fast + pairs_met + pairs_not_parted + edges_met + edges_neared == 0; }
 };
 
@@ -124,8 +132,9 @@ void add(CrowdAuditReport& sum, const CrowdAuditReport& other);
 /// motion is judged, of others its ends. `sample`: about so many motions, spread evenly over robots and rows; 0: all.
 CrowdAuditReport audit_crowd_recording(const std::filesystem::path& path, std::size_t sample = 0);
 
+/// What was written as a table.
 struct CrowdTable {
-  std::size_t rows = 0;
+  std::size_t rows = 0;  ///< of the recording
   bool cut_off = false;  ///< the recording was: these are the rows before
 };
 

@@ -61,12 +61,16 @@ DataCode data_code(geometry::RingProblemCode code);
 /// One refused piece of data. `what()` is one line: "file: place: found ..., expected ... [E_CODE]".
 class DataError : public std::runtime_error {
  public:
+  /// `place`, `found` and `expected` become parts of `what()`.
   DataError(DataCode code, std::string file, std::string place, std::string found, std::string expected);
 
+  /// Why the data was refused.
   DataCode code() const { return code_; }
   const std::string& file() const { return file_; }    ///< as the caller named it
   const std::string& place() const { return place_; }  ///< JSON pointer, "line 3, column 7", "feature 2, ring 0, ..."
+  /// What stands in the file.
   const std::string& found() const { return found_; }
+  /// What should stand there.
   const std::string& expected() const { return expected_; }
 
  private:

@@ -23,13 +23,15 @@
 
 namespace exactvo::datasets {
 
+/// A kind of obstacles to generate.
 struct GeneratorKind {
-  std::string name;
+  std::string name;  ///< "polygon", "maze" and so on
   std::string what;  ///< one line, with sizes in metres
 };
 
 /// In the order of the documentation.
 const std::vector<GeneratorKind>& generator_kinds();
+/// The names alone, in the same order.
 std::vector<std::string> generator_kind_names();
 
 /// The obstacles of item k, ids "maze-17/0" and so on. REQUIRES: a name of `generator_kinds()`.

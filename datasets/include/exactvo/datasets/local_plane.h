@@ -15,8 +15,8 @@ namespace exactvo::datasets {
 
 /// Longitude and latitude that became (0, 0), degrees.
 struct ProjectionOrigin {
-  double longitude = 0.0;
-  double latitude = 0.0;
+  double longitude = 0.0;  ///< east is positive
+  double latitude = 0.0;   ///< north is positive
 };
 
 /// A plane is azimuthal equidistant round `origin`, of a reference system of its own, or nowhere on earth.
@@ -25,6 +25,7 @@ struct LocalPlane {
   std::string reference_system;  ///< WKT of a projected system in metres; empty where `origin` says it or none does
   geometry::Vec2 offset;         ///< m; added after the projection round `origin`
 
+  /// Whether its place on earth is known.
   bool is_placed() const { return origin.has_value() || !reference_system.empty(); }
 };
 

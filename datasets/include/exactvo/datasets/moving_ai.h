@@ -17,24 +17,25 @@ namespace exactvo::datasets {
 
 /// Column from the left, row from the top, as the format counts.
 struct GridCell {
-  std::int64_t column = 0;
-  std::int64_t row = 0;
+  std::int64_t column = 0;  ///< from the left, 0 first
+  std::int64_t row = 0;     ///< from the top, 0 first
 };
 
+/// One line of a `.scen` file.
 struct PathTask {
-  std::int64_t bucket = 0;
-  std::string map;         ///< as written: may carry a path
-  std::int64_t width = 0;  ///< cells, of the map that the task was made for; not always that of the map at hand
-  std::int64_t height = 0;
-  GridCell start;
-  GridCell goal;
+  std::int64_t bucket = 0;      ///< the benchmark's class of lengths
+  std::string map;              ///< as written: may carry a path
+  std::int64_t width = 0;       ///< cells, of the map that the task was made for; not always that of the map at hand
+  std::int64_t height = 0;      ///< cells, of the same map
+  GridCell start;               ///< where the agent begins
+  GridCell goal;                ///< where it is to go
   double optimal_length = 0.0;  ///< cells
 };
 
 /// Cells.
 struct MapSize {
-  std::int64_t columns = 0;
-  std::int64_t rows = 0;
+  std::int64_t columns = 0;  ///< the map's width
+  std::int64_t rows = 0;     ///< the map's height
 };
 
 /// What the header of a `.map` says, without its cells. Throws DataError with the line.

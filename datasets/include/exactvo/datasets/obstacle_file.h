@@ -37,12 +37,14 @@ namespace exactvo::datasets {
 /// (geometry/even_odd.h) and of free velocities (vo/free_velocities.h).
 inline constexpr double kLargestCoordinate = 0x1p100;
 
+/// What the coordinates of a file are counted in.
 enum class Units {
   automatic,  ///< as the file says (above)
-  metres,
-  degrees  ///< longitude, latitude on WGS 84
+  metres,     ///< m, whatever the file says
+  degrees     ///< longitude, latitude on WGS 84
 };
 
+/// How a file is read.
 struct ReadOptions {
   std::string format;              ///< a name of `readable_formats()`; empty: chosen by content, then by extension
   Units units = Units::automatic;  ///< what the numbers mean
@@ -75,13 +77,13 @@ inline constexpr std::size_t kMostFindings = 100'000;
 
 /// One problem of one ring, mended or not; also of obstacles that were refused.
 struct RingFinding {
-  DataCode code = DataCode::self_intersection;
-  std::string place;       ///< "feature 3, ring 0, vertex 17"
-  std::string feature;     ///< "feature 3"
-  geometry::Vec2 where;    ///< m
-  std::size_t ring = 0;    ///< 0 is the outer one
-  std::size_t vertex = 0;  ///< as the file lists them
-  bool mended = false;
+  DataCode code = DataCode::self_intersection;  ///< what is wrong
+  std::string place;                            ///< "feature 3, ring 0, vertex 17"
+  std::string feature;                          ///< "feature 3"
+  geometry::Vec2 where;                         ///< m
+  std::size_t ring = 0;                         ///< 0 is the outer one
+  std::size_t vertex = 0;                       ///< as the file lists them
+  bool mended = false;                          ///< repaired by `normalize` (validity.h)
   geometry::Vec2 at_vertex;            ///< the vertex as it is written; `where` may lie on an edge from or to it
   std::optional<PlaceInFile> in_file;  ///< `where`, where the file is not in metres
 };
@@ -94,15 +96,15 @@ std::string words_of_place(const RingFinding& finding);
 
 /// What `ReadOptions::repair` made of one polygon that had a problem.
 struct RepairRecord {
-  std::string place;            ///< "feature 3"
-  std::string id;               ///< of the first obstacle that it became
-  std::vector<DataCode> codes;  ///< of its problems, each once, in the order of the documentation
-  std::optional<DataCode> refused;
-  bool recombined = false;
+  std::string place;                  ///< "feature 3"
+  std::string id;                     ///< of the first obstacle that it became
+  std::vector<DataCode> codes;        ///< of its problems, each once, in the order of the documentation
+  std::optional<DataCode> refused;    ///< why nothing could be made of it
+  bool recombined = false;            ///< by the even-odd rule
   double moved = 0.0;                 ///< m
   std::vector<geometry::Ring> given;  ///< where recombined: the rings before, m
-  RepairFacts before;
-  RepairFacts after;
+  RepairFacts before;                 ///< the polygon as given
+  RepairFacts after;                  ///< what it became
 };
 
 /// What a file says of a feature beside its shape, as JSON texts.
@@ -113,8 +115,8 @@ struct FeatureProperties {
 
 /// The box of all vertices of the obstacles that were taken, m.
 struct Extent {
-  geometry::Vec2 low;
-  geometry::Vec2 high;
+  geometry::Vec2 low;   ///< least coordinates
+  geometry::Vec2 high;  ///< greatest coordinates
 };
 
 /// An input counts as `read`; each ends as an obstacle (`done` or `repaired`), skipped or in `rejected`.
@@ -123,7 +125,7 @@ struct ReadCounts {
   std::size_t done = 0;         ///< obstacles as they stood
   std::size_t repaired = 0;     ///< inputs that became one obstacle or several after a repair
   std::size_t passed_over = 0;  ///< points, empty geometries
-  std::size_t rejected = 0;
+  std::size_t rejected = 0;     ///< refused, each with a code
 };
 
 /// Of a grid or a scan: its polygons are the union of the occupied cells, each of which they contain whole. For a grid
@@ -134,22 +136,23 @@ struct Coverage {
   double cell_area = 0.0;    ///< m^2; times `occupied` is the polygons' area
 };
 
+/// What was read of a file, and what was found in it.
 struct ObstacleFile {
-  std::string file;
-  std::string format;  ///< the one that was used
-  std::vector<formation::SceneObstacle> obstacles;
+  std::string file;                                 ///< its path, as the caller named it
+  std::string format;                               ///< the one that was used
+  std::vector<formation::SceneObstacle> obstacles;  ///< in the order of the file
   std::vector<FeatureProperties>
-      properties;    ///< with `keep_properties`: one an obstacle; empty where no feature has any
-  LocalPlane plane;  ///< of the obstacles' coordinates; unplaced where layers lie on several
-  std::vector<DataNote> notes;
-  std::vector<RingFinding> findings;         ///< in the order of the file; kMostFindings at most
+      properties;                     ///< with `keep_properties`: one an obstacle; empty where no feature has any
+  LocalPlane plane;                   ///< of the obstacles' coordinates; unplaced where layers lie on several
+  std::vector<DataNote> notes;        ///< repairs and what was skipped
+  std::vector<RingFinding> findings;  ///< in the order of the file; kMostFindings at most
   std::map<DataCode, std::size_t> unlisted;  ///< findings that are not listed, by code
   std::vector<DataError> rejected;           ///< only with `keep_going`
   std::vector<RepairRecord> repairs;         ///< only with `repair`: of every polygon that had a problem
   std::optional<ProjectionOrigin> origin;    ///< where degrees were projected
   std::optional<Extent> extent;              ///< none without obstacles
   std::optional<Coverage> coverage;          ///< of grids and scans
-  ReadCounts counts;
+  ReadCounts counts;                         ///< how many inputs there were and how they ended
 };
 
 /// Reads a whole file. Throws DataError: for the file, and (unless `keep_going`) for its first bad obstacle.
@@ -158,7 +161,9 @@ ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions
 /// Where obstacles go that are not to be kept: called one by one, in the order of the file, while it is read. What is
 /// thrown in them ends the reading and comes out of it, unless it is a DataError about a format.
 struct ObstacleStream {
+  /// Takes an obstacle; `repaired`: it came of a repair.
   std::function<void(formation::SceneObstacle obstacle, bool repaired)> obstacle;
+  /// Takes the error of an obstacle that was refused.
   std::function<void(DataError error)> rejected;
   std::function<void(double share)> progress;  ///< of the file that is read, 0 to 1; only where a reader knows
   std::function<void(const LocalPlane& plane)> plane{};  ///< of the obstacles that follow; only where a reader knows

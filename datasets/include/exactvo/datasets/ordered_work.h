@@ -11,6 +11,7 @@
 
 namespace exactvo::datasets {
 
+/// A task in two halves.
 struct OrderedTask {
   std::function<void()> work;    ///< in any thread, at the same time as that of others
   std::function<void()> finish;  ///< in any thread, after that of all tasks before this one

@@ -13,17 +13,22 @@
 
 namespace exactvo::datasets {
 
+/// A folder of parts, by name.
 class PartFolder {
  public:
+  /// Nothing is made or read yet.
   explicit PartFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// Makes the folder, unless it is there. Throws DataError (E_FILE_UNWRITABLE).
   void create() const;
+  /// The folder.
   const std::filesystem::path& path() const { return folder_; }
+  /// The path of a file in the folder.
   std::filesystem::path path(std::string_view name) const { return folder_ / name; }
 
   // `file` stands in the folder, or in one below it.
 
+  /// Whether such a file is there.
   bool has(const std::filesystem::path& file) const;
   /// Throws DataError (E_FILE_UNWRITABLE), also where the folder is gone: it is not made anew.
   void write(const std::filesystem::path& file, std::string_view bytes) const;

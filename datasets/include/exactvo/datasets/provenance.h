@@ -15,22 +15,24 @@
 
 namespace exactvo::datasets {
 
+/// A file that a result depends on.
 struct InputFile {
   std::string path;    ///< as named on the command line
   std::string sha256;  ///< 64 lower-case hexadecimal digits
 };
 
+/// What a result was made by and of.
 struct Provenance {
-  std::string version;     ///< of ExactVO
-  std::string commit;      ///< "unknown" outside a repository; ends in "-dirty" where files had changed
-  std::string compiler;    ///< "GNU 12.2.0"
-  std::string build_type;  ///< "Release"
-  std::string cgal;
-  std::string gmp;
-  std::string gdal;  ///< "none" where built without
-  std::uint64_t seed = 0;
-  std::vector<std::string> command_line;
-  std::vector<InputFile> inputs;
+  std::string version;                    ///< of ExactVO
+  std::string commit;                     ///< "unknown" outside a repository; ends in "-dirty" where files had changed
+  std::string compiler;                   ///< "GNU 12.2.0"
+  std::string build_type;                 ///< "Release"
+  std::string cgal;                       ///< version of CGAL
+  std::string gmp;                        ///< version of GMP
+  std::string gdal;                       ///< "none" where built without
+  std::uint64_t seed = 0;                 ///< of what is drawn at random
+  std::vector<std::string> command_line;  ///< the program and its arguments
+  std::vector<InputFile> inputs;          ///< in the order of the command line
   /// The only field that is not the same from run to run: UTC, "2024-05-01T12:00:00Z"; SOURCE_DATE_EPOCH is obeyed.
   /// Left out of the JSON where empty.
   std::string written_at;

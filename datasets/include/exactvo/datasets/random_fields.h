@@ -19,6 +19,7 @@
 
 namespace exactvo::datasets {
 
+/// What is drawn.
 enum class FieldKind {
   /// One robot, (0,0) -> (25,13): up to 5 regular polygons of 3-6 corners, circumradius 0.8-3.0 m, centres in
   /// [3,22] x [-1,14], circumcircles 1.4 m apart and 0.8 m clear of start and goal. 60 s.
@@ -32,7 +33,9 @@ enum class FieldKind {
 
 /// "convex", "open", "formation".
 const char* name(FieldKind kind);
+/// Every name.
 std::vector<std::string> field_kind_names();
+/// False for an unknown name; `out` is then unchanged.
 bool parse(const std::string& text, FieldKind& out);
 
 /// Seed of the published counts.

@@ -32,10 +32,11 @@ namespace exactvo::datasets {
 /// What `format_version` says. Another one is refused (E_RANGE).
 inline constexpr int kRecordingFormat = 2;
 
+/// A recording with what a reader needs to know of its run.
 struct RecordingFile {
-  RunInfo info;
-  formation::Scenario scenario;
-  formation::Recording recording;
+  RunInfo info;                                       ///< what was run, and by what
+  formation::Scenario scenario;                       ///< the whole scenario
+  formation::Recording recording;                     ///< the run
   std::vector<formation::LyapunovRow> lyapunov = {};  ///< a row for every row, of a formation; else empty
   std::vector<formation::StuckReport> stuck = {};     ///< who stopped elsewhere; of what binds, the names only
   std::vector<formation::Collision> collisions = {};  ///< as the metrics have them
@@ -53,6 +54,7 @@ class RecordingWriter {
   ~RecordingWriter();
   /// `bodies` are the run's so far.
   void add(const formation::Outlook& outlook, const std::vector<vo::Body>& bodies);
+  /// Adds a row. `lyapunov`: its row of the functions, null without a formation.
   void add(const formation::Step& row, const std::vector<vo::Body>& bodies,
            const formation::LyapunovRow* lyapunov = nullptr);
   /// Of `about` the rest: outcome, warnings, who was stuck, the time it took.
@@ -79,7 +81,9 @@ class TrajectoryWriter {
   /// `scenario` must outlive the writer.
   TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario);
   ~TrajectoryWriter();
+  /// Adds the rows of one step.
   void add(const formation::Step& row);
+  /// Publishes the file. Nothing stands there before.
   void finish();
 
  private:

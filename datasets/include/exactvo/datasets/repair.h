@@ -37,8 +37,8 @@ namespace exactvo::datasets {
 
 /// What there was, or is.
 struct RepairFacts {
-  std::size_t polygons = 0;
-  std::size_t rings = 0;
+  std::size_t polygons = 0;  ///< how many
+  std::size_t rings = 0;     ///< outer rings and holes
   std::size_t vertices = 0;  ///< first points not repeated
   /// m^2, rounded. Before: by the shoelace formula, as programs do that take no notice of crossings, so that loops of
   /// opposite winding cancel; NaN where a coordinate is.
@@ -47,16 +47,19 @@ struct RepairFacts {
   double area = 0.0;        ///< the difference; below 0 where holes that lie outside are the larger
 };
 
+/// What a polygon became.
 struct Repair {
   std::vector<geometry::Polygon> polygons;      ///< empty if not mended; in order of their least vertex
   std::vector<geometry::RingProblem> problems;  ///< of the rings as given; `mended` says what became of each
   std::optional<DataCode> refused;              ///< why nothing could be made of it
   bool recombined = false;                      ///< by the even-odd rule
   double moved = 0.0;                           ///< m; how far a crossing was moved by rounding, at most
-  RepairFacts before;
-  RepairFacts after;
+  RepairFacts before;                           ///< the rings as given
+  RepairFacts after;                            ///< the polygons that came of them
 
+  /// Whether something could be made of it.
   bool ok() const { return !refused; }
+  /// Whether anything was wrong.
   bool changed() const { return !problems.empty(); }
 };
 

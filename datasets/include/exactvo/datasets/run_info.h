@@ -11,12 +11,13 @@
 
 namespace exactvo::datasets {
 
+/// What was run, in words.
 struct RunInfo {
-  std::string scenario;                   ///< its name
-  std::string method;                     ///< "ivo" and so on
-  std::optional<std::string> controller;  ///< none without a formation
-  std::optional<std::string> integrator;  ///< none without a formation
-  Provenance provenance;
+  std::string scenario;                                ///< its name
+  std::string method;                                  ///< "ivo" and so on
+  std::optional<std::string> controller;               ///< none without a formation
+  std::optional<std::string> integrator;               ///< none without a formation
+  Provenance provenance;                               ///< program, libraries, inputs
   std::optional<std::string> guidance = std::nullopt;  ///< "route"; none where robots go without
   std::optional<std::string> liveness = std::nullopt;  ///< "bias"; none where nothing is done against waiting
 };

@@ -24,7 +24,7 @@ namespace exactvo::datasets {
 /// A scenario and what a reader of it should know: a line a fact, for people. Of each obstacle file it names: how the
 /// units were decided, the projection's centre and the extent, how many repairs were made and what was skipped.
 struct LoadedScenario {
-  formation::Scenario scenario;
+  formation::Scenario scenario;    ///< valid: it can be run
   std::vector<std::string> notes;  ///< "floor.geojson: metres: by its member "units""; empty without obstacle files
   /// What a run depends on: the scenario file (unless it was parsed from text), then every obstacle file it names, each
   /// followed by the files that are read with it (input_files.h), such as the picture of a ROS map.
@@ -43,6 +43,7 @@ formation::Scenario load_scenario(const std::filesystem::path& path);
 /// The same from text. `file_name` is used in messages, `base_dir` to find obstacle files. Throws DataError.
 LoadedScenario parse_scenario_with_notes(const std::string& text, const std::string& file_name,
                                          const std::filesystem::path& base_dir);
+/// The same without the notes.
 formation::Scenario parse_scenario(const std::string& text, const std::string& file_name,
                                    const std::filesystem::path& base_dir);
 

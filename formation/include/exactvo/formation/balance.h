@@ -16,6 +16,7 @@ namespace exactvo::formation {
 /// chosen - preferred = sum of factor * normal, with every factor > 0: no allowed velocity lies nearer to the preferred
 /// one. Without forces where chosen = preferred; a decision that is not `optimal` has no balance.
 struct Balance {
+  /// What one half-plane, or the speed bound, contributes.
   struct Force {
     std::optional<std::size_t> constraint;  ///< index into RobotStep::constraints; none for the speed bound
     Vec2 normal;                            ///< unit, into the allowed side
@@ -28,6 +29,7 @@ struct Balance {
   double factor_of(std::size_t constraint) const;
 };
 
+/// The balance of a recorded decision. Rounded.
 Balance balance_of(const RobotStep& decision);
 
 }  // namespace exactvo::formation

@@ -50,6 +50,7 @@ using geometry::Vec2;
 
 /// Names a robot until it is removed; then it may be given to another. Small numbers: 0 ... id_end() - 1.
 using RobotId = std::uint32_t;
+/// Names a kind of robots: 0, 1, ... in the order of `add_kind`.
 using KindId = std::uint16_t;
 /// Names an obstacle until it is removed.
 using ObstacleId = std::uint32_t;
@@ -72,12 +73,14 @@ enum class CrowdPrecision {
 
 /// "float", "double".
 const char* name(CrowdPrecision precision);
+/// False for an unknown name; `out` is then unchanged.
 bool parse(const std::string& text, CrowdPrecision& out);
 
+/// What holds for a whole crowd.
 struct CrowdOptions {
   double time_step = 0.25;         ///< s, > 0
   double position_step = 0x1p-18;  ///< m, q: a power of two in [2^-40, 1]; positions stay below 2^30 q
-  CrowdPrecision precision = CrowdPrecision::float_lines;
+  CrowdPrecision precision = CrowdPrecision::float_lines;  ///< of half-planes and linear programs
   bool certified = true;     ///< false: offsets are rounded to nearest and nothing is promised; for comparison
   int threads = 1;           ///< 1 ... 1024, oneTBB's; 0: as many as there are
   bool time_phases = false;  ///< fills Crowd::phases
@@ -103,7 +106,9 @@ const char* name(CrowdProblem problem);
 /// A caller's mistake; the crowd is as it was before the call.
 class CrowdError : public std::invalid_argument {
  public:
+  /// `words` is what `what()` returns.
   CrowdError(CrowdProblem problem, const std::string& words) : std::invalid_argument(words), problem_(problem) {}
+  /// What is wrong.
   CrowdProblem problem() const { return problem_; }
 
  private:
@@ -112,7 +117,7 @@ class CrowdError : public std::invalid_argument {
 
 /// What happened in a step. Every count is the same on every machine and with any number of threads.
 struct StepReport {
-  std::size_t robots = 0;
+  std::size_t robots = 0;      ///< how many decided
   std::size_t neighbours = 0;  ///< half-planes made
   std::size_t relaxed = 0;     ///< robots that are not kept: nothing is promised of them
   std::size_t touching = 0;    ///< robots that touched another at the beginning of the step
@@ -124,16 +129,26 @@ struct StepReport {
 
 /// Seconds of threads in each phase, summed over the steps; only with CrowdOptions::time_phases.
 struct CrowdPhases {
-  double sort = 0.0, search = 0.0, lines = 0.0, edges = 0.0, solve = 0.0, finish = 0.0;
+  double sort = 0.0;    ///< robots by place
+  double search = 0.0;  ///< neighbours
+  double lines = 0.0;   ///< half-planes between robots
+  double edges = 0.0;   ///< half-planes against obstacles
+  double solve = 0.0;   ///< linear programs
+  double finish = 0.0;  ///< rounding to the lattice, moving
 };
 
 /// A stretch of robots that ask where they want to go. Positions and velocities are exact.
 class CrowdSlice {
  public:
+  /// How many robots it holds.
   std::size_t size() const { return count_; }
+  /// The name of robot k of the slice. REQUIRES, as the others: k < size().
   RobotId id(std::size_t k) const { return static_cast<RobotId>(id_[k]); }
+  /// The kind of robot k.
   KindId kind(std::size_t k) const { return static_cast<KindId>(tag_[k] & kKindBits); }
+  /// m.
   Vec2 position(std::size_t k) const { return {step_ * x_[k], step_ * y_[k]}; }
+  /// m/s.
   Vec2 velocity(std::size_t k) const { return {step_ * mx_[k] / time_step_, step_ * my_[k] / time_step_}; }
   /// m/s, finite, below 2^20. What is not set is 0.
   void prefer(std::size_t k, Vec2 velocity) { preferred_[k] = velocity; }
@@ -154,34 +169,43 @@ using Steering = std::function<void(CrowdSlice&)>;
 
 /// One robot's next decision, recomputed from the present state.
 struct CrowdExplanation {
+  /// A half-plane against another robot.
   struct Neighbour {
-    RobotId robot = 0;
+    RobotId robot = 0;               ///< the other one
     geometry::HalfPlane half_plane;  ///< of the velocity; what is certified
     bool touching = false;           ///< what is promised of this pair is (8), not (1)
   };
+  /// A half-plane against an edge of an obstacle.
   struct Edge {
-    geometry::Segment edge;
-    geometry::HalfPlane half_plane;
-    bool touching = false;
+    geometry::Segment edge;          ///< m, the edge
+    geometry::HalfPlane half_plane;  ///< of the velocity; what is certified
+    bool touching = false;           ///< nothing is promised of this edge
   };
-  RobotId robot = 0;
-  Vec2 position;   ///< m, exact
-  Vec2 velocity;   ///< m/s, now
-  Vec2 preferred;  ///< m/s, as it was rounded for the linear program
-  Vec2 chosen;     ///< m/s, what `step` will choose: m q / dt
-  bool kept = false;
+  RobotId robot = 0;  ///< the one asked about
+  Vec2 position;      ///< m, exact
+  Vec2 velocity;      ///< m/s, now
+  Vec2 preferred;     ///< m/s, as it was rounded for the linear program
+  Vec2 chosen;        ///< m/s, what `step` will choose: m q / dt
+  bool kept = false;  ///< its velocity will provably satisfy all its half-planes
+  /// More robots are in reach of the step than its kind's neighbours: all of them are listed, (5)
   bool widened = false;
   std::vector<Neighbour> neighbours;  ///< nearest first
   std::vector<Edge> edges;            ///< nearest first, without those that an earlier half-plane excludes
 };
 
+/// The robots, the obstacles and the time step. Not to be called from two threads at once. What a caller gets wrong is
+/// a CrowdError, and the crowd stays as it was.
 class Crowd {
  public:
+  /// Without robots, kinds or obstacles. Throws CrowdError for options out of range.
   explicit Crowd(const CrowdOptions& options = {});
   ~Crowd();
+  /// Moves; what is left behind can only be assigned to or destroyed.
   Crowd(Crowd&&) noexcept;
+  /// Moves; what is left behind can only be assigned to or destroyed.
   Crowd& operator=(Crowd&&) noexcept;
 
+  /// Numbered from 0. Throws CrowdError: `out_of_range`, `too_many`.
   KindId add_kind(const CrowdKind& kind);
   /// At rest, at the place of the lattice nearest to `position`. O(1); two robots in one place are found by `step`.
   RobotId add_robot(Vec2 position, KindId kind = 0);
@@ -196,12 +220,16 @@ class Crowd {
   /// Its edges are walls, seen from both sides; whether a robot stands inside is not asked. Coordinates below 2^40 m.
   /// The grid of edges is laid out anew before the next step, in O(edges).
   ObstacleId add_obstacle(const geometry::Obstacle& obstacle);
+  /// Its edges are gone from the next step on. O(edges) before that step.
   void remove_obstacle(ObstacleId obstacle);
 
+  /// How many robots there are.
   std::size_t size() const;
   /// Above every id: arrays by id have this length. Entries of ids that name nobody are neither read nor written.
   std::size_t id_end() const;
+  /// As they were given.
   const CrowdOptions& options() const;
+  /// As it was given.
   const CrowdKind& kind(KindId kind) const;
 
   /// m/s, by id; they stay until they are set again. New robots prefer 0. Takes the place of a steering function.
@@ -220,8 +248,11 @@ class Crowd {
   void velocities(std::vector<Vec2>& by_id) const;
   /// 1: the robot was kept in the last step. 0: it was not, or is new.
   void kept(std::vector<std::uint8_t>& by_id) const;
+  /// m, exact.
   Vec2 position(RobotId robot) const;
+  /// m/s, m q / dt.
   Vec2 velocity(RobotId robot) const;
+  /// The number that `add_robot` was given.
   KindId kind_of(RobotId robot) const;
 
   /// Recomputed, the same bits that `step` would choose. Throws what `step` would throw.
@@ -237,6 +268,7 @@ class Crowd {
   std::uint64_t digest() const;
   /// Memory that grows with the robots.
   std::size_t bytes() const;
+  /// Where the time went, if CrowdOptions::time_phases asks for it; else all 0.
   const CrowdPhases& phases() const;
 
  private:

@@ -23,10 +23,11 @@
 
 namespace exactvo::formation {
 
+/// How a scenario is run on a crowd.
 struct CrowdRunOptions {
-  std::optional<Guidance> guidance;  ///< instead of the scenario's
-  CrowdPrecision precision = CrowdPrecision::float_lines;
-  int threads = 1;  ///< as CrowdOptions::threads
+  std::optional<Guidance> guidance;                        ///< instead of the scenario's
+  CrowdPrecision precision = CrowdPrecision::float_lines;  ///< of half-planes and linear programs
+  int threads = 1;                                         ///< as CrowdOptions::threads
   /// Called after every step with the simulated time, s; returning false stops the run.
   std::function<bool(double)> progress;
 };
@@ -36,29 +37,32 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
 
 /// A robot that stays, as its goal is proven out of reach.
 struct RobotWithoutRoute {
-  std::size_t robot = 0;
-  std::string why;  ///< in words, for people
+  std::size_t robot = 0;  ///< in the order of the scenario
+  std::string why;        ///< in words, for people
 };
 
 /// What a run came to. Times in s, lengths in m.
 struct CrowdRunReport {
-  std::size_t robots = 0;
+  std::size_t robots = 0;                        ///< of the scenario
   std::size_t arrived = 0;                       ///< were within the arrival tolerance of their last goal
   std::size_t pushed_off = 0;                    ///< of these: are farther from it at the end
   std::size_t staying = 0;                       ///< have no route to a goal
   std::vector<RobotWithoutRoute> without_route;  ///< these, in the order of the scenario
-  std::size_t steps = 0;
-  double time = 0.0;  ///< simulated
-  std::optional<double> median_arrival, last_arrival;
-  double path_length = 0.0;                ///< of all robots together
-  std::size_t relaxed = 0;                 ///< decisions that are not kept: nothing is promised of them
-  std::size_t touching = 0;                ///< decisions of robots that touched another
-  std::size_t widened = 0;                 ///< decisions with more than 10 neighbours
-  std::size_t stopped = 0;                 ///< decisions to stay, for lack of anything else that meets no edge
-  std::size_t half_planes = 0, edges = 0;  ///< against robots, against edges
-  std::uint64_t digest = 0;                ///< Crowd::digest at the end
-  bool interrupted = false;                ///< progress stopped it
-  double wall_time = 0.0;
+  std::size_t steps = 0;                         ///< time steps that were taken
+  double time = 0.0;                             ///< simulated
+  /// s: over all robots, those that did not arrive counted as later than the others; none where it is one of these.
+  std::optional<double> median_arrival;
+  std::optional<double> last_arrival;  ///< s: of those that arrived
+  double path_length = 0.0;            ///< of all robots together
+  std::size_t relaxed = 0;             ///< decisions that are not kept: nothing is promised of them
+  std::size_t touching = 0;            ///< decisions of robots that touched another
+  std::size_t widened = 0;             ///< decisions with more than 10 neighbours
+  std::size_t stopped = 0;             ///< decisions to stay, for lack of anything else that meets no edge
+  std::size_t half_planes = 0;         ///< against robots
+  std::size_t edges = 0;               ///< half-planes against edges of obstacles
+  std::uint64_t digest = 0;            ///< Crowd::digest at the end
+  bool interrupted = false;            ///< progress stopped it
+  double wall_time = 0.0;              ///< s, of the whole call
 };
 
 /// Takes the states of a run: robot i of the scenario has id i.
@@ -67,6 +71,7 @@ class CrowdSink {
   virtual ~CrowdSink() = default;
   /// The start, before the first step.
   virtual void begin(const Crowd& crowd) = 0;
+  /// After every step; `steps` counts them from 1.
   virtual void add_step(const Crowd& crowd, std::size_t steps) = 0;
 };
 

@@ -25,6 +25,7 @@ struct PaperTerms {
   double consensus = 0.0;  ///< k1/4 sum a_ij |x^_i - x^_j|^2
   double pinning = 0.0;    ///< k1/2 sum b_i |x^_i|^2
   double integral = 0.0;   ///< k3 sum of the integral of v^_i.(v^_i - V_IVO), V_IVO relative to the leader
+  /// The function: the sum of its terms.
   double value() const { return kinetic + consensus + pinning + integral; }
 };
 
@@ -33,6 +34,7 @@ struct SoundTerms {
   double kinetic = 0.0;    ///< 1/2 |v^|^2
   double consensus = 0.0;  ///< (k1/2) x^T (L+B) x^
   double slots = 0.0;      ///< k3 sum Phi(x^_i)
+  /// The function: the sum of its terms.
   double value() const { return kinetic + consensus + slots; }
 };
 
@@ -43,6 +45,7 @@ struct PaperRates {
   double consensus = 0.0;  ///< k1/2 sum a_ij (x^_i - x^_j).(v^_i - v^_j)
   double pinning = 0.0;    ///< k1 sum b_i x^_i.v^_i
   double integral = 0.0;   ///< k3 sum v^_i.(v^_i - V_IVO)
+  /// The derivative: the sum of its terms.
   double value() const { return kinetic + consensus + pinning + integral; }
 };
 
@@ -52,17 +55,19 @@ struct SoundRates {
   double consensus = 0.0;     ///< -k2 v^T (L+B) v^
   double tracking = 0.0;      ///< -k3 |v^|^2
   double intervention = 0.0;  ///< k3 sum v^_i.e_i: what obstacles and other robots ask for
+  /// The derivative: the sum of its terms.
   double value() const { return consensus + tracking + intervention; }
 };
 
+/// Both functions and their derivatives at one row.
 struct LyapunovRow {
-  double time = 0.0;      ///< s
-  bool has_rates = true;  ///< false in the last row, which has no decision: its derivatives are nothing
-  PaperTerms paper;
-  PaperRates paper_rates;
+  double time = 0.0;        ///< s
+  bool has_rates = true;    ///< false in the last row, which has no decision: its derivatives are nothing
+  PaperTerms paper;         ///< of (18)
+  PaperRates paper_rates;   ///< its derivative, by terms
   double paper_rate = 0.0;  ///< (20): what the paper says V' is
-  SoundTerms sound;
-  SoundRates sound_rates;
+  SoundTerms sound;         ///< of the function that holds
+  SoundRates sound_rates;   ///< its derivative, by terms
   double rate_bound = 0.0;  ///< -(k3/2) |v^|^2 + (k3/2) |e|^2
 };
 
@@ -71,12 +76,15 @@ std::vector<LyapunovRow> lyapunov_along(const Scenario& scenario, const Recordin
 
 /// How a function went over a run.
 struct LyapunovCourse {
-  double first = 0.0, last = 0.0, least = 0.0;
+  double first = 0.0;         ///< at the first row
+  double last = 0.0;          ///< at the last row
+  double least = 0.0;         ///< of all rows
   double largest_rise = 0.0;  ///< from one row to the next, where the leader kept its velocity; 0 where it never rose
 };
+/// Both functions over a run.
 struct LyapunovSummary {
-  LyapunovCourse paper;
-  LyapunovCourse sound;
+  LyapunovCourse paper;  ///< (18)
+  LyapunovCourse sound;  ///< the function that holds
 };
 /// REQUIRES: a formation's recording of this scenario, with a row.
 LyapunovSummary summary_of(const Scenario& scenario, const Recording& recording);
@@ -84,9 +92,10 @@ LyapunovSummary summary_of(const Scenario& scenario, const Recording& recording)
 /// The counterexample to Theorem 1 (docs/guide/formation.md): three robots at rest on their slots, equations (14) and
 /// (15) with their signs mended, and an avoidance that asks robot 1 for a constant `push` (m/s) relative to the leader.
 struct Counterexample {
-  Scenario scenario;
-  Recording recording;
+  Scenario scenario;    ///< the three robots and their leader
+  Recording recording;  ///< of the motion described
 };
+/// `push` in m/s, `duration` in s.
 Counterexample theorem_one_counterexample(double push = 0.1, double duration = 1200.0);
 
 }  // namespace exactvo::formation

@@ -22,24 +22,31 @@
 
 namespace exactvo::formation {
 
-enum class CollisionKind { obstacle, moving_obstacle, robot };
+/// What a robot collided with.
+enum class CollisionKind {
+  obstacle,         ///< one that stands still
+  moving_obstacle,  ///< one that moves
+  robot             ///< another robot
+};
 
 /// Consecutive steps in which a robot overlaps one and the same obstacle or robot. A pair of robots is named once, by
 /// the one that comes first in the scenario.
 struct Collision {
-  std::string robot;
-  CollisionKind kind = CollisionKind::obstacle;
-  std::string with;         ///< the obstacle's or the other robot's id
-  double from = 0.0;        ///< s, start of the first of the steps
-  double until = 0.0;       ///< s, end of the last
-  double deepest_at = 0.0;  ///< s, to a sixty-fourth of a step
-  double depth = 0.0;       ///< m, how far the rims overlap then
-  Vec2 place;               ///< m, where the robot is then
-  bool relaxed = false;     ///< a decision of one of the two robots could not keep every half-plane before or meanwhile
+  std::string robot;                             ///< its id
+  CollisionKind kind = CollisionKind::obstacle;  ///< what it collided with
+  std::string with;                              ///< the obstacle's or the other robot's id
+  double from = 0.0;                             ///< s, start of the first of the steps
+  double until = 0.0;                            ///< s, end of the last
+  double deepest_at = 0.0;                       ///< s, to a sixty-fourth of a step
+  double depth = 0.0;                            ///< m, how far the rims overlap then
+  Vec2 place;                                    ///< m, where the robot is then
+  bool relaxed = false;  ///< a decision of one of the two robots could not keep every half-plane before or meanwhile
 };
 
+/// What one robot's run came to.
 struct RobotMetrics {
-  std::string id;
+  std::string id;  ///< the robot's
+  /// At its last goal, or in a formation at its slot with the leader at its end, within the scenario's tolerance.
   bool arrived = false;
   std::optional<double> arrival_time;            ///< s
   double path_length = 0.0;                      ///< m
@@ -68,8 +75,9 @@ struct PlanMetrics {
   std::size_t search_nodes = 0;  ///< joint places that were looked at
 };
 
+/// What a run came to.
 struct Metrics {
-  bool all_arrived = false;
+  bool all_arrived = false;                        ///< every robot's `arrived`
   std::optional<double> last_arrival_time;         ///< s
   std::optional<double> min_obstacle_clearance;    ///< m, swept
   std::optional<double> min_robot_clearance;       ///< m, swept
@@ -82,10 +90,10 @@ struct Metrics {
   std::size_t heading_reversals = 0;    ///< turns whose sign changes from one step to the next, beyond 1e-3 rad
   std::size_t active_set_switches = 0;  ///< steps whose active constraints differ from the step before
   std::size_t relaxed_steps = 0;  ///< decisions that were not `optimal`: soft half-planes gave, or no answer held all
-  std::size_t uncertified_half_planes = 0;
-  std::size_t steps = 0;
-  double wall_time = 0.0;  ///< s
-  std::vector<RobotMetrics> robots;
+  std::size_t uncertified_half_planes = 0;          ///< half-planes of all decisions that could not be certified
+  std::size_t steps = 0;                            ///< rows but the last
+  double wall_time = 0.0;                           ///< s
+  std::vector<RobotMetrics> robots;                 ///< in the order of the scenario
   std::optional<LyapunovSummary> lyapunov;          ///< of a formation
   std::optional<FormationCourse> formation_course;  ///< of a formation
   std::vector<Collision> collisions;                ///< in the order of their beginnings
@@ -96,11 +104,12 @@ struct Metrics {
   std::vector<std::string> stuck;     ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };
 
+/// The metrics of a recorded run. REQUIRES: a recording of this scenario, with a row.
 Metrics measure(const Scenario& scenario, const Recording& recording);
 
 /// The metrics with what they are made from.
 struct Evaluation {
-  Metrics metrics;
+  Metrics metrics;                    ///< of the whole run
   std::vector<LyapunovRow> lyapunov;  ///< a row for every row, of a formation; else empty
   std::vector<StuckReport> stuck;     ///< of every robot that stopped elsewhere
 };
@@ -160,8 +169,10 @@ const char* name(CollisionKind kind);
 
 /// One series per robot or pair, sampled at the recording's rows, for figures. Obstacles include moving ones.
 std::vector<double> obstacle_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot);
+/// m: rim to rim of two robots, at the rows.
 std::vector<double> robot_distance_series(const Scenario& scenario, const Recording& recording, std::size_t robot_a,
                                           std::size_t robot_b);
+/// m: the robot's distance from its slot, at the rows. REQUIRES: a formation.
 std::vector<double> formation_error_series(const Scenario& scenario, const Recording& recording, std::size_t robot);
 
 }  // namespace exactvo::formation

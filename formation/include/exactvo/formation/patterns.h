@@ -13,6 +13,7 @@
 
 namespace exactvo::formation {
 
+/// How the slots are laid out.
 enum class Pattern {
   line,    ///< side by side, across the heading
   wedge,   ///< a V whose point leads
@@ -22,7 +23,9 @@ enum class Pattern {
 
 /// "line", "wedge", "circle", "grid".
 const char* name(Pattern pattern);
+/// Every name.
 std::vector<std::string> pattern_names();
+/// False for an unknown name; `out` is then unchanged.
 bool parse(const std::string& text, Pattern& out);
 
 /// `n` slots, neighbours `spacing` (m, > 0) apart, in a fixed order. REQUIRES: n >= 1.

@@ -22,22 +22,22 @@ using ConstraintSource = vo::BodyKind;
 /// from `position`, horizon `tau`) whose velocity obstacle it excludes. In a file the shape stands once, as a body, and
 /// place and velocity in the row.
 struct RecordedConstraint {
-  geometry::HalfPlane half_plane;
-  ConstraintSource source = ConstraintSource::enclosure;
+  geometry::HalfPlane half_plane;                         ///< of velocities, in the frame of `chosen`
+  ConstraintSource source = ConstraintSource::enclosure;  ///< what it keeps clear of
   /// Of the enclosure (of those for the robot's present goal), the obstacle edge (counted over the scene), the other
   /// robot or the moving obstacle.
   std::size_t index = 0;
-  std::size_t piece = 0;  ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
-  bool certified = false;
-  bool hard = true;
-  bool active = false;  ///< binds the chosen velocity
-  geometry::ConvexShape shape;
-  Vec2 position;
-  double radius = 0.0;     ///< m
-  double tau = 0.0;        ///< s
-  Vec2 shape_velocity;     ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
-  std::size_t body = 0;    ///< of `Recording::bodies`
-  double clearance = 0.0;  ///< m, robot's rim to the body; negative in overlap. Rounded
+  std::size_t piece = 0;        ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
+  bool certified = false;       ///< proven to exclude the velocity obstacle's interior
+  bool hard = true;             ///< false: of a robot, and may give where half-planes contradict each other
+  bool active = false;          ///< binds the chosen velocity
+  geometry::ConvexShape shape;  ///< m
+  Vec2 position;                ///< m: the robot's anchor
+  double radius = 0.0;          ///< m
+  double tau = 0.0;             ///< s
+  Vec2 shape_velocity;          ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
+  std::size_t body = 0;         ///< of `Recording::bodies`
+  double clearance = 0.0;       ///< m, robot's rim to the body; negative in overlap. Rounded
   /// Of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 where it does not bind. Rounded.
   double multiplier = 0.0;
 };
@@ -52,9 +52,10 @@ enum class Mode {
   boost,        ///< turned onto the tangent of a certified trap-free enclosure
   following,    ///< along a boundary: after a stall, or (formations) on the side committed to
   pushing_out,  ///< in contact: leaving an obstacle
-  arrived
+  arrived       ///< at its last goal
 };
 
+/// One robot's state at the start of a step, and its decision.
 struct RobotStep {
   Vec2 position;  ///< m, at the step's start
   Vec2 velocity;  ///< m/s, at the step's start
@@ -67,14 +68,14 @@ struct RobotStep {
   /// these and the active half-planes (of the disc: the normal is -chosen, of length |chosen|). Up to rounding.
   std::vector<lp::ActiveConstraint> bound;
   Vec2 chosen;  ///< m/s: the LP's optimum; what a kinematic robot does, what a second-order one tracks
-  lp::Status status = lp::Status::optimal;
-  double violation = 0.0;  ///< m/s, of the soft half-planes
+  lp::Status status = lp::Status::optimal;  ///< of the linear program
+  double violation = 0.0;                   ///< m/s, of the soft half-planes
   /// No multipliers in double prove the choice: they are left at 0. The exact ones follow from the half-planes
   /// (lp::solve_exact). Seen where robots rest in contact and their half-planes leave a rounding error of room.
   bool exact_multipliers = false;
-  Mode mode = Mode::direct;
-  int side = 0;      ///< +1 left, -1 right, 0 none: the side kept while blocked
-  std::string note;  ///< why a mode began or ended, empty otherwise
+  Mode mode = Mode::direct;  ///< how `preferred` was formed
+  int side = 0;              ///< +1 left, -1 right, 0 none: the side kept while blocked
+  std::string note;          ///< why a mode began or ended, empty otherwise
   /// The active ones and those against what could be met within a step; all of them where asked for.
   std::vector<RecordedConstraint> constraints;
   std::size_t uncertified = 0;  ///< half-planes of this decision that could not be certified
@@ -86,11 +87,12 @@ struct MovedObstacle {
   Vec2 velocity;      ///< m/s
 };
 
+/// All robots at one time, with their decisions for the step that follows.
 struct Step {
-  double time = 0.0;  ///< s
-  std::vector<RobotStep> robots;
-  Vec2 leader_position;
-  Vec2 leader_velocity;
+  double time = 0.0;                  ///< s
+  std::vector<RobotStep> robots;      ///< in the order of the scenario
+  Vec2 leader_position;               ///< m; (0, 0) without a formation
+  Vec2 leader_velocity;               ///< m/s; (0, 0) without a formation
   std::vector<MovedObstacle> moving;  ///< of the scenario's moving obstacles; empty in the last row
 };
 
@@ -106,8 +108,8 @@ geometry::ConvexShape hull_of(const MovingObstacle& obstacle, Vec2 displacement)
 
 /// The shapes that one robot saw on its way to one of its goals.
 struct Outlook {
-  double time = 0.0;  ///< s, from then on
-  std::size_t robot = 0;
+  double time = 0.0;                ///< s, from then on
+  std::size_t robot = 0;            ///< in the order of the scenario
   std::size_t goal = 0;             ///< which of its goals, from 0
   std::vector<std::size_t> bodies;  ///< of `Recording::bodies`; `RecordedConstraint::index` counts them
 };
@@ -119,11 +121,12 @@ struct LivenessCourse {
   std::size_t search_nodes = 0;  ///< joint places that were looked at
 };
 
+/// A whole run. `simulate` makes it; `datasets::write_recording` keeps it.
 struct Recording {
-  std::vector<Step> steps;  ///< the last row is the final state: its decisions are empty
-  MotionLaw motion = MotionLaw::straight;
-  double time_step = 0.0;      ///< s
-  double tracking_gain = 0.0;  ///< k3, 1/s, where motion is exponential
+  std::vector<Step> steps;                 ///< the last row is the final state: its decisions are empty
+  MotionLaw motion = MotionLaw::straight;  ///< how robots moved between rows
+  double time_step = 0.0;                  ///< s
+  double tracking_gain = 0.0;              ///< k3, 1/s, where motion is exponential
   /// `chosen` is relative to the leader, as the paper's controllers have it (V_IVO of (15)); else absolute.
   bool relative_frame = false;
   std::optional<Remedies> remedies;  ///< of a formation's controller, as they were in force

@@ -11,6 +11,7 @@
 
 namespace exactvo::formation {
 
+/// The switches, as they are in the default controller but for `smoothing` and the bound.
 struct Remedies {
   bool signs = true;                ///< (15) and (17) with their signs mended; without it they are as printed
   bool recentred = true;            ///< offsets as equation (4) needs them, where the scenario asks for it
@@ -27,16 +28,27 @@ struct Remedies {
 
 /// Some of them, set one way or the other: what a scenario asks for beside its controller.
 struct RemedySwitches {
-  std::optional<bool> signs, recentred, absolute_frame, saturation, tau_clamp, filter_last, brake_point, margins,
-      side_commitment, smoothing;
+  ///@{
+  /// The member of Remedies of that name; none: as the controller has it.
+  std::optional<bool> signs;
+  std::optional<bool> recentred;
+  std::optional<bool> absolute_frame;
+  std::optional<bool> saturation;
+  std::optional<bool> tau_clamp;
+  std::optional<bool> filter_last;
+  std::optional<bool> brake_point;
+  std::optional<bool> margins;
+  std::optional<bool> side_commitment;
+  std::optional<bool> smoothing;
+  ///@}
   std::optional<double> acceleration_bound;  ///< m/s^2, >= 0; 0 for none
 };
 
 /// One of the switches by its name, which is that of the member: "tau_clamp".
 struct RemedySwitch {
-  const char* name;
-  bool Remedies::*on;
-  std::optional<bool> RemedySwitches::*asked;
+  const char* name;                            ///< the member's
+  bool Remedies::*on;                          ///< the switch
+  std::optional<bool> RemedySwitches::*asked;  ///< the same in what was asked for
 };
 /// All of them but the bound, in the order of the struct.
 const std::vector<RemedySwitch>& remedy_switches();
@@ -46,8 +58,8 @@ Remedies switched(Remedies base, const RemedySwitches& asked);
 
 /// A set of remedies with the name under which it is reported.
 struct NamedRemedies {
-  std::string name;
-  Remedies remedies;
+  std::string name;   ///< "tau_clamp" and so on
+  Remedies remedies;  ///< the whole set
 };
 
 /// From the mended signs without margins to the default, one remedy more a rung. (The paper's controllers themselves
@@ -59,6 +71,7 @@ std::vector<NamedRemedies> remedy_ablations();
 
 /// The rung or ablation of that name; nothing where there is none.
 std::optional<Remedies> remedies_named(const std::string& name);
+/// The names that `remedies_named` knows.
 std::vector<std::string> remedy_set_names();
 
 }  // namespace exactvo::formation

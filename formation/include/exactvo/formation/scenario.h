@@ -20,8 +20,9 @@ namespace exactvo::formation {
 
 using geometry::Vec2;
 
+/// A disc that moves.
 struct Robot {
-  std::string id;
+  std::string id;           ///< its name in results and messages
   Vec2 position;            ///< m, at t = 0
   Vec2 velocity;            ///< m/s, at t = 0
   double radius = 0.5;      ///< m, > 0
@@ -30,9 +31,10 @@ struct Robot {
   bool cooperates = true;   ///< false: it ignores other robots, and they take the whole avoiding (alpha = 1)
 };
 
+/// An obstacle that stands still.
 struct SceneObstacle {
-  std::string id;
-  geometry::Obstacle shape;
+  std::string id;            ///< its name in results and messages
+  geometry::Obstacle shape;  ///< m
 };
 
 /// The set V of allowed velocities: the paper's "[3, 3]^T" can be read either way.
@@ -69,6 +71,7 @@ struct Horizons {
   double robots = 2.0;       ///< s, robot against robot in the IVO methods
 };
 
+/// Room that is kept beside what safety needs.
 struct Margins {
   double obstacle = 0.08;  ///< m, a facade's depth inside its enclosure
   double robot = 0.04;     ///< m, added to the radius sum of a pair
@@ -92,9 +95,9 @@ struct Leader {
 /// An obstacle that moves without turning: `shape` as it stands at t = 0, carried along `motion`. Robots see the
 /// convex hull and take the whole avoiding upon themselves.
 struct MovingObstacle {
-  std::string id;
-  geometry::Obstacle shape;
-  Leader motion;  ///< its path's first point is the origin of the displacement
+  std::string id;            ///< its name in results and messages
+  geometry::Obstacle shape;  ///< m, at t = 0
+  Leader motion;             ///< its path's first point is the origin of the displacement
 };
 
 /// Gains of equations (14), (15) and (17).
@@ -107,36 +110,38 @@ struct Gains {
 
 /// Consensus topology (paper, Section II.B): weights a_ij = a_ji >= 0, pinning b_i >= 0.
 struct Topology {
-  std::vector<std::vector<double>> adjacency;
-  std::vector<double> pinning;
+  std::vector<std::vector<double>> adjacency;  ///< a_ij, n x n, symmetric, zero diagonal
+  std::vector<double> pinning;                 ///< b_i, one a robot
 };
 
+/// What robots without goals do together.
 struct FormationSpec {
-  Topology topology;
-  std::vector<Vec2> offsets;  ///< Delta_i, m
-  bool recentre = true;       ///< subtract mean(Delta), as equation (4) needs
-  Leader leader;
-  Gains gains;
+  Topology topology;             ///< who hears whom
+  std::vector<Vec2> offsets;     ///< Delta_i, m
+  bool recentre = true;          ///< subtract mean(Delta), as equation (4) needs
+  Leader leader;                 ///< whom they follow
+  Gains gains;                   ///< of the controller
   double catch_up_speed = 1.5;   ///< v_s, m/s: how fast a robot may close on its slot beyond the leader's velocity
   RemedySwitches remedies = {};  ///< switched on or off beside what the controller has
 };
 
+/// All that a run depends on beside its SimulationOptions.
 struct Scenario {
-  std::string name;
-  std::string description;
-  std::vector<Robot> robots;
-  std::vector<SceneObstacle> obstacles;
-  std::optional<FormationSpec> formation;  ///< none: kinematic robots with goals (Section V.A)
-  Guidance guidance = Guidance::route;     ///< of robots with goals
-  Liveness liveness = Liveness::plan;      ///< of robots with goals
-  SpeedBoundKind speed_bound = SpeedBoundKind::disc;
-  Horizons horizons;
-  Margins margins;
-  double time_step = 0.05;           ///< s, > 0
-  double time_limit = 120.0;         ///< s, > 0
-  double arrival_tolerance = 0.1;    ///< m: within this of the last goal a robot has arrived
-  double neighbour_distance = 15.0;  ///< m: robots farther apart ignore each other
-  std::vector<MovingObstacle> moving_obstacles;
+  std::string name;                                   ///< for people, and part of results
+  std::string description;                            ///< for people
+  std::vector<Robot> robots;                          ///< with `formation` one a slot
+  std::vector<SceneObstacle> obstacles;               ///< static
+  std::optional<FormationSpec> formation;             ///< none: kinematic robots with goals (Section V.A)
+  Guidance guidance = Guidance::route;                ///< of robots with goals
+  Liveness liveness = Liveness::plan;                 ///< of robots with goals
+  SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how every robot's max_speed is meant
+  Horizons horizons;                                  ///< of the velocity obstacles
+  Margins margins;                                    ///< beside radii and facades
+  double time_step = 0.05;                            ///< s, > 0
+  double time_limit = 120.0;                          ///< s, > 0
+  double arrival_tolerance = 0.1;                     ///< m: within this of the last goal a robot has arrived
+  double neighbour_distance = 15.0;                   ///< m: robots farther apart ignore each other
+  std::vector<MovingObstacle> moving_obstacles;       ///< carried along their paths
 };
 
 }  // namespace exactvo::formation

@@ -17,6 +17,7 @@
 
 namespace exactvo::formation {
 
+/// How robots avoid obstacles.
 enum class Method {
   orca,         ///< van den Berg et al. 2011: the baseline
   ivo_edge,     ///< the paper: an ellipse a facade
@@ -24,6 +25,7 @@ enum class Method {
   ivo           ///< ivo_cluster, boost where certified, following after a stall
 };
 
+/// How robots of a formation follow their slots.
 enum class Controller {
   paper_literal,  ///< equations (14)-(17) as printed
   paper_signs,    ///< the sign errors of (15) and (17) mended, nothing else
@@ -31,31 +33,40 @@ enum class Controller {
   standard        ///< the default: saturated preference, filter last, brake point, side commitment
 };
 
-enum class Integrator { exact, euler, rk4, dopri5, rosenbrock4 };
+/// How second-order robots are integrated over a time step.
+enum class Integrator {
+  exact,       ///< in closed form
+  euler,       ///< explicit Euler
+  rk4,         ///< the classic Runge-Kutta method
+  dopri5,      ///< Boost.Odeint's Dormand-Prince, adaptive within the step
+  rosenbrock4  ///< Boost.Odeint's Rosenbrock method, adaptive within the step
+};
 
 /// The remedies that a controller consists of.
 Remedies remedies_of(Controller controller);
 
 /// "ivo-edge" and so on, as on the command line; `parse_*` gives nothing for an unknown name.
 const char* name(Method m);
-const char* name(Controller c);  ///< "paper-literal", "paper-signs", "corrected", "default"
-const char* name(Integrator i);
-const char* name(Guidance g);
-const char* name(Liveness l);
-const char* name(Mode m);
-std::vector<std::string> method_names();
-std::vector<std::string> controller_names();
-std::vector<std::string> integrator_names();
-std::vector<std::string> guidance_names();
-std::vector<std::string> liveness_names();
+const char* name(Controller c);               ///< "paper-literal", "paper-signs", "corrected", "default"
+const char* name(Integrator i);               ///< "exact", "euler", "rk4", "dopri5", "rosenbrock4"
+const char* name(Guidance g);                 ///< "none", "route"
+const char* name(Liveness l);                 ///< "off", "bias", "plan"
+const char* name(Mode m);                     ///< "direct", "guided", "by-plan" and so on
+std::vector<std::string> method_names();      ///< in the order of Method
+std::vector<std::string> controller_names();  ///< in the order of Controller
+std::vector<std::string> integrator_names();  ///< in the order of Integrator
+std::vector<std::string> guidance_names();    ///< in the order of Guidance
+std::vector<std::string> liveness_names();    ///< in the order of Liveness
+/// False for an unknown name; `out` is then unchanged. So are the others.
 bool parse(const std::string& text, Method& out);
-bool parse(const std::string& text, Controller& out);
-bool parse(const std::string& text, Integrator& out);
-bool parse(const std::string& text, Guidance& out);
-bool parse(const std::string& text, Liveness& out);
+bool parse(const std::string& text, Controller& out);  ///< false for an unknown name
+bool parse(const std::string& text, Integrator& out);  ///< false for an unknown name
+bool parse(const std::string& text, Guidance& out);    ///< false for an unknown name
+bool parse(const std::string& text, Liveness& out);    ///< false for an unknown name
 
+/// What a run depends on beside its scenario.
 struct SimulationOptions {
-  Method method = Method::ivo;
+  Method method = Method::ivo;                   ///< how robots avoid obstacles
   std::optional<Guidance> guidance;              ///< instead of the scenario's
   std::optional<Liveness> liveness;              ///< instead of the scenario's
   Controller controller = Controller::standard;  ///< used by formations only
@@ -94,6 +105,7 @@ class RunSink {
   virtual void begin(const Recording& run) = 0;
   /// Bodies come in the order of their numbers, each before what names it.
   virtual void add_body(const vo::Body& body) = 0;
+  /// What a robot sees on its way to a goal, before the first row that goes there.
   virtual void add_outlook(const Outlook& outlook) = 0;
   /// Rows come in the order of time; the last one is the final state.
   virtual void add_row(Step row) = 0;
@@ -105,10 +117,11 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
 /// What is wrong with a scenario, in words, one a line; empty when it can be run. Each names the JSON pointer of the
 /// field.
 struct ScenarioProblem {
-  std::string pointer;  ///< "/robots/0/radius"
-  std::string found;
-  std::string expected;
+  std::string pointer;   ///< "/robots/0/radius"
+  std::string found;     ///< what stands there
+  std::string expected;  ///< what should
 };
+/// Every problem, in the order of the fields. Empty: `simulate` takes the scenario.
 std::vector<ScenarioProblem> validate(const Scenario& scenario);
 
 /// The enclosures that the IVO methods see for one robot and goal, for drawing and for `explain`.

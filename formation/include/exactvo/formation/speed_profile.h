@@ -22,6 +22,7 @@ std::vector<SpeedKnot> speed_of_legs(const std::vector<Vec2>& path, const std::v
 
 /// m/s and m after `time` >= 0. REQUIRES: at least one knot, times that do not fall.
 double speed_at(const std::vector<SpeedKnot>& profile, double time);
+/// m, after `time` >= 0. REQUIRES: as `speed_at`.
 double distance_at(const std::vector<SpeedKnot>& profile, double time);
 
 /// s; when `distance` (m) is first covered; infinite where it never is.

@@ -16,6 +16,7 @@
 
 namespace exactvo::formation {
 
+/// What the linear formation comes to.
 struct Stability {
   std::vector<double> eigenvalues;  ///< of L + B, ascending; 1, 4, 4 for the paper's (21)
   double convergence_rate = 0.0;    ///< 1/s: the slowest mode decays like e^{-rate t}

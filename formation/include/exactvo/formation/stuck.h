@@ -20,8 +20,9 @@ inline constexpr double kAtRest = 0.01;
 /// decides where the tie-break turns a robot that would slide off against another boundary.)
 inline constexpr double kLeastShare = 1e-6;
 
+/// A half-plane that is active in the last decision.
 struct BindingConstraint {
-  RecordedConstraint constraint;
+  RecordedConstraint constraint;   ///< as it was recorded
   Vec2 normal;                     ///< unit, out of the shape at the point nearest the robot
   double clearance = 0.0;          ///< m, rim to shape
   double radius_of_curvature = 0;  ///< m, of the shape grown by the robot, at that normal; infinite on a flat edge
@@ -31,8 +32,9 @@ struct BindingConstraint {
   bool pressing = false;
 };
 
+/// Why one robot is not where it was to go.
 struct StuckReport {
-  std::size_t robot = 0;
+  std::size_t robot = 0;                   ///< in the order of the scenario
   Vec2 position;                           ///< m, where it ended
   double goal_distance = 0.0;              ///< m, D
   double speed = 0.0;                      ///< m/s, in the last row

@@ -48,17 +48,18 @@ double evolute_margin(const geometry::Ellipse& ellipse, Vec2 goal);
 
 /// An enclosure as one robot sees it.
 struct TrapPlace {
-  geometry::Enclosure enclosure;
+  geometry::Enclosure enclosure;  ///< its shape, and what it stands for
   /// Counts the enclosures of the robot's first goal, as `index` of its recorded half-planes does; with the method
   /// `orca` the edges of the scene.
   std::size_t number = 0;
   std::optional<geometry::Segment> facade;  ///< m; the one facade that the enclosure was built on (ivo-edge), or edge
 };
 
+/// What the trap test says of one robot, one goal and one enclosure, or two that overlap.
 struct TrapFinding {
-  std::size_t robot = 0;
-  Vec2 goal;  ///< m
-  TrapPlace place;
+  std::size_t robot = 0;  ///< in the order of the scenario
+  Vec2 goal;              ///< m
+  TrapPlace place;        ///< the enclosure, or the edge
   /// Where the finding is about two enclosures that overlap once they are grown by the robot: the other one. Their
   /// boundaries cross at concave vertices, where a robot can rest although neither enclosure alone would stop it.
   std::optional<TrapPlace> overlapping;

@@ -13,7 +13,8 @@ namespace exactvo::geometry {
 
 /// { x : low <= x <= high }, both coordinates; empty as it begins.
 struct Box {
-  Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};  ///< m, least coordinates
+  /// M, greatest coordinates.
   Vec2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 
   /// Grows to hold p.
@@ -21,10 +22,12 @@ struct Box {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
+  /// Grows to hold b.
   void add(const Box& b) {
     add(b.low);
     add(b.high);
   }
+  /// Whether it holds no point.
   bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
 };
 

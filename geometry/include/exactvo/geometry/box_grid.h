@@ -12,13 +12,16 @@
 
 namespace exactvo::geometry {
 
+/// Boxes by number, in the order in which they were given.
 class BoxGrid {
  public:
   BoxGrid() = default;
   /// REQUIRES: no box is empty, all finite.
   explicit BoxGrid(std::vector<Box> boxes);
 
+  /// How many boxes there are.
   std::size_t size() const { return boxes_.size(); }
+  /// Box number i. REQUIRES: i < size().
   const Box& box(std::size_t i) const { return boxes_[i]; }
 
   /// Calls visit(i) for every box whose `distance_below` from x is at most `reach` (m, may be infinite), in an order

@@ -12,6 +12,7 @@ namespace exactvo::geometry {
 
 /// The point of the segment nearest to x.
 Vec2 nearest_point(const Segment& s, Vec2 x);
+/// From x to that point, m.
 double distance(const Segment& s, Vec2 x);
 
 /// Whether the closed segments have a point in common. Exact.

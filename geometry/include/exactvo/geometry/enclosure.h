@@ -41,6 +41,7 @@ enum class EnclosureGrade {
 /// "trap-free", "trap-free-thin", "containing", "tight".
 const char* name(EnclosureGrade grade);
 
+/// How an enclosure is fitted to one robot and goal.
 struct EnclosureOptions {
   double margin = 0.08;         ///< m; points lie in the ellipse of semi-axes a - margin, b - margin
   double slack = 0.5;           ///< sigma: the evolute condition holds with (1 + slack) on its right side
@@ -51,9 +52,10 @@ struct EnclosureOptions {
       8.0;  ///< an ellipse may have this many times the area of the obstacle's hull grown by the robot
 };
 
+/// An ellipse, and how good it is.
 struct FittedEllipse {
-  Ellipse ellipse;
-  EnclosureGrade grade = EnclosureGrade::containing;
+  Ellipse ellipse;                                    ///< certified to contain the points
+  EnclosureGrade grade = EnclosureGrade::containing;  ///< which rung of the fit held
 };
 
 /// The smallest trap-free ellipse that the search finds round `points`, for a robot of `robot_radius` going from
@@ -65,17 +67,18 @@ std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, doub
 
 /// An obstacle in parts: the facades that enclosures are built on, and convex shapes that cover it where none fits.
 struct ObstacleParts {
-  std::vector<Segment> facades;
+  std::vector<Segment> facades;     ///< m, in the order of divide_into_facades
   std::vector<ConvexShape> pieces;  ///< convex pieces of a polygon without holes, else its facades
 };
 
 /// Facades (facades.h) and convex pieces (hull.h) of one obstacle.
 ObstacleParts parts_of(const Obstacle& obstacle);
 
+/// A shape that stands for obstacles.
 struct Enclosure {
-  ConvexShape shape;                   ///< an Ellipse; where grade is tight, a piece
-  std::vector<std::size_t> obstacles;  ///< indices of the obstacles that it stands for, ascending
-  EnclosureGrade grade = EnclosureGrade::tight;
+  ConvexShape shape;                             ///< an Ellipse; where grade is tight, a piece
+  std::vector<std::size_t> obstacles;            ///< indices of the obstacles that it stands for, ascending
+  EnclosureGrade grade = EnclosureGrade::tight;  ///< which rung of the fit held
   /// Whether predicate F certified that a robot heading for the goal can't stall at this enclosure alone.
   bool trap_free() const { return grade == EnclosureGrade::trap_free || grade == EnclosureGrade::trap_free_thin; }
 };

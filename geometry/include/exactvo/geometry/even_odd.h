@@ -25,8 +25,9 @@
 
 namespace exactvo::geometry {
 
+/// How the construction ended.
 enum class EvenOddStatus {
-  done,
+  done,  ///< the polygons are there
   /// A coordinate beyond kLargestCutCoordinate: nothing was cut.
   too_large,
   /// More than `most_crossings` contacts between edges, or so long edges so close together that looking for contacts
@@ -38,8 +39,9 @@ enum class EvenOddStatus {
   refused
 };
 
+/// The region as valid polygons.
 struct EvenOddRegion {
-  EvenOddStatus status = EvenOddStatus::done;
+  EvenOddStatus status = EvenOddStatus::done;  ///< done, or why there are no polygons
   std::vector<Polygon> polygons;  ///< empty unless done, and where nothing is enclosed; in order of their least vertex
   double moved = 0.0;             ///< m; no point was moved farther than this: certified (rounded up)
   std::size_t rounds = 0;         ///< roundings that changed something
@@ -59,6 +61,7 @@ inline constexpr double kLargestCutCoordinate = 0x1p100;
 /// One or two roundings are the rule. After so many plain ones comes snap rounding, on a grid of two units in the last
 /// place of the largest coordinate.
 inline constexpr std::size_t kPlainRounds = 4;
+/// After so many rounds it ends as `not_roundable`.
 inline constexpr std::size_t kMostRounds = 8;
 
 /// REQUIRES: all points finite.

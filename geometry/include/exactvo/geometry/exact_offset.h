@@ -19,12 +19,13 @@ namespace exactvo::geometry {
 
 /// A piece of the boundary as doubles can show it: each coordinate rounded.
 struct OffsetCurve {
-  Vec2 from;
-  Vec2 to;
-  bool is_arc = false;
-  Vec2 center;  ///< of an arc, m
+  Vec2 from;            ///< m, where it begins
+  Vec2 to;              ///< m, where it ends
+  bool is_arc = false;  ///< of a circle round `center`; else straight
+  Vec2 center;          ///< of an arc, m
 };
 
+/// The grown polygon, behind a handle: copies share.
 class ExactOffset {
  public:
   /// polygon (+) D(0, radius). REQUIRES: polygon valid (see `normalize`), radius > 0, finite.

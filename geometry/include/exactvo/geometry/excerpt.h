@@ -10,6 +10,7 @@
 
 namespace exactvo::geometry {
 
+/// The shape in one line, a polygon abridged to `kVerticesShown` vertices.
 inline std::string excerpt(const ConvexShape& shape) {
   const auto* polygon = std::get_if<ConvexPolygon>(&shape);
   if (polygon == nullptr || polygon->vertices.size() <= kVerticesShown) return to_string(shape);

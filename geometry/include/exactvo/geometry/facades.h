@@ -10,6 +10,7 @@
 
 namespace exactvo::geometry {
 
+/// How an obstacle is divided.
 struct FacadeOptions {
   /// m, >= 0. Vertices are dropped while the facades stay within this distance of the obstacle; 0 keeps every corner
   /// (collinear vertices are still merged).
@@ -18,7 +19,7 @@ struct FacadeOptions {
 
 /// A facade set and what was certified of it.
 struct FacadeSet {
-  std::vector<Segment> facades;
+  std::vector<Segment> facades;  ///< m, of all rings and chains
   /// m; every point of the obstacle's boundary lies within this distance of the facades: certified (rounded up), and
   /// every point of a facade lies within it of the obstacle.
   double deviation = 0.0;

@@ -15,10 +15,14 @@ namespace exactvo::geometry {
 /// One point gives one vertex, collinear points two. REQUIRES: at least one point, all finite.
 ConvexPolygon convex_hull(const std::vector<Vec2>& points);
 
-/// How to split. CGAL's three: `optimal` gives the least number of pieces, O(n^4); `greene` and `approximate` at most
-/// four times as many. `triangles`: a constrained Delaunay triangulation merged after Hertel and Mehlhorn (1983), at
-/// most four times as many. `automatic` takes `optimal` for n <= 32 and `triangles` above.
-enum class PartitionMethod { automatic, greene, approximate, optimal, triangles };
+/// How to split a polygon.
+enum class PartitionMethod {
+  automatic,    ///< `optimal` for n <= 32, `triangles` above
+  greene,       ///< CGAL's: at most four times as many pieces as needed
+  approximate,  ///< CGAL's, by Hertel and Mehlhorn: the same bound
+  optimal,      ///< CGAL's: the least number of pieces, O(n^4)
+  triangles     ///< a constrained Delaunay triangulation merged after Hertel and Mehlhorn (1983): the same bound
+};
 
 /// Splits a simple polygon without holes into convex pieces whose union is the polygon and whose interiors are
 /// disjoint. Exact (it only selects vertices), and every answer is proved so before it is given. Never fails on a
@@ -45,7 +49,7 @@ Ellipse smallest_ellipse(const std::vector<Vec2>& points);
 
 /// A certified ellipse and what it could at best be improved to.
 struct FastEllipse {
-  Ellipse ellipse;
+  Ellipse ellipse;          ///< certified to contain the points
   double least_area = 0.0;  ///< m^2; no ellipse round the points is smaller: a dual value, rounded
 };
 

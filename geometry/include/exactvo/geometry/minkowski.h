@@ -18,6 +18,7 @@
 
 namespace exactvo::geometry {
 
+/// A convex sum with its rounding error.
 struct ConvexSum {
   ConvexPolygon polygon;  ///< counter-clockwise
   double error = 0.0;     ///< m; the exact sum is within this of `polygon`: certified; 0 if no vertex was rounded
@@ -32,9 +33,13 @@ ConvexSum minkowski_sum(const ConvexPolygon& a, const ConvexPolygon& b);
 /// The same into `sum`, whose memory is used again. REQUIRES: `sum.polygon` is neither a nor b.
 void minkowski_sum(const ConvexPolygon& a, const ConvexPolygon& b, ConvexSum& sum);
 
-/// How CGAL goes about it; the sum is the same. Decomposition is the slower, independent check.
-enum class SumMethod { convolution, decomposition };
+/// How CGAL goes about it; the sum is the same.
+enum class SumMethod {
+  convolution,   ///< of both boundaries
+  decomposition  ///< into convex pieces: the slower, independent check
+};
 
+/// A sum with its rounding error.
 struct PolygonSum {
   Polygon polygon;     ///< outer ring counter-clockwise, holes clockwise; rounding may let rings touch
   double error = 0.0;  ///< m; each vertex was moved by at most this: certified
@@ -44,6 +49,7 @@ struct PolygonSum {
 /// open stay. REQUIRES: both valid (see `normalize`).
 PolygonSum minkowski_sum(const Polygon& a, const Polygon& b, SumMethod method = SumMethod::convolution);
 
+/// A shape round a sum that is not built.
 struct OuterShape {
   GrownShape shape;    ///< contains S
   double error = 0.0;  ///< m; no point of it is farther than this from S: certified
@@ -55,7 +61,11 @@ struct OuterShape {
 /// valid shapes, finite and below 2^900.
 OuterShape grown_by_polygon(const ConvexShape& obstacle, const ConvexPolygon& robot, Vec2 position);
 
-enum class Side { inside, outside };
+/// On which side of the true curve a polygon lies.
+enum class Side {
+  inside,  ///< within the true curve
+  outside  ///< round it
+};
 
 /// A polygon that lies within polygon (+) D(0, radius) (`inside`) or contains it (`outside`), and is within `tolerance`
 /// of it. Certified: the disc's polygon is checked exactly and leaves room for the rounding of the sum. `error` of the
@@ -63,6 +73,7 @@ enum class Side { inside, outside };
 /// the radius: radius > 0 and >= 2^-44 M, tolerance >= 2^-40 M and >= 2^-30 radius.
 PolygonSum offset_polygon(const Polygon& polygon, double radius, Side side, double tolerance);
 
+/// A polygon for drawing.
 struct Outline {
   Ring ring;           ///< counter-clockwise points of the boundary, to rounding; at least one
   double error = 0.0;  ///< m; the boundary is within this of the ring

@@ -14,10 +14,13 @@
 
 namespace exactvo::geometry {
 
+/// The edges of one obstacle, looked up by place.
 class ObstacleIndex {
  public:
+  /// O(n log n). REQUIRES: finite coordinates.
   explicit ObstacleIndex(const Obstacle& obstacle);
 
+  /// The box of all edges.
   const Box& box() const { return box_; }
 
   /// `swept_distance` to the obstacle, m, where that is less than `enough`; else some number that is not.

@@ -32,6 +32,7 @@ struct Way {
   Vec2 goal;   ///< m
 };
 
+/// What is made of an obstacle, and how.
 struct ShapeOptions {
   FacadeOptions facades;                                   ///< tolerance 0 keeps every corner
   PartitionMethod partition = PartitionMethod::automatic;  ///< of polygons without holes
@@ -45,19 +46,19 @@ struct ShapeOptions {
 
 /// Whether a shape contains what it stands for. Exact.
 struct Verdict {
-  bool certified = false;
-  std::string reason;  ///< why not; empty where certified
+  bool certified = false;  ///< proven by exact predicates
+  std::string reason;      ///< why not; empty where certified
 };
 
 /// The ellipse of one facade.
 struct FacadeEnclosure {
-  Ellipse ellipse;
+  Ellipse ellipse;         ///< certified by ObstacleShapes::facade_ellipses_contain
   double clearance = 0.0;  ///< m; d of equation (8), rounded
 };
 
 /// What became of the search for a trap-free ellipse. Without a `way` it is found or has failed.
 enum class TrapFreeAnswer {
-  found,
+  found,      ///< the ellipse is there
   no_room,    ///< start or goal within radius, `clear_of_ends` and `least_margin` of the hull
   too_large,  ///< found, but only beyond `most_inflation`
   failed      ///< not found though none of these stands against it, or the arithmetic overflowed
@@ -65,18 +66,18 @@ enum class TrapFreeAnswer {
 
 /// An ellipse round the whole obstacle at which no robot stalls, whatever its radius.
 struct TrapFreeEllipse {
-  std::optional<Ellipse> ellipse;  ///< where found
-  EnclosureGrade grade = EnclosureGrade::tight;
+  std::optional<Ellipse> ellipse;                ///< where found
+  EnclosureGrade grade = EnclosureGrade::tight;  ///< which rung of the fit held
   /// Certified: no goal outside the ellipse can make a robot stall there. The evolute lies in the ellipse, which for
   /// semi-axes a >= b is a^2 <= 2 b^2. Without it the certificate, if any, is for the goal of `way`.
   bool for_every_goal = false;
-  TrapFreeAnswer answer = TrapFreeAnswer::failed;
+  TrapFreeAnswer answer = TrapFreeAnswer::failed;  ///< found, or why not
 };
 
 /// Rounded, for people; never part of a proof.
 struct ShapeFigures {
-  std::size_t vertices = 0;  ///< of all rings
-  std::size_t holes = 0;
+  std::size_t vertices = 0;         ///< of all rings
+  std::size_t holes = 0;            ///< rings but the outer ones
   double area = 0.0;                ///< m^2, holes taken off; 0 for walls and points
   double perimeter = 0.0;           ///< m, of all rings
   double hull_area = 0.0;           ///< m^2
@@ -88,18 +89,19 @@ struct ShapeFigures {
   double trap_free_beyond = 0.0;
 };
 
+/// All shapes of one obstacle, with their verdicts.
 struct ObstacleShapes {
   std::vector<RingProblem> problems;  ///< all that was found; where one is not mended nothing else is here
   Obstacle obstacle;                  ///< as put right; walls of a scan or of loose points: the first facade
-  FacadeSet facades;
+  FacadeSet facades;                  ///< what they stand for, and how closely
   /// Disjoint inside, their union is the obstacle, whatever the facades' tolerance. A wall's are its edges, straight
   /// runs merged. Of a scan or of loose points, where there is no obstacle but the facades: the facades.
   std::vector<ConvexShape> pieces;
-  ConvexPolygon hull;
-  Ellipse smallest_ellipse;
+  ConvexPolygon hull;                            ///< smallest convex set round every vertex
+  Ellipse smallest_ellipse;                      ///< round every vertex, certified by `ellipse_contains`
   std::vector<FacadeEnclosure> facade_ellipses;  ///< one a facade, in their order
-  TrapFreeEllipse trap_free;
-  ShapeFigures figures;
+  TrapFreeEllipse trap_free;                     ///< round every vertex, certified by `trap_free_contains`
+  ShapeFigures figures;                          ///< areas and counts
 
   Verdict facades_follow;    ///< the facades keep to the boundary, within their deviation
   Verdict pieces_cover;      ///< the pieces are convex and cover the obstacle and nothing else; scans: as facades

@@ -6,6 +6,7 @@
 
 namespace exactvo::geometry {
 
+/// rad.
 inline constexpr double kPi = 3.14159265358979323846;
 
 }  // namespace exactvo::geometry

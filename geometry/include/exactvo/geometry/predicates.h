@@ -20,10 +20,15 @@
 
 namespace exactvo::geometry {
 
-enum class Sign : int { negative = -1, zero = 0, positive = 1 };
+/// The sign of a number.
+enum class Sign : int {
+  negative = -1,  ///< below 0
+  zero = 0,       ///< exactly 0
+  positive = 1    ///< above 0
+};
 
-/// The sign of h_S(n) - tau * c. Exact. (Predicate A: a half-plane { n.v >= c } excludes the velocity obstacle of S with
-/// horizon tau iff this is not positive, and neither is it with c = 0.)
+/// The sign of h_S(n) - tau * c. Exact. (Predicate A: a half-plane { n.v >= c } excludes the velocity obstacle of S
+/// with horizon tau iff this is not positive, and neither is it with c = 0.)
 Sign sign_of_support(const GrownShape& s, Vec2 n, double tau, double c);
 
 /// Whether { v : normal . v >= offset } is disjoint from the interior of the truncated velocity obstacle
@@ -31,10 +36,15 @@ Sign sign_of_support(const GrownShape& s, Vec2 n, double tau, double c);
 /// zero normal, offset > 0. Exact. REQUIRES tau > 0.
 bool half_plane_is_safe(const GrownShape& s, double tau, const HalfPlane& h);
 
-enum class Place : int { inside = -1, boundary = 0, outside = 1 };
+/// Where a point lies with respect to a closed set.
+enum class Place : int {
+  inside = -1,   ///< in the interior
+  boundary = 0,  ///< exactly on the boundary
+  outside = 1    ///< not in the set
+};
 
-/// Where q lies with respect to S (predicate B1). Exact. Lengths should lie in [2^-60, 2^60] m; outside, the exact stage
-/// answers.
+/// Where q lies with respect to S (predicate B1). Exact. Lengths should lie in [2^-60, 2^60] m; outside, the exact
+/// stage answers.
 Place locate(const GrownShape& s, Vec2 q);
 
 /// Whether t * direction lies in S for some 0 <= t <= t_max (predicate B2). Exact. REQUIRES t_max >= 0, finite.
@@ -57,7 +67,9 @@ struct StageCounts {
   std::uint64_t filter = 0;  ///< decided in floating point
   std::uint64_t exact = 0;   ///< needed exact arithmetic
 };
+/// The counts so far.
 StageCounts stage_counts();
+/// Sets both counts to 0.
 void reset_stage_counts();
 
 }  // namespace exactvo::geometry

@@ -21,14 +21,15 @@ namespace exactvo::geometry {
 
 /// Certified: low <= the number <= high.
 struct Bracket {
-  double low = 0.0;
-  double high = 0.0;
+  double low = 0.0;   ///< at most the number
+  double high = 0.0;  ///< at least the number
 };
 
 /// Of what regions are built of, and of what is asked of them: no number is larger, so that the products of five of
 /// them, which CGAL's filters make, are finite.
 inline constexpr double kLargestCoordinate = 0x1p200;
 
+/// A region of the plane with straight edges. Immutable; copies share.
 class Region {
  public:
   /// Empty.
@@ -45,10 +46,14 @@ class Region {
   /// same.
   static Region cut(const ConvexPolygon& polygon, const std::vector<HalfPlane>& keep);
 
+  /// Both together.
   Region union_with(const Region& other) const;
+  /// This one without the other.
   Region difference(const Region& other) const;
+  /// What both have in common.
   Region intersection(const Region& other) const;
 
+  /// Whether it has no area.
   bool is_empty() const;
   Bracket area() const;  ///< m^2 or whatever the square of the unit is
 
@@ -58,6 +63,7 @@ class Region {
   /// The connected pieces, largest first. Those that touch in a point count as one where one walk round the outside
   /// goes along both, as round two squares that share a corner.
   struct Piece;
+  /// Rounded, for showing and drawing.
   std::vector<Piece> pieces() const;
 
  private:
@@ -66,10 +72,11 @@ class Region {
   std::shared_ptr<const Set> set_;
 };
 
+/// A connected piece.
 struct Region::Piece {
-  Region region;
+  Region region;    ///< the piece itself, unrounded
   Polygon polygon;  ///< each coordinate rounded to nearest
-  Bracket area;
+  Bracket area;     ///< m^2 or whatever the square of the unit is
 };
 
 }  // namespace exactvo::geometry

@@ -19,9 +19,11 @@
 
 namespace exactvo::geometry {
 
+/// What was asked.
 struct RouteQuestion {
   double radius = 0.0;  ///< m, > 0
-  Vec2 start, goal;     ///< m
+  /// m.
+  Vec2 start, goal;  ///< m
 };
 
 /// Empty where the answer is proven; else what is wrong with it, in a few words with the number of the point:

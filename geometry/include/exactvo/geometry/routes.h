@@ -34,15 +34,15 @@ namespace exactvo::geometry {
 
 /// An edge of an obstacle: `edges_of(obstacles[obstacle])[edge]`.
 struct EdgeName {
-  std::size_t obstacle = 0;
-  std::size_t edge = 0;
+  std::size_t obstacle = 0;  ///< index into the obstacles
+  std::size_t edge = 0;      ///< index into its `edges_of`
 };
 
 /// A point with rational coordinates, in metres.
 struct ExactPoint {
   Vec2 rounded;   ///< one of the two doubles next to it, or the point itself
   std::string x;  ///< "numerator/denominator"; empty where `rounded.x` is exact
-  std::string y;
+  std::string y;  ///< as `x`, for the other coordinate
 };
 
 /// A proven route: every piece between two points keeps a radius away from every obstacle.
@@ -54,7 +54,7 @@ struct Route {
 
 /// A point of the chain, and how it goes on to the next one.
 struct ChainPoint {
-  ExactPoint point;
+  ExactPoint point;          ///< on an edge, proven by `check`
   EdgeName on;               ///< an edge that the point lies on
   bool gap_follows = false;  ///< true: straight across a gap narrower than two radii; false: along the edge `on`
 };
@@ -63,16 +63,22 @@ struct ChainPoint {
 /// narrower than two radii, so that no centre gets across it, and it winds round one of the two an odd number of times
 /// more than round the other.
 struct Separated {
-  std::vector<ChainPoint> chain;
+  std::vector<ChainPoint> chain;  ///< closed: the last point goes on to the first
 };
 
 /// No route: an end of it is not free.
 struct Blocked {
-  enum class End { start, goal } end = End::start;
-  bool inside = false;  ///< inside the polygon obstacles[by.obstacle]; else nearer than a radius to the edge
-  EdgeName by;
+  /// An end of a route. The start is named where neither is free.
+  enum class End {
+    start,  ///< where the route begins
+    goal    ///< where it ends
+  };
+  End end = End::start;  ///< which end
+  bool inside = false;   ///< inside the polygon obstacles[by.obstacle]; else nearer than a radius to the edge
+  EdgeName by;           ///< the obstacle or edge that is in the way; `edge` without meaning where `inside`
 };
 
+/// What a question is answered with: a proof either way.
 using RouteAnswer = std::variant<Route, Separated, Blocked>;
 
 /// How far the map reaches beyond its obstacles. Its scale is the longer side of the obstacles' box (of one point 2^-20
@@ -121,6 +127,7 @@ class RoutePlan {
   /// REQUIRES: 2^-100 m <= radius <= map.largest_radius().
   RoutePlan(const RouteMap& map, double radius);
 
+  /// m, as it was given.
   double radius() const;
 
   /// REQUIRES: both within the map (`covers`). Throws RouteNotProven.

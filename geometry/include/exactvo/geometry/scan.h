@@ -15,12 +15,14 @@
 
 namespace exactvo::geometry {
 
+/// How a scan is divided.
 struct ScanOptions {
   double range_jump = 0.3;   ///< m, > 0; consecutive hits farther apart belong to different walls
   double tolerance = 0.05;   ///< m, >= 0; hits stay within this of their facade
   double merge_turn = 0.15;  ///< rad, in [0, pi]; facades that meet at less are joined while the tolerance holds
 };
 
+/// How loose points are divided.
 struct PointOptions {
   double neighbour_radius = 0.3;  ///< m, > 0; points this near may belong to the same wall
   double tolerance = 0.05;        ///< m, > 0; points stay within this of their facade
@@ -28,6 +30,7 @@ struct PointOptions {
   std::size_t least_points = 3;   ///< >= 2; smaller groups are left as single points
 };
 
+/// Facades, and which hit belongs to which.
 struct DividedPoints {
   std::vector<Segment> facades;                       ///< ends are hits; a lone hit is a facade of length 0
   std::vector<std::optional<std::size_t>> facade_of;  ///< for each hit; nothing where it is not finite

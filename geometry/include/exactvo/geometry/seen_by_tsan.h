@@ -28,10 +28,14 @@ struct TaskAtWork {
   ~TaskAtWork() { __tsan_release(&tasks_done); }
 };
 #else
+/// Nothing, in a build without ThreadSanitizer.
 inline void gives_tasks() {}
+/// Nothing, in a build without ThreadSanitizer.
 inline void has_waited() {}
+/// Nothing, in a build without ThreadSanitizer.
 struct TaskAtWork {
-  TaskAtWork() {}  // not `= default`: nobody reads it
+  /// Not `= default`: nobody reads the object, and compilers would say so.
+  TaskAtWork() {}
 };
 #endif
 

@@ -18,28 +18,28 @@ namespace exactvo::geometry {
 
 /// { x : |x - center| <= radius }, radius >= 0.
 struct Disc {
-  Vec2 center;
+  Vec2 center;          ///< m
   double radius = 0.0;  ///< m, >= 0
 };
 
 /// The segment from `a` to `b`; `a == b` is a point.
 struct Segment {
-  Vec2 a;
-  Vec2 b;
+  Vec2 a;  ///< m, where it begins
+  Vec2 b;  ///< m, where it ends
 };
 
 /// The convex hull of its vertices, listed counter-clockwise, at least one; collinear vertices are tolerated.
 struct ConvexPolygon {
-  std::vector<Vec2> vertices;
+  std::vector<Vec2> vertices;  ///< m
 };
 
 /// { center + L w : |w| <= 1 } with L = [l11 0; l21 l22]. L is the truth (it is exact whatever its entries);
 /// Sigma = L L^T, axes and angle are derived and rounded. l22 = 0 is a segment, all zero a point.
 struct Ellipse {
-  Vec2 center;
-  double l11 = 0.0;
-  double l21 = 0.0;
-  double l22 = 0.0;
+  Vec2 center;       ///< m, c
+  double l11 = 0.0;  ///< m, first row of L
+  double l21 = 0.0;  ///< m, second row of L
+  double l22 = 0.0;  ///< m, second row of L
 };
 
 /// A compact convex obstacle, the only kind a velocity obstacle is built of.
@@ -47,7 +47,7 @@ using ConvexShape = std::variant<Disc, Segment, ConvexPolygon, Ellipse>;
 
 /// An open chain of segments: a wall seen from both sides. At least two points.
 struct Polyline {
-  std::vector<Vec2> points;
+  std::vector<Vec2> points;  ///< m, in order
 };
 
 /// A closed ring without repetition of its first vertex.
@@ -55,8 +55,8 @@ using Ring = std::vector<Vec2>;
 
 /// A polygon with holes; `outer` counter-clockwise, holes clockwise, all simple.
 struct Polygon {
-  Ring outer;
-  std::vector<Ring> holes;
+  Ring outer;               ///< m
+  std::vector<Ring> holes;  ///< m
 };
 
 /// An obstacle as it stands in a scene.
@@ -64,9 +64,9 @@ using Obstacle = std::variant<Polyline, Polygon>;
 
 /// Rounded axes of an ellipse: semi-axes a >= b >= 0 (m) and the angle of the a axis (rad, in (-pi/2, pi/2]).
 struct EllipseAxes {
-  double a = 0.0;
-  double b = 0.0;
-  double angle = 0.0;
+  double a = 0.0;      ///< m, the longer semi-axis
+  double b = 0.0;      ///< m, the shorter semi-axis
+  double angle = 0.0;  ///< rad, of the longer axis against x
 };
 
 /// Rounded: the returned L is within a few ulps of the ellipse asked for.
@@ -103,6 +103,7 @@ std::string to_string(const std::vector<Vec2>& points);
 
 /// The same for error messages: at most `kVerticesShown` points, then "...".
 std::string excerpt(const std::vector<Vec2>& points);
+/// How many points an excerpt shows.
 inline constexpr std::size_t kVerticesShown = 4;
 
 /// The shape in one line for messages, hex floats: reads back losslessly. `disc cx cy r`, `segment ax ay bx by`,

@@ -12,9 +12,10 @@
 
 namespace exactvo::geometry {
 
-/// S = (shape - origin) (+) D(0, radius): the obstacle grown by the robot and seen from it. Kept unrounded, as its parts.
+/// S = (shape - origin) (+) D(0, radius): the obstacle grown by the robot and seen from it. Kept unrounded, as its
+/// parts.
 struct GrownShape {
-  ConvexShape shape;
+  ConvexShape shape;    ///< m, in the coordinates of the scene
   Vec2 origin;          ///< the robot's position, m
   double radius = 0.0;  ///< the robot's radius, m, >= 0
 };
@@ -34,9 +35,10 @@ Vec2 support_point(const GrownShape& s, Vec2 n);
 /// An upper bound of h_S(n), certified: rounded up by the filter's error bound.
 double support_upper_bound(const GrownShape& s, Vec2 n);
 
+/// u: half the distance from 1 to the next double.
 inline constexpr double kUnitRoundoff = 0x1p-53;
-/// First-order bound 9 u H for the centre, ellipse and disc terms, plus one u for the rounded difference shape - origin;
-/// 16 leaves room for the second order.
+/// First-order bound 9 u H for the centre, ellipse and disc terms, plus one u for the rounded difference shape -
+/// origin; 16 leaves room for the second order.
 inline constexpr double kSupportError = 16.0 * kUnitRoundoff;
 /// The square root of an underflowed sum of squares is at most about 2^-537; times the few terms.
 inline constexpr double kSupportUnderflow = 0x1p-520;

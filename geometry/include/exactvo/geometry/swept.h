@@ -15,7 +15,7 @@ namespace exactvo::geometry {
 
 /// The exact sum of its terms: v - w, or v - a/2 - b/2 (halving is exact above 2^-1022).
 struct VectorSum {
-  std::array<Vec2, 3> terms{};
+  std::array<Vec2, 3> terms{};  ///< those not in use are (0, 0)
 };
 
 /// The sum, rounded.

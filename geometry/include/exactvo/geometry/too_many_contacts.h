@@ -10,8 +10,10 @@
 
 namespace exactvo::geometry {
 
+/// Thrown by `normalize`; its text says what is too much.
 class TooManyContacts : public std::runtime_error {
  public:
+  /// With a fixed text.
   TooManyContacts() : std::runtime_error("rings that touch or cross too often") {}
 };
 

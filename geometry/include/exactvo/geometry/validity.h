@@ -14,6 +14,7 @@
 
 namespace exactvo::geometry {
 
+/// What can be wrong with a ring.
 enum class RingProblemCode {
   not_finite,         ///< a coordinate is NaN or infinite
   too_few_points,     ///< fewer than three distinct vertices (two for a polyline)
@@ -28,14 +29,16 @@ enum class RingProblemCode {
 /// "E_SELF_INTERSECTION" and so on.
 const char* code_name(RingProblemCode code);
 
+/// One problem, and where it is.
 struct RingProblem {
-  RingProblemCode code;
+  RingProblemCode code;    ///< what is wrong
   std::size_t ring = 0;    ///< 0 is the outer ring, then the holes
   std::size_t vertex = 0;  ///< index into the ring as given
   Vec2 where;              ///< m; a crossing of two edges is rounded
   bool mended = false;     ///< `normalize` put it right
 };
 
+/// A polygon after `normalize`.
 struct NormalizedPolygon {
   Polygon polygon;                    ///< valid iff `ok()`
   std::vector<RingProblem> problems;  ///< in order of ring and vertex
@@ -54,6 +57,7 @@ struct NormalizedPolygon {
 /// again mends nothing but closure; (3) reversing rings or rotating their start changes neither ok() nor the point set.
 NormalizedPolygon normalize(const std::vector<Ring>& rings);
 
+/// A chain after `normalize_polyline`.
 struct NormalizedPolyline {
   Polyline polyline;                  ///< valid iff `ok()`
   std::vector<RingProblem> problems;  ///< in order of vertex

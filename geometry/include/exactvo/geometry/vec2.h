@@ -10,11 +10,14 @@
 
 namespace exactvo::geometry {
 
+/// A point or a vector.
 struct Vec2 {
-  double x = 0.0;
-  double y = 0.0;
+  double x = 0.0;  ///< forward
+  double y = 0.0;  ///< left
 };
 
+///@{
+/// Coordinate by coordinate; every operation rounded to nearest.
 constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
 constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
 constexpr Vec2 operator-(Vec2 a) { return {-a.x, -a.y}; }
@@ -23,13 +26,20 @@ constexpr Vec2 operator*(Vec2 a, double s) { return {s * a.x, s * a.y}; }
 constexpr Vec2 operator/(Vec2 a, double s) { return {a.x / s, a.y / s}; }
 constexpr Vec2& operator+=(Vec2& a, Vec2 b) { return a = a + b; }
 constexpr Vec2& operator-=(Vec2& a, Vec2 b) { return a = a - b; }
+///@}
+///@{
+/// Whether both coordinates are equal. Exact; a NaN equals nothing.
 constexpr bool operator==(Vec2 a, Vec2 b) { return a.x == b.x && a.y == b.y; }
 constexpr bool operator!=(Vec2 a, Vec2 b) { return !(a == b); }
+///@}
 
+/// The scalar product. Rounded.
 constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 /// The z component of a x b: positive where b lies counter-clockwise of a.
 constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+/// |a|^2. Rounded.
 constexpr double squared_norm(Vec2 a) { return dot(a, a); }
+/// |a|. Rounded; infinite or 0 where |a|^2 leaves the range of doubles.
 inline double norm(Vec2 a) { return std::sqrt(squared_norm(a)); }
 /// `a` turned by +90 degrees.
 constexpr Vec2 perp(Vec2 a) { return {-a.y, a.x}; }
@@ -44,6 +54,7 @@ inline Vec2 normalized(Vec2 a) {
   const double length = std::hypot(a.x, a.y);
   return length > 0.0 ? a / length : Vec2{};
 }
+/// Whether neither coordinate is NaN or infinite.
 inline bool is_finite(Vec2 a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 
 }  // namespace exactvo::geometry

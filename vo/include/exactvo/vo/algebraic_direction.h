@@ -53,6 +53,7 @@ struct AlgebraicValue;
 struct AlgebraicDoor;
 }  // namespace detail
 
+/// A direction, unrounded. Immutable; copies share.
 class AlgebraicDirection {
  public:
   /// The direction of a vector of doubles, exactly. REQUIRES: v finite, not zero.
@@ -62,6 +63,7 @@ class AlgebraicDirection {
   std::vector<std::string> polynomial() const;
   /// Rationals in decimal, "p/q" or "p": the slope t lies between them, or is both of them.
   std::string low() const;
+  /// As `low`: the other end.
   std::string high() const;
   /// k above.
   int quarter_turns() const;
@@ -90,12 +92,13 @@ geometry::Sign turn(const AlgebraicDirection& a, const AlgebraicDirection& b);
 
 /// The signs of cross(a, v) and dot(a, v). Exact. REQUIRES: v finite.
 geometry::Sign turn(const AlgebraicDirection& a, geometry::Vec2 v);
+/// The sign of dot(a, v).
 geometry::Sign along(const AlgebraicDirection& a, geometry::Vec2 v);
 
 /// The directions of both sides of a cone, away from the apex.
 struct ExactLegs {
-  AlgebraicDirection left;  ///< seen from the robot
-  AlgebraicDirection right;
+  AlgebraicDirection left;   ///< seen from the robot
+  AlgebraicDirection right;  ///< seen from the robot
 };
 
 }  // namespace exactvo::vo

@@ -26,17 +26,19 @@
 
 namespace exactvo::vo {
 
+/// What is claimed of a half-plane, with all that the claim depends on.
 struct HalfPlaneClaim {
-  geometry::ConvexShape shape;
-  geometry::Vec2 position;        ///< m, of the robot
-  double radius = 0.0;            ///< m, >= 0, of the robot
-  double time_horizon = 0.0;      ///< s, > 0, may be infinite
-  geometry::Vec2 shape_velocity;  ///< m/s
-  geometry::HalfPlane half_plane;
+  geometry::ConvexShape shape;     ///< m
+  geometry::Vec2 position;         ///< m, of the robot
+  double radius = 0.0;             ///< m, >= 0, of the robot
+  double time_horizon = 0.0;       ///< s, > 0, may be infinite
+  geometry::Vec2 shape_velocity;   ///< m/s
+  geometry::HalfPlane half_plane;  ///< claimed to be disjoint from the interior of the velocity obstacle
 };
 
+/// A claim with the numbers that show it to be true and unchanged.
 struct Certificate {
-  HalfPlaneClaim claim;
+  HalfPlaneClaim claim;      ///< what is proven
   double margin = 0.0;       ///< m: the largest double <= min(0, time_horizon (offset - normal.u)) - h_S(normal); >= 0
   std::uint64_t digest = 0;  ///< FNV-1a of the bits of every other number
 };
@@ -48,12 +50,14 @@ bool is_true(const HalfPlaneClaim& claim);
 /// Nothing where the claim is not true.
 std::optional<Certificate> certify(const HalfPlaneClaim& claim);
 
+/// What a check came to.
 enum class Verdict {
-  valid,
+  valid,        ///< the claim is true, and nothing was changed
   malformed,    ///< a NaN, an infinity, a negative length, no vertices, a zero normal
   altered,      ///< the digest does not fit
   wrong_margin  ///< the margin is not the one of these numbers, or is negative: the claim is not true
 };
+/// Checks in rationals, from the certificate alone. Exact.
 Verdict check(const Certificate& certificate);
 /// "valid", "malformed", "altered", "wrong margin".
 const char* name(Verdict verdict);

@@ -37,9 +37,9 @@ enum class BodyKind {
 
 /// A convex set to keep clear of.
 struct Body {
-  BodyKind kind = BodyKind::enclosure;
-  geometry::ConvexShape shape;  ///< m; of a robot or moving obstacle as it stands at present
-  Vec2 velocity;                ///< m/s, at present; 0 for what stands still
+  BodyKind kind = BodyKind::enclosure;  ///< what it stands for
+  geometry::ConvexShape shape;          ///< m; of a robot or moving obstacle as it stands at present
+  Vec2 velocity;                        ///< m/s, at present; 0 for what stands still
   /// Which obstacles of the scene it stands for, ascending; the one robot or moving obstacle it is.
   std::vector<std::size_t> owners;
 };
@@ -47,6 +47,7 @@ struct Body {
 /// The bodies of a run, by number.
 class BodyTable {
  public:
+  /// Names a body: 0, 1, ... in the order of `add`.
   using Number = std::size_t;
 
   /// REQUIRES: a valid shape (geometry::is_valid).
@@ -54,8 +55,11 @@ class BodyTable {
   /// Another shape and velocity for a body that moves. REQUIRES: a valid shape.
   void move(Number body, geometry::ConvexShape shape, Vec2 velocity);
 
+  /// How many bodies there are.
   std::size_t size() const { return entries_.size(); }
+  /// The body of that number. REQUIRES: body < size().
   const Body& operator[](Number body) const { return entries_[body].body; }
+  /// Its `geometry::box_of`.
   const geometry::Box& box(Number body) const { return entries_[body].box; }
 
   /// The body grown by a robot and seen from it, without a copy. The reference stays valid, also after `add`; what it
@@ -85,13 +89,13 @@ enum class Proof {
 
 /// A half-plane and where it comes from.
 struct Constraint {
-  HalfPlane half_plane;
-  BodyTable::Number body = 0;
-  lp::Priority priority = lp::Priority::hard;
-  Proof proof = Proof::none;
-  double clearance = 0.0;     ///< m, robot's rim to the body; negative in overlap. Rounded
-  Vec2 normal;                ///< unit, from the body's nearest point to the robot. Rounded
-  double time_horizon = 0.0;  ///< s
+  HalfPlane half_plane;                        ///< of velocities that keep clear
+  BodyTable::Number body = 0;                  ///< which body it keeps clear of
+  lp::Priority priority = lp::Priority::hard;  ///< whether it may give
+  Proof proof = Proof::none;                   ///< what is certain of it
+  double clearance = 0.0;                      ///< m, robot's rim to the body; negative in overlap. Rounded
+  Vec2 normal;                                 ///< unit, from the body's nearest point to the robot. Rounded
+  double time_horizon = 0.0;                   ///< s
 };
 
 /// How a robot keeps clear of a body.
@@ -105,8 +109,8 @@ struct ClearancePolicy {
 
 /// A half-plane with its proof.
 struct ProvenHalfPlane {
-  HalfPlane half_plane;
-  Proof proof = Proof::none;
+  HalfPlane half_plane;       ///< of velocities that keep clear
+  Proof proof = Proof::none;  ///< what is certain of it
 };
 
 /// The robot's rim to the body, and the normal there. Rounded.

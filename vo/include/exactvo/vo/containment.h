@@ -22,8 +22,9 @@
 
 namespace exactvo::vo {
 
+/// That an ellipse contains points, with the numbers that show it.
 struct Containment {
-  geometry::Ellipse ellipse;
+  geometry::Ellipse ellipse;           ///< m
   std::vector<geometry::Vec2> points;  ///< m, at least one
   double margin = 0.0;                 ///< the largest double <= 1 - max |L^-1 (x - c)|^2; >= 0
   std::uint64_t digest = 0;            ///< FNV-1a: of c, L, the number of points, the points, the margin
@@ -32,6 +33,7 @@ struct Containment {
 /// Nothing where a point is not contained, no point is given, a number is not finite or L is singular. Exact.
 std::optional<Containment> certify_containment(const geometry::Ellipse& ellipse, std::vector<geometry::Vec2> points);
 
+/// Checks in rationals, from the certificate alone. Exact.
 Verdict check(const Containment& certificate);
 
 /// "containment-certificate 1 ellipse cx cy l11 l21 l22 points k x1 y1 ... margin m digest d", hex floats.

@@ -34,7 +34,15 @@
 
 namespace exactvo::vo {
 
-enum class Variant { vo, rvo, hrvo, orca, ivo };
+/// The members, in the order of the table above.
+enum class Variant {
+  vo,    ///< Fiorini and Shiller 1998
+  rvo,   ///< van den Berg, Lin and Manocha 2008
+  hrvo,  ///< Snape et al. 2011
+  orca,  ///< van den Berg et al. 2011
+  ivo    ///< the paper
+};
+/// All of them.
 inline constexpr Variant kVariants[] = {Variant::vo, Variant::rvo, Variant::hrvo, Variant::orca, Variant::ivo};
 
 /// "VO", "RVO", "HRVO", "ORCA", "IVO".
@@ -42,7 +50,7 @@ const char* name(Variant variant);
 
 /// One robot and one obstacle, both with a velocity.
 struct Encounter {
-  geometry::ConvexShape obstacle;
+  geometry::ConvexShape obstacle;                ///< m, in the coordinates of the scene
   Vec2 obstacle_velocity;                        ///< m/s
   Vec2 position;                                 ///< m, of the robot
   Vec2 velocity;                                 ///< m/s, of the robot
@@ -59,7 +67,7 @@ VelocityObstacle cone_of(const Encounter& encounter);
 
 /// { apex + w : w in C }: a velocity obstacle in absolute velocities.
 struct ShiftedCone {
-  VelocityObstacle cone;
+  VelocityObstacle cone;           ///< of relative velocities
   geometry::VectorSum minus_apex;  ///< v - apex is the sum of v and this
   Vec2 apex;                       ///< m/s, rounded, for people and pictures
 
@@ -69,7 +77,7 @@ struct ShiftedCone {
 
 /// What one author's rule allows the robot.
 struct Member {
-  Variant variant = Variant::vo;
+  Variant variant = Variant::vo;        ///< whose rule
   std::optional<ShiftedCone> cone;      ///< VO, RVO, HRVO: forbidden
   std::optional<HalfPlane> half_plane;  ///< ORCA, IVO: allowed
 
@@ -85,6 +93,7 @@ Member family_member(Variant variant, const Encounter& encounter);
 /// The paper's horizon (equation (9)): distance to S over speed; infinite at rest, 0 in contact. Rounded.
 double paper_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity);
 
+/// Between what a horizon is kept.
 struct HorizonBounds {
   double least = 0.3;        ///< s, > 0
   double most = 3.0;         ///< s, >= least

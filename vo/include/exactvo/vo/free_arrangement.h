@@ -45,6 +45,7 @@ inline constexpr std::size_t kMostCurves = 512;  ///< legs, arcs and edges of th
 /// m, s or m/s: every number of a scene is 0 or of a size from the one to the other. 2^-60 lets pass what rounding
 /// leaves of a 0, 2^30 what maps count in. Near the ends of the doubles' range CORE divides by zero.
 inline constexpr double kLeastArrangedNumber = 0x1p-60;
+/// The greatest size, m, s or m/s.
 inline constexpr double kMostArrangedNumber = 0x1p30;
 /// Of half-planes: their normals are computed, and what should be 0 may be what is left of two roundings or three.
 inline constexpr double kLeastOfHalfPlane = 0x1p-200;
@@ -62,32 +63,41 @@ enum class Refusal {
 /// "none", "ellipse" and so on.
 const char* name(Refusal refusal);
 
-enum class ArcKind { speed_circle, cut_off_arc, offset_edge, leg };
+/// What bounds a piece: the speed's circle, or a curve of a cone.
+enum class ArcKind {
+  speed_circle,  ///< |v| = max_speed
+  cut_off_arc,   ///< round a vertex or disc, divided by the horizon
+  offset_edge,   ///< along an edge, divided by the horizon
+  leg            ///< a side of a cone
+};
 /// "speed circle", "cut-off arc", "offset edge", "leg".
 const char* name(ArcKind kind);
 
 /// Certified: the point lies in the box. Each side is at most 2^-48 max_speed wide, or as narrow as doubles are there.
 struct PointBracket {
+  /// m/s.
   geometry::Bracket x, y;  ///< m/s
 };
 
 /// A stretch of a piece's boundary, what is free on its left.
 struct FreeArc {
-  ArcKind kind = ArcKind::speed_circle;
-  std::size_t cone = 0;  ///< whose; without meaning for the speed's circle
-  PointBracket from, to;
-  Vec2 center;          ///< m/s, rounded; of arcs
-  double radius = 0.0;  ///< m/s, rounded; of arcs
+  ArcKind kind = ArcKind::speed_circle;  ///< of which curve
+  std::size_t cone = 0;                  ///< whose; without meaning for the speed's circle
+  PointBracket from;                     ///< where it begins
+  PointBracket to;                       ///< where it ends
+  Vec2 center;                           ///< m/s, rounded; of arcs
+  double radius = 0.0;                   ///< m/s, rounded; of arcs
   /// Of arcs: round the speed's circle counter-clockwise, round a front clockwise. 0 for straight stretches.
   int turn = 0;
 };
 
 /// One component of F.
 struct FreePiece {
-  std::vector<FreeArc> boundary;
-  geometry::Bracket area;  ///< (m/s)^2; at most 2^-48 max_speed^2 wide, or as narrow as doubles are there
+  std::vector<FreeArc> boundary;  ///< in order, closed, what is free on the left
+  geometry::Bracket area;         ///< (m/s)^2; at most 2^-48 max_speed^2 wide, or as narrow as doubles are there
 };
 
+/// F as an exact arrangement.
 class FreeArrangement {
  public:
   /// Cones whose robot overlaps the obstacle forbid everything: F is empty. REQUIRES (std::logic_error otherwise): what
@@ -96,6 +106,7 @@ class FreeArrangement {
 
   /// The arrangement, or why there is none: for scenes of any numbers.
   struct Attempt;
+  /// The same as the constructor; a scene that is refused is a value, not an exception.
   static Attempt attempt(std::vector<ShiftedCone> cones, double max_speed);
 
   /// What is told before anything is computed; `numbers_apart` is not.
@@ -112,6 +123,7 @@ class FreeArrangement {
 
   /// The components, largest first.
   const std::vector<FreePiece>& pieces() const { return pieces_; }
+  /// (m/s)^2, of all components together. Certified.
   geometry::Bracket area() const;
 
   /// Whether all that |v| <= max_speed and the half-planes allow (equation (13)) is free, up to sets without area.
@@ -122,6 +134,7 @@ class FreeArrangement {
   /// where CGAL's exact ones give up: for half-planes of any numbers.
   std::optional<bool> attempt_holds(const std::vector<HalfPlane>& half_planes) const;
 
+  /// As they were given.
   const std::vector<ShiftedCone>& cones() const { return cones_; }
 
  private:
@@ -130,9 +143,10 @@ class FreeArrangement {
   std::vector<FreePiece> pieces_;
 };
 
+/// An arrangement, or why there is none.
 struct FreeArrangement::Attempt {
-  std::optional<FreeArrangement> free;
-  Refusal refusal = Refusal::none;  ///< none where `free` is something
+  std::optional<FreeArrangement> free;  ///< none where refused
+  Refusal refusal = Refusal::none;      ///< none where `free` is something
 };
 
 }  // namespace exactvo::vo

@@ -34,17 +34,23 @@ namespace exactvo::vo {
 
 /// m/s. Far beyond what moves, and no product of a few leaves the range of doubles.
 inline constexpr double kLeastMaxSpeed = 0x1p-60;
+/// m/s: the largest.
 inline constexpr double kMostMaxSpeed = 0x1p60;
 /// m/s, each coordinate of a cone's apex: its sums stay within geometry::kLargestCoordinate.
 inline constexpr double kMostApex = 0x1p100;
 
+/// Of what size the set is and how closely it is held.
 struct FreeVelocityOptions {
   double max_speed = 2.0;            ///< m/s, from kLeastMaxSpeed to kMostMaxSpeed
   double relative_tolerance = 1e-4;  ///< of max_speed, in [1e-7, 0.1]: how far the polygons may stray from the curves
 };
 
 /// Whether one set lies in another.
-enum class Inside { yes, no, undecided };
+enum class Inside {
+  yes,       ///< proven
+  no,        ///< refuted
+  undecided  ///< neither, within the tolerance
+};
 /// "yes", "no", "undecided".
 const char* name(Inside answer);
 
@@ -58,13 +64,14 @@ struct LostPiece {
 
 /// How a region of half-planes (equation (13)) compares with F.
 struct RegionReport {
-  Inside inside = Inside::undecided;
-  geometry::Region region;       ///< within max_speed, from outside
-  geometry::Bracket area;        ///< (m/s)^2, of the region within max_speed
-  geometry::Bracket given_away;  ///< (m/s)^2, of F minus the region
-  std::vector<LostPiece> lost;   ///< largest first; those of an area below tolerance times max_speed are left out
+  Inside inside = Inside::undecided;  ///< proven either way, or undecided within the tolerance
+  geometry::Region region;            ///< within max_speed, from outside
+  geometry::Bracket area;             ///< (m/s)^2, of the region within max_speed
+  geometry::Bracket given_away;       ///< (m/s)^2, of F minus the region
+  std::vector<LostPiece> lost;        ///< largest first; those of an area below tolerance times max_speed are left out
 };
 
+/// F between two regions with straight edges.
 class FreeVelocities {
  public:
   /// REQUIRES: options in range, apices within kMostApex. Cones whose robot overlaps the obstacle forbid everything: F
@@ -74,7 +81,9 @@ class FreeVelocities {
   /// Whether |v| <= max_speed and v lies in no cone, boundaries of cones not counted as free. Exact.
   bool contains(Vec2 v) const;
 
+  /// Lies in F. Certified.
   const geometry::Region& inner() const { return inner_; }
+  /// Holds F. Certified.
   const geometry::Region& outer() const { return outer_; }
 
   /// (m/s)^2. Certified.
@@ -89,9 +98,11 @@ class FreeVelocities {
   /// offsets.
   RegionReport compare(const std::vector<HalfPlane>& half_planes) const;
 
+  /// As they were given.
   const std::vector<ShiftedCone>& cones() const { return cones_; }
   /// The bounds of cone k within reach of max_speed.
   const geometry::Region& cone_from_inside(std::size_t k) const { return from_inside_[k]; }
+  /// What holds cone k within the disc of max_speed. Certified. REQUIRES: k < cones().size().
   const geometry::Region& cone_from_outside(std::size_t k) const { return from_outside_[k]; }
 
  private:

@@ -29,11 +29,13 @@
 
 namespace exactvo::vo {
 
+/// A velocity obstacle with what its question needs, computed once.
 class Membership {
  public:
   /// REQUIRES: !obstacle.overlaps().
   explicit Membership(VelocityObstacle obstacle);
 
+  /// The velocity obstacle it was made of.
   const VelocityObstacle& obstacle() const { return obstacle_; }
 
   /// Whether v collides within the horizon. Exact. What it decides by itself is not in geometry::stage_counts.

@@ -23,7 +23,7 @@ using geometry::Vec2;
 /// A closed chain of vertices with free space on the right of every edge: a polygon's outer ring counter-clockwise, a
 /// hole clockwise, a wall walked there and back.
 struct OrcaChain {
-  std::vector<Vec2> vertices;
+  std::vector<Vec2> vertices;    ///< m, in order
   std::vector<bool> convex;      ///< whether the chain turns left (or straight back) at the vertex
   std::vector<Vec2> directions;  ///< unit, of the edge that begins at the vertex
 };
@@ -31,8 +31,9 @@ struct OrcaChain {
 /// The chains of an obstacle.
 std::vector<OrcaChain> orca_chains(const geometry::Obstacle& obstacle);
 
+/// A half-plane, and the edge it is for.
 struct OrcaHalfPlane {
-  HalfPlane half_plane;
+  HalfPlane half_plane;    ///< of allowed velocities
   std::size_t edge = 0;    ///< from vertex `edge` to the next
   bool certified = false;  ///< false only where the robot overlaps the edge
 };

@@ -20,12 +20,14 @@ namespace exactvo::vo {
 using geometry::HalfPlane;
 using geometry::Vec2;
 
+/// A robot as the other one sees it.
 struct MovingDisc {
   Vec2 position;        ///< m
   Vec2 velocity;        ///< m/s
   double radius = 0.0;  ///< m, >= 0
 };
 
+/// How the two share.
 struct ReciprocalOptions {
   double time_horizon = 2.0;  ///< s, > 0
   double margin = 0.0;        ///< m, >= 0, kept between the rims; where it is already used up, discs only have to part
@@ -33,6 +35,7 @@ struct ReciprocalOptions {
   double share_of_a = 0.5;    ///< in [0, 1]: how much of the change a takes; b takes the rest
 };
 
+/// Both halves.
 struct ReciprocalHalfPlanes {
   HalfPlane a;             ///< for the new velocity of a
   HalfPlane b;             ///< for the new velocity of b

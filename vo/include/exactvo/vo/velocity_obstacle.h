@@ -63,22 +63,29 @@ struct Leg {
   Vec2 touch;           ///< m, the tangent point on S, rounded
 };
 
+/// Both sides of a cone.
 struct Legs {
-  Leg left;  ///< seen from the robot
-  Leg right;
+  Leg left;   ///< seen from the robot
+  Leg right;  ///< seen from the robot
 };
 
-/// `apex`: of a cone that is not truncated, the point v = 0.
-enum class BoundaryPart { left_leg, right_leg, cut_off, apex };
+/// The parts of a velocity obstacle's boundary.
+enum class BoundaryPart {
+  left_leg,   ///< seen from the robot
+  right_leg,  ///< seen from the robot
+  cut_off,    ///< the shape divided by the horizon
+  apex        ///< v = 0, of a cone that is not truncated
+};
 
 /// The boundary point of VO nearest to a velocity. Rounded.
 struct NearestBoundary {
   Vec2 normal;                   ///< outward at that point, |normal| = 1 up to rounding
   double signed_distance = 0.0;  ///< m/s from v to the boundary: negative inside VO
   Vec2 u;                        ///< m/s, the least change of velocity that reaches the boundary (equation (10))
-  BoundaryPart part = BoundaryPart::cut_off;
+  BoundaryPart part = BoundaryPart::cut_off;  ///< on which part of the boundary it lies
 };
 
+/// The velocities of a robot that collide with one convex obstacle, at rest, within the horizon. Immutable.
 class VelocityObstacle {
  public:
   /// `obstacle` and `robot_position` in metres, `robot_radius` >= 0 m, `time_horizon` > 0 s, may be infinite.
@@ -93,6 +100,7 @@ class VelocityObstacle {
   const geometry::GrownShape& grown() const { return grown_; }
   /// m; how far `grown()` may reach beyond S: 0 for a disc.
   double grown_error() const { return polygonal_ ? polygonal_->error : 0.0; }
+  /// s, as it was given.
   double time_horizon() const { return tau_; }
 
   /// Whether the robot touches or overlaps the obstacle: 0 in S. Then no cone exists. Exact.
@@ -106,9 +114,10 @@ class VelocityObstacle {
   /// The outward normal of S at the point nearest the robot and the distance between the two (negative: the depth
   /// of an overlap), m. Rounded.
   struct Nearest {
-    Vec2 normal;
-    double distance = 0.0;
+    Vec2 normal;            ///< outward, |normal| = 1 up to rounding
+    double distance = 0.0;  ///< m, negative in overlap
   };
+  /// Rounded; in overlap the way out that is shortest.
   Nearest nearest() const;
 
   /// Both sides of the cone; nothing where the robot overlaps or is so near (a few ulps) that no bracket certifies.

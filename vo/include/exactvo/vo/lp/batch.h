@@ -26,13 +26,13 @@ namespace exactvo::lp {
 /// Nothing is copied. Problems with fewer lines are padded with lines that always hold: normal (1, 0), offset -1e30.
 template <class T>
 struct BatchProblems {
-  std::size_t count = 0;  ///< problems
-  std::size_t lines = 0;  ///< lines each, padding included
-  std::size_t block = 0;  ///< a multiple of 16, or at least `count`
-  const T* normal_x = nullptr;
-  const T* normal_y = nullptr;  ///< | |normal| - 1 | <= 2^-10: the slack is reckoned for that
-  const T* offset = nullptr;    ///< m/s
-  const T* preferred_x = nullptr;
+  std::size_t count = 0;               ///< problems
+  std::size_t lines = 0;               ///< lines each, padding included
+  std::size_t block = 0;               ///< a multiple of 16, or at least `count`
+  const T* normal_x = nullptr;         ///< with normal_y
+  const T* normal_y = nullptr;         ///< | |normal| - 1 | <= 2^-10: the slack is reckoned for that
+  const T* offset = nullptr;           ///< m/s
+  const T* preferred_x = nullptr;      ///< with preferred_y
   const T* preferred_y = nullptr;      ///< m/s, [i]
   const T* disc = nullptr;             ///< m/s, [i], finite, > 0
   const std::int32_t* hard = nullptr;  ///< [i]: the first so many lines are hard; null: none
@@ -40,25 +40,27 @@ struct BatchProblems {
   /// now, kNoLine for those that are gone. It saves rounds, though mostly not time (docs/guide/linear-program.md); the
   /// answer promises the same, only its last digits may differ. May be null. REQUIRES: block * lines <= 2^31.
   const std::int32_t* hint = nullptr;
-  std::size_t hint_stride = 0;
+  std::size_t hint_stride = 0;  ///< as BatchAnswers::stride
 };
 
 /// Index of nothing in `active`.
 inline constexpr std::int32_t kNoLine = -1;
 
+/// Where answers are written, arrays of the caller's.
 template <class T>
 struct BatchAnswers {
-  T* velocity_x = nullptr;  ///< m/s, [i]
-  T* velocity_y = nullptr;
+  T* velocity_x = nullptr;         ///< m/s, [i]
+  T* velocity_y = nullptr;         ///< m/s, [i]
   T* violation = nullptr;          ///< m/s, [i], as Solution::violation, up to 8 u disc
   std::uint8_t* status = nullptr;  ///< [i], a Status
   std::int32_t* active = nullptr;  ///< [3 * stride], line indices or kNoLine; may be null
-  std::size_t stride = 0;
+  std::size_t stride = 0;          ///< between the three rows of `active`, at least `count`
   /// [i], double only, may be null. Where given, every lane is proven in the same pass (inequalities (1), (2) and (4)
   /// of certificate.h, rounding errors included); what is not goes to `solve_certified`. 1: proven, 0: see Proven.
   std::uint8_t* proven = nullptr;
 };
 
+/// How many problems left the lockstep walk.
 struct BatchCounts {
   std::size_t scalar = 0;  ///< problems that the lockstep walk handed to the scalar solver
   std::size_t exact = 0;   ///< those among them that needed exact arithmetic; only with `proven`
@@ -67,11 +69,13 @@ struct BatchCounts {
 /// Solves problems first .. last - 1 on the caller's thread. REQUIRES: finite numbers as described.
 BatchCounts solve_batch(const BatchProblems<double>& problems, const BatchAnswers<double>& answers, std::size_t first,
                         std::size_t last);
+/// The same in float.
 BatchCounts solve_batch(const BatchProblems<float>& problems, const BatchAnswers<float>& answers, std::size_t first,
                         std::size_t last);
 
 /// All problems, on oneTBB's threads. The same bits as on one.
 BatchCounts solve_batch_parallel(const BatchProblems<double>& problems, const BatchAnswers<double>& answers);
+/// The same in float.
 BatchCounts solve_batch_parallel(const BatchProblems<float>& problems, const BatchAnswers<float>& answers);
 
 /// The name of the target that runs ("AVX3", "AVX2", "SSE4", ...).

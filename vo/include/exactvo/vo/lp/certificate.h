@@ -28,12 +28,13 @@ namespace exactvo::lp {
 
 /// A constraint, a side of the box or the disc, and its multiplier: the exact sum of `multiplier`, mostly one double.
 struct Term {
-  Binding binding;
+  Binding binding;                 ///< what the multiplier belongs to
   std::vector<double> multiplier;  ///< dimensionless
 };
 
+/// The proof of one answer.
 struct Certificate {
-  Status status = Status::optimal;
+  Status status = Status::optimal;  ///< what is claimed
   geometry::Vec2 velocity;          ///< m/s, what the claim is about
   double violation = 0.0;           ///< as Solution::violation; no constraint that may give is violated by more
   std::vector<Term> contradiction;  ///< relaxed, infeasible: at most three terms, by (1)
@@ -46,6 +47,7 @@ struct Certificate {
   std::vector<Binding> vertex;
 };
 
+/// Why a certificate proves nothing.
 enum class CertificateError {
   none,           ///< the certificate proves its claim
   malformed,      ///< indices, counts, signs or numbers out of range
@@ -83,8 +85,9 @@ inline constexpr double kWidestGap = 0x1p-40;
 /// is more. REQUIRES: a certificate that `check` accepts.
 bool is_tight(const Problem& problem, const Certificate& certificate);
 
+/// An answer with its proof.
 struct Proven {
-  Solution solution;
+  Solution solution;  ///< rounded inward; what it claims is what the certificate proves
   /// Absent only where multipliers leave the range of double (numbers in the problem beyond 2^+-300).
   std::optional<Certificate> certificate;
   bool exact_stage = false;  ///< the double answer could not be certified

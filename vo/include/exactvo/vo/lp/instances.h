@@ -5,14 +5,14 @@
 /// Instance sets by name and seed, the same on every machine, and the binary file they travel in. Every bench and every
 /// accuracy test draws on these (docs/guide/linear-program.md).
 ///
-/// - RF<m>: random feasible, m soft lines around a witness in a disc of 0.9 v_max, slack U(0, 1.5)
-/// - RI<m>: random infeasible, three soft lines 120 degrees +- 0.35 rad apart exclude a centre by U(0.05, 0.5)
-/// - parallel:<e>: neighbours tilted by e against each other
-/// - corridor:<e>: antiparallel lines with a gap of +-e
-/// - through:<e>: lines that pass v_pref at a distance of +-e
-/// - tangent:<e>: lines that miss or touch the speed disc by +-e
-/// - concurrent:<e>: three lines through a point, up to +-e
-/// - far:<e>: as corridor, the offsets taken from points 100 m/s away along the line
+/// - RFm: random feasible, m soft lines around a witness in a disc of 0.9 v_max, slack U(0, 1.5)
+/// - RIm: random infeasible, three soft lines 120 degrees +- 0.35 rad apart exclude a centre by U(0.05, 0.5)
+/// - parallel:E: neighbours tilted by E against each other
+/// - corridor:E: antiparallel lines with a gap of +-E
+/// - through:E: lines that pass v_pref at a distance of +-E
+/// - tangent:E: lines that miss or touch the speed disc by +-E
+/// - concurrent:E: three lines through a point, up to +-E
+/// - far:E: as corridor, the offsets taken from points 100 m/s away along the line
 ///
 /// The last six are the adversarial families: ten lines, of which the first two or three are as said and the rest
 /// random.
@@ -31,14 +31,17 @@ namespace exactvo::lp {
 /// A std::logic_error names a set that does not exist.
 std::vector<Problem> generate(const std::string& set, std::size_t count, std::uint64_t seed, std::size_t first = 0);
 
-/// The families of adversarial problems, without their ":<e>".
+/// The families of adversarial problems, without their ":E".
 std::vector<std::string> adversarial_families();
 
 /// A file that is not what it says: where, what was found, what was expected.
 class InstanceError : public std::runtime_error {
  public:
+  /// `what()` joins the three.
   InstanceError(std::string place, std::string found, std::string expected);
-  const std::string place, found, expected;
+  const std::string place;     ///< where in the file
+  const std::string found;     ///< what stands there
+  const std::string expected;  ///< what should
 };
 
 /// The binary file (little endian): int32 count; then per instance int32 m, int32 m_hard (the first m_hard lines are

@@ -15,8 +15,9 @@ namespace exactvo::lp {
 /// The arrays must be readable up to a multiple of `kSinglePadding` lines; what stands beyond `count` is not used.
 inline constexpr std::size_t kSinglePadding = 8;
 
+/// One problem in the caller's arrays.
 struct SingleProblem {
-  const double* normal_x = nullptr;
+  const double* normal_x = nullptr;  ///< with normal_y
   const double* normal_y = nullptr;  ///< | |normal| - 1 | <= 2^-10
   const double* offset = nullptr;    ///< m/s
   std::size_t count = 0;             ///< lines

@@ -12,6 +12,7 @@
 
 namespace exactvo::lp {
 
+/// How an answer is to be read.
 enum class Status {
   optimal,     ///< every constraint and the speed bound hold, exactly, for the doubles returned
   relaxed,     ///< the soft ones had to give: the largest violation is the least possible; the hard ones hold exactly
@@ -24,7 +25,7 @@ const char* name(Status status);
 
 /// What binds, and how strongly.
 struct ActiveConstraint {
-  Binding binding;
+  Binding binding;          ///< which boundary
   double multiplier = 0.0;  ///< lambda, or nu of the disc; 0 or more, see Solution
 };
 
@@ -40,10 +41,10 @@ struct ActiveConstraint {
 /// (1) to (4) of certificate.h); those of `solve` and `solve_single` are rounded and prove nothing until `certify` has
 /// checked them. The multipliers of a `no_interior` answer are 0.
 struct Solution {
-  geometry::Vec2 velocity;  ///< m/s
-  Status status = Status::optimal;
-  std::array<ActiveConstraint, 3> active{};
-  std::size_t active_count = 0;  ///< at most 2 where optimal, at most 3 elsewhere
+  geometry::Vec2 velocity;                   ///< m/s
+  Status status = Status::optimal;           ///< how `velocity` is to be read
+  std::array<ActiveConstraint, 3> active{};  ///< the first `active_count` have a meaning
+  std::size_t active_count = 0;              ///< at most 2 where optimal, at most 3 elsewhere
   /// c - n.v where it is largest, in m/s |n|: m/s where |n| = 1. relaxed: of the soft constraints; infeasible: of the
   /// hard ones; no_interior: of any, about a rounding error; 0 where optimal. Rounded.
   double violation = 0.0;

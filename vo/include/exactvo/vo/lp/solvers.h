@@ -12,6 +12,7 @@
 
 namespace exactvo::lp {
 
+/// A method of solution.
 enum class Solver {
   incremental,  ///< one problem at a time, double (solve.h)
   batch,        ///< a problem a SIMD lane, double (batch.h); problems it does not take go to `incremental`
@@ -21,6 +22,7 @@ enum class Solver {
 
 /// "incremental" and so on.
 const char* name(Solver solver);
+/// Every name, in the order of Solver.
 std::vector<std::string> solver_names();
 /// False for an unknown name.
 bool parse(const std::string& text, Solver& solver);
@@ -34,11 +36,13 @@ std::vector<Proven> solve_all(Solver solver, const std::vector<Problem>& problem
 /// reference to `problems`. REQUIRES: well-formed problems.
 class Solving {
  public:
+  /// Lays the problems out for the solver.
   Solving(Solver solver, const std::vector<Problem>& problems);
   ~Solving();
   Solving(const Solving&) = delete;
   Solving& operator=(const Solving&) = delete;
 
+  /// Solves all of them.
   void solve();
   /// As from solve_all. REQUIRES: solve() was called, and this was not.
   std::vector<Proven> answers();
