@@ -119,14 +119,14 @@ TEST_F(ObstacleWrite, OtherExtensionsAreRefused) {
 TEST(Findings, EveryProblemIsListedAlsoOfRefusedObstacles) {
   ReadOptions options;
   options.keep_going = true;
-  // Unclosed, clockwise and with a repeated vertex; then a bow tie whose other problems are mended in vain.
+  // Unclosed, clockwise and with a repeated vertex; then a bow tie whose other problems are repaired in vain.
   const ObstacleFile file =
       parse_wkt("POLYGON ((0 0, 0 1, 0 1, 1 1, 1 0))\nPOLYGON ((0 0, 2 2, 2 2, 2 0, 0 2))", "t.wkt", options);
   EXPECT_EQ(file.counts.repaired, 1u);
   EXPECT_EQ(file.counts.rejected, 1u);
-  const auto count = [&](DataCode code, bool mended) {
+  const auto count = [&](DataCode code, bool repaired) {
     return std::count_if(file.findings.begin(), file.findings.end(),
-                         [&](const RingFinding& f) { return f.code == code && f.mended == mended; });
+                         [&](const RingFinding& f) { return f.code == code && f.repaired == repaired; });
   };
   EXPECT_EQ(count(DataCode::clockwise, true), 1);
   EXPECT_EQ(count(DataCode::unclosed, true), 2);

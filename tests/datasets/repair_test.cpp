@@ -117,7 +117,7 @@ Ring random_ring(exactvo::test::SeededRandom& random, int most, int lattice) {
 
 TEST(RepairProperty, LatticeRingsWithEveryDegeneracy) {
   exactvo::test::SeededRandom random(exactvo::test::seed_of_run(71));
-  int mended = 0;
+  int repaired = 0;
   for (int k = 0; k < 600; ++k) {
     Rings rings;
     for (int n = random.integer(1, 4); n > 0; --n) rings.push_back(random_ring(random, 9, 5));
@@ -127,11 +127,11 @@ TEST(RepairProperty, LatticeRingsWithEveryDegeneracy) {
       EXPECT_TRUE(is_named) << code_name(*r.refused);
       continue;
     }
-    ++mended;
+    ++repaired;
     expect_properties(r, std::to_string(k));
     expect_area_of_the_rule(rings, r);
   }
-  EXPECT_GT(mended, 450);
+  EXPECT_GT(repaired, 450);
 }
 
 TEST(RepairProperty, RandomDoublesWithRoundedCrossings) {
@@ -229,7 +229,7 @@ TEST(RepairShared, EveryInvalidPolygonIsMendedOrNamed) {
   options.keep_going = true;
   options.repair = true;
   std::size_t recombined = 0;
-  std::size_t unmended = 0;
+  std::size_t unrepaired = 0;
   for (const ManifestRow& row : manifest_of(folders)) {
     SCOPED_TRACE(row.path);
     const ObstacleFile file = read_obstacles(shared_data() / row.path, options);
@@ -237,7 +237,7 @@ TEST(RepairShared, EveryInvalidPolygonIsMendedOrNamed) {
       const bool has_no_rule = error.code() == DataCode::too_few_points || error.code() == DataCode::zero_area ||
                                error.code() == DataCode::not_finite;
       EXPECT_TRUE(has_no_rule) << error.what();
-      ++unmended;
+      ++unrepaired;
     }
     std::size_t parts = 0;
     for (const RepairRecord& r : file.repairs) {
@@ -259,9 +259,9 @@ TEST(RepairShared, EveryInvalidPolygonIsMendedOrNamed) {
         EXPECT_EQ(p.code, geometry::RingProblemCode::unclosed) << o.id;
     }
   }
-  std::printf("%zu polygons cut and recombined, %zu shapes that nothing can be made of\n", recombined, unmended);
+  std::printf("%zu polygons cut and recombined, %zu shapes that nothing can be made of\n", recombined, unrepaired);
   EXPECT_GE(recombined, built_with_gdal() ? 126u : 80u);
-  EXPECT_LE(unmended, 26u);
+  EXPECT_LE(unrepaired, 26u);
 }
 
 TEST(RepairShared, TheSeamOfLandBecomesAPolygonWithAHole) {

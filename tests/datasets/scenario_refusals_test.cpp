@@ -162,7 +162,7 @@ TEST_F(ScenarioFiles, AScenarioThatNamesItselfHasAnEnd) {
   EXPECT_EQ(load_scenario(folder_ / "8.json").obstacles.size(), 1u);
 }
 
-// Scenario, pointer and path: all three are needed to mend it.
+// Scenario, pointer and path: all three are needed to correct it.
 void expect_named(const DataError& error, DataCode code, const std::string& place, const std::filesystem::path& path) {
   EXPECT_EQ(error.file(), "scenario.json") << error.what();
   expect_refusal(error, code, place);

@@ -24,7 +24,7 @@ std::string codes(const std::vector<RingProblem>& problems) {
   std::string out;
   for (const RingProblem& p : problems) {
     out += std::string(code_name(p.code)) + "@" + std::to_string(p.ring) + "/" + std::to_string(p.vertex);
-    out += p.mended ? " mended;" : ";";
+    out += p.repaired ? " repaired;" : ";";
   }
   return out;
 }
@@ -46,14 +46,14 @@ TEST(Normalize, AValidClosedSquareHasNoProblem) {
 }
 
 TEST(Normalize, MendsClosureDuplicatesAndWinding) {
-  EXPECT_EQ(codes_of({kSquare}), "E_UNCLOSED@0/3 mended;");
+  EXPECT_EQ(codes_of({kSquare}), "E_UNCLOSED@0/3 repaired;");
   EXPECT_EQ(codes_of({{{0, 0}, {4, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {0, 0}}}),
-            "E_REPEATED_VERTEX@0/2 mended;E_REPEATED_VERTEX@0/6 mended;");
+            "E_REPEATED_VERTEX@0/2 repaired;E_REPEATED_VERTEX@0/6 repaired;");
   const auto turned = normalize({{{0, 0}, {0, 4}, {4, 4}, {4, 0}, {0, 0}}});
-  EXPECT_EQ(codes(turned.problems), "E_CLOCKWISE@0/0 mended;");
+  EXPECT_EQ(codes(turned.problems), "E_CLOCKWISE@0/0 repaired;");
   EXPECT_EQ(turned.polygon.outer, kSquare);
   const auto hole = normalize({closed(kSquare), {{1, 1}, {2, 1}, {2, 2}, {1, 1}}});
-  EXPECT_EQ(codes(hole.problems), "E_CLOCKWISE@1/0 mended;");
+  EXPECT_EQ(codes(hole.problems), "E_CLOCKWISE@1/0 repaired;");
   EXPECT_EQ(hole.polygon.holes[0], (Ring{{1, 1}, {2, 2}, {2, 1}}));
 }
 
@@ -97,8 +97,9 @@ TEST(NormalizePolyline, MendsAndReports) {
   const auto wall = normalize_polyline({{0, 0}, {0, 0}, {1, 1}, {0, 1}, {1, 0}});
   EXPECT_TRUE(wall.ok());  // it may cross itself
   EXPECT_EQ(wall.polyline.points.size(), 4U);
-  EXPECT_EQ(codes(wall.problems), "E_REPEATED_VERTEX@0/1 mended;");
-  EXPECT_EQ(codes(normalize_polyline({{1, 2}, {1, 2}}).problems), "E_TOO_FEW_POINTS@0/0;E_REPEATED_VERTEX@0/1 mended;");
+  EXPECT_EQ(codes(wall.problems), "E_REPEATED_VERTEX@0/1 repaired;");
+  EXPECT_EQ(codes(normalize_polyline({{1, 2}, {1, 2}}).problems),
+            "E_TOO_FEW_POINTS@0/0;E_REPEATED_VERTEX@0/1 repaired;");
   EXPECT_FALSE(normalize_polyline({}).ok());
   EXPECT_FALSE(normalize_polyline({{0, 0}, {std::nan(""), 0}}).ok());
 }

@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
                              "vo --obstacle 'LINESTRING(2 -1, 2 1)' --position 0,0 --velocity 1,0 --radius 0.3 "
                              "--time-horizon 2 --figure"},
                     FigureOf{"explain", "explain s.json --time 1 --robot 0 --out"},
-                    FigureOf{"repair", "repair bow.wkt --out mended.wkt --figure"},
+                    FigureOf{"repair", "repair bow.wkt --out repaired.wkt --figure"},
                     FigureOf{"segment", "segment square.wkt --figure"},
                     FigureOf{"route", "route square.wkt --from -2,0 --to 9,1 --radius 0.1 --figure"},
                     FigureOf{"generate", "generate star --count 1 --out star.wkt --figure"}),

@@ -64,7 +64,7 @@ TEST(Validate, NamesFileFeatureRingVertexCodeAndCoordinates) {
   EXPECT_EQ(problem.at("ring"), 0);
   EXPECT_EQ(problem.at("x"), 11.0);
   EXPECT_EQ(problem.at("y"), 1.0);
-  EXPECT_FALSE(problem.at("mended"));
+  EXPECT_FALSE(problem.at("repaired"));
   EXPECT_EQ(problem.at("found"), "a ring that crosses or touches itself");
 }
 
@@ -91,7 +91,7 @@ TEST(ObstacleVerbs, MistypedWordsAreAnsweredWithTheNearest) {
 TEST(Repair, WritesWhatIsMendedAndNamesWhatIsNot) {
   const Workplace here;
   here.write("bad.wkt", std::string(kGood) + kBowTie + kHopeless);
-  const Outcome outcome = here.run("repair bad.wkt --out mended.wkt --figure mended.svg --json");
+  const Outcome outcome = here.run("repair bad.wkt --out repaired.wkt --figure repaired.svg --json");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   const json file = json::parse(outcome.out).at("files").at(0);
   EXPECT_EQ(file.at("counts").at("repaired"), 1);
@@ -102,9 +102,9 @@ TEST(Repair, WritesWhatIsMendedAndNamesWhatIsNot) {
   EXPECT_EQ(bow_tie.at("after").at("area"), 2.0);
   EXPECT_EQ(bow_tie.at("after").at("polygons"), 2);
   EXPECT_EQ(file.at("repairs").at(1).at("refused"), "E_TOO_FEW_POINTS");
-  EXPECT_TRUE(here.has("mended.dat"));
-  EXPECT_TRUE(here.has("mended.gp"));
-  const Outcome again = here.run("validate --strict mended.wkt");
+  EXPECT_TRUE(here.has("repaired.dat"));
+  EXPECT_TRUE(here.has("repaired.gp"));
+  const Outcome again = here.run("validate --strict repaired.wkt");
   EXPECT_EQ(again.status, 0) << again.out;
   EXPECT_THAT(again.err, HasSubstr("3 valid"));
 }
@@ -115,9 +115,9 @@ TEST(Repair, AWallOfTheSameIdDoesNotStopTheFigure) {
     {"type":"Feature","id":"A","properties":{"id":"A"},"geometry":{"type":"LineString","coordinates":[[0,0],[1,5]]}},
     {"type":"Feature","id":"A","properties":{"id":"A"},"geometry":{"type":"Polygon",
      "coordinates":[[[10,0],[12,2],[12,0],[10,2],[10,0]]]}}]})");
-  const Outcome outcome = here.run("repair twice.geojson --units metres --out mended.wkt --figure mended.svg");
+  const Outcome outcome = here.run("repair twice.geojson --units metres --out repaired.wkt --figure repaired.svg");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(here.has("mended.dat"));
+  EXPECT_TRUE(here.has("repaired.dat"));
 }
 
 /// The colour of a pixel by what gnuplot drew there is not ours to test: what is filled, and in which order, is.
@@ -126,9 +126,9 @@ TEST(Repair, AnIslandInAHoleIsFilledWithNothingPaintedOverIt) {
   here.write("island.wkt",
              "POLYGON((0 0, 400000 0, 400000 400000, 0 400000, 0 0), (50000 50000, 350000 50000, 350000 350000, 50000 "
              "350000, 50000 50000), (100000 100000, 200000 200000, 200000 100000, 100000 200000, 100000 100000))\n");
-  const Outcome outcome = here.run("repair island.wkt --out mended.wkt --figure mended.svg");
+  const Outcome outcome = here.run("repair island.wkt --out repaired.wkt --figure repaired.svg");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const std::string script = here.read("mended.gp");
+  const std::string script = here.read("repaired.gp");
   EXPECT_THAT(script, HasSubstr("title '(b) after: 3 polygons'"));
   std::size_t fillings = 0;
   for (std::size_t at = 0; (at = script.find("filledcurves", at)) != std::string::npos; ++at) ++fillings;
@@ -140,9 +140,9 @@ TEST(Repair, AnIslandInAHoleIsFilledWithNothingPaintedOverIt) {
 TEST(Repair, FiguresFarFromTheOriginCountFromAPointNearby) {
   const Workplace here;
   here.write("far.wkt", "POLYGON((500010 5500000, 500012 5500002, 500012 5500000, 500010 5500002, 500010 5500000))\n");
-  ASSERT_EQ(here.run("repair far.wkt --out mended.wkt --figure mended.svg").status, 0);
-  EXPECT_THAT(here.read("mended.gp"), AllOf(HasSubstr("after: 2 polygons - (500010, 5500000)'"), HasSubstr("x0 = "),
-                                            HasSubstr("set xtics 0.5\n")));
+  ASSERT_EQ(here.run("repair far.wkt --out repaired.wkt --figure repaired.svg").status, 0);
+  EXPECT_THAT(here.read("repaired.gp"), AllOf(HasSubstr("after: 2 polygons - (500010, 5500000)'"), HasSubstr("x0 = "),
+                                              HasSubstr("set xtics 0.5\n")));
 }
 
 TEST(Repair, SeveralFilesBecomeOneAndAnUnreadableOneNone) {

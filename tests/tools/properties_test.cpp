@@ -127,8 +127,8 @@ TEST(Properties, AreNamedWhereTheFormatHasNoPlaceForThem) {
 TEST(Properties, OfARepairedFileAreKept) {
   const Workplace here;
   here.write("town.geojson", kTown);
-  ASSERT_EQ(here.run("repair town.geojson --out mended.geojson").status, 0);
-  EXPECT_EQ(features_of(here, "mended.geojson").at(1).at("properties").at("name"), "Hof");
+  ASSERT_EQ(here.run("repair town.geojson --out repaired.geojson").status, 0);
+  EXPECT_EQ(features_of(here, "repaired.geojson").at(1).at("properties").at("name"), "Hof");
 }
 
 TEST(Properties, WhoseNamesDifferInCaseOrAreTakenGetColumnsOfTheirOwn) {

@@ -43,7 +43,7 @@ void append_problems(JsonWriter& json, const ObstacleShapes& shapes) {
   json.key("problems").begin_array();
   for (const geometry::RingProblem& p : shapes.problems) {
     json.begin_object().member("code", code_name(p.code)).member("ring", std::uint64_t{p.ring});
-    json.member("vertex", std::uint64_t{p.vertex}).member("where", p.where).member("mended", p.mended).end_object();
+    json.member("vertex", std::uint64_t{p.vertex}).member("where", p.where).member("repaired", p.repaired).end_object();
   }
   json.end_array();
 }

@@ -67,7 +67,7 @@ bool encloses_nothing(const RingProblem& problem) {
   return problem.code == RingProblemCode::too_few_points || problem.code == RingProblemCode::zero_area;
 }
 
-/// The first problem that no rule mends.
+/// The first problem that no rule repairs.
 std::optional<DataCode> hopeless(const std::vector<RingProblem>& problems) {
   for (const RingProblem& problem : problems) {
     const bool is_fatal =
@@ -146,14 +146,14 @@ void recombine(const std::vector<Ring>& rings, Repair& repair) {
   }
 }
 
-void mend(const std::vector<Ring>& rings, Repair& repair) {
+void repair_rings(const std::vector<Ring>& rings, Repair& repair) {
   NormalizedPolygon normal = geometry::normalize(rings);
   repair.problems = std::move(normal.problems);
   repair.refused = hopeless(repair.problems);
   if (repair.refused) return;
   const Kept kept = without_empty_holes(rings, repair.problems);
   if (kept.rings.size() < rings.size()) normal = normalized_without(kept, repair.problems);
-  const auto is_bad = [](const RingProblem& p) { return !p.mended && !encloses_nothing(p); };
+  const auto is_bad = [](const RingProblem& p) { return !p.repaired && !encloses_nothing(p); };
   if (std::any_of(repair.problems.begin(), repair.problems.end(), is_bad)) {
     recombine(kept.rings, repair);
   } else {
@@ -174,12 +174,12 @@ Repair repair(const std::vector<Ring>& rings) {
   Repair result;
   result.before = facts_of(rings);
   try {
-    mend(rings, result);
+    repair_rings(rings, result);
   } catch (const geometry::TooManyContacts&) {
     result.refused = DataCode::size;
   }
   if (!result.ok()) return result;
-  for (RingProblem& problem : result.problems) problem.mended = true;
+  for (RingProblem& problem : result.problems) problem.repaired = true;
   result.after = facts_of(result.polygons);
   return result;
 }

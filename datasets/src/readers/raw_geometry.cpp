@@ -53,7 +53,7 @@ const char* words_for(DataCode code) {
   }
 }
 
-const char* words_for_mending(DataCode code) {
+const char* words_for_repair(DataCode code) {
   switch (code) {
     case DataCode::unclosed:
       return "ring closed";
@@ -134,7 +134,7 @@ RingFinding finding_at(DataCode code, const RawGeometry& raw, const geometry::Ri
   finding.where = at.where;
   finding.ring = at.ring;
   finding.vertex = at.vertex;
-  finding.mended = at.mended;
+  finding.repaired = at.repaired;
   finding.at_vertex = at.where;
   const geometry::Ring& ring = raw.rings[at.ring];
   if (ring.empty()) return finding;
@@ -151,9 +151,9 @@ Judgement judged(geometry::Obstacle shape, const std::vector<geometry::RingProbl
   bool is_refused = false;
   for (const geometry::RingProblem& problem : problems) {
     const DataCode code = data_code(problem.code);
-    if (problem.mended && !is_worth_a_note(raw, code)) continue;
-    const bool first_refusal = !problem.mended && !is_refused;
-    is_refused = is_refused || !problem.mended;
+    if (problem.repaired && !is_worth_a_note(raw, code)) continue;
+    const bool first_refusal = !problem.repaired && !is_refused;
+    is_refused = is_refused || !problem.repaired;
     if (judgement.findings.size() < kMostFindings || first_refusal) {
       judgement.findings.push_back(finding_at(code, raw, problem));
     } else {
@@ -227,9 +227,9 @@ DataError ring_refusal(const RingFinding& finding, const std::string& file) {
           expectation(finding.code)};
 }
 
-void refuse_unmended(const Judgement& judgement, const std::string& file) {
+void refuse_unrepaired(const Judgement& judgement, const std::string& file) {
   for (const RingFinding& finding : judgement.findings) {
-    if (!finding.mended) throw ring_refusal(finding, file);
+    if (!finding.repaired) throw ring_refusal(finding, file);
   }
 }
 
@@ -242,11 +242,11 @@ Collector::Collector(std::string file, std::string format, const ReadOptions& op
 void Collector::add(const RawGeometry& raw) {
   call_wait_hook();
   if (reject_far(raw)) return;
-  if (options_.repair && raw.kind == RawKind::polygon) return add_mended(raw);
+  if (options_.repair && raw.kind == RawKind::polygon) return add_repaired(raw);
   Judgement judgement = judge(raw);
   take_findings(judgement.findings, judgement.unlisted);
   try {
-    refuse_unmended(judgement, result_.file);
+    refuse_unrepaired(judgement, result_.file);
   } catch (const DataError& error) {
     return reject(error);
   }
@@ -262,26 +262,26 @@ bool Collector::reject_far(const RawGeometry& raw) {
   return true;
 }
 
-void Collector::add_mended(const RawGeometry& raw) {
-  Repair mended = repair(raw.rings);
-  const Judgement judgement = judged(geometry::Polygon{}, mended.problems, raw);
+void Collector::add_repaired(const RawGeometry& raw) {
+  Repair repaired = repair(raw.rings);
+  const Judgement judgement = judged(geometry::Polygon{}, repaired.problems, raw);
   take_findings(judgement.findings, judgement.unlisted);
-  if (mended.changed() && stream_ == nullptr) {
-    result_.repairs.push_back({raw.place, raw.id, codes_of(judgement.findings), mended.refused, mended.recombined,
-                               mended.moved, mended.recombined ? raw.rings : std::vector<geometry::Ring>{},
-                               mended.before, mended.after});
+  if (repaired.changed() && stream_ == nullptr) {
+    result_.repairs.push_back({raw.place, raw.id, codes_of(judgement.findings), repaired.refused, repaired.recombined,
+                               repaired.moved, repaired.recombined ? raw.rings : std::vector<geometry::Ring>{},
+                               repaired.before, repaired.after});
   }
-  if (!mended.ok()) return reject(refusal_of(*mended.refused, judgement, raw.place));
+  if (!repaired.ok()) return reject(refusal_of(*repaired.refused, judgement, raw.place));
   count(judgement.findings);
-  for (std::size_t k = 0; k < mended.polygons.size(); ++k) {
-    keep(raw, k == 0 ? raw.id : raw.id + "-" + std::to_string(k + 1), std::move(mended.polygons[k]),
+  for (std::size_t k = 0; k < repaired.polygons.size(); ++k) {
+    keep(raw, k == 0 ? raw.id : raw.id + "-" + std::to_string(k + 1), std::move(repaired.polygons[k]),
          !judgement.findings.empty());
   }
 }
 
 DataError Collector::refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const {
   for (const RingFinding& finding : judgement.findings) {
-    if (finding.code == reason && !finding.mended) return ring_refusal(finding, result_.file);
+    if (finding.code == reason && !finding.repaired) return ring_refusal(finding, result_.file);
   }
   return repair_refusal(reason, result_.file, place);
 }
@@ -301,9 +301,9 @@ void Collector::count(const std::vector<RingFinding>& findings) {
   ++result_.counts.read;
   ++(findings.empty() ? result_.counts.done : result_.counts.repaired);
   if (stream_ != nullptr) return;
-  for (const RingFinding& mended : findings) {
+  for (const RingFinding& repaired : findings) {
     if (notes_of_findings_++ >= kMostFindings) return;
-    result_.notes.push_back({mended.code, mended.place, words_for_mending(mended.code)});
+    result_.notes.push_back({repaired.code, repaired.place, words_for_repair(repaired.code)});
   }
 }
 

@@ -37,10 +37,10 @@ struct RawGeometry {
 /// "feature 3, ring 0, vertex 17", or the ring's pointer "/obstacles/4/polygon": the vertex alone is not at fault.
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex);
 
-/// The shape put in order, and what was found in it; to be used only if all of that was mended.
+/// The shape put in order, and what was found in it; to be used only if all of that was repaired.
 struct Judgement {
   geometry::Obstacle shape;
-  std::vector<RingFinding> findings;         ///< kMostFindings at most, the first that was not mended among them
+  std::vector<RingFinding> findings;         ///< kMostFindings at most, the first that was not repaired among them
   std::map<DataCode, std::size_t> unlisted;  ///< the others
 };
 Judgement judge(const RawGeometry& raw);
@@ -48,8 +48,8 @@ Judgement judge(const RawGeometry& raw);
 /// The refusal that a finding is.
 DataError ring_refusal(const RingFinding& finding, const std::string& file);
 
-/// Throws DataError for the first finding that was not mended.
-void refuse_unmended(const Judgement& judgement, const std::string& file);
+/// Throws DataError for the first finding that was not repaired.
+void refuse_unrepaired(const Judgement& judgement, const std::string& file);
 
 /// Gathers a file's geometries into an ObstacleFile and keeps the books. Virtual, so that a reader in a module that is
 /// loaded (vector_library.h) runs the program's copy of the geometry behind it, not one of its own.
@@ -84,7 +84,7 @@ class Collector {
   /// Whether it has a coordinate beyond kLargestCoordinate.
   bool reject_far(const RawGeometry& raw);
   /// Where `repair` may do more than `judge`.
-  void add_mended(const RawGeometry& raw);
+  void add_repaired(const RawGeometry& raw);
   DataError refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const;
   void take_findings(const std::vector<RingFinding>& findings, const std::map<DataCode, std::size_t>& unlisted = {});
   void count(const std::vector<RingFinding>& findings);

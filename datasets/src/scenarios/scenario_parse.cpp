@@ -142,7 +142,7 @@ class Reader {
       } else {
         const std::string id = list[k].value("id", "O" + std::to_string(k + 1));
         Judgement judgement = judge(to_raw(list[k], id, pointer));
-        refuse_unmended(judgement, file_);
+        refuse_unrepaired(judgement, file_);
         scenario.obstacles.push_back({id, std::move(judgement.shape)});
       }
       origin_of_.resize(scenario.obstacles.size(), {pointer, list[k].contains("id")});
@@ -154,7 +154,7 @@ class Reader {
       const std::string pointer = "/moving_obstacles/" + std::to_string(k);
       const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
       Judgement judgement = judge(to_raw(list[k], id, pointer));
-      refuse_unmended(judgement, file_);
+      refuse_unrepaired(judgement, file_);
       formation::Leader motion{to_points(list[k].at("path"))};
       motion.speed = list[k].value("speed", 0.0);
       if (list[k].contains("profile"))

@@ -42,7 +42,7 @@ Step row_of(double time, const Line& x, const Line& v, double push) {
   return row;
 }
 
-/// u of (15), signs mended.
+/// u of (15), signs corrected.
 double input(const Gains& g, std::size_t i, const Line& x, const Line& v, double push) {
   double position = x[i], velocity = v[i];
   for (std::size_t j = 0; j < kRobots; ++j) {

@@ -63,12 +63,6 @@ const char* name(Pattern pattern) {
   return kNames.at(static_cast<std::size_t>(pattern)).second;
 }
 
-std::vector<std::string> pattern_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : kNames) names.emplace_back(entry.second);
-  return names;
-}
-
 bool parse(const std::string& text, Pattern& out) {
   for (const auto& [pattern, known] : kNames) {
     if (text != known) continue;

@@ -12,8 +12,6 @@
 #include "preflight/preflight.h"
 #include "preflight/reachability.h"
 #include "runs/runs.h"
-#include "scene/static_field.h"
-#include "steering/goals.h"
 #include "steering/guide.h"
 #include "steering/remedies.h"
 
@@ -123,18 +121,6 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
                      : run_kinematic(scenario, options, guide ? &*guide : nullptr, recording, timed);
   recording.wall_time = seconds_since(start) - timed.seconds();
   return recording;
-}
-
-std::vector<geometry::ConvexShape> enclosures_for(const Scenario& scenario, const SimulationOptions& options,
-                                                  std::size_t robot) {
-  EXACTVO_REQUIRE(robot < scenario.robots.size(), std::to_string(robot));
-  const Robot& r = scenario.robots[robot];
-  Scene scene(scenario, options);
-  const Vec2 goal = first_goal(scenario, options, robot);
-  const StaticField field(scene, scenario, options, r.radius, r.position, goal, HorizonRule::clamped);
-  std::vector<geometry::ConvexShape> shapes;
-  for (const vo::BodyTable::Number body : field.shapes()) shapes.push_back(scene.bodies()[body].shape);
-  return shapes;
 }
 
 }  // namespace exactvo::formation

@@ -128,7 +128,7 @@ Subject subject_of(const Obstacle& obstacle) {
   return subject;
 }
 
-/// False where something can't be mended: then there is no obstacle.
+/// False where something can't be repaired: then there is no obstacle.
 bool put_right(const Obstacle& given, ObstacleShapes& out) {
   if (const auto* polyline = std::get_if<Polyline>(&given)) {
     NormalizedPolyline normal = normalize_polyline(polyline->points);

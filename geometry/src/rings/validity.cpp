@@ -126,8 +126,8 @@ bool lexicographically_less(const RingProblem& a, const RingProblem& b) {
   return std::tie(a.ring, a.vertex, a.code) < std::tie(b.ring, b.vertex, b.code);
 }
 
-bool all_mended(const Problems& problems) {
-  return std::all_of(problems.begin(), problems.end(), [](const RingProblem& p) { return p.mended; });
+bool all_repaired(const Problems& problems) {
+  return std::all_of(problems.begin(), problems.end(), [](const RingProblem& p) { return p.repaired; });
 }
 
 std::size_t lowest_vertex(const Ring& ring) {
@@ -160,10 +160,10 @@ const char* code_name(RingProblemCode code) {
 }
 
 bool NormalizedPolygon::ok() const {
-  return all_mended(problems);
+  return all_repaired(problems);
 }
 bool NormalizedPolyline::ok() const {
-  return all_mended(problems);
+  return all_repaired(problems);
 }
 
 NormalizedPolygon normalize(const std::vector<Ring>& rings) {

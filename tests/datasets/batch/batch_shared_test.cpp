@@ -61,7 +61,7 @@ class SharedBatch : public TemporaryFolder {
     configuration.geopackage = configuration.geojson = configuration.pictures = false;
     BatchRun how;
     how.paths = {shared_data()};
-    how.out = folder_ / (repair ? "mended" : "plain");
+    how.out = folder_ / (repair ? "repaired" : "plain");
     summary_ = run_batch(configuration, how).summary;
     std::map<std::string, Json> facts;
     const Json summary = Json::parse(text_of(how.out / "summary.json"));
@@ -89,7 +89,7 @@ TEST_F(SharedBatch, EveryFileEndsAsTheTableSays) {
   ASSERT_EQ(table.size(), manifest().size());
   const std::map<std::string, Json> plain = run(false);
   expect_counts_that_add_up(summary_);
-  const std::map<std::string, Json> mended = run(true);
+  const std::map<std::string, Json> repaired = run(true);
   expect_counts_that_add_up(summary_);
   for (const auto& [path, expected] : table) {
     SCOPED_TRACE(path + ": " + expected.reason);
@@ -105,8 +105,8 @@ TEST_F(SharedBatch, EveryFileEndsAsTheTableSays) {
     EXPECT_EQ(facts.at("repaired"), expected.repaired);
     EXPECT_EQ(sum_of(facts.at("rejected")), expected.rejected);
     EXPECT_EQ(facts.at("passed_over"), expected.passed_over);
-    EXPECT_EQ(mended.at(path).at("outcome"), expected.outcome_repaired);
-    EXPECT_EQ(mended.at(path).value("code", ""), expected.code_repaired);
+    EXPECT_EQ(repaired.at(path).at("outcome"), expected.outcome_repaired);
+    EXPECT_EQ(repaired.at(path).value("code", ""), expected.code_repaired);
   }
 }
 

@@ -57,7 +57,7 @@ py::tuple as_tuple(const datasets::DataError& e) {
 py::tuple as_tuple(const datasets::RingFinding& f) {
   py::object in_file = py::none();
   if (f.in_file) in_file = py::make_tuple(python::as_tuple(f.in_file->where), f.in_file->is_degrees);
-  return py::make_tuple(datasets::code_name(f.code), f.place, python::as_tuple(f.where), f.ring, f.vertex, f.mended,
+  return py::make_tuple(datasets::code_name(f.code), f.place, python::as_tuple(f.where), f.ring, f.vertex, f.repaired,
                         std::string(datasets::words_of(f)), in_file);
 }
 
@@ -157,7 +157,8 @@ py::tuple repair(const py::list& rings) {
   py::list polygons, problems;
   for (const geometry::Polygon& polygon : done.polygons) polygons.append(rings_of(polygon));
   for (const geometry::RingProblem& p : done.problems)
-    problems.append(py::make_tuple(geometry::code_name(p.code), p.ring, p.vertex, python::as_tuple(p.where), p.mended));
+    problems.append(
+        py::make_tuple(geometry::code_name(p.code), p.ring, p.vertex, python::as_tuple(p.where), p.repaired));
   return py::make_tuple(polygons, problems,
                         done.refused ? py::object(py::str(datasets::code_name(*done.refused))) : py::none(),
                         done.recombined, done.moved, as_dict(done.before), as_dict(done.after));

@@ -72,7 +72,7 @@ std::vector<std::size_t> offsets(py::handle object, const char* name, std::size_
 
 std::string problem_words(const std::vector<geometry::RingProblem>& problems) {
   for (const geometry::RingProblem& p : problems)
-    if (!p.mended)
+    if (!p.repaired)
       return std::string(geometry::code_name(p.code)) + " in ring " + std::to_string(p.ring) + ", vertex " +
              std::to_string(p.vertex);
   return "";

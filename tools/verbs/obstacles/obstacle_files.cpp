@@ -72,7 +72,7 @@ OrderedJson problem_json(const RingFinding& f) {
           {"in_file", in_file_json(f)},
           {"at_vertex", pair_json(f.at_vertex)},
           {"found", datasets::words_of(f)},
-          {"mended", f.mended}};
+          {"repaired", f.repaired}};
 }
 
 /// A refusal that is no ring's finding: of the text, or of the file.
@@ -81,14 +81,14 @@ OrderedJson problem_json(const DataError& error) {
           {"place", error.place()},
           {"found", error.found()},
           {"expected", error.expected()},
-          {"mended", false}};
+          {"repaired", false}};
 }
 
 /// What was refused and is no ring's finding.
 std::vector<const DataError*> other_refusals(const ObstacleFile& content) {
   std::set<std::pair<datasets::DataCode, std::string_view>> of_rings;
   for (const RingFinding& f : content.findings) {
-    if (!f.mended) of_rings.emplace(f.code, f.place);
+    if (!f.repaired) of_rings.emplace(f.code, f.place);
   }
   std::vector<const DataError*> others;
   for (const DataError& error : content.rejected) {
@@ -240,7 +240,7 @@ std::string verdict_of(const FileAnswer& answer) {
   if (!answer.content) return "unreadable";
   const datasets::ReadCounts& n = answer.content->counts;
   if (n.rejected > 0) return "invalid";
-  return n.repaired > 0 ? "mended" : "valid";
+  return n.repaired > 0 ? "repaired" : "valid";
 }
 
 OrderedJson json_of(const datasets::ReadCounts& n) {
@@ -265,13 +265,13 @@ OrderedJson json_of(const FileAnswer& answer) {
   return json;
 }
 
-std::string lines_of(const FileAnswer& answer, bool with_mended) {
+std::string lines_of(const FileAnswer& answer, bool with_repaired) {
   if (answer.error) return shown(answer.error->what() + guess_words(answer)) + "\n";
   std::string text;
   for (const RingFinding& f : answer.content->findings) {
-    if (f.mended && !with_mended) continue;
+    if (f.repaired && !with_repaired) continue;
     text += shown(fmt::format("{}: {}: {}: {} [{}]{}", answer.file, f.place, datasets::words_of_place(f),
-                              datasets::words_of(f), datasets::code_name(f.code), f.mended ? ", repaired" : "")) +
+                              datasets::words_of(f), datasets::code_name(f.code), f.repaired ? ", repaired" : "")) +
             "\n";
   }
   for (const DataError* error : other_refusals(*answer.content)) text += shown(error->what()) + "\n";

@@ -78,18 +78,18 @@ std::string guessed_format(const std::string& file);
 /// Reads every file; a DataError of a file becomes its answer. Says which were projected.
 std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options);
 
-/// "valid"; "mended": every problem was; "invalid": some obstacles can't be used; "unreadable".
+/// "valid"; "repaired": every problem was; "invalid": some obstacles can't be used; "unreadable".
 std::string verdict_of(const FileAnswer& answer);
 
 /// {"file", "format", "verdict", "code" (of the first refusal), "counts", "problems": [{"code", "place", "feature",
-/// "ring", "vertex", "x", "y", "in_file", "at_vertex", "found", "mended"}], "origin", "notes"}: x and y in metres,
+/// "ring", "vertex", "x", "y", "in_file", "at_vertex", "found", "repaired"}], "origin", "notes"}: x and y in metres,
 /// "in_file" the same place in the file's own numbers (longitude, latitude), "at_vertex" the vertex as it is written.
 /// "origin" is round what place degrees were projected, or null. What is no ring's has "code", "place", "found",
-/// "expected" and "mended". A number that is not finite is null.
+/// "expected" and "repaired". A number that is not finite is null.
 OrderedJson json_of(const FileAnswer& answer);
 
-/// A line a problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], mended". `with_mended`: also those.
-std::string lines_of(const FileAnswer& answer, bool with_mended);
+/// A line a problem: "FILE: PLACE: words_of_place: what is wrong [E_CODE], repaired". `with_repaired`: also those.
+std::string lines_of(const FileAnswer& answer, bool with_repaired);
 
 /// "FILE: wkt, 12 read: 10 done, 1 repaired, 1 skipped, 0 rejected".
 std::string counts_line(const FileAnswer& answer);

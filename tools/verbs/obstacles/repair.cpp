@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// exactvo repair: mends obstacle files and says what was done: before, after, and what can't be mended.
+// exactvo repair: repairs obstacle files and says what was done: before, after, and what can't be repaired.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -145,7 +145,7 @@ OrderedJson json_of(const RepairRecord& r) {
 
 std::string to_json(const std::vector<FileAnswer>& answers) {
   OrderedJson json;
-  json["mended"] = exit_code(answers) == ExitCode::success;
+  json["repaired"] = exit_code(answers) == ExitCode::success;
   json["files"] = OrderedJson::array();
   for (const FileAnswer& answer : answers) {
     OrderedJson file = tools::json_of(answer);

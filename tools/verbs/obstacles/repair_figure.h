@@ -18,7 +18,7 @@ struct MendedPolygon {
   std::string title;
   std::vector<geometry::Ring> before;
   std::vector<geometry::Vec2> problems;  ///< where
-  std::vector<geometry::Polygon> after;  ///< empty where it could not be mended
+  std::vector<geometry::Polygon> after;  ///< empty where it could not be repaired
 };
 
 /// At most so many are drawn, a row each.

@@ -43,9 +43,9 @@ enum class DataCode {
   library,            ///< E_LIBRARY: GDAL or another library reported an error; its words are in `found`
   not_finite,         ///< E_NOT_FINITE: a coordinate is NaN or infinite
   too_few_points,     ///< E_TOO_FEW_POINTS
-  unclosed,           ///< E_UNCLOSED (mended)
-  repeated_vertex,    ///< E_REPEATED_VERTEX (mended)
-  clockwise,          ///< E_CLOCKWISE (mended)
+  unclosed,           ///< E_UNCLOSED (repaired)
+  repeated_vertex,    ///< E_REPEATED_VERTEX (repaired)
+  clockwise,          ///< E_CLOCKWISE (repaired)
   zero_area,          ///< E_ZERO_AREA
   self_intersection,  ///< E_SELF_INTERSECTION
   hole_outside,       ///< E_HOLE_OUTSIDE

@@ -12,7 +12,7 @@
 ///
 /// Properties (tests quote the numbers):
 ///  (1) item k does not depend on which items were drawn before, nor on how many are asked for;
-///  (2) every obstacle is valid: `geometry::normalize` mends nothing of it but closure;
+///  (2) every obstacle is valid: `geometry::normalize` repairs nothing of it but closure;
 ///  (3) obstacles of different items do not meet.
 
 #include <cstdint>

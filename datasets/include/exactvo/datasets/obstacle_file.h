@@ -54,7 +54,7 @@ struct ReadOptions {
   bool keep_going = false;
   /// True: `ObstacleFile::properties` are kept.
   bool keep_properties = false;
-  /// True: what `repair` (repair.h) mends is no refusal. A polygon may become several obstacles: "7", "7-2", "7-3".
+  /// True: what `repair` (repair.h) repairs is no refusal. A polygon may become several obstacles: "7", "7-2", "7-3".
   bool repair = false;
 };
 
@@ -75,7 +75,7 @@ struct PlaceInFile {
 /// not take a hundred times its size.
 inline constexpr std::size_t kMostFindings = 100'000;
 
-/// One problem of one ring, mended or not; also of obstacles that were refused.
+/// One problem of one ring, repaired or not; also of obstacles that were refused.
 struct RingFinding {
   DataCode code = DataCode::self_intersection;  ///< what is wrong
   std::string place;                            ///< "feature 3, ring 0, vertex 17"
@@ -83,7 +83,7 @@ struct RingFinding {
   geometry::Vec2 where;                         ///< m
   std::size_t ring = 0;                         ///< 0 is the outer one
   std::size_t vertex = 0;                       ///< as the file lists them
-  bool mended = false;                          ///< repaired by `normalize` (validity.h)
+  bool repaired = false;                        ///< repaired by `normalize` (validity.h)
   geometry::Vec2 at_vertex;            ///< the vertex as it is written; `where` may lie on an edge from or to it
   std::optional<PlaceInFile> in_file;  ///< `where`, where the file is not in metres
 };

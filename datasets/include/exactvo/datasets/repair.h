@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// Mends polygons. What `geometry::normalize` finds and does not mend is mended here where there is a rule for it:
+/// Repairs polygons. What `geometry::normalize` finds and does not repair is repaired here where there is a rule for
+/// it:
 ///
 ///  - a ring that crosses, touches or overlaps itself, spikes, holes that lie outside, in each other, or cross another
 ///    ring: the polygon becomes what an odd number of its rings enclose (geometry/even_odd.h), in as many polygons as
@@ -11,20 +12,19 @@
 ///    left solid can be less than the ring goes round. The report gives the area before and after.
 ///  - a hole of less than three distinct points or without area is dropped: nothing is in it.
 ///
-/// Not mended, and named: coordinates that are not finite, an outer ring of less than three distinct points or without
-/// area, rings of which nothing is left (E_ZERO_AREA), more crossings than there is room for (E_SIZE), coordinates
-/// beyond 2^100 m in rings that must be cut (E_RANGE), and crossings that can't be rounded to doubles without new ones
-/// (E_ROUNDING).
+/// Not repaired, and named: coordinates that are not finite, an outer ring of less than three distinct points or
+/// without area, rings of which nothing is left (E_ZERO_AREA), more crossings than there is room for (E_SIZE),
+/// coordinates beyond 2^100 m in rings that must be cut (E_RANGE), and crossings that can't be rounded to doubles
+/// without new ones (E_ROUNDING).
 ///
 /// A polygon that was valid but for winding, closure and consecutive duplicates comes back as `normalize` gives it.
 ///
 /// Neighbours: `ReadOptions::repair` (obstacle_file.h) does this to every polygon of a file.
 ///
 /// Properties (tests quote the numbers):
-///  (1) what comes back is valid: `normalize` mends nothing of it but closure, and the polygons' insides are disjoint;
-///  (2) repairing it again changes nothing;
-///  (3) a valid polygon comes back bit for bit but for winding;
-///  (4) its area is that of the points enclosed an odd number of times, up to rounding (`moved`).
+///  (1) what comes back is valid: `normalize` repairs nothing of it but closure, and the polygons' insides are
+///  disjoint; (2) repairing it again changes nothing; (3) a valid polygon comes back bit for bit but for winding; (4)
+///  its area is that of the points enclosed an odd number of times, up to rounding (`moved`).
 
 #include <cstddef>
 #include <optional>
@@ -49,8 +49,8 @@ struct RepairFacts {
 
 /// What a polygon became.
 struct Repair {
-  std::vector<geometry::Polygon> polygons;      ///< empty if not mended; in order of their least vertex
-  std::vector<geometry::RingProblem> problems;  ///< of the rings as given; `mended` says what became of each
+  std::vector<geometry::Polygon> polygons;      ///< empty if not repaired; in order of their least vertex
+  std::vector<geometry::RingProblem> problems;  ///< of the rings as given; `repaired` says what became of each
   std::optional<DataCode> refused;              ///< why nothing could be made of it
   bool recombined = false;                      ///< by the even-odd rule
   double moved = 0.0;                           ///< m; how far a crossing was moved by rounding, at most

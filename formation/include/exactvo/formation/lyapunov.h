@@ -90,7 +90,8 @@ struct LyapunovSummary {
 LyapunovSummary summary_of(const Scenario& scenario, const Recording& recording);
 
 /// The counterexample to Theorem 1 (docs/guide/formation.md): three robots at rest on their slots, equations (14) and
-/// (15) with their signs mended, and an avoidance that asks robot 1 for a constant `push` (m/s) relative to the leader.
+/// (15) with their signs corrected, and an avoidance that asks robot 1 for a constant `push` (m/s) relative to the
+/// leader.
 struct Counterexample {
   Scenario scenario;    ///< the three robots and their leader
   Recording recording;  ///< of the motion described

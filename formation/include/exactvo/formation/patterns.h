@@ -23,8 +23,6 @@ enum class Pattern {
 
 /// "line", "wedge", "circle", "grid".
 const char* name(Pattern pattern);
-/// Every name.
-std::vector<std::string> pattern_names();
 /// False for an unknown name; `out` is then unchanged.
 bool parse(const std::string& text, Pattern& out);
 

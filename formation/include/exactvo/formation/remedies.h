@@ -13,7 +13,7 @@ namespace exactvo::formation {
 
 /// The switches, as they are in the default controller but for `smoothing` and the bound.
 struct Remedies {
-  bool signs = true;                ///< (15) and (17) with their signs mended; without it they are as printed
+  bool signs = true;                ///< (15) and (17) with their signs corrected; without it they are as printed
   bool recentred = true;            ///< offsets as equation (4) needs them, where the scenario asks for it
   bool absolute_frame = true;       ///< V_IVO is an absolute velocity; the paper adds the leader's to it
   bool saturation = true;           ///< v_pref slows towards the slot; the paper's keeps its magnitude
@@ -62,7 +62,7 @@ struct NamedRemedies {
   Remedies remedies;  ///< the whole set
 };
 
-/// From the mended signs without margins to the default, one remedy more a rung. (The paper's controllers themselves
+/// From the corrected signs without margins to the default, one remedy more a rung. (The paper's controllers themselves
 /// keep the scenario's margins.)
 std::vector<NamedRemedies> remedy_ladder();
 

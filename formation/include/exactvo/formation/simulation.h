@@ -28,7 +28,7 @@ enum class Method {
 /// How robots of a formation follow their slots.
 enum class Controller {
   paper_literal,  ///< equations (14)-(17) as printed
-  paper_signs,    ///< the sign errors of (15) and (17) mended, nothing else
+  paper_signs,    ///< the sign errors of (15) and (17) corrected, nothing else
   corrected,      ///< the equations as docs/guide/errata.md corrects them, in the paper's order: filter first
   standard        ///< the default: saturated preference, filter last, brake point, side commitment
 };
@@ -123,9 +123,5 @@ struct ScenarioProblem {
 };
 /// Every problem, in the order of the fields. Empty: `simulate` takes the scenario.
 std::vector<ScenarioProblem> validate(const Scenario& scenario);
-
-/// The enclosures that the IVO methods see for one robot and goal, for drawing and for `explain`.
-std::vector<geometry::ConvexShape> enclosures_for(const Scenario& scenario, const SimulationOptions& options,
-                                                  std::size_t robot);
 
 }  // namespace exactvo::formation

@@ -13,7 +13,7 @@
 /// Neighbours: validity.h says whether rings need this; datasets/repair.h does it for obstacles and reports.
 ///
 /// Properties (tests quote the numbers):
-///  (1) every polygon of the answer is valid (`normalize` mends nothing but closure), and their insides are disjoint;
+///  (1) every polygon of the answer is valid (`normalize` repairs nothing but closure), and their insides are disjoint;
 ///  (2) the answer to an answer's rings is that answer;
 ///  (3) a point farther than `moved` from every ring lies in the answer exactly if an odd number of rings enclose it;
 ///  (4) the order, the winding and the start of the rings do not matter.

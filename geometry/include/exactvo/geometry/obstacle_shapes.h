@@ -91,7 +91,7 @@ struct ShapeFigures {
 
 /// All shapes of one obstacle, with their verdicts.
 struct ObstacleShapes {
-  std::vector<RingProblem> problems;  ///< all that was found; where one is not mended nothing else is here
+  std::vector<RingProblem> problems;  ///< all that was found; where one is not repaired nothing else is here
   Obstacle obstacle;                  ///< as put right; walls of a scan or of loose points: the first facade
   FacadeSet facades;                  ///< what they stand for, and how closely
   /// Disjoint inside, their union is the obstacle, whatever the facades' tolerance. A wall's are its edges, straight
@@ -110,7 +110,7 @@ struct ObstacleShapes {
   Verdict facade_ellipses_contain;  ///< both ends of every facade lie in its ellipse
   Verdict trap_free_contains;       ///< every vertex lies in the trap-free ellipse; reason where there is none
 
-  bool valid = false;  ///< every problem was mended
+  bool valid = false;  ///< every problem was repaired
   /// All of the above, but for a trap-free ellipse along a `way` whose ends leave no room for it, or none of the size
   /// allowed (`TrapFreeAnswer`). Without a way the ellipse must be there, free for every goal.
   bool certified() const;

@@ -18,9 +18,9 @@ namespace exactvo::geometry {
 enum class RingProblemCode {
   not_finite,         ///< a coordinate is NaN or infinite
   too_few_points,     ///< fewer than three distinct vertices (two for a polyline)
-  unclosed,           ///< the last point does not repeat the first (mended by `normalize`)
-  repeated_vertex,    ///< consecutive vertices are equal (mended)
-  clockwise,          ///< an outer ring is clockwise or a hole counter-clockwise (mended)
+  unclosed,           ///< the last point does not repeat the first (repaired by `normalize`)
+  repeated_vertex,    ///< consecutive vertices are equal (repaired)
+  clockwise,          ///< an outer ring is clockwise or a hole counter-clockwise (repaired)
   zero_area,          ///< all vertices are collinear
   self_intersection,  ///< two edges that are not neighbours meet, or neighbours overlap (a spike)
   hole_outside        ///< a hole is not inside its outer ring, lies in another hole, or crosses another ring
@@ -35,14 +35,14 @@ struct RingProblem {
   std::size_t ring = 0;    ///< 0 is the outer ring, then the holes
   std::size_t vertex = 0;  ///< index into the ring as given
   Vec2 where;              ///< m; a crossing of two edges is rounded
-  bool mended = false;     ///< `normalize` put it right
+  bool repaired = false;   ///< `normalize` repaired it
 };
 
 /// A polygon after `normalize`.
 struct NormalizedPolygon {
   Polygon polygon;                    ///< valid iff `ok()`
   std::vector<RingProblem> problems;  ///< in order of ring and vertex
-  bool ok() const;                    ///< every problem was mended
+  bool ok() const;                    ///< every problem was repaired
 };
 
 /// Puts right what has one right answer (winding, closure, consecutive duplicates) and reports the rest. Exact: no
@@ -54,14 +54,15 @@ struct NormalizedPolygon {
 /// vertices and edges may not touch. One self-intersection and one misplacement at most is reported a ring.
 ///
 /// Properties: (1) a valid polygon comes back unchanged; (2) the result of an ok() answer is valid: normalising it
-/// again mends nothing but closure; (3) reversing rings or rotating their start changes neither ok() nor the point set.
+/// again repairs nothing but closure; (3) reversing rings or rotating their start changes neither ok() nor the point
+/// set.
 NormalizedPolygon normalize(const std::vector<Ring>& rings);
 
 /// A chain after `normalize_polyline`.
 struct NormalizedPolyline {
   Polyline polyline;                  ///< valid iff `ok()`
   std::vector<RingProblem> problems;  ///< in order of vertex
-  bool ok() const;                    ///< every problem was mended
+  bool ok() const;                    ///< every problem was repaired
 };
 
 /// The same for an open chain: drops consecutive duplicates, reports `not_finite` and `too_few_points`. A wall may
