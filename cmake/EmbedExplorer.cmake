@@ -3,7 +3,22 @@
 # of FOLDER with page.css and the modules of modules.txt in it, in that order. The modules are ECMAScript modules that a
 # browser or node runs as they are; joined, they share one scope, so their imports (a line each) and exports (a list at
 # the end) are left out.
-# No other tool is needed to build the page.
+# No other tool is needed to build the page. What asks a server (served.js) stands apart: pages from a file have none of
+# it.
+
+# Compilers bound the length of one literal; adjacent ones are joined.
+function(exactvo_literals out text)
+  set(literals "")
+  string(LENGTH "${text}" rest)
+  set(from 0)
+  while(from LESS rest)
+    string(SUBSTRING "${text}" ${from} 12000 piece)
+    string(APPEND literals "R\"explorer(${piece})explorer\"\n")
+    math(EXPR from "${from} + 12000")
+  endwhile()
+  set(${out} "${literals}" PARENT_SCOPE)
+endfunction()
+
 function(exactvo_embed_explorer out folder)
   file(STRINGS "${folder}/modules.txt" modules)
   set(script "")
@@ -19,22 +34,19 @@ function(exactvo_embed_explorer out folder)
   file(READ "${folder}/page.html" page)
   string(REPLACE "__STYLE__" "${style}" page "${page}")
   string(REPLACE "__SCRIPT__" "${script}" page "${page}")
-  # Compilers bound the length of one literal; adjacent ones are joined.
-  set(literals "")
-  string(LENGTH "${page}" rest)
-  set(from 0)
-  while(from LESS rest)
-    string(SUBSTRING "${page}" ${from} 12000 piece)
-    string(APPEND literals "R\"explorer(${piece})explorer\"\n")
-    math(EXPR from "${from} + 12000")
-  endwhile()
+  file(READ "${folder}/served.js" served)
+  exactvo_literals(page_literals "${page}")
+  exactvo_literals(served_literals "${served}")
   set(source "// Made by cmake/EmbedExplorer.cmake of tools/explorer/page.
 #include \"explorer/page.h\"
 
 namespace exactvo::tools {
 
 const char* const kExplorerShell =
-${literals};
+${page_literals};
+
+const char* const kServedScript =
+${served_literals};
 
 }  // namespace exactvo::tools
 ")

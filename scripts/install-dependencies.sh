@@ -12,6 +12,7 @@ packages=(
   libcli11-dev nlohmann-json3-dev libfmt-dev libssl-dev zlib1g-dev  # command line, JSON, text, SHA-256, pages
   libgdal-dev libsqlite3-dev libyaml-cpp-dev libpugixml-dev         # files in and out
   libopenmpi-dev openmpi-bin                                        # a batch over several machines
+  libcpp-httplib-dev pkg-config                                     # exactvo serve
   libgtest-dev libgmock-dev librapidcheck-dev libvalijson-dev       # tests
   chromium chromium-driver python3-selenium                         # tests of the explorer's page in a browser
   libbenchmark-dev                                                  # benchmarks

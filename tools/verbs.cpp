@@ -8,6 +8,7 @@ Verb simulate_verb();
 Verb explain_verb();
 Verb draw_verb();
 Verb view_verb();
+Verb serve_verb();
 Verb paper_verb();
 Verb lp_verb();
 Verb vo_verb();
@@ -22,10 +23,10 @@ Verb generate_verb();
 Verb segment_verb();
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {simulate_verb(), explain_verb(), draw_verb(),     view_verb(),
-                                        paper_verb(),    lp_verb(),      vo_verb(),       audit_verb(),
-                                        trap_verb(),     route_verb(),   validate_verb(), repair_verb(),
-                                        convert_verb(),  batch_verb(),   generate_verb(), segment_verb()};
+  static const std::vector<Verb> all = {simulate_verb(), explain_verb(),  draw_verb(),   view_verb(),    serve_verb(),
+                                        paper_verb(),    lp_verb(),       vo_verb(),     audit_verb(),   trap_verb(),
+                                        route_verb(),    validate_verb(), repair_verb(), convert_verb(), batch_verb(),
+                                        generate_verb(), segment_verb()};
   return all;
 }
 

@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page of `exactvo view` in a headless Chromium.
 
-explorer_test.py --program EXACTVO --cases CERTIFICATE_CASES --data datasets/data PART, PART one of runs, page, proofs.
+explorer_test.py --program EXACTVO --cases CERTIFICATE_CASES --data datasets/data PART, PART one of runs, page, proofs, live.
 Exit status 77 where Chromium, its driver or Selenium is missing.
 """
 import argparse
 import json
 import os
 import pathlib
+import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -479,6 +481,206 @@ class PageItself(Page):
             self.browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
+class Live(Page):
+    """The page of `exactvo serve`: what is dragged is computed, and the numbers are those of the other verbs."""
+
+    SCENARIO = {"name": "two", "guidance": "none", "liveness": "off", "time_limit": 8, "robots": [
+        {"id": "R1", "position": [0, 0], "velocity": [1, 0], "goal": [12, 0], "max_speed": 2},
+        {"id": "R2", "position": [0, 5], "goal": [12, 5], "max_speed": 2}], "obstacles": [{"id": "wall", "polyline": [[6, -3], [6, 3]]}]}
+
+    def setUp(self):
+        (self.place / "s.json").write_text(json.dumps(self.SCENARIO))
+        self.serve("s.json", "--method", "orca")
+
+    def serve(self, *arguments):
+        self.server = subprocess.Popen([ARGS.program, "serve", *arguments], cwd=self.place, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.address = self.server.stdout.readline().strip()
+
+    def tearDown(self):
+        self.browser.get("about:blank")  # which asks for nothing more
+        super().tearDown()
+        self.server.send_signal(signal.SIGINT)
+        self.server.communicate(timeout=60)
+
+    def show(self, words="t=0"):
+        self.browser.get("about:blank")
+        self.browser.get(f"{self.address}#{words}")
+        self.await_script("await exactvo.ready")
+        self.settle()
+
+    def answered(self):
+        """Waits until what was changed is computed and shown."""
+        self.await_script("for (let k = 0; k < 600; ++k) { await new Promise((r) => setTimeout(r, 50)); if (!exactvo.live.isAsking && !exactvo.live.isAgain) break; }")
+        self.settle()
+
+    def place_of(self, canvas, view, x, y):
+        return self.run_script("const b = document.getElementById(arguments[0]).getBoundingClientRect(), v = exactvo.page[arguments[1]];"
+                               "return [b.left + v.px(arguments[2]), b.top + v.py(arguments[3])]", canvas, view, x, y)
+
+    def drag(self, canvas, view, begin, end):
+        a, b = self.place_of(canvas, view, *begin), self.place_of(canvas, view, *end)
+
+        def mouse(kind, share):
+            self.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {
+                "type": kind, "x": a[0] + share * (b[0] - a[0]), "y": a[1] + share * (b[1] - a[1]), "button": "left",
+                "buttons": 0 if kind == "mouseReleased" else 1, "clickCount": 1})
+
+        mouse("mousePressed", 0)
+        for k in range(1, 9):
+            mouse("mouseMoved", k / 8)
+        mouse("mouseReleased", 1)
+        self.answered()
+        self.assertEqual(self.run_script("return document.getElementById('live-message').className"), "", self.text("#live-message"))
+
+    def shown(self):
+        """What the page says: the chosen velocity, and of each half-plane its words and its line."""
+        cards = self.run_script("return [...document.querySelectorAll('#half-planes li')].map((li) => [li.children[1].textContent, "
+                                "li.querySelector('.more').textContent, li.querySelector('.mark').textContent])")
+        self.assertEqual([mark for *_, mark in cards if "refuted" in mark], [])
+        lines = sorted([words, re.search(r".* m/s;", more).group()] for words, more, _ in cards)
+        return re.match(r"\(.*?\)", self.text("[data-fact=chosen]")).group(), lines
+
+    def explained(self):
+        """The same by `exactvo explain`, and the scenario as it was changed."""
+        scenario = self.run_script("return JSON.stringify(exactvo.live.edit.scenario)")
+        (self.place / "changed.json").write_text(scenario)
+        text = self.run_program("explain", "changed.json", "--method", "orca", "--time", "0", "--robot", "R1").stdout
+        lines = sorted([f"{effect}: {words}", line] for effect, words, line in
+                       re.findall(r"\[\d+\] .*, (binding|slack): (.*)\n +(.* m/s;)", text))
+        return re.search(r"chosen +(\(.*?\))", text).group(1), lines, json.loads(scenario)
+
+    def vo_line(self, scenario):
+        """The half-plane of the wall by `exactvo vo`."""
+        robot, wall = scenario["robots"][0], scenario["obstacles"][0]["polyline"]
+        (a, b), p, v = wall, robot["position"], robot["velocity"]
+        out = self.run_program("vo", f"--obstacle=LINESTRING({a[0]} {a[1]}, {b[0]} {b[1]})", f"--position={p[0]},{p[1]}", f"--velocity={v[0]},{v[1]}",
+                               f"--radius={robot['radius']}", f"--time-horizon={scenario['horizons']['orca']}", "--json").stdout
+        return json.loads(out)
+
+    def test_a_dragged_wall_gives_the_numbers_of_explain(self):
+        self.show()
+        before, _ = self.shown()
+        self.drag("world", "world", (6, 0), (2.5, 0))
+        chosen, lines = self.shown()
+        self.assertNotEqual(chosen, before)
+        expected, expected_lines, scenario = self.explained()
+        self.assertAlmostEqual(scenario["obstacles"][0]["polyline"][0][0], 2.5, delta=0.2)
+        self.assertEqual(chosen, expected)
+        self.assertEqual(len(expected_lines), 2)
+        self.assertEqual(lines, expected_lines)
+        self.assertEqual(self.text("#verdict"), "\u2713 proven")
+        self.assertIn("changed", self.text("#space-time"))
+
+    def test_a_dragged_corner_gives_the_cone_of_vo(self):
+        self.show()
+        self.drag("world", "world", (6, 3), (3, 2.5))
+        self.drag("world", "world", (6, -3), (3.5, -2))
+        *_, scenario = self.explained()
+        answer = self.vo_line(scenario)
+        seen = self.run_script("const h = exactvo.page.space.decision.halfPlanes.find((h) => h.kind === 'edge'); return [h.nx, h.ny, h.c, h.tau, h.clearance]")
+        half_plane = answer["half_plane"]
+        self.assertAlmostEqual(seen[0] * half_plane["normal"][0] + seen[1] * half_plane["normal"][1], 1, places=9)
+        skin = 1e-6  # m: a simulation keeps this beside the radius
+        self.assertAlmostEqual(seen[2], half_plane["offset"], delta=1.01 * skin / seen[3])
+
+    def test_goal_velocity_radius_horizon_and_method(self):
+        self.show()
+        self.drag("world", "world", (12, 0), (0, -5))
+        preferred = self.run_script("return exactvo.page.space.decision.preferred")
+        self.assertLess(preferred[1], -1.9)
+        self.drag("space", "plane", preferred, (0.5, 1.0))
+        preferred = self.run_script("return exactvo.page.space.decision.preferred")
+        self.assertAlmostEqual(preferred[0], 0.5, delta=0.1)
+        self.assertAlmostEqual(preferred[1], 1.0, delta=0.1)
+        self.assertEqual(self.text("#verdict"), "\u2713 proven")
+        self.drag("space", "plane", (1, 0), (-0.5, -1.0))
+        self.assertAlmostEqual(self.run_script("return exactvo.page.space.decision.velocity[0]"), -0.5, delta=0.1)
+        clearance = "return exactvo.page.space.decision.halfPlanes.find((h) => h.kind === 'edge').clearance"
+        before = self.run_script(clearance)
+        self.fill("live-radius-number", "1.5")
+        self.assertAlmostEqual(before - self.run_script(clearance), 1.0, places=6)
+        self.fill("live-horizon-number", "7")
+        self.assertEqual(self.run_script("return exactvo.page.space.decision.halfPlanes.find((h) => h.kind === 'edge').tau"), 7)
+        self.run_script("const e = document.getElementById('live-method'); e.value = 'ivo'; e.dispatchEvent(new Event('change'))")
+        self.answered()
+        self.assertEqual(self.run_script("return exactvo.page.live.run.about.method"), "ivo")
+
+    def fill(self, id, value):
+        self.run_script("const e = document.getElementById(arguments[0]); e.value = arguments[1]; e.dispatchEvent(new Event('input'))", id, value)
+        self.answered()
+
+    def test_everything_moves_by_numbers_too(self):
+        self.show()
+        options = self.run_script("return [...document.querySelectorAll('#live-handle option')].map((o) => o.textContent)")
+        for label in ["robot R1", "goal of R2", "obstacle wall, corner 2", "velocity of R1", "preferred velocity of R1"]:
+            self.run_script("const e = document.getElementById('live-handle'); e.value = String(arguments[0]); e.dispatchEvent(new Event('change'))", options.index(label))
+            x = float(self.run_script("return document.getElementById('live-x').value"))
+            self.fill("live-x", str(x + 0.25))
+            self.assertAlmostEqual(float(self.run_script("return document.getElementById('live-x').value")), x + 0.25, places=3, msg=label)
+        self.assertEqual(self.run_script("return exactvo.page.live.run.obstacles[0].rings[0][2]"), 6.25)
+
+    def test_what_cannot_be_is_said_and_the_last_answer_stays(self):
+        self.show()
+        self.fill("live-x", "6")  # the robot into the wall
+        self.assertIn("inside obstacle 'wall'", self.text("#live-message"))
+        self.fill("live-x", "2")
+        self.assertIn("Computed in", self.text("#live-message"))
+        self.assertEqual(self.run_script("return exactvo.page.space.decision.position[0]"), 2)
+        self.browser.get_log("browser")  # Chromium logs the refusal
+
+    def test_run_from_here_and_back(self):
+        self.show("t=2")
+        self.drag("world", "world", (6, 0), (6, 6))
+        self.run_script("document.getElementById('live-back').click()")
+        self.settle()
+        self.assertEqual(self.run_script("return [exactvo.page.live, exactvo.ui.t]"), [None, 2])
+        self.assertEqual(self.run_script("return exactvo.page.run.obstacles[0].rings[0][1]"), -3)
+        at = self.run_script("return exactvo.page.run.decision(exactvo.page.run.decisionRowAt(2), 0).position")
+        self.drag("world", "world", (6, 0), (6, 8))
+        self.run_script("document.getElementById('live-run').click()")
+        self.await_script("for (let k = 0; k < 600 && exactvo.page.key !== 'changed-1'; ++k) await new Promise((r) => setTimeout(r, 50))")
+        self.assertEqual(self.run_script("return exactvo.page.key"), "changed-1")
+        first, end = self.run_script("const r = exactvo.page.run, s = r.decision(0, 0); return [s.position, [r.x(r.rows - 1, 0), r.y(r.rows - 1, 0)]]")
+        self.assertEqual(first, at, "it begins where the other stood, bit for bit")
+        self.assertGreater(end[0], 11, "with the wall away it arrives")
+        counts = self.await_script("return await exactvo.checkAll()")
+        self.assertEqual([counts["choices"][1], counts["halfPlanes"][1]], [0, 0])
+
+    def test_the_page_asks_its_server_and_nobody_else(self):
+        self.browser.get_log("performance")
+        self.show()
+        self.drag("world", "world", (6, 0), (5, 0))
+        self.assertEqual({address.split("#")[0][:len(self.address)] for address in self.requests()}, {self.address})
+        blocked = self.await_script("return await fetch('http://127.0.0.1:9/').then(() => 'sent', () => 'blocked')")
+        self.assertEqual(blocked, "blocked")
+        violations = [entry["message"] for entry in self.browser.get_log("browser")]
+        self.assertTrue(any("Content Security Policy" in message for message in violations), violations)
+
+    def test_free_velocities_are_told_when_a_change_rests(self):
+        self.show()
+        self.drag("world", "world", (6, 0), (2.5, 0))
+        self.await_script("for (let k = 0; k < 300 && !document.getElementById('live-free').textContent; ++k) await new Promise((r) => setTimeout(r, 100))")
+        kept, given = [float(x) for x in re.findall(r"(?:away|keep) (\d+\.\d+)", self.text("#live-free"))][::-1]
+        total = float(re.search(r"velocities: (\d+\.\d+)", self.text("#live-free")).group(1))
+        self.assertAlmostEqual(total, kept + given, delta=0.03)
+
+    def test_fifty_half_planes(self):
+        """Reported, not asserted."""
+        robots = [{"id": f"R{k}", "position": [1.5 * (k % 8), 1.5 * (k // 8)], "goal": [12, 0]} for k in range(51)]
+        (self.place / "fifty.json").write_text(json.dumps({**self.SCENARIO, "robots": robots, "obstacles": [], "time_limit": 0.2}))
+        self.server.send_signal(signal.SIGINT)
+        self.server.communicate(timeout=60)
+        self.serve("fifty.json", "--method", "orca")
+        self.show()
+        times = []
+        for k in range(20):
+            self.fill("live-x", str(-0.1 * k))
+            times.append([float(x) for x in re.findall(r"\d+\.\d", self.text("#live-message"))])
+        self.assertEqual(self.run_script("return exactvo.page.space.decision.halfPlanes.length"), 50)
+        times.sort(key=lambda t: t[1])
+        print(f"51 robots, 50 half-planes each: median {times[10][0]} ms, of the processor {times[10][1]} ms")
+
+
 class Proofs(Page):
     """The page's own checker: the verdicts of C++, and what it says of a recording that was altered."""
 
@@ -573,14 +775,17 @@ def main():
     parser.add_argument("--program", required=True)
     parser.add_argument("--cases", required=True)
     parser.add_argument("--data", required=True, type=pathlib.Path)
-    parser.add_argument("part", choices=["runs", "page", "proofs"])
+    parser.add_argument("part", choices=["runs", "page", "proofs", "live"])
     parser.add_argument("names", nargs="*")
     ARGS = parser.parse_args()
     missing = [name for name, there in [("chromium", CHROMIUM), ("chromedriver (chromium-driver)", DRIVER), ("python3-selenium", webdriver)] if not there]
     if missing:
         print(f"skipped: {', '.join(missing)} not found")
         sys.exit(77)
-    case = {"runs": Runs, "page": PageItself, "proofs": Proofs}[ARGS.part]
+    if ARGS.part == "live" and "E_NOT_BUILT" in subprocess.run([ARGS.program, "serve", "no-such-file"], capture_output=True, text=True).stderr:
+        print("skipped: built without cpp-httplib")
+        sys.exit(77)
+    case = {"runs": Runs, "page": PageItself, "proofs": Proofs, "live": Live}[ARGS.part]
     suite = unittest.TestLoader().loadTestsFromTestCase(case)
     if ARGS.names:
         suite = unittest.TestSuite(case(name) for name in ARGS.names)

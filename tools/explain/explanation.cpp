@@ -115,7 +115,7 @@ std::string contact_words(const Decision& d, const RecordedConstraint& c) {
   // A velocity on the line of a half-plane just misses: boost and following aim there.
   if (!contact && takes_preferred(d) && effect_of(d, c) == Effect::binding)
     return away + ", passed closely at the chosen velocity";
-  if (!contact) return away + ", missed at the preferred velocity";
+  if (!contact) return away + ", not touched at the preferred velocity";
   return fmt::format("{}, reached in {} s at the preferred velocity, horizon {} s", away, number(*contact),
                      number(c.tau));
 }

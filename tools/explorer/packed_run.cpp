@@ -9,6 +9,8 @@
 #include <utility>
 #include <variant>
 
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/planned_routes.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/waiting.h"
 #include "explorer/deflate.h"
@@ -217,6 +219,23 @@ Json outlooks_json(const formation::Recording& run) {
   return outlooks;
 }
 
+// --- Events ---
+
+bool is_of_plan(formation::Mode mode) {
+  return mode == formation::Mode::by_plan || mode == formation::Mode::going_back;
+}
+
+const char* words_of_plan(formation::Mode mode) {
+  return mode == formation::Mode::by_plan ? "goes by a joint plan" : "goes back to where its plan begins";
+}
+
+/// Notes are the simulation's words.
+const char* kind_of_note(const std::string& note) {
+  const auto has = [&](const char* words) { return note.find(words) != std::string::npos; };
+  if (has("cannot reach")) return "unreachable";
+  return has(" by plan: ") || has("waits for") ? "plan" : "note";
+}
+
 // --- Rounding ---
 
 /// The finest power of two, at least kFinestQuantum, in which the values take 30 bits.
@@ -329,6 +348,28 @@ Json shown_metrics(const std::string& text) {
   return metrics;
 }
 
+/// Planned again as the run did; null where it had none, or where that would take long.
+Json routes_json(const datasets::RecordingFile& about, const PackedRunLimits& limits) {
+  std::size_t vertices = 0;
+  for (const formation::SceneObstacle& o : about.scenario.obstacles) vertices += geometry::vertices_of(o.shape).size();
+  formation::SimulationOptions options;
+  const bool is_guided = about.info.guidance && parse(about.info.method, options.method) &&
+                         parse(*about.info.guidance, options.guidance.emplace());
+  if (!is_guided || about.scenario.robots.size() > limits.routed_robots || vertices > limits.routed_vertices)
+    return nullptr;
+  Json routes = Json::array();
+  for (const formation::PlannedRoute& route : formation::planned_routes(about.scenario, options))
+    routes.push_back(
+        {{"robot", route.robot}, {"goal", route.goal}, {"points", flat(route.points)}, {"why_not", route.why_not}});
+  return routes;
+}
+
+/// Null where a name is no UTF-8.
+Json scenario_json(const formation::Scenario& scenario) {
+  Json json = Json::parse(datasets::write_scenario(scenario), nullptr, false);
+  return json.is_discarded() ? Json(nullptr) : json;
+}
+
 std::string whole(const Json& head, const std::string& columns) {
   // Names are what their files hold: bytes that are no UTF-8 become U+FFFD.
   const std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -359,7 +400,13 @@ void RunPacker::note_events(const Step& row) {
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     const RobotStep& r = row.robots[i];
     const bool relaxed = r.status != lp::Status::optimal;
-    if (!r.note.empty()) add_event(row.time, i, "note", r.note);
+    if (!r.note.empty()) add_event(row.time, i, kind_of_note(r.note), r.note);
+    if (!first && r.mode != modes_[i]) {
+      if (is_of_plan(r.mode))
+        add_event(row.time, i, "plan", words_of_plan(r.mode));
+      else if (is_of_plan(modes_[i]))
+        add_event(row.time, i, "plan", "goes by itself again");
+    }
     if (relaxed && !is_relaxed_[i]) add_event(row.time, i, "relaxed", lp::name(r.status));
     if (!first && r.mode == formation::Mode::arrived && modes_[i] != r.mode)
       add_event(row.time, i, "arrived", "arrived");
@@ -403,6 +450,11 @@ void RunPacker::add(const Step& row) {
   note_events(row);
   keep_row(row);
   keep_decisions(row);
+  ++count_;
+}
+
+void RunPacker::add_positions(const Step& row) {
+  keep_row(row);
   ++count_;
 }
 
@@ -466,8 +518,10 @@ std::string RunPacker::finish(const datasets::RecordingFile& about, const std::s
   const std::vector<Step> decisions = decided();
   add_decisions(decisions, about.scenario, columns);
   Json head = {{"run", about_json(about)}, {"scene", scene_json(about.scenario)}};
+  if (limits_.has_scenario) head["scenario"] = scenario_json(about.scenario);
   head["bodies"] = bodies_json(about.recording);
   head["outlooks"] = outlooks_json(about.recording);
+  head["routes"] = routes_json(about, limits_);
   head["events"] = events_json();
   head["events_left_out"] = events_left_out_;
   head["metrics"] = shown_metrics(metrics_json);

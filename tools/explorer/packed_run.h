@@ -32,6 +32,9 @@ namespace exactvo::tools {
 struct PackedRunLimits {
   std::size_t states = 1U << 20;            ///< positions and velocities
   std::size_t decision_numbers = 1U << 20;  ///< doubles of decisions: about twenty a robot and six a half-plane
+  std::size_t routed_robots = 50;           ///< beyond so many robots, no routes
+  std::size_t routed_vertices = 2000;       ///< the same, of obstacles: planning again must cost little
+  bool has_scenario = false;  ///< whether the whole scenario is in it, for a page that asks to compute with it
 };
 
 /// Takes rows as they are made, in memory bounded by its limits.
@@ -41,6 +44,9 @@ class RunPacker {
 
   /// In the order of time. Shapes of half-planes are not kept: their bodies have them.
   void add(const formation::Step& row);
+
+  /// The same of a row whose robots have a place, a velocity, a mode and a status, and no decisions.
+  void add_positions(const formation::Step& row);
 
   /// Of `about` everything but the rows. `metrics_json` as datasets::metrics_json writes it; empty where there is none.
   std::string finish(const datasets::RecordingFile& about, const std::string& metrics_json) const;

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/simulation.h"
+
 namespace exactvo::tools {
 
 /// A run of a page. Title and words are shown as text, whatever they hold.
@@ -18,6 +20,12 @@ struct PageRun {
   std::string title;        ///< in the list of runs
   std::string description;  ///< what to look at, a few sentences; may be empty
   std::string packed;       ///< RunPacker::finish
+};
+
+/// A run with how it was made: what a run on from one of its moments is made with.
+struct MadeRun {
+  PageRun shown;
+  formation::SimulationOptions options;
 };
 
 /// Whole. `is_guide`: the runs are scenes to start from, listed with their words, rather than the user's own.
@@ -31,5 +39,7 @@ std::string page_key(const std::string& text);
 
 /// The page without runs, with __RUNS__ where they go. Made by cmake/EmbedExplorer.cmake.
 extern const char* const kExplorerShell;
+/// What asks a server, for the pages that one gives out (server.h). Made with it.
+extern const char* const kServedScript;
 
 }  // namespace exactvo::tools

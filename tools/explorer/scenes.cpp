@@ -51,8 +51,8 @@ const Scene kScenes[] = {
 
 }  // namespace
 
-std::vector<PageRun> guided_scenes() {
-  std::vector<PageRun> runs;
+std::vector<MadeRun> guided_scenes(const PackedRunLimits& limits) {
+  std::vector<MadeRun> runs;
   for (const Scene& scene : kScenes) {
     formation::SimulationOptions options;
     options.method = scene.method;
@@ -61,8 +61,9 @@ std::vector<PageRun> guided_scenes() {
     RunOutput output;
     output.figures = false;
     output.page = true;
+    output.page_limits = limits;
     FinishedRun finished = run(scenario, options, datasets::make_provenance({}, 0), output);
-    runs.push_back({scene.key, scene.title, scene.words, std::move(finished.packed)});
+    runs.push_back({{scene.key, scene.title, scene.words, std::move(finished.packed)}, options});
   }
   return runs;
 }

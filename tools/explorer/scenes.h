@@ -6,12 +6,13 @@
 
 #include <vector>
 
+#include "explorer/packed_run.h"
 #include "explorer/page.h"
 
 namespace exactvo::tools {
 
 /// A wall and why ORCA stops before it, four robots on a circle, a formation through a gap: run at once, with every
 /// half-plane, and two sentences each.
-std::vector<PageRun> guided_scenes();
+std::vector<MadeRun> guided_scenes(const PackedRunLimits& limits = {});
 
 }  // namespace exactvo::tools

@@ -45,7 +45,7 @@ function pathLength(run, robot) {
 }
 
 const STRIPS = [
-  {title: 'clearance [m]', lines: [['obstacle', 0, 'obstacles'], ['others', 3, 'robots']], cap: 5},
+  {title: 'clearance [m]', lines: [['obstacle', 0, 'obstacles'], ['others', 3, 'robots']], cap: 5, unit: 'm'},
   {title: 'speed [m/s]', lines: [['speed', 2, '']], cap: Infinity},
   {title: 'jitter [m/s\u00b2]', lines: [['jitter', 1, '']], cap: Infinity},
 ];
@@ -107,18 +107,20 @@ function drawStrip(ctx, run, series, strip, colours, width, top, height) {
   }
   ctx.textAlign = 'left';
   ctx.font = '11px system-ui, sans-serif';
-  label(ctx, strip.title, LEFT + 4, top + 10, colours.text, colours.label);
-  let x = LEFT + 12 + ctx.measureText(strip.title).width;
-  for (const [name, colour, title] of strip.lines) {
-    if (!title || !series[name].some(Number.isFinite)) continue;
+  const isCut = strip.lines.some(([name]) => series[name].some((value) => Number.isFinite(value) && value > high));
+  const title = isCut ? `${strip.title}, cut at ${strip.cap} ${strip.unit}` : strip.title;
+  label(ctx, title, LEFT + 4, top + 10, colours.text, colours.label);
+  let x = LEFT + 12 + ctx.measureText(title).width;
+  for (const [name, colour, words] of strip.lines) {
+    if (!words || !series[name].some(Number.isFinite)) continue;
     ctx.fillStyle = colours.series[colour];
     ctx.fillRect(x, top + 3, 10, 6);
-    label(ctx, title, x + 14, top + 10, colours.faint, colours.label);
-    x += 26 + ctx.measureText(title).width;
+    label(ctx, words, x + 14, top + 10, colours.faint, colours.label);
+    x += 26 + ctx.measureText(words).width;
   }
 }
 
-const MARKS = {note: 0, relaxed: 1, arrived: 2, collision: 5};
+const MARKS = {note: 0, relaxed: 1, arrived: 2, plan: 3, unreachable: 4, collision: 5};
 
 // Events of the run as {time, robot, kind, text}; collisions among them.
 function eventsOf(run) {
@@ -132,7 +134,7 @@ function eventsOf(run) {
 }
 
 function drawMarks(ctx, run, events, robot, colours, width, top, height) {
-  const paints = [colours.series[0], colours.bad, colours.chosen, colours.bad, colours.bad, colours.bad];
+  const paints = [colours.series[0], colours.bad, colours.chosen, colours.coneRobot, colours.active, colours.bad];
   for (const mine of [false, true])
     for (const e of events) {
       if ((e.robot === robot) !== mine) continue;
@@ -144,6 +146,8 @@ function drawMarks(ctx, run, events, robot, colours, width, top, height) {
         ctx.moveTo(x - 4, top);
         ctx.lineTo(x + 4, top);
         ctx.lineTo(x, top + height);
+      } else if (e.kind === 'plan') {
+        ctx.rect(x - 3, top + height / 2 - 3, 6, 6);
       } else {
         ctx.arc(x, top + height / 2, e.kind === 'arrived' ? 4 : 3, 0, 2 * Math.PI);
       }

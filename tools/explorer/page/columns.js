@@ -78,9 +78,13 @@ function secondDifferences(values, stride) {
   return values;
 }
 
-// {head, NAME: typed array of every column}. Throws DataProblem.
 async function unpackRun(base64) {
-  const buffer = await inflated(bytesOfBase64(base64));
+  return unpackBytes(bytesOfBase64(base64));
+}
+
+// {head, NAME: typed array of every column}. Throws DataProblem.
+async function unpackBytes(packed) {
+  const buffer = await inflated(packed);
   const {head, begin} = headOf(buffer), bytes = new Uint8Array(buffer);
   const columns = {};
   let at = begin;
@@ -115,6 +119,7 @@ class Run {
     this.decisionTime = columns['decision.time'];
     this.starts = startsOf(columns['decision.half_planes']);
     this.partStarts = startsOf(columns['decision.parts']);
+    this.unreachable = [];  // world.js, unreachableOf
   }
 
   // m and m/s, rounded to the quanta of the page.
@@ -231,4 +236,4 @@ function lastAtOrBefore(times, t) {
   return low;
 }
 
-export {DataProblem, Run, bytesOfBase64, unpackRun, lastAtOrBefore};
+export {DataProblem, Run, bytesOfBase64, unpackRun, unpackBytes, lastAtOrBefore};

@@ -6,14 +6,14 @@
 const PALETTES = {
   light: {
     ground: '#ffffff', text: '#1b1e23', faint: '#5d6570', grid: '#e6e8ec', axis: '#aab0b9', obstacle: '#c9ccd2',
-    obstacleLine: '#3f444d', enclosure: '#8a6d00', allowed: '#d4efdf', cone: '#6f7785', coneRobot: '#b0578a',
+    obstacleLine: '#3f444d', enclosure: '#8a6d00', allowed: '#d4efdf', givenAway: '#fbe7bd', cone: '#6f7785', coneRobot: '#b0578a',
     active: '#c24e00', slack: '#848b95', preferred: '#0057b8', chosen: '#007a54', velocity: '#3a3f47', bad: '#d00000',
     selected: '#1b1e23', label: '#ffffffd8',
     series: ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#B87A00', '#3a8fc0', '#555555'],
   },
   dark: {
     ground: '#14171c', text: '#e8eaee', faint: '#a0a8b4', grid: '#262b33', axis: '#565e6a', obstacle: '#3a404a',
-    obstacleLine: '#9aa3b0', enclosure: '#e0b93b', allowed: '#173d2e', cone: '#98a1ae', coneRobot: '#e39cc4',
+    obstacleLine: '#9aa3b0', enclosure: '#e0b93b', allowed: '#173d2e', givenAway: '#453715', cone: '#98a1ae', coneRobot: '#e39cc4',
     active: '#ff8c3a', slack: '#7f8793', preferred: '#6cb6ff', chosen: '#2fd39a', velocity: '#c8cdd5', bad: '#ff6060',
     selected: '#ffffff', label: '#14171cd8',
     series: ['#56B4E9', '#FF8C3A', '#2fd39a', '#E39CC4', '#F0B429', '#7fc4ee', '#b0b0b0'],

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: state, controls, address, keys. Text from files reaches the page as text only (textContent).
-import {DataProblem, bytesOfBase64, unpackRun} from './columns.js';
+import {DataProblem, bytesOfBase64, unpackRun, unpackBytes} from './columns.js';
 import {PALETTES, View, shortName} from './draw.js';
 import {distanceToObstacle, obstacleClearance} from './shapes.js';
-import {Positions, extentOf, drawWorld, pickInWorld, drawStill} from './world.js';
+import {Positions, extentOf, unreachableOf, drawWorld, drawHandles, pickInWorld, drawStill} from './world.js';
+import {worldLegend, spaceLegend} from './legend.js';
+import {Edit, handlesOf, obstacleHandle, pickHandle} from './editing.js';
 import {spaceOf, reachOf, drawSpace, pickInSpace} from './space.js';
 import {seriesOf, pathLength, eventsOf, drawCharts, drawCursor, pickEvent, pxToTime} from './charts.js';
 import {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, waitWords, whyWords} from './words.js';
@@ -15,6 +17,7 @@ const page = {
   list: [], elements: [], loaded: new Map(), key: '', run: null, positions: null, events: [], series: null, space: null,
   world: new View(), plane: new View(), isPlaying: false, speed: 1, follow: false, stopFilm: null, dirty: true,
   chartsDirty: true, shownDecision: '', frames: [],
+  live: null,  // in place of the run's moment: {run, positions}, the answer to a change
 };
 const ui = {t: 0, robot: 0, halfPlane: null, pinned: null, colours: PALETTES.light};
 
@@ -39,6 +42,12 @@ function report(error) {
   if (!known) console.error(error);
 }
 
+// What the reader should know, and the page goes on.
+function notice(text) {
+  $('notice').hidden = !text;
+  $('notice').firstElementChild.textContent = text;
+}
+
 // --- Runs of the page ---
 
 function readList() {
@@ -55,11 +64,15 @@ function readList() {
 async function openRun(key) {
   const k = page.list.findIndex((r) => r.key === key);
   if (k < 0) throw new DataProblem(`This page has no run '${shortName(key, 80)}'.`);
-  if (!page.elements[k]) throw new DataProblem('The data of this page is cut short: a run is missing.');
-  if (!page.loaded.has(key)) page.loaded.set(key, await unpackRun(page.elements[k].textContent));
+  if (!page.loaded.has(key)) {
+    if (!page.elements[k]) throw new DataProblem('The data of this page is cut short: a run is missing.');
+    page.loaded.set(key, await unpackRun(page.elements[k].textContent));
+  }
   $('problem').hidden = true;
+  endEdit();
   page.key = key;
   page.run = page.loaded.get(key);
+  page.run.unreachable = unreachableOf(page.run);
   page.positions = new Positions(page.run);
   page.events = eventsOf(page.run);
   page.series = page.space = null;
@@ -70,6 +83,21 @@ async function openRun(key) {
   resize();
   fitWorld();
   fitSpace();
+  showLive();
+}
+
+// The run, positions and time that are shown: the run's own, or those of a change.
+function shownRun() {
+  return page.live ? page.live.run : page.run;
+}
+function shownTime() {
+  return page.live ? page.live.run.time[0] : ui.t;
+}
+function shownPositions() {
+  return page.live ? page.live.positions : page.positions;
+}
+function shownUi() {
+  return page.live ? {...ui, t: shownTime()} : ui;
 }
 
 function fillRun() {
@@ -93,7 +121,9 @@ function fillRun() {
   $('outcome').textContent = about.outcome;
   $('warnings').replaceChildren(...[...about.warnings, ...about.stuck.map((s) => s.text)].map((w) => element('li', shortName(w, 1000))));
   const partial = [];
-  if (!about.all_half_planes)
+  const hasDecisions = run.decisionTime.length > 0;
+  for (const e of document.querySelectorAll('.of-decisions')) e.hidden = !hasDecisions;
+  if (hasDecisions && !about.all_half_planes)
     partial.push('The recording has only the half-planes that bind and those against what could be met within a time step: simulate --record-all keeps the others too.');
   if (run.head.decisions.every > 1) partial.push(`One row in ${run.head.decisions.every} has its decisions in this page.`);
   if (run.head.rows.every > 1) partial.push(`One row in ${run.head.rows.every} is in this page.`);
@@ -179,17 +209,20 @@ function fitWorld() {
 
 function fitSpace() {
   const d = currentDecision();
-  const reach = d ? reachOf(page.run, d) : page.run.robots[ui.robot].max_speed * 1.3;
+  const reach = d ? reachOf(shownRun(), d) : page.run.robots[ui.robot].max_speed * 1.3;
   page.plane.fit([-reach, -reach], [reach, reach], 8);
   page.dirty = true;
 }
 
 function currentDecision() {
-  const row = page.run.decisionRowAt(ui.t);
-  if (row < 0) return null;
+  const run = shownRun(), row = run.decisionRowAt(shownTime());
+  if (row < 0) {
+    page.space = null;
+    return null;
+  }
   const space = page.space;
-  if (space && space.decision.row === row && space.decision.robot === ui.robot) return space.decision;
-  page.space = spaceOf(page.run, page.run.decision(row, ui.robot));
+  if (space && space.run === run && space.decision.row === row && space.decision.robot === ui.robot) return space.decision;
+  page.space = spaceOf(run, run.decision(row, ui.robot));
   return page.space.decision;
 }
 
@@ -200,13 +233,14 @@ function contextOf(canvas) {
 }
 
 function paint() {
-  const run = page.run, decision = currentDecision();
-  page.positions.at(ui.t);
+  const decision = currentDecision(), positions = shownPositions().at(shownTime());
   if (page.follow) {
-    page.world.cx = page.positions.x[ui.robot];
-    page.world.cy = page.positions.y[ui.robot];
+    page.world.cx = positions.x[ui.robot];
+    page.world.cy = positions.y[ui.robot];
   }
-  drawWorld(contextOf($('world')), page.world, run, page.positions, ui, decision);
+  const ctx = contextOf($('world'));
+  drawWorld(ctx, page.world, shownRun(), positions, shownUi(), decision);
+  if (canEdit()) drawHandles(ctx, page.world, ui.colours, shownRun());
   drawSpace(contextOf($('space')), page.plane, page.space, ui);
   paintCharts();
 }
@@ -257,10 +291,10 @@ function showVerdict(target, result) {
 }
 
 function fillWords() {
-  const run = page.run, d = currentDecision();
+  const run = shownRun(), d = currentDecision();
   $('time').textContent = `${number(ui.t)} s`;
   if (document.activeElement !== $('scrub') || page.isPlaying) $('scrub').value = String(ui.t);
-  const key = d ? `${d.row} ${d.robot}` : `none ${ui.robot}`;
+  const key = d ? `${d.row} ${d.robot}` : `none ${ui.robot} ${shownPositions().row}`;
   if (page.shownDecision === key) return;
   // While a run plays, words follow ten times a second.
   const now = performance.now();
@@ -269,15 +303,15 @@ function fillWords() {
   page.shownDecision = key;
   $('robot').value = String(ui.robot);
   $('space-robot').textContent = shortName(run.robots[ui.robot].id, 40);
-  $('space-time').textContent = d ? `at ${number(d.time)} s` : 'not in this page';
+  $('space-time').textContent = !d ? 'no decision here' : page.live ? `at ${number(live.edit ? live.edit.time : d.time)} s, changed` : `at ${number(d.time)} s`;
   if (!d) {
-    for (const id of ['facts', 'half-planes', 'why', 'verdict', 'count']) $(id).replaceChildren();
+    fillStateOnly(run);
     return;
   }
   const row = run.rowAt(d.time), facts = [], mode = run.mode(row, ui.robot);
   const shift = Math.hypot(d.chosen[0] - d.preferred[0], d.chosen[1] - d.preferred[1]);
   fact(facts, 'robot', shortName(run.robots[ui.robot].id, 400));
-  fact(facts, 'time', `${number(d.time)} s`, 'time');
+  fact(facts, 'time', `${number(live.edit && page.live ? live.edit.time : d.time)} s`, 'time');
   fact(facts, 'position', `${pair(d.position)} m`, 'position');
   fact(facts, 'moving at', speedWords(d.velocity), 'velocity');
   fact(facts, 'mode', modeWords(run, row, ui.robot), 'mode');
@@ -293,12 +327,26 @@ function fillWords() {
   showVerdict($('verdict'), result);
   if (result.ok === false) $('why').textContent += `\nRefuted: ${result.why}.`;
   fillHalfPlanes(d);
+  if (canEdit() && !page.isPlaying) fillLiveNumbers();
+}
+
+// A recording of positions alone, or a robot whose decisions were left out.
+function fillStateOnly(run) {
+  for (const id of ['half-planes', 'why', 'verdict', 'count']) $(id).replaceChildren();
+  const facts = [], i = ui.robot, row = shownPositions().row;
+  fact(facts, 'robot', shortName(run.robots[i].id, 400));
+  fact(facts, 'time', `${number(run.time[row])} s`, 'time');
+  fact(facts, 'position', `${pair([run.x(row, i), run.y(row, i)])} m`, 'position');
+  fact(facts, 'moving at', speedWords([run.vx(row, i), run.vy(row, i)]), 'velocity');
+  $('facts').replaceChildren(...facts);
+  $('why').textContent = run.decisionTime.length ? '' : 'This recording has positions only: no decisions, no half-planes, no goals. ' +
+    'Robots in red had a half-plane relaxed since the row before.';
 }
 
 const MOST_CARDS = 60;
 
 function fillHalfPlanes(d) {
-  const run = page.run, counts = {slack: 0, binding: 0, violated: 0};
+  const run = shownRun(), counts = {slack: 0, binding: 0, violated: 0};
   for (const h of d.halfPlanes) ++counts[effectOf(d, h)];
   $('count').textContent = `${d.halfPlanes.length}: ${counts.binding} binding${counts.violated ? `, ${counts.violated} violated` : ''}`;
   const order = d.halfPlanes.map((h, k) => k).sort((a, b) => d.halfPlanes[b].active - d.halfPlanes[a].active || a - b);
@@ -373,6 +421,7 @@ async function checkAll() {
 // --- State and address ---
 
 function seek(t) {
+  endEdit();
   ui.t = Math.max(page.run.time[0], Math.min(page.run.end, t));
   page.dirty = true;
 }
@@ -383,6 +432,7 @@ function chooseRobot(i) {
   page.shownDecision = '';
   page.chartsDirty = page.dirty = true;
   fitSpace();
+  fillLive();
   writeAddress();
 }
 
@@ -422,17 +472,220 @@ function addressWords() {
 }
 
 async function readAddress() {
-  const words = addressWords(), key = words.get('run');
-  if (key !== undefined && key !== page.key && page.list.some((r) => r.key === key)) await openRun(key);
+  const words = addressWords(), key = words.get('run'), wrong = [];
+  notice('');
+  if (key !== undefined && !page.list.some((r) => r.key === key)) wrong.push(`This page has no run '${shortName(key, 80)}'.`);
+  else if (key !== undefined && key !== page.key) await openRun(key);
   const robot = words.get('robot');
   if (robot !== undefined) {
     const i = page.run.robots.findIndex((r) => r.id === robot);
     const k = i >= 0 ? i : Number(robot);
-    if (Number.isInteger(k) && k >= 0 && k < page.run.n) chooseRobot(k);
+    if (robot !== '' && Number.isInteger(k) && k >= 0 && k < page.run.n) chooseRobot(k);
+    else wrong.push(`This run has no robot '${shortName(robot, 80)}'.`);
   }
-  const t = Number(words.get('t'));
-  if (words.has('t') && Number.isFinite(t)) seek(t);
+  const time = words.get('t'), t = Number(time);
+  if (time !== undefined && time !== '' && Number.isFinite(t)) {
+    seek(t);
+    if (Math.abs(ui.t - t) > 5e-5) wrong.push(`This run lasts from ${number(page.run.time[0])} to ${number(page.run.end)} s: there is no ${shortName(time, 20)} s.`);
+  } else if (time !== undefined) {
+    wrong.push(`'${shortName(time, 80)}' is no time in seconds.`);
+  }
+  if (wrong.length) notice(`The address asks for what is not here. ${wrong.join(' ')} Shown instead: ${shortName(page.run.about.name, 60)}, ` +
+    `${shortName(page.run.robots[ui.robot].id, 40)} at ${number(ui.t)} s.`);
   page.dirty = true;
+}
+
+// --- Changes: computed by the server that gave the page out (served.js) ---
+
+const live = {edit: null, isAsking: false, isAgain: false, freeTimer: 0, made: 0, server: window.exactvoServer || null, keys: new Map()};
+
+function canEdit() {
+  return live.server !== null && page.run !== null && Boolean(page.run.head.scenario);
+}
+
+function liveMessage(text, isBad) {
+  $('live-message').textContent = text;
+  $('live-message').className = isBad ? 'bad' : '';
+}
+
+// The change that goes on, or a new one of the moment that is shown.
+function editOfMoment() {
+  return live.edit || new Edit(page.run, live.keys.get(page.key) || page.key, ui.t);
+}
+
+function endEdit() {
+  if (!live.edit && !page.live) return;
+  live.edit = page.live = null;
+  page.shownDecision = '';
+  page.space = null;
+  page.dirty = true;
+  clearTimeout(live.freeTimer);
+  $('live-free').textContent = '';
+  liveMessage('', false);
+  fillLive();
+}
+
+// A change goes on with `edit`: it is computed and shown.
+function changed(edit) {
+  if (live.edit !== edit) {
+    setPlaying(false);
+    live.edit = edit;
+  }
+  fillLiveNumbers();
+  askForDecision();
+}
+
+// One question at a time; what changed in between is asked next.
+async function askForDecision() {
+  live.isAgain = true;
+  if (live.isAsking) return;
+  live.isAsking = true;
+  while (live.isAgain && live.edit) {
+    live.isAgain = false;
+    const edit = live.edit;
+    try {
+      const {bytes, took} = await live.server.ask('decide', edit.question(ui.robot));
+      const run = await unpackBytes(new Uint8Array(bytes));
+      if (live.edit !== edit) continue;
+      run.unreachable = unreachableOf(run);
+      page.live = {run, positions: new Positions(run)};
+      page.shownDecision = '';
+      page.dirty = true;
+      liveMessage(`Computed in ${number(took.compute, 1)} ms (processor: ${number(took.processor, 1)} ms).`, false);
+      askForFree(edit);
+    } catch (error) {
+      if (live.edit === edit) liveMessage(`Not computed: ${error.message}`, true);
+    }
+  }
+  live.isAsking = false;
+  fillLive();
+}
+
+// When a change rests: what of the free velocities the half-planes give away.
+function askForFree(edit) {
+  clearTimeout(live.freeTimer);
+  $('live-free').textContent = '';
+  live.freeTimer = setTimeout(async () => {
+    try {
+      const {bytes} = await live.server.ask('free', {...edit.question(ui.robot), robot: ui.robot, preferred: null});
+      if (live.edit !== edit) return;
+      const answer = JSON.parse(new TextDecoder().decode(bytes)), middle = ([low, high]) => number((low + high) / 2);
+      $('live-free').textContent = answer.why_not ? `Free velocities: ${answer.why_not}.`
+        : `Free velocities: ${middle(answer.free)} (m/s)\u00b2, of which the half-planes give away ${middle(answer.given_away)} and ` +
+          `keep ${middle(answer.allowed)}${answer.inside === 'no' ? ' (some of it not free: shared with others)' : ''}.`;
+    } catch (error) {
+      $('live-free').textContent = '';  // the decision stands without it
+    }
+  }, 350);
+}
+
+async function runFromHere() {
+  if (!canEdit()) return;
+  const edit = editOfMoment(), base = page.key, robot = ui.robot;
+  liveMessage('Simulates on from this moment ...', false);
+  $('live-run').disabled = true;
+  try {
+    const {bytes} = await live.server.ask('run', edit.question(robot));
+    const run = await unpackBytes(new Uint8Array(bytes)), key = `changed-${++live.made}`;
+    live.keys.set(key, live.keys.get(base) || base);
+    page.loaded.set(key, run);
+    page.list.push({key, title: `${page.run.about.name}, on from ${number(edit.time)} s (${live.made})`, description: ''});
+    fillList(page.isGuide);
+    await openRun(key);
+    chooseRobot(robot);
+    setPlaying(true);
+  } catch (error) {
+    liveMessage(`Not simulated: ${error.message}`, true);
+  }
+  $('live-run').disabled = false;
+}
+
+// The panel of changes, where there is a server.
+function showLive() {
+  $('live').hidden = live.server === null;
+  for (const e of document.querySelectorAll('.of-server')) e.hidden = live.server === null;
+  for (const e of $('live').querySelectorAll('input, select, button')) e.disabled = !canEdit();
+  if (live.server && !canEdit()) liveMessage('This recording has neither goals nor decisions: nothing can be computed from it.', true);
+  fillLive();
+}
+
+function fillLive() {
+  if (!canEdit()) return;
+  $('live-back').disabled = live.edit === null;
+  $('live-state').textContent = live.edit ? `the moment at ${number(live.edit.time)} s, changed` : 'drag robots, goals, corners, arrows';
+  const handles = liveHandles(), chosen = $('live-handle').value;
+  $('live-handle').replaceChildren(...handles.map((h, k) => {
+    const option = element('option', h.label);
+    option.value = String(k);
+    return option;
+  }));
+  if (chosen !== '' && Number(chosen) < handles.length) $('live-handle').value = chosen;
+  fillLiveNumbers();
+}
+
+function liveHandles(edit = editOfMoment()) {
+  return handlesOf(edit, ui.robot, currentDecision());
+}
+
+function fillLiveNumbers() {
+  const edit = editOfMoment(), robot = edit.scenario.robots[ui.robot], set = (id, value) => {
+    if (document.activeElement !== $(id)) $(id).value = String(Number(value.toFixed(4)));
+  };
+  $('live-method').value = edit.methodName();
+  for (const id of ['live-radius', 'live-radius-number']) set(id, robot.radius);
+  for (const id of ['live-horizon', 'live-horizon-number']) set(id, edit.horizon);
+  const handle = liveHandles(edit)[Number($('live-handle').value) || 0];
+  if (!handle) return;
+  const [x, y] = handle.at();
+  set('live-x', x);
+  set('live-y', y);
+}
+
+// Where a drag begins: on a handle, a robot or an obstacle; null where the view is to be moved.
+function grabbed(where, view, px, py) {
+  if (!canEdit()) return null;
+  const edit = editOfMoment(), handles = liveHandles(edit);
+  let handle = pickHandle(view, handles, where, px, py);
+  if (!handle && where === 'world') {
+    const found = pickInWorld(view, shownRun(), shownPositions(), px, py) || {};
+    if (found.robot !== undefined) handle = handles.find((h) => h.kind === 'robot' && h.robot === found.robot);
+    else if (found.obstacle !== undefined) handle = obstacleHandle(edit, found.obstacle, view.x(px), view.y(py));
+  }
+  return handle && {edit, put: (x, y) => {
+    handle.put(x, y);
+    const k = liveHandles(edit).findIndex((h) => h.label === handle.label);
+    if (k >= 0) $('live-handle').value = String(k);
+    changed(edit);
+  }};
+}
+
+function connectLive() {
+  const change = (id, apply) => $(id).addEventListener('input', () => {
+    const value = Number($(id).value);
+    if ($(id).value === '' || !Number.isFinite(value)) return;
+    const edit = editOfMoment();
+    apply(edit, value);
+    changed(edit);
+  });
+  for (const id of ['live-radius', 'live-radius-number'])
+    change(id, (edit, value) => {
+      edit.scenario.robots[ui.robot].radius = value;
+    });
+  for (const id of ['live-horizon', 'live-horizon-number'])
+    change(id, (edit, value) => {
+      edit.horizon = value;
+    });
+  const move = (edit, x, y) => liveHandles(edit)[Number($('live-handle').value) || 0].put(x, y);
+  change('live-x', (edit, x) => move(edit, x, Number($('live-y').value)));
+  change('live-y', (edit, y) => move(edit, Number($('live-x').value), y));
+  $('live-handle').addEventListener('change', fillLiveNumbers);
+  $('live-method').addEventListener('change', () => {
+    const edit = editOfMoment();
+    edit.method = $('live-method').value;
+    changed(edit);
+  });
+  $('live-run').addEventListener('click', runFromHere);
+  $('live-back').addEventListener('click', endEdit);
 }
 
 // --- Playing ---
@@ -496,9 +749,9 @@ function showEvent(e) {
 
 // --- Pointer ---
 
-function onView(canvas, view, {onClick, onHover, isPannable}) {
+function onView(canvas, view, {where, onClick, onHover}) {
   const pointers = new Map();
-  let moved = 0, spread = 0;
+  let moved = 0, spread = 0, grab = null;
   const at = (event) => {
     const box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
@@ -512,6 +765,7 @@ function onView(canvas, view, {onClick, onHover, isPannable}) {
     pointers.set(event.pointerId, at(event));
     if (pointers.size === 2) spread = spreadNow();
     moved = 0;
+    grab = pointers.size === 1 ? grabbed(where, view, ...at(event)) : null;
   });
   canvas.addEventListener('pointermove', (event) => {
     const [x, y] = at(event), before = pointers.get(event.pointerId);
@@ -521,8 +775,9 @@ function onView(canvas, view, {onClick, onHover, isPannable}) {
     }
     moved += Math.abs(x - before[0]) + Math.abs(y - before[1]);
     pointers.set(event.pointerId, [x, y]);
-    if (!isPannable) return;
-    if (pointers.size === 2) {
+    if (grab) {
+      if (moved > 4) grab.put(view.x(x), view.y(y));
+    } else if (pointers.size === 2) {
       const now = spreadNow(), [a, b] = [...pointers.values()];
       view.zoomAt((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, now / Math.max(1, spread));
       spread = now;
@@ -558,31 +813,36 @@ function showTip(text, event) {
 }
 
 function worldTip(found) {
-  const run = page.run;
+  const run = shownRun(), positions = shownPositions();
   if (!found) return '';
+  if (found.goal !== undefined) {
+    const [robot, k] = found.goal, goals = run.robots[robot].goals, away = run.unreachable.find((u) => u.robot === robot && u.goal === k);
+    return `goal${goals.length > 2 ? ` ${k + 1}` : ''} of ${shortName(run.robots[robot].id, 120)}\n(${number(goals[2 * k])}, ${number(goals[2 * k + 1])}) m` +
+      (away ? `\nout of reach: ${shortName(away.why, 400)}` : '');
+  }
   if (found.obstacle !== undefined) {
-    const x = page.positions.x[ui.robot], y = page.positions.y[ui.robot];
+    const x = positions.x[ui.robot], y = positions.y[ui.robot];
     return `obstacle ${shortName(run.obstacles[found.obstacle].id, 120)}\n` +
       `${number(distanceToObstacle(run.obstacles[found.obstacle], x, y, 0, 0) - run.robots[ui.robot].radius)} m from the rim of ` +
       shortName(run.robots[ui.robot].id, 40);
   }
   if (found.moving !== undefined) return `moving obstacle ${shortName(run.moving[found.moving].id, 120)}`;
-  const i = found.robot, row = page.positions.row, vx = run.vx(row, i), vy = run.vy(row, i);
-  return `robot ${shortName(run.robots[i].id, 120)}\nat (${number(page.positions.x[i])}, ${number(page.positions.y[i])}) m, ` +
+  const i = found.robot, row = positions.row, vx = run.vx(row, i), vy = run.vy(row, i);
+  return `robot ${shortName(run.robots[i].id, 120)}\nat (${number(positions.x[i])}, ${number(positions.y[i])}) m, ` +
     `radius ${run.robots[i].radius} m\nspeed ${number(Math.hypot(vx, vy))} of ${run.robots[i].max_speed} m/s\n${modeWords(run, row, i)}`;
 }
 
 function connectPointer() {
   onView($('world'), page.world, {
-    isPannable: true,
+    where: 'world',
     onClick: (x, y) => {
-      const found = pickInWorld(page.world, page.run, page.positions, x, y);
+      const found = pickInWorld(page.world, shownRun(), shownPositions(), x, y);
       if (found && found.robot !== undefined) chooseRobot(found.robot);
     },
-    onHover: (x, y, event) => showTip(event && worldTip(pickInWorld(page.world, page.run, page.positions, x, y)), event),
+    onHover: (x, y, event) => showTip(event && worldTip(pickInWorld(page.world, shownRun(), shownPositions(), x, y)), event),
   });
   onView($('space'), page.plane, {
-    isPannable: true,
+    where: 'space',
     onClick: (x, y) => chooseHalfPlane(pickInSpace(page.plane, page.space, x, y), true),
     onHover: (x, y, event) => {
       const k = event ? pickInSpace(page.plane, page.space, x, y) : null;
@@ -592,7 +852,7 @@ function connectPointer() {
         showTip(event && d ? `(${number(page.plane.x(x))}, ${number(page.plane.y(y))}) m/s` : '', event);
       } else {
         const h = d.halfPlanes[k];
-        showTip(`[${k + 1}] ${shortName(page.run.nameOf(h), 120)}, ${effectWords(d, h)}\n${contactWords(d, h)}\n${lineWords(h)}` +
+        showTip(`[${k + 1}] ${shortName(shownRun().nameOf(h), 120)}, ${effectWords(d, h)}\n${contactWords(d, h)}\n${lineWords(h)}` +
           (h.multiplier > 0 ? `\nmultiplier ${number(h.multiplier, 4)} m/s` : ''), event);
       }
     },
@@ -643,21 +903,23 @@ function setFollow(on) {
 function setTheme(theme) {
   document.documentElement.dataset.theme = theme;
   ui.colours = PALETTES[theme];
+  worldLegend($('world-legend'), ui.colours, live.server !== null);
+  spaceLegend($('space-legend'), ui.colours);
   page.chartsDirty = page.dirty = true;
 }
 
 function title() {
-  const run = page.run;
-  return `${run.about.name}, ${run.about.method}: ${run.robots[ui.robot].id} at ${number(ui.t)} s`;
+  const run = shownRun();
+  return `${run.about.name}, ${run.about.method}: ${run.robots[ui.robot].id} at ${number(live.edit ? live.edit.time : ui.t)} s${page.live ? ', changed' : ''}`;
 }
 
 function paintInto(ctx, which) {
-  if (which === 'world') drawWorld(ctx, page.world, page.run, page.positions, ui, currentDecision());
+  if (which === 'world') drawWorld(ctx, page.world, shownRun(), shownPositions(), shownUi(), currentDecision());
   else drawSpace(ctx, page.plane, page.space, ui);
 }
 
 function svgOfMoment() {
-  page.positions.at(ui.t);
+  shownPositions().at(shownTime());
   return momentSvg(title(), {world: page.world, space: page.plane}, paintInto, ui.colours);
 }
 
@@ -724,8 +986,15 @@ const KEYS = {
   ArrowUp: () => nextHalfPlane(-1), ArrowDown: () => nextHalfPlane(1), Escape: () => chooseHalfPlane(null, true),
   f: () => setFollow(!page.follow), 0: () => fitAll(), '-': () => changeSpeed(-1), '+': () => changeSpeed(1), '=': () => changeSpeed(1),
   s: saveMoment, a: saveAnimation, r: film, v: checkAll,
+  l: () => showLegend($('world-legend').hidden), x: () => runFromHere(), b: () => endEdit(),
   t: () => setTheme(ui.colours === PALETTES.light ? 'dark' : 'light'), '?': () => $('keys').showModal(),
 };
+
+function showLegend(on) {
+  for (const id of ['world-legend', 'space-legend']) $(id).hidden = !on;
+  $('legend').setAttribute('aria-pressed', String(on));
+  resize();
+}
 
 function fitAll() {
   setFollow(false);
@@ -736,7 +1005,7 @@ function fitAll() {
 function onKey(event) {
   if (!page.run || event.ctrlKey || event.metaKey || event.altKey || $('keys').open) return;
   const tag = event.target.tagName;
-  if (tag === 'SELECT' || (tag === 'INPUT' && event.key.startsWith('Arrow'))) return;
+  if (tag === 'SELECT' || (tag === 'INPUT' && (event.target.type === 'number' || event.key.startsWith('Arrow')))) return;
   if ((tag === 'BUTTON' || tag === 'LI') && (event.key === ' ' || event.key === 'Enter')) {
     if (tag === 'LI') event.target.click();
     return;
@@ -770,6 +1039,8 @@ function connectControls() {
   on('save', saveMoment);
   on('animate', saveAnimation);
   on('film', film);
+  on('legend', KEYS.l);
+  on('notice-close', () => notice(''));
   on('theme', KEYS.t);
   on('help', KEYS['?']);
   on('check', () => checkAll().catch(report));
@@ -787,14 +1058,15 @@ function connectControls() {
 }
 
 function fillList(isGuide) {
-  $('run').hidden = isGuide || page.list.length < 2;
+  $('run').hidden = page.list.length < 2 || (isGuide && live.made === 0);
   $('run').replaceChildren(...page.list.map((r) => {
     const option = element('option', shortName(r.title, 80));
     option.value = r.key;
     return option;
   }));
   $('guide').hidden = !isGuide;
-  for (const r of isGuide ? page.list : []) {
+  $('guide').replaceChildren();
+  for (const r of isGuide ? page.list.slice(0, page.elements.length) : []) {
     const button = element('button');
     button.dataset.key = r.key;
     button.textContent = r.title;
@@ -807,18 +1079,21 @@ function fillList(isGuide) {
 async function start() {
   const prefersDark = typeof matchMedia === 'function' && matchMedia('(prefers-color-scheme: dark)').matches;
   setTheme(addressWords().get('theme') === 'dark' || (prefersDark && addressWords().get('theme') !== 'light') ? 'dark' : 'light');
+  showLegend(innerHeight >= 900 && innerWidth > 1100);
   const about = readList();
   page.list = about.runs;
   page.elements = [...document.querySelectorAll('script.run')];
   if (!page.list.length) throw new DataProblem('This page has no runs: make one with exactvo view.');
+  page.isGuide = about.guide;
   fillList(about.guide);
   connectControls();
   connectPointer();
+  connectLive();
   await openRun(page.list.some((r) => r.key === addressWords().get('run')) ? addressWords().get('run') : page.list[0].key);
   await readAddress();
   requestAnimationFrame(onFrame);
 }
 
 // For the console and for tests.
-window.exactvo = {page, ui, obstacleClearance, seek, chooseRobot, openRun, checkAll, checkDecision, checkHalfPlane, checkHalfOfPair, svgOfMoment, svgOfRun};
+window.exactvo = {page, ui, live, changed, editOfMoment, obstacleClearance, seek, chooseRobot, openRun, checkAll, checkDecision, checkHalfPlane, checkHalfOfPair, svgOfMoment, svgOfRun};
 window.exactvo.ready = start().catch(report);

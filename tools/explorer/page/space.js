@@ -9,7 +9,7 @@ function spaceOf(run, decision) {
   const obstacles = decision.halfPlanes.map((h) => velocityObstacle(h, decision.anchor));
   let allowed = speedRing(run, decision.robot);
   for (const h of decision.halfPlanes) if (allowed.length) allowed = clipped(allowed, h.nx, h.ny, h.c);
-  return {decision, obstacles, allowed, bound: speedRing(run, decision.robot)};
+  return {run, decision, obstacles, allowed, bound: speedRing(run, decision.robot), isWhole: run.about.all_half_planes};
 }
 
 // The half-width of the square that shows all of it.
@@ -146,22 +146,38 @@ function drawLegend(ctx, view, colours) {
   ctx.textAlign = 'start';
 }
 
+// The free velocities: within the speed bound and in no velocity obstacle. What the allowed ones leave of them, painted
+// over this, is given away. Only where every half-plane is there.
+function drawFree(ctx, view, colours, {obstacles, bound, isWhole}) {
+  if (!isWhole || obstacles.includes(null)) return;
+  tracePoints(ctx, view, bound, true);
+  ctx.fillStyle = colours.givenAway;
+  ctx.fill();
+  const reach = Math.hypot(view.width, view.height) / view.scale + Math.hypot(view.cx, view.cy);
+  ctx.fillStyle = colours.ground;
+  for (const o of obstacles) {
+    tracePoints(ctx, view, ringOf(o, reach), true);
+    ctx.fill();
+  }
+}
+
 // ui: {halfPlane, colours}; space: spaceOf(...) or null.
 function drawSpace(ctx, view, space, ui) {
   const colours = ui.colours;
   ctx.fillStyle = colours.ground;
   ctx.fillRect(0, 0, view.width, view.height);
-  const numbers = drawGrid(ctx, view, colours, 'm/s');
   if (!space) {
-    numbers();
+    drawGrid(ctx, view, colours, 'm/s')();
     return;
   }
   const {decision, obstacles, allowed, bound} = space;
+  drawFree(ctx, view, colours, space);
   if (allowed.length > 2) {
     tracePoints(ctx, view, allowed, true);
     ctx.fillStyle = colours.allowed;
     ctx.fill();
   }
+  const numbers = drawGrid(ctx, view, colours, 'm/s');
   const strength = Math.min(1, 5 / Math.max(1, obstacles.length));
   obstacles.forEach((o, k) => {
     if (o) drawCone(ctx, view, colours, decision.halfPlanes[k], o, ui.halfPlane === k, strength);

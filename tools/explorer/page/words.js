@@ -47,12 +47,12 @@ function contactWords(d, h) {
   if (distance < 0) return `the robot is ${number(-distance)} m inside it: no cone exists`;
   const contact = timeToContact(h, d.anchor, d.preferred[0] - h.ux, d.preferred[1] - h.uy);
   const away = `${number(distance)} m from the robot's rim`;
-  if (contact === null) return `${away}, missed at the preferred velocity`;
+  if (contact === null) return `${away}, not touched at the preferred velocity`;
   return `${away}, reached in ${number(contact)} s at the preferred velocity, horizon ${number(h.tau)} s`;
 }
 
 function signed(x) {
-  return (x < 0 ? '-' : '+') + Math.abs(x).toFixed(3);
+  return (x < 0 || Object.is(x, -0) ? '-' : '+') + Math.abs(x).toFixed(3);
 }
 
 function lineWords(h) {

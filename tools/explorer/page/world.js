@@ -5,6 +5,7 @@ import {distanceToSegment} from './shapes.js';
 
 const CROWD = 60;          // robots: more than this are drawn in bulk, without names and trails
 const MOST_TRAIL = 4000;   // points of a trail
+const MOST_ENDS = 400;     // facades: of more, the ends are not marked
 
 // Positions of all robots at a time, between two rows where it lies there. No allocation per frame.
 class Positions {
@@ -90,7 +91,7 @@ function outlineOf(shape) {
   return points;
 }
 
-// The enclosures that the chosen robot sees at a time.
+// The shapes that the chosen robot sees at a time: enclosures, or facades and convex pieces.
 function outlookAt(run, robot, t) {
   let found = null;
   for (const o of run.head.outlooks) if (o.robot === robot && o.time <= t + 1e-9) found = o;
@@ -100,14 +101,20 @@ function outlookAt(run, robot, t) {
 function drawEnclosures(ctx, view, colours, run, ui) {
   const outlook = outlookAt(run, ui.robot, ui.t);
   if (!outlook) return;
-  ctx.strokeStyle = colours.enclosure;
+  ctx.strokeStyle = ctx.fillStyle = colours.enclosure;
   ctx.lineWidth = 1.2;
-  ctx.setLineDash([5, 4]);
   for (const number of outlook.bodies) {
     const shape = run.bodies[number].shape;
-    if (!shape || !shape.ellipse) continue;  // others are the obstacle's own lines
-    tracePoints(ctx, view, outlineOf(shape), true);
+    if (!shape) continue;
+    ctx.setLineDash(shape.ellipse ? [5, 4] : []);
+    tracePoints(ctx, view, outlineOf(shape), !shape.segment);
     ctx.stroke();
+    if (!shape.segment || outlook.bodies.length > MOST_ENDS) continue;
+    for (const [x, y] of outlineOf(shape)) {
+      ctx.beginPath();
+      ctx.arc(view.px(x), view.py(y), 2.2, 0, 2 * Math.PI);
+      ctx.fill();
+    }
   }
   ctx.setLineDash([]);
 }
@@ -155,6 +162,71 @@ function drawGoals(ctx, view, colours, run, ui) {
       line(ctx, x - s, y + s, x + s, y - s);
     }
   }
+}
+
+// The routes that robots set out on: of every robot of a few, else of the chosen one.
+function drawRoutes(ctx, view, colours, run, ui) {
+  ctx.setLineDash([8, 3, 2, 3]);
+  for (const route of run.head.routes || []) {
+    if (!route.points.length || (run.n > CROWD && route.robot !== ui.robot)) continue;
+    ctx.strokeStyle = colourOf(colours, route.robot);
+    ctx.globalAlpha = route.robot === ui.robot ? 0.9 : 0.4;
+    ctx.lineWidth = route.robot === ui.robot ? 1.6 : 1;
+    ctx.beginPath();
+    for (let k = 0; k < route.points.length; k += 2) {
+      if (k === 0) ctx.moveTo(view.px(route.points[0]), view.py(route.points[1]));
+      else ctx.lineTo(view.px(route.points[k]), view.py(route.points[k + 1]));
+    }
+    ctx.stroke();
+  }
+  ctx.globalAlpha = 1;
+  ctx.setLineDash([]);
+}
+
+// Of each robot the goals that are proven out of its reach, with why: [{robot, goal, why}].
+function unreachableOf(run) {
+  const found = (run.head.routes || []).filter((route) => route.why_not).map((route) => ({robot: route.robot, goal: route.goal, why: route.why_not}));
+  for (const e of run.head.events) {
+    if (e.kind !== 'unreachable' || found.some((u) => u.robot === e.robot)) continue;
+    const number = /its goal (\d+)/.exec(e.text);
+    found.push({robot: e.robot, goal: number ? Number(number[1]) - 1 : 0, why: e.text});
+  }
+  return found.filter((u) => run.robots[u.robot].goals.length > 2 * u.goal);
+}
+
+function drawUnreachable(ctx, view, colours, run, ui) {
+  ctx.strokeStyle = colours.bad;
+  ctx.lineWidth = 2.5;
+  for (const {robot, goal} of run.unreachable) {
+    if (run.n > CROWD && robot !== ui.robot) continue;
+    const goals = run.robots[robot].goals, x = view.px(goals[2 * goal]), y = view.py(goals[2 * goal + 1]);
+    ctx.beginPath();
+    ctx.arc(x, y, 10, 0, 2 * Math.PI);
+    ctx.stroke();
+    line(ctx, x - 7, y + 7, x + 7, y - 7);
+  }
+}
+
+// Corners and goals that can be dragged.
+function drawHandles(ctx, view, colours, run) {
+  ctx.strokeStyle = colours.preferred;
+  ctx.fillStyle = colours.ground;
+  ctx.lineWidth = 1.4;
+  const square = (x, y, r) => {
+    ctx.beginPath();
+    ctx.rect(x - r, y - r, 2 * r, 2 * r);
+    ctx.fill();
+    ctx.stroke();
+  };
+  for (const o of run.obstacles)
+    for (const ring of o.rings) for (let k = 0; k < ring.length && ring.length <= 2 * MOST_ENDS; k += 2) square(view.px(ring[k]), view.py(ring[k + 1]), 3);
+  if (run.n > CROWD) return;
+  for (const r of run.robots)
+    for (let k = 0; k < r.goals.length; k += 2) {
+      ctx.beginPath();
+      ctx.arc(view.px(r.goals[k]), view.py(r.goals[k + 1]), 8, 0, 2 * Math.PI);
+      ctx.stroke();
+    }
 }
 
 function drawLeader(ctx, view, colours, run, row) {
@@ -294,15 +366,34 @@ function drawCollisions(ctx, view, colours, run, t) {
   }
 }
 
+// Beside each robot where its name covers neither another name nor a robot; where there is no such place it is left
+// out, but for the chosen robot's. Pointing at a robot names it.
 function drawNames(ctx, view, colours, run, ui, positions) {
   ctx.font = 'bold 12px system-ui, sans-serif';
   ctx.textAlign = 'left';
+  const taken = [], shown = [];
   for (let i = 0; i < run.n; ++i) {
     if (run.n > CROWD && i !== ui.robot) continue;
-    const r = run.robots[i].radius * view.scale;
-    label(ctx, shortName(run.robots[i].id, 18), view.px(positions.x[i]) + r + 5, view.py(positions.y[i]) - r - 1,
-      colours.text, colours.label);
+    const x = view.px(positions.x[i]), y = view.py(positions.y[i]), r = Math.max(2.5, run.robots[i].radius * view.scale) + 3;
+    if (x < -r || y < -r || x > view.width + r || y > view.height + r) continue;
+    taken.push([x - r, y - r, x + r, y + r]);
+    shown.push({i, x, y, r});
   }
+  shown.sort((a, b) => (b.i === ui.robot) - (a.i === ui.robot) || a.i - b.i);
+  for (const {i, x, y, r} of shown) {
+    const text = shortName(run.robots[i].id, 18), width = ctx.measureText(text).width;
+    const place = namePlace(x, y, r, width, taken) || (i === ui.robot ? [x + r + 2, y - r] : null);
+    if (!place) continue;
+    taken.push([place[0], place[1] - 11, place[0] + width, place[1] + 2]);
+    label(ctx, text, place[0], place[1], colours.text, colours.label);
+  }
+}
+
+function namePlace(x, y, r, width, taken) {
+  const places = [[x + r + 2, y - r], [x + r + 2, y + r + 8], [x - r - 2 - width, y - r], [x - r - 2 - width, y + r + 8],
+    [x - width / 2, y - r - 4], [x - width / 2, y + r + 12], [x + r + 3, y + 4], [x - r - 3 - width, y + 4]];
+  const isFree = ([left, base]) => taken.every(([x1, y1, x2, y2]) => left > x2 || left + width < x1 || base - 11 > y2 || base + 2 < y1);
+  return places.find(isFree) || null;
 }
 
 // ui: {t, robot, halfPlane, colours}; decision: of the chosen robot, or null.
@@ -319,7 +410,9 @@ function drawWorld(ctx, view, run, positions, ui, decision) {
     drawObstacle(ctx, view, colours, run.moving[k], moved[at], moved[at + 1], false);
   }
   drawEnclosures(ctx, view, colours, run, ui);
+  drawRoutes(ctx, view, colours, run, ui);
   drawGoals(ctx, view, colours, run, ui);
+  drawUnreachable(ctx, view, colours, run, ui);
   drawTrails(ctx, view, colours, run, ui, positions.row);
   drawLeader(ctx, view, colours, run, positions.row);
   if (run.n > CROWD) drawCrowd(ctx, view, colours, run, positions);
@@ -344,7 +437,7 @@ function drawStill(ctx, view, run, ui) {
   numbers();
 }
 
-// What lies under a point of the screen: {robot}, {obstacle} or {moving}; null where nothing does.
+// What lies under a point of the screen: {robot}, {goal: [robot, which]}, {obstacle} or {moving}; null where nothing does.
 function pickInWorld(view, run, positions, px, py) {
   let best = null, nearest = 14;
   for (let i = 0; i < run.n; ++i) {
@@ -355,6 +448,9 @@ function pickInWorld(view, run, positions, px, py) {
     }
   }
   if (best) return best;
+  for (let i = 0; i < run.n && run.n <= CROWD; ++i)
+    for (let k = 0; k < run.robots[i].goals.length; k += 2)
+      if (Math.hypot(view.px(run.robots[i].goals[k]) - px, view.py(run.robots[i].goals[k + 1]) - py) < 9) return {goal: [i, k / 2]};
   const x = view.x(px), y = view.y(py);
   const near = (o, ox, oy) => {
     for (const ring of o.rings)
@@ -373,4 +469,4 @@ function pickInWorld(view, run, positions, px, py) {
   return null;
 }
 
-export {Positions, extentOf, drawWorld, drawStill, pickInWorld, colourOf, CROWD};
+export {Positions, extentOf, unreachableOf, drawWorld, drawHandles, drawStill, pickInWorld, colourOf, CROWD};

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# cpp-httplib, for `exactvo serve`: EXACTVO::httplib and EXACTVO_WITH_HTTP. Without it the program is built all the same,
+# and `serve` says why it cannot. The macros of the library's own build change its classes, so they come from its
+# description: pkg-config's in Debian, CMake's elsewhere.
+set(EXACTVO_HTTP AUTO CACHE STRING "exactvo serve: ON, OFF, or AUTO (where cpp-httplib is)")
+set_property(CACHE EXACTVO_HTTP PROPERTY STRINGS AUTO ON OFF)
+set(EXACTVO_WITH_HTTP OFF)
+if(NOT EXACTVO_HTTP STREQUAL "OFF")
+  find_package(httplib QUIET CONFIG)
+  find_package(PkgConfig QUIET)
+  if(NOT httplib_FOUND AND PkgConfig_FOUND)
+    pkg_check_modules(cpp_httplib QUIET IMPORTED_TARGET GLOBAL cpp-httplib)
+  endif()
+  add_library(EXACTVO::httplib INTERFACE IMPORTED)
+  if(httplib_FOUND)
+    target_link_libraries(EXACTVO::httplib INTERFACE httplib::httplib)
+    set(EXACTVO_WITH_HTTP ON)
+  elseif(TARGET PkgConfig::cpp_httplib)
+    target_link_libraries(EXACTVO::httplib INTERFACE PkgConfig::cpp_httplib)
+    set(EXACTVO_WITH_HTTP ON)
+  elseif(EXACTVO_HTTP STREQUAL "ON")
+    message(FATAL_ERROR "cpp-httplib was not found.\n  Debian, Ubuntu: apt-get install libcpp-httplib-dev pkg-config")
+  else()
+    message(STATUS "cpp-httplib was not found (Debian: libcpp-httplib-dev pkg-config): exactvo serve will say so")
+  endif()
+endif()

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "explorer/live.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/speed_profile.h"
+#include "exactvo/vo/free_velocities.h"
+#include "exactvo/vo/lp/certificate.h"
+#include "explorer/packed_run.h"
+#include "support/run.h"
+
+namespace exactvo::tools {
+
+using datasets::DataCode;
+using datasets::DataError;
+using formation::RecordedConstraint;
+using formation::RobotStep;
+using geometry::norm;
+using geometry::Vec2;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr const char* kQuestion = "question";  // in the place of a file's name
+constexpr int kDeepest = 64;                   // levels of JSON: what is printed again must not exhaust the stack
+constexpr double kLatest = 1e9;                // s
+constexpr double kFastest = 1e6;               // m/s
+
+[[noreturn]] void refuse(DataCode code, const std::string& place, const std::string& found,
+                         const std::string& expected) {
+  throw DataError(code, kQuestion, place, found, expected);
+}
+
+// --- Questions ---
+
+Json parsed(const std::string& text) {
+  const auto check_depth = [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest)
+      refuse(DataCode::nesting, "", "deeper nesting", "at most " + std::to_string(kDeepest) + " levels");
+    return true;
+  };
+  try {
+    return Json::parse(text, check_depth);
+  } catch (const Json::exception& e) {
+    refuse(DataCode::json_syntax, "", e.what(), "JSON");
+  }
+}
+
+const Json& member(const Json& object, const char* key, bool (Json::*is_right)() const noexcept, const char* expected) {
+  const auto found = object.find(key);
+  if (found == object.end()) refuse(DataCode::key_missing, "", "nothing", std::string("the key ") + key);
+  if (!((*found).*is_right)()) refuse(DataCode::wrong_type, std::string("/") + key, found->type_name(), expected);
+  return *found;
+}
+
+/// Entries by themselves: no generator of many robots, and no file.
+void check_entries(const Json& scenario, const char* list, std::initializer_list<const char*> allowed) {
+  const auto found = scenario.find(list);
+  if (found == scenario.end() || !found->is_array()) return;  // the schema says so
+  for (std::size_t k = 0; k < found->size(); ++k) {
+    if (!(*found)[k].is_object()) continue;
+    for (const auto& [key, value] : (*found)[k].items())
+      if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
+        refuse(key == "file" ? DataCode::path_escape : DataCode::key_unknown,
+               std::string("/scenario/") + list + "/" + std::to_string(k), "the key '" + key + "'",
+               "an entry by itself: a page names neither files nor generators");
+  }
+}
+
+formation::Scenario scenario_in(const Json& question) {
+  const Json& scenario = member(question, "scenario", &Json::is_object, "a scenario");
+  check_entries(scenario, "robots",
+                {"id", "position", "velocity", "radius", "max_speed", "goal", "goals", "cooperates"});
+  check_entries(scenario, "obstacles", {"id", "polyline", "polygon", "holes"});
+  check_entries(scenario, "moving_obstacles", {"id", "polyline", "polygon", "holes", "path", "speed", "profile"});
+  const auto robots = scenario.find("robots");
+  if (robots != scenario.end() && robots->size() > kMostLiveRobots)
+    refuse(DataCode::size, "/scenario/robots", std::to_string(robots->size()) + " robots",
+           "at most " + std::to_string(kMostLiveRobots) + " to compute with");
+  return datasets::parse_scenario(scenario.dump(-1, ' ', false, Json::error_handler_t::replace), kQuestion,
+                                  std::filesystem::path());
+}
+
+double number_in(const Json& value, const std::string& place, double least, double most, const char* expected) {
+  if (!value.is_number()) refuse(DataCode::wrong_type, place, value.type_name(), expected);
+  const double number = value.get<double>();
+  if (!(number >= least && number <= most)) refuse(DataCode::out_of_range, place, value.dump(), expected);
+  return number;
+}
+
+std::optional<Vec2> preferred_in(const Json& question) {
+  const auto found = question.find("preferred");
+  if (found == question.end() || found->is_null()) return std::nullopt;
+  if (!found->is_array() || found->size() != 2)
+    refuse(DataCode::wrong_type, "/preferred", found->type_name(), "[x, y] in m/s, or null");
+  const char* expected = "a number of m/s, at most 10^6 in size";
+  return Vec2{number_in((*found)[0], "/preferred/0", -kFastest, kFastest, expected),
+              number_in((*found)[1], "/preferred/1", -kFastest, kFastest, expected)};
+}
+
+// --- What moves by itself, at a later time ---
+
+formation::Leader advanced(const formation::Leader& leader, double time) {
+  double left = leader.profile.empty() ? leader.speed * time : formation::distance_at(leader.profile, time);
+  std::size_t k = 0;
+  while (k + 1 < leader.path.size() && left >= norm(leader.path[k + 1] - leader.path[k]))
+    left -= norm(leader.path[k + 1] - leader.path[k]), ++k;
+  formation::Leader rest{{leader.path[k]}, leader.speed, {}};
+  if (k + 1 < leader.path.size()) {
+    const Vec2 leg = leader.path[k + 1] - leader.path[k];
+    rest.path.front() += (left / norm(leg)) * leg;
+  }
+  rest.path.insert(rest.path.end(), leader.path.begin() + static_cast<std::ptrdiff_t>(k) + 1, leader.path.end());
+  if (!leader.profile.empty()) rest.profile.push_back({0.0, formation::speed_at(leader.profile, time)});
+  for (const formation::SpeedKnot& knot : leader.profile)
+    if (knot.time > time) rest.profile.push_back({knot.time - time, knot.speed});
+  return rest;
+}
+
+void shift(geometry::Obstacle& shape, Vec2 by) {
+  if (auto* line = std::get_if<geometry::Polyline>(&shape)) {
+    for (Vec2& p : line->points) p += by;
+    return;
+  }
+  auto& polygon = std::get<geometry::Polygon>(shape);
+  for (Vec2& p : polygon.outer) p += by;
+  for (geometry::Ring& hole : polygon.holes)
+    for (Vec2& p : hole) p += by;
+}
+
+void advance(formation::Scenario& scenario, double time) {
+  if (time == 0.0) return;
+  for (formation::MovingObstacle& obstacle : scenario.moving_obstacles) {
+    const Vec2 before = obstacle.motion.path.front();
+    obstacle.motion = advanced(obstacle.motion, time);
+    shift(obstacle.shape, obstacle.motion.path.front() - before);
+  }
+  if (scenario.formation) scenario.formation->leader = advanced(scenario.formation->leader, time);
+}
+
+// --- Decisions ---
+
+/// The best of what the step's half-planes allow for another preferred velocity, with its multipliers: what the
+/// simulation does with a decision, for half-planes that are there already. They do not depend on the preference.
+void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 preferred, RobotStep& step) {
+  lp::Problem problem;
+  problem.preferred = preferred;
+  if (scenario.speed_bound == formation::SpeedBoundKind::disc) {
+    problem.bound.disc = max_speed;
+  } else {
+    problem.bound.box_x = problem.bound.box_y = max_speed;
+  }
+  for (const RecordedConstraint& c : step.constraints)
+    problem.constraints.push_back({c.half_plane, c.hard ? lp::Priority::hard : lp::Priority::soft});
+  const lp::Proven proven = lp::solve_certified(problem);
+  const lp::Solution& solution = proven.solution;
+  step.preferred = preferred;
+  step.chosen = solution.velocity;
+  step.status = solution.status;
+  step.violation = solution.violation;
+  step.exact_multipliers = proven.exact_stage && solution.status != lp::Status::no_interior &&
+                           lp::check(problem, lp::claim_of(problem, solution)) != lp::CertificateError::none;
+  step.bound.clear();
+  for (RecordedConstraint& c : step.constraints) {
+    c.active = false;
+    c.multiplier = 0.0;
+  }
+  for (std::size_t k = 0; k < solution.active_count; ++k) {
+    lp::ActiveConstraint active = solution.active[k];
+    if (step.exact_multipliers) active.multiplier = 0.0;
+    if (lp::is_speed_bound(active.binding)) {
+      step.bound.push_back(active);
+    } else {
+      step.constraints[active.binding.index].active = true;
+      step.constraints[active.binding.index].multiplier = active.multiplier;
+    }
+  }
+}
+
+/// The first row of a run, its decisions with the preferred velocity that was asked for, and the row after it.
+class MomentRecorder : public formation::RunSink {
+ public:
+  explicit MomentRecorder(const LiveQuestion& question) : question_(question) {}
+  void begin(const formation::Recording&) override {}
+  void add_body(const vo::Body&) override {}
+  void add_outlook(const formation::Outlook&) override {}
+  void add_row(formation::Step row) override {
+    if (rows_.empty() && question_.preferred)
+      choose_anew(question_.scenario, question_.scenario.robots[question_.robot].max_speed, *question_.preferred,
+                  row.robots[question_.robot]);
+    rows_.push_back(std::move(row));
+  }
+  const std::vector<formation::Step>& rows() const { return rows_; }
+
+ private:
+  const LiveQuestion& question_;
+  std::vector<formation::Step> rows_;
+};
+
+struct Moment {
+  formation::Recording about;  ///< without rows
+  std::vector<formation::Step> rows;
+};
+
+Moment moment_of(const LiveQuestion& question) {
+  formation::SimulationOptions options = question.options;
+  options.record_all = true;
+  options.stop_at = 0.0;
+  MomentRecorder recorder(question);
+  formation::Recording about = formation::simulate(question.scenario, options, recorder);
+  about.all_half_planes = true;
+  return {std::move(about), recorder.rows()};
+}
+
+const datasets::Provenance& provenance() {
+  static const datasets::Provenance made = datasets::make_provenance({}, 0);
+  return made;
+}
+
+Json json(const geometry::Bracket& b) {
+  return {b.low, b.high};
+}
+
+/// The velocity obstacles that the robot's half-planes exclude.
+std::vector<vo::ShiftedCone> cones_of(const RobotStep& step) {
+  std::vector<vo::ShiftedCone> cones;
+  for (const RecordedConstraint& c : step.constraints)
+    cones.push_back(
+        {vo::VelocityObstacle(c.shape, c.position, c.radius, c.tau), {{-c.shape_velocity}}, c.shape_velocity});
+  return cones;
+}
+
+std::vector<geometry::HalfPlane> half_planes_of(const RobotStep& step) {
+  std::vector<geometry::HalfPlane> all;
+  for (const RecordedConstraint& c : step.constraints) all.push_back(c.half_plane);
+  return all;
+}
+
+}  // namespace
+
+LiveQuestion parse_live_question(const std::string& text, const OptionsOfRun& options_of) {
+  const Json question = parsed(text);
+  if (!question.is_object()) refuse(DataCode::wrong_type, "", question.type_name(), "an object");
+  LiveQuestion asked;
+  const std::string key = member(question, "run", &Json::is_string, "the key of a run").get<std::string>();
+  const std::optional<formation::SimulationOptions> options = options_of(key);
+  if (!options) refuse(DataCode::not_an_option, "/run", "'" + key + "'", "the key of a run of the page");
+  asked.options = *options;
+  if (const auto method = question.find("method"); method != question.end() && !method->is_null()) {
+    if (!method->is_string() || !formation::parse(method->get<std::string>(), asked.options.method))
+      refuse(DataCode::not_an_option, "/method", method->dump(-1, ' ', true, Json::error_handler_t::replace),
+             "the name of a method");
+  }
+  asked.scenario = scenario_in(question);
+  const double time =
+      question.contains("time") ? number_in(question["time"], "/time", 0.0, kLatest, "seconds from 0 to 10^9") : 0.0;
+  advance(asked.scenario, time);
+  const double last = static_cast<double>(asked.scenario.robots.size()) - 1.0;
+  if (question.contains("robot"))
+    asked.robot = static_cast<std::size_t>(
+        number_in(question["robot"], "/robot", 0.0, last, "the index of a robot of the scenario"));
+  asked.preferred = preferred_in(question);
+  return asked;
+}
+
+std::string live_decision(const LiveQuestion& question) {
+  Moment moment = moment_of(question);
+  const RunName names = name_of(question.scenario, question.options);
+  datasets::RecordingFile about;
+  about.info = {names.scenario, names.method,   names.controller, std::nullopt,
+                provenance(),   names.guidance, names.liveness};
+  about.scenario = question.scenario;
+  about.recording = std::move(moment.about);
+  about.recording.steps = std::move(moment.rows);
+  return packed_run(about, "");
+}
+
+std::string live_free_velocities(const LiveQuestion& question) {
+  constexpr double kOfSpeed = 1e-3;  // how far polygons may stray from the curves: quick, and what a picture shows
+  const double max_speed = question.scenario.robots[question.robot].max_speed;
+  if (question.scenario.speed_bound != formation::SpeedBoundKind::disc)
+    return Json{{"why_not", "the speed bound is a box, and free velocities are counted within a disc"}}.dump();
+  const Moment moment = moment_of(question);
+  const RobotStep& step = moment.rows.front().robots[question.robot];
+  std::vector<vo::ShiftedCone> cones = cones_of(step);
+  const bool overlaps = std::any_of(cones.begin(), cones.end(), [](const auto& c) { return c.cone.overlaps(); });
+  if (overlaps) return Json{{"why_not", "the robot touches or overlaps what it must avoid: no cone exists"}}.dump();
+  const vo::FreeVelocities free(std::move(cones), {max_speed, kOfSpeed});
+  const vo::RegionReport report = free.compare(half_planes_of(step));
+  return Json{{"free", json(free.area())},
+              {"allowed", json(report.area)},
+              {"given_away", json(report.given_away)},
+              {"inside", name(report.inside)}}
+      .dump();
+}
+
+std::string live_run(const LiveQuestion& question, const std::function<void()>& goes_on) {
+  formation::SimulationOptions options = question.options;
+  options.record_all = true;
+  RunOutput output;
+  output.figures = false;
+  output.page = true;
+  output.page_limits.has_scenario = true;
+  output.progress = [&](double) { goes_on(); };
+  return run(question.scenario, options, provenance(), output).packed;
+}
+
+}  // namespace exactvo::tools

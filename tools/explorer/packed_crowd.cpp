@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "explorer/packed_crowd.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "exactvo/datasets/crowd_recording.h"
+#include "exactvo/datasets/provenance.h"
+#include "support/terminal.h"
+
+namespace exactvo::tools {
+
+using datasets::CrowdRecordingHead;
+using datasets::CrowdRow;
+using geometry::Vec2;
+
+namespace {
+
+/// Edges that follow one another as one wall.
+std::vector<formation::SceneObstacle> walls_of(const std::vector<geometry::Segment>& edges) {
+  std::vector<formation::SceneObstacle> walls;
+  for (const geometry::Segment& edge : edges) {
+    if (!walls.empty()) {
+      std::vector<Vec2>& points = std::get<geometry::Polyline>(walls.back().shape).points;
+      if (points.back() == edge.a) {
+        points.push_back(edge.b);
+        continue;
+      }
+    }
+    walls.push_back({fmt::format("wall {}", walls.size() + 1), geometry::Polyline{{edge.a, edge.b}}});
+  }
+  return walls;
+}
+
+datasets::RecordingFile about_crowd(const CrowdRecordingHead& head) {
+  datasets::RecordingFile about;
+  about.info.scenario = about.scenario.name = head.scenario;
+  about.info.method = "orca, engine crowd";
+  about.info.provenance = datasets::make_provenance({}, 0);
+  about.scenario.time_step = about.recording.time_step = head.time_step;
+  about.scenario.obstacles = walls_of(head.edges);
+  for (std::size_t i = 0; i < head.kind_of.size(); ++i) {
+    formation::Robot robot;
+    robot.id = fmt::format("#{}", i + 1);
+    robot.radius = head.kinds[head.kind_of[i]].radius;
+    robot.max_speed = head.kinds[head.kind_of[i]].max_speed;
+    about.scenario.robots.push_back(std::move(robot));
+  }
+  return about;
+}
+
+/// The row as a step: of each robot its place, its mean velocity since the row before, and whether it kept its
+/// half-planes.
+void put(const CrowdRow& row, const CrowdRecordingHead& head, formation::Step& step) {
+  const bool is_first = step.robots.empty();
+  const double before = step.time;
+  step.robots.resize(row.x.size());
+  step.time = head.time_step * row.step;
+  for (std::size_t i = 0; i < row.x.size(); ++i) {
+    formation::RobotStep& robot = step.robots[i];
+    const Vec2 here{head.position_step * row.x[i], head.position_step * row.y[i]};
+    robot.velocity = is_first || !(step.time > before) ? Vec2{} : (here - robot.position) / (step.time - before);
+    robot.position = here;
+    robot.status = is_first || row.kept[i] != 0 ? lp::Status::optimal : lp::Status::relaxed;
+  }
+}
+
+}  // namespace
+
+PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimits& limits) {
+  datasets::CrowdRecordingReader reader(path);
+  datasets::RecordingFile about = about_crowd(reader.head());
+  RunPacker packer(limits);
+  CrowdRow row;
+  formation::Step step;
+  std::size_t rows = 0;
+  for (; reader.next(row); ++rows) {
+    if (interrupted()) throw Interrupted();
+    put(row, reader.head(), step);
+    packer.add_positions(step);
+  }
+  if (rows == 0)
+    throw datasets::DataError(datasets::DataCode::format_syntax, path.string(), "", "no whole row",
+                              "a recording of at least one row");
+  about.recording.outcome = fmt::format(
+      "a recording of a crowd: {} robots, {} rows, a row every {} of {:.4g} s", about.scenario.robots.size(), rows,
+      reader.head().every == 1 ? "step" : fmt::format("{} steps", reader.head().every), reader.head().time_step);
+  if (reader.is_cut_off()) about.recording.warnings.push_back("The recording was cut off after its last whole row.");
+  return {reader.head().scenario, packer.finish(about, "")};
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A recording of a crowd (datasets/crowd_recording.h) as a packed run: positions and which robots kept their
+/// half-planes, without goals and decisions, which such recordings do not have.
+///
+/// Neighbours: packed_run.h (the packing, and which rows are left out of a long run).
+
+#include <filesystem>
+#include <string>
+
+#include "explorer/packed_run.h"
+
+namespace exactvo::tools {
+
+struct PackedCrowd {
+  std::string scenario;  ///< its name
+  std::string packed;    ///< RunPacker::finish
+};
+
+/// Read a row at a time, in memory bounded by the limits. Throws datasets::DataError.
+PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimits& limits = {});
+
+}  // namespace exactvo::tools

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs/runs/page_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "exactvo/datasets/metrics_file.h"
+#include "exactvo/datasets/provenance.h"
+#include "exactvo/datasets/recording_file.h"
+#include "explorer/packed_crowd.h"
+#include "explorer/scenes.h"
+#include "support/run.h"
+#include "support/stop.h"
+#include "support/terminal.h"
+#include "verb.h"
+
+namespace exactvo::tools {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Those that the run itself wrote, else measured again.
+std::string metrics_beside(const fs::path& recording, const datasets::RecordingFile& file) {
+  if (recording.filename() == "recording.jsonl") {
+    std::ifstream in(recording.parent_path() / "metrics.json");
+    std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (!text.empty()) return text;
+  }
+  return datasets::metrics_json(file.info, formation::measure(file.scenario, file.recording));
+}
+
+std::string title_of(const datasets::RecordingFile& file) {
+  const datasets::RunInfo& info = file.info;
+  return info.scenario + ", " + info.method + (info.controller ? ", " + *info.controller : "") +
+         (info.guidance ? ", " + *info.guidance : "");
+}
+
+/// What a recorded run was made with.
+formation::SimulationOptions options_of(const datasets::RecordingFile& file) {
+  const datasets::RunInfo& info = file.info;
+  formation::SimulationOptions options;
+  parse(info.method, options.method);
+  if (info.controller) parse(*info.controller, options.controller);
+  if (info.integrator) parse(*info.integrator, options.integrator);
+  formation::Guidance guidance = formation::Guidance::none;
+  if (info.guidance) parse(*info.guidance, guidance);
+  options.guidance = guidance;
+  formation::Liveness liveness = formation::Liveness::off;
+  if (info.liveness) parse(*info.liveness, liveness);
+  options.liveness = liveness;
+  options.remedies = file.recording.remedies;
+  return options;
+}
+
+MadeRun recorded(const PageFlags& flags, const fs::path& path) {
+  const datasets::RecordingFile file = datasets::read_recording(path);
+  return {{page_key(title_of(file)), title_of(file), "", packed_run(file, metrics_beside(path, file), flags.limits)},
+          options_of(file)};
+}
+
+/// Nothing computes with it: it has neither goals nor decisions.
+MadeRun recorded_crowd(const PageFlags& flags, const fs::path& path) {
+  const PackedCrowd crowd = packed_crowd(path, flags.limits);
+  const std::string title = crowd.scenario + ", crowd";
+  return {{page_key(title), title, "", crowd.packed}, {}};
+}
+
+/// With every half-plane.
+MadeRun simulated(const PageFlags& flags, const std::string& path) {
+  formation::SimulationOptions options = simulation_options(flags.simulation);
+  options.record_all = true;
+  const ReadScenario read = read_scenario(path);
+  note_unused(flags.simulation, read.scenario);
+  const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
+  ProgressLine line(read.scenario.time_limit, "s simulated");
+  RunOutput output;
+  output.figures = false;
+  output.page = true;
+  output.page_limits = flags.limits;
+  output.progress = [&](double time) { line.show(time, read.scenario.name); };
+  FinishedRun finished = run(read.scenario, options, provenance, output);
+  return {{page_key(title_of(finished.file)), title_of(finished.file), "", std::move(finished.packed)}, options};
+}
+
+/// Runs of one name get a number behind it.
+void make_keys_distinct(std::vector<MadeRun>& runs) {
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    PageRun& shown = runs[k].shown;
+    const std::string key = shown.key;
+    std::size_t number = 1;
+    const auto is_taken = [&](const MadeRun& other) { return other.shown.key == shown.key; };
+    while (std::any_of(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(k), is_taken))
+      shown.key = fmt::format("{}-{}", key, ++number);
+    if (number > 1) shown.title += fmt::format(" ({})", number);
+  }
+}
+
+}  // namespace
+
+void declare_page_flags(CLI::App& app, PageFlags& flags, int most, const std::string& what_runs_are) {
+  app.add_option("runs", flags.runs, what_runs_are)->expected(0, most);
+  app.add_option("--most-states", flags.limits.states,
+                 "Positions in the page per run, robots times rows; beyond, rows are left out")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 26));
+  app.add_option(
+         "--most-numbers", flags.limits.decision_numbers,
+         "Numbers of decisions in the page per run, about 14 a robot and row and 6 a half-plane; beyond, decisions "
+         "are left out")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 28));
+  declare_simulation_flags(app, flags.simulation);
+}
+
+std::vector<MadeRun> page_runs(const PageFlags& flags) {
+  const TerminateOnSignal terminate_on_signal;
+  if (flags.runs.empty()) return guided_scenes(flags.limits);
+  bool any_simulated = false;
+  std::vector<MadeRun> runs;
+  for (const std::string& path : flags.runs) {
+    if (fs::path(path).extension() == ".evr") {
+      runs.push_back(recorded_crowd(flags, path));
+    } else if (const auto recording = recording_at(path)) {
+      runs.push_back(recorded(flags, *recording));
+    } else {
+      any_simulated = true;
+      runs.push_back(simulated(flags, path));
+    }
+  }
+  if (!any_simulated) note_recorded(flags.simulation);
+  make_keys_distinct(runs);
+  return runs;
+}
+
+}  // namespace exactvo::tools

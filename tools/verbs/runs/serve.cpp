@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// exactvo serve: the page of `view` on this computer, where dragging computes.
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "explorer/server.h"
+#include "support/terminal.h"
+#include "support/usage.h"
+#include "verb.h"
+#include "verbs/runs/page_runs.h"
+
+extern char** environ;
+
+namespace exactvo::tools {
+
+namespace {
+
+struct Flags {
+  PageFlags page;
+  int port = 0;
+  bool opens = false;
+};
+
+/// By the desktop's own program. A message where there is none.
+void open_in_browser(const std::string& address) {
+  std::string program = "xdg-open", argument = address;
+  char* words[] = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  int status = 0;
+  const bool is_opened = ::posix_spawnp(&child, words[0], nullptr, nullptr, words, environ) == 0 &&
+                         ::waitpid(child, &status, 0) == child && status == 0;
+  if (!is_opened) message("no browser could be opened (xdg-open): open the address in one");
+}
+
+/// Those of the page by their keys.
+OptionsOfRun options_by_key(const std::vector<MadeRun>& runs) {
+  std::vector<std::pair<std::string, formation::SimulationOptions>> all;
+  for (const MadeRun& made : runs) all.emplace_back(made.shown.key, made.options);
+  return [all](const std::string& key) -> std::optional<formation::SimulationOptions> {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == key; });
+    return found == all.end() ? std::nullopt : std::optional(found->second);
+  };
+}
+
+ExitCode serve_page(Flags flags) {
+  if (!has_http())
+    throw UsageError("serve", "a program built without cpp-httplib (Debian: libcpp-httplib-dev)",
+                     "one built with it; exactvo view makes a page that needs no server [E_NOT_BUILT]");
+  flags.page.limits.has_scenario = true;
+  const std::vector<MadeRun> runs = page_runs(flags.page);
+  ServerOptions options;
+  options.port = flags.port;
+  options.options_of = options_by_key(runs);
+  std::vector<PageRun> shown;
+  for (const MadeRun& made : runs) shown.push_back(made.shown);
+  options.page = page_for_server(explorer_page(shown, flags.page.runs.empty()));
+  options.ready = [&](const std::string& address) {
+    print(address + "\n");
+    message("open this address in a browser on this computer; Ctrl-C ends the server");
+    if (flags.opens) open_in_browser(address);
+  };
+  serve(options);
+  message("stopped");
+  return ExitCode::success;
+}
+
+Action declare(CLI::App& app) {
+  const auto flags = std::make_shared<Flags>();
+  declare_page_flags(
+      app, flags->page, 1,
+      "A scenario, which is run with every half-plane, the folder of a run, or a recording (.jsonl, of a "
+      "crowd .evr); none: three scenes to start from");
+  app.add_option("--port", flags->port, "Port of 127.0.0.1; 0: one that is free")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  app.add_flag("--open", flags->opens, "Open the address in the desktop's browser (xdg-open)");
+  return [flags] { return serve_page(*flags); };
+}
+
+}  // namespace
+
+Verb serve_verb() {
+  return {"serve", "The page of view on this computer, where dragging computes: Ctrl-C ends it",
+          "  exactvo serve --open\n"
+          "  exactvo serve datasets/data/paper/A7.json\n"
+          "  exactvo serve out/A7 --port 8080\n",
+          declare};
+}
+
+}  // namespace exactvo::tools
