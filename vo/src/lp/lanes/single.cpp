@@ -140,6 +140,12 @@ class LoneWalk {
     return false;
   }
 
+  /// On the disc, the walk from three lines may end before the least violation.
+  bool is_on_disc() const {
+    const double x = hn::GetLane(pack_.vx), y = hn::GetLane(pack_.vy);
+    return x * x + y * y > p_.disc * p_.disc * (1.0 - kOnDisc);
+  }
+
   /// From a contradiction of three lines that carry the slack.
   bool relax(const Line& a, const Line& b, const Line& c, Solution& s) {
     pack_.first = in_lane(a);
@@ -222,8 +228,7 @@ class LoneWalk {
       normals[s.active_count] = {hn::GetLane(line->x), hn::GetLane(line->y)};
       s.active[s.active_count++].binding = constraint_at(static_cast<std::size_t>(index));
     }
-    const bool on_disc = x * x + y * y > p_.disc * p_.disc * (1.0 - kOnDisc);
-    if (on_disc && s.active_count < (relaxing_ ? 3U : 2U)) s.active[s.active_count++].binding = kDisc;
+    if (is_on_disc() && s.active_count < (relaxing_ ? 3U : 2U)) s.active[s.active_count++].binding = kDisc;
     set_multipliers(normals, Objective::nearest, p_.preferred, s);
     return true;
   }
@@ -247,6 +252,7 @@ class Slide : private Allowance {
     const double px = p_.preferred.x, py = p_.preferred.y;
     const std::ptrdiff_t line = most_violated(p_, px, py, noise - slack);
     if (line >= 0) return p_.count < kMostSlidLines && slide(given(p_, line), s);
+    if (!(px * px + py * py <= p_.disc * p_.disc * (1.0 - kDiscUnits * 0x1p-53))) return false;  // nearest on the disc
     s.velocity = {px, py};
     s.status = Status::optimal;
     s.active = {};
@@ -385,7 +391,7 @@ class Slide : private Allowance {
   template <bool kHard>
   HWY_INLINE bool relax(const Line& line, const Line& low, const Line& high, Solution& s) const {
     LoneWalk<kHard> walk(p_);
-    return walk.relax(line, low, high, s) && (!kProve || walk.is_proven());
+    return walk.relax(line, low, high, s) && ((!kProve && !walk.is_on_disc()) || walk.is_proven());
   }
 
   /// Whether every line holds by more than the rounding of its sum (exact_sign.h).
@@ -455,14 +461,17 @@ HWY_INLINE bool walk_alone(const SingleProblem& p, Solution& s) {
   return walk.run(s) && (!kProve || walk.is_proven());
 }
 
-/// Preferred velocities inside the disc, squares in range (Pack::in_range) and lines that can be numbered: the rest
-/// takes a longer way.
+/// Of the square of the disc: where it is preferred to go faster than that, the disc mostly binds alone or with a line,
+/// which the walk finds sooner. Robots that prefer their full speed, up to rounding, are the common case.
+constexpr double kFarthestSlid = 1.0625;
+
+/// Squares in range (Pack::in_range) and lines that can be numbered: the rest takes a longer way.
 template <bool kProve>
 HWY_INLINE bool run(const SingleProblem& p, Solution& s) {
   const double limit = p.disc * p.disc, squared = p.preferred.x * p.preferred.x + p.preferred.y * p.preferred.y;
   const double most = std::max(squared, limit);
   if (!(limit >= kLeastSquare<double> && most <= kMostSquare<double> && p.count <= kMostNumbered)) return false;
-  if (squared <= limit * (1.0 - kDiscUnits * 0x1p-53) && Slide<kProve>(p).run(s)) return true;
+  if (squared <= limit * kFarthestSlid && Slide<kProve>(p).run(s)) return true;
   return p.hard > 0 ? walk_alone<kProve, true>(p, s) : walk_alone<kProve, false>(p, s);
 }
 
