@@ -305,6 +305,28 @@ TEST_F(RecordingFileTest, Property1_EveryBitComesBack) {
   }
 }
 
+TEST_F(RecordingFileTest, RowsThatAreTakenOneByOneAreThoseOfTheWhole) {
+  for (const bool with_formation : {false, true}) {
+    write_recording(folder_ / "r.jsonl", sample(with_formation));
+    const RecordingFile whole = read_recording(folder_ / "r.jsonl");
+    RecordingFile taken;
+    const RecordingFile rest = read_recording(folder_ / "r.jsonl", [&](const RecordingFile& so_far, formation::Step row,
+                                                                       const formation::LyapunovRow* lyapunov) {
+      EXPECT_TRUE(so_far.recording.steps.empty() && so_far.lyapunov.empty()) << "none is kept";
+      EXPECT_EQ(so_far.scenario.robots.size(), 3u);
+      EXPECT_LT(taken.recording.steps.size(), whole.recording.steps.size());
+      taken.recording.steps.push_back(std::move(row));
+      if (lyapunov) taken.lyapunov.push_back(*lyapunov);
+    });
+    EXPECT_TRUE(rest.recording.steps.empty() && rest.lyapunov.empty());
+    RecordingFile again = rest;
+    again.recording.steps = taken.recording.steps;
+    again.lyapunov = taken.lyapunov;
+    write_recording(folder_ / "again.jsonl", again);
+    EXPECT_EQ(content_of(folder_ / "again.jsonl"), content_of(folder_ / "r.jsonl"));
+  }
+}
+
 std::size_t count_of(const std::string& text, const std::string& what) {
   std::size_t count = 0;
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;

@@ -145,6 +145,36 @@ std::string read_text_file(const std::filesystem::path& path) {
   return text;
 }
 
+struct TextLines::State {
+  explicit State(const std::filesystem::path& file) : path(file), input(path) {}
+  std::filesystem::path path;
+  Input input;
+  std::string buffer;
+  std::size_t begin = 0;  ///< of what was not given yet
+  bool at_end = false;
+};
+
+TextLines::TextLines(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {}
+TextLines::~TextLines() = default;
+
+bool TextLines::next(std::string_view& line) {
+  State& s = *state_;
+  std::size_t searched = s.begin, end = 0;
+  while ((end = s.buffer.find('\n', searched)) == std::string::npos && !s.at_end) {
+    s.buffer.erase(0, s.begin);
+    s.begin = 0;
+    searched = s.buffer.size();
+    if (searched > kLargestWholeFile) refuse_size(s.path, "a line of more than that");
+    s.at_end = !s.input.append(s.buffer, kBlock);
+    call_wait_hook();
+  }
+  if (s.begin == s.buffer.size()) return false;
+  end = std::min(end, s.buffer.size());
+  line = std::string_view(s.buffer).substr(s.begin, end - s.begin);
+  s.begin = std::min(end + 1, s.buffer.size());
+  return true;
+}
+
 std::string read_standard_input() {
   std::string text;
   char block[kBlock];

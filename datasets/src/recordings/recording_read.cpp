@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <functional>
+#include <optional>
 #include <string_view>
 
 #include "exactvo/datasets/crowd_recording.h"
@@ -64,10 +66,10 @@ void read_header(const JsonCursor& at, const std::string& name, RecordingFile& f
   recording.all_half_planes = at.at("all_half_planes").truth();
 }
 
-void read_end(const JsonCursor& at, RecordingFile& file) {
+void read_end(const JsonCursor& at, std::size_t rows, RecordingFile& file) {
   formation::Recording& recording = file.recording;
-  if (at.at("rows").count() != recording.steps.size())
-    at.at("rows").refuse(std::to_string(recording.steps.size()) + ", the rows above", DataCode::wrong_count);
+  if (at.at("rows").count() != rows)
+    at.at("rows").refuse(std::to_string(rows) + ", the rows above", DataCode::wrong_count);
   recording.diverged = at.at("diverged").truth();
   file.outcome = at.at("outcome").text();
   recording.outcome = at.at("ended").text();
@@ -82,7 +84,8 @@ void read_end(const JsonCursor& at, RecordingFile& file) {
 /// Reads the lines after the header.
 class LineReader {
  public:
-  explicit LineReader(RecordingFile& file) : file_(file), bodies_(file.recording.bodies) {}
+  /// Rows go to `take`.
+  LineReader(RecordingFile& file, const TakeRow& take) : file_(file), take_(take), bodies_(file.recording.bodies) {}
 
   bool is_at_end() const { return at_end_; }
 
@@ -91,7 +94,7 @@ class LineReader {
     if (at.has("body")) return read_body(at.at("body"));
     if (at.has("outlook")) return read_outlook(at.at("outlook"));
     if (at.has("row")) return read_row(at.at("row"));
-    read_end(at.at("end"), file_);
+    read_end(at.at("end"), rows_, file_);
     at_end_ = true;
   }
 
@@ -156,8 +159,10 @@ class LineReader {
     for (std::size_t i = 0; i < robots.size(); ++i)
       for (std::size_t k = 0; k < step.robots[i].constraints.size(); ++k)
         place(robots.at(i).at("constraints").at(k), i, step, step.robots[i].constraints[k]);
-    if (at.has("lyapunov")) file_.lyapunov.push_back(to_lyapunov(at.at("lyapunov"), step.time));
-    file_.recording.steps.push_back(std::move(step));
+    std::optional<formation::LyapunovRow> lyapunov;
+    if (at.has("lyapunov")) lyapunov = to_lyapunov(at.at("lyapunov"), step.time);
+    ++rows_;
+    take_(file_, std::move(step), lyapunov ? &*lyapunov : nullptr);
   }
 
   void read_moving(const JsonCursor& at, Step& step) const {
@@ -188,55 +193,91 @@ class LineReader {
   }
 
   RecordingFile& file_;
+  const TakeRow& take_;
   std::vector<vo::Body>& bodies_;
+  std::size_t rows_ = 0;
   std::vector<bool> known_;
   bool at_end_ = false;
 };
 
-/// Takes the next line off `text`.
-std::string_view next_line(std::string_view& text) {
-  const std::size_t end = text.find('\n');
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  return line;
-}
-
 /// A file of another kind is refused as a whole: what is wrong in its first line tells nobody anything.
-void require_recording(std::string_view text, const std::string& name) {
-  if (text.substr(0, text.find('\n')).find(kKind) != std::string_view::npos) return;
-  if (begins_crowd_recording(text))
+void require_recording(std::string_view first_line, const std::string& name) {
+  if (first_line.find(kKind) != std::string_view::npos) return;
+  if (begins_crowd_recording(first_line))
     throw DataError(
         DataCode::format_unknown, name, "", "the recording of a crowd (.evr), which has no decisions",
         "a recording.jsonl, as simulate --out writes it; audit, convert and view read recordings of crowds");
-  throw DataError(DataCode::format_unknown, name, "", text.empty() ? "an empty file" : "no recording",
+  throw DataError(DataCode::format_unknown, name, "", first_line.empty() ? "an empty file" : "no recording",
                   "a recording.jsonl, as simulate --out writes it");
 }
 
-}  // namespace
-
-RecordingFile read_recording(const std::filesystem::path& path) {
-  return parse_recording(read_text_file(path), path.string());
-}
-
-RecordingFile parse_recording(const std::string& text, const std::string& name) {
-  require_recording(text, name);
-  std::string_view rest = text;
+/// `next_line`: gives the lines of the file, false at the end.
+RecordingFile parse_lines(const std::function<bool(std::string_view&)>& next_line, const std::string& name,
+                          const TakeRow& take) {
+  std::string_view line;
+  if (!next_line(line)) line = {};
+  require_recording(line, name);
   RecordingFile file;
-  const Json header = parse_json_line(next_line(rest), name, 1);
-  const JsonCursor first(header, name, "line 1");
-  // A header of format 1 has no name: its version is what is wrong with it.
-  read_header(first.has("header") ? first.at("header") : first, name, file);
-  LineReader reader(file);
+  {
+    const Json header = parse_json_line(line, name, 1);
+    const JsonCursor first(header, name, "line 1");
+    // A header of format 1 has no name: its version is what is wrong with it.
+    read_header(first.has("header") ? first.at("header") : first, name, file);
+  }
+  LineReader reader(file, take);
   std::size_t number = 2;
-  for (; !rest.empty(); ++number) {
-    const Json line = parse_json_line(next_line(rest), name, number);
-    reader.read(JsonCursor(line, name, "line " + std::to_string(number)));
+  for (; next_line(line); ++number) {
+    const Json content = parse_json_line(line, name, number);
+    reader.read(JsonCursor(content, name, "line " + std::to_string(number)));
   }
   if (!reader.is_at_end()) {
     throw DataError(DataCode::wrong_count, name, "line " + std::to_string(number), "the end of the file",
                     "a last line \"end\": the recording was cut off");
   }
   return file;
+}
+
+/// Keeps all rows.
+struct AllRows {
+  std::vector<Step> steps;
+  std::vector<formation::LyapunovRow> lyapunov;
+
+  TakeRow taker() {
+    return [this](const RecordingFile&, Step row, const formation::LyapunovRow* values) {
+      steps.push_back(std::move(row));
+      if (values) lyapunov.push_back(*values);
+    };
+  }
+  RecordingFile with_rows(RecordingFile file) {
+    file.recording.steps = std::move(steps);
+    file.lyapunov = std::move(lyapunov);
+    return file;
+  }
+};
+
+}  // namespace
+
+RecordingFile read_recording(const std::filesystem::path& path, const TakeRow& take) {
+  TextLines lines(path);
+  return parse_lines([&](std::string_view& line) { return lines.next(line); }, path.string(), take);
+}
+
+RecordingFile read_recording(const std::filesystem::path& path) {
+  AllRows rows;
+  return rows.with_rows(read_recording(path, rows.taker()));
+}
+
+RecordingFile parse_recording(const std::string& text, const std::string& name) {
+  std::string_view rest = text;
+  const auto next_line = [&](std::string_view& line) {
+    if (rest.empty()) return false;
+    const std::size_t end = rest.find('\n');
+    line = rest.substr(0, end);
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    return true;
+  };
+  AllRows rows;
+  return rows.with_rows(parse_lines(next_line, name, rows.taker()));
 }
 
 }  // namespace exactvo::datasets

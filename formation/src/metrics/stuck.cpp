@@ -277,4 +277,13 @@ std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording
   return watch.reports(recording);
 }
 
+StuckWatch::StuckWatch(const Scenario& scenario) : rows_(std::make_unique<detail::StuckAccumulator>(scenario)) {}
+StuckWatch::~StuckWatch() = default;
+void StuckWatch::add(std::shared_ptr<const Step> row) {
+  rows_->add(std::move(row));
+}
+std::vector<StuckReport> StuckWatch::reports(const Recording& run) const {
+  return rows_->reports(run);
+}
+
 }  // namespace exactvo::formation

@@ -25,13 +25,14 @@ struct Flags {
   std::string out;
 };
 
-/// Of a long run those that `simulate` would have shown.
-void keep_shown_rows(datasets::RecordingFile& file) {
+/// With the rows of a long run that `simulate` would have shown; no others are kept.
+datasets::RecordingFile read_shown(const fs::path& recording) {
   ShownRows shown;
-  const std::vector<formation::LyapunovRow>& lyapunov = file.lyapunov;
-  for (std::size_t k = 0; k < file.recording.steps.size(); ++k)
-    shown.add(file.recording.steps[k], k < lyapunov.size() ? &lyapunov[k] : nullptr);
+  datasets::RecordingFile file =
+      datasets::read_recording(recording, [&](const datasets::RecordingFile&, const formation::Step& row,
+                                              const formation::LyapunovRow* lyapunov) { shown.add(row, lyapunov); });
   shown.move_to(file);
+  return file;
 }
 
 /// figures/ beside the recording, unless --out names another folder.
@@ -47,9 +48,7 @@ fs::path folder_for(const Flags& flags, const fs::path& recording) {
 
 void draw_into(const fs::path& folder, const fs::path& recording) {
   const TerminateOnSignal terminate_on_signal;
-  datasets::RecordingFile file = datasets::read_recording(recording);
-  keep_shown_rows(file);
-  draw(write_figures(file, folder));
+  draw(write_figures(read_shown(recording), folder));
 }
 
 ExitCode draw_figures(const Flags& flags) {

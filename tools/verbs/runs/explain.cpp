@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "exactvo/datasets/input_files.h"
@@ -53,11 +54,9 @@ std::size_t find_robot(const Scenario& scenario, const std::string& text) {
 }
 
 /// Throws UsageError for a time after the end of the run.
-void check_time(const formation::Recording& recording, double time) {
-  if (recording.steps.size() < 2)
-    throw UsageError("--time", fmt::format("{}", time), "a time before the end of the run");
-  const double end = recording.steps.back().time;
-  if (time > end + 0.5 * recording.time_step)
+void check_time(std::size_t rows, double end, double time_step, double time) {
+  if (rows < 2) throw UsageError("--time", fmt::format("{}", time), "a time before the end of the run");
+  if (time > end + 0.5 * time_step)
     throw UsageError("--time", fmt::format("{}", time), fmt::format("at most {:.6g} s, when the run ends", end));
 }
 
@@ -80,13 +79,13 @@ struct Explained {
   std::vector<std::string> remarks;  ///< of the run so far
 };
 
-/// Warnings of the run, and, of a robot that hardly moves, what it rests on.
+/// Warnings of the run, and, of a robot that hardly moves, what it rests on. `stuck`: who is, at that time.
 std::vector<std::string> remarks_on(const Scenario& scenario, const formation::Recording& recording,
-                                    std::size_t robot) {
+                                    const std::vector<formation::StuckReport>& stuck, std::size_t robot) {
   constexpr double kAtRest = 0.01;  // of its greatest speed
   std::vector<std::string> remarks;
   for (const std::string& warning : recording.warnings) remarks.push_back("Warning: " + warning + ".");
-  for (const formation::StuckReport& report : formation::explain_stuck(scenario, recording))
+  for (const formation::StuckReport& report : stuck)
     if (report.robot == robot && report.speed < kAtRest * scenario.robots[robot].max_speed)
       remarks.push_back("Stuck: " + report.text + ".");
   return remarks;
@@ -100,34 +99,65 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
   const TerminateOnSignal terminate_on_signal;
   const formation::Recording recording = formation::simulate(scenario, options);
   if (interrupted()) throw Interrupted();
-  check_time(recording, flags.time);
+  check_time(recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time, recording.time_step,
+             flags.time);
   const formation::Step& step = last_decision(recording);
   return {{scenario, method_words(scenario, options), robot, step.time, step.robots.at(robot)},
-          remarks_on(scenario, recording, robot)};
+          remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
 }
 
-/// The run as it was at a time: up to the row after the last one at or before it.
-void cut_after(formation::Recording& run, double time) {
-  constexpr double kSameRow = 1e-6;  // of a step: 6 * 0.05 is not 0.3 in doubles
-  std::size_t last = 0;
-  while (last + 2 < run.steps.size() && run.steps[last + 1].time <= time + kSameRow * run.time_step) ++last;
-  if (last + 2 == run.steps.size()) return;
-  run.steps.resize(last + 2);
-  run.diverged = formation::has_diverged(run);
-}
+/// The run as it was at a time, from its rows one after the other: up to the row after the last one at or before it.
+class RunUntil {
+ public:
+  explicit RunUntil(double time) : time_(time) {}
+
+  void add(const datasets::RecordingFile& so_far, formation::Step row) {
+    constexpr double kSameRow = 1e-6;  // of a step: 6 * 0.05 is not 0.3 in doubles
+    ++rows_;
+    end_ = row.time;
+    is_cut_ = is_cut_ || (rows_ > 2 && !(last_->time <= time_ + kSameRow * so_far.recording.time_step));
+    if (is_cut_) return;
+    if (!stuck_) stuck_.emplace(scenario_ = so_far.scenario);
+    decided_ = std::move(last_);
+    last_ = std::make_shared<const formation::Step>(std::move(row));
+    if (rows_ == 1) first_ = last_;
+    stuck_->add(last_);
+  }
+
+  std::size_t rows() const { return rows_; }
+  double end() const { return end_; }
+  const formation::Step& decision() const { return *decided_; }
+  /// Of `run` it takes what is known beside rows.
+  std::vector<formation::StuckReport> stuck(formation::Recording& run) const {
+    run.steps = {*first_, *last_};
+    if (is_cut_) run.diverged = formation::has_diverged(run);
+    return stuck_->reports(run);
+  }
+
+ private:
+  double time_;
+  std::size_t rows_ = 0;
+  double end_ = 0.0;
+  bool is_cut_ = false;
+  Scenario scenario_;  ///< the watch refers to it
+  std::optional<formation::StuckWatch> stuck_;
+  std::shared_ptr<const formation::Step> first_, decided_, last_;
+};
 
 Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
-  datasets::RecordingFile file = datasets::read_recording(path);
+  RunUntil until(flags.time);
+  datasets::RecordingFile file =
+      datasets::read_recording(path, [&](const datasets::RecordingFile& so_far, formation::Step row,
+                                         const formation::LyapunovRow*) { until.add(so_far, std::move(row)); });
   const std::size_t robot = find_robot(file.scenario, flags.robot);
-  check_time(file.recording, flags.time);
-  cut_after(file.recording, flags.time);
-  const formation::Step& step = last_decision(file.recording);
+  check_time(until.rows(), until.end(), file.recording.time_step, flags.time);
+  const formation::Step& step = until.decision();
   const std::string method = "method " + file.info.method +
                              (file.info.controller ? ", controller " + *file.info.controller : "") +
                              (file.info.guidance ? ", guidance " + *file.info.guidance : "") +
                              (file.info.liveness ? ", liveness " + *file.info.liveness : "");
   Explained explained{{file.scenario, method, robot, step.time, step.robots.at(robot)},
-                      remarks_on(file.scenario, file.recording, robot)};
+                      remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
   if (!file.recording.all_half_planes)
     explained.remarks.push_back(
         "The recording has only the half-planes that bind and those against what could be met within a time step: "

@@ -16,6 +16,7 @@
 /// non-finite ones, which JSON has no word for, are the strings "nan", "inf" and "-inf".
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -70,6 +71,11 @@ void write_recording(const std::filesystem::path& path, const RecordingFile& fil
 
 /// Throws DataError naming the line and, within it, the JSON pointer.
 RecordingFile read_recording(const std::filesystem::path& path);
+/// Takes a row, with its values of a formation (else null). `so_far` has what the file says before it.
+using TakeRow = std::function<void(const RecordingFile& so_far, formation::Step row, const formation::LyapunovRow*)>;
+/// The same a row at a time, in order: rows go to `take`, and the file that is returned has none. Memory does not grow
+/// with the run.
+RecordingFile read_recording(const std::filesystem::path& path, const TakeRow& take);
 /// The same from the file's text; `file_name` is used in messages.
 RecordingFile parse_recording(const std::string& text, const std::string& file_name);
 

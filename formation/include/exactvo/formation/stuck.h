@@ -5,6 +5,7 @@
 /// Why a robot did not arrive, from what its run recorded: whether it stood or moved at the end, for how long, what
 /// blocked it, and, where that is one static shape, the equilibrium it rests at (trap.h). Rounded.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,5 +50,24 @@ struct StuckReport {
 /// A report for every robot that is not at its goal or slot in the last row; none of a formation that diverged or whose
 /// leader is still under way. REQUIRES: a recording of this scenario.
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording);
+
+namespace detail {
+class StuckAccumulator;
+}
+
+/// The same of rows that come one after the other: keeps the last two.
+class StuckWatch {
+ public:
+  /// `scenario` must outlive the watch.
+  explicit StuckWatch(const Scenario& scenario);
+  ~StuckWatch();
+  /// The next row of the run.
+  void add(std::shared_ptr<const Step> row);
+  /// As if the run had ended with the last row added. `run` has what is known beside its rows. REQUIRES: a row.
+  std::vector<StuckReport> reports(const Recording& run) const;
+
+ private:
+  std::unique_ptr<detail::StuckAccumulator> rows_;
+};
 
 }  // namespace exactvo::formation
