@@ -443,6 +443,48 @@ class PageItself(Page):
         self.open("narrow.html", "#t=9&robot=left")
         self.assertEqual(self.text("[data-fact=waiting]"), "waits for right, which waits for left: a deadlock")
 
+    def test_an_address_that_asks_for_what_is_not_here_says_so(self):
+        self.run_program("view", "--out", "start.html")
+        for words, expected in [("#run=other", "no run 'other'"), ("#run=circle&robot=nobody", "no robot 'nobody'"), ("#run=wall&t=soon", "'soon' is no time"),
+                                ("#run=wall&t=999", "there is no 999 s"), ("#run=%3Cb%3E", "no run '<b>'")]:
+            self.open("start.html", words)
+            self.assertIn(expected, self.text("#notice"), words)
+            self.assertFalse(self.run_script("return document.getElementById('notice').hidden"))
+        self.open("start.html", "#run=circle&robot=west&t=2")
+        self.assertTrue(self.run_script("return document.getElementById('notice').hidden"))
+
+    def test_routes_and_a_goal_out_of_reach_with_its_reason(self):
+        scenario = {"name": "room", "time_limit": 10, "robots": [{"id": "barred", "position": [-6, 0], "goal": [0, 0]},
+                                                               {"id": "free", "position": [-6, 3], "goal": [6, 3]}],
+                    "obstacles": [{"id": "room", "polyline": [[-2, -2], [2, -2], [2, 2], [-2, 2], [-2, -2]]}]}
+        (self.place / "room.json").write_text(json.dumps(scenario))
+        self.run_program("view", "room.json", "--out", "room.html")
+        self.open("room.html")
+        barred, routes = self.run_script("return [exactvo.page.run.unreachable, exactvo.page.run.head.routes]")
+        self.assertEqual([(u["robot"], u["goal"]) for u in barred], [(0, 0)])
+        self.assertIn("obstacle 'room' encloses", barred[0]["why"])
+        self.assertEqual(routes[1]["points"][:2] + routes[1]["points"][-2:], [-6, 3, 6, 3])
+        at = self.run_script("const b = document.getElementById('world').getBoundingClientRect(), v = exactvo.page.world; return [b.left + v.px(0), b.top + v.py(0)]")
+        self.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": "mouseMoved", "x": at[0], "y": at[1], "button": "none"})
+        self.settle()
+        self.assertIn("out of reach: obstacle 'room'", self.text("#tip"))
+
+    def test_a_recording_of_a_crowd_plays(self):
+        crowd = {"name": "crowd", "time_step": 0.25, "time_limit": 5, "horizons": {"least": 0.5, "orca": 5}, "guidance": "none",
+                 "robots": [{"grid": {"columns": 20, "rows": 10, "spacing": 3, "corner": [0, 0], "goal": [50, 0]}, "radius": 0.5, "max_speed": 2}],
+                 "obstacles": [{"id": "wall", "polyline": [[90, 0], [90, 9], [95, 9]]}]}
+        (self.place / "crowd.json").write_text(json.dumps(crowd))
+        self.run_program("simulate", "crowd.json", "--engine", "crowd", "--record", "crowd.evr", "--every", "1")
+        self.run_program("view", "crowd.evr", "--most-states", "2000", "--out", "evr.html")
+        self.run_program("convert", "crowd.evr", "crowd.csv")
+        last = (self.place / "crowd.csv").read_text().splitlines()[-1].split(",")
+        self.open("evr.html", "#t=5")
+        rows, robots, x, walls = self.run_script("const r = exactvo.page.run; return [r.rows, r.n, r.x(r.rows - 1, r.n - 1), r.obstacles.length]")
+        self.assertEqual((robots, walls), (200, 1))
+        self.assertLessEqual(rows, 11)
+        self.assertAlmostEqual(x, float(last[3]), delta=ROBOTS_AT_A_TIME)
+        self.assertIn("positions only", self.text("#why"))
+
     def test_the_moment_as_svg(self):
         self.run_program("view", "--out", "start.html")
         self.open("start.html", "#run=gap&t=3&robot=R3")
