@@ -4,36 +4,33 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "crowd/edge_rounding.h"
 
 namespace exactvo::formation::crowd {
 namespace {
 
+using namespace edge_rounding;
 using geometry::dot;
-
-constexpr double kUnit = 0x1p-53;
-
-/// In units of u of the magnitudes: a difference, an end that was cut (4), two products, two sums, |n| and a maximum
-/// round at most 13 times.
-constexpr double kSupportUnits = 16.0;
-
-/// The radius is grown before a normal is looked for, so that it stays valid once it is rounded (in units of its
-/// precision) and its support value is rounded up (in units of double).
-constexpr double kRoundingRoom = 8.0, kSupportRoom = 64.0;
 
 /// How far beyond a cell its edges are looked for: rounding moves a point by far less into the next one.
 constexpr double kHalfDiagonal = 0.7072;
 
-double squared_distance(const Segment& s) {
-  const Vec2 along = s.b - s.a;
-  const double length = geometry::squared_norm(along);
-  const double t = length > 0.0 ? std::clamp(-dot(s.a, along) / length, 0.0, 1.0) : 0.0;
-  return geometry::squared_norm(s.a + t * along);
+/// 0 where there is no direction.
+Vec2 direction(Vec2 a) {
+  const double squared = geometry::squared_norm(a);
+  return squared > kNoDirection ? 1.0 / std::sqrt(squared) * a : Vec2{};
 }
 
 Vec2 nearest_point(const Segment& s) {
   const Vec2 along = s.b - s.a;
   const double length = geometry::squared_norm(along);
   return s.a + (length > 0.0 ? std::clamp(-dot(s.a, along) / length, 0.0, 1.0) : 0.0) * along;
+}
+
+double squared_distance(const Segment& s) {
+  return geometry::squared_norm(nearest_point(s));
 }
 
 double magnitude(const Segment& s) {
@@ -67,21 +64,25 @@ Segment cut(const Segment& s, double far) {
 class Cone {
  public:
   Cone(const Segment& seen, double range, const EdgeQuery& query)
-      : seen_(cut(seen, 2.0 * range)), query_(query), size_(magnitude(seen) + query.radius) {
+      : seen_(cut(seen, kCutRanges * range)),
+        query_(query),
+        size_(magnitude(seen) + query.radius),
+        error_(kSupportError * size_) {
     const double u = query.float_normals ? 0x1p-24 : kUnit;
-    grown_ = query.radius + kRoundingRoom * u * (magnitude(seen_) + query.radius) + kSupportRoom * kUnit * size_;
+    grown_ = query.radius + kRoundingRoom * u * (magnitude(seen_) + query.radius) + kSupportRoom * size_;
   }
 
   /// At least h(n), exactly that of the doubles given.
   double support_above(Vec2 n) const {
     const double length = std::sqrt(geometry::squared_norm(n));
-    return std::max(dot(n, seen_.a), dot(n, seen_.b)) + query_.radius * length + kSupportUnits * kUnit * size_;
+    return std::max(dot(n, seen_.a), dot(n, seen_.b)) + query_.radius * length + error_;
   }
 
   EdgeLine best_line() {
-    try_away_from(query_.horizon * query_.velocity - seen_.a);
-    try_away_from(query_.horizon * query_.velocity - seen_.b);
-    const Vec2 across = geometry::normalized(geometry::perp(seen_.b - seen_.a));
+    // The cut-offs at the ends of the edge.
+    try_normal(direction(query_.horizon * query_.velocity - seen_.a));
+    try_normal(direction(query_.horizon * query_.velocity - seen_.b));
+    const Vec2 across = direction(geometry::perp(seen_.b - seen_.a));
     try_normal(across);
     try_normal(-across);
     try_legs(seen_.a);
@@ -92,20 +93,14 @@ class Cone {
   }
 
  private:
-  /// Cut-off at the end of the edge: along the way from it.
-  void try_away_from(Vec2 way) {
-    if (way != Vec2{}) try_normal(geometry::normalized(way));
-  }
-
   /// The two tangents from the robot to the disc round an end.
   void try_legs(Vec2 centre) {
     const double squared = geometry::squared_norm(centre), square = squared - grown_ * grown_;
     if (!(square > 0.0)) return;
-    const double leg = std::sqrt(square);
+    const double leg = std::sqrt(square), scale = 1.0 / squared;
     for (const double side : {leg, -leg}) {
-      const Vec2 n = {-(grown_ * centre.x + side * centre.y) / squared,
-                      (side * centre.x - grown_ * centre.y) / squared};
-      try_normal(n, kSupportUnits * kUnit * size_);
+      const Vec2 n = {-(grown_ * centre.x + side * centre.y), side * centre.x - grown_ * centre.y};
+      try_normal(scale * n, error_);
     }
   }
 
@@ -129,14 +124,14 @@ class Cone {
   bool set_offset(EdgeLine& line) const {
     const double support = support_above(line.normal);
     if (!(support <= 0.0)) return false;
-    line.offset = std::min(0.0, support / query_.horizon * (1.0 - 4.0 * kUnit));
+    line.offset = std::min(0.0, (support + kSharedVertex * error_) / query_.horizon * kTowardsZero);
     return true;
   }
 
   /// Not nearer to the edge: where it is too near for anything else.
   EdgeLine facing() const {
-    const Vec2 away = -nearest_point(seen_);
-    Vec2 n = away == Vec2{} ? geometry::normalized(geometry::perp(seen_.b - seen_.a)) : geometry::normalized(away);
+    Vec2 n = direction(-nearest_point(seen_));
+    if (n == Vec2{}) n = direction(geometry::perp(seen_.b - seen_.a));
     if (n == Vec2{}) n = {1.0, 0.0};
     EdgeLine line = rounded(n);
     line.touching = !(support_above(line.normal) <= 0.0);
@@ -145,7 +140,7 @@ class Cone {
 
   Segment seen_;
   const EdgeQuery& query_;
-  double size_, grown_ = 0.0;
+  double size_, error_, grown_ = 0.0;
   double least_ = std::numeric_limits<double>::infinity();
   Vec2 found_;
 };
@@ -154,7 +149,7 @@ class Cone {
 bool is_covered(const Cone& cone, const std::vector<EdgeLine>& lines, double horizon) {
   return std::any_of(lines.begin(), lines.end(), [&](const EdgeLine& line) {
     const double support = cone.support_above(line.normal);
-    return !line.touching && support <= 0.0 && support * (1.0 - 4.0 * kUnit) <= horizon * line.offset;
+    return !line.touching && support <= horizon * line.offset * kAwayFromZero;
   });
 }
 
@@ -201,6 +196,24 @@ void EdgeGrid::lay_out(double reach) {
   items_.resize(start_.back());
   for (std::size_t k = 0; k < edges_.size(); ++k)
     for_cells_of(edges_[k], [&](std::size_t cell) { items_[start_[cell + 1]++] = static_cast<std::uint32_t>(k); });
+  order_cells();
+}
+
+/// Nearest to the middle of the cell first: so robots of a pack meet theirs at about the same place of their lists.
+void EdgeGrid::order_cells() {
+  std::vector<std::pair<double, std::uint32_t>> order;
+  for (std::size_t cell = 0; cell + 1 < start_.size(); ++cell) {
+    const auto first = items_.begin() + start_[cell], last = items_.begin() + start_[cell + 1];
+    if (first == last) continue;
+    const auto columns = static_cast<std::size_t>(columns_);
+    const Vec2 middle =
+        low_ + cell_ * Vec2{static_cast<double>(cell % columns) + 0.5, static_cast<double>(cell / columns) + 0.5};
+    order.clear();
+    for (auto k = first; k != last; ++k)
+      order.emplace_back(squared_distance({edges_[*k].a - middle, edges_[*k].b - middle}), *k);
+    std::sort(order.begin(), order.end());
+    std::transform(order.begin(), order.end(), first, [](const auto& e) { return e.second; });
+  }
 }
 
 std::size_t EdgeGrid::bytes() const {
@@ -210,20 +223,23 @@ std::size_t EdgeGrid::bytes() const {
 void edge_lines(const EdgeGrid& grid, const EdgeQuery& query, std::vector<NearEdge>& near, std::vector<EdgeLine>& out) {
   out.clear();
   near.clear();
-  const double range = (query.horizon * query.max_speed + query.radius) * (1.0 + 0x1p-20);
+  const double range = (query.horizon * query.max_speed + query.radius) * kWiden;
   const auto seen = [&](std::uint32_t edge) {
     return Segment{grid.edges()[edge].a - query.position, grid.edges()[edge].b - query.position};
   };
+  std::uint32_t place = grid.near(query.position).first;
   grid.for_near(query.position, [&](std::uint32_t edge) {
     const double squared = squared_distance(seen(edge));
-    if (squared <= range * range) near.push_back({squared, edge});
+    if (squared <= range * range) near.push_back({squared, place});
+    ++place;
   });
   std::sort(near.begin(), near.end());
   for (const NearEdge& n : near) {
-    Cone cone(seen(n.edge), range, query);
+    const std::uint32_t edge = grid.items()[n.place];
+    Cone cone(seen(edge), range, query);
     if (is_covered(cone, out, query.horizon)) continue;
     out.push_back(cone.best_line());
-    out.back().edge = n.edge;
+    out.back().edge = edge;
   }
 }
 

@@ -33,15 +33,26 @@ class EdgeGrid {
   /// Calls what(number of an edge) for each within reach of p, and for some beyond.
   template <class Do>
   void for_near(Vec2 p, const Do& what) const {
-    const double x = (p.x - low_.x) * per_cell_, y = (p.y - low_.y) * per_cell_;
-    if (!(x >= 0.0 && y >= 0.0 && x < columns_ && y < rows_)) return;
-    const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
-    for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) what(items_[k]);
+    const Range cell = near(p);
+    for (std::uint32_t k = cell.first; k < cell.last; ++k) what(items_[k]);
   }
+
+  /// Where in `items` the edges of p's cell stand.
+  struct Range {
+    std::uint32_t first = 0, last = 0;
+  };
+  Range near(Vec2 p) const {
+    const double x = (p.x - low_.x) * per_cell_, y = (p.y - low_.y) * per_cell_;
+    if (!(x >= 0.0 && y >= 0.0 && x < columns_ && y < rows_)) return {};
+    const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+    return {start_[cell], start_[cell + 1]};
+  }
+  const std::vector<std::uint32_t>& items() const { return items_; }
 
  private:
   template <class Do>
   void for_cells_of(const Segment& edge, const Do& what) const;
+  void order_cells();
 
   std::vector<Segment> edges_;
   std::vector<std::uint32_t> start_, items_;
@@ -67,8 +78,8 @@ struct EdgeLine {
 
 struct NearEdge {
   double squared;
-  std::uint32_t edge;
-  bool operator<(const NearEdge& o) const { return squared != o.squared ? squared < o.squared : edge < o.edge; }
+  std::uint32_t place;  ///< in the grid's items
+  bool operator<(const NearEdge& o) const { return squared != o.squared ? squared < o.squared : place < o.place; }
 };
 
 /// Half-planes against all edges that can be met within the horizon, nearest first. Certified: a velocity that

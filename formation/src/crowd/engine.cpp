@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "crowd/edge_pack.h"
 #include "crowd/search.h"
 #include "exactvo/vo/lp/batch.h"
 
@@ -115,7 +116,10 @@ struct CrowdScratch {
   std::int32_t hard[kSlots];
   std::vector<Near> near;
   std::vector<NearEdge> near_edges;
-  std::vector<EdgeLine> edge_lines, group_edges;  ///< of one robot, of all of a group
+  std::vector<EdgeLine> edge_lines;
+  EdgePackQuery<T> edge_query;
+  EdgePackTable edge_table;
+  alignas(64) T edge_x[kRobotRows], edge_y[kRobotRows], edge_c[kRobotRows];  ///< of a group, by number and slot
   Array<T> rows_x, rows_y, rows_c;
   StepReport counts;
   CrowdPhases phases;
@@ -499,38 +503,65 @@ class CrowdEngine final : public CrowdCore {
   std::size_t edges_of(Pack* packs, std::size_t count, Scratch& s) {
     if (edges.empty()) return 0;
     const Timed timed(options.time_phases, s.phases.edges);
-    s.group_edges.clear();
-    std::size_t most = 0;
-    for (std::size_t p = 0; p < count; ++p)
-      for (std::size_t lane = 0; lane < kPack; ++lane) {
-        std::int32_t& hard = s.hard[p * kPack + lane];
-        hard = 0;
-        if (lane >= packs[p].size() || (packs[p].alone >> lane & 1U)) continue;
-        lines_of_edges(packs[p].begin + lane, s);
-        if (s.edge_lines.size() > kMostEdges) {
-          be_alone(packs[p], lane, s);
-          continue;
-        }
-        hard = static_cast<std::int32_t>(s.edge_lines.size());
-        most = std::max(most, s.edge_lines.size());
-        s.group_edges.insert(s.group_edges.end(), s.edge_lines.begin(), s.edge_lines.end());
-      }
-    s.counts.edges += s.group_edges.size();
-    const std::size_t first = kRobotRows - most * kSlots;
-    const EdgeLine* next = s.group_edges.data();
-    for (std::size_t slot = 0; slot < count * kPack; ++slot) {
-      const Pack& pack = packs[slot / kPack];
-      const bool there = slot % kPack < pack.size();
-      const T least = there ? table_.least_offset[kind_of(pack.begin + slot % kPack)] : T(0);
-      for (std::size_t k = 0; k < most; ++k) {
-        const std::size_t at = first + k * kSlots + slot;
-        if (k < static_cast<std::size_t>(s.hard[slot]))
-          put(*next++, s.x[at], s.y[at], s.c[at], least);
-        else
-          s.x[at] = T(1), s.y[at] = T(0), s.c[at] = static_cast<T>(kNever);
+    for (std::size_t p = 0; p < count; ++p) edges_of_pack(packs[p], p * kPack, s);
+    std::int32_t most = 0;
+    for (std::size_t slot = 0; slot < count * kPack; ++slot) most = std::max(most, s.hard[slot]);
+    const auto rows = static_cast<std::size_t>(most);
+    for (std::size_t k = 0; k < rows; ++k) {
+      const std::size_t to = kRobotRows - (rows - k) * kSlots, from = k * kSlots;
+      for (std::size_t slot = 0; slot < count * kPack; ++slot) {
+        const bool there = static_cast<std::int32_t>(k) < s.hard[slot];
+        s.x[to + slot] = there ? s.edge_x[from + slot] : T(1);
+        s.y[to + slot] = there ? s.edge_y[from + slot] : T(0);
+        s.c[to + slot] = there ? s.edge_c[from + slot] : static_cast<T>(kNever);
       }
     }
-    return most;
+    return rows;
+  }
+
+  /// Into s.edge_x and so on, their number into s.hard.
+  void edges_of_pack(Pack& pack, std::size_t slot, Scratch& s) {
+    std::int32_t* const lines = s.hard + slot;
+    std::fill(lines, lines + kPack, 0);
+    if (!ask_edges(pack, s)) return;
+    const EdgePackLines<T> out{s.edge_x + slot, s.edge_y + slot, s.edge_c + slot, kSlots, lines};
+    const std::uint32_t overflow = make_edge_lines(s.edge_query, s.edge_table, out);
+    for (std::size_t lane = 0; lane < pack.size(); ++lane) {
+      if (overflow >> lane & 1U) be_alone(pack, lane, s);
+      s.counts.edges += static_cast<std::size_t>(lines[lane]);
+    }
+  }
+
+  /// Writes s.edge_query; whether a lane has edges nearby. Whoever has too many for a pack is decided alone.
+  bool ask_edges(Pack& pack, Scratch& s) const {
+    EdgePackQuery<T>& query = s.edge_query;
+    query.edges = edges.edges().data();
+    query.items = edges.items().data();
+    query.slack = table_.lattice_slack;
+    std::uint32_t any = 0;
+    for (std::size_t lane = 0; lane < kPack; ++lane) {
+      const std::size_t robot = pack.begin + std::min(lane, pack.size() - 1), kind = kind_of(robot);
+      const Vec2 velocity = velocity_of(robots.mx[robot], robots.my[robot]);
+      query.x[lane] = options.position_step * robots.x[robot];
+      query.y[lane] = options.position_step * robots.y[robot];
+      query.vx[lane] = velocity.x;
+      query.vy[lane] = velocity.y;
+      query.radius[lane] = kinds[kind].radius;
+      query.horizon[lane] = edge_horizon(kinds[kind]);
+      query.max_speed[lane] = kinds[kind].max_speed;
+      query.least[lane] = table_.least_offset[kind];
+      query.first[lane] = query.count[lane] = 0;
+      if (lane >= pack.size() || (pack.alone >> lane & 1U)) continue;
+      const EdgeGrid::Range near = edges.near({query.x[lane], query.y[lane]});
+      if (near.last - near.first > kMostPackEdges) {
+        be_alone(pack, lane, s);
+        continue;
+      }
+      query.first[lane] = static_cast<std::int32_t>(near.first);
+      query.count[lane] = static_cast<std::int32_t>(near.last - near.first);
+      any |= near.last - near.first;
+    }
+    return any != 0;
   }
 
   /// Takes a robot out of its pack, and what was counted of it.

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The constants by which half-planes against edges are rounded to the safe side, the same for one robot and for a
+/// pack.
+
+namespace exactvo::formation::crowd::edge_rounding {
+
+inline constexpr double kUnit = 0x1p-53;
+
+/// In units of u of the magnitudes: a difference, an end that was cut (4), two products, two sums, |n| and a maximum
+/// round at most 13 times.
+inline constexpr double kSupportError = 16.0 * kUnit;
+
+/// The radius is grown before a normal is looked for, so that it stays valid once it is rounded (in units of its
+/// precision) and its support value is rounded up (in units of double).
+inline constexpr double kRoundingRoom = 8.0, kSupportRoom = 64.0 * kUnit;
+
+/// Times kSupportError: what an offset is above its support value, so that edges that share the vertex it stands for
+/// are excluded too, whatever their own support values are rounded by.
+inline constexpr double kSharedVertex = 3.0;
+
+/// An offset is a quotient and a product: 2 u. It is negative and moves towards 0.
+inline constexpr double kTowardsZero = 1.0 - 4.0 * kUnit;
+
+/// The product of horizon and offset is off by u, times this by another: what is not above it is not above the product.
+inline constexpr double kAwayFromZero = 1.0 + 8.0 * kUnit;
+
+/// Vectors whose square is below it have no direction: the square would lose digits to underflow.
+inline constexpr double kNoDirection = 0x1p-900;
+
+/// Of a range, for its own rounding.
+inline constexpr double kWiden = 1.0 + 0x1p-20;
+
+/// Ends of edges are cut at so many times the range.
+inline constexpr double kCutRanges = 2.0;
+
+}  // namespace exactvo::formation::crowd::edge_rounding
