@@ -29,6 +29,9 @@ constexpr double kFirstReach = 1.04, kWiderReach = 1.35;
 /// Cutting the number's bits lowers a squared distance by 2^-15 of it at most.
 constexpr double kWholeKey = 1.0 - 0x1p-13;
 
+/// Of a squared reach: above what squared distances in float are rounded by.
+constexpr double kFarthest = 1.0 + 0x1p-16;
+
 /// Candidates that a pack may look at in vain rather than be cut at the end of its strip.
 constexpr std::size_t kWorthCutting = 48;
 
@@ -721,10 +724,11 @@ class CrowdEngine final : public CrowdCore {
 
   // --- One robot ---
 
-  /// Everybody nearer than `reach`, by the order of neighbours.
+  /// Everybody nearer than `reach` (lattice steps), and maybe some beyond, by the order of neighbours.
   void everybody_near(std::size_t robot, double reach, std::vector<Near>& near) const {
     const Window at{robots.x[robot], robots.x[robot], robots.y[robot], robots.y[robot]};
     const Cells cells = robots.cells_of(grown(at, reach));
+    const auto farthest = static_cast<float>(reach * reach * kFarthest);
     near.clear();
     for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
       const Stretch stretch = robots.stretch(cells, row);
@@ -732,7 +736,8 @@ class CrowdEngine final : public CrowdCore {
         if (j == robot) continue;
         const auto dx = static_cast<float>(robots.x[j] - robots.x[robot]),
                    dy = static_cast<float>(robots.y[j] - robots.y[robot]);
-        near.push_back({without_number(dx * dx + dy * dy), static_cast<std::int32_t>(j)});
+        const float squared = without_number(dx * dx + dy * dy);
+        if (squared <= farthest) near.push_back({squared, static_cast<std::int32_t>(j)});
       }
     }
     std::sort(near.begin(), near.end());

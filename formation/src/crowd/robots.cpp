@@ -21,6 +21,12 @@ constexpr std::size_t kMostReserved = std::size_t{1} << 30U;
 /// Robots that are sorted by insertion, or looked at without a search.
 constexpr std::int32_t kFewInCell = 16;
 
+/// std::floor, which is a call on targets before SSE4.1.
+std::int64_t whole_below(double x) {
+  const auto toward_zero = static_cast<std::int64_t>(x);
+  return toward_zero - static_cast<std::int64_t>(static_cast<double>(toward_zero) > x);
+}
+
 std::int64_t clamped(std::int64_t v, std::int64_t count) {
   return std::clamp<std::int64_t>(v, 0, count - 1);
 }
@@ -86,10 +92,10 @@ void Robots::find_bounds() {
 }
 
 std::int64_t Robots::row_of(std::int64_t at_y) const {
-  return static_cast<std::int64_t>(std::floor(static_cast<double>(at_y) * per_strip_));
+  return whole_below(static_cast<double>(at_y) * per_strip_);
 }
 std::int64_t Robots::column_of(std::int64_t at_x) const {
-  return static_cast<std::int64_t>(std::floor(static_cast<double>(at_x) * per_bucket_));
+  return whole_below(static_cast<double>(at_x) * per_bucket_);
 }
 
 /// About as many cells as robots at most.
