@@ -154,9 +154,7 @@ void take(std::optional<Report>& sum, Report report, const std::string& file) {
   add(*sum, report);
 }
 
-Audited audited(const Flags& flags, const std::vector<fs::path>& files) {
-  std::optional<formation::Scenario> scenario;
-  if (!flags.scenario.empty()) scenario = datasets::load_scenario(flags.scenario);
+Audited audited(const Flags& flags, const std::vector<fs::path>& files, const formation::Scenario* scenario) {
   Audited all;
   for (const fs::path& file : files) {
     if (is_crowd_recording(file)) {
@@ -164,7 +162,7 @@ Audited audited(const Flags& flags, const std::vector<fs::path>& files) {
       if (report.cut_off) all.cut_off.push_back(file.string());
       take(all.crowds, report, file.string());
     } else {
-      take(all.runs, datasets::audit_recording(file, scenario ? &*scenario : nullptr), file.string());
+      take(all.runs, datasets::audit_recording(file, scenario), file.string());
     }
     if (interrupted()) throw Interrupted();
   }
@@ -194,13 +192,15 @@ std::string to_json(const Audited& all) {
 }
 
 ExitCode audit_recordings(const Flags& flags) {
+  std::optional<formation::Scenario> scenario;
+  if (!flags.scenario.empty()) scenario = datasets::load_scenario(flags.scenario);
   const std::vector<fs::path> files = recordings_in(flags.path);
   const auto crowds = static_cast<std::size_t>(std::count_if(files.begin(), files.end(), is_crowd_recording));
   if (crowds > 0 && !flags.scenario.empty())
     throw UsageError("--scenario", flags.scenario, "a recording.jsonl to compare it with, not one of a crowd");
   if (crowds == 0 && flags.sample > 0)
     throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
-  const Audited all = audited(flags, files);
+  const Audited all = audited(flags, files, scenario ? &*scenario : nullptr);
   print(flags.json ? to_json(all) : in_words(all));
   const bool clean = (!all.runs || all.runs->clean()) && (!all.crowds || all.crowds->clean()) && all.cut_off.empty();
   return clean ? ExitCode::success : ExitCode::negative;
