@@ -214,6 +214,21 @@ class Serve(unittest.TestCase):
         status, answer = self.server.request("POST", decide, b'{"run": "wall--orca", "scenario": {"name": "x", "robots": [{"id": "R1", "position": [1e999, 0], "goal": [1, 1]}]}}')
         self.assertEqual((status, json.loads(answer)["code"]), (400, "E_JSON_SYNTAX"))
 
+    def test_robots_are_held_against_where_things_are_at_the_moment(self):
+        """They were held against the places at the beginning, and met the assertion of the simulation afterwards."""
+        cart = {"id": "cart", "polygon": [[5, -4], [6, -4], [6, -3.2], [5, -3.2]], "path": [[0, 0], [5, 0]], "speed": 0.4}
+        for time, x, status in [(0, 5.5, 400), (2.5, 5.3, 200), (2.5, 6.5, 400), (0, 6.5 + 0.2, 200), (10, 5.5, 200)]:
+            with self.subTest((time, x)):
+                robot = {**SCENARIO["robots"][0], "position": [x, -3.5], "radius": 0.2}
+                found, answer = self.server.ask(scenario={**SCENARIO, "robots": [robot], "moving_obstacles": [cart]}, time=time)
+                self.assertEqual(found, status)
+                if status == 400:
+                    self.assertEqual(json.loads(answer)["place"], "/robots/0/position")
+        for change in ({"speed": -1}, {"path": []}, {"profile": [{"time": 3, "speed": 1}, {"time": 1, "speed": 1}]}):
+            with self.subTest(change):
+                found, answer = self.server.ask(scenario={**SCENARIO, "moving_obstacles": [{**cart, **change}]}, time=2)
+                self.assertEqual(found, 400, answer[:300])
+
     def test_many_slow_clients_hold_nobody_up_for_long(self):
         slow = []
         for k in range(300):

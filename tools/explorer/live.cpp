@@ -12,7 +12,7 @@
 
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/provenance.h"
-#include "exactvo/datasets/scenario_file.h"
+#include "exactvo/datasets/scenario_at.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/vo/free_velocities.h"
 #include "exactvo/vo/lp/certificate.h"
@@ -39,73 +39,6 @@ constexpr double kFastest = 1e6;               // m/s
 [[noreturn]] void refuse(DataCode code, const std::string& place, const std::string& found,
                          const std::string& expected) {
   throw DataError(code, kQuestion, place, found, expected);
-}
-
-// --- Questions ---
-
-Json parsed(const std::string& text) {
-  const auto check_depth = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepest)
-      refuse(DataCode::nesting, "", "deeper nesting", "at most " + std::to_string(kDeepest) + " levels");
-    return true;
-  };
-  try {
-    return Json::parse(text, check_depth);
-  } catch (const Json::exception& e) {
-    refuse(DataCode::json_syntax, "", e.what(), "JSON");
-  }
-}
-
-const Json& member(const Json& object, const char* key, bool (Json::*is_right)() const noexcept, const char* expected) {
-  const auto found = object.find(key);
-  if (found == object.end()) refuse(DataCode::key_missing, "", "nothing", std::string("the key ") + key);
-  if (!((*found).*is_right)()) refuse(DataCode::wrong_type, std::string("/") + key, found->type_name(), expected);
-  return *found;
-}
-
-/// Entries by themselves: no generator of many robots, and no file.
-void check_entries(const Json& scenario, const char* list, std::initializer_list<const char*> allowed) {
-  const auto found = scenario.find(list);
-  if (found == scenario.end() || !found->is_array()) return;  // the schema says so
-  for (std::size_t k = 0; k < found->size(); ++k) {
-    if (!(*found)[k].is_object()) continue;
-    for (const auto& [key, value] : (*found)[k].items())
-      if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
-        refuse(key == "file" ? DataCode::path_escape : DataCode::key_unknown,
-               std::string("/scenario/") + list + "/" + std::to_string(k), "the key '" + key + "'",
-               "an entry by itself: a page names neither files nor generators");
-  }
-}
-
-formation::Scenario scenario_in(const Json& question) {
-  const Json& scenario = member(question, "scenario", &Json::is_object, "a scenario");
-  check_entries(scenario, "robots",
-                {"id", "position", "velocity", "radius", "max_speed", "goal", "goals", "cooperates"});
-  check_entries(scenario, "obstacles", {"id", "polyline", "polygon", "holes"});
-  check_entries(scenario, "moving_obstacles", {"id", "polyline", "polygon", "holes", "path", "speed", "profile"});
-  const auto robots = scenario.find("robots");
-  if (robots != scenario.end() && robots->size() > kMostLiveRobots)
-    refuse(DataCode::size, "/scenario/robots", std::to_string(robots->size()) + " robots",
-           "at most " + std::to_string(kMostLiveRobots) + " to compute with");
-  return datasets::parse_scenario(scenario.dump(-1, ' ', false, Json::error_handler_t::replace), kQuestion,
-                                  std::filesystem::path());
-}
-
-double number_in(const Json& value, const std::string& place, double least, double most, const char* expected) {
-  if (!value.is_number()) refuse(DataCode::wrong_type, place, value.type_name(), expected);
-  const double number = value.get<double>();
-  if (!(number >= least && number <= most)) refuse(DataCode::out_of_range, place, value.dump(), expected);
-  return number;
-}
-
-std::optional<Vec2> preferred_in(const Json& question) {
-  const auto found = question.find("preferred");
-  if (found == question.end() || found->is_null()) return std::nullopt;
-  if (!found->is_array() || found->size() != 2)
-    refuse(DataCode::wrong_type, "/preferred", found->type_name(), "[x, y] in m/s, or null");
-  const char* expected = "a number of m/s, at most 10^6 in size";
-  return Vec2{number_in((*found)[0], "/preferred/0", -kFastest, kFastest, expected),
-              number_in((*found)[1], "/preferred/1", -kFastest, kFastest, expected)};
 }
 
 // --- What moves by itself, at a later time ---
@@ -146,6 +79,74 @@ void advance(formation::Scenario& scenario, double time) {
     shift(obstacle.shape, obstacle.motion.path.front() - before);
   }
   if (scenario.formation) scenario.formation->leader = advanced(scenario.formation->leader, time);
+}
+
+// --- Questions ---
+
+Json parsed(const std::string& text) {
+  const auto check_depth = [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest)
+      refuse(DataCode::nesting, "", "deeper nesting", "at most " + std::to_string(kDeepest) + " levels");
+    return true;
+  };
+  try {
+    return Json::parse(text, check_depth);
+  } catch (const Json::exception& e) {
+    refuse(DataCode::json_syntax, "", e.what(), "JSON");
+  }
+}
+
+const Json& member(const Json& object, const char* key, bool (Json::*is_right)() const noexcept, const char* expected) {
+  const auto found = object.find(key);
+  if (found == object.end()) refuse(DataCode::key_missing, "", "nothing", std::string("the key ") + key);
+  if (!((*found).*is_right)()) refuse(DataCode::wrong_type, std::string("/") + key, found->type_name(), expected);
+  return *found;
+}
+
+/// Entries by themselves: no generator of many robots, and no file.
+void check_entries(const Json& scenario, const char* list, std::initializer_list<const char*> allowed) {
+  const auto found = scenario.find(list);
+  if (found == scenario.end() || !found->is_array()) return;  // the schema says so
+  for (std::size_t k = 0; k < found->size(); ++k) {
+    if (!(*found)[k].is_object()) continue;
+    for (const auto& [key, value] : (*found)[k].items())
+      if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
+        refuse(key == "file" ? DataCode::path_escape : DataCode::key_unknown,
+               std::string("/scenario/") + list + "/" + std::to_string(k), "the key '" + key + "'",
+               "an entry by itself: a page names neither files nor generators");
+  }
+}
+
+/// At the moment that is asked about: what moves has come to where it is then before robots are held against it.
+formation::Scenario scenario_in(const Json& question, double time) {
+  const Json& scenario = member(question, "scenario", &Json::is_object, "a scenario");
+  check_entries(scenario, "robots",
+                {"id", "position", "velocity", "radius", "max_speed", "goal", "goals", "cooperates"});
+  check_entries(scenario, "obstacles", {"id", "polyline", "polygon", "holes"});
+  check_entries(scenario, "moving_obstacles", {"id", "polyline", "polygon", "holes", "path", "speed", "profile"});
+  const auto robots = scenario.find("robots");
+  if (robots != scenario.end() && robots->size() > kMostLiveRobots)
+    refuse(DataCode::size, "/scenario/robots", std::to_string(robots->size()) + " robots",
+           "at most " + std::to_string(kMostLiveRobots) + " to compute with");
+  return datasets::parse_scenario_at(scenario.dump(-1, ' ', false, Json::error_handler_t::replace), kQuestion,
+                                     std::filesystem::path(), [&](formation::Scenario& read) { advance(read, time); });
+}
+
+double number_in(const Json& value, const std::string& place, double least, double most, const char* expected) {
+  if (!value.is_number()) refuse(DataCode::wrong_type, place, value.type_name(), expected);
+  const double number = value.get<double>();
+  if (!(number >= least && number <= most)) refuse(DataCode::out_of_range, place, value.dump(), expected);
+  return number;
+}
+
+std::optional<Vec2> preferred_in(const Json& question) {
+  const auto found = question.find("preferred");
+  if (found == question.end() || found->is_null()) return std::nullopt;
+  if (!found->is_array() || found->size() != 2)
+    refuse(DataCode::wrong_type, "/preferred", found->type_name(), "[x, y] in m/s, or null");
+  const char* expected = "a number of m/s, at most 10^6 in size";
+  return Vec2{number_in((*found)[0], "/preferred/0", -kFastest, kFastest, expected),
+              number_in((*found)[1], "/preferred/1", -kFastest, kFastest, expected)};
 }
 
 // --- Decisions ---
@@ -261,10 +262,9 @@ LiveQuestion parse_live_question(const std::string& text, const OptionsOfRun& op
       refuse(DataCode::not_an_option, "/method", method->dump(-1, ' ', true, Json::error_handler_t::replace),
              "the name of a method");
   }
-  asked.scenario = scenario_in(question);
   const double time =
       question.contains("time") ? number_in(question["time"], "/time", 0.0, kLatest, "seconds from 0 to 10^9") : 0.0;
-  advance(asked.scenario, time);
+  asked.scenario = scenario_in(question, time);
   const double last = static_cast<double>(asked.scenario.robots.size()) - 1.0;
   if (question.contains("robot"))
     asked.robot = static_cast<std::size_t>(

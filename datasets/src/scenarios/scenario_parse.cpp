@@ -8,6 +8,7 @@
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/obstacle_file.h"
+#include "exactvo/datasets/scenario_at.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/simulation.h"
 #include "files/text_file.h"
@@ -94,13 +95,13 @@ class Reader {
   Reader(std::string file_name, std::filesystem::path base_dir)
       : file_(std::move(file_name)), base_dir_(std::move(base_dir)) {}
 
-  LoadedScenario read(const Json& tree) {
-    Scenario scenario = read_scenario(tree);
+  LoadedScenario read(const Json& tree, const AdvanceScenario& advance = {}) {
+    Scenario scenario = read_scenario(tree, advance);
     return {std::move(scenario), std::move(notes_), std::move(files_), tree.contains("liveness")};
   }
 
  private:
-  Scenario read_scenario(const Json& tree) {
+  Scenario read_scenario(const Json& tree, const AdvanceScenario& advance) {
     refuse_geojson(tree);
     check_against_schema(tree, parsed_schema(), file_);
     Scenario scenario;
@@ -115,6 +116,10 @@ class Reader {
     if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
     read_figures(tree, scenario);
     refuse_repeated_ids(scenario);
+    if (advance) {
+      refuse_what_cannot_move(scenario);
+      advance(scenario);
+    }
     refuse_what_cannot_run(scenario);
     return scenario;
   }
@@ -269,10 +274,24 @@ class Reader {
   /// What no schema can say: robots that overlap, lists whose lengths must agree, ...
   void refuse_what_cannot_run(const Scenario& scenario) const {
     const std::vector<formation::ScenarioProblem> problems = formation::validate(scenario);
-    if (problems.empty()) return;
-    const formation::ScenarioProblem& first = problems.front();
-    throw DataError(DataCode::scenario, file_, in_the_text(first.pointer),
-                    words_of_robot(scenario, first.pointer) + first.found + words_of_projection(), first.expected);
+    if (!problems.empty()) refuse(scenario, problems.front());
+  }
+
+  /// Paths and speeds of what moves by itself: they must be right before anything is moved along them.
+  void refuse_what_cannot_move(const Scenario& scenario) const {
+    for (const formation::ScenarioProblem& problem : formation::validate(scenario))
+      if (starts_with(problem.pointer, "/moving_obstacles") || starts_with(problem.pointer, "/formation"))
+        refuse(scenario, problem);
+  }
+
+  [[noreturn]] void refuse(const Scenario& scenario, const formation::ScenarioProblem& problem) const {
+    throw DataError(DataCode::scenario, file_, in_the_text(problem.pointer),
+                    words_of_robot(scenario, problem.pointer) + problem.found + words_of_projection(),
+                    problem.expected);
+  }
+
+  static bool starts_with(const std::string& text, const std::string& prefix) {
+    return text.compare(0, prefix.size(), prefix) == 0;
   }
 
   /// Numbers that were no degrees are the likeliest reason why robots and obstacles do not fit together.
@@ -333,6 +352,11 @@ LoadedScenario parse_scenario_with_notes(const std::string& text, const std::str
 
 Scenario parse_scenario(const std::string& text, const std::string& file_name, const std::filesystem::path& base_dir) {
   return parse_scenario_with_notes(text, file_name, base_dir).scenario;
+}
+
+Scenario parse_scenario_at(const std::string& text, const std::string& file_name, const std::filesystem::path& base_dir,
+                           const AdvanceScenario& advance) {
+  return Reader(file_name, base_dir).read(parse_json(text, file_name), advance).scenario;
 }
 
 LoadedScenario load_scenario_with_notes(const std::filesystem::path& path) {

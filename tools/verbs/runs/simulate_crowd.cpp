@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -134,6 +135,8 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
       throw UsageError(option->get_name(), "--engine " + flags.engine + " with it",
                        is_crowd ? "--engine standard" : "--engine crowd");
   if (is_crowd && flags.method->count() > 0 && simulation.method != "orca") refuse("--method", "orca");
+  if (!flags.record.empty() && std::filesystem::path(flags.record).extension() != ".evr")
+    throw UsageError("--record", flags.record, "a name that ends in .evr");
   if (is_crowd && !out.empty()) refuse("--out", "--record FILE.evr, and --json for the metrics");
   return is_crowd;
 }
