@@ -95,6 +95,8 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
       {"simulate ring.json --record out.evr", "--engine crowd"},
       {"simulate ring.json --engine crowd --method ivo", "orca"},
       {"simulate ring.json --engine crowd --out out", "--record FILE.evr"},
+      {"simulate ring.json --engine crowd --record ring.json",
+       "--record: found 'ring.json', expected a name that ends in .evr"},
       {"simulate ring.json --engine crowd --precision half", "float or double"},
       {"simulate ring.json --engine crowd --every 0 --record out.evr",
        "--every: found '0', expected a whole number from 1 to 1000000"},

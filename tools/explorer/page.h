@@ -7,6 +7,7 @@
 ///
 /// Neighbours: packed_run.h (how a run stands in it).
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,11 @@ struct PageRun {
   std::string packed;       ///< RunPacker::finish
 };
 
-/// A run with how it was made: what a run on from one of its moments is made with.
+/// A run with how it was made: what a run on from one of its moments is made with. Nothing for a recording of a crowd,
+/// which has neither goals nor decisions to go on from.
 struct MadeRun {
   PageRun shown;
-  formation::SimulationOptions options;
+  std::optional<formation::SimulationOptions> options;
 };
 
 /// Whole. `is_guide`: the runs are scenes to start from, listed with their words, rather than the user's own.

@@ -499,8 +499,9 @@ async function readAddress() {
 
 const live = {edit: null, isAsking: false, isAgain: false, freeTimer: 0, made: 0, server: window.exactvoServer || null, keys: new Map()};
 
+// Recordings of crowds have positions alone: neither goals nor decisions.
 function canEdit() {
-  return live.server !== null && page.run !== null && Boolean(page.run.head.scenario);
+  return live.server !== null && page.run !== null && Boolean(page.run.head.scenario) && page.run.decisionTime.length > 0;
 }
 
 function liveMessage(text, isBad) {

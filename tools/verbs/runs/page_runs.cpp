@@ -68,7 +68,7 @@ MadeRun recorded(const PageFlags& flags, const fs::path& path) {
 MadeRun recorded_crowd(const PageFlags& flags, const fs::path& path) {
   const PackedCrowd crowd = packed_crowd(path, flags.limits);
   const std::string title = crowd.scenario + ", crowd";
-  return {{page_key(title), title, "", crowd.packed}, {}};
+  return {{page_key(title), title, "", crowd.packed}, std::nullopt};
 }
 
 /// With every half-plane.
