@@ -19,7 +19,7 @@ struct PackedCrowd {
   std::string packed;    ///< RunPacker::finish
 };
 
-/// Read a row at a time, in memory bounded by the limits. Throws datasets::DataError.
+/// Read row by row, in memory bounded by the limits. Throws datasets::DataError.
 PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimits& limits = {});
 
 }  // namespace exactvo::tools

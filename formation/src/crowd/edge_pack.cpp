@@ -16,7 +16,7 @@ namespace exactvo::formation::crowd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace edge_rounding;
 
-/// A double a lane.
+/// One double per lane.
 using Doubles = hn::CappedTag<double, kPack>;
 using V = hn::Vec<Doubles>;
 using M = hn::Mask<Doubles>;

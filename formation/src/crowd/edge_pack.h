@@ -2,9 +2,9 @@
 #pragma once
 
 /// \file
-/// Half-planes against edges for sixteen robots at once, a robot a lane: each round makes the half-plane of the nearest
-/// edge left in every lane and drops the edges that it excludes. The same operations in the same order as `edge_lines`,
-/// which serves one robot, hence the same bits.
+/// Half-planes against edges for sixteen robots at once, one robot per lane: each round makes the half-plane of the
+/// nearest edge left in every lane and drops the edges that it excludes. The same operations in the same order as
+/// `edge_lines`, which serves one robot, hence the same bits.
 
 #include "crowd/edges.h"
 #include "crowd/layout.h"

@@ -88,7 +88,8 @@ Verb serve_verb() {
   return {"serve", "The page of view on this computer, where dragging computes: Ctrl-C ends it",
           "  exactvo serve --open\n"
           "  exactvo serve datasets/data/paper/A7.json\n"
-          "  exactvo serve out/A7 --port 8080\n",
+          "  exactvo serve out/A7 --port 8080\n"
+          "    (status 0 when Ctrl-C or SIGTERM ends the server)\n",
           declare};
 }
 

@@ -3,7 +3,7 @@
 
 /// \file
 /// Recordings of crowds, `.evr`: positions of many robots on their lattice, every n-th step, without loss, in columns
-/// (docs/guide/crowd-recordings.md has the format). Written and read a row at a time: memory does not grow with the
+/// (docs/guide/crowd-recordings.md has the format). Written and read row by row: memory does not grow with the
 /// run.
 ///
 /// Properties (tests quote the numbers):
@@ -98,7 +98,7 @@ class CrowdRecordingReader {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Of a recording an audit lists this many findings.
+/// The most findings that the audit of one recording lists.
 inline constexpr std::size_t kMostCrowdFindings = 20;
 
 /// What an audit found. Everything is exact. To touch is to be nearer than the radii and a rounding error
@@ -138,7 +138,7 @@ struct CrowdTable {
   bool cut_off = false;  ///< the recording was: these are the rows before
 };
 
-/// "step,time,robot,x,y,kept", a line a robot and row.
+/// "step,time,robot,x,y,kept", one line per robot and row.
 CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to);
 
 /// Whether these are the first bytes of a recording of a crowd.

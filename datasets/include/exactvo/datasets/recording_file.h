@@ -73,7 +73,7 @@ void write_recording(const std::filesystem::path& path, const RecordingFile& fil
 RecordingFile read_recording(const std::filesystem::path& path);
 /// Takes a row, with its values of a formation (else null). `so_far` has what the file says before it.
 using TakeRow = std::function<void(const RecordingFile& so_far, formation::Step row, const formation::LyapunovRow*)>;
-/// The same a row at a time, in order: rows go to `take`, and the file that is returned has none. Memory does not grow
+/// The same row by row, in order: rows go to `take`, and the file that is returned has none. Memory does not grow
 /// with the run.
 RecordingFile read_recording(const std::filesystem::path& path, const TakeRow& take);
 /// The same from the file's text; `file_name` is used in messages.
