@@ -66,7 +66,7 @@ TEST(AuditMotion, ACartThatRunsASlowRobotOverIsACollision) {
   EXPECT_GT(report.collisions, 0u);
   EXPECT_EQ(report.inconsistencies, 0u) << to_json(report);
   ASSERT_FALSE(report.findings.empty());
-  EXPECT_NE(report.findings.front().find("slow overlaps moving obstacle cart"), std::string::npos);
+  EXPECT_NE(report.findings.front().find("slow overlaps moving obstacle 'cart'"), std::string::npos);
 }
 
 TEST(AuditMotion, AnObstacleThatIsBackAtEveryRowIsSeenBetween) {

@@ -83,7 +83,7 @@ TEST(ScenarioRobots, RandomRobotsAreApartAndClearAndTheSameForASeed) {
 TEST(ScenarioRobots, RobotsThatOverlapAtTheStartAreNamedByTheirIds) {
   const DataError overlap = refused(R"({"id": "left", "position": [0, 0], "goal": [9, 0]},
                                        {"id": "right", "position": [0.3, 0], "goal": [-9, 0]})");
-  EXPECT_NE(overlap.found().find("overlapping robot left"), std::string::npos) << overlap.found();
+  EXPECT_NE(overlap.found().find("overlapping robot 'left' by 0.7 m"), std::string::npos) << overlap.found();
 }
 
 class ScenarioRobotTables : public TemporaryFolder {};

@@ -76,7 +76,7 @@ TEST(BadInput, AStartInsideAMovingObstacleIsRefused) {
   EXPECT_TRUE(validate(s).empty());
   s.robots[0].position.x += 2.0;
   expect_refused(s, "/robots/0/position");
-  EXPECT_THAT(validate(s).front().found, HasSubstr("inside moving obstacle 'cart'"));
+  EXPECT_THAT(validate(s).front().found, HasSubstr("overlapping moving obstacle 'cart' by "));
   s.robots[0].position.x -= 1.2;  // outside, but nearer than its radius
   expect_refused(s, "/robots/0/position");
 }
@@ -218,7 +218,8 @@ TEST(BadInput, AGoalInsideAnObstacleIsSaidAndStated) {
   s.time_limit = 30.0;
   const Metrics m = test::run(s, {}).metrics;
   ASSERT_EQ(m.warnings.size(), 1u);
-  EXPECT_THAT(m.warnings[0], HasSubstr("lies inside obstacle"));
+  EXPECT_THAT(m.warnings[0],
+              testing::EndsWith("lies inside obstacle '" + s.obstacles[0].id + "': it cannot be reached"));
   EXPECT_THAT(m.outcome, HasSubstr("did not arrive"));
   ASSERT_EQ(m.stuck.size(), 1u);
   EXPECT_GT(m.min_obstacle_clearance.value(), 0.0);

@@ -280,7 +280,7 @@ TEST(Collisions, ACartThatRunsARobotOverIsNamedWithTimeAndDepth) {
   EXPECT_DOUBLE_EQ(c.until, 3.25);
   EXPECT_NEAR(c.deepest_at, 2.5, 0.01);
   EXPECT_NEAR(c.depth, 1.5, 0.02) << "its middle on the robot's: a side's half and the radius";
-  EXPECT_EQ(m.outcome, "COLLISION: R1 overlapped moving obstacle cart by 1.5 m at 2.5 s; the robot arrived");
+  EXPECT_EQ(m.outcome, "COLLISION: R1 overlapped moving obstacle 'cart' by 1.5 m at 2.5 s; the robot arrived");
 }
 
 TEST(Collisions, TheDepthInAWallIsAtMostTheRadius) {
@@ -311,7 +311,7 @@ TEST(Collisions, EachStretchOfContactIsOne) {
   const Metrics m = measure(s, resting(s, 30));
   ASSERT_EQ(m.collisions.size(), 2u);
   EXPECT_LT(m.collisions[0].until, m.collisions[1].from);
-  EXPECT_EQ(m.outcome.rfind("COLLISION: R1 overlapped moving obstacle shuttle by 1 m at ", 0), 0u) << m.outcome;
+  EXPECT_EQ(m.outcome.rfind("COLLISION: R1 overlapped moving obstacle 'shuttle' by 1 m at ", 0), 0u) << m.outcome;
   EXPECT_NE(m.outcome.find(", the deepest of 2 collisions"), std::string::npos) << m.outcome;
 }
 
@@ -329,7 +329,7 @@ TEST(Collisions, RobotsThatOverlapInRelaxedDecisionsAreSaidTo) {
   EXPECT_EQ(m.collisions[0].kind, CollisionKind::robot);
   EXPECT_NEAR(m.collisions[0].depth, 0.014, 1e-9);
   EXPECT_EQ(m.outcome,
-            "COLLISION: R1 overlapped robot R2 by 0.014 m at 2 s, in a relaxed decision (no velocity kept every "
+            "COLLISION: R1 overlapped robot 'R2' by 0.014 m at 2 s, in a relaxed decision (no velocity kept every "
             "half-plane); all robots arrived");
 }
 

@@ -81,6 +81,17 @@ TEST(CrowdVerb, VerbsThatNeedDecisionsOrAScenarioSayWhatARecordingOfACrowdIs) {
   }
 }
 
+TEST(CrowdVerb, ViewSaysOnStderrThatARecordingWasCutOff) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  ASSERT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr").status, 0);
+  EXPECT_THAT(here.run("view ring.evr --out whole.html").err, testing::Not(HasSubstr("cut off")));
+  here.write("cut.evr", here.read("ring.evr").substr(0, 3000));
+  const Outcome outcome = here.run("view cut.evr --out cut.html");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: cut.evr: the recording was cut off after its last whole row"));
+}
+
 TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
   const Workplace here;
   here.write("ring.json", kRing);
@@ -92,9 +103,12 @@ TEST(CrowdVerb, WhatDoesNotFitIsRefusedAndNothingIsWritten) {
       "robots": [{"id": "R", "position": [0, 0], "goal": [9, 0]}]})");
   const std::pair<const char*, const char*> cases[] = {
       {"simulate ring.json --engine crwd", "standard or crowd"},
-      {"simulate ring.json --record out.evr", "--engine crowd"},
-      {"simulate ring.json --engine crowd --method ivo", "orca"},
-      {"simulate ring.json --engine crowd --out out", "--record FILE.evr"},
+      {"simulate ring.json --record out.evr", "--record: found 'out.evr', expected --engine crowd beside it"},
+      {"simulate ring.json --record out.evr --out out", "--record: found 'out.evr', expected --engine crowd beside it"},
+      {"simulate ring.json --engine crowd --method ivo", "--method: found 'ivo', expected orca"},
+      {"simulate ring.json --engine crowd --out out", "--out: found 'out', expected --record FILE.evr in its place"},
+      {"simulate ring.json --engine crowd --no-figures", "--engine: found 'crowd', expected no --no-figures beside it"},
+      {"simulate ring.json --every 3", "--every: found '--every without --engine crowd', expected --engine crowd"},
       {"simulate ring.json --engine crowd --record ring.json",
        "--record: found 'ring.json', expected a name that ends in .evr"},
       {"simulate ring.json --engine crowd --precision half", "float or double"},

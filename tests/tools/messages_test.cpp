@@ -334,6 +334,64 @@ TEST(Messages, ObstaclesInPlaceOfAScenarioAreCalledThatWithTheWayToUseThem) {
   EXPECT_THAT(place().run("simulate -", "cat o.geojson | ").err, HasSubstr("-: found a file of obstacles, GeoJSON"));
 }
 
+TEST(Messages, AStartOnAWallOverlapsItByALength) {
+  place().write("start.json", R"({"name": "s", "robots": [{"id": "R1", "position": [5.8, 0], "goal": [12, 0]}],
+      "obstacles": [{"id": "wall", "polyline": [[6, -2], [6, 2]]}]})");
+  EXPECT_THAT(place().run("simulate start.json").err,
+              HasSubstr("/robots/0/position: found [5.8, 0], overlapping obstacle 'wall' by 0.3 m, expected"));
+}
+
+TEST(Messages, AVelocityOfAnObstacleIsReferredToMovingObstacles) {
+  for (const char* key : {"velocity", "speed", "path"}) {
+    place().write("moves.json", R"({"name": "m", "robots": [{"id": "R1", "position": [0, 0], "goal": [9, 0]}],
+        "obstacles": [{"id": "still", "polygon": [[3, 3], [4, 3], [4, 4]]},
+                      {"id": "cart", "polygon": [[5, 8], [7, 8], [7, 9]], ")" +
+                                    std::string(key) + R"(": [1, 0]}]})");
+    const Outcome outcome = place().run("simulate moves.json");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("/obstacles/1/" + std::string(key) + ": found an unknown key \"" + key +
+                                       "\", expected an obstacle that stands; one that moves goes into the list "
+                                       "\"moving_obstacles\", with a \"path\" and a \"speed\" [E_KEY_UNKNOWN]"));
+  }
+}
+
+TEST(Messages, AFileOfARunIsReferredToTheFolderOfTheRun) {
+  ASSERT_EQ(place().run("simulate s.json --out run", "PATH=/nowhere").status, 0);
+  for (const char* file :
+       {"trajectory.csv", "metrics.json", "explorer.html", "figures", "figures/", "figures/paths.gp"}) {
+    ASSERT_TRUE(place().has(std::string("run/") + file)) << file;
+    for (const char* verb :
+         {"serve run/", "view --out p.html run/", "draw run/", "audit run/", "explain --time 0 --robot R1 run/"}) {
+      const Outcome outcome = place().run(verb + std::string(file));
+      EXPECT_EQ(outcome.status, 2) << verb << file;
+      EXPECT_THAT(outcome.err, HasSubstr("expected the folder of the run: run [E_FORMAT_UNKNOWN]")) << verb << file;
+    }
+  }
+  place().write("run/mine.json", kScenario);  // a scenario may stand beside its run
+  EXPECT_EQ(place().run("explain --time 0 --robot R1 run/mine.json").status, 0);
+}
+
+TEST(Messages, ARunWhereAScenarioIsExpectedIsCalledThat) {
+  ASSERT_EQ(place().run("simulate s.json --no-figures --out run2").status, 0);
+  place().write("moved.jsonl", place().read("run2/recording.jsonl"));
+  for (const char* run : {"run2", "run2/recording.jsonl", "run2/metrics.json", "moved.jsonl"})
+    for (const char* verb : {"simulate ", "trap "}) {
+      const Outcome outcome = place().run(verb + std::string(run));
+      EXPECT_EQ(outcome.status, 2) << verb << run;
+      EXPECT_THAT(outcome.err, HasSubstr("expected a scenario in JSON; draw, explain, view, serve and audit take runs"))
+          << verb << run;
+    }
+}
+
+TEST(Messages, AScenarioWhereARunIsExpectedIsCalledThat) {
+  for (const char* verb : {"draw", "audit"}) {
+    const Outcome outcome = place().run(verb + std::string(" s.json"));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("s.json: found a scenario, which is no run yet, expected a recording.jsonl, as "
+                                       "simulate --out writes it [E_FORMAT_UNKNOWN]"));
+  }
+}
+
 TEST(Messages, WhereStandardInputIsNotReadTheMessageSaysWhatIs) {
   for (const char* command : {"validate -", "convert - out.wkt", "repair - --out out.wkt", "segment -",
                               "audit --scenario - .", "route - --from 0,0 --to 1,1 --radius 1"})

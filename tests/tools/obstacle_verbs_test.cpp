@@ -520,7 +520,9 @@ TEST(Audit, WhatIsNoRecordingIsSaidToBeNone) {
   here.write("mine.json", R"({"name": "mine", "robots": []})");
   const Outcome scenario = here.run("audit mine.json");
   EXPECT_EQ(scenario.status, 2);
-  EXPECT_THAT(scenario.err, HasSubstr("no recording"));
+  EXPECT_THAT(scenario.err, HasSubstr("mine.json: found a scenario, which is no run yet, expected a recording.jsonl"));
+  here.write("other.json", R"({"name": "mine"})");
+  EXPECT_THAT(here.run("audit other.json").err, HasSubstr("no recording"));
   std::filesystem::create_directory(here.path() / "empty");
   EXPECT_THAT(here.run("audit empty").err, HasSubstr("path: found 'empty'"));
 }

@@ -338,8 +338,8 @@ TEST(Simulate, ACollisionIsSaidToMachines) {
   const Outcome outcome = here.run("simulate cart.json --out out --fail-on-collision");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("moving obstacle 'cart' moves at up to 4 m/s, faster than slow"));
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("COLLISION: slow overlapped moving obstacle cart by "),
-                                 HasSubstr("  collision    slow with moving obstacle cart from ")));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("COLLISION: slow overlapped moving obstacle 'cart' by "),
+                                 HasSubstr("  collision    slow with moving obstacle 'cart' from ")));
   const json metrics = json::parse(here.read("out/metrics.json"));
   ASSERT_GE(metrics["collisions"].size(), 1u);
   EXPECT_EQ(metrics["collisions"][0]["robot"], "slow");

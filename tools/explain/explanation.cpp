@@ -109,7 +109,7 @@ std::string contact_words(const Decision& d, const RecordedConstraint& c) {
   const Vec2 preferred = d.step.preferred;
   const geometry::GrownShape s = grown_shape(c);
   const double distance = distance_to(s);
-  if (distance < 0.0) return fmt::format("the robot is {} m inside it: no cone exists", number(-distance));
+  if (distance < 0.0) return fmt::format("the robot overlaps it by {} m: no cone exists", number(-distance));
   const std::optional<double> contact = time_to_contact(s, preferred - c.shape_velocity);
   const std::string away = fmt::format("{} m from the robot's rim", number(distance));
   // A velocity on the line of a half-plane just misses: boost and following aim there.

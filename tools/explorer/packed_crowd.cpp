@@ -89,7 +89,7 @@ PackedCrowd packed_crowd(const std::filesystem::path& path, const PackedRunLimit
       "a recording of a crowd: {} robots, {} rows, a row every {} of {:.4g} s", about.scenario.robots.size(), rows,
       reader.head().every == 1 ? "step" : fmt::format("{} steps", reader.head().every), reader.head().time_step);
   if (reader.is_cut_off()) about.recording.warnings.push_back("The recording was cut off after its last whole row.");
-  return {reader.head().scenario, packer.finish(about, "")};
+  return {reader.head().scenario, packer.finish(about, ""), reader.is_cut_off()};
 }
 
 }  // namespace exactvo::tools

@@ -15,8 +15,9 @@
 namespace exactvo::tools {
 
 struct PackedCrowd {
-  std::string scenario;  ///< its name
-  std::string packed;    ///< RunPacker::finish
+  std::string scenario;     ///< its name
+  std::string packed;       ///< RunPacker::finish
+  bool is_cut_off = false;  ///< after its last whole row, which the page says too
 };
 
 /// Read row by row, in memory bounded by the limits. Throws datasets::DataError.

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -58,8 +59,40 @@ class WarningRecorder : public RunRecorder {
   std::function<void(const std::vector<std::string>&)> warnings_;
 };
 
+bool has_recording(const fs::path& folder) {
+  std::error_code unknown;
+  return fs::is_regular_file(folder / "recording.jsonl", unknown);
+}
+
+/// The folder of the run that this is a part of: a file that simulate wrote beside the recording, figures/ or a file of
+/// it. Files of other names may stand there too, a scenario for instance.
+std::optional<fs::path> run_around(const fs::path& path) {
+  std::error_code unknown;
+  fs::path part = path.has_filename() ? path : path.parent_path();
+  if (fs::is_directory(part, unknown) ? part.filename() != "figures" || has_recording(part)
+                                      : !fs::is_regular_file(part, unknown))
+    return std::nullopt;
+  if (part.parent_path().filename() == "figures") part = part.parent_path();
+  static const std::set<std::string> kParts{"figures", "trajectory.csv", "metrics.json", "lyapunov.csv",
+                                            "explorer.html"};
+  if (kParts.count(part.filename().string()) == 0) return std::nullopt;
+  const fs::path folder = part.has_parent_path() ? part.parent_path() : fs::path(".");
+  return has_recording(folder) ? std::optional(folder) : std::nullopt;
+}
+
+/// A run, or a part of one, where a scenario is expected.
+void refuse_run(const fs::path& path) {
+  if (!has_recording(path) && !run_around(path)) return;
+  throw datasets::DataError(datasets::DataCode::format_unknown, path.string(), "",
+                            fs::is_directory(path) ? "the folder of a run" : "a file of a run",
+                            "a scenario in JSON; draw, explain, view, serve and audit take runs");
+}
+
 datasets::LoadedScenario load(const std::string& path) {
-  if (path != "-") return datasets::load_scenario_with_notes(path);
+  if (path != "-") {
+    refuse_run(path);
+    return datasets::load_scenario_with_notes(path);
+  }
   const std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
   return datasets::parse_scenario_with_notes(text, "-", fs::current_path());
 }
@@ -120,7 +153,15 @@ void check_same_run(const fs::path& folder, const RunName& run) {
                             "an earlier run of " + in_words(run) + ", another folder, or --force to replace it");
 }
 
+void refuse_part_of_run(const fs::path& path) {
+  if (const std::optional<fs::path> folder = run_around(path))
+    throw datasets::DataError(datasets::DataCode::format_unknown, path.string(), "",
+                              fs::is_directory(path) ? "a folder within a run" : "a file of a run, not its recording",
+                              "the folder of the run: " + folder->string());
+}
+
 std::optional<fs::path> recording_at(const fs::path& path) {
+  refuse_part_of_run(path);
   std::error_code unknown;
   if (fs::is_directory(path, unknown)) return path / "recording.jsonl";
   return path.extension() == ".jsonl" ? std::optional(path) : std::nullopt;

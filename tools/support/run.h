@@ -59,7 +59,12 @@ std::optional<RunName> run_in(const std::filesystem::path& folder);
 /// Throws datasets::DataError (E_OTHER_RUN) if the folder holds an earlier run of another name.
 void check_same_run(const std::filesystem::path& folder, const RunName& run);
 
+/// Throws datasets::DataError (E_FORMAT_UNKNOWN) where the path is figures/ or a file beside a recording, such as
+/// trajectory.csv: what is meant is the folder of the run, which is named.
+void refuse_part_of_run(const std::filesystem::path& path);
+
 /// The recording that a path means: `recording.jsonl` of a folder, or the file itself if its name ends in .jsonl.
+/// Throws as refuse_part_of_run.
 std::optional<std::filesystem::path> recording_at(const std::filesystem::path& path);
 
 /// The figures' data and scripts in `folder`, which is created. Returns the scripts, for `draw`.

@@ -95,7 +95,8 @@ void BodyAudit::check_outlooks() {
     const std::vector<bool> covered = covered_by(outlook);
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
       covered[k] ? tally_.proven(AuditPoint::bodies)
-                 : tally_.refuted(AuditPoint::bodies, name + " leave out a part of " + file_.scenario.obstacles[k].id);
+                 : tally_.refuted(AuditPoint::bodies,
+                                  name + " leave out a part of obstacle '" + file_.scenario.obstacles[k].id + "'");
   }
   for (std::size_t i = 0; i < last.size() && has_enclosures; ++i)
     if (!last[i]) tally_.refuted(AuditPoint::bodies, file_.scenario.robots[i].id + " has no enclosures");

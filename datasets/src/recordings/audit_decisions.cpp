@@ -131,7 +131,7 @@ void DecisionAudit::check(std::size_t row) {
   }
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j)
-      if (can_meet(all[i], all[j])) answer(against_robot(all[i], all[j]), all[i], "robot " + id(all[j]));
+      if (can_meet(all[i], all[j])) answer(against_robot(all[i], all[j]), all[i], "robot '" + id(all[j]) + "'");
 }
 
 // --- (3) Nothing is missing ---
@@ -152,12 +152,12 @@ void DecisionAudit::nothing_is_missing(const Seen& s) {
     if (are_apart(here, obstacles_[k].box, s.near)) continue;
     bool in_reach = false;
     const Verdict verdict = against_edges(s, obstacles_[k], in_reach);
-    if (in_reach) answer(verdict, s, "obstacle " + file_.scenario.obstacles[k].id);
+    if (in_reach) answer(verdict, s, "obstacle '" + file_.scenario.obstacles[k].id + "'");
   }
   for (std::size_t k = 0; k < moved_.size(); ++k) {
     bool in_reach = false;
     const Verdict verdict = against_moving(s, k, in_reach);
-    if (in_reach) answer(verdict, s, "moving obstacle " + file_.scenario.moving_obstacles[k].id);
+    if (in_reach) answer(verdict, s, "moving obstacle '" + file_.scenario.moving_obstacles[k].id + "'");
   }
 }
 

@@ -46,7 +46,7 @@ MotionAudit::MotionAudit(const RecordingFile& file, const std::vector<RationalOb
 void MotionAudit::Answer::take(Verdict verdict, const char* kind, const std::string& id) {
   if (verdict == Verdict::clear) return;
   std::string& where = verdict == Verdict::meets ? met : open;
-  if (where.empty()) where = kind + id;
+  if (where.empty()) where = std::string(kind) + " '" + id + "'";
 }
 
 void MotionAudit::check(std::size_t row) {
@@ -94,7 +94,7 @@ void MotionAudit::meet_obstacles(const Driven& d, std::size_t i, Answer& answer)
     const std::vector<std::size_t> edges = obstacles_[k].near(d.box, radius);
     const auto over = [&](const Rational& s, const Rational& e) { return d.motion.over(s, e); };
     const auto test = [&](const Chord& chord) { return against(chord, obstacles_[k], edges, r); };
-    answer.take(exact::decide(over, test, Rational(0), Rational(1)), "obstacle ", file_.scenario.obstacles[k].id);
+    answer.take(exact::decide(over, test, Rational(0), Rational(1)), "obstacle", file_.scenario.obstacles[k].id);
   }
 }
 
@@ -114,7 +114,7 @@ void MotionAudit::meet_moving(const Driven& d, std::size_t i, std::size_t row, c
         return d.motion.over(s, e) - ways_[k].within(from + s * passed, from + e * passed);
       };
       const auto test = [&](const Chord& chord) { return against(chord, moving_[k], edges, r); };
-      answer.take(exact::decide(over, test, start, end), "moving obstacle ", file_.scenario.moving_obstacles[k].id);
+      answer.take(exact::decide(over, test, start, end), "moving obstacle", file_.scenario.moving_obstacles[k].id);
     }
   }
 }
@@ -128,7 +128,7 @@ void MotionAudit::meet_robots(const std::vector<Driven>& driven, std::size_t i, 
     const StepMotion seen = driven[i].motion.seen_from(driven[j].motion);
     const auto over = [&](const Rational& s, const Rational& e) { return seen.over(s, e); };
     const auto test = [&](const Chord& chord) { return against_origin(chord, reach); };
-    answer.take(exact::decide(over, test, Rational(0), Rational(1)), "robot ", file_.scenario.robots[j].id);
+    answer.take(exact::decide(over, test, Rational(0), Rational(1)), "robot", file_.scenario.robots[j].id);
   }
 }
 

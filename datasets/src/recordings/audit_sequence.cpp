@@ -100,7 +100,7 @@ void SequenceAudit::check_row(std::size_t row) {
   for (std::size_t k = 0; k < step.moving.size(); ++k) {
     const formation::MovingObstacle& o = file_.scenario.moving_obstacles[k];
     ask(is_on_way(ways_[k], o.motion, step.time, step.moving[k].displacement, step.moving[k].velocity), row,
-        "moving obstacle " + o.id + " is not where its path has it");
+        "moving obstacle '" + o.id + "' is not where its path has it");
   }
   for (std::size_t i = 0; i < step.robots.size(); ++i)
     ask(has_its_anchor(row, i), row,

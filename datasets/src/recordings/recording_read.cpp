@@ -200,23 +200,38 @@ class LineReader {
   bool at_end_ = false;
 };
 
+using NextLine = std::function<bool(std::string_view&)>;  ///< gives the lines of a file, false at the end
+
+/// What a file is that is no recording, as far as that is seen in its beginning.
+std::string kind_of(std::string_view first_line, const NextLine& next_line) {
+  constexpr std::size_t kBeginning = 1 << 20;
+  if (first_line.empty()) return "an empty file";
+  std::string text(first_line);
+  std::string_view line;
+  while (text.size() < kBeginning && next_line(line)) text.append("\n").append(line);
+  try {
+    const Json tree = parse_json(text, "");
+    if (tree.is_object() && tree.contains("name") && tree.contains("robots")) return "a scenario, which is no run yet";
+  } catch (const DataError&) {  // not JSON
+  }
+  return "no recording";
+}
+
 /// A file of another kind is refused as a whole: what is wrong in its first line tells nobody anything.
-void require_recording(std::string_view first_line, const std::string& name) {
+void require_recording(std::string_view first_line, const NextLine& next_line, const std::string& name) {
   if (first_line.find(kKind) != std::string_view::npos) return;
   if (begins_crowd_recording(first_line))
     throw DataError(
         DataCode::format_unknown, name, "", "the recording of a crowd (.evr), which has no decisions",
         "a recording.jsonl, as simulate --out writes it; audit, convert and view read recordings of crowds");
-  throw DataError(DataCode::format_unknown, name, "", first_line.empty() ? "an empty file" : "no recording",
+  throw DataError(DataCode::format_unknown, name, "", kind_of(first_line, next_line),
                   "a recording.jsonl, as simulate --out writes it");
 }
 
-/// `next_line`: gives the lines of the file, false at the end.
-RecordingFile parse_lines(const std::function<bool(std::string_view&)>& next_line, const std::string& name,
-                          const TakeRow& take) {
+RecordingFile parse_lines(const NextLine& next_line, const std::string& name, const TakeRow& take) {
   std::string_view line;
   if (!next_line(line)) line = {};
-  require_recording(line, name);
+  require_recording(line, next_line, name);
   RecordingFile file;
   {
     const Json header = parse_json_line(line, name, 1);

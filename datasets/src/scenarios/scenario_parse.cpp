@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "exactvo/datasets/crowd_recording.h"
@@ -74,6 +75,10 @@ void refuse_other_formats(const std::filesystem::path& path, const std::string& 
   if (begins_crowd_recording(text))
     throw DataError(DataCode::format_unknown, path.string(), "", "the recording of a crowd (.evr)",
                     "a scenario in JSON; audit, convert and view read recordings of crowds");
+  const std::string_view beginning(text.data(), std::min<std::size_t>(text.size(), 100));
+  if (beginning.find("exactvo-recording") != std::string_view::npos)
+    throw DataError(DataCode::format_unknown, path.string(), "", "the recording of a run",
+                    "a scenario in JSON; draw, explain, view, serve and audit take runs");
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   std::error_code error;
   if (first == std::string::npos || text[first] == '{' || !std::filesystem::is_regular_file(path, error)) return;
@@ -103,6 +108,7 @@ class Reader {
  private:
   Scenario read_scenario(const Json& tree, const AdvanceScenario& advance) {
     refuse_geojson(tree);
+    refuse_motion_of_obstacles(tree);
     check_against_schema(tree, parsed_schema(), file_);
     Scenario scenario;
     scenario.name = tree.at("name").get<std::string>();
@@ -130,6 +136,19 @@ class Reader {
     if (type == tree.end() || !type->is_string() || tree.contains("robots")) return;
     const bool is_topology = *type == "Topology";
     throw no_scenario(file_, (is_topology ? "TopoJSON" : "GeoJSON") + (" (" + type->get<std::string>()) + ")");
+  }
+
+  /// Obstacles stand. Who gives one a velocity means a moving obstacle, which is in a list of its own.
+  void refuse_motion_of_obstacles(const Json& tree) const {
+    const auto list = tree.is_object() ? tree.find("obstacles") : tree.end();
+    if (list == tree.end() || !list->is_array()) return;
+    for (std::size_t k = 0; k < list->size(); ++k)
+      for (const char* key : {"velocity", "speed", "path", "profile", "motion", "moving", "vx", "vy"})
+        if ((*list)[k].is_object() && (*list)[k].contains(key))
+          throw DataError(DataCode::key_unknown, file_, "/obstacles/" + std::to_string(k) + "/" + key,
+                          "an unknown key \"" + std::string(key) + "\"",
+                          "an obstacle that stands; one that moves goes into the list \"moving_obstacles\", with a "
+                          "\"path\" and a \"speed\"");
   }
 
   void read_robot_list(const Json& list, Scenario& scenario) {

@@ -13,9 +13,9 @@ std::string number(double x) {
   return text;
 }
 
-/// "R1 overlapped moving obstacle cart by 1.4 m at 2.5 s".
+/// "R1 overlapped moving obstacle 'cart' by 1.4 m at 2.5 s".
 std::string sentence(const Collision& c) {
-  return c.robot + " overlapped " + name(c.kind) + " " + c.with + " by " + number(c.depth) + " m at " +
+  return c.robot + " overlapped " + name(c.kind) + " '" + c.with + "' by " + number(c.depth) + " m at " +
          number(c.deepest_at) + " s";
 }
 

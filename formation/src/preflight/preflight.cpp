@@ -63,8 +63,9 @@ void warn_of_obstacles(const Scenario& s, const std::vector<std::size_t>& which,
   for (const std::size_t k : which) {
     const SceneObstacle& o = s.obstacles[k];
     const bool inside = geometry::signed_distance(o.shape, t.place) < 0.0;
-    out.push_back(t.name + (inside ? ", lies inside obstacle '" : ", is too near to obstacle '") + o.id +
-                  "' for the robot's radius: it cannot be reached");
+    const std::string where = inside ? ", lies inside obstacle '" + o.id + "'"
+                                     : ", is too near to obstacle '" + o.id + "' for the robot's radius";
+    out.push_back(t.name + where + ": it cannot be reached");
   }
 }
 

@@ -99,7 +99,8 @@ void check_robots(const Scenario& s, Checker& c) {
     for (const std::size_t j : boxes.before(i)) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
       if (!(gap < 0.0)) continue;  // words are made for what is wrong only: a crowd has very many pairs
-      c.require(false, at + "/position", show(r.position) + ", overlapping robot " + s.robots[j].id,
+      c.require(false, at + "/position",
+                show(r.position) + ", overlapping robot '" + s.robots[j].id + "' by " + show(-gap) + " m",
                 "robots that do not overlap at the start");
     }
   }
@@ -113,7 +114,7 @@ void check_starts(const Scenario& s, Checker& c) {
       const double gap = geometry::signed_distance(shape, s.robots[i].position) - s.robots[i].radius;
       if (!(gap < 0.0)) return;
       c.require(false, "/robots/" + std::to_string(i) + "/position",
-                show(s.robots[i].position) + ", " + show(-gap) + " m inside " + kind + " '" + id + "'",
+                show(s.robots[i].position) + ", overlapping " + kind + " '" + id + "' by " + show(-gap) + " m",
                 "a start that is clear of every obstacle");
     };
     for (const std::size_t k : boxes.near(s.robots[i].position, s.robots[i].radius))

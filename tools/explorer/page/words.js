@@ -44,7 +44,7 @@ function statusWords(d) {
 
 function contactWords(d, h) {
   const distance = distanceOf(h, d.anchor);
-  if (distance < 0) return `the robot is ${number(-distance)} m inside it: no cone exists`;
+  if (distance < 0) return `the robot overlaps it by ${number(-distance)} m: no cone exists`;
   const contact = timeToContact(h, d.anchor, d.preferred[0] - h.ux, d.preferred[1] - h.uy);
   const away = `${number(distance)} m from the robot's rim`;
   if (contact === null) return `${away}, not touched at the preferred velocity`;

@@ -13,6 +13,7 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
 #include "support/certificates.h"
+#include "support/run.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
@@ -40,6 +41,7 @@ bool is_crowd_recording(const fs::path& path) {
 
 /// The file itself, or every recording.jsonl and recording of a crowd below the folder, in the order of their names.
 std::vector<fs::path> recordings_in(const std::string& path) {
+  refuse_part_of_run(path);
   if (!fs::is_directory(path)) return {path};
   std::vector<fs::path> found;
   for (const auto& entry : fs::recursive_directory_iterator(path)) {

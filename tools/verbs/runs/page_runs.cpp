@@ -67,6 +67,7 @@ MadeRun recorded(const PageFlags& flags, const fs::path& path) {
 /// Nothing computes with it: it has neither goals nor decisions.
 MadeRun recorded_crowd(const PageFlags& flags, const fs::path& path) {
   const PackedCrowd crowd = packed_crowd(path, flags.limits);
+  if (crowd.is_cut_off) message("warning: " + path.string() + ": the recording was cut off after its last whole row");
   const std::string title = crowd.scenario + ", crowd";
   return {{page_key(title), title, "", crowd.packed}, std::nullopt};
 }

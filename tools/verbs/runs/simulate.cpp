@@ -56,7 +56,7 @@ std::string collision_lines(const std::vector<formation::Collision>& all) {
   std::string text;
   for (std::size_t k = 0; k < std::min(all.size(), kMost); ++k) {
     const formation::Collision& c = all[k];
-    text += fmt::format("  collision    {} with {} {} from {:.4g} s to {:.4g} s, {:.3g} m deep at {:.4g} s\n",
+    text += fmt::format("  collision    {} with {} '{}' from {:.4g} s to {:.4g} s, {:.3g} m deep at {:.4g} s\n",
                         shown(c.robot), name(c.kind), shown(c.with), c.from, c.until, c.depth, c.deepest_at);
   }
   if (all.size() > kMost) text += fmt::format("  collision    and {} more: see metrics.json\n", all.size() - kMost);

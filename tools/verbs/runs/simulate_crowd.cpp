@@ -98,8 +98,10 @@ datasets::DataError refusal(const std::string& file, const formation::CrowdError
           words.substr(expected + between.size()) + ", for a crowd"};
 }
 
-[[noreturn]] void refuse(const std::string& option, const char* expected) {
-  throw UsageError(option, "--engine crowd with it", expected);
+/// An option that this engine does not have.
+UsageError only_with(const std::string& option, bool is_crowd) {
+  if (is_crowd) return {"--engine", "crowd", "no " + option + " beside it: only the standard engine has that option"};
+  return {option, option + " without --engine crowd", "--engine crowd beside it: only that engine has this option"};
 }
 
 }  // namespace
@@ -129,15 +131,17 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
     throw UsageError("--engine", flags.engine, "standard or crowd");
   const bool is_crowd = flags.engine == "crowd";
   if (!is_crowd && !flags.record.empty())
-    throw UsageError("--record", flags.record, "--engine crowd with it, or --out DIR");
+    throw UsageError("--record", flags.record,
+                     "--engine crowd beside it; without, --out DIR writes the recording of a run");
   for (const CLI::Option* option : is_crowd ? flags.of_standard : flags.of_crowd)
-    if (option->count() > 0)
-      throw UsageError(option->get_name(), "--engine " + flags.engine + " with it",
-                       is_crowd ? "--engine standard" : "--engine crowd");
-  if (is_crowd && flags.method->count() > 0 && simulation.method != "orca") refuse("--method", "orca");
+    if (option->count() > 0) throw only_with(option->get_name(), is_crowd);
+  if (is_crowd && flags.method->count() > 0 && simulation.method != "orca")
+    throw UsageError("--method", simulation.method, "orca, the only method of --engine crowd");
   if (!flags.record.empty() && std::filesystem::path(flags.record).extension() != ".evr")
     throw UsageError("--record", flags.record, "a name that ends in .evr");
-  if (is_crowd && !out.empty()) refuse("--out", "--record FILE.evr, and --json for the metrics");
+  if (is_crowd && !out.empty())
+    throw UsageError("--out", out,
+                     "--record FILE.evr in its place: a crowd is recorded in one file, and --json prints its metrics");
   return is_crowd;
 }
 
