@@ -64,6 +64,52 @@ TEST(Routes, AGapOfExactlyTwoRadiiIsPassedAndTheNextDoubleIsNot) {
   EXPECT_GE(gaps, 1u);
 }
 
+// A map without the gates that no asked disc is stopped by: the same answers and the same chains, point by point.
+TEST(RouteMapForChainsOnly, AnswersAsTheWholeMapDoes) {
+  SeededRandom random(test::seed_of_run(20261122));
+  std::size_t chains = 0, open = 0;
+  for (int k = 0; k < 40; ++k) {
+    const RouteField field = route_field(random, test::kFieldKinds[k % std::size(test::kFieldKinds)]);
+    RouteMapOptions options;
+    options.largest_distance = 100.0;
+    const RouteMap whole(field.obstacles, options);
+    options.chains_only = true;
+    options.largest_radius = random.uniform(0.02, 0.6);
+    const RouteMap narrow(field.obstacles, options);
+    EXPECT_TRUE(narrow.is_for_chains_only());
+    EXPECT_EQ(narrow.largest_radius(), options.largest_radius);
+    EXPECT_LE(narrow.cell_count(), whole.cell_count());
+    for (const double share : {1.0, 0.7, 0.3}) {
+      const double radius = share * options.largest_radius;
+      const RoutePlan of_whole(whole, radius), of_narrow(narrow, radius);
+      for (int i = 0; i < 12; ++i) {
+        const Vec2 a = field.start + random.in_box(8.0), b = field.goal + random.in_box(8.0);
+        ASSERT_EQ(of_narrow.is_reachable(a, b), of_whole.is_reachable(a, b));
+        const RouteAnswer expected = of_whole.query(a, b);
+        if (std::holds_alternative<Route>(expected)) {
+          ++open;
+          continue;
+        }
+        const RouteAnswer answer = of_narrow.query(a, b);
+        ASSERT_EQ(answer.index(), expected.index());
+        const auto* chain = std::get_if<Separated>(&answer);
+        if (!chain) continue;
+        ++chains;
+        const std::vector<ChainPoint>& same = std::get<Separated>(expected).chain;
+        ASSERT_EQ(chain->chain.size(), same.size());
+        for (std::size_t p = 0; p < same.size(); ++p) {
+          EXPECT_EQ(chain->chain[p].point.rounded, same[p].point.rounded);
+          EXPECT_EQ(chain->chain[p].point.x, same[p].point.x);
+          EXPECT_EQ(chain->chain[p].on.edge, same[p].on.edge);
+          EXPECT_EQ(chain->chain[p].gap_follows, same[p].gap_follows);
+        }
+      }
+    }
+  }
+  EXPECT_GT(chains, 50u);
+  EXPECT_GT(open, 50u);
+}
+
 // The campaigns compare it with a bisection over doubles.
 TEST(WidestRadius, IsThatOfTheGateThatTheWidestWayCannotAvoid) {
   // Two doors from the left to the right, 2 and 3 m wide, and a niche of 1 m.

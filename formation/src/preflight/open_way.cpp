@@ -19,7 +19,7 @@ using geometry::Segment;
 enum class OpenWay::Answer {
   open,
   shut,    // nothing is left to look at on this lattice, or the places are too far apart for one
-  gave_up  // more was left than there is time for
+  looking  // there is more to look at
 };
 
 /// Best first, in one direction: what is easy from one end may lead into every pocket from the other. A place x with
@@ -36,14 +36,8 @@ class OpenWay::Search {
     enough_ = radius_ + kDiagonal * step_ + slack_;
   }
 
-  Answer run() {
-    constexpr double kMostSteps = 1e4;  // between the two: beyond that a look at the walls is cheaper
-    if (!(norm(to_ - from_) < kMostSteps * step_)) return Answer::shut;
-    return goes_straight() ? Answer::open : search();
-  }
-
- private:
-  static constexpr double kDiagonal = 1.5;  // more than the root of 2
+  /// Steps of the lattice between the two.
+  double steps_apart() const { return norm(to_ - from_) / step_; }
 
   /// From disc to disc along the straight way.
   bool goes_straight() const {
@@ -58,23 +52,27 @@ class OpenWay::Search {
     }
   }
 
-  Answer search() {
-    constexpr double kNodes = 2000.0, kNodesAStep = 4.0;
-    const double steps = norm(to_ - from_) / step_;
-    const double at_goal = map_.clearance_below(to_, enough_);
+  void begin() {
+    at_goal_ = map_.clearance_below(to_, enough_);
     visit({0, 0});
-    auto left = static_cast<std::size_t>(kNodes + kNodesAStep * steps);
-    for (; !open_.empty() && left > 0; --left) {
+  }
+
+  /// Looks at so many places more.
+  Answer go_on(std::size_t places) {
+    for (; !open_.empty() && places > 0; --places) {
       const Node node = open_.top();
       open_.pop();
       const double d = norm(node.place - to_);
-      if (d <= kDiagonal * step_ && covers(node.clearance, at_goal, d)) return Answer::open;
+      if (d <= kDiagonal * step_ && covers(node.clearance, at_goal_, d)) return Answer::open;
       for (std::int32_t dy = -1; dy <= 1; ++dy)
         for (std::int32_t dx = -1; dx <= 1; ++dx)
           if (dx != 0 || dy != 0) move(node, {node.cell.x + dx, node.cell.y + dy});
     }
-    return open_.empty() ? Answer::shut : Answer::gave_up;
+    return open_.empty() ? Answer::shut : Answer::looking;
   }
+
+ private:
+  static constexpr double kDiagonal = 1.5;  // more than the root of 2
 
   struct Cell {
     std::int32_t x, y;
@@ -130,6 +128,7 @@ class OpenWay::Search {
   double radius_, step_;  ///< m
   double slack_ = 0.0;    ///< m, more than every rounding
   double enough_ = 0.0;   ///< m
+  double at_goal_ = 0.0;  ///< m, the clearance there
   std::priority_queue<Node> open_;
   std::unordered_map<std::uint64_t, Seen> looked_at_;
 };
@@ -161,9 +160,27 @@ double OpenWay::clearance_below(Vec2 x, double enough) const {
 
 bool OpenWay::is_found(Vec2 start, Vec2 goal, double radius) const {
   if (!(radius > 0.0)) return false;
-  const Answer from_goal = Search(*this, goal, start, radius).run();
-  if (from_goal != Answer::gave_up) return from_goal == Answer::open;
-  return Search(*this, start, goal, radius).run() == Answer::open;
+  constexpr double kMostSteps = 1e4;  // between the two: beyond that a look at the walls is cheaper
+  constexpr std::size_t kRound = 64;
+  Search from_goal(*this, goal, start, radius), from_start(*this, start, goal, radius);
+  const double steps = from_goal.steps_apart();
+  if (!(steps < kMostSteps)) return false;
+  if (from_goal.goes_straight() || from_start.goes_straight()) return true;
+  from_goal.begin();
+  from_start.begin();
+  // In turns: where there is no way, the end that is shut in says so.
+  for (std::size_t looked = 0; looked < most_places(steps); looked += kRound) {
+    for (Search* search : {&from_goal, &from_start})
+      if (const Answer answer = search->go_on(kRound); answer != Answer::looking) return answer == Answer::open;
+  }
+  return false;
+}
+
+/// From each end: no more than the map of all routes would cost, several times over.
+std::size_t OpenWay::most_places(double steps) const {
+  constexpr double kPlaces = 2000.0, kPlacesAStep = 4.0, kPlacesAnEdge = 0.25;
+  return static_cast<std::size_t>(std::min(kPlaces, kPlacesAnEdge * static_cast<double>(edges_.size())) +
+                                  kPlacesAStep * steps);
 }
 
 }  // namespace exactvo::formation::detail

@@ -20,14 +20,15 @@ class OpenWay {
  public:
   explicit OpenWay(const std::vector<SceneObstacle>& obstacles);
 
-  /// For a disc of `radius` m, between places that lie in no polygon. Looks at a few thousand places, and more the
-  /// farther the two are apart.
+  /// For a disc of `radius` m, between places that lie in no polygon. Looks at a few thousand places at most, at more
+  /// the farther the two are apart, and at fewer where there are few edges.
   bool is_found(Vec2 start, Vec2 goal, double radius) const;
 
  private:
   enum class Answer;
   class Search;
 
+  std::size_t most_places(double steps) const;
   /// m, no more than the distance from x to any edge; `enough` where all are beyond that.
   double clearance_below(Vec2 x, double enough) const;
 

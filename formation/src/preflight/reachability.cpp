@@ -48,11 +48,13 @@ geometry::Box places_of(const Scenario& scenario) {
 }
 
 /// Starts, goals and their surroundings, where robots may be pushed.
-geometry::RouteMapOptions extent_of(const Scenario& scenario, double extra) {
+geometry::RouteMapOptions options_for(const Scenario& scenario, double extra, bool routes) {
   geometry::Box box = places_of(scenario);
   for (const SceneObstacle& o : scenario.obstacles)
     for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
   geometry::RouteMapOptions options;
+  options.chains_only = !routes;
+  options.largest_radius = kLeastRadius;
   for (const Robot& r : scenario.robots) options.largest_radius = std::max(options.largest_radius, r.radius + extra);
   options.largest_distance = 2.0 * norm(box.high - box.low) + 100.0 * options.largest_radius;
   return options;
@@ -101,11 +103,11 @@ std::vector<Vec2> places_about(Vec2 place, double reach) {
   return places;
 }
 
-Reachability::Reachability(const Scenario& scenario, double most_extra)
-    : scenario_(scenario), most_extra_(most_extra) {}
+Reachability::Reachability(const Scenario& scenario, double most_extra, bool routes)
+    : scenario_(scenario), most_extra_(most_extra), routes_(routes) {}
 
 const geometry::RouteMap& Reachability::map() {
-  if (!map_) map_.emplace(shapes_of(scenario_), extent_of(scenario_, most_extra_));
+  if (!map_) map_.emplace(shapes_of(scenario_), options_for(scenario_, most_extra_, routes_));
   return *map_;
 }
 

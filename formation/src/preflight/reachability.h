@@ -31,8 +31,9 @@ std::vector<Vec2> places_about(Vec2 place, double reach);
 
 class Reachability {
  public:
-  /// `most_extra`: what a robot may be asked to keep beside its radius, m, >= 0.
-  explicit Reachability(const Scenario& scenario, double most_extra = 0.0);
+  /// `most_extra`: what a robot may be asked to keep beside its radius, m, >= 0. `routes`: whether the map and plans
+  /// will be asked for routes too; without, they are made sooner.
+  explicit Reachability(const Scenario& scenario, double most_extra = 0.0, bool routes = true);
 
   /// Made at the first question and kept: of many scenes nobody asks for it.
   const geometry::RouteMap& map();
@@ -56,6 +57,7 @@ class Reachability {
 
   const Scenario& scenario_;
   double most_extra_;  ///< m
+  bool routes_;
   std::optional<geometry::RouteMap> map_;
   std::map<double, geometry::RoutePlan> plans_;  ///< by radius
 };

@@ -95,7 +95,7 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
 }
 
 std::vector<std::string> warnings_before(const Scenario& scenario, const SimulationOptions& options) {
-  Reachability reach(scenario);
+  Reachability reach(scenario, 0.0, false);
   return warnings_with(scenario, options, reach);
 }
 

@@ -35,10 +35,16 @@ inline RunningError operator-(RunningError a, RunningError b) {
 inline RunningError operator-(RunningError a) {
   return {-a.value, a.error};
 }
+/// Known without error, as the difference of equal doubles is.
+inline bool is_exact_zero(RunningError a) {
+  return a.value == 0.0 && a.error == 0.0;
+}
+/// An exact zero times anything finite is one.
 inline RunningError operator*(RunningError a, RunningError b) {
   const double v = a.value * b.value;
+  const double underflow = is_exact_zero(a) || is_exact_zero(b) ? 0.0 : kUnderflow;
   return {v, std::fabs(a.value) * b.error + std::fabs(b.value) * a.error + a.error * b.error + kHalfUlp * std::fabs(v) +
-                 kUnderflow};
+                 underflow};
 }
 
 /// Whether the sign of the value is beyond doubt; overflow and NaN are doubt.

@@ -214,7 +214,8 @@ void cut_into_cells(CellMap& map) {
 
 }  // namespace
 
-CellMap::CellMap(PlanarGraph g, const Vec2 (&corners)[4]) : graph(std::move(g)) {
+CellMap::CellMap(PlanarGraph g, const Vec2 (&corners)[4], double widest_gate)
+    : graph(std::move(g)), widest_gate_(widest_gate) {
   triangulate_and_link(corners);
   mark_crossings(*this);
   cut_into_cells(*this);

@@ -23,6 +23,7 @@
 /// Exact: every combinatorial decision here.
 
 #include <array>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -77,7 +78,15 @@ class CellMap {
     int side;  ///< 1: the cell lies to the left of the Link as it leaves its vertex; -1: to its right
   };
 
-  CellMap(PlanarGraph graph, const Vec2 (&corners)[4]);
+  static constexpr double kAllGates = std::numeric_limits<double>::infinity();
+
+  /// Links that are longer than `widest_gate` (m) may be left out: a disc that narrow goes from any place to any other
+  /// on this map if and only if it does on the whole one. What no disc of a plan can be stopped by joins the two cells
+  /// beside it.
+  CellMap(PlanarGraph graph, const Vec2 (&corners)[4], double widest_gate = kAllGates);
+
+  bool has_all_gates() const { return widest_gate_ == kAllGates; }
+  double widest_gate() const { return widest_gate_; }
 
   const Point& vertex(int v) const { return vertices[static_cast<std::size_t>(v)]; }
   /// A piece is an edge of the graph, or beyond those an isolated vertex, twice.
@@ -111,6 +120,8 @@ class CellMap {
  private:
   void triangulate_and_link(const Vec2 (&corners)[4]);
   void number_sides();
+
+  double widest_gate_;
 };
 
 }  // namespace exactvo::geometry::routing

@@ -6,7 +6,8 @@
 /// wherever these are exact; where edges of obstacles cross, and in the middle of a gap, it is two fractions.
 ///
 /// `sign_of` evaluates a polynomial that is written once in up to three number types: doubles with a running error
-/// bound, then CGAL's Mpzf where every input is a double, then GMP's rationals. Exact.
+/// bound, then CGAL's Mpzf where every input is a double, then GMP's rationals. Exact. Along the axes, where most walls
+/// of maps lie, most zeros are seen by the first.
 
 #include <gmpxx.h>
 
@@ -80,6 +81,7 @@ template <typename Polynomial>
 int sign_of(const Polynomial& polynomial) {
   const detail::RunningError filtered = polynomial(ToRunningError{});
   if (detail::decided(filtered)) return filtered.value > 0.0 ? 1 : -1;
+  if (detail::is_exact_zero(filtered)) return 0;
   bool lossy = false;
   const detail::Exact exact = polynomial(ToMpzf{&lossy});
   if (!lossy) return static_cast<int>(CGAL::sign(exact));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exactvo/geometry/box.h"
+#include "exactvo/geometry/distance.h"
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
@@ -205,12 +206,23 @@ class LinkSearch {
     const Triangle& t = map_.triangles[step.triangle];
     const int x = t.vertex[(step.side + 1) % 3], y = t.vertex[(step.side + 2) % 3];
     const Point& v = point(vertex_);
+    if (is_too_far(v, point(x), point(y))) return;
     if (along(v, point(x), point(x), point(y)) <= 0 || along(v, point(y), point(x), point(y)) >= 0) return;
     path_.push_back({step.triangle, step.side});
     if (t.wall[step.side] >= 0)
       arrive(t.wall[step.side], x, y, step);
     else if (t.neighbour[step.side] >= 0)
       enter(t.neighbour[step.side], step);
+  }
+
+  /// Whether all Links that cross the side xy are surely longer than the widest gate.
+  bool is_too_far(const Point& v, const Point& x, const Point& y) const {
+    constexpr double kRounding = 0x1p-40;
+    if (map_.has_all_gates()) return false;
+    const Vec2 from = v.rounded(), p = x.rounded(), q = y.rounded();
+    const double size = std::max({std::fabs(from.x), std::fabs(from.y), std::fabs(p.x), std::fabs(p.y), std::fabs(q.x),
+                                  std::fabs(q.y), map_.widest_gate()});
+    return distance({p, q}, from) > map_.widest_gate() + kRounding * size;
   }
 
   /// Goes on through those of the next triangle's other two sides of which something is seen. No link crosses a side xc

@@ -23,7 +23,8 @@ struct LinkBounds {
 /// them, and many short walls may see the same sides below one long wall.
 enum class LinksFrom { vertices, walls };
 
-/// All of them, or nothing where that takes more than the bounds allow. REQUIRES: `map` has triangles and sides.
+/// All of them that are no longer than the map's widest gate, and perhaps others; or nothing where that takes more than
+/// the bounds allow. REQUIRES: `map` has triangles and sides.
 std::optional<std::vector<Link>> gabriel_links(const CellMap& map, LinkBounds bounds,
                                                LinksFrom from = LinksFrom::vertices);
 

@@ -101,6 +101,7 @@ ClearancePlan::ClearancePlan(const CellMap& map, const PieceTree& grid, double r
     : map_(&map), grid_(&grid), radius_(radius) {
   decide_gates();
   find_components();
+  if (!map.has_all_gates()) return;  // no search will be
   shrink_all();
   find_turns();
   find_sectors();

@@ -62,8 +62,10 @@ struct RouteMap::Parts {
   std::vector<Obstacle> obstacles;
   Box box;
   double scale;
-  double largest_radius;
-  double margin;  ///< m: how far outside of the box a start or goal may lie
+  double largest_radius;  ///< m, that the square has room for
+  bool chains_only;
+  double asked_radius;  ///< m, the largest that may be asked for
+  double margin;        ///< m: how far outside of the box a start or goal may lie
   CellMap cells;
   routing::PieceTree grid;
   mutable std::once_flag gates_made;
@@ -79,8 +81,11 @@ struct RouteMap::Parts {
         box(box_of(obstacles)),
         scale(scale_of(box)),
         largest_radius(std::max(options.largest_radius, 2.0 * scale)),
+        chains_only(options.chains_only),
+        asked_radius(chains_only ? options.largest_radius : largest_radius),
         margin(std::max(options.largest_distance, 4.0 * scale)),
-        cells(routing::planar_graph(obstacles), Frame(box, scale, largest_radius, margin).corners),
+        cells(routing::planar_graph(obstacles), Frame(box, scale, largest_radius, margin).corners,
+              chains_only ? 2.0 * asked_radius : CellMap::kAllGates),
         grid(cells) {}
 };
 
@@ -101,7 +106,11 @@ std::size_t RouteMap::cell_count() const {
 }
 
 double RouteMap::largest_radius() const {
-  return parts_->largest_radius;
+  return parts_->asked_radius;
+}
+
+bool RouteMap::is_for_chains_only() const {
+  return parts_->chains_only;
 }
 
 bool RouteMap::covers(Vec2 p) const {
@@ -226,6 +235,7 @@ double length_of(const std::vector<Point>& points) {
 }  // namespace
 
 double RouteMap::widest_radius(Vec2 start, Vec2 goal) const {
+  EXACTVO_REQUIRE(!is_for_chains_only(), "a map for chains only");
   EXACTVO_REQUIRE(covers(start) && covers(goal), to_string({start, goal}));
   const CellMap& cells = parts_->cells;
   const int s = triangle_of(cells, parts_->grid, start), t = triangle_of(cells, parts_->grid, goal);
@@ -266,6 +276,7 @@ RouteAnswer RoutePlan::query(Vec2 start, Vec2 goal) const {
   const Located t = located(parts, plan, goal, Blocked::End::goal);
   if (t.cell < 0) return t.blocked;
   if (plan.component(s.cell) != plan.component(t.cell)) return state_->chain_between(start, goal);
+  EXACTVO_REQUIRE(!parts.chains_only, "a route on a map for chains only");
   if (start == goal) return Route{{routing::shown(start)}, 0.0, 0.0};
   std::unique_ptr<routing::WaySearch> search = state_->take();
   const std::optional<routing::Way> way = search->find(start, s.cell, goal, t.cell);

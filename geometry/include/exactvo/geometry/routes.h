@@ -87,6 +87,9 @@ struct RouteMapOptions {
   double largest_radius = 0.0;    ///< m, >= 0: radii up to this can be planned for; twice the scale always
   double largest_distance = 0.0;  ///< m, >= 0: starts and goals may lie this far outside of the obstacles' box; four
                                   ///< times the scale always
+  /// Neither routes nor the widest radius will be asked for, only whether there is a route, and chains; and no radius
+  /// above `largest_radius`. Made in half the time.
+  bool chains_only = false;
 };
 
 /// A way exists, and no route along it could be proven: a defect of the library, never "unreachable". It may happen
@@ -105,13 +108,15 @@ class RouteMap {
   std::size_t vertex_count() const;
   /// The convex cells that the free plane is cut into: O(vertices), in practice three to ten times as many.
   std::size_t cell_count() const;
-  double largest_radius() const;  ///< m
+  double largest_radius() const;    ///< m
+  bool is_for_chains_only() const;  ///< `RouteMapOptions::chains_only`
   /// Whether a start or goal may lie there.
   bool covers(Vec2 point) const;
 
   /// The largest double for which a disc of that radius has a route, in metres; 0 if none has. Exact: `RoutePlan` finds
   /// a route for it, and for the next double a chain, or that an end is blocked. `largest_radius` where even that fits.
-  /// O(n log n) for the first question, then O(log n) and the time to look up what is near. REQUIRES: `covers` both.
+  /// O(n log n) for the first question, then O(log n) and the time to look up what is near. REQUIRES: `covers` both;
+  /// not `is_for_chains_only`.
   double widest_radius(Vec2 start, Vec2 goal) const;
 
   struct Parts;
@@ -130,10 +135,10 @@ class RoutePlan {
   /// m, as it was given.
   double radius() const;
 
-  /// REQUIRES: both within the map (`covers`). Throws RouteNotProven.
+  /// REQUIRES: both within the map (`covers`); no route where the map `is_for_chains_only`. Throws RouteNotProven.
   RouteAnswer query(Vec2 start, Vec2 goal) const;
 
-  /// Whether there is a route: what `query` decides, without the route. Exact. REQUIRES: the same.
+  /// Whether there is a route: what `query` decides, without the route. Exact. REQUIRES: both within the map.
   bool is_reachable(Vec2 start, Vec2 goal) const;
 
  private:
