@@ -34,9 +34,10 @@ constexpr double kSceneMargin = 2.0;
 /// Searches are restarted with growing limits, since their lengths are heavy-tailed; of some plans the best is taken.
 constexpr std::size_t kFirstNodes = 200;
 constexpr double kMoreNodes = 1.15;
-constexpr int kPlansToChooseFrom = 4;
+constexpr int kPlansToChooseFrom = 12;
 constexpr std::size_t kChoosesUpTo = 100;  ///< robots
-constexpr std::size_t kCalls = 75000, kCallsGoingBack = 175000, kCallsFromTheStart = 1000000;
+constexpr std::size_t kCalls = 75000, kCallsGoingBack = 175000, kCallsFromTheStart = 1000000,
+                      kCallsForABetter = 150000;
 /// The whole scene is planned for at most that many robots.
 constexpr std::size_t kEveryoneUpTo = 200;
 /// A map of the whole scene or of all goals has at most this many places, which take 0.1 s to a second, and this many
@@ -403,8 +404,9 @@ std::optional<std::vector<PlannedMove>> Groups::search(JointProblem problem, std
   double shortest = kInfinity, nodes = kFirstNodes;
   int found = 0;
   end = PlanEnd::out_of_budget;
-  for (std::size_t calls = 0; calls < most && found < (radii.size() <= kChoosesUpTo ? kPlansToChooseFrom : 1);) {
-    const JointAnswer answer = joint.run(++seed_, {most - calls, static_cast<std::size_t>(nodes)});
+  const int wanted = radii.size() <= kChoosesUpTo ? kPlansToChooseFrom : 1;
+  for (std::size_t calls = 0, limit = most; calls < limit && found < wanted && !is_stopped_();) {
+    const JointAnswer answer = joint.run(++seed_, {limit - calls, static_cast<std::size_t>(nodes)});
     calls += answer.calls + 1;
     course_.search_nodes += answer.nodes;
     if (answer.end == SearchEnd::none_on_map) {
@@ -412,11 +414,10 @@ std::optional<std::vector<PlannedMove>> Groups::search(JointProblem problem, std
       break;
     }
     if (answer.end == SearchEnd::out_of_budget) {
-      if (best) break;
-      nodes *= kMoreNodes;
+      if (!best) nodes *= kMoreNodes;
       continue;
     }
-    ++found;
+    if (found++ == 0) limit = calls + kCallsForABetter;
     std::vector<PlannedMove> plan = plan_of(map, answer.moves, radii);
     const double length = critical_length(plan);
     if (!(length < shortest)) continue;
