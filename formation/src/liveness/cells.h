@@ -37,7 +37,16 @@ class Cells {
       for (const Number number : found->second) visit(number);
     });
   }
-  /// The same of cells about a place.
+  /// The same; of each cell the entry that was added last comes first.
+  template <class Visit>
+  void for_each_in_latest_first(const geometry::Box& box, const Visit& visit) const {
+    for_each_cell(box, [&](const Cell& cell) {
+      const auto found = lists_.find(cell);
+      if (found == lists_.end()) return;
+      for (auto entry = found->second.rbegin(); entry != found->second.rend(); ++entry) visit(*entry);
+    });
+  }
+  /// As `for_each_in`, of cells about a place.
   template <class Visit>
   void for_each_about(geometry::Vec2 here, double reach, const Visit& visit) const {
     const geometry::Vec2 corner{reach, reach};
