@@ -134,6 +134,31 @@ inline Scenario crowded_box(int count, double percent, test::SeededRandom& rando
   return s;
 }
 
+/// The scenario "Cross" of navground's tutorial "Deadlocks and collisions": robots go to and fro between two targets 4
+/// m apart, four kinds of ends.
+inline Scenario cross(double margin, test::SeededRandom& random) {
+  constexpr double kRadius = 0.08, kFastest = 0.166, kTarget = 2.0, kTargetMargin = 0.1, kAgentMargin = 0.1;
+  Scenario s;
+  s.name = "cross";
+  s.time_step = 0.1;
+  s.time_limit = 300.0;
+  s.arrival_tolerance = 0.5;
+  s.margins.robot = margin;
+  s.neighbour_distance = 5.0;
+  const Vec2 corner{kTarget - kTargetMargin, kTarget - kTargetMargin};
+  const std::vector<Vec2> places = scattered(20, -corner, corner, 2.0 * kRadius + kAgentMargin + margin, random);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec2 target = (i / 2) % 2 == 0 ? Vec2{kTarget, 0.0} : Vec2{0.0, kTarget};
+    add_robot(s, places[i], i % 2 == 0 ? target : -target);
+    Robot& r = s.robots.back();
+    r.radius = kRadius;
+    r.max_speed = kFastest;
+    constexpr int kLegs = 20;  // more than anybody drives
+    for (int leg = 1; leg < kLegs; ++leg) r.goals.push_back(-r.goals.back());
+  }
+  return s;
+}
+
 /// Two head-on in a corridor 1.5 m wide with a niche.
 inline Scenario siding() {
   Scenario s;

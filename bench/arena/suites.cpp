@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "suites.h"
+
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "formation/liveness_scenes.h"
+#include "maps.h"
+
+namespace exactvo::bench {
+namespace {
+
+using formation::Scenario;
+using geometry::Vec2;
+using test::SeededRandom;
+namespace scenes = formation::test_scenes;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return text;
+}
+
+class Scenes {
+ public:
+  Scenes(std::string suite, std::optional<std::uint64_t> seeds) : suite_(std::move(suite)), seeds_(seeds) {}
+
+  void add(const std::string& name, std::function<Scenario()> make) {
+    all_.push_back({suite_, name, 1, Success::all_arrive, std::move(make)});
+  }
+  /// `make` takes a SeededRandom.
+  template <class Make>
+  void add_seeds(const std::string& name, std::uint64_t seeds, const Make& make,
+                 Success success = Success::all_arrive) {
+    for (std::uint64_t seed = 1; seed <= seeds_.value_or(seeds); ++seed)
+      all_.push_back({suite_, name, seed, success, [seed, make] {
+                        SeededRandom random(seed);
+                        return make(random);
+                      }});
+  }
+  std::vector<Scene> all() && { return std::move(all_); }
+
+ private:
+  std::string suite_;
+  std::optional<std::uint64_t> seeds_;
+  std::vector<Scene> all_;
+};
+
+void add_circles(Scenes& suite, bool full) {
+  std::vector<int> counts{2, 4, 12};
+  if (full) {
+    counts.clear();
+    for (int count = 2; count <= 30; ++count) counts.push_back(count);
+    counts.push_back(250);
+  }
+  for (const int count : counts) suite.add(std::to_string(count), [count] { return scenes::circle(count); });
+}
+
+void add_streets(Scenes& suite, bool full) {
+  std::vector<std::pair<int, double>> streets{{14, 3}};
+  if (full) streets = {{14, 3}, {14, 4}, {18, 4}, {60, 4}, {60, 6}, {100, 6}};
+  for (const auto& [robots, width] : streets)
+    suite.add(std::to_string(robots) + " in " + number(width),
+              [count = robots, wide = width] { return scenes::street(count, wide); });
+}
+
+void add_boxes(Scenes& suite, bool full) {
+  const int robots = full ? 50 : 20;
+  for (const double percent : full ? std::vector<double>{20, 30, 40, 50} : std::vector<double>{20})
+    suite.add_seeds(std::to_string(robots) + " on " + number(percent) + " %", full ? 5 : 1,
+                    [=](SeededRandom& random) { return scenes::crowded_box(robots, percent, random); });
+}
+
+void add_doors(Scenes& suite, bool full) {
+  const int robots = full ? 20 : 8;
+  for (const double width : full ? std::vector<double>{1.2, 1.5, 2.5} : std::vector<double>{1.5})
+    suite.add_seeds(std::to_string(robots) + " through " + number(width), full ? 5 : 1,
+                    [=](SeededRandom& random) { return scenes::door(robots, width, random); });
+  if (full) suite.add_seeds("40 through 1.5", 5, [](SeededRandom& random) { return scenes::door(40, 1.5, random); });
+}
+
+void add_swaps(Scenes& suite, bool full) {
+  if (!full) return suite.add("siding", scenes::siding);
+  suite.add("siding", scenes::siding);
+  for (const int robots : {10, 20})
+    suite.add_seeds(std::to_string(robots) + " by a corridor of 1.4", 5,
+                    [=](SeededRandom& random) { return scenes::rooms(robots, 1.4, random); });
+}
+
+void add_crosses(Scenes& suite, bool full) {
+  const auto with_random_margin = [](SeededRandom& random) {
+    const double margin = random.uniform(0.0, 0.25);
+    return scenes::cross(margin, random);
+  };
+  suite.add_seeds("margin 0 to 0.25 m", full ? 250 : 2, with_random_margin, Success::nobody_stands);
+}
+
+void add_maps(Scenes& suite, bool full) {
+  const int robots = full ? 50 : 6;
+  const std::string count = std::to_string(robots) + " on ";
+  suite.add_seeds(count + "gap", full ? 10 : 1, [=](SeededRandom& random) { return gap_map(robots, random); });
+  suite.add_seeds(count + "rooms", full ? 10 : 1, [=](SeededRandom& random) { return room_map(robots, random); });
+}
+
+struct SuiteEntry {
+  SuiteInfo info;
+  void (*add)(Scenes&, bool full);
+};
+
+const std::vector<SuiteEntry>& entries() {
+  static const std::vector<SuiteEntry> all{
+      {{"circle", "Robots on a circle go to the opposite places; exactly symmetric, 3 diameters apart."}, add_circles},
+      {{"street", "Half of the robots from each end of a street; N in a width, in diameters."}, add_streets},
+      {{"swap", "Two head-on in a corridor with a niche; two rooms that exchange their robots through a corridor."},
+       add_swaps},
+      {{"door", "Two rooms that exchange their robots through a door; width in diameters."}, add_doors},
+      {{"box", "A closed box; so much of its floor is covered by robots, which go from random places to others."},
+       add_boxes},
+      {{"cross",
+        "navground's Cross: 20 robots of radius 0.08 m go to and fro along two lines 4 m long that cross, for 300 s, "
+        "with a safety margin that is drawn for each run."},
+       add_crosses},
+      {{"maps", "Maps after Dergachev and Yakovlev: 64 x 64 cells, a wall with one gap, or sixteen rooms with doors."},
+       add_maps}};
+  return all;
+}
+
+}  // namespace
+
+const std::vector<SuiteInfo>& suites() {
+  static const std::vector<SuiteInfo> all = [] {
+    std::vector<SuiteInfo> infos;
+    for (const SuiteEntry& entry : entries()) infos.push_back(entry.info);
+    return infos;
+  }();
+  return all;
+}
+
+std::vector<std::string> suite_names() {
+  std::vector<std::string> names;
+  for (const SuiteInfo& suite : suites()) names.push_back(suite.name);
+  return names;
+}
+
+std::vector<Scene> scenes_of(const std::string& suite, Extent extent, std::optional<std::uint64_t> seeds) {
+  for (const SuiteEntry& entry : entries()) {
+    if (entry.info.name != suite) continue;
+    Scenes scenes(suite, seeds);
+    entry.add(scenes, extent == Extent::full);
+    return std::move(scenes).all();
+  }
+  throw std::invalid_argument(suite);
+}
+
+}  // namespace exactvo::bench
