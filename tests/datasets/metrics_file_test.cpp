@@ -57,6 +57,7 @@ TEST(MetricsFile, TheKeysAreTheseInThisOrder) {
                                                      "outcome",
                                                      "warnings",
                                                      "plans",
+                                                     "routes",
                                                      "deadlock",
                                                      "stuck",
                                                      "lyapunov",

@@ -102,6 +102,7 @@ inline void expect_same(const formation::Scenario& a, const formation::Scenario&
   ASSERT_EQ(a.formation.has_value(), b.formation.has_value());
   if (a.formation) expect_same(*a.formation, *b.formation);
   EXPECT_TRUE(a.formation || a.guidance == b.guidance);
+  EXPECT_TRUE(a.formation || a.unreachable == b.unreachable);
   EXPECT_TRUE(a.formation || a.liveness == b.liveness);
   EXPECT_EQ(a.speed_bound, b.speed_bound);
   EXPECT_TRUE(same_bits(figures_of(a), figures_of(b)));

@@ -63,6 +63,7 @@ Scenario random_scenario(SeededRandom& random) {
   s.arrival_tolerance = random.uniform(0.05, 0.2);
   s.neighbour_distance = random.uniform(5, 20);
   if (random.integer(0, 1) == 1) s.guidance = formation::Guidance::none;
+  if (random.integer(0, 1) == 1) s.unreachable = formation::Unreachable::nearest;
   if (random.integer(0, 1) == 1) s.liveness = formation::Liveness::off;
   if (random.integer(0, 1) == 1) s.speed_bound = formation::SpeedBoundKind::box;
   return s;

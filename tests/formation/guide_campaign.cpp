@@ -185,7 +185,12 @@ void run_world(Scenario s, const Flags& flags, std::uint64_t seed, Counts& count
   counts.touched += !is_safe(m);
   std::string audited = "not audited";
   if (!flags.no_audit) {
-    datasets::RunInfo info{s.name, name(options.method), std::nullopt, std::nullopt, {}, name(guidance_of(s, options)),
+    datasets::RunInfo info{s.name,
+                           name(options.method),
+                           std::nullopt,
+                           std::nullopt,
+                           {},
+                           name(guidance_of(s, options)),
                            name(liveness_of(s, options))};
     const datasets::AuditReport report = datasets::audit({std::move(info), s, std::move(recording)});
     counts.unaudited += !report.clean();
@@ -193,11 +198,12 @@ void run_world(Scenario s, const Flags& flags, std::uint64_t seed, Counts& count
     if (!report.clean())
       for (const std::string& finding : report.findings) std::printf("  %s\n", finding.c_str());
   }
-  std::printf("%s, seed %llu: %zu robots, %zu arrived, %zu proven out of reach, %zu open, %zu failed; %s; %s; %zu rows, "
-              "%.2f s, with audit %.2f s\n",
-              s.name.c_str(), static_cast<unsigned long long>(seed), s.robots.size(), counts.arrived - before.arrived,
-              counts.proven - before.proven, counts.open - before.open, counts.failed - before.failed,
-              is_safe(m) ? "nothing touched" : "TOUCHED", audited.c_str(), m.steps, simulated, seconds_since(start));
+  std::printf(
+      "%s, seed %llu: %zu robots, %zu arrived, %zu proven out of reach, %zu open, %zu failed; %s; %s; %zu rows, "
+      "%.2f s, with audit %.2f s\n",
+      s.name.c_str(), static_cast<unsigned long long>(seed), s.robots.size(), counts.arrived - before.arrived,
+      counts.proven - before.proven, counts.open - before.open, counts.failed - before.failed,
+      is_safe(m) ? "nothing touched" : "TOUCHED", audited.c_str(), m.steps, simulated, seconds_since(start));
   std::fflush(stdout);
 }
 
@@ -222,10 +228,11 @@ int run(const Flags& flags) {
       run_world(std::move(s), flags, flags.seed * 1000003 + k, counts);
     }
   }
-  std::printf("%zu worlds, %zu without room, %zu robots: %zu arrived, %zu proven out of reach, %zu open, %zu failed; "
-              "touched %zu, audits not clean %zu\n",
-              counts.worlds, counts.empty, counts.robots, counts.arrived, counts.proven, counts.open, counts.failed,
-              counts.touched, counts.unaudited);
+  std::printf(
+      "%zu worlds, %zu without room, %zu robots: %zu arrived, %zu proven out of reach, %zu open, %zu failed; "
+      "touched %zu, audits not clean %zu\n",
+      counts.worlds, counts.empty, counts.robots, counts.arrived, counts.proven, counts.open, counts.failed,
+      counts.touched, counts.unaudited);
   return counts.is_clean() ? 0 : 1;
 }
 

@@ -11,6 +11,7 @@
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/routes.h"
+#include "liveness_scenes.h"
 #include "steering/guide.h"
 #include "support/seeded_random.h"
 
@@ -178,19 +179,39 @@ TEST(Guidance, WhoWasPushedOutOfSightPlansAgain) {
   };
   // In sight of the route it is kept, and the robot heads for what it sees.
   for (const Vec2 here : {Vec2{-4, 3}, Vec2{-3, 0}, Vec2{-1, 0.5}}) {
-    EXPECT_TRUE(is_clear(here, guide.heading(course, 0.5, here).place));
+    const detail::Heading heading = guide.heading(course, 0.5, here);
+    EXPECT_TRUE(is_clear(here, heading.place));
+    EXPECT_FALSE(heading.is_new);
     EXPECT_EQ(course.points, before);
   }
   // Behind the shelf nothing of it is.
   const Vec2 behind{-5, -5};
   for (const Vec2 p : before) EXPECT_FALSE(is_clear(behind, p));
-  EXPECT_TRUE(is_clear(behind, guide.heading(course, 0.5, behind).place));
+  const detail::Heading heading = guide.heading(course, 0.5, behind);
+  EXPECT_TRUE(is_clear(behind, heading.place));
+  EXPECT_TRUE(heading.is_new);
   EXPECT_EQ(course.points.front(), behind);
   EXPECT_EQ(course.points.back(), (Vec2{4, 3}));
   // Without room no route is planned: the robot moves away from the wall first.
   const std::vector<Vec2> again = course.points;
   EXPECT_GT(guide.heading(course, 0.5, {-5.6, 5}).place.x, -5.6);
   EXPECT_EQ(course.points, again);
+}
+
+TEST(Guidance, WhomACartPushesOutOfSightOfItsRoutePlansAgainAndSaysSo) {
+  // Down a shaft, and along the tunnel at its bottom.
+  Scenario s =
+      scene({Polyline{{{-1, 10}, {-1, -4}, {9, -4}}}, Polyline{{{1, 10}, {1, -2}, {9, -2}}}}, {0, 3}, {0, 9}, 0.4);
+  s.time_limit = 16.0;
+  s.moving_obstacles = {
+      {"cart", geometry::Polygon{{{-1, 4}, {1, 6}, {1, 7}, {-1, 7}}, {}}, {{{0, 0}, {0, -8}, {6, -8}}, 1.0}}};
+  const GuidedRun run = guided(s);
+  std::size_t notes = 0;
+  for (const Step& row : run.recording.steps)
+    notes += row.robots[0].note.find("a new one is planned") != std::string::npos;
+  EXPECT_GT(notes, 0u);
+  EXPECT_EQ(notes, run.metrics.routes.value().pushed_off);
+  EXPECT_EQ(run.metrics.routes->planned, 1u);
 }
 
 TEST(Guidance, AnEndWithoutMarginDoesNotTakeItFromTheWay) {
@@ -242,6 +263,131 @@ TEST(Guidance, ARunEndsWhenNobodyGoesOn) {
   const GuidedRun both = guided(s);
   EXPECT_GT(both.recording.steps.size(), 10u);
   EXPECT_THAT(both.metrics.outcome, testing::StartsWith("1 of 2 robots did not arrive; R cannot reach its goal: "));
+}
+
+// --- As near as can be ---
+
+Scenario nearest(Scenario s) {
+  s.unreachable = Unreachable::nearest;
+  return s;
+}
+
+/// The robot's distance from its goal at the end.
+double left_over(const Scenario& s, const GuidedRun& run) {
+  return geometry::norm(run.recording.steps.back().robots[0].position - s.robots[0].goals.back());
+}
+
+/// The place by its Guide; and that one so much nearer to the goal is not free, or in another part.
+detail::NearestPlace nearest_place(const Scenario& s) {
+  detail::Guide guide(s, 0.08);
+  const Robot& r = s.robots[0];
+  const detail::CourseAnswer answer = guide.course(r.radius, r.position, {r.goals[0], 0.0});
+  EXPECT_TRUE(answer.nearest) << answer.why_not;
+  EXPECT_TRUE(answer.course);
+  return answer.nearest.value_or(detail::NearestPlace{});
+}
+
+TEST(NearestPlace, LiesBeforeTheDoorThatIsTooNarrow) {
+  // Before a gap of 0.6 m the centre of a disc of 0.5 m comes within sqrt(0.5^2 - 0.3^2) = 0.4 m of the middle.
+  Scenario s = nearest(door(0.6));
+  s.robots[0].goals = {{2, 0}};
+  const detail::NearestPlace found = nearest_place(s);
+  EXPECT_NEAR(found.place.x, -0.4, 1e-5);
+  EXPECT_NEAR(found.place.y, 0.0, 1e-5);
+  EXPECT_NEAR(found.distance, 2.4, 1e-5);
+  EXPECT_NEAR(found.at_least, 2.2, 1e-5) << "2 m to the gap, and beyond it the radius less half of its width";
+  const GuidedRun run = guided(s);
+  EXPECT_FALSE(run.metrics.all_arrived);
+  EXPECT_TRUE(is_safe(run.metrics));
+  EXPECT_LE(left_over(s, run), 2.4 + 1e-5 + s.arrival_tolerance);
+  EXPECT_LT(run.recording.steps.back().time, 60.0) << "it ends when nobody goes on";
+  EXPECT_EQ((run.recording.steps.end() - 2)->robots[0].mode, Mode::staying);
+  EXPECT_THAT(run.metrics.outcome, AllOf(HasSubstr("R cannot reach its goal: obstacles 'wall 1', 'wall 2'"),
+                                         HasSubstr("and went as near as it can: it ends 2.4"),
+                                         HasSubstr("the nearest place is 2.4 m from it"),
+                                         HasSubstr("(no place nearer than 2.2 m can be reached)")));
+  EXPECT_EQ(run.recording.routes.value().nearest, 1u);
+}
+
+TEST(NearestPlace, OfAGoalInsideASolidLiesAtItsRim) {
+  Scenario s = nearest(door(3.0));
+  s.obstacles.push_back({"block", geometry::Polygon{{{2, 2}, {5, 2}, {5, 4}, {2, 4}}, {}}});
+  s.robots[0].goals = {{2.3, 3.2}};
+  const detail::NearestPlace found = nearest_place(s);
+  EXPECT_NEAR(found.place.x, 1.5, 1e-5);
+  EXPECT_NEAR(found.place.y, 3.2, 1e-5);
+  EXPECT_NEAR(found.at_least, 0.8, 1e-5) << "proven: 0.3 m to the rim, and beyond it the radius";
+}
+
+TEST(NearestPlace, OfAGoalInACornerLiesWhereBothWallsAreOneRadiusAway) {
+  Scenario s = nearest(door(3.0));
+  s.robots[0].goals = {{5.9, 5.9}};
+  const detail::NearestPlace found = nearest_place(s);
+  EXPECT_NEAR(found.place.x, 5.5, 1e-5);
+  EXPECT_NEAR(found.place.y, 5.5, 1e-5);
+  EXPECT_GE(found.at_least, 0.4 - 1e-9);
+}
+
+TEST(NearestPlace, IsWhereTheRobotStandsIfItCannotGetNearer) {
+  // A closet about the robot, and the goal straight behind its wall.
+  Scenario s = nearest(scene({Polyline{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}}}}, {0.5, 0}, {9, 0}));
+  s.robots[0].position.x = 0.5 - 3e-6;  // the room that a place needs
+  const detail::NearestPlace found = nearest_place(s);
+  EXPECT_NEAR(found.distance, 8.5, 1e-5);
+  EXPECT_NEAR(found.at_least, 8.5 - 1e-5, 2e-5);
+  EXPECT_EQ(guided(s).recording.steps.front().robots[0].mode, Mode::staying);
+}
+
+/// No free place that can be reached is nearer: by trying places on a lattice about the goal, with plans of the test's
+/// own. And nothing contradicts the bound that is proven.
+TEST(NearestPlace, NoneNearerIsFoundByALattice) {
+  exactvo::test::SeededRandom random(exactvo::test::seed_of_run(74));
+  std::size_t judged = 0;
+  for (std::uint64_t item = 0; judged < 12; ++item) {
+    ASSERT_LT(item, 500u);
+    Scenario s = nearest(scene({}, {}, {}, random.uniform(0.3, 0.5)));
+    for (SceneObstacle& o : datasets::generated_item(item % 2 == 0 ? "maze" : "block", item, 6))
+      s.obstacles.push_back(o);
+    geometry::Box box;
+    std::vector<geometry::Obstacle> shapes;
+    for (const SceneObstacle& o : s.obstacles) {
+      shapes.push_back(o.shape);
+      for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
+    }
+    const auto place = [&] {
+      return Vec2{random.uniform(box.low.x, box.high.x), random.uniform(box.low.y, box.high.y)};
+    };
+    s.robots[0].position = place();
+    s.robots[0].goals = {place()};
+    const Robot& r = s.robots[0];
+    const geometry::RoutePlan plan(geometry::RouteMap(shapes), r.radius);
+    if (!validate(s).empty() || plan.is_reachable(r.position, r.goals[0])) continue;
+    detail::Guide guide(s, 0.08);
+    const detail::CourseAnswer answer = guide.course(r.radius, r.position, {r.goals[0], 0.0});
+    if (answer.start_is_blocked) continue;
+    ASSERT_TRUE(answer.nearest) << item << ": " << answer.why_not;
+    ++judged;
+    EXPECT_TRUE(plan.is_reachable(r.position, answer.nearest->place)) << item;
+    EXPECT_LE(answer.nearest->at_least, answer.nearest->distance);
+    constexpr int kHalf = 40;
+    const double step = answer.nearest->distance / kHalf;
+    for (int i = -kHalf; i <= kHalf; ++i)
+      for (int k = -kHalf; k <= kHalf; ++k) {
+        const Vec2 p = r.goals[0] + step * Vec2{static_cast<double>(i), static_cast<double>(k)};
+        const double far = geometry::norm(p - r.goals[0]);
+        if (far > answer.nearest->distance - 1e-5 || !plan.is_reachable(r.position, p)) continue;
+        ADD_FAILURE() << item << ": " << far << " m, and " << answer.nearest->distance << " m was said";
+        i = k = kHalf;
+      }
+  }
+}
+
+TEST(NearestPlace, OfAGoalOnTheWayIsTheRobotsLast) {
+  Scenario s = nearest(door(0.6));
+  s.robots[0].goals = {{4, 0}, {-4, -4}};
+  const GuidedRun run = guided(s);
+  EXPECT_THAT(run.metrics.outcome, HasSubstr("R cannot reach its goal 1: "));
+  EXPECT_LE(geometry::norm(run.recording.steps.back().robots[0].position - Vec2{-0.4, 0}), s.arrival_tolerance + 1e-5);
 }
 
 TEST(Guidance, WhoIsAtItsGoalNeedsNoRoute) {

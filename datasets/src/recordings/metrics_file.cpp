@@ -37,6 +37,16 @@ void append_plans(JsonWriter& json, const std::optional<formation::PlanMetrics>&
   json.member("search_nodes", plans->search_nodes).end_object();
 }
 
+void append_routes(JsonWriter& json, const std::optional<formation::RoutesCourse>& routes) {
+  json.key("routes");
+  if (!routes) {
+    json.null();
+    return;
+  }
+  json.begin_inline_object().member("planned", routes->planned).member("pushed_off", routes->pushed_off);
+  json.member("nearest", routes->nearest).end_object();
+}
+
 void append_texts(JsonWriter& json, const char* key, const std::vector<std::string>& texts) {
   json.key(key).begin_array();
   for (const std::string& text : texts) json.value(text);
@@ -94,6 +104,7 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.member("outcome", m.outcome);
   append_texts(json, "warnings", m.warnings);
   append_plans(json, m.plans);
+  append_routes(json, m.routes);
   if (m.deadlock.empty())
     json.key("deadlock").null();
   else

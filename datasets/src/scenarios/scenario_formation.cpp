@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "exactvo/formation/leader_route.h"
 #include "exactvo/formation/patterns.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/counted.h"
@@ -71,8 +72,9 @@ class FormationReader {
 
   formation::Leader to_leader(const Json& object) const {
     formation::Leader leader;
-    leader.path = to_points(object.at("path"));
     take(object, "speed", leader.speed);
+    if (object.contains("to")) return leader;  // plan_leader_of
+    leader.path = to_points(object.at("path"));
     if (object.contains("profile"))
       leader.profile = to_profile(object.at("profile"), leader.path, file_, "/formation/leader/profile");
     return leader;
@@ -108,6 +110,21 @@ std::vector<formation::SpeedKnot> to_profile(const Json& object, const std::vect
   std::vector<formation::SpeedKnot> knots;
   for (const Json& pair : object.at("knots")) knots.push_back({pair[0].get<double>(), pair[1].get<double>()});
   return knots;
+}
+
+void plan_leader_of(const Json& object, formation::Scenario& scenario, const std::string& file) {
+  const std::string pointer = "/formation/leader/profile";
+  const Json profile = object.value("profile", Json::object());
+  if (profile.contains("legs"))
+    throw DataError(DataCode::scenario, file, pointer + "/legs", "speeds of legs, for a path that is planned",
+                    "a trapezoid or knots");
+  formation::LeaderGoal goal{to_point(object.at("to")), std::nullopt};
+  if (object.contains("from")) goal.from = to_point(object.at("from"));
+  formation::Leader& leader = scenario.formation->leader;
+  leader.path = {goal.to};
+  if (scenario.formation->offsets.size() != scenario.robots.size()) return;  // refused, as no formation could run
+  plan_leader(scenario, goal);
+  if (!profile.empty()) leader.profile = to_profile(profile, leader.path, file, pointer);
 }
 
 FormationSpec to_formation(const Json& object, const std::vector<Robot>& robots, const std::string& file) {

@@ -119,9 +119,12 @@ class Reader {
     if (tree.contains("formation")) scenario.formation = to_formation(tree.at("formation"), scenario.robots, file_);
     if (tree.value("speed_bound", "disc") == "box") scenario.speed_bound = formation::SpeedBoundKind::box;
     if (tree.value("guidance", "route") == "none") scenario.guidance = formation::Guidance::none;
+    if (tree.contains("unreachable")) formation::parse(tree.at("unreachable").get<std::string>(), scenario.unreachable);
     if (tree.contains("liveness")) formation::parse(tree.at("liveness").get<std::string>(), scenario.liveness);
     read_figures(tree, scenario);
     refuse_repeated_ids(scenario);
+    if (scenario.formation && tree.at("formation").at("leader").contains("to"))
+      plan_leader_of(tree.at("formation").at("leader"), scenario, file_);
     if (advance) {
       refuse_what_cannot_move(scenario);
       advance(scenario);

@@ -33,6 +33,10 @@ inline std::vector<geometry::Vec2> to_points(const Json& list) {
 formation::FormationSpec to_formation(const Json& object, const std::vector<formation::Robot>& robots,
                                       const std::string& file);
 
+/// A leader that is to go `to` a place: its route among the scenario's obstacles, and its profile along it. Throws
+/// DataError for the speeds of legs, which nobody knows before. `object` is the member `leader`.
+void plan_leader_of(const Json& object, formation::Scenario& scenario, const std::string& file);
+
 /// A member `profile` of something that follows `path`; `pointer` is its place, for messages.
 std::vector<formation::SpeedKnot> to_profile(const Json& object, const std::vector<geometry::Vec2>& path,
                                              const std::string& file, const std::string& pointer);

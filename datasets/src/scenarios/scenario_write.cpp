@@ -108,6 +108,8 @@ void append_formation(JsonWriter& json, const formation::FormationSpec& spec) {
 void append_figures(JsonWriter& json, const Scenario& scenario) {
   if (!scenario.formation) {
     json.member("guidance", formation::name(scenario.guidance));
+    if (scenario.unreachable != formation::Unreachable::stay)
+      json.member("unreachable", formation::name(scenario.unreachable));
     json.member("liveness", formation::name(scenario.liveness));
   }
   json.member("speed_bound", scenario.speed_bound == formation::SpeedBoundKind::box ? "box" : "disc");

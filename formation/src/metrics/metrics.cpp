@@ -100,6 +100,7 @@ Evaluation Evaluator::finish(const Recording& run) {
   } else {
     m.plans.reset();
   }
+  m.routes = run.routes;
   m.wall_time = run.wall_time;
   m.warnings = run.warnings;
   for (const StuckReport& report : found.stuck) m.stuck.push_back(report.text);

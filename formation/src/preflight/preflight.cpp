@@ -91,6 +91,8 @@ void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vect
 }
 
 void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
+  for (const std::string* words : {&s.formation->leader.why_short, &s.formation->leader.note})
+    if (!words->empty()) out.push_back(*words);
   const double arrival = leader_arrival(s.formation->leader);
   if (!(arrival > s.time_limit)) return;
   char when[80];

@@ -13,7 +13,8 @@ namespace exactvo::formation::detail {
 ///   - a goal, or a slot at the leader's end, that lies inside an obstacle or nearer to one than the robot's radius;
 ///     that is proven out of reach (reachability.h); or that a moving obstacle covers where it comes to rest;
 ///   - two goals or slots too near to each other for both robots;
-///   - a leader that reaches its end after the time limit, or that moves faster than a robot can;
+///   - a leader that reaches its end after the time limit, that moves faster than a robot can, or whose path was
+///     planned and does not lead where it should or leaves no room for the formation;
 ///   - a robot that starts faster than its max_speed, or inside the hull of a moving obstacle;
 ///   - a moving obstacle that is faster than a robot.
 /// Speeds count over the part of a motion that happens before the path's end and the time limit. `offsets` are the

@@ -21,8 +21,6 @@ using geometry::norm;
 using geometry::RouteAnswer;
 using geometry::Separated;
 
-constexpr double kLeastRadius = 0x1p-100;  // m, of a plan
-
 std::vector<geometry::Obstacle> shapes_of(const Scenario& scenario) {
   std::vector<geometry::Obstacle> all;
   for (const SceneObstacle& o : scenario.obstacles) all.push_back(o.shape);
@@ -54,7 +52,7 @@ geometry::RouteMapOptions options_for(const Scenario& scenario, double extra, bo
     for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
   geometry::RouteMapOptions options;
   options.chains_only = !routes;
-  options.largest_radius = kLeastRadius;
+  options.largest_radius = kLeastPlanned;
   for (const Robot& r : scenario.robots) options.largest_radius = std::max(options.largest_radius, r.radius + extra);
   options.largest_distance = 2.0 * norm(box.high - box.low) + 100.0 * options.largest_radius;
   return options;
@@ -112,7 +110,7 @@ const geometry::RouteMap& Reachability::map() {
 }
 
 const geometry::RoutePlan& Reachability::plan(double radius) {
-  const double r = std::max(radius, kLeastRadius);
+  const double r = std::max(radius, kLeastPlanned);
   return plans_.try_emplace(r, map(), r).first->second;
 }
 
@@ -139,7 +137,7 @@ bool Reachability::is_proven_out_of_reach(double radius, Vec2 from, const Destin
   // A robot that is free at a place p within reach: from p to the destination nothing comes nearer than its radius
   // less the reach. A robot so much smaller would have a route.
   const double less = std::nextafter(radius - to.reach, 0.0);
-  return less > kLeastRadius && !plan(less).is_reachable(from, to.place);
+  return less > kLeastPlanned && !plan(less).is_reachable(from, to.place);
 }
 
 std::string Reachability::why_not(double radius, Vec2 from, const Destination& to, const std::string& goal) {
@@ -152,6 +150,13 @@ std::string Reachability::why_not(double radius, Vec2 from, const Destination& t
                            : what + " is nearer than the robot's radius to obstacle '" + id + "'";
   }
   return words_of(std::get<Separated>(answer), radius, goal, to.place);
+}
+
+std::vector<geometry::ChainPoint> Reachability::chain(double radius, Vec2 from, Vec2 goal) {
+  if (!map().covers(from) || !map().covers(goal)) return {};
+  const RouteAnswer answer = plan(radius).query(from, goal);
+  const auto* separated = std::get_if<Separated>(&answer);
+  return separated ? separated->chain : std::vector<geometry::ChainPoint>{};
 }
 
 std::string Reachability::words_of(const Separated& answer, double radius, const std::string& goal, Vec2 place) const {

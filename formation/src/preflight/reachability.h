@@ -29,6 +29,9 @@ std::string metres(double length);
 /// 64 places on four rings about a place, less than `reach` m from it, the nearest first.
 std::vector<Vec2> places_about(Vec2 place, double reach);
 
+/// m: of a plan.
+inline constexpr double kLeastPlanned = 0x1p-100;
+
 class Reachability {
  public:
   /// `most_extra`: what a robot may be asked to keep beside its radius, m, >= 0. `routes`: whether the map and plans
@@ -51,6 +54,9 @@ class Reachability {
   /// "obstacles 'a' and 'b' enclose the start, with gaps of at most 0.9 m for a robot 1 m wide"; the goal is called
   /// `goal`. REQUIRES: the destination's place itself cannot be reached.
   std::string why_not(double radius, Vec2 from, const Destination& to, const std::string& goal);
+
+  /// The closed chain that separates the two for a disc of `radius`; empty where none does.
+  std::vector<geometry::ChainPoint> chain(double radius, Vec2 from, Vec2 goal);
 
  private:
   std::string words_of(const geometry::Separated& answer, double radius, const std::string& goal, Vec2 place) const;

@@ -110,7 +110,8 @@ class CrowdRun {
     Vec2 heading;
     std::optional<double> arrived;  ///< s
     bool stays = false;
-    std::string why_not;  ///< it stays
+    std::string why_not;                  ///< it stays, or goes as near as it can
+    std::optional<NearestPlace> nearest;  ///< as near as it can get
   };
 
   void add_robots() {
@@ -154,6 +155,7 @@ class CrowdRun {
     CourseAnswer answer = guide_->course(scenario_.robots[i].radius, at_[i], {goal_of(i), scenario_.arrival_tolerance});
     way.course = std::move(answer.course);
     way.stays = !way.course;
+    way.nearest = answer.nearest;
     way.why_not = answer.defect.empty() ? std::move(answer.why_not) : std::move(answer.defect);
   }
 
@@ -161,6 +163,7 @@ class CrowdRun {
     Way& way = ways_[i];
     if (norm(at_[i] - goal_of(i)) <= scenario_.arrival_tolerance) pass(i);
     const bool looks = way.course && !way.arrived && (report_.steps + i) % kLookAgain == 0;
+    if (way.nearest) way.stays = norm(at_[i] - way.nearest->place) <= scenario_.arrival_tolerance;
     if (looks) way.heading = guide_->heading(*way.course, scenario_.robots[i].radius, at_[i]).place;
   }
 
@@ -205,12 +208,19 @@ class CrowdRun {
     return std::any_of(ways_.begin(), ways_.end(), [](const Way& w) { return !w.arrived && !w.stays; });
   }
 
+  std::string why_not_there(std::size_t i) const {
+    const Way& way = ways_[i];
+    if (!way.nearest) return way.why_not;
+    return way.why_not + "; it " + (way.stays ? "went" : "was on its way") + " as near as it can, " +
+           words_of(*way.nearest);
+  }
+
   void finish() {
     std::vector<double> times;
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       look(i);
       report_.pushed_off += ways_[i].arrived && norm(at_[i] - goal_of(i)) > scenario_.arrival_tolerance;
-      if (ways_[i].stays) report_.without_route.push_back({i, ways_[i].why_not});
+      if (ways_[i].stays || ways_[i].nearest) report_.without_route.push_back({i, why_not_there(i)});
       if (ways_[i].arrived) times.push_back(*ways_[i].arrived);
     }
     report_.staying = report_.without_route.size();

@@ -224,6 +224,7 @@ class FormationRun {
                             ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
                             : "formation error " + metres(last) + " at the end";
     if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
+    if (!spec_.leader.why_short.empty()) recording.outcome += "; " + spec_.leader.why_short;
   }
 
   Remedies remedies_;

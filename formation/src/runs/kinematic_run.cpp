@@ -28,12 +28,14 @@ struct KinematicRobot {
   std::size_t goal = 0;
   std::optional<StaticField> field;
   Follower follower;
-  std::optional<Course> course = {};  ///< with guidance: to its present goal
-  std::string no_way = {};            ///< with guidance: why it has no course
-  bool waits_for_room = false;        ///< with guidance: it has to be pushed out before its course can be planned
-  double held_up = 0.0;               ///< 0 .. 1: how little of its preference it drove of late
-  bool tied = false;                  ///< the last preference was turned to break a tie
-  std::string note = {};              ///< for the next row
+  std::optional<Course> course = {};         ///< with guidance: to its present goal
+  std::string no_way = {};                   ///< with guidance: why it has no course to its goal
+  std::optional<NearestPlace> nearest = {};  ///< with guidance: where its course ends that does not lead to its goal
+  bool has_come_nearest = false;             ///< with guidance: it is there
+  bool waits_for_room = false;  ///< with guidance: it has to be pushed out before its course can be planned
+  double held_up = 0.0;         ///< 0 .. 1: how little of its preference it drove of late
+  bool tied = false;            ///< the last preference was turned to break a tie
+  std::string note = {};        ///< for the next row
 };
 
 class KinematicRun {
@@ -74,6 +76,7 @@ class KinematicRun {
     }
     rows.add(final_row(clock_.time(k)));
     recording.outcome = outcome();
+    if (guide_) recording.routes = routes_;
     if (liveness_ == Liveness::plan) recording.liveness = groups_ ? groups_->course() : LivenessCourse{};
     recording.outlooks = std::move(outlooks_);
     recording.bodies = scene_.copied_bodies();
@@ -95,11 +98,16 @@ class KinematicRun {
     KinematicRobot& r = robots_[i];
     CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, {goal_of(i), reach_of_goal(i)});
     r.course = std::move(answer.course);
+    r.nearest = answer.nearest;
+    r.has_come_nearest = false;
     r.no_way = answer.defect.empty()
                    ? "cannot reach " + name_of_goal(i) + ": " + answer.why_not
                    : "stays: a way exists, and by a defect of the program no route could be proven: " + answer.defect;
-    if (r.course) r.no_way.clear();
     r.waits_for_room = answer.start_is_blocked;
+    routes_.planned += r.course.has_value();
+    routes_.nearest += r.nearest.has_value();
+    if (r.nearest) r.note = joined_notes(r.note, r.no_way + "; goes as near as it can, " + words_of(*r.nearest));
+    if (r.course && !r.nearest) r.no_way.clear();
     if (r.course) return;
     r.note = joined_notes(r.note, r.waits_for_room ? "has no room: moves away before its route is planned" : r.no_way);
   }
@@ -154,7 +162,7 @@ class KinematicRun {
       const KinematicRobot& r = robots_[i];
       const bool has_way = guide_ ? r.course.has_value() && !r.waits_for_room : true;
       const Vec2 goal = guide_ && r.course ? r.course->points.back() : goal_of(i);
-      now.push_back({r.position, goal, at_goal(i), has_way && scenario_.robots[i].cooperates});
+      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest, has_way && scenario_.robots[i].cooperates});
     }
     groups_->begin_step(time, std::move(now), [&](std::size_t i) {
       const KinematicRobot& r = robots_[i];
@@ -310,7 +318,10 @@ class KinematicRun {
     return speed * geometry::normalized(way);
   }
 
-  bool stays(std::size_t i) const { return guide_ && !robots_[i].course && !robots_[i].waits_for_room; }
+  bool stays(std::size_t i) const {
+    const KinematicRobot& r = robots_[i];
+    return guide_ && (r.has_come_nearest || (!r.course && !r.waits_for_room));
+  }
 
   /// Whether all robots have arrived or stay, and nothing comes to push them.
   bool nobody_goes_on() const {
@@ -319,7 +330,7 @@ class KinematicRun {
     return scenario_.moving_obstacles.empty();
   }
 
-  /// Along its course; a robot without one stays.
+  /// Along its course; a robot without one stays, and so does one whose course has led it as near as it can get.
   Vec2 guided(std::size_t i, RobotStep& step) {
     KinematicRobot& r = robots_[i];
     const double radius = scenario_.robots[i].radius;
@@ -327,10 +338,15 @@ class KinematicRun {
       if (!guide_->has_room(radius, r.position)) return straight_for(i, guide_->way_out(radius, r.position));
       plan_course(i);
     }
-    if (step.mode == Mode::direct) step.mode = r.course ? Mode::guided : Mode::staying;
+    r.has_come_nearest = r.nearest && norm(r.position - r.nearest->place) <= scenario_.arrival_tolerance;
+    if (step.mode == Mode::direct) step.mode = r.course && !r.has_come_nearest ? Mode::guided : Mode::staying;
     if (!r.course) return {};
     const Heading to = guide_->heading(*r.course, radius, r.position);
     r.field->set_margin(to.margin);  // from the next step on
+    if (to.is_new) {
+      ++routes_.pushed_off;
+      step.note = joined_notes(step.note, "pushed out of sight of its route: a new one is planned");
+    }
     return straight_for(i, to.place);
   }
 
@@ -404,12 +420,19 @@ class KinematicRun {
         text += "; " + scenario_.robots[i].id +
                 " completed a full circuit of the obstacle without finding a way to its goal";
     for (std::size_t i = 0; i < robots_.size(); ++i)
-      if (!robots_[i].no_way.empty() && !at_goal(i)) text += "; " + scenario_.robots[i].id + " " + robots_[i].no_way;
+      if (!robots_[i].no_way.empty() && !at_goal(i)) text += "; " + scenario_.robots[i].id + " " + why_not_there(i);
     std::vector<std::size_t> not_there;
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!at_goal(i)) not_there.push_back(i);
     const std::string without_plan = groups_ ? groups_->no_plan_words(not_there) : "";
     return without_plan.empty() ? text : text + "; " + without_plan;
+  }
+
+  std::string why_not_there(std::size_t i) const {
+    const KinematicRobot& r = robots_[i];
+    if (!r.nearest) return r.no_way;
+    return r.no_way + ", and " + (r.has_come_nearest ? "went" : "was on its way") + " as near as it can: it ends " +
+           metres(norm(r.position - goal_of(i))) + " from it, the nearest place is " + words_of(*r.nearest);
   }
 
   std::string arrivals() const {
@@ -427,6 +450,7 @@ class KinematicRun {
   const Scenario& scenario_;
   const SimulationOptions& options_;
   Guide* guide_;
+  RoutesCourse routes_;
   Liveness liveness_;
   Scene scene_;
   RunClock clock_;

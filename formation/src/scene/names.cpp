@@ -24,6 +24,7 @@ constexpr Names<Integrator, 5> kIntegrators{{{Integrator::exact, "exact"},
                                              {Integrator::dopri5, "dopri5"},
                                              {Integrator::rosenbrock4, "rosenbrock4"}}};
 constexpr Names<Guidance, 2> kGuidances{{{Guidance::none, "none"}, {Guidance::route, "route"}}};
+constexpr Names<Unreachable, 2> kUnreachables{{{Unreachable::stay, "stay"}, {Unreachable::nearest, "nearest"}}};
 constexpr Names<Liveness, 3> kLivenesses{{{Liveness::off, "off"}, {Liveness::bias, "bias"}, {Liveness::plan, "plan"}}};
 constexpr Names<Mode, 9> kModes{{{Mode::direct, "direct"},
                                  {Mode::guided, "guided"},
@@ -77,6 +78,9 @@ const char* name(Liveness l) {
 const char* name(Guidance g) {
   return name_in(kGuidances, g);
 }
+const char* name(Unreachable u) {
+  return name_in(kUnreachables, u);
+}
 const char* name(Mode m) {
   return name_in(kModes, m);
 }
@@ -111,6 +115,9 @@ bool parse(const std::string& text, Liveness& out) {
 
 bool parse(const std::string& text, Guidance& out) {
   return parse_in(kGuidances, text, out);
+}
+bool parse(const std::string& text, Unreachable& out) {
+  return parse_in(kUnreachables, text, out);
 }
 
 }  // namespace exactvo::formation

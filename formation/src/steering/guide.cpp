@@ -29,8 +29,11 @@ bool is_before_narrow(const Course& course, std::size_t next, Vec2 here) {
 
 }  // namespace
 
-Guide::Guide(const Scenario& scenario, double most_margin)
-    : most_margin_(most_margin), reach_(scenario, most_margin + kSkins) {
+Guide::Guide(const Scenario& scenario, double most_margin, double most_radius)
+    : unreachable_(scenario.unreachable),
+      most_margin_(most_margin),
+      reach_(scenario, most_margin + kSkins + most_radius),
+      nearest_(scenario, reach_) {
   std::vector<geometry::Box> boxes;
   for (const SceneObstacle& o : scenario.obstacles) {
     edges_.push_back(geometry::edges_of(o.shape));
@@ -41,14 +44,37 @@ Guide::Guide(const Scenario& scenario, double most_margin)
 }
 
 CourseAnswer Guide::course(double radius, Vec2 from, const Destination& to) {
-  if (obstacles_.empty()) return {direct(radius, from, to)};
-  const std::optional<Vec2> end = reach_.reachable_place(radius + kSkins, from, to);
-  if (!end) return {std::nullopt, why_not(radius, from, to), "", !has_room(radius, from)};
-  try {
-    return {planned(radius, from, *end, to)};
-  } catch (const geometry::RouteNotProven& e) {
-    return {std::nullopt, "", e.what()};
+  CourseAnswer answer = course_to(radius, from, to);
+  const bool is_out_of_reach = !answer.course && answer.defect.empty() && !answer.start_is_blocked;
+  if (!is_out_of_reach || unreachable_ == Unreachable::stay) return answer;
+  answer.nearest = nearest_.nearest(radius, kSkins, from, to.place);
+  if (answer.nearest) answer.course = course_to(radius, from, {answer.nearest->place, 0.0}).course;
+  if (!answer.course) answer.nearest.reset();
+  return answer;
+}
+
+bool Guide::can_go(double radius, Vec2 from, const Destination& to) {
+  return obstacles_.empty() || reach_.reachable_place(radius + kSkins, from, to).has_value();
+}
+
+CourseAnswer Guide::course_to(double radius, Vec2 from, const Destination& to) {
+  CourseAnswer answer;
+  if (obstacles_.empty()) {
+    answer.course = direct(radius, from, to);
+    return answer;
   }
+  const std::optional<Vec2> end = reach_.reachable_place(radius + kSkins, from, to);
+  if (!end) {
+    answer.why_not = why_not(radius, from, to);
+    answer.start_is_blocked = !has_room(radius, from);
+    return answer;
+  }
+  try {
+    answer.course = planned(radius, from, *end, to);
+  } catch (const geometry::RouteNotProven& e) {
+    answer.defect = e.what();
+  }
+  return answer;
 }
 
 /// Without obstacles.
@@ -156,11 +182,13 @@ Heading Guide::heading_on(const Course& course, double radius, Vec2 here) const 
 Heading Guide::heading(Course& course, double radius, Vec2 here) {
   if (look_ahead(course, radius, here)) return heading_on(course, radius, here);
   if (!has_room(radius, here)) return {way_out(radius, here)};
-  CourseAnswer again = this->course(radius, here, course.to);
+  CourseAnswer again = course_to(radius, here, course.to);
   if (!again.course) return {course.points[course.next]};
   course = std::move(*again.course);
-  if (look_ahead(course, radius, here)) return heading_on(course, radius, here);
-  return {course.points[std::min<std::size_t>(1, course.points.size() - 1)]};
+  Heading found{course.points[std::min<std::size_t>(1, course.points.size() - 1)]};
+  if (look_ahead(course, radius, here)) found = heading_on(course, radius, here);
+  found.is_new = true;
+  return found;
 }
 
 double Guide::way_left(const Course& course, Vec2 here) const {

@@ -17,6 +17,7 @@
 #include "exactvo/geometry/obstacle_index.h"
 #include "exactvo/geometry/routes.h"
 #include "liveness/roadmap.h"
+#include "preflight/nearest_place.h"
 #include "preflight/reachability.h"
 
 namespace exactvo::formation::detail {
@@ -33,27 +34,35 @@ struct Course {
 /// A course, or why there is none.
 struct CourseAnswer {
   std::optional<Course> course;
-  std::string why_not = {};       ///< why the goal is out of reach
-  std::string defect = {};        ///< why a way that exists could not be proven: never to be seen
-  bool start_is_blocked = false;  ///< it has no room where it is: moved away it may have a course
+  std::optional<NearestPlace> nearest = {};  ///< where the course ends that does not lead to the destination
+  std::string why_not = {};                  ///< why the goal is out of reach
+  std::string defect = {};                   ///< why a way that exists could not be proven: never to be seen
+  bool start_is_blocked = false;             ///< it has no room where it is: moved away it may have a course
 };
 
 /// Where a robot heads now.
 struct Heading {
   Vec2 place;           ///< m
   double margin = 0.0;  ///< m: what is kept from obstacles beside the radius on the way there
+  bool is_new = false;  ///< the course was planned again, as nothing of it was in sight
 };
 
 class Guide : public FreeSpace {
  public:
-  /// `most_margin`: what robots keep beside their radius where there is room, m. The scenario must outlive the guide.
-  Guide(const Scenario& scenario, double most_margin);
+  /// `most_margin`: what robots keep beside their radius where there is room, m. `most_radius`: of what is guided, m,
+  /// beside the robots. The scenario must outlive the guide.
+  Guide(const Scenario& scenario, double most_margin, double most_radius = 0.0);
+  Guide(const Guide&) = delete;
+
+  /// Whether a course leads to the destination itself.
+  bool can_go(double radius, Vec2 from, const Destination& to);
 
   /// Which places can be reached at all.
   Reachability& reachability() { return reach_; }
 
   /// The route that leaves a robot of `radius` the margin, or as much of it as the widest way has. Where an end leaves
-  /// less, the margin is kept on the way between.
+  /// less, the margin is kept on the way between. Where the destination is out of reach and the scenario says so, the
+  /// course leads to the nearest place.
   CourseAnswer course(double radius, Vec2 from, const Destination& to);
 
   /// The farthest point of the course that a robot can see: the straight way there stays clear of obstacles. Where none
@@ -74,6 +83,7 @@ class Guide : public FreeSpace {
   Vec2 way_out(double radius, Vec2 here) const;
 
  private:
+  CourseAnswer course_to(double radius, Vec2 from, const Destination& to);
   Course direct(double radius, Vec2 from, const Destination& to) const;
   Course planned(double radius, Vec2 from, Vec2 end, const Destination& to);
   Vec2 roomy_place_near(double radius, Vec2 place) const;
@@ -83,8 +93,10 @@ class Guide : public FreeSpace {
   bool look_ahead(Course& course, double radius, Vec2 here) const;
   Heading heading_on(const Course& course, double radius, Vec2 here) const;
 
+  Unreachable unreachable_;
   double most_margin_;
   Reachability reach_;
+  NearestPlaces nearest_;
   std::vector<std::vector<geometry::Segment>> edges_;  ///< of each obstacle
   std::vector<geometry::ObstacleIndex> obstacles_;
   geometry::BoxGrid by_place_;

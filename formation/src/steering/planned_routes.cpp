@@ -19,12 +19,13 @@ std::vector<PlannedRoute> planned_routes(const Scenario& scenario, const Simulat
     for (std::size_t goal = 0; goal < robot.goals.size(); ++goal) {
       detail::CourseAnswer answer =
           guide->course(robot.radius, from, {robot.goals[goal], detail::reach_of(scenario, robot, goal)});
-      PlannedRoute& route = routes.emplace_back(PlannedRoute{i, goal, {}, {}});
-      if (!answer.course) {
+      PlannedRoute& route = routes.emplace_back(PlannedRoute{i, goal, {}, {}, {}});
+      if (answer.course) route.points = std::move(answer.course->points);
+      if (!answer.course || answer.nearest) {
         route.why_not = answer.defect.empty() ? answer.why_not : answer.defect;
-        break;  // a robot that cannot reach a goal stays before it
+        if (answer.defect.empty()) route.chain = guide->reachability().chain(robot.radius, from, robot.goals[goal]);
+        break;  // a robot that cannot reach a goal goes on to no other
       }
-      route.points = std::move(answer.course->points);
       from = route.points.back();
     }
   }

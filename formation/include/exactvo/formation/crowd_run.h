@@ -35,7 +35,7 @@ struct CrowdRunOptions {
 /// Why a scenario cannot be run on a crowd: the pointer of the field, what it has and what it may have.
 std::vector<ScenarioProblem> crowd_problems(const Scenario& scenario);
 
-/// A robot that stays, as its goal is proven out of reach.
+/// A robot whose goal is out of reach: it stays, or goes as near as it can (`Scenario::unreachable`).
 struct RobotWithoutRoute {
   std::size_t robot = 0;  ///< in the order of the scenario
   std::string why;        ///< in words, for people

@@ -98,10 +98,11 @@ struct Metrics {
   std::optional<FormationCourse> formation_course;  ///< of a formation
   std::vector<Collision> collisions;                ///< in the order of their beginnings
   std::string outcome;  ///< how it ended, in words: collisions first, then what the recording says, then long detours
-  std::vector<std::string> warnings;  ///< the recording's
-  std::optional<PlanMetrics> plans;   ///< where robots may go by plan
-  std::vector<std::string> deadlock;  ///< ids of robots at rest at the end, each waiting for the next (waiting.h)
-  std::vector<std::string> stuck;     ///< a sentence for each robot that stopped elsewhere (stuck.h)
+  std::vector<std::string> warnings;   ///< the recording's
+  std::optional<PlanMetrics> plans;    ///< where robots may go by plan
+  std::optional<RoutesCourse> routes;  ///< where robots go along routes
+  std::vector<std::string> deadlock;   ///< ids of robots at rest at the end, each waiting for the next (waiting.h)
+  std::vector<std::string> stuck;      ///< a sentence for each robot that stopped elsewhere (stuck.h)
 };
 
 /// The metrics of a recorded run. REQUIRES: a recording of this scenario, with a row.

@@ -14,15 +14,18 @@
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/routes.h"
 
 namespace exactvo::formation {
 
 /// Of one robot to one of its goals.
 struct PlannedRoute {
-  std::size_t robot = 0;     ///< index
-  std::size_t goal = 0;      ///< which of its goals, from 0
-  std::vector<Vec2> points;  ///< m, with start and end; empty where there is no route
-  std::string why_not;       ///< then: why the goal is out of reach, in words
+  std::size_t robot = 0;  ///< index
+  std::size_t goal = 0;   ///< which of its goals, from 0
+  /// m, with start and end; where the goal is out of reach to the nearest place, or empty (`Scenario::unreachable`).
+  std::vector<Vec2> points;
+  std::string why_not;                      ///< why the goal is out of reach, in words; else empty
+  std::vector<geometry::ChainPoint> chain;  ///< then: what separates them, closed; empty where an end is not free
 };
 
 /// Of every robot and goal, in their order; nothing in a run without guidance. Costs what the run spends on planning.

@@ -121,6 +121,13 @@ struct LivenessCourse {
   std::size_t search_nodes = 0;  ///< joint places that were looked at
 };
 
+/// Routes of a run (guidance).
+struct RoutesCourse {
+  std::size_t planned = 0;     ///< one for each goal that a robot set out for
+  std::size_t pushed_off = 0;  ///< planned again where a robot was pushed out of sight of its route
+  std::size_t nearest = 0;     ///< of those planned, the ones that end as near to the goal as can be reached
+};
+
 /// A whole run. `simulate` makes it; `datasets::write_recording` keeps it.
 struct Recording {
   std::vector<Step> steps;                 ///< the last row is the final state: its decisions are empty
@@ -139,6 +146,7 @@ struct Recording {
   std::vector<vo::Body> bodies;
   std::vector<Outlook> outlooks;  ///< in order of time: of every robot's first goal, then of others as they came up
   std::optional<LivenessCourse> liveness;  ///< where robots may go by plan
+  std::optional<RoutesCourse> routes;      ///< where robots go along routes
   bool all_half_planes = false;            ///< every half-plane of every decision was kept
   double wall_time = 0.0;                  ///< s: duration of `simulate` without the time spent in the sink
 };

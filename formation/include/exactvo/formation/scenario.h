@@ -46,8 +46,14 @@ enum class SpeedBoundKind {
 /// How a robot with goals finds its way.
 enum class Guidance {
   none,  ///< straight for the goal, and round obstacles as the method has it: the paper's way
-  route  ///< along a proven route (geometry/routes.h) through what the margin leaves, without enclosures; a robot whose
-         ///< goal is proven out of reach stays
+  route  ///< along a proven route (geometry/routes.h) through what the margin leaves, without enclosures; of a robot
+         ///< whose goal is out of reach `Unreachable` says what it does
+};
+
+/// What a robot along routes does whose goal is out of reach.
+enum class Unreachable {
+  stay,    ///< it stays where it is
+  nearest  ///< it goes to the place nearest to the goal that it can reach
 };
 
 /// What is done so that robots with goals do not wait for each other for ever.
@@ -90,6 +96,8 @@ struct Leader {
   std::vector<Vec2> path;               ///< m, at least one point
   double speed = 0.0;                   ///< m/s, >= 0
   std::vector<SpeedKnot> profile = {};  ///< times not falling
+  std::string why_short = {};           ///< of a planned path (leader_route.h): why it does not lead where it should
+  std::string note = {};                ///< of a planned path: what else is to be said of it
 };
 
 /// An obstacle that moves without turning: `shape` as it stands at t = 0, carried along `motion`. Robots see the
@@ -133,6 +141,7 @@ struct Scenario {
   std::vector<SceneObstacle> obstacles;               ///< static
   std::optional<FormationSpec> formation;             ///< none: kinematic robots with goals (Section V.A)
   Guidance guidance = Guidance::route;                ///< of robots with goals
+  Unreachable unreachable = Unreachable::stay;        ///< of robots with goals along routes
   Liveness liveness = Liveness::plan;                 ///< of robots with goals
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how every robot's max_speed is meant
   Horizons horizons;                                  ///< of the velocity obstacles

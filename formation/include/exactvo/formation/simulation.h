@@ -50,6 +50,7 @@ const char* name(Method m);
 const char* name(Controller c);               ///< "paper-literal", "paper-signs", "corrected", "default"
 const char* name(Integrator i);               ///< "exact", "euler", "rk4", "dopri5", "rosenbrock4"
 const char* name(Guidance g);                 ///< "none", "route"
+const char* name(Unreachable u);              ///< "stay", "nearest"
 const char* name(Liveness l);                 ///< "off", "bias", "plan"
 const char* name(Mode m);                     ///< "direct", "guided", "by-plan" and so on
 std::vector<std::string> method_names();      ///< in the order of Method
@@ -59,10 +60,11 @@ std::vector<std::string> guidance_names();    ///< in the order of Guidance
 std::vector<std::string> liveness_names();    ///< in the order of Liveness
 /// False for an unknown name; `out` is then unchanged. So are the others.
 bool parse(const std::string& text, Method& out);
-bool parse(const std::string& text, Controller& out);  ///< false for an unknown name
-bool parse(const std::string& text, Integrator& out);  ///< false for an unknown name
-bool parse(const std::string& text, Guidance& out);    ///< false for an unknown name
-bool parse(const std::string& text, Liveness& out);    ///< false for an unknown name
+bool parse(const std::string& text, Controller& out);   ///< false for an unknown name
+bool parse(const std::string& text, Integrator& out);   ///< false for an unknown name
+bool parse(const std::string& text, Guidance& out);     ///< false for an unknown name
+bool parse(const std::string& text, Unreachable& out);  ///< false for an unknown name
+bool parse(const std::string& text, Liveness& out);     ///< false for an unknown name
 
 /// What a run depends on beside its scenario.
 struct SimulationOptions {

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "preflight/nearest_place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/pi.h"
+
+namespace exactvo::formation::detail {
+namespace {
+
+using geometry::cross;
+using geometry::dot;
+using geometry::norm;
+using geometry::Segment;
+
+geometry::Box box_of(const Segment& edge, double grown = 0.0) {
+  geometry::Box box;
+  box.add(edge.a);
+  box.add(edge.b);
+  const Vec2 by{grown, grown};
+  return {box.low - by, box.high + by};
+}
+
+/// Where centres stand at an offset from an edge: on two pieces of lines and two circles.
+struct Outline {
+  Segment left, right;
+  Vec2 circles[2];  ///< centres
+};
+
+Outline outline_of(const Segment& edge, double offset) {
+  const Vec2 along = edge.b - edge.a;
+  const Vec2 out = norm(along) > 0.0 ? (offset / norm(along)) * Vec2{-along.y, along.x} : Vec2{};
+  return {{edge.a + out, edge.b + out}, {edge.a - out, edge.b - out}, {edge.a, edge.b}};
+}
+
+void cross_lines(const Segment& s, const Segment& t, std::vector<Vec2>& out) {
+  const Vec2 d = s.b - s.a, e = t.b - t.a;
+  const double area = cross(d, e);
+  if (area == 0.0) return;
+  const double along = cross(t.a - s.a, e) / area, other = cross(t.a - s.a, d) / area;
+  if (along >= 0.0 && along <= 1.0 && other >= 0.0 && other <= 1.0) out.push_back(s.a + along * d);
+}
+
+void cross_line_circle(const Segment& s, Vec2 centre, double radius, std::vector<Vec2>& out) {
+  const Vec2 d = s.b - s.a;
+  const double length = norm(d);
+  if (length == 0.0) return;
+  const Vec2 unit = d / length;
+  const double foot = dot(centre - s.a, unit), height = cross(centre - s.a, unit);
+  if (!(std::fabs(height) < radius)) return;
+  const double half = std::sqrt(radius * radius - height * height);
+  for (const double along : {foot - half, foot + half})
+    if (along >= 0.0 && along <= length) out.push_back(s.a + along * unit);
+}
+
+void cross_circles(Vec2 a, Vec2 b, double radius, std::vector<Vec2>& out) {
+  const Vec2 between = b - a;
+  const double apart = norm(between);
+  if (apart == 0.0 || !(apart < 2.0 * radius)) return;
+  const double height = std::sqrt(radius * radius - 0.25 * apart * apart);
+  const Vec2 up = (height / apart) * Vec2{-between.y, between.x};
+  out.push_back(a + 0.5 * between + up);
+  out.push_back(a + 0.5 * between - up);
+}
+
+void cross_outlines(const Outline& s, const Outline& t, double offset, std::vector<Vec2>& out) {
+  for (const Segment* side : {&s.left, &s.right}) {
+    for (const Segment* other : {&t.left, &t.right}) cross_lines(*side, *other, out);
+    for (const Vec2 centre : t.circles) cross_line_circle(*side, centre, offset, out);
+  }
+  for (const Vec2 centre : s.circles) {
+    for (const Segment* other : {&t.left, &t.right}) cross_line_circle(*other, centre, offset, out);
+    for (const Vec2 other : t.circles) cross_circles(centre, other, offset, out);
+  }
+}
+
+}  // namespace
+
+std::string words_of(const NearestPlace& nearest) {
+  constexpr double kShown = 1e3;  // to the millimetre, the bound down
+  const double least = std::floor(kShown * nearest.at_least) / kShown;
+  const std::string at = metres(nearest.distance) + " from it";
+  return least > 0.0 ? at + " (no place nearer than " + metres(least) + " can be reached)" : at;
+}
+
+void NearestPlaces::prepare() {
+  if (by_place_) return;
+  std::vector<geometry::Box> boxes;
+  for (const SceneObstacle& o : scenario_.obstacles)
+    for (const Segment& edge : geometry::edges_of(o.shape)) {
+      edges_.push_back(edge);
+      boxes.push_back(box_of(edge));
+    }
+  by_place_.emplace(std::move(boxes));
+}
+
+/// Of the goal on the outlines of single edges.
+std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 goal) const {
+  constexpr int kDirections = 16;  // about a vertex in which the goal lies: then all are as near
+  std::vector<Candidate> all;
+  const auto add = [&](Vec2 place) { all.push_back({norm(place - goal), place}); };
+  for (const Segment& edge : edges_) {
+    const Outline outline = outline_of(edge, offset);
+    for (const Segment& side : {outline.left, outline.right})
+      if (!(side.a == side.b)) add(geometry::nearest_point(side, goal));
+    for (const Vec2 centre : outline.circles) {
+      const Vec2 towards = goal - centre;
+      if (norm(towards) > 0.0) {
+        add(centre + (offset / norm(towards)) * towards);
+        continue;
+      }
+      for (int k = 0; k < kDirections; ++k)
+        add(centre + geometry::rotated({offset, 0.0}, 2.0 * geometry::kPi * k / kDirections));
+    }
+  }
+  return all;
+}
+
+/// Where the outlines of two edges meet. An edge of which a place nearer to the goal is `offset` away is itself no
+/// farther than both together.
+std::vector<NearestPlaces::Candidate> NearestPlaces::crossings(double offset, Vec2 goal, double nearer_than) const {
+  std::vector<Candidate> all;
+  std::vector<Vec2> points;
+  by_place_->for_each_within(goal, nearer_than + offset, [&](std::size_t i) {
+    const Outline outline = outline_of(edges_[i], offset);
+    points.clear();
+    by_place_->for_each_meeting(box_of(edges_[i], 2.0 * offset), [&](std::size_t k) {
+      if (k < i) cross_outlines(outline, outline_of(edges_[k], offset), offset, points);
+    });
+    for (const Vec2 p : points)
+      if (norm(p - goal) < nearer_than) all.push_back({norm(p - goal), p});
+  });
+  return all;
+}
+
+std::optional<NearestPlaces::Candidate> NearestPlaces::first_reachable(std::vector<Candidate> all, double radius,
+                                                                       Vec2 from) {
+  std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.distance != b.distance) return a.distance < b.distance;
+    return a.place.x != b.place.x ? a.place.x < b.place.x : a.place.y < b.place.y;
+  });
+  const geometry::RoutePlan& plan = reach_.plan(radius);
+  const auto has_room = [&](Vec2 place) {
+    bool clear = true;
+    by_place_->for_each_within(place, radius,
+                               [&](std::size_t k) { clear = clear && geometry::distance(edges_[k], place) >= radius; });
+    return clear;
+  };
+  for (const Candidate& c : all)
+    if (has_room(c.place) && reach_.map().covers(c.place) && plan.is_reachable(from, c.place)) return c;
+  return std::nullopt;
+}
+
+std::optional<NearestPlace> NearestPlaces::nearest(double radius, double room, Vec2 from, Vec2 goal) {
+  if (!reach_.map().covers(from) || !reach_.map().covers(goal)) return std::nullopt;
+  if (!reach_.plan(radius + room).is_reachable(from, from)) return std::nullopt;
+  prepare();
+  const double offset = radius + 1.5 * room;  // half of the room is left for rounding
+  std::vector<Candidate> all = feet(offset, goal);
+  all.push_back({norm(from - goal), from});
+  std::optional<Candidate> best = first_reachable(std::move(all), radius + room, from);
+  if (!best) return std::nullopt;
+  all = crossings(offset, goal, best->distance);
+  all.push_back(*best);
+  best = first_reachable(std::move(all), radius + room, from);
+  return NearestPlace{best->place, best->distance, std::min(best->distance, proven_distance(radius, from, goal))};
+}
+
+/// The straight way from the goal to a free place x beyond the chain crosses the chain in some point z. That is at
+/// least the radius from x where it lies on an edge. In a gap of width w, z is no farther than w / 2 from an end, and
+/// at least the radius less that from x.
+double NearestPlaces::distance_beyond(const geometry::Separated& answer, double radius, Vec2 goal) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < answer.chain.size(); ++k) {
+    const Segment piece{answer.chain[k].point.rounded, answer.chain[(k + 1) % answer.chain.size()].point.rounded};
+    const double gap = answer.chain[k].gap_follows ? norm(piece.b - piece.a) : 0.0;
+    least = std::min(least, geometry::distance(piece, goal) + radius - 0.5 * gap);
+  }
+  return least;
+}
+
+/// m: how near to the goal a free place that can be reached may be.
+double NearestPlaces::proven_distance(double radius, Vec2 from, Vec2 goal) {
+  const geometry::RouteAnswer answer = reach_.plan(radius).query(from, goal);
+  if (const auto* separated = std::get_if<geometry::Separated>(&answer))
+    return distance_beyond(*separated, radius, goal);
+  const auto* blocked = std::get_if<geometry::Blocked>(&answer);
+  if (!blocked || blocked->end == geometry::Blocked::End::start) return 0.0;
+  double nearest_edge = std::numeric_limits<double>::infinity();
+  by_place_->for_each_within(
+      goal, radius, [&](std::size_t k) { nearest_edge = std::min(nearest_edge, geometry::distance(edges_[k], goal)); });
+  // A polygon's boundary lies between what is inside of it and every free place.
+  double bound = std::max(0.0, radius - nearest_edge);
+  for (const SceneObstacle& o : scenario_.obstacles) {
+    const auto* polygon = std::get_if<geometry::Polygon>(&o.shape);
+    if (polygon && geometry::contains(*polygon, goal))
+      bound = std::max(bound, radius - geometry::signed_distance(o.shape, goal));
+  }
+  // Nor can a smaller disc come there that the goal itself would leave room for.
+  const double smaller = 0.999 * std::min(radius, nearest_edge);
+  if (!(smaller >= kLeastPlanned)) return bound;
+  const geometry::RouteAnswer of_smaller = geometry::RoutePlan(reach_.map(), smaller).query(from, goal);
+  const auto* separated = std::get_if<geometry::Separated>(&of_smaller);
+  return separated ? std::max(bound, distance_beyond(*separated, radius, goal)) : bound;
+}
+
+}  // namespace exactvo::formation::detail
