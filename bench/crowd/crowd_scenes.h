@@ -25,6 +25,12 @@ struct CrowdScene {
   };
   std::vector<Robot> robots;
   std::vector<geometry::Obstacle> obstacles;
+  struct Body {
+    geometry::ConvexShape shape;
+    bool moves = false;
+    Vec2 velocity;
+  };
+  std::vector<Body> bodies;
   double preferred_speed = 1.2;  ///< m/s
 
   /// Straight for the goal, slower in the last metre.
@@ -133,6 +139,32 @@ inline void pillars(CrowdScene& s, std::size_t count) {
   s.obstacles.push_back(geometry::Polyline{{{low, low}, {high, low}, {high, high}, {low, high}, {low, low}}});
 }
 
+/// A loose crowd among discs, ellipses, hexagons, segments and points, two in three at rest, the others under way.
+inline void bodies(CrowdScene& s, std::size_t count) {
+  pillars(s, count);
+  s.obstacles.erase(s.obstacles.begin(), s.obstacles.end() - 1);
+  SceneRandom random;
+  const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  for (std::size_t i = 0, k = 0; i < count; ++i) {
+    if (i % side % 2 == 0 || i / side % 2 == 0) continue;
+    const Vec2 at = s.robots[i].at + Vec2{1.5, 1.5};
+    geometry::ConvexShape shape = geometry::Disc{at, 0.1 + 0.4 * random()};
+    if (k % 5 == 1) shape = geometry::Ellipse{at, 0.2 + 0.3 * random(), 0.3 * random() - 0.15, 0.05 + 0.2 * random()};
+    if (k % 5 == 2) {
+      geometry::ConvexPolygon hexagon;
+      for (const Vec2 c :
+           {Vec2{0.4, 0.0}, Vec2{0.2, 0.3}, Vec2{-0.2, 0.3}, Vec2{-0.4, 0.0}, Vec2{-0.2, -0.3}, Vec2{0.2, -0.3}})
+        hexagon.vertices.push_back(at + 0.7 * c);
+      shape = hexagon;
+    }
+    if (k % 5 == 3) shape = geometry::Segment{at, at + Vec2{0.4 * random(), 0.4 * random() - 0.2}};
+    if (k % 5 == 4) shape = geometry::Disc{at, 0.0};
+    const bool moves = k % 3 == 2;
+    s.bodies.push_back({shape, moves, moves ? Vec2{2.0 * random() - 1.0, 2.0 * random() - 1.0} : Vec2{}});
+    ++k;
+  }
+}
+
 /// A crowd of large and slow, small and fast, far-sighted and near-sighted robots.
 inline void mixture(CrowdScene& s, std::size_t count) {
   crowd(s, count);
@@ -162,13 +194,14 @@ inline void clumps(CrowdScene& s, std::size_t count) {
 
 }  // namespace scenes
 
-/// "crowd", "ring", "streams", "groups", "blocks", "pillars", "mixture", "jam", "clumps".
+/// "crowd", "ring", "streams", "groups", "blocks", "pillars", "bodies", "mixture", "jam", "clumps".
 inline CrowdScene crowd_scene(const std::string& kind, std::size_t count) {
   using Make = void (*)(CrowdScene&, std::size_t);
   static const std::vector<std::pair<std::string, Make>> kScenes = {
       {"crowd", scenes::crowd},     {"ring", scenes::ring},     {"streams", scenes::streams},
       {"groups", scenes::groups},   {"blocks", scenes::blocks}, {"pillars", scenes::pillars},
-      {"mixture", scenes::mixture}, {"jam", scenes::jam},       {"clumps", scenes::clumps}};
+      {"mixture", scenes::mixture}, {"jam", scenes::jam},       {"clumps", scenes::clumps},
+      {"bodies", scenes::bodies}};
   CrowdScene s;
   s.kinds.emplace_back();
   for (const auto& [name, make] : kScenes) {
@@ -184,6 +217,8 @@ inline Crowd crowd_of(const CrowdScene& scene) {
   Crowd crowd(scene.options);
   for (const CrowdKind& kind : scene.kinds) crowd.add_kind(kind);
   for (const geometry::Obstacle& obstacle : scene.obstacles) crowd.add_obstacle(obstacle);
+  for (const CrowdScene::Body& body : scene.bodies)
+    body.moves ? crowd.add_moving_body(body.shape, body.velocity) : crowd.add_body(body.shape);
   crowd.reserve(scene.robots.size());
   for (const CrowdScene::Robot& robot : scene.robots) crowd.add_robot(robot.at, robot.kind);
   crowd.set_steering([&scene](CrowdSlice& slice) {

@@ -8,6 +8,7 @@
 #include <iosfwd>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "crowd/engine.h"
@@ -21,12 +22,15 @@ inline constexpr std::uint32_t kNowhere = 0xFFFFFFFFU;
 inline constexpr double kFastest = 0x1p15;
 /// m; of edges.
 inline constexpr double kFarthestEdge = 0x1p40;
+/// Of the way of a body, in lattice steps: differences to places of robots are exact doubles.
+inline constexpr std::int64_t kFarthestBody = std::int64_t{1} << 50;
 inline constexpr std::size_t kMostEdgesOfAll = std::size_t{1} << 24U;
 /// m
 inline constexpr double kLeastStrip = 0x1p-6;
 
 void require_valid(const CrowdOptions& options);
 void require_valid(const CrowdKind& kind, const CrowdOptions& options);
+void require_valid(const geometry::ConvexShape& shape);
 
 class CrowdBody {
  public:
@@ -36,6 +40,10 @@ class CrowdBody {
   RobotId add_robot(Vec2 position, KindId kind, Vec2 velocity = {});
   void remove_robot(RobotId robot);
   ObstacleId add_obstacle(const geometry::Obstacle& obstacle);
+  ObstacleId add_body(const geometry::ConvexShape& shape, bool moves, Vec2 velocity);
+  void set_body_velocity(ObstacleId body, Vec2 velocity);
+  /// Throws where there is none of this id.
+  const Body& body(ObstacleId id) const;
   void remove_obstacle(ObstacleId obstacle);
   StepReport step();
   /// Sorts and lays out where something has changed. Calling it more often changes nothing.
@@ -49,7 +57,7 @@ class CrowdBody {
     return {o.position_step * core->robots.mx[at] / o.time_step, o.position_step * core->robots.my[at] / o.time_step};
   }
   std::size_t bytes() const {
-    return core->bytes() + core->edges.bytes() + 4 * (places.capacity() + free_ids.capacity());
+    return core->bytes() + core->edges.bytes() + core->bodies.bytes() + 4 * (places.capacity() + free_ids.capacity());
   }
 
   std::unique_ptr<CrowdCore> core;
@@ -73,6 +81,8 @@ class CrowdBody {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }
   void find_places();
+  std::size_t obstacle_size() const;
+  std::pair<std::int32_t, std::int32_t> body_motion(Vec2 velocity) const;
   void lay_out_edges();
   void guess_hints();
   void follow_density();
@@ -81,7 +91,7 @@ class CrowdBody {
   bool is_new(std::size_t at) const;
 };
 
-/// snapshot.cpp. The body is ready.
+/// snapshot.cpp. The crowd is ready.
 void write_snapshot(const CrowdBody& body, std::ostream& to);
 CrowdOptions read_options(std::istream& from);
 void read_snapshot(CrowdBody& body, std::istream& from);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include "crowd/body.h"
 #include "exactvo/vo/lp/batch.h"
@@ -20,6 +22,12 @@ constexpr std::uint64_t kStepsPerStripHeight = 16;
 
 /// Neighbours that the first search is laid out for, in a crowd as dense everywhere as its bounding box.
 constexpr double kFirstGuess = 1.1;
+
+/// At least the corners of a polygon round an ellipse.
+constexpr std::size_t kMostCornersRound = 32;
+
+/// Lattice steps of a body in a time step.
+constexpr double kLongestMotion = 0x1p22;
 
 std::string number(double x) {
   char text[32];
@@ -210,11 +218,17 @@ bool CrowdBody::is_new(std::size_t at) const {
   return (core->robots.tag[at] & Robots::kSettled) == 0;
 }
 
+/// Edges, and corners of bodies.
+std::size_t CrowdBody::obstacle_size() const {
+  std::size_t count = 0;
+  for (const auto& [id, edges] : obstacles) count += edges.size();
+  for (const Body& b : core->bodies.all()) count += b.corners.size();
+  return count;
+}
+
 ObstacleId CrowdBody::add_obstacle(const geometry::Obstacle& obstacle) {
   std::vector<geometry::Segment> added = geometry::edges_of(obstacle);
-  std::size_t count = added.size();
-  for (const auto& [id, edges] : obstacles) count += edges.size();
-  if (count > kMostEdgesOfAll)
+  if (obstacle_size() + added.size() > kMostEdgesOfAll)
     throw CrowdError(CrowdProblem::too_many, "edges: found more than 2^24, expected 2^24 at most");
   for (const geometry::Segment& e : added)
     for (const double v : {e.a.x, e.a.y, e.b.x, e.b.y})
@@ -224,7 +238,54 @@ ObstacleId CrowdBody::add_obstacle(const geometry::Obstacle& obstacle) {
   return next_obstacle++;
 }
 
+void require_valid(const geometry::ConvexShape& shape) {
+  for (const double v : numbers_of(shape))
+    require_in_range("body", v, std::fabs(v) < kFarthestEdge, "numbers below 2^40 m");
+  if (!geometry::is_valid(shape))
+    throw CrowdError(CrowdProblem::out_of_range,
+                     "body: found " + geometry::to_string(shape) +
+                         ", expected a radius that is not negative, a convex polygon counter-clockwise");
+}
+
+ObstacleId CrowdBody::add_body(const geometry::ConvexShape& shape, bool moves, Vec2 velocity) {
+  require_valid(shape);
+  const auto [mx, my] = body_motion(velocity);
+  if (obstacle_size() + kMostCornersRound + numbers_of(shape).size() > kMostEdgesOfAll)
+    throw CrowdError(CrowdProblem::too_many, "edges and corners: found more than 2^24, expected 2^24 at most");
+  core->bodies.add(next_obstacle, shape, moves);
+  core->bodies.find(next_obstacle)->mx = mx;
+  core->bodies.find(next_obstacle)->my = my;
+  return next_obstacle++;
+}
+
+std::pair<std::int32_t, std::int32_t> CrowdBody::body_motion(Vec2 velocity) const {
+  const CrowdOptions& o = core->options;
+  const double most = std::min(kFastest, kLongestMotion * o.position_step / o.time_step);
+  for (const double v : {velocity.x, velocity.y})
+    require_in_range("velocity of a body", v, std::fabs(v) <= most, "at most " + number(most) + " m/s");
+  const double per_speed = o.time_step / o.position_step;
+  return {static_cast<std::int32_t>(std::nearbyint(per_speed * velocity.x)),
+          static_cast<std::int32_t>(std::nearbyint(per_speed * velocity.y))};
+}
+
+void CrowdBody::set_body_velocity(ObstacleId id, Vec2 velocity) {
+  if (!body(id).moves)
+    throw CrowdError(CrowdProblem::unknown_obstacle,
+                     "body " + std::to_string(id) + ": found one at rest, expected one that moves");
+  const auto [mx, my] = body_motion(velocity);
+  core->bodies.find(id)->mx = mx;
+  core->bodies.find(id)->my = my;
+}
+
+const Body& CrowdBody::body(ObstacleId id) const {
+  const Body* found = std::as_const(core->bodies).find(id);
+  if (!found)
+    throw CrowdError(CrowdProblem::unknown_obstacle, "body " + std::to_string(id) + ": found no body of this id");
+  return *found;
+}
+
 void CrowdBody::remove_obstacle(ObstacleId obstacle) {
+  if (core->bodies.remove(obstacle)) return;
   if (obstacles.erase(obstacle) == 0)
     throw CrowdError(CrowdProblem::unknown_obstacle,
                      "obstacle " + std::to_string(obstacle) + ": found no obstacle of this id");
@@ -246,6 +307,7 @@ void CrowdBody::make_ready() {
   if (kinds_changed) core->take_kinds();
   kinds_changed = false;
   lay_out_edges();
+  core->bodies.lay_out();
   if (!unsorted) return;
   Robots& r = core->robots;
   const double start = core->options.time_phases ? now() : 0.0;
@@ -282,7 +344,13 @@ StepReport CrowdBody::step() {
   make_ready();
   const StepReport report = core->decide();
   require_on_lattice();
+  for (const Body& b : core->bodies.all())
+    if (std::max(std::abs(b.x), std::abs(b.y)) >= kFarthestBody)
+      throw CrowdError(CrowdProblem::beyond_lattice, "body " + std::to_string(b.id) +
+                                                         ": found 2^50 steps of the lattice "
+                                                         "from where it was added, expected fewer");
   core->robots.move(core->tasks);
+  core->bodies.move();
   if (steps++ % kStepsPerStripHeight == 0) follow_density();
   unsorted = true;
   places.clear();
@@ -303,6 +371,10 @@ std::uint64_t CrowdBody::digest() const {
     const std::int32_t kept = (r.tag[i] & Robots::kKept) != 0;
     for (const std::int32_t value : {r.x[i], r.y[i], r.mx[i], r.my[i], r.tag[i] & Robots::kKind, kept}) add(value);
   }
+  for (const Body& b : core->bodies.all())
+    if (b.moves)
+      for (const std::int64_t value : {std::int64_t{b.id}, b.x, b.y, std::int64_t{b.mx}, std::int64_t{b.my}})
+        add(value);
   return hash;
 }
 
@@ -336,6 +408,28 @@ void Crowd::remove_robot(RobotId robot) {
 }
 ObstacleId Crowd::add_obstacle(const geometry::Obstacle& obstacle) {
   return engine_->add_obstacle(obstacle);
+}
+ObstacleId Crowd::add_body(const geometry::ConvexShape& shape) {
+  return engine_->add_body(shape, false, {});
+}
+ObstacleId Crowd::add_moving_body(const geometry::ConvexShape& shape, Vec2 velocity) {
+  return engine_->add_body(shape, true, velocity);
+}
+void Crowd::set_body_velocity(ObstacleId body, Vec2 velocity) {
+  engine_->set_body_velocity(body, velocity);
+}
+Vec2 Crowd::body_velocity(ObstacleId body) const {
+  return engine_->core->bodies.velocity_of(engine_->body(body));
+}
+Vec2 Crowd::body_displacement(ObstacleId body) const {
+  const Body& b = engine_->body(body);
+  return options().position_step * Vec2{static_cast<double>(b.x), static_cast<double>(b.y)};
+}
+std::vector<CrowdBodyState> Crowd::bodies() const {
+  std::vector<CrowdBodyState> all;
+  for (const Body& b : engine_->core->bodies.all())
+    all.push_back({b.id, b.shape, b.moves, body_displacement(b.id), body_velocity(b.id)});
+  return all;
 }
 void Crowd::remove_obstacle(ObstacleId obstacle) {
   engine_->remove_obstacle(obstacle);

@@ -64,6 +64,7 @@ void add(StepReport& sum, const StepReport& more) {
   sum.widened += more.widened;
   sum.nudged += more.nudged;
   sum.edges += more.edges;
+  sum.bodies += more.bodies;
   sum.stopped += more.stopped;
 }
 
@@ -100,8 +101,8 @@ struct Near {
 
 }  // namespace
 
-/// Rows of half-planes of a group: those of edges before those of robots.
-constexpr std::size_t kRows = kMostEdges + kMostNeighbours;
+/// Rows of half-planes of a group: those of edges and bodies at rest, those of robots, those of bodies that move.
+constexpr std::size_t kRows = kMostEdges + kMostNeighbours + kMostMoving;
 constexpr std::size_t kRobotRows = kMostEdges * kSlots;
 
 /// Buffers of a thread.
@@ -116,13 +117,18 @@ struct CrowdScratch {
   std::int32_t self[kPack];
   std::uint8_t status[kSlots];
   Vec2 preferred[kSlots];
-  std::int32_t hard[kSlots];
+  std::int32_t hard[kSlots];    ///< lines that are never relaxed
+  std::int32_t moving[kSlots];  ///< lines against bodies that move
   std::vector<Near> near;
   std::vector<NearEdge> near_edges;
   std::vector<EdgeLine> edge_lines;
+  std::vector<std::uint32_t> near_bodies;
+  std::vector<BodyLine> body_lines;
+  std::size_t still = 0;  ///< of body_lines: against bodies at rest
   EdgePackQuery<T> edge_query;
   EdgePackTable edge_table;
   alignas(64) T edge_x[kRobotRows], edge_y[kRobotRows], edge_c[kRobotRows];  ///< of a group, by number and slot
+  alignas(64) T moving_x[kMostMoving * kSlots], moving_y[kMostMoving * kSlots], moving_c[kMostMoving * kSlots];
   Array<T> rows_x, rows_y, rows_c;
   StepReport counts;
   CrowdPhases phases;
@@ -209,7 +215,7 @@ class CrowdEngine final : public CrowdCore {
     std::int32_t mx, my;
     std::int32_t hint;
     bool kept, nudged, touching, widened, stopped;
-    std::size_t neighbours, edges;
+    std::size_t neighbours, edges, bodies;
   };
 
   /// A pack and what its search has found.
@@ -280,8 +286,9 @@ class CrowdEngine final : public CrowdCore {
         lines_of(packs[count], count * kPack, s);
       }
       read_preferred(packs[0].begin, b, s);
-      const std::size_t hard = edges_of(packs, count, s);
-      const std::size_t lines = hard + level_ranks(packs, count, s);
+      const std::size_t hard = obstacles_of(packs, count, s);
+      const std::size_t ranks = level_ranks(packs, count, s);
+      const std::size_t lines = hard + ranks + moving_of(count, kRobotRows + ranks * kSlots, s);
       solve(packs, count, hard, lines, s);
       finish(packs, count, hard, lines, s);
     }
@@ -496,17 +503,25 @@ class CrowdEngine final : public CrowdCore {
     edge_lines(edges, query, s.near_edges, s.edge_lines);
   }
 
-  void put(const EdgeLine& line, T& x, T& y, T& c, T least) const {
+  /// An EdgeLine or a BodyLine.
+  template <class Line>
+  void put(const Line& line, T& x, T& y, T& c, T least) const {
     x = static_cast<T>(line.normal.x);
     y = static_cast<T>(line.normal.y);
     c = std::max(least, rounded_up<T>(line.offset + static_cast<double>(table_.lattice_slack)));
   }
 
-  /// The half-planes of a group against edges, in the last rows before those of robots; how many rows.
-  std::size_t edges_of(Pack* packs, std::size_t count, Scratch& s) {
-    if (edges.empty()) return 0;
+  /// The half-planes of a group against edges and bodies at rest, in the last rows before those of robots; how many
+  /// rows.
+  std::size_t obstacles_of(Pack* packs, std::size_t count, Scratch& s) {
+    if (edges.empty() && bodies.empty()) return 0;
     const Timed timed(options.time_phases, s.phases.edges);
-    for (std::size_t p = 0; p < count; ++p) edges_of_pack(packs[p], p * kPack, s);
+    std::fill(s.hard, s.hard + count * kPack, 0);
+    if (!edges.empty())
+      for (std::size_t p = 0; p < count; ++p) edges_of_pack(packs[p], p * kPack, s);
+    if (!bodies.empty())
+      for (std::size_t p = 0; p < count; ++p)
+        for (std::size_t lane = 0; lane < kPack; ++lane) bodies_of_lane(packs[p], lane, p * kPack + lane, s);
     std::int32_t most = 0;
     for (std::size_t slot = 0; slot < count * kPack; ++slot) most = std::max(most, s.hard[slot]);
     const auto rows = static_cast<std::size_t>(most);
@@ -525,7 +540,6 @@ class CrowdEngine final : public CrowdCore {
   /// Into s.edge_x and so on, their number into s.hard.
   void edges_of_pack(Pack& pack, std::size_t slot, Scratch& s) {
     std::int32_t* const lines = s.hard + slot;
-    std::fill(lines, lines + kPack, 0);
     if (!ask_edges(pack, s)) return;
     const EdgePackLines<T> out{s.edge_x + slot, s.edge_y + slot, s.edge_c + slot, kSlots, lines};
     const std::uint32_t overflow = make_edge_lines(s.edge_query, s.edge_table, out);
@@ -533,6 +547,63 @@ class CrowdEngine final : public CrowdCore {
       if (overflow >> lane & 1U) be_alone(pack, lane, s);
       s.counts.edges += static_cast<std::size_t>(lines[lane]);
     }
+  }
+
+  /// Into s.body_lines.
+  void lines_of_bodies(std::size_t robot, Scratch& s) const {
+    const CrowdKind& kind = kinds[kind_of(robot)];
+    BodyQuery query;
+    query.x = robots.x[robot];
+    query.y = robots.y[robot];
+    query.velocity = velocity_of(robots.mx[robot], robots.my[robot]);
+    query.radius = kind.radius;
+    query.still_horizon = edge_horizon(kind);
+    query.horizon = kind.time_horizon;
+    query.max_speed = kind.max_speed;
+    query.float_normals = sizeof(T) == 4;
+    s.still = bodies.lines(query, s.near_bodies, s.body_lines);
+  }
+
+  /// Behind the lines of its edges in s.edge_x and so on, those of bodies that move into s.moving_x and so on.
+  void bodies_of_lane(Pack& pack, std::size_t lane, std::size_t slot, Scratch& s) const {
+    s.moving[slot] = 0;
+    if (lane >= pack.size() || (pack.alone >> lane & 1U)) return;
+    const std::size_t robot = pack.begin + lane;
+    lines_of_bodies(robot, s);
+    const auto hard = static_cast<std::size_t>(s.hard[slot]), moving = s.body_lines.size() - s.still;
+    if (hard + s.still > kMostEdges || moving > kMostMoving) {
+      s.counts.edges -= hard;
+      s.hard[slot] = 0;
+      return be_alone(pack, lane, s);
+    }
+    const T least = table_.least_offset[kind_of(robot)];
+    for (std::size_t k = 0; k < s.still; ++k) {
+      const std::size_t to = (hard + k) * kSlots + slot;
+      put(s.body_lines[k], s.edge_x[to], s.edge_y[to], s.edge_c[to], least);
+    }
+    for (std::size_t k = 0; k < moving; ++k) {
+      const std::size_t to = k * kSlots + slot;
+      put(s.body_lines[s.still + k], s.moving_x[to], s.moving_y[to], s.moving_c[to], least);
+    }
+    s.hard[slot] += static_cast<std::int32_t>(s.still);
+    s.moving[slot] = static_cast<std::int32_t>(moving);
+    s.counts.bodies += s.body_lines.size();
+  }
+
+  /// The half-planes of a group against bodies that move, in the rows from `first` on; how many rows.
+  std::size_t moving_of(std::size_t count, std::size_t first, Scratch& s) const {
+    if (bodies.empty()) return 0;
+    const auto rows = static_cast<std::size_t>(*std::max_element(s.moving, s.moving + count * kPack));
+    for (std::size_t k = 0; k < rows; ++k) {
+      const std::size_t to = first + k * kSlots, from = k * kSlots;
+      for (std::size_t slot = 0; slot < count * kPack; ++slot) {
+        const bool there = static_cast<std::int32_t>(k) < s.moving[slot];
+        s.x[to + slot] = there ? s.moving_x[from + slot] : T(1);
+        s.y[to + slot] = there ? s.moving_y[from + slot] : T(0);
+        s.c[to + slot] = there ? s.moving_c[from + slot] : static_cast<T>(kNever);
+      }
+    }
+    return rows;
   }
 
   /// Writes s.edge_query; whether a lane has edges nearby. Whoever has too many for a pack is decided alone.
@@ -574,8 +645,8 @@ class CrowdEngine final : public CrowdCore {
     s.counts.touching -= pack.touching >> lane & 1U;
   }
 
-  /// No velocity may lead onto an edge, also where half-planes against robots had to give: another place of the lattice
-  /// nearby, or none. REQUIRES: the first `hard` lines are those of edges.
+  /// No velocity may lead onto an edge or a body at rest, also where half-planes against robots had to give: another
+  /// place of the lattice nearby, or none. REQUIRES: the first `hard` lines are theirs.
   void keep_off_edges(std::size_t robot, Answers<T> in, std::size_t hard, Decision& d) const {
     if (hard == 0 || !options.certified) return;
     in.lines = hard;
@@ -680,6 +751,7 @@ class CrowdEngine final : public CrowdCore {
     s.counts.widened += d.widened;
     s.counts.neighbours += d.neighbours;
     s.counts.edges += d.edges;
+    s.counts.bodies += d.bodies;
     s.counts.stopped += d.stopped;
   }
 
@@ -771,7 +843,12 @@ class CrowdEngine final : public CrowdCore {
     d.neighbours = s.near.size();
     lines_of_edges(robot, s);
     d.edges = s.edge_lines.size();
-    const std::size_t lines = d.edges + d.neighbours, rows = std::max<std::size_t>(1, lines);
+    s.body_lines.clear();
+    s.still = 0;
+    if (!bodies.empty()) lines_of_bodies(robot, s);
+    d.bodies = s.body_lines.size();
+    const std::size_t mandatory = d.edges + s.still, lines = d.edges + d.bodies + d.neighbours,
+                      rows = std::max<std::size_t>(1, lines);
     s.rows_x.assign(rows * kPack, T(1));
     s.rows_y.assign(rows * kPack, T(0));
     s.rows_c.assign(rows * kPack, static_cast<T>(kNever));
@@ -783,6 +860,14 @@ class CrowdEngine final : public CrowdCore {
       const geometry::HalfPlane h{line.normal, static_cast<double>(s.rows_c[to]) - table_.spare};
       words->edges.push_back({edges.edges()[line.edge], h, line.touching});
     }
+    for (std::size_t k = 0; k < d.bodies; ++k) {
+      const BodyLine& line = s.body_lines[k];
+      const std::size_t to = (d.edges + k + (k < s.still ? 0 : d.neighbours)) * kPack;
+      put(line, s.rows_x[to], s.rows_y[to], s.rows_c[to], table_.least_offset[kind_of(robot)]);
+      if (!words) continue;
+      const geometry::HalfPlane h{line.normal, static_cast<double>(s.rows_c[to]) - table_.spare};
+      words->bodies.push_back({bodies.all()[line.body].id, h, line.touching});
+    }
     for (std::size_t k = 0; k < s.near.size(); k += kPack) d.touching |= lines_alone(robot, k, s, words);
     alignas(64) T vx[kPack] = {}, vy[kPack] = {}, violation[kPack] = {}, px[kPack], py[kPack], disc[kPack];
     std::uint8_t status[kPack] = {};
@@ -791,10 +876,10 @@ class CrowdEngine final : public CrowdCore {
     std::fill(disc, disc + kPack, table_.disc[kind_of(robot)]);
     lp::BatchProblems<T> in;
     in.count = 1;
-    const std::int32_t hard[kPack] = {static_cast<std::int32_t>(d.edges)};
+    const std::int32_t hard[kPack] = {static_cast<std::int32_t>(mandatory)};
     in.lines = lines;
     in.block = kPack;
-    in.hard = d.edges > 0 ? hard : nullptr;
+    in.hard = mandatory > 0 ? hard : nullptr;
     in.normal_x = s.rows_x.data();
     in.normal_y = s.rows_y.data();
     in.offset = s.rows_c.data();
@@ -847,7 +932,7 @@ class CrowdEngine final : public CrowdCore {
     for (std::size_t lane = 0; lane < count; ++lane) {
       const auto other = static_cast<std::size_t>(s.near[k + lane].robot);
       if (flags.coincident >> lane & 1U) part(robot, other, x[lane], y[lane], c[lane]);
-      const std::size_t to = (s.edge_lines.size() + k + lane) * kPack;
+      const std::size_t to = (s.edge_lines.size() + s.still + k + lane) * kPack;
       s.rows_x[to] = x[lane];
       s.rows_y[to] = y[lane];
       s.rows_c[to] = c[lane];

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "crowd/bodies.h"
 #include "crowd/edges.h"
 #include "crowd/kinds.h"
 #include "crowd/lines.h"
@@ -22,7 +23,8 @@ namespace exactvo::formation {
 /// What does not depend on the arithmetic.
 class CrowdCore {
  public:
-  explicit CrowdCore(const CrowdOptions& given) : options(given), tasks(given.threads) {}
+  explicit CrowdCore(const CrowdOptions& given)
+      : options(given), bodies(given.position_step, given.time_step), tasks(given.threads) {}
   virtual ~CrowdCore() = default;
 
   virtual void take_kinds() = 0;
@@ -38,6 +40,7 @@ class CrowdCore {
   std::vector<CrowdKind> kinds;
   crowd::Robots robots;
   crowd::EdgeGrid edges;  ///< laid out
+  crowd::Bodies bodies;   ///< laid out
   crowd::Tasks tasks;
   Steering steering;
   CrowdPhases phases;

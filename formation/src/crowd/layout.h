@@ -19,8 +19,10 @@ inline constexpr std::size_t kGroupPacks = 6, kSlots = kGroupPacks * kPack;
 inline constexpr std::size_t kMostCandidates = 256;
 inline constexpr std::int32_t kIndexBits = 0xFF;
 inline constexpr int kMostNeighbours = 15, kMostRanks = kMostNeighbours + 1;
-/// Edges a robot of a pack has half-planes against; who has more is decided alone.
+/// Edges and bodies at rest that a robot of a pack has half-planes against; who has more is decided alone.
 inline constexpr std::size_t kMostEdges = 12;
+/// The same of bodies that move.
+inline constexpr std::size_t kMostMoving = 4;
 /// Arrays of robots end with so many that are nobody's, so that whole registers may be read.
 inline constexpr std::size_t kPadding = 64;
 /// Coordinates stay below it, so that differences fit 32 bits.

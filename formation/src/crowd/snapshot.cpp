@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <istream>
+#include <optional>
 #include <ostream>
 #include <type_traits>
 
@@ -12,7 +13,7 @@
 namespace exactvo::formation::crowd {
 namespace {
 
-constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '2'};
+constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '3'};
 constexpr std::size_t kAtOnce = 1 << 16;
 
 [[noreturn]] void refuse(const std::string& found) {
@@ -122,6 +123,41 @@ std::vector<geometry::Segment> get_edges(Reader& from) {
   return edges;
 }
 
+void put(Writer& to, const Body& b) {
+  to.put(std::uint32_t{b.id});
+  to.put(std::uint8_t{b.moves});
+  for (const std::int64_t v : {b.x, b.y}) to.put(v);
+  for (const std::int32_t v : {b.mx, b.my}) to.put(v);
+  to.put(static_cast<std::uint8_t>(b.shape.index()));
+  const std::vector<double> numbers = numbers_of(b.shape);
+  to.put(static_cast<std::uint32_t>(numbers.size()));
+  to.put_all(numbers.data(), numbers.size());
+}
+
+void get_body(Reader& from, ObstacleId end, const CrowdOptions& options, Bodies& bodies) {
+  const auto id = from.get<std::uint32_t>();
+  require(id < end && (bodies.empty() || bodies.all().back().id < id), "a body");
+  const auto moves = from.get<std::uint8_t>();
+  const auto x = from.get<std::int64_t>(), y = from.get<std::int64_t>();
+  const auto mx = from.get<std::int32_t>(), my = from.get<std::int32_t>();
+  const auto kind = from.get<std::uint8_t>();
+  std::vector<double> numbers;
+  from.get_some(numbers, from.get<std::uint32_t>());
+  const std::optional<geometry::ConvexShape> shape = shape_of(kind, numbers);
+  require(shape.has_value() && moves <= 1, "a body");
+  require_valid(*shape);
+  const std::int64_t way = std::int64_t{1} << 22U;
+  const bool goes = std::abs(std::int64_t{mx}) <= way && std::abs(std::int64_t{my}) <= way &&
+                    static_cast<double>(std::max(std::abs(std::int64_t{mx}), std::abs(std::int64_t{my}))) *
+                            options.position_step / options.time_step <=
+                        2.0 * kFastest;
+  require(x > -2 * kFarthestBody && x < 2 * kFarthestBody && y > -2 * kFarthestBody && y < 2 * kFarthestBody && goes,
+          "the motion of a body");
+  bodies.add(id, *shape, moves == 1);
+  Body& body = *bodies.find(id);
+  body.x = x, body.y = y, body.mx = mx, body.my = my;
+}
+
 bool on_lattice(std::int32_t v) {
   return v > -kLatticeEnd && v < kLatticeEnd;
 }
@@ -188,6 +224,8 @@ void write_snapshot(const CrowdBody& body, std::ostream& to) {
     for (const geometry::Segment& e : edges)
       for (const double v : {e.a.x, e.a.y, e.b.x, e.b.y}) out.put(v);
   }
+  out.put(static_cast<std::uint32_t>(core.bodies.all().size()));
+  for (const Body& b : core.bodies.all()) put(out, b);
   out.finish();
 }
 
@@ -238,6 +276,7 @@ void read_snapshot(CrowdBody& body, std::istream& from) {
     require(id < next_obstacle && obstacles.count(id) == 0, "an obstacle");
     obstacles.emplace(id, get_edges(in));
   }
+  for (auto left = in.get<std::uint32_t>(); left > 0; --left) get_body(in, next_obstacle, core.options, core.bodies);
   in.finish();
   require_ids(c, body.free_ids, id_end);
   require_robots(c, core);

@@ -17,8 +17,8 @@ constexpr int kStepsBetween = 5;
 
 int run(std::uint64_t wanted, std::uint64_t robots) {
   CrowdAudit audit;
-  const char* const kScenes[] = {"crowd", "streams", "mixture", "groups", "jam", "ring", "pillars", "blocks"};
-  constexpr std::uint64_t kCount = 8;
+  const char* const kScenes[] = {"crowd", "streams", "mixture", "groups", "jam", "ring", "pillars", "blocks", "bodies"};
+  constexpr std::uint64_t kCount = 9;
   for (std::uint64_t round = 0; audit.pairs < wanted; ++round) {
     CrowdScene scene = crowd_scene(kScenes[round % kCount], robots);
     scene.options.precision = round / kCount % 2 ? CrowdPrecision::double_lines : CrowdPrecision::float_lines;
@@ -26,7 +26,9 @@ int run(std::uint64_t wanted, std::uint64_t robots) {
     Crowd crowd = crowd_of(scene);
     for (int audits = 0; audits < 10 && audit.pairs < wanted; ++audits) {
       for (int k = 0; k < kStepsBetween + static_cast<int>(round / (4 * kCount)); ++k) crowd.step();
-      CrowdAuditor(crowd, scene.obstacles).step(audit);
+      CrowdAuditor auditor(crowd, scene.obstacles);
+      auditor.set_bodies(bodies_of(scene));
+      auditor.step(audit);
     }
     std::fprintf(stderr, "%s %s: %zu pairs, %zu failures\n", kScenes[round % kCount], name(scene.options.precision),
                  audit.pairs, audit.failures());
@@ -34,9 +36,11 @@ int run(std::uint64_t wanted, std::uint64_t robots) {
   std::printf(
       "pairs %zu\ntouching %zu\none_sided %zu\nboth_kept %zu\nunsafe %zu\nunequal %zu\nbroken %zu\nmet %zu\nfast %zu\n"
       "edges %zu\nedges_touching %zu\nedges_open %zu\nedges_met %zu\n"
+      "bodies %zu\nbodies_touching %zu\nbodies_open %zu\nbodies_met %zu\n"
       "differing %zu\n",
       audit.pairs, audit.touching, audit.one_sided, audit.both_kept, audit.unsafe, audit.unequal, audit.broken,
-      audit.met, audit.fast, audit.edges, audit.edges_touching, audit.edges_open, audit.edges_met, audit.differing);
+      audit.met, audit.fast, audit.edges, audit.edges_touching, audit.edges_open, audit.edges_met, audit.bodies,
+      audit.bodies_touching, audit.bodies_open, audit.bodies_met, audit.differing);
   if (!audit.first.empty()) std::printf("first: %s\n", audit.first.c_str());
   return audit.failures() == 0 ? 0 : 1;
 }

@@ -13,29 +13,43 @@
 #include <vector>
 
 #include "exactvo/formation/crowd.h"
+#include "exactvo/geometry/box.h"
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/vo/certificate.h"
 
 namespace exactvo::formation {
 
 /// The numbers of the properties are those of crowd.h.
 struct CrowdAudit {
-  std::size_t pairs = 0;           ///< looked at
-  std::size_t touching = 0;        ///< of them: nothing is promised
-  std::size_t one_sided = 0;       ///< only one of the two has the other among its neighbours
-  std::size_t both_kept = 0;       ///< of those that do not touch
-  std::size_t unsafe = 0;          ///< (2): the halves leave a velocity that collides within the horizon
-  std::size_t unequal = 0;         ///< (2): normals are not the negatives of each other
-  std::size_t broken = 0;          ///< a kept robot violates a half-plane
-  std::size_t met = 0;             ///< (1): two kept robots touch within the step
-  std::size_t fast = 0;            ///< (3)
-  std::size_t edges = 0;           ///< edges near robots that were looked at
-  std::size_t edges_touching = 0;  ///< of them: nothing is promised
-  std::size_t edges_open = 0;      ///< no half-plane of the robot excludes what meets the edge
-  std::size_t edges_met = 0;       ///< (7)
-  std::size_t differing = 0;       ///< `explain` said another velocity than `step` chose
-  std::string first;               ///< the first that failed, in hexadecimal floats
+  std::size_t pairs = 0;            ///< looked at
+  std::size_t touching = 0;         ///< of them: nothing is promised
+  std::size_t one_sided = 0;        ///< only one of the two has the other among its neighbours
+  std::size_t both_kept = 0;        ///< of those that do not touch
+  std::size_t unsafe = 0;           ///< (2): the halves leave a velocity that collides within the horizon
+  std::size_t unequal = 0;          ///< (2): normals are not the negatives of each other
+  std::size_t broken = 0;           ///< a kept robot violates a half-plane
+  std::size_t met = 0;              ///< (1): two kept robots touch within the step
+  std::size_t fast = 0;             ///< (3)
+  std::size_t edges = 0;            ///< edges near robots that were looked at
+  std::size_t edges_touching = 0;   ///< of them: nothing is promised
+  std::size_t edges_open = 0;       ///< no half-plane of the robot excludes what meets the edge
+  std::size_t edges_met = 0;        ///< (7)
+  std::size_t bodies = 0;           ///< bodies near robots that were looked at
+  std::size_t bodies_touching = 0;  ///< of them
+  std::size_t bodies_open = 0;      ///< the robot's half-plane does not exclude what meets the body, or it has none
+  std::size_t bodies_met = 0;       ///< (7), (9)
+  std::size_t differing = 0;        ///< `explain` said another velocity than `step` chose
+  std::string first;                ///< the first that failed, in hexadecimal floats
 
-  std::size_t failures() const { return unsafe + unequal + broken + met + fast + edges_open + edges_met + differing; }
+  std::size_t failures() const {
+    return unsafe + unequal + broken + met + fast + edges_open + edges_met + bodies_open + bodies_met + differing;
+  }
+};
+
+struct AuditedBody {
+  ObstacleId id = 0;
+  geometry::ConvexShape shape;
+  bool moves = false;
 };
 
 class CrowdAuditor {
@@ -45,6 +59,8 @@ class CrowdAuditor {
     for (const auto& obstacle : obstacles)
       for (const geometry::Segment& e : geometry::edges_of(obstacle)) edges_.push_back(e);
   }
+  /// Those that the crowd has.
+  void set_bodies(std::vector<AuditedBody> bodies) { bodies_ = std::move(bodies); }
 
   /// Audits one step of the crowd, every pair of neighbours of it.
   void step(CrowdAudit& audit) {
@@ -52,7 +68,11 @@ class CrowdAuditor {
     std::vector<Vec2> velocities, positions;
     crowd_.positions(positions);
     for (RobotId id = 0; id < crowd_.id_end(); ++id) before_.push_back(crowd_.explain(id));
+    body_from_.clear();
+    body_to_.clear();
+    for (const AuditedBody& b : bodies_) body_from_.push_back(crowd_.body_displacement(b.id));
     crowd_.step();
+    for (const AuditedBody& b : bodies_) body_to_.push_back(crowd_.body_displacement(b.id));
     crowd_.velocities(velocities);
     crowd_.kept(kept_);
     moved_.clear();
@@ -62,6 +82,7 @@ class CrowdAuditor {
       if (!(velocities[id] == e.chosen) || (kept_[id] != 0) != e.kept) fail(audit, audit.differing, e, nullptr);
       check_robot(audit, e);
       for (const geometry::Segment& edge : edges_) check_edge(audit, e, edge);
+      for (std::size_t k = 0; k < bodies_.size(); ++k) check_body(audit, e, k);
       for (const auto& n : e.neighbours) check_pair(audit, e, n);
     }
   }
@@ -150,6 +171,38 @@ class CrowdAuditor {
     if (!farther_apart({e.position, moved_[e.robot]}, edge, kind.radius)) fail(audit, audit.edges_met, e, nullptr);
   }
 
+  /// Places on the lattice: differences are exact.
+  void check_body(CrowdAudit& audit, const CrowdExplanation& e, std::size_t k) {
+    const AuditedBody& body = bodies_[k];
+    const CrowdKind& kind = crowd_.kind(crowd_.kind_of(e.robot));
+    const Vec2 velocity = crowd_.body_velocity(body.id), from = e.position - body_from_[k];
+    const double range = kind.radius + kind.time_horizon * (kind.max_speed + geometry::norm(velocity));
+    if (geometry::distance_below(geometry::box_of(body.shape), from) > 1.001 * range) return;
+    const CrowdExplanation::Body* line = nullptr;
+    for (const auto& b : e.bodies)
+      if (b.body == body.id) line = &b;
+    const Vec2 motion = moved_[e.robot] - body_to_[k] - from;
+    const geometry::GrownShape grown{body.shape, from, kind.radius};
+    if (!line) {
+      if (geometry::locate({body.shape, from, range}, Vec2{}) == geometry::Place::inside)
+        fail(audit, audit.bodies_open, e, nullptr);
+      if (geometry::segment_meets(grown, motion, 1.0)) fail(audit, audit.bodies_met, e, nullptr);
+      return;
+    }
+    ++audit.bodies;
+    if (line->touching) {
+      ++audit.bodies_touching;
+      const geometry::GrownShape after{body.shape, from + motion, kind.radius};
+      if (body.moves && e.kept && geometry::locate(after, Vec2{}) == geometry::Place::inside)
+        fail(audit, audit.bodies_met, e, nullptr);
+      return;
+    }
+    if (!vo::is_true({body.shape, from, kind.radius, kind.time_horizon, velocity, line->half_plane}))
+      fail(audit, audit.bodies_open, e, nullptr);
+    if ((e.kept || !body.moves) && geometry::segment_meets(grown, motion, 1.0))
+      fail(audit, audit.bodies_met, e, nullptr);
+  }
+
   /// What can be met within the horizon is nearer than the range: the rest of a long edge does not count.
   static bool excludes(const CrowdExplanation& e, const CrowdKind& kind, double range, const geometry::HalfPlane& h,
                        const geometry::Segment& edge) {
@@ -212,9 +265,20 @@ class CrowdAuditor {
 
   Crowd& crowd_;
   std::vector<geometry::Segment> edges_;
+  std::vector<AuditedBody> bodies_;
+  std::vector<Vec2> body_from_, body_to_;
   std::vector<CrowdExplanation> before_;
   std::vector<Vec2> moved_;
   std::vector<std::uint8_t> kept_;
 };
+
+/// Of a crowd of `crowd_of(scene)`.
+template <class Scene>
+std::vector<AuditedBody> bodies_of(const Scene& scene) {
+  std::vector<AuditedBody> bodies;
+  for (const auto& body : scene.bodies)
+    bodies.push_back({static_cast<ObstacleId>(scene.obstacles.size() + bodies.size()), body.shape, body.moves});
+  return bodies;
+}
 
 }  // namespace exactvo::formation

@@ -271,6 +271,119 @@ TEST(CrowdEdges, TheGridKnowsAllWithinReachByBruteForce) {
   }
 }
 
+geometry::ConvexShape shape_like(int kind, Vec2 at, double size) {
+  if (kind == 0) return geometry::Disc{at, size};
+  if (kind == 1) return geometry::Segment{at - Vec2{0.0, size}, at + Vec2{0.0, size}};
+  if (kind == 2)
+    return geometry::ConvexPolygon{
+        {at + Vec2{size, 0.0}, at + Vec2{0.0, size}, at - Vec2{size, 0.0}, at - Vec2{0.0, size}}};
+  return geometry::Ellipse{at, size, 0.0, 2.0 * size};
+}
+
+TEST(CrowdBodies, ARobotStopsBeforeOneAtRestUntilItIsRemoved) {
+  const double room[] = {2.0, 0.0, 2.0, 2.0};  // from the middle to where the robot comes
+  for (int kind = 0; kind < 4; ++kind) {
+    Crowd crowd = with_one_kind();
+    crowd.add_robot({-6.0, 0.0});
+    crowd.set_preferred({{1.0, 0.0}});
+    const ObstacleId body = crowd.add_body(shape_like(kind, {0.0, 0.0}, 2.0));
+    for (int k = 0; k < 200; ++k) EXPECT_EQ(crowd.step().bodies, 1U);
+    EXPECT_LT(crowd.position(0).x, -room[kind] - 0.5) << kind;
+    EXPECT_GT(crowd.position(0).x, -room[kind] - 0.501) << kind;
+    crowd.remove_obstacle(body);
+    for (int k = 0; k < 20; ++k) EXPECT_EQ(crowd.step().bodies, 0U);
+    EXPECT_GT(crowd.position(0).x, 2.0) << kind;
+    expect_problem(CrowdProblem::unknown_obstacle, "0", [&] { crowd.remove_obstacle(body); });
+  }
+}
+
+TEST(CrowdBodies, ARobotGoesRoundADiscAsNearAsItMay) {
+  Crowd crowd = with_one_kind();
+  crowd.add_robot({-6.0, 0.3});
+  crowd.add_body(geometry::Disc{{0.0, 0.0}, 1.0});
+  double nearest = 1e9;
+  for (int k = 0; k < 100; ++k) {
+    crowd.set_preferred({Vec2{8.0, 0.0} - crowd.position(0)});
+    crowd.step();
+    nearest = std::min(nearest, geometry::norm(crowd.position(0)));
+  }
+  EXPECT_GT(nearest, 1.5);
+  EXPECT_LT(nearest, 1.51);
+  EXPECT_NEAR(crowd.position(0).x, 8.0, 1e-3);
+}
+
+TEST(CrowdBodies, OneThatMovesGoesWholeStepsOfTheLatticeAndRobotsGetOutOfItsWay) {
+  for (int kind = 0; kind < 4; ++kind) {
+    Crowd crowd = with_one_kind();
+    crowd.add_robot({0.0, 0.0});
+    crowd.set_preferred({{0.0, 0.0}});
+    const geometry::ConvexShape shape = shape_like(kind, {-20.0, 0.25}, 1.0);
+    const ObstacleId body = crowd.add_moving_body(shape, {1.0, 0.0});
+    EXPECT_EQ(crowd.body_velocity(body), (Vec2{1.0, 0.0}));
+    for (int k = 0; k < 160; ++k) {
+      EXPECT_EQ(crowd.step().relaxed, 0U) << kind << ' ' << k;
+      const Vec2 seen = crowd.position(0) - crowd.body_displacement(body);
+      EXPECT_NE(geometry::locate({shape, seen, 0.5}, Vec2{}), geometry::Place::inside) << kind << ' ' << k;
+    }
+    EXPECT_EQ(crowd.body_displacement(body), (Vec2{40.0, 0.0}));
+    // The wide one pushes it ahead of itself.
+    EXPECT_LT(geometry::norm(crowd.position(0)), kind == 1 ? 24.0 : 8.0) << kind;
+    ASSERT_EQ(crowd.bodies().size(), 1U);
+    EXPECT_EQ(crowd.bodies()[0].displacement, (Vec2{40.0, 0.0}));
+    EXPECT_TRUE(crowd.bodies()[0].moves);
+    crowd.set_body_velocity(body, {0.0, 1e-9});
+    EXPECT_EQ(crowd.body_velocity(body), (Vec2{0.0, 0.0}));
+    crowd.step();
+    EXPECT_EQ(crowd.body_displacement(body), (Vec2{40.0, 0.0}));
+  }
+}
+
+TEST(CrowdBodies, NobodyIsPushedIntoOneAtRest) {
+  CrowdScene scene = crowd_scene("jam", 200);
+  for (auto& robot : scene.robots) robot.goal = {100.0, 0.0};
+  for (int k = 0; k < 12; ++k)
+    scene.bodies.push_back({shape_like(k % 4, {17.0 + 0.1 * k, 6.0 * k - 33.0}, 2.0), false, {}});
+  Crowd crowd = crowd_of(scene);
+  std::size_t relaxed = 0;
+  for (int k = 0; k < 200; ++k) relaxed += crowd.step().relaxed;
+  EXPECT_GT(relaxed, 100U);
+  for (RobotId id = 0; id < 200; ++id)
+    for (const auto& body : scene.bodies)
+      EXPECT_NE(geometry::locate({body.shape, crowd.position(id), 0.5}, Vec2{}), geometry::Place::inside) << id;
+}
+
+TEST(CrowdBodies, ARobotThatStartsInsideComesOut) {
+  for (int kind = 0; kind < 4; ++kind) {
+    Crowd crowd = with_one_kind();
+    crowd.add_robot({0.3, 0.125});
+    crowd.set_preferred({{0.0, 0.0}});
+    const geometry::ConvexShape shape = shape_like(kind, {0.0, 0.0}, 1.0);
+    crowd.add_moving_body(shape, {0.0, 0.0});
+    for (int k = 0; k < 20; ++k) crowd.step();
+    EXPECT_NE(geometry::locate({shape, crowd.position(0), 0.5}, Vec2{}), geometry::Place::inside) << kind;
+  }
+}
+
+TEST(CrowdRefuses, BodiesThatAreNone) {
+  Crowd crowd = with_one_kind();
+  expect_problem(CrowdProblem::not_finite, "body", [&] { crowd.add_body(geometry::Disc{{kNaN, 0.0}, 1.0}); });
+  expect_problem(CrowdProblem::out_of_range, "body", [&] { crowd.add_body(geometry::Disc{{0.0, 1e13}, 1.0}); });
+  expect_problem(CrowdProblem::out_of_range, "body", [&] { crowd.add_body(geometry::Disc{{0.0, 0.0}, -1.0}); });
+  expect_problem(CrowdProblem::out_of_range, "counter-clockwise", [&] {
+    crowd.add_body(geometry::ConvexPolygon{{{0.0, 0.0}, {0.0, 1.0}, {1.0, 0.0}}});
+  });
+  expect_problem(CrowdProblem::not_finite, "velocity", [&] {
+    crowd.add_moving_body(geometry::Disc{{0.0, 0.0}, 1.0}, {kInfinity, 0.0});
+  });
+  expect_problem(CrowdProblem::out_of_range, "velocity", [&] {
+    crowd.add_moving_body(geometry::Disc{{0.0, 0.0}, 1.0}, {100.0, 0.0});
+  });
+  const ObstacleId still = crowd.add_body(geometry::Disc{{0.0, 0.0}, 1.0});
+  EXPECT_EQ(still, 0U);
+  expect_problem(CrowdProblem::unknown_obstacle, "at rest", [&] { crowd.set_body_velocity(still, {}); });
+  expect_problem(CrowdProblem::unknown_obstacle, "body 1", [&] { crowd.body_displacement(1); });
+}
+
 TEST(CrowdRefuses, ObstaclesThatAreNoPlaces) {
   Crowd crowd;
   expect_problem(CrowdProblem::not_finite, "obstacle", [&] {
@@ -408,7 +521,7 @@ class CrowdScenes : public testing::TestWithParam<Case> {
   CrowdScene scene() const { return crowd_scene(GetParam().scene, GetParam().robots); }
 };
 
-TEST_P(CrowdScenes, Properties1And2And3And7HoldInRationalsAndExplainSaysWhatStepChooses) {
+TEST_P(CrowdScenes, Properties1And2And3And7And9HoldInRationalsAndExplainSaysWhatStepChooses) {
   for (const CrowdPrecision precision : {CrowdPrecision::float_lines, CrowdPrecision::double_lines}) {
     CrowdScene s = scene();
     s.options.precision = precision;
@@ -416,13 +529,17 @@ TEST_P(CrowdScenes, Properties1And2And3And7HoldInRationalsAndExplainSaysWhatStep
     CrowdAudit audit;
     for (int k = 0; k < 4; ++k) {
       run(crowd, GetParam().steps / 4);
-      CrowdAuditor(crowd, s.obstacles).step(audit);
+      CrowdAuditor auditor(crowd, s.obstacles);
+      auditor.set_bodies(bodies_of(s));
+      auditor.step(audit);
     }
     EXPECT_EQ(audit.edges > 0, !s.obstacles.empty());
+    EXPECT_EQ(audit.bodies > 0, !s.bodies.empty());
     EXPECT_EQ(audit.failures(), 0U) << audit.first << "\nedges " << audit.edges << " open " << audit.edges_open
-                                    << " met " << audit.edges_met << "\nunsafe " << audit.unsafe << " unequal "
-                                    << audit.unequal << " broken " << audit.broken << " met " << audit.met << " fast "
-                                    << audit.fast << " differing " << audit.differing;
+                                    << " met " << audit.edges_met << "\nbodies " << audit.bodies << " open "
+                                    << audit.bodies_open << " met " << audit.bodies_met << "\nunsafe " << audit.unsafe
+                                    << " unequal " << audit.unequal << " broken " << audit.broken << " met "
+                                    << audit.met << " fast " << audit.fast << " differing " << audit.differing;
     EXPECT_GT(audit.both_kept, 100U);
   }
 }
@@ -467,6 +584,7 @@ TEST_P(CrowdScenes, Property5_TheNearestAndAllWithinReachAreNeighboursByBruteFor
   for (const CrowdKind& kind : s.kinds) body.add_kind(kind);
   for (const auto& robot : s.robots) body.add_robot(robot.at, robot.kind);
   for (const auto& obstacle : s.obstacles) body.add_obstacle(obstacle);
+  for (const auto& b : s.bodies) body.add_body(b.shape, b.moves, b.velocity);
   body.core->steering = [&s](CrowdSlice& slice) {
     for (std::size_t k = 0; k < slice.size(); ++k) slice.prefer(k, s.preferred(slice.id(k), slice.position(k)));
   };
@@ -504,6 +622,8 @@ TEST_P(CrowdScenes, Property4_RangesCutElsewhereGiveTheSameBits) {
     for (const CrowdKind& kind : s.kinds) body.add_kind(kind);
     for (const auto& robot : s.robots) body.add_robot(robot.at, robot.kind);
     for (const auto& obstacle : s.obstacles) body.add_obstacle(obstacle);
+    for (const auto& b : s.bodies) body.add_body(b.shape, b.moves, b.velocity);
+    for (const auto& b : s.bodies) body.add_body(b.shape, b.moves, b.velocity);
     body.core->steering = [&s](CrowdSlice& slice) {
       for (std::size_t k = 0; k < slice.size(); ++k) slice.prefer(k, s.preferred(slice.id(k), slice.position(k)));
     };
@@ -564,7 +684,8 @@ TEST_P(CrowdScenes, Property6_ARunGoesOnFromASnapshotOfAnyStep) {
 INSTANTIATE_TEST_SUITE_P(All, CrowdScenes,
                          testing::Values(Case{"crowd", 1000, 40}, Case{"ring", 120, 300}, Case{"streams", 1000, 40},
                                          Case{"groups", 400, 200}, Case{"mixture", 1000, 60}, Case{"jam", 500, 80},
-                                         Case{"blocks", 200, 160}, Case{"pillars", 400, 60}, Case{"clumps", 1300, 12}),
+                                         Case{"blocks", 200, 160}, Case{"pillars", 400, 60}, Case{"bodies", 400, 60},
+                                         Case{"clumps", 1300, 12}),
                          [](const auto& scene) { return std::string(scene.param.scene); });
 
 TEST(CrowdSnapshot, ChangedOrCutOffIsRefused) {
@@ -573,6 +694,8 @@ TEST(CrowdSnapshot, ChangedOrCutOffIsRefused) {
   run(crowd, 3);
   crowd.remove_robot(7);
   crowd.set_preferred(std::vector<Vec2>(40, Vec2{1.0, 0.5}));
+  for (int kind = 0; kind < 4; ++kind) crowd.add_moving_body(shape_like(kind, {40.0, 10.0 * kind}, 1.0), {-0.5, 0.25});
+  crowd.step();
   std::stringstream stream;
   crowd.snapshot(stream);
   const std::string bytes = stream.str();

@@ -21,11 +21,14 @@
 ///  (4) The same calls give the same bits, on every SIMD target and with any number of threads.
 ///  (5) Every robot that could be met within the step is among the neighbours, however many they are.
 ///  (6) A crowd that was restored from a snapshot goes on with the same bits.
-///  (7) A robot that no edge of an obstacle touches at the beginning of a step (nearer than the radius and a rounding
-///      error) meets none in it, kept or not. Certified, for `CrowdOptions::certified`.
+///  (7) A robot that no edge of an obstacle and no body at rest touches at the beginning of a step (nearer than the
+///      radius and a rounding error) meets none in it, kept or not. Certified, for `CrowdOptions::certified`.
 ///  (8) Two kept robots that touch at the beginning of a step do not overlap at its end, and no robot comes nearer to
 ///  an
-///      edge that touches it, up to the same rounding error. Certified, for `CrowdOptions::certified`.
+///      edge or a body at rest that touches it, up to the same rounding error. Certified, for
+///      `CrowdOptions::certified`.
+///  (9) A kept robot and a moving body that do not touch at the beginning of a step are apart at every moment of it; if
+///      they touch, they do not overlap at its end. Certified, for `CrowdOptions::certified`.
 /// A robot that is not kept (`StepReport::relaxed`) had to violate half-planes; it violates them as little as possible,
 /// up to rounding, and nothing is promised of it. Which velocity is best is heuristic in its last digits.
 ///
@@ -62,7 +65,7 @@ struct CrowdKind {
   double time_horizon = 5.0;         ///< s, at least the time step; a pair looks ahead the shorter of its two
   double neighbour_distance = 15.0;  ///< m, > 0; taken as the distance within which robots can meet if that is more
   int neighbours = 10;               ///< 1 ... 15: the nearest within the distance, and all that could be met, (5)
-  double edge_horizon = 0.0;         ///< s, of edges of obstacles: at least the time step; 0: time_horizon
+  double edge_horizon = 0.0;         ///< s, of edges and bodies at rest: at least the time step; 0: time_horizon
 };
 
 /// The arithmetic of half-planes and linear programs.
@@ -92,7 +95,7 @@ enum class CrowdProblem {
   out_of_range,      ///< a number is outside the range that its field states
   beyond_lattice,    ///< a position at or beyond 2^30 q
   coincident,        ///< two robots in one place, one of them new
-  too_many,          ///< more than 2^30 robots, 2^14 kinds, 2^24 edges
+  too_many,          ///< more than 2^30 robots, 2^14 kinds, 2^24 edges and corners of bodies
   unknown_robot,     ///< no robot has this id
   unknown_kind,      ///< no kind has this number
   unknown_obstacle,  ///< no obstacle has this id
@@ -123,6 +126,7 @@ struct StepReport {
   std::size_t touching = 0;    ///< robots that touched another at the beginning of the step
   std::size_t widened = 0;     ///< robots with more in reach of the step than their kind's neighbours: took more, (5)
   std::size_t edges = 0;       ///< half-planes made against edges of obstacles
+  std::size_t bodies = 0;      ///< half-planes made against bodies, at rest and in motion
   std::size_t stopped = 0;  ///< robots that stay where they are, since nothing else was found that leads onto no edge
   std::size_t nudged = 0;   ///< kept robots whose velocity had to be rounded to another place of the lattice
 };
@@ -132,7 +136,7 @@ struct CrowdPhases {
   double sort = 0.0;    ///< robots by place
   double search = 0.0;  ///< neighbours
   double lines = 0.0;   ///< half-planes between robots
-  double edges = 0.0;   ///< half-planes against obstacles
+  double edges = 0.0;   ///< half-planes against obstacles and bodies
   double solve = 0.0;   ///< linear programs
   double finish = 0.0;  ///< rounding to the lattice, moving
 };
@@ -164,6 +168,15 @@ class CrowdSlice {
   Vec2* preferred_ = nullptr;
 };
 
+/// A body where it was added, and how far it has come.
+struct CrowdBodyState {
+  ObstacleId id = 0;            ///< what `add_body` or `add_moving_body` returned
+  geometry::ConvexShape shape;  ///< m, where it was added
+  bool moves = false;           ///< by `add_moving_body`
+  Vec2 displacement;            ///< m, from there, exact
+  Vec2 velocity;                ///< m/s, of the whole lattice steps that it goes
+};
+
 /// Called from several threads at once where there are several; what it says of a robot must not depend on the slice.
 using Steering = std::function<void(CrowdSlice&)>;
 
@@ -181,6 +194,12 @@ struct CrowdExplanation {
     geometry::HalfPlane half_plane;  ///< of the velocity; what is certified
     bool touching = false;           ///< nothing is promised of this edge
   };
+  /// A half-plane against a body.
+  struct Body {
+    ObstacleId body = 0;             ///< which
+    geometry::HalfPlane half_plane;  ///< of the velocity; what is certified
+    bool touching = false;           ///< what is promised of this body is (8), or the second half of (9)
+  };
   RobotId robot = 0;  ///< the one asked about
   Vec2 position;      ///< m, exact
   Vec2 velocity;      ///< m/s, now
@@ -191,6 +210,7 @@ struct CrowdExplanation {
   bool widened = false;
   std::vector<Neighbour> neighbours;  ///< nearest first
   std::vector<Edge> edges;            ///< nearest first, without those that an earlier half-plane excludes
+  std::vector<Body> bodies;           ///< those at rest first, each kind in the order in which they were added
 };
 
 /// The robots, the obstacles and the time step. Not to be called from two threads at once. What a caller gets wrong is
@@ -220,7 +240,24 @@ class Crowd {
   /// Its edges are walls, seen from both sides; whether a robot stands inside is not asked. Coordinates below 2^40 m.
   /// The grid of edges is laid out anew before the next step, in O(edges).
   ObstacleId add_obstacle(const geometry::Obstacle& obstacle);
-  /// Its edges are gone from the next step on. O(edges) before that step.
+  /// A solid body that stands still: a disc, a segment, a convex polygon, an ellipse. Coordinates below 2^40 m. Robots
+  /// keep off it as off edges, and one that starts inside is led out by the shortest way that it finds. Bodies are laid
+  /// out anew before the next step, in O(bodies).
+  ObstacleId add_body(const geometry::ConvexShape& shape);
+  /// A solid body that moves, without turning: robots take the whole avoiding upon themselves, (9). It goes the nearest
+  /// whole number of lattice steps in a time step, whatever is in its way, until `set_body_velocity`. Velocity in m/s,
+  /// at most 2^15 and 2^22 lattice steps a time step.
+  ObstacleId add_moving_body(const geometry::ConvexShape& shape, Vec2 velocity);
+  /// From the next step on, limits as of `add_moving_body`. Throws CrowdError: `unknown_obstacle` where none that moves
+  /// has this id.
+  void set_body_velocity(ObstacleId body, Vec2 velocity);
+  /// m/s, of the whole lattice steps that it goes; 0 of one at rest. Throws where there is none of this id.
+  Vec2 body_velocity(ObstacleId body) const;
+  /// m: how far a body has come from where it was added, exact. Throws where there is none of this id.
+  Vec2 body_displacement(ObstacleId body) const;
+  /// All bodies, in the order in which they were added.
+  std::vector<CrowdBodyState> bodies() const;
+  /// An obstacle's edges, or a body, are gone from the next step on. O(edges) or O(bodies) before that step.
   void remove_obstacle(ObstacleId obstacle);
 
   /// How many robots there are.
@@ -264,7 +301,7 @@ class Crowd {
   /// On as many threads as given (CrowdOptions::threads), whatever the crowd had.
   static Crowd restored(std::istream& from, int threads = 1);
 
-  /// Of positions, motions and kinds by id, for comparing runs.
+  /// Of positions, motions and kinds by id, and of moving bodies, for comparing runs.
   std::uint64_t digest() const;
   /// Memory that grows with the robots.
   std::size_t bytes() const;
