@@ -5,8 +5,8 @@
 //   c++ -O2 -I RVO2/src bench/arena/arena_rvo2.cpp -o arena_rvo2_original -L RVO2/build/src -lRVO
 //
 // As in RVO2's examples: neighbours 15 m away at most, ten of them, a time horizon of 5 s (10 s in Circle), and
-// preferred velocities perturbed by up to 1e-4 m/s against perfect symmetry. Robots head for the farthest point of
-// their way that they see.
+// preferred velocities perturbed by up to 1e-4 m/s against perfect symmetry. Robots are larger by half the margin, and
+// head for the farthest point of their way that they see.
 #include <RVO.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ struct Traveller {
 struct Scene {
   float time_step = 0.0F;
   double time_limit = 0.0, arrival_tolerance = 0.0;
-  float neighbour_distance = 0.0F;
+  float neighbour_distance = 0.0F, margin = 0.0F;
   std::vector<Traveller> travellers;
   std::vector<std::pair<Point, Point>> walls;
 };
@@ -64,6 +64,8 @@ void read_item(const std::string& word, std::istream& in, Scene& scene) {
     in >> scene.arrival_tolerance;
   } else if (word == "neighbour_distance") {
     in >> scene.neighbour_distance;
+  } else if (word == "margin") {
+    in >> scene.margin;
   } else if (word == "robot") {
     Traveller t;
     in >> t.radius >> t.max_speed >> t.start.x >> t.start.y;
@@ -141,8 +143,8 @@ void run(Scene scene) {
   RVO::RVOSimulator simulator;
   simulator.setTimeStep(scene.time_step);
   for (const Traveller& t : scene.travellers)
-    simulator.addAgent(vector_of(t.start), scene.neighbour_distance, kNeighbours, kHorizon, kHorizon, t.radius,
-                       t.max_speed);
+    simulator.addAgent(vector_of(t.start), scene.neighbour_distance, kNeighbours, kHorizon, kHorizon,
+                       t.radius + 0.5F * scene.margin, t.max_speed);
   for (const auto& [a, b] : scene.walls) simulator.addObstacle({vector_of(a), vector_of(b)});
   simulator.processObstacles();
   std::uint64_t random = 1;

@@ -172,11 +172,16 @@ Recording recording_of(const std::string& text, const Scenario& s, const std::st
 
 }  // namespace
 
+double margin_of_scene(const Scenario& s) {
+  return s.margins.robot == Margins{}.robot ? 0.0 : s.margins.robot;
+}
+
 std::string scene_text(const Scenario& s) {
   std::ostringstream out;
   out.precision(17);
   out << "arena 1\ntime_step " << s.time_step << "\ntime_limit " << s.time_limit << "\narrival_tolerance "
-      << s.arrival_tolerance << "\nneighbour_distance " << s.neighbour_distance << '\n';
+      << s.arrival_tolerance << "\nneighbour_distance " << s.neighbour_distance << "\nmargin " << margin_of_scene(s)
+      << '\n';
   for (const Robot& r : s.robots) {
     out << "robot " << r.radius << ' ' << r.max_speed;
     write_point(out, r.position);

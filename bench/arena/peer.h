@@ -12,6 +12,7 @@
 ///     time_limit 300
 ///     arrival_tolerance 0.1
 ///     neighbour_distance 15
+///     margin 0                                          that robots are to keep between each other
 ///     robot RADIUS MAX_SPEED X Y GOALS x1 y1 ...        every robot, in order
 ///     way ROBOT GOAL POINTS x1 y1 ...                   the shortest way to that goal, counted from 0; no line: none
 ///     wall X1 Y1 X2 Y2                                  every edge of an obstacle
@@ -35,6 +36,9 @@ struct PeerRun {
 /// Throws std::runtime_error, which names the program and what was expected, where it cannot be run, fails, takes
 /// longer than ten minutes or answers anything else.
 PeerRun run_peer(const std::string& program, const formation::Scenario& scenario);
+
+/// m: between robots, where the scene asks for it; the default is not the scene's but our method's.
+double margin_of_scene(const formation::Scenario& scenario);
 
 /// What a peer reads.
 std::string scene_text(const formation::Scenario& scenario);

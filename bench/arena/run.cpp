@@ -32,6 +32,14 @@ SimulationOptions options_of(const std::string& method) {
   return options;
 }
 
+/// The textbook's robots know no margin: where the scene has one they are larger by half of it instead, and measured at
+/// their own size.
+Scenario with_larger_robots(Scenario s) {
+  for (Robot& r : s.robots) r.radius += 0.5 * margin_of_scene(s);
+  s.margins.robot = 0.0;
+  return s;
+}
+
 double straight_way(const Robot& r) {
   double way = 0.0;
   Vec2 at = r.position;
@@ -77,7 +85,7 @@ RunResult run_scene(const Scene& scene, const ArenaMethod& method) {
   Recording run;
   if (method.program.empty()) {
     const double start = processor_seconds();
-    run = simulate(s, options_of(method.name));
+    run = simulate(method.name == "orca" ? with_larger_robots(s) : s, options_of(method.name));
     seconds = processor_seconds() - start;
   } else {
     PeerRun peer = run_peer(method.program, s);

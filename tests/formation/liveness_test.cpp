@@ -254,6 +254,50 @@ TEST(Liveness, AllThatHaveNoPlanAreNamed) {
   EXPECT_NE(m.outcome.find("for R3 and R4"), std::string::npos) << m.outcome;
 }
 
+/// Who passes a goal has a longer way again. That counted as standing still, until it was as near to the next goal:
+/// robots went by plans in the open, all by themselves.
+TEST(Liveness, WhoHeadsForItsNextGoalIsNotStalled) {
+  Scenario s;
+  s.robots = {robot("R1", {0, 0}, {20, 0})};
+  s.robots[0].goals = {{20, 0}, {0, 0}, {20, 0}};
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  EXPECT_TRUE(m.all_arrived) << m.outcome;
+  ASSERT_TRUE(m.plans.has_value());
+  EXPECT_EQ(m.plans->groups, 0u);
+}
+
+/// navground's Cross: 20 robots go to and fro for 300 s, with margins up to three radii wide. Nobody stands at the end.
+TEST(Liveness, InNavgroundsCrossNobodyStandsInTheEnd) {
+  constexpr double kLast = 5.0, kStands = 0.02;  // s, m/s
+  for (const double margin : {0.02, 0.22}) {
+    test::SeededRandom random(test::seed_of_run(2));
+    const Scenario s = test_scenes::cross(margin, random);
+    const Recording run = simulate(s);
+    EXPECT_TRUE(measure(s, run).collisions.empty()) << margin;
+    EXPECT_EQ(relaxed(run), 0u) << margin;
+    for (std::size_t i = 0; i < s.robots.size(); ++i) {
+      bool moved = false;
+      for (std::size_t k = run.steps.size() - 1; run.steps[k].time > s.time_limit - kLast; --k)
+        moved = moved ||
+                norm(run.steps[k].robots[i].position - run.steps[k - 1].robots[i].position) > kStands * s.time_step;
+      EXPECT_TRUE(moved) << margin << " " << i;
+    }
+  }
+}
+
+/// Robots with a wide margin stop farther apart than a radius, and were said to wait for nobody.
+TEST(Liveness, RobotsWithAWideMarginWaitForEachOther) {
+  Scenario s;
+  s.time_limit = 20.0;
+  s.margins.robot = 1.0;
+  test_scenes::add_wall(s, {{-8, 0}, {8, 0}, {8, 1.4}, {-8, 1.4}, {-8, 0}});
+  test_scenes::add_robot(s, {-6.0, 0.7}, {6.0, 0.7});
+  test_scenes::add_robot(s, {6.0, 0.7}, {-6.0, 0.7});
+  const Metrics m = measure(s, simulate(s));
+  EXPECT_NE(m.outcome.find("a deadlock of two"), std::string::npos) << m.outcome;
+}
+
 /// The same in millimetres and in kilometres, and far from the origin, as surveyors count.
 TEST(Liveness, PlansDependNeitherOnTheUnitNorOnTheOrigin) {
   const Scenario s = test_scenes::siding();

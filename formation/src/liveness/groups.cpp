@@ -25,8 +25,9 @@ constexpr double kNoProgress = 3.0;  ///< of a plan: others are in the way
 constexpr double kFirstBack = 3.0;   ///< going back; then twice as long again and again
 
 // In diameters.
-constexpr double kNearer = 0.4;    ///< counts as coming nearer
-constexpr double kTogether = 1.0;  ///< a smaller gap joins two robots in a group
+constexpr double kNearer = 0.4;       ///< counts as coming nearer
+constexpr double kTogether = 1.0;     ///< a smaller gap joins two robots in a group
+constexpr double kOfTheMargin = 1.5;  ///< or one below so many margins between robots
 constexpr double kBesideTheWayBack = 0.3;
 constexpr double kOpenMargin = 3.0;  ///< of a region round its robots and goals
 constexpr double kSceneMargin = 2.0;
@@ -36,8 +37,7 @@ constexpr std::size_t kFirstNodes = 200;
 constexpr double kMoreNodes = 1.15;
 constexpr int kPlansToChooseFrom = 12;
 constexpr std::size_t kChoosesUpTo = 100;  ///< robots
-constexpr std::size_t kCalls = 75000, kCallsGoingBack = 175000, kCallsFromTheStart = 1000000,
-                      kCallsForABetter = 150000;
+constexpr std::size_t kCalls = 75000, kCallsGoingBack = 175000, kCallsFromTheStart = 1000000, kCallsForABetter = 150000;
 /// The whole scene is planned for at most that many robots.
 constexpr std::size_t kEveryoneUpTo = 200;
 /// A map of the whole scene or of all goals has at most this many places, which take 0.1 s to a second, and this many
@@ -129,7 +129,8 @@ void Groups::restart_watch(std::size_t robot) {
 void Groups::watch(const std::function<double(std::size_t)>& way_left) {
   constexpr std::size_t kEvery = 5;  // rows: ways take time to measure
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    if (is_member(i) || now_[i].has_arrived) {
+    if (is_member(i) || now_[i].has_arrived || now_[i].goal_number != of_robot_[i].goal_number) {
+      of_robot_[i].goal_number = now_[i].goal_number;
       restart_watch(i);
     } else if ((row_ + i) % kEvery == 0) {
       OfRobot& r = of_robot_[i];
@@ -182,11 +183,15 @@ Groups::Members Groups::with_groups_of(Members who) const {
   return merged(std::move(who), more);
 }
 
-/// All that are joined to the seeds by gaps under a diameter, those next: over one gap, over two, and so on.
+/// All that are joined to the seeds by gaps under a diameter, those next: over one gap, over two, and so on. Who keeps
+/// a wide margin is joined over that.
 std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
   double largest = 0.0;
   for (const Robot& r : scenario_.robots) largest = std::max(largest, r.radius);
-  const double farthest = (1.0 + kTogether) * 2.0 * largest;
+  const auto reach = [&](double radii) {
+    return radii + std::max(kTogether * radii, kOfTheMargin * scenario_.margins.robot);
+  };
+  const double farthest = reach(2.0 * largest);
   Cells<std::size_t> by_place(farthest);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (now_[j].may_join) by_place.add(now_[j].position, j);
@@ -205,7 +210,7 @@ std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
     Members near;
     by_place.for_each_about(now_[i].position, farthest, [&](std::size_t j) {
       const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
-      if (!in[j] && norm(now_[i].position - now_[j].position) < (1.0 + kTogether) * radii) near.push_back(j);
+      if (!in[j] && norm(now_[i].position - now_[j].position) < reach(radii)) near.push_back(j);
     });
     std::sort(near.begin(), near.end());
     take(near);

@@ -22,10 +22,11 @@ namespace exactvo::formation::detail {
 
 /// A robot at the beginning of a step.
 struct RobotNow {
-  Vec2 position;             ///< m
-  Vec2 goal;                 ///< m, a place that counts as its present goal
-  bool has_arrived = false;  ///< at its last goal
-  bool may_join = false;     ///< it cooperates and has a way to its goal
+  Vec2 position;                ///< m
+  Vec2 goal;                    ///< m, a place that counts as its present goal
+  bool has_arrived = false;     ///< at its last goal
+  bool may_join = false;        ///< it cooperates and has a way to its goal
+  std::size_t goal_number = 0;  ///< which of its goals is the present one
 };
 
 /// m/s: gets as far along `way` (m) within a time step as the robot's speed bound allows.
@@ -73,11 +74,12 @@ class Groups {
     bool stands_still = false;  ///< in this step
   };
   struct OfRobot {
-    double shortest = 0.0;    ///< m, its way to the goal, since it was made shorter last
-    double since = 0.0;       ///< s
-    double planned_at = 0.0;  ///< s, when a plan for it was looked for last
-    int failures = 0;         ///< of planning, in a row
-    bool is_named = false;    ///< its stall was noted
+    std::size_t goal_number = 0;  ///< that the next one is of
+    double shortest = 0.0;        ///< m, its way to the goal, since it was made shorter last
+    double since = 0.0;           ///< s
+    double planned_at = 0.0;      ///< s, when a plan for it was looked for last
+    int failures = 0;             ///< of planning, in a row
+    bool is_named = false;        ///< its stall was noted
   };
   enum class PlanEnd { planned, none_on_map, out_of_budget, too_large };
   struct WithoutPlan {

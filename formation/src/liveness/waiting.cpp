@@ -27,9 +27,15 @@ bool is_held_up(const RobotStep& r, const Robot& robot) {
   return r.mode != Mode::arrived && wanted > nothing * nothing && dot(r.chosen, r.preferred) < kHeldBelow * wanted;
 }
 
+/// m: how near another robot must be to be waited for. Who keeps a wide margin stops that far away.
+double near_enough(const Scenario& scenario, std::size_t robot) {
+  constexpr double kOfTheMargin = 1.5;
+  return std::max(scenario.robots[robot].radius, kOfTheMargin * scenario.margins.robot);
+}
+
 /// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.
 bool holds(const RecordedConstraint& c, const RobotStep& r, const Scenario& scenario, std::size_t robot) {
-  return c.source == ConstraintSource::robot && c.clearance < scenario.robots[robot].radius &&
+  return c.source == ConstraintSource::robot && c.clearance < near_enough(scenario, robot) &&
          (c.active || c.clearance <= detail::reach_of_pair(scenario, robot, c.index)) &&
          (c.multiplier > 0.0 || geometry::violation(c.half_plane, r.preferred) > 0.0);
 }

@@ -162,7 +162,8 @@ class KinematicRun {
       const KinematicRobot& r = robots_[i];
       const bool has_way = guide_ ? r.course.has_value() && !r.waits_for_room : true;
       const Vec2 goal = guide_ && r.course ? r.course->points.back() : goal_of(i);
-      now.push_back({r.position, goal, at_goal(i) || r.has_come_nearest, has_way && scenario_.robots[i].cooperates});
+      now.push_back(
+          {r.position, goal, at_goal(i) || r.has_come_nearest, has_way && scenario_.robots[i].cooperates, r.goal});
     }
     groups_->begin_step(time, std::move(now), [&](std::size_t i) {
       const KinematicRobot& r = robots_[i];
