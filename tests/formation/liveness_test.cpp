@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "decision/decision.h"
+#include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "liveness_scenes.h"
+#include "support/c_library.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation {
@@ -153,6 +158,70 @@ TEST(Liveness, ARunByPlanSaysSo) {
   EXPECT_NE(notes.find(" waits for "), std::string::npos) << notes;
   EXPECT_EQ(went_back, m.plans->time_back > 0.0);
   EXPECT_EQ(went_back, notes.find("they first go back ") != std::string::npos);
+}
+
+/// Scenes as a new user writes them: positions, goals and walls, everything else by default.
+std::string as_json(const Scenario& s) {
+  const auto point = [](Vec2 p) { return "[" + std::to_string(p.x) + ", " + std::to_string(p.y) + "]"; };
+  std::string robots, walls;
+  for (const Robot& r : s.robots)
+    robots += (robots.empty() ? "" : ", ") + std::string("{\"id\": \"") + r.id +
+              "\", \"position\": " + point(r.position) + ", \"goal\": " + point(r.goals[0]) + "}";
+  for (const SceneObstacle& o : s.obstacles) {
+    std::string line;
+    for (const Vec2 p : std::get<geometry::Polyline>(o.shape).points) line += (line.empty() ? "" : ", ") + point(p);
+    walls += (walls.empty() ? "" : ", ") + std::string("{\"id\": \"") + o.id + "\", \"polyline\": [" + line + "]}";
+  }
+  return "{\"name\": \"" + s.name + "\", \"robots\": [" + robots + "], \"obstacles\": [" + walls + "]}";
+}
+
+void expect_all_arrive_by_default(const Scenario& as_drawn, double time_limit) {
+  Scenario s = datasets::parse_scenario(as_json(as_drawn), "mine.json", ".");
+  s.time_limit = time_limit;
+  const Metrics m = measure(s, simulate(s));
+  EXPECT_TRUE(m.all_arrived) << s.name << " " << s.robots.size() << ": " << m.outcome;
+  EXPECT_TRUE(m.collisions.empty()) << s.name << " " << s.robots.size();
+  EXPECT_EQ(m.relaxed_steps, 0u) << s.name << " " << s.robots.size();
+}
+
+TEST(Liveness, CirclesAndStreetsAsANewUserWritesThemArrive) {
+  constexpr double kDefault = 120.0;  // s
+  for (const int count : {4, 8, 12, 20, 40}) expect_all_arrive_by_default(circle(count), kDefault);
+  expect_all_arrive_by_default(test_scenes::street(14, 3.0), kDefault);
+  expect_all_arrive_by_default(test_scenes::street(18, 4.0), kDefault);
+}
+
+TEST(Liveness, AStreetOfSixtyAsANewUserWritesItArrives) {
+  expect_all_arrive_by_default(test_scenes::street(60, 4.0), 400.0);
+}
+
+/// The bytes of every choice, with one, two and four runs at a time.
+TEST(Liveness, PlansAreTheSameOnAnyNumberOfThreads) {
+  const std::vector<Scenario> scenes{test_scenes::street(14, 4.0), test_scenes::siding(), test_scenes::siding(),
+                                     test_scenes::street(14, 4.0)};
+  const auto bytes_of = [](const Scenario& s) {
+    const Recording run = simulate(s);
+    EXPECT_GT(run.liveness.value().groups, 0u);
+    std::string bytes;
+    for (const Step& row : run.steps)
+      for (const RobotStep& r : row.robots)
+        for (const double x : {r.position.x, r.position.y, r.chosen.x, r.chosen.y}) test::append_bits(bytes, x);
+    return bytes;
+  };
+  std::vector<std::string> alone;
+  for (const Scenario& s : scenes) alone.push_back(bytes_of(s));
+  EXPECT_EQ(alone[1], alone[2]);
+  EXPECT_EQ(alone[0], alone[3]);
+  for (const std::size_t count : {2u, 4u}) {
+    std::vector<std::string> together(scenes.size());
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < count; ++t)
+      threads.emplace_back([&, t] {
+        for (std::size_t i = t; i < scenes.size(); i += count) together[i] = bytes_of(scenes[i]);
+      });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_TRUE(together == alone) << count << " threads";
+  }
 }
 
 TEST(Liveness, PlansAreTheSameEveryTime) {
