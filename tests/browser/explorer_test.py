@@ -538,6 +538,12 @@ class Live(Page):
         self.server = subprocess.Popen([ARGS.program, "serve", *arguments], cwd=self.place, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.address = self.server.stdout.readline().strip()
 
+    def serve_instead(self, scenario):
+        self.server.send_signal(signal.SIGINT)
+        self.server.communicate(timeout=60)
+        (self.place / "other.json").write_text(json.dumps(scenario))
+        self.serve("other.json", "--method", "orca")
+
     def tearDown(self):
         self.browser.get("about:blank")  # which asks for nothing more
         super().tearDown()
@@ -664,11 +670,36 @@ class Live(Page):
     def test_what_cannot_be_is_said_and_the_last_answer_stays(self):
         self.show()
         self.fill("live-x", "6")  # the robot into the wall
-        self.assertIn("inside obstacle 'wall'", self.text("#live-message"))
+        self.assertEqual(self.text("#live-message"), "Not computed: robot 'R1', position: found [6, 0], overlapping obstacle 'wall' by 0.5 m, "
+                         "expected a start that is clear of every obstacle")
         self.fill("live-x", "2")
         self.assertIn("Computed in", self.text("#live-message"))
         self.assertEqual(self.run_script("return exactvo.page.space.decision.position[0]"), 2)
         self.browser.get_log("browser")  # Chromium logs the refusal
+
+    def test_refusals_name_things_and_no_places_in_a_file(self):
+        self.show()
+        self.fill("live-horizon-number", "0.01")
+        message = self.text("#live-message")
+        self.assertRegex(message, r"^Not computed: horizons, least: found 0\.01, expected at least twice time step, ")
+        self.fill("live-radius-number", "-1")
+        self.assertRegex(self.text("#live-message"), r"^Not computed: robot 'R1', radius: found ")
+        self.browser.get_log("browser")  # Chromium logs the refusals
+
+    def test_another_robot_is_asked_about_when_it_is_chosen_in_a_change(self):
+        robots = [{"id": f"R{k}", "position": [0, 3 * k], "goal": [12, 3 * k]} for k in range(3)]
+        self.serve_instead({**self.SCENARIO, "robots": robots, "obstacles": []})
+        self.show()
+        self.fill("live-x", "0.5")
+
+        def half_planes():
+            return self.run_script("return [0, 1, 2].map((i) => exactvo.page.live.run.decision(0, i).halfPlanes.length)")
+        self.assertEqual(half_planes(), [2, 1, 1], "of the others their halves of pairs with it, for its proofs")
+        self.run_script("exactvo.chooseRobot(1)")
+        self.answered()
+        self.assertEqual(half_planes(), [1, 2, 1])
+        marks = self.run_script("return [...document.querySelectorAll('#half-planes .mark')].map((m) => m.textContent)")
+        self.assertEqual(marks, ["\u2713 proven"] * 2)
 
     def test_run_from_here_and_back(self):
         self.show("t=2")
@@ -708,11 +739,8 @@ class Live(Page):
 
     def test_fifty_half_planes(self):
         """Reported, not asserted."""
-        robots = [{"id": f"R{k}", "position": [1.5 * (k % 8), 1.5 * (k // 8)], "goal": [12, 0]} for k in range(51)]
-        (self.place / "fifty.json").write_text(json.dumps({**self.SCENARIO, "robots": robots, "obstacles": [], "time_limit": 0.2}))
-        self.server.send_signal(signal.SIGINT)
-        self.server.communicate(timeout=60)
-        self.serve("fifty.json", "--method", "orca")
+        robots = [{"id": f"R{k}", "position": [1.5 * (k % 8), 1.5 * (k // 8)], "goal": [30 + 1.5 * (k % 8), 1.5 * (k // 8)]} for k in range(51)]
+        self.serve_instead({**self.SCENARIO, "robots": robots, "obstacles": [], "time_limit": 0.2})
         self.show()
         times = []
         for k in range(20):

@@ -245,6 +245,20 @@ TEST(BadInput, TwoGoalsInOnePlaceAreSaid) {
   EXPECT_THAT(r.warnings[0], HasSubstr("too near to each other"));
 }
 
+TEST(BadInput, OfManyRobotsWithOneGoalTheFirstPairsAreNamed) {
+  Scenario s;
+  for (int k = 0; k < 50; ++k) {
+    Robot& robot = s.robots.emplace_back();
+    robot.id = "R" + std::to_string(k);
+    robot.position = {2.0 * k, 0.0};
+    robot.goals = {{0.0, 9.0}};
+  }
+  s.time_limit = 0.1;
+  const std::vector<std::string> warnings = warnings_before(s);
+  ASSERT_EQ(warnings.size(), 11u);
+  EXPECT_EQ(warnings.back(), "1215 more pairs of goals too near to each other");
+}
+
 /// A room without a door round the goal.
 Scenario closed_room() {
   Scenario s;

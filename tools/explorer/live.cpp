@@ -188,6 +188,22 @@ void choose_anew(const formation::Scenario& scenario, double max_speed, Vec2 pre
   }
 }
 
+/// What an answer holds of robots that were not asked about: what holds them (who waits for whom) and their halves of
+/// pairs with the one that was, which its proofs need. All 50 half-planes of 51 robots would take most of an answer's
+/// time to pack.
+void keep_what_is_shown(std::size_t robot, formation::Step& row) {
+  for (std::size_t i = 0; i < row.robots.size(); ++i) {
+    if (i == robot) continue;
+    const Vec2 preferred = row.robots[i].preferred;
+    const auto is_not_shown = [&](const RecordedConstraint& c) {
+      const bool holds_it = c.active || geometry::violation(c.half_plane, preferred) > 0.0;
+      return !holds_it && (c.source != vo::BodyKind::robot || c.index != robot);
+    };
+    std::vector<RecordedConstraint>& all = row.robots[i].constraints;
+    all.erase(std::remove_if(all.begin(), all.end(), is_not_shown), all.end());
+  }
+}
+
 /// The first row of a run, its decisions with the preferred velocity that was asked for, and the row after it.
 class MomentRecorder : public formation::RunSink {
  public:
@@ -199,9 +215,10 @@ class MomentRecorder : public formation::RunSink {
     if (rows_.empty() && question_.preferred)
       choose_anew(question_.scenario, question_.scenario.robots[question_.robot].max_speed, *question_.preferred,
                   row.robots[question_.robot]);
+    keep_what_is_shown(question_.robot, row);
     rows_.push_back(std::move(row));
   }
-  const std::vector<formation::Step>& rows() const { return rows_; }
+  std::vector<formation::Step> take_rows() { return std::move(rows_); }
 
  private:
   const LiveQuestion& question_;
@@ -220,7 +237,7 @@ Moment moment_of(const LiveQuestion& question) {
   MomentRecorder recorder(question);
   formation::Recording about = formation::simulate(question.scenario, options, recorder);
   about.all_half_planes = true;
-  return {std::move(about), recorder.rows()};
+  return {std::move(about), recorder.take_rows()};
 }
 
 const datasets::Provenance& provenance() {

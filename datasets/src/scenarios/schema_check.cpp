@@ -220,6 +220,7 @@ class Checker {
   }
 
   void none_of(const Json& rule, const Json& value, const Json&, const Place& at) const {
+    if (value.is_object() && !has_required_keys(value, rule)) return;
     try {
       check(value, rule, at);
     } catch (const DataError&) {

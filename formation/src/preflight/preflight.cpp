@@ -8,6 +8,7 @@
 
 #include "exactvo/formation/constraint_name.h"
 #include "exactvo/formation/speed_profile.h"
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/hull.h"
 #include "motion/leader.h"
@@ -80,14 +81,19 @@ std::optional<Vec2> warn_of_ways(const Robot& robot, Vec2 from, const Target& t,
   return std::nullopt;
 }
 
+/// The first ones: of many robots that share a goal each pair would be named.
 void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vector<std::string>& out) {
+  constexpr std::size_t kNamed = 10;
+  std::size_t pairs = 0;
   for (std::size_t i = 0; i < last.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       const double room = norm(last[i].place - last[j].place) + last[i].reach + last[j].reach;
-      if (room < s.robots[i].radius + s.robots[j].radius)
-        out.push_back(last[i].name + ", and " + last[j].name + ", are too near to each other for both robots");
+      if (!(room < s.robots[i].radius + s.robots[j].radius) || ++pairs > kNamed) continue;
+      out.push_back(last[i].name + ", and " + last[j].name + ", are too near to each other for both robots");
     }
   }
+  if (pairs > kNamed)
+    out.push_back(geometry::counted(pairs - kNamed, "more pair") + " of goals too near to each other");
 }
 
 void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {

@@ -37,14 +37,18 @@ struct Checker {
   void require(bool ok, const std::string& pointer, const std::string& found, const std::string& expected) {
     if (!ok) problems.push_back({pointer, found, expected});
   }
+  // Words are made for what is wrong only: of many robots they took most of the time.
+
   void positive(double x, const std::string& pointer, const char* unit) {
-    require(std::isfinite(x) && x > 0.0, pointer, show(x), std::string("a finite number above 0 (") + unit + ")");
+    if (std::isfinite(x) && x > 0.0) return;
+    require(false, pointer, show(x), std::string("a finite number above 0 (") + unit + ")");
   }
   void not_negative(double x, const std::string& pointer, const char* unit) {
-    require(std::isfinite(x) && x >= 0.0, pointer, show(x), std::string("a finite number, 0 or more (") + unit + ")");
+    if (std::isfinite(x) && x >= 0.0) return;
+    require(false, pointer, show(x), std::string("a finite number, 0 or more (") + unit + ")");
   }
   void finite(Vec2 v, const std::string& pointer) {
-    require(geometry::is_finite(v), pointer, show(v), "two finite numbers (m or m/s)");
+    if (!geometry::is_finite(v)) require(false, pointer, show(v), "two finite numbers (m or m/s)");
   }
 };
 

@@ -433,6 +433,7 @@ function chooseRobot(i) {
   page.chartsDirty = page.dirty = true;
   fitSpace();
   fillLive();
+  if (live.edit) askForDecision();  // an answer has every half-plane of the robot that was asked about
   writeAddress();
 }
 
