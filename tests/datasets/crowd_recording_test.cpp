@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "exactvo/datasets/scenario_file.h"
+#include "exactvo/formation/speed_profile.h"
 #include "refusal.h"
 #include "temporary_folder.h"
 
@@ -40,6 +41,19 @@ class CrowdRecordings : public TemporaryFolder {
     return report;
   }
 };
+
+/// Thirty robots, two obstacles that pass through them, round corners.
+Scenario traffic() {
+  return parse_scenario(R"({"name": "traffic", "guidance": "none", "time_step": 0.1, "time_limit": 15,
+      "horizons": {"least": 0.3},
+      "robots": [{"grid": {"columns": 5, "rows": 6, "spacing": 1.6, "corner": [-14, -4], "goal": [24, 0]}, "max_speed": 1.5}],
+      "obstacles": [{"polyline": [[0, 7], [0, 5], [2, 5]]}],
+      "moving_obstacles": [
+        {"id": "tram", "polygon": [[-1, -9], [1, -9], [1, -6], [-1, -6]], "path": [[0, -7], [0, 0], [6, 0], [6, 9]], "speed": 1.3},
+        {"id": "bar", "polyline": [[4, 3], [5, 4], [4.5, 2]], "path": [[4, 3], [-8, -3]],
+         "profile": {"knots": [[0, 0], [2, 1.7], [9, 0.4]]}}]})",
+                        "traffic.json", {});
+}
 
 /// How many rows there are, and whether the file is cut off.
 std::pair<std::size_t, bool> rows_of(const std::filesystem::path& path) {
@@ -88,6 +102,30 @@ TEST_F(CrowdRecordings, Property1_WhatIsReadIsWhatWasRun) {
     EXPECT_FALSE(reader.is_cut_off());
     EXPECT_EQ(last + 1, kept.rows.size());
   }
+}
+
+TEST_F(CrowdRecordings, MovingObstaclesGoAlongTheirPathsAndAnAuditJudgesThem) {
+  const Scenario scenario = traffic();
+  for (const std::uint32_t every : {1U, 3U}) {
+    const CrowdRunReport run = record(scenario, every);
+    EXPECT_GT(run.bodies, 1000U);
+    CrowdRecordingReader reader(folder_ / "c.evr");
+    ASSERT_EQ(reader.head().bodies.size(), 2U);
+    EXPECT_TRUE(reader.head().bodies[0].moves);
+    EXPECT_EQ(std::get<geometry::ConvexPolygon>(reader.head().bodies[0].shape).vertices.size(), 4U);
+    const double q = reader.head().position_step;
+    for (CrowdRow row; reader.next(row);)
+      for (std::size_t k = 0; k < 2; ++k) {
+        const Vec2 at = displacement_at(scenario.moving_obstacles[k], 0.1 * row.step);
+        EXPECT_NEAR(q * static_cast<double>(row.body_x[k]), at.x, 0.51 * q) << row.step;
+        EXPECT_NEAR(q * static_cast<double>(row.body_y[k]), at.y, 0.51 * q) << row.step;
+      }
+    const CrowdAuditReport audit = audit_crowd_recording(folder_ / "c.evr");
+    EXPECT_TRUE(audit.clean()) << (audit.findings.empty() ? "" : audit.findings.front());
+    EXPECT_GT(audit.near_bodies, 20U);
+  }
+  const CrowdRunReport one = record(scenario, 1), two = record(scenario, 1, 2);
+  EXPECT_EQ(one.digest, two.digest);
 }
 
 TEST_F(CrowdRecordings, AnAuditOfARunFindsNothingAndAsksManyThings) {
@@ -208,6 +246,48 @@ TEST_F(PutRobots, AnAuditFindsRobotsThatComeNearerToAnEdgeThatTheyTouched) {
     const CrowdAuditReport on_it = audit_of([&](double) { return far(2.0); }, every);
     EXPECT_GT(on_it.touching_edges_open, 3U);
   }
+}
+
+/// A disc of 1 m at (0, 0) that rests, one at (9, 0) that may move, and a robot of 0.5 m that is put anywhere, with
+/// marks as if it had kept everything.
+CrowdAuditReport audit_beside_bodies(const std::filesystem::path& path, const std::function<Vec2(double)>& place) {
+  const auto crowd_at = [&](double radius, std::size_t step) {
+    formation::Crowd crowd;
+    crowd.add_kind({radius, 20.0, 5.0, 15.0, 10});
+    crowd.add_body(geometry::Disc{{0.0, 0.0}, 1.0});
+    crowd.add_moving_body(geometry::Disc{{9.0, 0.0}, 1.0}, {});
+    crowd.add_robot(place(static_cast<double>(step)));
+    crowd.step();
+    return crowd;
+  };
+  Scenario scenario;
+  CrowdRecorder recorder(path, scenario, 1);
+  recorder.begin(crowd_at(0.5, 0));
+  for (std::size_t step = 1; step <= 10; ++step) recorder.add_step(crowd_at(0.01, step), step);  // touches nothing
+  recorder.finish();
+  return audit_crowd_recording(path);
+}
+
+TEST_F(CrowdRecordings, AnAuditFindsRobotsThatMeetBodies) {
+  const std::filesystem::path path = folder_ / "c.evr";
+  const auto along_x = [&](double from, double by) {
+    return audit_beside_bodies(path, [=](double k) { return Vec2{from + by * k, 0.0}; });
+  };
+  const CrowdAuditReport through = audit_beside_bodies(path, [](double k) { return Vec2{0.0, -3.0 + 0.49 * k}; });
+  EXPECT_EQ(through.bodies_met, 1U);
+  EXPECT_GT(through.bodies_not_parted, 0U);
+  EXPECT_FALSE(through.clean());
+  const CrowdAuditReport nearer = along_x(1.4, -0.01), rests = along_x(1.4, 0.0), leaves = along_x(1.3, 0.01);
+  EXPECT_GT(nearer.bodies_not_parted, 5U);
+  EXPECT_NE(nearer.findings.back().find("comes nearer to body 0, which it touched"), std::string::npos);
+  EXPECT_GT(rests.touching_bodies, 5U);
+  EXPECT_EQ(rests.bodies_not_parted, 0U) << rests.findings.front();
+  EXPECT_EQ(leaves.bodies_not_parted, 0U) << leaves.findings.front();
+  const CrowdAuditReport still_there = along_x(7.6, 0.0), apart = along_x(7.4, 0.0);
+  EXPECT_GT(still_there.bodies_not_parted, 5U);
+  EXPECT_NE(still_there.findings.back().find("touched body 1, and still overlaps it"), std::string::npos);
+  EXPECT_TRUE(apart.clean());
+  EXPECT_EQ(apart.touching_bodies, 0U);
 }
 
 TEST_F(CrowdRecordings, ThreadsDoNotChangeARunNorDoesRecordingIt) {

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/provenance.h"
+#include "exactvo/geometry/pi.h"
 #include "support/terminal.h"
 
 namespace exactvo::tools {
@@ -35,6 +37,40 @@ std::vector<formation::SceneObstacle> walls_of(const std::vector<geometry::Segme
   return walls;
 }
 
+/// A body as a polygon, for the picture.
+struct OutlineOf {
+  std::vector<Vec2> operator()(const geometry::Disc& s) const { return round(s.center, s.radius, 0.0, s.radius); }
+  std::vector<Vec2> operator()(const geometry::Segment& s) const { return {s.a, s.b}; }
+  std::vector<Vec2> operator()(const geometry::ConvexPolygon& s) const { return s.vertices; }
+  std::vector<Vec2> operator()(const geometry::Ellipse& s) const { return round(s.center, s.l11, s.l21, s.l22); }
+
+  static std::vector<Vec2> round(Vec2 centre, double l11, double l21, double l22) {
+    constexpr int kCorners = 48;
+    std::vector<Vec2> outline;
+    for (int k = 0; k < kCorners; ++k) {
+      const double angle = 2.0 * geometry::kPi * k / kCorners, x = std::cos(angle), y = std::sin(angle);
+      outline.push_back(centre + Vec2{l11 * x, l21 * x + l22 * y});
+    }
+    return outline;
+  }
+};
+
+geometry::Obstacle outline_of(const geometry::ConvexShape& shape) {
+  const std::vector<Vec2> outline = std::visit(OutlineOf{}, shape);
+  if (outline.size() < 3) return geometry::Polyline{{outline.front(), outline.back()}};
+  return geometry::Polygon{outline, {}};
+}
+
+void add_bodies(const CrowdRecordingHead& head, formation::Scenario& scenario) {
+  for (std::size_t k = 0; k < head.bodies.size(); ++k) {
+    const std::string id = fmt::format("body {}", k + 1);
+    if (head.bodies[k].moves)
+      scenario.moving_obstacles.push_back({id, outline_of(head.bodies[k].shape), {{Vec2{}}, 0.0, {}}});
+    else
+      scenario.obstacles.push_back({id, outline_of(head.bodies[k].shape)});
+  }
+}
+
 datasets::RecordingFile about_crowd(const CrowdRecordingHead& head) {
   datasets::RecordingFile about;
   about.info.scenario = about.scenario.name = head.scenario;
@@ -42,6 +78,7 @@ datasets::RecordingFile about_crowd(const CrowdRecordingHead& head) {
   about.info.provenance = datasets::make_provenance({}, 0);
   about.scenario.time_step = about.recording.time_step = head.time_step;
   about.scenario.obstacles = walls_of(head.edges);
+  add_bodies(head, about.scenario);
   for (std::size_t i = 0; i < head.kind_of.size(); ++i) {
     formation::Robot robot;
     robot.id = fmt::format("#{}", i + 1);
@@ -59,6 +96,11 @@ void put(const CrowdRow& row, const CrowdRecordingHead& head, formation::Step& s
   const double before = step.time;
   step.robots.resize(row.x.size());
   step.time = head.time_step * row.step;
+  step.moving.clear();
+  for (std::size_t k = 0; k < head.bodies.size(); ++k)
+    if (head.bodies[k].moves)
+      step.moving.push_back(
+          {head.position_step * Vec2{static_cast<double>(row.body_x[k]), static_cast<double>(row.body_y[k])}, {}});
   for (std::size_t i = 0; i < row.x.size(); ++i) {
     formation::RobotStep& robot = step.robots[i];
     const Vec2 here{head.position_step * row.x[i], head.position_step * row.y[i]};

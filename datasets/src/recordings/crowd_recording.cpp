@@ -8,16 +8,20 @@
 #include <map>
 #include <string_view>
 #include <tuple>
+#include <utility>
+#include <variant>
 
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::datasets {
 namespace {
 
-constexpr std::string_view kMark = "EXACTVR1";
+/// Of recordings without bodies, and with.
+constexpr std::string_view kMark = "EXACTVR1", kMarkOfBodies = "EXACTVR2";
 constexpr char kRow = 'R', kEnd = 'E';
 constexpr std::uint32_t kMostKinds = 1U << 14U, kMostRobots = 1U << 30U, kMostEdges = 1U << 24U;
 constexpr std::size_t kLongestName = 1000;
+constexpr std::int64_t kFarthestBody = std::int64_t{1} << 52;
 
 std::uint64_t checksum(std::string_view bytes) {
   std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
@@ -93,6 +97,46 @@ class Bytes {
   std::uint64_t at_;
 };
 
+/// Of a shape, in the order of its fields.
+struct NumbersOf {
+  std::vector<double> operator()(const geometry::Disc& s) const { return {s.center.x, s.center.y, s.radius}; }
+  std::vector<double> operator()(const geometry::Segment& s) const { return {s.a.x, s.a.y, s.b.x, s.b.y}; }
+  std::vector<double> operator()(const geometry::ConvexPolygon& s) const {
+    std::vector<double> all;
+    for (const geometry::Vec2 v : s.vertices) all.push_back(v.x), all.push_back(v.y);
+    return all;
+  }
+  std::vector<double> operator()(const geometry::Ellipse& s) const {
+    return {s.center.x, s.center.y, s.l11, s.l21, s.l22};
+  }
+};
+
+CrowdBodyRecord get_body(Bytes& in) {
+  CrowdBodyRecord body;
+  const auto moves = in.get<std::uint8_t>(), kind = in.get<std::uint8_t>();
+  const auto count = in.get<std::uint32_t>();
+  in.require(moves <= 1, "a body that neither moves nor rests");
+  std::vector<double> v;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    v.push_back(in.get<double>());
+    in.require(std::isfinite(v.back()), "a body that is nowhere");
+  }
+  in.require((kind == 0 && count == 3) || (kind == 1 && count == 4) || (kind == 2 && count % 2 == 0) ||
+                 (kind == 3 && count == 5),
+             "a body of no shape");
+  body.moves = moves == 1;
+  if (kind == 0) body.shape = geometry::Disc{{v[0], v[1]}, v[2]};
+  if (kind == 1) body.shape = geometry::Segment{{v[0], v[1]}, {v[2], v[3]}};
+  if (kind == 3) body.shape = geometry::Ellipse{{v[0], v[1]}, v[2], v[3], v[4]};
+  if (kind == 2) {
+    geometry::ConvexPolygon polygon;
+    for (std::size_t k = 0; k < v.size(); k += 2) polygon.vertices.push_back({v[k], v[k + 1]});
+    body.shape = std::move(polygon);
+  }
+  in.require(geometry::is_valid(body.shape), "a body of no shape");
+  return body;
+}
+
 std::string to_bytes(const CrowdRecordingHead& head) {
   std::string out;
   append(out, static_cast<std::uint32_t>(head.scenario.size()));
@@ -107,6 +151,15 @@ std::string to_bytes(const CrowdRecordingHead& head) {
   append(out, static_cast<std::uint32_t>(head.edges.size()));
   for (const geometry::Segment& e : head.edges)
     for (const double v : {e.a.x, e.a.y, e.b.x, e.b.y}) append(out, v);
+  if (head.bodies.empty()) return out;
+  append(out, static_cast<std::uint32_t>(head.bodies.size()));
+  for (const CrowdBodyRecord& body : head.bodies) {
+    append(out, static_cast<std::uint8_t>(body.moves));
+    append(out, static_cast<std::uint8_t>(body.shape.index()));
+    const std::vector<double> numbers = std::visit(NumbersOf{}, body.shape);
+    append(out, static_cast<std::uint32_t>(numbers.size()));
+    for (const double v : numbers) append(out, v);
+  }
   return out;
 }
 
@@ -122,7 +175,7 @@ bool is_positive(double v) {
   return std::isfinite(v) && v > 0.0;
 }
 
-CrowdRecordingHead to_head(Bytes in) {
+CrowdRecordingHead to_head(Bytes in, bool has_bodies) {
   CrowdRecordingHead head;
   const auto length = in.get<std::uint32_t>();
   in.require(length <= kLongestName, "a name of more than 1000 bytes");
@@ -154,6 +207,11 @@ CrowdRecordingHead to_head(Bytes in) {
       in.require(std::isfinite(number), "an edge that is nowhere");
     }
     head.edges.push_back({{v[0], v[1]}, {v[2], v[3]}});
+  }
+  if (has_bodies) {
+    const auto bodies = in.get<std::uint32_t>();
+    in.require(bodies <= kMostEdges, "more than 2^24 bodies");
+    for (std::uint32_t k = 0; k < bodies; ++k) head.bodies.push_back(get_body(in));
   }
   in.require_end();
   return head;
@@ -191,8 +249,15 @@ void CrowdRecorder::begin(const formation::Crowd& crowd) {
     const formation::CrowdKind& kind = crowd.kind(static_cast<formation::KindId>(k));
     head_.kinds.push_back({kind.radius, kind.max_speed});
   }
+  for (const formation::CrowdBodyState& body : crowd.bodies()) {
+    head_.bodies.push_back({body.shape, body.moves});
+    body_ids_.push_back(body.id);
+    body_start_.push_back(body.displacement);
+  }
+  row_.body_x.assign(head_.bodies.size(), 0);
+  last_body_x_ = last_body_y_ = row_.body_y = row_.body_x;
   const std::string head = to_bytes(head_);
-  std::string out(kMark);
+  std::string out(head_.bodies.empty() ? kMark : kMarkOfBodies);
   append(out, static_cast<std::uint64_t>(head.size()));
   sum_ = checksum(head);
   append(out, sum_);
@@ -211,6 +276,11 @@ void CrowdRecorder::take(const formation::Crowd& crowd) {
     row_.x[i] = static_cast<std::int32_t>(at_[i].x / head_.position_step);
     row_.y[i] = static_cast<std::int32_t>(at_[i].y / head_.position_step);
   }
+  for (std::size_t k = 0; k < body_ids_.size(); ++k) {
+    const geometry::Vec2 at = crowd.body_displacement(body_ids_[k]) - body_start_[k];
+    row_.body_x[k] = static_cast<std::int64_t>(at.x / head_.position_step);
+    row_.body_y[k] = static_cast<std::int64_t>(at.y / head_.position_step);
+  }
 }
 
 void CrowdRecorder::add_step(const formation::Crowd& crowd, std::size_t steps) {
@@ -228,6 +298,10 @@ void CrowdRecorder::write_row() {
   for (auto [now, last] : {std::pair(&row_.x, &last_x_), std::pair(&row_.y, &last_y_)}) {
     for (std::size_t i = 0; i < now->size(); ++i)
       append_difference(out, std::int64_t{(*now)[i]} - std::int64_t{(*last)[i]});
+    *last = *now;
+  }
+  for (auto [now, last] : {std::pair(&row_.body_x, &last_body_x_), std::pair(&row_.body_y, &last_body_y_)}) {
+    for (std::size_t k = 0; k < now->size(); ++k) append_difference(out, (*now)[k] - (*last)[k]);
     *last = *now;
   }
   for (std::size_t first = 0; first < row_.kept.size(); first += 8) {
@@ -264,6 +338,7 @@ struct CrowdRecordingReader::Parts {
   std::ifstream in;
   CrowdRecordingHead head;
   std::vector<std::int32_t> x, y;
+  std::vector<std::int64_t> body_x, body_y;
   std::string block;
   std::uint64_t at = 0, block_at = 0;  ///< bytes read, and before the block
   std::uint64_t rows = 0, sum = 0;     ///< of the blocks read
@@ -314,14 +389,17 @@ CrowdRecordingReader::CrowdRecordingReader(const std::filesystem::path& path) : 
   if (!p.in)
     throw DataError(DataCode::file_unreadable, p.name, "", "a file that cannot be read", "a recording of a crowd");
   char mark[kMark.size()] = {};
-  if (!p.read(mark, sizeof mark) || std::string_view(mark, sizeof mark) != kMark)
+  const bool whole = p.read(mark, sizeof mark), has_bodies = std::string_view(mark, sizeof mark) == kMarkOfBodies;
+  if (!whole || (!has_bodies && std::string_view(mark, sizeof mark) != kMark))
     throw DataError(DataCode::format_syntax, p.name, "byte 0", "another beginning",
-                    "\"EXACTVR1\", of a recording of a crowd");
+                    "\"EXACTVR1\" or \"EXACTVR2\", of a recording of a crowd");
   if (!p.read_block()) p.bytes().refuse("its end within the head");
-  p.head = to_head(p.bytes());
+  p.head = to_head(p.bytes(), has_bodies);
   p.sum = checksum(p.block);
   p.x.assign(p.head.kind_of.size(), 0);
   p.y = p.x;
+  p.body_x.assign(p.head.bodies.size(), 0);
+  p.body_y = p.body_x;
 }
 
 CrowdRecordingReader::~CrowdRecordingReader() = default;
@@ -356,8 +434,17 @@ bool CrowdRecordingReader::next(CrowdRow& row) {
       in.require(std::abs(next) <= std::int64_t{1} << 30, "a position beyond the lattice");
       value = static_cast<std::int32_t>(next);
     }
+  for (std::vector<std::int64_t>* column : {&p.body_x, &p.body_y})
+    for (std::int64_t& value : *column) {
+      const std::int64_t difference = in.difference();
+      in.require(std::abs(difference) <= kFarthestBody && std::abs(value + difference) <= kFarthestBody,
+                 "a body beyond the lattice");
+      value += difference;
+    }
   row.x = p.x;
   row.y = p.y;
+  row.body_x = p.body_x;
+  row.body_y = p.body_y;
   row.kept.resize(p.x.size());
   for (std::size_t first = 0; first < row.kept.size(); first += 8) {
     const auto bits = in.get<std::uint8_t>();
@@ -370,7 +457,7 @@ bool CrowdRecordingReader::next(CrowdRow& row) {
 }
 
 bool begins_crowd_recording(std::string_view bytes) {
-  return bytes.substr(0, kMark.size()) == kMark;
+  return bytes.substr(0, kMark.size()) == kMark || bytes.substr(0, kMark.size()) == kMarkOfBodies;
 }
 
 CrowdTable write_crowd_csv(const std::filesystem::path& from, AtomicFile& to) {

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "exactvo/datasets/crowd_recording.h"
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/predicates.h"
@@ -58,11 +59,13 @@ class CrowdAuditor {
     steps_ = to.step - from.step;
     time_ = steps_ * head_.time_step;
     lay_out();
+    lay_out_bodies();
     for (std::size_t i = 0; i < from.x.size(); ++i) {
       if (one_of_ > 1 && mixed(to.step * kRandomStride + i) % one_of_ != 0) continue;
       ++report.motions;
       judge_speed(i);
       judge_edges(i);
+      judge_bodies(i);
       judge_pairs(i);
     }
   }
@@ -88,6 +91,73 @@ class CrowdAuditor {
     boxes.reserve(from_->x.size());
     for (std::size_t i = 0; i < from_->x.size(); ++i) boxes.push_back({place(*from_, i), place(*from_, i)});
     robots_by_place_ = geometry::BoxGrid(std::move(boxes));
+  }
+
+  Vec2 displacement(const CrowdRow& row, std::size_t k) const {
+    return head_.position_step * Vec2{static_cast<double>(row.body_x[k]), static_cast<double>(row.body_y[k])};
+  }
+
+  void lay_out_bodies() {
+    std::vector<geometry::Box> boxes;
+    fastest_body_ = 0.0;
+    for (std::size_t k = 0; k < head_.bodies.size(); ++k) {
+      const Vec2 by = displacement(*from_, k);
+      geometry::Box box = geometry::box_of(head_.bodies[k].shape);
+      const double rounding = kTouches * (one_norm(box.low) + one_norm(box.high) + one_norm(by));
+      boxes.push_back({box.low + by - Vec2{rounding, rounding}, box.high + by + Vec2{rounding, rounding}});
+      fastest_body_ = std::max(fastest_body_, norm(displacement(*to_, k) - by));
+    }
+    bodies_by_place_ = geometry::BoxGrid(std::move(boxes));
+  }
+
+  /// As the body sees the robot: where bodies are is exact.
+  void judge_bodies(std::size_t i) {
+    if (head_.bodies.empty()) return;
+    const Vec2 here = place(*from_, i);
+    const double far = (kind(i).radius + norm(place(*to_, i) - here) + fastest_body_) * (1.0 + kTouches);
+    bodies_by_place_.for_each_within(here, far, [&](std::size_t k) {
+      const CrowdBodyRecord& body = head_.bodies[k];
+      const Vec2 at = here - displacement(*from_, k), motion = place(*to_, i) - displacement(*to_, k) - at;
+      const geometry::Box box = geometry::box_of(body.shape);
+      const double radius = kind(i).radius;
+      const double lengths = one_norm(box.low - at) + one_norm(box.high - at) + radius, rounding = kTouches * lengths;
+      if (is_within(body.shape, at, radius + rounding)) return judge_touching_body(i, k, at, motion, lengths);
+      ++report.near_bodies;
+      if (body.moves && !to_->kept[i]) return void(++report.bodies_open);
+      const bool met = steps_ == 1 ? segment_meets({body.shape, at, radius}, motion, 1.0)
+                                   : is_within(body.shape, at + motion, radius);
+      if (!met) return;
+      ++report.bodies_met;
+      find(i, ": meets body " + std::to_string(k));
+    });
+  }
+
+  /// A kept robot is apart from a moving body at the end; none comes nearer to one at rest. What is nearer is asked
+  /// with the robot's radius at which it touches now, found by halving.
+  void judge_touching_body(std::size_t i, std::size_t k, Vec2 at, Vec2 motion, double lengths) {
+    const geometry::ConvexShape& shape = head_.bodies[k].shape;
+    double radius = kind(i).radius;
+    if (head_.bodies[k].moves) {
+      if (!to_->kept[i]) return void(++report.bodies_open);
+    } else {
+      double least = 0.0;
+      constexpr int kHalvings = 40;
+      if (is_within(shape, at, radius))
+        for (int n = 0; n < kHalvings; ++n)
+          (is_within(shape, at, 0.5 * (least + radius)) ? radius : least) = 0.5 * (least + radius);
+      radius = std::min(radius, kind(i).radius) - kTouches * steps_ * (lengths + 4.0 * time_ * kind(i).max_speed);
+    }
+    if (!(radius > 0.0)) return void(++report.bodies_open);
+    ++report.touching_bodies;
+    if (!is_within(shape, at + motion, radius)) return;
+    ++report.bodies_not_parted;
+    find(i, head_.bodies[k].moves ? " touched body " + std::to_string(k) + ", and still overlaps it"
+                                  : ": comes nearer to body " + std::to_string(k) + ", which it touched");
+  }
+
+  /// In the interior. Exact.
+  static bool is_within(const geometry::ConvexShape& shape, Vec2 at, double radius) {
+    return geometry::locate(GrownShape{shape, at, radius}, Vec2{}) == geometry::Place::inside;
   }
 
   void judge_speed(std::size_t i) {
@@ -171,7 +241,8 @@ class CrowdAuditor {
 
   const CrowdRecordingHead& head_;
   std::size_t one_of_;
-  geometry::BoxGrid edges_by_place_, robots_by_place_;
+  geometry::BoxGrid edges_by_place_, robots_by_place_, bodies_by_place_;
+  double fastest_body_ = 0.0;  ///< m, from row to row
   double largest_ = 0.0, fastest_ = 0.0, time_ = 0.0, cell_ = 0.0;
   std::uint32_t steps_ = 1;
   const CrowdRow *from_ = nullptr, *to_ = nullptr;
@@ -189,12 +260,26 @@ std::size_t motions_in(const std::filesystem::path& path) {
 
 void add(CrowdAuditReport& sum, const CrowdAuditReport& other) {
   using Count = std::size_t CrowdAuditReport::*;
-  for (const Count count :
-       {&CrowdAuditReport::rows, &CrowdAuditReport::robots, &CrowdAuditReport::motions, &CrowdAuditReport::too_fast,
-        &CrowdAuditReport::pairs, &CrowdAuditReport::pairs_met, &CrowdAuditReport::pairs_open,
-        &CrowdAuditReport::touching_pairs, &CrowdAuditReport::pairs_not_parted, &CrowdAuditReport::touching_pairs_open,
-        &CrowdAuditReport::near_edges, &CrowdAuditReport::edges_met, &CrowdAuditReport::touching_edges,
-        &CrowdAuditReport::edges_neared, &CrowdAuditReport::touching_edges_open})
+  for (const Count count : {&CrowdAuditReport::rows,
+                            &CrowdAuditReport::robots,
+                            &CrowdAuditReport::motions,
+                            &CrowdAuditReport::too_fast,
+                            &CrowdAuditReport::pairs,
+                            &CrowdAuditReport::pairs_met,
+                            &CrowdAuditReport::pairs_open,
+                            &CrowdAuditReport::touching_pairs,
+                            &CrowdAuditReport::pairs_not_parted,
+                            &CrowdAuditReport::touching_pairs_open,
+                            &CrowdAuditReport::near_edges,
+                            &CrowdAuditReport::edges_met,
+                            &CrowdAuditReport::touching_edges,
+                            &CrowdAuditReport::edges_neared,
+                            &CrowdAuditReport::touching_edges_open,
+                            &CrowdAuditReport::near_bodies,
+                            &CrowdAuditReport::bodies_met,
+                            &CrowdAuditReport::bodies_open,
+                            &CrowdAuditReport::touching_bodies,
+                            &CrowdAuditReport::bodies_not_parted})
     sum.*count += other.*count;
   sum.cut_off = sum.cut_off || other.cut_off;
   sum.findings.insert(sum.findings.end(), other.findings.begin(), other.findings.end());

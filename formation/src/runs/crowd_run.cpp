@@ -10,7 +10,9 @@
 #include <tuple>
 #include <utility>
 
+#include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/require.h"
 #include "steering/guide.h"
 
@@ -32,6 +34,9 @@ constexpr double kFinest = 0x1p-18, kReach = 0x1p29;
 /// Steps of the lattice that a robot makes in a time step at most.
 constexpr double kLongestMotion = 0x1p22;
 
+/// m/s, of a moving obstacle: room below what a crowd takes for what its way is rounded by.
+constexpr double kFastestBody = 0x1p14;
+
 /// m: what lies farther out than robots, goals and obstacles is not gone to.
 double extent(const Scenario& s) {
   double most = 1.0;
@@ -45,9 +50,17 @@ double extent(const Scenario& s) {
   return most;
 }
 
+/// m/s, of a moving obstacle at any time.
+double fastest(const MovingObstacle& o) {
+  double most = o.motion.profile.empty() ? o.motion.speed : 0.0;
+  for (const SpeedKnot& knot : o.motion.profile) most = std::max(most, knot.speed);
+  return most;
+}
+
 double fastest(const Scenario& s) {
   double most = 0.0;
   for (const Robot& r : s.robots) most = std::max(most, r.max_speed);
+  for (const MovingObstacle& o : s.moving_obstacles) most = std::max(most, fastest(o));
   return most;
 }
 
@@ -79,6 +92,8 @@ class CrowdRun {
       : scenario_(scenario), options_(options), sink_(sink), crowd_(options_of(scenario, options)) {
     add_robots();
     for (const SceneObstacle& o : scenario.obstacles) crowd_.add_obstacle(o.shape);
+    for (const MovingObstacle& o : scenario.moving_obstacles)
+      moving_.push_back(crowd_.add_moving_body(hull_of(o, {}), {}));
     if (options.guidance.value_or(scenario.guidance) == Guidance::route) guide_.emplace(scenario, 0.0);
     ways_.resize(scenario.robots.size());
     preferred_.resize(scenario.robots.size());
@@ -180,7 +195,17 @@ class CrowdRun {
     }
   }
 
+  /// Straight on to where each is at the end of the step, up to half a step of the lattice.
+  void set_out_obstacles() {
+    const double end = static_cast<double>(report_.steps + 1) * scenario_.time_step;
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+      const Vec2 way = displacement_at(scenario_.moving_obstacles[k], end) - crowd_.body_displacement(moving_[k]);
+      crowd_.set_body_velocity(moving_[k], way / scenario_.time_step);
+    }
+  }
+
   void step() {
+    set_out_obstacles();
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       look(i);
       const Vec2 way = ways_[i].heading - at_[i];
@@ -198,6 +223,7 @@ class CrowdRun {
     report_.stopped += s.stopped;
     report_.half_planes += s.neighbours;
     report_.edges += s.edges;
+    report_.bodies += s.bodies;
     before_.swap(at_);
     crowd_.positions(at_);
     for (std::size_t i = 0; i < at_.size(); ++i) report_.path_length += norm(at_[i] - before_[i]);
@@ -236,6 +262,7 @@ class CrowdRun {
   Crowd crowd_;
   std::optional<Guide> guide_;
   std::vector<Way> ways_;
+  std::vector<ObstacleId> moving_;
   std::vector<Vec2> at_, before_, preferred_;
   CrowdRunReport report_;
 };
@@ -249,7 +276,9 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
     if (!holds && problems.empty()) problems.push_back({pointer, found, expected});
   };
   require(!s.formation, "/formation", "a formation", "robots with goals, for a crowd");
-  require(s.moving_obstacles.empty(), "/moving_obstacles", "moving obstacles", "none, for a crowd");
+  for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k)
+    require(fastest(s.moving_obstacles[k]) <= kFastestBody, "/moving_obstacles/" + std::to_string(k),
+            in_metres(fastest(s.moving_obstacles[k])) + "/s", "at most " + in_metres(kFastestBody) + "/s, for a crowd");
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
   require(s.horizons.orca >= s.time_step, "/horizons/orca", "less than /time_step", "at least /time_step, for a crowd");
   const double step = position_step_for(s);

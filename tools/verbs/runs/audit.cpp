@@ -112,10 +112,14 @@ std::string in_words(const datasets::CrowdAuditReport& r) {
       "promised "
       "of them\n"
       "robots near edges that they did not touch at the row before: {}, {} overlapped\n"
-      "robots that touched an edge at the row before: {}, {} came nearer; {} more stand on the edge, not proven\n",
+      "robots that touched an edge at the row before: {}, {} came nearer; {} more stand on the edge, not proven\n"
+      "robots near bodies that they did not touch at the row before: {}, {} overlapped; of those that touched {}, {} "
+      "still "
+      "overlap or came nearer; {} more not kept or inside, nothing is promised of them\n",
       counted(r.rows, "row"), counted(r.robots, "robot"), counted(r.motions, "motion"), r.too_fast, r.pairs,
       r.pairs_met, r.pairs_open, r.touching_pairs, r.pairs_not_parted, r.touching_pairs_open, r.near_edges, r.edges_met,
-      r.touching_edges, r.edges_neared, r.touching_edges_open);
+      r.touching_edges, r.edges_neared, r.touching_edges_open, r.near_bodies, r.bodies_met, r.touching_bodies,
+      r.bodies_not_parted, r.bodies_open);
   for (const std::string& finding : r.findings) text += "  " + finding + "\n";
   return text;
 }
@@ -136,6 +140,11 @@ nlohmann::ordered_json as_json(const datasets::CrowdAuditReport& r) {
           {"touching_edges", r.touching_edges},
           {"edges_neared", r.edges_neared},
           {"touching_edges_open", r.touching_edges_open},
+          {"near_bodies", r.near_bodies},
+          {"bodies_met", r.bodies_met},
+          {"bodies_open", r.bodies_open},
+          {"touching_bodies", r.touching_bodies},
+          {"bodies_not_parted", r.bodies_not_parted},
           {"cut_off", r.cut_off},
           {"clean", r.clean()},
           {"findings", r.findings}};

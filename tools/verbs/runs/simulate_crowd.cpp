@@ -51,12 +51,12 @@ std::string to_json(const CrowdRunReport& r, const formation::Scenario& scenario
       "\"staying\": {}, \"without_route\": {}, "
       "\"steps\": {}, \"time\": {}, \"median_arrival_time\": {}, \"last_arrival_time\": {}, \"path_length\": {}, "
       "\"decisions\": {{\"relaxed\": {}, \"touching\": {}, \"widened\": {}, \"stopped\": {}}}, "
-      "\"half_planes\": {{\"robots\": {}, \"edges\": {}}}, \"digest\": \"{:016x}\", \"wall_time\": {}, "
+      "\"half_planes\": {{\"robots\": {}, \"edges\": {}, \"moving\": {}}}, \"digest\": \"{:016x}\", \"wall_time\": {}, "
       "\"provenance\": {}}}\n",
       nlohmann::json(scenario.name).dump(), r.robots, r.arrived, r.pushed_off, r.staying,
       without_route(r, scenario).dump(), r.steps, r.time, or_null(r.median_arrival), or_null(r.last_arrival),
-      r.path_length, r.relaxed, r.touching, r.widened, r.stopped, r.half_planes, r.edges, r.digest, r.wall_time,
-      datasets::to_json(provenance));
+      r.path_length, r.relaxed, r.touching, r.widened, r.stopped, r.half_planes, r.edges, r.bodies, r.digest,
+      r.wall_time, datasets::to_json(provenance));
 }
 
 /// The first of them; --json has all.
@@ -77,14 +77,14 @@ std::string summary(const CrowdRunReport& r, const formation::Scenario& scenario
       "{}"
       "  arrival      median {}, last {}\n"
       "  decisions    {:.3g} % relaxed, {:.3g} % touching or overlapping another, {:.3g} % stopped before an edge\n"
-      "  half-planes  {:.3g} against robots and {:.3g} against edges in a decision\n"
+      "  half-planes  {:.3g} against robots, {:.3g} against edges and {:.3g} against moving obstacles in a decision\n"
       "  path length  {:.4g} m on average\n"
       "  steps        {} in {:.3g} s of wall time, {:.3g} robot steps a second\n",
       shown(scenario.name), r.arrived, counted(r.robots, "robot"),
       r.pushed_off > 0 ? fmt::format(" ({} of them pushed off their goals again)", r.pushed_off) : "", r.staying,
       lines_without_route(r, scenario), or_dash(r.median_arrival), or_dash(r.last_arrival), 100.0 * share(r.relaxed, r),
       100.0 * share(r.touching, r), 100.0 * share(r.stopped, r), share(r.half_planes, r), share(r.edges, r),
-      r.path_length / static_cast<double>(r.robots), r.steps, r.wall_time, decisions / r.wall_time);
+      share(r.bodies, r), r.path_length / static_cast<double>(r.robots), r.steps, r.wall_time, decisions / r.wall_time);
 }
 
 /// What a crowd says of a scenario, "robot R: max_speed: found 0, expected ...", in the parts of a DataError.
@@ -108,7 +108,7 @@ UsageError only_with(const std::string& option, bool is_crowd) {
 
 void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   app.add_option("--engine", flags.engine,
-                 "standard: everything; crowd: many robots with goals among static obstacles, method orca, every step "
+                 "standard: everything; crowd: many robots with goals among obstacles, method orca, every step "
                  "certified")
       ->capture_default_str();
   app.add_option("--record", flags.record, "With --engine crowd: FILE.evr for positions, whole or not at all");

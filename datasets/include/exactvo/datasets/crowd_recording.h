@@ -31,6 +31,12 @@ struct CrowdKindRecord {
   double max_speed = 0.0;  ///< m/s
 };
 
+/// A solid body that a recording keeps, as it stood at the start.
+struct CrowdBodyRecord {
+  geometry::ConvexShape shape;  ///< m
+  bool moves = false;           ///< what is promised of one that moves is promised of kept robots
+};
+
 /// What stands before the rows.
 struct CrowdRecordingHead {
   std::string scenario;                  ///< its name
@@ -40,17 +46,19 @@ struct CrowdRecordingHead {
   std::vector<CrowdKindRecord> kinds;    ///< by number, as in the crowd
   std::vector<std::uint16_t> kind_of;    ///< of each robot
   std::vector<geometry::Segment> edges;  ///< of obstacles
+  std::vector<CrowdBodyRecord> bodies;   ///< those that the crowd had at the start
 };
 
 /// The robots at a time, in the order of the scenario.
 struct CrowdRow {
   std::uint32_t step = 0;  ///< time steps from the start
   /// Positions, in lattice steps.
-  std::vector<std::int32_t> x, y;  ///< lattice steps
+  std::vector<std::int32_t> x, y;            ///< lattice steps
+  std::vector<std::int64_t> body_x, body_y;  ///< lattice steps that each body has come from where it stood at the start
   std::vector<std::uint8_t> kept;  ///< 1: provably kept all its half-planes in every step since the row before
 };
 
-/// Takes a run; the file appears as a whole at `finish`.
+/// Takes a run whose robots and bodies stay the same; the file appears as a whole at `finish`.
 class CrowdRecorder : public formation::CrowdSink {
  public:
   /// Throws DataError (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
@@ -72,6 +80,9 @@ class CrowdRecorder : public formation::CrowdSink {
   CrowdRecordingHead head_;
   CrowdRow row_;
   std::vector<std::int32_t> last_x_, last_y_;
+  std::vector<std::int64_t> last_body_x_, last_body_y_;
+  std::vector<formation::ObstacleId> body_ids_;
+  std::vector<geometry::Vec2> body_start_;
   std::vector<geometry::Vec2> at_;
   std::vector<std::uint8_t> kept_;
   std::uint64_t bytes_ = 0, rows_ = 0;
@@ -85,6 +96,12 @@ class CrowdRecordingReader {
   /// Throws DataError: E_FILE_MISSING, E_FORMAT_SYNTAX with the byte.
   explicit CrowdRecordingReader(const std::filesystem::path& path);
   ~CrowdRecordingReader();
+
+  /// A solid body that a recording keeps, as it stood at the start.
+  struct CrowdBodyRecord {
+    geometry::ConvexShape shape;  ///< m
+    bool moves = false;           ///< what is promised of one that moves is promised of kept robots
+  };
 
   /// What stands before the rows. Valid as long as the reader.
   const CrowdRecordingHead& head() const;
@@ -119,10 +136,17 @@ struct CrowdAuditReport {
   std::size_t touching_edges = 0;       ///< robots and edges that touched: a robot must not come nearer
   std::size_t edges_neared = 0;         ///< of these: that come nearer, by more than rounding
   std::size_t touching_edges_open = 0;  ///< whose centre is on the edge up to rounding: nothing is promised
-  bool cut_off = false;                 ///< the file has no proper end
-  std::vector<std::string> findings;    ///< the first few of what is wrong, in words
+  std::size_t near_bodies = 0;          ///< robots and bodies near enough to ask, that did not touch at the row before
+  std::size_t bodies_met = 0;           ///< of these, if the body is at rest or the robot kept: that overlap
+  std::size_t bodies_open = 0;          ///< of these: the body moves and the robot is not kept, nothing is promised
+  std::size_t touching_bodies = 0;    ///< that touched: apart at the end from one that moves, not nearer to one at rest
+  std::size_t bodies_not_parted = 0;  ///< of these: that overlap, or came nearer
+  bool cut_off = false;               ///< the file has no proper end
+  std::vector<std::string> findings;  ///< the first few of what is wrong, in words
   /// Nothing is wrong with what was judged.
-  bool clean() const { return too_fast + pairs_met + pairs_not_parted + edges_met + edges_neared == 0; }
+  bool clean() const {
+    return too_fast + pairs_met + pairs_not_parted + edges_met + edges_neared + bodies_met + bodies_not_parted == 0;
+  }
 };
 
 /// Counts added up, findings joined.

@@ -2,13 +2,15 @@
 #pragma once
 
 /// \file
-/// Runs a scenario of many robots on the certified crowd (crowd.h), for robots with goals among static obstacles: the
-/// rule is ORCA's, as of Method::orca, with the promises of the crowd. What differs from Method::orca: half-planes
+/// Runs a scenario of many robots on the certified crowd (crowd.h), for robots with goals among obstacles: the rule is
+/// ORCA's, as of Method::orca, with the promises of the crowd. What differs from Method::orca: half-planes
 /// against obstacles are never relaxed, neighbours are the nearest 10 (and all that can be met within a step), motions
 /// are whole steps of a lattice.
 ///
 /// Along routes (Guidance::route) a robot heads for the farthest point of its route that it sees, looked for at every
-/// eighth step; a robot whose goal is proven out of reach stays. Deterministic, with any number of threads.
+/// eighth step; a moving obstacle is the convex hull of its shape, and goes straight and evenly from where it is at the
+/// beginning of a step to where it is at the end, up to half a lattice step; a robot whose goal is proven out of reach
+/// stays. Deterministic, with any number of threads.
 ///
 /// Neighbours: simulation.h runs everything else; datasets/crowd_recording.h records.
 
@@ -60,6 +62,7 @@ struct CrowdRunReport {
   std::size_t stopped = 0;             ///< decisions to stay, for lack of anything else that meets no edge
   std::size_t half_planes = 0;         ///< against robots
   std::size_t edges = 0;               ///< half-planes against edges of obstacles
+  std::size_t bodies = 0;              ///< half-planes against moving obstacles
   std::uint64_t digest = 0;            ///< Crowd::digest at the end
   bool interrupted = false;            ///< progress stopped it
   double wall_time = 0.0;              ///< s, of the whole call
