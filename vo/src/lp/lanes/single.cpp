@@ -25,9 +25,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace exactvo::lp::HWY_NAMESPACE {
 
-using D = hn::CappedTag<double, kSinglePadding>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
+/// Of so few lines: a divider takes a register of 64 bytes twice as long as one of 32, and adds to the time until the
+/// answer, which three short registers do not. Of 13 lines and more the wide ones win.
+constexpr std::size_t kFewLines = 12;
+using FewLines = hn::CappedTag<double, 4>;
+using ManyLines = hn::CappedTag<double, kSinglePadding>;
 
 struct Line {
   double x = 0.0, y = 0.0, c = -1.0;
@@ -55,17 +57,18 @@ struct Allowance {
 
 /// Every lane of a register.
 struct Every {};
+template <class M>
 HWY_INLINE M among(Every, M m) {
   return m;
 }
+template <class M>
 HWY_INLINE M among(M lines, M m) {
   return hn::And(lines, m);
 }
 
 /// `what(k, lines)` for the lines from k on, a register full; of the last one only lanes in the mask are lines.
-template <class What>
-HWY_INLINE void for_registers(std::size_t count, What what) {
-  const D d;
+template <class D, class What>
+HWY_INLINE void for_registers(D d, std::size_t count, What what) {
   std::size_t k = 0;
   for (; k + hn::Lanes(d) <= count; k += hn::Lanes(d)) what(k, Every());
   if (k < count) what(k, hn::FirstN(d, count - k));
@@ -76,14 +79,15 @@ constexpr std::size_t kMostNumbered = std::size_t{1} << 16U;
 
 /// The line violated most, if by more than `allowed`, or -1. Each carries its number in its last digits, so that one
 /// maximum finds both; among violations that differ by less, the later line is taken.
-HWY_INLINE std::ptrdiff_t most_violated(const SingleProblem& p, double x, double y, double allowed) {
-  const D d;
+template <class D>
+HWY_INLINE std::ptrdiff_t most_violated(D d, const SingleProblem& p, double x, double y, double allowed) {
+  using V = hn::Vec<D>;
   const hn::RebindToUnsigned<D> bits;
   const V vx = hn::Set(d, x), vy = hn::Set(d, y), enough = hn::Set(d, allowed);
   const double nothing = std::numeric_limits<double>::min();
   V most = hn::Set(d, nothing);
   auto number = hn::Iota(bits, 0);
-  for_registers(p.count, [&](std::size_t k, auto lines) {
+  for_registers(d, p.count, [&](std::size_t k, auto lines) {
     const V along = hn::Add(hn::Mul(hn::LoadU(d, p.normal_x + k), vx), hn::Mul(hn::LoadU(d, p.normal_y + k), vy));
     const V by = hn::Sub(hn::Sub(hn::LoadU(d, p.offset + k), along), enough);
     const auto digits = hn::And(hn::BitCast(bits, by), hn::Set(bits, ~std::uint64_t{kMostNumbered - 1}));
@@ -121,7 +125,7 @@ HWY_INLINE void ask(const SingleProblem& problem, Pack<One>& pack) {
 
 /// The walk of pack.h and relaxation.h for one problem: a register of one lane. Its lines are priced a register
 /// at a time, except where hard lines stand beside soft ones that give.
-template <bool kHard>
+template <class D, bool kHard>
 class LoneWalk {
  public:
   explicit HWY_INLINE LoneWalk(const SingleProblem& problem) : p_(problem) {
@@ -172,7 +176,7 @@ class LoneWalk {
     }
     const double noise = hn::GetLane(pack_.noise), slack = hn::GetLane(pack_.slack);
     const double allowed = relaxing_ ? hn::GetLane(pack_.level) + noise : noise - slack;
-    const std::ptrdiff_t line = most_violated(p_, hn::GetLane(pack_.vx), hn::GetLane(pack_.vy), allowed);
+    const std::ptrdiff_t line = most_violated(D(), p_, hn::GetLane(pack_.vx), hn::GetLane(pack_.vy), allowed);
     if (line < 0) return false;
     Line enters = given(p_, line);
     if (!relaxing_) enters.c += slack;
@@ -242,15 +246,18 @@ class LoneWalk {
 /// One problem, its lines a register at a time. A problem alone is bound by latency, so chains are kept short: where
 /// the walk goes to a vertex line by line, here all lines cut the boundary of one at once, and multipliers tell whether
 /// the optimum is found. What that does not settle is left to LoneWalk.
-template <bool kProve>
+template <class D, bool kProve>
 class Slide : private Allowance {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+
  public:
   explicit HWY_INLINE Slide(const SingleProblem& problem) : Allowance(problem.disc), p_(problem) {}
 
   /// False where the walk has to tell, or the answer is not proven.
   HWY_INLINE bool run(Solution& s) const {
     const double px = p_.preferred.x, py = p_.preferred.y;
-    const std::ptrdiff_t line = most_violated(p_, px, py, noise - slack);
+    const std::ptrdiff_t line = most_violated(D(), p_, px, py, noise - slack);
     if (line >= 0) return p_.count < kMostSlidLines && slide(given(p_, line), s);
     if (!(px * px + py * py <= p_.disc * p_.disc * (1.0 - kDiscUnits * 0x1p-53))) return false;  // nearest on the disc
     s.velocity = {px, py};
@@ -299,7 +306,7 @@ class Slide : private Allowance {
     const V hx = hn::Set(d, line.x), hy = hn::Set(d, line.y), hc = hn::Set(d, line.c), square = hn::Set(d, squared);
     const V inward = hn::Set(d, slack - 0.5 * noise), zero = hn::Zero(d), far = hn::Set(d, HUGE_VAL);
     V low = hn::Neg(far), high = far;
-    for_registers(p_.count, [&](std::size_t k, auto lines) {
+    for_registers(d, p_.count, [&](std::size_t k, auto lines) {
       const V x = hn::LoadU(d, p_.normal_x + k), y = hn::LoadU(d, p_.normal_y + k);
       const V c = hn::Add(hn::LoadU(d, p_.offset + k), inward);
       const V slope = hn::Add(hn::Sub(hn::Mul(hx, y), hn::Mul(hy, x)), hn::Set(d, kParallel<double>));
@@ -390,7 +397,7 @@ class Slide : private Allowance {
 
   template <bool kHard>
   HWY_INLINE bool relax(const Line& line, const Line& low, const Line& high, Solution& s) const {
-    LoneWalk<kHard> walk(p_);
+    LoneWalk<D, kHard> walk(p_);
     return walk.relax(line, low, high, s) && ((!kProve && !walk.is_on_disc()) || walk.is_proven());
   }
 
@@ -399,7 +406,7 @@ class Slide : private Allowance {
     const D d;
     const V vx = hn::Set(d, x), vy = hn::Set(d, y), share = hn::Set(d, kSignError), least = hn::Set(d, kSignUnderflow);
     M doubtful = hn::MaskFromVec(hn::Zero(d));
-    for_registers(p_.count, [&](std::size_t k, auto lines) {
+    for_registers(d, p_.count, [&](std::size_t k, auto lines) {
       const V along = hn::Mul(hn::LoadU(d, p_.normal_x + k), vx), across = hn::Mul(hn::LoadU(d, p_.normal_y + k), vy);
       const V c = hn::LoadU(d, p_.offset + k);
       const V terms = hn::Add(hn::Add(hn::Abs(along), hn::Abs(across)), hn::Abs(c));
@@ -455,9 +462,9 @@ class Slide : private Allowance {
   const SingleProblem& p_;
 };
 
-template <bool kProve, bool kHard>
+template <class D, bool kProve, bool kHard>
 HWY_INLINE bool walk_alone(const SingleProblem& p, Solution& s) {
-  LoneWalk<kHard> walk(p);
+  LoneWalk<D, kHard> walk(p);
   return walk.run(s) && (!kProve || walk.is_proven());
 }
 
@@ -466,13 +473,18 @@ HWY_INLINE bool walk_alone(const SingleProblem& p, Solution& s) {
 constexpr double kFarthestSlid = 1.0625;
 
 /// Squares in range (Pack::in_range) and lines that can be numbered: the rest takes a longer way.
-template <bool kProve>
-HWY_INLINE bool run(const SingleProblem& p, Solution& s) {
+template <class D, bool kProve>
+HWY_INLINE bool run_in(const SingleProblem& p, Solution& s) {
   const double limit = p.disc * p.disc, squared = p.preferred.x * p.preferred.x + p.preferred.y * p.preferred.y;
   const double most = std::max(squared, limit);
   if (!(limit >= kLeastSquare<double> && most <= kMostSquare<double> && p.count <= kMostNumbered)) return false;
-  if (squared <= limit * kFarthestSlid && Slide<kProve>(p).run(s)) return true;
-  return p.hard > 0 ? walk_alone<kProve, true>(p, s) : walk_alone<kProve, false>(p, s);
+  if (squared <= limit * kFarthestSlid && Slide<D, kProve>(p).run(s)) return true;
+  return p.hard > 0 ? walk_alone<D, kProve, true>(p, s) : walk_alone<D, kProve, false>(p, s);
+}
+
+template <bool kProve>
+HWY_INLINE bool run(const SingleProblem& p, Solution& s) {
+  return p.count <= kFewLines ? run_in<FewLines, kProve>(p, s) : run_in<ManyLines, kProve>(p, s);
 }
 
 bool run_single(const SingleProblem& p, Solution& s) {
