@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -23,6 +24,7 @@
 #include "exactvo/datasets/provenance.h"
 #include "options/program_options.h"
 #include "page.h"
+#include "route_maps.h"
 
 namespace exactvo::bench {
 namespace {
@@ -30,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Asked {
-  std::string out;
+  std::string out, routes;
   std::vector<std::string> suites, methods, peers;
   std::size_t jobs = 0, seeds = 0;
   bool quick = false;
@@ -40,9 +42,8 @@ struct Asked {
 using Key = std::tuple<std::string, std::string, std::uint64_t, std::string>;
 
 struct Job {
-  Scene scene;
-  ArenaMethod method;
-  Key key() const { return {scene.suite, scene.name, scene.seed, method.name}; }
+  Key key;
+  std::function<RunResult()> run;
 };
 
 Key key_of(const RunResult& r) {
@@ -74,7 +75,7 @@ std::vector<ArenaMethod> methods_of(const Asked& asked) {
   for (const std::string& peer : asked.peers) {
     const std::size_t equals = peer.find('=');
     const std::string name = peer.substr(0, equals);
-    const bool is_plain = !name.empty() && name.find_first_of(",\n\"") == std::string::npos;
+    const bool is_plain = !name.empty() && name != "route" && name.find_first_of(",\n\"") == std::string::npos;
     if (equals == std::string::npos || equals + 1 == peer.size() || !is_plain)
       throw std::runtime_error("--peer: found '" + peer + "', expected NAME=PROGRAM");
     if (std::any_of(methods.begin(), methods.end(), [&](const ArenaMethod& m) { return m.name == name; }))
@@ -84,16 +85,28 @@ std::vector<ArenaMethod> methods_of(const Asked& asked) {
   return methods;
 }
 
+bool is_asked_for(const std::string& suite, const Asked& asked) {
+  return asked.suites.empty() || std::find(asked.suites.begin(), asked.suites.end(), suite) != asked.suites.end();
+}
+
 std::vector<Job> jobs_of(const Asked& asked, const std::vector<ArenaMethod>& methods) {
-  require_known("--suite", asked.suites, suite_names());
+  std::vector<std::string> known = suite_names();
+  known.emplace_back(kRoutesSuite);
+  require_known("--suite", asked.suites, known);
+  const Extent extent = asked.quick ? Extent::quick : Extent::full;
+  const auto seeds = asked.seeds > 0 ? std::optional<std::uint64_t>(asked.seeds) : std::nullopt;
   std::vector<Job> jobs;
   for (const std::string& suite : suite_names()) {
-    if (!asked.suites.empty() && std::find(asked.suites.begin(), asked.suites.end(), suite) == asked.suites.end())
-      continue;
-    const auto seeds = asked.seeds > 0 ? std::optional<std::uint64_t>(asked.seeds) : std::nullopt;
-    for (const Scene& scene : scenes_of(suite, asked.quick ? Extent::quick : Extent::full, seeds))
-      for (const ArenaMethod& method : methods) jobs.push_back({scene, method});
+    if (!is_asked_for(suite, asked)) continue;
+    for (const Scene& scene : scenes_of(suite, extent, seeds))
+      for (const ArenaMethod& method : methods)
+        jobs.push_back({{suite, scene.name, scene.seed, method.name}, [=] { return run_scene(scene, method); }});
   }
+  if (asked.routes.empty() && !asked.suites.empty() && is_asked_for(kRoutesSuite, asked))
+    throw std::runtime_error("--suite routes takes --routes FOLDER");
+  if (!asked.routes.empty() && is_asked_for(kRoutesSuite, asked))
+    for (const RouteProblems& problems : route_problems_in(asked.routes, extent))
+      jobs.push_back({{kRoutesSuite, problems.scene(), 1, "route"}, [=] { return run_routes(problems); }});
   return jobs;
 }
 
@@ -158,7 +171,7 @@ void run_all(const std::vector<Job>& jobs, std::size_t threads, Results& results
       const Job& job = jobs[next++];
       lock.unlock();
       try {
-        RunResult r = run_scene(job.scene, job.method);
+        RunResult r = job.run();
         lock.lock();
         results.add(r);
         print_progress(r, ++done, jobs.size(),
@@ -194,7 +207,7 @@ int run(const Asked& asked, const std::vector<std::string>& command_line) {
   for (const RunResult& r : results.all()) known.insert(key_of(r));
   std::vector<Job> jobs;
   for (const Job& job : wanted)
-    if (known.count(job.key()) == 0) jobs.push_back(job);
+    if (known.count(job.key) == 0) jobs.push_back(job);
   std::signal(SIGINT, [](int) { is_interrupted = true; });
   std::signal(SIGTERM, [](int) { is_interrupted = true; });
   const std::size_t threads = asked.jobs > 0 ? asked.jobs : std::max(1u, std::thread::hardware_concurrency());
@@ -202,9 +215,10 @@ int run(const Asked& asked, const std::vector<std::string>& command_line) {
 
   std::vector<std::string> names;
   for (const ArenaMethod& method : methods) names.push_back(method.name);
+  names.emplace_back("route");
   std::vector<RunResult> shown;
   std::set<Key> keys;
-  for (const Job& job : wanted) keys.insert(job.key());
+  for (const Job& job : wanted) keys.insert(job.key);
   for (const RunResult& r : results.all())
     if (keys.count(key_of(r)) > 0) shown.push_back(r);
   std::ofstream page(folder / "index.html");
@@ -232,6 +246,8 @@ int main(int argc, char** argv) {
     options.texts("--suite", asked.suites, "Only these suites");
     options.texts("--method", asked.methods, "Only these methods: plan, bias, orca");
     options.texts("--peer", asked.peers, "NAME=PROGRAM: another program beside ours (bench/arena/peer.h)");
+    options.text("--routes", asked.routes,
+                 "Folder of Moving AI maps with lengths, NAME.map and NAME.lengths.tsv: suite routes");
     options.whole_number("--seeds", asked.seeds, 1, "So many draws of each random scene");
     options.whole_number("--jobs", asked.jobs, 1, "So many runs at a time");
     options.flag("--quick", asked.quick, "A few small scenes of each suite");

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "published.h"
+#include "route_maps.h"
 
 namespace exactvo::bench {
 namespace {
@@ -178,6 +179,40 @@ void write_published(std::ostream& out, const std::string& suite) {
   if (any) out << "</table>\n";
 }
 
+/// The methods that took part in a suite, in the order of columns.
+std::vector<std::string> methods_in(const SuiteTable& table, const std::vector<std::string>& methods) {
+  std::vector<std::string> there;
+  for (const std::string& method : methods)
+    if (std::any_of(table.scenes.begin(), table.scenes.end(),
+                    [&](const std::string& scene) { return table.find(scene, method) != nullptr; }))
+      there.push_back(method);
+  return there;
+}
+
+void write_routes(std::ostream& out, const std::vector<RunResult>& results) {
+  bool any = false;
+  for (const RunResult& r : results) {
+    if (r.suite != kRoutesSuite) continue;
+    if (!any)
+      out << "<h2>routes</h2>\n<p>Shortest-path problems on Moving AI maps, for points and for discs (radius in "
+             "cells). "
+             "<b>Path</b>: lengths over those of a point's shortest paths. <b>Ok</b>: no route is shorter than that, "
+             "and of "
+             "points no lower bound is longer. Discs have less room, and no route where no gap is wide enough; nor has "
+             "a "
+             "point of ours between two cells that touch at a corner, or at a corner itself.</p>\n"
+             "<table><tr><th class=\"words\">map</th><th>ok</th><th>problems</th><th>with a route</th><th>path</th>"
+             "<th>&micro;s a query</th></tr>\n";
+    any = true;
+    out << "<tr><th class=\"words\">" << escaped(r.scene) << "</th><td class=\""
+        << (r.success ? "good\">yes" : "bad\">no") << "</td><td>" << r.robots << "</td><td>" << r.arrived << "</td><td>"
+        << number("%.5f", r.path) << "</td><td>" << number("%.0f", r.cpu_per_step) << "</td></tr>\n";
+  }
+  if (!any) return;
+  out << "</table>\n";
+  write_published(out, kRoutesSuite);
+}
+
 constexpr const char* kStyle =
     "body{font:15px/1.45 sans-serif;max-width:78em;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;font-size:13px;margin:.8em 0}"
@@ -210,10 +245,12 @@ void write_page(std::ostream& out, const std::vector<RunResult>& results, const 
     const SuiteTable table = table_of(suite.name, results);
     if (table.scenes.empty()) continue;
     out << "<h2>" << escaped(suite.name) << "</h2>\n<p>" << escaped(suite.shows) << "</p>\n";
-    if (table.has_makespans) write_picture(out, table, methods);
-    write_table(out, table, methods);
+    const std::vector<std::string> there = methods_in(table, methods);
+    if (table.has_makespans) write_picture(out, table, there);
+    write_table(out, table, there);
     write_published(out, suite.name);
   }
+  write_routes(out, results);
   out << "<p>ExactVO " << escaped(facts.version) << " (" << escaped(facts.commit) << ", " << escaped(facts.build_type)
       << "), " << facts.jobs << " at a time, on " << escaped(facts.processor)
       << ". Times depend on what else runs there; nothing else does.</p>\n</body></html>\n";

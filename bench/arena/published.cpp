@@ -25,6 +25,18 @@ const std::vector<Published>& published() {
        "apart here, there they are pushed apart"},
       {"cross", "margin 0 to 0.25 m", "ok in 0.551 of 5,000 runs (safe 0.599, fluid 0.952)", kNavground, false,
        "as above, with the method's barrier angle drawn for each run too"},
+      {"narrow", "doorway", "Social-IMPC-DR: 2 of 2 robots, makespan 15.00 s", "SMGLib (CRAL-UVA), README", false,
+       "starts, goals, radius, speed and walls are those of its StandardizedEnvironment; its robots accelerate, the "
+       "method "
+       "runs in coordinates of its own, and its makespan counts steps to the end of the run"},
+      {"paper", "A1 to A15", "the textbook method stops at walls and clusters, the improved one passes",
+       "the paper, Section V.A, with errata", false,
+       "here all methods go along routes; `exactvo paper` compares the paper's methods as it does"},
+      {"routes", "points", "lengths of shortest paths; 17 to 724 us a query by suite",
+       "Polyanya (Cui, Harabor and Grastien, IJCAI 2017), its public implementation on Moving AI maps", false,
+       "lengths are comparable: path is ours over theirs. Times are not: another machine, and its answers have no "
+       "radius and "
+       "no proof"},
       {"maps", "gap, rooms", "success rate raised \"from 15% to 99% in certain cases\"", kDergachev, false,
        "maps are rebuilt from a description, starts and goals are drawn anew, and the abstract names no cell"}};
   return all;

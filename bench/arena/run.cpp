@@ -16,12 +16,6 @@ namespace {
 
 using namespace formation;
 
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 SimulationOptions options_of(const std::string& method) {
   SimulationOptions options;
   if (method == "bias") options.liveness = Liveness::bias;
@@ -66,6 +60,12 @@ bool somebody_stands(const Metrics& m, const Recording& run) {
 }
 
 }  // namespace
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 std::vector<std::string> own_methods() {
   return {"plan", "bias", "orca"};

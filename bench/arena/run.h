@@ -35,6 +35,9 @@ struct RunResult {
   std::size_t plans = 0;
 };
 
+/// Of this thread.
+double processor_seconds();
+
 /// Throws std::runtime_error where a peer fails.
 RunResult run_scene(const Scene& scene, const ArenaMethod& method);
 

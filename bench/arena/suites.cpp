@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "exactvo/datasets/scenario_file.h"
 #include "formation/liveness_scenes.h"
 #include "maps.h"
 
@@ -88,6 +89,55 @@ void add_swaps(Scenes& suite, bool full) {
                     [=](SeededRandom& random) { return scenes::rooms(robots, 1.4, random); });
 }
 
+/// SMGLib's doorway, hallway and intersection (CRAL-UVA/SMGLib, `StandardizedEnvironment`): 2 robots of radius 0.3 m at
+/// 1 m/s in a room of 12 by 16 m; walls as lines.
+Scenario social(const std::string& kind) {
+  constexpr double kX = 6.0, kY = 8.0, kHalf = 2.0;
+  Scenario s;
+  s.name = kind;
+  scenes::add_box(s, kX, kY);
+  if (kind == "doorway") {
+    for (const double side : {-1.0, 1.0}) scenes::add_wall(s, {{0.0, side * kY}, {0.0, side * kHalf}});
+    scenes::add_robot(s, {-3.0, -0.5}, {3.0, 0.5});
+    scenes::add_robot(s, {3.0, 0.5}, {-3.0, -0.5});
+  } else if (kind == "hallway") {
+    for (const double y : {-kHalf, kHalf}) scenes::add_wall(s, {{-kX, y}, {kX, y}});
+    scenes::add_robot(s, {-4.0, -0.3}, {4.0, 0.3});
+    scenes::add_robot(s, {4.0, 0.3}, {-4.0, -0.3});
+  } else {
+    for (const double x : {-1.0, 1.0})
+      for (const double y : {-1.0, 1.0})
+        scenes::add_wall(s, {{x * kX, y * kHalf}, {x * kHalf, y * kHalf}, {x * kHalf, y * kY}});
+    scenes::add_robot(s, {-4.0, -0.5}, {4.0, 0.5});
+    scenes::add_robot(s, {-0.5, -4.0}, {0.5, 4.0});
+  }
+  for (formation::Robot& r : s.robots) {
+    r.radius = 0.3;
+    r.max_speed = 1.0;
+  }
+  return s;
+}
+
+void add_narrow(Scenes& suite, bool full) {
+  for (const char* kind : {"doorway", "hallway", "intersection"}) suite.add(kind, [kind] { return social(kind); });
+  if (!full) return;
+  for (const double gap : {1.05, 1.5, 2.0, 2.5})
+    suite.add_seeds("6 through " + number(gap), 3, [=](SeededRandom& random) { return scenes::door(6, gap, random); });
+}
+
+/// Scenarios of Section V.A, as files have them but for guidance and liveness, which are the arena's.
+void add_papers(Scenes& suite, bool full) {
+  for (int k = 1; k <= (full ? 15 : 2); ++k) {
+    const std::string name = "A" + std::to_string(k);
+    suite.add(name, [name] {
+      Scenario s = datasets::load_scenario(EXACTVO_SOURCE_DIR "/datasets/data/paper/" + name + ".json");
+      s.guidance = formation::Guidance::route;
+      s.liveness = formation::Liveness::plan;
+      return s;
+    });
+  }
+}
+
 void add_crosses(Scenes& suite, bool full) {
   const auto with_random_margin = [](SeededRandom& random) {
     const double margin = random.uniform(0.0, 0.25);
@@ -121,6 +171,10 @@ const std::vector<SuiteEntry>& entries() {
         "navground's Cross: 20 robots of radius 0.08 m go to and fro along two lines 4 m long that cross, for 300 s, "
         "with a safety margin that is drawn for each run."},
        add_crosses},
+      {{"narrow",
+        "SMGLib's doorway, hallway and intersection with two robots; three robots from each side of narrower doors."},
+       add_narrow},
+      {{"paper", "A1 to A15 of the paper's Section V.A, along routes."}, add_papers},
       {{"maps", "Maps after Dergachev and Yakovlev: 64 x 64 cells, a wall with one gap, or sixteen rooms with doors."},
        add_maps}};
   return all;

@@ -249,10 +249,16 @@ class KinematicRun {
     }
   }
 
+  bool is_of_robot(const Constraint& c) const { return scene_.bodies()[c.body].kind == vo::BodyKind::robot; }
+
+  bool meets_robots(std::size_t i) const {
+    return std::any_of(others_[i].begin(), others_[i].end(), [&](const Constraint& c) { return is_of_robot(c); });
+  }
+
   std::vector<std::size_t> robots_met_by(std::size_t i) const {
     std::vector<std::size_t> all;
     for (const Constraint& c : others_[i])
-      if (scene_.bodies()[c.body].kind == vo::BodyKind::robot) all.push_back(c.index);
+      if (is_of_robot(c)) all.push_back(c.index);
     return all;
   }
 
@@ -305,7 +311,7 @@ class KinematicRun {
     constexpr double kSmoothing = 0.1, kLeast = 0.03, kMost = 1.3;  // of a step; rad; rad
     constexpr double kNearGoal = 4.0;                               // radii
     const bool is_free = mode == Mode::direct || mode == Mode::guided;
-    if (!is_free || preferred == Vec2{} || robots_met_by(i).empty()) return preferred;
+    if (!is_free || preferred == Vec2{} || !meets_robots(i)) return preferred;
     KinematicRobot& r = robots_[i];
     const double missing = 1.0 - dot(r.velocity, preferred) / squared_norm(preferred);
     r.held_up += kSmoothing * (std::clamp(missing, 0.0, 1.0) - r.held_up);
