@@ -7,7 +7,8 @@ Obstacles stand in the first certificate of a file. docs/guide/routes.md says wh
     route       every piece between two points keeps a radius away from every edge, and the start is in no polygon
     separated   each side of a closed polygon lies on an edge or is shorter than two radii, and start and goal lie on
                 different sides of it (by the parity of crossings)
-    blocked     the start or goal lies in a polygon, or nearer than a radius to an edge"""
+    blocked     the start or goal lies in a polygon, or nearer than a radius to an edge
+Radius 0 is a point, which touches no edge."""
 import json, math, re, sys
 from fractions import Fraction
 
@@ -71,17 +72,17 @@ def require_clear(p, q, radius, obstacles):
                 continue
             across = turn(p, q, a) * turn(p, q, b) < 0 and turn(a, b, p) * turn(a, b, q) < 0
             nearest = min(square_to(p, (a, b)), square_to(q, (a, b)), square_to(a, (p, q)), square_to(b, (p, q)))
-            require(not across and nearest >= radius * radius, "too near to edge %d of obstacle %d" % (k, i))
+            require(not across and nearest >= radius * radius and nearest > 0, "too near to edge %d of obstacle %d" % (k, i))
 
 def check(c, obstacles):
     """Raises an error where the certificate does not prove its claim."""
     kind, radius, start, goal = c["kind"], number(c["radius"]), point(c["start"], (2,)), point(c["goal"], (2,))
-    require(kind in KINDS and radius > 0, "no such kind, or no radius")
+    require(kind in KINDS and radius >= 0, "no such kind, or no radius")
     if kind == "blocked":
         end, by = {"start": start, "goal": goal}[c["end"]], named(obstacles, c["obstacle"])
         inside = c["inside"] and by.is_solid and is_inside(end, by.edges)
-        near = not c["inside"] and square_to(end, named(by.edges, c["edge"])) < radius * radius
-        return require(inside or near, "an end that is not blocked so")
+        distance = None if c["inside"] else square_to(end, named(by.edges, c["edge"]))
+        return require(inside or distance == 0 or (not c["inside"] and distance < radius * radius), "an end that is not blocked so")
     pieces = [(start, start), (goal, goal)]  # what has to be clear
     require(not any(o.is_solid and is_inside(p, o.edges) for p in (start, goal) for o in obstacles), "an end inside")
     if kind == "route":
@@ -109,7 +110,7 @@ def agrees(beside, c):
     said.update((key, c[key]) for key in ("radius", "start", "goal") + ("length", "lower_bound") * route)
     said.update({"points": [p[:2] for p in c["points"]]} if route else {})
     return (all(beside[key] == value for key, value in said.items() if key in beside)
-            and ("widest_radius" not in beside or (number(beside["widest_radius"]) >= number(c["radius"])) == route)
+            and ("widest_radius" not in beside or (0 < number(beside["widest_radius"]) >= number(c["radius"])) == route)
             and ("gaps" not in beside or [g["from"] for g in listed(beside["gaps"])] == [q["point"][:2] for q in gaps])
             and ("blocked" not in beside or all(end[key] == c[key] for key in ("end", "inside"))))
 

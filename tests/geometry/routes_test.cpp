@@ -9,6 +9,7 @@
 #include <limits>
 #include <thread>
 
+#include "cell_world.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/route_certificate.h"
 #include "route_oracle.h"
@@ -219,7 +220,6 @@ TEST(Routes, ManyThreadsGiveTheSameBits) {
 
 TEST(Routes, CallersMistakesAreNamed) {
   const RouteMap map({box_at(0, 0, 1, 1)});
-  EXPECT_THROW(RoutePlan(map, 0.0), std::logic_error);
   EXPECT_THROW(RoutePlan(map, 0x1p-101), std::logic_error);
   EXPECT_THROW(RoutePlan(map, -1.0), std::logic_error);
   EXPECT_THROW(RoutePlan(map, kInfinity), std::logic_error);
@@ -228,6 +228,80 @@ TEST(Routes, CallersMistakesAreNamed) {
   const RoutePlan plan(map, 0.5);
   EXPECT_THROW(plan.query({std::nan(""), 0}, {3, 3}), std::logic_error);
   EXPECT_THROW(plan.query({3, 3}, {1e9, 3}), std::logic_error);
+}
+
+// --- Points ---
+
+TEST(RoutesOfPoints, APointPassesEveryGapThatHasAWidth) {
+  const auto door = [](double y) {
+    return std::vector<Obstacle>{Polyline{{{0, -5}, {0, 0}}}, Polyline{{{0, y}, {0, 5}}},
+                                 Polyline{{{-5, -5}, {5, -5}, {5, 5}, {-5, 5}, {-5, -5}}}};
+  };
+  EXPECT_TRUE(std::holds_alternative<Separated>(asked(door(0.0), 0.0, {-3, 1}, {3, -2})));
+  for (const double width : {1.0, 1e-9, 1e-15, 1e-20, 1e-30})
+    EXPECT_TRUE(std::holds_alternative<Route>(asked(door(width), 0.0, {-3, 1}, {3, -2}))) << width;
+}
+
+TEST(RoutesOfPoints, AnEndInContactIsBlockedAndOneBesideItIsNot) {
+  const std::vector<Obstacle> two{box_at(0, 0, 2, 2), Polyline{{{5, 0}, {5, 2}}}};
+  for (const Vec2 touching : {Vec2{2, 1}, Vec2{2, 2}, Vec2{5, 1}, Vec2{5, 2}})
+    EXPECT_TRUE(std::holds_alternative<Blocked>(asked(two, 0.0, touching, {-3, -3}))) << to_string({touching});
+  for (const Vec2 beside : {Vec2{above(2.0), 1}, Vec2{above(2.0), above(2.0)}, Vec2{above(5.0), 1}})
+    EXPECT_TRUE(std::holds_alternative<Route>(asked(two, 0.0, beside, {-3, -3}))) << to_string({beside});
+}
+
+// In a turned maze a wall ends beside the one it was to end on, by the rounding of a coordinate: a point passes there.
+TEST(RoutesOfPoints, AreThereWhereSomeDiscHasOneAndHardlyLongerThanTheirBound) {
+  SeededRandom random(test::seed_of_run(21));
+  std::size_t counts[3] = {};
+  for (int k = 0; k < 240; ++k) {
+    const FieldKind kind = test::kFieldKinds[static_cast<std::size_t>(k) % std::size(test::kFieldKinds)];
+    const RouteField f = route_field(random, kind);
+    const RouteMap map(f.obstacles);
+    const RoutePlan plan(map, 0.0);
+    const RouteAnswer answer = plan.query(f.start, f.goal);
+    const std::string text = test::corpus_line(test::RouteCase{f, 0.0});
+    EXPECT_EQ(check(f.obstacles, {0.0, f.start, f.goal}, answer), "") << text;
+    EXPECT_EQ(plan.is_reachable(f.start, f.goal), answer.index() == 0) << text;
+    ++counts[answer.index()];
+    const double widest = map.widest_radius(f.start, f.goal);
+    EXPECT_EQ(widest > 0.0, answer.index() == 0) << text;
+    const auto* route = std::get_if<Route>(&answer);
+    if (!route) continue;
+    EXPECT_LE(route->length, route->lower_bound * (1.0 + 1e-9)) << text;
+    constexpr double kSmall = 1e-6;
+    if (widest < kSmall) continue;
+    const RouteAnswer of_disc = RoutePlan(map, kSmall).query(f.start, f.goal);
+    EXPECT_LE(route->length, std::get<Route>(of_disc).length * (1.0 + 1e-9)) << text;
+    if (kind == FieldKind::scattered || kind == FieldKind::boxes || kind == FieldKind::lattice) {
+      EXPECT_NEAR(route->length, std::get<Route>(of_disc).length, 1e-3) << text;
+    }
+  }
+  EXPECT_GE(counts[0], 50u);
+  EXPECT_GE(counts[1], 1u);
+  EXPECT_GE(counts[2], 5u);
+}
+
+TEST(RoutesOfPoints, AreTheShortestAmongCells) {
+  SeededRandom random(test::seed_of_run(20261123));
+  std::size_t routes = 0, chains = 0;
+  for (int k = 0; k < 120; ++k) {
+    const test::CellWorld world(random, random.integer(3, 14), random.uniform(0.15, 0.5));
+    const std::vector<Obstacle> obstacles = world.obstacles();
+    const RouteAnswer answer = asked(obstacles, 0.0, world.start(), world.goal());
+    const double shortest = world.shortest();
+    const std::string text = test::corpus_line(test::RouteCase{{obstacles, world.start(), world.goal()}, 0.0});
+    ASSERT_EQ(std::isinf(shortest), std::holds_alternative<Separated>(answer)) << text;
+    if (std::isinf(shortest)) {
+      ++chains;
+      continue;
+    }
+    ++routes;
+    EXPECT_NEAR(std::get<Route>(answer).length, shortest, 1e-9 * shortest) << text;
+    EXPECT_NEAR(std::get<Route>(answer).lower_bound, shortest, 1e-12 * shortest) << text;
+  }
+  EXPECT_GE(routes, 30u);
+  EXPECT_GE(chains, 5u);
 }
 
 // --- How long ---

@@ -81,7 +81,7 @@ def test_queries_come_from_many_threads():
 @pytest.mark.parametrize(
     "call, where",
     [
-        (lambda: exactvo.RouteMap(DOOR).plan(0), "radius"),
+        (lambda: exactvo.RouteMap(DOOR).plan(-1), "radius"),
         (lambda: exactvo.RouteMap(DOOR).plan(1e9), "radius"),
         (lambda: exactvo.RouteMap(DOOR).plan("0.5 m"), "radius"),
         (lambda: exactvo.RouteMap(DOOR, largest_radius=-1), "largest_radius"),

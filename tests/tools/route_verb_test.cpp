@@ -147,6 +147,23 @@ TEST(RouteVerb, TheWidestRadiusIsNotBoundByTheMap) {
   EXPECT_EQ(rooms.route("--queries q.csv --widest").out, "0: widest radius: 45 m\n");
 }
 
+// Radius 0 was refused.
+TEST(RouteVerb, APointPassesWhereSomeDiscDoesAndTouchesNothing) {
+  const Rooms rooms;
+  // The corners (1, 1) and (2, 2) lie on either side of the place where two blocked cells touch.
+  rooms.here.write("open.map", "type octile\nheight 4\nwidth 4\nmap\n....\n..@.\n.@..\n....\n");
+  const Outcome round = rooms.here.run("route open.map --from 1,1 --to 2,2 --radius 0 --cell-point corner --json");
+  EXPECT_EQ(round.status, 0) << round.err;
+  EXPECT_NEAR(json::parse(round.out).at("length"), 4.0, 1e-9);  // by (3, 1) and (3, 2), or (1, 3) and (2, 3)
+  rooms.here.write("round.jsonl", round.out);
+  EXPECT_EQ(rooms.here.run("audit --certificate round.jsonl").status, 0);
+  rooms.here.write("shut.map", "type octile\nheight 4\nwidth 4\nmap\n..@@\n..@@\n@@..\n@@..\n");
+  const Outcome shut = rooms.here.run("route shut.map --from 1,1 --to 2,2 --radius 0 --cell-point corner");
+  EXPECT_EQ(shut.status, 1) << "a gap without width";
+  EXPECT_THAT(shut.out, HasSubstr("without a gap"));
+  EXPECT_THAT(rooms.route("--from 6,1 --to 1,1 --radius 0").out, HasSubstr("blocked: the start is on"));
+}
+
 TEST(RouteVerb, TheEnclosedEndIsNamed) {
   const Rooms rooms;
   const Outcome outcome = rooms.route("--from 20,1 --to 1,1 --radius 0.1 --json");
@@ -165,7 +182,10 @@ const Case kCases[] = {{"route", "rooms.json --from 1,1 --to 11,7 --radius 0.45"
                        {"fractions", "triangle.wkt --from 1,0.9 --to 5,5 --radius 0.1"},
                        {"fractions in a route", "triangle.wkt --from 4,1 --to -1,1 --radius 0.1"},
                        {"blocked", "rooms.json --from 5.75,1 --to 1,1 --radius 0.4"},
-                       {"inside", "rooms.json --from 1,1 --to 9,3 --radius 0.4"}};
+                       {"inside", "rooms.json --from 1,1 --to 9,3 --radius 0.4"},
+                       {"a point's route", "rooms.json --from 1,1 --to 11,7 --radius 0"},
+                       {"a point that is separated", "triangle.wkt --from 1,0.9 --to 5,5 --radius 0"},
+                       {"a point in contact", "rooms.json --from 6,1 --to 1,1 --radius 0"}};
 
 /// What was changed, and the certificate that came of it; each claims what is false or not shown.
 using Mutants = std::vector<std::pair<std::string, json>>;
@@ -180,7 +200,7 @@ void add_mutants_of_route(const json& certificate, Mutants& mutants) {
     change(at + " dropped", [&](json& c) { c["points"].erase(k); });
     change(at + " moved onto a wall", [&](json& c) { c["points"][k] = {6.0, 2.0}; });
   }
-  change("the radius enlarged", [](json& c) { c["radius"] = 1.01 * c["radius"].get<double>(); });
+  change("the radius enlarged", [](json& c) { c["radius"] = 1.01 * c["radius"].get<double>() + 1e-6; });
   change("the length changed", [](json& c) { c["length"] = 1.001 * c["length"].get<double>(); });
   change("a bound above the length", [](json& c) { c["lower_bound"] = 2.0 * c["length"].get<double>(); });
   change("another goal", [](json& c) { c["goal"][0] = 10.75; });
@@ -340,6 +360,7 @@ TEST(RouteCertificates, WhatIsSaidBesideACertificateMustBeWhatItSays) {
     const json answer = answer_to(rooms, c);
     const std::string kind = answer.at("status");
     const bool is_route = kind == "route";
+    const double too_narrow = answer.at("radius") == 0.0 ? 0.0 : 0.001;
     std::vector<std::pair<const char*, json>> lies{{"status", is_route ? "separated" : "route"},
                                                    {"status", nullptr},
                                                    {"radius", 5.0},
@@ -349,14 +370,14 @@ TEST(RouteCertificates, WhatIsSaidBesideACertificateMustBeWhatItSays) {
                                                    {"lower_bound", 11.9},
                                                    {"points", json::array()},
                                                    {"needed_width", 7.0},
-                                                   {"widest_radius", is_route ? 0.001 : 77.0},
+                                                   {"widest_radius", is_route ? too_narrow : 77.0},
                                                    {"widest_radius", "wide"}};
     if (kind == "blocked") lies.emplace_back("blocked", json::parse(R"({"end": "neither", "inside": false})"));
     if (kind == "blocked") lies.emplace_back("gaps", json::parse(R"([{"from": [1, 1]}])"));
     if (kind == "separated") lies.emplace_back("gaps", json::parse(R"([{"from": [1, 1]}])"));
     ++kinds[is_route ? 0 : kind == "separated" ? 1 : 2];
     json true_beside = answer;
-    true_beside["widest_radius"] = is_route ? 77.0 : 0.001;
+    true_beside["widest_radius"] = is_route ? 77.0 : too_narrow;
     expect_of_both(rooms.here, true_beside.dump() + "\n", 0, std::string(c.name));
     std::string text;
     for (const auto& [key, lie] : lies) {
@@ -566,7 +587,8 @@ TEST(RouteVerb, BadInputIsRefusedWithItsPlace) {
       {"rooms.json --from 3 --to 4,1 --radius 1", "--from: found '3', expected two numbers"},
       {"rooms.json --from nan,1 --to 4,1 --radius 1", "--from: found 'nan,1', expected two numbers"},
       {"rooms.json --from 3,1 --to 4,1e40 --radius 1", "--to: found '4,1e40', expected two numbers within 2^100"},
-      {"rooms.json --from 3,1 --to 4,1 --radius 0", "--radius: found '0', expected a length from 2^-100 m"},
+      {"rooms.json --from 3,1 --to 4,1 --radius=-1",
+       "--radius: found '-1', expected 0 (a point), or a length from 2^-100 m"},
       {"rooms.json --from 3,1 --to 4,1 --radius=-1", "--radius: found '-1'"},
       {"rooms.json --from 3,1 --to 4,1 --radius nan", "--radius: found 'nan'"},
       {"rooms.json --from 3,1 --to 4,1 --radius inf", "--radius: found 'inf'"},

@@ -213,7 +213,7 @@ std::optional<RouteAnswer> answer_in(const RouteJson& json) {
 std::optional<RouteQuestion> question_in(const RouteJson& json) {
   const std::optional<double> radius = number_in(member(json, "radius"));
   const std::optional<Vec2> start = pair_in(member(json, "start")), goal = pair_in(member(json, "goal"));
-  if (!radius || !(*radius > 0.0) || !start || !goal) return std::nullopt;
+  if (!radius || !(*radius >= 0.0) || !start || !goal) return std::nullopt;
   return RouteQuestion{*radius, *start, *goal};
 }
 
@@ -235,7 +235,7 @@ bool agrees_in_widest(const RouteJson& beside, double radius, bool is_route) {
   const RouteJson* widest = member(beside, "widest_radius");
   if (widest == nullptr) return true;
   const std::optional<double> number = number_in(widest);
-  return number && (*number >= radius) == is_route;
+  return number && (*number >= radius && *number > 0.0) == is_route;
 }
 
 /// Whether the gaps that stand beside start at those points of the chain behind which there is one.

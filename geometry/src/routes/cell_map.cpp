@@ -270,6 +270,31 @@ Point CellMap::foot(const Link& link) const {
   return {Rational(a.x + share * d.x), Rational(a.y + share * d.y)};
 }
 
+Point CellMap::crossing_of(const Link& link, const Side& side) const {
+  const Vector<Rational> x = vertex(side.a).exact(), y = vertex(side.b).exact();
+  const auto [part, whole] = crossing(*this, link, vertex(side.a), vertex(side.b), ToRational{});
+  const Rational share = part / whole;
+  return {Rational(x.x + share * (y.x - x.x)), Rational(x.y + share * (y.y - x.y))};
+}
+
+std::pair<Point, Point> CellMap::ends_of(const Portal& portal) const {
+  if (portal.link < 0) {
+    const auto end = [&](const PortalEnd& e) {
+      return e.vertex >= 0 ? vertex(e.vertex) : crossing_of(links[e.link], sides[portal.side]);
+    };
+    return {end(portal.from), end(portal.to)};
+  }
+  const Link& link = links[portal.link];
+  const auto exit = [&](int k) {
+    const Link::Exit& e = link.exits[k];
+    return crossing_of(link, sides[side_of[e.triangle][e.side]]);
+  };
+  const bool last = portal.piece + 1 == static_cast<int>(link.exits.size());
+  const Point near = portal.piece == 0 ? vertex(link.vertex) : exit(portal.piece - 1);
+  const Point far = last ? foot(link) : exit(portal.piece);
+  return portal.outward ? std::pair(near, far) : std::pair(far, near);
+}
+
 bool CellMap::link_admits(const Link& link, double r) const {
   return compare_line_distance(vertex(link.vertex), vertex(link.a), vertex(link.b), r, 4.0) >= 0;
 }

@@ -98,6 +98,10 @@ class CellMap {
   bool is_site(int v) const { return v < static_cast<int>(graph.vertices.size()); }
   /// The foot of the Link on its wall.
   Point foot(const Link& link) const;
+  /// Where the Link crosses a side, one of its exits.
+  Point crossing_of(const Link& link, const Side& side) const;
+  /// The two ends of a portal, from and to.
+  std::pair<Point, Point> ends_of(const Portal& portal) const;
   /// The gate's width against 2 r. Exact.
   bool link_admits(const Link& link, double r) const;
   bool side_admits(const Side& side, double r) const;

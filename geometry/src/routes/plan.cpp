@@ -305,8 +305,7 @@ int ClearancePlan::piece_too_near(const Point& x) const {
   int found = -1;
   grid_->for_each_near(x.rounded(), x.rounded(), radius_, [&](int piece) {
     const auto [a, b] = ends_of(piece);
-    if ((found < 0 || piece < found) && compare_segment_distance(x, map_->vertex(a), map_->vertex(b), radius_) < 0)
-      found = piece;
+    if ((found < 0 || piece < found) && is_too_near(x, map_->vertex(a), map_->vertex(b), radius_)) found = piece;
     return true;
   });
   return found;

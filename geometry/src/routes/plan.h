@@ -50,10 +50,10 @@ class ClearancePlan {
   /// A cell that leads nowhere but to one other: that one; -1 elsewhere.
   int way_out(int cell) const { return way_out_[cell]; }
 
-  /// The first piece nearer to x than the radius, -1 where there is none. Exact.
+  /// The first piece nearer to x than the radius (where that is 0: that x lies on), -1 where there is none. Exact.
   int piece_too_near(const Point& x) const;
-  /// Whether the disc can move straight from p to q: every piece stays at least a radius away. Exact. REQUIRES: radius
-  /// > 0.
+  /// Whether the disc can move straight from p to q: every piece stays at least a radius away, and a point (radius 0)
+  /// touches none. Exact.
   bool is_clear(const Point& p, const Point& q) const;
   /// The pieces nearer than r to x, each once, ascending.
   std::vector<int> pieces_within(Vec2 x, double r) const;

@@ -98,9 +98,15 @@ bool cross_inside(const Stretch& s, const Stretch& t) {
   return turn(s, t.a) * turn(s, t.b) < 0 && turn(t, s.a) * turn(t, s.b) < 0;
 }
 
+/// Squared distances. A point, whose radius is 0, must not touch anything.
+bool is_too_near(const Rational& distance, const Rational& radius) {
+  return distance < radius || (sgn(radius) == 0 && sgn(distance) == 0);
+}
+
 bool comes_nearer_than(const Stretch& s, const Stretch& t, const Rational& squared) {
-  return cross_inside(s, t) || squared_distance(s.a, t) < squared || squared_distance(s.b, t) < squared ||
-         squared_distance(t.a, s) < squared || squared_distance(t.b, s) < squared;
+  return cross_inside(s, t) || is_too_near(squared_distance(s.a, t), squared) ||
+         is_too_near(squared_distance(s.b, t), squared) || is_too_near(squared_distance(t.a, s), squared) ||
+         is_too_near(squared_distance(t.b, s), squared);
 }
 
 /// Whether the ray from p to the right crosses ab; of its ends the upper one counts.
@@ -176,7 +182,8 @@ class Checker {
     if (blocked.inside)
       return blocked.by.obstacle < edges_.size() && inside(blocked.by.obstacle, end) ? "" : "not inside that obstacle";
     if (!exists(blocked.by)) return "no such edge";
-    return squared_distance(end, edge(blocked.by)) < squared_ ? "" : "not nearer than the radius to that edge";
+    return is_too_near(squared_distance(end, edge(blocked.by)), squared_) ? ""
+                                                                          : "not nearer than the radius to that edge";
   }
 
  private:
@@ -226,7 +233,7 @@ class Checker {
 }  // namespace
 
 std::string check(const std::vector<Obstacle>& obstacles, const RouteQuestion& question, const RouteAnswer& answer) {
-  EXACTVO_REQUIRE(std::isfinite(question.radius) && question.radius > 0.0, std::to_string(question.radius));
+  EXACTVO_REQUIRE(std::isfinite(question.radius) && question.radius >= 0.0, std::to_string(question.radius));
   EXACTVO_REQUIRE(is_finite(question.start) && is_finite(question.goal), to_string({question.start, question.goal}));
   return std::visit(Checker(obstacles, question), answer);
 }

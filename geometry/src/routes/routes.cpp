@@ -9,6 +9,7 @@
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/require.h"
 #include "routes/chain.h"
+#include "routes/point_route.h"
 #include "routes/realise.h"
 #include "routes/signs.h"
 #include "routes/widest.h"
@@ -251,7 +252,7 @@ double RouteMap::widest_radius(Vec2 start, Vec2 goal) const {
 }
 
 RoutePlan::RoutePlan(const RouteMap& map, double radius) {
-  EXACTVO_REQUIRE(radius >= kSmallestRadius && radius <= map.largest_radius(), hex_text(radius));
+  EXACTVO_REQUIRE(radius == 0.0 || (radius >= kSmallestRadius && radius <= map.largest_radius()), hex_text(radius));
   state_ = std::make_shared<State>(map, radius);
 }
 
@@ -281,11 +282,14 @@ RouteAnswer RoutePlan::query(Vec2 start, Vec2 goal) const {
   std::unique_ptr<routing::WaySearch> search = state_->take();
   const std::optional<routing::Way> way = search->find(start, s.cell, goal, t.cell);
   state_->give_back(std::move(search));
-  const std::optional<std::vector<Point>> points = way ? routing::realised(plan, start, goal, *way) : std::nullopt;
+  std::optional<std::vector<Point>> points;
+  if (way && plan.radius() > 0.0) points = routing::realised(plan, start, goal, *way);
+  if (way && plan.radius() == 0.0) points = routing::point_route(plan, start, s.cell, goal, *way);
   if (!points)
     throw RouteNotProven("routes: no proven route from " + to_string({start}) + " to " + to_string({goal}) +
                          " for radius " + hex_text(plan.radius()) + ", though there is one");
-  Route route{{}, length_of(*points), way->lower_bound};
+  const double length = length_of(*points);
+  Route route{{}, length, std::min(length, way->lower_bound)};
   for (const Point& p : *points) route.points.push_back(routing::shown(p));
   return route;
 }

@@ -2,12 +2,12 @@
 #include "routes/search.h"
 
 #include <algorithm>
-#include <deque>
 #include <functional>
 #include <queue>
 #include <unordered_map>
 
 #include "exactvo/geometry/pi.h"
+#include "routes/funnel.h"
 
 namespace exactvo::geometry::routing {
 namespace {
@@ -532,50 +532,17 @@ bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way
   return true;
 }
 
-/// The turns of the shortest curve through the portals of a way, by a funnel (Lee and Preparata 1984): between the apex
-/// and the last portal, the ends on either side that still bound what is seen.
+/// The waypoints of the shortest curve through the portals of a way.
 void WaySearch::pull_through(Vec2 s, Vec2 t, const std::vector<bool>& from_left, Way& way) const {
-  const std::size_t n = way.portals.size();
   std::vector<Waypoint> list;
-  for (std::size_t k = 0; k < n; ++k)
+  for (std::size_t k = 0; k < way.portals.size(); ++k)
     if (plan_.shrunk(way.portals[k]).tight)
       list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
-  const auto end_of = [&](std::size_t k, bool left) {
-    if (k == n) return t;
-    const ShrunkPortal& q = plan_.shrunk(way.portals[k]);
-    return left == from_left[k] ? q.to : q.from;
-  };
-  const auto turn_at = [&](std::size_t k, bool left) {
-    const ShrunkPortal& q = plan_.shrunk(way.portals[k]);
-    const int vertex = left == from_left[k] ? q.to_corner : q.from_corner;
-    if (vertex >= 0 && !q.tight) list.push_back({-1, false, vertex, left, static_cast<int>(k)});
-  };
-  // Of each side the bounding ends in order, by the portal; the first still bounds the apex's view.
-  std::deque<std::size_t> side[2];
-  Vec2 apex = s;
-  for (std::size_t k = 0; k <= n; ++k) {
-    for (const bool left : {true, false}) {
-      const double sense = left ? 1.0 : -1.0;
-      const Vec2 end = end_of(k, left);
-      std::deque<std::size_t>&mine = side[left ? 0 : 1], &other = side[left ? 1 : 0];
-      // Ends of this side behind which the new one is seen bound nothing any more.
-      while (!mine.empty()) {
-        const Vec2 last = end_of(mine.back(), left);
-        const Vec2 before = mine.size() > 1 ? end_of(mine[mine.size() - 2], left) : apex;
-        const bool is_same = norm(end - last) <= kRounding * std::max(largest_of(end), largest_of(last));
-        if (!is_same && sense * cross(last - before, end - before) > 0.0) break;
-        mine.pop_back();
-      }
-      if (mine.empty()) {
-        // Beyond ends of the other side: the curve turns at each of them.
-        while (!other.empty() && sense * cross(end_of(other.front(), !left) - apex, end - apex) < 0.0) {
-          apex = end_of(other.front(), !left);
-          turn_at(other.front(), !left);
-          other.pop_front();
-        }
-      }
-      mine.push_back(k);
-    }
+  const PortalRow row(plan_, way.portals, from_left);
+  for (const Turn& turn : turns_through(row, s, t)) {
+    const int vertex = row.vertex(turn.at, turn.left);
+    if (vertex >= 0 && !plan_.shrunk(row.portal(turn.at)).tight)
+      list.push_back({-1, false, vertex, turn.left, static_cast<int>(turn.at)});
   }
   for (const Waypoint& w : list) way.waypoints.push_back(w);
   std::stable_sort(way.waypoints.begin(), way.waypoints.end(),

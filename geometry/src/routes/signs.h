@@ -47,15 +47,20 @@ inline int compare_segment_distance(const Point& p, const Point& a, const Point&
   return compare_line_distance(p, a, b, r);
 }
 
+/// Whether p is too near to the segment ab for a disc of radius r: nearer than r, or in contact where that is 0.
+inline bool is_too_near(const Point& p, const Point& a, const Point& b, double r) {
+  const int sign = compare_segment_distance(p, a, b, r);
+  return r > 0.0 ? sign < 0 : sign <= 0;
+}
+
 /// Whether the segments pq and ab cross in a point that is interior to both.
 inline bool cross_properly(const Point& p, const Point& q, const Point& a, const Point& b) {
   return orient(p, q, a) * orient(p, q, b) < 0 && orient(a, b, p) * orient(a, b, q) < 0;
 }
 
-/// Whether the segment pq keeps a distance of at least r > 0 from the segment ab.
+/// Whether the segment pq keeps a distance of at least r from the segment ab; where r is 0, whether they do not touch.
 inline bool keeps_clear(const Point& p, const Point& q, const Point& a, const Point& b, double r) {
-  return compare_segment_distance(p, a, b, r) >= 0 && compare_segment_distance(q, a, b, r) >= 0 &&
-         compare_segment_distance(a, p, q, r) >= 0 && compare_segment_distance(b, p, q, r) >= 0 &&
+  return !is_too_near(p, a, b, r) && !is_too_near(q, a, b, r) && !is_too_near(a, p, q, r) && !is_too_near(b, p, q, r) &&
          !cross_properly(p, q, a, b);
 }
 

@@ -166,7 +166,7 @@ class RouteMap:
         self._native = _exactvo.RouteMap(self.obstacles._native, largest_radius, largest_distance)
 
     def plan(self, radius: float) -> RoutePlan:
-        """The map for a disc of `radius` (m, above 0). Raises `ArgumentError`."""
+        """The map for a disc of `radius` (m; 0: a point, which touches nothing). Raises `ArgumentError`."""
         return RoutePlan(self, self._native.plan(radius))
 
     def widest_radius(self, start: Point, goal: Point) -> float:

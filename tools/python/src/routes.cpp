@@ -96,10 +96,10 @@ Map make_map(const Obstacles& obstacles, py::handle largest_radius, py::handle l
 }
 
 Plan make_plan(const Map& map, py::handle radius) {
-  const double r = positive(radius, "radius");
-  if (r < kLeastRadius || r > map.map.largest_radius())
+  const double r = at_least_zero(radius, "radius");
+  if (r != 0.0 && (r < kLeastRadius || r > map.map.largest_radius()))
     throw ArgumentError("radius", shown(radius),
-                        "2^-100 m to " + std::to_string(map.map.largest_radius()) +
+                        "0, or 2^-100 m to " + std::to_string(map.map.largest_radius()) +
                             " m; RouteMap(..., largest_radius=...) allows more");
   const py::gil_scoped_release released;
   return {map.obstacles, map.map, geometry::RoutePlan(map.map, r)};
@@ -139,7 +139,7 @@ void bind_routes(py::module_& module) {
       });
   module.def("check_route", [](const Obstacles& obstacles, py::handle radius, py::handle start, py::handle goal,
                                py::handle answer) {
-    const geometry::RouteQuestion question{positive(radius, "radius"), vector(start, "start"), vector(goal, "goal")};
+    const geometry::RouteQuestion question{at_least_zero(radius, "radius"), vector(start, "start"), vector(goal, "goal")};
     const geometry::RouteAnswer claimed = answer_of(answer);
     const std::vector<geometry::Obstacle> shapes = shapes_of(obstacles);
     const py::gil_scoped_release released;

@@ -51,8 +51,8 @@ void check_radius(const Flags& flags) {
   require(flags.radius || flags.widest, "--radius", "nothing", "the radius of the disc in m, or --widest");
   if (!flags.radius) return;
   constexpr double kLeast = 0x1p-100;
-  require(*flags.radius >= kLeast && *flags.radius <= kLargestNumber, "--radius", fmt::format("{}", *flags.radius),
-          "a length from 2^-100 m to 2^100 m (for a point give a radius that is small for the map, such as 1e-9)");
+  require(*flags.radius == 0.0 || (*flags.radius >= kLeast && *flags.radius <= kLargestNumber), "--radius",
+          fmt::format("{}", *flags.radius), "0 (a point), or a length from 2^-100 m to 2^100 m");
 }
 
 void check(const Flags& flags) {
@@ -192,17 +192,24 @@ ExitCode answer_many(const AskedMap& map, const Flags& flags) {
   return all ? ExitCode::success : ExitCode::negative;
 }
 
+/// Of a cell's side: exact beside every number of a cell up to 2^16, and nothing beside any length.
+constexpr double kIntoCell = 0x1p-36;
+
 ExitCode route(const Flags& flags) {
   check(flags);
   datasets::ReadOptions reading = reading_options(flags.reading);
   reading.keep_going = false;
   reading.repair = flags.repair;
-  const AskedMap map = read_asked_map(flags.map, reading, flags.cell_point);
-  if (map.cells)
-    message(
-        fmt::format("{}: points are {}s of cells, columns from the left and rows from the top, from 0; answers are "
-                    "in m, y upward",
-                    map.file, flags.cell_point));
+  AskedMap map = read_asked_map(flags.map, reading, flags.cell_point);
+  if (map.cells) {
+    // A point does not touch obstacles, and the corner of a free cell may lie on one.
+    const bool is_moved = flags.radius == 0.0 && map.cells->offset == 0.0;
+    if (is_moved) map.cells->offset = kIntoCell;
+    message(fmt::format(
+        "{}: points are {}s of cells{}, columns from the left and rows from the top, from 0; answers are "
+        "in m, y upward",
+        map.file, flags.cell_point, is_moved ? fmt::format(", moved into them by {:.2g} of a side", kIntoCell) : ""));
+  }
   const TerminateOnSignal terminate_on_signal;
   return flags.queries.empty() ? answer_one(map, flags) : answer_many(map, flags);
 }
@@ -214,7 +221,7 @@ Action declare(CLI::App& app) {
                  "Start X,Y: m as the reader lays the file out (degrees are projected first, and it says how); on a "
                  "Moving AI map cells, as in its .scen");
   app.add_option("--to", flags->to, "Goal X,Y, likewise");
-  app.add_option("--radius", flags->radius, "Of the disc, m, > 0");
+  app.add_option("--radius", flags->radius, "Of the disc, m; 0: a point, which touches nothing");
   app.add_flag("--widest", flags->widest, "The largest radius for which there is a route, an exact double");
   app.add_option("--queries", flags->queries,
                  "FILE, or - for stdin: many questions, one line of answer each. CSV with the columns "

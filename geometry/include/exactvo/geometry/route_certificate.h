@@ -21,14 +21,14 @@ namespace exactvo::geometry {
 
 /// What was asked.
 struct RouteQuestion {
-  double radius = 0.0;  ///< m, > 0
+  double radius = 0.0;  ///< m, >= 0; 0: a point, which touches nothing
   /// m.
   Vec2 start, goal;  ///< m
 };
 
 /// Empty where the answer is proven; else what is wrong with it, in a few words with the number of the point:
 /// "point 3: nearer to edge 1 of obstacle 7 than the radius". Time: points times edges for a route.
-/// REQUIRES: finite numbers, radius > 0.
+/// REQUIRES: finite numbers, radius >= 0.
 std::string check(const std::vector<Obstacle>& obstacles, const RouteQuestion& question, const RouteAnswer& answer);
 
 }  // namespace exactvo::geometry

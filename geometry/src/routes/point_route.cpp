@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "routes/point_route.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "routes/funnel.h"
+
+namespace exactvo::geometry::routing {
+namespace {
+
+using Polyline = std::vector<Point>;
+
+double largest_of(Vec2 p) {
+  return std::max(std::fabs(p.x), std::fabs(p.y));
+}
+
+Vec2 unit(Vec2 d) {
+  const double length = norm(d);
+  return length > 0.0 ? d / length : Vec2{0.0, 0.0};
+}
+
+/// Rounded.
+double length_of(const Polyline& points) {
+  double length = 0.0;
+  for (std::size_t k = 1; k < points.size(); ++k) length += norm(points[k].rounded() - points[k - 1].rounded());
+  return length;
+}
+
+/// Leaves corners out where two others see each other. Nothing where two neighbours do not.
+class Shortener {
+ public:
+  Shortener(const ClearancePlan& plan, const Polyline& corners) : plan_(plan), corners_(corners) {}
+
+  std::optional<Polyline> operator()() {
+    kept_.assign(1, 0);
+    std::vector<std::size_t> ends{corners_.size() - 1};  // what is to be reached, the next one last
+    while (!ends.empty()) {
+      const std::size_t from = kept_.back(), to = ends.back();
+      if (sees(from, to)) {
+        ends.pop_back();
+        keep(to);
+      } else if (to > from + 1) {
+        ends.push_back(farthest_between(from, to));
+      } else {
+        return std::nullopt;
+      }
+    }
+    Polyline out;
+    for (const std::size_t k : kept_) out.push_back(corners_[k]);
+    return out;
+  }
+
+ private:
+  bool sees(std::size_t i, std::size_t j) const { return plan_.is_clear(corners_[i], corners_[j]); }
+
+  /// In place of the last one, where that is not needed.
+  void keep(std::size_t corner) {
+    if (kept_.size() > 1 && sees(kept_[kept_.size() - 2], corner)) kept_.pop_back();
+    kept_.push_back(corner);
+  }
+
+  /// From the straight line; halfway where all lie on it.
+  std::size_t farthest_between(std::size_t from, std::size_t to) const {
+    const Vec2 a = corners_[from].rounded(), d = corners_[to].rounded() - a;
+    std::size_t found = from + (to - from) / 2;
+    double farthest = 0.0;
+    for (std::size_t k = from + 1; k < to; ++k) {
+      const double away = std::fabs(cross(d, corners_[k].rounded() - a));
+      if (!(away > farthest)) continue;
+      farthest = away;
+      found = k;
+    }
+    return found;
+  }
+
+  const ClearancePlan& plan_;
+  const Polyline& corners_;
+  std::vector<std::size_t> kept_;
+};
+
+/// The shortest curve through a row of portals, and polylines beside it.
+class TautCurve {
+ public:
+  TautCurve(const ClearancePlan& plan, const PortalRow& row, Vec2 s, Vec2 t)
+      : plan_(plan), row_(row), turns_(turns_through(row, s, t)) {
+    points_.push_back(s);
+    for (const Turn& turn : turns_) points_.push_back(row.end(turn.at, turn.left));
+    points_.push_back(t);
+    for (std::size_t k = 1; k < points_.size(); ++k) length_ += norm(points_[k] - points_[k - 1]);
+    for (const Vec2 p : points_) size_ = std::max(size_, largest_of(p));
+  }
+
+  double length() const { return length_; }
+  /// m, the largest coordinate.
+  double size() const { return size_; }
+
+  /// One corner beside each vertex that the curve touches, `inset` m away. Nothing where that cannot be proven.
+  std::optional<Polyline> beside_vertices(double inset) const {
+    Polyline corners{points_.front()};
+    int last = -1;  // the vertex beside which the last corner lies
+    for (std::size_t leg = 0; leg + 1 < points_.size(); ++leg) {
+      const Vec2 in = unit(points_[leg + 1] - points_[leg]);
+      for (std::size_t k = first_of(leg); k < end_of(leg); ++k) {
+        const double share = share_of(k, leg), least = inset_share(k, inset);
+        const bool left = share > 0.5, is_at_end = share < least || share > 1.0 - least;
+        const int vertex = is_at_end ? row_.vertex(k, left) : -1;
+        if (vertex < 0) corners.emplace_back(at(k, inner(k, share, inset)));
+        if (vertex >= 0 && vertex != last) corners.emplace_back(beside(row_.end(k, left), left, in, in, inset));
+        last = vertex;
+      }
+      if (leg == turns_.size()) break;
+      const Turn& turn = turns_[leg];
+      const int vertex = row_.vertex(turn.at, turn.left);
+      if (vertex >= 0 && vertex == last) corners.pop_back();
+      const Vec2 out = unit(points_[leg + 2] - points_[leg + 1]);
+      corners.emplace_back(beside(points_[leg + 1], turn.left, in, out, inset));
+      last = vertex;
+    }
+    corners.emplace_back(points_.back());
+    return Shortener(plan_, corners)();
+  }
+
+  /// A corner in each portal, exact where rounded ones cannot be proven.
+  Polyline through_portals(double inset) const {
+    Polyline corners{points_.front()};
+    std::vector<double> shares;
+    for (std::size_t leg = 0; leg + 1 < points_.size(); ++leg) {
+      const std::size_t end = leg < turns_.size() ? turns_[leg].at + 1 : row_.size();
+      for (std::size_t k = first_of(leg); k < end; ++k) {
+        shares.push_back(inner(k, share_of(k, leg), inset));
+        corners.emplace_back(at(k, shares.back()));
+      }
+    }
+    corners.emplace_back(points_.back());
+    std::vector<char> is_exact(corners.size(), 0);
+    is_exact.front() = is_exact.back() = 1;
+    for (std::size_t k = 0; k + 1 < corners.size();) {
+      const bool doubtful = !is_exact[k] || !is_exact[k + 1];
+      if (!doubtful || plan_.is_clear(corners[k], corners[k + 1])) {
+        ++k;
+        continue;
+      }
+      for (const std::size_t i : {k, k + 1}) {
+        if (is_exact[i]) continue;
+        corners[i] = exactly_at(i - 1, shares[i - 1]);
+        is_exact[i] = 1;
+      }
+      if (k > 0) --k;
+    }
+    std::optional<Polyline> fewer = Shortener(plan_, corners)();
+    return fewer ? std::move(*fewer) : corners;
+  }
+
+ private:
+  /// Portals that the straight piece crosses, without the one at whose end it turns.
+  std::size_t first_of(std::size_t leg) const { return leg > 0 ? turns_[leg - 1].at + 1 : 0; }
+  std::size_t end_of(std::size_t leg) const { return leg < turns_.size() ? turns_[leg].at : row_.size(); }
+
+  /// Where the piece crosses the portal, as a share of it from right to left.
+  double share_of(std::size_t portal, std::size_t leg) const {
+    constexpr double kRounding = 0x1p-45;
+    const Vec2 a = points_[leg], d = points_[leg + 1] - a;
+    const Vec2 right = row_.end(portal, false), along = row_.end(portal, true) - right;
+    const double r = cross(d, right - a), l = cross(d, along);
+    if (std::fabs(l) > kRounding * size_ * norm(d)) return std::clamp(-r / l, 0.0, 1.0);
+    // The piece runs along the portal: to where it ends.
+    const double squared = squared_norm(along);
+    return squared > 0.0 ? std::clamp(dot(points_[leg + 1] - right, along) / squared, 0.0, 1.0) : 0.5;
+  }
+
+  double inset_share(std::size_t portal, double inset) const {
+    constexpr double kMost = 0.25;
+    const double width = norm(row_.end(portal, true) - row_.end(portal, false));
+    return inset < kMost * width ? inset / width : kMost;
+  }
+  double inner(std::size_t portal, double share, double inset) const {
+    const double least = inset_share(portal, inset);
+    return std::clamp(share, least, 1.0 - least);
+  }
+
+  Vec2 at(std::size_t portal, double share) const {
+    const Vec2 right = row_.end(portal, false), left = row_.end(portal, true);
+    return share > 0.5 ? left + (1.0 - share) * (right - left) : right + share * (left - right);
+  }
+  Point exactly_at(std::size_t portal, double share) const {
+    auto [right, left] = plan_.map().ends_of(plan_.map().portals[row_.portal(portal)]);
+    if (!row_.is_from_left(portal)) std::swap(right, left);
+    const Vector<Rational> r = right.exact(), l = left.exact();
+    return {Rational(r.x + share * (l.x - r.x)), Rational(r.y + share * (l.y - r.y))};
+  }
+  /// Away from a vertex on the left or right of the curve, which comes along `in` and leaves along `out`.
+  static Vec2 beside(Vec2 vertex, bool left, Vec2 in, Vec2 out, double inset) {
+    const Vec2 on = in + out, right{on.y, -on.x};
+    return vertex + inset * unit(left ? right + (in - out) : (in - out) - right);
+  }
+
+  const ClearancePlan& plan_;
+  const PortalRow& row_;
+  std::vector<Turn> turns_;
+  std::vector<Vec2> points_;  ///< start, turns, goal
+  double length_ = 0.0, size_ = 0.0;
+};
+
+}  // namespace
+
+std::vector<Point> point_route(const ClearancePlan& plan, Vec2 s, int start, Vec2 t, const Way& way) {
+  constexpr double kHardlyLonger = 1.0 + 1e-9;
+  const PortalRow row(plan, way.portals, start);
+  const TautCurve curve(plan, row, s, t);
+  Polyline best;
+  double length = 0.0;
+  const auto is_short = [&](std::optional<Polyline> found) {
+    if (!found) return false;
+    const double other = length_of(*found);
+    if (best.empty() || other < length) {
+      length = other;
+      best = std::move(*found);
+    }
+    return length <= kHardlyLonger * curve.length();
+  };
+  for (const double share : {0x1p-44, 0x1p-48})
+    if (is_short(curve.beside_vertices(share * curve.size()))) return best;
+  for (const double share : {0x1p-48, 0x1p-68, 0x1p-108})
+    if (is_short(curve.through_portals(share * curve.size()))) return best;
+  return best;
+}
+
+}  // namespace exactvo::geometry::routing
