@@ -81,6 +81,20 @@ TEST(Guidance, PassesADoorThatLeavesLessThanTheMargin) {
   }
 }
 
+TEST(Guidance, DoesNotCreepThroughARowOfNarrowGates) {
+  // Twelve gates of 1 m, staggered, for a robot of 0.9 m: at each it came to the very middle, ever more slowly.
+  Scenario s = scene({Polyline{{{-2, -4}, {27, -4}, {27, 4}, {-2, 4}, {-2, -4}}}}, {0, 0}, {25, 0}, 0.45);
+  for (int k = 0; k < 12; ++k) {
+    const double x = 2.0 + 2.0 * k, y = k % 2 == 0 ? 0.6 : -0.6;
+    s.obstacles.push_back({"low " + std::to_string(k), Polyline{{{x, -4}, {x, y - 0.5}}}});
+    s.obstacles.push_back({"high " + std::to_string(k), Polyline{{{x, y + 0.5}, {x, 4}}}});
+  }
+  const GuidedRun run = guided(s);
+  EXPECT_TRUE(run.metrics.all_arrived);
+  EXPECT_TRUE(is_safe(run.metrics));
+  EXPECT_LT(run.metrics.last_arrival_time.value_or(1e9), 40.0) << "8.6 s at full speed";
+}
+
 TEST(Guidance, KeepsTheMarginWhereThereIsRoom) {
   const GuidedRun run = guided(door(3.0));
   EXPECT_TRUE(run.metrics.all_arrived);
@@ -408,6 +422,70 @@ TEST(Guidance, AGoalOnTheWayThatIsPassedAndANextThatIsOutOfReachAreBothNoted) {
   }
   EXPECT_TRUE(noted);
   EXPECT_THAT(run.metrics.outcome, HasSubstr("R cannot reach its goal 2: "));
+}
+
+// --- Moving obstacles that stand on a route ---
+
+/// Two doors in a wall; a cart comes to stand in the first, 1.2 s before the robot would be there, and later goes on.
+Scenario two_doors(double cart_leaves_after) {
+  Scenario s = scene({Polyline{{{0, -8}, {0, -5}}}, Polyline{{{0, -3}, {0, 2}}}, Polyline{{{0, 4}, {0, 8}}},
+                      Polyline{{{-9, -8}, {9, -8}, {9, 8}, {-9, 8}, {-9, -8}}}},
+                     {-8, 3}, {8, 3});
+  s.robots[0].max_speed = 1.0;
+  s.time_limit = 100.0;
+  MovingObstacle cart{"cart",
+                      geometry::Polygon{{{-0.5, 7}, {0.5, 7}, {0.5, 7.8}, {-0.5, 7.8}}, {}},
+                      {{{0, 0}, {0, -4}, {0, 0}}, 0.0, {{0, 2}, {2, 2}, {2, 0}}}};
+  if (cart_leaves_after > 0.0) {
+    cart.motion.profile.push_back({2 + cart_leaves_after, 0});
+    cart.motion.profile.push_back({2 + cart_leaves_after, 2});
+  }
+  s.moving_obstacles = {cart};
+  return s;
+}
+
+std::string notes_of(const GuidedRun& run) {
+  std::string all;
+  for (const Step& row : run.recording.steps)
+    if (!row.robots[0].note.empty()) all += row.robots[0].note + "\n";
+  return all;
+}
+
+TEST(CutRoutes, WhoseRouteACartStandsOnGoesRoundIt) {
+  const Scenario s = two_doors(0.0);
+  const GuidedRun run = guided(s);
+  EXPECT_TRUE(run.metrics.all_arrived) << run.metrics.outcome;
+  EXPECT_TRUE(run.metrics.collisions.empty());
+  EXPECT_EQ(run.metrics.routes.value().cut, 1u);
+  EXPECT_THAT(notes_of(run), HasSubstr("moving obstacle 'cart' stands on its route: a new one leads round it"));
+}
+
+TEST(CutRoutes, WhatLeavesARouteGivesItBack) {
+  const Scenario s = two_doors(2.5);
+  const GuidedRun run = guided(s);
+  EXPECT_TRUE(run.metrics.all_arrived) << run.metrics.outcome;
+  EXPECT_EQ(run.metrics.routes.value().cut, 2u);
+  EXPECT_THAT(notes_of(run), HasSubstr("what it went round has moved: a new route is planned"));
+  double lowest = 0.0;
+  for (const Step& row : run.recording.steps) lowest = std::min(lowest, row.robots[0].position.y);
+  EXPECT_GT(lowest, -3.0) << "it goes through the first door";
+}
+
+TEST(CutRoutes, WithoutAWayRoundItWaitsUntilTheCartGoesOn) {
+  Scenario s = two_doors(20.0);
+  s.obstacles.push_back({"second door", Polyline{{{0, -5}, {0, -3}}}});
+  const GuidedRun run = guided(s);
+  EXPECT_TRUE(run.metrics.all_arrived) << run.metrics.outcome;
+  EXPECT_EQ(run.metrics.routes.value().cut, 0u);
+  EXPECT_THAT(notes_of(run), HasSubstr("stands on its route: none leads round it, waits"));
+  EXPECT_EQ(notes_of(run).find("waits"), notes_of(run).rfind("waits")) << "said once";
+}
+
+TEST(CutRoutes, AreTheSameInEveryRun) {
+  const GuidedRun one = guided(two_doors(2.5)), other = guided(two_doors(2.5));
+  ASSERT_EQ(one.recording.steps.size(), other.recording.steps.size());
+  for (std::size_t k = 0; k < one.recording.steps.size(); ++k)
+    EXPECT_EQ(one.recording.steps[k].robots[0].position, other.recording.steps[k].robots[0].position);
 }
 
 TEST(Guidance, WhoMustGiveWayToACartArrives) {

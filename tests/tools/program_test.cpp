@@ -750,13 +750,21 @@ TEST(Simulate, FollowsProvenRoutes) {
   EXPECT_EQ(here.run("audit open --scenario open.json").status, 0);
   EXPECT_THAT(here.run("explain open --time 1 --robot R").out, HasSubstr("leads along a proven route"));
   EXPECT_EQ(here.run("draw open").status, 0);
+  EXPECT_THAT(here.read("open/figures/paths.dat"), HasSubstr("routes of R"));
+  const Outcome explained = here.run("explain open --time 1 --robot R --map map.svg");
+  EXPECT_THAT(explained.out, AllOf(HasSubstr("Route: "), HasSubstr(" to (4, 3); it heads for (")));
+  EXPECT_THAT(here.read("map.dat"), HasSubstr("route from here"));
   EXPECT_THAT(here.run("simulate open.json --guidance none --out open --no-figures").err, HasSubstr("guidance route"))
       << "another run";
 
-  const Outcome shut = here.run("simulate shut.json");
+  const Outcome shut = here.run("simulate shut.json --out shut");
   EXPECT_EQ(shut.status, 0);
   EXPECT_THAT(shut.out, AllOf(HasSubstr("R cannot reach its goal: obstacles "), HasSubstr("with a gap of 0.9 m")));
   EXPECT_THAT(shut.err, HasSubstr("cannot be reached: obstacles ")) << "said before the run";
+  EXPECT_THAT(here.read("shut/figures/paths.dat"), HasSubstr("gaps that are too narrow"));
+  EXPECT_THAT(here.run("explain shut --time 0 --robot R --map shut.svg").out,
+              HasSubstr("Route: none, out of reach: obstacles "));
+  EXPECT_THAT(here.read("shut.dat"), HasSubstr("gap, too narrow"));
 
   EXPECT_EQ(here.run("simulate open.json --guidance route --method ivo-edge").status, 2);
   EXPECT_THAT(here.run("simulate open.json --guidance routes").err, HasSubstr("one of none route"));

@@ -196,7 +196,7 @@ std::string held_words(const Decision& d, const Balance& b) {
 std::string turned_words(const Decision& d) {
   switch (d.step.mode) {
     case formation::Mode::guided:
-      return "the preferred velocity leads along a proven route to the goal";
+      return "the preferred velocity leads along a proven route";
     case formation::Mode::by_plan:
       return "the preferred velocity follows a joint plan of several robots";
     case formation::Mode::going_back:

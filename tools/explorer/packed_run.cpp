@@ -10,10 +10,10 @@
 #include <variant>
 
 #include "exactvo/datasets/scenario_file.h"
-#include "exactvo/formation/planned_routes.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/waiting.h"
 #include "explorer/deflate.h"
+#include "support/routes_of_run.h"
 
 namespace exactvo::tools {
 
@@ -350,15 +350,10 @@ Json shown_metrics(const std::string& text) {
 
 /// Planned again as the run did; null where it had none, or where that would take long.
 Json routes_json(const datasets::RecordingFile& about, const PackedRunLimits& limits) {
-  std::size_t vertices = 0;
-  for (const formation::SceneObstacle& o : about.scenario.obstacles) vertices += geometry::vertices_of(o.shape).size();
-  formation::SimulationOptions options;
-  const bool is_guided = about.info.guidance && parse(about.info.method, options.method) &&
-                         parse(*about.info.guidance, options.guidance.emplace());
-  if (!is_guided || about.scenario.robots.size() > limits.routed_robots || vertices > limits.routed_vertices)
-    return nullptr;
+  const auto planned = routes_of(about, {limits.routed_robots, limits.routed_vertices});
+  if (!planned) return nullptr;
   Json routes = Json::array();
-  for (const formation::PlannedRoute& route : formation::planned_routes(about.scenario, options))
+  for (const formation::PlannedRoute& route : *planned)
     routes.push_back(
         {{"robot", route.robot}, {"goal", route.goal}, {"points", flat(route.points)}, {"why_not", route.why_not}});
   return routes;

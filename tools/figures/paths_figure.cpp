@@ -17,6 +17,7 @@
 #include "figures/outlines.h"
 #include "figures/sheet.h"
 #include "figures/template.h"
+#include "support/routes_of_run.h"
 
 namespace exactvo::tools {
 
@@ -86,6 +87,7 @@ class PathsPanel {
     add_obstacles();
     add_moving_obstacles();
     if (detailed_) add_enclosures();
+    if (detailed_) add_routes();
     add_leader();
     for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) add_way(i);
     if (detailed_) add_times_of_moving_obstacles();
@@ -243,6 +245,53 @@ class PathsPanel {
     plot_.data(index,
                fmt::format("{} with lines lw 1.2 dt (6,5) lc rgb '{}'", origin_.using_columns(), series_colour(i)));
     return true;
+  }
+
+  /// Wide and pale, under the paths; and what separates goals out of reach.
+  void add_routes() {
+    const std::vector<formation::PlannedRoute> routes =
+        routes_of(run_).value_or(std::vector<formation::PlannedRoute>{});
+    bool any = false;
+    for (std::size_t i = 0; i < run_.scenario.robots.size(); ++i) any |= add_routes_of(i, routes);
+    if (any) plot_.item("keyentry with lines lw 7 lc rgb '#c0222222'", "route");
+    add_chains(routes);
+  }
+
+  bool add_routes_of(std::size_t i, const std::vector<formation::PlannedRoute>& routes) {
+    bool any = false;
+    for (const formation::PlannedRoute& route : routes) any |= route.robot == i && !route.points.empty();
+    if (!any) return false;
+    const int index = data_.begin("routes of " + run_.scenario.robots[i].id, "x [m], y [m]");
+    for (const formation::PlannedRoute& route : routes) {
+      if (route.robot != i) continue;
+      for (const Vec2 p : route.points) data_.row({p.x, p.y});
+      data_.gap();
+    }
+    const std::string pale = std::string("#c0") + (series_colour(i) + 1);
+    plot_.data(index, fmt::format("{} with lines lw 7 lc rgb '{}'", origin_.using_columns(), pale));
+    return true;
+  }
+
+  /// Solid along obstacles, dashed across gaps.
+  void add_chains(const std::vector<formation::PlannedRoute>& routes) {
+    for (const bool across : {false, true}) {
+      bool any = false;
+      for (const formation::PlannedRoute& route : routes)
+        for (const geometry::ChainPoint& p : route.chain) any |= p.gap_follows == across;
+      if (!any) continue;
+      const int index = data_.begin(across ? "gaps that are too narrow" : "closed chains", "x [m], y [m]");
+      for (const formation::PlannedRoute& route : routes)
+        for (std::size_t k = 0; k < route.chain.size(); ++k) {
+          if (route.chain[k].gap_follows != across) continue;
+          for (const std::size_t end : {k, (k + 1) % route.chain.size()})
+            data_.row({route.chain[end].point.rounded.x, route.chain[end].point.rounded.y});
+          data_.gap();
+        }
+      plot_.data(index,
+                 fmt::format("{} with lines lw {}{} lc rgb '{}'", origin_.using_columns(), across ? 2.5 : 3.5,
+                             across ? " dt (4,3)" : "", kSeparatorColour),
+                 across ? "gap, too narrow" : "closed chain");
+    }
   }
 
   void add_leader() {
@@ -422,6 +471,7 @@ Canvas canvas_for(const Box& view, std::size_t longest_key) {
 
 std::size_t longest_key(const RecordingFile& run) {
   std::size_t longest = run.scenario.formation ? 14 : 10;  // "virtual leader", "enclosures"
+  if (run.info.guidance) longest = 15;                     // "gap, too narrow"
   if (!run.scenario.moving_obstacles.empty()) longest = std::max<std::size_t>(longest, 15);  // "moving obstacle"
   for (const Robot& robot : run.scenario.robots) longest = std::max(longest, robot.id.size());
   return std::min(longest, kNameLength);

@@ -31,6 +31,7 @@ inline const char* series_dash(std::size_t i) {
 }
 
 inline constexpr const char* kCollisionColour = "#e00000";
+inline constexpr const char* kSeparatorColour = "#b2182b";  ///< what separates a goal out of reach
 inline constexpr const char* kObstacleFill = "#c9ccd2";
 inline constexpr const char* kObstacleLine = "#3f444d";
 

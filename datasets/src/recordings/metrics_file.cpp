@@ -44,7 +44,7 @@ void append_routes(JsonWriter& json, const std::optional<formation::RoutesCourse
     return;
   }
   json.begin_inline_object().member("planned", routes->planned).member("pushed_off", routes->pushed_off);
-  json.member("nearest", routes->nearest).end_object();
+  json.member("cut", routes->cut).member("nearest", routes->nearest).end_object();
 }
 
 void append_texts(JsonWriter& json, const char* key, const std::vector<std::string>& texts) {

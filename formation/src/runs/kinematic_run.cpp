@@ -15,6 +15,7 @@
 #include "scene/static_field.h"
 #include "steering/goals.h"
 #include "steering/guide.h"
+#include "steering/standing.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {
@@ -28,8 +29,13 @@ struct KinematicRobot {
   std::size_t goal = 0;
   std::optional<StaticField> field;
   Follower follower;
-  std::optional<Course> course = {};         ///< with guidance: to its present goal
-  std::string no_way = {};                   ///< with guidance: why it has no course to its goal
+  std::optional<Course> course = {};  ///< with guidance: to its present goal
+  Guide* round = nullptr;             ///< with guidance: of a course round obstacles that move and stand for now
+  bool has_new_course = false;        ///< with guidance: nobody has looked whether something stands on it
+  std::optional<std::size_t> cut_by =
+      {};                    ///< with guidance: the moving obstacle that stands on it, without a way round
+  double looks_again = 0.0;  ///< s: then it looks again for one
+  std::string no_way = {};   ///< with guidance: why it has no course to its goal
   std::optional<NearestPlace> nearest = {};  ///< with guidance: where its course ends that does not lead to its goal
   bool has_come_nearest = false;             ///< with guidance: it is there
   bool waits_for_room = false;  ///< with guidance: it has to be pushed out before its course can be planned
@@ -55,6 +61,7 @@ class KinematicRun {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
       groups_.emplace(scenario, guide ? static_cast<const FreeSpace&>(*guide) : open_space_,
                       liveness_ == Liveness::plan, [this] { return clock_.is_stopped(now_); });
+    if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
       robot.position = scenario.robots[i].position;
@@ -98,6 +105,9 @@ class KinematicRun {
     KinematicRobot& r = robots_[i];
     CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, {goal_of(i), reach_of_goal(i)});
     r.course = std::move(answer.course);
+    r.round = nullptr;
+    r.cut_by.reset();
+    r.has_new_course = true;
     r.nearest = answer.nearest;
     r.has_come_nearest = false;
     r.no_way = answer.defect.empty()
@@ -145,6 +155,7 @@ class KinematicRun {
     Step row;
     row.time = time;
     move_obstacles(scenario_, time, scene_, row.moving);
+    if (standing_) look_at_what_stands(time, row.moving);
     row.robots.reserve(robots_.size());
     for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time));
     if (!groups_) return row;
@@ -152,6 +163,59 @@ class KinematicRun {
     while (groups_->any() && groups_->halt_those_held_back(row)) decide_again(time, row);
     groups_->end_step(row);
     return row;
+  }
+
+  // --- Moving obstacles that stand on routes ---
+
+  void look_at_what_stands(double time, const std::vector<MovedObstacle>& moving) {
+    const std::size_t before = standing_->changes();
+    standing_->look(time, moving);
+    const bool changed = standing_->changes() != before;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      KinematicRobot& r = robots_[i];
+      if (!r.course || r.nearest || at_goal(i)) continue;
+      if (changed && r.round) take_up_route(i);
+      const bool looks = changed || r.has_new_course || (r.cut_by && time >= r.looks_again);
+      if (looks && !goes_by_plan(i)) go_round(i, time);
+    }
+  }
+
+  Destination destination(std::size_t i) const { return {goal_of(i), reach_of_goal(i)}; }
+
+  /// What it went round stands there no longer.
+  void take_up_route(std::size_t i) {
+    KinematicRobot& r = robots_[i];
+    CourseAnswer again = guide_->course(scenario_.robots[i].radius, r.position, destination(i));
+    if (!again.course || again.nearest) return;
+    r.course = std::move(again.course);
+    r.round = nullptr;
+    r.cut_by.reset();
+    ++routes_.cut;
+    r.note = joined_notes(r.note, "what it went round has moved: a new route is planned");
+  }
+
+  /// Where something that stands now cuts its route and there is a way round. Else it waits before it, and looks again.
+  void go_round(std::size_t i, double time) {
+    constexpr double kLooksAgainAfter = 1.0;  // s
+    KinematicRobot& r = robots_[i];
+    const double radius = scenario_.robots[i].radius;
+    const std::optional<std::size_t> by = standing_->in_the_way(*r.course, r.position, radius);
+    const bool is_known = by == r.cut_by;
+    r.has_new_course = false;
+    r.cut_by = by;
+    r.looks_again = time + kLooksAgainAfter;
+    if (!by) return;
+    Guide& round = standing_->guide();
+    CourseAnswer answer = round.course(radius, r.position, destination(i));
+    const bool is_way = answer.course && !answer.nearest;
+    const std::string words = "moving obstacle '" + scenario_.moving_obstacles[*by].id + "' stands on its route: " +
+                              (is_way ? "a new one leads round it" : "none leads round it, waits");
+    if (is_way || !is_known) r.note = joined_notes(r.note, words);
+    if (!is_way) return;
+    r.course = std::move(answer.course);
+    r.round = &round;
+    r.cut_by.reset();
+    ++routes_.cut;
   }
 
   // --- Robots that go by plan ---
@@ -348,10 +412,11 @@ class KinematicRun {
     r.has_come_nearest = r.nearest && norm(r.position - r.nearest->place) <= scenario_.arrival_tolerance;
     if (step.mode == Mode::direct) step.mode = r.course && !r.has_come_nearest ? Mode::guided : Mode::staying;
     if (!r.course) return {};
-    const Heading to = guide_->heading(*r.course, radius, r.position);
+    const Heading to = (r.round ? r.round : guide_)->heading(*r.course, radius, r.position);
     r.field->set_margin(to.margin);  // from the next step on
     if (to.is_new) {
       ++routes_.pushed_off;
+      r.has_new_course = true;
       step.note = joined_notes(step.note, "pushed out of sight of its route: a new one is planned");
     }
     return straight_for(i, to.place);
@@ -457,6 +522,7 @@ class KinematicRun {
   const Scenario& scenario_;
   const SimulationOptions& options_;
   Guide* guide_;
+  std::optional<StandingObstacles> standing_;  ///< with guidance, where there are moving obstacles
   RoutesCourse routes_;
   Liveness liveness_;
   Scene scene_;

@@ -20,6 +20,10 @@ using geometry::Segment;
 /// close no gap that the route passes, and one skin is left for rounding.
 constexpr double kSkins = 2.0 * kContactSkin;
 
+/// A way must be so much wider than the margins that robots keep on it: else they have to come to its very middle,
+/// which they do ever more slowly.
+constexpr double kPlay = 1.25;
+
 /// Whether the course goes on with less room at its next point, which the robot has not come to yet.
 bool is_before_narrow(const Course& course, std::size_t next, Vec2 here) {
   constexpr double kThere = 1e-3;  // m
@@ -86,12 +90,14 @@ Course Guide::direct(double radius, Vec2 from, const Destination& to) const {
 /// REQUIRES: a way from `from` to `end` for `radius` and the skins.
 Course Guide::planned(double radius, Vec2 from, Vec2 end, const Destination& to) {
   const double least = radius + kSkins, wanted = least + most_margin_;
-  const Vec2 first = roomy_place_near(radius, from), last = roomy_place_near(radius, end);
-  const bool has_margin = reach_.plan(wanted).is_reachable(first, last);
-  const double keeps = has_margin ? wanted : reach_.map().widest_radius(first, last);
-  // The widest radius is another for every place: such plans are not kept.
+  const Vec2 first = roomy_place_near(radius, from, wanted), last = roomy_place_near(radius, end, wanted);
+  const bool has_margin = reach_.plan(wanted).is_reachable(first, last) && has_play(radius, first, last);
+  // Where the way is narrow, as much of the margin as leaves play. The radius is another for every place: such plans
+  // are not kept.
+  const double widest = has_margin ? wanted : std::min(wanted, reach_.map().widest_radius(first, last));
+  const double keeps = has_margin ? wanted : least + (widest - least) / kPlay;
   const RouteAnswer answer =
-      (has_margin ? reach_.plan(wanted) : geometry::RoutePlan(reach_.map(), keeps)).query(first, last);
+      (has_margin ? reach_.plan(wanted) : geometry::RoutePlan(reach_.map(), widest)).query(first, last);
   Course course;
   course.to = to;
   const auto add = [&](Vec2 point, double kept) {
@@ -105,10 +111,17 @@ Course Guide::planned(double radius, Vec2 from, Vec2 end, const Destination& to)
   return course;
 }
 
-/// The place, or one in sight of it that leaves a robot there the margin; the place again where none is found.
-Vec2 Guide::roomy_place_near(double radius, Vec2 place) const {
+/// Whether some way leaves more than the margin.
+bool Guide::has_play(double radius, Vec2 first, Vec2 last) {
+  const double wide = radius + kSkins + kPlay * most_margin_;
+  if (wide > reach_.map().largest_radius()) return true;  // far more than the obstacles' size
+  return reach_.plan(wide).is_reachable(roomy_place_near(radius, first, wide), roomy_place_near(radius, last, wide));
+}
+
+/// The place, or one in sight of it that is `wanted` away from everything; the place again where none is found.
+Vec2 Guide::roomy_place_near(double radius, Vec2 place, double wanted) const {
   constexpr double kFarthest = 2.0;  // margins: enough for a corner
-  const double least = radius + kSkins, wanted = least + most_margin_;
+  const double least = radius + kSkins;
   if (clearance_at(place, wanted) >= wanted) return place;
   for (const Vec2 near : places_about(place, kFarthest * most_margin_))
     if (clearance_at(near, wanted) >= wanted && is_in_sight(place, near, least)) return near;

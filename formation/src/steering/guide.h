@@ -54,13 +54,15 @@ class Guide : public FreeSpace {
   Guide(const Scenario& scenario, double most_margin, double most_radius = 0.0);
   Guide(const Guide&) = delete;
 
+  double most_margin() const { return most_margin_; }
+
   /// Whether a course leads to the destination itself.
   bool can_go(double radius, Vec2 from, const Destination& to);
 
   /// Which places can be reached at all.
   Reachability& reachability() { return reach_; }
 
-  /// The route that leaves a robot of `radius` the margin, or as much of it as the widest way has. Where an end leaves
+  /// The route that leaves a robot of `radius` the margin, or most of what the widest way has. Where an end leaves
   /// less, the margin is kept on the way between. Where the destination is out of reach and the scenario says so, the
   /// course leads to the nearest place.
   CourseAnswer course(double radius, Vec2 from, const Destination& to);
@@ -86,7 +88,8 @@ class Guide : public FreeSpace {
   CourseAnswer course_to(double radius, Vec2 from, const Destination& to);
   Course direct(double radius, Vec2 from, const Destination& to) const;
   Course planned(double radius, Vec2 from, Vec2 end, const Destination& to);
-  Vec2 roomy_place_near(double radius, Vec2 place) const;
+  bool has_play(double radius, Vec2 first, Vec2 last);
+  Vec2 roomy_place_near(double radius, Vec2 place, double wanted) const;
   std::string why_not(double radius, Vec2 from, const Destination& to);
   double clearance_at(Vec2 here, double enough) const;
   bool is_in_sight(Vec2 here, Vec2 there, double clearance) const;

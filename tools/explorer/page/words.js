@@ -69,7 +69,7 @@ function enumerated(words) {
 }
 
 const TURNED = {
-  guided: 'the preferred velocity leads along a proven route to the goal',
+  guided: 'the preferred velocity leads along a proven route',
   'by-plan': 'the preferred velocity follows a joint plan of several robots',
   'going-back': 'the robot goes back the way it came, to where its plan begins',
   staying: 'the robot stays, since its goal is out of reach',

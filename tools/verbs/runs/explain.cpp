@@ -15,12 +15,14 @@
 #include "figures/figure_file.h"
 #include "figures/velocity_space.h"
 #include "support/escape.h"
+#include "support/routes_of_run.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
+#include "verbs/runs/route_map.h"
 
 namespace exactvo::tools {
 
@@ -34,6 +36,7 @@ struct Flags {
   double time = 0.0;
   std::string robot;
   std::string out;
+  std::string map;
 };
 
 std::vector<std::string> robot_ids(const Scenario& scenario) {
@@ -76,8 +79,24 @@ std::string method_words(const Scenario& scenario, const formation::SimulationOp
 
 struct Explained {
   Decision decision;
-  std::vector<std::string> remarks;  ///< of the run so far
+  std::vector<std::string> remarks;                 ///< of the run so far
+  std::optional<formation::RouteAhead> ahead = {};  ///< of a robot along a route, or whose goal is out of reach
 };
+
+/// The goal that a robot is after.
+std::size_t goal_at(const formation::Recording& recording, std::size_t robot, double time) {
+  std::size_t goal = 0;
+  for (const formation::Outlook& outlook : recording.outlooks)
+    if (outlook.robot == robot && outlook.time <= time) goal = outlook.goal;
+  return goal;
+}
+
+std::optional<formation::RouteAhead> route_ahead_of(const Decision& d, const formation::Recording& recording,
+                                                    const std::optional<formation::SimulationOptions>& options) {
+  const bool has_route = d.step.mode == formation::Mode::guided || d.step.mode == formation::Mode::staying;
+  if (!has_route || !options || d.scenario.formation) return std::nullopt;
+  return route_ahead(d.scenario, *options, d.robot, goal_at(recording, d.robot, d.time), d.step.position);
+}
 
 /// Warnings of the run, and, of a robot that hardly moves, what it rests on. `stuck`: who is, at that time.
 std::vector<std::string> remarks_on(const Scenario& scenario, const formation::Recording& recording,
@@ -102,8 +121,10 @@ Explained decide(const Flags& flags, const Scenario& scenario) {
   check_time(recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time, recording.time_step,
              flags.time);
   const formation::Step& step = last_decision(recording);
-  return {{scenario, method_words(scenario, options), robot, step.time, step.robots.at(robot)},
-          remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
+  Explained explained{{scenario, method_words(scenario, options), robot, step.time, step.robots.at(robot)},
+                      remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
+  explained.ahead = route_ahead_of(explained.decision, recording, options);
+  return explained;
 }
 
 /// The run as it was at a time, from its rows one after the other: up to the row after the last one at or before it.
@@ -158,6 +179,7 @@ Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
                              (file.info.liveness ? ", liveness " + *file.info.liveness : "");
   Explained explained{{file.scenario, method, robot, step.time, step.robots.at(robot)},
                       remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
+  explained.ahead = route_ahead_of(explained.decision, file.recording, guided_options(file.info));
   if (!file.recording.all_half_planes)
     explained.remarks.push_back(
         "The recording has only the half-planes that bind and those against what could be met within a time step: "
@@ -170,10 +192,12 @@ Explained explained_by(const Flags& flags) {
   if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time of at least 0 s");
   if (const auto recording = recording_at(flags.scenario)) {
     check_figure_name("--out", flags.out, {*recording});
+    check_figure_name("--map", flags.map, {*recording});
     note_recorded(flags.simulation);
     return decision_in(flags, *recording);
   }
   check_figure_name("--out", flags.out, datasets::files_read_with(flags.scenario, "scenario"));
+  check_figure_name("--map", flags.map, datasets::files_read_with(flags.scenario, "scenario"));
   const Scenario scenario = read_scenario(flags.scenario).scenario;
   note_unused(flags.simulation, scenario);
   return decide(flags, scenario);
@@ -182,8 +206,14 @@ Explained explained_by(const Flags& flags) {
 ExitCode explain(const Flags& flags) {
   const Explained explained = explained_by(flags);
   print(shown_lines(explanation(explained.decision)));
+  if (explained.ahead) print(shown_lines(route_words(explained.decision, *explained.ahead)));
   for (const std::string& remark : explained.remarks) print(shown(remark) + "\n");
   if (!flags.out.empty()) write_figure(velocity_space_figure(explained.decision), flags.out);
+  if (flags.map.empty()) return ExitCode::success;
+  if (explained.ahead)
+    write_figure(route_map_figure(explained.decision, *explained.ahead), flags.map);
+  else
+    message("note: --map draws nothing: the robot is not along a route then");
   return ExitCode::success;
 }
 
@@ -194,6 +224,8 @@ Action declare(CLI::App& app) {
   app.add_option("--time,-t", flags->time, "Time of the decision, s")->required();
   app.add_option("--robot,-r", flags->robot, "The robot: its id, or its index from 0")->required();
   declare_out(app, flags->out, kFigureFileHelp);
+  app.add_option("--map", flags->map,
+                 "The same for a map: the robot's route, where it heads for, and what separates a goal out of reach");
   declare_simulation_flags(app, flags->simulation);
   return [flags] { return explain(*flags); };
 }
@@ -204,7 +236,8 @@ Verb explain_verb() {
   return {"explain", "Draw one robot's velocity space at one moment and explain which constraints are binding",
           "  exactvo explain datasets/data/paper/A1.json --method orca --time 10 --robot R1 --out out/stuck.svg\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
-          "  exactvo explain out/A7 --time 3 --robot R1\n",
+          "  exactvo explain out/A7 --time 3 --robot R1\n"
+          "  exactvo explain mine.json --time 2 --robot R1 --map out/route.svg\n",
           declare};
 }
 

@@ -9,6 +9,7 @@
 /// That a route exists, and that none does, is exact; the points are rounded.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,18 @@ struct PlannedRoute {
 /// Of every robot and goal, in their order; nothing in a run without guidance. Costs what the run spends on planning.
 /// REQUIRES: a valid scenario.
 std::vector<PlannedRoute> planned_routes(const Scenario& scenario, const SimulationOptions& options);
+
+/// The route of one robot from where it is, and where along it the robot heads.
+struct RouteAhead {
+  PlannedRoute route;                  ///< to its present goal
+  std::optional<Vec2> heads_for = {};  ///< m; the farthest point of the route that it can see
+  double length = 0.0;                 ///< m, of the route
+};
+
+/// As it would be planned now, at `position`: a run keeps the route that it has as long as some of it is in sight, and
+/// goes round moving obstacles that stand. Nothing in a run without guidance. REQUIRES: a valid scenario, a robot and a
+/// goal of it.
+std::optional<RouteAhead> route_ahead(const Scenario& scenario, const SimulationOptions& options, std::size_t robot,
+                                      std::size_t goal, Vec2 position);
 
 }  // namespace exactvo::formation

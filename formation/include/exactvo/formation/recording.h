@@ -125,6 +125,7 @@ struct LivenessCourse {
 struct RoutesCourse {
   std::size_t planned = 0;     ///< one for each goal that a robot set out for
   std::size_t pushed_off = 0;  ///< planned again where a robot was pushed out of sight of its route
+  std::size_t cut = 0;         ///< planned again as a moving obstacle stood on a route, or had left it
   std::size_t nearest = 0;     ///< of those planned, the ones that end as near to the goal as can be reached
 };
 

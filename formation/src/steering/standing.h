@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Moving obstacles that stand still for now, and guides that lead round them. Which of them stand is known from the
+/// rows so far alone; that a route leads round them holds as long as they stand.
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exactvo/formation/recording.h"
+#include "steering/guide.h"
+
+namespace exactvo::formation::detail {
+
+class StandingObstacles {
+ public:
+  /// The scenario must outlive this. `most_margin`: as of the guide.
+  StandingObstacles(const Scenario& scenario, double most_margin);
+
+  /// Where moving obstacles are now. Called in every row, in order.
+  void look(double time, const std::vector<MovedObstacle>& moving);
+
+  /// Counts the rows in which other obstacles stood than in the row before.
+  std::size_t changes() const { return changes_; }
+
+  /// The first of those that stand which comes nearer than `radius` to the rest of the course from `here` on.
+  std::optional<std::size_t> in_the_way(const Course& course, Vec2 here, double radius) const;
+
+  /// Leads round all that stand now. Valid until others do.
+  Guide& guide();
+
+ private:
+  /// Which stand, each with the place it has moved to.
+  using Standing = std::vector<std::pair<std::size_t, Vec2>>;
+
+  struct World {
+    World(Standing now, const Scenario& given) : standing(std::move(now)), scenario(given) {}
+    Standing standing;
+    Scenario scenario;
+    std::optional<Guide> guide;
+  };
+
+  const Scenario& scenario_;
+  double most_margin_;
+  std::vector<Vec2> displacement_;  ///< m, of each in the last row
+  std::vector<double> since_;       ///< s, how long it has been there
+  Standing now_;
+  std::vector<geometry::Obstacle> shapes_;  ///< of `now_`
+  std::size_t changes_ = 0;
+  std::deque<World> worlds_;  ///< the last that were asked for
+};
+
+}  // namespace exactvo::formation::detail

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The routes of a recorded run, planned again as the run did.
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "exactvo/datasets/recording_file.h"
+#include "exactvo/formation/planned_routes.h"
+
+namespace exactvo::tools {
+
+/// Planning again must cost little.
+struct RouteLimits {
+  std::size_t robots = 50;
+  std::size_t vertices = 20'000;  ///< of obstacles
+};
+
+/// What the run was made with, as far as routes depend on it; nothing where it had none.
+std::optional<formation::SimulationOptions> guided_options(const datasets::RunInfo& info);
+
+/// Nothing where the run had none, or where it is larger than the limits.
+std::optional<std::vector<formation::PlannedRoute>> routes_of(const datasets::RecordingFile& run,
+                                                              const RouteLimits& limits = {});
+
+}  // namespace exactvo::tools
