@@ -137,14 +137,15 @@ void bind_routes(py::module_& module) {
         }();
         return answer_tuple(answer);
       });
-  module.def("check_route", [](const Obstacles& obstacles, py::handle radius, py::handle start, py::handle goal,
-                               py::handle answer) {
-    const geometry::RouteQuestion question{at_least_zero(radius, "radius"), vector(start, "start"), vector(goal, "goal")};
-    const geometry::RouteAnswer claimed = answer_of(answer);
-    const std::vector<geometry::Obstacle> shapes = shapes_of(obstacles);
-    const py::gil_scoped_release released;
-    return check(shapes, question, claimed);
-  });
+  module.def("check_route",
+             [](const Obstacles& obstacles, py::handle radius, py::handle start, py::handle goal, py::handle answer) {
+               const geometry::RouteQuestion question{at_least_zero(radius, "radius"), vector(start, "start"),
+                                                      vector(goal, "goal")};
+               const geometry::RouteAnswer claimed = answer_of(answer);
+               const std::vector<geometry::Obstacle> shapes = shapes_of(obstacles);
+               const py::gil_scoped_release released;
+               return check(shapes, question, claimed);
+             });
 }
 
 }  // namespace exactvo::python

@@ -9,8 +9,8 @@
 ///
 /// The free space is closed: a centre is free where it is at least a radius away from every edge and inside no polygon.
 /// A gap of exactly two radii is passed. The outside of all obstacles is free, and obstacles may cross, touch and
-/// overlap. Radius 0 is a point: it comes as near to obstacles as it likes and touches none, so that it passes where some
-/// disc does, however small.
+/// overlap. Radius 0 is a point: it comes as near to obstacles as it likes and touches none, so that it passes where
+/// some disc does, however small.
 ///
 /// Exact: which of the three answers is given, the points of a route and of a chain, and what `check` says of them
 /// (route_certificate.h, which shares no code with this). Rounded: lengths. A route is short, not proven shortest: its
