@@ -75,6 +75,9 @@ RunResult run_routes(const RouteProblems& asked) {
   std::vector<geometry::Obstacle> shapes;
   for (const formation::SceneObstacle& o : datasets::read_obstacles(asked.map, options).obstacles)
     shapes.push_back(o.shape);
+  const datasets::MapSize size = datasets::read_map_size(asked.map);
+  const double width = static_cast<double>(size.columns), height = static_cast<double>(size.rows);
+  shapes.emplace_back(geometry::Polyline{{{0, 0}, {width, 0}, {width, height}, {0, height}, {0, 0}}});  // nobody leaves
   const std::vector<Problem> problems = read_problems(asked.map);
   const bool is_point = asked.radius == 0.0;
   const geometry::RouteMap map(shapes);

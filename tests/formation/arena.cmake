@@ -66,6 +66,11 @@ if(NOT "${lines}" MATCHES "routes,block points,1,route,2,2,1,0,0,0.000,0.000,1.0
   message(FATAL_ERROR "routes: ${lines}")
 endif()
 run(0 "4 runs" --routes ${maps} --suite routes --out ${WORK}/right)
+# Round the outside of the map it would be shorter.
+file(WRITE ${maps}/gate.map "type octile\nheight 6\nwidth 6\nmap\n......\n......\n@@@@@.\n@@@@@.\n......\n......\n")
+file(WRITE ${maps}/gate.lengths.tsv "1\t1\t1\t5\t12\t10.246211251235321\n")
+run(0 "gate points, seed 1, route: success" --routes ${maps} --suite routes --out ${WORK}/gate)
+file(REMOVE ${maps}/gate.map ${maps}/gate.lengths.tsv)
 file(WRITE ${maps}/block.lengths.tsv "1\t3\t5\t3\t5.0\t4.9\n")
 run(0 "block points, seed 1, route: not a success" --routes ${maps} --suite routes --out ${WORK}/wrong)
 file(WRITE ${maps}/block.lengths.tsv "1\t3\t5\n")
