@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "paper/document.h"
+#include "support/base64.h"
 
 namespace exactvo::tools {
 
@@ -26,6 +26,24 @@ std::string page_key(const std::string& text) {
     key += plain ? c : '-';
   }
   return key.substr(0, kLongest);
+}
+
+std::string title_of(const datasets::RecordingFile& file) {
+  const datasets::RunInfo& info = file.info;
+  return info.scenario + ", " + info.method + (info.controller ? ", " + *info.controller : "") +
+         (info.guidance ? ", " + *info.guidance : "");
+}
+
+PageRun recorded_run(const datasets::RecordingFile& file, const std::string& metrics_json, PackedRunLimits limits) {
+  const std::string title = title_of(file);
+  return {page_key(title), title, "", packed_run(file, metrics_json, limits)};
+}
+
+void make_key_distinct(PageRun& run, const std::set<std::string>& taken) {
+  const std::string key = run.key;
+  std::size_t number = 1;
+  while (taken.count(run.key) > 0) run.key = key + "-" + std::to_string(++number);
+  if (number > 1) run.title += " (" + std::to_string(number) + ")";
 }
 
 std::string explorer_page(const std::vector<PageRun>& runs, bool is_guide) {

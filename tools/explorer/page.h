@@ -8,10 +8,12 @@
 /// Neighbours: packed_run.h (how a run stands in it).
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "exactvo/formation/simulation.h"
+#include "explorer/packed_run.h"
 
 namespace exactvo::tools {
 
@@ -29,6 +31,15 @@ struct MadeRun {
   PageRun shown;
   std::optional<formation::SimulationOptions> options;
 };
+
+/// Scenario, method, controller and guidance, as far as there are any.
+std::string title_of(const datasets::RecordingFile& file);
+
+/// A recording under its title. `metrics_json` as datasets::metrics_json writes it; empty where there is none.
+PageRun recorded_run(const datasets::RecordingFile& file, const std::string& metrics_json, PackedRunLimits limits = {});
+
+/// Puts a number behind key and title where the key is among `taken`.
+void make_key_distinct(PageRun& run, const std::set<std::string>& taken);
 
 /// Whole. `is_guide`: the runs are scenes to start from, listed with their words, rather than the user's own.
 std::string explorer_page(const std::vector<PageRun>& runs, bool is_guide = false);

@@ -47,7 +47,4 @@ std::string markdown(const Document& document);
 /// picture that is not there is said to be missing.
 std::string html(const Document& document, const std::filesystem::path& folder);
 
-/// RFC 4648.
-std::string base64(const std::string& bytes);
-
 }  // namespace exactvo::tools

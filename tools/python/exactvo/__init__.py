@@ -17,6 +17,7 @@ from . import datasets, lp, routes, shapes, vo
 from ._exactvo import version as __version__
 from .crowd import Crowd, RobotKind, StepReport
 from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError
+from .explorer import ExplorerPage, view
 from .routes import Route, RouteMap, RoutePlan, Unreachable
 from .shapes import Disc, Ellipse, Obstacles, Polygon, Segment, Wall, hull, obstacles
 from .simulation import METHODS, Recording, Scenario, read_recording, simulate
@@ -31,6 +32,7 @@ __all__ = [
     "Disc",
     "Ellipse",
     "ExactVOError",
+    "ExplorerPage",
     "MissingFileError",
     "Obstacles",
     "Polygon",
@@ -57,6 +59,7 @@ __all__ = [
     "shapes",
     "simulate",
     "velocity_obstacles",
+    "view",
     "vo",
 ]
 

@@ -11,17 +11,18 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from operator import index
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _exactvo
-from .errors import CrowdError
+from ._calls import explain_calls, is_number, is_whole
+from .errors import ArgumentError, CrowdError
 from .shapes import Floats, Obstacles, Point, ShapeLike, obstacles
 from .vo import HalfPlane
 
@@ -37,6 +38,13 @@ class RobotKind:
     time_horizon: float = 5.0  #: s, at least the time step
     neighbour_distance: float = 15.0  #: m
     neighbours: int = 10  #: 1 to 15: the nearest within the distance, and all that could be met within a step
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "max_speed", "time_horizon", "neighbour_distance"):
+            if not is_number(getattr(self, name)):
+                raise ArgumentError(name, repr(getattr(self, name))[:60], "a number")
+        if not is_whole(self.neighbours):
+            raise ArgumentError("neighbours", repr(self.neighbours)[:60], "a whole number")
 
 
 class StepReport(NamedTuple):
@@ -121,26 +129,21 @@ class Crowd:
     def add_kind(self, kind: RobotKind) -> int:
         """The number of the kind, for `add_robots(kind=...)`; the same kind has one number."""
         if kind not in self._kinds:
+            neighbours = min(index(kind.neighbours), 2**31 - 1)
             self._kinds[kind] = self._native.add_kind(
-                kind.radius, kind.max_speed, kind.time_horizon, kind.neighbour_distance, kind.neighbours
+                kind.radius, kind.max_speed, kind.time_horizon, kind.neighbour_distance, max(neighbours, -1)
             )
         return self._kinds[kind]
 
     def kind_of(self, robot: int) -> RobotKind:
         """The kind of a robot."""
-        return RobotKind(*self._native.kind(self._native.kind_of(robot)))
+        return RobotKind(*self._native.kind(self._native.kind_of(index(robot))))
 
     def _kind(self, kind: int | RobotKind | None, options: dict[str, Any]) -> int:
-        if isinstance(kind, int):
+        if isinstance(kind, (int, np.integer)):
             if options:
-                raise TypeError("a kind's number and " + ", ".join(options))
-            return kind
-        known = [option.name for option in fields(RobotKind)]
-        for name in options:
-            if name not in known:
-                near = difflib.get_close_matches(name, known, n=1, cutoff=0.4)
-                words = f"; did you mean {near[0]!r}?" if near else ""
-                raise TypeError(f"a robot has no option {name!r}: expected {', '.join(known)}{words}")
+                raise ArgumentError("kind", f"the number of a kind beside {', '.join(options)}", "one or the other")
+            return index(kind)
         return self.add_kind(RobotKind(**options) if kind is None else kind)
 
     def add_robot(self, position: Point, *, kind: int | RobotKind | None = None, **options: Any) -> int:
@@ -153,7 +156,7 @@ class Crowd:
 
     def remove_robot(self, robot: int) -> None:
         """Its id may be given to another robot later."""
-        self._native.remove_robot(robot)
+        self._native.remove_robot(index(robot))
 
     def add_obstacles(self, shapes: Obstacles | ShapeLike | Sequence[Any]) -> list[int]:
         """Polygons and walls, as `exactvo.obstacles` takes them; their edges are walls seen from both sides. Their ids."""
@@ -161,7 +164,9 @@ class Crowd:
 
     def remove_obstacle(self, obstacle: int) -> None:
         """Removes an obstacle by its id."""
-        self._native.remove_obstacle(obstacle)
+        if not 0 <= index(obstacle) < 2**32:
+            raise CrowdError("unknown-obstacle", f"no obstacle has the id {obstacle}")
+        self._native.remove_obstacle(index(obstacle))
 
     def head_for(self, goals: npt.ArrayLike, *, speed: float = math.inf) -> None:
         """From now on each robot prefers to go straight for its goal: an n x 2 array (m) by id, a NaN row stands. `speed` in
@@ -179,7 +184,11 @@ class Crowd:
 
     @preferred.setter
     def preferred(self, velocities: npt.ArrayLike) -> None:
-        self._native.preferred[:] = velocities
+        try:
+            self._native.preferred[:] = velocities
+        except (TypeError, ValueError):
+            expected = f"an array of numbers of shape {self._native.preferred.shape}, or one velocity for all"
+            raise ArgumentError("preferred", repr(velocities)[:60], expected) from None
 
     @property
     def positions(self) -> Floats:
@@ -216,7 +225,7 @@ class Crowd:
     def explain(self, robot: int) -> Explanation:
         """What the robot will choose in the next step, and each half-plane behind it. Call `step` or `step(0)` first where
         `preferred` has been written."""
-        told = self._native.explain(robot)
+        told = self._native.explain(index(robot))
         told["neighbours"] = tuple(NeighbourHalfPlane(r, HalfPlane(*h), t) for r, h, t in told["neighbours"])
         told["edges"] = tuple(EdgeHalfPlane(a, b, HalfPlane(*h), t) for a, b, h, t in told["edges"])
         return Explanation(**told)
@@ -255,3 +264,6 @@ def _restored(snapshot: bytes, threads: int, steps: int, kinds: dict[RobotKind, 
     crowd._kinds = dict(kinds)
     crowd.preferred[:] = preferred
     return crowd
+
+
+explain_calls(__name__)

@@ -17,6 +17,7 @@ from typing import Any, Union
 import numpy.typing as npt
 
 from . import _exactvo
+from ._calls import explain_calls, is_whole
 from .errors import ArgumentError, DataError
 from .shapes import Obstacles, Polygon, ShapeLike, _geo, _geo_rings, obstacles
 
@@ -266,6 +267,10 @@ def batch(
     A bad file or obstacle never stops the rest. Raises `DataError` where nothing can be done at all, `ArgumentError`.
     """
     listed = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
+    for name, words in (("paths", listed), ("write", write)):
+        for word in words:
+            if not isinstance(word, (str, os.PathLike) if name == "paths" else str):
+                raise ArgumentError(name, repr(word)[:60], "a path" if name == "paths" else "names of outputs")
     complete, files, shapes, out_count, certified, uncertified, seconds = _exactvo.batch(
         [os.fspath(p) for p in listed], os.fspath(out), list(write), jobs, resume, repair, metres, progress
     )
@@ -275,6 +280,9 @@ def batch(
 def generate(kind: str, count: int = 1, *, seed: int = 0) -> Obstacles:
     """Obstacles from a seed, the same on every machine: "polygon", "star", "wall", ... as `exactvo generate`. Raises
     `ArgumentError` listing the kinds."""
+    for name, value in (("count", count), ("seed", seed)):
+        if is_whole(value) and not 0 <= value < 2**64:
+            raise ArgumentError(name, str(value), "a whole number from 0 to 2^64 - 1")
     return Obstacles._of(_exactvo.generate(kind, count, seed))
 
 
@@ -286,3 +294,6 @@ def readable_formats() -> list[str]:
 def writable_formats() -> list[str]:
     """What `write(format=...)` takes."""
     return _exactvo.writable_formats()
+
+
+explain_calls(__name__)

@@ -14,12 +14,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from operator import index
 from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _exactvo
+from ._calls import explain_calls, is_whole
 from .errors import ArgumentError
 from .shapes import Floats, Point
 
@@ -299,8 +301,16 @@ def check_batch(
 
 
 def batch_arrays(problems: int, lines: int) -> tuple[Floats, Floats, Floats]:
-    """(normals, offsets, preferred) for `solve_batch`, in the order that needs no copy; every line always holds."""
+    """(normals, offsets, preferred) for `solve_batch`, in the order that needs no copy; every line always holds. Raises
+    `ArgumentError`."""
+    for name, value in (("problems", problems), ("lines", lines)):
+        if not is_whole(value) or value < 0:
+            raise ArgumentError(name, repr(value)[:60], "a whole number, 0 or more")
+    problems, lines = index(problems), index(lines)
     normals = np.zeros((problems, lines, 2), order="F")
     normals[..., 0] = 1.0
     offsets = np.full((problems, lines), -1e30, order="F")
     return normals, offsets, np.zeros((problems, 2), order="F")
+
+
+explain_calls(__name__)

@@ -19,6 +19,7 @@ from typing import Any, Union
 import numpy as np
 
 from . import _exactvo
+from ._calls import explain_calls
 from .shapes import Floats, Obstacles, Point, ShapeLike, obstacles
 
 __all__ = ["Answer", "Certificate", "ChainPoint", "Route", "RouteMap", "RoutePlan", "Unreachable"]
@@ -196,3 +197,6 @@ class RouteMap:
 
 def _rebuilt(shapes: Obstacles, largest_radius: float, largest_distance: float) -> RouteMap:
     return RouteMap(shapes, largest_radius=largest_radius, largest_distance=largest_distance)
+
+
+explain_calls(__name__)

@@ -28,6 +28,7 @@ from collections.abc import Iterable
 from typing import Any, Union
 
 from . import _exactvo
+from ._calls import explain_calls
 from .shapes import Point
 
 __all__ = ["PyRVOSimulator", "install"]
@@ -259,5 +260,7 @@ def _main(arguments: list[str]) -> Any:
     return runpy.run_path(arguments[0], run_name="__main__")
 
 
-if __name__ == "__main__":
+if __name__ != "__main__":
+    explain_calls(__name__)
+else:
     _main(sys.argv[1:])

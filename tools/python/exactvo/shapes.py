@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _exactvo
+from ._calls import explain_calls
 from .errors import ArgumentError
 
 __all__ = ["ConvexShape", "Disc", "Ellipse", "Obstacles", "Point", "Polygon", "Segment", "ShapeLike", "Wall", "hull", "obstacles"]
@@ -84,7 +85,10 @@ class Polygon:
 
     def __init__(self, outer: npt.ArrayLike, holes: Sequence[npt.ArrayLike] = ()) -> None:
         object.__setattr__(self, "outer", np.asarray(outer, dtype=np.float64))
-        object.__setattr__(self, "holes", tuple(np.asarray(hole, dtype=np.float64) for hole in holes))
+        try:
+            object.__setattr__(self, "holes", tuple(np.asarray(hole, dtype=np.float64) for hole in holes))
+        except (TypeError, ValueError):
+            raise ArgumentError("holes", repr(holes)[:60], "a sequence of n x 2 arrays") from None
 
     @property
     def __geo_interface__(self) -> dict[str, Any]:
@@ -343,3 +347,6 @@ def obstacles(shapes: Obstacles | ShapeLike | Sequence[Any], *, ids: Sequence[st
         np.array([rings.is_polygon for rings in all_rings], dtype=np.bool_),
         tuple(ids) if ids is not None else (),
     )
+
+
+explain_calls(__name__)

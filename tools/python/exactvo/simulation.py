@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import os
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _exactvo
+from ._calls import explain_calls, is_number
 from .errors import ArgumentError
+from .explorer import ExplorerPage, view
 from .shapes import Floats, Obstacles, Polygon, ShapeLike, obstacles
 from .vo import HalfPlane
 
@@ -51,7 +55,7 @@ class Scenario:
 
     def __init__(self, source: str | os.PathLike[str] | dict[str, Any]) -> None:
         if isinstance(source, dict):
-            self._native = _exactvo.Scenario.parse(json.dumps(source), "<dict>", os.getcwd())
+            self._native = _exactvo.Scenario.parse(json.dumps(source, default=_plain), "<dict>", os.getcwd())
         elif isinstance(source, str) and source.lstrip().startswith("{"):
             self._native = _exactvo.Scenario.parse(source, "<text>", os.getcwd())
         else:
@@ -74,6 +78,10 @@ class Scenario:
     ) -> Scenario:
         """n robots from n x 2 starts to n x 2 goals (m) among obstacles. Further fields are those of a scenario file:
         time_step=0.05 (s), time_limit=120 (s), ..."""
+        for word in fields:  # one meant for this function would be refused later, as a field that no scenario has
+            near = difflib.get_close_matches(word, ("obstacles", "radius", "max_speed", "name"), n=1, cutoff=0.85)
+            if near:
+                raise TypeError(f"Scenario.build() got an unexpected keyword argument {word!r}; did you mean {near[0]!r}?")
         return Scenario(_scenario_dict(starts, goals, obstacles, radius, max_speed, name, fields))
 
     @property
@@ -110,6 +118,13 @@ class Scenario:
 
     def __repr__(self) -> str:
         return f"Scenario({self.name!r}, {len(self.robots)} robots, {len(self.obstacles)} obstacles)"
+
+
+def _plain(value: Any) -> Any:
+    """numpy's numbers and arrays as JSON has them."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    raise ArgumentError("scenario", repr(value)[:60], "numbers, text, lists and dicts")
 
 
 def _scenario_dict(
@@ -230,6 +245,7 @@ class Recording:
         """The recorded half-planes of a decision: those that bind, or all with `simulate(..., record_all=True)`. Raises
         `IndexError`."""
         step = range(len(self))[step]
+        robot = range(self.position.shape[1])[robot]
         return tuple(
             RecordedHalfPlane(HalfPlane(*h), _SOURCES[source], index, certified, hard, active, multiplier, clearance)
             for h, source, index, certified, hard, active, multiplier, clearance in self._native.half_planes(step, robot)
@@ -265,23 +281,46 @@ class Recording:
         return pandas.DataFrame(columns)
 
     def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
-        """Obstacles, paths, and where the robots end, drawn to scale in m. Needs matplotlib."""
+        """Obstacles, paths, and where the robots end, drawn to scale in m. Needs matplotlib. Raises
+        `ArgumentError`."""
         from ._drawing import plot
 
+        if ax is not None and not hasattr(ax, "set_aspect"):
+            raise ArgumentError("ax", repr(ax)[:60], "axes of matplotlib, or None for new ones")
         return plot(self, ax)
 
     def animate(self, *, speed: float = 1.0, frames_per_second: float = 20.0) -> matplotlib.animation.FuncAnimation:
         """The run as a moving picture, `speed` times as fast as it was. In a notebook: HTML(run.animate().to_jshtml()).
-        Needs matplotlib."""
+        Needs matplotlib. Raises `ArgumentError`."""
         from ._drawing import animate
 
+        for name, value in (("speed", speed), ("frames_per_second", frames_per_second)):
+            if not (is_number(value) and 0 < value < 1e6):
+                raise ArgumentError(name, repr(value)[:60], "a number above 0, below 10^6")
         return animate(self, speed, frames_per_second)
+
+    def view(self, *, height: int = 720) -> ExplorerPage:
+        """The run as a page to explore, which a notebook shows in place, `height` pixels high; `.write(path)` and `.open()`
+        elsewhere. Raises `ArgumentError`. `exactvo.view` puts several runs on one page."""
+        return view(self, height=height)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "recording.jsonl"
+            self.write(file)
+            return _unpickled, (file.read_text(encoding="utf-8"), self.metrics)
 
     def __len__(self) -> int:
         return len(self._native.time)
 
     def __repr__(self) -> str:
         return f"Recording({self.scenario.name!r}, method {self.method}, {len(self)} steps: {self.outcome})"
+
+
+def _unpickled(text: str, metrics: dict[str, Any]) -> Recording:
+    recording = Recording(_exactvo.Run.parse(text))
+    recording._metrics = metrics  # what planning cost stands in no recording
+    return recording
 
 
 def simulate(
@@ -318,3 +357,6 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
     """A recording.jsonl, or the folder of a run that has one. Raises `DataError`, `MissingFileError`."""
     given = Path(path)
     return Recording(_exactvo.Run.read(os.fspath(given / "recording.jsonl" if given.is_dir() else given)))
+
+
+explain_calls(__name__)

@@ -23,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _exactvo
+from ._calls import explain_calls
 from .errors import ArgumentError
 from .shapes import ConvexShape, Floats, Point, Polygon, ShapeLike, _native_shape, _shape_of, obstacles
 
@@ -342,6 +343,9 @@ class FreeVelocities:
         """What half-planes (equation (13)) make of the free velocities: whether all that they allow is free, and what of the
         free ones they give away."""
         listed = list(half_planes)
+        for k, half_plane in enumerate(listed):
+            if not isinstance(half_plane, HalfPlane):
+                raise ArgumentError("half_planes", f"{half_plane!r:.60} at {k}", "HalfPlane objects")
         normals = np.array([h.normal for h in listed], dtype=np.float64).reshape(-1, 2)
         inside, area, given_away, lost = self._native.compare(normals, np.array([h.offset for h in listed], dtype=np.float64))
         pieces = tuple(LostPiece(tuple(rings), bracket, farthest, index) for rings, bracket, farthest, index in lost)
@@ -364,3 +368,6 @@ def free_velocities(cones: Sequence[VelocityObstacle], *, max_speed: float, rela
     """What several velocity obstacles leave of the disc of `max_speed` (m/s), between two certified regions that differ by
     at most `relative_tolerance` of it. Raises `ArgumentError`."""
     return FreeVelocities(cones, max_speed=max_speed, relative_tolerance=relative_tolerance)
+
+
+explain_calls(__name__)

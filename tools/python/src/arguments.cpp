@@ -158,8 +158,11 @@ py::array_t<double> as_array(const std::vector<Vec2>& points) {
   return array;
 }
 
-void bind_errors(py::module_&) {
+void bind_errors(py::module_& module) {
   py::register_exception_translator(&translate);
+  // For tests: no input is known for which the library throws these.
+  module.def("throw_route_not_proven", [] { throw geometry::RouteNotProven("no way was proven"); });
+  module.def("throw_requirement", [] { throw std::logic_error("radius: must not be negative"); });
 }
 
 }  // namespace exactvo::python

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "module.h"
@@ -109,7 +110,6 @@ class PythonCrowd {
     positions_.grow(rows, kNone);
     velocities_.grow(rows, kNone);
     preferred_.grow(rows, 0.0);
-    goals_.grow(rows, kNone);
     kept_.grow(rows, false);
   }
 
@@ -156,10 +156,9 @@ class PythonCrowd {
   /// Each robot prefers its goal at `speed`, slower where it would pass it in a step. NaN: it prefers to stand.
   void head_for(const Doubles& goals, double speed) {
     const Use use(*this);
-    const std::size_t rows = std::min(goals_.rows(), static_cast<std::size_t>(goals.shape(0)));
-    std::copy_n(goals.data(), 2 * rows, goals_.data());
-    goal_copy_.assign(goals.data(), goals.data() + 2 * rows);
-    goal_copy_.resize(2 * goals_.rows(), std::numeric_limits<double>::quiet_NaN());
+    const py::gil_scoped_release released;
+    goal_copy_.assign(goals.data(), goals.data() + goals.size());
+    goal_copy_.resize(2 * crowd_.id_end(), std::numeric_limits<double>::quiet_NaN());
     const double time_step = crowd_.options().time_step;
     crowd_.set_steering([this, speed, time_step](formation::CrowdSlice& slice) {
       for (std::size_t k = 0; k < slice.size(); ++k) {
@@ -175,7 +174,10 @@ class PythonCrowd {
     });
     heads_for_goals_ = true;
   }
-  void follow_preferred() { heads_for_goals_ = false; }
+  void follow_preferred() {
+    const Use use(*this);
+    heads_for_goals_ = false;
+  }
 
   Column<double>& positions() { return positions_; }
   Column<double>& velocities() { return velocities_; }
@@ -208,7 +210,7 @@ class PythonCrowd {
   }
 
   formation::Crowd crowd_;
-  Column<double> positions_{2}, velocities_{2}, preferred_{2}, goals_{2};
+  Column<double> positions_{2}, velocities_{2}, preferred_{2};
   Column<bool> kept_{1};
   std::vector<Vec2> by_id_, preferred_now_;
   std::vector<double> goal_copy_;
@@ -273,16 +275,25 @@ std::unique_ptr<PythonCrowd> make_crowd(py::handle time_step, py::handle positio
 
 py::bytes snapshot(PythonCrowd& crowd) {
   const PythonCrowd::Use use(crowd);
-  std::ostringstream out;
-  crowd.crowd().snapshot(out);
-  return out.str();
+  const std::string bytes = [&] {
+    const py::gil_scoped_release released;
+    std::ostringstream out;
+    crowd.crowd().snapshot(out);
+    return out.str();
+  }();
+  return bytes;
 }
 
 std::unique_ptr<PythonCrowd> restored(const py::bytes& bytes, int threads) {
-  std::istringstream in{std::string(bytes)};
-  auto crowd = std::make_unique<PythonCrowd>(formation::Crowd::restored(in, threads));
-  crowd->take_all();
-  return crowd;
+  std::optional<formation::Crowd> crowd;
+  {
+    std::istringstream in{std::string(bytes)};
+    const py::gil_scoped_release released;
+    crowd.emplace(formation::Crowd::restored(in, threads));
+  }
+  auto made = std::make_unique<PythonCrowd>(std::move(*crowd));
+  made->take_all();
+  return made;
 }
 
 py::array_t<std::uint32_t> add_robots(PythonCrowd& self, py::handle positions, const py::int_& kind) {
@@ -290,17 +301,20 @@ py::array_t<std::uint32_t> add_robots(PythonCrowd& self, py::handle positions, c
   const std::vector<Vec2> all = points(positions, "positions");
   const formation::KindId k = kind_id(kind);
   py::array_t<std::uint32_t> ids(static_cast<py::ssize_t>(all.size()));
-  self.crowd().reserve(self.crowd().size() + all.size());
+  RobotId* const added = ids.mutable_data();
   std::size_t done = 0;
   try {
-    for (; done < all.size(); ++done) ids.mutable_data()[done] = self.crowd().add_robot(all[done], k);
+    const py::gil_scoped_release released;
+    self.crowd().reserve(self.crowd().size() + all.size());
+    for (; done < all.size(); ++done) added[done] = self.crowd().add_robot(all[done], k);
   } catch (...) {  // all or none
-    while (done > 0) self.crowd().remove_robot(ids.data()[--done]);
+    while (done > 0) self.crowd().remove_robot(added[--done]);
     self.grow();
     throw;
   }
   self.grow();
-  for (std::size_t r = 0; r < all.size(); ++r) self.take(ids.data()[r]);
+  const py::gil_scoped_release released;
+  for (std::size_t r = 0; r < all.size(); ++r) self.take(added[r]);
   return ids;
 }
 
@@ -320,10 +334,15 @@ void bind_crowd(py::module_& module) {
            })
       .def("kind",
            [](PythonCrowd& self, const py::int_& kind) {
+             const PythonCrowd::Use use(self);
              const formation::CrowdKind& k = self.crowd().kind(kind_id(kind));
              return py::make_tuple(k.radius, k.max_speed, k.time_horizon, k.neighbour_distance, k.neighbours);
            })
-      .def("kind_of", [](PythonCrowd& self, const py::int_& id) { return self.crowd().kind_of(robot_id(id)); })
+      .def("kind_of",
+           [](PythonCrowd& self, const py::int_& id) {
+             const PythonCrowd::Use use(self);
+             return self.crowd().kind_of(robot_id(id));
+           })
       .def("add_robot",
            [](PythonCrowd& self, py::handle position, const py::int_& kind) {
              const PythonCrowd::Use use(self);
@@ -339,6 +358,7 @@ void bind_crowd(py::module_& module) {
            [](PythonCrowd& self, const Obstacles& obstacles) {
              const PythonCrowd::Use use(self);
              std::vector<formation::ObstacleId> ids;
+             const py::gil_scoped_release released;
              for (const formation::SceneObstacle& obstacle : obstacles.list)
                ids.push_back(self.crowd().add_obstacle(obstacle.shape));
              return ids;
@@ -363,11 +383,21 @@ void bind_crowd(py::module_& module) {
       .def_property_readonly("steps", &PythonCrowd::steps)
       .def("set_steps", &PythonCrowd::set_steps)
       .def_property_readonly("time_step", [](PythonCrowd& self) { return self.crowd().options().time_step; })
-      .def_property_readonly("digest", [](PythonCrowd& self) { return self.crowd().digest(); })
+      .def_property_readonly("digest",
+                             [](PythonCrowd& self) {
+                               const PythonCrowd::Use use(self);
+                               const py::gil_scoped_release released;
+                               return self.crowd().digest();
+                             })
       .def("explain",
            [](PythonCrowd& self, const py::int_& id) {
              const PythonCrowd::Use use(self);
-             return as_dict(self.crowd().explain(robot_id(id)));
+             const RobotId robot = robot_id(id);
+             const formation::CrowdExplanation explained = [&] {
+               const py::gil_scoped_release released;
+               return self.crowd().explain(robot);
+             }();
+             return as_dict(explained);
            })
       .def("snapshot", &snapshot);
   module.attr("crowd_target") = formation::crowd_target();

@@ -5,12 +5,15 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <set>
 
+#include "exactvo/datasets/atomic_file.h"
 #include "exactvo/datasets/audit.h"
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/simulation.h"
+#include "explorer/page.h"
 #include "module.h"
 #include "shapes.h"
 
@@ -109,6 +112,28 @@ std::unique_ptr<Run> read_run(const std::string& path) {
   return run;
 }
 
+std::unique_ptr<Run> parse_run(const std::string& text) {
+  auto run = std::make_unique<Run>();
+  const py::gil_scoped_release released;
+  run->file = datasets::parse_recording(text, "<pickled>");
+  run->metrics = formation::measure(run->file.scenario, run->file.recording);
+  fill_columns(*run);
+  return run;
+}
+
+/// The page of `exactvo view` of some runs.
+std::string explorer_page(const std::vector<const Run*>& runs) {
+  const py::gil_scoped_release released;
+  std::vector<tools::PageRun> shown;
+  std::set<std::string> taken;
+  for (const Run* run : runs) {
+    shown.push_back(tools::recorded_run(run->file, datasets::metrics_json(run->file.info, run->metrics)));
+    make_key_distinct(shown.back(), taken);
+    taken.insert(shown.back().key);
+  }
+  return tools::explorer_page(shown);
+}
+
 py::array view(const std::vector<double>& data, const std::vector<py::ssize_t>& shape, const py::object& owner) {
   py::array_t<double> array(shape, data.data(), owner);
   make_read_only(array);
@@ -167,7 +192,11 @@ void bind_simulate(py::module_& module) {
                     datasets::LoadedScenario loaded = datasets::parse_scenario_with_notes(text, file_name, base_dir);
                     return ScenarioHandle{std::move(loaded.scenario), std::move(loaded.notes), std::move(loaded.files)};
                   })
-      .def("to_json", [](const ScenarioHandle& s) { return datasets::write_scenario(s.scenario); })
+      .def("to_json",
+           [](const ScenarioHandle& s) {
+             const py::gil_scoped_release released;
+             return datasets::write_scenario(s.scenario);
+           })
       .def("problems", [](const ScenarioHandle& s) { return problems_of(s.scenario); })
       .def("warnings",
            [](const ScenarioHandle& s) {
@@ -185,13 +214,22 @@ void bind_simulate(py::module_& module) {
       });
   py::class_<Run> run_class(module, "Run");
   run_class.def_static("read", &read_run)
-      .def("write", [](const Run& run, const std::string& path) { datasets::write_recording(path, run.file); })
+      .def_static("parse", &parse_run)
+      .def("write",
+           [](const Run& run, const std::string& path) {
+             const py::gil_scoped_release released;
+             datasets::write_recording(path, run.file);
+           })
       .def_property_readonly("time",
                              [](const py::object& self) {
                                const Run& run = self.cast<const Run&>();
                                return view(run.time, {static_cast<py::ssize_t>(run.time.size())}, self);
                              })
-      .def("metrics_json", [](const Run& run) { return datasets::metrics_json(run.file.info, run.metrics); })
+      .def("metrics_json",
+           [](const Run& run) {
+             const py::gil_scoped_release released;
+             return datasets::metrics_json(run.file.info, run.metrics);
+           })
       .def_property_readonly("outcome", [](const Run& run) { return run.metrics.outcome; })
       .def_property_readonly("method", [](const Run& run) { return run.file.info.method; })
       .def_property_readonly("warnings", [](const Run& run) { return run.metrics.warnings; })
@@ -211,6 +249,11 @@ void bind_simulate(py::module_& module) {
   def_column(run_class, "status", &Run::status, false);
   def_column(run_class, "mode", &Run::mode, false);
   module.def("simulate", &simulate);
+  module.def("explorer_page", &explorer_page);
+  module.def("write_text", [](const std::string& path, const std::string& text) {
+    const py::gil_scoped_release released;
+    datasets::write_file_atomically(path, text);
+  });
   module.def("method_names", &formation::method_names);
   module.attr("mode_names") = [] {
     std::vector<std::string> names;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verbs/runs/page_runs.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "exactvo/datasets/metrics_file.h"
@@ -35,12 +33,6 @@ std::string metrics_beside(const fs::path& recording, const datasets::RecordingF
   return datasets::metrics_json(file.info, formation::measure(file.scenario, file.recording));
 }
 
-std::string title_of(const datasets::RecordingFile& file) {
-  const datasets::RunInfo& info = file.info;
-  return info.scenario + ", " + info.method + (info.controller ? ", " + *info.controller : "") +
-         (info.guidance ? ", " + *info.guidance : "");
-}
-
 /// What a recorded run was made with.
 formation::SimulationOptions options_of(const datasets::RecordingFile& file) {
   const datasets::RunInfo& info = file.info;
@@ -60,8 +52,7 @@ formation::SimulationOptions options_of(const datasets::RecordingFile& file) {
 
 MadeRun recorded(const PageFlags& flags, const fs::path& path) {
   const datasets::RecordingFile file = datasets::read_recording(path);
-  return {{page_key(title_of(file)), title_of(file), "", packed_run(file, metrics_beside(path, file), flags.limits)},
-          options_of(file)};
+  return {recorded_run(file, metrics_beside(path, file), flags.limits), options_of(file)};
 }
 
 /// Nothing computes with it: it has neither goals nor decisions.
@@ -87,19 +78,6 @@ MadeRun simulated(const PageFlags& flags, const std::string& path) {
   output.progress = [&](double time) { line.show(time, read.scenario.name); };
   FinishedRun finished = run(read.scenario, options, provenance, output);
   return {{page_key(title_of(finished.file)), title_of(finished.file), "", std::move(finished.packed)}, options};
-}
-
-/// Runs of one name get a number behind it.
-void make_keys_distinct(std::vector<MadeRun>& runs) {
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    PageRun& shown = runs[k].shown;
-    const std::string key = shown.key;
-    std::size_t number = 1;
-    const auto is_taken = [&](const MadeRun& other) { return other.shown.key == shown.key; };
-    while (std::any_of(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(k), is_taken))
-      shown.key = fmt::format("{}-{}", key, ++number);
-    if (number > 1) shown.title += fmt::format(" ({})", number);
-  }
 }
 
 }  // namespace
@@ -135,7 +113,11 @@ std::vector<MadeRun> page_runs(const PageFlags& flags) {
     }
   }
   if (!any_simulated) note_recorded(flags.simulation);
-  make_keys_distinct(runs);
+  std::set<std::string> taken;
+  for (MadeRun& run : runs) {
+    make_key_distinct(run.shown, taken);
+    taken.insert(run.shown.key);
+  }
   return runs;
 }
 
