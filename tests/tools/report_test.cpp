@@ -12,6 +12,7 @@
 #include "paper/claims.h"
 #include "paper/equations.h"
 #include "run_program.h"
+#include "support/base64.h"
 
 namespace exactvo::tools {
 namespace {
