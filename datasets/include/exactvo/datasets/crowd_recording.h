@@ -53,7 +53,7 @@ struct CrowdRecordingHead {
 struct CrowdRow {
   std::uint32_t step = 0;  ///< time steps from the start
   /// Positions, in lattice steps.
-  std::vector<std::int32_t> x, y;            ///< lattice steps
+  std::vector<std::int32_t> x, y;  ///< lattice steps
   /// Lattice steps that each body has come from where it stood at the start.
   std::vector<std::int64_t> body_x, body_y;  ///< lattice steps
   std::vector<std::uint8_t> kept;  ///< 1: provably kept all its half-planes in every step since the row before
