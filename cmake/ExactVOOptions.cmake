@@ -53,7 +53,9 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
   find_program(EXACTVO_CCACHE ccache)
   if(EXACTVO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${EXACTVO_CCACHE}")
+    # Paths relative to the sources: clones of the project share what is compiled.
+    set(CMAKE_CXX_COMPILER_LAUNCHER
+      "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${EXACTVO_CCACHE}")
   endif()
 endif()
 
