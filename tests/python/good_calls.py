@@ -13,6 +13,12 @@ WALL = exactvo.Segment((4, -3), (4, 3))
 DOOR = [exactvo.Wall([(0, 0), (0, 4)]), exactvo.Wall([(0, 5), (0, 9)])]
 RING = exactvo.Wall([(4, -1), (6, -1), (6, 1), (4, 1), (4, -1)])
 
+#: What no argument should be.
+JUNK = [
+    None, object(), "x", "", b"y", 1.5, -1, 0, True, 10**30, float("nan"), float("inf"), np.float32(1.5), np.int64(1),
+    [], {}, [None], [[1, 2], [3]], np.zeros((2, 2)), np.zeros(0), np.array(["a"]), lambda: None,
+]  # fmt: skip
+
 
 def two_robots():
     crowd = exactvo.Crowd()
@@ -86,7 +92,8 @@ def good_calls(folder):
         ("lp.solve_batch", lp.solve_batch, dict(batch, prove=False, certificates=False, copy=True, parallel=False)),
         ("lp.check_batch", lp.check_batch, dict(batch, certificates=certificate)),
         ("lp.batch_arrays", lp.batch_arrays, dict(problems=2, lines=2)),
-        ("routes.RouteMap", routes.RouteMap, dict(obstacles_=DOOR, largest_radius=1, largest_distance=1)),
+        ("routes.RouteMap", routes.RouteMap, dict(obstacles_=DOOR, radius=0.4, largest_radius=1, largest_distance=1)),
+        ("routes.RouteMap.route", exactvo.RouteMap(DOOR, 0.4).route, ends),
         ("routes.RouteMap.plan", route_map.plan, dict(radius=0.4)),
         ("routes.RouteMap.widest_radius", route_map.widest_radius, ends),
         ("routes.RouteMap.covers", route_map.covers, dict(point=(0, 0))),

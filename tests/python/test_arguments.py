@@ -12,12 +12,8 @@ import pytest
 import exactvo
 
 sys.path.insert(0, str(Path(__file__).parent))
-from good_calls import good_calls, two_robots  # noqa: E402
+from good_calls import JUNK, good_calls, two_robots  # noqa: E402
 
-JUNK = [
-    None, object(), "x", "", b"y", 1.5, -1, 0, True, 10**30, float("nan"), float("inf"), np.float32(1.5), np.int64(1),
-    [], {}, [None], [[1, 2], [3]], np.zeros((2, 2)), np.zeros(0), np.array(["a"]), lambda: None,
-]  # fmt: skip
 # No argument is meant by these: no such name, row or file, or what Python-RVO2 itself raises.
 ANSWERS = (exactvo.ExactVOError, IndexError)
 
@@ -55,7 +51,8 @@ def test_every_public_function_has_a_call_that_succeeds(calls):
             function(**given)
 
 
-def test_no_wrong_argument_meets_the_extension_unnamed(calls):
+def test_no_wrong_argument_meets_the_extension_unnamed(calls, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # some junk is a path to write to
     unnamed = []
     for name, function, given in calls:
         for argument in given:

@@ -25,6 +25,27 @@ def test_a_gap_of_exactly_two_radii_is_passed_and_the_next_double_is_not():
     assert [gap[2] for gap in closed.gaps] == [1.0]
 
 
+def test_a_map_with_a_radius_answers_by_itself():
+    routes = exactvo.RouteMap(DOOR, 0.5)
+    answer = routes.route((-2, 2), (2, 2))
+    assert answer and answer.check() == "" and answer.certificate.radius == routes.radius == 0.5
+    assert np.array_equal(answer.points, exactvo.RouteMap(DOOR).plan(0.5).route((-2, 2), (2, 2)).points)
+    assert exactvo.RouteMap(DOOR, 100).radius == 100  # beyond what a map of these obstacles allows by itself
+    with pytest.raises(exactvo.ArgumentError, match=r"^radius: found None, expected RouteMap\(obstacles, radius\)"):
+        exactvo.RouteMap(DOOR).route((-2, 2), (2, 2))
+    for radius in (-1, np.inf, np.nan):
+        with pytest.raises(exactvo.ArgumentError, match="^radius: "):
+            exactvo.RouteMap(DOOR, radius)
+
+
+def test_maps_and_plans_can_be_pickled():
+    for routes in (exactvo.RouteMap(DOOR), exactvo.RouteMap(DOOR, 0.4)):
+        again = pickle.loads(pickle.dumps(routes))
+        assert again.radius == routes.radius and again.vertex_count == routes.vertex_count
+    plan = pickle.loads(pickle.dumps(routes.plan(0.3)))
+    assert plan.radius == 0.3 and plan.route((-2, 2), (2, 2)).check() == ""
+
+
 def test_what_separates_is_named_and_proven():
     closed = [np.array([(-2, -2), (2, -2), (2, -1.8), (-2, -1.8)]), exactvo.Wall([(-2, -2), (-2, 2), (2, 2), (2, -1)])]
     answer = exactvo.RouteMap(closed).plan(0.5).route((0, 0), (9, 0))

@@ -157,7 +157,10 @@ def _explained(function: Callable[..., Any]) -> Callable[..., Any]:
             explanation = _explanation(function, args, given)
             if explanation is None:
                 raise
-            raise explanation from (None if isinstance(explanation, TypeError) else error)
+            try:
+                raise explanation from (None if isinstance(explanation, TypeError) else error)
+            finally:
+                del explanation  # it holds this frame, which would hold it, and the arguments, until the next collection
 
     return call
 

@@ -31,7 +31,7 @@ __all__ = ["Crowd", "EdgeHalfPlane", "Explanation", "NeighbourHalfPlane", "Robot
 
 @dataclass(frozen=True)
 class RobotKind:
-    """What robots of a kind have in common."""
+    """What robots of a kind have in common. Raises `ArgumentError`; `Crowd.add_kind` refuses numbers out of range."""
 
     radius: float = 0.5  #: m, above 0
     max_speed: float = 1.5  #: m/s
@@ -107,8 +107,9 @@ class Crowd:
     is copied, and a view shows every later step (take a `.copy()` to keep one). They have a row for each id from 0 on;
     rows of ids that name nobody are NaN. Adding robots may move the arrays: take the views again then.
 
-    Two robots that are kept in a step and did not touch before it are apart at every moment of it. Errors are `CrowdError`;
-    the crowd is then as it was before the call. One thread at a time may use a crowd (`ArgumentError` else).
+    Two robots that are kept in a step and did not touch before it are apart at every moment of it. A call that is refused
+    leaves the crowd as it was. One thread at a time may use a crowd (`ArgumentError` else). Raises `ArgumentError`,
+    `CrowdError`.
     """
 
     __slots__ = ("_kinds", "_native", "_threads")
@@ -127,7 +128,8 @@ class Crowd:
         self._kinds: dict[RobotKind, int] = {}
 
     def add_kind(self, kind: RobotKind) -> int:
-        """The number of the kind, for `add_robots(kind=...)`; the same kind has one number."""
+        """The number of the kind, for `add_robots(kind=...)`; the same kind has one number. Raises `ArgumentError`,
+        `CrowdError`."""
         if kind not in self._kinds:
             neighbours = min(index(kind.neighbours), 2**31 - 1)
             self._kinds[kind] = self._native.add_kind(
@@ -136,7 +138,7 @@ class Crowd:
         return self._kinds[kind]
 
     def kind_of(self, robot: int) -> RobotKind:
-        """The kind of a robot."""
+        """The kind of a robot. Raises `ArgumentError`, `CrowdError`."""
         return RobotKind(*self._native.kind(self._native.kind_of(index(robot))))
 
     def _kind(self, kind: int | RobotKind | None, options: dict[str, Any]) -> int:
@@ -147,30 +149,32 @@ class Crowd:
         return self.add_kind(RobotKind(**options) if kind is None else kind)
 
     def add_robot(self, position: Point, *, kind: int | RobotKind | None = None, **options: Any) -> int:
-        """A robot at rest at `position` (m); its id. `kind`, or the fields of `RobotKind` as options: radius=0.3, ..."""
+        """A robot at rest at `position` (m); its id. `kind`, or the fields of `RobotKind` as options: radius=0.3, ... Raises
+        `ArgumentError`, `CrowdError`."""
         return self._native.add_robot(position, self._kind(kind, options))
 
     def add_robots(self, positions: npt.ArrayLike, *, kind: int | RobotKind | None = None, **options: Any) -> npt.NDArray[np.uint32]:
-        """Robots at rest at n x 2 positions (m); their ids. All or none."""
+        """Robots at rest at n x 2 positions (m); their ids. All or none. Raises `ArgumentError`, `CrowdError`."""
         return self._native.add_robots(positions, self._kind(kind, options))
 
     def remove_robot(self, robot: int) -> None:
-        """Its id may be given to another robot later."""
+        """Its id may be given to another robot later. Raises `ArgumentError`, `CrowdError`."""
         self._native.remove_robot(index(robot))
 
     def add_obstacles(self, shapes: Obstacles | ShapeLike | Sequence[Any]) -> list[int]:
-        """Polygons and walls, as `exactvo.obstacles` takes them; their edges are walls seen from both sides. Their ids."""
+        """Polygons and walls, as `exactvo.obstacles` takes them; their edges are walls seen from both sides. Their ids.
+        Raises `ArgumentError`, `CrowdError`."""
         return self._native.add_obstacles(obstacles(shapes)._native)
 
     def remove_obstacle(self, obstacle: int) -> None:
-        """Removes an obstacle by its id."""
+        """Removes an obstacle by its id. Raises `ArgumentError`, `CrowdError`."""
         if not 0 <= index(obstacle) < 2**32:
             raise CrowdError("unknown-obstacle", f"no obstacle has the id {obstacle}")
         self._native.remove_obstacle(index(obstacle))
 
     def head_for(self, goals: npt.ArrayLike, *, speed: float = math.inf) -> None:
         """From now on each robot prefers to go straight for its goal: an n x 2 array (m) by id, a NaN row stands. `speed` in
-        m/s, at most the kind's. `preferred` is not read any more; `follow_preferred` goes back to it."""
+        m/s, at most the kind's. `preferred` is not read any more; `follow_preferred` goes back to it. Raises `ArgumentError`."""
         self._native.head_for(goals, speed)
 
     def follow_preferred(self) -> None:
@@ -179,7 +183,7 @@ class Crowd:
 
     @property
     def preferred(self) -> Floats:
-        """n x 2, m/s, by id, to be written: crowd.preferred[:] = ..."""
+        """n x 2, m/s, by id, to be written: crowd.preferred[:] = ... Assigning raises `ArgumentError` for another shape."""
         return self._native.preferred
 
     @preferred.setter
@@ -207,7 +211,7 @@ class Crowd:
 
     def step(self, count: int = 1) -> StepReport:
         """Decides for all robots and moves them, `count` times. Releases the interpreter's lock. Raises `CrowdError` where two
-        robots are in one place, one leaves the lattice or a preferred velocity is not finite."""
+        robots are in one place, one leaves the lattice or a preferred velocity is not finite, `ArgumentError`."""
         if count < 0:
             raise CrowdError("out-of-range", f"a crowd cannot make {count} steps")
         return StepReport(*self._native.step(count))
@@ -224,7 +228,7 @@ class Crowd:
 
     def explain(self, robot: int) -> Explanation:
         """What the robot will choose in the next step, and each half-plane behind it. Call `step` or `step(0)` first where
-        `preferred` has been written."""
+        `preferred` has been written. Raises `ArgumentError`, `CrowdError`."""
         told = self._native.explain(index(robot))
         told["neighbours"] = tuple(NeighbourHalfPlane(r, HalfPlane(*h), t) for r, h, t in told["neighbours"])
         told["edges"] = tuple(EdgeHalfPlane(a, b, HalfPlane(*h), t) for a, b, h, t in told["edges"])
@@ -241,7 +245,7 @@ class Crowd:
 
     @staticmethod
     def restored(snapshot: bytes, *, threads: int = 1) -> Crowd:
-        """From `snapshot`. Raises `CrowdError` ("bad-snapshot")."""
+        """From `snapshot`. Raises `CrowdError` ("bad-snapshot"), `ArgumentError`."""
         crowd = object.__new__(Crowd)
         crowd._native = _exactvo.Crowd.restored(snapshot, threads)
         crowd._threads = threads

@@ -65,7 +65,7 @@ class ObstacleFile:
     file: str
     format: str
     obstacles: Obstacles
-    properties: tuple[dict[str, Any], ...]  #: one an obstacle; none where no feature has any
+    properties: tuple[dict[str, Any], ...]  #: one per obstacle; none where no feature has any
     notes: tuple[str, ...]  #: how units were decided, what was skipped
     findings: tuple[Finding, ...]
     rejected: tuple[DataError, ...]  #: with skip_invalid
@@ -133,7 +133,7 @@ def read(
 
 
 def parse_wkt(text: str, *, repair: bool = False) -> ObstacleFile:
-    """The same for WKT text: a geometry a line, m. Raises `DataError`."""
+    """The same for WKT text: one geometry per line, m. Raises `DataError`, `ArgumentError`."""
     return _file(_exactvo.parse_wkt(text, repair))
 
 
@@ -149,7 +149,7 @@ def write(
     format    one of `writable_formats()`; else by the extension
     metres    GeoJSON in metres, for this project alone; else longitude and latitude
 
-    What `read` gave keeps its properties and its place on earth. Raises `DataError`.
+    What `read` gave keeps its properties and its place on earth. Raises `DataError`, `ArgumentError`.
     """
     is_file = isinstance(obstacles_, ObstacleFile)
     listed = obstacles_.obstacles if isinstance(obstacles_, ObstacleFile) else obstacles(obstacles_)
@@ -168,7 +168,8 @@ def convert(
     repair: bool = False,
     metres: bool = False,
 ) -> list[str]:
-    """Reads `source` and writes `target`, as `exactvo convert`: `read` and `write` have the options. Returns what is lost."""
+    """Reads `source` and writes `target`, as `exactvo convert`: `read` and `write` have the options. Returns what is lost.
+    Raises `DataError`, `MissingFileError`, `ArgumentError`."""
     content = read(source, format=format, units=units, skip_invalid=skip_invalid, repair=repair)
     return write(target, content, format=target_format, metres=metres)
 
@@ -191,7 +192,7 @@ class Repair:
 
 def repair(polygon: npt.ArrayLike | Polygon | Sequence[Any] | Any) -> Repair:
     """Repairs one polygon: an n x 2 array, a list of rings (the outer one first), or an object with __geo_interface__. What
-    crosses itself becomes what an odd number of its rings enclose, cut exactly, each new vertex rounded."""
+    crosses itself becomes what an odd number of its rings enclose, cut exactly, each new vertex rounded. Raises `ArgumentError`."""
     geo = _geo(polygon)
     if geo is not None:
         members = _geo_rings(geo, "polygon")
@@ -264,7 +265,8 @@ def batch(
     metres     GeoJSON in metres, for this project alone; else longitude and latitude
     progress   called with the share that is done; False stops it (`resume` goes on)
 
-    A bad file or obstacle never stops the rest. Raises `DataError` where nothing can be done at all, `ArgumentError`.
+    A bad file or obstacle never stops the rest. Raises `DataError` where nothing can be done at all,
+    `MissingFileError`, `ArgumentError`.
     """
     listed = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
     for name, words in (("paths", listed), ("write", write)):

@@ -30,7 +30,7 @@ __all__ = ["ExplorerPage", "view"]
 
 
 class ExplorerPage:
-    """A page of recordings. Shows itself in a notebook; `write` and `open` are for elsewhere."""
+    """A page of recordings, as `view` makes it. Shows itself in a notebook; `write` and `open` are for elsewhere."""
 
     __slots__ = ("_height", "_title", "html")
 
@@ -41,7 +41,7 @@ class ExplorerPage:
         self._height = height
 
     def write(self, path: str | os.PathLike[str]) -> Path:
-        """Into a file, whole or not at all; its path. Raises `DataError` where it cannot be written."""
+        """Into a file, whole or not at all; its path. Raises `DataError` where it cannot be written, `ArgumentError`."""
         _exactvo.write_text(os.fspath(path), self.html)
         return Path(path)
 

@@ -108,7 +108,8 @@ class Solution:
     problem: Problem = field(repr=False, compare=False)
 
     def check(self) -> str:
-        """"none" where the certificate proves the answer, in rationals; else what is wrong with it, as `check`."""
+        """"none" where the certificate proves the answer, in rationals; else what is wrong with it, as `check`. Raises
+        `ArgumentError` where there is no certificate."""
         if self.certificate is None:
             raise ArgumentError("certificate", "None", 'a certificate: solve(..., solver="certified")')
         return check(self.problem, self.certificate)
@@ -167,13 +168,13 @@ def solve(
 def check(problem: Problem, certificate: Certificate) -> str:
     """"none" where the certificate proves its claim about the problem; else what fails: "malformed", "velocity",
     "contradiction", "bound" or "vertex". Exact: rational arithmetic throughout, and knows no solver. Any certificate may
-    be given, also a broken one."""
+    be given, also a broken one. Raises `ArgumentError` for a problem that is none."""
     return _exactvo.lp_check(*(problem._fields() + (certificate._fields(),)))
 
 
 @dataclass(frozen=True, eq=False)
 class BatchCertificates:
-    """The certificates of a batch as arrays, a row a problem. A binding is the index of a line, -1 nothing, -2 the disc."""
+    """The certificates of a batch as arrays, one row per problem. A binding is the index of a line, -1 nothing, -2 the disc."""
 
     present: npt.NDArray[np.bool_]  #: n: whether there is one
     status: npt.NDArray[np.uint8]  #: n
@@ -191,7 +192,7 @@ class BatchCertificates:
 
 
 class BatchSolution:
-    """The answers of a batch. Its arrays are read-only views of one memory; a row a problem."""
+    """The answers of a batch. Its arrays are read-only views of one memory; one row per problem."""
 
     __slots__ = ("_native",)
 
@@ -265,7 +266,7 @@ def solve_batch(
     copy: bool = True,
     parallel: bool = False,
 ) -> BatchSolution:
-    """n problems of m lines each, one a SIMD lane.
+    """n problems of m lines each, one per SIMD lane.
 
     normals       n x m x 2, unit length to 1e-3
     offsets       n x m, m/s: allowed is { v : normal . v >= offset }
@@ -294,7 +295,8 @@ def check_batch(
     max_speed: float | npt.ArrayLike,
     hard: int | npt.ArrayLike | None = None,
 ) -> npt.NDArray[np.bool_]:
-    """Which certificates prove their answers: n truth values. Exact, as `check`; the problems as for `solve_batch`."""
+    """Which certificates prove their answers: n truth values. Exact, as `check`; the problems as for `solve_batch`.
+    Raises `ArgumentError`."""
     codes = _exactvo.lp_check_batch(normals, offsets, preferred, max_speed, hard, vars(certificates))
     proven: npt.NDArray[np.bool_] = codes == _CERTIFICATE_ERRORS.index("none")
     return proven

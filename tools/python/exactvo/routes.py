@@ -3,15 +3,16 @@
 
 >>> import exactvo
 >>> walls = [exactvo.Wall([(0, 0), (0, 4)]), exactvo.Wall([(0, 5), (0, 9)])]        # a door, 1 m wide
->>> plan = exactvo.RouteMap(walls).plan(radius=0.5)
->>> plan.route((-2, 2), (2, 2)).check()                                             # a gap of two radii is passed
-''
+>>> route = exactvo.RouteMap(walls, 0.5).route((-2, 2), (2, 2))                     # a gap of two radii is passed
+>>> bool(route), route.check()
+(True, '')
 
 docs/guide/routes.md has the theory. Everything is in metres.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Union
@@ -20,6 +21,7 @@ import numpy as np
 
 from . import _exactvo
 from ._calls import explain_calls
+from .errors import ArgumentError
 from .shapes import Floats, Obstacles, Point, ShapeLike, obstacles
 
 __all__ = ["Answer", "Certificate", "ChainPoint", "Route", "RouteMap", "RoutePlan", "Unreachable"]
@@ -39,7 +41,7 @@ class Certificate:
 
     def check(self) -> str:
         """"" where the answer is proven, else what is wrong with it. Exact: in rationals, by code that shares nothing with
-        what found it."""
+        what found it. Raises `ArgumentError` where a field is not what a certificate has."""
         return _exactvo.check_route(self.obstacles._native, self.radius, self.start, self.goal, self.answer)
 
 
@@ -142,8 +144,11 @@ class RoutePlan:
         return Unreachable(f"{end} blocked", (), obstacle, inside, certificate)
 
     def is_reachable(self, start: Point, goal: Point) -> bool:
-        """Whether there is a route, without finding one. Exact."""
+        """Whether there is a route, without finding one. Exact. Raises `ArgumentError` as `route`."""
         return self._native.is_reachable(start, goal)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _planned, (self._map, self.radius)
 
     def __repr__(self) -> str:
         return f"RoutePlan(radius={self.radius:g}, {self._map!r})"
@@ -153,29 +158,52 @@ class RouteMap:
     """Obstacles prepared for every radius. Immutable.
 
     obstacles         polygons and walls, as `exactvo.obstacles` takes them; they may cross and overlap
-    largest_radius    m: radii up to this can be planned for; twice the extent of the obstacles always
+    radius            m, of the disc that `route` is for; `plan` takes any other one
+    largest_radius    m: radii up to this can be planned for; twice the extent of the obstacles and `radius` always
     largest_distance  m: how far outside of the obstacles starts and goals may lie; four times the extent always
+
+    Raises `ArgumentError`.
     """
 
-    __slots__ = ("_native", "_options", "obstacles")
+    __slots__ = ("_native", "_options", "_plan", "obstacles")
 
     def __init__(
-        self, obstacles_: Obstacles | ShapeLike | Sequence[Any], *, largest_radius: float = 0.0, largest_distance: float = 0.0
+        self,
+        obstacles_: Obstacles | ShapeLike | Sequence[Any],
+        radius: float | None = None,
+        *,
+        largest_radius: float = 0.0,
+        largest_distance: float = 0.0,
     ) -> None:
         self.obstacles: Obstacles = obstacles(obstacles_)
-        self._options = (largest_radius, largest_distance)
-        self._native = _exactvo.RouteMap(self.obstacles._native, largest_radius, largest_distance)
+        self._options = (radius, largest_radius, largest_distance)
+        reach = largest_radius if radius is None or not radius < math.inf else max(largest_radius, radius)
+        self._native = _exactvo.RouteMap(self.obstacles._native, reach, largest_distance)
+        self._plan = None if radius is None else self.plan(radius)
+
+    @property
+    def radius(self) -> float | None:
+        """m, of the disc that `route` is for; None where none was given."""
+        return None if self._plan is None else self._plan.radius
+
+    def route(self, start: Point, goal: Point) -> Answer:
+        """`RoutePlan.route` for the map's radius. Raises `ArgumentError`, also where the map was made without a radius,
+        `RouteNotProvenError`."""
+        if self._plan is None:
+            raise ArgumentError("radius", "None", "RouteMap(obstacles, radius), or plan(radius).route(start, goal)")
+        return self._plan.route(start, goal)
 
     def plan(self, radius: float) -> RoutePlan:
         """The map for a disc of `radius` (m; 0: a point, which touches nothing). Raises `ArgumentError`."""
         return RoutePlan(self, self._native.plan(radius))
 
     def widest_radius(self, start: Point, goal: Point) -> float:
-        """m: the largest radius for which there is a route, exactly; 0 if there is none for any."""
+        """m: the largest radius for which there is a route, exactly; 0 if there is none for any. Raises `ArgumentError` for a
+        point farther out than the map covers."""
         return self._native.widest_radius(start, goal)
 
     def covers(self, point: Point) -> bool:
-        """Whether a start or goal may lie there."""
+        """Whether a start or goal may lie there. Raises `ArgumentError`."""
         return self._native.covers(point)
 
     @property
@@ -192,11 +220,16 @@ class RouteMap:
         return _rebuilt, (self.obstacles, *self._options)
 
     def __repr__(self) -> str:
-        return f"RouteMap({self.obstacles!r})"
+        radius = "" if self._plan is None else f", radius={self._plan.radius:g}"
+        return f"RouteMap({self.obstacles!r}{radius})"
 
 
-def _rebuilt(shapes: Obstacles, largest_radius: float, largest_distance: float) -> RouteMap:
-    return RouteMap(shapes, largest_radius=largest_radius, largest_distance=largest_distance)
+def _rebuilt(shapes: Obstacles, radius: float | None, largest_radius: float, largest_distance: float) -> RouteMap:
+    return RouteMap(shapes, radius, largest_radius=largest_radius, largest_distance=largest_distance)
+
+
+def _planned(route_map: RouteMap, radius: float) -> RoutePlan:
+    return route_map.plan(radius)
 
 
 explain_calls(__name__)

@@ -38,7 +38,8 @@ Pair = tuple[float, float]
 
 
 class PyRVOSimulator:
-    """Agents that avoid each other and obstacles. Agents and vertices of obstacles are numbered from 0 as they are added."""
+    """Agents that avoid each other and obstacles. Agents and vertices of obstacles are numbered from 0 as they are added.
+    Raises `ArgumentError`."""
 
     __slots__ = ("_native",)
 
@@ -68,14 +69,16 @@ class PyRVOSimulator:
         maxSpeed: Number | None = None,
         velocity: Point | None = None,
     ) -> int:
-        """The number of a new agent at `pos`, with the defaults or with all parameters given. Raises `ValueError` for some."""
+        """The number of a new agent at `pos`, with the defaults or with all parameters given. Raises `ValueError` for some,
+        `ArgumentError`."""
         rest = (neighborDist, maxNeighbors, timeHorizon, timeHorizonObst, radius, maxSpeed, velocity)
         if neighborDist is not None and any(value is None for value in rest):
             raise ValueError("Either pass only 'pos', or pass all parameters.")
         return self._native.addAgent(pos, *rest)
 
     def addObstacle(self, vertices: Iterable[Point]) -> int:
-        """A closed polygon, or with two vertices a wall; the number of its first vertex. Raises `RuntimeError` for fewer."""
+        """A closed polygon, or with two vertices a wall; the number of its first vertex. Raises `RuntimeError` for fewer,
+        `ArgumentError`."""
         return self._native.addObstacle(list(vertices))
 
     def processObstacles(self) -> None:
@@ -83,67 +86,68 @@ class PyRVOSimulator:
         self._native.processObstacles()
 
     def doStep(self) -> None:
-        """Decides for all agents and moves them. Releases the interpreter's lock."""
+        """Decides for all agents and moves them. Releases the interpreter's lock. Raises `CrowdError` where two agents are in one
+        place."""
         self._native.doStep()
 
     def getAgentAgentNeighbor(self, agent_no: int, neighbor_no: int) -> int:
-        """The agent that was its neighbour number `neighbor_no`, nearest first."""
+        """The agent that was its neighbour number `neighbor_no`, nearest first. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentAgentNeighbor(agent_no, neighbor_no)
 
     def getAgentMaxNeighbors(self, agent_no: int) -> int:
-        """How many neighbours it looks at."""
+        """How many neighbours it looks at. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentMaxNeighbors(agent_no)
 
     def getAgentMaxSpeed(self, agent_no: int) -> float:
-        """m/s."""
+        """m/s. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentMaxSpeed(agent_no)
 
     def getAgentNeighborDist(self, agent_no: int) -> float:
-        """m."""
+        """m. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentNeighborDist(agent_no)
 
     def getAgentNumAgentNeighbors(self, agent_no: int) -> int:
-        """In the last step."""
+        """In the last step. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentNumAgentNeighbors(agent_no)
 
     def getAgentNumObstacleNeighbors(self, agent_no: int) -> int:
-        """In the last step."""
+        """In the last step. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentNumObstacleNeighbors(agent_no)
 
     def getAgentNumORCALines(self, agent_no: int) -> int:
-        """In the last step."""
+        """In the last step. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentNumORCALines(agent_no)
 
     def getAgentObstacleNeighbor(self, agent_no: int, obstacle_no: int) -> int:
-        """The vertex that begins the edge, nearest first."""
+        """The vertex that begins the edge, nearest first. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentObstacleNeighbor(agent_no, obstacle_no)
 
     def getAgentORCALine(self, agent_no: int, line_no: int) -> tuple[float, float, float, float]:
-        """point x, y, direction x, y (m/s): velocities to the left are allowed."""
+        """point x, y, direction x, y (m/s): velocities to the left are allowed. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentORCALine(agent_no, line_no)
 
     def getAgentPosition(self, agent_no: int) -> Pair:
-        """m."""
+        """m. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentPosition(agent_no)
 
     def getAgentPrefVelocity(self, agent_no: int) -> Pair:
-        """m/s."""
+        """m/s. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentPrefVelocity(agent_no)
 
     def getAgentRadius(self, agent_no: int) -> float:
-        """m."""
+        """m. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentRadius(agent_no)
 
     def getAgentTimeHorizon(self, agent_no: int) -> float:
-        """s, towards other agents."""
+        """s, towards other agents. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentTimeHorizon(agent_no)
 
     def getAgentTimeHorizonObst(self, agent_no: int) -> float:
-        """s, towards obstacles."""
+        """s, towards obstacles. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentTimeHorizonObst(agent_no)
 
     def getAgentVelocity(self, agent_no: int) -> Pair:
-        """m/s."""
+        """m/s. Raises `IndexError`, `ArgumentError`."""
         return self._native.getAgentVelocity(agent_no)
 
     def getGlobalTime(self) -> float:
@@ -159,15 +163,15 @@ class PyRVOSimulator:
         return self._native.getNumObstacleVertices()
 
     def getObstacleVertex(self, vertex_no: int) -> Pair:
-        """m."""
+        """m. Raises `IndexError`, `ArgumentError`."""
         return self._native.getObstacleVertex(vertex_no)
 
     def getNextObstacleVertexNo(self, vertex_no: int) -> int:
-        """Along its obstacle."""
+        """Along its obstacle. Raises `IndexError`, `ArgumentError`."""
         return self._native.getNextObstacleVertexNo(vertex_no)
 
     def getPrevObstacleVertexNo(self, vertex_no: int) -> int:
-        """Along its obstacle."""
+        """Along its obstacle. Raises `IndexError`, `ArgumentError`."""
         return self._native.getPrevObstacleVertexNo(vertex_no)
 
     def getTimeStep(self) -> float:
@@ -175,7 +179,8 @@ class PyRVOSimulator:
         return self._native.getTimeStep()
 
     def queryVisibility(self, point1: Point, point2: Point, radius: Number = 0.0) -> bool:
-        """Whether a disc gets straight from one point to the other past the obstacles; m."""
+        """Whether a disc gets straight from one point to the other past the obstacles; m. Raises `ArgumentError`,
+        `CrowdError`."""
         return self._native.queryVisibility(point1, point2, radius)
 
     def setAgentDefaults(
@@ -188,49 +193,50 @@ class PyRVOSimulator:
         max_speed: Number,
         velocity: Point = (0, 0),
     ) -> None:
-        """For agents that are added by their position alone."""
+        """For agents that are added by their position alone. Raises `ArgumentError`."""
         self._native.setAgentDefaults(
             neighbor_dist, max_neighbors, time_horizon, time_horizon_obst, radius, max_speed, velocity
         )
 
     def setAgentMaxNeighbors(self, agent_no: int, max_neighbors: int) -> None:
-        """At least 1 and at most 15 are looked at, and all that could be met within a step."""
+        """At least 1 and at most 15 are looked at, and all that could be met within a step.
+        Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentMaxNeighbors(agent_no, max_neighbors)
 
     def setAgentMaxSpeed(self, agent_no: int, max_speed: Number) -> None:
-        """m/s."""
+        """m/s. Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentMaxSpeed(agent_no, max_speed)
 
     def setAgentNeighborDist(self, agent_no: int, neighbor_dist: Number) -> None:
-        """m."""
+        """m. Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentNeighborDist(agent_no, neighbor_dist)
 
     def setAgentPosition(self, agent_no: int, position: Point) -> None:
-        """m."""
+        """m. Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentPosition(agent_no, position)
 
     def setAgentPrefVelocity(self, agent_no: int, velocity: Point) -> None:
-        """m/s."""
+        """m/s. Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentPrefVelocity(agent_no, velocity)
 
     def setAgentRadius(self, agent_no: int, radius: Number) -> None:
-        """m."""
+        """m. Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentRadius(agent_no, radius)
 
     def setAgentTimeHorizon(self, agent_no: int, time_horizon: Number) -> None:
-        """s, towards other agents."""
+        """s, towards other agents. Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentTimeHorizon(agent_no, time_horizon)
 
     def setAgentTimeHorizonObst(self, agent_no: int, timeHorizonObst: Number) -> None:
-        """s, towards obstacles."""
+        """s, towards obstacles. Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentTimeHorizonObst(agent_no, timeHorizonObst)
 
     def setAgentVelocity(self, agent_no: int, velocity: Point) -> None:
-        """m/s."""
+        """m/s. Raises `IndexError`, `ArgumentError`."""
         self._native.setAgentVelocity(agent_no, velocity)
 
     def setTimeStep(self, time_step: Number) -> None:
-        """s."""
+        """s. Raises `ArgumentError`."""
         self._native.setTimeStep(time_step)
 
     # What Python-RVO2 has not.
@@ -240,7 +246,7 @@ class PyRVOSimulator:
         return self._native.relaxedInLastStep()
 
     def setThreads(self, threads: int) -> None:
-        """0: as many as there are. The same bits with any number."""
+        """0: as many as there are. The same bits with any number. Raises `ArgumentError`."""
         self._native.setThreads(threads)
 
 

@@ -66,19 +66,21 @@ class Ellipse:
 
     @staticmethod
     def from_axes(center: Point, *, a: float, b: float, angle: float = 0.0) -> Ellipse:
-        """From semi-axes a >= b >= 0 (m) and the angle of the first (rad). Rounded to some ulps."""
+        """From semi-axes a >= b >= 0 (m) and the angle of the first (rad). Rounded to some ulps. Raises `ArgumentError`."""
         _, c, l = _exactvo.ellipse_from_axes(center, a, b, angle)
         return Ellipse(c, *l)
 
     @property
     def axes(self) -> tuple[float, float, float]:
-        """Semi-axes a >= b (m) and the angle of the first (rad, in (-pi/2, pi/2]). Rounded."""
+        """Semi-axes a >= b (m) and the angle of the first (rad, in (-pi/2, pi/2]). Rounded. Raises `ArgumentError` where the
+        fields are no finite numbers."""
         return _exactvo.axes_of(_native_shape(self))
 
 
 @dataclass(frozen=True, eq=False, init=False)
 class Polygon:
-    """A polygon with holes: rings as n x 2 arrays (m), the outer one counter-clockwise, first points not repeated."""
+    """A polygon with holes: rings as n x 2 arrays (m), the outer one counter-clockwise, first points not repeated. Raises
+    `ArgumentError` where they are no arrays of numbers."""
 
     outer: Floats
     holes: tuple[Floats, ...]
@@ -106,7 +108,8 @@ class Polygon:
 
 @dataclass(frozen=True, eq=False, init=False)
 class Wall:
-    """An open chain of segments, seen from both sides; n x 2 points (m), at least two."""
+    """An open chain of segments, seen from both sides; n x 2 points (m), at least two. Raises `ArgumentError` where they are
+    no array of numbers."""
 
     points: Floats
 
@@ -190,7 +193,8 @@ def _shape_of(native: tuple[Any, ...]) -> ConvexShape:
 
 
 def hull(points: npt.ArrayLike) -> ConvexShape:
-    """The convex hull of n x 2 points (m): a `Polygon`, counter-clockwise, or where it is flat a `Segment`. Exact."""
+    """The convex hull of n x 2 points (m): a `Polygon`, counter-clockwise, or where it is flat a `Segment`. Exact. Raises
+    `ArgumentError`."""
     return _shape_of(_exactvo.hull(points))
 
 

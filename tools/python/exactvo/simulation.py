@@ -49,7 +49,8 @@ class ScenarioRobot:
 
 class Scenario:
     """Robots, obstacles and how they move, from a JSON file (datasets/schema/scenario.schema.json), its text, a dict of the
-    same form, or `Scenario.build`. Raises `DataError`, or `MissingFileError`, with a JSON pointer in ``where``."""
+    same form, or `Scenario.build`. Raises `DataError`, `MissingFileError`, `ArgumentError`; ``where`` of wrong data is a JSON
+    pointer."""
 
     __slots__ = ("_native",)
 
@@ -77,7 +78,7 @@ class Scenario:
         **fields: Any,
     ) -> Scenario:
         """n robots from n x 2 starts to n x 2 goals (m) among obstacles. Further fields are those of a scenario file:
-        time_step=0.05 (s), time_limit=120 (s), ..."""
+        time_step=0.05 (s), time_limit=120 (s), ... Raises `ArgumentError`, `DataError`."""
         for word in fields:  # one meant for this function would be refused later, as a field that no scenario has
             near = difflib.get_close_matches(word, ("obstacles", "radius", "max_speed", "name"), n=1, cutoff=0.85)
             if near:
@@ -167,7 +168,7 @@ class RecordedHalfPlane:
 
 
 class Recording:
-    """What happened in a run. The arrays are read-only views, a row a step, a column a robot; the last row is the final
+    """What happened in a run. The arrays are read-only views: one row per step, one column per robot; the last row is the final
     state, whose decisions are empty."""
 
     __slots__ = ("_metrics", "_native")
@@ -243,7 +244,7 @@ class Recording:
 
     def half_planes(self, step: int, robot: int) -> tuple[RecordedHalfPlane, ...]:
         """The recorded half-planes of a decision: those that bind, or all with `simulate(..., record_all=True)`. Raises
-        `IndexError`."""
+        `IndexError`, `ArgumentError`."""
         step = range(len(self))[step]
         robot = range(self.position.shape[1])[robot]
         return tuple(
@@ -257,7 +258,7 @@ class Recording:
         return report
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """recording.jsonl, which every verb of the program reads. Raises `DataError`."""
+        """recording.jsonl, which every verb of the program reads. Raises `DataError`, `ArgumentError`."""
         self._native.write(os.fspath(path))
 
     def to_dataframe(self) -> pandas.DataFrame:
@@ -354,7 +355,8 @@ def simulate(
 
 
 def read_recording(path: str | os.PathLike[str]) -> Recording:
-    """A recording.jsonl, or the folder of a run that has one. Raises `DataError`, `MissingFileError`."""
+    """A recording.jsonl, or the folder of a run that has one. Raises `DataError`, `MissingFileError`,
+    `ArgumentError`."""
     given = Path(path)
     return Recording(_exactvo.Run.read(os.fspath(given / "recording.jsonl" if given.is_dir() else given)))
 

@@ -79,7 +79,7 @@ class HalfPlane:
     certificate: Certificate | None = field(default=None, compare=False)
 
     def violation(self, velocity: Point) -> float:
-        """m/s; how far the velocity lies outside, negative inside. Rounded."""
+        """m/s; how far the velocity lies outside, negative inside. Rounded. Raises `ArgumentError`."""
         return self.offset - self.normal[0] * velocity[0] - self.normal[1] * velocity[1]
 
 
@@ -186,7 +186,7 @@ class VelocityObstacle:
         return self._native.contains(velocity)
 
     def contains_many(self, velocities: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """The same for n x 2 velocities."""
+        """The same for n x 2 velocities. Raises `ArgumentError`."""
         return self._native.contains_many(velocities)
 
     def nearest_boundary(self, velocity: Point) -> NearestBoundary:
@@ -198,7 +198,7 @@ class VelocityObstacle:
 
         With responsibility 1 it is certified, and carries its certificate (`certify=False` saves the microseconds). Less
         leaves the rest of the change to somebody else and proves nothing alone. None where nothing can be proven: the
-        robot overlaps, or is a few ulps from it; see `contact_half_plane`.
+        robot overlaps, or is a few ulps from it; see `contact_half_plane`. Raises `ArgumentError`.
         """
         native = self._native.half_plane(velocity, responsibility)
         if native is None:
@@ -230,7 +230,8 @@ def velocity_obstacles(
     obstacle: Any, *, position: Point, radius: float, time_horizon: float, obstacle_velocity: Point = (0.0, 0.0)
 ) -> list[VelocityObstacle]:
     """The velocity obstacles of any polygon or wall, convex or not, or of several (as `exactvo.obstacles` takes them): one
-    for each convex piece of an exact decomposition. A velocity collides with the obstacle iff it lies in one of them."""
+    for each convex piece of an exact decomposition. A velocity collides with the obstacle iff it lies in one of them.
+    Raises `ArgumentError`."""
     pieces = obstacles(obstacle)._native.convex_cover()
     made = []
     for piece in pieces:
@@ -254,7 +255,8 @@ def reciprocal_half_planes(
     share_of_a: float = 0.5,
 ) -> tuple[HalfPlane, HalfPlane, bool]:
     """Robot against robot (ORCA, van den Berg et al. 2011): the half-planes of a and of b, and whether they are certified
-    as a pair: two velocities that each satisfy their half do not collide within the horizon (s). m, m/s."""
+    as a pair: two velocities that each satisfy their half do not collide within the horizon (s). m, m/s. Raises
+    `ArgumentError`."""
     a, b, certified = _exactvo.reciprocal_half_planes(
         position_a, velocity_a, radius_a, position_b, velocity_b, radius_b, time_horizon, share_of_a
     )
@@ -304,7 +306,7 @@ class ExactFree:
 
 class FreeVelocities:
     """{ v : |v| <= max_speed } minus the velocity obstacles, held between two regions `inner` and `outer`. See
-    `free_velocities`."""
+    `free_velocities`. Raises `ArgumentError`."""
 
     __slots__ = ("_arguments", "_native")
 
@@ -316,7 +318,7 @@ class FreeVelocities:
         self._native = _exactvo.FreeVelocities([cone._native for cone in cones], max_speed, relative_tolerance)
 
     def contains(self, velocity: Point) -> bool:
-        """Whether the velocity is free. Exact."""
+        """Whether the velocity is free. Exact. Raises `ArgumentError`."""
         return self._native.contains(velocity)
 
     @property
@@ -341,7 +343,7 @@ class FreeVelocities:
 
     def compare(self, half_planes: Iterable[HalfPlane]) -> Comparison:
         """What half-planes (equation (13)) make of the free velocities: whether all that they allow is free, and what of the
-        free ones they give away."""
+        free ones they give away. Raises `ArgumentError`."""
         listed = list(half_planes)
         for k, half_plane in enumerate(listed):
             if not isinstance(half_plane, HalfPlane):
@@ -359,9 +361,16 @@ class FreeVelocities:
             raise ArgumentError("cones", f"a scene refused for its {answer}", "what vo/free_arrangement.h takes")
         return ExactFree(*answer)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _free_again, self._arguments
+
     def __repr__(self) -> str:
         low, high = self.area
         return f"FreeVelocities({len(self._arguments[0])} cones, area in [{low:.6g}, {high:.6g}] (m/s)^2)"
+
+
+def _free_again(cones: list[VelocityObstacle], max_speed: float, relative_tolerance: float) -> FreeVelocities:
+    return FreeVelocities(cones, max_speed=max_speed, relative_tolerance=relative_tolerance)
 
 
 def free_velocities(cones: Sequence[VelocityObstacle], *, max_speed: float, relative_tolerance: float = 1e-4) -> FreeVelocities:

@@ -61,7 +61,7 @@ py::tuple answer_tuple(const geometry::RouteAnswer& answer) {
                         blocked.by.obstacle, blocked.by.edge);
 }
 
-geometry::RouteAnswer answer_of(py::handle object) {
+geometry::RouteAnswer answer_from(py::handle object) {
   const auto f = py::cast<py::tuple>(object);
   const std::string kind = py::str(f[0]);
   if (kind == "route") {
@@ -85,6 +85,16 @@ geometry::RouteAnswer answer_of(py::handle object) {
   blocked.inside = py::cast<bool>(f[2]);
   blocked.by = {py::cast<std::size_t>(f[3]), py::cast<std::size_t>(f[4])};
   return blocked;
+}
+
+/// An answer that was made by hand may be anything.
+geometry::RouteAnswer answer_of(py::handle object) {
+  try {
+    return answer_from(object);
+  } catch (const py::error_already_set&) {
+  } catch (const py::cast_error&) {
+  }
+  throw ArgumentError("answer", shown(object), "the answer of a certificate");
 }
 
 Map make_map(const Obstacles& obstacles, py::handle largest_radius, py::handle largest_distance) {
