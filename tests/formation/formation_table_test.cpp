@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Section V.B: three robots and a virtual leader, a row a test.
+// Section V.B: three robots and a virtual leader, one row per test.
 #include <gtest/gtest.h>
 
 #include "paper/expected.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "exactvo/datasets/generators.h"
 #include "exactvo/formation/metrics.h"
@@ -13,6 +14,7 @@
 #include "exactvo/geometry/routes.h"
 #include "liveness_scenes.h"
 #include "steering/guide.h"
+#include "steering/standing.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation {
@@ -486,6 +488,26 @@ TEST(CutRoutes, AreTheSameInEveryRun) {
   ASSERT_EQ(one.recording.steps.size(), other.recording.steps.size());
   for (std::size_t k = 0; k < one.recording.steps.size(); ++k)
     EXPECT_EQ(one.recording.steps[k].robots[0].position, other.recording.steps[k].robots[0].position);
+}
+
+/// Only the last eight are kept beside those in use: a robot may go round a cart longer than that.
+TEST(CutRoutes, AGuideRoundWhatStoodStaysValidAsLongAsItIsUsed) {
+  const Scenario s = two_doors(0.0);
+  detail::StandingObstacles standing(s, 0.08);
+  double time = 0.0;
+  const auto stands_at = [&](double y) {
+    for (int k = 0; k < 2; ++k) standing.look(time += 2.0, {{{0, y}, {0, 0}}});
+    return standing.guide();
+  };
+  const std::shared_ptr<detail::Guide> used = stands_at(-4.0);
+  const std::weak_ptr<detail::Guide> unused = stands_at(-3.5);
+  EXPECT_EQ(stands_at(-4.0), used);
+  const detail::Destination to{{8, 3}, 0.1};
+  const detail::CourseAnswer before = used->course(0.5, {-8, 3}, to);
+  ASSERT_TRUE(before.course);
+  for (int k = 0; k < 9; ++k) stands_at(0.1 * k);
+  EXPECT_TRUE(unused.expired());
+  EXPECT_EQ(used->course(0.5, {-8, 3}, to).course.value().points, before.course->points);
 }
 
 TEST(Guidance, WhoMustGiveWayToACartArrives) {

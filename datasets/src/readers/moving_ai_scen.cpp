@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Moving AI tasks: "version 1", then a line a task: bucket, map, width, height, start x y, goal x y, optimal length.
+// Moving AI tasks: "version 1", then one line per task: bucket, map, width, height, start x y, goal x y, optimal length.
 #include "exactvo/datasets/moving_ai.h"
 #include "exactvo/geometry/counted.h"
 #include "files/text_file.h"

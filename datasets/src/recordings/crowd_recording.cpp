@@ -6,12 +6,12 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <tuple>
-#include <utility>
-#include <variant>
 
 #include "exactvo/geometry/require.h"
+#include "exactvo/geometry/shape_numbers.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -97,20 +97,6 @@ class Bytes {
   std::uint64_t at_;
 };
 
-/// Of a shape, in the order of its fields.
-struct NumbersOf {
-  std::vector<double> operator()(const geometry::Disc& s) const { return {s.center.x, s.center.y, s.radius}; }
-  std::vector<double> operator()(const geometry::Segment& s) const { return {s.a.x, s.a.y, s.b.x, s.b.y}; }
-  std::vector<double> operator()(const geometry::ConvexPolygon& s) const {
-    std::vector<double> all;
-    for (const geometry::Vec2 v : s.vertices) all.push_back(v.x), all.push_back(v.y);
-    return all;
-  }
-  std::vector<double> operator()(const geometry::Ellipse& s) const {
-    return {s.center.x, s.center.y, s.l11, s.l21, s.l22};
-  }
-};
-
 CrowdBodyRecord get_body(Bytes& in) {
   CrowdBodyRecord body;
   const auto moves = in.get<std::uint8_t>(), kind = in.get<std::uint8_t>();
@@ -121,19 +107,10 @@ CrowdBodyRecord get_body(Bytes& in) {
     v.push_back(in.get<double>());
     in.require(std::isfinite(v.back()), "a body that is nowhere");
   }
-  in.require((kind == 0 && count == 3) || (kind == 1 && count == 4) || (kind == 2 && count % 2 == 0) ||
-                 (kind == 3 && count == 5),
-             "a body of no shape");
+  const std::optional<geometry::ConvexShape> shape = geometry::shape_of(kind, v);
+  in.require(shape && geometry::is_valid(*shape), "a body of no shape");
   body.moves = moves == 1;
-  if (kind == 0) body.shape = geometry::Disc{{v[0], v[1]}, v[2]};
-  if (kind == 1) body.shape = geometry::Segment{{v[0], v[1]}, {v[2], v[3]}};
-  if (kind == 3) body.shape = geometry::Ellipse{{v[0], v[1]}, v[2], v[3], v[4]};
-  if (kind == 2) {
-    geometry::ConvexPolygon polygon;
-    for (std::size_t k = 0; k < v.size(); k += 2) polygon.vertices.push_back({v[k], v[k + 1]});
-    body.shape = std::move(polygon);
-  }
-  in.require(geometry::is_valid(body.shape), "a body of no shape");
+  body.shape = *shape;
   return body;
 }
 
@@ -156,7 +133,7 @@ std::string to_bytes(const CrowdRecordingHead& head) {
   for (const CrowdBodyRecord& body : head.bodies) {
     append(out, static_cast<std::uint8_t>(body.moves));
     append(out, static_cast<std::uint8_t>(body.shape.index()));
-    const std::vector<double> numbers = std::visit(NumbersOf{}, body.shape);
+    const std::vector<double> numbers = geometry::numbers_of(body.shape);
     append(out, static_cast<std::uint32_t>(numbers.size()));
     for (const double v : numbers) append(out, v);
   }

@@ -277,7 +277,7 @@ class RobotsReader {
     if (std::find(out_.tables.begin(), out_.tables.end(), path) == out_.tables.end()) out_.tables.push_back(path);
     LineReader lines(text, shown);
     if (!lines.next())
-      throw DataError(DataCode::format_syntax, shown, "", "an empty file", "a header and a robot a line");
+      throw DataError(DataCode::format_syntax, shown, "", "an empty file", "a header, then one robot per line");
     const Columns columns(lines);
     const std::size_t before = out_.robots.size();
     while (lines.next()) {

@@ -63,19 +63,6 @@ struct CornersOf {
   std::vector<Vec2> operator()(const geometry::Ellipse& s) const { return corners_round(s); }
 };
 
-struct NumbersOf {
-  std::vector<double> operator()(const geometry::Disc& s) const { return {s.center.x, s.center.y, s.radius}; }
-  std::vector<double> operator()(const geometry::Segment& s) const { return {s.a.x, s.a.y, s.b.x, s.b.y}; }
-  std::vector<double> operator()(const geometry::ConvexPolygon& s) const {
-    std::vector<double> all;
-    for (const Vec2 v : s.vertices) all.push_back(v.x), all.push_back(v.y);
-    return all;
-  }
-  std::vector<double> operator()(const geometry::Ellipse& s) const {
-    return {s.center.x, s.center.y, s.l11, s.l21, s.l22};
-  }
-};
-
 /// A body as a robot sees it.
 class Sight {
  public:
@@ -264,20 +251,6 @@ geometry::Box moved(const geometry::Box& box, Vec2 by) {
 }
 
 }  // namespace
-
-std::vector<double> numbers_of(const geometry::ConvexShape& shape) {
-  return std::visit(NumbersOf{}, shape);
-}
-
-std::optional<geometry::ConvexShape> shape_of(std::size_t kind, const std::vector<double>& v) {
-  if (kind == 0 && v.size() == 3) return geometry::Disc{{v[0], v[1]}, v[2]};
-  if (kind == 1 && v.size() == 4) return geometry::Segment{{v[0], v[1]}, {v[2], v[3]}};
-  if (kind == 3 && v.size() == 5) return geometry::Ellipse{{v[0], v[1]}, v[2], v[3], v[4]};
-  if (kind != 2 || v.size() % 2 != 0) return std::nullopt;
-  geometry::ConvexPolygon polygon;
-  for (std::size_t k = 0; k < v.size(); k += 2) polygon.vertices.push_back({v[k], v[k + 1]});
-  return polygon;
-}
 
 const Body* Bodies::find(ObstacleId id) const {
   const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), id,

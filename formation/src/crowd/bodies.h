@@ -21,11 +21,6 @@
 
 namespace exactvo::formation::crowd {
 
-/// Of a shape, in the order of its fields; the kind is its place in ConvexShape.
-std::vector<double> numbers_of(const geometry::ConvexShape& shape);
-/// Nothing where no shape of the kind has so many numbers.
-std::optional<geometry::ConvexShape> shape_of(std::size_t kind, const std::vector<double>& numbers);
-
 /// A body where it was added, and how far it has come since.
 struct Body {
   ObstacleId id = 0;

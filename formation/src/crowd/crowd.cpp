@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "crowd/body.h"
+#include "exactvo/geometry/shape_numbers.h"
 #include "exactvo/vo/lp/batch.h"
 
 namespace exactvo::formation {
@@ -239,7 +240,7 @@ ObstacleId CrowdBody::add_obstacle(const geometry::Obstacle& obstacle) {
 }
 
 void require_valid(const geometry::ConvexShape& shape) {
-  for (const double v : numbers_of(shape))
+  for (const double v : geometry::numbers_of(shape))
     require_in_range("body", v, std::fabs(v) < kFarthestEdge, "numbers below 2^40 m");
   if (!geometry::is_valid(shape))
     throw CrowdError(CrowdProblem::out_of_range,
@@ -250,7 +251,7 @@ void require_valid(const geometry::ConvexShape& shape) {
 ObstacleId CrowdBody::add_body(const geometry::ConvexShape& shape, bool moves, Vec2 velocity) {
   require_valid(shape);
   const auto [mx, my] = body_motion(velocity);
-  if (obstacle_size() + kMostCornersRound + numbers_of(shape).size() > kMostEdgesOfAll)
+  if (obstacle_size() + kMostCornersRound + geometry::numbers_of(shape).size() > kMostEdgesOfAll)
     throw CrowdError(CrowdProblem::too_many, "edges and corners: found more than 2^24, expected 2^24 at most");
   core->bodies.add(next_obstacle, shape, moves);
   core->bodies.find(next_obstacle)->mx = mx;

@@ -511,6 +511,29 @@ class CrowdEngine final : public CrowdCore {
     c = std::max(least, rounded_up<T>(line.offset + static_cast<double>(table_.lattice_slack)));
   }
 
+  /// Of a group, by number and slot.
+  struct GroupLines {
+    const T *x, *y, *c;
+  };
+
+  static std::size_t most_of(const std::int32_t* counts, std::size_t packs) {
+    return static_cast<std::size_t>(*std::max_element(counts, counts + packs * kPack));
+  }
+
+  /// Into the rows at `first` and after; slots with fewer lines get some that hold everywhere.
+  static void put_rows(const GroupLines& from, const std::int32_t* counts, std::size_t rows, std::size_t first,
+                       std::size_t packs, Scratch& s) {
+    for (std::size_t k = 0; k < rows; ++k) {
+      const std::size_t to = first + k * kSlots, row = k * kSlots;
+      for (std::size_t slot = 0; slot < packs * kPack; ++slot) {
+        const bool there = static_cast<std::int32_t>(k) < counts[slot];
+        s.x[to + slot] = there ? from.x[row + slot] : T(1);
+        s.y[to + slot] = there ? from.y[row + slot] : T(0);
+        s.c[to + slot] = there ? from.c[row + slot] : static_cast<T>(kNever);
+      }
+    }
+  }
+
   /// The half-planes of a group against edges and bodies at rest, in the last rows before those of robots; how many
   /// rows.
   std::size_t obstacles_of(Pack* packs, std::size_t count, Scratch& s) {
@@ -522,18 +545,8 @@ class CrowdEngine final : public CrowdCore {
     if (!bodies.empty())
       for (std::size_t p = 0; p < count; ++p)
         for (std::size_t lane = 0; lane < kPack; ++lane) bodies_of_lane(packs[p], lane, p * kPack + lane, s);
-    std::int32_t most = 0;
-    for (std::size_t slot = 0; slot < count * kPack; ++slot) most = std::max(most, s.hard[slot]);
-    const auto rows = static_cast<std::size_t>(most);
-    for (std::size_t k = 0; k < rows; ++k) {
-      const std::size_t to = kRobotRows - (rows - k) * kSlots, from = k * kSlots;
-      for (std::size_t slot = 0; slot < count * kPack; ++slot) {
-        const bool there = static_cast<std::int32_t>(k) < s.hard[slot];
-        s.x[to + slot] = there ? s.edge_x[from + slot] : T(1);
-        s.y[to + slot] = there ? s.edge_y[from + slot] : T(0);
-        s.c[to + slot] = there ? s.edge_c[from + slot] : static_cast<T>(kNever);
-      }
-    }
+    const std::size_t rows = most_of(s.hard, count);
+    put_rows({s.edge_x, s.edge_y, s.edge_c}, s.hard, rows, kRobotRows - rows * kSlots, count, s);
     return rows;
   }
 
@@ -593,16 +606,8 @@ class CrowdEngine final : public CrowdCore {
   /// The half-planes of a group against bodies that move, in the rows from `first` on; how many rows.
   std::size_t moving_of(std::size_t count, std::size_t first, Scratch& s) const {
     if (bodies.empty()) return 0;
-    const auto rows = static_cast<std::size_t>(*std::max_element(s.moving, s.moving + count * kPack));
-    for (std::size_t k = 0; k < rows; ++k) {
-      const std::size_t to = first + k * kSlots, from = k * kSlots;
-      for (std::size_t slot = 0; slot < count * kPack; ++slot) {
-        const bool there = static_cast<std::int32_t>(k) < s.moving[slot];
-        s.x[to + slot] = there ? s.moving_x[from + slot] : T(1);
-        s.y[to + slot] = there ? s.moving_y[from + slot] : T(0);
-        s.c[to + slot] = there ? s.moving_c[from + slot] : static_cast<T>(kNever);
-      }
-    }
+    const std::size_t rows = most_of(s.moving, count);
+    put_rows({s.moving_x, s.moving_y, s.moving_c}, s.moving, rows, first, count, s);
     return rows;
   }
 

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "crowd/body.h"
+#include "exactvo/geometry/shape_numbers.h"
 
 namespace exactvo::formation::crowd {
 namespace {
@@ -129,7 +130,7 @@ void put(Writer& to, const Body& b) {
   for (const std::int64_t v : {b.x, b.y}) to.put(v);
   for (const std::int32_t v : {b.mx, b.my}) to.put(v);
   to.put(static_cast<std::uint8_t>(b.shape.index()));
-  const std::vector<double> numbers = numbers_of(b.shape);
+  const std::vector<double> numbers = geometry::numbers_of(b.shape);
   to.put(static_cast<std::uint32_t>(numbers.size()));
   to.put_all(numbers.data(), numbers.size());
 }
@@ -143,7 +144,7 @@ void get_body(Reader& from, ObstacleId end, const CrowdOptions& options, Bodies&
   const auto kind = from.get<std::uint8_t>();
   std::vector<double> numbers;
   from.get_some(numbers, from.get<std::uint32_t>());
-  const std::optional<geometry::ConvexShape> shape = shape_of(kind, numbers);
+  const std::optional<geometry::ConvexShape> shape = geometry::shape_of(kind, numbers);
   require(shape.has_value() && moves <= 1, "a body");
   require_valid(*shape);
   const std::int64_t way = std::int64_t{1} << 22U;

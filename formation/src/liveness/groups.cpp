@@ -25,9 +25,8 @@ constexpr double kNoProgress = 3.0;  ///< of a plan: others are in the way
 constexpr double kFirstBack = 3.0;   ///< going back; then twice as long again and again
 
 // In diameters.
-constexpr double kNearer = 0.4;       ///< counts as coming nearer
-constexpr double kTogether = 1.0;     ///< a smaller gap joins two robots in a group
-constexpr double kOfTheMargin = 1.5;  ///< or one below so many margins between robots
+constexpr double kNearer = 0.4;    ///< counts as coming nearer
+constexpr double kTogether = 1.0;  ///< a smaller gap joins two robots in a group
 constexpr double kBesideTheWayBack = 0.3;
 constexpr double kOpenMargin = 3.0;  ///< of a region round its robots and goals
 constexpr double kSceneMargin = 2.0;
@@ -189,7 +188,7 @@ std::vector<std::size_t> Groups::by_nearness_to(const Members& seeds) const {
   double largest = 0.0;
   for (const Robot& r : scenario_.robots) largest = std::max(largest, r.radius);
   const auto reach = [&](double radii) {
-    return radii + std::max(kTogether * radii, kOfTheMargin * scenario_.margins.robot);
+    return radii + std::max(kTogether * radii, kNearMargins * scenario_.margins.robot);
   };
   const double farthest = reach(2.0 * largest);
   Cells<std::size_t> by_place(farthest);

@@ -20,6 +20,10 @@
 
 namespace exactvo::formation::detail {
 
+/// Robots with a gap of fewer margins between robots than this may hold each other up: who keeps a wide margin stops
+/// that far away.
+inline constexpr double kNearMargins = 1.5;
+
 /// A robot at the beginning of a step.
 struct RobotNow {
   Vec2 position;                ///< m

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "decision/decision.h"
+#include "liveness/groups.h"
 
 namespace exactvo::formation {
 namespace {
@@ -27,10 +28,9 @@ bool is_held_up(const RobotStep& r, const Robot& robot) {
   return r.mode != Mode::arrived && wanted > nothing * nothing && dot(r.chosen, r.preferred) < kHeldBelow * wanted;
 }
 
-/// m: how near another robot must be to be waited for. Who keeps a wide margin stops that far away.
+/// m: how near another robot must be to be waited for.
 double near_enough(const Scenario& scenario, std::size_t robot) {
-  constexpr double kOfTheMargin = 1.5;
-  return std::max(scenario.robots[robot].radius, kOfTheMargin * scenario.margins.robot);
+  return std::max(scenario.robots[robot].radius, detail::kNearMargins * scenario.margins.robot);
 }
 
 /// A row may have all half-planes or those that bind and those in reach: only these count, so that both say the same.

@@ -184,7 +184,8 @@ std::string moving_words(const Scenario& s, const RobotStep& decision, const Stu
 std::string cause_words(const RunEnd& end, const StuckReport& r) {
   const RobotStep* decision = last_decision(end, r.robot);
   if (!decision) return "no decision was taken";
-  if (decision->mode == Mode::staying) return "it stays, since its goal is out of reach";
+  if (decision->mode == Mode::staying)
+    return r.speed < kAtRest ? "it stays, since its goal is out of reach" : "it stops, since its goal is out of reach";
   std::string text;
   if (r.speed >= kAtRest) {
     text = r.binding.empty() && decision->mode != Mode::following ? "no active constraint"

@@ -26,23 +26,17 @@ struct Target {
   std::string name;
 };
 
-std::string printed(Vec2 v) {
-  char text[80];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g)", v.x, v.y);
-  return text;
-}
-
 std::vector<Target> targets_of(const Scenario& s, const std::vector<Vec2>& offsets, std::size_t i) {
   const Robot& robot = s.robots[i];
   std::vector<Target> targets;
   if (s.formation) {
     const Vec2 slot = s.formation->leader.path.back() + offsets[i];
-    return {{slot, s.arrival_tolerance, "the slot of " + robot.id + " at the leader's end, " + printed(slot)}};
+    return {{slot, s.arrival_tolerance, "the slot of " + robot.id + " at the leader's end, " + printed_place(slot)}};
   }
   for (std::size_t g = 0; g < robot.goals.size(); ++g) {
     const std::string number = robot.goals.size() > 1 ? " " + std::to_string(g + 1) : "";
-    targets.push_back(
-        {robot.goals[g], reach_of(s, robot, g), "goal" + number + " of " + robot.id + ", " + printed(robot.goals[g])});
+    targets.push_back({robot.goals[g], reach_of(s, robot, g),
+                       "goal" + number + " of " + robot.id + ", " + printed_place(robot.goals[g])});
   }
   return targets;
 }

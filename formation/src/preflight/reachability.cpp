@@ -90,6 +90,12 @@ std::string metres(double length) {
   return text;
 }
 
+std::string printed_place(Vec2 place) {
+  char text[80];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g)", place.x, place.y);
+  return text;
+}
+
 std::vector<Vec2> places_about(Vec2 place, double reach) {
   constexpr double kRings[] = {0.25, 0.5, 0.75, 0.99};  // of the reach; less than 1, for rounding
   constexpr int kDirections = 16;

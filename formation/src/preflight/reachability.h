@@ -26,6 +26,9 @@ struct Destination {
 /// "0.158 m".
 std::string metres(double length);
 
+/// "(1.5, -2)", m.
+std::string printed_place(Vec2 place);
+
 /// 64 places on four rings about a place, less than `reach` m from it, the nearest first.
 std::vector<Vec2> places_about(Vec2 place, double reach);
 

@@ -29,19 +29,20 @@ struct KinematicRobot {
   std::size_t goal = 0;
   std::optional<StaticField> field;
   Follower follower;
-  std::optional<Course> course = {};  ///< with guidance: to its present goal
-  Guide* round = nullptr;             ///< with guidance: of a course round obstacles that move and stand for now
-  bool has_new_course = false;        ///< with guidance: nobody has looked whether something stands on it
-  std::optional<std::size_t> cut_by =
-      {};                    ///< with guidance: the moving obstacle that stands on it, without a way round
-  double looks_again = 0.0;  ///< s: then it looks again for one
-  std::string no_way = {};   ///< with guidance: why it has no course to its goal
-  std::optional<NearestPlace> nearest = {};  ///< with guidance: where its course ends that does not lead to its goal
-  bool has_come_nearest = false;             ///< with guidance: it is there
-  bool waits_for_room = false;  ///< with guidance: it has to be pushed out before its course can be planned
-  double held_up = 0.0;         ///< 0 .. 1: how little of its preference it drove of late
-  bool tied = false;            ///< the last preference was turned to break a tie
-  std::string note = {};        ///< for the next row
+  std::string note = {};  ///< for the next row
+  bool tied = false;      ///< the last preference was turned to break a tie
+  // With guidance.
+  std::optional<Course> course = {};         ///< to its present goal
+  std::shared_ptr<Guide> detour = {};        ///< of a course round obstacles that move and stand for now
+  bool has_new_course = false;               ///< nobody has looked whether something stands on it
+  std::optional<std::size_t> cut_by = {};    ///< the moving obstacle that stands on it, without a way round
+  double looks_again = 0.0;                  ///< s: then it looks again for one
+  std::string no_way = {};                   ///< why it has no course to its goal
+  std::optional<NearestPlace> nearest = {};  ///< where its course ends that does not lead to its goal
+  bool has_come_nearest = false;             ///< it is there
+  bool waits_for_room = false;               ///< it has to be pushed out before its course can be planned
+  // With liveness.
+  double held_up = 0.0;  ///< 0 .. 1: how little of its preference it drove of late
 };
 
 class KinematicRun {
@@ -103,9 +104,9 @@ class KinematicRun {
 
   void plan_course(std::size_t i) {
     KinematicRobot& r = robots_[i];
-    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, {goal_of(i), reach_of_goal(i)});
+    CourseAnswer answer = guide_->course(scenario_.robots[i].radius, r.position, destination(i));
     r.course = std::move(answer.course);
-    r.round = nullptr;
+    r.detour.reset();
     r.cut_by.reset();
     r.has_new_course = true;
     r.nearest = answer.nearest;
@@ -174,7 +175,7 @@ class KinematicRun {
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       KinematicRobot& r = robots_[i];
       if (!r.course || r.nearest || at_goal(i)) continue;
-      if (changed && r.round) take_up_route(i);
+      if (changed && r.detour) take_up_route(i);
       const bool looks = changed || r.has_new_course || (r.cut_by && time >= r.looks_again);
       if (looks && !goes_by_plan(i)) go_round(i, time);
     }
@@ -188,7 +189,7 @@ class KinematicRun {
     CourseAnswer again = guide_->course(scenario_.robots[i].radius, r.position, destination(i));
     if (!again.course || again.nearest) return;
     r.course = std::move(again.course);
-    r.round = nullptr;
+    r.detour.reset();
     r.cut_by.reset();
     ++routes_.cut;
     r.note = joined_notes(r.note, "what it went round has moved: a new route is planned");
@@ -205,15 +206,15 @@ class KinematicRun {
     r.cut_by = by;
     r.looks_again = time + kLooksAgainAfter;
     if (!by) return;
-    Guide& round = standing_->guide();
-    CourseAnswer answer = round.course(radius, r.position, destination(i));
+    std::shared_ptr<Guide> detour = standing_->guide();
+    CourseAnswer answer = detour->course(radius, r.position, destination(i));
     const bool is_way = answer.course && !answer.nearest;
     const std::string words = "moving obstacle '" + scenario_.moving_obstacles[*by].id + "' stands on its route: " +
                               (is_way ? "a new one leads round it" : "none leads round it, waits");
     if (is_way || !is_known) r.note = joined_notes(r.note, words);
     if (!is_way) return;
     r.course = std::move(answer.course);
-    r.round = &round;
+    r.detour = std::move(detour);
     r.cut_by.reset();
     ++routes_.cut;
   }
@@ -412,7 +413,7 @@ class KinematicRun {
     r.has_come_nearest = r.nearest && norm(r.position - r.nearest->place) <= scenario_.arrival_tolerance;
     if (step.mode == Mode::direct) step.mode = r.course && !r.has_come_nearest ? Mode::guided : Mode::staying;
     if (!r.course) return {};
-    const Heading to = (r.round ? r.round : guide_)->heading(*r.course, radius, r.position);
+    const Heading to = (r.detour ? *r.detour : *guide_).heading(*r.course, radius, r.position);
     r.field->set_margin(to.margin);  // from the next step on
     if (to.is_new) {
       ++routes_.pushed_off;

@@ -2,7 +2,6 @@
 #include "exactvo/formation/leader_route.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -16,12 +15,6 @@ namespace {
 using detail::CourseAnswer;
 using detail::Guide;
 using geometry::norm;
-
-std::string printed(Vec2 v) {
-  char text[80];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g)", v.x, v.y);
-  return text;
-}
 
 /// Where the robots are nearest to their slots.
 Vec2 middle_of(const Scenario& scenario, const std::vector<Vec2>& offsets) {
@@ -63,7 +56,7 @@ void plan_leader(Scenario& scenario, const LeaderGoal& goal) {
   CourseAnswer answer = guide.course(fits ? whole : single, from, to);
   const bool arrives = answer.course && !answer.nearest;
   if (!arrives)
-    leader.why_short = "the leader cannot reach " + printed(goal.to) + ": " +
+    leader.why_short = "the leader cannot reach " + detail::printed_place(goal.to) + ": " +
                        (answer.defect.empty() ? answer.why_not : answer.defect) +
                        (answer.nearest ? "; it goes as near as it can, " + words_of(*answer.nearest) : "");
   else if (!fits)

@@ -52,15 +52,19 @@ std::optional<std::size_t> StandingObstacles::in_the_way(const Course& course, V
   return std::nullopt;
 }
 
-Guide& StandingObstacles::guide() {
-  for (World& world : worlds_)
-    if (world.standing == now_) return *world.guide;
+std::shared_ptr<Guide> StandingObstacles::guide() {
+  const auto guide_of = [](const std::shared_ptr<World>& world) {
+    return std::shared_ptr<Guide>(world, &*world->guide);
+  };
+  for (const std::shared_ptr<World>& world : worlds_)
+    if (world->standing == now_) return guide_of(world);
   constexpr std::size_t kMostKept = 8;  // of obstacles that stop at many places
   if (worlds_.size() == kMostKept) worlds_.pop_front();
-  World& world = worlds_.emplace_back(now_, scenario_);
+  const auto world = std::make_shared<World>(now_, scenario_);
   for (std::size_t n = 0; n < now_.size(); ++n)
-    world.scenario.obstacles.push_back({scenario_.moving_obstacles[now_[n].first].id, shapes_[n]});
-  return world.guide.emplace(world.scenario, most_margin_);
+    world->scenario.obstacles.push_back({scenario_.moving_obstacles[now_[n].first].id, shapes_[n]});
+  world->guide.emplace(world->scenario, most_margin_);
+  return guide_of(worlds_.emplace_back(world));
 }
 
 }  // namespace exactvo::formation::detail

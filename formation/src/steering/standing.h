@@ -32,8 +32,8 @@ class StandingObstacles {
   /// The first of those that stand which comes nearer than `radius` to the rest of the course from `here` on.
   std::optional<std::size_t> in_the_way(const Course& course, Vec2 here, double radius) const;
 
-  /// Leads round all that stand now. Valid until others do.
-  Guide& guide();
+  /// Leads round all that stand now, and stays valid after they have moved on.
+  std::shared_ptr<Guide> guide();
 
  private:
   /// Which stand, each with the place it has moved to.
@@ -53,7 +53,7 @@ class StandingObstacles {
   Standing now_;
   std::vector<geometry::Obstacle> shapes_;  ///< of `now_`
   std::size_t changes_ = 0;
-  std::deque<World> worlds_;  ///< the last that were asked for
+  std::deque<std::shared_ptr<World>> worlds_;  ///< the last that were asked for
 };
 
 }  // namespace exactvo::formation::detail

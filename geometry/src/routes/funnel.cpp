@@ -11,10 +11,6 @@ namespace {
 /// Of the coordinates: ends this close to each other are one.
 constexpr double kSame = 0x1p-45;
 
-double largest_of(Vec2 p) {
-  return std::max(std::fabs(p.x), std::fabs(p.y));
-}
-
 }  // namespace
 
 PortalRow::PortalRow(const ClearancePlan& plan, const std::vector<int>& portals, int start)

@@ -32,10 +32,6 @@ class DisjointSets {
   std::vector<int> parent_;
 };
 
-double largest_of(Vec2 p) {
-  return std::max(std::fabs(p.x), std::fabs(p.y));
-}
-
 /// Gates up to this many diameters wide are crossed through their exact middle.
 constexpr double kTight = 1.01;
 

@@ -13,10 +13,6 @@ namespace {
 
 using Polyline = std::vector<Point>;
 
-double largest_of(Vec2 p) {
-  return std::max(std::fabs(p.x), std::fabs(p.y));
-}
-
 Vec2 unit(Vec2 d) {
   const double length = norm(d);
   return length > 0.0 ? d / length : Vec2{0.0, 0.0};

@@ -20,10 +20,6 @@ constexpr double kRounding = 0x1p-45;
 /// A share of a way's length that is more than the search's rounding makes of it.
 constexpr double kSearchRounding = 0x1p-30;
 
-double largest_of(Vec2 p) {
-  return std::max(std::fabs(p.x), std::fabs(p.y));
-}
-
 Vec2 mirrored(Vec2 p, Vec2 a, Vec2 b) {
   const Vec2 d = b - a;
   const double squared = squared_norm(d);

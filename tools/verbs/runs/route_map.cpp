@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -37,8 +38,10 @@ void add_chain(const std::vector<geometry::ChainPoint>& chain, MapLayers& map) {
              fmt::format("with labels left offset 0.6,0.6 font ',11' tc rgb '{}'", kSeparatorColour));
 }
 
+/// In tenths of a millimetre: the rounding error of a 0 is no number to read.
 std::string printed(Vec2 v) {
-  return fmt::format("({:.4g}, {:.4g})", v.x, v.y);
+  const auto rounded = [](double x) { return std::nearbyint(1e4 * x) / 1e4 + 0.0; };
+  return fmt::format("({}, {})", rounded(v.x), rounded(v.y));
 }
 
 }  // namespace

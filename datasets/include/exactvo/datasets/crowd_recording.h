@@ -98,12 +98,6 @@ class CrowdRecordingReader {
   explicit CrowdRecordingReader(const std::filesystem::path& path);
   ~CrowdRecordingReader();
 
-  /// A solid body that a recording keeps, as it stood at the start.
-  struct CrowdBodyRecord {
-    geometry::ConvexShape shape;  ///< m
-    bool moves = false;           ///< what is promised of one that moves is promised of kept robots
-  };
-
   /// What stands before the rows. Valid as long as the reader.
   const CrowdRecordingHead& head() const;
   /// False at the end. Throws DataError where a row was changed.

@@ -21,7 +21,7 @@
 
 namespace exactvo::datasets {
 
-/// A scenario and what a reader of it should know: a line a fact, for people. Of each obstacle file it names: how the
+/// A scenario and what a reader of it should know: one line per fact, for people. Of each obstacle file it names: how the
 /// units were decided, the projection's centre and the extent, how many repairs were made and what was skipped.
 struct LoadedScenario {
   formation::Scenario scenario;    ///< valid: it can be run

@@ -24,8 +24,7 @@
 ///  (7) A robot that no edge of an obstacle and no body at rest touches at the beginning of a step (nearer than the
 ///      radius and a rounding error) meets none in it, kept or not. Certified, for `CrowdOptions::certified`.
 ///  (8) Two kept robots that touch at the beginning of a step do not overlap at its end, and no robot comes nearer to
-///  an
-///      edge or a body at rest that touches it, up to the same rounding error. Certified, for
+///      an edge or a body at rest that touches it, up to the same rounding error. Certified, for
 ///      `CrowdOptions::certified`.
 ///  (9) A kept robot and a moving body that do not touch at the beginning of a step are apart at every moment of it; if
 ///      they touch, they do not overlap at its end. Certified, for `CrowdOptions::certified`.

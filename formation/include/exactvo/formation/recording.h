@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What happened in a run: a row a step, with each robot's state, its decision and the half-planes behind it.
+/// What happened in a run: one row per step, with each robot's state, its decision and the half-planes behind it.
 
 #include <optional>
 #include <string>
