@@ -6,7 +6,7 @@
 //   bench_arena --quick --out arena                          # a minute
 //   bench_arena --peer rvo2=./arena_rvo2 --out arena         # beside another program (peer.h)
 //
-// Writes results.csv, a line as soon as a run is over, and index.html.
+// Writes results.csv, one line per run as soon as it is over, and index.html.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -16,6 +16,7 @@
 #include <fstream>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -43,7 +44,7 @@ using Key = std::tuple<std::string, std::string, std::uint64_t, std::string>;
 
 struct Job {
   Key key;
-  std::function<RunResult()> run;
+  std::function<std::optional<RunResult>()> run;  ///< empty: interrupted
 };
 
 Key key_of(const RunResult& r) {
@@ -100,7 +101,8 @@ std::vector<Job> jobs_of(const Asked& asked, const std::vector<ArenaMethod>& met
     if (!is_asked_for(suite, asked)) continue;
     for (const Scene& scene : scenes_of(suite, extent, seeds))
       for (const ArenaMethod& method : methods)
-        jobs.push_back({{suite, scene.name, scene.seed, method.name}, [=] { return run_scene(scene, method); }});
+        jobs.push_back(
+            {{suite, scene.name, scene.seed, method.name}, [=] { return run_scene(scene, method, is_interrupted); }});
   }
   if (asked.routes.empty() && !asked.suites.empty() && is_asked_for(kRoutesSuite, asked))
     throw std::runtime_error("--suite routes takes --routes FOLDER");
@@ -171,10 +173,11 @@ void run_all(const std::vector<Job>& jobs, std::size_t threads, Results& results
       const Job& job = jobs[next++];
       lock.unlock();
       try {
-        RunResult r = job.run();
+        const std::optional<RunResult> r = job.run();
+        if (!r) return;
         lock.lock();
-        results.add(r);
-        print_progress(r, ++done, jobs.size(),
+        results.add(*r);
+        print_progress(*r, ++done, jobs.size(),
                        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       } catch (...) {
         if (!lock.owns_lock()) lock.lock();
@@ -248,8 +251,8 @@ int main(int argc, char** argv) {
     options.texts("--peer", asked.peers, "NAME=PROGRAM: another program beside ours (bench/arena/peer.h)");
     options.text("--routes", asked.routes,
                  "Folder of Moving AI maps with lengths, NAME.map and NAME.lengths.tsv: suite routes");
-    options.whole_number("--seeds", asked.seeds, 1, "So many draws of each random scene");
-    options.whole_number("--jobs", asked.jobs, 1, "So many runs at a time");
+    options.whole_number("--seeds", asked.seeds, 1, "Draws of each random scene");
+    options.whole_number("--jobs", asked.jobs, 1, "Runs at a time");
     options.flag("--quick", asked.quick, "A few small scenes of each suite");
     if (!options.parse(argc, argv)) return 0;
     return bench::run(asked, std::vector<std::string>(argv, argv + argc));

@@ -130,7 +130,8 @@ void write_table(std::ostream& out, const SuiteTable& table, const std::vector<s
   out << "</table></div>\n";
 }
 
-/// Makespans over the bound, a line a scene, logarithmic; a cross at the right margin: not all runs succeeded.
+/// Makespans over the bound, one line per scene, on a logarithmic axis; a cross at the right margin: not all runs
+/// succeeded.
 void write_picture(std::ostream& out, const SuiteTable& table, const std::vector<std::string>& methods) {
   constexpr double kLeft = 170.0, kWidth = 620.0, kRow = 20.0, kTop = 24.0, kLargest = 24.0;
   const auto x_of = [&](double ratio) {
@@ -199,10 +200,11 @@ void write_routes(std::ostream& out, const std::vector<RunResult>& results) {
              "<b>Path</b>: lengths over those of a point's shortest paths. <b>Ok</b>: no route is shorter than that, "
              "and of "
              "points no lower bound is longer. Discs have less room, and no route where no gap is wide enough; nor has "
-             "a "
-             "point of ours between two cells that touch at a corner, or at a corner itself.</p>\n"
+             "a point of ours between two cells that touch at a corner. Ends of points are the published corners, "
+             "moved "
+             "into their cells by 2^-36 of a side.</p>\n"
              "<table><tr><th class=\"words\">map</th><th>ok</th><th>problems</th><th>with a route</th><th>path</th>"
-             "<th>&micro;s a query</th></tr>\n";
+             "<th>&micro;s per query</th></tr>\n";
     any = true;
     out << "<tr><th class=\"words\">" << escaped(r.scene) << "</th><td class=\""
         << (r.success ? "good\">yes" : "bad\">no") << "</td><td>" << r.robots << "</td><td>" << r.arrived << "</td><td>"
@@ -233,7 +235,7 @@ void write_page(std::ostream& out, const std::vector<RunResult>& results, const 
          "robots that never end, when none stands at the end. <b>Coll.</b>: collisions, of all runs. <b>Makespan</b>: "
          "the last arrival over the longest straight "
          "way at full speed, which is a lower bound; the median of runs that are ok, and in brackets the worst. "
-         "<b>Path</b>: of all robots, over their straight ways. <b>&micro;s</b>: processor time a robot and step, "
+         "<b>Path</b>: of all robots, over their straight ways. <b>&micro;s</b>: processor time per robot and step, "
          "planning "
          "included; of a peer, with reading and writing.</p>\n"
       << "<p><b>plan</b>: the defaults of <code>simulate</code>. <b>bias</b>: without joint plans. <b>orca</b>: van "

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The arena's results as a page: a table and a picture a suite, and what others have published beside ours.
+/// The arena's results as a page: one table and one picture per suite, and what others have published beside ours.
 
 #include <ostream>
 #include <string>

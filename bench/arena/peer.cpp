@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -132,27 +133,31 @@ void write_point(std::ostream& out, Vec2 p) {
   out << ' ' << p.x << ' ' << p.y;
 }
 
-/// Velocities are those between the rows.
-void add_row(Recording& run, const Scenario& s, const std::vector<Vec2>& places) {
+Step row_of(const std::vector<Vec2>& places, double time) {
   Step row;
-  row.time = s.time_step * static_cast<double>(run.steps.size());
+  row.time = time;
   for (const Vec2 p : places) {
     RobotStep& r = row.robots.emplace_back();
     r.position = r.anchor = p;
   }
-  if (!run.steps.empty())
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      RobotStep& before = run.steps.back().robots[i];
-      before.chosen = before.preferred = (places[i] - before.position) / s.time_step;
-      row.robots[i].velocity = before.chosen;
-    }
-  run.steps.push_back(std::move(row));
+  return row;
 }
 
-Recording recording_of(const std::string& text, const Scenario& s, const std::string& program) {
+/// Velocities are those between the rows.
+void set_velocities(Step& before, Step& row, double time_step) {
+  for (std::size_t i = 0; i < row.robots.size(); ++i) {
+    RobotStep& r = before.robots[i];
+    r.chosen = r.preferred = (row.robots[i].position - r.position) / time_step;
+    row.robots[i].velocity = r.chosen;
+  }
+}
+
+Recording pass_rows(const std::string& text, const Scenario& s, const std::string& program, RunSink& rows) {
   Recording run;
   run.time_step = s.time_step;
   run.outcome = "by " + program;
+  rows.begin(run);
+  std::optional<Step> last;
   std::istringstream lines(text);
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -164,9 +169,15 @@ Recording recording_of(const std::string& text, const Scenario& s, const std::st
       throw std::runtime_error("the peer " + program + ", line " + std::to_string(number) + ": found '" +
                                line.substr(0, 60) + "', expected the x and y of " + std::to_string(s.robots.size()) +
                                " robots");
-    add_row(run, s, places);
+    Step row = row_of(places, s.time_step * static_cast<double>(number - 1));
+    if (last) {
+      set_velocities(*last, row, s.time_step);
+      rows.add_row(std::move(*last));
+    }
+    last = std::move(row);
   }
-  if (run.steps.empty()) throw std::runtime_error("the peer " + program + " answered nothing");
+  if (!last) throw std::runtime_error("the peer " + program + " answered nothing");
+  rows.add_row(std::move(*last));
   return run;
 }
 
@@ -206,9 +217,9 @@ std::string scene_text(const Scenario& s) {
   return out.str();
 }
 
-PeerRun run_peer(const std::string& program, const Scenario& scenario) {
+PeerRun run_peer(const std::string& program, const Scenario& scenario, RunSink& rows) {
   const Output output = output_of(program, scene_text(scenario));
-  return {recording_of(output.text, scenario, program), output.processor_seconds};
+  return {pass_rows(output.text, scenario, program, rows), output.processor_seconds};
 }
 
 }  // namespace exactvo::bench

@@ -5,7 +5,7 @@
 /// Other people's programs in the arena. A peer is a program that reads a scene from stdin and writes where its robots
 /// are to stdout; `arena_rvo2.cpp` is one.
 ///
-/// The scene, lengths in metres and times in seconds, one item a line:
+/// The scene, lengths in metres and times in seconds, one item per line:
 ///
 ///     arena 1
 ///     time_step 0.05
@@ -18,24 +18,25 @@
 ///     wall X1 Y1 X2 Y2                                  every edge of an obstacle
 ///     end
 ///
-/// The answer has a line a time step, from the start on: X1 Y1 X2 Y2 ... of all robots. It may end when all have
+/// The answer has one line per time step, from the start on: X1 Y1 X2 Y2 ... of all robots. It may end when all have
 /// arrived, and must where the time limit is reached.
 
 #include <string>
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/scenario.h"
+#include "exactvo/formation/simulation.h"
 
 namespace exactvo::bench {
 
 struct PeerRun {
-  formation::Recording run;        ///< positions, and the velocities between them
+  formation::Recording run;        ///< without rows
   double processor_seconds = 0.0;  ///< of the program, all of it
 };
 
-/// Throws std::runtime_error, which names the program and what was expected, where it cannot be run, fails, takes
-/// longer than ten minutes or answers anything else.
-PeerRun run_peer(const std::string& program, const formation::Scenario& scenario);
+/// `rows` takes positions, and the velocities between them. Throws std::runtime_error, which names the program and what
+/// was expected, where it cannot be run, fails, takes longer than ten minutes or answers anything else.
+PeerRun run_peer(const std::string& program, const formation::Scenario& scenario, formation::RunSink& rows);
 
 /// m: between robots, where the scene asks for it; the default is not the scene's but our method's.
 double margin_of_scene(const formation::Scenario& scenario);

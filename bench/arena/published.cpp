@@ -32,7 +32,7 @@ const std::vector<Published>& published() {
       {"paper", "A1 to A15", "the textbook method stops at walls and clusters, the improved one passes",
        "the paper, Section V.A, with errata", false,
        "here all methods go along routes; `exactvo paper` compares the paper's methods as it does"},
-      {"routes", "points", "lengths of shortest paths; 17 to 724 us a query by suite",
+      {"routes", "points", "lengths of shortest paths; 17 to 724 us per query, depending on the suite",
        "Polyanya (Cui, Harabor and Grastien, IJCAI 2017), its public implementation on Moving AI maps", false,
        "lengths are comparable: path is ours over theirs. Times are not: another machine, and its answers have no "
        "radius and "

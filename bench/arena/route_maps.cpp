@@ -18,6 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 using geometry::Vec2;
 
+/// Cells: how far the ends of points are moved into the free cell whose top left corner they are. The corner itself can
+/// lie on an edge, where there is no room.
+constexpr double kIntoCell = 0x1p-36;
+
 struct Problem {
   Vec2 start, goal;     ///< cells, y upward
   double length = 0.0;  ///< cells, of the shortest path of a point
@@ -68,8 +72,9 @@ std::vector<RouteProblems> route_problems_in(const fs::path& folder, Extent exte
 }
 
 RunResult run_routes(const RouteProblems& asked) {
-  constexpr double kPoint = 0x1p-40;       // cells
-  constexpr double kLengthsDiffer = 1e-9;  // lengths are sums of rounded distances, and a point has a radius here
+  // Lengths are sums of rounded distances; a point's route passes corners by less than 1e-9 of its length, and its ends
+  // lie kIntoCell from the corners of cells that they are published for.
+  constexpr double kLengthsDiffer = 1e-9;
   datasets::ReadOptions options;
   options.repair = true;
   std::vector<geometry::Obstacle> shapes;
@@ -81,15 +86,17 @@ RunResult run_routes(const RouteProblems& asked) {
   const std::vector<Problem> problems = read_problems(asked.map);
   const bool is_point = asked.radius == 0.0;
   const geometry::RouteMap map(shapes);
-  const geometry::RoutePlan plan(map, is_point ? kPoint : asked.radius);
+  const geometry::RoutePlan plan(map, asked.radius);
   RunResult r{kRoutesSuite, asked.scene(), 1, "route"};
   r.robots = problems.size();
   r.success = true;
   double ours = 0.0, theirs = 0.0;
   const double start = processor_seconds();
   for (const Problem& p : problems) {
-    if (!map.covers(p.start) || !map.covers(p.goal)) continue;
-    const geometry::RouteAnswer answer = plan.query(p.start, p.goal);
+    const Vec2 into = is_point ? Vec2{kIntoCell, -kIntoCell} : Vec2{};
+    const Vec2 from = p.start + into, to = p.goal + into;
+    if (!map.covers(from) || !map.covers(to)) continue;
+    const geometry::RouteAnswer answer = plan.query(from, to);
     const auto* route = std::get_if<geometry::Route>(&answer);
     if (route == nullptr) continue;
     ++r.arrived;

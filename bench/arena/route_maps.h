@@ -25,7 +25,8 @@ std::vector<RouteProblems> route_problems_in(const std::filesystem::path& folder
 
 /// `robots`: problems; `arrived`: those with a route; `path`: the routes' lengths over the published ones, which are of
 /// points. A success: of a point, no length is below the published one and no lower bound above; of a disc, no length
-/// is below. `cpu_per_step`: us a query. Throws datasets::DataError, std::runtime_error for lengths that mean nothing.
+/// is below. `cpu_per_step`: us per query. Throws datasets::DataError, std::runtime_error for lengths that mean
+/// nothing.
 RunResult run_routes(const RouteProblems& problems);
 
 }  // namespace exactvo::bench

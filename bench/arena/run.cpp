@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
@@ -44,20 +46,48 @@ double straight_way(const Robot& r) {
   return way;
 }
 
-/// As navground has it: slower than 0.02 m/s throughout the last 5 s, and not because it arrived.
-bool somebody_stands(const Metrics& m, const Recording& run) {
-  constexpr double kLast = 5.0, kStands = 0.02;  // s, m/s
-  const double end = run.steps.back().time;
-  for (std::size_t i = 0; i < m.robots.size(); ++i) {
-    bool moved = m.robots[i].arrived;
-    for (std::size_t k = run.steps.size() - 1; k > 0 && run.steps[k].time > end - kLast && !moved; --k) {
-      const Step &now = run.steps[k], &before = run.steps[k - 1];
-      moved = norm(now.robots[i].position - before.robots[i].position) > kStands * (now.time - before.time);
+/// Measures a run while it is made. `scenario` must outlive it.
+class Measuring : public RunSink {
+ public:
+  explicit Measuring(const Scenario& scenario)
+      : scenario_(scenario), places_(scenario.robots.size()), moved_at_(scenario.robots.size(), 0.0) {}
+
+  void begin(const Recording& run) override { evaluator_.emplace(scenario_, run); }
+  void add_body(const vo::Body&) override {}
+  void add_outlook(const Outlook&) override {}
+  void add_row(Step row) override {
+    const double start = processor_seconds();
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const Vec2 here = row.robots[i].position;
+      if (norm(here - places_[i]) > kStands * (row.time - end_)) moved_at_[i] = row.time;
+      places_[i] = here;
     }
-    if (!moved) return true;
+    end_ = row.time;
+    evaluator_->add(std::make_shared<const Step>(std::move(row)));
+    seconds_ += processor_seconds() - start;
   }
-  return false;
-}
+
+  Metrics finish(const Recording& run) { return evaluator_->finish(run).metrics; }
+  double end() const { return end_; }          ///< s, of the last row
+  double seconds() const { return seconds_; }  ///< of processor time that measuring took
+
+  /// As navground has it: slower than 0.02 m/s throughout the last 5 s, and not because it arrived.
+  bool somebody_stands(const Metrics& m) const {
+    constexpr double kLast = 5.0;  // s
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      if (!m.robots[i].arrived && !(moved_at_[i] > end_ - kLast)) return true;
+    return false;
+  }
+
+ private:
+  static constexpr double kStands = 0.02;  // m/s
+
+  const Scenario& scenario_;
+  std::optional<Evaluator> evaluator_;
+  std::vector<Vec2> places_;
+  std::vector<double> moved_at_;  ///< s, of each robot: the last row to which it moved
+  double end_ = 0.0, seconds_ = 0.0;
+};
 
 }  // namespace
 
@@ -71,7 +101,7 @@ std::vector<std::string> own_methods() {
   return {"plan", "bias", "orca"};
 }
 
-RunResult run_scene(const Scene& scene, const ArenaMethod& method) {
+std::optional<RunResult> run_scene(const Scene& scene, const ArenaMethod& method, const std::atomic<bool>& stop) {
   constexpr double kOfTheBound = 20.0, kMore = 100.0;  // s
   Scenario s = scene.make();
   RunResult r{scene.suite, scene.name, scene.seed, method.name};
@@ -82,17 +112,21 @@ RunResult run_scene(const Scene& scene, const ArenaMethod& method) {
   }
   if (scene.success == Success::all_arrive) s.time_limit = kOfTheBound * r.bound + kMore;
   double seconds = 0.0;
-  Recording run;
+  Recording run;  // without rows
+  Measuring measuring(s);
   if (method.program.empty()) {
+    SimulationOptions options = options_of(method.name);
+    options.progress = [&](double) { return !stop; };
     const double start = processor_seconds();
-    run = simulate(method.name == "orca" ? with_larger_robots(s) : s, options_of(method.name));
-    seconds = processor_seconds() - start;
+    run = simulate(method.name == "orca" ? with_larger_robots(s) : s, options, measuring);
+    seconds = processor_seconds() - start - measuring.seconds();
   } else {
-    PeerRun peer = run_peer(method.program, s);
+    PeerRun peer = run_peer(method.program, s, measuring);
     run = std::move(peer.run);
     seconds = peer.processor_seconds;
   }
-  const Metrics m = measure(s, run);
+  if (stop) return std::nullopt;
+  const Metrics m = measuring.finish(run);
   r.robots = s.robots.size();
   double driven = 0.0;
   for (const RobotMetrics& robot : m.robots) {
@@ -101,12 +135,12 @@ RunResult run_scene(const Scene& scene, const ArenaMethod& method) {
   }
   r.collisions = m.collisions.size();
   r.relaxed = m.relaxed_steps;
-  r.makespan = m.all_arrived ? m.last_arrival_time.value_or(0.0) : run.steps.back().time;
+  r.makespan = m.all_arrived ? m.last_arrival_time.value_or(0.0) : measuring.end();
   r.path = driven / straight;
   const double robot_steps = static_cast<double>(r.robots) * static_cast<double>(std::max<std::size_t>(1, m.steps));
   r.cpu_per_step = 1e6 * seconds / robot_steps;
   r.plans = m.plans ? m.plans->groups : 0;
-  const bool is_live = scene.success == Success::all_arrive ? m.all_arrived : !somebody_stands(m, run);
+  const bool is_live = scene.success == Success::all_arrive ? m.all_arrived : !measuring.somebody_stands(m);
   r.success = is_live && m.collisions.empty();
   return r;
 }

@@ -4,6 +4,8 @@
 /// \file
 /// One run of the arena: a scene by a method, and its line of CSV.
 
+#include <atomic>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,19 +29,20 @@ struct RunResult {
   std::size_t robots = 0, arrived = 0;
   bool success = false;
   std::size_t collisions = 0;  ///< in continuous time, with robots and obstacles
-  std::size_t relaxed = 0;     ///< decisions; 0 of a peer, which tells none
+  std::size_t relaxed = 0;     ///< decisions; 0 of a peer, which reports none
   double makespan = 0.0;       ///< s, of the last arrival; where some do not arrive, to the end of the run
   double bound = 0.0;          ///< s, of the longest straight way at full speed
   double path = 0.0;           ///< of all robots, over their straight ways
-  double cpu_per_step = 0.0;   ///< us of processor time a robot and step
+  double cpu_per_step = 0.0;   ///< us of processor time per robot and step
   std::size_t plans = 0;
 };
 
 /// Of this thread.
 double processor_seconds();
 
-/// Throws std::runtime_error where a peer fails.
-RunResult run_scene(const Scene& scene, const ArenaMethod& method);
+/// Rows are measured as they are made and not kept: memory does not grow with the run, but for a peer's output. Empty
+/// where `stop` became true meanwhile. Throws std::runtime_error where a peer fails.
+std::optional<RunResult> run_scene(const Scene& scene, const ArenaMethod& method, const std::atomic<bool>& stop);
 
 std::string csv_header();
 std::string csv_line(const RunResult& result);

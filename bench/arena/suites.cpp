@@ -165,8 +165,7 @@ const std::vector<SuiteEntry>& entries() {
       {{"swap", "Two head-on in a corridor with a niche; two rooms that exchange their robots through a corridor."},
        add_swaps},
       {{"door", "Two rooms that exchange their robots through a door; width in diameters."}, add_doors},
-      {{"box", "A closed box; so much of its floor is covered by robots, which go from random places to others."},
-       add_boxes},
+      {{"box", "A closed box. Robots cover that share of its floor, and go from random places to others."}, add_boxes},
       {{"cross",
         "navground's Cross: 20 robots of radius 0.08 m go to and fro along two lines 4 m long that cross, for 300 s, "
         "with a safety margin that is drawn for each run."},
