@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "exactvo/geometry/distance.h"
 #include "formation/liveness_scenes.h"
 
 namespace exactvo::bench {
@@ -24,13 +25,12 @@ constexpr double kApart = 1.2;
 
 /// One cell thick, across the map at that row or column, with gaps of a cell.
 void add_wall(Scenario& s, bool upright, int at, const std::vector<int>& gaps) {
-  const auto corner = [&](int across, int along) {
-    return upright ? Vec2{across * kCell, along * kCell} : Vec2{along * kCell, across * kCell};
-  };
   const auto wall = [&](int from, int to) {
-    if (from < to)
-      scenes::add_wall(s,
-                       {corner(at, from), corner(at + 1, from), corner(at + 1, to), corner(at, to), corner(at, from)});
+    if (from >= to) return;
+    const Vec2 low = upright ? Vec2{at * kCell, from * kCell} : Vec2{from * kCell, at * kCell};
+    const Vec2 high = upright ? Vec2{(at + 1) * kCell, to * kCell} : Vec2{to * kCell, (at + 1) * kCell};
+    s.obstacles.push_back({"wall" + std::to_string(s.obstacles.size() + 1),
+                           geometry::Polygon{{low, {high.x, low.y}, high, {low.x, high.y}}, {}}});
   };
   int from = 0;
   for (const int gap : gaps) {
@@ -41,13 +41,9 @@ void add_wall(Scenario& s, bool upright, int at, const std::vector<int>& gaps) {
 }
 
 bool is_free(const Scenario& s, Vec2 p) {
-  for (const formation::SceneObstacle& o : s.obstacles)
-    for (const geometry::Segment& edge : geometry::edges_of(o.shape)) {  // along an axis
-      const Vec2 nearest{std::clamp(p.x, std::min(edge.a.x, edge.b.x), std::max(edge.a.x, edge.b.x)),
-                         std::clamp(p.y, std::min(edge.a.y, edge.b.y), std::max(edge.a.y, edge.b.y))};
-      if (norm(p - nearest) < kFromWalls) return false;
-    }
-  return true;
+  return std::all_of(s.obstacles.begin(), s.obstacles.end(), [&](const formation::SceneObstacle& o) {
+    return geometry::signed_distance(o.shape, p) >= kFromWalls;  // negative inside
+  });
 }
 
 /// In the middle of cells. `sides`: by turns left and right of the middle.
