@@ -142,8 +142,8 @@ void write_picture(std::ostream& out, const SuiteTable& table, const std::vector
       << "\" width=\"860\" role=\"img\" aria-label=\"makespans over the bound\">\n";
   for (const double tick : {1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0})
     out << "<line x1=\"" << x_of(tick) << "\" x2=\"" << x_of(tick) << "\" y1=\"" << kTop - 4.0 << "\" y2=\""
-        << height - 8.0 << "\" stroke=\"#ddd\"/><text x=\"" << x_of(tick) << "\" y=\"14\" text-anchor=\"middle\">"
-        << number("%g", tick) << "</text>\n";
+        << height - 8.0 << "\"/><text x=\"" << x_of(tick) << "\" y=\"14\" text-anchor=\"middle\">" << number("%g", tick)
+        << "</text>\n";
   for (std::size_t k = 0; k < table.scenes.size(); ++k) {
     const double y = kTop + kRow * (static_cast<double>(k) + 0.5);
     out << "<text x=\"" << kLeft - 12.0 << "\" y=\"" << y + 4.0 << "\" text-anchor=\"end\">" << escaped(table.scenes[k])
@@ -196,13 +196,10 @@ void write_routes(std::ostream& out, const std::vector<RunResult>& results) {
     if (r.suite != kRoutesSuite) continue;
     if (!any)
       out << "<h2>routes</h2>\n<p>Shortest-path problems on Moving AI maps, for points and for discs (radius in "
-             "cells). "
-             "<b>Path</b>: lengths over those of a point's shortest paths. <b>Ok</b>: no route is shorter than that, "
-             "and of "
-             "points no lower bound is longer. Discs have less room, and no route where no gap is wide enough; nor has "
-             "a point of ours between two cells that touch at a corner. Ends of points are the published corners, "
-             "moved "
-             "into their cells by 2^-36 of a side.</p>\n"
+             "cells). <b>Path</b>: lengths over those of a point's shortest paths. <b>Ok</b>: no route is shorter than "
+             "that, and of points no lower bound is longer. Discs have less room, and no route where no gap is wide "
+             "enough; nor has a point of ours between two cells that touch at a corner. Ends of points are the "
+             "published corners, moved into their cells by 2^-36 of a side.</p>\n"
              "<table><tr><th class=\"words\">map</th><th>ok</th><th>problems</th><th>with a route</th><th>path</th>"
              "<th>&micro;s per query</th></tr>\n";
     any = true;
@@ -215,33 +212,41 @@ void write_routes(std::ostream& out, const std::vector<RunResult>& results) {
   write_published(out, kRoutesSuite);
 }
 
+// Colours in light and dark.
 constexpr const char* kStyle =
-    "body{font:15px/1.45 sans-serif;max-width:78em;margin:2em auto;padding:0 1em;color:#222}"
+    ":root{color-scheme:light dark;--back:#fff;--ink:#222;--rule:#ddd;--good:#006b4f;--bad:#b03000}"
+    "@media(prefers-color-scheme:dark){:root{--back:#16181b;--ink:#ddd;--rule:#3a3e44;--good:#4cc9a0;--bad:#ff8a5c}}"
+    "body{font:15px/1.45 sans-serif;max-width:78em;margin:2em auto;padding:0 1em;color:var(--ink);"
+    "background:var(--back)}"
     "table{border-collapse:collapse;font-size:13px;margin:.8em 0}"
-    "td,th{padding:.2em .5em;text-align:right;border-bottom:1px solid #ddd;vertical-align:top}"
+    "td,th{padding:.2em .5em;text-align:right;border-bottom:1px solid var(--rule);vertical-align:top}"
     "div{overflow-x:auto}p{max-width:52em}th.words{white-space:nowrap}th[colspan]{text-align:left}.words,.published "
-    "td,.published th{text-align:left}.first{border-left:1px solid #ccc}"
-    ".good{color:#006b4f}.bad{color:#b03000;font-weight:bold}svg{font:12px sans-serif;display:block;margin:.5em 0}"
+    "td,.published th{text-align:left}.first{border-left:1px solid var(--rule)}"
+    ".good{color:var(--good)}.bad{color:var(--bad);font-weight:bold}"
+    "svg{font:12px sans-serif;fill:var(--ink);display:block;margin:.5em 0;max-width:100%;height:auto}"
+    "svg line{stroke:var(--rule)}svg path{fill:none}"
     ".published{max-width:72em}";
 
 }  // namespace
 
 void write_page(std::ostream& out, const std::vector<RunResult>& results, const std::vector<std::string>& methods,
                 const PageFacts& facts) {
-  out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>The arena</title>\n<style>" << kStyle
-      << "</style></head><body>\n<h1>The arena: many robots arrive</h1>\n"
+  out << "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+         "content=\"width=device-width\"><title>The arena</title>\n<style>"
+      << kStyle << "</style></head><body>\n<h1>The arena: many robots arrive</h1>\n"
       << "<p>A run is <b>ok</b> when all robots arrive and nobody touches anybody or an obstacle, in continuous time; "
          "of "
-         "robots that never end, when none stands at the end. <b>Coll.</b>: collisions, of all runs. <b>Makespan</b>: "
-         "the last arrival over the longest straight "
-         "way at full speed, which is a lower bound; the median of runs that are ok, and in brackets the worst. "
-         "<b>Path</b>: of all robots, over their straight ways. <b>&micro;s</b>: processor time per robot and step, "
-         "planning "
-         "included; of a peer, with reading and writing.</p>\n"
+         "robots that never end, when none stands at the end. It lasts at most 20 times the bound and 100 s, and ends "
+         "before that when for 4 times the bound and 60 s no robot has come nearer to its goal. <b>Coll.</b>: "
+         "collisions, of all runs. <b>Makespan</b>: the last arrival over the bound, the longest straight way at full "
+         "speed; the median of runs that are ok, and in brackets the worst. <b>Path</b>: of all robots, over their "
+         "straight ways. <b>&micro;s</b>: processor time per robot and step, planning included; of a peer, with "
+         "reading "
+         "and writing.</p>\n"
       << "<p><b>plan</b>: the defaults of <code>simulate</code>. <b>bias</b>: without joint plans. <b>orca</b>: van "
-         "den Berg "
-         "et al. 2011 along the same routes. Other columns are programs that were named with <code>--peer</code>. In "
-         "pictures a dot is a run that is ok; a cross at the right says that not all are.</p>\n";
+         "den "
+         "Berg et al. 2011 along the same routes. Other columns are programs that were named with <code>--peer</code>. "
+         "In pictures a dot is a run that is ok; a cross at the right says that not all are.</p>\n";
   if (!facts.is_complete) out << "<p class=\"bad\">Some runs are missing: the arena was stopped.</p>\n";
   for (const SuiteInfo& suite : suites()) {
     const SuiteTable table = table_of(suite.name, results);

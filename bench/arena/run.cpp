@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <limits>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -46,13 +47,25 @@ double straight_way(const Robot& r) {
   return way;
 }
 
+/// Thrown to end a run in which nobody comes nearer to a goal any more.
+struct NoProgress {};
+
 /// Measures a run while it is made. `scenario` must outlive it.
 class Measuring : public RunSink {
  public:
-  explicit Measuring(const Scenario& scenario)
-      : scenario_(scenario), places_(scenario.robots.size()), moved_at_(scenario.robots.size(), 0.0) {}
+  /// `patience`: s; where robots have come no nearer to their last goals for so long, in sum by a radius, NoProgress
+  /// is thrown.
+  Measuring(const Scenario& scenario, std::optional<double> patience)
+      : scenario_(scenario),
+        patience_(patience),
+        places_(scenario.robots.size()),
+        moved_at_(scenario.robots.size(), 0.0) {}
 
-  void begin(const Recording& run) override { evaluator_.emplace(scenario_, run); }
+  void begin(const Recording& run) override {
+    known_.motion = run.motion;
+    known_.time_step = run.time_step;
+    evaluator_.emplace(scenario_, run);
+  }
   void add_body(const vo::Body&) override {}
   void add_outlook(const Outlook&) override {}
   void add_row(Step row) override {
@@ -65,9 +78,12 @@ class Measuring : public RunSink {
     end_ = row.time;
     evaluator_->add(std::make_shared<const Step>(std::move(row)));
     seconds_ += processor_seconds() - start;
+    if (patience_ && !comes_nearer()) throw NoProgress{};
   }
 
   Metrics finish(const Recording& run) { return evaluator_->finish(run).metrics; }
+  /// Of a run that was ended.
+  const Recording& known() const { return known_; }
   double end() const { return end_; }          ///< s, of the last row
   double seconds() const { return seconds_; }  ///< of processor time that measuring took
 
@@ -82,11 +98,25 @@ class Measuring : public RunSink {
  private:
   static constexpr double kStands = 0.02;  // m/s
 
+  bool comes_nearer() {
+    double left = 0.0;
+    for (std::size_t i = 0; i < places_.size(); ++i) left += norm(scenario_.robots[i].goals.back() - places_[i]);
+    if (left < least_left_ - scenario_.robots.front().radius) {
+      least_left_ = left;
+      nearer_at_ = end_;
+    }
+    return end_ - nearer_at_ < *patience_;
+  }
+
   const Scenario& scenario_;
+  std::optional<double> patience_;
+  Recording known_;
   std::optional<Evaluator> evaluator_;
   std::vector<Vec2> places_;
   std::vector<double> moved_at_;  ///< s, of each robot: the last row to which it moved
   double end_ = 0.0, seconds_ = 0.0;
+  double least_left_ = std::numeric_limits<double>::infinity();  ///< m, of all robots to their last goals
+  double nearer_at_ = 0.0;                                       ///< s, when it became less
 };
 
 }  // namespace
@@ -102,7 +132,8 @@ std::vector<std::string> own_methods() {
 }
 
 std::optional<RunResult> run_scene(const Scene& scene, const ArenaMethod& method, const std::atomic<bool>& stop) {
-  constexpr double kOfTheBound = 20.0, kMore = 100.0;  // s
+  constexpr double kOfTheBound = 20.0, kMore = 100.0;      // s
+  constexpr double kPatience = 4.0, kMorePatience = 60.0;  // of the bound; s
   Scenario s = scene.make();
   RunResult r{scene.suite, scene.name, scene.seed, method.name};
   double straight = 0.0;
@@ -110,15 +141,23 @@ std::optional<RunResult> run_scene(const Scene& scene, const ArenaMethod& method
     r.bound = std::max(r.bound, straight_way(robot) / robot.max_speed);
     straight += straight_way(robot);
   }
-  if (scene.success == Success::all_arrive) s.time_limit = kOfTheBound * r.bound + kMore;
+  std::optional<double> patience;
+  if (scene.success == Success::all_arrive) {
+    s.time_limit = kOfTheBound * r.bound + kMore;
+    if (method.program.empty()) patience = kPatience * r.bound + kMorePatience;
+  }
   double seconds = 0.0;
   Recording run;  // without rows
-  Measuring measuring(s);
+  Measuring measuring(s, patience);
   if (method.program.empty()) {
     SimulationOptions options = options_of(method.name);
     options.progress = [&](double) { return !stop; };
     const double start = processor_seconds();
-    run = simulate(method.name == "orca" ? with_larger_robots(s) : s, options, measuring);
+    try {
+      run = simulate(method.name == "orca" ? with_larger_robots(s) : s, options, measuring);
+    } catch (const NoProgress&) {
+      run = measuring.known();
+    }
     seconds = processor_seconds() - start - measuring.seconds();
   } else {
     PeerRun peer = run_peer(method.program, s, measuring);

@@ -15,6 +15,7 @@
 #include "figures/label_places.h"
 #include "figures/local_origin.h"
 #include "figures/outlines.h"
+#include "figures/passing_area.h"
 #include "figures/sheet.h"
 #include "figures/template.h"
 #include "support/routes_of_run.h"
@@ -88,6 +89,7 @@ class PathsPanel {
     add_moving_obstacles();
     if (detailed_) add_enclosures();
     if (detailed_) add_routes();
+    if (detailed_) add_passing_area();
     add_leader();
     for (std::size_t i = 0; i < run.scenario.robots.size(); ++i) add_way(i);
     if (detailed_) add_times_of_moving_obstacles();
@@ -292,6 +294,17 @@ class PathsPanel {
                              across ? " dt (4,3)" : "", kSeparatorColour),
                  across ? "gap, too narrow" : "closed chain");
     }
+  }
+
+  void add_passing_area() {
+    const std::vector<Points> area = passing_area(run_);
+    if (area.empty()) return;
+    const int index = data_.begin("no room to pass: where robots can be that would have to", "x [m], y [m]");
+    for (const Points& rectangle : area) add_ring(rectangle);
+    plot_.data(index,
+               fmt::format("{} with filledcurves closed fc rgb '{}' fs transparent solid 0.15 noborder",
+                           origin_.using_columns(), kSeparatorColour),
+               "no room to pass");
   }
 
   void add_leader() {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "exactvo/formation/constraint_name.h"
+#include "exactvo/formation/passing.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"
@@ -88,6 +89,16 @@ void warn_of_pairs(const Scenario& s, const std::vector<Target>& last, std::vect
   }
   if (pairs > kNamed)
     out.push_back(geometry::counted(pairs - kNamed, "more pair") + " of goals too near to each other");
+}
+
+/// Robots that have to pass each other and cannot; the first ones.
+void warn_of_passing(const Scenario& s, std::vector<std::string>& out) {
+  constexpr std::size_t kNamed = 10;
+  const std::vector<NoPassing> proofs = robots_without_passing(s);
+  for (std::size_t k = 0; k < std::min(kNamed, proofs.size()); ++k) out.push_back(words_of(s, proofs[k]));
+  if (proofs.size() > kNamed)
+    out.push_back(geometry::counted(proofs.size() - kNamed, "more pair") +
+                  " of robots without room to pass each other");
 }
 
 void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
@@ -229,6 +240,7 @@ std::vector<std::string> preflight_warnings(const Scenario& scenario, const std:
     last.push_back(targets.back());
   }
   warn_of_pairs(scenario, last, out);
+  if (out.empty()) warn_of_passing(scenario, out);  // who cannot reach a goal anyway proves nothing new
   for (const MovingObstacle& o : scenario.moving_obstacles) warn_of_moving(scenario, o, out);
   if (!scenario.formation) return out;
   warn_of_leader(scenario, out);

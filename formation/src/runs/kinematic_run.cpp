@@ -7,6 +7,7 @@
 
 #include "decision/decision.h"
 #include "decision/needed_constraints.h"
+#include "exactvo/formation/passing.h"
 #include "liveness/groups.h"
 #include "runs/rows.h"
 #include "runs/run_clock.h"
@@ -497,8 +498,18 @@ class KinematicRun {
     std::vector<std::size_t> not_there;
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!at_goal(i)) not_there.push_back(i);
+    if (!not_there.empty()) text += no_passing_words();
     const std::string without_plan = groups_ ? groups_->no_plan_words(not_there) : "";
     return without_plan.empty() ? text : text + "; " + without_plan;
+  }
+
+  /// The first pairs that cannot both be where they are to go.
+  std::string no_passing_words() const {
+    constexpr std::size_t kNamed = 3;
+    const std::vector<NoPassing> proofs = robots_without_passing(scenario_);
+    std::string text;
+    for (std::size_t k = 0; k < std::min(kNamed, proofs.size()); ++k) text += "; " + words_of(scenario_, proofs[k]);
+    return text;
   }
 
   std::string why_not_there(std::size_t i) const {

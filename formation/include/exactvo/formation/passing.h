@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Two robots that have no room to pass each other, and whose goals would need it: a proof that they cannot both get
+/// there, whatever anybody does (docs/guide/liveness.md, lemma 6).
+///
+/// Squares of a grid cover the places of each robot's centre: a square is left out only where all of it is nearer than
+/// the radius to one edge of an obstacle. Pairs of squares cover the places of both: a pair is left out only where all
+/// of it is nearer than the sum of the radii. Any motion of the two goes from pair to neighbouring pair:
+///
+///     +---+---+---+---+          a in one square, b in another; next, a or b in a square
+///     | a |   |   | b |   ...    that shares a side or a corner with the one before
+///     +---+---+---+---+
+///
+/// If no such chain leads from where they start to their goals, no motion does. Certified: rounding only leaves more
+/// squares and pairs in. An answer without a pair says nothing: proofs are looked for only where robots have little
+/// room, and with a limited number of pairs.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "exactvo/formation/scenario.h"
+
+namespace exactvo::formation {
+
+/// A proof about two robots.
+struct NoPassing {
+  std::size_t first = 0;      ///< robot, in the order of the scenario
+  std::size_t second = 0;     ///< the other one, > first
+  double side = 0.0;          ///< m, of the squares
+  std::vector<Vec2> squares;  ///< m, lower left corners, of those that cover the places of the first one
+  std::size_t pairs = 0;      ///< of squares, that the two may get to
+};
+
+/// Pairs of robots that are proven not to be able to be at their goals together, in order; of robots with one goal, by
+/// the static obstacles alone. Deterministic; takes a few tenths of a second at most. REQUIRES: a valid scenario.
+std::vector<NoPassing> robots_without_passing(const Scenario& scenario);
+
+/// "R1 and R2 cannot both reach their goals: they have no room to pass each other (proven: none of 8206 pairs of
+/// squares of 0.125 m leads there)".
+std::string words_of(const Scenario& scenario, const NoPassing& proof);
+
+}  // namespace exactvo::formation

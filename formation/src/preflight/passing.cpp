@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/passing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <deque>
+#include <iterator>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "exactvo/geometry/box_grid.h"
+#include "exactvo/geometry/distance.h"
+#include "steering/goals.h"
+
+namespace exactvo::formation {
+namespace {
+
+using geometry::Segment;
+
+constexpr std::size_t kMostSquares = 4000;      ///< of a robot: about 250 squares of its radius
+constexpr std::size_t kMostLooks = 200000;      ///< at squares, in all: 0.1 s
+constexpr std::size_t kMostPairs = 8000000;     ///< that are gone to, in all: half a second
+constexpr double kCoarsest = 0.25;              ///< side of a square, of the smaller radius
+constexpr double kFinest = 1.0 / 16.0;          ///< the same
+constexpr double kRoundedDown = 1.0 - 0x1p-40;  ///< of a product of a few factors
+constexpr double kHalfDiagonal = 0.70711;       ///< of a square, rounded up
+
+/// x and y times the side are the coordinates of its lower left corner, without rounding: the side is a power of two.
+struct Square {
+  std::int32_t x, y;
+};
+
+std::uint64_t key(Square q) {
+  return static_cast<std::uint64_t>(static_cast<std::uint32_t>(q.x)) << 32 | static_cast<std::uint32_t>(q.y);
+}
+
+/// The squares that cover where a disc can get from its start.
+struct Cover {
+  double radius = 0.0, side = 0.0;
+  bool is_whole = false;  ///< else there are more squares than are looked at
+  std::vector<Square> squares;
+  std::vector<std::vector<std::uint32_t>> beside;  ///< of each: those that share a side or a corner
+  std::unordered_map<std::uint64_t, std::uint32_t> number;
+};
+
+class Walls {
+ public:
+  explicit Walls(const std::vector<SceneObstacle>& obstacles) {
+    std::vector<geometry::Box> boxes;
+    for (const SceneObstacle& o : obstacles)
+      for (const Segment& s : geometry::edges_of(o.shape)) {
+        edges_.push_back(s);
+        geometry::Box& box = boxes.emplace_back();
+        for (const Vec2 p : {s.a, s.b}) {
+          box.add(p);
+          largest_ = std::max({largest_, std::fabs(p.x), std::fabs(p.y)});
+        }
+      }
+    by_place_ = geometry::BoxGrid(std::move(boxes));
+  }
+
+  /// Whether some edge is nearer than the radius to every point of the square; false where rounding leaves it open. The
+  /// distance to an edge is convex, so that it is largest at a corner.
+  bool exclude(Square q, double side, double radius) const {
+    const Vec2 low{side * q.x, side * q.y}, high{side * (q.x + 1.0), side * (q.y + 1.0)};
+    const Vec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
+    double largest = largest_;
+    for (const Vec2 p : corners) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
+    const double near = radius - 2.0 * geometry::rounding_of_distance(largest);
+    bool found = false;
+    by_place_.for_each_within(low, radius, [&](std::size_t k) {
+      found = found || std::all_of(std::begin(corners), std::end(corners),
+                                   [&](Vec2 p) { return geometry::distance(edges_[k], p) < near; });
+    });
+    return found;
+  }
+
+ private:
+  std::vector<Segment> edges_;
+  geometry::BoxGrid by_place_;
+  double largest_ = 0.0;  ///< m, coordinate
+};
+
+bool fits_grid(Vec2 p, double side) {
+  constexpr double kMost = 0x1p30;
+  return std::fabs(p.x) < kMost * side && std::fabs(p.y) < kMost * side;
+}
+
+/// One that contains the place.
+Square square_at(Vec2 p, double side) {
+  return {static_cast<std::int32_t>(std::floor(p.x / side)), static_cast<std::int32_t>(std::floor(p.y / side))};
+}
+
+Cover cover_from(Vec2 start, double radius, double side, const Walls& walls, std::size_t& looks) {
+  Cover cover;
+  cover.radius = radius;
+  cover.side = side;
+  std::vector<Square>& squares = cover.squares;
+  squares.push_back(square_at(start, side));
+  cover.number.emplace(key(squares[0]), 0u);
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    cover.beside.emplace_back();
+    for (std::int32_t dy = -1; dy <= 1; ++dy)
+      for (std::int32_t dx = -1; dx <= 1; ++dx) {
+        const Square q{squares[k].x + dx, squares[k].y + dy};
+        if (dx == 0 && dy == 0) continue;
+        auto known = cover.number.find(key(q));
+        if (known == cover.number.end()) {
+          if (squares.size() > kMostSquares || looks == 0) return cover;
+          --looks;
+          if (walls.exclude(q, side, radius)) continue;
+          known = cover.number.emplace(key(q), static_cast<std::uint32_t>(squares.size())).first;
+          squares.push_back(q);
+        }
+        cover.beside[k].push_back(known->second);
+      }
+  }
+  cover.is_whole = true;
+  return cover;
+}
+
+/// Of each square, whether a point of it is within `reach` of the goal.
+std::vector<char> squares_at(Vec2 goal, double reach, const Cover& cover) {
+  std::vector<char> is_at(cover.squares.size());
+  for (std::size_t k = 0; k < is_at.size(); ++k) {
+    const Vec2 middle{cover.side * (cover.squares[k].x + 0.5), cover.side * (cover.squares[k].y + 0.5)};
+    is_at[k] = norm(middle - goal) * kRoundedDown <= reach + kHalfDiagonal * cover.side;
+  }
+  return is_at;
+}
+
+/// What a search over pairs of squares comes to.
+struct PairSearch {
+  enum class End { reaches_goals, proven, out_of_budget } end = End::out_of_budget;
+  std::size_t pairs = 0;
+};
+
+struct Traveller {
+  const Cover* cover = nullptr;
+  std::uint32_t start = 0;
+  std::vector<char> is_goal;
+};
+
+PairSearch search(const Traveller& a, const Traveller& b, std::size_t most) {
+  const double radii = (a.cover->radius + b.cover->radius) / a.cover->side;
+  const double least = radii * radii * kRoundedDown;
+  // Two points of the squares are at most this far from each other.
+  const auto can_be_apart = [&](std::uint32_t i, std::uint32_t j) {
+    const Square p = a.cover->squares[i], q = b.cover->squares[j];
+    const double x = std::fabs(double(p.x) - double(q.x)) + 1.0, y = std::fabs(double(p.y) - double(q.y)) + 1.0;
+    return x * x + y * y >= least;
+  };
+  const std::size_t width = b.cover->squares.size();
+  std::vector<bool> seen(a.cover->squares.size() * width);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> open;
+  PairSearch found;
+  const auto visit = [&](std::uint32_t i, std::uint32_t j) {
+    if (seen[i * width + j] || !can_be_apart(i, j)) return;
+    seen[i * width + j] = true;
+    open.emplace_back(i, j);
+    ++found.pairs;
+    if (a.is_goal[i] && b.is_goal[j]) found.end = PairSearch::End::reaches_goals;
+  };
+  visit(a.start, b.start);
+  while (!open.empty() && found.end != PairSearch::End::reaches_goals) {
+    if (found.pairs > most) return found;
+    const auto [i, j] = open.back();
+    open.pop_back();
+    for (const std::uint32_t next : a.cover->beside[i]) visit(next, j);
+    for (const std::uint32_t next : b.cover->beside[j]) visit(i, next);
+  }
+  if (found.end != PairSearch::End::reaches_goals) found.end = PairSearch::End::proven;
+  return found;
+}
+
+class Proofs {
+ public:
+  explicit Proofs(const Scenario& scenario) : scenario_(scenario), walls_(scenario.obstacles) {}
+
+  /// Whether proofs about this robot are looked for.
+  bool has_little_room(std::size_t i) {
+    const Robot& r = scenario_.robots[i];
+    return r.goals.size() == 1 && r.radius > 0.0 && cover_of(i, coarsest_side(r.radius)) != nullptr;
+  }
+
+  /// REQUIRES: both have little room.
+  std::optional<NoPassing> of(std::size_t i, std::size_t j) {
+    const double smaller = std::min(scenario_.robots[i].radius, scenario_.robots[j].radius);
+    for (double side = coarsest_side(smaller); side >= kFinest * smaller; side *= 0.5) {
+      const Cover* of_i = cover_of(i, side);
+      const Cover* of_j = of_i ? cover_of(j, side) : nullptr;
+      if (!of_j || !(is_in(*of_i, j) || is_in(*of_j, i))) return std::nullopt;
+      const PairSearch found = search(traveller(i, *of_i), traveller(j, *of_j), pairs_left_);
+      pairs_left_ -= std::min(pairs_left_, found.pairs);
+      if (found.end == PairSearch::End::out_of_budget) return std::nullopt;
+      if (found.end == PairSearch::End::proven) return NoPassing{i, j, side, corners_of(*of_i), found.pairs};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static double coarsest_side(double radius) { return std::exp2(std::floor(std::log2(kCoarsest * radius))); }
+
+  bool is_in(const Cover& cover, std::size_t robot) const {
+    return cover.number.count(key(square_at(scenario_.robots[robot].position, cover.side))) > 0;
+  }
+
+  /// Null where it is not whole. Robots in one another's cover share it.
+  const Cover* cover_of(std::size_t robot, double side) {
+    const Robot& r = scenario_.robots[robot];
+    if (!fits_grid(r.position, side) || !fits_grid(r.goals[0], side)) return nullptr;
+    for (const Cover& c : covers_)
+      if (c.radius == r.radius && c.side == side && is_in(c, robot)) return c.is_whole ? &c : nullptr;
+    if (looks_left_ == 0) return nullptr;
+    covers_.push_back(cover_from(r.position, r.radius, side, walls_, looks_left_));
+    return covers_.back().is_whole ? &covers_.back() : nullptr;
+  }
+
+  Traveller traveller(std::size_t robot, const Cover& cover) const {
+    const Robot& r = scenario_.robots[robot];
+    return {&cover, cover.number.at(key(square_at(r.position, cover.side))),
+            squares_at(r.goals[0], detail::reach_of(scenario_, r, 0), cover)};
+  }
+
+  static std::vector<Vec2> corners_of(const Cover& cover) {
+    std::vector<Vec2> corners;
+    for (const Square q : cover.squares) corners.push_back(cover.side * Vec2{double(q.x), double(q.y)});
+    return corners;
+  }
+
+  const Scenario& scenario_;
+  Walls walls_;
+  std::deque<Cover> covers_;
+  std::size_t looks_left_ = kMostLooks, pairs_left_ = kMostPairs;
+};
+
+}  // namespace
+
+std::vector<NoPassing> robots_without_passing(const Scenario& scenario) {
+  std::vector<NoPassing> all;
+  if (scenario.formation || scenario.obstacles.empty() || scenario.robots.size() < 2) return all;
+  Proofs proofs(scenario);
+  std::vector<std::size_t> asked;
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i)
+    if (proofs.has_little_room(i)) asked.push_back(i);
+  for (std::size_t k = 0; k < asked.size(); ++k)
+    for (std::size_t l = k + 1; l < asked.size(); ++l)
+      if (std::optional<NoPassing> proof = proofs.of(asked[k], asked[l])) all.push_back(std::move(*proof));
+  return all;
+}
+
+std::string words_of(const Scenario& scenario, const NoPassing& proof) {
+  char text[120];
+  std::snprintf(text, sizeof text, " (proven: none of %zu pairs of squares of %g m leads there)", proof.pairs,
+                proof.side);
+  return scenario.robots[proof.first].id + " and " + scenario.robots[proof.second].id +
+         " cannot both reach their goals: they have no room to pass each other" + text;
+}
+
+}  // namespace exactvo::formation

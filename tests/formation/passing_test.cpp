@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Robots that have to pass each other and cannot (docs/guide/liveness.md, lemma 6): what is proven, and that nothing is
+// proven of robots that can.
+#include "exactvo/formation/passing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/simulation.h"
+#include "liveness_scenes.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::formation {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A closed corridor along the x axis, `length` by `width`, with the middle of its floor at the origin.
+Scenario corridor(double length, double width) {
+  Scenario s;
+  s.name = "corridor";
+  test_scenes::add_box(s, 0.5 * length, 0.5 * width);
+  return s;
+}
+
+/// The same scene somewhere else.
+Scenario moved(Scenario s, double angle, Vec2 by) {
+  const auto move = [&](Vec2 p) { return geometry::rotated(p, angle) + by; };
+  for (SceneObstacle& o : s.obstacles)
+    for (Vec2& p : std::get<geometry::Polyline>(o.shape).points) p = move(p);
+  for (Robot& r : s.robots) {
+    r.position = move(r.position);
+    for (Vec2& goal : r.goals) goal = move(goal);
+  }
+  return s;
+}
+
+/// Two that face each other in a corridor with a niche of this depth, 1.5 m long, which holds a robot where it is deep.
+Scenario with_niche(double depth) {
+  Scenario s;
+  test_scenes::add_wall(s, {{-5, 0},
+                            {5, 0},
+                            {5, 1.3},
+                            {0.75, 1.3},
+                            {0.75, 1.3 + depth},
+                            {-0.75, 1.3 + depth},
+                            {-0.75, 1.3},
+                            {-5, 1.3},
+                            {-5, 0}});
+  test_scenes::add_robot(s, {-4, 0.65}, {4, 0.65});
+  test_scenes::add_robot(s, {4, 0.65}, {-4, 0.65});
+  return s;
+}
+
+TEST(Passing, Lemma6_AReversedOrderInANarrowStripIsProvenOutOfReach) {
+  test::SeededRandom random(test::seed_of_run(61));
+  for (int k = 0; k < 20; ++k) {
+    const double width = random.uniform(1.02, 1.6);
+    Scenario reversed = corridor(10.0, width), kept = reversed;
+    const auto across = [&] { return random.uniform(-0.5, 0.5) * (width - 1.01); };
+    const Vec2 a{random.uniform(-4.0, -0.6), across()}, b{random.uniform(0.6, 4.0), across()};
+    test_scenes::add_robot(reversed, a, b);
+    test_scenes::add_robot(reversed, b, a);
+    test_scenes::add_robot(kept, a, a + Vec2{0.5, 0.0});
+    test_scenes::add_robot(kept, b, b - Vec2{0.1, 0.0});
+    const double angle = k % 2 == 0 ? 0.0 : random.uniform(0.0, test_scenes::kTurn);
+    const Vec2 by = random.in_box(100.0);
+    const std::vector<NoPassing> proofs = robots_without_passing(moved(reversed, angle, by));
+    ASSERT_EQ(proofs.size(), 1u) << "width " << width << ", turned by " << angle;
+    EXPECT_EQ(std::make_pair(proofs[0].first, proofs[0].second), std::make_pair(std::size_t{0}, std::size_t{1}));
+    EXPECT_GT(proofs[0].pairs, 0u);
+    EXPECT_THAT(robots_without_passing(moved(kept, angle, by)), IsEmpty()) << width << " " << angle;
+  }
+}
+
+TEST(Passing, OfFourInAStripEachPairWhoseOrderChangesIsProven) {
+  Scenario s = corridor(14.0, 1.4);
+  const double goals[] = {-5.0, 4.0, 0.0, 6.0};  // the second and the third change places
+  for (int i = 0; i < 4; ++i) test_scenes::add_robot(s, {-6.0 + 4.0 * i, 0.0}, {goals[i], 0.0});
+  const std::vector<NoPassing> proofs = robots_without_passing(s);
+  ASSERT_EQ(proofs.size(), 1u);
+  EXPECT_EQ(proofs[0].first, 1u);
+  EXPECT_EQ(proofs[0].second, 2u);
+}
+
+TEST(Passing, ANicheMattersWhenItHoldsARobot) {
+  EXPECT_EQ(robots_without_passing(with_niche(0.3)).size(), 1u);
+  EXPECT_THAT(robots_without_passing(with_niche(1.4)), IsEmpty());
+}
+
+/// A strip with a branch: who goes into the branch lets the other pass, if the branch is long enough.
+TEST(Passing, ATreeOfStripsIsProvenWhereNoBranchHoldsARobot) {
+  const auto tree = [](double branch) {
+    constexpr double kHalf = 0.6;
+    Scenario s;
+    test_scenes::add_wall(s, {{-6, -kHalf},
+                              {6, -kHalf},
+                              {6, kHalf},
+                              {kHalf, kHalf},
+                              {kHalf, kHalf + branch},
+                              {-kHalf, kHalf + branch},
+                              {-kHalf, kHalf},
+                              {-6, kHalf},
+                              {-6, -kHalf}});
+    test_scenes::add_robot(s, {-4, 0}, {4, 0});
+    test_scenes::add_robot(s, {4, 0}, {-4, 0});
+    return s;
+  };
+  EXPECT_EQ(robots_without_passing(tree(0.5)).size(), 1u);
+  EXPECT_THAT(robots_without_passing(tree(1.5)), IsEmpty());
+}
+
+TEST(Passing, RadiiCount) {
+  Scenario s = corridor(8.0, 1.6);
+  test_scenes::add_robot(s, {-3, 0}, {3, 0});
+  test_scenes::add_robot(s, {3, 0}, {-3, 0});
+  EXPECT_EQ(robots_without_passing(s).size(), 1u);
+  for (Robot& r : s.robots) r.radius = 0.35;
+  EXPECT_THAT(robots_without_passing(s), IsEmpty()) << "two of them fit side by side";
+  s.robots[0].radius = 0.7;
+  EXPECT_EQ(robots_without_passing(s).size(), 1u);
+}
+
+/// What is proven to be out of reach is never reached: closed scenes with little room, run.
+TEST(Passing, NothingIsProvenOfRobotsThatArrive) {
+  test::SeededRandom random(test::seed_of_run(62));
+  int arrived = 0, proven = 0;
+  for (int k = 0; k < 12; ++k) {
+    Scenario s = corridor(9.0, random.uniform(1.1, 2.6));
+    if (k % 3 == 0) s = with_niche(random.uniform(0.2, 1.8));
+    if (k % 3 != 0) {
+      const Vec2 a{random.uniform(-3.5, -1.0), 0.0}, b{random.uniform(1.0, 3.5), 0.0};
+      test_scenes::add_robot(s, a, random.integer(0, 2) > 0 ? b : a);
+      test_scenes::add_robot(s, b, s.robots[0].goals[0] == b ? a : b);
+    }
+    s.time_limit = 60.0;
+    const bool is_proven = !robots_without_passing(s).empty();
+    const bool all_arrive = measure(s, simulate(s)).all_arrived;
+    EXPECT_FALSE(is_proven && all_arrive) << k;
+    arrived += all_arrive;
+    proven += is_proven;
+  }
+  EXPECT_GT(arrived, 2);
+  EXPECT_GT(proven, 2);
+}
+
+TEST(Passing, ItIsSaidBeforeTheRunAndAtItsEnd) {
+  Scenario s = corridor(8.0, 1.5);
+  s.time_limit = 10.0;
+  test_scenes::add_robot(s, {-3, 0}, {3, 0});
+  test_scenes::add_robot(s, {3, 0}, {-3, 0});
+  const char* const words = "R1 and R2 cannot both reach their goals: they have no room to pass each other (proven: ";
+  const std::vector<std::string> warnings = warnings_before(s);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr(words));
+  EXPECT_THAT(simulate(s).outcome, HasSubstr(words));
+}
+
+}  // namespace
+}  // namespace exactvo::formation
