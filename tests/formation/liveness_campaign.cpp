@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes of docs/guide/liveness.md, run by hand: who arrives, and how long it takes over the longest straight way at
-// full speed.   liveness_campaign KIND COUNT [SIZE] [SEED] [off|bias|plan]     such as   liveness_campaign street 60 4
+// full speed. With `audit` the recording is proven in rationals, which takes longer than the run.
+//
+//   formation_liveness_campaign KIND COUNT [SIZE] [SEED] [off|bias|plan] [audit]
+//   formation_liveness_campaign street 60 4
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 
+#include "exactvo/datasets/audit.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "liveness_scenes.h"
@@ -26,6 +30,17 @@ Scenario scene(const std::string& kind, int count, double size, std::uint64_t se
   if (kind == "cross") return test_scenes::cross(size, random);
   std::fprintf(stderr, "KIND: found '%s', expected circle, street, door, rooms, box, siding or cross\n", kind.c_str());
   std::exit(2);
+}
+
+bool audits_clean(const Scenario& s, const Recording& run) {
+  datasets::RecordingFile file;
+  file.scenario = s;
+  file.recording = run;
+  const datasets::AuditReport report = datasets::audit(file);
+  std::printf("  audit: %zu motions, %zu collisions, %zu unproven, %zu refuted half-planes: %s\n", report.steps,
+              report.collisions, report.unproven, report.unsafe, report.clean() ? "clean" : "NOT CLEAN");
+  for (const std::string& finding : report.findings) std::printf("    %s\n", finding.c_str());
+  return report.clean();
 }
 
 }  // namespace
@@ -61,5 +76,6 @@ int main(int argc, char** argv) {
       for (std::size_t i = 0; i < row.robots.size(); ++i)
         if (!row.robots[i].note.empty())
           std::printf("  %.2f %s: %s\n", row.time, s.robots[i].id.c_str(), row.robots[i].note.c_str());
-  return m.all_arrived ? 0 : 1;
+  const bool is_clean = argc <= 6 || audits_clean(s, run);
+  return m.all_arrived && is_clean ? 0 : 1;
 }
