@@ -180,6 +180,9 @@ RecordingFile sample(bool with_formation) {
     file.recording.outlooks.push_back({0.1, 2, 1, {4}});
     file.recording.outlooks.push_back({0.2, 0, 1, {}});
   }
+  if (!with_formation)
+    file.recording.plans = {{0, 0, {0, 2}, {random.in_box(9), random.in_box(9)}, {{2, random.in_box(9)}}},
+                            {7, 3, {1}, {random.in_box(9)}, {}}};
   file.stuck = {{1, random.in_box(5), 3.5, 0.25, {binding(random)}, std::nullopt, "bound \"here\"", 12.5}};
   file.stuck.front().binding.front().pressing = true;
   if (with_formation) file.stuck.front().equilibrium = formation::Equilibrium{random.in_box(1), {1, 0}, 2.5, 1.5, true};
@@ -265,6 +268,19 @@ void expect_same_extras(const RecordingFile& a, const RecordingFile& b) {
     EXPECT_TRUE(same_bits(a.recording.outlooks[i].time, b.recording.outlooks[i].time));
     EXPECT_EQ(a.recording.outlooks[i].bodies, b.recording.outlooks[i].bodies);
   }
+  ASSERT_EQ(a.recording.plans.size(), b.recording.plans.size());
+  for (std::size_t i = 0; i < a.recording.plans.size(); ++i) {
+    const formation::JointPlan &p = a.recording.plans[i], &q = b.recording.plans[i];
+    EXPECT_EQ(p.row, q.row);
+    EXPECT_EQ(p.from_row, q.from_row);
+    EXPECT_EQ(p.robots, q.robots);
+    EXPECT_TRUE(same_bits(p.starts, q.starts));
+    ASSERT_EQ(p.moves.size(), q.moves.size());
+    for (std::size_t k = 0; k < p.moves.size(); ++k) {
+      EXPECT_EQ(p.moves[k].robot, q.moves[k].robot);
+      EXPECT_TRUE(same_bits(p.moves[k].to, q.moves[k].to));
+    }
+  }
   ASSERT_EQ(a.stuck.size(), b.stuck.size());
   for (std::size_t i = 0; i < a.stuck.size(); ++i) expect_same_reports(a.stuck[i], b.stuck[i]);
   ASSERT_EQ(a.lyapunov.size(), b.lyapunov.size());
@@ -339,6 +355,9 @@ TEST_F(RecordingFileTest, AHeaderThenBodiesOnceAndARowAStepThenTheEnd) {
   EXPECT_EQ(text.substr(0, 58), "{\"header\":{\"kind\":\"exactvo-recording\",\"format_version\":2,\"");
   EXPECT_EQ(count_of(text, "\n{\"row\":"), 20u);
   EXPECT_EQ(count_of(text, "\n{\"outlook\":"), 5u);
+  EXPECT_EQ(count_of(text, "\n{\"plan\":"), 2u);
+  EXPECT_LT(text.find("{\"row\":{\"time\":0.12,"), text.find("{\"plan\":{\"row\":7,"));
+  EXPECT_LT(text.find("{\"plan\":{\"row\":7,"), text.find("{\"row\":{\"time\":0.14"));
   EXPECT_EQ(count_of(text, "\n{\"body\":"), 9u) << "each once, though many rows name it";
   EXPECT_EQ(text.compare(text.rfind('\n', text.size() - 2) + 1, 8, "{\"end\":{"), 0);
   // A body stands before the first line that names it.
@@ -382,6 +401,16 @@ TEST_F(RecordingFileTest, WhatIsWrongIsPlacedByLineAndPointer) {
   expect_refusal(refused("\"owners\":[0]", "\"owners\":[7]", 0), DataCode::out_of_range, "line 2, /body/owners/0");
   expect_refusal(refused("\"rows\":20", "\"rows\":21", first_row), DataCode::wrong_count,
                  "line " + std::to_string(std::count(good.begin(), good.end(), '\n')) + ", /end/rows");
+  const auto pointer_of_plan = [&](const std::string& from, const std::string& to) {
+    const DataError error = refused(from, to, good.find("{\"plan\":"));
+    EXPECT_EQ(error.code(), DataCode::out_of_range) << error.what();
+    return error.place().substr(error.place().find(", ") + 2);
+  };
+  EXPECT_EQ(pointer_of_plan("\"row\":0", "\"row\":1"), "/plan/row");
+  EXPECT_EQ(pointer_of_plan("\"from_row\":0", "\"from_row\":1"), "/plan/from_row");
+  EXPECT_EQ(pointer_of_plan("\"robot\":2", "\"robot\":3"), "/plan/robots/1/robot");
+  EXPECT_EQ(pointer_of_plan("\"robot\":2", "\"robot\":0"), "/plan/robots/1/robot");
+  EXPECT_EQ(pointer_of_plan("\"moves\":[{\"robot\":2", "\"moves\":[{\"robot\":1"), "/plan/moves/0/robot");
   expect_refusal(refused("\"number\":3", "\"number\":300000000", 0), DataCode::out_of_range, "line 3, /body/number");
 }
 

@@ -147,6 +147,16 @@ TEST(Liveness, ARunByPlanSaysSo) {
   EXPECT_EQ(m.plans->largest, 14u);
   EXPECT_GT(m.plans->search_nodes, 0u);
   EXPECT_GT(m.plans->time_by_plan, 0.0);
+  ASSERT_EQ(run.plans.size(), m.plans->groups);
+  for (const JointPlan& plan : run.plans) {
+    EXPECT_EQ(plan.robots.size(), plan.starts.size());
+    EXPECT_FALSE(plan.moves.empty());
+    for (std::size_t k = 0; k < plan.robots.size(); ++k)
+      EXPECT_EQ(run.steps[plan.from_row].robots[plan.robots[k]].position, plan.starts[k]);
+    const RobotStep& made = run.steps[plan.row].robots[plan.robots.front()];
+    EXPECT_EQ(made.mode, plan.from_row < plan.row ? Mode::going_back : Mode::by_plan);
+    EXPECT_NE(made.note.find(std::to_string(plan.moves.size()) + " moves"), std::string::npos) << made.note;
+  }
   std::string notes;
   bool went_back = false;
   for (const Step& row : run.steps)

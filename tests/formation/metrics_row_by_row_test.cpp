@@ -294,6 +294,10 @@ class Order : public RunSink {
     EXPECT_TRUE(run.steps.empty());
   }
   void add_body(const vo::Body&) override { ++bodies_; }
+  void add_plan(const JointPlan& plan) override {
+    EXPECT_EQ(plan.row, rows_);
+    ++plans_;
+  }
   void add_outlook(const Outlook& outlook) override {
     EXPECT_EQ(begun_, 1);
     for (const std::size_t body : outlook.bodies) EXPECT_LT(body, bodies_);
@@ -309,7 +313,7 @@ class Order : public RunSink {
   }
 
   std::size_t throws_at = 0;
-  std::size_t rows_ = 0, bodies_ = 0, outlooks_ = 0;
+  std::size_t rows_ = 0, bodies_ = 0, outlooks_ = 0, plans_ = 0;
 
  private:
   int begun_ = 0;

@@ -219,6 +219,26 @@ Json outlooks_json(const formation::Recording& run) {
   return outlooks;
 }
 
+/// Places of all moves one after the other, as are those who make them.
+Json plans_json(const formation::Recording& run) {
+  Json plans = Json::array();
+  for (const formation::JointPlan& plan : run.plans) {
+    Json movers = Json::array();
+    std::vector<Vec2> places;
+    for (const formation::PlanMove& move : plan.moves) {
+      movers.push_back(move.robot);
+      places.push_back(move.to);
+    }
+    plans.push_back({{"time", static_cast<double>(plan.row) * run.time_step},
+                     {"from", static_cast<double>(plan.from_row) * run.time_step},
+                     {"robots", plan.robots},
+                     {"starts", flat(plan.starts)},
+                     {"movers", std::move(movers)},
+                     {"places", flat(places)}});
+  }
+  return plans;
+}
+
 // --- Events ---
 
 bool is_of_plan(formation::Mode mode) {
@@ -516,6 +536,7 @@ std::string RunPacker::finish(const datasets::RecordingFile& about, const std::s
   if (limits_.has_scenario) head["scenario"] = scenario_json(about.scenario);
   head["bodies"] = bodies_json(about.recording);
   head["outlooks"] = outlooks_json(about.recording);
+  head["plans"] = plans_json(about.recording);
   head["routes"] = routes_json(about, limits_);
   head["events"] = events_json();
   head["events_left_out"] = events_left_out_;

@@ -88,6 +88,7 @@ void RunRecorder::begin(const formation::Recording& run) {
 void RunRecorder::add_row(Step row) {
   evaluator_->add(std::make_shared<const Step>(std::move(row)));
   outlooks_of_last_ = std::exchange(outlooks_of_next_, {});
+  plans_of_last_ = std::exchange(plans_of_next_, {});
 }
 
 void RunRecorder::take(const Step& row, const LyapunovRow* lyapunov) {
@@ -95,6 +96,7 @@ void RunRecorder::take(const Step& row, const LyapunovRow* lyapunov) {
   if (packer_) packer_->add(row);
   if (!files_) return;
   for (const formation::Outlook& outlook : outlooks_of_last_) files_->recording.add(outlook, bodies_);
+  for (const formation::JointPlan& plan : plans_of_last_) files_->recording.add(plan);
   files_->recording.add(row, bodies_, lyapunov);
   files_->trajectory.add(row);
   if (files_->lyapunov && lyapunov) files_->lyapunov->write(lyapunov_csv_line(*lyapunov));

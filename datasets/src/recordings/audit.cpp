@@ -14,6 +14,7 @@
 #include "recordings/audit_bodies.h"
 #include "recordings/audit_decisions.h"
 #include "recordings/audit_motions.h"
+#include "recordings/audit_plans.h"
 #include "recordings/audit_sequence.h"
 
 namespace exactvo::datasets {
@@ -47,6 +48,13 @@ std::string obstruction(const RecordingFile& file) {
       if (!in_range(robot.anchor) || !in_range(robot.anchor_velocity))
         return "where a robot's half-planes are built is not finite, or out of range";
     }
+  }
+  for (const formation::JointPlan& plan : recording.plans) {
+    if (!std::all_of(plan.starts.begin(), plan.starts.end(), in_range) ||
+        !std::all_of(plan.moves.begin(), plan.moves.end(),
+                     [&](const formation::PlanMove& m) { return in_range(m.to); }))
+      return "a place of a plan is not finite, or out of range";
+    if (plan.row >= recording.steps.size()) return "a plan is made after the last row";
   }
   return recording.steps.empty() ? "there are no rows" : "";
 }
@@ -165,6 +173,7 @@ void check_rows(const RecordingFile& file, AuditTally& tally) {
   if (file.recording.motion == MotionLaw::exponential)
     law.emplace(Rational(file.recording.tracking_gain), Rational(file.recording.time_step));
   BodyAudit(file, obstacles, tally).check();
+  audit_plans(file, obstacles, tally);
   DecisionAudit decisions(file, obstacles, tally);
   SequenceAudit sequence(file, ways, law ? &*law : nullptr, tally);
   MotionAudit motions(file, obstacles, ways, law ? &*law : nullptr, tally);
@@ -219,7 +228,7 @@ AuditReport finished(AuditTally tally) {
 
 const char* name(AuditPoint point) {
   constexpr const char* kNames[] = {"scenario", "bodies",   "completeness", "half_planes",
-                                    "choices",  "sequence", "motions"};
+                                    "choices",  "sequence", "motions",      "plans"};
   return kNames[static_cast<std::size_t>(point)];
 }
 

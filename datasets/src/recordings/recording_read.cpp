@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -93,6 +94,7 @@ class LineReader {
     if (at_end_) at.refuse("nothing after the end", DataCode::wrong_count);
     if (at.has("body")) return read_body(at.at("body"));
     if (at.has("outlook")) return read_outlook(at.at("outlook"));
+    if (at.has("plan")) return read_plan(at.at("plan"));
     if (at.has("row")) return read_row(at.at("row"));
     read_end(at.at("end"), rows_, file_);
     at_end_ = true;
@@ -135,12 +137,38 @@ class LineReader {
   }
 
   void read_outlook(const JsonCursor& at) {
-    formation::Outlook outlook{at.at("time").number(), at.at("robot").count(), at.at("goal").count(), {}};
-    if (outlook.robot >= file_.scenario.robots.size())
-      at.at("robot").refuse("a robot of the scenario", DataCode::out_of_range);
+    formation::Outlook outlook{at.at("time").number(), robot_of_scenario(at.at("robot")), at.at("goal").count(), {}};
     const JsonCursor list = at.at("bodies");
     for (std::size_t k = 0; k < list.size(); ++k) outlook.bodies.push_back(known_body(list.at(k)));
     file_.recording.outlooks.push_back(std::move(outlook));
+  }
+
+  std::size_t robot_of_scenario(const JsonCursor& at) const {
+    const std::size_t robot = at.count();
+    if (robot >= file_.scenario.robots.size()) at.refuse("a robot of the scenario", DataCode::out_of_range);
+    return robot;
+  }
+
+  void read_plan(const JsonCursor& at) {
+    formation::JointPlan plan{at.at("row").count(), at.at("from_row").count(), {}, {}, {}};
+    if (plan.row != rows_)
+      at.at("row").refuse(std::to_string(rows_) + ", the row that follows", DataCode::out_of_range);
+    if (plan.from_row > plan.row) at.at("from_row").refuse("a row up to that of the plan", DataCode::out_of_range);
+    const JsonCursor robots = at.at("robots"), moves = at.at("moves");
+    for (std::size_t k = 0; k < robots.size(); ++k) {
+      const std::size_t robot = robot_of_scenario(robots.at(k).at("robot"));
+      if (!plan.robots.empty() && robot <= plan.robots.back())
+        robots.at(k).at("robot").refuse("robots in the order of the scenario, each once", DataCode::out_of_range);
+      plan.robots.push_back(robot);
+      plan.starts.push_back(robots.at(k).at("start").point());
+    }
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+      const std::size_t robot = robot_of_scenario(moves.at(k).at("robot"));
+      if (!std::binary_search(plan.robots.begin(), plan.robots.end(), robot))
+        moves.at(k).at("robot").refuse("a robot of the plan", DataCode::out_of_range);
+      plan.moves.push_back({robot, moves.at(k).at("to").point()});
+    }
+    file_.recording.plans.push_back(std::move(plan));
   }
 
   void read_row(const JsonCursor& at) {

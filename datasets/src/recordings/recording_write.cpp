@@ -52,6 +52,17 @@ void append_outlook(JsonWriter& json, const Outlook& outlook) {
   json.end_array().end_object();
 }
 
+void append_plan(JsonWriter& json, const formation::JointPlan& plan) {
+  json.begin_object().member("row", plan.row).member("from_row", plan.from_row);
+  json.key("robots").begin_array();
+  for (std::size_t k = 0; k < plan.robots.size(); ++k)
+    json.begin_object().member("robot", plan.robots[k]).member("start", plan.starts[k]).end_object();
+  json.end_array().key("moves").begin_array();
+  for (const formation::PlanMove& move : plan.moves)
+    json.begin_object().member("robot", move.robot).member("to", move.to).end_object();
+  json.end_array().end_object();
+}
+
 void append_row(JsonWriter& json, const Step& step, bool has_leader, const formation::LyapunovRow* lyapunov) {
   json.begin_object().member("time", step.time);
   if (has_leader) {
@@ -132,6 +143,11 @@ void RecordingWriter::add(const Outlook& outlook, const std::vector<vo::Body>& b
   state_->line("outlook", [&] { append_outlook(state_->json, outlook); });
 }
 
+void RecordingWriter::add(const formation::JointPlan& plan) {
+  EXACTVO_REQUIRE(plan.row == state_->rows, "plan of row " + std::to_string(plan.row));
+  state_->line("plan", [&] { append_plan(state_->json, plan); });
+}
+
 void RecordingWriter::add(const Step& row, const std::vector<vo::Body>& bodies,
                           const formation::LyapunovRow* lyapunov) {
   for (const RobotStep& robot : row.robots)
@@ -153,13 +169,15 @@ void RecordingWriter::finish(const RecordingFile& about) {
 void write_recording(const std::filesystem::path& path, const RecordingFile& file) {
   RecordingWriter writer(path, file);
   const formation::Recording& recording = file.recording;
-  std::size_t outlooks = 0;
+  std::size_t outlooks = 0, plans = 0;
   for (std::size_t k = 0; k < recording.steps.size(); ++k) {
     const bool last = k + 1 == recording.steps.size();
     for (;
          outlooks < recording.outlooks.size() && (last || recording.outlooks[outlooks].time <= recording.steps[k].time);
          ++outlooks)
       writer.add(recording.outlooks[outlooks], recording.bodies);
+    for (; plans < recording.plans.size() && recording.plans[plans].row == k; ++plans)
+      writer.add(recording.plans[plans]);
     writer.add(recording.steps[k], recording.bodies, k < file.lyapunov.size() ? &file.lyapunov[k] : nullptr);
   }
   writer.finish(file);

@@ -472,9 +472,17 @@ Groups::PlanEnd Groups::plan_from(const Members& members, const Members& seeds, 
   }
   ++course_.groups;
   course_.largest = std::max(course_.largest, who.size());
+  made_.push_back(recorded(g));
   forget_without_plan(who);
   notes_[who.front()] = joined_notes(notes_[who.front()], plan_words(g));
   return PlanEnd::planned;
+}
+
+JointPlan Groups::recorded(const Group& g) const {
+  JointPlan plan{g.back_at, g.back_to, g.who, {}, {}};
+  for (const std::size_t i : g.who) plan.starts.push_back(history_[g.back_to][i]);
+  for (const PlannedMove& m : g.following.plan()) plan.moves.push_back({g.who[m.robot], m.to});
+  return plan;
 }
 
 std::string Groups::plan_words(const Group& g) const {

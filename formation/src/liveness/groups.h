@@ -60,6 +60,8 @@ class Groups {
   void end_step(const Step& row);
 
   const LivenessCourse& course() const { return course_; }
+  /// All so far. Rows count from the first step on.
+  const std::vector<JointPlan>& plans() const { return made_; }
   /// "no plan was found on the roadmap for R1 and R2", of those of the given robots; empty where none was missing to
   /// the end.
   std::string no_plan_words(const std::vector<std::size_t>& robots) const;
@@ -124,6 +126,7 @@ class Groups {
   std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
   std::optional<std::vector<PlannedMove>> search(JointProblem problem, std::size_t row, PlanEnd& end);
   void dissolve(std::size_t group);
+  JointPlan recorded(const Group& g) const;
   std::string plan_words(const Group& g) const;
 
   const Scenario& scenario_;
@@ -149,6 +152,7 @@ class Groups {
   mutable std::map<double, Roadmap> whole_maps_;  // by radius
   std::vector<WithoutPlan> without_plan_;
   LivenessCourse course_;
+  std::vector<JointPlan> made_;
   std::size_t seed_ = 0;
 };
 

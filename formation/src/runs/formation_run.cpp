@@ -76,7 +76,7 @@ class FormationRun {
     for (std::size_t i = 0; i < robots_.size(); ++i)
       recording.outlooks.push_back({0.0, i, 0, robots_[i].field.shapes()});
     sink.begin(recording);
-    RowFeed rows(scene_.bodies(), recording.outlooks, sink);
+    RowFeed rows(scene_.bodies(), recording.outlooks, nullptr, sink);
     const double first_error = formation_error(state_row(0.0), offsets_);
     std::size_t k = 0;
     for (; !clock_.ends_at(k) && !out_of_bounds(); ++k) {

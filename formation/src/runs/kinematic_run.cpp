@@ -76,7 +76,7 @@ class KinematicRun {
     recording.motion = MotionLaw::straight;
     recording.time_step = scenario_.time_step;
     sink.begin(recording);
-    RowFeed rows(scene_.bodies(), outlooks_, sink);
+    RowFeed rows(scene_.bodies(), outlooks_, groups_ ? &groups_->plans() : nullptr, sink);
     std::size_t k = 0;
     for (; !clock_.ends_at(k) && !all_arrived() && (k == 0 || !nobody_goes_on()); ++k) {
       Step row = decide_all(clock_.time(k));
@@ -87,6 +87,7 @@ class KinematicRun {
     recording.outcome = outcome();
     if (guide_) recording.routes = routes_;
     if (liveness_ == Liveness::plan) recording.liveness = groups_ ? groups_->course() : LivenessCourse{};
+    if (groups_) recording.plans = groups_->plans();
     recording.outlooks = std::move(outlooks_);
     recording.bodies = scene_.copied_bodies();
   }

@@ -63,6 +63,9 @@ class TimedSink : public RunSink {
   void add_outlook(const Outlook& outlook) override {
     timed([&] { sink_.add_outlook(outlook); });
   }
+  void add_plan(const JointPlan& plan) override {
+    timed([&] { sink_.add_plan(plan); });
+  }
   void add_row(Step row) override {
     timed([&] { sink_.add_row(std::move(row)); });
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The seven points of an audit, each by the forgery that it is there for.
+// The eight points of an audit, each by the forgery that it is there for.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 
 #include "exactvo/datasets/audit.h"
 #include "exactvo/formation/simulation.h"
+#include "formation/liveness_scenes.h"
 #include "recordings/exact_shapes.h"
 #include "support/seeded_random.h"
 
@@ -106,8 +107,9 @@ TEST(AuditPoints, AreAllAskedAndProvenOfARunAsItWasMade) {
     options.method = method;
     const AuditReport report = audit(recorded(s, options), &s);
     EXPECT_TRUE(report.clean()) << to_json(report);
-    for (const PointCount& point : report.points) {
-      EXPECT_GT(point.proven, 0u) << name(method);
+    for (std::size_t p = 0; p < kAuditPoints; ++p) {
+      const PointCount& point = report.points[p];
+      EXPECT_EQ(point.proven > 0, static_cast<AuditPoint>(p) != AuditPoint::plans) << name(method);  // it has none
       EXPECT_EQ(point.asked(), point.proven) << name(method);
     }
     EXPECT_EQ(report.largest_violation, 0.0) << "choices are rounded inward";
@@ -574,13 +576,95 @@ TEST(AuditPoints, RandomRunsAreRefutedByTheirMotionsAlone) {
     options.integrator = static_cast<formation::Integrator>(random.integer(0, 4));
     options.controller = static_cast<formation::Controller>(random.integer(0, 3));
     const AuditReport report = audit(recorded(s, options), &s);
-    for (std::size_t p = 0; p + 1 < kAuditPoints; ++p)
+    for (std::size_t p = 0; p < kAuditPoints; ++p) {
+      if (static_cast<AuditPoint>(p) == AuditPoint::motions) continue;
       EXPECT_EQ(report.points[p].refuted, 0u) << round << " " << to_json(report);
+    }
     asked += report[AuditPoint::completeness].proven;
     ++runs;
   }
   EXPECT_GT(runs, 60u);
   EXPECT_GT(asked, 300u);
+}
+
+// --- Plans ---
+
+/// The audit of point (8) of `clean()` with a plan that begins in its first row.
+AuditReport with_plan(const std::vector<formation::PlanMove>& moves, Vec2 off = {}) {
+  RecordingFile file = clean();
+  const std::vector<RobotStep>& first = file.recording.steps.front().robots;
+  file.recording.plans = {{0, 0, {0, 1}, {first[0].position + off, first[1].position}, moves}};
+  return audit(file);
+}
+
+/// a is at (0, 0.1), b at (8, -0.1), of radius 0.5 both.
+TEST(AuditPlans, MovesThatAreClearAreProven) {
+  const AuditReport report = with_plan({{0, {0.0, 3.0}}, {1, {8.0, 5.0}}, {0, {0.0, 0.1}}, {0, {8.0, 0.1}}});
+  EXPECT_EQ(report[AuditPoint::plans].proven, 6u) << to_json(report);
+  EXPECT_TRUE(report.clean()) << to_json(report);
+}
+
+TEST(AuditPlans, AMoveIntoAnObstacleIsRefuted) {
+  const AuditReport report = with_plan({{0, {2.5, -0.5}}, {0, {0.0, 0.1}}});
+  EXPECT_EQ(report[AuditPoint::plans].refuted, 1u) << to_json(report);
+  EXPECT_FALSE(report.clean());
+  EXPECT_NE(to_json(report).find("move 0 of the plan takes a too near to obstacle 'block'"), std::string::npos)
+      << to_json(report);
+  EXPECT_EQ(with_plan({{0, {2.5, -2.0}}})[AuditPoint::plans].refuted, 1u) << "into its middle";
+}
+
+/// Robots of the plan stand where their last move took them: the order decides.
+TEST(AuditPlans, AMoveIntoARobotThatStandsThereIsRefuted) {
+  const std::vector<formation::PlanMove> good = {{1, {8.0, 5.0}}, {0, {8.0, 0.1}}};
+  EXPECT_EQ(with_plan(good)[AuditPoint::plans].proven, 4u);
+  const AuditReport report = with_plan({good[1], good[0]});
+  EXPECT_EQ(report[AuditPoint::plans].refuted, 1u) << to_json(report);
+  EXPECT_NE(to_json(report).find("row 0: move 0 of the plan takes a too near to robot 'b'"), std::string::npos);
+}
+
+TEST(AuditPlans, DistancesHoldUpToTheRoundingOfPlans) {
+  const auto up_to = [](double gap) {
+    return with_plan({{0, {5.5, 0.1}}, {0, {8.0 - 1.0 - gap, -0.1}}})[AuditPoint::plans];
+  };
+  EXPECT_EQ(up_to(0.0).proven, 4u);
+  EXPECT_EQ(up_to(-1e-9).proven, 4u);
+  EXPECT_EQ(up_to(-1e-7).refuted, 1u);
+}
+
+TEST(AuditPlans, AStartThatIsNotWhereTheRobotWasIsRefuted) {
+  const AuditReport report = with_plan({}, {0.0, 0x1p-50});
+  EXPECT_EQ(report[AuditPoint::plans].refuted, 1u) << to_json(report);
+  EXPECT_NE(to_json(report).find("row 0: the plan does not begin where a was in row 0"), std::string::npos);
+}
+
+/// Plans are made from where robots stand, be that too near to something: then nothing is said of the way out.
+TEST(AuditPlans, AMoveThatBeginsTooNearIsLeftOpen) {
+  const AuditReport report = with_plan({{0, {0.0, 3.0}}}, {7.5, -0.2});
+  EXPECT_EQ(report[AuditPoint::plans].open, 1u) << to_json(report);
+  EXPECT_EQ(report[AuditPoint::plans].refuted, 1u) << "it does not begin there";
+}
+
+TEST(AuditPlans, PlacesOutOfRangeAreRefused) {
+  EXPECT_FALSE(with_plan({{0, {std::nan(""), 0.0}}}).clean());
+  EXPECT_FALSE(with_plan({{0, {1e300, 0.0}}}).clean());
+}
+
+/// As they are made: two head-on that back into a siding, and a street.
+TEST(AuditPlans, ThoseOfRunsAreProven) {
+  for (Scenario s : {formation::test_scenes::siding(), formation::test_scenes::street(14, 3.0)}) {
+    s.time_limit = 25.0;
+    const RecordingFile file = recorded(s);
+    ASSERT_FALSE(file.recording.plans.empty()) << s.name;
+    std::size_t asked = 0;
+    for (const formation::JointPlan& plan : file.recording.plans) {
+      EXPECT_LE(plan.from_row, plan.row);
+      EXPECT_EQ(plan.starts.size(), plan.robots.size());
+      asked += plan.robots.size() + plan.moves.size();
+    }
+    const AuditReport report = audit(file);
+    EXPECT_EQ(report[AuditPoint::plans].proven, asked) << s.name << to_json(report);
+    EXPECT_EQ(report[AuditPoint::plans].asked(), asked) << s.name;
+  }
 }
 
 /// By sampling: points of the shape lie in it, points a little outward do not.

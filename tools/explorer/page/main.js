@@ -9,6 +9,7 @@ import {Edit, handlesOf, obstacleHandle, pickHandle} from './editing.js';
 import {spaceOf, reachOf, drawSpace, pickInSpace} from './space.js';
 import {seriesOf, pathLength, eventsOf, drawCharts, drawCursor, pickEvent, pxToTime} from './charts.js';
 import {number, pair, speedWords, effectOf, effectWords, statusWords, contactWords, lineWords, modeWords, waitWords, whyWords} from './words.js';
+import {planWords} from './plans.js';
 import {checkDecision, checkHalfPlane, checkHalfOfPair, checkChoice, checkConstraint} from './proof.js';
 import {download, fileName, momentSvg, animatedSvg, recordFilm} from './export.js';
 
@@ -321,6 +322,8 @@ function fillWords() {
   fact(facts, 'status', statusWords(d), 'status');
   const waits = waitWords(run, d.row, ui.robot);
   if (waits) fact(facts, 'waiting', waits, 'waiting');
+  const plan = planWords(run, ui.robot, d.time);
+  if (plan) fact(facts, 'plan', plan, 'plan');
   $('facts').replaceChildren(...facts);
   $('why').textContent = whyWords(run, d, mode).join('\n');
   const result = checkChoice(run, d);

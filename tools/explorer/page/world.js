@@ -2,6 +2,7 @@
 // The world: obstacles, enclosures, robots with heading and trail, goals, who presses on whom.
 import {drawGrid, label, line, arrow, shortName, tracePoints} from './draw.js';
 import {distanceToSegment} from './shapes.js';
+import {drawPlan} from './plans.js';
 
 const CROWD = 60;          // robots: more than this are drawn in bulk, without names and trails
 const MOST_TRAIL = 4000;   // points of a trail
@@ -411,6 +412,7 @@ function drawWorld(ctx, view, run, positions, ui, decision) {
   }
   drawEnclosures(ctx, view, colours, run, ui);
   drawRoutes(ctx, view, colours, run, ui);
+  drawPlan(ctx, view, colours, run, ui);
   drawGoals(ctx, view, colours, run, ui);
   drawUnreachable(ctx, view, colours, run, ui);
   drawTrails(ctx, view, colours, run, ui, positions.row);

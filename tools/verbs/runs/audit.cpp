@@ -62,7 +62,8 @@ const char* in_words(datasets::AuditPoint point) {
                                     "half-planes exclude their velocity obstacles",
                                     "choices satisfy their half-planes and are the best",
                                     "rows follow from one another",
-                                    "motions keep clear of everything"};
+                                    "motions keep clear of everything",
+                                    "joint plans begin where their robots are, and their moves are clear"};
   return kWords[static_cast<std::size_t>(point)];
 }
 

@@ -3,7 +3,7 @@
 
 /// \file
 /// Verifies a recording in exact rational arithmetic (GMP), with none of the filters that made it and sharing no code
-/// with the run but plain types and two checkers of certificates (vo/certificate.h, lp/certificate.h). Seven points:
+/// with the run but plain types and two checkers of certificates (vo/certificate.h, lp/certificate.h). Eight points:
 ///
 ///  (1) scenario      the header agrees with its scenario, its scenario with the file given, the lines with the seal;
 ///  (2) bodies        for every robot and goal each obstacle edge lies inside a body that stands for its obstacle; what
@@ -20,8 +20,10 @@
 ///                    for bit of kinematic robots, else up to named roundings); leader and moving obstacles are where
 ///                    their paths have them;
 ///  (7) motions       every motion from row to row, as it was driven, keeps clear of obstacles, of moving obstacles
-///  where
-///                    they are meanwhile, and of the other robots.
+///                    where they are meanwhile, and of the other robots;
+///  (8) plans         every joint plan begins where its robots were, and no move of it comes nearer to an obstacle or
+///  to
+///                    another robot of the plan than radii allow, up to a share of 1e-8 (plans are rounded).
 ///
 /// The motion of (7) is straight, the exponential curve, or the cubic through both rows (`formation::MotionLaw`).
 /// Curves are cut into chords with a proven bound of how far they stray, finer and finer until each is proven clear or
@@ -29,7 +31,8 @@
 /// elsewhere what touches to within some 1e-7 of its bulge stays open.
 ///
 /// What stays open is neither proven nor refuted: of (7) it is a failure. Of (3) to (5) it is none by itself (a robot
-/// whose anchor overlaps an obstacle can be promised nothing), since (7) proves what was driven. `not_audited` lists
+/// whose anchor overlaps an obstacle can be promised nothing), nor of (8) (a plan may begin too near to something),
+/// since (7) proves what was driven. `not_audited` lists
 /// what is not asked. The seal has no key: it shows damage, and the points show forgery.
 
 #include <array>
@@ -42,7 +45,7 @@
 
 namespace exactvo::datasets {
 
-/// The seven points, numbered in the head of this file.
+/// The eight points, numbered in the head of this file.
 enum class AuditPoint {
   scenario,      ///< (1)
   bodies,        ///< (2)
@@ -50,10 +53,11 @@ enum class AuditPoint {
   half_planes,   ///< (4)
   choices,       ///< (5)
   sequence,      ///< (6)
-  motions        ///< (7)
+  motions,       ///< (7)
+  plans          ///< (8)
 };
 /// How many points there are.
-inline constexpr std::size_t kAuditPoints = 7;
+inline constexpr std::size_t kAuditPoints = 8;
 
 /// "scenario", "bodies" and so on, as in JSON.
 const char* name(AuditPoint point);

@@ -114,6 +114,23 @@ struct Outlook {
   std::vector<std::size_t> bodies;  ///< of `Recording::bodies`; `RecordedConstraint::index` counts them
 };
 
+/// One robot of a joint plan goes straight to a place while the others stand.
+struct PlanMove {
+  std::size_t robot = 0;  ///< in the order of the scenario
+  Vec2 to;                ///< m
+};
+
+/// The plan of robots that waited for each other (liveness, rule R3): moves one after the other, from where the robots
+/// were in a row. They drive at once what the order allows. Heuristic: half-planes decide what is driven. No move comes
+/// nearer to an obstacle or to another robot of the plan than radii allow or than it begins, up to a share of 1e-8.
+struct JointPlan {
+  std::size_t row = 0;              ///< in which it was made, before the decisions
+  std::size_t from_row = 0;         ///< where it begins; where that is earlier, its robots first go back as they came
+  std::vector<std::size_t> robots;  ///< ascending, in the order of the scenario
+  std::vector<Vec2> starts;         ///< m, of each of them: where it was in `from_row`
+  std::vector<PlanMove> moves;      ///< in the order of the plan
+};
+
 /// Joint plans of a run (liveness).
 struct LivenessCourse {
   std::size_t groups = 0;        ///< that went by a plan
@@ -146,6 +163,7 @@ struct Recording {
   /// What half-planes were built on, by number. Of robots and moving obstacles the shape is as at the end of the run.
   std::vector<vo::Body> bodies;
   std::vector<Outlook> outlooks;  ///< in order of time: of every robot's first goal, then of others as they came up
+  std::vector<JointPlan> plans;   ///< in order of time
   std::optional<LivenessCourse> liveness;  ///< where robots may go by plan
   std::optional<RoutesCourse> routes;      ///< where robots go along routes
   bool all_half_planes = false;            ///< every half-plane of every decision was kept

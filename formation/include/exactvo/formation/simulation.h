@@ -109,6 +109,8 @@ class RunSink {
   virtual void add_body(const vo::Body& body) = 0;
   /// What a robot sees on its way to a goal, before the first row that goes there.
   virtual void add_outlook(const Outlook& outlook) = 0;
+  /// A joint plan, before the row in which it was made.
+  virtual void add_plan(const JointPlan& /*plan*/) {}
   /// Rows come in the order of time; the last one is the final state.
   virtual void add_row(Step row) = 0;
 };

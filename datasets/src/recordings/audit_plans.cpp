@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "recordings/audit_plans.h"
+
+#include <string>
+
+namespace exactvo::datasets {
+namespace {
+
+using exact::Point;
+using exact::Rational;
+using exact::Straight;
+using exact::Verdict;
+using formation::JointPlan;
+
+/// A plan on its way: who stands where.
+class PlanAudit {
+ public:
+  PlanAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, const JointPlan& plan,
+            AuditTally& tally)
+      : file_(file), obstacles_(obstacles), plan_(plan), tally_(tally), at_(plan.starts) {}
+
+  void check() {
+    for (std::size_t k = 0; k < plan_.robots.size(); ++k) begins(k);
+    for (std::size_t m = 0; m < plan_.moves.size(); ++m) move(m);
+  }
+
+ private:
+  const std::string& id(std::size_t robot) const { return file_.scenario.robots[robot].id; }
+  Rational radius(std::size_t robot) const { return Rational(file_.scenario.robots[robot].radius); }
+
+  void begins(std::size_t k) {
+    const std::size_t robot = plan_.robots[k];
+    file_.recording.steps[plan_.from_row].robots[robot].position == plan_.starts[k]
+        ? tally_.proven(AuditPoint::plans)
+        : tally_.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin where " + id(robot) +
+                                                                  " was in row " + std::to_string(plan_.from_row)));
+  }
+
+  void move(std::size_t m) {
+    const std::size_t robot = plan_.moves[m].robot;
+    const auto found = std::lower_bound(plan_.robots.begin(), plan_.robots.end(), robot);
+    const auto mover = static_cast<std::size_t>(found - plan_.robots.begin());
+    std::string met, open;
+    meet_obstacles(mover, plan_.moves[m].to, met, open);
+    meet_robots(mover, plan_.moves[m].to, met, open);
+    at_[mover] = plan_.moves[m].to;
+    const std::string what = "move " + std::to_string(m) + " of the plan takes " + id(robot) + " too near to ";
+    if (!met.empty())
+      tally_.refuted(AuditPoint::plans, at_row(plan_.row, what + met));
+    else if (!open.empty())
+      tally_.open(AuditPoint::plans, at_row(plan_.row, what + open + ", where it is too near before"));
+    else
+      tally_.proven(AuditPoint::plans);
+  }
+
+  /// Who is too near at the beginning or, of obstacles, at the end may stay so: plans are made from where robots stand.
+  void meet_obstacles(std::size_t mover, geometry::Vec2 to, std::string& met, std::string& open) const {
+    const std::size_t robot = plan_.robots[mover];
+    const Rational reach = radius(robot) * (1 - Rational(kPlanRounding));
+    const AuditBox swept = box_of(geometry::Segment{at_[mover], to});
+    const Straight way{exact::exactly(at_[mover]), exact::exactly(to)};
+    const Straight start{way.from, way.from}, end{way.to, way.to};
+    for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+      if (are_apart(swept, obstacles_[o].box, file_.scenario.robots[robot].radius)) continue;
+      bool meets = exact::is_inside(way.from, *obstacles_[o].obstacle), stood = meets;
+      for (const std::size_t edge : obstacles_[o].near(swept, file_.scenario.robots[robot].radius)) {
+        if (!exact::come_nearer_than(way, obstacles_[o].edges[edge], reach)) continue;
+        meets = true;
+        stood = stood || exact::come_nearer_than(start, obstacles_[o].edges[edge], reach) ||
+                exact::come_nearer_than(end, obstacles_[o].edges[edge], reach);
+      }
+      std::string& where = stood ? open : met;
+      if (meets && where.empty()) where = "obstacle '" + file_.scenario.obstacles[o].id + "'";
+    }
+  }
+
+  void meet_robots(std::size_t mover, geometry::Vec2 to, std::string& met, std::string& open) const {
+    const Straight way{exact::exactly(at_[mover]), exact::exactly(to)};
+    for (std::size_t k = 0; k < at_.size(); ++k) {
+      if (k == mover) continue;
+      const Rational reach = (radius(plan_.robots[mover]) + radius(plan_.robots[k])) * (1 - Rational(kPlanRounding));
+      const Point other = exact::exactly(at_[k]);
+      if (exact::squared_distance(other, way) >= reach * reach) continue;
+      const Point before = other - way.from;
+      std::string& where = exact::dot(before, before) < reach * reach ? open : met;
+      if (where.empty()) where = "robot '" + id(plan_.robots[k]) + "'";
+    }
+  }
+
+  const RecordingFile& file_;
+  const std::vector<RationalObstacle>& obstacles_;
+  const JointPlan& plan_;
+  AuditTally& tally_;
+  std::vector<geometry::Vec2> at_;  ///< m
+};
+
+}  // namespace
+
+void audit_plans(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, AuditTally& tally) {
+  for (const JointPlan& plan : file.recording.plans) PlanAudit(file, obstacles, plan, tally).check();
+}
+
+}  // namespace exactvo::datasets
