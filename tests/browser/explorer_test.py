@@ -443,6 +443,35 @@ class PageItself(Page):
         self.open("narrow.html", "#t=9&robot=left")
         self.assertEqual(self.text("[data-fact=waiting]"), "waits for right, which waits for left: a deadlock")
 
+    def test_joint_plans_are_those_of_the_recording(self):
+        wall = [[-12, 0], [12, 0], [12, 1.5], [5.7, 1.5], [5.7, 2.9], [4.3, 2.9], [4.3, 1.5], [-12, 1.5], [-12, 0]]
+        scenario = {"name": "siding", "time_limit": 25, "obstacles": [{"id": "corridor", "polyline": wall}],
+                    "robots": [{"id": "east", "position": [-10, 0.75], "goal": [10, 0.75], "max_speed": 1.5},
+                               {"id": "west", "position": [10, 0.75], "goal": [-10, 0.75], "max_speed": 1.5}]}
+        (self.place / "siding.json").write_text(json.dumps(scenario))
+        self.run_program("simulate", "siding.json", "--out", "siding")
+        lines = [json.loads(line) for line in (self.place / "siding/recording.jsonl").read_text().splitlines()]
+        plans = [line["plan"] for line in lines if "plan" in line]
+        self.assertTrue(plans)
+        for page in ("siding/explorer.html", "viewed.html"):  # as the run made it, and made of its recording
+            self.run_program("view", "siding", "--out", "viewed.html")
+            self.open(page)
+            shown = self.run_script("return exactvo.page.run.head.plans")
+            self.assertEqual([p["robots"] for p in shown], [[r["robot"] for r in p["robots"]] for p in plans])
+            for mine, plan in zip(shown, plans):
+                self.assertAlmostEqual(mine["time"], 0.05 * plan["row"])
+                self.assertEqual(mine["starts"], [x for r in plan["robots"] for x in r["start"]])
+                self.assertEqual(mine["movers"], [move["robot"] for move in plan["moves"]])
+                self.assertEqual(mine["places"], [x for move in plan["moves"] for x in move["to"]])
+            moves, own = len(plans[0]["moves"]), sum(move["robot"] == 1 for move in plans[0]["moves"])
+            self.open(page, f"#t={shown[0]['time']}&robot=west")
+            self.assertRegex(self.text("[data-fact=plan]"), rf"^made at [\d.]+ s for 2 robots: {moves} moves, {own} of its own")
+            with_plan = self.run_script("return exactvo.svgOfMoment()")
+            without = self.run_script("exactvo.page.run.head.plans = []; return exactvo.svgOfMoment()")
+            self.assertGreater(len(with_plan), len(without), "the plan is drawn")
+            self.open(page, "#t=0&robot=west")
+            self.assertEqual(self.run_script("return document.querySelectorAll('[data-fact=plan]').length"), 0)
+
     def test_an_address_that_asks_for_what_is_not_here_says_so(self):
         self.run_program("view", "--out", "start.html")
         for words, expected in [("#run=other", "no run 'other'"), ("#run=circle&robot=nobody", "no robot 'nobody'"), ("#run=wall&t=soon", "'soon' is no time"),

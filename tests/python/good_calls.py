@@ -13,6 +13,8 @@ WALL = exactvo.Segment((4, -3), (4, 3))
 DOOR = [exactvo.Wall([(0, 0), (0, 4)]), exactvo.Wall([(0, 5), (0, 9)])]
 RING = exactvo.Wall([(4, -1), (6, -1), (6, 1), (4, 1), (4, -1)])
 
+PLAN = simulation.JointPlan(0, 0, (1, 3), np.zeros((2, 2)), (1, 3, 1), np.eye(3, 2))
+
 #: What no argument should be.
 JUNK = [
     None, object(), "x", "", b"y", 1.5, -1, 0, True, 10**30, float("nan"), float("inf"), np.float32(1.5), np.int64(1),
@@ -124,6 +126,7 @@ def good_calls(folder):
         ("simulation.read_recording", simulation.read_recording, dict(path=str(folder / "recording.jsonl"))),
         ("simulation.Recording.half_planes", run.half_planes, dict(step=0, robot=0)),
         ("simulation.Recording.audit", run.audit, {}),
+        ("simulation.JointPlan.path", PLAN.path, dict(robot=1)),
         ("simulation.Recording.write", run.write, dict(path=str(folder / "again.jsonl"))),
         ("simulation.Recording.view", run.view, dict(height=720)),
         ("explorer.view", explorer.view, dict(height=720)),

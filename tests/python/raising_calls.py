@@ -6,7 +6,7 @@ is a name of exactvo.errors or of Python. `test_raises.py` compares the table wi
 from types import SimpleNamespace
 
 import numpy as np
-from good_calls import DOOR, ONE, SQUARE, WALL, good_calls, two_robots
+from good_calls import DOOR, ONE, PLAN, SQUARE, WALL, good_calls, two_robots
 
 import exactvo
 from exactvo import _exactvo, datasets, explorer, lp, routes, rvo2, shapes, simulation, vo
@@ -147,6 +147,7 @@ def raising_calls(folder):
         ("simulation.read_recording", "MissingFileError", lambda: simulation.read_recording(missing)),
         ("simulation.Recording.half_planes", "ArgumentError", lambda: run.half_planes("x", 0)),
         ("simulation.Recording.half_planes", "IndexError", lambda: run.half_planes(0, 9)),
+        ("simulation.JointPlan.path", "ArgumentError", lambda: PLAN.path(2)),
         ("simulation.Recording.write", "ArgumentError", lambda: run.write(None)),
         ("simulation.Recording.write", "DataError", lambda: run.write(elsewhere)),
         ("simulation.Recording.view", "ArgumentError", lambda: run.view(height=0)),

@@ -184,3 +184,23 @@ def test_files_that_are_missing_or_no_json_are_refused(tmp_path):
     (tmp_path / "recording.jsonl").write_text("{}\n")
     with pytest.raises(exactvo.DataError):
         exactvo.read_recording(tmp_path)
+
+
+def test_joint_plans_are_those_of_the_recording(tmp_path):
+    """Two head-on in a corridor with a siding."""
+    wall = [(-12, 0), (12, 0), (12, 1.5), (5.7, 1.5), (5.7, 2.9), (4.3, 2.9), (4.3, 1.5), (-12, 1.5), (-12, 0)]
+    scenario = exactvo.Scenario.build([(-10, 0.75), (10, 0.75)], [(10, 0.75), (-10, 0.75)], obstacles=[exactvo.Wall(wall)], max_speed=1.5, time_limit=25)
+    run = exactvo.simulate(scenario)
+    assert run.plans
+    for plan in run.plans:
+        assert plan.robots == (0, 1) and len(plan.movers) == len(plan.places) > 0
+        assert np.array_equal(plan.starts, run.position[plan.from_row][list(plan.robots)])
+        assert sum(len(plan.path(robot)) - 1 for robot in plan.robots) == len(plan.places)
+        assert np.array_equal(plan.path(0)[0], plan.starts[0])
+        assert {"by-plan", "going-back"} & set(run.mode[plan.row])
+    report = run.audit()
+    assert report["points"]["plans"]["asked"] == report["points"]["plans"]["proven"] == sum(len(p.robots) + len(p.places) for p in run.plans)
+    run.write(tmp_path / "recording.jsonl")
+    again = exactvo.read_recording(tmp_path / "recording.jsonl").plans
+    assert [p.row for p in again] == [p.row for p in run.plans] and np.array_equal(again[0].places, run.plans[0].places)
+    assert exactvo.simulate(scenario, liveness="off").plans == ()

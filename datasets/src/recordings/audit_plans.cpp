@@ -53,21 +53,20 @@ class PlanAudit {
       tally_.proven(AuditPoint::plans);
   }
 
-  /// Who is too near at the beginning or, of obstacles, at the end may stay so: plans are made from where robots stand.
+  /// Who is too near at the beginning is left open: plans are made from where robots stand.
   void meet_obstacles(std::size_t mover, geometry::Vec2 to, std::string& met, std::string& open) const {
     const std::size_t robot = plan_.robots[mover];
     const Rational reach = radius(robot) * (1 - Rational(kPlanRounding));
     const AuditBox swept = box_of(geometry::Segment{at_[mover], to});
     const Straight way{exact::exactly(at_[mover]), exact::exactly(to)};
-    const Straight start{way.from, way.from}, end{way.to, way.to};
+    const Straight start{way.from, way.from};
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {
       if (are_apart(swept, obstacles_[o].box, file_.scenario.robots[robot].radius)) continue;
       bool meets = exact::is_inside(way.from, *obstacles_[o].obstacle), stood = meets;
       for (const std::size_t edge : obstacles_[o].near(swept, file_.scenario.robots[robot].radius)) {
         if (!exact::come_nearer_than(way, obstacles_[o].edges[edge], reach)) continue;
         meets = true;
-        stood = stood || exact::come_nearer_than(start, obstacles_[o].edges[edge], reach) ||
-                exact::come_nearer_than(end, obstacles_[o].edges[edge], reach);
+        stood = stood || exact::come_nearer_than(start, obstacles_[o].edges[edge], reach);
       }
       std::string& where = stood ? open : met;
       if (meets && where.empty()) where = "obstacle '" + file_.scenario.obstacles[o].id + "'";

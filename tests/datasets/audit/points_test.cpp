@@ -639,7 +639,7 @@ TEST(AuditPlans, AStartThatIsNotWhereTheRobotWasIsRefuted) {
 
 /// Plans are made from where robots stand, be that too near to something: then nothing is said of the way out.
 TEST(AuditPlans, AMoveThatBeginsTooNearIsLeftOpen) {
-  const AuditReport report = with_plan({{0, {0.0, 3.0}}}, {7.5, -0.2});
+  const AuditReport report = with_plan({{0, {7.5, -3.0}}}, {7.5, -0.2});
   EXPECT_EQ(report[AuditPoint::plans].open, 1u) << to_json(report);
   EXPECT_EQ(report[AuditPoint::plans].refuted, 1u) << "it does not begin there";
 }

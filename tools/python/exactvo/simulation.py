@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import matplotlib.animation
     import pandas
 
-__all__ = ["METHODS", "RecordedHalfPlane", "Recording", "Scenario", "ScenarioRobot", "read_recording", "simulate"]
+__all__ = ["METHODS", "JointPlan", "RecordedHalfPlane", "Recording", "Scenario", "ScenarioRobot", "read_recording", "simulate"]
 
 #: What `simulate(method=...)` takes: the textbook's baseline, the paper's, with merged enclosures, and the default.
 METHODS: tuple[str, ...] = tuple(_exactvo.method_names())
@@ -167,6 +167,29 @@ class RecordedHalfPlane:
     clearance: float  #: m, rim to body; negative in overlap
 
 
+@dataclass(frozen=True, eq=False)
+class JointPlan:
+    """The plan of robots that waited for each other (docs/guide/liveness.md): moves one after the other."""
+
+    row: int  #: of the recording: where it was made
+    from_row: int  #: where it begins; its robots go back there first where it is earlier
+    robots: tuple[int, ...]  #: columns of the recording, ascending
+    starts: Floats  #: n x 2, m: of each of them, where it was in `from_row`
+    movers: tuple[int, ...]  #: of each move, whose it is: a column
+    places: Floats  #: m x 2, m: of each move, where it leads
+
+    def path(self, robot: int) -> Floats:
+        """k x 2, m: where the robot (a column) goes, its start included. Raises `ArgumentError` for one that is not of the
+        plan."""
+        if robot not in self.robots:
+            raise ArgumentError("robot", repr(robot)[:60], f"one of {', '.join(map(str, self.robots))}")
+        path: Floats = np.vstack([self.starts[self.robots.index(robot)][None], self.places[np.array(self.movers, dtype=int) == robot]])
+        return path
+
+    def __repr__(self) -> str:
+        return f"JointPlan({len(self.robots)} robots, {len(self.movers)} moves, row {self.row})"
+
+
 class Recording:
     """What happened in a run. The arrays are read-only views: one row per step, one column per robot; the last row is the final
     state, whose decisions are empty."""
@@ -250,6 +273,14 @@ class Recording:
         return tuple(
             RecordedHalfPlane(HalfPlane(*h), _SOURCES[source], index, certified, hard, active, multiplier, clearance)
             for h, source, index, certified, hard, active, multiplier, clearance in self._native.half_planes(step, robot)
+        )
+
+    @property
+    def plans(self) -> tuple[JointPlan, ...]:
+        """The joint plans, in order of time; none where no robots waited for each other."""
+        return tuple(
+            JointPlan(row, from_row, tuple(robots), starts, tuple(movers), places)
+            for row, from_row, robots, starts, movers, places in self._native.plans()
         )
 
     def audit(self) -> dict[str, Any]:

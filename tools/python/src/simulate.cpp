@@ -169,6 +169,22 @@ py::list half_planes(const Run& run, std::size_t step, std::size_t robot) {
   return result;
 }
 
+/// (row, from_row, robots, starts, who moves, where to), a tuple per plan.
+py::list plans(const Run& run) {
+  py::list result;
+  for (const formation::JointPlan& plan : run.file.recording.plans) {
+    std::vector<std::size_t> movers;
+    std::vector<Vec2> places;
+    for (const formation::PlanMove& move : plan.moves) {
+      movers.push_back(move.robot);
+      places.push_back(move.to);
+    }
+    result.append(
+        py::make_tuple(plan.row, plan.from_row, plan.robots, as_array(plan.starts), movers, as_array(places)));
+  }
+  return result;
+}
+
 py::list problems_of(const formation::Scenario& scenario) {
   py::list result;
   for (const formation::ScenarioProblem& p : formation::validate(scenario))
@@ -238,6 +254,7 @@ void bind_simulate(py::module_& module) {
              return ScenarioHandle{run.file.scenario, {}, {}};
            })
       .def("half_planes", &half_planes)
+      .def("plans", &plans)
       .def("audit", [](const Run& run) {
         const py::gil_scoped_release released;
         return datasets::to_json(datasets::audit(run.file));
