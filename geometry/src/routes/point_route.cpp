@@ -101,7 +101,7 @@ class TautCurve {
       const Vec2 in = unit(points_[leg + 1] - points_[leg]);
       for (std::size_t k = first_of(leg); k < end_of(leg); ++k) {
         const double share = share_of(k, leg), least = inset_share(k, inset);
-        const bool left = share > 0.5, is_at_end = share < least || share > 1.0 - least;
+        const bool left = share > 0.5, is_at_end = share < least || 1.0 - share < least;
         const int vertex = is_at_end ? row_.vertex(k, left) : -1;
         if (vertex < 0) corners.emplace_back(at(k, inner(k, share, inset)));
         if (vertex >= 0 && vertex != last) corners.emplace_back(beside(row_.end(k, left), left, in, in, inset));
@@ -122,7 +122,7 @@ class TautCurve {
   /// A corner in each portal, exact where rounded ones cannot be proven.
   Polyline through_portals(double inset) const {
     Polyline corners{points_.front()};
-    std::vector<double> shares;
+    std::vector<OnPortal> shares;
     for (std::size_t leg = 0; leg + 1 < points_.size(); ++leg) {
       const std::size_t end = leg < turns_.size() ? turns_[leg].at + 1 : row_.size();
       for (std::size_t k = first_of(leg); k < end; ++k) {
@@ -151,6 +151,12 @@ class TautCurve {
   }
 
  private:
+  /// A place on a portal, as a share of it from the nearer end: 1 - 2^-60 is no double.
+  struct OnPortal {
+    double share;
+    bool from_left;
+  };
+
   /// Portals that the straight piece crosses, without the one at whose end it turns.
   std::size_t first_of(std::size_t leg) const { return leg > 0 ? turns_[leg - 1].at + 1 : 0; }
   std::size_t end_of(std::size_t leg) const { return leg < turns_.size() ? turns_[leg].at : row_.size(); }
@@ -172,20 +178,21 @@ class TautCurve {
     const double width = norm(row_.end(portal, true) - row_.end(portal, false));
     return inset < kMost * width ? inset / width : kMost;
   }
-  double inner(std::size_t portal, double share, double inset) const {
-    const double least = inset_share(portal, inset);
-    return std::clamp(share, least, 1.0 - least);
+  OnPortal inner(std::size_t portal, double share, double inset) const {
+    const bool from_left = share > 0.5;
+    return {std::max(from_left ? 1.0 - share : share, inset_share(portal, inset)), from_left};
   }
 
-  Vec2 at(std::size_t portal, double share) const {
-    const Vec2 right = row_.end(portal, false), left = row_.end(portal, true);
-    return share > 0.5 ? left + (1.0 - share) * (right - left) : right + share * (left - right);
+  Vec2 at(std::size_t portal, OnPortal place) const {
+    const Vec2 near = row_.end(portal, place.from_left), far = row_.end(portal, !place.from_left);
+    return near + place.share * (far - near);
   }
-  Point exactly_at(std::size_t portal, double share) const {
-    auto [right, left] = plan_.map().ends_of(plan_.map().portals[row_.portal(portal)]);
-    if (!row_.is_from_left(portal)) std::swap(right, left);
-    const Vector<Rational> r = right.exact(), l = left.exact();
-    return {Rational(r.x + share * (l.x - r.x)), Rational(r.y + share * (l.y - r.y))};
+  Point exactly_at(std::size_t portal, OnPortal place) const {
+    auto [near, far] = plan_.map().ends_of(plan_.map().portals[row_.portal(portal)]);
+    if (row_.is_from_left(portal) == place.from_left) std::swap(near, far);
+    const Vector<Rational> x = near.exact(), y = far.exact();
+    const Rational share(place.share);
+    return {Rational(x.x + share * (y.x - x.x)), Rational(x.y + share * (y.y - x.y))};
   }
   /// Away from a vertex on the left or right of the curve, which comes along `in` and leaves along `out`.
   static Vec2 beside(Vec2 vertex, bool left, Vec2 in, Vec2 out, double inset) {
