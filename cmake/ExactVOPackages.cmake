@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Debian packages: `cpack -G DEB` in the build folder makes exactvo, libexactvo-dev and, where it is built, python3-exactvo.
+# Debian packages: `cpack -G DEB` in the build folder makes exactvo, libexactvo-dev and, where it is built, python3-exactvo
+# (scripts/make_packages.sh). With the prefix /usr libraries lie where Debian wants them, lib/<architecture>.
 set(CPACK_PACKAGE_NAME exactvo)
 set(CPACK_PACKAGE_VENDOR "ExactVO")
 set(CPACK_PACKAGE_CONTACT "The ExactVO maintainers <maintainers@exactvo.invalid>")
@@ -55,5 +56,10 @@ if(EXACTVO_GZIP)
     install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian_copyright RENAME copyright DESTINATION ${folder} COMPONENT ${component})
     install(FILES ${changes}.gz DESTINATION ${folder} COMPONENT ${component})
   endforeach()
+  # And compressed manual pages.
+  install(CODE "file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1/exactvo*.1\")
+    if(pages)
+      execute_process(COMMAND ${EXACTVO_GZIP} --best --no-name --force \${pages} COMMAND_ERROR_IS_FATAL ANY)
+    endif()" COMPONENT runtime)
 endif()
 include(CPack)
