@@ -134,6 +134,7 @@ void write_table(std::ostream& out, const SuiteTable& table, const std::vector<s
 /// succeeded.
 void write_picture(std::ostream& out, const SuiteTable& table, const std::vector<std::string>& methods) {
   constexpr double kLeft = 170.0, kWidth = 620.0, kRow = 20.0, kTop = 24.0, kLargest = 24.0;
+  constexpr double kApart = 4.0;  // methods that are as good as each other
   const auto x_of = [&](double ratio) {
     return kLeft + kWidth * std::log(std::clamp(ratio, 1.0, kLargest)) / std::log(kLargest);
   };
@@ -151,8 +152,9 @@ void write_picture(std::ostream& out, const SuiteTable& table, const std::vector
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const Cell* cell = table.find(table.scenes[k], methods[m]);
       if (cell == nullptr) continue;
+      const double beside = kApart * (static_cast<double>(m) - 0.5 * static_cast<double>(methods.size() - 1));
       for (const double ratio : cell->makespans)
-        out << "<circle cx=\"" << x_of(ratio) << "\" cy=\"" << y << "\" r=\"4\" fill=\"" << colour_of(m)
+        out << "<circle cx=\"" << x_of(ratio) << "\" cy=\"" << y + beside << "\" r=\"3.5\" fill=\"" << colour_of(m)
             << "\" fill-opacity=\"0.65\"/>";
       if (cell->successes < cell->runs) {
         const double x = kLeft + kWidth + 16.0 + 14.0 * static_cast<double>(m);
