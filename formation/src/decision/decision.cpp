@@ -21,18 +21,19 @@ double reach_within(double time_step, double speeds) {
   return kRounding * time_step * speeds;
 }
 
-Constraint against_robot(const geometry::HalfPlane& h, bool certified, std::size_t other, const Scene& scene,
-                         const vo::MovingDisc& self, const vo::MovingDisc& them, double tau) {
+Constraint against_robot(const geometry::HalfPlane& h, bool certified, const Party& self, const Party& other,
+                         double tau) {
   Constraint c;
   c.half_plane = h;
-  c.body = scene.robot(other);
+  c.body = other.body;
   c.priority = lp::Priority::soft;
   c.proof = certified ? vo::Proof::pair : vo::Proof::none;
-  const Vec2 apart = self.position - them.position;
-  c.clearance = norm(apart) - (self.radius + them.radius);
+  const Vec2 apart = self.disc.position - other.disc.position;
+  c.clearance = norm(apart) - (self.disc.radius + other.disc.radius);
   c.normal = geometry::normalized(apart);
   c.time_horizon = tau;
-  c.index = other;
+  c.index = other.index;
+  c.speed = kFastest * other.max_speed;
   return c;
 }
 
@@ -43,26 +44,16 @@ const lp::ActiveConstraint* active_at(const lp::Solution& solution, std::size_t 
   return nullptr;
 }
 
-/// By the distance of the centres; of robots equally near, by their numbers.
-void sort_by_distance(const std::vector<Anchor>& anchors, std::size_t self, std::vector<Constraint>& mine) {
-  const auto distance = [&](const Constraint& c) { return norm(anchors[c.index].position - anchors[self].position); };
-  std::sort(mine.begin(), mine.end(), [&](const Constraint& x, const Constraint& y) {
-    const double dx = distance(x), dy = distance(y);
-    return dx != dy ? dx < dy : x.index < y.index;
-  });
+Party party(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
+            Vec2 velocity) {
+  const Robot& r = scenario.robots[i];
+  return {i, scene.robot(i), {anchors[i].position, velocity, r.radius}, r.max_speed, r.cooperates};
 }
 
-/// Both halves of a pair.
-struct PairConstraints {
-  Constraint of_a, of_b;
-};
-
-PairConstraints against_each_other(const Scene& scene, std::size_t i, const vo::MovingDisc& a, std::size_t j,
-                                   const vo::MovingDisc& b, const vo::ReciprocalOptions& options) {
-  const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a, b, options);
-  const double tau = options.time_horizon;
-  return {against_robot(pair.a, pair.certified, j, scene, a, b, tau),
-          against_robot(pair.b, pair.certified, i, scene, b, a, tau)};
+/// Where both yield, or neither does: half each.
+PairConstraints half_each(Party a, Party b, const vo::ReciprocalOptions& rule) {
+  a.yields = b.yields = true;
+  return against_each_other(a, b, rule);
 }
 
 Constraint* against(std::size_t robot, const Scene& scene, std::vector<Constraint>& all) {
@@ -77,11 +68,11 @@ PairConstraints at_rest(const Scenario& scenario, const std::vector<Anchor>& anc
                         std::size_t j, double time_horizon) {
   vo::ReciprocalOptions options;
   options.time_horizon = options.contact_time = time_horizon;
-  const vo::MovingDisc a{anchors[i].position, {}, scenario.robots[i].radius};
-  const vo::MovingDisc b{anchors[j].position, {}, scenario.robots[j].radius};
-  const bool is_in_contact = norm(a.position - b.position) - (a.radius + b.radius) <= kContactSkin;
+  const Party a = party(scenario, anchors, scene, i, {}), b = party(scenario, anchors, scene, j, {});
+  const double centres = norm(a.disc.position - b.disc.position);
+  const bool is_in_contact = centres - (a.disc.radius + b.disc.radius) <= kContactSkin;
   if (!is_in_contact) options.margin = kContactSkin;
-  PairConstraints pair = against_each_other(scene, i, a, j, b, options);
+  PairConstraints pair = half_each(a, b, options);
   if (is_in_contact)
     for (Constraint* c : {&pair.of_a, &pair.of_b}) c->half_plane.offset = std::max(0.0, c->half_plane.offset);
   return pair;
@@ -92,9 +83,7 @@ PairConstraints with_plans(const Scenario& scenario, const std::vector<Anchor>& 
                            std::size_t i, Vec2 of_i, std::size_t j, Vec2 of_j) {
   vo::ReciprocalOptions options;
   options.time_horizon = options.contact_time = scenario.time_step;
-  const vo::MovingDisc a{anchors[i].position, of_i, scenario.robots[i].radius};
-  const vo::MovingDisc b{anchors[j].position, of_j, scenario.robots[j].radius};
-  return against_each_other(scene, i, a, j, b, options);
+  return half_each(party(scenario, anchors, scene, i, of_i), party(scenario, anchors, scene, j, of_j), options);
 }
 
 /// One of them goes by a plan: the whole gap is its.
@@ -109,6 +98,32 @@ PairConstraints with_a_plan(const Scenario& scenario, const std::vector<Anchor>&
 
 }  // namespace
 
+vo::ReciprocalOptions pair_rule(const Scenario& scenario, const SimulationOptions& options) {
+  vo::ReciprocalOptions rule;
+  const bool baseline = options.method == Method::orca;
+  rule.time_horizon = baseline ? scenario.horizons.orca : scenario.horizons.robots;
+  rule.contact_time = contact_time(scenario);
+  rule.margin = baseline ? 0.0 : scenario.margins.robot;
+  return rule;
+}
+
+PairConstraints against_each_other(const Party& a, const Party& b, vo::ReciprocalOptions rule) {
+  rule.share_of_a = a.yields == b.yields ? 0.5 : (a.yields ? 1.0 : 0.0);
+  const vo::ReciprocalHalfPlanes pair = vo::reciprocal_half_planes(a.disc, b.disc, rule);
+  return {against_robot(pair.a, pair.certified, a, b, rule.time_horizon),
+          against_robot(pair.b, pair.certified, b, a, rule.time_horizon)};
+}
+
+void sort_by_distance(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines) {
+  const auto distance = [&](const Constraint& c) {
+    return norm(std::get<geometry::Disc>(bodies[c.body].shape).center - from);
+  };
+  std::sort(lines.begin(), lines.end(), [&](const Constraint& x, const Constraint& y) {
+    const double dx = distance(x), dy = distance(y);
+    return dx != dy ? dx < dy : x.index < y.index;
+  });
+}
+
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
                        Scene& scene, std::vector<std::vector<Constraint>>& out) {
   const std::size_t n = scenario.robots.size();
@@ -118,24 +133,18 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
     scene.bodies().move(scene.robot(i), geometry::Disc{anchors[i].position, scenario.robots[i].radius},
                         anchors[i].velocity);
   }
-  vo::ReciprocalOptions pair_options;
-  const bool baseline = options.method == Method::orca;
-  pair_options.time_horizon = baseline ? scenario.horizons.orca : scenario.horizons.robots;
-  pair_options.contact_time = contact_time(scenario);
-  pair_options.margin = baseline ? 0.0 : scenario.margins.robot;
+  const vo::ReciprocalOptions rule = pair_rule(scenario, options);
   for (std::size_t i = 0; i < n; ++i) {
+    const Party a = party(scenario, anchors, scene, i, anchors[i].velocity);
     for (std::size_t j = i + 1; j < n; ++j) {
       if (norm(anchors[i].position - anchors[j].position) > scenario.neighbour_distance) continue;
-      const bool a_yields = scenario.robots[i].cooperates, b_yields = scenario.robots[j].cooperates;
-      pair_options.share_of_a = a_yields == b_yields ? 0.5 : (a_yields ? 1.0 : 0.0);
-      const vo::MovingDisc a{anchors[i].position, anchors[i].velocity, scenario.robots[i].radius};
-      const vo::MovingDisc b{anchors[j].position, anchors[j].velocity, scenario.robots[j].radius};
-      const PairConstraints pair = against_each_other(scene, i, a, j, b, pair_options);
-      if (a_yields) out[i].push_back(pair.of_a);
-      if (b_yields) out[j].push_back(pair.of_b);
+      const Party b = party(scenario, anchors, scene, j, anchors[j].velocity);
+      const PairConstraints pair = against_each_other(a, b, rule);
+      if (a.yields) out[i].push_back(pair.of_a);
+      if (b.yields) out[j].push_back(pair.of_b);
     }
   }
-  for (std::size_t i = 0; i < n; ++i) sort_by_distance(anchors, i, out[i]);
+  for (std::size_t i = 0; i < n; ++i) sort_by_distance(scene.bodies(), anchors[i].position, out[i]);
 }
 
 void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
@@ -210,32 +219,42 @@ double reach_of_step(const Scenario& scenario, const Viewpoint& from) {
 
 /// m: how much nearer the robot and the body can come within a step, whatever is decided.
 double Decider::reach_of(const Constraint& c, const Viewpoint& from) const {
-  const vo::Body& body = (*bodies_)[c.body];
-  const double other =
-      body.kind == vo::BodyKind::robot ? kFastest * scenario_->robots[c.index].max_speed : norm(body.velocity);
-  return reach_within(scenario_->time_step, kFastest * from.max_speed + other);
+  return reach_within(scenario_->time_step, kFastest * from.max_speed + c.speed);
 }
 
-RecordedConstraint Decider::recorded(const Constraint& c, const Viewpoint& from,
-                                     const lp::ActiveConstraint* active) const {
-  const vo::Body& body = (*bodies_)[c.body];
-  RecordedConstraint r;
+DecisionConstraint Decider::named(const Kept& kept) const {
+  const Constraint& c = *kept.first;
+  DecisionConstraint r;
   r.half_plane = c.half_plane;
-  r.source = body.kind;
+  r.source = (*bodies_)[c.body].kind;
   r.body = c.body;
   r.index = c.index;
   r.piece = c.piece;
   r.certified = c.proof != vo::Proof::none;
   r.hard = c.priority == lp::Priority::hard;
-  r.active = active != nullptr;
-  r.multiplier = active ? active->multiplier : 0.0;
+  r.active = kept.second != nullptr;
+  r.multiplier = kept.second ? kept.second->multiplier : 0.0;
+  r.tau = c.time_horizon;
+  r.clearance = c.clearance;
+  return r;
+}
+
+RecordedConstraint Decider::recorded(const Kept& kept, const Viewpoint& from) const {
+  const vo::Body& body = (*bodies_)[kept.first->body];
+  RecordedConstraint r;
+  static_cast<DecisionConstraint&>(r) = named(kept);
   r.shape = body.shape;
   r.position = from.position;
   r.radius = from.radius;
-  r.tau = c.time_horizon;
   r.shape_velocity = body.velocity;
-  r.clearance = c.clearance;
   return r;
+}
+
+void Decider::reserve(std::size_t constraints) {
+  problem_.constraints.reserve(constraints);
+  pricing_.at.reserve(constraints);  // a search of more rounds than there are lines was never seen
+  memory_.reserve(constraints);
+  kept_.reserve(constraints);
 }
 
 void Decider::state_problem(const DecisionInput& in) {
@@ -249,7 +268,7 @@ void Decider::state_problem(const DecisionInput& in) {
 lp::Solution Decider::rounded_solution(const DecisionInput& in) {
   for (;;) {
     state_problem(in);
-    const lp::Solution solution = lp::solve(problem_, pricing_);
+    const lp::Solution solution = lp::solve(problem_, pricing_, memory_);
     if (!in.more || !in.more->need_for(solution, pricing_)) return solution;
   }
 }
@@ -257,9 +276,10 @@ lp::Solution Decider::rounded_solution(const DecisionInput& in) {
 /// What the rounded solution lacks in proof the exact one has, which needs all half-planes.
 lp::Proven Decider::proven_solution(const DecisionInput& in) {
   if (in.more && in.keep_all) in.more->need_all();
-  const lp::Solution rounded = rounded_solution(in);
-  lp::Proven proven = lp::certified(problem_, rounded);
-  if (!proven.exact_stage || !in.more || !in.more->need_all()) return proven;
+  lp::Proven proven;
+  proven.solution = rounded_solution(in);
+  if (lp::is_proven_by_multipliers(problem_, proven.solution)) return proven;
+  if (!in.more || !in.more->need_all()) return lp::certified(problem_, proven.solution);
   state_problem(in);
   return lp::solve_certified(problem_);
 }
@@ -278,35 +298,44 @@ Decider::Proof Decider::proof_of(const lp::Proven& proven) const {
                                                                            : Proof::whole_problem;
 }
 
-void Decider::decide(const DecisionInput& in, RobotStep& step) {
+void Decider::decide(const DecisionInput& in, Decision& decision) {
   const lp::Proven proven = proven_solution(in);
-  lp::Solution solution = proven.solution;
   const Proof proof = proof_of(proven);
-  step.exact_multipliers = proof == Proof::exact_multipliers;
-  if (step.exact_multipliers)
-    for (lp::ActiveConstraint& active : solution.active) active.multiplier = 0.0;
+  solution_ = proven.solution;
+  decision.exact_multipliers = proof == Proof::exact_multipliers;
+  if (decision.exact_multipliers)
+    for (lp::ActiveConstraint& active : solution_.active) active.multiplier = 0.0;
   const bool keep_all = in.keep_all || proof == Proof::whole_problem;
-  step.preferred = in.preferred;
-  step.chosen = solution.velocity;
-  step.status = solution.status;
-  step.violation = solution.violation;
-  step.bound.clear();
-  for (std::size_t k = 0; k < solution.active_count; ++k)
-    if (lp::is_speed_bound(solution.active[k].binding)) step.bound.push_back(solution.active[k]);
-  step.uncertified = 0;
-  step.constraints.clear();
+  decision.preferred = in.preferred;
+  decision.chosen = solution_.velocity;
+  decision.status = solution_.status;
+  decision.violation = solution_.violation;
+  decision.bound.clear();
+  for (std::size_t k = 0; k < solution_.active_count; ++k)
+    if (lp::is_speed_bound(solution_.active[k].binding)) decision.bound.push_back(solution_.active[k]);
+  decision.uncertified = 0;
   kept_.clear();
   std::size_t number = 0;
   for (const std::vector<Constraint>* some : {in.statics, in.others}) {
     for (const Constraint& c : *some) {
-      const lp::ActiveConstraint* active = active_at(solution, number++);
-      if (c.proof == vo::Proof::none) ++step.uncertified;
+      const lp::ActiveConstraint* active = active_at(solution_, number++);
+      if (c.proof == vo::Proof::none) ++decision.uncertified;
       if (keep_all || active || has_fallen_back(c, in) || c.clearance <= reach_of(c, in.from))
         kept_.emplace_back(&c, active);
     }
   }
+}
+
+void Decider::kept(std::vector<DecisionConstraint>& out) const {
+  out.clear();
+  for (const Kept& one : kept_) out.push_back(named(one));
+}
+
+void Decider::decide(const DecisionInput& in, RobotStep& step) {
+  decide(in, static_cast<Decision&>(step));
+  step.constraints.clear();
   step.constraints.reserve(kept_.size());
-  for (const auto& [constraint, active] : kept_) step.constraints.push_back(recorded(*constraint, in.from, active));
+  for (const Kept& one : kept_) step.constraints.push_back(recorded(one, in.from));
 }
 
 }  // namespace exactvo::formation::detail

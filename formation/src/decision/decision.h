@@ -10,6 +10,8 @@
 
 #include "decision/needed_constraints.h"
 #include "exactvo/vo/lp/certificate.h"
+#include "exactvo/vo/lp/solve.h"
+#include "exactvo/vo/reciprocal.h"
 #include "scene/static_field.h"
 
 namespace exactvo::formation::detail {
@@ -19,6 +21,29 @@ struct Anchor {
   Vec2 position;  ///< m
   Vec2 velocity;  ///< m/s
 };
+
+/// A robot of a pair.
+struct Party {
+  std::size_t index = 0;           ///< `Constraint::index` of what keeps clear of it
+  vo::BodyTable::Number body = 0;  ///< a disc, where it is
+  vo::MovingDisc disc;
+  double max_speed = 0.0;  ///< m/s
+  bool yields = true;      ///< false: the other one takes the whole avoiding
+};
+
+/// Both halves of a pair.
+struct PairConstraints {
+  Constraint of_a, of_b;
+};
+
+/// How robots keep clear of each other, but for their shares.
+vo::ReciprocalOptions pair_rule(const Scenario& scenario, const SimulationOptions& options);
+/// Soft. Each half is the same bits whoever is `a`.
+PairConstraints against_each_other(const Party& a, const Party& b, vo::ReciprocalOptions rule);
+
+/// By the distance of the robots from `from`; of robots equally near, by their numbers. REQUIRES: half-planes against
+/// robots only.
+void sort_by_distance(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines);
 
 /// All half-planes of every robot against every other within `neighbour_distance`, nearest first: entry i belongs to
 /// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who
@@ -70,12 +95,21 @@ class Decider {
  public:
   Decider(const Scenario& scenario, const vo::BodyTable& bodies) : scenario_(&scenario), bodies_(&bodies) {}
 
-  /// Fills `chosen`, `status`, `violation`, `exact_multipliers`, `bound`, `constraints` and `uncertified` of the step;
-  /// the other fields are the caller's. Keeps the constraints that bind and those against what can be met within a
-  /// step: with these alone an audit sees that none is missing. Keeps all where no multipliers prove the choice.
+  /// Room for decisions among so many half-planes: they allocate nothing then, unless doubles do not prove them.
+  void reserve(std::size_t constraints);
+
+  /// Fills `preferred`, `chosen`, `status`, `violation`, `exact_multipliers`, `bound` and `uncertified`; the other
+  /// fields are the caller's. Keeps the constraints that bind and those against what can be met within a step: with
+  /// these alone an audit sees that none is missing. Keeps all where no multipliers prove the choice.
+  void decide(const DecisionInput& in, Decision& decision);
+  /// What the last decision kept. REQUIRES: what it was made from is still there.
+  void kept(std::vector<DecisionConstraint>& out) const;
+
+  /// Both, with the shapes.
   void decide(const DecisionInput& in, RobotStep& step);
 
  private:
+  using Kept = std::pair<const Constraint*, const lp::ActiveConstraint*>;
   /// What shows that a choice is the best.
   enum class Proof {
     multipliers,        ///< its own
@@ -88,13 +122,16 @@ class Decider {
   lp::Proven proven_solution(const DecisionInput& in);
   bool has_fallen_back(const Constraint& c, const DecisionInput& in) const;
   double reach_of(const Constraint& c, const Viewpoint& from) const;
-  RecordedConstraint recorded(const Constraint& c, const Viewpoint& from, const lp::ActiveConstraint* active) const;
+  DecisionConstraint named(const Kept& kept) const;
+  RecordedConstraint recorded(const Kept& kept, const Viewpoint& from) const;
 
   const Scenario* scenario_;
   const vo::BodyTable* bodies_;
   lp::Problem problem_;
   lp::Pricing pricing_;
-  std::vector<std::pair<const Constraint*, const lp::ActiveConstraint*>> kept_;  ///< of one decision
+  lp::SolveMemory memory_;
+  lp::Solution solution_;   ///< of one decision, as the next two
+  std::vector<Kept> kept_;  ///< with what binds in `solution_`
 };
 
 }  // namespace exactvo::formation::detail

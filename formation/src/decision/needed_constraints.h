@@ -20,6 +20,9 @@ bool violates(const geometry::HalfPlane& h, Vec2 v);
 /// Grows on demand; each half-plane is the same bits as StaticField::constraints gives, in the same order.
 class NeededConstraints {
  public:
+  /// Room for so many half-planes.
+  void reserve(std::size_t lines) { lines_.reserve(lines); }
+
   /// Begins with what lies within `reach` (m, from the rim). `field` must outlive the questions.
   void look(const StaticField& field, const Viewpoint& from, double reach);
 
@@ -49,7 +52,17 @@ class NeededConstraints {
 /// there, nearest first.
 class NearConstraints {
  public:
-  /// Begins anew. `field` must outlive the questions, and be the same one every time; `reach` in m, from the rim.
+  /// Room for so many bodies.
+  void reserve(std::size_t bodies) {
+    bodies_.reserve(bodies);
+    candidates_.reserve(bodies);
+    lines_.reserve(bodies);
+  }
+
+  /// From here on of another robot or field.
+  void forget() { gathered_reach_ = -1.0; }
+
+  /// Begins anew. `field` must outlive the questions, and be the same one until `forget`; `reach` in m, from the rim.
   void look(const StaticField& field, const Viewpoint& from, double reach);
 
   /// The first that v violates, or null. Valid until the next question.

@@ -159,7 +159,7 @@ class FormationRun {
     step.side = answer.side;
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
-    const Follower::Answer round = robots_[i].slot.steer(situation, statics, others);
+    const SlotFollower::Answer round = robots_[i].slot.steer(situation, statics, others);
     step.note = joined_notes(answer.note, round.note);
     if (round.mode != Mode::following) return answer.preferred;
     step.mode = Mode::following;

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "decision/decision.h"
-#include "decision/needed_constraints.h"
 #include "exactvo/formation/passing.h"
 #include "liveness/groups.h"
+#include "runs/own_decision.h"
 #include "runs/rows.h"
 #include "runs/run_clock.h"
 #include "runs/runs.h"
@@ -24,14 +24,11 @@ namespace {
 
 using geometry::norm;
 
-struct KinematicRobot {
+struct KinematicRobot : OwnWay {
   Vec2 position;
   Vec2 velocity;
   std::size_t goal = 0;
-  std::optional<StaticField> field;
-  Follower follower;
   std::string note = {};  ///< for the next row
-  bool tied = false;      ///< the last preference was turned to break a tie
   // With guidance.
   std::optional<Course> course = {};         ///< to its present goal
   std::shared_ptr<Guide> detour = {};        ///< of a course round obstacles that move and stand for now
@@ -56,7 +53,7 @@ class KinematicRun {
         liveness_(liveness_of(scenario, options)),
         scene_(scenario, options),
         clock_(scenario, options),
-        decider_(scenario, scene_.bodies()),
+        own_(scenario, options, scene_.bodies()),
         anchors_(scenario.robots.size()),
         planned_(scenario.robots.size()),
         held_by_all_(scenario.robots.size(), 0) {
@@ -97,9 +94,7 @@ class KinematicRun {
 
   void look_at_goal(std::size_t i, double time) {
     const Robot& spec = scenario_.robots[i];
-    robots_[i].field.emplace(scene_, scenario_, options_, spec.radius, robots_[i].position, goal_of(i),
-                             HorizonRule::clamped);
-    robots_[i].follower.reset();
+    robots_[i].head_for(goal_of(i), scene_, scenario_, options_, spec.radius, robots_[i].position);
     if (guide_) plan_course(i);
     outlooks_.push_back({time, i, robots_[i].goal, robots_[i].field->shapes()});
   }
@@ -146,7 +141,7 @@ class KinematicRun {
   void pass_waypoint(std::size_t i, double time) {
     if (has_last_goal(i) || !is_within_reach(i)) return;
     ++robots_[i].goal;
-    robots_[i].note = "goal " + std::to_string(robots_[i].goal) + " passed: heads for the next";
+    robots_[i].note = passed_goal_words(robots_[i].goal);
     look_at_goal(i, time);  // which may note that the next one is out of reach
   }
 
@@ -276,7 +271,7 @@ class KinematicRun {
     robots_[i].field->constraints(here, all_, reach_of_step(scenario_, here));
     const std::optional<double> share = allowed_share(wanted, all_, others_[i]);
     held_by_all_[i] = !share;
-    decider_.decide(
+    own_.decider().decide(
         {share.value_or(0.0) * wanted, here, &all_, &others_[i], clock_.keeps_all(time), nullptr, fallen_back}, step);
   }
 
@@ -354,22 +349,12 @@ class KinematicRun {
     return {robots_[i].position, robots_[i].velocity, spec.radius, spec.max_speed};
   }
 
-  /// At the static obstacles: `statics_` or, of Method::orca, `all_`.
-  void look(std::size_t i) {
-    const Viewpoint here = viewpoint(i);
-    if (options_.method == Method::orca)
-      robots_[i].field->constraints(here, all_);
-    else
-      statics_.look(*robots_[i].field, here, reach_of_step(scenario_, here));
-  }
+  void look(std::size_t i) { own_.look(*robots_[i].field, viewpoint(i)); }
 
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, double time, RobotStep& step,
               const std::vector<std::size_t>* fallen_back = nullptr) {
-    const bool is_orca = options_.method == Method::orca;
-    decider_.decide({preferred, viewpoint(i), is_orca ? &all_ : &statics_.lines(), &others_[i], clock_.keeps_all(time),
-                     is_orca ? nullptr : &statics_, fallen_back},
-                    step);
+    own_.choose(preferred, viewpoint(i), others_[i], clock_.keeps_all(time), fallen_back, step);
   }
 
   /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).
@@ -387,9 +372,7 @@ class KinematicRun {
   }
 
   Vec2 straight_for(std::size_t i, Vec2 place) const {
-    const Vec2 way = place - robots_[i].position;
-    const double speed = std::min(scenario_.robots[i].max_speed, norm(way) / scenario_.time_step);
-    return speed * geometry::normalized(way);
+    return detail::straight_for(viewpoint(i), place, scenario_.time_step);
   }
 
   bool stays(std::size_t i) const {
@@ -425,45 +408,10 @@ class KinematicRun {
     return straight_for(i, to.place);
   }
 
-  bool is_in_contact() const {
-    const std::vector<Constraint>& statics = options_.method == Method::orca ? all_ : statics_.lines();
-    return !statics.empty() && statics.front().clearance < 0.0;
-  }
-
   Vec2 steer(std::size_t i, double time, RobotStep& step) {
-    const Vec2 preferred = straight_for(i, goal_of(i));
-    if (at_goal(i)) {
-      step.mode = Mode::arrived;
-      return preferred;
-    }
-    const bool in_contact = is_in_contact();
-    if (in_contact) step.mode = Mode::pushing_out;
-    if (guide_) return guided(i, step);
-    if (options_.method == Method::orca) return preferred;
-    if (options_.method != Method::ivo) return ties_broken(i, preferred, step);
-    const Viewpoint here = viewpoint(i);
-    const Follower::Answer answer =
-        robots_[i].follower.steer({time, scenario_.time_step, here, goal_of(i),
-                                   here.max_speed * scenario_.horizons.least, preferred, &*robots_[i].field});
-    step.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
-    step.side = answer.side;
-    step.note = joined_notes(step.note, answer.note);
-    if (answer.mode == Mode::following) return answer.preferred;
-    statics_.need_at(preferred);
-    const std::optional<Vec2> boost = boosted(statics_.lines(), preferred);
-    if (!boost) return ties_broken(i, preferred, step);
-    step.mode = Mode::boost;
-    return *boost;
-  }
-
-  /// Says so when a tie begins.
-  Vec2 ties_broken(std::size_t i, Vec2 preferred, RobotStep& step) {
-    statics_.need_at(preferred);
-    const Vec2 turned = with_tie_broken(statics_.lines(), preferred);
-    const bool tied = !(turned == preferred);
-    if (tied && !robots_[i].tied) step.note = joined_notes(step.note, "head-on: the tie between the sides goes left");
-    robots_[i].tied = tied;
-    return turned;
+    if (!guide_ || at_goal(i)) return own_.steer(robots_[i], {time, viewpoint(i), goal_of(i), at_goal(i)}, step);
+    if (own_.is_in_contact()) step.mode = Mode::pushing_out;
+    return guided(i, step);
   }
 
   void move(const Step& row) {
@@ -541,7 +489,7 @@ class KinematicRun {
   Scene scene_;
   RunClock clock_;
   double now_ = 0.0;  ///< s, of the present row
-  Decider decider_;
+  OwnDecision own_;
   std::vector<KinematicRobot> robots_;
   OpenSpace open_space_;
   std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
@@ -550,8 +498,7 @@ class KinematicRun {
   std::vector<Anchor> anchors_;
   std::vector<std::optional<Vec2>> planned_;     ///< m/s, what those who go by plan want
   std::vector<char> held_by_all_;                ///< of those: no share of it is allowed
-  NeededConstraints statics_;                    ///< of the methods that have static fields of shapes
-  std::vector<Constraint> all_;                  ///< of Method::orca
+  std::vector<Constraint> all_;                  ///< static ones of those who go by plan
   std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
 };
 

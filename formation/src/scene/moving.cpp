@@ -21,29 +21,33 @@ void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::ve
   }
 }
 
+void add_moving_constraint(const Scenario& scenario, const Viewpoint& from, vo::BodyTable& bodies,
+                           vo::BodyTable::Number body, std::size_t index, std::vector<Constraint>& out) {
+  const Vec2 u = bodies[body].velocity;
+  geometry::GrownShape& seen = bodies.seen(body, from.position, from.radius);
+  const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);
+  if (nearest.distance > scenario.neighbour_distance) return;
+  vo::ClearancePolicy policy;
+  policy.time_horizon = scenario.horizons.robots;
+  policy.room = scenario.margins.robot;
+  policy.push_out_time = contact_time(scenario);
+  const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity - u, policy);
+  Constraint& c = out.emplace_back();
+  c.half_plane = vo::shifted_by(found.half_plane, u);
+  c.proof = found.proof;
+  c.priority = lp::Priority::soft;
+  c.body = body;
+  c.clearance = nearest.distance;
+  c.normal = nearest.normal;
+  c.time_horizon = policy.time_horizon;
+  c.index = index;
+  c.speed = norm(u);
+}
+
 void add_moving_constraints(const Scenario& scenario, const Viewpoint& from, Scene& scene,
                             std::vector<Constraint>& out) {
-  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
-    const vo::BodyTable::Number body = scene.moving_obstacle(k);
-    const Vec2 u = scene.bodies()[body].velocity;
-    geometry::GrownShape& seen = scene.bodies().seen(body, from.position, from.radius);
-    const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);
-    if (nearest.distance > scenario.neighbour_distance) continue;
-    vo::ClearancePolicy policy;
-    policy.time_horizon = scenario.horizons.robots;
-    policy.room = scenario.margins.robot;
-    policy.push_out_time = contact_time(scenario);
-    const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity - u, policy);
-    Constraint& c = out.emplace_back();
-    c.half_plane = vo::shifted_by(found.half_plane, u);
-    c.proof = found.proof;
-    c.priority = lp::Priority::soft;
-    c.body = body;
-    c.clearance = nearest.distance;
-    c.normal = nearest.normal;
-    c.time_horizon = policy.time_horizon;
-    c.index = k;
-  }
+  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k)
+    add_moving_constraint(scenario, from, scene.bodies(), scene.moving_obstacle(k), k, out);
 }
 
 }  // namespace exactvo::formation::detail

@@ -10,6 +10,7 @@
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/shapes.h"
+#include "exactvo/vo/constraint.h"
 
 namespace exactvo::formation::detail {
 
@@ -23,8 +24,12 @@ geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time);
 /// Brings the bodies of moving obstacles to where they are at `time`, and says where that is.
 void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved);
 
-/// Appends half-planes against every moving obstacle, soft, certified while the obstacle keeps its velocity. REQUIRES:
-/// `move_obstacles` for this time.
+/// Appends the half-plane against body number `body`, moving obstacle number `index`, if that is within
+/// `neighbour_distance`: soft, certified while the obstacle keeps its velocity.
+void add_moving_constraint(const Scenario& scenario, const Viewpoint& from, vo::BodyTable& bodies,
+                           vo::BodyTable::Number body, std::size_t index, std::vector<Constraint>& out);
+
+/// The same of every moving obstacle. REQUIRES: `move_obstacles` for this time.
 void add_moving_constraints(const Scenario& scenario, const Viewpoint& from, Scene& scene,
                             std::vector<Constraint>& out);
 

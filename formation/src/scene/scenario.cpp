@@ -11,6 +11,7 @@
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/distance.h"
+#include "scene/field_problems.h"
 #include "scene/obstacle_boxes.h"
 
 namespace exactvo::formation {
@@ -236,12 +237,17 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
 
 }  // namespace
 
-std::vector<ScenarioProblem> validate(const Scenario& scenario) {
+std::vector<ScenarioProblem> detail::field_problems(const Scenario& scenario) {
   Checker c;
   check_robots(scenario, c);
   check_moving(scenario, c);
   check_times(scenario, c);
   if (scenario.formation) check_formation(*scenario.formation, scenario.robots.size(), c);
+  return std::move(c.problems);
+}
+
+std::vector<ScenarioProblem> validate(const Scenario& scenario) {
+  Checker c{detail::field_problems(scenario)};
   if (c.problems.empty()) check_starts(scenario, c);
   return std::move(c.problems);
 }

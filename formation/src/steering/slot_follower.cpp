@@ -29,9 +29,9 @@ bool SlotFollower::stalled(const Situation& s) {
   return s.time - best_time_ > kStallTime && s.distance > s.tolerance;
 }
 
-Follower::Answer SlotFollower::steer(const Situation& s, const std::vector<Constraint>& statics,
-                                     const std::vector<Constraint>& others) {
-  Follower::Answer answer{s.preferred, Mode::direct, 0, ""};
+SlotFollower::Answer SlotFollower::steer(const Situation& s, const std::vector<Constraint>& statics,
+                                         const std::vector<Constraint>& others) {
+  Answer answer{s.preferred, Mode::direct, 0, ""};
   if (!s.target_rests) {
     *this = SlotFollower{};
     return answer;

@@ -22,9 +22,14 @@ class SlotFollower {
     bool target_rests = false;  ///< a slot that moves away is no stall
     Vec2 preferred;             ///< m/s
   };
+  struct Answer {
+    Vec2 preferred;
+    Mode mode = Mode::direct;
+    int side = 0;
+    std::string note;
+  };
   /// Mode::following with the turned preference while going round; Mode::direct otherwise.
-  Follower::Answer steer(const Situation& s, const std::vector<Constraint>& statics,
-                         const std::vector<Constraint>& others);
+  Answer steer(const Situation& s, const std::vector<Constraint>& statics, const std::vector<Constraint>& others);
 
  private:
   bool stalled(const Situation& s);

@@ -152,18 +152,19 @@ bool Follower::may_leave(const Situation& s, NearConstraints& near) const {
   return norm(s.goal - s.robot.position) < hit_distance_ - kLeaveGain && !near.any_violated(s.preferred);
 }
 
-Follower::Answer Follower::steer(const Situation& s) {
-  if (!following_ && !stalled(s)) return {s.preferred, Mode::direct, 0, ""};
-  NearConstraints near;
+Follower::Answer Follower::steer(const Situation& s, Memory& memory) {
+  if (!following_ && !stalled(s)) return {s.preferred};
+  NearConstraints& near = memory.near;
+  near.forget();
   near.look(*s.field, s.robot, s.reach);
   if (!following_) {
-    if (!near.any_violated(s.preferred)) return {s.preferred, Mode::direct, 0, ""};
-    return begin(s, near);
+    if (!near.any_violated(s.preferred)) return {s.preferred};
+    return begin(s, memory);
   }
   if (!may_leave(s, near)) return follow(s, near);
   reset();
   stalled(s);  // progress counts from here
-  return {s.preferred, Mode::direct, 0, "left the boundary: nearer to the goal than where it was met, and unblocked"};
+  return {s.preferred, Mode::direct, 0, {Note::What::left}};
 }
 
 void Follower::commit(const Situation& s, int side, std::size_t followed) {
@@ -184,7 +185,10 @@ constexpr double kRehearsalHorizon = 60.0;  ///< s: a boundary longer than that 
 /// is a lower bound of what it will be at the end.
 class Follower::Rehearsal {
  public:
-  Rehearsal(const Follower& actor, const Situation& s) : actor_(actor), s_(s), start_(s.time) {}
+  Rehearsal(const Follower& actor, const Situation& s, NearConstraints& near)
+      : actor_(actor), s_(s), near_(near), start_(s.time) {
+    near_.forget();
+  }
 
   bool has_ended() const { return has_ended_; }
   /// s; infinite where the boundary leads round to where it was met.
@@ -216,26 +220,23 @@ class Follower::Rehearsal {
 
   Follower actor_;
   Situation s_;
-  NearConstraints near_;
+  NearConstraints& near_;
   double start_, time_ = 0.0;  ///< s
   bool has_ended_ = false;
 };
 
 namespace {
 
-std::string seconds(double t) {
+/// "12.3 s".
+struct Seconds {
   char text[40];
-  std::snprintf(text, sizeof text, "%.1f s", t);
-  return std::isfinite(t) ? std::string(text) : std::string("no end");
-}
-
-/// "left (12.3 s to go that way, 15.1 s the other)"; of one that was not rehearsed to its end "at least 12.4 s".
-template <class Rehearsal>
-std::string side_words(bool left, const Rehearsal& taken, const Rehearsal& other) {
-  const std::string there =
-      other.has_ended() ? seconds(other.time()) : "at least " + seconds(std::floor(10.0 * other.time()) / 10.0);
-  return (left ? "left (" : "right (") + seconds(taken.time()) + " to go that way, " + there + " the other)";
-}
+  explicit Seconds(double t) {
+    if (std::isfinite(t))
+      std::snprintf(text, sizeof text, "%.1f s", t);
+    else
+      std::snprintf(text, sizeof text, "no end");
+  }
+};
 
 /// s: by how much the time of a rehearsal can fall by rounding.
 ///
@@ -266,27 +267,49 @@ bool left_is_better(Rehearsal& left, Rehearsal& right, double time_step, double 
 
 }  // namespace
 
-Follower::Answer Follower::begin(const Situation& s, NearConstraints& near) {
+/// "... turning left (12.3 s to go that way, 15.1 s the other)"; of one that was not rehearsed to its end "at least
+/// 12.4 s".
+void Follower::Note::add_to(std::string& note) const {
+  char text[240];
+  switch (what) {
+    case What::nothing:
+      return;
+    case What::left:
+      return add_note(note, "left the boundary: nearer to the goal than where it was met, and unblocked");
+    case What::circled:
+      return add_note(note, "completed a full circuit: no way to the goal along this boundary");
+    case What::follows:
+      std::snprintf(text, sizeof text, "stalled: follows the boundary, turning %s (%s to go that way, %s%s the other)",
+                    is_left ? "left" : "right", Seconds(taken).text, other_is_at_least ? "at least " : "",
+                    Seconds(other_is_at_least ? std::floor(10.0 * other) / 10.0 : other).text);
+      return add_note(note, text);
+  }
+}
+
+Follower::Answer Follower::begin(const Situation& s, Memory& memory) {
+  NearConstraints& near = memory.near;
   const std::optional<Sweep> left = sweep(near, s.preferred, 1.0, s.robot.max_speed);
   const std::optional<Sweep> right = sweep(near, s.preferred, -1.0, s.robot.max_speed);
   // At full speed nothing may stand in the way of what a slower preference violates: then there is no boundary.
   const bool met = left && right && left->last != Sweep::kNone && right->last != Sweep::kNone;
-  if (!met) return {s.preferred, Mode::direct, 0, ""};
+  if (!met) return {s.preferred};
   Follower to_left, to_right;
   to_left.commit(s, 1, left->last);
   to_right.commit(s, -1, right->last);
-  Rehearsal on_left(to_left, s), on_right(to_right, s);
+  Rehearsal on_left(to_left, s, memory.on_left), on_right(to_right, s, memory.on_right);
   const bool go_left = left_is_better(on_left, on_right, s.time_step, rehearsal_rounding(s));
   *this = go_left ? to_left : to_right;
-  const std::string words = side_words(go_left, go_left ? on_left : on_right, go_left ? on_right : on_left);
-  return {(go_left ? left : right)->velocity, Mode::following, side_,
-          "stalled: follows the boundary, turning " + words};
+  const Rehearsal &taken = go_left ? on_left : on_right, &other = go_left ? on_right : on_left;
+  return {(go_left ? left : right)->velocity,
+          Mode::following,
+          side_,
+          {Note::What::follows, go_left, taken.time(), other.time(), !other.has_ended()}};
 }
 
 Follower::Answer Follower::follow(const Situation& s, NearConstraints& near) {
   walked_ += norm(s.robot.position - last_position_);
   last_position_ = s.robot.position;
-  Answer answer{s.preferred, Mode::following, side_, ""};
+  Answer answer{s.preferred, Mode::following, side_};
   // Start the turn at the followed shape itself, so that the boundary is hugged round its corners.
   const Constraint* followed = near.of_body(followed_);
   const Vec2 start = followed ? -followed->normal : s.preferred;
@@ -299,7 +322,7 @@ Follower::Answer Follower::follow(const Situation& s, NearConstraints& near) {
   }
   if (!circled_ && walked_ > 4.0 * kCircleReach && norm(s.robot.position - hit_) < kCircleReach) {
     circled_ = true;
-    answer.note = "completed a full circuit: no way to the goal along this boundary";
+    answer.note.what = Note::What::circled;
   }
   return answer;
 }

@@ -9,6 +9,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "decision/needed_constraints.h"
@@ -51,11 +52,32 @@ Vec2 with_tie_broken(Vec2 normal, Vec2 v);
 /// leaves the boundary with the shorter way to go; ties go left.
 class Follower {
  public:
+  /// What began or ended, for the row's note.
+  struct Note {
+    enum class What { nothing, left, follows, circled };
+    What what = What::nothing;
+    // Where it follows:
+    bool is_left = false;  ///< the side taken
+    double taken = 0.0;    ///< s, to go that way; infinite where that has no end
+    double other = 0.0;    ///< s, to go the other way, or what that takes at least
+    bool other_is_at_least = false;
+    /// Appends it in words.
+    void add_to(std::string& note) const;
+  };
+
   struct Answer {
     Vec2 preferred;
     Mode mode = Mode::direct;
     int side = 0;
-    std::string note;
+    Note note = {};
+  };
+
+  /// What one robot's steering leaves to the next one's, so that it allocates nothing.
+  struct Memory {
+    NearConstraints near, on_left, on_right;
+    void reserve(std::size_t bodies) {
+      for (NearConstraints* some : {&near, &on_left, &on_right}) some->reserve(bodies);
+    }
   };
 
   struct Situation {
@@ -69,7 +91,7 @@ class Follower {
     Vec2 preferred;  ///< m/s, straight for the goal
     const StaticField* field = nullptr;
   };
-  Answer steer(const Situation& s);
+  Answer steer(const Situation& s, Memory& memory);
 
   /// A new goal: whatever was followed is forgotten.
   void reset();
@@ -81,7 +103,7 @@ class Follower {
   class Rehearsal;
 
   bool stalled(const Situation& s);
-  Answer begin(const Situation& s, NearConstraints& near);
+  Answer begin(const Situation& s, Memory& memory);
   Answer follow(const Situation& s, NearConstraints& near);
   void commit(const Situation& s, int side, std::size_t followed);
   bool may_leave(const Situation& s, NearConstraints& near) const;
@@ -97,6 +119,12 @@ class Follower {
   double best_distance_ = -1.0;  ///< m, least to the goal so far
   double best_time_ = 0.0;       ///< s, when that was first reached with a margin
 };
+
+/// Appends a note to those that a row has.
+inline void add_note(std::string& notes, std::string_view note) {
+  if (!notes.empty() && !note.empty()) notes += "; ";
+  notes += note;
+}
 
 /// Both notes of a row, where it has two.
 inline std::string joined_notes(const std::string& first, const std::string& second) {

@@ -6,6 +6,17 @@
 #include "lp/proof/multipliers.h"
 
 namespace exactvo::lp {
+namespace {
+
+/// The proof of a solution, which then has its multipliers.
+std::optional<ProofInDoubles> proven_with_multipliers(const Problem& problem, Solution& solution) {
+  require_well_formed(problem);
+  std::optional<ProofInDoubles> proof = proof_in_doubles(problem, solution);
+  if (proof && !has_multipliers_of(proof->bound, solution)) set_multipliers(problem, proof->bound, solution);
+  return proof;
+}
+
+}  // namespace
 
 Proven solve_certified(const Problem& problem) {
   return certified(problem, solve(problem));
@@ -14,11 +25,14 @@ Proven solve_certified(const Problem& problem) {
 Proven certified(const Problem& problem, const Solution& solution) {
   Proven answer;
   answer.solution = solution;
-  answer.certificate = certify(problem, answer.solution);
-  if (!answer.certificate) return solve_exactly(problem, active_bindings(answer.solution));
-  if (!has_multipliers_of(*answer.certificate, answer.solution))
-    set_multipliers(problem, *answer.certificate, answer.solution);
+  const std::optional<ProofInDoubles> proof = proven_with_multipliers(problem, answer.solution);
+  if (!proof) return solve_exactly(problem, active_bindings(answer.solution));
+  answer.certificate = certificate_of(*proof, answer.solution.status);
   return answer;
+}
+
+bool is_proven_by_multipliers(const Problem& problem, Solution& solution) {
+  return proven_with_multipliers(problem, solution).has_value();
 }
 
 Proven solve_exact(const Problem& problem) {

@@ -38,13 +38,13 @@ BodyTable::Number BodyTable::add(Body body) {
   return entries_.size() - 1;
 }
 
-void BodyTable::move(Number body, geometry::ConvexShape shape, Vec2 velocity) {
+void BodyTable::move(Number body, const geometry::ConvexShape& shape, Vec2 velocity) {
   EXACTVO_REQUIRE(geometry::is_valid(shape), geometry::excerpt(shape));
   Entry& entry = entries_[body];
   entry.body.velocity = velocity;
   entry.box = box_of(shape);
   entry.seen.shape = shape;
-  entry.body.shape = std::move(shape);
+  entry.body.shape = shape;
 }
 
 Nearest clearance_of(const GrownShape& seen) {

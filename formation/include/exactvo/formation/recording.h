@@ -18,28 +18,32 @@ namespace exactvo::formation {
 /// Where a half-plane comes from.
 using ConstraintSource = vo::BodyKind;
 
-/// One half-plane of a decision, with enough beside it to prove it again: the convex shape (grown by `radius`, seen
-/// from `position`, horizon `tau`) whose velocity obstacle it excludes. In a file the shape stands once, as a body, and
-/// place and velocity in the row.
-struct RecordedConstraint {
+/// One half-plane of a decision, and by number the body that it keeps clear of.
+struct DecisionConstraint {
   geometry::HalfPlane half_plane;                         ///< of velocities, in the frame of `chosen`
   ConstraintSource source = ConstraintSource::enclosure;  ///< what it keeps clear of
   /// Of the enclosure (of those for the robot's present goal), the obstacle edge (counted over the scene), the other
   /// robot or the moving obstacle.
   std::size_t index = 0;
-  std::size_t piece = 0;        ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
-  bool certified = false;       ///< proven to exclude the velocity obstacle's interior
-  bool hard = true;             ///< false: of a robot, and may give where half-planes contradict each other
-  bool active = false;          ///< binds the chosen velocity
+  std::size_t piece = 0;   ///< 0: the enclosure itself; from 1 on: which convex piece it gave way to
+  bool certified = false;  ///< proven to exclude the velocity obstacle's interior
+  bool hard = true;        ///< false: of a robot, and may give where half-planes contradict each other
+  bool active = false;     ///< binds the chosen velocity
+  double tau = 0.0;        ///< s
+  std::size_t body = 0;    ///< of `Recording::bodies`
+  double clearance = 0.0;  ///< m, robot's rim to the body; negative in overlap. Rounded
+  /// Of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 where it does not bind. Rounded.
+  double multiplier = 0.0;
+};
+
+/// The same with enough beside it to prove it again: the convex shape (grown by `radius`, seen from `position`, horizon
+/// `tau`) whose velocity obstacle it excludes. In a file the shape stands once, as a body, and place and velocity in
+/// the row.
+struct RecordedConstraint : DecisionConstraint {
   geometry::ConvexShape shape;  ///< m
   Vec2 position;                ///< m: the robot's anchor
   double radius = 0.0;          ///< m
-  double tau = 0.0;             ///< s
   Vec2 shape_velocity;          ///< m/s; the velocity obstacle is shifted by it (0 for static obstacles)
-  std::size_t body = 0;         ///< of `Recording::bodies`
-  double clearance = 0.0;       ///< m, robot's rim to the body; negative in overlap. Rounded
-  /// Of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 where it does not bind. Rounded.
-  double multiplier = 0.0;
 };
 
 /// How the preferred velocity was formed.
@@ -55,15 +59,9 @@ enum class Mode {
   arrived       ///< at its last goal
 };
 
-/// One robot's state at the start of a step, and its decision.
-struct RobotStep {
-  Vec2 position;  ///< m, at the step's start
-  Vec2 velocity;  ///< m/s, at the step's start
-  /// Where half-planes are built, and round which velocity: the robot's own, or the brake point x + v / k3 and what the
-  /// robot tracked before.
-  Vec2 anchor;           ///< m
-  Vec2 anchor_velocity;  ///< m/s
-  Vec2 preferred;        ///< m/s
+/// What a robot decided, but for the half-planes.
+struct Decision {
+  Vec2 preferred;  ///< m/s
   /// What of the speed bound binds, with its multiplier: chosen - preferred is the sum of multiplier times normal over
   /// these and the active half-planes (of the disc: the normal is -chosen, of length |chosen|). Up to rounding.
   std::vector<lp::ActiveConstraint> bound;
@@ -73,12 +71,22 @@ struct RobotStep {
   /// No multipliers in double prove the choice: they are left at 0. The exact ones follow from the half-planes
   /// (lp::solve_exact). Seen where robots rest in contact and their half-planes leave a rounding error of room.
   bool exact_multipliers = false;
-  Mode mode = Mode::direct;  ///< how `preferred` was formed
-  int side = 0;              ///< +1 left, -1 right, 0 none: the side kept while blocked
-  std::string note;          ///< why a mode began or ended, empty otherwise
+  Mode mode = Mode::direct;     ///< how `preferred` was formed
+  int side = 0;                 ///< +1 left, -1 right, 0 none: the side kept while blocked
+  std::string note;             ///< why a mode began or ended, empty otherwise
+  std::size_t uncertified = 0;  ///< half-planes of this decision that could not be certified
+};
+
+/// One robot's state at the start of a step, and its decision.
+struct RobotStep : Decision {
+  Vec2 position;  ///< m, at the step's start
+  Vec2 velocity;  ///< m/s, at the step's start
+  /// Where half-planes are built, and round which velocity: the robot's own, or the brake point x + v / k3 and what the
+  /// robot tracked before.
+  Vec2 anchor;           ///< m
+  Vec2 anchor_velocity;  ///< m/s
   /// The active ones and those against what could be met within a step; all of them where asked for.
   std::vector<RecordedConstraint> constraints;
-  std::size_t uncertified = 0;  ///< half-planes of this decision that could not be certified
 };
 
 /// Where a moving obstacle is, from where it was at t = 0, and how it moves.

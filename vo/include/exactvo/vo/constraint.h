@@ -52,8 +52,9 @@ class BodyTable {
 
   /// REQUIRES: a valid shape (geometry::is_valid).
   Number add(Body body);
-  /// Another shape and velocity for a body that moves. REQUIRES: a valid shape.
-  void move(Number body, geometry::ConvexShape shape, Vec2 velocity);
+  /// Another shape and velocity for a body that moves. Allocates nothing for a shape of the kind that it had, with no
+  /// more vertices. REQUIRES: a valid shape.
+  void move(Number body, const geometry::ConvexShape& shape, Vec2 velocity);
 
   /// How many bodies there are.
   std::size_t size() const { return entries_.size(); }

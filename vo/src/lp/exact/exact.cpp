@@ -93,7 +93,7 @@ Proven rounded_inward(const Problem& problem, Status status, const ExactRegion& 
   const std::vector<Binding> tight = bindings_of(region, optimum);
   name_active(tight, answer.solution);
   set_multipliers(problem, answer.solution);
-  answer.certificate = certificate_for(problem, answer.solution, tight, contradiction, Stage::exact);
+  answer.certificate = certificate_for(problem, answer.solution, tight, contradiction);
   const auto& certificate = answer.certificate;
   if (certificate && is_tight(problem, *certificate) && !has_multipliers_of(*certificate, answer.solution))
     take_from(*certificate, problem, tight, answer.solution);

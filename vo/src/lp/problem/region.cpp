@@ -91,6 +91,12 @@ double largest_speed(const Problem& problem) {
 
 Region region_of(const Problem& problem, double slack_units) {
   Region region;
+  set_region_of(problem, slack_units, region);
+  return region;
+}
+
+void set_region_of(const Problem& problem, double slack_units, Region& region) {
+  region.lines.clear();
   region.speed = largest_speed(problem);
   region.disc = problem.bound.disc * (1.0 - 0.5 * slack_units * kInwardSlack);
   region.lines.reserve(problem.constraints.size() + 4);
@@ -100,7 +106,6 @@ Region region_of(const Problem& problem, double slack_units) {
     region.lines.push_back(line_of(c.half_plane, slack, constraint_at(i), c.priority == Priority::soft));
   }
   add_box(problem.bound, region);
-  return region;
 }
 
 }  // namespace exactvo::lp

@@ -51,8 +51,10 @@ HalfPlane side_of_box(const SpeedBound& bound, BindingKind side);
 /// The largest speed that can matter, m/s: the bound's where there is one, else that of the data.
 double largest_speed(const Problem& problem);
 
-/// The lines of `problem` with `slack_units` times the inward slack. `with_soft` leaves the soft ones out where false.
+/// The lines of `problem` with `slack_units` times the inward slack.
 Region region_of(const Problem& problem, double slack_units = 1.0);
+/// The same in memory that is there already.
+void set_region_of(const Problem& problem, double slack_units, Region& region);
 
 /// The line's own violation at v (tightened), > 0 outside.
 inline double excess(const Line& line, Vec2 v) {

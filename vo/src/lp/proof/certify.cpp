@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// What multipliers may be: a double each, chosen and proven in doubles, or the exact ones where no doubles do.
+enum class Stage { doubles, exact };
+
 bool usable(const Multipliers& m) {
   return std::all_of(m.value.begin(), m.value.begin() + m.count, [](double x) { return std::isfinite(x) && x >= 0.0; });
 }
@@ -27,6 +30,15 @@ std::vector<Term> terms_of(const Multipliers& m) {
   for (std::size_t k = 0; k < m.count; ++k)
     if (m.value[k] > 0.0) terms.push_back({m.binding[k], {m.value[k]}});
   return terms;
+}
+
+Combination combined(const Problem& problem, const Multipliers& m, Scope scope) {
+  Combination sum;
+  sum.well_formed = true;
+  for (std::size_t k = 0; k < m.count; ++k)
+    if (m.value[k] > 0.0)
+      sum.well_formed = sum.well_formed && add_to(sum, problem, m.binding[k], Exact(m.value[k]), scope);
+  return sum;
 }
 
 /// The disc's multiplier is part of the proof for the nearest velocity only.
@@ -104,15 +116,15 @@ class Search {
   Search(const Problem& problem, Scope scope, const Claim& claim, Stage stage)
       : problem_(problem), scope_(scope), claim_(claim), stage_(stage), unit_(problem, scope, claim, stage) {}
 
-  /// Tries the solution's own multipliers, then every choice of at most three candidates.
-  void run(const Multipliers& own, const std::vector<Binding>& candidates) {
+  /// Tries the solution's own multipliers, then every choice of at most three of `count` candidates.
+  void run(const Multipliers& own, const Binding* candidates, std::size_t count) {
     if (own.count > 0) consider(own);
     if (!settled()) attempt({}, 0);
-    for (std::size_t i = 0; i < candidates.size() && !settled(); ++i) {
+    for (std::size_t i = 0; i < count && !settled(); ++i) {
       attempt({candidates[i]}, 1);
-      for (std::size_t j = i + 1; j < candidates.size() && !settled(); ++j) {
+      for (std::size_t j = i + 1; j < count && !settled(); ++j) {
         attempt({candidates[i], candidates[j]}, 2);
-        for (std::size_t k = j + 1; k < candidates.size() && !settled() && scope_ != Scope::all_must_hold; ++k)
+        for (std::size_t k = j + 1; k < count && !settled() && scope_ != Scope::all_must_hold; ++k)
           attempt({candidates[i], candidates[j], candidates[k]}, 3);
       }
     }
@@ -171,7 +183,7 @@ class Search {
     if (rough && rough->low > limit) return std::nullopt;
     const auto fine = rounded_gap(problem_, m, scope_, claim_, Digits::twice);
     if (fine && fine->low > limit) return std::nullopt;
-    const auto sum = [&] { return combine(problem_, terms_of(m), scope_); };
+    const auto sum = [&] { return combined(problem_, m, scope_); };
     if (!fine || !(fine->high <= limit) || std::isinf(fine->high))
       return exact_gap(problem_, scope_, claim_, sum(), least_gap(unit_.of(m)), limit);
     const bool may_be_none = fine->low <= 0.0 && fine->high > 0.0;
@@ -230,18 +242,24 @@ Multipliers own_multipliers(const Problem& problem, const Solution& s, Scope sco
   return m;
 }
 
-/// Whether they contradict by (1): rounding settles nearly all that are a double each.
+/// Whether they contradict by (1): rounding settles nearly all.
+bool proves_contradiction(const Problem& problem, const Multipliers& m, Scope scope) {
+  Multipliers positive;
+  for (std::size_t k = 0; k < m.count; ++k)
+    if (m.value[k] > 0.0) positive.add(m.binding[k], m.value[k]);
+  if (const auto surplus = rounded_surplus(problem, positive, scope)) {
+    if (surplus->low > 0.0) return true;
+    if (surplus->high <= 0.0) return false;
+  }
+  return contradicts(problem, combined(problem, positive, scope));
+}
+
 bool proves_contradiction(const Problem& problem, const std::vector<Term>& terms, Scope scope) {
   Multipliers m;
   for (const Term& term : terms)
     if (term.multiplier.size() == 1) m.add(term.binding, term.multiplier.front());
-  if (m.count == terms.size()) {
-    if (const auto surplus = rounded_surplus(problem, m, scope)) {
-      if (surplus->low > 0.0) return true;
-      if (surplus->high <= 0.0) return false;
-    }
-  }
-  return contradicts(problem, combine(problem, terms, scope));
+  return m.count == terms.size() ? proves_contradiction(problem, m, scope)
+                                 : contradicts(problem, combine(problem, terms, scope));
 }
 
 /// Terms of (2), (3) or (4), and the gap with which they prove a claim.
@@ -284,12 +302,12 @@ std::optional<Bound> exact_bound(const Problem& problem, Scope scope, const Clai
 }
 
 std::optional<Bound> bound_of(const Problem& problem, Scope scope, const Claim& claim, const Multipliers& own,
-                              std::vector<Binding> candidates, Stage stage) {
-  Search search(problem, scope, claim, stage);
-  search.run(own, candidates);
+                              std::vector<Binding> candidates) {
+  Search search(problem, scope, claim, Stage::exact);
+  search.run(own, candidates.data(), candidates.size());
   std::optional<Bound> bound;
   if (search.found()) bound = Bound{terms_of(search.best()), search.gap()};
-  if (stage == Stage::doubles || scope == Scope::all_must_hold || search.is_tight()) return bound;
+  if (scope == Scope::all_must_hold || search.is_tight()) return bound;
   candidates.erase(std::remove(candidates.begin(), candidates.end(), kDisc), candidates.end());
   std::optional<Bound> exact = exact_bound(problem, scope, claim, candidates);
   return exact && !(bound && bound->gap <= exact->gap) ? exact : bound;
@@ -299,14 +317,14 @@ std::optional<Bound> bound_of(const Problem& problem, Scope scope, const Claim& 
 
 std::optional<Certificate> certificate_for(const Problem& problem, const Solution& solution,
                                            const std::vector<Binding>& candidates,
-                                           const std::vector<Term>& contradiction, Stage stage) {
+                                           const std::vector<Term>& contradiction) {
   if (!holds(problem, solution.status, solution.velocity)) return std::nullopt;
   const Scope scope = scope_of(solution.status);
   const bool gives = scope != Scope::all_must_hold;
   const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
   if (!std::isfinite(claim.violation)) return std::nullopt;
   const auto bound = bound_of(problem, scope, claim, own_multipliers(problem, solution, scope),
-                              usable_candidates(problem, candidates, scope), stage);
+                              usable_candidates(problem, candidates, scope));
   if (!bound) return std::nullopt;
   Certificate c{solution.status, claim.velocity, claim.violation, {}, bound->terms, bound->gap, {}};
   if (!gives) return c;
@@ -348,10 +366,34 @@ Certificate claim_of(const Problem& problem, const Solution& solution) {
   return claim;
 }
 
+std::optional<ProofInDoubles> proof_in_doubles(const Problem& problem, const Solution& solution) {
+  if (solution.status == Status::no_interior || !is_finite(solution.velocity)) return std::nullopt;
+  if (!holds(problem, solution.status, solution.velocity)) return std::nullopt;
+  const Scope scope = scope_of(solution.status);
+  const bool gives = scope != Scope::all_must_hold;
+  const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
+  if (!std::isfinite(claim.violation)) return std::nullopt;
+  std::array<Binding, 3> candidates{};
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < solution.active_count; ++k)
+    if (can_be_used(problem, solution.active[k].binding, scope)) candidates[count++] = solution.active[k].binding;
+  Search search(problem, scope, claim, Stage::doubles);
+  search.run(own_multipliers(problem, solution, scope), candidates.data(), count);
+  if (!search.found() || (gives && !proves_contradiction(problem, search.best(), scope))) return std::nullopt;
+  return ProofInDoubles{claim, search.best(), search.gap()};
+}
+
+Certificate certificate_of(const ProofInDoubles& proof, Status status) {
+  Certificate c{status, proof.claim.velocity, proof.claim.violation, {}, terms_of(proof.bound), proof.gap, {}};
+  if (scope_of(status) != Scope::all_must_hold) c.contradiction = c.bound;
+  return c;
+}
+
 std::optional<Certificate> certify(const Problem& problem, const Solution& solution) {
   require_well_formed(problem);
-  if (solution.status == Status::no_interior || !is_finite(solution.velocity)) return std::nullopt;
-  return certificate_for(problem, solution, active_bindings(solution), {}, Stage::doubles);
+  const std::optional<ProofInDoubles> proof = proof_in_doubles(problem, solution);
+  if (!proof) return std::nullopt;
+  return certificate_of(*proof, solution.status);
 }
 
 }  // namespace exactvo::lp

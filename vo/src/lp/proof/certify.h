@@ -10,18 +10,29 @@
 
 #include "exactvo/vo/lp/certificate.h"
 #include "lp/proof/exact_number.h"
+#include "lp/proof/rounded_gap.h"
 
 namespace exactvo::lp {
 
-/// What multipliers may be: a double each, chosen and proven in doubles, or the exact ones where no doubles do.
-enum class Stage { doubles, exact };
+/// What shows that a solution is right: multipliers that are a double each, of what it says binds.
+struct ProofInDoubles {
+  Claim claim;
+  Multipliers bound;  ///< for (2), (3) or (4) and, where constraints gave, for (1)
+  double gap = 0.0;   ///< as Certificate::gap
+};
+/// Nothing where the solution is not right, or its active set does not show why. Allocates only where doubles do not
+/// decide. REQUIRES: a well-formed problem.
+std::optional<ProofInDoubles> proof_in_doubles(const Problem& problem, const Solution& solution);
 
-/// A certificate for `solution` with a gap that `is_tight`. `candidates` may bind: the multipliers are those of the
-/// best one, two or three of them. `contradiction` is used where the multipliers of the bound do not contradict by
-/// themselves.
+/// The same written out.
+Certificate certificate_of(const ProofInDoubles& proof, Status status);
+
+/// A certificate for `solution` with a gap that `is_tight`, with exact multipliers where no doubles do. `candidates`
+/// may bind: the multipliers are those of the best one, two or three of them. `contradiction` is used where the
+/// multipliers of the bound do not contradict by themselves.
 std::optional<Certificate> certificate_for(const Problem& problem, const Solution& solution,
                                            const std::vector<Binding>& candidates,
-                                           const std::vector<Term>& contradiction, Stage stage);
+                                           const std::vector<Term>& contradiction);
 
 /// What the solution says binds.
 std::vector<Binding> active_bindings(const Solution& solution);

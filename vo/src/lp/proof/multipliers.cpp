@@ -133,6 +133,13 @@ Normals normals_of(const Problem& problem, const Solution& s) {
   return normals;
 }
 
+/// (2) and (3) need no multiplier of the disc: it follows from the others.
+void complete_disc(const Problem& problem, Solution& s) {
+  if (s.status == Status::optimal && problem.objective == Objective::nearest) return;
+  if (s.status != Status::no_interior)
+    Stationarity(normals_of(problem, s), problem.objective, problem.preferred, s).set_of_disc();
+}
+
 }  // namespace
 
 Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, const Chosen& chosen) {
@@ -201,6 +208,25 @@ bool has_multipliers_of(const Certificate& certificate, const Solution& s) {
   return std::all_of(certificate.bound.begin(), certificate.bound.end(), is_active);
 }
 
+bool has_multipliers_of(const Multipliers& proof, const Solution& s) {
+  for (std::size_t k = 0; k < proof.count; ++k) {
+    const auto is_it = [&](const ActiveConstraint& a) {
+      return a.binding == proof.binding[k] && a.multiplier == proof.value[k];
+    };
+    if (proof.value[k] > 0.0 && std::none_of(s.active.begin(), s.active.begin() + s.active_count, is_it)) return false;
+  }
+  return true;
+}
+
+void set_multipliers(const Problem& problem, const Multipliers& proof, Solution& s) {
+  for (std::size_t k = 0; k < s.active_count; ++k) {
+    s.active[k].multiplier = 0.0;
+    for (std::size_t i = 0; i < proof.count; ++i)
+      if (proof.binding[i] == s.active[k].binding) s.active[k].multiplier += proof.value[i];
+  }
+  complete_disc(problem, s);
+}
+
 void set_multipliers(const Problem& problem, const Certificate& certificate, Solution& s) {
   for (std::size_t k = 0; k < s.active_count; ++k) {
     s.active[k].multiplier = 0.0;
@@ -208,10 +234,7 @@ void set_multipliers(const Problem& problem, const Certificate& certificate, Sol
       if (term.binding == s.active[k].binding)
         for (const double part : term.multiplier) s.active[k].multiplier += part;
   }
-  if (s.status == Status::optimal && problem.objective == Objective::nearest) return;
-  // (2) and (3) need no multiplier of the disc.
-  if (s.status != Status::no_interior)
-    Stationarity(normals_of(problem, s), problem.objective, problem.preferred, s).set_of_disc();
+  complete_disc(problem, s);
 }
 
 }  // namespace exactvo::lp

@@ -41,10 +41,12 @@ using Normals = std::array<Vec2, 3>;
 void set_multipliers(const Normals& normals, Objective objective, Vec2 preferred, Solution& solution);
 void set_multipliers(const Problem& problem, Solution& solution);
 
-/// Whether the terms of the certificate are the multipliers that the solution has.
+/// Whether the terms of the certificate, or these, are the multipliers that the solution has.
 bool has_multipliers_of(const Certificate& certificate, const Solution& solution);
+bool has_multipliers_of(const Multipliers& proof, const Solution& solution);
 
-/// Sets the multipliers of the certificate, and that of a disc which it leaves out.
+/// Sets the multipliers of the certificate, or these, and that of a disc which they leave out.
 void set_multipliers(const Problem& problem, const Certificate& certificate, Solution& solution);
+void set_multipliers(const Problem& problem, const Multipliers& proof, Solution& solution);
 
 }  // namespace exactvo::lp

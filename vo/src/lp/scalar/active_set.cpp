@@ -284,8 +284,13 @@ Level lowest_on_wall(std::size_t wall, const Basis& basis, const Region& region)
 
 }  // namespace
 
-Found least_violation(const Region& given) {
-  const Region region = within_disc(given, kFarAway * given.speed);
+Found least_violation(const Region& given, Region& with_disc) {
+  const bool has_disc = std::isfinite(given.disc);
+  if (!has_disc) {
+    with_disc = given;
+    with_disc.disc = kFarAway * given.speed;
+  }
+  const Region& region = has_disc ? given : with_disc;
   Level now;
   now.found.feasible = true;
   for (int round = 0; round < kMostRounds; ++round) {

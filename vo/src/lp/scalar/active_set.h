@@ -26,6 +26,7 @@ Found best_velocity(const Region& region, Objective objective, Vec2 preferred, s
 
 /// The velocity that keeps the hard lines and the disc and violates the soft ones least. `feasible` is false where the
 /// hard lines left nothing.
-Found least_violation(const Region& region);
+/// A region without a disc is copied into `with_disc`, which gets one.
+Found least_violation(const Region& region, Region& with_disc);
 
 }  // namespace exactvo::lp

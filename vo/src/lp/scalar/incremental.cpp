@@ -11,31 +11,45 @@
 #include "lp/scalar/inward.h"
 
 namespace exactvo::lp {
+
+/// What the phases of one solve look at.
+struct detail::ScalarRegions {
+  Region all;        ///< every constraint
+  Region hard;       ///< the hard ones alone
+  Region softened;   ///< these as soft ones
+  Region lowered;    ///< the soft ones moved outward
+  Region wider;      ///< the slack put on outward
+  Region with_disc;  ///< one of the others
+};
+
 namespace {
+
+using Regions = detail::ScalarRegions;
 
 bool has_priority(const Problem& problem, Priority priority) {
   return std::any_of(problem.constraints.begin(), problem.constraints.end(),
                      [&](const Constraint& c) { return c.priority == priority; });
 }
 
-Region hard_only(Region region) {
-  region.lines.erase(
-      std::remove_if(region.lines.begin(), region.lines.end(), [](const Line& line) { return line.soft; }),
-      region.lines.end());
-  return region;
+void set_hard_only(const Region& region, Region& hard) {
+  hard.disc = region.disc;
+  hard.speed = region.speed;
+  hard.lines.clear();
+  for (const Line& line : region.lines)
+    if (!line.soft) hard.lines.push_back(line);
 }
 
 /// The constraints may give, the sides of the box may not.
-Region softened(Region region) {
-  for (Line& line : region.lines) line.soft = !is_speed_bound(line.binding);
-  return region;
+void set_softened(const Region& region, Region& softened) {
+  softened = region;
+  for (Line& line : softened.lines) line.soft = !is_speed_bound(line.binding);
 }
 
 /// Soft lines moved outward by `level` and a rounding error.
-Region lowered(Region region, double level) {
-  for (Line& line : region.lines)
-    if (line.soft) line.offset -= level + kNoise * region.speed;
-  return region;
+void set_lowered(const Region& region, double level, Region& lowered) {
+  lowered = region;
+  for (Line& line : lowered.lines)
+    if (line.soft) line.offset -= level + kNoise * lowered.speed;
 }
 
 /// How far from its bound a velocity may be that the bound holds: the widest slack, put on by the solver, and rounding.
@@ -83,11 +97,11 @@ double level_at(const Region& region, Vec2 v) {
   return level;
 }
 
-Found least_violation_nearest(const Problem& problem, const Region& region) {
-  const Found least = least_violation(region);
+Found least_violation_nearest(const Problem& problem, const Region& region, Regions& memory) {
+  const Found least = least_violation(region, memory.with_disc);
   if (!leaves_a_stretch(region, least.basis)) return least;
-  const Region lower = lowered(region, level_at(region, least.velocity));
-  const Found nearest = best_velocity(lower, problem.objective, problem.preferred);
+  set_lowered(region, level_at(region, least.velocity), memory.lowered);
+  const Found nearest = best_velocity(memory.lowered, problem.objective, problem.preferred);
   return nearest.feasible ? Found{true, nearest.velocity, least.basis} : least;
 }
 
@@ -102,8 +116,8 @@ Solution without_answer(const Problem& problem) {
 
 /// Where the inward slack alone left no room, the least violation says little of the optimum: what binds there is what
 /// binds with the slack put on outward, a rounding error away.
-void bind_as_with_room(const Problem& problem, double slack, Solution& s) {
-  const Region wider = region_of(problem, -slack);
+void bind_as_with_room(const Problem& problem, double slack, Region& wider, Solution& s) {
+  set_region_of(problem, -slack, wider);
   const Found best = best_velocity(wider, problem.objective, problem.preferred);
   if (!best.feasible || !is_finite(best.velocity)) return;
   const Solution there = solution_of(problem, wider, best, Status::optimal);
@@ -111,35 +125,38 @@ void bind_as_with_room(const Problem& problem, double slack, Solution& s) {
   s.active_count = there.active_count;
 }
 
-Solution relaxed(const Problem& problem, const Region& region, double slack) {
-  const Found least = least_violation_nearest(problem, region);
+Solution relaxed(const Problem& problem, double slack, Regions& memory) {
+  const Region& region = memory.all;
+  const Found least = least_violation_nearest(problem, region, memory);
   if (!is_finite(least.velocity)) return without_answer(problem);
   Solution s = solution_of(problem, region, least, Status::relaxed);
   s.violation = violation_that_counts(problem, Status::relaxed, s.velocity);
   if (!holds(problem, Status::relaxed, s.velocity)) s.status = Status::no_interior;
   if (s.status == Status::relaxed && s.violation == 0.0 && holds(problem, Status::optimal, s.velocity)) {
     s.status = Status::optimal;
-    bind_as_with_room(problem, slack, s);
+    bind_as_with_room(problem, slack, memory.wider, s);
   }
   return s;
 }
 
-Solution infeasible(const Problem& problem, const Region& hard, double slack) {
-  const Region soft = softened(hard);
-  const Found least = least_violation_nearest(problem, soft);
+Solution infeasible(const Problem& problem, double slack, Regions& memory) {
+  Region& soft = memory.softened;
+  set_softened(memory.hard, soft);
+  const Found least = least_violation_nearest(problem, soft, memory);
   if (!is_finite(least.velocity)) return without_answer(problem);
   Solution s = solution_of(problem, soft, least, Status::infeasible);
   s.violation = violation_that_counts(problem, Status::infeasible, s.velocity);
   if (holds(problem, Status::relaxed, s.velocity)) {
     s.status = holds(problem, Status::optimal, s.velocity) ? Status::optimal : Status::relaxed;
     s.violation = violation_that_counts(problem, Status::relaxed, s.velocity);
-    if (s.status == Status::optimal) bind_as_with_room(problem, slack, s);
+    if (s.status == Status::optimal) bind_as_with_room(problem, slack, memory.wider, s);
   }
   return s;
 }
 
-Solution solve_with_slack(const Problem& problem, double slack, Pricing& pricing) {
-  const Region region = region_of(problem, slack);
+Solution solve_with_slack(const Problem& problem, double slack, Pricing& pricing, Regions& memory) {
+  const Region& region = memory.all;
+  set_region_of(problem, slack, memory.all);
   const Found best = best_velocity(region, problem.objective, problem.preferred, &pricing.at);
   pricing.is_all = pricing.is_all && best.feasible;
   if (best.feasible) {
@@ -150,21 +167,21 @@ Solution solve_with_slack(const Problem& problem, double slack, Pricing& pricing
     s.violation = violation_that_counts(problem, Status::no_interior, s.velocity);
     return s;
   }
-  const Region hard = hard_only(region);
+  set_hard_only(region, memory.hard);
   const bool hard_hold =
-      has_priority(problem, Priority::soft) && best_velocity(hard, Objective::nearest, Vec2{}).feasible;
-  return hard_hold ? relaxed(problem, region, slack) : infeasible(problem, hard, slack);
+      has_priority(problem, Priority::soft) && best_velocity(memory.hard, Objective::nearest, Vec2{}).feasible;
+  return hard_hold ? relaxed(problem, slack, memory) : infeasible(problem, slack, memory);
 }
 
 bool preferred_is_allowed(const Problem& problem) {
   return problem.objective == Objective::nearest && holds(problem, Status::optimal, problem.preferred);
 }
 
-Solution solve_with_slacks(const Problem& problem, Pricing& pricing) {
-  const Solution first = solve_with_slack(problem, kSlacks[0], pricing);
+Solution solve_with_slacks(const Problem& problem, Pricing& pricing, Regions& memory) {
+  const Solution first = solve_with_slack(problem, kSlacks[0], pricing, memory);
   Solution s = first;
   for (std::size_t k = 1; k < std::size(kSlacks) && s.status == Status::no_interior; ++k)
-    s = solve_with_slack(problem, kSlacks[k], pricing);
+    s = solve_with_slack(problem, kSlacks[k], pricing, memory);
   return s.status == Status::optimal || s.status == Status::relaxed ? s : first;
 }
 
@@ -221,8 +238,9 @@ Problem scaled(Problem problem, int exponent) {
 //
 // Lines carry an inward slack. The velocity is then held exactly against the constraints as they were given; where it
 // breaks one, all is repeated with more slack, and where no slack helps the answer is `no_interior`.
-Solution solve(const Problem& problem, Pricing& pricing) {
+Solution solve(const Problem& problem, Pricing& pricing, SolveMemory& memory) {
   require_well_formed(problem);
+  Regions& regions = *memory.regions_;
   pricing.at.clear();
   pricing.is_all = true;
   if (preferred_is_allowed(problem)) {
@@ -232,10 +250,28 @@ Solution solve(const Problem& problem, Pricing& pricing) {
   const int exponent = exponent_of_normals(problem);
   const bool is_plain = std::abs(exponent) <= kPlainExponent;
   pricing.is_all = is_plain;  // else another constraint may change the scale
-  Solution s = is_plain ? solve_with_slacks(problem, pricing) : solve_with_slacks(scaled(problem, -exponent), pricing);
+  Solution s = is_plain ? solve_with_slacks(problem, pricing, regions)
+                        : solve_with_slacks(scaled(problem, -exponent), pricing, regions);
   if (!is_plain) s.violation = std::ldexp(s.violation, exponent);
   set_multipliers(problem, s);
   return s;
+}
+
+SolveMemory::SolveMemory() : regions_(std::make_unique<detail::ScalarRegions>()) {}
+SolveMemory::~SolveMemory() = default;
+SolveMemory::SolveMemory(SolveMemory&&) noexcept = default;
+SolveMemory& SolveMemory::operator=(SolveMemory&&) noexcept = default;
+
+void SolveMemory::reserve(std::size_t constraints) {
+  constexpr std::size_t kSidesOfBox = 4;
+  for (Region* region : {&regions_->all, &regions_->hard, &regions_->softened, &regions_->lowered, &regions_->wider,
+                         &regions_->with_disc})
+    region->lines.reserve(constraints + kSidesOfBox);
+}
+
+Solution solve(const Problem& problem, Pricing& pricing) {
+  SolveMemory memory;
+  return solve(problem, pricing, memory);
 }
 
 Solution solve(const Problem& problem) {

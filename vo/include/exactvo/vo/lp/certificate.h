@@ -100,6 +100,11 @@ Proven solve_certified(const Problem& problem);
 /// The same of an answer that is there already: of `solve`, say.
 Proven certified(const Problem& problem, const Solution& solution);
 
+/// Whether `certified` needs no exact stage: then `solution` gets the multipliers that it has there, which are its
+/// proof (`claim_of`), and no certificate is written out. Allocates only where signs are computed exactly. REQUIRES: a
+/// well-formed problem.
+bool is_proven_by_multipliers(const Problem& problem, Solution& solution);
+
 /// The exact answer: every branch decided in exact arithmetic, the optimum an algebraic point, rounded inward.
 /// REQUIRES: a well-formed problem.
 Proven solve_exact(const Problem& problem);

@@ -4,12 +4,18 @@
 /// \file
 /// The deterministic incremental solver: double precision, order as given, bounded work on any input.
 
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "exactvo/vo/lp/problem.h"
 #include "exactvo/vo/lp/solution.h"
 
 namespace exactvo::lp {
+
+namespace detail {
+struct ScalarRegions;
+}
 
 /// The velocity nearest `problem.preferred` that satisfies every constraint; if none does, the one that satisfies the
 /// hard constraints and violates the soft ones least (smallest largest violation), and among those the nearest.
@@ -31,5 +37,29 @@ struct Pricing {
 /// or left out: velocity, status and what binds stay the same bits. With room, clearly: beyond 1024 u V and the
 /// rounding of the constraint's own excess.
 Solution solve(const Problem& problem, Pricing& pricing);
+
+/// What one call of `solve` leaves to the next, so that it allocates nothing. For one thread at a time.
+class SolveMemory {
+ public:
+  /// Without room.
+  SolveMemory();
+  ~SolveMemory();
+  /// Moves; what is left behind can only be assigned to or destroyed.
+  SolveMemory(SolveMemory&&) noexcept;
+  /// Moves; what is left behind can only be assigned to or destroyed.
+  SolveMemory& operator=(SolveMemory&&) noexcept;
+
+  /// Room for problems of so many constraints.
+  void reserve(std::size_t constraints);
+
+ private:
+  friend Solution solve(const Problem& problem, Pricing& pricing, SolveMemory& memory);
+  std::unique_ptr<detail::ScalarRegions> regions_;
+};
+
+/// The same answer. Allocates nothing in a problem with no more constraints than one before, or than were reserved,
+/// whose normals have lengths within 2^+-100; but signs that doubles do not decide are computed exactly, and such
+/// numbers allocate where they are long.
+Solution solve(const Problem& problem, Pricing& pricing, SolveMemory& memory);
 
 }  // namespace exactvo::lp

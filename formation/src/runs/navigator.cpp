@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exactvo/formation/navigator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "exactvo/geometry/box_grid.h"
+#include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/excerpt.h"
+#include "runs/own_decision.h"
+#include "scene/field_problems.h"
+#include "scene/moving.h"
+#include "steering/goals.h"
+
+namespace exactvo::formation {
+namespace {
+
+using namespace detail;
+using geometry::norm;
+using Problem = NavigatorProblem;
+
+/// m and m/s: squares of what is below are far inside the range of doubles, and a difference keeps a micrometre.
+constexpr double kMost = 0x1p30;
+/// Static shapes within reach that there is memory for from the beginning.
+constexpr std::size_t kMostShapes = 1000;
+constexpr std::size_t kMostNeighbours = std::size_t{1} << 20;
+/// Characters of a note, which are written into memory that is there.
+constexpr std::size_t kNoteLength = 512;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+[[noreturn]] void refuse(Problem problem, const std::string& field, const std::string& found,
+                         const std::string& expected) {
+  throw NavigatorError(problem, field + ": found " + found + ", expected " + expected);
+}
+
+/// "neighbour 3 velocity"; without a number "velocity".
+std::string field_of(const char* list, std::size_t k, const char* field) {
+  return list ? std::string(list) + " " + std::to_string(k) + " " + field : field;
+}
+
+// Words are made for what is wrong only.
+
+void require_vector(Vec2 v, const char* list, std::size_t k, const char* field) {
+  if (!geometry::is_finite(v))
+    refuse(Problem::not_finite, field_of(list, k, field), number(v.x) + ", " + number(v.y), "two finite numbers");
+  if (!(std::max(std::fabs(v.x), std::fabs(v.y)) < kMost))
+    refuse(Problem::out_of_range, field_of(list, k, field), number(v.x) + ", " + number(v.y), "less than 2^30");
+}
+
+void require_positive(double x, const char* list, std::size_t k, const char* field) {
+  if (!std::isfinite(x)) refuse(Problem::not_finite, field_of(list, k, field), number(x), "a finite number above 0");
+  if (!(x > 0.0 && x < kMost))
+    refuse(Problem::out_of_range, field_of(list, k, field), number(x), "a number above 0 and less than 2^30");
+}
+
+void require_goals(const std::vector<Vec2>& goals) {
+  if (goals.empty()) refuse(Problem::no_goal, "goals", "none", "at least one");
+  for (std::size_t k = 0; k < goals.size(); ++k) require_vector(goals[k], "goal", k, "position");
+}
+
+bool is_method(Method m) {
+  return m == Method::orca || m == Method::ivo_edge || m == Method::ivo_cluster || m == Method::ivo;
+}
+
+/// Its robot stands anywhere: where it is comes with every decision.
+Scenario scenario_of(const NavigatorSetup& setup, std::vector<Vec2> goals) {
+  Scenario s;
+  Robot& robot = s.robots.emplace_back();
+  robot.radius = setup.radius;
+  robot.max_speed = setup.max_speed;
+  robot.cooperates = setup.cooperates;
+  robot.goals = std::move(goals);
+  s.obstacles = setup.obstacles;
+  s.guidance = Guidance::none;
+  s.liveness = Liveness::off;
+  s.speed_bound = setup.speed_bound;
+  s.horizons = setup.horizons;
+  s.margins = setup.margins;
+  s.time_step = setup.time_step;
+  s.time_limit = setup.time_step;  // nobody asks
+  s.arrival_tolerance = setup.arrival_tolerance;
+  s.neighbour_distance = setup.neighbour_distance;
+  return s;
+}
+
+/// The field of the setup that a pointer into its scenario names: "radius" of "/robots/0/radius".
+std::string field_at(const std::string& pointer) {
+  const std::string robot = "/robots/0/";
+  return pointer.rfind(robot, 0) == 0 ? pointer.substr(robot.size()) : pointer.substr(1);
+}
+
+Scenario checked(const NavigatorSetup& setup, std::vector<Vec2> goals) {
+  require_goals(goals);
+  if (!is_method(setup.method)) refuse(Problem::out_of_range, "method", "no Method", "one");
+  if (setup.neighbours > kMostNeighbours)
+    refuse(Problem::out_of_range, "neighbours", std::to_string(setup.neighbours), "at most 2^20");
+  for (std::size_t k = 0; k < setup.obstacles.size(); ++k)
+    for (const Vec2 v : geometry::vertices_of(setup.obstacles[k].shape)) require_vector(v, "obstacle", k, "vertex");
+  Scenario scenario = scenario_of(setup, std::move(goals));
+  const std::vector<ScenarioProblem> problems = field_problems(scenario);
+  if (problems.empty()) return scenario;
+  const ScenarioProblem& first = problems.front();
+  const bool is_number = first.found.find("nan") == std::string::npos && first.found.find("inf") == std::string::npos;
+  refuse(is_number ? Problem::out_of_range : Problem::not_finite, field_at(first.pointer), first.found, first.expected);
+}
+
+SimulationOptions options_of(const NavigatorSetup& setup) {
+  SimulationOptions options;
+  options.method = setup.method;
+  options.guidance = Guidance::none;
+  options.liveness = Liveness::off;
+  return options;
+}
+
+/// The polygons of a setup, asked whether a point is inside one.
+class Insides {
+ public:
+  explicit Insides(const std::vector<SceneObstacle>& obstacles) {
+    std::vector<geometry::Box> boxes;
+    for (const SceneObstacle& o : obstacles) {
+      if (!has_interior(o.shape)) continue;
+      geometry::Box& box = boxes.emplace_back();
+      for (const Vec2 p : geometry::vertices_of(o.shape)) box.add(p);
+      solid_.push_back(&o);
+    }
+    by_place_ = geometry::BoxGrid(std::move(boxes));
+  }
+
+  /// The obstacle that x is inside of, or null. Near to where nothing was, it looks no more.
+  const SceneObstacle* round(Vec2 x) {
+    if (norm(x - asked_) < clear_) return nullptr;
+    constexpr double kLooksRound = 2.0;  // m
+    double clear = kLooksRound;
+    const SceneObstacle* found = nullptr;
+    by_place_.for_each_within(x, kLooksRound, [&](std::size_t k) {
+      const double gap = geometry::signed_distance(solid_[k]->shape, x);
+      if (gap < 0.0 && !found) found = solid_[k];
+      clear = std::min(clear, gap);
+    });
+    if (found) return found;
+    constexpr double kRounding = 1e-6;  // of what distances are off by
+    asked_ = x;
+    clear_ = clear - kRounding;
+    return nullptr;
+  }
+
+ private:
+  std::vector<const SceneObstacle*> solid_;
+  geometry::BoxGrid by_place_;
+  Vec2 asked_;
+  double clear_ = -1.0;  ///< m: so far round `asked_` no point is inside
+};
+
+}  // namespace
+
+const char* name(NavigatorProblem problem) {
+  constexpr const char* kNames[] = {"not-finite",     "out-of-range",    "no-goal",
+                                    "time-backwards", "inside-obstacle", "coincident"};
+  return kNames[static_cast<int>(problem)];
+}
+
+NavigatorSetup navigator_setup(const Scenario& scenario, std::size_t robot, Method method) {
+  if (robot >= scenario.robots.size())
+    refuse(Problem::out_of_range, "robot", std::to_string(robot),
+           "less than the number of robots, " + std::to_string(scenario.robots.size()));
+  const Robot& r = scenario.robots[robot];
+  NavigatorSetup setup;
+  setup.radius = r.radius;
+  setup.max_speed = r.max_speed;
+  setup.cooperates = r.cooperates;
+  setup.id = robot;
+  setup.obstacles = scenario.obstacles;
+  setup.method = method;
+  setup.speed_bound = scenario.speed_bound;
+  setup.horizons = scenario.horizons;
+  setup.margins = scenario.margins;
+  setup.time_step = scenario.time_step;
+  setup.arrival_tolerance = scenario.arrival_tolerance;
+  setup.neighbour_distance = scenario.neighbour_distance;
+  return setup;
+}
+
+class Navigator::Core {
+ public:
+  Core(const NavigatorSetup& setup, std::vector<Vec2> goals)
+      : scenario_(checked(setup, std::move(goals))),
+        options_(options_of(setup)),
+        id_(setup.id),
+        scene_(scenario_, options_),
+        own_(scenario_, options_, scene_.bodies()),
+        rule_(pair_rule(scenario_, options_)),
+        insides_(scenario_.obstacles) {
+    const std::size_t shapes = scene_.pieces_by_place().size() + scene_.facade_ellipses_by_place().size() +
+                               scene_.edges_by_place().size() + scenario_.obstacles.size();
+    const std::size_t statics = std::min(shapes, kMostShapes), others = 2 * setup.neighbours;
+    own_.reserve(statics, others);
+    others_.reserve(others);
+    kept_.reserve(statics + others);
+    decision_.bound.reserve(4);
+    decision_.note.reserve(kNoteLength);
+    for (std::size_t k = 0; k < setup.neighbours; ++k) {
+      slot(robots_, k, vo::BodyKind::robot);
+      slot(moving_, k, vo::BodyKind::moving_obstacle);
+    }
+  }
+  // Parts point at each other.
+  Core(const Core&) = delete;
+  Core& operator=(const Core&) = delete;
+
+  void set_goals(std::vector<Vec2> goals) {
+    require_goals(goals);
+    scenario_.robots.front().goals = std::move(goals);
+    goal_ = 0;
+    way_.field.reset();
+  }
+
+  const Decision& decide(const NavigatorState& now, const std::vector<Neighbour>& neighbours,
+                         const std::vector<MovingBody>& moving) {
+    require_state(now);
+    require_neighbours(now, neighbours);
+    require_moving(moving);
+    now_ = now;
+    has_decided_ = true;
+    look_at_others(neighbours, moving);
+    decision_.note.clear();
+    decision_.mode = Mode::direct;
+    decision_.side = 0;
+    head_for_goal();
+    own_.look(*way_.field, here());
+    const Vec2 preferred = own_.steer(way_, {now.time, here(), goal(), has_arrived()}, decision_);
+    own_.choose(preferred, here(), others_, decision_, kept_);
+    return decision_;
+  }
+
+  const std::vector<DecisionConstraint>& constraints() const { return kept_; }
+  const vo::BodyTable& bodies() const { return scene_.bodies(); }
+  std::size_t goal_number() const { return goal_; }
+  bool has_arrived() const { return has_decided_ && is_last_goal() && is_within_reach(); }
+
+  RobotStep recorded() const {
+    RobotStep step;
+    static_cast<Decision&>(step) = decision_;
+    step.position = step.anchor = now_.position;
+    step.velocity = step.anchor_velocity = now_.velocity;
+    for (const DecisionConstraint& c : kept_) {
+      RecordedConstraint& r = step.constraints.emplace_back();
+      static_cast<DecisionConstraint&>(r) = c;
+      r.shape = bodies()[c.body].shape;
+      r.position = now_.position;
+      r.radius = robot().radius;
+      r.shape_velocity = bodies()[c.body].velocity;
+    }
+    return step;
+  }
+
+  Outlook outlook() const {
+    return {heads_since_, id_, goal_, way_.field ? way_.field->shapes() : std::vector<std::size_t>{}};
+  }
+
+ private:
+  const Robot& robot() const { return scenario_.robots.front(); }
+  Vec2 goal() const { return robot().goals[goal_]; }
+  Viewpoint here() const { return {now_.position, now_.velocity, robot().radius, robot().max_speed}; }
+  bool is_last_goal() const { return goal_ + 1 == robot().goals.size(); }
+  bool is_within_reach() const { return norm(goal() - now_.position) <= reach_of(scenario_, robot(), goal_); }
+
+  void require_state(const NavigatorState& now) {
+    if (!std::isfinite(now.time)) refuse(Problem::not_finite, "time", number(now.time), "a finite number");
+    require_vector(now.position, nullptr, 0, "position");
+    require_vector(now.velocity, nullptr, 0, "velocity");
+    if (has_decided_ && now.time < now_.time)
+      refuse(Problem::time_backwards, "time", number(now.time), "no time before " + number(now_.time));
+    if (const SceneObstacle* o = insides_.round(now.position))
+      refuse(Problem::inside_obstacle, "position", number(now.position.x) + ", " + number(now.position.y),
+             "a place that is not inside obstacle '" + o->id + "'");
+  }
+
+  static void require_neighbours(const NavigatorState& now, const std::vector<Neighbour>& neighbours) {
+    for (std::size_t k = 0; k < neighbours.size(); ++k) {
+      const Neighbour& n = neighbours[k];
+      require_vector(n.position, "neighbour", k, "position");
+      require_vector(n.velocity, "neighbour", k, "velocity");
+      require_positive(n.radius, "neighbour", k, "radius");
+      require_positive(n.max_speed, "neighbour", k, "max_speed");
+      if (n.position == now.position)
+        refuse(Problem::coincident, field_of("neighbour", k, "position"),
+               number(n.position.x) + ", " + number(n.position.y), "another place than the robot's own");
+    }
+  }
+
+  static void require_moving(const std::vector<MovingBody>& moving) {
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+      require_vector(moving[k].velocity, "moving body", k, "velocity");
+      if (!geometry::is_valid(moving[k].shape))
+        refuse(Problem::out_of_range, field_of("moving body", k, "shape"), geometry::excerpt(moving[k].shape),
+               "a valid convex shape");
+    }
+  }
+
+  /// The body of the k-th of a list. Its owner is its place in the list: who is there changes.
+  vo::BodyTable::Number slot(std::vector<vo::BodyTable::Number>& slots, std::size_t k, vo::BodyKind kind) {
+    while (slots.size() <= k) slots.push_back(scene_.bodies().add({kind, geometry::Disc{}, {}, {slots.size()}}));
+    return slots[k];
+  }
+
+  void look_at_others(const std::vector<Neighbour>& neighbours, const std::vector<MovingBody>& moving) {
+    others_.clear();
+    const Party self{id_, 0, {now_.position, now_.velocity, robot().radius}, robot().max_speed, robot().cooperates};
+    for (std::size_t k = 0; k < neighbours.size(); ++k) {
+      const Neighbour& n = neighbours[k];
+      if (!self.yields || norm(n.position - now_.position) > scenario_.neighbour_distance) continue;
+      const vo::BodyTable::Number body = slot(robots_, k, vo::BodyKind::robot);
+      scene_.bodies().move(body, geometry::Disc{n.position, n.radius}, n.velocity);
+      const Party other{n.id, body, {n.position, n.velocity, n.radius}, n.max_speed, n.cooperates};
+      others_.push_back(against_each_other(self, other, rule_).of_a);
+    }
+    sort_by_distance(scene_.bodies(), now_.position, others_);
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+      const vo::BodyTable::Number body = slot(moving_, k, vo::BodyKind::moving_obstacle);
+      scene_.bodies().move(body, moving[k].shape, moving[k].velocity);
+      add_moving_constraint(scenario_, here(), scene_.bodies(), body, k, others_);
+    }
+  }
+
+  void head_for_goal() {
+    if (!way_.field) begin_goal();
+    if (is_last_goal() || !is_within_reach()) return;
+    ++goal_;
+    add_note(decision_.note, passed_goal_words(goal_));
+    begin_goal();
+  }
+
+  void begin_goal() {
+    way_.head_for(goal(), scene_, scenario_, options_, robot().radius, now_.position);
+    heads_since_ = now_.time;
+  }
+
+  Scenario scenario_;
+  SimulationOptions options_;
+  std::size_t id_;
+  Scene scene_;
+  OwnDecision own_;
+  vo::ReciprocalOptions rule_;
+  Insides insides_;
+  OwnWay way_;
+  NavigatorState now_;
+  bool has_decided_ = false;
+  std::size_t goal_ = 0;
+  double heads_since_ = 0.0;                            ///< s
+  std::vector<vo::BodyTable::Number> robots_, moving_;  ///< bodies, in the order of the lists
+  // Memory that a decision leaves to the next.
+  std::vector<Constraint> others_;
+  Decision decision_;
+  std::vector<DecisionConstraint> kept_;
+};
+
+Navigator::Navigator(const NavigatorSetup& setup, std::vector<Vec2> goals)
+    : core_(std::make_unique<Core>(setup, std::move(goals))) {}
+Navigator::~Navigator() = default;
+Navigator::Navigator(Navigator&&) noexcept = default;
+Navigator& Navigator::operator=(Navigator&&) noexcept = default;
+
+void Navigator::set_goals(std::vector<Vec2> goals) {
+  core_->set_goals(std::move(goals));
+}
+
+const Decision& Navigator::decide(const NavigatorState& now, const std::vector<Neighbour>& neighbours,
+                                  const std::vector<MovingBody>& moving) {
+  return core_->decide(now, neighbours, moving);
+}
+
+const std::vector<DecisionConstraint>& Navigator::constraints() const {
+  return core_->constraints();
+}
+
+const vo::BodyTable& Navigator::bodies() const {
+  return core_->bodies();
+}
+
+std::size_t Navigator::goal() const {
+  return core_->goal_number();
+}
+
+bool Navigator::has_arrived() const {
+  return core_->has_arrived();
+}
+
+RobotStep Navigator::recorded() const {
+  return core_->recorded();
+}
+
+Outlook Navigator::outlook() const {
+  return core_->outlook();
+}
+
+}  // namespace exactvo::formation

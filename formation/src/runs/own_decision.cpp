@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "runs/own_decision.h"
+
+#include <algorithm>
+
+namespace exactvo::formation::detail {
+
+using geometry::norm;
+
+std::string passed_goal_words(std::size_t next) {
+  return "goal " + std::to_string(next) + " passed: heads for the next";
+}
+
+Vec2 straight_for(const Viewpoint& here, Vec2 place, double time_step) {
+  const Vec2 way = place - here.position;
+  const double speed = std::min(here.max_speed, norm(way) / time_step);
+  return speed * geometry::normalized(way);
+}
+
+void OwnDecision::reserve(std::size_t statics, std::size_t others) {
+  decider_.reserve(statics + others);
+  needed_.reserve(statics);
+  all_.reserve(is_orca() ? statics : 0);
+  following_.reserve(statics);
+}
+
+void OwnDecision::look(const StaticField& field, const Viewpoint& here) {
+  if (is_orca())
+    field.constraints(here, all_);
+  else
+    needed_.look(field, here, reach_of_step(scenario_, here));
+}
+
+DecisionInput OwnDecision::input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others,
+                                 bool keep_all, const std::vector<std::size_t>* fallen_back) {
+  return {preferred, here, &statics(), &others, keep_all, is_orca() ? nullptr : &needed_, fallen_back};
+}
+
+Vec2 OwnDecision::steer(OwnWay& way, const Errand& errand, Decision& decision) {
+  const Viewpoint& here = errand.here;
+  const Vec2 preferred = straight_for(here, errand.goal, scenario_.time_step);
+  if (errand.has_arrived) {
+    decision.mode = Mode::arrived;
+    return preferred;
+  }
+  const bool in_contact = is_in_contact();
+  if (in_contact) decision.mode = Mode::pushing_out;
+  if (is_orca()) return preferred;
+  if (options_.method != Method::ivo) return ties_broken(way, preferred, decision);
+  const Follower::Answer answer =
+      way.follower.steer({errand.time, scenario_.time_step, here, errand.goal,
+                          here.max_speed * scenario_.horizons.least, preferred, &*way.field},
+                         following_);
+  decision.mode = in_contact && answer.mode == Mode::direct ? Mode::pushing_out : answer.mode;
+  decision.side = answer.side;
+  answer.note.add_to(decision.note);
+  if (answer.mode == Mode::following) return answer.preferred;
+  needed_.need_at(preferred);
+  const std::optional<Vec2> boost = boosted(needed_.lines(), preferred);
+  if (!boost) return ties_broken(way, preferred, decision);
+  decision.mode = Mode::boost;
+  return *boost;
+}
+
+/// Says so when a tie begins.
+Vec2 OwnDecision::ties_broken(OwnWay& way, Vec2 preferred, Decision& decision) {
+  needed_.need_at(preferred);
+  const Vec2 turned = with_tie_broken(needed_.lines(), preferred);
+  const bool tied = !(turned == preferred);
+  if (tied && !way.tied) add_note(decision.note, "head-on: the tie between the sides goes left");
+  way.tied = tied;
+  return turned;
+}
+
+}  // namespace exactvo::formation::detail

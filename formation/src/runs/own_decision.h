@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// How one robot decides by itself, without a route: it looks at the static obstacles, forms a preferred velocity and
+/// chooses. Simulated robots (kinematic_run.cpp) and navigators (navigator.h) go through it alike.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "decision/decision.h"
+#include "decision/needed_constraints.h"
+#include "scene/static_field.h"
+#include "steering/steering.h"
+
+namespace exactvo::formation::detail {
+
+/// What a robot keeps from one decision to the next.
+struct OwnWay {
+  std::optional<StaticField> field;  ///< for its present goal
+  Follower follower;
+  bool tied = false;  ///< the last preference was turned to break a tie
+
+  /// Another goal: the obstacles are seen anew, and whatever was followed is forgotten.
+  void head_for(Vec2 goal, Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius,
+                Vec2 start) {
+    field.emplace(scene, scenario, options, radius, start, goal, HorizonRule::clamped);
+    follower.reset();
+  }
+};
+
+/// Where a robot is and wants to go.
+struct Errand {
+  double time = 0.0;  ///< s
+  Viewpoint here;
+  Vec2 goal;  ///< m
+  bool has_arrived = false;
+};
+
+/// That it heads for goal number `next` (from 0) from now on.
+std::string passed_goal_words(std::size_t next);
+
+/// m/s: straight for a place, to be there after a step or as soon as the speed allows.
+Vec2 straight_for(const Viewpoint& here, Vec2 place, double time_step);
+
+/// Decides for one robot after the other, in memory of its own: `look`, `steer`, `choose`.
+class OwnDecision {
+ public:
+  /// All must outlive it.
+  OwnDecision(const Scenario& scenario, const SimulationOptions& options, const vo::BodyTable& bodies)
+      : scenario_(scenario), options_(options), decider_(scenario, bodies) {}
+
+  /// Room for so many static bodies and other ones within reach: decisions among them allocate nothing.
+  void reserve(std::size_t statics, std::size_t others);
+
+  /// At the static obstacles.
+  void look(const StaticField& field, const Viewpoint& here);
+
+  // REQUIRES of what follows: it has looked, and nobody after it.
+
+  /// What was seen so far, nearest first. It grows as far as decisions need it.
+  const std::vector<Constraint>& statics() const { return is_orca() ? all_ : needed_.lines(); }
+  bool is_in_contact() const { return !statics().empty() && statics().front().clearance < 0.0; }
+
+  /// The preferred velocity, by the run's method; sets `mode` and `side` and adds to `note`.
+  Vec2 steer(OwnWay& way, const Errand& errand, Decision& decision);
+
+  /// What it chooses goes on the record. `others`: robots and moving obstacles; `fallen_back`: see DecisionInput.
+  void choose(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, bool keep_all,
+              const std::vector<std::size_t>* fallen_back, RobotStep& step) {
+    decider_.decide(input(preferred, here, others, keep_all, fallen_back), step);
+  }
+  /// The same without the shapes.
+  void choose(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, Decision& decision,
+              std::vector<DecisionConstraint>& kept) {
+    decider_.decide(input(preferred, here, others, false, nullptr), decision);
+    decider_.kept(kept);
+  }
+
+  Decider& decider() { return decider_; }
+
+ private:
+  bool is_orca() const { return options_.method == Method::orca; }
+  DecisionInput input(Vec2 preferred, const Viewpoint& here, const std::vector<Constraint>& others, bool keep_all,
+                      const std::vector<std::size_t>* fallen_back);
+  Vec2 ties_broken(OwnWay& way, Vec2 preferred, Decision& decision);
+
+  const Scenario& scenario_;
+  const SimulationOptions& options_;
+  Decider decider_;
+  NeededConstraints needed_;     ///< of the methods that have static fields of shapes
+  std::vector<Constraint> all_;  ///< of Method::orca
+  Follower::Memory following_;
+};
+
+}  // namespace exactvo::formation::detail
