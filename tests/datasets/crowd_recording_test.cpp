@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <utility>
 
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/speed_profile.h"
@@ -389,6 +392,106 @@ TEST(CrowdProblems, AToleranceBelowTheLatticeIsNamed) {
   s.robots[0].goals[0] = {4e6, 0.0};  // a wider scene has a coarser lattice
   ASSERT_EQ(crowd_problems(s).size(), 1U);
   EXPECT_EQ(crowd_problems(s)[0].pointer, "/arrival_tolerance");
+}
+
+// --- Runs that are interrupted ---
+
+struct Killed {};
+
+/// Runs until the `last`-th snapshot was kept, as if the program were killed then: whatever is written behind it is
+/// lost or spoilt.
+std::string snapshot_before_death(const std::filesystem::path& path, const Scenario& scenario, std::uint32_t every,
+                                  std::size_t snapshot_every, std::size_t last, std::string from) {
+  CrowdRunOptions options;
+  options.snapshot_every = snapshot_every;
+  options.resume_from = std::move(from);
+  std::string kept;
+  std::size_t count = 0;
+  options.keep_snapshot = [&](const std::string& bytes) {
+    if (count++ == last) throw Killed();
+    kept = bytes;
+  };
+  CrowdRecorder recorder(path, scenario, every, Unfinished::stays);
+  EXPECT_THROW(run_crowd(scenario, options, &recorder), Killed);
+  return kept;
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+TEST_F(CrowdRecordings, GoOnFromAnySnapshotToTheSameBytes) {
+  for (const auto& [scenario, every] : {std::pair(crossing(), 1U), {crossing("route"), 7U}, {traffic(), 10U}}) {
+    const CrowdRunReport whole = record(scenario, every);
+    const std::string bytes = bytes_of(folder_ / "c.evr");
+    std::size_t deaths = 0;
+    for (const std::size_t steps : {1U, 13U, 40U}) {
+      // Killed again and again: each time it comes two snapshots farther.
+      std::string snapshot;
+      std::size_t at = 0;
+      for (int k = 0; k < 15 && at + 3 * steps <= whole.steps; ++k, at += 2 * steps, ++deaths) {
+        snapshot = snapshot_before_death(folder_ / "d.evr", scenario, every, steps, 2, std::move(snapshot));
+        std::ofstream(folder_ / "d.evr.unfinished", std::ios::app | std::ios::binary) << "half a row";
+      }
+      CrowdRunOptions options;
+      options.resume_from = snapshot;
+      options.threads = 2;
+      CrowdRecorder recorder(folder_ / "d.evr", scenario, every, Unfinished::stays);
+      const CrowdRunReport report = run_crowd(scenario, options, &recorder);
+      recorder.finish();
+      EXPECT_TRUE(bytes_of(folder_ / "d.evr") == bytes) << scenario.name << " every " << steps;
+      EXPECT_FALSE(std::filesystem::exists(folder_ / "d.evr.unfinished"));
+      EXPECT_EQ(report.digest, whole.digest);
+      EXPECT_EQ(report.steps, whole.steps);
+      EXPECT_EQ(report.path_length, whole.path_length);
+      EXPECT_EQ(report.half_planes, whole.half_planes);
+      EXPECT_EQ(report.median_arrival, whole.median_arrival);
+      EXPECT_EQ(report.arrived, whole.arrived);
+    }
+    EXPECT_GT(deaths, 5U) << scenario.name;
+  }
+}
+
+TEST_F(CrowdRecordings, SnapshotsThatWereChangedOrAreOfSomethingElseAreRefused) {
+  const Scenario scenario = crossing();
+  const std::string snapshot = snapshot_before_death(folder_ / "d.evr", scenario, 1, 10, 2, "");
+  const auto expect_refused = [](const Scenario& s, std::string from) {
+    CrowdRunOptions options;
+    options.resume_from = std::move(from);
+    try {
+      run_crowd(s, options);
+      ADD_FAILURE() << "went on";
+    } catch (const formation::CrowdError& e) {
+      EXPECT_EQ(e.problem(), formation::CrowdProblem::bad_snapshot);
+    }
+  };
+  expect_refused(scenario, snapshot.substr(0, snapshot.size() / 2));
+  expect_refused(scenario, "x");
+  for (std::size_t at = 0; at < snapshot.size(); at += 997) {
+    std::string changed = snapshot;
+    changed[at] = static_cast<char>(changed[at] ^ 4);
+    expect_refused(scenario, changed);
+  }
+  expect_refused(traffic(), snapshot);
+}
+
+TEST_F(CrowdRecordings, GoOnOnlyWithTheRowsThatTheSnapshotKnowsOf) {
+  const Scenario scenario = crossing();
+  CrowdRunOptions options;
+  options.resume_from = snapshot_before_death(folder_ / "d.evr", scenario, 1, 10, 2, "");
+  {
+    CrowdRecorder other(folder_ / "d.evr", scenario, 2, Unfinished::stays);
+    expect_refusal(refusal_of([&] { run_crowd(scenario, options, &other); }), DataCode::format_syntax, "byte 8");
+  }
+  {
+    CrowdRecorder first(folder_ / "d.evr", scenario, 1, Unfinished::stays);
+    expect_refusal(refusal_of([&] { CrowdRecorder(folder_ / "d.evr", scenario, 1, Unfinished::stays); }),
+                   DataCode::file_unwritable, "");
+  }
+  std::filesystem::resize_file(folder_ / "d.evr.unfinished", 100);
+  CrowdRecorder recorder(folder_ / "d.evr", scenario, 1, Unfinished::stays);
+  expect_refusal(refusal_of([&] { run_crowd(scenario, options, &recorder); }), DataCode::format_syntax, "byte 100");
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "run_program.h"
 
@@ -149,6 +151,63 @@ TEST(CrowdVerb, ARunSaysWhoHasNoRouteAndWhyAndWhoWasPushedOff) {
       "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
   const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
   EXPECT_EQ(one["pushed_off"].get<int>(), one["arrived"].get<int>() - 1) << one;
+}
+
+/// Killed after longer and longer times, and each time gone on with.
+TEST(CrowdVerb, AKilledRunGoesOnToTheSameBytes) {
+  const Workplace here;
+  here.write("ring.json", R"({"name": "ring", "time_step": 0.05, "time_limit": 60, "horizons": {"least": 0.3},
+    "robots": [{"circle": {"count": 400, "radius": 100}, "max_speed": 1.5}],
+    "moving_obstacles": [{"id": "tram", "polygon": [[-1, -9], [1, -9], [1, -6], [-1, -6]], "path": [[0, -7], [0, 70]], "speed": 1.3}]})");
+  const std::string options = "simulate ring.json --engine crowd --guidance none --every 10 --json";
+  const Outcome whole = here.run(options + " --record whole.evr");
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  json expected = json::parse(whole.out);
+  const std::string run = options + " --record killed.evr --snapshot-every 25 --resume";
+  Outcome outcome;
+  int kills = 0;
+  for (int tenths = 1;; ++tenths) {
+    outcome = here.run(run, "timeout -s KILL 0." + std::to_string(std::min(tenths, 9)));
+    if (outcome.status == 0 || tenths > 200) break;
+    ++kills;
+    EXPECT_FALSE(here.has("killed.evr"));
+  }
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(kills, 0);
+  EXPECT_TRUE(here.read("killed.evr") == here.read("whole.evr"));
+  EXPECT_FALSE(here.has("killed.evr.snapshot"));
+  EXPECT_FALSE(here.has("killed.evr.unfinished"));
+  json found = json::parse(outcome.out);
+  for (json* metrics : {&expected, &found})
+    for (const char* key : {"wall_time", "provenance"}) metrics->erase(key);
+  EXPECT_EQ(found, expected);
+}
+
+TEST(CrowdVerb, ASnapshotOfAnotherRunIsRefused) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const std::string run = "simulate ring.json --engine crowd --record ring.evr --snapshot-every 5 --resume";
+  Outcome killed;
+  for (int tries = 0; tries < 50 && !here.has("ring.evr.snapshot"); ++tries)
+    killed = here.run(run + " --every 1", "timeout -s KILL 0.0" + std::to_string(3 + tries % 7));
+  if (!here.has("ring.evr.snapshot")) GTEST_SKIP() << "never killed in time";
+  const Outcome other = here.run(run + " --every 2");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("the snapshot of another run"));
+  EXPECT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr").status, 0) << "without snapshots";
+  EXPECT_EQ(here.run(run + " --every 1").status, 0);
+}
+
+TEST(CrowdVerb, OptionsOfSnapshotsNeedEachOther) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  const Outcome alone = here.run("simulate ring.json --engine crowd --snapshot-every 5");
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_THAT(alone.err, HasSubstr("--record FILE.evr beside it"));
+  const Outcome resume = here.run("simulate ring.json --engine crowd --record ring.evr --resume");
+  EXPECT_EQ(resume.status, 2);
+  EXPECT_THAT(resume.err, HasSubstr("--snapshot-every N beside it"));
+  EXPECT_EQ(here.run("simulate ring.json --resume").status, 2) << "of the standard engine";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "exactvo/datasets/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -46,9 +47,14 @@ void write_fully(const std::filesystem::path& path, int descriptor, std::string_
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing) : path_(std::move(path)) {
+AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing, Unfinished unfinished)
+    : path_(std::move(path)), unfinished_(unfinished) {
   refuse_irregular(path_);
   if (missing == MissingFolder::is_made) make_directories(path_.parent_path());
+  if (unfinished_ == Unfinished::stays) {
+    open_unfinished();
+    return;
+  }
   // A name of its own keeps programs that write the same file apart, on whatever machines; the later rename wins,
   // whole.
   do {
@@ -62,7 +68,35 @@ AtomicFile::AtomicFile(std::filesystem::path path, MissingFolder missing) : path
 AtomicFile::~AtomicFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  ::unlink(temporary_.c_str());
+  if (unfinished_ == Unfinished::goes) ::unlink(temporary_.c_str());
+}
+
+/// Locked: two processes that append to one file would spoil it.
+void AtomicFile::open_unfinished() {
+  temporary_ = unfinished_name(path_);
+  do {
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && errno == EINTR);
+  if (descriptor_ < 0) throw cannot_write(path_, errno);
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  ::close(std::exchange(descriptor_, -1));
+  throw DataError(DataCode::file_unwritable, path_.string(), "", "another process that writes it",
+                  "one at a time, or another name");
+}
+
+void AtomicFile::continue_behind(std::uint64_t size) {
+  const ::off_t there = ::lseek(descriptor_, 0, SEEK_END);
+  if (there < 0) throw cannot_write(path_, errno);
+  if (static_cast<std::uint64_t>(there) < size)
+    throw DataError(DataCode::format_syntax, temporary_.string(), "byte " + std::to_string(there), "its end too early",
+                    std::to_string(size) + " bytes, as its snapshot has it");
+  if (::ftruncate(descriptor_, static_cast<::off_t>(size)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0)
+    throw cannot_write(path_, errno);
+}
+
+void AtomicFile::sync() {
+  flush();
+  if (::fsync(descriptor_) != 0) throw cannot_write(path_, errno);
 }
 
 void AtomicFile::flush() {
@@ -92,6 +126,10 @@ void AtomicFile::commit(Durability durability) {
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) throw cannot_write(path_, errno);
   ::close(std::exchange(descriptor_, -1));
   if (durability == Durability::name) sync_directory(path_.parent_path());
+}
+
+std::filesystem::path unfinished_name(std::filesystem::path path) {
+  return path += ".unfinished";
 }
 
 // A rename is durable only once its directory is.

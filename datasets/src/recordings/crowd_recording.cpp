@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -197,8 +198,8 @@ CrowdRecordingHead to_head(Bytes in, bool has_bodies) {
 }  // namespace
 
 CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario,
-                             std::uint32_t every)
-    : file_(path) {
+                             std::uint32_t every, Unfinished unfinished)
+    : file_(path, MissingFolder::is_made, unfinished) {
   EXACTVO_REQUIRE(every > 0, "every 0");
   head_.scenario = scenario.name;
   head_.every = every;
@@ -213,7 +214,8 @@ void CrowdRecorder::put(const std::string& bytes) {
   bytes_ += bytes.size();
 }
 
-void CrowdRecorder::begin(const formation::Crowd& crowd) {
+/// Takes the head and what follows from it.
+std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
   head_.time_step = crowd.options().time_step;
   head_.position_step = crowd.options().position_step;
   const std::size_t robots = crowd.id_end();
@@ -233,18 +235,60 @@ void CrowdRecorder::begin(const formation::Crowd& crowd) {
   }
   row_.body_x.assign(head_.bodies.size(), 0);
   last_body_x_ = last_body_y_ = row_.body_y = row_.body_x;
-  const std::string head = to_bytes(head_);
-  std::string out(head_.bodies.empty() ? kMark : kMarkOfBodies);
-  append(out, static_cast<std::uint64_t>(head.size()));
-  sum_ = checksum(head);
-  append(out, sum_);
-  put(out + head);
   row_.x.assign(robots, 0);
   row_.y.assign(robots, 0);
   last_x_ = last_y_ = row_.x;
   row_.kept.assign(robots, 1);
+  const std::string head = to_bytes(head_);
+  std::string out(head_.bodies.empty() ? kMark : kMarkOfBodies);
+  append(out, static_cast<std::uint64_t>(head.size()));
+  head_sum_ = sum_ = checksum(head);
+  append(out, sum_);
+  return out + head;
+}
+
+void CrowdRecorder::begin(const formation::Crowd& crowd) {
+  file_.continue_behind(0);
+  put(head_of(crowd));
   take(crowd);
   write_row();
+}
+
+// What a row is the difference from, and what will be in the next one. The positions of that one come with its step.
+
+void CrowdRecorder::save(std::ostream& to) {
+  file_.sync();
+  std::string out;
+  for (const std::uint64_t number : {head_sum_, bytes_, rows_, sum_, std::uint64_t{row_.step}, std::uint64_t{is_due_}})
+    append(out, number);
+  for (const geometry::Vec2 start : body_start_) append(out, start);
+  for (const auto* all : {&last_x_, &last_y_, &row_.x, &row_.y})
+    for (const std::int32_t number : *all) append(out, number);
+  for (const auto* all : {&last_body_x_, &last_body_y_, &row_.body_x, &row_.body_y})
+    for (const std::int64_t number : *all) append(out, number);
+  for (const std::uint8_t kept : row_.kept) append(out, kept);
+  to.write(out.data(), static_cast<std::streamsize>(out.size()));
+}
+
+void CrowdRecorder::restore(const formation::Crowd& crowd, std::istream& from) {
+  head_of(crowd);
+  const std::string bytes{std::istreambuf_iterator<char>(from), std::istreambuf_iterator<char>()};
+  const std::string name = "a snapshot";
+  Bytes in(bytes, name, 0);
+  in.require(in.get<std::uint64_t>() == head_sum_, "a recording of something else");
+  bytes_ = in.get<std::uint64_t>();
+  rows_ = in.get<std::uint64_t>();
+  sum_ = in.get<std::uint64_t>();
+  row_.step = static_cast<std::uint32_t>(in.get<std::uint64_t>());
+  is_due_ = in.get<std::uint64_t>() != 0;
+  for (geometry::Vec2& start : body_start_) start = in.get<geometry::Vec2>();
+  for (auto* all : {&last_x_, &last_y_, &row_.x, &row_.y})
+    for (std::int32_t& number : *all) number = in.get<std::int32_t>();
+  for (auto* all : {&last_body_x_, &last_body_y_, &row_.body_x, &row_.body_y})
+    for (std::int64_t& number : *all) number = in.get<std::int64_t>();
+  for (std::uint8_t& kept : row_.kept) kept = in.get<std::uint8_t>();
+  in.require_end();
+  file_.continue_behind(bytes_);
 }
 
 void CrowdRecorder::take(const formation::Crowd& crowd) {

@@ -6,14 +6,19 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/require.h"
+#include "runs/crowd_run_state.h"
 #include "steering/guide.h"
 
 namespace exactvo::formation {
@@ -102,15 +107,14 @@ class CrowdRun {
 
   CrowdRunReport run() {
     const Clock::time_point start = Clock::now();
-    for (std::size_t i = 0; i < ways_.size(); ++i) set_out(i);
-    if (sink_) sink_->begin(crowd_);
+    options_.resume_from.empty() ? begin() : restore(options_.resume_from);
     const auto most = static_cast<std::size_t>(std::ceil(scenario_.time_limit / scenario_.time_step - 1e-9));
-    report_.robots = ways_.size();
     while (report_.steps < most && someone_goes_on()) {
       step();
-      if (!options_.progress || options_.progress(report_.time)) continue;
-      report_.interrupted = true;
-      break;
+      report_.interrupted = options_.progress && !options_.progress(report_.time);
+      const bool is_due = options_.snapshot_every > 0 && report_.steps % options_.snapshot_every == 0;
+      if (options_.keep_snapshot && (is_due || report_.interrupted)) options_.keep_snapshot(snapshot());
+      if (report_.interrupted) break;
     }
     finish();
     report_.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
@@ -128,6 +132,107 @@ class CrowdRun {
     std::string why_not;                  ///< it stays, or goes as near as it can
     std::optional<NearestPlace> nearest;  ///< as near as it can get
   };
+
+  void begin() {
+    report_.robots = ways_.size();
+    for (std::size_t i = 0; i < ways_.size(); ++i) set_out(i);
+    if (sink_) sink_->begin(crowd_);
+  }
+
+  // --- Snapshots: the run, the crowd, the sink, and a checksum ---
+
+  std::string snapshot() const {
+    StateWriter run;
+    run.put(static_cast<std::uint64_t>(ways_.size()));
+    for_each_count(report_, [&](const auto& count) { run.put(count); });
+    for (const Way& way : ways_) put(run, way);
+    std::ostringstream crowd, sink;
+    crowd_.snapshot(crowd);
+    if (sink_) sink_->save(sink);
+    StateWriter whole;
+    for (const std::string& part : {run.bytes(), crowd.str(), sink.str()}) whole.put_all(part);
+    whole.put(hash_of(whole.bytes()));
+    return whole.bytes();
+  }
+
+  void restore(std::string_view bytes) {
+    StateReader whole(bytes);
+    const std::string_view parts[] = {whole.get_stretch(), whole.get_stretch(), whole.get_stretch()};
+    const std::size_t size = parts[0].size() + parts[1].size() + parts[2].size() + 3 * sizeof(std::uint64_t);
+    whole.require(whole.get<std::uint64_t>() == hash_of(bytes.substr(0, size)));
+    whole.require_end();
+    StateReader run(parts[0]);
+    run.require(run.get<std::uint64_t>() == ways_.size());
+    for_each_count(report_, [&](auto& count) { count = run.get<std::decay_t<decltype(count)>>(); });
+    for (std::size_t i = 0; i < ways_.size(); ++i) ways_[i] = get_way(run, i);
+    run.require_end();
+    const CrowdOptions wanted = crowd_.options();
+    std::istringstream crowd{std::string(parts[1])};
+    crowd_ = Crowd::restored(crowd, options_.threads);
+    const CrowdOptions& found = crowd_.options();
+    run.require(found.time_step == wanted.time_step && found.position_step == wanted.position_step &&
+                found.precision == wanted.precision && crowd_.id_end() == ways_.size());
+    crowd_.positions(at_);
+    std::istringstream sink{std::string(parts[2])};
+    if (sink_) sink_->restore(crowd_, sink);
+  }
+
+  static std::uint64_t hash_of(std::string_view bytes) {
+    std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
+    for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    return hash;
+  }
+
+  /// What adds up from step to step.
+  template <class Report, class Visit>
+  static void for_each_count(Report& r, const Visit& visit) {
+    for (auto* count : {&r.robots, &r.arrived, &r.steps, &r.relaxed, &r.touching, &r.widened, &r.stopped,
+                        &r.half_planes, &r.edges, &r.bodies})
+      visit(*count);
+    for (auto* number : {&r.time, &r.path_length}) visit(*number);
+  }
+
+  static void put(StateWriter& to, const Way& way) {
+    to.put(static_cast<std::uint64_t>(way.goal));
+    to.put(way.heading);
+    to.put(way.arrived.has_value());
+    to.put(way.arrived.value_or(0.0));
+    to.put(way.stays);
+    to.put_all(way.why_not);
+    to.put(way.nearest.has_value());
+    to.put(way.nearest.value_or(NearestPlace{}));
+    to.put(way.course.has_value());
+    if (!way.course) return;
+    to.put_all(way.course->points);
+    to.put_all(way.course->keeps);
+    to.put(way.course->to);
+    to.put(static_cast<std::uint64_t>(way.course->next));
+  }
+
+  Way get_way(StateReader& from, std::size_t robot) const {
+    Way way;
+    way.goal = static_cast<std::size_t>(from.get<std::uint64_t>());
+    from.require(way.goal < scenario_.robots[robot].goals.size());
+    way.heading = from.get<Vec2>();
+    const bool has_arrived = from.get<bool>();
+    const auto arrived = from.get<double>();
+    if (has_arrived) way.arrived = arrived;
+    way.stays = from.get<bool>();
+    way.why_not = from.get_all<std::string>();
+    const bool has_nearest = from.get<bool>();
+    const auto nearest = from.get<NearestPlace>();
+    if (has_nearest) way.nearest = nearest;
+    const bool has_course = from.get<bool>();
+    from.require(!has_course || guide_.has_value());
+    if (!has_course) return way;
+    Course& course = way.course.emplace();
+    course.points = from.get_all<std::vector<Vec2>>();
+    course.keeps = from.get_all<std::vector<double>>();
+    course.to = from.get<Destination>();
+    course.next = static_cast<std::size_t>(from.get<std::uint64_t>());
+    from.require(course.next < course.points.size() && course.keeps.size() == course.points.size());
+    return way;
+  }
 
   void add_robots() {
     std::map<std::tuple<double, double>, KindId> kinds;

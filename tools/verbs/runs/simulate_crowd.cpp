@@ -5,12 +5,17 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "exactvo/datasets/crowd_recording.h"
 #include "exactvo/datasets/provenance.h"
+#include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/crowd_run.h"
 #include "exactvo/geometry/counted.h"
 #include "support/escape.h"
@@ -104,6 +109,51 @@ UsageError only_with(const std::string& option, bool is_crowd) {
   return {option, option + " without --engine crowd", "--engine crowd beside it: only that engine has this option"};
 }
 
+// --- Snapshots ---
+
+/// Beside the recording: what run it is of, and the snapshot.
+class SnapshotFile {
+ public:
+  /// `identity`: of the inputs and of all options that the result depends on.
+  SnapshotFile(const std::string& record, std::string identity)
+      : record_(record), path_(record + ".snapshot"), identity_(std::move(identity)) {}
+
+  void keep(const std::string& snapshot) const { datasets::write_file_atomically(path_, identity_ + "\n" + snapshot); }
+
+  /// Empty where there is none. Throws DataError (E_OTHER_RUN) where it is of another run.
+  std::string read() const {
+    if (!std::filesystem::exists(path_) || !std::filesystem::exists(datasets::unfinished_name(record_))) return "";
+    std::ifstream in(path_, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const std::size_t end = text.find('\n');
+    if (end == std::string::npos || text.substr(0, end) != identity_)
+      throw datasets::DataError(datasets::DataCode::other_run, path_, "", "the snapshot of another run",
+                                "one of this scenario, these options and this version; without --resume the run "
+                                "begins anew");
+    return text.substr(end + 1);
+  }
+
+  void remove() const {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string record_, path_, identity_;
+};
+
+/// On one line.
+std::string identity_of(const CrowdFlags& flags, const SimulationFlags& simulation, const formation::Scenario& scenario,
+                        const datasets::Provenance& provenance) {
+  std::string text = fmt::format("exactvo {} {} every={} precision={} guidance={} scenario={}", provenance.version,
+                                 provenance.commit, flags.every, flags.precision, simulation.guidance,
+                                 datasets::sha256_of(datasets::write_scenario(scenario)));
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
 }  // namespace
 
 void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
@@ -115,13 +165,19 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   app.add_option("--every", flags.every, "With --record: a row every N steps")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
+  app.add_option("--snapshot-every", flags.snapshot_every,
+                 "With --record: keep a snapshot every N steps, beside FILE, for --resume")
+      ->check(CLI::Range(1, 1000000000));
+  app.add_flag("--resume", flags.resume,
+               "With --snapshot-every: go on with an interrupted run from its last snapshot. The result is the same");
   app.add_option("--threads", flags.threads, "With --engine crowd; 0: all there are. The result is the same")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024));
   app.add_option("--precision", flags.precision, "With --engine crowd: float or double, both certified")
       ->capture_default_str();
   flags.method = app.get_option("--method");
-  for (const char* option : {"--every", "--threads", "--precision"}) flags.of_crowd.push_back(app.get_option(option));
+  for (const char* option : {"--every", "--snapshot-every", "--resume", "--threads", "--precision"})
+    flags.of_crowd.push_back(app.get_option(option));
   for (const char* option : {"--liveness", "--record-all", "--fail-on-collision", "--no-figures", "--force"})
     flags.of_standard.push_back(app.get_option(option));
 }
@@ -139,6 +195,11 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
     throw UsageError("--method", simulation.method, "orca, the only method of --engine crowd");
   if (!flags.record.empty() && std::filesystem::path(flags.record).extension() != ".evr")
     throw UsageError("--record", flags.record, "a name that ends in .evr");
+  if (flags.snapshot_every > 0 && flags.record.empty())
+    throw UsageError("--snapshot-every", std::to_string(flags.snapshot_every),
+                     "--record FILE.evr beside it: the snapshot is of the run that is recorded");
+  if (flags.resume && flags.snapshot_every == 0)
+    throw UsageError("--resume", "--resume alone", "--snapshot-every N beside it, as in the run that was interrupted");
   if (is_crowd && !out.empty())
     throw UsageError("--out", out,
                      "--record FILE.evr in its place: a crowd is recorded in one file, and --json prints its metrics");
@@ -167,18 +228,36 @@ ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulati
     line.show(time, scenario.name);
     return !interrupted();
   };
+  const bool has_snapshots = flags.snapshot_every > 0;
+  const SnapshotFile snapshot(flags.record,
+                              has_snapshots ? identity_of(flags, simulation, scenario, provenance) : std::string());
+  if (has_snapshots) {
+    options.snapshot_every = flags.snapshot_every;
+    options.keep_snapshot = [&](const std::string& bytes) { snapshot.keep(bytes); };
+    if (flags.resume) options.resume_from = snapshot.read();
+    if (flags.resume)
+      message(options.resume_from.empty() ? "no snapshot of " + flags.record + ": begins at the beginning"
+                                          : "goes on from " + snapshot.path());
+  }
   std::optional<datasets::CrowdRecorder> recorder;
-  if (!flags.record.empty()) recorder.emplace(flags.record, scenario, flags.every);
+  if (!flags.record.empty())
+    recorder.emplace(flags.record, scenario, flags.every,
+                     has_snapshots ? datasets::Unfinished::stays : datasets::Unfinished::goes);
+  if (has_snapshots && options.resume_from.empty()) snapshot.remove();
   CrowdRunReport report;
   try {
     report = run_crowd(scenario, options, recorder ? &*recorder : nullptr);
   } catch (const formation::CrowdError& e) {
-    throw refusal(file, e);
+    if (e.problem() != formation::CrowdProblem::bad_snapshot) throw refusal(file, e);
+    throw datasets::DataError(datasets::DataCode::format_syntax, snapshot.path(), "", "a snapshot that was changed",
+                              "what simulate has written; without --resume the run begins anew");
   }
   line.clear();
+  if (interrupted() && has_snapshots) message("interrupted; --resume goes on");
   if (interrupted()) throw Interrupted();
   if (recorder) {
     recorder->finish();
+    if (has_snapshots) snapshot.remove();
     message(fmt::format("wrote {}: {} bytes", flags.record, recorder->bytes()));
   }
   print(json ? to_json(report, scenario, provenance) : summary(report, scenario));

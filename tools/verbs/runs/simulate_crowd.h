@@ -19,6 +19,8 @@ struct CrowdFlags {
   std::string engine = "standard";
   std::string record;
   std::uint32_t every = 1;
+  std::size_t snapshot_every = 0;
+  bool resume = false;
   int threads = 1;
   std::string precision = "float";
   CLI::Option* method = nullptr;                    ///< of the verb

@@ -26,30 +26,47 @@ enum class MissingFolder {
   is_refused  ///< DataError: somebody else may have taken it away
 };
 
-/// A file in the making. Nothing stands at `path` until `commit`; without it the temporary file goes with the object.
+/// What becomes of a file that was not committed.
+enum class Unfinished {
+  goes,  ///< the temporary file goes with the object
+  stays  ///< it stays as "PATH.unfinished", whatever ends the program; the next one goes on with it
+};
+
+/// A file in the making. Nothing stands at `path` until `commit`.
 class AtomicFile {
  public:
-  /// Throws DataError (E_FILE_UNWRITABLE), as the others do.
-  explicit AtomicFile(std::filesystem::path path, MissingFolder missing = MissingFolder::is_made);
+  /// Throws DataError (E_FILE_UNWRITABLE), as the others do, also where another process makes the same file and it
+  /// `stays`.
+  explicit AtomicFile(std::filesystem::path path, MissingFolder missing = MissingFolder::is_made,
+                      Unfinished unfinished = Unfinished::goes);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// Buffered.
   void write(std::string_view bytes);
+  /// Goes on behind the first `size` bytes of what is there. Throws DataError (E_FORMAT_SYNTAX) where there are fewer.
+  void continue_behind(std::uint64_t size);
+  /// Flushes, and waits for the disk: whatever happens now, this is there.
+  void sync();
   /// Flushes, syncs, renames, and syncs the directory as well for Durability::name.
   void commit(Durability durability = Durability::name);
 
  private:
+  void open_unfinished();
   void flush();
   void put(std::string_view bytes);
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;
+  Unfinished unfinished_ = Unfinished::goes;
   int descriptor_ = -1;
   std::string buffer_;
   std::size_t unsent_ = 0;  ///< written and not on its way to the disk, bytes
 };
+
+/// "PATH.unfinished".
+std::filesystem::path unfinished_name(std::filesystem::path path);
 
 /// Makes renames in a folder durable; where a file system refuses that, they stand all the same.
 void sync_directory(const std::filesystem::path& directory);

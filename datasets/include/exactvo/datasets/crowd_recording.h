@@ -59,12 +59,19 @@ struct CrowdRow {
   std::vector<std::uint8_t> kept;  ///< 1: provably kept all its half-planes in every step since the row before
 };
 
-/// Takes a run whose robots and bodies stay the same; the file appears as a whole at `finish`.
+/// Takes a run whose robots and bodies stay the same; the file appears as a whole at `finish`. With
+/// `Unfinished::stays` what was written outlasts an interrupted run, and one that goes on from a snapshot
+/// (formation/crowd_run.h) goes on writing behind the rows that the snapshot knows of: the file is the same.
 class CrowdRecorder : public formation::CrowdSink {
  public:
   /// Throws DataError (E_FILE_UNWRITABLE), as the others do. REQUIRES: every >= 1.
-  CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario, std::uint32_t every);
+  CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario, std::uint32_t every,
+                Unfinished unfinished = Unfinished::goes);
   void begin(const formation::Crowd& crowd) override;
+  /// Waits until the rows so far are on the disk.
+  void save(std::ostream& to) override;
+  /// Throws DataError (E_FORMAT_SYNTAX) where the unfinished file has fewer rows than that, or another head.
+  void restore(const formation::Crowd& crowd, std::istream& from) override;
   /// Called after every step; writes a row where one is due.
   void add_step(const formation::Crowd& crowd, std::size_t steps) override;
   /// Writes the last row, if it is due, and publishes the file.
@@ -73,6 +80,7 @@ class CrowdRecorder : public formation::CrowdSink {
   std::uint64_t bytes() const { return bytes_; }
 
  private:
+  std::string head_of(const formation::Crowd& crowd);
   void put(const std::string& bytes);
   void take(const formation::Crowd& crowd);
   void write_row();
@@ -88,6 +96,7 @@ class CrowdRecorder : public formation::CrowdSink {
   std::vector<std::uint8_t> kept_;
   std::uint64_t bytes_ = 0, rows_ = 0;
   std::uint64_t sum_ = 0;  ///< of all blocks
+  std::uint64_t head_sum_ = 0;
   bool is_due_ = false;
 };
 

@@ -15,6 +15,7 @@
 /// Neighbours: simulation.h runs everything else; datasets/crowd_recording.h records.
 
 #include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,12 @@ struct CrowdRunOptions {
   int threads = 1;                                         ///< as CrowdOptions::threads
   /// Called after every step with the simulated time, s; returning false stops the run.
   std::function<bool(double)> progress;
+  std::size_t snapshot_every = 0;  ///< steps, where snapshots are kept; 0: only one, where `progress` stops the run
+  /// Takes a snapshot of the whole run, its sink included, in a binary form of this version. None: none is made.
+  std::function<void(const std::string&)> keep_snapshot;
+  /// A snapshot of a run of the same scenario and options: it goes on from there, with the same bits. Empty: the run
+  /// begins at the beginning. The number of threads may be another.
+  std::string resume_from;
 };
 
 /// Why a scenario cannot be run on a crowd: the pointer of the field, what it has and what it may have.
@@ -76,10 +83,15 @@ class CrowdSink {
   virtual void begin(const Crowd& crowd) = 0;
   /// After every step; `steps` counts them from 1.
   virtual void add_step(const Crowd& crowd, std::size_t steps) = 0;
+  /// For a snapshot, after a step: what it needs to go on from here. What it has taken so far must be safe then.
+  virtual void save(std::ostream& /*to*/) {}
+  /// In the place of `begin` in a run that goes on: what `save` wrote.
+  virtual void restore(const Crowd& /*crowd*/, std::istream& /*from*/) {}
 };
 
 /// REQUIRES: a valid scenario (`validate`) without `crowd_problems`. Throws CrowdError, which names a robot by number,
-/// where one leaves the lattice or two start in one place.
+/// where one leaves the lattice or two start in one place, and `bad_snapshot` where the run cannot go on from
+/// `CrowdRunOptions::resume_from`.
 CrowdRunReport run_crowd(const Scenario& scenario, const CrowdRunOptions& options, CrowdSink* sink = nullptr);
 
 }  // namespace exactvo::formation
