@@ -74,12 +74,12 @@ TEST(CrowdVerb, VerbsThatNeedDecisionsOrAScenarioSayWhatARecordingOfACrowdIs) {
   const Workplace here;
   here.write("ring.json", kRing);
   ASSERT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr --every 100").status, 0);
-  for (const char* arguments : {"explain ring.evr --time 1 --robot 0", "draw ring.evr --out figures", "trap ring.evr",
-                                "simulate ring.evr --out out"}) {
+  for (const char* arguments :
+       {"explain ring.evr --time 1 --robot 0", "trap ring.evr", "simulate ring.evr --out out"}) {
     const Outcome outcome = here.run(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr("the recording of a crowd (.evr)")) << arguments;
-    EXPECT_THAT(outcome.err, HasSubstr("audit, convert and view read recordings of crowds")) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr("audit, convert, draw and view read recordings of crowds")) << arguments;
   }
 }
 
@@ -151,6 +151,22 @@ TEST(CrowdVerb, ARunSaysWhoHasNoRouteAndWhyAndWhoWasPushedOff) {
       "robots": [{"id": "a", "position": [-2, 0], "goal": [0, 0]}, {"id": "b", "position": [12, 0.1], "goal": [0, 0]}]})");
   const json one = json::parse(here.run("simulate one.json --engine crowd --json").out);
   EXPECT_EQ(one["pushed_off"].get<int>(), one["arrived"].get<int>() - 1) << one;
+}
+
+TEST(CrowdVerb, DrawMakesMapsAndSaysThatARecordingWasCutOff) {
+  const Workplace here;
+  here.write("ring.json", kRing);
+  ASSERT_EQ(here.run("simulate ring.json --engine crowd --record ring.evr").status, 0);
+  const Outcome drawn = here.run("draw ring.evr --out maps");
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  for (const char* name : {"density", "flow", "speed", "speeds", "paths"}) {
+    EXPECT_TRUE(here.has(std::string("maps/") + name + ".dat")) << name;
+    EXPECT_TRUE(here.has(std::string("maps/") + name + ".gp")) << name;
+  }
+  here.write("cut.evr", here.read("ring.evr").substr(0, 3000));
+  const Outcome cut = here.run("draw cut.evr --out cut");
+  EXPECT_EQ(cut.status, 1);
+  EXPECT_THAT(cut.err, HasSubstr("cut.evr: the file was cut off after the last of the rows drawn"));
 }
 
 /// Killed after longer and longer times, and each time gone on with.

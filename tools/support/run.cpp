@@ -168,9 +168,13 @@ std::optional<fs::path> recording_at(const fs::path& path) {
 }
 
 std::vector<fs::path> write_figures(const datasets::RecordingFile& run, const fs::path& folder) {
+  return write_figures(run_figures(run), folder);
+}
+
+std::vector<fs::path> write_figures(const std::vector<Figure>& figures, const fs::path& folder) {
   make_folder(folder);
   std::vector<fs::path> scripts;
-  for (const Figure& figure : run_figures(run)) scripts.push_back(write_sources(figure, folder));
+  for (const Figure& figure : figures) scripts.push_back(write_sources(figure, folder));
   return scripts;
 }
 

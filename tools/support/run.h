@@ -15,6 +15,7 @@
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "explorer/packed_run.h"
+#include "figures/figure.h"
 
 namespace exactvo::tools {
 
@@ -69,6 +70,9 @@ std::optional<std::filesystem::path> recording_at(const std::filesystem::path& p
 
 /// The figures' data and scripts in `folder`, which is created. Returns the scripts, for `draw`.
 std::vector<std::filesystem::path> write_figures(const datasets::RecordingFile& run,
+                                                 const std::filesystem::path& folder);
+/// The same of any figures.
+std::vector<std::filesystem::path> write_figures(const std::vector<Figure>& figures,
                                                  const std::filesystem::path& folder);
 
 /// Runs gnuplot on the scripts; a message where it is absent. Throws std::runtime_error where it fails.

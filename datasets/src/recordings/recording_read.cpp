@@ -251,7 +251,7 @@ void require_recording(std::string_view first_line, const NextLine& next_line, c
   if (begins_crowd_recording(first_line))
     throw DataError(
         DataCode::format_unknown, name, "", "the recording of a crowd (.evr), which has no decisions",
-        "a recording.jsonl, as simulate --out writes it; audit, convert and view read recordings of crowds");
+        "a recording.jsonl, as simulate --out writes it; audit, convert, draw and view read recordings of crowds");
   throw DataError(DataCode::format_unknown, name, "", kind_of(first_line, next_line),
                   "a recording.jsonl, as simulate --out writes it");
 }

@@ -74,7 +74,7 @@ DataError no_scenario(const std::string& file, const std::string& format) {
 void refuse_other_formats(const std::filesystem::path& path, const std::string& text) {
   if (begins_crowd_recording(text))
     throw DataError(DataCode::format_unknown, path.string(), "", "the recording of a crowd (.evr)",
-                    "a scenario in JSON; audit, convert and view read recordings of crowds");
+                    "a scenario in JSON; audit, convert, draw and view read recordings of crowds");
   const std::string_view beginning(text.data(), std::min<std::size_t>(text.size(), 100));
   if (beginning.find("exactvo-recording") != std::string_view::npos)
     throw DataError(DataCode::format_unknown, path.string(), "", "the recording of a run",

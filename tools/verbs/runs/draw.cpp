@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "exactvo/datasets/recording_file.h"
+#include "figures/crowd_figures.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/run_recorder.h"
@@ -46,9 +47,18 @@ fs::path folder_for(const Flags& flags, const fs::path& recording) {
   return recording.parent_path() / "figures";
 }
 
-void draw_into(const fs::path& folder, const fs::path& recording) {
+/// Whether the recording was cut off.
+bool draw_crowd_into(const fs::path& folder, const fs::path& recording) {
+  const CrowdCourse course = course_of(recording);
+  draw(write_figures(crowd_figures(course), folder));
+  return course.cut_off;
+}
+
+bool draw_into(const fs::path& folder, const fs::path& recording) {
   const TerminateOnSignal terminate_on_signal;
+  if (recording.extension() == ".evr") return draw_crowd_into(folder, recording);
   draw(write_figures(read_shown(recording), folder));
+  return false;
 }
 
 ExitCode draw_figures(const Flags& flags) {
@@ -56,16 +66,19 @@ ExitCode draw_figures(const Flags& flags) {
   const fs::path out = folder_for(flags, recording);
   check_figure_folder(out);
   StagedFolder folder(out);
-  draw_into(folder.path(), recording);
+  const bool is_cut_off = draw_into(folder.path(), recording);
   if (interrupted()) throw Interrupted();
   folder.publish();
   message("wrote " + out.string());
-  return ExitCode::success;
+  if (!is_cut_off) return ExitCode::success;
+  message(recording.string() + ": the file was cut off after the last of the rows drawn");
+  return ExitCode::negative;
 }
 
 Action declare(CLI::App& app) {
   const auto flags = std::make_shared<Flags>();
-  app.add_option("recording", flags->recording, "recording.jsonl, or the folder of a run")->required();
+  app.add_option("recording", flags->recording, "recording.jsonl, the folder of a run, or a crowd's FILE.evr")
+      ->required();
   declare_out(app, flags->out, "Folder for the figures; by default figures/ beside the recording");
   return [flags] { return draw_figures(*flags); };
 }
@@ -75,7 +88,8 @@ Action declare(CLI::App& app) {
 Verb draw_verb() {
   return {"draw", "Draw the figures of a recorded run",
           "  exactvo simulate datasets/data/paper/A2.json --no-figures --out out/A2\n"
-          "  exactvo draw out/A2\n",
+          "  exactvo draw out/A2\n"
+          "  exactvo draw out/crowd.evr --out out/crowd_figures\n",
           declare};
 }
 
