@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/geometry/infinity.h"
 #include "motion/leader.h"
 
 namespace exactvo::formation {
@@ -18,7 +18,7 @@ namespace {
 using geometry::norm;
 using geometry::Vec2;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 // --- The oracle ---
 

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/obstacle_index.h"
 #include "exactvo/geometry/rounding.h"
 #include "support/seeded_random.h"
@@ -19,8 +19,6 @@ namespace {
 
 using test::seed_of_run;
 using test::SeededRandom;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Mostly small, some of them long, some points.
 Box random_box(SeededRandom& random) {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pi.h"
 #include "geometry/exact_oracle.h"
 #include "geometry/random_grown.h"
@@ -24,7 +24,7 @@ using geometry::Segment;
 using geometry::segment_meets;
 using geometry::Vec2;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 int as_int(Place p) {
   return static_cast<int>(p);

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "exactvo/geometry/infinity.h"
 #include "geometry/exact_oracle.h"
 #include "geometry/random_grown.h"
 
@@ -26,7 +26,7 @@ int as_int(Sign s) {
   return static_cast<int>(s);
 }
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 TEST(SignOfSupport, AgreesWithBracketedRoots) {
   SeededRandom random(seed_of_run(11));

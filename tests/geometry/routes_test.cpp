@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "cell_world.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/route_certificate.h"
 #include "route_oracle.h"
@@ -25,8 +26,6 @@ using test::route_field;
 using test::RouteCampaign;
 using test::RouteField;
 using test::SeededRandom;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double above(double x) {
   return std::nextafter(x, kInfinity);

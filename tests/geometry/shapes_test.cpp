@@ -4,18 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pi.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::geometry {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Sines, hypots and a handful of products: a few ulps each.
 constexpr double kFewUlps = 32 * 0x1p-53;
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the double-precision solvers make of a problem: lines moved inward, the sides of the box, a smaller disc.
 #include "lp/problem/region.h"
+#include "exactvo/geometry/infinity.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "exactvo/vo/lp/instances.h"
@@ -14,7 +14,7 @@
 namespace exactvo::lp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 Problem in_disc(double disc) {
   Problem p;

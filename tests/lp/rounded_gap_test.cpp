@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo/vo/lp/instances.h"
 #include "lp/proof/double_double.h"
@@ -16,7 +16,7 @@
 namespace exactvo::lp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 Exact exact(const DoubleDouble& x) {
   return Exact(x.high) + Exact(x.low);

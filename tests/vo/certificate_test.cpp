@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
@@ -57,7 +57,7 @@ std::vector<double*> numbers_of(Certificate& c) {
   return all;
 }
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 TEST(Certificate, Property1And2_IssuedReadAndValid) {
   SeededRandom random(seed_of_run(61));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numbered properties of family.h; cones without end; robots that are polygons.
 #include "exactvo/vo/family.h"
+#include "exactvo/geometry/infinity.h"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "exactvo/geometry/pi.h"
 #include "exactvo/vo/certificate.h"
@@ -30,7 +30,7 @@ using vo::Member;
 using vo::Variant;
 using vo::VelocityObstacle;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 Encounter random_encounter(SeededRandom& random, Kind kind) {
   Encounter e;

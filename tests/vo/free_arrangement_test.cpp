@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numbered properties of free_arrangement.h, areas that are known, and what touches.
 #include "exactvo/vo/free_arrangement.h"
+#include "exactvo/geometry/infinity.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 
@@ -29,7 +29,7 @@ using vo::Inside;
 using vo::ShiftedCone;
 using vo::VelocityObstacle;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 /// Of an area of a few (m/s)^2 whose expected value is made of some ten rounded operations.
 constexpr double kRounded = 1e-14;
 

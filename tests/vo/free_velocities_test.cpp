@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numbered properties of free_velocities.h, and areas that are known.
 #include "exactvo/vo/free_velocities.h"
+#include "exactvo/geometry/infinity.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ using vo::Variant;
 
 /// m/s: a hundred times what a shift by velocities below 1 m/s rounds by.
 constexpr double kShiftRounding = 0x1p-44;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 Encounter random_encounter(SeededRandom& random, int i) {
   Encounter e;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numbered properties of membership.h, against VelocityObstacle::contains.
 #include "exactvo/vo/membership.h"
+#include "exactvo/geometry/infinity.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -20,7 +20,7 @@ using geometry::Vec2;
 using vo::Membership;
 using vo::VelocityObstacle;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 Vec2 nudged(SeededRandom& random, Vec2 v) {
   const double ulps = random.integer(0, 1) == 0 ? 0x1p-52 : std::exp2(random.integer(-50, -2));

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/vo/orca_obstacle.h"
 #include "exactvo/vo/reciprocal.h"
@@ -28,7 +28,7 @@ using geometry::Vec2;
 using vo::BoundaryPart;
 using vo::VelocityObstacle;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 TEST(VelocityObstacle, Property1_StaticHalfPlanesAdmitRest) {
   SeededRandom random(seed_of_run(51));

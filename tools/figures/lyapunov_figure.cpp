@@ -17,7 +17,7 @@ using formation::LyapunovRow;
 
 namespace {
 
-constexpr Canvas kCanvas{960, 1240};
+constexpr Canvas kTermsCanvas{960, 1240};
 
 /// A curve: what the legend says, and its value in a row.
 struct Curve {
@@ -126,7 +126,7 @@ Figure lyapunov_figure(const datasets::RecordingFile& run) {
       panel(kSound, rows, "(c) a Lyapunov function that is valid", "{/:Italic V} [m²/s²]", Axis::logarithmic, data);
   panels += panel(kSoundRates, moving, "(d) its derivative, and the bound near obstacles (tallest spikes cut off)",
                   "d{/:Italic V}/d{/:Italic t} [m²/s³]", Axis::rates, data);
-  return {"lyapunov", data.text(), "Both Lyapunov functions along " + title + ", term by term.", kCanvas,
+  return {"lyapunov", data.text(), "Both Lyapunov functions along " + title + ", term by term.", kTermsCanvas,
           filled("lyapunov", {{"end", fmt::format("{:.6g}", end)}, {"panels", panels}})};
 }
 

@@ -95,7 +95,7 @@ std::string jitter_cell(const Json& run) {
 }
 
 /// Whether a scene ended formed and nothing was touched.
-bool formed(const Json& run) {
+bool formed_untouched(const Json& run) {
   const std::optional<double> error = value_of(run, "formation_position_error");
   return error && *error < formation::kFormed && !formation::touched(value_of(run, "min_obstacle_clearance")) &&
          !formation::touched(value_of(run, "min_robot_clearance"));
@@ -112,7 +112,8 @@ std::string ablation_table(const std::vector<VariantResult>& results, const std:
     const VariantResult& v = results[i];
     if (i == formation::remedy_ladder().size()) text += "\n";
     text += fmt::format("{:<22}{:>16}{:>9}{:>9}", v.name, v.good(), v.reached(), v.safe());
-    for (const Json& run : scenes[i]) text += fmt::format("{:>9}{}", jitter_cell(run), formed(run) ? ' ' : '!');
+    for (const Json& run : scenes[i])
+      text += fmt::format("{:>9}{}", jitter_cell(run), formed_untouched(run) ? ' ' : '!');
     text += fmt::format("{:>14.0f}\n", v.median_jitter());
   }
   text += "!  not formed, or touched an obstacle or another robot\n";

@@ -80,7 +80,7 @@ bool bypassed(const Json& run) {
 bool below(const std::optional<double>& error, double bound) {
   return error && *error < bound;
 }
-bool formed(const Json& run) {
+bool in_formation(const Json& run) {
   return below(value_of(run, "formation_position_error"), formation::kFormed);
 }
 template <typename Holds>
@@ -188,7 +188,7 @@ Claim theorem_one(const ReportData& data) {
   const auto error = number("formation_position_error");
   return {"Theorem 1, Section IV.B",
           "The cooperative formation with obstacle avoidance can be achieved with the control protocol in (15).",
-          judged(signs, [](const Json& r) { return formed(r) && untouched(r); }),
+          judged(signs, [](const Json& r) { return in_formation(r) && untouched(r); }),
           fmt::format("Position error at the end, B0-B3: as printed {} m at least; signs corrected {} to {} m, "
                       "something touched in {}; default {} m at most, nothing touched in {}.",
                       shown(least(literal, error), "{:.3g}"), shown(least(signs, error), "{:.2g}"),

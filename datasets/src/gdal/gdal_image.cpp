@@ -10,7 +10,7 @@ namespace {
 /// So many rows stay with GDAL: 4 MB of the widest that are usual.
 constexpr std::size_t kRowsKept = 128;
 
-const char* const kDrivers[] = {"PNG", "BMP", "JPEG", nullptr};
+const char* const kImageDrivers[] = {"PNG", "BMP", "JPEG", nullptr};
 
 double brightest_of(GDALRasterBand& band) {
   return band.GetRasterDataType() == GDT_UInt16 ? 65535.0 : 255.0;
@@ -25,7 +25,7 @@ float brightness_of(const GDALColorTable& palette, float index) {
 class Decoder {
  public:
   explicit Decoder(const std::filesystem::path& path) : path_(path) {
-    data_.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));
+    data_.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kImageDrivers, nullptr, nullptr));
     if (data_ == nullptr || data_->GetRasterCount() < 1) refuse("a picture that can't be decoded");
     image_.width = static_cast<std::size_t>(data_->GetRasterXSize());
     image_.height = static_cast<std::size_t>(data_->GetRasterYSize());

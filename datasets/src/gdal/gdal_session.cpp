@@ -17,7 +17,7 @@
 namespace exactvo::datasets {
 namespace {
 
-const char* const kDrivers[] = {
+const char* const kVectorDrivers[] = {
     "GeoJSON", "GeoJSONSeq", "TopoJSON", "ESRI Shapefile", "GPKG",   "FlatGeobuf", "CSV", "OSM", "DXF",
     "KML",     "GML",        "GPX",      "MapInfo File",   "SQLite", nullptr};
 
@@ -97,15 +97,12 @@ std::vector<std::string> GdalComplaints::take_warnings() {
 
 namespace {
 
-/// Characters between two calls of the wait hook.
-constexpr std::size_t kBlock = std::size_t{1} << 16;
-
 /// Words with a comma in them: what KML writes a point as, "longitude,latitude,height".
 std::size_t count_of_points(std::string_view text) {
   std::size_t points = 0;
   bool has_comma = false;
   for (std::size_t k = 0; k < text.size(); ++k) {
-    if (k % kBlock == 0) call_wait_hook();
+    if (k % kWaitHookBytes == 0) call_wait_hook();
     const char c = text[k];
     const bool is_blank = c == ' ' || c == '\n' || c == '\t' || c == '\r';
     points += is_blank && has_comma ? 1 : 0;
@@ -149,7 +146,7 @@ void refuse_bulky(const std::filesystem::path& path, std::string_view driver) {
 
 std::string vector_driver_of(const std::filesystem::path& path) {
   register_gdal_once();
-  const GDALDriverH driver = GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, kDrivers, nullptr);
+  const GDALDriverH driver = GDALIdentifyDriverEx(path.c_str(), GDAL_OF_VECTOR, kVectorDrivers, nullptr);
   return driver == nullptr ? "" : GDALGetDriverShortName(driver);
 }
 
@@ -157,7 +154,7 @@ std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path) {
   const std::string driver = vector_driver_of(path);
   refuse_bulky(path, driver);
   return std::unique_ptr<GDALDataset>(
-      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, options_for(driver), nullptr));
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kVectorDrivers, options_for(driver), nullptr));
 }
 
 }  // namespace exactvo::datasets

@@ -18,9 +18,6 @@ constexpr const char* kByteOrderMark = "\xef\xbb\xbf";
 
 constexpr int kEnd = std::char_traits<char>::eof();
 
-/// Bytes between two calls of the wait hook: a signal ends a long scan.
-constexpr std::size_t kBlock = std::size_t{1} << 16;
-
 bool is_blank(int c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
@@ -87,7 +84,7 @@ class FirstObject {
     if (c != '{') return false;
     bool is_type_checked = false;
     for (std::size_t k = 0; c != kEnd; c = bytes_.snextc(), ++k) {
-      if (k % kBlock == 0) call_wait_hook();
+      if (k % kWaitHookBytes == 0) call_wait_hook();
       if (c == '\n' && members_.nesting().in_string()) return false;  // broken: strings have no line ends
       spans_lines_ = spans_lines_ || c == '\n';
       members_.take(static_cast<char>(c));
@@ -190,7 +187,7 @@ bool GeoJsonSequence::ends_line(const JsonNesting& nesting) const {
 
 /// The next byte, counted; kEnd at the end.
 int GeoJsonSequence::take_byte() {
-  if (++bytes_ % kBlock == 0) call_wait_hook();
+  if (++bytes_ % kWaitHookBytes == 0) call_wait_hook();
   const int c = file_.rdbuf()->sbumpc();
   column_ = c == '\n' ? 1 : column_ + 1;
   line_ += c == '\n' ? 1 : 0;
@@ -255,7 +252,7 @@ GeoJsonBeginning beginning_of_geojson(const std::filesystem::path& path) {
   bool is_object = false, is_before_features = true;
   std::size_t bytes = 0;
   for (int c = file.rdbuf()->sgetc(); c != kEnd; c = file.rdbuf()->snextc()) {
-    if (++bytes % kBlock == 0) call_wait_hook();
+    if (++bytes % kWaitHookBytes == 0) call_wait_hook();
     if (c == 0 || (!is_object && !is_blank(c) && c != '{')) break;  // no JSON object: sparse files have such bytes
     is_object = is_object || c == '{';
     members.take(static_cast<char>(c));
@@ -282,7 +279,7 @@ void for_each_stray_entry(const std::filesystem::path& path, const std::function
   bool is_awaited = false;
   std::size_t bytes = 0;
   for (int c = file.rdbuf()->sgetc(); c != kEnd; c = file.rdbuf()->snextc()) {
-    if (++bytes % kBlock == 0) call_wait_hook();
+    if (++bytes % kWaitHookBytes == 0) call_wait_hook();
     const bool is_among = members.is_among_features();
     members.take(static_cast<char>(c));
     if (is_awaited && !is_blank(c)) {

@@ -21,9 +21,6 @@ constexpr double kOfMember = 200.0;  // its name, its place in a table that doub
 /// The copies of the text itself.
 constexpr double kOfCharacter = 4.0;
 
-/// Characters between two calls of the wait hook.
-constexpr std::size_t kBlock = std::size_t{1} << 16;
-
 }  // namespace
 
 double parser_memory_for(double input_bytes) {
@@ -96,9 +93,9 @@ DataError too_bulky(const JsonMemory& memory, const std::string& file, const std
 
 std::optional<DataError> bulky_json(std::string_view text, const std::string& file, const std::string& place) {
   JsonMemory memory;
-  for (std::size_t begin = 0; begin < text.size(); begin += kBlock) {
+  for (std::size_t begin = 0; begin < text.size(); begin += kWaitHookBytes) {
     call_wait_hook();
-    for (const char c : text.substr(begin, kBlock)) memory.take(c);
+    for (const char c : text.substr(begin, kWaitHookBytes)) memory.take(c);
   }
   if (!memory.is_too_much()) return std::nullopt;
   return too_bulky(memory, file, place);
@@ -106,7 +103,7 @@ std::optional<DataError> bulky_json(std::string_view text, const std::string& fi
 
 std::optional<DataError> bulky_json_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string block(kBlock, '\0');
+  std::string block(kWaitHookBytes, '\0');
   JsonMemory memory;
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
     call_wait_hook();

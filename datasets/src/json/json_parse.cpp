@@ -24,7 +24,7 @@ class CountingIterator {
   CountingIterator& operator++() {
     ++at_;
     *position_ = static_cast<std::size_t>(at_ - begin_);
-    if (*position_ % kBlock == 0) call_wait_hook();
+    if (*position_ % kWaitHookBytes == 0) call_wait_hook();
     return *this;
   }
   CountingIterator operator++(int) {
@@ -36,8 +36,6 @@ class CountingIterator {
   bool operator!=(const CountingIterator& other) const { return at_ != other.at_; }
 
  private:
-  static constexpr std::size_t kBlock = std::size_t{1} << 16;  ///< bytes between two calls of the wait hook
-
   const char* at_;
   const char* begin_;
   std::size_t* position_;

@@ -55,7 +55,7 @@ double signed_area(const Corners& ring) {
 }
 
 /// A corner of a walk, and whether two cells touch there at their corners only: no others are passed twice.
-struct Turn {
+struct WalkCorner {
   Lattice at;
   bool is_touched = false;
 };
@@ -66,7 +66,7 @@ struct Turn {
 ///      | B |        walk: ... A -> v -> B -> ... -> back to v -> A
 ///      +---v---+    two rings that touch at v
 ///          | A |
-std::vector<Corners> cut_at_repeats(const std::vector<Turn>& walk) {
+std::vector<Corners> cut_at_repeats(const std::vector<WalkCorner>& walk) {
   std::vector<Corners> rings;
   Corners open;
   std::unordered_map<std::size_t, std::size_t> place_of;  // looked up, never iterated
@@ -196,8 +196,8 @@ class Tracer {
 
   /// Keeps the component on the left; where two of its cells meet at a corner only, stays with the nearer one (left).
   /// Where it starts, and where it turns; breaks off beyond kMostCorners.
-  std::vector<Turn> walk_from(Lattice start, Direction direction) {
-    std::vector<Turn> walk{{start, is_touched(start)}};
+  std::vector<WalkCorner> walk_from(Lattice start, Direction direction) {
+    std::vector<WalkCorner> walk{{start, is_touched(start)}};
     Lattice at = start;
     Direction d = direction;
     while (walk.size() <= kMostCorners) {
@@ -213,7 +213,7 @@ class Tracer {
   }
 
   void add_walk(Lattice start, Direction direction, Component& component) {
-    const std::vector<Turn> walk = walk_from(start, direction);
+    const std::vector<WalkCorner> walk = walk_from(start, direction);
     component.corners += walk.size();
     if (component.corners > kMostCorners) return;
     std::vector<Corners>& rings = component.rings;

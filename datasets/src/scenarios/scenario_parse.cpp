@@ -60,9 +60,6 @@ Units to_units(const std::string& word) {
   return word == "degrees" ? Units::degrees : Units::automatic;
 }
 
-/// m; the schema's bound of what stands in the scenario.
-constexpr double kFarthest = 1e9;
-
 /// A file of obstacles where a scenario is expected, and how a scenario takes it.
 DataError no_scenario(const std::string& file, const std::string& format) {
   const std::string name = file == "-" ? "FILE" : std::filesystem::path(file).filename().string();
@@ -95,9 +92,9 @@ void refuse_other_formats(const std::filesystem::path& path, const std::string& 
 }
 
 /// Reads one scenario; a class only so that the file's name and folder need not be handed round.
-class Reader {
+class ScenarioReader {
  public:
-  Reader(std::string file_name, std::filesystem::path base_dir)
+  ScenarioReader(std::string file_name, std::filesystem::path base_dir)
       : file_(std::move(file_name)), base_dir_(std::move(base_dir)) {}
 
   LoadedScenario read(const Json& tree, const AdvanceScenario& advance = {}) {
@@ -369,7 +366,7 @@ class Reader {
 
 LoadedScenario parse_scenario_with_notes(const std::string& text, const std::string& file_name,
                                          const std::filesystem::path& base_dir) {
-  return Reader(file_name, base_dir).read(parse_json(text, file_name));
+  return ScenarioReader(file_name, base_dir).read(parse_json(text, file_name));
 }
 
 Scenario parse_scenario(const std::string& text, const std::string& file_name, const std::filesystem::path& base_dir) {
@@ -378,7 +375,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name, c
 
 Scenario parse_scenario_at(const std::string& text, const std::string& file_name, const std::filesystem::path& base_dir,
                            const AdvanceScenario& advance) {
-  return Reader(file_name, base_dir).read(parse_json(text, file_name), advance).scenario;
+  return ScenarioReader(file_name, base_dir).read(parse_json(text, file_name), advance).scenario;
 }
 
 LoadedScenario load_scenario_with_notes(const std::filesystem::path& path) {

@@ -36,8 +36,8 @@ constexpr int kDraws = 1000;
 /// Of random_key: what these draws share with no others.
 constexpr std::uint64_t kStream = 0x726f626f7473;  // "robots"
 
-/// m; the schema's bound of coordinates. m and m/s; of radii and speeds.
-constexpr double kFarthest = 1e9, kLargest = 1e6;
+/// m and m/s; the schema's bound of radii and speeds.
+constexpr double kLargest = 1e6;
 
 Robot to_robot(const Json& object) {
   Robot robot;

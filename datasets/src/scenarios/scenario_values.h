@@ -13,6 +13,9 @@
 
 namespace exactvo::datasets {
 
+/// m; the schema's bound of coordinates.
+inline constexpr double kFarthest = 1e9;
+
 inline void take(const Json& object, const char* key, double& field) {
   if (object.contains(key)) field = object.at(key).get<double>();
 }

@@ -47,14 +47,14 @@ std::string wkt_text(const geometry::Polygon& polygon) {
 
 using Points = std::vector<geometry::Vec2>;
 /// What is written of points: the same, or degrees.
-using Place = std::function<Points(Points)>;
+using Placement = std::function<Points(Points)>;
 
-void append_geometry(JsonWriter& json, const geometry::Polyline& line, const Place& place) {
+void append_geometry(JsonWriter& json, const geometry::Polyline& line, const Placement& place) {
   json.member("type", "LineString").key("coordinates");
   append_points(json, place(line.points));
 }
 
-void append_geometry(JsonWriter& json, const geometry::Polygon& polygon, const Place& place) {
+void append_geometry(JsonWriter& json, const geometry::Polygon& polygon, const Placement& place) {
   json.member("type", "Polygon").key("coordinates").begin_array();
   for (const geometry::Ring& ring : closed_rings_of(polygon)) append_points(json, place(ring));
   json.end_array();
@@ -79,7 +79,7 @@ std::string members_of(const formation::SceneObstacle& obstacle, const FeaturePr
 }
 
 void append_feature(JsonWriter& json, const formation::SceneObstacle& obstacle, const FeatureProperties& properties,
-                    const Place& place) {
+                    const Placement& place) {
   json.begin_inline_object().member("type", "Feature");
   if (!properties.id.empty()) json.key("id").raw(properties.id);
   json.key("properties").raw(members_of(obstacle, properties));
@@ -200,11 +200,6 @@ bool ends_with(const std::string& text, const std::string& ending) {
   return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 const Writer* writer_by_extension(const std::filesystem::path& path) {
   const std::string name = lower_case(path.filename().string());
   for (const Writer& writer : writers()) {
@@ -248,6 +243,11 @@ const Writer& writer_for(const std::filesystem::path& path, const std::string& f
 
 }  // namespace
 
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 geometry::Ring closed(geometry::Ring ring) {
   if (!ring.empty()) ring.push_back(ring.front());
   return ring;
@@ -288,7 +288,7 @@ std::string to_geojson(const Obstacles& obstacles, const WriteOptions& options, 
   const LocalPlane plane = plane_for(obstacles, options.plane);
   std::optional<MetresToDegrees> to_degrees;
   if (!options.metres) to_degrees.emplace(plane, file);
-  const Place place = [&](Points points) {
+  const Placement place = [&](Points points) {
     return to_degrees ? without_repeats((*to_degrees)(std::move(points))) : points;
   };
   JsonWriter json(JsonWriter::Layout::indented);

@@ -35,11 +35,6 @@ Type wider(Type a, Type b) {
   return is_number(a) && is_number(b) ? Type::real : Type::text;
 }
 
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 constexpr const char* kId = "id";
 
 }  // namespace

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <variant>
 
 #include "crowd/edge_rounding.h"
+#include "exactvo/geometry/infinity.h"
 
 namespace exactvo::formation::crowd {
 namespace {
@@ -28,7 +28,7 @@ constexpr double kLongestTurn = 0.3;
 /// In units of u of the magnitudes: velocities (2), two products, two sums.
 constexpr double kVelocityError = 16.0 * kUnit;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 double one_norm(Vec2 v) {
   return std::fabs(v.x) + std::fabs(v.y);

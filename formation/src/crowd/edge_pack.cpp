@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crowd/edge_pack.h"
 
-#include <limits>
-
 #include "crowd/edge_rounding.h"
+#include "exactvo/geometry/infinity.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd/edge_pack.cpp"
@@ -23,7 +22,7 @@ using M = hn::Mask<Doubles>;
 using Index = hn::RebindToSigned<Doubles>;
 using Words = hn::Rebind<std::int32_t, Doubles>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 HWY_INLINE V set(double x) {
   return hn::Set(Doubles(), x);

@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "exactvo/formation/constraint_name.h"
+#include "exactvo/geometry/infinity.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 // In the time that the slowest robot needs for its diameter.
 constexpr double kStalledAfter = 5.0;  ///< without having come nearer to the goal

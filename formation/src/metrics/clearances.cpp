@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/obstacle_index.h"
 #include "motion/motion.h"
 #include "motion/moving_way.h"
@@ -20,7 +21,7 @@ namespace {
 using geometry::norm;
 using geometry::Segment;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 double largest(Vec2 v) {
   return std::max(std::fabs(v.x), std::fabs(v.y));

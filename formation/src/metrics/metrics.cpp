@@ -2,7 +2,6 @@
 #include "exactvo/formation/metrics.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "control/lyapunov_accumulator.h"
@@ -10,6 +9,7 @@
 #include "exactvo/formation/stuck.h"
 #include "exactvo/formation/waiting.h"
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/require.h"
 #include "metrics/clearances.h"
 #include "metrics/divergence.h"
@@ -23,7 +23,7 @@ namespace {
 
 using geometry::norm;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 void write_clearances(detail::Clearances clearances, Metrics& m) {
   for (std::size_t i = 0; i < m.robots.size(); ++i) {

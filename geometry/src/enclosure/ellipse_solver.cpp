@@ -225,13 +225,13 @@ Vec2 swapped_if(bool swap, Vec2 p) {
   return swap ? Vec2{p.y, p.x} : p;
 }
 
-Vec2 into(const Frame& f, Vec2 x) {
+Vec2 into(const EllipseFrame& f, Vec2 x) {
   const Vec2 d = swapped_if(f.swapped, x - f.center);
   const double u = d.x / f.k11;
   return {u, (d.y - f.k21 * u) / f.k22};
 }
 
-std::vector<Vec2> into(const Frame& f, const std::vector<Vec2>& points) {
+std::vector<Vec2> into(const EllipseFrame& f, const std::vector<Vec2>& points) {
   std::vector<Vec2> out;
   out.reserve(points.size());
   for (const Vec2 p : points) out.push_back(into(f, p));
@@ -239,11 +239,11 @@ std::vector<Vec2> into(const Frame& f, const std::vector<Vec2>& points) {
 }
 
 // A frame in which the points fill a box of about unit size: sheared along their longest extent p -> q.
-Frame unit_box_frame(const std::vector<Vec2>& points) {
+EllipseFrame unit_box_frame(const std::vector<Vec2>& points) {
   const Vec2 p = farthest_from(points.front(), points);
   const Vec2 q = farthest_from(p, points);
   const Vec2 half = 0.5 * q - 0.5 * p;
-  Frame f;
+  EllipseFrame f;
   f.center = 0.5 * p + 0.5 * q;
   f.swapped = std::fabs(half.y) > std::fabs(half.x);
   const Vec2 d = swapped_if(f.swapped, half);
@@ -257,8 +257,8 @@ Frame unit_box_frame(const std::vector<Vec2>& points) {
 }
 
 // The ellipse of the dual's moments M: centre m, Sigma = 2 (M_xx - m m^T), as a frame within the unit box.
-Frame frame_of_moments(const Symmetric3& m) {
-  Frame f;
+EllipseFrame frame_of_moments(const Symmetric3& m) {
+  EllipseFrame f;
   f.center = {m.x1, m.y1};
   const double s11 = std::max(2.0 * (m.xx - m.x1 * m.x1), 0.0);
   const double s12 = 2.0 * (m.xy - m.x1 * m.y1);
@@ -270,8 +270,8 @@ Frame frame_of_moments(const Symmetric3& m) {
 }
 
 // Both maps are lower triangular in the same order of coordinates, so their product is.
-Frame composed(const Frame& outer, const Frame& inner) {
-  Frame f;
+EllipseFrame composed(const EllipseFrame& outer, const EllipseFrame& inner) {
+  EllipseFrame f;
   const Vec2 shift = {outer.k11 * inner.center.x, outer.k21 * inner.center.x + outer.k22 * inner.center.y};
   f.center = outer.center + swapped_if(outer.swapped, shift);
   f.swapped = outer.swapped;
@@ -286,43 +286,43 @@ bool all_in_box(const std::vector<Vec2>& points, double half_height) {
 }
 
 // The dual needs three points that are not collinear; those that are keep their box.
-Frame smallest_in_box(const std::vector<Vec2>& in_box, double& least_area) {
+EllipseFrame smallest_in_box(const std::vector<Vec2>& in_box, double& least_area) {
   constexpr double kFlat = 0x1p-26;  // squares of it still count beside 1
   if (all_in_box(in_box, kFlat)) {
     least_area = 0.0;
     return {{}, 1.0, 0.0, 1.0, false};
   }
-  const Frame inner = frame_of_moments(Dual(in_box).moments());
+  const EllipseFrame inner = frame_of_moments(Dual(in_box).moments());
   least_area = kPi * inner.k11 * inner.k22;
   return inner;
 }
 
 // The dual's arithmetic can fail where points are collinear within the rounding of the box.
-bool is_sound(const Frame& f) {
+bool is_sound(const EllipseFrame& f) {
   return is_finite(f.center) && std::isfinite(f.k21) && f.k11 > 0.0 && std::isfinite(f.k11) && f.k22 > 0.0 &&
          std::isfinite(f.k22);
 }
 
-double largest_norm(const Frame& f, const std::vector<Vec2>& points) {
+double largest_norm(const EllipseFrame& f, const std::vector<Vec2>& points) {
   double largest = 0.0;
   for (const Vec2 p : points) largest = std::max(largest, squared_norm(into(f, p)));
   return std::sqrt(largest);
 }
 
-Frame scaled(const Frame& f, double factor) {
+EllipseFrame scaled(const EllipseFrame& f, double factor) {
   return {f.center, f.k11 * factor, f.k21 * factor, f.k22 * factor, f.swapped};
 }
 
 // Rounding the centre of a needle far from the origin can cost more than its width. The best ellipse round the centre
 // as it is now is that of the points with their mirror images.
-Frame fitted_round_center(Vec2 center, const std::vector<Vec2>& points) {
+EllipseFrame fitted_round_center(Vec2 center, const std::vector<Vec2>& points) {
   std::vector<Vec2> mirrored;
   mirrored.reserve(2 * points.size());
   for (const Vec2 p : points) {
     mirrored.push_back(p - center);
     mirrored.push_back(center - p);
   }
-  Frame frame = solve_smallest_ellipse(mirrored).frame;
+  EllipseFrame frame = solve_smallest_ellipse(mirrored).frame;
   frame.center = center;
   return frame;
 }
@@ -334,7 +334,7 @@ bool contains_all(const Ellipse& e, const std::vector<Vec2>& points) {
   return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(e, p); });
 }
 
-Ellipse grown_until_certified(Frame frame, const std::vector<Vec2>& points) {
+Ellipse grown_until_certified(EllipseFrame frame, const std::vector<Vec2>& points) {
   const double ulp = kUnitRoundoff * std::max(frame.k11, std::fabs(frame.k21));
   for (double growth = 1.0;; growth *= 2.0) {
     const Ellipse ellipse = ellipse_of(frame);
@@ -354,7 +354,7 @@ void require_places(const std::vector<Vec2>& points) {
 }
 
 //   swapped: (x, y) = (k21 w1 + k22 w2, k11 w1); the rotation that clears the upper right entry gives L.
-Ellipse ellipse_of(const Frame& f) {
+Ellipse ellipse_of(const EllipseFrame& f) {
   if (!f.swapped) return {f.center, f.k11, f.k21, f.k22};
   const double l11 = std::hypot(f.k21, f.k22);
   if (!(l11 > 0.0)) return {f.center, 0.0, f.k11, 0.0};
@@ -362,18 +362,18 @@ Ellipse ellipse_of(const Frame& f) {
 }
 
 EllipseCandidate solve_smallest_ellipse(const std::vector<Vec2>& points) {
-  const Frame outer = unit_box_frame(points);
+  const EllipseFrame outer = unit_box_frame(points);
   double area_in_box = 0.0;
-  const Frame inner = smallest_in_box(into(outer, points), area_in_box);
+  const EllipseFrame inner = smallest_in_box(into(outer, points), area_in_box);
   if (!is_sound(inner)) return {outer, 0.0};
   return {composed(outer, inner), area_in_box * outer.k11 * outer.k22};
 }
 
-Ellipse certified_ellipse(const Frame& candidate, const std::vector<Vec2>& points) {
+Ellipse certified_ellipse(const EllipseFrame& candidate, const std::vector<Vec2>& points) {
   // Beyond this the rounded centre, not the shape, decides the size.
   constexpr double kCenterMatters = 1.0 + 1e-9;
   double reach = largest_norm(candidate, points);
-  Frame frame = candidate;
+  EllipseFrame frame = candidate;
   if (reach > kCenterMatters) {
     frame = fitted_round_center(candidate.center, points);
     reach = largest_norm(frame, points);
@@ -389,7 +389,7 @@ Ellipse ellipse_of_segment(Vec2 a, Vec2 b) {
   const Vec2 middle = 0.5 * a + 0.5 * b;
   const Ellipse bare = half.x < 0.0 ? Ellipse{middle, -half.x, -half.y, 0.0} : Ellipse{middle, half.x, half.y, 0.0};
   if (contains_all(bare, {a, b})) return bare;
-  Frame frame = unit_box_frame({a, b});
+  EllipseFrame frame = unit_box_frame({a, b});
   frame.k22 = kSliver * kUnitRoundoff * largest_coordinate({a, b});
   return grown_until_certified(scaled(frame, 1.0 + 0x1p-30), {a, b});
 }

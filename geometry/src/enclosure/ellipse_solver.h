@@ -22,7 +22,7 @@ namespace exactvo::geometry::detail {
 void require_places(const std::vector<Vec2>& points);
 
 /// An affine map x -> K^-1 (x - center) with K = [k11 0; k21 k22], on (y, x) instead of (x, y) where `swapped`.
-struct Frame {
+struct EllipseFrame {
   Vec2 center;
   double k11 = 0.0;
   double k21 = 0.0;
@@ -31,11 +31,11 @@ struct Frame {
 };
 
 /// The image of the unit disc under the frame's inverse: { center + K w : |w| <= 1 }. Rounded.
-Ellipse ellipse_of(const Frame& frame);
+Ellipse ellipse_of(const EllipseFrame& frame);
 
 /// A numerical optimum, not certified.
 struct EllipseCandidate {
-  Frame frame;
+  EllipseFrame frame;
   double least_area = 0.0;  ///< m^2; no enclosing ellipse is smaller: the dual value, rounded
 };
 
@@ -43,7 +43,7 @@ struct EllipseCandidate {
 EllipseCandidate solve_smallest_ellipse(const std::vector<Vec2>& points);
 
 /// The candidate scaled to fit, then grown in steps until every point lies in it by predicate E.
-Ellipse certified_ellipse(const Frame& candidate, const std::vector<Vec2>& points);
+Ellipse certified_ellipse(const EllipseFrame& candidate, const std::vector<Vec2>& points);
 
 /// The segment itself (l22 = 0) where doubles can say it, else a certified sliver 2^-36 of the coordinates wide.
 /// REQUIRES: a != b.

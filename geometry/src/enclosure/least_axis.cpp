@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/support.h"
 
 namespace exactvo::geometry::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBeyond = 1.0 + 1e-14;  // a few roundings beyond a root
 constexpr int kBisections = 40;          // leaves 2^-40 of the extent, far below any margin
 constexpr double kFinest = 0x1p-40;
@@ -21,7 +21,7 @@ struct Centres {
   bool is_empty() const { return !(low <= high); }
 };
 
-Centres centres_for(const Frame& f, const std::vector<double>& width, double major) {
+Centres centres_for(const TurnedPoints& f, const std::vector<double>& width, double major) {
   Centres range;
   for (std::size_t i = 0; i < f.x.size(); ++i) {
     const double low = f.x[i] - major * width[i], high = f.x[i] + major * width[i];
@@ -32,7 +32,7 @@ Centres centres_for(const Frame& f, const std::vector<double>& width, double maj
 }
 
 /// Half of each point's chord at its height, for a major axis of 1. False where one lies beyond the minor axis.
-bool widths(const Frame& f, double centre_y, double minor, std::vector<double>& width) {
+bool widths(const TurnedPoints& f, double centre_y, double minor, std::vector<double>& width) {
   width.resize(f.y.size());
   double farthest = 0.0;
   for (std::size_t i = 0; i < f.y.size(); ++i) {
@@ -49,7 +49,7 @@ Turn turn_by(double angle) {
   return {std::cos(-angle), std::sin(-angle)};
 }
 
-void turn(const std::vector<Vec2>& points, double angle, const Turn& by, Frame& f) {
+void turn(const std::vector<Vec2>& points, double angle, const Turn& by, TurnedPoints& f) {
   f.angle = angle;
   f.x.resize(points.size());
   f.y.resize(points.size());

@@ -17,7 +17,7 @@
 namespace exactvo::geometry::detail {
 
 /// Points turned by -angle, so that the major axis lies along x.
-struct Frame {
+struct TurnedPoints {
   double angle = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> x, y;
   double middle = 0.0;                      ///< of the y extent
@@ -34,7 +34,7 @@ struct Turn {
 };
 Turn turn_by(double angle);
 
-void turn(const std::vector<Vec2>& points, double angle, const Turn& by, Frame& f);
+void turn(const std::vector<Vec2>& points, double angle, const Turn& by, TurnedPoints& f);
 
 /// Two points that bound the centre: the one on the right from below, the one on the left from above. At the least axis
 /// those that touch.
@@ -67,7 +67,7 @@ struct AreaLimit {
 /// A pair's part of the points, for one centre across and minor axis.
 class PairView {
  public:
-  PairView(const Frame& f, double centre_y, double minor, const Touching& pair)
+  PairView(const TurnedPoints& f, double centre_y, double minor, const Touching& pair)
       : f_(f),
         pair_(pair),
         right_(width(f.y[pair.right], centre_y, minor)),
@@ -91,7 +91,7 @@ class PairView {
   }
 
  private:
-  const Frame& f_;
+  const TurnedPoints& f_;
   const Touching& pair_;
   double right_, left_;
 };
@@ -111,7 +111,7 @@ enum class AxisAnswer {
 /// where to look first, and becomes the pair that touches. `width` is memory for the points' widths.
 class LeastMajor {
  public:
-  LeastMajor(const Frame& f, double centre_y, double minor, Touching& pair, std::vector<double>& width)
+  LeastMajor(const TurnedPoints& f, double centre_y, double minor, Touching& pair, std::vector<double>& width)
       : f_(f), centre_y_(centre_y), minor_(minor), pair_(pair), width_(width) {}
 
   /// Whether it fits, and about how.
@@ -129,7 +129,7 @@ class LeastMajor {
   bool is_long_enough(double major);
   void approach(double at);
 
-  const Frame& f_;
+  const TurnedPoints& f_;
   double centre_y_, minor_;
   Touching& pair_;
   std::vector<double>& width_;

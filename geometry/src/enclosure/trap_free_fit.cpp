@@ -23,7 +23,6 @@ namespace {
 
 using detail::AreaLimit;
 using detail::AxisAnswer;
-using detail::Frame;
 using detail::inflate_to_contain;
 using detail::LeastMajor;
 using detail::MajorFit;
@@ -31,6 +30,7 @@ using detail::PairView;
 using detail::Touching;
 using detail::Turn;
 using detail::turn_by;
+using detail::TurnedPoints;
 
 struct FitGoal {
   double robot_radius;
@@ -92,7 +92,7 @@ struct Ends {
 
 /// The points in one orientation, and what it was last like there.
 struct Orientation {
-  Frame frame;
+  TurnedPoints frame;
   Ends ends;                ///< in the frame
   Touching pair[kOffsets];  ///< what touched last at each offset
 
@@ -137,7 +137,7 @@ class Holds {
 
   bool reaches(double beyond, double wider) const { return beyond <= (wider > 0.0 ? shortest_ : longest_) * wider; }
 
-  const Frame& f_;
+  const TurnedPoints& f_;
   const Touching& pair_;
   const PairView& view_;
   double centre_y_, minor_, margin_;
@@ -208,7 +208,7 @@ void set_coarse_angles(const std::vector<Vec2>& hull, std::vector<double>& angle
 }
 
 /// m, of the candidate's number in an orientation.
-Candidate coarse_candidate(const Frame& f, double size, std::size_t minor, std::size_t offset) {
+Candidate coarse_candidate(const TurnedPoints& f, double size, std::size_t minor, std::size_t offset) {
   const double room = kMinorShares[minor] * size;
   return {f.angle, kOffsetShares[offset] * room, f.half_height + room};
 }
@@ -221,7 +221,7 @@ class Search {
       : want_(want), width_(width), least_width_(least_width) {}
 
   /// Whether the ellipse of a candidate of that minor axis is larger than the best, whatever else it is.
-  bool is_too_large(const Frame& f, double minor, bool or_equal) const {
+  bool is_too_large(const TurnedPoints& f, double minor, bool or_equal) const {
     return limit(minor, or_equal).is_too_long(f.half_width);
   }
 
@@ -229,7 +229,7 @@ class Search {
   /// d apart in height the sum of their half chords is largest midway between them, 2 sqrt(1 - (d / 2b)^2).
   bool is_row_too_large(const Orientation& o, double minor, bool or_equal) const {
     constexpr double kRounding = 4e-12;
-    const Frame& f = o.frame;
+    const TurnedPoints& f = o.frame;
     const AreaLimit area = limit(minor, or_equal);
     const double longest = area.longest();
     const auto asks_for_more = [&](const Touching& pair) {
@@ -291,7 +291,7 @@ class Search {
   }
 
   bool is_fitted(const Orientation& o, const Candidate& c, const AreaLimit& area, const Known& known, Touching& pair) {
-    const Frame& f = o.frame;
+    const TurnedPoints& f = o.frame;
     if (area.is_too_long(f.half_width) || is_ruled_out(o, c, area, pair, known)) return false;
     if (recent_ != pair && is_ruled_out(o, c, area, recent_, known)) {
       pair = recent_;
@@ -347,7 +347,7 @@ class CoarseSearch {
   std::size_t promising_orientation() const {
     std::size_t best = 0;
     const auto box = [&](std::size_t k) {
-      const Frame& f = memory_.orientations[k].frame;
+      const TurnedPoints& f = memory_.orientations[k].frame;
       return f.half_width * (f.half_height + kMinorShares[0] * size_);
     };
     for (std::size_t k = 1; k < memory_.angles.size(); ++k)

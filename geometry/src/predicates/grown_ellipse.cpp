@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exact/exact_vector.h"
+#include "exactvo/geometry/support.h"
 
 namespace exactvo::geometry::detail {
 namespace {
@@ -73,7 +74,6 @@ Place locate_ellipse_exact(const Ellipse& e, const Vector<Exact>& u, const Exact
 
 // --- The same in doubles ---
 
-constexpr double kUnit = 0x1p-53;
 /// The cap on squared lengths under which products that underflow stay below the absolute bounds here: an error of at
 /// most 2^-1075 each, multiplied by at most the cap once in c and five times in the discriminant.
 constexpr double kLargestSquare = 0x1p120;
@@ -83,9 +83,9 @@ constexpr double kUnderflowDiscriminant = 0x1p-450;
 /// With u known up to 2u of its magnitude: b = T + R - U errs by 8 u of the sum of its absolute terms; c = D + R T - Q
 /// by 12 u; d by 5 u. The monomials of the discriminant then err by at most 43 u each, and 4 u more for their sum.
 /// Twice that leaves room for the second order and for the rounding of the bound.
-constexpr double kErrorB = 16.0 * kUnit;
-constexpr double kErrorC = 24.0 * kUnit;
-constexpr double kErrorDiscriminant = 96.0 * kUnit;
+constexpr double kErrorB = 16.0 * kUnitRoundoff;
+constexpr double kErrorC = 24.0 * kUnitRoundoff;
+constexpr double kErrorDiscriminant = 96.0 * kUnitRoundoff;
 
 double cube_discriminant(double b, double c, double d) {
   return 18.0 * b * c * d - 4.0 * b * b * b * d + b * b * c * c - 4.0 * c * c * c - 27.0 * d * d;
@@ -183,12 +183,12 @@ bool line_meets(const Ellipse& e, const GrownShape& s, const Vector<Exact>& v) {
 
 /// A cap on every size, so that an underflowed root (2^-537 at most) and underflowed products (2^-1075), multiplied by
 /// at most five sizes, stay below kUnderflowTime.
-constexpr double kLargest = 0x1p40;
+constexpr double kLargestSize = 0x1p40;
 constexpr double kUnderflowTime = 0x1p-300;
 /// N.p errs by 3 u, |L^T N| by 6 u, r |N| by 4 u of their magnitudes: as predicate A.
-constexpr double kErrorLine = 16.0 * kUnit;
+constexpr double kErrorLine = 16.0 * kUnitRoundoff;
 /// (p.v - t |v|^2)(b + sqrt f) errs by (4 + 13) u, (N.p)(v.Sigma N) by 12 u of their magnitudes; twice that and more.
-constexpr double kErrorTime = 48.0 * kUnit;
+constexpr double kErrorTime = 48.0 * kUnitRoundoff;
 
 FilterAnswer answer_of(bool decided, bool meets) {
   return !decided ? FilterAnswer::uncertain : meets ? FilterAnswer::intersects : FilterAnswer::disjoint;
@@ -215,7 +215,7 @@ FilterAnswer segment_rounded_ellipse_filter(const Ellipse& e, const GrownShape& 
   const double beyond = t_max * speed2;
   const double at_start = dot(p, v) * width - np * dot(ld, ln);
   const double at_end = at_start - beyond * width;
-  if (!(size_p + size_v + size_l + s.radius + beyond <= kLargest) || e.l11 == 0.0 || e.l22 == 0.0)
+  if (!(size_p + size_v + size_l + s.radius + beyond <= kLargestSize) || e.l11 == 0.0 || e.l22 == 0.0)
     return FilterAnswer::uncertain;
   const double size_root = size_l * size_v;
   const double error =

@@ -6,19 +6,19 @@
 #include <limits>
 
 #include "exact/exact_vector.h"
+#include "exactvo/geometry/support.h"
 
 namespace exactvo::geometry::detail {
 namespace {
 
-constexpr double kUnit = 0x1p-53;
 /// Coordinates have a relative error u, their differences 2 u of the sums of sizes, a product of two differences 5 u, a
 /// dot or cross product 6 u of the product of sizes: 8 u leaves room for the second order.
-constexpr double kProduct = 8.0 * kUnit;
+constexpr double kProduct = 8.0 * kUnitRoundoff;
 /// Squares of such products against r^2 times a square: 2 * 6 + 1 + 1 u on one side, 1 + 12 + 1 u on the other.
-constexpr double kSquares = 32.0 * kUnit;
-/// Every product that underflows errs by at most 2^-1075, here multiplied by at most kLargest^2.
-constexpr double kLargest = 0x1p100;  // of a coordinate, m; larger ones are decided exactly
-constexpr double kUnderflow = 0x1p-600;
+constexpr double kSquares = 32.0 * kUnitRoundoff;
+/// Every product that underflows errs by at most 2^-1075, here multiplied by at most kLargestCoordinate^2.
+constexpr double kLargestCoordinate = 0x1p100;  // of a coordinate, m; larger ones are decided exactly
+constexpr double kUnderflowRoom = 0x1p-600;
 constexpr double kLeastSquare = 0x1p-900;  // of a speed: neither lost to underflow nor short of digits
 
 Vector<Exact> exactly(const Seen& p) {
@@ -40,22 +40,22 @@ Sign rounded_distance(const Seen& q, const Seen& a, const Seen& b, double r, boo
   const bool is_point = a.base == b.base && a.scale == b.scale;
   const double size_e = a.size + b.size;
   const double size_d = q.size + a.size;
-  if (!(size_e + size_d + r <= kLargest)) {
+  if (!(size_e + size_d + r <= kLargestCoordinate)) {
     known = false;
     return Sign::zero;
   }
   const double dot_de = dot(d, e);
-  const double error_dot = kProduct * size_d * size_e + kUnderflow;
+  const double error_dot = kProduct * size_d * size_e + kUnderflowRoom;
   if (is_point || filtered(dot_de, error_dot, known) != Sign::positive)
-    return filtered(squared_norm(d) - r * r, kSquares * (size_d * size_d + r * r) + kUnderflow, known);
+    return filtered(squared_norm(d) - r * r, kSquares * (size_d * size_d + r * r) + kUnderflowRoom, known);
   const double length2 = squared_norm(e);
   if (filtered(length2 - dot_de, error_dot + kProduct * size_e * size_e, known) != Sign::positive) {
     const double size_f = q.size + b.size;
-    return filtered(squared_norm(q.at - b.at) - r * r, kSquares * (size_f * size_f + r * r) + kUnderflow, known);
+    return filtered(squared_norm(q.at - b.at) - r * r, kSquares * (size_f * size_f + r * r) + kUnderflowRoom, known);
   }
   const double c = cross(e, d);
   const double r2 = r * r;
-  return filtered(c * c - r2 * length2, kSquares * size_e * size_e * (size_d * size_d + r2) + kUnderflow, known);
+  return filtered(c * c - r2 * length2, kSquares * size_e * size_e * (size_d * size_d + r2) + kUnderflowRoom, known);
 }
 
 Sign exact_distance(const Vector<Exact>& q, const Vector<Exact>& a, const Vector<Exact>& b, const Exact& r) {
@@ -76,8 +76,8 @@ Sign exact_distance(const Vector<Exact>& q, const Vector<Exact>& a, const Vector
 Sign GrownPolygon::turn(const Seen& a, const Seen& b, const Seen& c) const {
   const double size_e = a.size + b.size;
   const double size_d = a.size + c.size;
-  bool known = size_e + size_d <= kLargest;
-  const Sign sign = filtered(cross(b.at - a.at, c.at - a.at), kProduct * size_e * size_d + kUnderflow, known);
+  bool known = size_e + size_d <= kLargestCoordinate;
+  const Sign sign = filtered(cross(b.at - a.at, c.at - a.at), kProduct * size_e * size_d + kUnderflowRoom, known);
   if (known) return sign;
   was_exact_ = true;
   const Vector<Exact> p = exactly(a);
@@ -140,9 +140,10 @@ GrownPolygon::Slab GrownPolygon::slab(Vec2 direction, double t_max) const {
   const double reach = radius_ * std::sqrt(speed2);
   const double beyond = t_max * speed2;
   const double size = std::max(std::max(left, -right), std::max(ahead, -behind));
-  if (!(size + t_max + radius_ + std::fabs(sum) <= kLargest && speed2 >= kLeastSquare && speed2 <= kLargest * kLargest))
+  if (!(size + t_max + radius_ + std::fabs(sum) <= kLargestCoordinate && speed2 >= kLeastSquare &&
+        speed2 <= kLargestCoordinate * kLargestCoordinate))
     return {};
-  const double error = kProduct * (3.0 * size + reach + beyond) + kUnderflow;
+  const double error = kProduct * (3.0 * size + reach + beyond) + kUnderflowRoom;
   const double far = reach + error;
   // Bits, not jumps: which of the four it will be, nobody can guess.
   if ((right > far) | (left < -far) | (ahead < -far) | (behind > beyond + far)) return {Slab::misses};

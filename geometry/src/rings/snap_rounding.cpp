@@ -74,7 +74,7 @@ struct Passed {
 };
 
 // Pixels are disjoint, so are the stretches of the edge in them.
-bool comes_before(const Passed& a, const Passed& b) {
+bool is_passed_before(const Passed& a, const Passed& b) {
   const int order = compare(a.entry, b.entry);
   return order < 0 || (order == 0 && !a.entry.open && b.entry.open);
 }
@@ -88,7 +88,7 @@ void append_bent(const Segment& edge, const std::vector<Vec2>& hot, double grid,
     if (p->y < low || p->y > high) continue;
     if (const auto at = entry(edge, *p, grid)) passed.push_back({*at, *p});
   }
-  std::sort(passed.begin(), passed.end(), comes_before);
+  std::sort(passed.begin(), passed.end(), is_passed_before);
   for (const Passed& p : passed) {
     if (ring.empty() || ring.back() != p.centre) ring.push_back(p.centre);
   }

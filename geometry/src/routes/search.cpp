@@ -6,13 +6,13 @@
 #include <queue>
 #include <unordered_map>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pi.h"
 #include "routes/funnel.h"
 
 namespace exactvo::geometry::routing {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// m, as a share of the coordinates involved: a ray that passes an end of a portal this closely goes through it. It is
 /// more than corners are off by, which come out of a division and a few products (2^-53 each).
 constexpr double kRounding = 0x1p-45;

@@ -7,12 +7,11 @@
 #include <numeric>
 
 #include "exactvo/geometry/distance.h"
+#include "exactvo/geometry/infinity.h"
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The squared width of a gate as a fraction: numerator and denominator.
 template <typename Convert>

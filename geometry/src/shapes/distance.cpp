@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/require.h"
 #include "shapes/edge_crossing.h"
 
@@ -15,8 +15,6 @@ namespace {
 
 using detail::Crossing;
 using detail::crossing;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double length(Vec2 d) {
   return std::hypot(d.x, d.y);

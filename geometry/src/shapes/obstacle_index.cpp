@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/require.h"
 #include "shapes/edge_crossing.h"
 
 namespace exactvo::geometry {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Box box_of_edge(const Segment& s) {
   Box box;

@@ -13,13 +13,14 @@
 #include "crowd/body.h"
 #include "crowd/crowd_audit.h"
 #include "crowd_scenes.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/vo/lp/batch.h"
 
 namespace exactvo::formation {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 template <class Do>
 void expect_problem(CrowdProblem expected, const std::string& named, const Do& what) {

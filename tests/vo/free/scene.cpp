@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "exactvo/geometry/excerpt.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/infinity.h"
 #include "geometry/random_grown.h"
 
 namespace exactvo::test {
@@ -20,7 +20,7 @@ using geometry::Disc;
 using geometry::Segment;
 using geometry::Vec2;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 // --- The corpus ---
 

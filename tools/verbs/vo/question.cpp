@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/infinity.h"
 #include "exactvo/geometry/pieces.h"
 #include "exactvo/vo/free_velocities.h"
 #include "figures/figure_file.h"
@@ -26,7 +26,7 @@ using geometry::ConvexShape;
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 constexpr const char* kHorizons = "a time from 2^-100 s to 2^100 s, or infinite, paper or clamped";
 

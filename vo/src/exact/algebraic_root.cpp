@@ -52,9 +52,9 @@ Polynomial derivative(const Polynomial& f) {
 }
 
 /// Sturm's chain: the number of sign changes along it falls by one at every root.
-class Chain {
+class SturmChain {
  public:
-  explicit Chain(const Polynomial& f) : links_{f, derivative(f)} {
+  explicit SturmChain(const Polynomial& f) : links_{f, derivative(f)} {
     while (links_.back().size() > 1) {
       Polynomial next = remainder(links_[links_.size() - 2], links_.back());
       for (Integer& c : next) c = -c;
@@ -82,12 +82,12 @@ Rational middle(const Rational& a, const Rational& b) {
 }
 
 /// The root x with an interval round it that holds no other.
-Root round_about(const Polynomial& f, const Chain& chain, const Rational& x, Rational reach) {
+Root round_about(const Polynomial& f, const SturmChain& chain, const Rational& x, Rational reach) {
   while (chain.count(x - reach, x + reach) != 1 || sign_at(f, x - reach) == 0) reach /= 2;
   return {{Integer(-x.get_num()), x.get_den()}, x - reach, x + reach};
 }
 
-void isolate(const Polynomial& f, const Chain& chain, const Rational& low, const Rational& high,
+void isolate(const Polynomial& f, const SturmChain& chain, const Rational& low, const Rational& high,
              std::vector<Root>& out) {
   const int count = chain.count(low, high);
   if (count == 0) return;
@@ -150,7 +150,7 @@ int sign_at(const Polynomial& f, const Rational& x) {
 
 std::vector<Root> isolate(const Polynomial& f, const Rational& low, const Rational& high) {
   std::vector<Root> out;
-  if (f.size() > 1) isolate(f, Chain(f), low, high, out);
+  if (f.size() > 1) isolate(f, SturmChain(f), low, high, out);
   return out;
 }
 

@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "exactvo/geometry/infinity.h"
 
 namespace exactvo::vo::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 /// Bits that an answer has beyond the speed (or its square): what is stated is 2^-48.
 constexpr int kBits = 56;

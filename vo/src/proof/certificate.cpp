@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "exactvo/geometry/infinity.h"
 #include "proof/certificate_words.h"
 
 namespace exactvo::vo {
@@ -23,7 +24,7 @@ using geometry::Segment;
 using geometry::Vec2;
 using Rational = mpq_class;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 bool is_well_formed(const HalfPlaneClaim& c) {
   return geometry::is_valid(c.shape) && is_finite(c.position) && c.radius >= 0.0 && std::isfinite(c.radius) &&

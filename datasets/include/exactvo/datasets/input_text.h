@@ -19,6 +19,9 @@ void set_wait_hook(void (*hook)());
 /// Calls the hook, if there is one.
 void call_wait_hook();
 
+/// Between two of its calls.
+inline constexpr std::size_t kWaitHookBytes = std::size_t{1} << 16;
+
 /// Bytes: what is read whole must fit into memory several times.
 inline constexpr std::uint64_t kLargestWholeFile = std::uint64_t{1} << 31;
 

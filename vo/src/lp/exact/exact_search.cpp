@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "exactvo/geometry/infinity.h"
 #include "lp/exact/exact_abscissa.h"
 #include "lp/exact/exact_wall.h"
 
 namespace exactvo::lp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 constexpr double kUnitRoundoff = 0x1p-53;
 
 /// Two conversions of long numbers to double (2 u each: the leading words are truncated), a root, a product, a quotient

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exactvo/geometry/infinity.h"
 #include "lp/problem/exact_sign.h"
 #include "lp/problem/region.h"
 #include "lp/problem/satisfaction.h"
@@ -16,7 +17,7 @@
 namespace exactvo::lp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 /// What multipliers may be: a double each, chosen and proven in doubles, or the exact ones where no doubles do.
 enum class Stage { doubles, exact };

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
-#include <limits>
 
+#include "exactvo/geometry/infinity.h"
 #include "lp/proof/certify.h"
 #include "lp/proof/duality.h"
 
 namespace exactvo::lp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 struct Weighted {
   Binding binding;

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exactvo/geometry/infinity.h"
+
 namespace exactvo::lp {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using geometry::kInfinity;
 
 /// Where the objective would like to be on the line q + s d: at the foot of `preferred`, or at one of its ends.
 double wish_on(Vec2 d, double squared_length, Objective objective, Vec2 preferred) {
