@@ -87,8 +87,8 @@ Root round_about(const Polynomial& f, const SturmChain& chain, const Rational& x
   return {{Integer(-x.get_num()), x.get_den()}, x - reach, x + reach};
 }
 
-void isolate(const Polynomial& f, const SturmChain& chain, const Rational& low, const Rational& high,
-             std::vector<Root>& out) {
+void isolate_within(const Polynomial& f, const SturmChain& chain, const Rational& low, const Rational& high,
+                    std::vector<Root>& out) {
   const int count = chain.count(low, high);
   if (count == 0) return;
   if (count == 1 && sign_at(f, high) == 0) {
@@ -100,8 +100,8 @@ void isolate(const Polynomial& f, const SturmChain& chain, const Rational& low, 
     return;
   }
   const Rational half = middle(low, high);
-  isolate(f, chain, low, half, out);
-  isolate(f, chain, half, high, out);
+  isolate_within(f, chain, low, half, out);
+  isolate_within(f, chain, half, high, out);
 }
 
 int compare_rationals(const Rational& a, const Rational& b) {
@@ -150,7 +150,7 @@ int sign_at(const Polynomial& f, const Rational& x) {
 
 std::vector<Root> isolate(const Polynomial& f, const Rational& low, const Rational& high) {
   std::vector<Root> out;
-  if (f.size() > 1) isolate(f, SturmChain(f), low, high, out);
+  if (f.size() > 1) isolate_within(f, SturmChain(f), low, high, out);
   return out;
 }
 

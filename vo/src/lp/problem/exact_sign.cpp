@@ -10,7 +10,7 @@ namespace {
 
 using Exact = CGAL::Mpzf;
 
-int sign_of(double x) {
+int sign_of_double(double x) {
   return (x > 0.0) - (x < 0.0);
 }
 
@@ -21,7 +21,7 @@ int sign_of_violation(const HalfPlane& h, Vec2 v) {
   const double py = h.normal.y * v.y;
   const double rounded = h.offset - (px + py);
   const double error = kSignError * (std::abs(px) + std::abs(py) + std::abs(h.offset)) + kSignUnderflow;
-  if (std::abs(rounded) > error) return sign_of(rounded);
+  if (std::abs(rounded) > error) return sign_of_double(rounded);
   return static_cast<int>(
       CGAL::sign(Exact(h.offset) - Exact(h.normal.x) * Exact(v.x) - Exact(h.normal.y) * Exact(v.y)));
 }
@@ -31,7 +31,7 @@ int sign_of_excess_speed(Vec2 v, double radius) {
   const double speed = squared_norm(v);
   const double limit = radius * radius;
   const double error = kSignError * (speed + limit) + kSignUnderflow;
-  if (std::abs(speed - limit) > error) return sign_of(speed - limit);
+  if (std::abs(speed - limit) > error) return sign_of_double(speed - limit);
   const Exact x(v.x), y(v.y), r(radius);
   return static_cast<int>(CGAL::sign(x * x + y * y - r * r));
 }
