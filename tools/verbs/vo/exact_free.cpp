@@ -50,11 +50,11 @@ std::string words(vo::Refusal refusal, const std::vector<ShiftedCone>& cones, co
   }
 }
 
-std::string json(const Bracket& b) {
+std::string bracket_json(const Bracket& b) {
   return fmt::format("[{}, {}]", unsigned_zero(b.low), unsigned_zero(b.high));
 }
-std::string json(const vo::PointBracket& p) {
-  return fmt::format("[{}, {}]", json(p.x), json(p.y));
+std::string bracket_json(const vo::PointBracket& p) {
+  return fmt::format("[{}, {}]", bracket_json(p.x), bracket_json(p.y));
 }
 
 std::string owner_json(const vo::FreeArc& arc, const VoQuestion& question) {
@@ -71,14 +71,14 @@ std::string circle_json(const vo::FreeArc& arc) {
 
 std::string arc_json(const vo::FreeArc& arc, const VoQuestion& question) {
   return fmt::format("{{\"kind\": \"{}\", {},\n         \"from\": {}, \"to\": {}{}}}", name(arc.kind),
-                     owner_json(arc, question), json(arc.from), json(arc.to), circle_json(arc));
+                     owner_json(arc, question), bracket_json(arc.from), bracket_json(arc.to), circle_json(arc));
 }
 
 std::string piece_json(const vo::FreePiece& piece, const VoQuestion& question) {
   std::string arcs;
   for (const vo::FreeArc& arc : piece.boundary)
     arcs += (arcs.empty() ? "\n        " : ",\n        ") + arc_json(arc, question);
-  return fmt::format("{{\"area\": {}, \"arcs\": [{}]}}", json(piece.area), arcs);
+  return fmt::format("{{\"area\": {}, \"arcs\": [{}]}}", bracket_json(piece.area), arcs);
 }
 
 const char* word_of(bool inside) {
@@ -111,7 +111,7 @@ std::string exact_free_json(const ExactFree& exact, const VoQuestion& question) 
   return fmt::format(
       "\"exact\": {{\n    \"components\": {},\n    \"area\": {},\n    \"region_inside\": {},\n    \"pieces\": [{}]}},\n"
       "  \"why_not_exact\": null",
-      exact.free->pieces().size(), json(exact.free->area()), inside_json(exact.region_inside), pieces);
+      exact.free->pieces().size(), bracket_json(exact.free->area()), inside_json(exact.region_inside), pieces);
 }
 
 std::string exact_free_words(const ExactFree& exact) {
