@@ -22,7 +22,7 @@
 namespace exactvo::tools {
 namespace {
 
-struct Flags {
+struct LpFlags {
   std::string file;
   std::string solver = "certified";
   bool certify = false;
@@ -149,11 +149,11 @@ void print_lines(const std::vector<lp::Proven>& answers, const Summary& summary)
   out.flush();
 }
 
-bool asks_for_proofs(lp::Solver solver, const Flags& flags) {
+bool asks_for_proofs(lp::Solver solver, const LpFlags& flags) {
   return flags.certify || solver == lp::Solver::certified || solver == lp::Solver::exact;
 }
 
-ExitCode run(const Flags& flags) {
+ExitCode run(const LpFlags& flags) {
   const auto solver = parse_choice<lp::Solver>("--solver", flags.solver, lp::solver_names());
   const std::vector<lp::Problem> problems = datasets::parse_lp_problems(read_all(flags.file), flags.file);
   lp::Solving solving(solver, problems);
@@ -177,8 +177,8 @@ ExitCode run(const Flags& flags) {
   return ExitCode::negative;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_lp(CLI::App& app) {
+  const auto flags = std::make_shared<LpFlags>();
   app.add_option("file", flags->file, "Problems: JSON Lines, one JSON document or a binary instance file; - for stdin")
       ->required();
   app.add_option("--solver", flags->solver, "incremental, batch, certified or exact")->capture_default_str();
@@ -202,7 +202,7 @@ Verb lp_verb() {
       "    the file: not reading, laying out for `batch`, gathering, printing, nor what --certify adds. Of a file of "
       "few\n"
       "    problems it says little; to compare solvers run bench_lp --instances FILE)\n",
-      declare};
+      declare_lp};
 }
 
 }  // namespace exactvo::tools

@@ -37,7 +37,7 @@ using datasets::BatchSummary;
 using datasets::BatchTally;
 using geometry::Vec2;
 
-struct Flags {
+struct BatchFlags {
   std::vector<std::string> paths;
   std::string out;
   int workers = 0;
@@ -111,7 +111,7 @@ void choose_outputs(const std::string& text, BatchConfiguration& configuration) 
   }
 }
 
-void check_numbers(const Flags& flags) {
+void check_numbers(const BatchFlags& flags) {
   require_length("--cell-size", flags.cell_size);
   require_length("--tolerance", flags.tolerance);
   if (!is_radius(flags.radius)) throw UsageError("--radius", fmt::format("{}", flags.radius), kRadii);
@@ -120,7 +120,7 @@ void check_numbers(const Flags& flags) {
     throw UsageError("--time-horizon", fmt::format("{}", *horizon), "a time from 2^-100 s to 2^100 s");
 }
 
-std::optional<datasets::BatchRobot> robot_of(const Flags& flags) {
+std::optional<datasets::BatchRobot> robot_of(const BatchFlags& flags) {
   const bool given = flags.time_horizon || flags.radius > 0.0 || !flags.positions.empty() || !flags.goal.empty();
   if (!given) return std::nullopt;
   if (!flags.time_horizon) throw UsageError("--time-horizon", "none", "seconds, more than 0, with a robot");
@@ -134,7 +134,7 @@ std::optional<datasets::BatchRobot> robot_of(const Flags& flags) {
   return robot;
 }
 
-BatchConfiguration configuration_of(const Flags& flags) {
+BatchConfiguration configuration_of(const BatchFlags& flags) {
   check_numbers(flags);
   BatchConfiguration configuration;
   configuration.reading.format = flags.format;
@@ -183,7 +183,7 @@ std::vector<std::string> lasting_words(const std::vector<std::string>& words) {
   return kept;
 }
 
-BatchRun run_of(const Flags& flags) {
+BatchRun run_of(const BatchFlags& flags) {
   BatchRun run;
   run.paths.assign(flags.paths.begin(), flags.paths.end());
   run.out = flags.out;
@@ -296,7 +296,7 @@ void name_rejected(const BatchSummary& summary, const std::string& out) {
 }
 
 /// Whether this batch goes where an earlier one is, and does not go on with it.
-bool goes_over_another(const Flags& flags) {
+bool goes_over_another(const BatchFlags& flags) {
   std::error_code error;
   return !flags.resume && !datasets::under_mpi() && std::filesystem::exists(flags.out + "/summary.json", error);
 }
@@ -309,7 +309,7 @@ void note_earlier_batches(const datasets::BatchResult& result) {
 }
 
 /// Nothing of this process's own to tell: the last of several puts the parts together.
-void say_incomplete(const Flags& flags, const BatchRun& run) {
+void say_incomplete(const BatchFlags& flags, const BatchRun& run) {
   if (run.shards > 1) return message(words_of_shard(run));
   if (!datasets::under_mpi())
     message("another process took the parts of this batch from " + flags.out + " and left no summary");
@@ -329,7 +329,7 @@ ExitCode verdict(const BatchSummary& s) {
   return s.uncertified == 0 && s.obstacles_out > 0 ? ExitCode::success : ExitCode::negative;
 }
 
-ExitCode batch(const Flags& flags) {
+ExitCode batch(const BatchFlags& flags) {
   std::signal(SIGXFSZ, SIG_IGN);     // a file size limit is then an error of the write, and said as one
   datasets::set_wait_hook(nullptr);  // it reads no pipes, and looks for interrupts itself
   const BatchConfiguration configuration = configuration_of(flags);
@@ -362,7 +362,7 @@ ExitCode batch(const Flags& flags) {
   return verdict(result.summary);
 }
 
-void declare_run(CLI::App& app, Flags& flags) {
+void declare_run(CLI::App& app, BatchFlags& flags) {
   app.add_option("paths", flags.paths, "Files and folders; outputs of earlier batches inside the folders are ignored")
       ->required();
   declare_out(app, flags.out, "Folder for the results")->required();
@@ -382,7 +382,7 @@ void declare_run(CLI::App& app, Flags& flags) {
                "GeoJSON in metres, which other programs read as degrees; by default longitude and latitude");
 }
 
-void declare_reading(CLI::App& app, Flags& flags) {
+void declare_reading(CLI::App& app, BatchFlags& flags) {
   app.add_flag("--repair", flags.repair, "Repair invalid geometry: self-crossings, overlaps, misplaced holes");
   app.add_option("--format", flags.format, "Format of all files; by default detected from content and name");
   app.add_option("--units", flags.units, "automatic, metres, degrees")->capture_default_str();
@@ -395,7 +395,7 @@ void declare_reading(CLI::App& app, Flags& flags) {
       ->capture_default_str();
 }
 
-void declare_robot(CLI::App& app, Flags& flags) {
+void declare_robot(CLI::App& app, BatchFlags& flags) {
   app.add_option("--time-horizon", flags.time_horizon, "s; horizon of the velocity obstacles");
   app.add_option("--radius", flags.radius, "Radius of the robot, m");
   app.add_option("--position", flags.positions, "X,Y of the robot, m; may be repeated")->allow_extra_args(false);
@@ -405,8 +405,8 @@ void declare_robot(CLI::App& app, Flags& flags) {
                  "X,Y, m; trap-free ellipses are fitted for a robot going there from the first position");
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_batch(CLI::App& app) {
+  const auto flags = std::make_shared<BatchFlags>();
   declare_run(app, *flags);
   declare_reading(app, *flags);
   declare_robot(app, *flags);
@@ -423,7 +423,7 @@ Verb batch_verb() {
           "    (status 1: a result is not certified, or no obstacle was produced; rejected files are listed)\n"
           "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"
           "  exactvo batch map.yaml --out out/map --time-horizon 3 --radius 0.3 --position 1,2 --position 4,2\n",
-          declare};
+          declare_batch};
 }
 
 }  // namespace exactvo::tools

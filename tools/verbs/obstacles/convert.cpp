@@ -22,7 +22,7 @@ using geometry::counted;
 
 namespace {
 
-struct Flags {
+struct ConvertFlags {
   std::string in, out, to;
   ReadingFlags reading;
   bool repair = false;
@@ -44,7 +44,7 @@ void say_what_was_read(const datasets::ObstacleFile& file) {
 }
 
 /// Nothing where it cannot be read, which is said then.
-std::optional<datasets::ObstacleFile> read(const Flags& flags) {
+std::optional<datasets::ObstacleFile> read(const ConvertFlags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading, "--from");
   options.repair = flags.repair;
   options.keep_going = flags.skip;
@@ -62,7 +62,7 @@ std::optional<datasets::ObstacleFile> read(const Flags& flags) {
   }
 }
 
-ExitCode convert_crowd(const Flags& flags) {
+ExitCode convert_crowd(const ConvertFlags& flags) {
   if (std::filesystem::path(flags.out).extension() != ".csv")
     throw UsageError("out", flags.out, "FILE.csv, for a recording of a crowd");
   datasets::AtomicFile table(flags.out);
@@ -74,7 +74,7 @@ ExitCode convert_crowd(const Flags& flags) {
   return ExitCode::negative;
 }
 
-ExitCode convert(const Flags& flags) {
+ExitCode convert(const ConvertFlags& flags) {
   if (std::filesystem::path(flags.in).extension() == ".evr") return convert_crowd(flags);
   check_format("--to", flags.to, datasets::writable_formats());
   const std::string to = output_format(flags.out, flags.to);
@@ -96,8 +96,8 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_convert(CLI::App& app) {
+  const auto flags = std::make_shared<ConvertFlags>();
   app.add_option("in", flags->in, "An obstacle file of any readable format, or a crowd's recording, .evr, for FILE.csv")
       ->required();
   app.add_option("out", flags->out,
@@ -117,7 +117,7 @@ Verb convert_verb() {
   return {"convert", "Convert obstacles from one file format to another",
           "  exactvo convert map.yaml map.geojson\n"
           "  exactvo convert city.osm city.gpkg --repair --skip\n",
-          declare};
+          declare_convert};
 }
 
 }  // namespace exactvo::tools

@@ -24,7 +24,7 @@ using formation::SceneObstacle;
 
 namespace {
 
-struct Flags {
+struct GenerateFlags {
   std::string kind;
   std::uint64_t seed = 1;
   std::int64_t count = 100;
@@ -57,7 +57,7 @@ void check_kind(const std::string& kind) {
   throw UsageError("kind", kind, fmt::format("one of {}{}", fmt::join(known, " "), suggestion(kind, known)));
 }
 
-void check(const Flags& flags) {
+void check(const GenerateFlags& flags) {
   check_kind(flags.kind);
   if (flags.out.empty()) throw MissingOption("generate", "option --out", kOutHelp);
   constexpr std::int64_t kMostItems = 100'000'000;
@@ -67,12 +67,12 @@ void check(const Flags& flags) {
   check_figure_name("--figure", flags.figure, {flags.out});
 }
 
-std::vector<SceneObstacle> item(const Flags& flags, std::uint64_t k) {
+std::vector<SceneObstacle> item(const GenerateFlags& flags, std::uint64_t k) {
   if (interrupted()) throw Interrupted();
   return datasets::generated_item(flags.kind, k, flags.seed);
 }
 
-std::vector<SceneObstacle> items(const Flags& flags, std::uint64_t count) {
+std::vector<SceneObstacle> items(const GenerateFlags& flags, std::uint64_t count) {
   std::vector<SceneObstacle> all;
   for (std::uint64_t k = 0; k < count; ++k) {
     for (SceneObstacle& obstacle : item(flags, k)) all.push_back(std::move(obstacle));
@@ -81,7 +81,7 @@ std::vector<SceneObstacle> items(const Flags& flags, std::uint64_t count) {
 }
 
 /// A line at a time: memory does not grow with the count.
-std::size_t stream_wkt(const Flags& flags, std::uint64_t count) {
+std::size_t stream_wkt(const GenerateFlags& flags, std::uint64_t count) {
   std::optional<datasets::AtomicFile> file;
   if (flags.out != "-") file.emplace(flags.out);
   std::size_t written = 0;
@@ -94,7 +94,7 @@ std::size_t stream_wkt(const Flags& flags, std::uint64_t count) {
   return written;
 }
 
-std::size_t write(const Flags& flags, std::uint64_t count) {
+std::size_t write(const GenerateFlags& flags, std::uint64_t count) {
   const std::string to = output_format(flags.out, flags.to);
   if (to == "wkt") return stream_wkt(flags, count);
   const std::vector<SceneObstacle> all = items(flags, count);
@@ -102,14 +102,14 @@ std::size_t write(const Flags& flags, std::uint64_t count) {
   return all.size();
 }
 
-void draw_figure(const Flags& flags, std::uint64_t count) {
+void draw_figure(const GenerateFlags& flags, std::uint64_t count) {
   const std::uint64_t drawn = std::min(count, kMostItemsDrawn);
   if (drawn < count) message(fmt::format("the figure shows the first {} of {} items", drawn, count));
   const std::string title = fmt::format("{}, seed {}, {}", flags.kind, flags.seed, geometry::counted(drawn, "item"));
   write_figure(map_figure(items(flags, drawn), title), flags.figure);
 }
 
-ExitCode generate(const Flags& flags) {
+ExitCode generate(const GenerateFlags& flags) {
   if (flags.list) return list_kinds();
   check(flags);
   const auto count = static_cast<std::uint64_t>(flags.count);
@@ -120,8 +120,8 @@ ExitCode generate(const Flags& flags) {
   return ExitCode::success;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_generate(CLI::App& app) {
+  const auto flags = std::make_shared<GenerateFlags>();
   app.add_option("kind", flags->kind, kind_help());
   declare_seed(app, flags->seed, "Of the generator; the same seed gives the same bytes on every machine");
   app.add_option("--count", flags->count, "Number of items; one maze, block or field consists of several obstacles");
@@ -139,7 +139,7 @@ Verb generate_verb() {
   return {"generate", "Generate obstacles from a seed: polygons, stars, walls, mazes, blocks, floors, needles, fields",
           "  exactvo generate --list\n"
           "  exactvo generate maze --seed 7 --count 4 --out mazes.geojson --figure mazes.svg\n",
-          declare};
+          declare_generate};
 }
 
 }  // namespace exactvo::tools

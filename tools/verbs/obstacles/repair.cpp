@@ -27,7 +27,7 @@ using formation::SceneObstacle;
 
 namespace {
 
-struct Flags {
+struct RepairFlags {
   std::vector<std::string> files;
   ReadingFlags reading;
   std::string out, to, figure;
@@ -293,13 +293,13 @@ void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out)
 // --- The verb ---
 
 /// What is read, and written beside the figure.
-std::vector<std::filesystem::path> other_files(const Flags& flags) {
+std::vector<std::filesystem::path> other_files(const RepairFlags& flags) {
   std::vector<std::filesystem::path> files = all_read_with(flags.files, flags.reading.format);
   files.emplace_back(flags.out);
   return files;
 }
 
-ExitCode repair(const Flags& flags) {
+ExitCode repair(const RepairFlags& flags) {
   datasets::ReadOptions options = reading_options(flags.reading);
   options.repair = true;
   options.keep_properties = true;
@@ -328,8 +328,8 @@ ExitCode repair(const Flags& flags) {
   return code;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_repair(CLI::App& app) {
+  const auto flags = std::make_shared<RepairFlags>();
   app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
   app.add_option("--out", flags->out,
                  "Output file for the repaired obstacles of all inputs; its extension selects the format")
@@ -348,7 +348,7 @@ Verb repair_verb() {
   return {"repair", "Repair invalid obstacle files: winding, closure, spikes, self-crossings, overlaps",
           "  exactvo repair countries.geojson --out repaired.geojson --figure repaired.svg\n"
           "    (status 1: some obstacles cannot be repaired; the others are written)\n",
-          declare};
+          declare_repair};
 }
 
 }  // namespace exactvo::tools

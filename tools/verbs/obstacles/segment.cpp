@@ -28,7 +28,7 @@ using geometry::Vec2;
 
 namespace {
 
-struct Flags {
+struct SegmentFlags {
   std::vector<std::string> files;
   ReadingFlags reading;
   double tolerance = 0.0;
@@ -49,13 +49,13 @@ struct TakenApart {
 // --- The work ---
 
 /// What is read, and written beside the figure.
-std::vector<std::filesystem::path> other_files(const Flags& flags) {
+std::vector<std::filesystem::path> other_files(const SegmentFlags& flags) {
   std::vector<std::filesystem::path> files = all_read_with(flags.files, flags.reading.format);
   if (!flags.out.empty()) files.emplace_back(flags.out);
   return files;
 }
 
-void check(const Flags& flags) {
+void check(const SegmentFlags& flags) {
   require_length("--tolerance", flags.tolerance);
   require_length("--radius", flags.radius);
   require_length("--facade-margin", flags.facade_margin);
@@ -65,7 +65,7 @@ void check(const Flags& flags) {
     throw UsageError("--out", flags.out, "a name that ends in .jsonl or .geojson");
 }
 
-std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const Flags& flags) {
+std::vector<TakenApart> take_apart(const std::vector<FileAnswer>& answers, const SegmentFlags& flags) {
   geometry::ShapeOptions options;
   options.facades.tolerance = flags.tolerance;
   options.robot_radius = flags.radius;
@@ -188,7 +188,7 @@ class Features {
   OrderedJson features_ = OrderedJson::array();
 };
 
-void write_out(const std::vector<TakenApart>& all, const Flags& flags) {
+void write_out(const std::vector<TakenApart>& all, const SegmentFlags& flags) {
   const std::string& out = flags.out;
   if (std::filesystem::path(out).extension() == ".jsonl") return datasets::write_file_atomically(out, records(all));
   Features features(flags.metres);
@@ -220,7 +220,7 @@ std::string title_of(const std::vector<std::string>& files, std::size_t obstacle
   return fmt::format("{}{}: {}", name, files.size() > 1 ? " and others" : "", counted(obstacles, "obstacle"));
 }
 
-void draw_figure(const std::vector<TakenApart>& all, const Flags& flags) {
+void draw_figure(const std::vector<TakenApart>& all, const SegmentFlags& flags) {
   if (all.empty()) return message("no figure: no obstacle");
   std::vector<ObstacleShapes> shapes;
   for (const TakenApart& t : all) shapes.push_back(t.shapes);
@@ -235,7 +235,7 @@ ExitCode exit_code(const std::vector<FileAnswer>& answers, const std::vector<Tak
   return all_read && proved ? ExitCode::success : ExitCode::negative;
 }
 
-ExitCode segment(const Flags& flags) {
+ExitCode segment(const SegmentFlags& flags) {
   check(flags);
   datasets::ReadOptions reading = reading_options(flags.reading);
   reading.repair = flags.repair;
@@ -265,8 +265,8 @@ ExitCode segment(const Flags& flags) {
   return exit_code(answers, all);
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_segment(CLI::App& app) {
+  const auto flags = std::make_shared<SegmentFlags>();
   app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
   declare_reading_flags(app, flags->reading);
   app.add_option("--tolerance", flags->tolerance, "Largest distance of a facade from its obstacle, m");
@@ -289,7 +289,7 @@ Verb segment_verb() {
           "  exactvo segment floor.geojson --figure floor.svg\n"
           "  exactvo segment city.gpkg --repair --tolerance 0.1 --out city.jsonl\n"
           "    (status 1: an obstacle is invalid, or a result is not certified)\n",
-          declare};
+          declare_segment};
 }
 
 }  // namespace exactvo::tools

@@ -13,7 +13,7 @@ namespace exactvo::tools {
 
 namespace {
 
-struct Flags {
+struct ValidateFlags {
   std::vector<std::string> files;
   ReadingFlags reading;
   bool json = false;
@@ -44,7 +44,7 @@ std::string to_json(const std::vector<FileAnswer>& answers, bool strict) {
   return text_of(json);
 }
 
-ExitCode validate(const Flags& flags) {
+ExitCode validate(const ValidateFlags& flags) {
   const std::vector<FileAnswer> answers = read_each(flags.files, reading_options(flags.reading));
   if (flags.json) {
     print(to_json(answers, flags.strict));
@@ -57,8 +57,8 @@ ExitCode validate(const Flags& flags) {
   return exit_code(answers, flags.strict);
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_validate(CLI::App& app) {
+  const auto flags = std::make_shared<ValidateFlags>();
   app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
   declare_reading_flags(app, flags->reading);
   app.add_flag("--json", flags->json, "Everything as JSON on stdout");
@@ -75,7 +75,7 @@ Verb validate_verb() {
           "  exactvo validate --json --strict maps/*.yaml\n"
           "    (status 0: every obstacle can be used; 1: some cannot; 2: a file cannot be read. Codes: "
           "docs/guide/codes.md)\n",
-          declare};
+          declare_validate};
 }
 
 }  // namespace exactvo::tools

@@ -30,7 +30,7 @@ using geometry::Vec2;
 
 namespace {
 
-struct Flags {
+struct RouteFlags {
   std::string map;
   ReadingFlags reading;
   std::string cell_point = kCellPoints[0];
@@ -47,7 +47,7 @@ void require(bool ok, const char* option, const std::string& found, const char* 
   if (!ok) throw UsageError(option, found, expected);
 }
 
-void check_radius(const Flags& flags) {
+void check_radius(const RouteFlags& flags) {
   require(flags.radius || flags.widest, "--radius", "nothing", "the radius of the disc in m, or --widest");
   if (!flags.radius) return;
   constexpr double kLeast = 0x1p-100;
@@ -55,7 +55,7 @@ void check_radius(const Flags& flags) {
           fmt::format("{}", *flags.radius), "0 (a point), or a length from 2^-100 m to 2^100 m");
 }
 
-void check(const Flags& flags) {
+void check(const RouteFlags& flags) {
   if (flags.queries.empty()) {
     require(!flags.from.empty(), "--from", "nothing", "the start, X,Y, or --queries FILE for many questions");
     require(!flags.to.empty(), "--to", "nothing", "the goal, X,Y");
@@ -106,7 +106,7 @@ double distance_of(const geometry::Box& box, std::initializer_list<Vec2> points)
 }
 
 /// What a map has to cover for points so far outside of the obstacles' box.
-geometry::RouteMapOptions options_for(const Flags& flags, const geometry::Box& box, double distance) {
+geometry::RouteMapOptions options_for(const RouteFlags& flags, const geometry::Box& box, double distance) {
   // No point keeps farther from all obstacles than sqrt 2 (distance + side): no wider disc is free anywhere.
   const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
   const double widest = flags.widest ? 2.0 * (distance + side) : 0.0;
@@ -119,7 +119,7 @@ geometry::RouteMapOptions options_for(const Flags& flags, const geometry::Box& b
 
 class Answers {
  public:
-  Answers(const AskedMap& asked, const Flags& flags, const geometry::RouteMapOptions& options)
+  Answers(const AskedMap& asked, const RouteFlags& flags, const geometry::RouteMapOptions& options)
       : asked_(asked), flags_(flags), routes_(asked.shapes, options) {
     if (flags.radius) plan_.emplace(routes_, *flags.radius);
   }
@@ -145,12 +145,12 @@ class Answers {
 
  private:
   const AskedMap& asked_;
-  const Flags& flags_;
+  const RouteFlags& flags_;
   RouteMap routes_;
   std::optional<RoutePlan> plan_;
 };
 
-ExitCode answer_one(const AskedMap& map, const Flags& flags) {
+ExitCode answer_one(const AskedMap& map, const RouteFlags& flags) {
   const Vec2 start = point_in("--from", flags.from, map), goal = point_in("--to", flags.to, map);
   const geometry::Box box = box_of(map);
   const Answers answers(map, flags, options_for(flags, box, distance_of(box, {start, goal})));
@@ -175,7 +175,7 @@ constexpr double kFarthestOfQueries = 4.0;
 /// m; all that --from and --to take.
 constexpr double kFarthestOfEmptyMap = kLargestNumber;
 
-ExitCode answer_many(const AskedMap& map, const Flags& flags) {
+ExitCode answer_many(const AskedMap& map, const RouteFlags& flags) {
   RouteQueries queries(flags.queries, map);
   const geometry::Box box = box_of(map);
   const double side = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
@@ -195,7 +195,7 @@ ExitCode answer_many(const AskedMap& map, const Flags& flags) {
 /// Of a cell's side: exact beside every number of a cell up to 2^16, and nothing beside any length.
 constexpr double kIntoCell = 0x1p-36;
 
-ExitCode route(const Flags& flags) {
+ExitCode route(const RouteFlags& flags) {
   check(flags);
   datasets::ReadOptions reading = reading_options(flags.reading);
   reading.keep_going = false;
@@ -214,8 +214,8 @@ ExitCode route(const Flags& flags) {
   return flags.queries.empty() ? answer_one(map, flags) : answer_many(map, flags);
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_route(CLI::App& app) {
+  const auto flags = std::make_shared<RouteFlags>();
   app.add_option("map", flags->map, "An obstacle file of any readable format, or a scenario")->required();
   app.add_option("--from", flags->from,
                  "Start X,Y: m as the reader lays the file out (degrees are projected first, and it says how); on a "
@@ -247,7 +247,7 @@ Verb route_verb() {
           "    (status 1: for one question at least there is no route; answers of --queries are printed as the "
           "questions are\n"
           "    read, so those before a bad line stay)\n",
-          declare};
+          declare_route};
 }
 
 }  // namespace exactvo::tools

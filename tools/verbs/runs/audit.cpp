@@ -25,7 +25,7 @@ using geometry::counted;
 
 namespace {
 
-struct Flags {
+struct AuditFlags {
   std::string path;
   std::string certificates;
   std::string scenario;
@@ -166,7 +166,7 @@ void take(std::optional<Report>& sum, Report report, const std::string& file) {
   add(*sum, report);
 }
 
-Audited audited(const Flags& flags, const std::vector<fs::path>& files, const formation::Scenario* scenario) {
+Audited audited(const AuditFlags& flags, const std::vector<fs::path>& files, const formation::Scenario* scenario) {
   Audited all;
   for (const fs::path& file : files) {
     if (is_crowd_recording(file)) {
@@ -203,7 +203,7 @@ std::string to_json(const Audited& all) {
   return text_of(both, 2);
 }
 
-ExitCode audit_recordings(const Flags& flags) {
+ExitCode audit_recordings(const AuditFlags& flags) {
   std::optional<formation::Scenario> scenario;
   if (!flags.scenario.empty()) scenario = datasets::load_scenario(flags.scenario);
   const std::vector<fs::path> files = recordings_in(flags.path);
@@ -220,7 +220,7 @@ ExitCode audit_recordings(const Flags& flags) {
 
 // --- Certificates ---
 
-ExitCode audit_certificates(const Flags& flags) {
+ExitCode audit_certificates(const AuditFlags& flags) {
   const JudgedCertificates judged = judge_certificates(flags.certificates);
   const std::string text = flags.json ? to_json(judged) : in_words(judged);
   print(text);
@@ -229,7 +229,7 @@ ExitCode audit_certificates(const Flags& flags) {
   return all ? ExitCode::success : ExitCode::negative;
 }
 
-ExitCode audit(const Flags& flags) {
+ExitCode audit(const AuditFlags& flags) {
   if (flags.path.empty() == flags.certificates.empty())
     throw UsageError("audit", flags.path.empty() ? "neither a path nor --certificate" : "a path and --certificate",
                      "one of the two: a recording (or a folder of them), or --certificate FILE");
@@ -240,8 +240,8 @@ ExitCode audit(const Flags& flags) {
   return audit_certificates(flags);
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_audit(CLI::App& app) {
+  const auto flags = std::make_shared<AuditFlags>();
   app.add_option("path", flags->path, "A recording.jsonl, a crowd's FILE.evr, or a folder searched for both");
   app.add_option("--sample", flags->sample, "Of a crowd: judge about so many motions; 0 for all");
   app.add_option("--scenario", flags->scenario, "FILE that the recordings must be of, with its obstacle files");
@@ -262,7 +262,7 @@ Verb audit_verb() {
       "  exactvo audit out/A1 --scenario datasets/data/paper/A1.json\n"
       "  exactvo vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --json \\\n"
       "      | exactvo audit --certificate -\n",
-      declare};
+      declare_audit};
 }
 
 }  // namespace exactvo::tools

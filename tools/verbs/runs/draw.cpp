@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Flags {
+struct DrawFlags {
   std::string recording;
   std::string out;
 };
@@ -37,7 +37,7 @@ datasets::RecordingFile read_shown(const fs::path& recording) {
 }
 
 /// figures/ beside the recording, unless --out names another folder.
-fs::path folder_for(const Flags& flags, const fs::path& recording) {
+fs::path folder_for(const DrawFlags& flags, const fs::path& recording) {
   if (!flags.out.empty()) return flags.out;
   std::error_code unknown;
   const std::string name = recording.string();
@@ -61,7 +61,7 @@ bool draw_into(const fs::path& folder, const fs::path& recording) {
   return false;
 }
 
-ExitCode draw_figures(const Flags& flags) {
+ExitCode draw_figures(const DrawFlags& flags) {
   const fs::path recording = recording_at(flags.recording).value_or(flags.recording);
   const fs::path out = folder_for(flags, recording);
   check_figure_folder(out);
@@ -75,8 +75,8 @@ ExitCode draw_figures(const Flags& flags) {
   return ExitCode::negative;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_draw(CLI::App& app) {
+  const auto flags = std::make_shared<DrawFlags>();
   app.add_option("recording", flags->recording, "recording.jsonl, the folder of a run, or a crowd's FILE.evr")
       ->required();
   declare_out(app, flags->out, "Folder for the figures; by default figures/ beside the recording");
@@ -90,7 +90,7 @@ Verb draw_verb() {
           "  exactvo simulate datasets/data/paper/A2.json --no-figures --out out/A2\n"
           "  exactvo draw out/A2\n"
           "  exactvo draw out/crowd.evr --out out/crowd_figures\n",
-          declare};
+          declare_draw};
 }
 
 }  // namespace exactvo::tools

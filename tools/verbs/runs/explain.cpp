@@ -30,7 +30,7 @@ using formation::Scenario;
 
 namespace {
 
-struct Flags {
+struct ExplainFlags {
   std::string scenario;
   SimulationFlags simulation;
   double time = 0.0;
@@ -110,7 +110,7 @@ std::vector<std::string> remarks_on(const Scenario& scenario, const formation::R
   return remarks;
 }
 
-Explained decide(const Flags& flags, const Scenario& scenario) {
+Explained decide(const ExplainFlags& flags, const Scenario& scenario) {
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.stop_at = flags.time;
   options.progress = [](double) { return !interrupted(); };
@@ -165,7 +165,7 @@ class RunUntil {
   std::shared_ptr<const formation::Step> first_, decided_, last_;
 };
 
-Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
+Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& path) {
   RunUntil until(flags.time);
   datasets::RecordingFile file =
       datasets::read_recording(path, [&](const datasets::RecordingFile& so_far, formation::Step row,
@@ -188,7 +188,7 @@ Explained decision_in(const Flags& flags, const std::filesystem::path& path) {
 }
 
 /// Of a recording, or of a scenario that is run until then.
-Explained explained_by(const Flags& flags) {
+Explained explained_by(const ExplainFlags& flags) {
   if (!(flags.time >= 0.0)) throw UsageError("--time", fmt::format("{}", flags.time), "a time of at least 0 s");
   if (const auto recording = recording_at(flags.scenario)) {
     check_figure_name("--out", flags.out, {*recording});
@@ -203,7 +203,7 @@ Explained explained_by(const Flags& flags) {
   return decide(flags, scenario);
 }
 
-ExitCode explain(const Flags& flags) {
+ExitCode explain(const ExplainFlags& flags) {
   const Explained explained = explained_by(flags);
   print(shown_lines(explanation(explained.decision)));
   if (explained.ahead) print(shown_lines(route_words(explained.decision, *explained.ahead)));
@@ -217,8 +217,8 @@ ExitCode explain(const Flags& flags) {
   return ExitCode::success;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_explain(CLI::App& app) {
+  const auto flags = std::make_shared<ExplainFlags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin; or the recording of a run, or its folder")
       ->required();
   app.add_option("--time,-t", flags->time, "Time of the decision, s")->required();
@@ -238,7 +238,7 @@ Verb explain_verb() {
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
           "  exactvo explain out/A7 --time 3 --robot R1\n"
           "  exactvo explain mine.json --time 2 --robot R1 --map out/route.svg\n",
-          declare};
+          declare_explain};
 }
 
 }  // namespace exactvo::tools

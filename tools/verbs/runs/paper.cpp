@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Flags {
+struct PaperFlags {
   std::string out;
   std::string data;
   std::uint64_t seed = datasets::kFieldSeed;
@@ -37,7 +37,7 @@ struct Flags {
   const CLI::Option* jobs_given = nullptr;
 };
 
-void note_unused(const Flags& flags) {
+void note_unused(const PaperFlags& flags) {
   if (flags.fields_given->count() > 0 && !flags.ablations)
     message("note: --fields does nothing here: it is of --ablations");
   if (flags.jobs_given->count() > 0 && !flags.ablations && flags.random == 0)
@@ -57,19 +57,19 @@ bool copy_pictures(const fs::path& from, const fs::path& to) {
 }
 
 /// What the report will be made of, read before the work: a damaged file is told at once.
-void check_earlier_files(const Flags& flags) {
+void check_earlier_files(const PaperFlags& flags) {
   ReportData(flags.out, flags.out, {});
 }
 
 /// What the report says of the campaigns changes with them.
-void renew_report(const Flags& flags) {
+void renew_report(const PaperFlags& flags) {
   const ReportData data(flags.out, flags.out, data_folder(flags.data, "paper"));
   if (!data.has_runs()) return;
   write_report(data, flags.out);
   message("renewed " + flags.out + "/report.html and report.md");
 }
 
-ExitCode section_five(const Flags& flags) {
+ExitCode section_five(const PaperFlags& flags) {
   StagedFolder folder(flags.out);
   const SectionFiveOptions options{data_folder(flags.data, "paper"), command_line(), flags.seed, flags.json,
                                    flags.no_figures};
@@ -87,17 +87,17 @@ ExitCode section_five(const Flags& flags) {
   return ExitCode::success;
 }
 
-CampaignOptions campaign_options(const Flags& flags, const char* folder, std::uint64_t fields) {
+CampaignOptions campaign_options(const PaperFlags& flags, const char* folder, std::uint64_t fields) {
   const unsigned jobs = flags.jobs > 0 ? flags.jobs : std::max(1u, std::thread::hardware_concurrency());
   return {fs::path(flags.out) / folder / "parts", fields, flags.seed, jobs};
 }
 
-void say(const Flags& flags, const CampaignFiles& files) {
+void say(const PaperFlags& flags, const CampaignFiles& files) {
   print(flags.json ? files.json : files.table);
 }
 
 /// What a request to stop leaves: the parts that are done.
-ExitCode kept_parts(const Flags& flags) {
+ExitCode kept_parts(const PaperFlags& flags) {
   std::error_code error;
   const bool any = fs::exists(flags.out, error);
   error_message(any ? "interrupted; what was finished is kept in " + flags.out + ": the same command goes on from there"
@@ -105,7 +105,7 @@ ExitCode kept_parts(const Flags& flags) {
   return ExitCode::interrupted;
 }
 
-ExitCode campaigns(const Flags& flags) try {
+ExitCode campaigns(const PaperFlags& flags) try {
   if (flags.random > 0) {
     const CampaignOptions options = campaign_options(flags, "random", flags.random);
     const CampaignFiles files = random_fields(options);
@@ -127,15 +127,15 @@ ExitCode campaigns(const Flags& flags) try {
   return kept_parts(flags);
 }
 
-ExitCode paper(const Flags& flags) {
+ExitCode paper(const PaperFlags& flags) {
   check_output_folder(flags.out);
   note_unused(flags);
   check_earlier_files(flags);
   return flags.random > 0 || flags.ablations ? campaigns(flags) : section_five(flags);
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_paper(CLI::App& app) {
+  const auto flags = std::make_shared<PaperFlags>();
   declare_out(app, flags->out,
               "Folder for summary.json, report.html, report.md, explorer.html and figures/; random/ or ablations/")
       ->required();
@@ -168,7 +168,7 @@ Verb paper_verb() {
           "  exactvo paper --out out/paper\n"
           "  exactvo paper --out out/paper --random 1000 --jobs 2\n"
           "  exactvo paper --out out/paper --ablations\n",
-          declare};
+          declare_paper};
 }
 
 }  // namespace exactvo::tools

@@ -20,7 +20,7 @@ namespace exactvo::tools {
 
 namespace {
 
-struct Flags {
+struct ServeFlags {
   PageFlags page;
   int port = 0;
   bool opens = false;
@@ -47,7 +47,7 @@ OptionsOfRun options_by_key(const std::vector<MadeRun>& runs) {
   };
 }
 
-ExitCode serve_page(Flags flags) {
+ExitCode serve_page(ServeFlags flags) {
   if (!has_http())
     throw UsageError("serve", "a program built without cpp-httplib (Debian: libcpp-httplib-dev)",
                      "one built with it; exactvo view makes a page that needs no server [E_NOT_BUILT]");
@@ -69,8 +69,8 @@ ExitCode serve_page(Flags flags) {
   return ExitCode::success;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_serve(CLI::App& app) {
+  const auto flags = std::make_shared<ServeFlags>();
   declare_page_flags(
       app, flags->page, 1,
       "A scenario, which is run with every half-plane, the folder of a run, or a recording (.jsonl, of a "
@@ -90,7 +90,7 @@ Verb serve_verb() {
           "  exactvo serve datasets/data/paper/A7.json\n"
           "  exactvo serve out/A7 --port 8080\n"
           "    (status 0 when Ctrl-C or SIGTERM ends the server)\n",
-          declare};
+          declare_serve};
 }
 
 }  // namespace exactvo::tools

@@ -22,7 +22,7 @@ namespace exactvo::tools {
 
 namespace {
 
-struct Flags {
+struct SimulateFlags {
   std::string scenario;
   SimulationFlags simulation;
   CrowdFlags crowd;
@@ -121,8 +121,8 @@ void announce(const formation::Scenario& scenario) {
 }
 
 /// Into the folder, which may be none.
-FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options,
-                              const std::filesystem::path& folder) {
+FinishedRun run_with_progress(const SimulateFlags& flags, const ReadScenario& read,
+                              const formation::SimulationOptions& options, const std::filesystem::path& folder) {
   const formation::Scenario& scenario = read.scenario;
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
   ProgressLine line(scenario.time_limit, "s simulated");
@@ -133,12 +133,13 @@ FinishedRun run_with_progress(const Flags& flags, const ReadScenario& read, cons
              {folder, figures, [&](double time) { line.show(time, scenario.name); }, warn, figures});
 }
 
-void print_results(const Flags& flags, const FinishedRun& finished) {
+void print_results(const SimulateFlags& flags, const FinishedRun& finished) {
   print(flags.json ? finished.metrics_json() : summary(finished));
 }
 
 /// Printed before it is published: where stdout takes no more, nothing is written at all.
-FinishedRun run_into_folder(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options) {
+FinishedRun run_into_folder(const SimulateFlags& flags, const ReadScenario& read,
+                            const formation::SimulationOptions& options) {
   const std::optional<RunName> replaced = run_in(flags.out);
   StagedFolder folder(flags.out);
   FinishedRun finished = run_with_progress(flags, read, options, folder.path());
@@ -156,13 +157,14 @@ FinishedRun run_into_folder(const Flags& flags, const ReadScenario& read, const 
   return finished;
 }
 
-FinishedRun run_and_print(const Flags& flags, const ReadScenario& read, const formation::SimulationOptions& options) {
+FinishedRun run_and_print(const SimulateFlags& flags, const ReadScenario& read,
+                          const formation::SimulationOptions& options) {
   FinishedRun finished = run_with_progress(flags, read, options, {});
   print_results(flags, finished);
   return finished;
 }
 
-ExitCode simulate(const Flags& flags) {
+ExitCode simulate(const SimulateFlags& flags) {
   const bool is_crowd = wants_crowd(flags.crowd, flags.simulation, flags.out);
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = flags.record_all;
@@ -181,8 +183,8 @@ ExitCode simulate(const Flags& flags) {
   return failed ? ExitCode::negative : ExitCode::success;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_simulate(CLI::App& app) {
+  const auto flags = std::make_shared<SimulateFlags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags->simulation);
   declare_out(app, flags->out,
@@ -210,7 +212,7 @@ Verb simulate_verb() {
           "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
           "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
-          declare};
+          declare_simulate};
 }
 
 }  // namespace exactvo::tools

@@ -23,7 +23,7 @@ using formation::Equilibrium;
 using formation::TrapFinding;
 using formation::TrapPlace;
 
-struct Flags {
+struct TrapFlags {
   std::string scenario;
   SimulationFlags simulation;
   bool json = false;
@@ -148,7 +148,7 @@ std::vector<TrapFinding> tested(const formation::Scenario& scenario, const forma
   return formation::trap_test(scenario, options);
 }
 
-ExitCode trap(const Flags& flags) {
+ExitCode trap(const TrapFlags& flags) {
   const formation::Scenario scenario = read_scenario(flags.scenario).scenario;
   formation::SimulationOptions options = simulation_options(flags.simulation);
   if (options.guidance.value_or(formation::Guidance::none) != formation::Guidance::none)
@@ -167,8 +167,8 @@ ExitCode trap(const Flags& flags) {
   return ExitCode::success;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_trap(CLI::App& app) {
+  const auto flags = std::make_shared<TrapFlags>();
   app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
   declare_simulation_flags(app, flags->simulation);
   app.add_flag("--json", flags->json, "Print the findings as JSON; infinite and inapplicable values are null");
@@ -181,7 +181,7 @@ Verb trap_verb() {
   return {"trap", "Find where a robot may stall, before any run",
           "  exactvo trap datasets/data/paper/A4.json\n"
           "  exactvo trap datasets/data/paper/A11.json --method ivo-edge --json\n",
-          declare};
+          declare_trap};
 }
 
 }  // namespace exactvo::tools

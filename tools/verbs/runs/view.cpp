@@ -19,13 +19,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Flags {
+struct ViewFlags {
   PageFlags page;
   std::string out;
 };
 
 /// Before any work: the page must not replace what it is made from.
-void check_out(const Flags& flags) {
+void check_out(const ViewFlags& flags) {
   const fs::path out(flags.out);
   if (out.extension() != ".html" && out.extension() != ".htm")
     throw UsageError("--out", flags.out, "a name that ends in .html");
@@ -37,7 +37,7 @@ void check_out(const Flags& flags) {
   }
 }
 
-ExitCode view(const Flags& flags) {
+ExitCode view(const ViewFlags& flags) {
   check_out(flags);
   std::vector<PageRun> runs;
   for (MadeRun& made : page_runs(flags.page)) runs.push_back(std::move(made.shown));
@@ -49,8 +49,8 @@ ExitCode view(const Flags& flags) {
   return ExitCode::success;
 }
 
-Action declare(CLI::App& app) {
-  const auto flags = std::make_shared<Flags>();
+Action declare_view(CLI::App& app) {
+  const auto flags = std::make_shared<ViewFlags>();
   declare_page_flags(app, flags->page, CLI::detail::expected_max_vector_size,
                      "Folders of runs, recordings (.jsonl, of crowds .evr), or scenarios, which are run with every "
                      "half-plane; none: three scenes to start from");
@@ -66,7 +66,7 @@ Verb view_verb() {
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
           "  exactvo view out/A7 --out a7.html\n"
           "  exactvo view datasets/data/paper/A1.json --method orca --out a1.html\n",
-          declare};
+          declare_view};
 }
 
 }  // namespace exactvo::tools

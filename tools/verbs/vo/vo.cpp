@@ -25,7 +25,7 @@ ExitCode show(const VoFlags& flags) {
   return ExitCode::success;
 }
 
-Action declare(CLI::App& app) {
+Action declare_vo(CLI::App& app) {
   const auto flags = std::make_shared<VoFlags>();
   declare_options(app, *flags);
   return [flags] { return show(*flags); };
@@ -45,7 +45,7 @@ Verb vo_verb() {
           "      --velocity 1,0.2 --radius 0.5 --time-horizon 2 --figure out/free.svg\n"
           "  printf '1,0.2\\n0,1\\n' | exactvo vo --obstacle 'DISC(4 0, 1)' --velocities - --position 0,0 \\\n"
           "      --radius 0.5 --time-horizon 2\n",
-          declare};
+          declare_vo};
 }
 
 }  // namespace exactvo::tools
