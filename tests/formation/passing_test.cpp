@@ -126,6 +126,20 @@ TEST(Passing, RadiiCount) {
   EXPECT_EQ(robots_without_passing(s).size(), 1u);
 }
 
+/// They are pushed apart, or out of the wall, to any side.
+TEST(Passing, NothingIsProvenOfRobotsThatOverlapAtTheStart) {
+  const auto changing = [](Vec2 a, Vec2 b) {
+    Scenario s = corridor(8.0, 1.5);
+    test_scenes::add_robot(s, a, {3, 0});
+    test_scenes::add_robot(s, b, {-3, 0});
+    return s;
+  };
+  EXPECT_EQ(robots_without_passing(changing({-1, 0}, {0.01, 0})).size(), 1u);
+  EXPECT_THAT(robots_without_passing(changing({-1, 0}, {-0.5, 0})), IsEmpty());
+  EXPECT_EQ(robots_without_passing(changing({-1, 0.24}, {1, 0})).size(), 1u);
+  EXPECT_THAT(robots_without_passing(changing({-1, 0.26}, {1, 0})), IsEmpty());
+}
+
 /// What is proven to be out of reach is never reached: closed scenes with little room, run.
 TEST(Passing, NothingIsProvenOfRobotsThatArrive) {
   test::SeededRandom random(test::seed_of_run(62));

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <deque>
-#include <iterator>
+#include <initializer_list>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -66,19 +66,25 @@ class Walls {
   /// distance to an edge is convex, so that it is largest at a corner.
   bool exclude(Square q, double side, double radius) const {
     const Vec2 low{side * q.x, side * q.y}, high{side * (q.x + 1.0), side * (q.y + 1.0)};
-    const Vec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
+    return exclude_hull({low, {high.x, low.y}, high, {low.x, high.y}}, radius);
+  }
+
+  /// The same of a single point.
+  bool exclude(Vec2 p, double radius) const { return exclude_hull({p}, radius); }
+
+ private:
+  bool exclude_hull(std::initializer_list<Vec2> corners, double radius) const {
     double largest = largest_;
     for (const Vec2 p : corners) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
     const double near = radius - 2.0 * geometry::rounding_of_distance(largest);
     bool found = false;
-    by_place_.for_each_within(low, radius, [&](std::size_t k) {
-      found = found || std::all_of(std::begin(corners), std::end(corners),
+    by_place_.for_each_within(*corners.begin(), radius, [&](std::size_t k) {
+      found = found || std::all_of(corners.begin(), corners.end(),
                                    [&](Vec2 p) { return geometry::distance(edges_[k], p) < near; });
     });
     return found;
   }
 
- private:
   std::vector<Segment> edges_;
   geometry::BoxGrid by_place_;
   double largest_ = 0.0;  ///< m, coordinate
@@ -180,14 +186,17 @@ class Proofs {
  public:
   explicit Proofs(const Scenario& scenario) : scenario_(scenario), walls_(scenario.obstacles) {}
 
-  /// Whether proofs about this robot are looked for.
+  /// Whether proofs about this robot are looked for. Who starts in a wall is pushed out of it: nothing holds it in its
+  /// cover.
   bool has_little_room(std::size_t i) {
     const Robot& r = scenario_.robots[i];
-    return r.goals.size() == 1 && r.radius > 0.0 && cover_of(i, coarsest_side(r.radius)) != nullptr;
+    return r.goals.size() == 1 && r.radius > 0.0 && !walls_.exclude(r.position, r.radius) &&
+           cover_of(i, coarsest_side(r.radius)) != nullptr;
   }
 
   /// REQUIRES: both have little room.
   std::optional<NoPassing> of(std::size_t i, std::size_t j) {
+    if (overlap_at_start(i, j)) return std::nullopt;
     const double smaller = std::min(scenario_.robots[i].radius, scenario_.robots[j].radius);
     for (double side = coarsest_side(smaller); side >= kFinest * smaller; side *= 0.5) {
       const Cover* of_i = cover_of(i, side);
@@ -203,6 +212,12 @@ class Proofs {
 
  private:
   static double coarsest_side(double radius) { return std::exp2(std::floor(std::log2(kCoarsest * radius))); }
+
+  /// Such robots push each other apart, to any side.
+  bool overlap_at_start(std::size_t i, std::size_t j) const {
+    const Robot &a = scenario_.robots[i], &b = scenario_.robots[j];
+    return norm(a.position - b.position) < a.radius + b.radius;
+  }
 
   bool is_in(const Cover& cover, std::size_t robot) const {
     return cover.number.count(key(square_at(scenario_.robots[robot].position, cover.side))) > 0;

@@ -15,7 +15,7 @@
 ///
 /// If no such chain leads from where they start to their goals, no motion does. Certified: rounding only leaves more
 /// squares and pairs in. An answer without a pair says nothing: proofs are looked for only where robots have little
-/// room, and with a limited number of pairs.
+/// room and overlap nothing at the start, and with a limited number of pairs.
 
 #include <cstddef>
 #include <string>
