@@ -6,7 +6,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$root"
 
 say "Packages"
-scripts/install-dependencies.sh
+scripts/install-dependencies.sh program
 
 say "Building build/release/bin/exactvo, $(compile_jobs) job(s)"
 cmake --preset release

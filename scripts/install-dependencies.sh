@@ -1,11 +1,12 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what the project needs and is missing, on Debian and its relatives; elsewhere prints what is needed and stops.
-# Nothing missing: says so and changes nothing.
+# Nothing missing: says so and changes nothing. `install-dependencies.sh program`: what the libraries, the program and the
+# benchmarks need, without what only tests and the site need.
 set -euo pipefail
 export PATH="${PATH:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin}"
 
-packages=(
+for_program=(
   g++ cmake ninja-build ccache git ca-certificates                  # to build
   libcgal-dev libgmp-dev libmpfr-dev libeigen3-dev                  # exact geometry, linear algebra
   libboost-dev libboost-graph-dev libtbb-dev libhwy-dev             # ODE, graphs, threads, SIMD
@@ -13,14 +14,24 @@ packages=(
   libgdal-dev libsqlite3-dev libyaml-cpp-dev libpugixml-dev         # files in and out
   libopenmpi-dev openmpi-bin                                        # a batch over several machines
   libcpp-httplib-dev pkg-config                                     # exactvo serve
+  gnuplot-nox fonts-dejavu-core                                     # figures
+  libbenchmark-dev                                                  # benchmarks
+)
+for_tests=(
   libgtest-dev libgmock-dev librapidcheck-dev libvalijson-dev       # tests
   chromium chromium-driver python3-selenium                         # tests of the explorer's page in a browser
-  libbenchmark-dev                                                  # benchmarks
   python3-dev pybind11-dev python3-numpy                            # the Python package
   python3-pytest mypy python3-matplotlib python3-pandas python3-shapely  # its tests
-  gnuplot-nox fonts-dejavu-core                                     # figures
   doxygen pandoc                                                    # the site
 )
+case "${1:-all}" in
+  all) packages=("${for_program[@]}" "${for_tests[@]}") ;;
+  program) packages=("${for_program[@]}") ;;
+  *)
+    echo "install-dependencies: found '$1', expected 'program' or nothing" >&2
+    exit 2
+    ;;
+esac
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recordings/audit_plans.h"
 
+#include <algorithm>
 #include <string>
 
 namespace exactvo::datasets {
@@ -30,10 +31,12 @@ class PlanAudit {
 
   void begins(std::size_t k) {
     const std::size_t robot = plan_.robots[k];
-    file_.recording.steps[plan_.from_row].robots[robot].position == plan_.starts[k]
-        ? tally_.proven(AuditPoint::plans)
-        : tally_.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin where " + id(robot) +
-                                                                  " was in row " + std::to_string(plan_.from_row)));
+    const std::vector<formation::Step>& rows = file_.recording.steps;
+    if (plan_.from_row < rows.size() && rows[plan_.from_row].robots[robot].position == plan_.starts[k])
+      tally_.proven(AuditPoint::plans);
+    else
+      tally_.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin where " + id(robot) +
+                                                              " was in row " + std::to_string(plan_.from_row)));
   }
 
   void move(std::size_t m) {

@@ -22,8 +22,7 @@
 ///  (7) motions       every motion from row to row, as it was driven, keeps clear of obstacles, of moving obstacles
 ///                    where they are meanwhile, and of the other robots;
 ///  (8) plans         every joint plan begins where its robots were, and no move of it comes nearer to an obstacle or
-///  to
-///                    another robot of the plan than radii allow, up to a share of 1e-8 (plans are rounded).
+///                    to another robot of the plan than radii allow, up to a share of 1e-8 (plans are rounded).
 ///
 /// The motion of (7) is straight, the exponential curve, or the cubic through both rows (`formation::MotionLaw`).
 /// Curves are cut into chords with a proven bound of how far they stray, finer and finer until each is proven clear or
