@@ -23,8 +23,8 @@ using geometry::Segment;
 constexpr std::size_t kMostSquares = 4000;      ///< of a robot: about 250 squares of its radius
 constexpr std::size_t kMostLooks = 200000;      ///< at squares, in all: 0.1 s
 constexpr std::size_t kMostPairs = 8000000;     ///< that are gone to, in all: half a second
-constexpr double kCoarsest = 0.25;              ///< side of a square, of the smaller radius
-constexpr double kFinest = 1.0 / 16.0;          ///< the same
+constexpr double kCoarsestSquare = 0.25;        ///< side of a square, of the smaller radius
+constexpr double kFinestSquare = 1.0 / 16.0;    ///< the same
 constexpr double kRoundedDown = 1.0 - 0x1p-40;  ///< of a product of a few factors
 constexpr double kHalfDiagonal = 0.70711;       ///< of a square, rounded up
 
@@ -198,7 +198,7 @@ class Proofs {
   std::optional<NoPassing> of(std::size_t i, std::size_t j) {
     if (overlap_at_start(i, j)) return std::nullopt;
     const double smaller = std::min(scenario_.robots[i].radius, scenario_.robots[j].radius);
-    for (double side = coarsest_side(smaller); side >= kFinest * smaller; side *= 0.5) {
+    for (double side = coarsest_side(smaller); side >= kFinestSquare * smaller; side *= 0.5) {
       const Cover* of_i = cover_of(i, side);
       const Cover* of_j = of_i ? cover_of(j, side) : nullptr;
       if (!of_j || !(is_in(*of_i, j) || is_in(*of_j, i))) return std::nullopt;
@@ -211,7 +211,7 @@ class Proofs {
   }
 
  private:
-  static double coarsest_side(double radius) { return std::exp2(std::floor(std::log2(kCoarsest * radius))); }
+  static double coarsest_side(double radius) { return std::exp2(std::floor(std::log2(kCoarsestSquare * radius))); }
 
   /// Such robots push each other apart, to any side.
   bool overlap_at_start(std::size_t i, std::size_t j) const {

@@ -35,7 +35,7 @@ constexpr std::size_t kLookAgain = 8;
 constexpr int kNeighbours = 10;
 
 /// m: the finest lattice; steps of it that must lie between a robot and its end.
-constexpr double kFinest = 0x1p-18, kReach = 0x1p29;
+constexpr double kFinestLattice = 0x1p-18, kReach = 0x1p29;
 /// Steps of the lattice that a robot makes in a time step at most.
 constexpr double kLongestMotion = 0x1p22;
 
@@ -71,7 +71,7 @@ double fastest(const Scenario& s) {
 
 /// m, of the lattice of positions.
 double position_step_for(const Scenario& s) {
-  double step = kFinest;
+  double step = kFinestLattice;
   while (step < 1.0 && (extent(s) >= kReach * step || fastest(s) * s.time_step > kLongestMotion * step)) step *= 2.0;
   return step;
 }

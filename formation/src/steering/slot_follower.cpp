@@ -5,10 +5,10 @@ namespace exactvo::formation::detail {
 namespace {
 
 /// A robot stalls when for this long it has come nearer by less than the share of what its pace would do.
-constexpr double kStallTime = 2.0;      // s: a pair that passes each other may need one
-constexpr double kStallProgress = 0.1;  // of pace * kStallTime
+constexpr double kSlotStallTime = 2.0;      // s: a pair that passes each other may need one
+constexpr double kSlotStallProgress = 0.1;  // of pace * kSlotStallTime
 /// Going round ends this much nearer than it began.
-constexpr double kLeaveGain = 0.05;  // m
+constexpr double kSlotLeaveGain = 0.05;  // m
 /// Where no direction is free at full speed, slower ones are tried, halving, down to this share.
 constexpr double kLeastShare = 0.1;
 
@@ -22,11 +22,11 @@ std::vector<Constraint> all_lines(const std::vector<Constraint>& statics, const 
 }  // namespace
 
 bool SlotFollower::stalled(const Situation& s) {
-  if (best_distance_ < 0.0 || s.distance < best_distance_ - kStallProgress * kStallTime * s.pace) {
+  if (best_distance_ < 0.0 || s.distance < best_distance_ - kSlotStallProgress * kSlotStallTime * s.pace) {
     best_distance_ = s.distance;
     best_time_ = s.time;
   }
-  return s.time - best_time_ > kStallTime && s.distance > s.tolerance;
+  return s.time - best_time_ > kSlotStallTime && s.distance > s.tolerance;
 }
 
 SlotFollower::Answer SlotFollower::steer(const Situation& s, const std::vector<Constraint>& statics,
@@ -39,7 +39,7 @@ SlotFollower::Answer SlotFollower::steer(const Situation& s, const std::vector<C
   if (!following_ && !stalled(s)) return answer;
   const std::vector<Constraint> lines = all_lines(statics, others);
   const bool free = !blocked(lines, s.preferred);
-  if (following_ && free && s.distance < hit_distance_ - kLeaveGain) {
+  if (following_ && free && s.distance < hit_distance_ - kSlotLeaveGain) {
     *this = SlotFollower{};
     stalled(s);  // progress counts from here
     answer.note = "past the robots that stood in the way";

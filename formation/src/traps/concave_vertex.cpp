@@ -21,7 +21,7 @@ constexpr double kMostTurn = 0.1;  // rad, of one stretch of a curved boundary
 /// An arc that turns by less than kMostTurn is at most this many times as long as its chord: 1 / cos(turn / 2).
 constexpr double kArcToChord = 1.002;
 /// Of the robot's radius: stretches are not divided further.
-constexpr double kFinest = 0.01;
+constexpr double kFinestShare = 0.01;
 /// Normals this near to parallel: the boundaries run along each other, and no vertex is there.
 constexpr double kParallel = 1e-3;
 
@@ -70,7 +70,7 @@ std::vector<Stretch> stretches_of(const Boundary& boundary, double radius) {
 class CrossingSearch {
  public:
   CrossingSearch(const GrownShape& a, const GrownShape& b)
-      : boundary_(a.shape, a.radius), b_(b), radius_(a.radius), finest_(kFinest * a.radius) {
+      : boundary_(a.shape, a.radius), b_(b), radius_(a.radius), finest_(kFinestShare * a.radius) {
     for (const Stretch& s : stretches_of(boundary_, a.radius)) {
       const Sample first = sample(s, 0.0), last = sample(s, 1.0);
       search(s, first, last);

@@ -637,6 +637,14 @@ TEST(AuditPlans, AStartThatIsNotWhereTheRobotWasIsRefuted) {
   EXPECT_NE(to_json(report).find("row 0: the plan does not begin where a was in row 0"), std::string::npos);
 }
 
+TEST(AuditPlans, APlanFromARowThatIsNotThereIsRefuted) {
+  RecordingFile file = recorded(formation::test_scenes::siding());
+  ASSERT_FALSE(file.recording.plans.empty());
+  formation::JointPlan& plan = file.recording.plans.front();
+  plan.from_row = file.recording.steps.size();
+  EXPECT_GE(audit(file)[AuditPoint::plans].refuted, plan.robots.size());
+}
+
 /// Plans are made from where robots stand, be that too near to something: then nothing is said of the way out.
 TEST(AuditPlans, AMoveThatBeginsTooNearIsLeftOpen) {
   const AuditReport report = with_plan({{0, {7.5, -3.0}}}, {7.5, -0.2});

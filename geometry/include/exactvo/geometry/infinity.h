@@ -8,6 +8,7 @@
 
 namespace exactvo::geometry {
 
+/// Of doubles, the positive one.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace exactvo::geometry
