@@ -12,8 +12,8 @@
 
 namespace exactvo::datasets {
 
-/// Distances of a plan are rounded when it is made: a move may come nearer than radii allow by this share of them. (Of
-/// a way a billionth of the square, of a place that is taken for one that is there a billionth of the diameter.)
+/// A move may come nearer than radii allow by this share of them, since plans are rounded: squared distances are
+/// compared to within a share of 1e-9, and a place within 1e-9 diameters of a known one counts as that one.
 inline constexpr double kPlanRounding = 1e-8;
 
 /// REQUIRES: plans as read_recording gives them.
