@@ -67,6 +67,8 @@ const char* code_name(DataCode code) {
       return "E_PROJECTION";
     case DataCode::other_run:
       return "E_OTHER_RUN";
+    case DataCode::ranks_differ:
+      return "E_RANKS_DIFFER";
     case DataCode::library:
       return "E_LIBRARY";
     case DataCode::not_finite:

@@ -81,7 +81,7 @@ const VectorLibrary& vector_library() {
 #ifdef EXACTVO_LOADS_MPI
 const RankLibrary& rank_library() {
   // Open MPI loads plugins of its own, which look for its names among those of the whole process.
-  static const void* const library = load("mpi", "batches over ranks (MPI)", RTLD_GLOBAL);
+  static const void* const library = load("mpi", "runs and batches over ranks (MPI)", RTLD_GLOBAL);
   return *static_cast<const RankLibrary*>(library);
 }
 #endif

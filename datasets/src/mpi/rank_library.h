@@ -2,8 +2,10 @@
 #pragma once
 
 /// \file
-/// What is done with MPI, as one table of functions on whole numbers: a program either links them or loads them when it
-/// runs in ranks (modules/loader.cpp). A failure in one rank ends all of them, as a scheduler expects.
+/// What is done with MPI, as one table of functions on whole numbers and bytes: a program either links them or loads
+/// them when it runs in ranks (modules/loader.cpp). A failure in one rank ends all of them, as a scheduler expects.
+
+#include <cstddef>
 
 namespace exactvo::datasets {
 
@@ -20,6 +22,14 @@ struct RankLibrary {
   void (*send)(const long* values, int count, int to, int tag);
   /// From any rank; returns which.
   int (*receive)(long* values, int count, int tag);
+  /// Each value becomes its sum over the ranks.
+  void (*add)(long* values, int count);
+  /// Rank r has filled the bytes from ends[r - 1] (of rank 0: 0) to ends[r]; then all have all.
+  void (*share)(char* bytes, const std::size_t* ends);
+  /// The same, but only the first rank has all. The others give their own bytes alone, and it puts them together.
+  void (*gather)(char* bytes, const std::size_t* ends);
+  /// From the first rank to all.
+  void (*broadcast_bytes)(char* bytes, std::size_t count);
 };
 
 /// Throws DataError (E_FORMAT_UNAVAILABLE) where a program loads it and cannot.

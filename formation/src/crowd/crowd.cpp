@@ -72,6 +72,13 @@ const char* crowd_target() {
   return lp::batch_target();
 }
 
+std::vector<std::size_t> share_ends(std::size_t count, int ranks) {
+  const auto shares = static_cast<std::size_t>(ranks);
+  std::vector<std::size_t> ends(shares);
+  for (std::size_t r = 0; r < shares; ++r) ends[r] = (r + 1) * (count / shares) + std::min(r + 1, count % shares);
+  return ends;
+}
+
 namespace crowd {
 
 void require_valid(const CrowdOptions& o) {
@@ -513,9 +520,10 @@ void Crowd::snapshot(std::ostream& to) const {
   write_snapshot(*engine_, to);
 }
 
-Crowd Crowd::restored(std::istream& from, int threads) {
+Crowd Crowd::restored(std::istream& from, int threads, Ranks* ranks) {
   CrowdOptions options = read_options(from);
   options.threads = threads;
+  options.ranks = ranks;
   auto engine = std::make_unique<Engine>(options);
   read_snapshot(*engine, from);
   return Crowd(std::move(engine));

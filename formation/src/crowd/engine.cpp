@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "crowd/edge_pack.h"
@@ -179,13 +180,17 @@ class CrowdEngine final : public CrowdCore {
   StepReport decide() override {
     while (scratch_.size() < static_cast<std::size_t>(tasks.threads())) scratch_.push_back(std::make_unique<Scratch>());
     for (const auto& s : scratch_) s->counts = {}, s->phases = {};
-    const std::size_t share = robots.size() / (4 * static_cast<std::size_t>(tasks.threads()));
+    const std::vector<std::size_t> ends = share_ends(robots.size(), ranks() ? ranks()->size() : 1);
+    const std::size_t own = ranks() ? static_cast<std::size_t>(ranks()->rank()) : 0,
+                      begin = own > 0 ? ends[own - 1] : 0;
+    const std::size_t count = ends[own] - begin, share = count / (4 * static_cast<std::size_t>(tasks.threads()));
     const std::size_t grain = range > 0 ? range : std::clamp<std::size_t>(share, 256, 4096);
-    tasks.for_ranges(robots.size(), grain, [&](std::size_t first, std::size_t last, int thread) {
-      decide_range(first, last, *scratch_[static_cast<std::size_t>(thread)]);
+    tasks.for_ranges(count, grain, [&](std::size_t first, std::size_t last, int thread) {
+      decide_range(begin + first, begin + last, *scratch_[static_cast<std::size_t>(thread)]);
     });
     StepReport report;
     for (const auto& s : scratch_) add(report, s->counts), add(phases, s->phases);
+    if (ranks()) exchange(ends, report);
     return report;
   }
 
@@ -232,6 +237,23 @@ class CrowdEngine final : public CrowdCore {
 
     std::size_t size() const { return end - begin; }
   };
+
+  Ranks* ranks() const { return options.ranks; }
+
+  /// What the ranks decided, each for its share, to all of them.
+  void exchange(const std::vector<std::size_t>& ends, StepReport& report) {
+    std::vector<std::size_t> ends_of_words = ends;
+    for (std::size_t& end : ends_of_words) end *= sizeof(std::int32_t);
+    for (auto* field : {&robots.next_mx, &robots.next_my, &robots.hint}) ranks()->share(field->data(), ends_of_words);
+    ranks()->share(robots.next_kept.data(), ends);
+    std::size_t* const counts[] = {&report.robots,   &report.neighbours, &report.relaxed,
+                                   &report.touching, &report.widened,    &report.edges,
+                                   &report.bodies,   &report.stopped,    &report.nudged};
+    std::int64_t sums[std::size(counts)];
+    for (std::size_t k = 0; k < std::size(counts); ++k) sums[k] = static_cast<std::int64_t>(*counts[k]);
+    ranks()->add(sums, std::size(counts));
+    for (std::size_t k = 0; k < std::size(counts); ++k) *counts[k] = static_cast<std::size_t>(sums[k]);
+  }
 
   Vec2 velocity_of(std::int32_t mx, std::int32_t my) const {
     return {options.position_step * mx / options.time_step, options.position_step * my / options.time_step};

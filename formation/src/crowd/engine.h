@@ -31,7 +31,7 @@ class CrowdCore {
   virtual void set_preferred(const std::vector<Vec2>& by_id) = 0;
   virtual void forget_preference(RobotId robot) = 0;
   virtual std::vector<Vec2> preferred() const = 0;
-  /// Robots are sorted; writes next_mx, next_my, next_kept, hint.
+  /// Robots are sorted; writes next_mx, next_my, next_kept, hint. Of several ranks each decides for its share.
   virtual StepReport decide() = 0;
   virtual CrowdExplanation explain(std::size_t robot) = 0;
   virtual std::size_t bytes() const = 0;

@@ -81,6 +81,7 @@ CrowdOptions options_of(const Scenario& s, const CrowdRunOptions& options) {
   out.time_step = s.time_step;
   out.precision = options.precision;
   out.threads = options.threads;
+  out.ranks = options.ranks;
   out.position_step = position_step_for(s);
   return out;
 }
@@ -94,7 +95,12 @@ std::string in_metres(double x) {
 class CrowdRun {
  public:
   CrowdRun(const Scenario& scenario, const CrowdRunOptions& options, CrowdSink* sink)
-      : scenario_(scenario), options_(options), sink_(sink), crowd_(options_of(scenario, options)) {
+      : scenario_(scenario),
+        options_(options),
+        ranks_(options.ranks),
+        sink_(is_first() ? sink : nullptr),
+        crowd_(options_of(scenario, options)),
+        ends_(share_ends(scenario.robots.size(), ranks_ ? ranks_->size() : 1)) {
     add_robots();
     for (const SceneObstacle& o : scenario.obstacles) crowd_.add_obstacle(o.shape);
     for (const MovingObstacle& o : scenario.moving_obstacles)
@@ -111,9 +117,9 @@ class CrowdRun {
     const auto most = static_cast<std::size_t>(std::ceil(scenario_.time_limit / scenario_.time_step - 1e-9));
     while (report_.steps < most && someone_goes_on()) {
       step();
-      report_.interrupted = options_.progress && !options_.progress(report_.time);
+      report_.interrupted = somewhere(options_.progress && !options_.progress(report_.time));
       const bool is_due = options_.snapshot_every > 0 && report_.steps % options_.snapshot_every == 0;
-      if (options_.keep_snapshot && (is_due || report_.interrupted)) options_.keep_snapshot(snapshot());
+      if (options_.keep_snapshot && (is_due || report_.interrupted)) keep_snapshot();
       if (report_.interrupted) break;
     }
     finish();
@@ -135,12 +141,63 @@ class CrowdRun {
 
   void begin() {
     report_.robots = ways_.size();
-    for (std::size_t i = 0; i < ways_.size(); ++i) set_out(i);
+    for (std::size_t i = own_begin(); i < own_end(); ++i) set_out(i);
     if (sink_) sink_->begin(crowd_);
+  }
+
+  // --- Ranks: each looks where robots own_begin() to own_end() are to go ---
+
+  bool is_first() const { return !ranks_ || ranks_->rank() == 0; }
+  std::size_t own_begin() const {
+    return ranks_ && !is_first() ? ends_[static_cast<std::size_t>(ranks_->rank()) - 1] : 0;
+  }
+  std::size_t own_end() const { return ends_[ranks_ ? static_cast<std::size_t>(ranks_->rank()) : 0]; }
+
+  /// In this rank or in another.
+  bool somewhere(bool here) const { return ranks_ ? ranks_->least(here ? 0 : 1) == 0 : here; }
+
+  /// All preferred velocities to all.
+  void share_preferred() {
+    if (!ranks_) return;
+    std::vector<std::size_t> ends = ends_;
+    for (std::size_t& end : ends) end *= sizeof(Vec2);
+    ranks_->share(preferred_.data(), ends);
+  }
+
+  /// All ways to the first rank, which says whether it is this one.
+  bool gather_ways() {
+    count_arrived();
+    if (!ranks_) return true;
+    require_same_states();
+    StateWriter own;
+    for (std::size_t i = own_begin(); i < own_end(); ++i) put(own, ways_[i]);
+    const std::vector<std::string> all = ranks_->gather(own.bytes());
+    for (std::size_t r = 1; r < all.size(); ++r) {
+      StateReader from(all[r]);
+      for (std::size_t i = ends_[r - 1]; i < ends_[r]; ++i) ways_[i] = get_way(from, i);
+    }
+    count_arrived();
+    return is_first();
+  }
+
+  void count_arrived() {
+    report_.arrived = static_cast<std::size_t>(
+        std::count_if(ways_.begin(), ways_.end(), [](const Way& way) { return way.arrived.has_value(); }));
+  }
+
+  void require_same_states() const {
+    const auto digest = static_cast<std::int64_t>(crowd_.digest() >> 1U);
+    const bool is_least = ranks_->least(digest) == digest, is_most = ranks_->least(-digest) == -digest;
+    if (somewhere(!is_least || !is_most)) throw RanksDiffer();
   }
 
   // --- Snapshots: the run, the crowd, the sink, and a checksum ---
 
+  void keep_snapshot() {
+    if (gather_ways()) options_.keep_snapshot(snapshot());
+  }
+
+  /// REQUIRES: all ways are here.
   std::string snapshot() const {
     StateWriter run;
     run.put(static_cast<std::uint64_t>(ways_.size()));
@@ -168,7 +225,7 @@ class CrowdRun {
     run.require_end();
     const CrowdOptions wanted = crowd_.options();
     std::istringstream crowd{std::string(parts[1])};
-    crowd_ = Crowd::restored(crowd, options_.threads);
+    crowd_ = Crowd::restored(crowd, options_.threads, ranks_);
     const CrowdOptions& found = crowd_.options();
     run.require(found.time_step == wanted.time_step && found.position_step == wanted.position_step &&
                 found.precision == wanted.precision && crowd_.id_end() == ways_.size());
@@ -296,7 +353,6 @@ class CrowdRun {
     } else if (!way.arrived) {
       way.arrived = report_.time;
       way.heading = goal_of(i);
-      ++report_.arrived;
     }
   }
 
@@ -311,13 +367,14 @@ class CrowdRun {
 
   void step() {
     set_out_obstacles();
-    for (std::size_t i = 0; i < ways_.size(); ++i) {
+    for (std::size_t i = own_begin(); i < own_end(); ++i) {
       look(i);
       const Vec2 way = ways_[i].heading - at_[i];
       const double length = norm(way);
       const double speed = std::min(scenario_.robots[i].max_speed, length / scenario_.time_step);
       preferred_[i] = ways_[i].stays || length == 0.0 ? Vec2{} : (speed / length) * way;
     }
+    share_preferred();
     crowd_.set_preferred(preferred_);
     const StepReport s = crowd_.step();
     ++report_.steps;
@@ -336,7 +393,8 @@ class CrowdRun {
   }
 
   bool someone_goes_on() const {
-    return std::any_of(ways_.begin(), ways_.end(), [](const Way& w) { return !w.arrived && !w.stays; });
+    const auto at = [this](std::size_t i) { return ways_.begin() + static_cast<std::ptrdiff_t>(i); };
+    return somewhere(std::any_of(at(own_begin()), at(own_end()), [](const Way& w) { return !w.arrived && !w.stays; }));
   }
 
   std::string why_not_there(std::size_t i) const {
@@ -347,6 +405,8 @@ class CrowdRun {
   }
 
   void finish() {
+    report_.digest = crowd_.digest();
+    if (!gather_ways()) return;
     std::vector<double> times;
     for (std::size_t i = 0; i < ways_.size(); ++i) {
       look(i);
@@ -358,13 +418,15 @@ class CrowdRun {
     std::sort(times.begin(), times.end());
     if (2 * times.size() > ways_.size()) report_.median_arrival = times[ways_.size() / 2];
     if (!times.empty()) report_.last_arrival = times.back();
-    report_.digest = crowd_.digest();
+    count_arrived();
   }
 
   const Scenario& scenario_;
   const CrowdRunOptions& options_;
+  Ranks* ranks_;
   CrowdSink* sink_;
   Crowd crowd_;
+  std::vector<std::size_t> ends_;  ///< of the shares of the robots, by rank
   std::optional<Guide> guide_;
   std::vector<Way> ways_;
   std::vector<ObstacleId> moving_;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "exactvo/datasets/ranks.h"
 #include "exactvo/formation/stability.h"
 #include "exactvo/geometry/counted.h"
 #include "explorer/page.h"
@@ -15,7 +16,9 @@
 #include "support/simulation_flags.h"
 #include "support/stop.h"
 #include "support/terminal.h"
+#include "support/usage.h"
 #include "verb.h"
+#include "verbs/runs/over_ranks.h"
 #include "verbs/runs/simulate_crowd.h"
 
 namespace exactvo::tools {
@@ -164,12 +167,17 @@ FinishedRun run_and_print(const SimulateFlags& flags, const ReadScenario& read,
   return finished;
 }
 
-ExitCode simulate(const SimulateFlags& flags) {
+/// `ranks`: null where this process is alone.
+ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
   const bool is_crowd = wants_crowd(flags.crowd, flags.simulation, flags.out);
+  if (ranks && !is_crowd)
+    throw UsageError("--engine", flags.crowd.engine, "crowd, the only engine that runs over ranks of MPI");
+  if (ranks && flags.scenario == "-")
+    throw UsageError("scenario", "-", "a file: every rank reads it, and only the first has a stdin");
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = flags.record_all;
   const ReadScenario read = read_scenario(flags.scenario);
-  if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json);
+  if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json, ranks);
   const formation::Scenario& scenario = read.scenario;
   note_unused(flags.simulation, scenario);
   if (!flags.out.empty()) {
@@ -181,6 +189,14 @@ ExitCode simulate(const SimulateFlags& flags) {
       flags.out.empty() ? run_and_print(flags, read, options) : run_into_folder(flags, read, options);
   const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
   return failed ? ExitCode::negative : ExitCode::success;
+}
+
+/// In this process, or over the ranks that mpirun has started.
+ExitCode simulate_anywhere(const SimulateFlags& flags) {
+  const bool may_have_ranks = flags.crowd.engine == "crowd" || datasets::ranks_started() > 1;
+  const std::unique_ptr<formation::Ranks> ranks = may_have_ranks ? datasets::join_ranks() : nullptr;
+  if (!ranks) return simulate(flags, nullptr);
+  return over_ranks(*ranks, [&] { return simulate(flags, ranks.get()); });
 }
 
 Action declare_simulate(CLI::App& app) {
@@ -199,7 +215,7 @@ Action declare_simulate(CLI::App& app) {
   app.add_flag("--force", flags->force,
                "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller");
   declare_crowd_flags(app, flags->crowd);
-  return [flags] { return simulate(*flags); };
+  return [flags] { return simulate_anywhere(*flags); };
 }
 
 }  // namespace
@@ -211,6 +227,7 @@ Verb simulate_verb() {
           "  exactvo simulate datasets/data/paper/B1.json --controller paper-signs --json\n"
           "  exactvo simulate datasets/data/paper/B3.json --remedies 'no margins' --remedy smoothing=on\n"
           "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
+          "  mpirun -n 4 exactvo simulate crowd.json --engine crowd --record out/crowd.evr\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
           declare_simulate};
 }

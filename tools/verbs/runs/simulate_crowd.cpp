@@ -19,6 +19,7 @@
 #include "exactvo/formation/crowd_run.h"
 #include "exactvo/geometry/counted.h"
 #include "support/escape.h"
+#include "support/rank_watch.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 
@@ -144,6 +145,20 @@ class SnapshotFile {
   std::string record_, path_, identity_;
 };
 
+/// What the first rank has to go on from, in all of them; empty where there is nothing.
+std::string read_in_all(const SnapshotFile& file, formation::Ranks* ranks) {
+  if (!ranks) return file.read();
+  return ranks->broadcast(ranks->rank() == 0 ? file.read() : std::string());
+}
+
+/// Throws DataError (E_OTHER_RUN) where this rank's run is another than the first one's.
+void require_same(const std::string& identity, const std::string& file, formation::Ranks& ranks) {
+  if (ranks.broadcast(identity) == identity) return;
+  throw datasets::DataError(datasets::DataCode::other_run, file, "rank " + std::to_string(ranks.rank()),
+                            "another scenario, other options or another version than the first rank's",
+                            "the same in every rank");
+}
+
 /// On one line.
 std::string identity_of(const CrowdFlags& flags, const SimulationFlags& simulation, const formation::Scenario& scenario,
                         const datasets::Provenance& provenance) {
@@ -207,7 +222,8 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
 }
 
 ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& file,
-                        const ReadScenario& read, bool json) {
+                        const ReadScenario& read, bool json, formation::Ranks* ranks) {
+  const bool is_first = !ranks || ranks->rank() == 0;
   const formation::Scenario& scenario = read.scenario;
   for (const formation::ScenarioProblem& p : crowd_problems(scenario))
     throw datasets::DataError(datasets::DataCode::scenario, file, p.pointer, p.found, p.expected);
@@ -221,6 +237,7 @@ ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulati
         parse_choice<formation::Guidance>("--guidance", simulation.guidance, formation::guidance_names());
   if (!parse(flags.precision, options.precision)) throw UsageError("--precision", flags.precision, "float or double");
   options.threads = flags.threads;
+  options.ranks = ranks;
   const datasets::Provenance provenance = datasets::make_provenance(command_line(), simulation.seed, read.files);
   ProgressLine line(scenario.time_limit, "s simulated");
   line.show(0.0, scenario.name);
@@ -229,32 +246,40 @@ ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulati
     return !interrupted();
   };
   const bool has_snapshots = flags.snapshot_every > 0;
-  const SnapshotFile snapshot(flags.record,
-                              has_snapshots ? identity_of(flags, simulation, scenario, provenance) : std::string());
+  const std::string identity =
+      has_snapshots || ranks ? identity_of(flags, simulation, scenario, provenance) : std::string();
+  if (ranks) require_same(fmt::format("{} snapshots={}", identity, flags.snapshot_every), file, *ranks);
+  const SnapshotFile snapshot(flags.record, identity);
   if (has_snapshots) {
     options.snapshot_every = flags.snapshot_every;
     options.keep_snapshot = [&](const std::string& bytes) { snapshot.keep(bytes); };
-    if (flags.resume) options.resume_from = snapshot.read();
+    if (ranks) RankWatch::keeps_snapshots();
+    if (flags.resume) options.resume_from = read_in_all(snapshot, ranks);
     if (flags.resume)
       message(options.resume_from.empty() ? "no snapshot of " + flags.record + ": begins at the beginning"
                                           : "goes on from " + snapshot.path());
   }
   std::optional<datasets::CrowdRecorder> recorder;
-  if (!flags.record.empty())
+  if (!flags.record.empty() && is_first)
     recorder.emplace(flags.record, scenario, flags.every,
                      has_snapshots ? datasets::Unfinished::stays : datasets::Unfinished::goes);
-  if (has_snapshots && options.resume_from.empty()) snapshot.remove();
+  if (has_snapshots && is_first && options.resume_from.empty()) snapshot.remove();
   CrowdRunReport report;
   try {
     report = run_crowd(scenario, options, recorder ? &*recorder : nullptr);
+  } catch (const formation::RanksDiffer& e) {
+    throw datasets::DataError(datasets::DataCode::ranks_differ, file, "", e.what(),
+                              "machines that compute the same bits");
   } catch (const formation::CrowdError& e) {
     if (e.problem() != formation::CrowdProblem::bad_snapshot) throw refusal(file, e);
     throw datasets::DataError(datasets::DataCode::format_syntax, snapshot.path(), "", "a snapshot that was changed",
                               "what simulate has written; without --resume the run begins anew");
   }
   line.clear();
-  if (interrupted() && has_snapshots) message("interrupted; --resume goes on");
-  if (interrupted()) throw Interrupted();
+  const bool is_interrupted = report.interrupted || interrupted();
+  if (is_interrupted && has_snapshots) message("interrupted; --resume goes on");
+  if (is_interrupted) throw Interrupted();
+  if (!is_first) return ExitCode::success;
   if (recorder) {
     recorder->finish();
     if (has_snapshots) snapshot.remove();

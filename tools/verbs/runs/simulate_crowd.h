@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/ranks.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "verb.h"
@@ -33,7 +34,8 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags);
 /// Throws UsageError where options of one engine are given for the other. `out`: of --out.
 bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& out);
 
+/// `ranks`: who runs it together with this process, or null. Only the first prints and writes.
 ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& file,
-                        const ReadScenario& read, bool json);
+                        const ReadScenario& read, bool json, formation::Ranks* ranks);
 
 }  // namespace exactvo::tools

@@ -18,7 +18,7 @@
 ///  (2) Both robots of a pair use the same normal, one negated, bit for bit; their offsets add up to at least what the
 ///      pair needs.
 ///  (3) |velocity| <= max_speed, exactly.
-///  (4) The same calls give the same bits, on every SIMD target and with any number of threads.
+///  (4) The same calls give the same bits, on every SIMD target and with any number of threads and of ranks.
 ///  (5) Every robot that could be met within the step is among the neighbours, however many they are.
 ///  (6) A crowd that was restored from a snapshot goes on with the same bits.
 ///  (7) A robot that no edge of an obstacle and no body at rest touches at the beginning of a step (nearer than the
@@ -42,6 +42,7 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/formation/ranks.h"
 #include "exactvo/geometry/half_plane.h"
 #include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/vec2.h"
@@ -86,6 +87,10 @@ struct CrowdOptions {
   bool certified = true;     ///< false: offsets are rounded to nearest and nothing is promised; for comparison
   int threads = 1;           ///< 1 ... 1024, oneTBB's; 0: as many as there are
   bool time_phases = false;  ///< fills Crowd::phases
+  /// Who steps the same crowd together with this process (ranks.h): `step` decides for a share of the robots, and all
+  /// ranks have all. Lives as long as the crowd. Null: nobody. What `step` throws, of whatever kind, is followed by
+  /// `Ranks::fail`.
+  Ranks* ranks = nullptr;
 };
 
 /// What is wrong with an argument, and with which robot.
@@ -117,7 +122,7 @@ class CrowdError : public std::invalid_argument {
   CrowdProblem problem_;
 };
 
-/// What happened in a step. Every count is the same on every machine and with any number of threads.
+/// What happened in a step. Every count is the same on every machine and with any number of threads and of ranks.
 struct StepReport {
   std::size_t robots = 0;      ///< how many decided
   std::size_t neighbours = 0;  ///< half-planes made
@@ -177,6 +182,7 @@ struct CrowdBodyState {
 };
 
 /// Called from several threads at once where there are several; what it says of a robot must not depend on the slice.
+/// Of several ranks each asks its own about its share of the robots.
 using Steering = std::function<void(CrowdSlice&)>;
 
 /// One robot's next decision, recomputed from the present state.
@@ -297,8 +303,8 @@ class Crowd {
   /// Everything but the steering function, in a binary form of this version. Throws std::ios_base::failure where the
   /// stream fails.
   void snapshot(std::ostream& to) const;
-  /// On as many threads as given (CrowdOptions::threads), whatever the crowd had.
-  static Crowd restored(std::istream& from, int threads = 1);
+  /// On as many threads as given (CrowdOptions::threads), and by these ranks, whatever the crowd had.
+  static Crowd restored(std::istream& from, int threads = 1, Ranks* ranks = nullptr);
 
   /// Of positions, motions and kinds by id, and of moving bodies, for comparing runs.
   std::uint64_t digest() const;

@@ -10,13 +10,18 @@
 /// Along routes (Guidance::route) a robot heads for the farthest point of its route that it sees, looked for at every
 /// eighth step; a moving obstacle is the convex hull of its shape, and goes straight and evenly from where it is at the
 /// beginning of a step to where it is at the end, up to half a lattice step; a robot whose goal is proven out of reach
-/// stays. Deterministic, with any number of threads.
+/// stays. Deterministic, with any number of threads and of ranks.
+///
+/// Over ranks (ranks.h) every rank calls `run_crowd` with the same scenario and options. Each plans and looks for a
+/// share of the robots, by their numbers, and decides for a share, by their places. The sink, the snapshots and the
+/// whole report are those of rank 0. Whatever `run_crowd` throws is followed by `Ranks::fail`.
 ///
 /// Neighbours: simulation.h runs everything else; datasets/crowd_recording.h records.
 
 #include <functional>
 #include <iosfwd>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -31,13 +36,15 @@ struct CrowdRunOptions {
   std::optional<Guidance> guidance;                        ///< instead of the scenario's
   CrowdPrecision precision = CrowdPrecision::float_lines;  ///< of half-planes and linear programs
   int threads = 1;                                         ///< as CrowdOptions::threads
-  /// Called after every step with the simulated time, s; returning false stops the run.
+  Ranks* ranks = nullptr;                                  ///< as CrowdOptions::ranks
+  /// Called after every step with the simulated time, s; returning false stops the run, in any rank that of all.
   std::function<bool(double)> progress;
   std::size_t snapshot_every = 0;  ///< steps, where snapshots are kept; 0: only one, where `progress` stops the run
-  /// Takes a snapshot of the whole run, its sink included, in a binary form of this version. None: none is made.
+  /// Takes a snapshot of the whole run, its sink included, in a binary form of this version. None: none is made. Of
+  /// several ranks all have one or none; it is called in rank 0. The number of ranks is not in it.
   std::function<void(const std::string&)> keep_snapshot;
   /// A snapshot of a run of the same scenario and options: it goes on from there, with the same bits. Empty: the run
-  /// begins at the beginning. The number of threads may be another.
+  /// begins at the beginning. The number of threads, and of ranks, may be another. The same in every rank.
   std::string resume_from;
 };
 
@@ -75,6 +82,13 @@ struct CrowdRunReport {
   double wall_time = 0.0;              ///< s, of the whole call
 };
 
+/// Ranks have come to other states than each other: at a snapshot, or at the end. Their machines' C libraries round the
+/// elementary functions differently, or one of them is broken.
+class RanksDiffer : public std::runtime_error {
+ public:
+  RanksDiffer() : std::runtime_error("ranks have come to different states of the same run") {}  ///< Says just that.
+};
+
 /// Takes the states of a run: robot i of the scenario has id i.
 class CrowdSink {
  public:
@@ -91,7 +105,8 @@ class CrowdSink {
 
 /// REQUIRES: a valid scenario (`validate`) without `crowd_problems`. Throws CrowdError, which names a robot by number,
 /// where one leaves the lattice or two start in one place, and `bad_snapshot` where the run cannot go on from
-/// `CrowdRunOptions::resume_from`.
+/// `CrowdRunOptions::resume_from`; RanksDiffer; AnotherRankFailed. What ranks other than the first return of arrivals
+/// and routes is not known there.
 CrowdRunReport run_crowd(const Scenario& scenario, const CrowdRunOptions& options, CrowdSink* sink = nullptr);
 
 }  // namespace exactvo::formation

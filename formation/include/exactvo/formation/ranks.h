@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Processes, or threads, that step one crowd together (CrowdOptions::ranks). Each has a whole crowd of its own and
+/// makes the same calls with the same arguments; in a step each decides for an equal share of the robots, and what they
+/// decided is shared. A share is a stretch of the sorted order: neighbouring strips of the plane. Exact: every rank
+/// ends with the bits that one alone would have.
+///
+/// What fails in one rank ends all of them, whatever it is and wherever: who fails says so once (`fail`), and the
+/// others learn of it in what they call next.
+///
+/// Neighbours: datasets/ranks.h has those of mpirun.
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace exactvo::formation {
+
+/// Another rank has failed and says why; nothing of this rank's own is wrong.
+class AnotherRankFailed : public std::runtime_error {
+ public:
+  AnotherRankFailed() : std::runtime_error("another rank has failed") {}  ///< What `Ranks` throw.
+};
+
+/// All but `rank`, `size` and `fail` are called by all ranks in the same order, from one thread of each, and throw
+/// AnotherRankFailed where one has failed. Sums and least values are those of whole numbers: the order does not matter.
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+  /// Of this one, from 0.
+  virtual int rank() const = 0;
+  /// How many there are, at least 1.
+  virtual int size() const = 0;
+  /// Of an array that all ranks have, rank r has filled the bytes from ends[r - 1] (of rank 0: 0) to ends[r]; then all
+  /// have all. REQUIRES: ends not decreasing, size() of them, the same in every rank.
+  virtual void share(void* bytes, const std::vector<std::size_t>& ends) = 0;
+  /// Each value becomes its sum over the ranks. The same count in every rank.
+  virtual void add(std::int64_t* values, std::size_t count) = 0;
+  /// Over the ranks.
+  virtual std::int64_t least(std::int64_t value) = 0;
+  /// In rank 0 what each gave, by rank; elsewhere nothing.
+  virtual std::vector<std::string> gather(const std::string& own) = 0;
+  /// What rank 0 gave, everywhere.
+  virtual std::string broadcast(const std::string& bytes) = 0;
+  /// This rank cannot go on, and nothing but the end may follow. True in the first of those that fail at the same time:
+  /// it says why.
+  virtual bool fail() = 0;
+};
+
+/// Where the shares of `count` things end, by rank: as equal as can be.
+std::vector<std::size_t> share_ends(std::size_t count, int ranks);
+
+}  // namespace exactvo::formation
