@@ -113,9 +113,9 @@ struct CrowdScratch {
   Ranked ranked;
   alignas(64) T x[kSlots * kRows], y[kSlots * kRows], c[kSlots * kRows];
   alignas(64) T px[kSlots], py[kSlots], disc[kSlots], vx[kSlots], vy[kSlots], violation[kSlots];
-  alignas(64) float none[kPack];
-  alignas(64) std::int32_t kind[kPack];
-  std::int32_t self[kPack];
+  LaneLimits limits;
+  LaneFinds finds;
+  alignas(64) std::int32_t self[kPack];
   std::uint8_t status[kSlots];
   Vec2 preferred[kSlots];
   std::int32_t hard[kSlots];    ///< lines that are never relaxed
@@ -223,12 +223,15 @@ class CrowdEngine final : public CrowdCore {
     std::size_t neighbours, edges, bodies;
   };
 
+  static constexpr std::int64_t kKeptStretches = 8;
+
   /// A pack and what its search has found.
   struct Pack {
     std::size_t begin, end;
     Window box;
     double reach;  ///< lattice steps, how far it looks
     Cells cells;
+    Stretch stretches[kKeptStretches];  ///< of the first rows of cells
     std::size_t candidates;
     int ranks = 0;               ///< the last at which a lane has somebody
     std::uint32_t alone = 0;     ///< lanes that are decided alone
@@ -318,17 +321,17 @@ class CrowdEngine final : public CrowdCore {
   }
 
   Window box_of(std::size_t begin, std::size_t end, double& hint) const {
-    Window w{robots.x[begin], robots.x[begin], robots.y[begin], robots.y[begin]};
-    std::int32_t farthest = 0;
+    const std::int32_t *x = robots.x.data(), *y = robots.y.data(), *hints = robots.hint.data();
+    std::int32_t x0 = x[begin], x1 = x0, y0 = y[begin], y1 = y0, farthest = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      w.x0 = std::min<std::int64_t>(w.x0, robots.x[i]);
-      w.x1 = std::max<std::int64_t>(w.x1, robots.x[i]);
-      w.y0 = std::min<std::int64_t>(w.y0, robots.y[i]);
-      w.y1 = std::max<std::int64_t>(w.y1, robots.y[i]);
-      farthest = std::max(farthest, robots.hint[i]);
+      x0 = std::min(x0, x[i]);
+      x1 = std::max(x1, x[i]);
+      y0 = std::min(y0, y[i]);
+      y1 = std::max(y1, y[i]);
+      farthest = std::max(farthest, hints[i]);
     }
     hint = farthest;
-    return w;
+    return {x0, x1, y0, y1};
   }
 
   double widest_window(const Pack& pack) const {
@@ -348,7 +351,13 @@ class CrowdEngine final : public CrowdCore {
 
   void look(Pack& pack) const {
     pack.cells = robots.cells_of(grown(pack.box, pack.reach));
-    pack.candidates = robots.count(pack.cells);
+    pack.candidates = 0;
+    for (std::int64_t row = pack.cells.row0; row <= pack.cells.row1; ++row) {
+      const Stretch stretch = robots.stretch(pack.cells, row);
+      const std::int64_t nth = row - pack.cells.row0;
+      if (nth < kKeptStretches) pack.stretches[nth] = stretch;
+      pack.candidates += stretch.to - stretch.from;
+    }
   }
 
   /// The robots from b on that are searched for together: fewer than kPack where they have too many candidates.
@@ -356,6 +365,7 @@ class CrowdEngine final : public CrowdCore {
     Pack pack{};
     pack.begin = b;
     place(pack, std::min(b + kPack, last));
+    if (pack.candidates <= kWorthCutting) return pack;
     const std::size_t strip_end = robots.strip_end(b);
     if (pack.end > strip_end) {
       Pack cut = pack;
@@ -379,8 +389,10 @@ class CrowdEngine final : public CrowdCore {
       if (pack.candidates > kMostCandidates) return give_up(pack, s);
       load_lanes(pack, s);
       collect(pack, s);
-      find_nearest(s.others, &robots.x[pack.begin], &robots.y[pack.begin], s.none, ranks, s.ranked);
+      find_nearest(s.others, &robots.x[pack.begin], &robots.y[pack.begin], s.limits.none, ranks, s.ranked);
       drop_selves(pack, ranks, s);
+      const auto seen = static_cast<float>(pack.reach * pack.reach * kWholeKey);
+      count_neighbours(s.limits, seen, ranks, rule_.mixed, s.ranked, s.finds);
       if (!somebody_may_be_missing(pack, s)) break;
       pack.reach = std::min(widest_window(pack), pack.reach * kWiderReach);
       look(pack);
@@ -395,18 +407,29 @@ class CrowdEngine final : public CrowdCore {
     pack.alone = 1;
     pack.ranks = 0;
     load_lanes(pack, s);
-    for (auto& row : s.ranked.key) std::copy(s.none, s.none + kPack, row);
+    for (auto& row : s.ranked.key) std::copy(s.limits.none, s.limits.none + kPack, row);
     s.others.count = 0;
     return pack;
   }
 
   void load_lanes(const Pack& pack, Scratch& s) const {
-    const std::size_t count = pack.size();
-    for (std::size_t lane = 0; lane < kPack; ++lane) {
-      const std::size_t kind = lane < count && rule_.mixed ? kind_of(pack.begin + lane) : 0;
-      s.kind[lane] = static_cast<std::int32_t>(kind);
-      s.none[lane] = lane < count ? table_.none[kind] : 0.0F;
+    LaneLimits& limits = s.limits;
+    if (rule_.mixed) {
+      for (std::size_t lane = 0; lane < kPack; ++lane)
+        limits.kind[lane] = lane < pack.size() ? static_cast<std::int32_t>(kind_of(pack.begin + lane)) : 0;
+      for (std::size_t lane = 0; lane < kPack; ++lane) limit(limits, lane, static_cast<std::size_t>(limits.kind[lane]));
+    } else {
+      std::fill(limits.kind, limits.kind + kPack, 0);
+      for (std::size_t lane = 0; lane < kPack; ++lane) limit(limits, lane, 0);
     }
+    for (std::size_t lane = pack.size(); lane < kPack; ++lane) limits.none[lane] = 0.0F;
+  }
+
+  void limit(LaneLimits& limits, std::size_t lane, std::size_t kind) const {
+    limits.none[lane] = table_.none[kind];
+    limits.reach[lane] = table_.reach[kind];
+    limits.wanted[lane] = table_.neighbours[kind];
+    limits.window[lane] = table_.whole_window[kind];
   }
 
   static void copy(const std::int32_t* from, std::size_t count, std::int32_t* to) {
@@ -416,7 +439,8 @@ class CrowdEngine final : public CrowdCore {
   void collect(const Pack& pack, Scratch& s) const {
     std::size_t at = 0;
     for (std::int64_t row = pack.cells.row0; row <= pack.cells.row1; ++row) {
-      const Stretch stretch = robots.stretch(pack.cells, row);
+      const std::int64_t nth = row - pack.cells.row0;
+      const Stretch stretch = nth < kKeptStretches ? pack.stretches[nth] : robots.stretch(pack.cells, row);
       const std::size_t count = stretch.to - stretch.from;
       copy(robots.x.data() + stretch.from, count, s.others.x + at);
       copy(robots.y.data() + stretch.from, count, s.others.y + at);
@@ -435,12 +459,13 @@ class CrowdEngine final : public CrowdCore {
 
   /// A robot is the first of its own list, unless others stand in its place.
   void drop_selves(const Pack& pack, int ranks, Scratch& s) const {
-    for (std::size_t lane = 0; lane < pack.size(); ++lane)
-      if ((bits_of(s.ranked.key[0][lane]) & kIndexBits) != s.self[lane]) drop_self(lane, ranks, s);
+    std::uint32_t behind = lanes_behind_others(s.ranked, s.self) & lanes_of(pack);
+    for (std::size_t lane = 0; behind != 0; ++lane, behind >>= 1U)
+      if (behind & 1U) drop_self(lane, ranks, s);
   }
 
   void drop_self(std::size_t lane, int ranks, Scratch& s) const {
-    const std::int32_t none = bits_of(s.none[lane]);
+    const std::int32_t none = bits_of(s.limits.none[lane]);
     int at = ranks - 1;  // the last one, where as many others stand in its place
     for (int r = 0; r < ranks; ++r) {
       const std::int32_t key = bits_of(s.ranked.key[r][lane]);
@@ -449,15 +474,13 @@ class CrowdEngine final : public CrowdCore {
     for (int r = at; r > 0; --r) s.ranked.key[r][lane] = s.ranked.key[r - 1][lane];
   }
 
-  float last_key(std::size_t lane, const Scratch& s) const {
-    return s.ranked.key[table_.neighbours[static_cast<std::size_t>(s.kind[lane])]][lane];
-  }
+  static std::uint32_t lanes_of(const Pack& pack) { return (1U << pack.size()) - 1U; }
 
   /// Whether a robot outside the window could be nearer than the last neighbour of a lane.
   bool somebody_may_be_missing(const Pack& pack, const Scratch& s) const {
-    const auto seen = static_cast<float>(pack.reach * pack.reach * kWholeKey);
-    for (std::size_t lane = 0; lane < pack.size(); ++lane)
-      if (last_key(lane, s) > seen && pack.reach < table_.window[static_cast<std::size_t>(s.kind[lane])]) return true;
+    std::uint32_t unseen = s.finds.unseen & lanes_of(pack);
+    for (std::size_t lane = 0; unseen != 0; ++lane, unseen >>= 1U)
+      if ((unseen & 1U) && pack.reach < table_.window[static_cast<std::size_t>(s.limits.kind[lane])]) return true;
     return false;
   }
 
@@ -470,18 +493,11 @@ class CrowdEngine final : public CrowdCore {
 
   /// Who has how many, whom the next step will ask how far, and who has more in reach than neighbours.
   void read_ranks(Pack& pack, Scratch& s) {
-    for (std::size_t lane = 0; lane < pack.size(); ++lane) {
-      const auto kind = static_cast<std::size_t>(s.kind[lane]);
-      const float last = last_key(lane, s);
-      robots.hint[pack.begin + lane] = hint_of(last, kind);
-      const bool full = last < s.none[lane];
-      if (full && float_of(bits_of(last) & ~kIndexBits) < table_.reach[kind]) pack.alone |= 1U << lane;
-      int have = table_.neighbours[kind];
-      for (int r = have + 1; r <= table_.most_neighbours; ++r) s.ranked.key[r][lane] = s.none[lane];
-      while (have > 0 && !(s.ranked.key[have][lane] < s.none[lane])) --have;
-      pack.ranks = std::max(pack.ranks, have);
-      pack.neighbours[lane] = static_cast<std::uint8_t>(have);
-    }
+    std::copy(s.finds.hint, s.finds.hint + pack.size(), robots.hint.data() + pack.begin);
+    for (std::size_t lane = 0; lane < kPack; ++lane)
+      pack.neighbours[lane] = static_cast<std::uint8_t>(s.finds.have[lane]);
+    pack.alone |= s.finds.crowded & lanes_of(pack);
+    pack.ranks = s.finds.most;
   }
 
   void lines_of(Pack& pack, std::size_t slot, Scratch& s) {
@@ -489,15 +505,15 @@ class CrowdEngine final : public CrowdCore {
     LineQuery query;
     query.others = &s.others;
     query.ranked = &s.ranked;
-    query.none = s.none;
+    query.none = s.limits.none;
     query.end_rank = pack.ranks + 1;
     query.x = &robots.x[pack.begin];
     query.y = &robots.y[pack.begin];
     query.mx = &robots.mx[pack.begin];
     query.my = &robots.my[pack.begin];
-    query.kind = s.kind;
+    query.kind = s.limits.kind;
     const LineFlags flags = make_lines(rule_, query, robot_rows(s, slot));
-    const std::uint32_t lanes = (1U << pack.size()) - 1U;
+    const std::uint32_t lanes = lanes_of(pack);
     pack.alone |= flags.coincident & lanes;
     pack.touching = flags.touching & lanes & ~pack.alone;
     s.counts.touching += static_cast<std::size_t>(__builtin_popcount(pack.touching));

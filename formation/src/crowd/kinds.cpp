@@ -62,6 +62,7 @@ KindTable<T> kind_table(const CrowdOptions& options, const std::vector<CrowdKind
     const double within = std::min(std::max(k.neighbour_distance / q, reach * (1.0 + 0x1p-10)), 0x1p31);
     table.none.push_back(without_number(static_cast<float>(within * within)));
     table.window.push_back(within);
+    table.whole_window.push_back(static_cast<std::int32_t>(std::min(within, 0x1p30)));
     table.neighbours.push_back(k.neighbours);
     table.most_neighbours = std::max(table.most_neighbours, k.neighbours);
   }

@@ -23,6 +23,7 @@ struct KindTable {
   std::vector<float> none;     ///< squared lattice steps, without the bits of a number: keys from here on do not count
   std::vector<float> reach;    ///< squared lattice steps, rounded up: who is farther cannot be met within the step
   std::vector<double> window;  ///< lattice steps, how far a search goes at most
+  std::vector<std::int32_t> whole_window;  ///< the same, down to a whole number, 2^30 at most
   std::vector<int> neighbours;
   int most_neighbours = 1;
   T lattice_slack = 0;  ///< m/s, in every offset

@@ -58,6 +58,25 @@ struct Ranked {
   alignas(64) float key[kMostRanks][kPack];
 };
 
+/// What the robots of a pack ask of a search, by lane. Lanes that hold nobody want nobody: their `none` is 0.
+struct LaneLimits {
+  alignas(64) float none[kPack];           ///< squared lattice steps: keys from here on do not count
+  alignas(64) float reach[kPack];          ///< squared lattice steps: who is nearer can be met within the step
+  alignas(64) std::int32_t wanted[kPack];  ///< neighbours at most
+  alignas(64) std::int32_t window[kPack];  ///< lattice steps: the hint of a robot with fewer neighbours
+  alignas(64) std::int32_t kind[kPack];
+};
+
+/// What a search has found, by lane.
+struct LaneFinds {
+  alignas(64) std::int32_t have[kPack];  ///< neighbours
+  alignas(
+      64) std::int32_t hint[kPack];  ///< lattice steps, distance of the last neighbour; the window if there are fewer
+  int most = 0;                      ///< neighbours of any lane
+  std::uint32_t unseen = 0;          ///< bit `lane`: the last neighbour is farther than `seen`, or is missing
+  std::uint32_t crowded = 0;         ///< has as many as it wants, and could meet all of them within the step
+};
+
 /// What every half-plane of a crowd has in common.
 template <class T>
 struct LineRule {

@@ -18,19 +18,6 @@ constexpr double kBucketsPerStrip = 3.0;
 /// Room for more than there can be robots is not made.
 constexpr std::size_t kMostReserved = std::size_t{1} << 30U;
 
-/// Robots that are sorted by insertion, or looked at without a search.
-constexpr std::int32_t kFewInCell = 16;
-
-/// std::floor, which is a call on targets before SSE4.1.
-std::int64_t whole_below(double x) {
-  const auto toward_zero = static_cast<std::int64_t>(x);
-  return toward_zero - static_cast<std::int64_t>(static_cast<double>(toward_zero) > x);
-}
-
-std::int64_t clamped(std::int64_t v, std::int64_t count) {
-  return std::clamp<std::int64_t>(v, 0, count - 1);
-}
-
 }  // namespace
 
 void Robots::resize(std::size_t robots) {
@@ -89,13 +76,6 @@ void Robots::find_bounds() {
     bounds_.y0 = std::min<std::int64_t>(bounds_.y0, y[i]);
     bounds_.y1 = std::max<std::int64_t>(bounds_.y1, y[i]);
   }
-}
-
-std::int64_t Robots::row_of(std::int64_t at_y) const {
-  return whole_below(static_cast<double>(at_y) * per_strip_);
-}
-std::int64_t Robots::column_of(std::int64_t at_x) const {
-  return whole_below(static_cast<double>(at_x) * per_bucket_);
 }
 
 /// About as many cells as robots at most.
@@ -190,33 +170,11 @@ void Robots::sort(Tasks& tasks) {
   tag.swap(tags_scratch_);
 }
 
-Cells Robots::cells_of(const Window& w) const {
-  return {clamped(column_of(w.x0) - first_column_, columns_),
-          clamped(column_of(w.x1) - first_column_, columns_),
-          clamped(row_of(w.y0) - first_row_, rows_),
-          clamped(row_of(w.y1) - first_row_, rows_),
-          w.x0,
-          w.x1};
-}
-
-/// Where buckets are long (few robots, far apart) a strip is searched.
-Stretch Robots::stretch(const Cells& cells, std::int64_t row) const {
-  const std::int32_t from = start_[row * columns_ + cells.column0], to = start_[row * columns_ + cells.column1 + 1];
-  if (bucket_ * per_strip_ <= 1.0 || to - from < kFewInCell)
-    return {static_cast<std::size_t>(from), static_cast<std::size_t>(to)};
+Stretch Robots::searched(const Cells& cells, std::int32_t from, std::int32_t to) const {
   const std::int32_t* begin = x.data();
   const std::int32_t* first = std::lower_bound(begin + from, begin + to, cells.x0);
   const std::int32_t* last = std::upper_bound(first, begin + to, cells.x1);
   return {static_cast<std::size_t>(first - begin), static_cast<std::size_t>(last - begin)};
-}
-
-std::size_t Robots::count(const Cells& cells) const {
-  std::size_t sum = 0;
-  for (std::int64_t row = cells.row0; row <= cells.row1; ++row) {
-    const Stretch s = stretch(cells, row);
-    sum += s.to - s.from;
-  }
-  return sum;
 }
 
 std::size_t Robots::strip_end(std::size_t i) const {

@@ -8,6 +8,7 @@
 /// of one are a stretch of each of a few strips. Buckets of x say where a stretch begins; they do not change the order.
 /// The height of a strip follows from the state alone: it decides between neighbours at nearly the same distance.
 
+#include <algorithm>
 #include <cstdint>
 
 #include "crowd/layout.h"
@@ -58,10 +59,22 @@ class Robots {
   /// Sets the height of a strip by the mean of the hints.
   void follow_density(double least, double most);
 
-  Cells cells_of(const Window& window) const;
-  /// The robots of a strip within the window, and maybe some beside it.
-  Stretch stretch(const Cells& cells, std::int64_t row) const;
-  std::size_t count(const Cells& cells) const;
+  Cells cells_of(const Window& w) const {
+    return {clamped(column_of(w.x0) - first_column_, columns_),
+            clamped(column_of(w.x1) - first_column_, columns_),
+            clamped(row_of(w.y0) - first_row_, rows_),
+            clamped(row_of(w.y1) - first_row_, rows_),
+            w.x0,
+            w.x1};
+  }
+  /// The robots of a strip within the window, and maybe some beside it. Where buckets are long (few robots, far apart)
+  /// a strip is searched.
+  Stretch stretch(const Cells& cells, std::int64_t row) const {
+    const std::int32_t from = start_[row * columns_ + cells.column0], to = start_[row * columns_ + cells.column1 + 1];
+    if (bucket_ * per_strip_ <= 1.0 || to - from < kFewInCell)
+      return {static_cast<std::size_t>(from), static_cast<std::size_t>(to)};
+    return searched(cells, from, to);
+  }
   /// Where the strip of robot i ends.
   std::size_t strip_end(std::size_t i) const;
   std::size_t bytes() const;
@@ -79,8 +92,18 @@ class Robots {
   void scatter(Tasks& tasks);
   void order_within_cells(Tasks& tasks);
   void permute(Array<std::int32_t>& field, Tasks& tasks);
-  std::int64_t row_of(std::int64_t at_y) const;
-  std::int64_t column_of(std::int64_t at_x) const;
+  Stretch searched(const Cells& cells, std::int32_t from, std::int32_t to) const;
+  /// std::floor, which is a call on targets before SSE4.1.
+  static std::int64_t whole_below(double value) {
+    const auto toward_zero = static_cast<std::int64_t>(value);
+    return toward_zero - static_cast<std::int64_t>(static_cast<double>(toward_zero) > value);
+  }
+  static std::int64_t clamped(std::int64_t v, std::int64_t count) { return std::clamp<std::int64_t>(v, 0, count - 1); }
+  std::int64_t row_of(std::int64_t at_y) const { return whole_below(static_cast<double>(at_y) * per_strip_); }
+  std::int64_t column_of(std::int64_t at_x) const { return whole_below(static_cast<double>(at_x) * per_bucket_); }
+
+  /// Robots that are sorted by insertion, or looked at without a search.
+  static constexpr std::int32_t kFewInCell = 16;
 
   std::size_t size_ = 0;
   double strip_ = 1.0, bucket_ = 1.0, per_strip_ = 1.0, per_bucket_ = 1.0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "crowd/search.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd/search.cpp"
 #include <hwy/foreach_target.h>
@@ -104,6 +106,67 @@ void nearest(const Candidates& among, const std::int32_t* x, const std::int32_t*
   return nearest_in<16>(among, x, y, none, out);
 }
 
+template <class Mask>
+HWY_INLINE std::uint32_t bits_from(Mask mask, std::size_t lane) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Floats(), mask, bytes);
+  return (bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U) << lane;
+}
+
+std::uint32_t behind_others(const Ranked& ranked, const std::int32_t* self) {
+  const Floats d;
+  const Words words;
+  std::uint32_t bits = 0;
+  for (std::size_t lane = 0; lane < kPack; lane += hn::Lanes(d)) {
+    const auto number = hn::And(hn::BitCast(words, hn::LoadU(d, ranked.key[0] + lane)), hn::Set(words, kIndexBits));
+    bits |= bits_from(hn::RebindMask(d, hn::Ne(number, hn::LoadU(words, self + lane))), lane);
+  }
+  return bits;
+}
+
+/// The farthest that a hint says, lattice steps.
+constexpr float kFarthestHint = 0x1p30F;
+
+template <bool kMixed>
+void count_in(const LaneLimits& limits, float seen, int ranks, Ranked& ranked, LaneFinds& out) {
+  const Floats d;
+  const Words words;
+  const F distance_bits = hn::BitCast(d, hn::Set(words, ~kIndexBits));
+  out.most = 0;
+  out.unseen = out.crowded = 0;
+  for (std::size_t lane = 0; lane < kPack; lane += hn::Lanes(d)) {
+    const F none = hn::LoadU(d, limits.none + lane);
+    const auto wanted = hn::LoadU(words, limits.wanted + lane);
+    auto have = hn::Zero(words);
+    F last = none;
+    for (int r = 1; r < ranks; ++r) {
+      F key = hn::LoadU(d, ranked.key[r] + lane);
+      const auto rank = hn::Set(words, r);
+      if constexpr (kMixed) {
+        key = hn::IfThenElse(hn::RebindMask(d, hn::Gt(rank, wanted)), none, key);
+        hn::StoreU(key, d, ranked.key[r] + lane);
+      }
+      const auto is_there = hn::AndNot(hn::Gt(rank, wanted), hn::RebindMask(words, hn::Lt(key, none)));
+      have = hn::IfThenElse(is_there, rank, have);  // keys ascend
+      last = hn::IfThenElse(hn::RebindMask(d, hn::Eq(rank, wanted)), key, last);
+    }
+    hn::StoreU(have, words, out.have + lane);
+    out.most = std::max(out.most, static_cast<int>(hn::GetLane(hn::MaxOfLanes(words, have))));
+    const auto is_full = hn::Lt(last, none);
+    const F squared = hn::And(last, distance_bits);
+    const auto distance = hn::ConvertTo(words, hn::Min(hn::Sqrt(squared), hn::Set(d, kFarthestHint)));
+    const auto window = hn::LoadU(words, limits.window + lane);
+    const auto hint = hn::IfThenElse(hn::RebindMask(words, is_full), hn::Min(distance, window), window);
+    hn::StoreU(hint, words, out.hint + lane);
+    out.unseen |= bits_from(hn::Gt(last, hn::Set(d, seen)), lane);
+    out.crowded |= bits_from(hn::And(is_full, hn::Lt(squared, hn::LoadU(d, limits.reach + lane))), lane);
+  }
+}
+
+void count_all(const LaneLimits& limits, float seen, int ranks, bool mixed, Ranked& ranked, LaneFinds& out) {
+  mixed ? count_in<true>(limits, seen, ranks, ranked, out) : count_in<false>(limits, seen, ranks, ranked, out);
+}
+
 }  // namespace exactvo::formation::crowd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -111,6 +174,8 @@ HWY_AFTER_NAMESPACE();
 namespace exactvo::formation::crowd {
 
 HWY_EXPORT(nearest);
+HWY_EXPORT(behind_others);
+HWY_EXPORT(count_all);
 
 int ranks_sought(int wanted) {
   return wanted <= 6 ? 6 : wanted <= 11 ? 11 : 16;
@@ -119,6 +184,14 @@ int ranks_sought(int wanted) {
 void find_nearest(const Candidates& among, const std::int32_t* x, const std::int32_t* y, const float* none, int ranks,
                   Ranked& out) {
   HWY_DYNAMIC_DISPATCH(nearest)(among, x, y, none, ranks, out);
+}
+
+std::uint32_t lanes_behind_others(const Ranked& ranked, const std::int32_t* self) {
+  return HWY_DYNAMIC_DISPATCH(behind_others)(ranked, self);
+}
+
+void count_neighbours(const LaneLimits& limits, float seen, int ranks, bool mixed, Ranked& ranked, LaneFinds& out) {
+  HWY_DYNAMIC_DISPATCH(count_all)(limits, seen, ranks, mixed, ranked, out);
 }
 
 }  // namespace exactvo::formation::crowd

@@ -17,4 +17,11 @@ int ranks_sought(int wanted);
 void find_nearest(const Candidates& among, const std::int32_t* x, const std::int32_t* y, const float* none, int ranks,
                   Ranked& out);
 
+/// Bit `lane`: not its own robot, candidate self[lane], is the first of its list.
+std::uint32_t lanes_behind_others(const Ranked& ranked, const std::int32_t* self);
+
+/// Who has how many. The first of each list is the lane's own robot. `seen`: squared lattice steps within which all are
+/// candidates. Of more than one kind (`mixed`), lists are cut off after as many neighbours as their lanes want.
+void count_neighbours(const LaneLimits& limits, float seen, int ranks, bool mixed, Ranked& ranked, LaneFinds& out);
+
 }  // namespace exactvo::formation::crowd
