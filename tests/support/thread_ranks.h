@@ -80,24 +80,19 @@ class ThreadRank final : public Ranks {
   int rank() const override { return rank_; }
   int size() const override { return meeting_.size(); }
 
-  void share(void* bytes, const std::vector<std::size_t>& ends) override {
-    auto* const array = static_cast<char*>(bytes);
-    const auto own = static_cast<std::size_t>(rank_);
-    const auto begin = [&](std::size_t r) { return r > 0 ? ends[r - 1] : 0; };
-    const auto all = meeting_.show(rank_, std::string(array + begin(own), ends[own] - begin(own)));
-    for (std::size_t r = 0; r < all.size(); ++r) std::copy(all[r].begin(), all[r].end(), array + begin(r));
-  }
-
-  void add(std::int64_t* values, std::size_t count) override {
-    const auto all = meeting_.show(rank_, std::string(reinterpret_cast<const char*>(values), 8 * count));
-    std::fill(values, values + count, 0);
-    for (const std::string& bytes : all)
-      for (std::size_t k = 0; k < count; ++k) values[k] += number(bytes, k);
+  void share(const std::vector<SharedArray>& arrays) override {
+    for (const SharedArray& a : arrays) {
+      auto* const array = static_cast<char*>(a.bytes);
+      const auto own = static_cast<std::size_t>(rank_);
+      const auto begin = [&](std::size_t r) { return r > 0 ? a.ends[r - 1] : 0; };
+      const auto all = meeting_.show(rank_, std::string(array + begin(own), a.ends[own] - begin(own)));
+      for (std::size_t r = 0; r < all.size(); ++r) std::copy(all[r].begin(), all[r].end(), array + begin(r));
+    }
   }
 
   std::int64_t least(std::int64_t value) override {
     const auto all = meeting_.show(rank_, std::string(reinterpret_cast<const char*>(&value), 8));
-    for (const std::string& bytes : all) value = std::min(value, number(bytes, 0));
+    for (const std::string& bytes : all) value = std::min(value, number(bytes));
     return value;
   }
 
@@ -111,9 +106,9 @@ class ThreadRank final : public Ranks {
   bool fail() override { return meeting_.fail(rank_); }
 
  private:
-  static std::int64_t number(const std::string& bytes, std::size_t k) {
+  static std::int64_t number(const std::string& bytes) {
     std::int64_t value = 0;
-    std::memcpy(&value, bytes.data() + 8 * k, 8);
+    std::memcpy(&value, bytes.data(), 8);
     return value;
   }
 

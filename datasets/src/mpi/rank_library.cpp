@@ -53,8 +53,8 @@ int receive(long* values, int count, int tag) {
   return status.MPI_SOURCE;
 }
 
-void add(long* values, int count) {
-  MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_LONG, MPI_SUM, MPI_COMM_WORLD);
+void least_of_each(long* values, int count) {
+  MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_LONG, MPI_MIN, MPI_COMM_WORLD);
 }
 
 /// MPI counts in int.
@@ -110,8 +110,8 @@ void broadcast_bytes(char* bytes, std::size_t count) {
 }  // namespace
 
 const RankLibrary& rank_library() {
-  static constexpr RankLibrary kLibrary{join, leave,   rank, size,  broadcast, least,
-                                        send, receive, add,  share, gather,    broadcast_bytes};
+  static constexpr RankLibrary kLibrary{join, leave,   rank,          size,  broadcast, least,
+                                        send, receive, least_of_each, share, gather,    broadcast_bytes};
   return kLibrary;
 }
 

@@ -22,8 +22,8 @@ struct RankLibrary {
   void (*send)(const long* values, int count, int to, int tag);
   /// From any rank; returns which.
   int (*receive)(long* values, int count, int tag);
-  /// Each value becomes its sum over the ranks.
-  void (*add)(long* values, int count);
+  /// Each value becomes the least that any rank gives.
+  void (*least_of_each)(long* values, int count);
   /// Rank r has filled the bytes from ends[r - 1] (of rank 0: 0) to ends[r]; then all have all.
   void (*share)(char* bytes, const std::size_t* ends);
   /// The same, but only the first rank has all. The others give their own bytes alone, and it puts them together.

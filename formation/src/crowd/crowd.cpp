@@ -68,6 +68,11 @@ const char* name(CrowdProblem problem) {
   return kNames[static_cast<int>(problem)];
 }
 
+std::vector<std::size_t> in_bytes(std::vector<std::size_t> ends, std::size_t size) {
+  for (std::size_t& end : ends) end *= size;
+  return ends;
+}
+
 const char* crowd_target() {
   return lp::batch_target();
 }

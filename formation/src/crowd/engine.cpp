@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <limits>
 
 #include "crowd/edge_pack.h"
@@ -245,17 +244,16 @@ class CrowdEngine final : public CrowdCore {
 
   /// What the ranks decided, each for its share, to all of them.
   void exchange(const std::vector<std::size_t>& ends, StepReport& report) {
-    std::vector<std::size_t> ends_of_words = ends;
-    for (std::size_t& end : ends_of_words) end *= sizeof(std::int32_t);
-    for (auto* field : {&robots.next_mx, &robots.next_my, &robots.hint}) ranks()->share(field->data(), ends_of_words);
-    ranks()->share(robots.next_kept.data(), ends);
-    std::size_t* const counts[] = {&report.robots,   &report.neighbours, &report.relaxed,
-                                   &report.touching, &report.widened,    &report.edges,
-                                   &report.bodies,   &report.stopped,    &report.nudged};
-    std::int64_t sums[std::size(counts)];
-    for (std::size_t k = 0; k < std::size(counts); ++k) sums[k] = static_cast<std::int64_t>(*counts[k]);
-    ranks()->add(sums, std::size(counts));
-    for (std::size_t k = 0; k < std::size(counts); ++k) *counts[k] = static_cast<std::size_t>(sums[k]);
+    std::vector<SharedArray> arrays;
+    for (auto* field : {&robots.next_mx, &robots.next_my, &robots.hint})
+      arrays.push_back({field->data(), in_bytes(ends, sizeof(std::int32_t))});
+    arrays.push_back({robots.next_kept.data(), ends});
+    std::vector<StepReport> reports(ends.size());
+    reports[static_cast<std::size_t>(ranks()->rank())] = report;
+    arrays.push_back({reports.data(), in_bytes(share_ends(ends.size(), ranks()->size()), sizeof(StepReport))});
+    ranks()->share(arrays);
+    report = {};
+    for (const StepReport& r : reports) add(report, r);
   }
 
   Vec2 velocity_of(std::int32_t mx, std::int32_t my) const {

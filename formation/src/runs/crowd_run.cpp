@@ -115,12 +115,12 @@ class CrowdRun {
     const Clock::time_point start = Clock::now();
     options_.resume_from.empty() ? begin() : restore(options_.resume_from);
     const auto most = static_cast<std::size_t>(std::ceil(scenario_.time_limit / scenario_.time_step - 1e-9));
-    while (report_.steps < most && someone_goes_on()) {
+    for (After after = what_follows(false); report_.steps < most && after == After::step;) {
       step();
-      report_.interrupted = somewhere(options_.progress && !options_.progress(report_.time));
+      after = what_follows(options_.progress && !options_.progress(report_.time));
+      report_.interrupted = after == After::stop;
       const bool is_due = options_.snapshot_every > 0 && report_.steps % options_.snapshot_every == 0;
       if (options_.keep_snapshot && (is_due || report_.interrupted)) keep_snapshot();
-      if (report_.interrupted) break;
     }
     finish();
     report_.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
@@ -153,15 +153,9 @@ class CrowdRun {
   }
   std::size_t own_end() const { return ends_[ranks_ ? static_cast<std::size_t>(ranks_->rank()) : 0]; }
 
-  /// In this rank or in another.
-  bool somewhere(bool here) const { return ranks_ ? ranks_->least(here ? 0 : 1) == 0 : here; }
-
   /// All preferred velocities to all.
   void share_preferred() {
-    if (!ranks_) return;
-    std::vector<std::size_t> ends = ends_;
-    for (std::size_t& end : ends) end *= sizeof(Vec2);
-    ranks_->share(preferred_.data(), ends);
+    if (ranks_) ranks_->share({{preferred_.data(), in_bytes(ends_, sizeof(Vec2))}});
   }
 
   /// All ways to the first rank, which says whether it is this one.
@@ -187,8 +181,8 @@ class CrowdRun {
 
   void require_same_states() const {
     const auto digest = static_cast<std::int64_t>(crowd_.digest() >> 1U);
-    const bool is_least = ranks_->least(digest) == digest, is_most = ranks_->least(-digest) == -digest;
-    if (somewhere(!is_least || !is_most)) throw RanksDiffer();
+    const std::int64_t least = ranks_->least(digest), most = -ranks_->least(-digest);
+    if (least < most) throw RanksDiffer();
   }
 
   // --- Snapshots: the run, the crowd, the sink, and a checksum ---
@@ -392,9 +386,18 @@ class CrowdRun {
     if (sink_) sink_->add_step(crowd_, report_.steps);
   }
 
+  /// The least of what the ranks want.
+  enum class After { stop, step, nothing };
+  After what_follows(bool is_stopped) const {
+    After own = After::stop;
+    if (!is_stopped) own = someone_goes_on() ? After::step : After::nothing;
+    return ranks_ ? static_cast<After>(ranks_->least(static_cast<int>(own))) : own;
+  }
+
+  /// Of the own ones.
   bool someone_goes_on() const {
     const auto at = [this](std::size_t i) { return ways_.begin() + static_cast<std::ptrdiff_t>(i); };
-    return somewhere(std::any_of(at(own_begin()), at(own_end()), [](const Way& w) { return !w.arrived && !w.stays; }));
+    return std::any_of(at(own_begin()), at(own_end()), [](const Way& w) { return !w.arrived && !w.stays; });
   }
 
   std::string why_not_there(std::size_t i) const {

@@ -26,8 +26,14 @@ class AnotherRankFailed : public std::runtime_error {
   AnotherRankFailed() : std::runtime_error("another rank has failed") {}  ///< What `Ranks` throw.
 };
 
+/// An array that all ranks have, of which each fills a part.
+struct SharedArray {
+  void* bytes = nullptr;          ///< where it begins
+  std::vector<std::size_t> ends;  ///< rank r fills the bytes from ends[r - 1] (of rank 0: 0) to ends[r]; not decreasing
+};
+
 /// All but `rank`, `size` and `fail` are called by all ranks in the same order, from one thread of each, and throw
-/// AnotherRankFailed where one has failed. Sums and least values are those of whole numbers: the order does not matter.
+/// AnotherRankFailed where one has failed.
 class Ranks {
  public:
   virtual ~Ranks() = default;
@@ -35,11 +41,8 @@ class Ranks {
   virtual int rank() const = 0;
   /// How many there are, at least 1.
   virtual int size() const = 0;
-  /// Of an array that all ranks have, rank r has filled the bytes from ends[r - 1] (of rank 0: 0) to ends[r]; then all
-  /// have all. REQUIRES: ends not decreasing, size() of them, the same in every rank.
-  virtual void share(void* bytes, const std::vector<std::size_t>& ends) = 0;
-  /// Each value becomes its sum over the ranks. The same count in every rank.
-  virtual void add(std::int64_t* values, std::size_t count) = 0;
+  /// Each rank has filled its parts of these arrays; then all have all. REQUIRES: the same ends in every rank.
+  virtual void share(const std::vector<SharedArray>& arrays) = 0;
   /// Over the ranks.
   virtual std::int64_t least(std::int64_t value) = 0;
   /// In rank 0 what each gave, by rank; elsewhere nothing.
@@ -53,5 +56,7 @@ class Ranks {
 
 /// Where the shares of `count` things end, by rank: as equal as can be.
 std::vector<std::size_t> share_ends(std::size_t count, int ranks);
+/// The same ends in bytes, of things of this size.
+std::vector<std::size_t> in_bytes(std::vector<std::size_t> ends, std::size_t size);
 
 }  // namespace exactvo::formation
