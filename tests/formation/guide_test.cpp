@@ -214,6 +214,27 @@ TEST(Guidance, WhoWasPushedOutOfSightPlansAgain) {
   EXPECT_EQ(course.points, again);
 }
 
+// The way was measured by the last point in sight, and robots that drove away from that were taken for stalled.
+TEST(Guidance, TheWayLeftBecomesShorterAlsoWhereTheNextPointIsHidden) {
+  const Scenario s = scene({Polyline{{{60, -5}, {60, -0.7}}}}, {0, 0}, {100, 0}, 0.5);
+  detail::Guide guide(s, 0.08);
+  detail::Course course;
+  course.points = {{0, 0}, {100, 0}};
+  course.keeps = {0.6, 0.6};
+  course.to = {{100, 0}, 0.1};
+  double before = 200.0;
+  for (const double x : {5.0, 10.0, 20.0, 30.0, 40.0, 50.0}) {
+    const Vec2 here{x, -2.0};
+    const detail::Heading heading = guide.heading(course, 0.5, here);
+    ASSERT_FALSE(heading.is_new);
+    ASSERT_EQ(course.next, 0u) << x;
+    const double left = guide.way_left(course, here);
+    EXPECT_LT(left, before - 4.0) << x;
+    EXPECT_GE(left, norm(Vec2{100, 0} - here) * (1.0 - 1e-12)) << x;
+    before = left;
+  }
+}
+
 TEST(Guidance, WhomACartPushesOutOfSightOfItsRoutePlansAgainAndSaysSo) {
   // Down a shaft, and along the tunnel at its bottom.
   Scenario s =

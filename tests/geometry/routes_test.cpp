@@ -454,6 +454,45 @@ TEST(Routes, AnEndInContactWithManySitesLeavesAlongTheOneThatLetsIt) {
   EXPECT_TRUE(std::holds_alternative<Route>(answer));
 }
 
+// The distance to a crossing of walls may round to 0: the widest radius was looked for from there without end.
+TEST(Routes, TheWidestRadiusOfAStartBesideACrossingIsFound) {
+  const std::vector<Obstacle> crossing{Polyline{{{0, 0}, {3, 1}}}, Polyline{{{0, 1}, {3, 0}}},
+                                       Polyline{{{1, 0}, {2, 1}}}};
+  for (const double x : {1.5, std::nextafter(1.5, 2.0), std::nextafter(1.5, 1.0)})
+    for (const double y : {0.5, std::nextafter(0.5, 1.0), std::nextafter(0.5, 0.0)})
+      EXPECT_LT(RouteMap(crossing).widest_radius({x, y}, {9, 9}), 1e-15);
+  // 1/3 + 2^-54 or so from the walls' crossing at (1, 1/3), which is no double.
+  const std::vector<Obstacle> thirds{Polyline{{{0, 0}, {3, 1}}}, Polyline{{{1, 0}, {1, 1}}}};
+  EXPECT_LT(RouteMap(thirds).widest_radius({1.0, 1.0 / 3.0}, {9, 9}), 1e-15);
+}
+
+// --- Cells of points ---
+
+// Cells of points are joined across sides of triangles; what a view passes through them must stay inside. Rooms whose
+// walls lie on one line are where a piece from portal to portal could run along a wall.
+TEST(Routes, PointsPassRowsOfDoorsOnOneLine) {
+  std::vector<Obstacle> rooms{test::fence({{0, 0}, {12, 0}, {12, 8}, {0, 8}})};
+  for (int k = 0; k < 6; ++k) rooms.push_back(Polyline{{{2.0 * k, 4}, {2.0 * k + 1, 4}}});
+  for (int k = 1; k < 6; ++k) rooms.push_back(Polyline{{{2.0 * k, 0.5}, {2.0 * k, 7.5}}});
+  SeededRandom random(test::seed_of_run(61));
+  std::size_t routes = 0;
+  const RoutePlan point(RouteMap(rooms), 0.0), disc(RouteMap(rooms), 1e-7);
+  for (int k = 0; k < 300; ++k) {
+    const Vec2 start{random.uniform(0.1, 11.9), random.uniform(0.1, 7.9)};
+    const Vec2 goal{random.uniform(0.1, 11.9), random.uniform(0.1, 7.9)};
+    const RouteAnswer answer = point.query(start, goal);
+    EXPECT_EQ(check(rooms, {0.0, start, goal}, answer), "") << test::corpus_line({{rooms, start, goal}, 0.0});
+    const auto* route = std::get_if<Route>(&answer);
+    const RouteAnswer other = disc.query(start, goal);
+    const auto* wider = std::get_if<Route>(&other);
+    if (route == nullptr || wider == nullptr) continue;
+    ++routes;
+    EXPECT_LE(route->length, wider->length * (1.0 + 1e-9)) << test::corpus_line({{rooms, start, goal}, 0.0});
+    EXPECT_GE(route->length, wider->length * (1.0 - 1e-5)) << test::corpus_line({{rooms, start, goal}, 0.0});
+  }
+  EXPECT_GT(routes, 250u);
+}
+
 // --- The corpus ---
 
 TEST(RouteCorpus, EveryCaseIsAnsweredWithProof) {

@@ -175,11 +175,12 @@ bool Guide::look_ahead(Course& course, double radius, Vec2 here) const {
 }
 
 /// Along the piece after the farthest point in sight as far as it is in sight.
-Heading Guide::heading_on(const Course& course, double radius, Vec2 here) const {
+Heading Guide::heading_on(Course& course, double radius, Vec2 here) const {
   constexpr int kHalvings = 6;  // of a piece: where a robot heads for need not be the very farthest point
   const std::size_t next = course.next;
   const auto margin = [&](std::size_t k) { return std::max(0.0, course.keeps[k] - radius - kSkins); };
   const Vec2 from = course.points[next];
+  course.seen = 0.0;
   if (next + 1 == course.points.size() || is_before_narrow(course, next, here)) return {from, margin(next)};
   const double stands = clearance_at(here, radius + most_margin_ + kSkins);
   const double clearance = std::max(radius, std::min(course.keeps[next + 1], stands)) - 0.5 * kSkins;
@@ -189,6 +190,7 @@ Heading Guide::heading_on(const Course& course, double radius, Vec2 here) const 
     const double middle = 0.5 * (seen + hidden);
     (is_in_sight(here, from + middle * piece, clearance) ? seen : hidden) = middle;
   }
+  course.seen = seen;
   return {from + seen * piece, margin(next + 1)};
 }
 
@@ -205,9 +207,11 @@ Heading Guide::heading(Course& course, double radius, Vec2 here) {
 }
 
 double Guide::way_left(const Course& course, Vec2 here) const {
-  double way = norm(course.points[course.next] - here);
-  for (std::size_t k = course.next; k + 1 < course.points.size(); ++k)
-    way += norm(course.points[k + 1] - course.points[k]);
+  const std::size_t last = course.points.size() - 1;
+  const Vec2 from = course.points[course.next], to = course.points[std::min(course.next + 1, last)];
+  const Vec2 place = from + course.seen * (to - from);
+  double way = norm(place - here) + norm(to - place);
+  for (std::size_t k = course.next + 1; k < last; ++k) way += norm(course.points[k + 1] - course.points[k]);
   return way;
 }
 

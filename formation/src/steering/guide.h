@@ -29,6 +29,7 @@ struct Course {
                               ///< the rounding of its ends
   Destination to;             ///< the end is its place, or one within reach of it
   std::size_t next = 0;       ///< the farthest of the points that was in sight
+  double seen = 0.0;          ///< of the piece after it, how much was in sight, as a share
 };
 
 /// A course, or why there is none.
@@ -71,7 +72,7 @@ class Guide : public FreeSpace {
   /// is in sight, the robot was pushed off, and the course is planned again from where it is.
   Heading heading(Course& course, double radius, Vec2 here);
 
-  /// m, along the rest of the course.
+  /// m, straight to where the robot heads, and on along the rest of the course.
   double way_left(const Course& course, Vec2 here) const;
 
   bool is_open() const override { return obstacles_.empty(); }
@@ -94,7 +95,7 @@ class Guide : public FreeSpace {
   double clearance_at(Vec2 here, double enough) const;
   bool is_in_sight(Vec2 here, Vec2 there, double clearance) const;
   bool look_ahead(Course& course, double radius, Vec2 here) const;
-  Heading heading_on(const Course& course, double radius, Vec2 here) const;
+  Heading heading_on(Course& course, double radius, Vec2 here) const;
 
   Unreachable unreachable_;
   double most_margin_;

@@ -304,6 +304,7 @@ bool CellMap::side_admits(const Side& side, double r) const {
 }
 
 int CellMap::cell_in(int triangle, const Point& x) const {
+  if (links.empty()) return first_cell[triangle];
   for (int c = first_cell[triangle]; c < first_cell[triangle + 1]; ++c) {
     const auto holds = [&](const Chord& chord) {
       const Link& l = links[chord.link];

@@ -85,6 +85,10 @@ class CellMap {
   /// beside it.
   CellMap(PlanarGraph graph, const Vec2 (&corners)[4], double widest_gate = kAllGates);
 
+  /// The cells of point_cells.h.
+  struct ForPoints {};
+  CellMap(const CellMap& map, ForPoints);
+
   bool has_all_gates() const { return widest_gate_ == kAllGates; }
   double widest_gate() const { return widest_gate_; }
 
@@ -119,7 +123,9 @@ class CellMap {
   std::vector<Portal> portals;
   std::vector<std::vector<CellPortal>> cell_portals;  ///< counter-clockwise round the cell
   std::vector<std::vector<Chord>> cell_chords;
-  std::vector<int> first_cell;  ///< of a triangle; those of the next begin where its end (one more than triangles)
+  /// Of a triangle; those of the next begin where its end (one more than triangles). For points a cell is one triangle
+  /// or several, and this is the number of the one that it belongs to.
+  std::vector<int> first_cell;
 
  private:
   void triangulate_and_link(const Vec2 (&corners)[4]);

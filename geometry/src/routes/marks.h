@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// A set of numbers that is emptied in no time: each number remembers the round in which it was marked.
+/// A set of numbers, and a value for each number, that are emptied in no time: each number remembers the round in which
+/// it was marked.
 
 #include <algorithm>
 #include <cstddef>
@@ -27,6 +28,34 @@ class Marks {
  private:
   std::uint32_t round_;
   std::vector<std::uint32_t> marked_in_;
+};
+
+/// Values of numbers, of which most are never given one.
+template <typename T>
+class Remembered {
+ public:
+  explicit Remembered(std::size_t count = 0) : entries_(count) {}
+
+  void clear() {
+    if (++round_ != 0) return;
+    for (Entry& e : entries_) e.round = 0;
+    round_ = 1;
+  }
+  /// Null where none was given.
+  T* find(int i) {
+    Entry& e = entries_[static_cast<std::size_t>(i)];
+    return e.round == round_ ? &e.value : nullptr;
+  }
+  const T* find(int i) const { return const_cast<Remembered*>(this)->find(i); }
+  void set(int i, const T& value) { entries_[static_cast<std::size_t>(i)] = {value, round_}; }
+
+ private:
+  struct Entry {
+    T value{};
+    std::uint32_t round = 0;
+  };
+  std::uint32_t round_ = 1;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace exactvo::geometry::routing

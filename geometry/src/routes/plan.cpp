@@ -102,6 +102,7 @@ ClearancePlan::ClearancePlan(const CellMap& map, const PieceTree& grid, double r
   find_turns();
   find_sectors();
   find_ways_out();
+  list_passages();
 }
 
 void ClearancePlan::decide_gates() {
@@ -239,20 +240,36 @@ void ClearancePlan::find_turns() {
   }
 }
 
+/// Going round a cell counter-clockwise, one portal ends at a corner and the next begins there: round the corner that
+/// is one direction. So the ends of a sector are a chain, or a ring, which is opened anywhere.
 void ClearancePlan::find_sectors() {
-  DisjointSets ends(2 * map_->portals.size());
+  const std::size_t count = 2 * map_->portals.size();
+  std::vector<int> next(count, -1);
+  std::vector<char> is_first(count, 1);
   for (const auto& portals : map_->cell_portals) {
     for (std::size_t k = 0; k < portals.size(); ++k) {
       const auto [one, one_left] = portals[k];
-      const auto [two, two_left] = portals[(k + 1) % portals.size()];
+      const auto [two, two_left] = portals[k + 1 < portals.size() ? k + 1 : 0];
       const ShrunkPortal &p = shrunk_[one], &q = shrunk_[two];
       if (one == two || !p.open || !q.open) continue;
       const int corner = one_left ? p.to_corner : p.from_corner;
-      if (corner >= 0 && corner == (two_left ? q.from_corner : q.to_corner))
-        ends.join(2 * one + (one_left ? 1 : 0), 2 * two + (two_left ? 0 : 1));
+      if (corner < 0 || corner != (two_left ? q.from_corner : q.to_corner)) continue;
+      next[2 * one + (one_left ? 1 : 0)] = 2 * two + (two_left ? 0 : 1);
+      is_first[2 * two + (two_left ? 0 : 1)] = 0;
     }
   }
-  sector_ = ends.roots();
+  sectors_.assign(count, {-1, 0.0});
+  const auto number_from = [&](int first) {
+    double at = 0.0;
+    for (int end = first; end >= 0 && sectors_[end].number < 0; end = next[end]) {
+      sectors_[end] = {first, at};
+      if (next[end] >= 0) at += norm(end_at(next[end]) - end_at(end));
+    }
+  };
+  for (std::size_t end = 0; end < count; ++end)
+    if (is_first[end]) number_from(static_cast<int>(end));
+  for (std::size_t end = 0; end < count; ++end)
+    if (sectors_[end].number < 0) number_from(static_cast<int>(end));  // a ring
 }
 
 void ClearancePlan::find_ways_out() {
@@ -278,22 +295,53 @@ void ClearancePlan::find_ways_out() {
   }
 }
 
+void ClearancePlan::list_passages() {
+  std::size_t open = 0;
+  for (const ShrunkPortal& q : shrunk_) open += q.open ? 2 : 0;
+  passages_.reserve(open);
+  first_passage_.reserve(map_->cell_portals.size() + 1);
+  for (const auto& portals : map_->cell_portals) {
+    first_passage_.push_back(passages_.size());
+    for (const auto& [number, is_left] : portals) {
+      const ShrunkPortal& q = shrunk_[number];
+      if (!q.open) continue;
+      const Portal& portal = map_->portals[number];
+      const int to = is_left ? portal.right : portal.left;
+      passages_.push_back({is_left ? q.to : q.from, is_left ? q.from : q.to, norm(q.to - q.from), q.size, number, to,
+                           is_left ? q.to_turns : q.from_turns, is_left ? q.from_turns : q.to_turns, is_left,
+                           way_out_[to] >= 0});
+    }
+  }
+  first_passage_.push_back(passages_.size());
+}
+
 namespace {
 
-/// Whether ab lies, with room for every rounding, farther than r from pq: on one side of the strip round it.
-bool is_clearly_apart(Vec2 p, Vec2 q, Vec2 a, Vec2 b, double r) {
-  const Vec2 d = q - p;
-  const double length = norm(d);
-  constexpr double kShort = 0x1p-400;  // m: a square of it would underflow
-  if (!(length > kShort)) return false;
-  const double size =
-      std::fabs(p.x) + std::fabs(p.y) + std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y) + length;
-  const double far = r * (1.0 + 1e-6) + 0x1p-40 * size;
-  const double a_left = cross(d, a - p) / length, b_left = cross(d, b - p) / length;
-  const double a_on = dot(d, a - p) / length, b_on = dot(d, b - p) / length;
-  return (a_left > far && b_left > far) || (a_left < -far && b_left < -far) || (a_on < -far && b_on < -far) ||
-         (a_on > length + far && b_on > length + far);
-}
+/// The strip of width r round a straight piece.
+class Strip {
+ public:
+  Strip(Vec2 p, Vec2 q, double r) : p_(p), length_(norm(q - p)), along_((q - p) / length_), r_(r) {
+    size_ = std::fabs(p.x) + std::fabs(p.y) + length_;
+  }
+
+  /// Whether ab lies, with room for every rounding, on one side of it.
+  bool is_clearly_apart(Vec2 a, Vec2 b) const {
+    constexpr double kShort = 0x1p-400;  // m: a square of it would underflow
+    if (!(length_ > kShort)) return false;
+    const double size = size_ + std::fabs(a.x) + std::fabs(a.y) + std::fabs(b.x) + std::fabs(b.y);
+    const double far = r_ * (1.0 + 1e-6) + 0x1p-40 * size;
+    const double a_left = cross(along_, a - p_), b_left = cross(along_, b - p_);
+    if ((a_left > far && b_left > far) || (a_left < -far && b_left < -far)) return true;
+    const double a_on = dot(along_, a - p_), b_on = dot(along_, b - p_);
+    return (a_on < -far && b_on < -far) || (a_on > length_ + far && b_on > length_ + far);
+  }
+
+ private:
+  Vec2 p_;
+  double length_;
+  Vec2 along_;
+  double r_, size_;
+};
 
 }  // namespace
 
@@ -320,11 +368,11 @@ std::vector<int> ClearancePlan::pieces_within(Vec2 x, double r) const {
 }
 
 bool ClearancePlan::is_clear(const Point& p, const Point& q) const {
+  const Strip strip(p.rounded(), q.rounded(), radius_);
   return grid_->for_each_near(p.rounded(), q.rounded(), radius_, [&](int piece) {
     const auto [i, j] = ends_of(piece);
     const Point &a = map_->vertex(i), &b = map_->vertex(j);
-    return is_clearly_apart(p.rounded(), q.rounded(), a.rounded(), b.rounded(), radius_) ||
-           keeps_clear(p, q, a, b, radius_);
+    return strip.is_clearly_apart(a.rounded(), b.rounded()) || keeps_clear(p, q, a, b, radius_);
   });
 }
 

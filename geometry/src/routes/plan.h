@@ -35,6 +35,18 @@ struct ShrunkPortal {
   bool tight = false;  ///< its gate is hardly wider than the disc: to be crossed through the exact middle
 };
 
+/// An open portal as it is passed out of a cell. Those of a cell lie beside each other: a search looks at little else.
+struct Passage {
+  Vec2 left, right;  ///< its ends, seen on the way out
+  double width;      ///< m, between them
+  double size;       ///< `ShrunkPortal::size`
+  int portal;
+  int to;  ///< the cell behind it
+  bool left_turns, right_turns;
+  bool from_left;  ///< out of the portal's left cell
+  bool leads_into_dead_end;
+};
+
 class ClearancePlan {
  public:
   /// REQUIRES: radius >= 0, finite.
@@ -51,9 +63,23 @@ class ClearancePlan {
   const ShrunkPortal& shrunk(int portal) const { return shrunk_[portal]; }
   /// Equal for two cells iff a disc can go from one to the other.
   int component(int cell) const { return component_[cell]; }
-  /// Portals' ends round the same vertex between which the centre can go without leaving it: equal numbers. `end` is 2
-  /// portal + (0: from, 1: to).
-  int sector(int end) const { return sector_[end]; }
+  /// Ends of portals round the same vertex between which the centre can go from end to end have the same sector.
+  struct InSector {
+    int number;
+    double at;  ///< m, along the sector: from one end to another the centre goes no farther than their difference
+  };
+  /// `end` is 2 portal + (0: from, 1: to).
+  const InSector& sector(int end) const { return sectors_[end]; }
+  Vec2 end_at(int end) const { return end % 2 ? shrunk_[end / 2].to : shrunk_[end / 2].from; }
+  /// The ways out of a cell, counter-clockwise.
+  struct Passages {
+    const Passage *first, *last;
+    const Passage* begin() const { return first; }
+    const Passage* end() const { return last; }
+  };
+  Passages passages(int cell) const {
+    return {passages_.data() + first_passage_[cell], passages_.data() + first_passage_[cell + 1]};
+  }
   /// A cell that leads nowhere but to one other: that one; -1 elsewhere.
   int way_out(int cell) const { return way_out_[cell]; }
 
@@ -74,6 +100,7 @@ class ClearancePlan {
   void find_turns();
   void find_sectors();
   void find_ways_out();
+  void list_passages();
   ShrunkPortal shrunk_link(const Portal& portal) const;
   ShrunkPortal shrunk_side(const Portal& portal) const;
 
@@ -82,7 +109,10 @@ class ClearancePlan {
   double radius_;
   std::vector<char> link_admits_, side_admits_;
   std::vector<ShrunkPortal> shrunk_;
-  std::vector<int> component_, sector_, way_out_;
+  std::vector<int> component_, way_out_;
+  std::vector<InSector> sectors_;
+  std::vector<Passage> passages_;
+  std::vector<std::size_t> first_passage_;  ///< of a cell
 };
 
 }  // namespace exactvo::geometry::routing

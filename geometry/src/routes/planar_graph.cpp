@@ -11,6 +11,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "routes/edge_numbers.h"
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
@@ -34,10 +35,21 @@ Bits bits_of(Vec2 p) {
   return bits;
 }
 
+std::size_t hash_of(const Bits& b) {
+  return static_cast<std::size_t>((b.first * 0x9E3779B97F4A7C15u ^ b.second) * 0xD6E8FEB86659FD93u >> 7);
+}
+struct BitsHash {
+  std::size_t operator()(const Bits& b) const { return hash_of(b); }
+  std::size_t operator()(const std::pair<Bits, Bits>& ends) const {
+    return hash_of({hash_of(ends.first), hash_of(ends.second)});
+  }
+};
+
 /// Equal ones once: each pair of edges that meet is looked at.
 std::vector<CutEdge> edges_of_all(const std::vector<Obstacle>& obstacles) {
   std::vector<CutEdge> all;
-  std::map<std::pair<Bits, Bits>, std::size_t> by_ends;
+  all.reserve(obstacles.size());
+  std::unordered_map<std::pair<Bits, Bits>, std::size_t, BitsHash> by_ends;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const std::vector<Segment> edges = edges_of(obstacles[i]);
     const int solids = has_interior(obstacles[i]) ? 1 : 0;
@@ -64,10 +76,20 @@ Point crossing_of(const Segment& s, const Segment& t) {
   return {Rational(a.x + share * e.x), Rational(a.y + share * e.y)};
 }
 
+/// Whether two segments have one end in common and lie on two lines: they meet in nothing else. So do most edges that
+/// meet, the neighbours along an obstacle.
+bool meet_in_an_end_only(const Segment& s, const Segment& t) {
+  const bool a_in_t = s.a == t.a || s.a == t.b, b_in_t = s.b == t.a || s.b == t.b;
+  if (a_in_t == b_in_t) return false;
+  const Vec2 common = a_in_t ? s.a : s.b;
+  return orient(common, a_in_t ? s.b : s.a, common == t.a ? t.b : t.a) != 0;
+}
+
 /// Cuts both where they meet.
 void cut(CutEdge& one, CutEdge& two) {
   const Segment& s = one.segment;
   const Segment& t = two.segment;
+  if (meet_in_an_end_only(s, t)) return;
   const int c = orient(s.a, s.b, t.a), d = orient(s.a, s.b, t.b);
   if (c * d > 0) return;
   const int a = orient(t.a, t.b, s.a), b = orient(t.a, t.b, s.b);
@@ -100,7 +122,7 @@ void cut_all(std::vector<CutEdge>& edges) {
 /// Numbers points: equal ones get one number.
 class Vertices {
  public:
-  explicit Vertices(PlanarGraph& graph) : graph_(graph) {}
+  Vertices(PlanarGraph& graph, std::size_t expected) : graph_(graph) { doubles_.reserve(expected); }
 
   int number_of(const Point& p, const EdgeName& on) {
     const int next = static_cast<int>(graph_.vertices.size());
@@ -113,11 +135,6 @@ class Vertices {
   }
 
  private:
-  struct Hash {
-    std::size_t operator()(const Bits& b) const {
-      return static_cast<std::size_t>((b.first * 0x9E3779B97F4A7C15u ^ b.second) * 0xD6E8FEB86659FD93u >> 7);
-    }
-  };
   struct Less {
     bool operator()(const Vector<Rational>& p, const Vector<Rational>& q) const {
       const int x = cmp(p.x, q.x);
@@ -125,12 +142,11 @@ class Vertices {
     }
   };
   PlanarGraph& graph_;
-  std::unordered_map<Bits, int, Hash> doubles_;
+  std::unordered_map<Bits, int, BitsHash> doubles_;
   std::map<Vector<Rational>, int, Less> fractions_;
 };
 
-void add_pieces(CutEdge& edge, Vertices& vertices, std::map<std::pair<int, int>, std::size_t>& by_ends,
-                PlanarGraph& graph) {
+void add_pieces(CutEdge& edge, Vertices& vertices, EdgeNumbers& by_ends, PlanarGraph& graph) {
   const Segment& s = edge.segment;
   std::sort(edge.cuts.begin(), edge.cuts.end(),
             [&](const Point& p, const Point& q) { return along(p, q, s.a, s.b) < 0; });
@@ -139,9 +155,10 @@ void add_pieces(CutEdge& edge, Vertices& vertices, std::map<std::pair<int, int>,
   for (const Point& p : edge.cuts) {
     const int to = vertices.number_of(p, edge.name);
     if (to == from) continue;
-    const auto [known, fresh] = by_ends.emplace(std::minmax(from, to), graph.edges.size());
+    const int number = by_ends.emplace(from, to, static_cast<int>(graph.edges.size()));
+    const bool fresh = number == static_cast<int>(graph.edges.size());
     if (fresh) graph.edges.push_back({from, to, 0, edge.name});
-    PlanarGraph::Edge& piece = graph.edges[known->second];
+    PlanarGraph::Edge& piece = graph.edges[static_cast<std::size_t>(number)];
     piece.winding += piece.a == from ? edge.winding : -edge.winding;
     from = to;
   }
@@ -153,8 +170,8 @@ PlanarGraph planar_graph(const std::vector<Obstacle>& obstacles) {
   std::vector<CutEdge> edges = edges_of_all(obstacles);
   cut_all(edges);
   PlanarGraph graph;
-  Vertices vertices(graph);
-  std::map<std::pair<int, int>, std::size_t> by_ends;
+  Vertices vertices(graph, edges.size());
+  EdgeNumbers by_ends(edges.size());
   for (CutEdge& edge : edges) {
     if (edge.segment.a == edge.segment.b)
       graph.isolated.push_back(vertices.number_of(edge.segment.a, edge.name));

@@ -9,6 +9,7 @@
 #include "exactvo/geometry/box.h"
 #include "exactvo/geometry/require.h"
 #include "routes/chain.h"
+#include "routes/point_cells.h"
 #include "routes/point_route.h"
 #include "routes/realise.h"
 #include "routes/signs.h"
@@ -124,13 +125,19 @@ bool RouteMap::covers(Vec2 p) const {
 
 struct RoutePlan::State {
   RouteMap map;
+  std::optional<CellMap> point_cells;  ///< where the radius is 0
   ClearancePlan plan;
   std::mutex mutex;
   std::vector<std::unique_ptr<routing::WaySearch>> idle;  ///< scratch memory between queries
   std::once_flag arcs_made;
   std::optional<routing::ArcGraph> arcs;  ///< made for the first chain
 
-  State(const RouteMap& m, double radius) : map(m), plan(map.parts().cells, map.parts().grid, radius) {}
+  State(const RouteMap& m, double radius)
+      : map(m),
+        point_cells(radius == 0.0 && !m.is_for_chains_only()
+                        ? std::make_optional(routing::cells_for_points(m.parts().cells))
+                        : std::nullopt),
+        plan(point_cells ? *point_cells : map.parts().cells, map.parts().grid, radius) {}
 
   std::unique_ptr<routing::WaySearch> take() {
     const std::lock_guard<std::mutex> lock(mutex);
@@ -210,7 +217,7 @@ Located located(const RouteMap::Parts& parts, const ClearancePlan& plan, Vec2 x,
   const int triangle = triangle_of(parts.cells, parts.grid, x);
   if (triangle < 0) throw std::runtime_error("routes: no triangle holds " + to_string({x}));
   if (parts.cells.triangles[triangle].free) {
-    out.cell = parts.cells.cell_in(triangle, x);
+    out.cell = plan.map().cell_in(triangle, x);
   } else {
     out.blocked.inside = true;
     out.blocked.by.obstacle = polygon_round(parts.obstacles, x);

@@ -40,8 +40,8 @@ double way_through(Vec2 root, Vec2 left, Vec2 right, Vec2 t) {
 /// Where a ray from `root` meets the line from `right` to `left`, as a share of it: -1 where it passes to the right of
 /// both, 2 where to the left. An end nearer to the ray's line than `snap` lies on it: where the root itself lies on the
 /// line, an end behind it would come to lie on the wrong side.
-double share_met(Vec2 root, Vec2 ray, Vec2 right, Vec2 left, double snap) {
-  const double on_line = snap * norm(ray);
+double share_met(Vec2 root, Vec2 ray, double ray_length, Vec2 right, Vec2 left, double snap) {
+  const double on_line = snap * ray_length;
   const auto side_of = [&](Vec2 end) {
     const double side = cross(ray, end - root);
     return std::fabs(side) <= on_line ? 0.0 : side;
@@ -65,22 +65,20 @@ Vec2 nearest_point(Vec2 a, Vec2 b, Vec2 x) {
 }
 
 /// Too short to aim with: a ray that passes through its own corner.
-bool is_void(Vec2 ray, double size) {
-  return norm(ray) <= 0x1p-51 * size;
+bool is_void(double ray_length, double size) {
+  return ray_length <= 0x1p-51 * size;
 }
 
 }  // namespace
 
-WaySearch::WaySearch(const ClearancePlan& plan, std::size_t most) : plan_(plan), map_(plan.map()), most_(most) {
-  const std::size_t ends = 2 * map_.portals.size();
-  best_.assign(ends, kInfinity);
-  best_in_sector_.assign(ends, kInfinity);
-  seen_ = seen_in_sector_ = Marks(ends);
-  allowed_ = Marks(map_.cell_portals.size());
-  corridor_of_.assign(ends, -1);
-  place_in_corridor_.assign(ends, 0);
-  in_corridor_ = Marks(ends);
-}
+WaySearch::WaySearch(const ClearancePlan& plan, std::size_t most)
+    : plan_(plan),
+      map_(plan.map()),
+      most_(most),
+      best_(2 * map_.portals.size()),
+      best_in_sector_(2 * map_.portals.size()),
+      allowed_(map_.cell_portals.size()),
+      in_corridor_(2 * map_.portals.size()) {}
 
 std::optional<Way> WaySearch::find(Vec2 s, int start, Vec2 t, int goal) {
   Way way;
@@ -97,12 +95,6 @@ std::optional<Way> WaySearch::find(Vec2 s, int start, Vec2 t, int goal) {
   return std::nullopt;
 }
 
-WaySearch::Ends WaySearch::ends_seen(const CellMap::CellPortal& p) const {
-  const ShrunkPortal& q = plan_.shrunk(p.portal);
-  if (p.is_left) return {q.from, q.to, q.from_turns, q.to_turns};
-  return {q.to, q.from, q.to_turns, q.from_turns};
-}
-
 int WaySearch::corner_at(int portal, Vec2 x) const {
   const ShrunkPortal& q = plan_.shrunk(portal);
   return 2 * portal + (norm(x - q.from) <= norm(x - q.to) ? 0 : 1);
@@ -115,7 +107,10 @@ bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
   fresh_ = 0;
   corridors_.clear();
   goal_cell_ = goal;
-  for (Marks* marks : {&seen_, &seen_in_sector_, &allowed_, &in_corridor_}) marks->clear();
+  best_.clear();
+  best_in_sector_.clear();
+  allowed_.clear();
+  in_corridor_.clear();
   for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_.add(c);
   open_start(s, start);
   const std::size_t most = std::min(most_, 1000000 + 1000 * map_.cell_portals.size());
@@ -148,13 +143,11 @@ bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
 }
 
 void WaySearch::open_start(Vec2 s, int start) {
-  for (const CellMap::CellPortal& p : map_.cell_portals[start]) {
-    const Portal& portal = map_.portals[p.portal];
-    const int to = p.is_left ? portal.right : portal.left;
-    if (!plan_.shrunk(p.portal).open || !may_enter(start, to)) continue;
-    const Ends e = ends_seen(p);
-    add({to, p.portal, -1, -1, e.left, e.right, s, e.left - s, e.right - s, e.left_turns, e.right_turns, 0.0});
-  }
+  for (const Passage& p : plan_.passages(start))
+    if (may_pass(p, start))
+      add({p.to, p.portal, -1, -1, p.left, p.right, s, p.left - s, p.right - s, p.left_turns, p.right_turns,
+           p.from_left, 0, 0.0, largest_of(s)},
+          p);
 }
 
 void WaySearch::queue_fresh(Vec2 t) {
@@ -175,44 +168,43 @@ int WaySearch::next_from_queue(double& bound) {
 }
 
 bool WaySearch::is_outdone(const Node& node) const {
-  return node.corner >= 0 && is_outdone_at(node.corner, node.length);
+  return node.corner >= 0 && is_outdone_at(node.corner, node.length, node.root_size);
 }
 
 /// The corner was reached before on a shorter way; or another corner round the same vertex was, so much earlier that
-/// going round from there is no longer.
-bool WaySearch::is_outdone_at(int corner, double length) const {
+/// going on from there to this one is shorter.
+bool WaySearch::is_outdone_at(int corner, double length, double size) const {
   constexpr double kSame = 0x1p-34;  // many times what rounding makes of the length of a way
-  const double clearly_less = length - kSame * (length + plan_.shrunk(corner / 2).size);
-  const int sector = plan_.sector(corner);
-  return (seen_.has(corner) && best_[corner] < clearly_less) ||
-         (seen_in_sector_.has(sector) && best_in_sector_[sector] + 2.0 * kPi * plan_.radius() < clearly_less);
+  const double clearly_less = length - kSame * (length + size);
+  const double* best = best_.find(corner);
+  if (best != nullptr && *best < clearly_less) return true;
+  const ClearancePlan::InSector& sector = plan_.sector(corner);
+  const ReachedInSector* reached = best_in_sector_.find(sector.number);
+  return reached != nullptr && reached->length + std::fabs(reached->at - sector.at) < clearly_less;
 }
 
 /// Several portals may end at one root, where it lies on them or where the disc just fits through them. What goes round
 /// such a root comes back to the same portal and sees the same there, bit for bit, and is not followed again.
-void WaySearch::add(const Node& node) {
-  const double size = std::max(size_of_root(node), plan_.shrunk(node.portal).size);
-  if (norm(node.left - node.root) <= kRounding * size || norm(node.right - node.root) <= kRounding * size) {
-    const Sight sight{static_cast<double>(node.corner),
-                      static_cast<double>(node.portal),
-                      static_cast<double>(node.cell),
-                      node.left.x,
-                      node.left.y,
-                      node.right.x,
-                      node.right.y,
-                      node.left_ray.x,
-                      node.left_ray.y,
-                      node.right_ray.x,
-                      node.right_ray.y};
-    const auto [known, fresh] = beside_root_.emplace(sight, node.length);
+void WaySearch::add(const Node& node, const Passage& through) {
+  const double size = std::max(node.root_size, through.size);
+  const double beside = kRounding * size * kRounding * size;
+  if (squared_norm(node.left - node.root) <= beside || squared_norm(node.right - node.root) <= beside) {
+    const Key key{static_cast<double>(node.corner),
+                  static_cast<double>(node.portal),
+                  static_cast<double>(node.cell),
+                  node.left.x,
+                  node.left.y,
+                  node.right.x,
+                  node.right.y,
+                  node.left_ray.x,
+                  node.left_ray.y,
+                  node.right_ray.x,
+                  node.right_ray.y};
+    const auto [known, fresh] = beside_root_.emplace(key, node.length);
     if (!fresh && known->second <= node.length) return;
     known->second = node.length;
   }
   nodes_.push_back(node);
-}
-
-double WaySearch::size_of_root(const Node& node) const {
-  return node.corner < 0 ? largest_of(node.root) : plan_.shrunk(node.corner / 2).size;
 }
 
 // --- Leaps ---
@@ -224,17 +216,14 @@ Crossing WaySearch::crossing_into(int portal, int cell) const {
 }
 
 /// The corridor that begins or goes on with this portal, crossed into `cell`, and the crossing's place in it.
-int WaySearch::corridor_from(int portal, int cell, int& place) {
+WaySearch::InCorridor WaySearch::corridor_from(int portal, int cell) {
   const int key = 2 * portal + (map_.portals[portal].right == cell ? 1 : 0);
-  if (!in_corridor_.has(key)) {
-    in_corridor_.add(key);
-    corridor_of_[key] = static_cast<int>(corridors_.size());
-    place_in_corridor_[key] = 0;
+  if (in_corridor_.find(key) == nullptr) {
+    in_corridor_.set(key, {static_cast<int>(corridors_.size()), 0});
     corridors_.emplace_back();
     corridors_.back().add(crossing_into(portal, cell));
   }
-  place = place_in_corridor_[key];
-  return corridor_of_[key];
+  return *in_corridor_.find(key);
 }
 
 /// False where the corridor ends before: at the goal, where there are several ways on or none, or another corridor.
@@ -243,31 +232,28 @@ bool WaySearch::grow(int number, int length) {
   while (corridor.size() < length) {
     const Crossing last = corridor[corridor.size() - 1];
     if (last.cell == goal_cell_) return false;
-    int portal = -1, cell = -1;
-    for (const CellMap::CellPortal& p : map_.cell_portals[last.cell]) {
-      const Portal& beyond = map_.portals[p.portal];
-      const int to = p.is_left ? beyond.right : beyond.left;
-      if (p.portal == last.portal || !plan_.shrunk(p.portal).open || !may_enter(last.cell, to)) continue;
-      if (portal >= 0) return false;
-      portal = p.portal;
-      cell = to;
+    const Passage* on = nullptr;
+    for (const Passage& p : plan_.passages(last.cell)) {
+      if (p.portal == last.portal || !may_pass(p, last.cell)) continue;
+      if (on != nullptr) return false;
+      on = &p;
     }
-    if (portal < 0) return false;
-    const int key = 2 * portal + (map_.portals[portal].right == cell ? 1 : 0);
-    if (in_corridor_.has(key)) return false;
-    in_corridor_.add(key);
-    corridor_of_[key] = number;
-    place_in_corridor_[key] = corridor.size();
-    corridor.add(crossing_into(portal, cell));
+    if (on == nullptr) return false;
+    const int key = 2 * on->portal + (on->from_left ? 1 : 0);
+    if (in_corridor_.find(key) != nullptr) return false;
+    in_corridor_.set(key, {number, corridor.size()});
+    corridor.add({on->portal, on->to, on->left, on->right, on->size});
   }
   return true;
 }
 
 /// Where the rays of the node's view meet the portal, as shares of it from right to left.
 std::pair<double, double> WaySearch::shares_seen(const Node& n, const Crossing& c) const {
-  const double snap = kRounding * std::max(size_of_root(n), c.size), width = norm(c.left - c.right);
+  const double snap = kRounding * std::max(n.root_size, c.size), width = norm(c.left - c.right);
   if (width < snap) return {-1.0, -1.0};
-  const auto share = [&](Vec2 ray) { return snapped(share_met(n.root, ray, c.right, c.left, snap), width, snap); };
+  const auto share = [&](Vec2 ray) {
+    return snapped(share_met(n.root, ray, norm(ray), c.right, c.left, snap), width, snap);
+  };
   return {share(n.right_ray), share(n.left_ray)};
 }
 
@@ -280,11 +266,9 @@ bool WaySearch::passes(const Node& n, const Crossing& c) const {
 /// Takes the view on through the cell behind `at`, if it passes one portal of it as a whole: then it sees no other.
 bool WaySearch::pass_on(const Node& n, Crossing& at) const {
   if (at.cell == goal_cell_) return false;
-  for (const CellMap::CellPortal& p : map_.cell_portals[at.cell]) {
-    const Portal& beyond = map_.portals[p.portal];
-    const int to = p.is_left ? beyond.right : beyond.left;
-    if (p.portal == at.portal || !plan_.shrunk(p.portal).open || !may_enter(at.cell, to)) continue;
-    const Crossing next = crossing_into(p.portal, to);
+  for (const Passage& p : plan_.passages(at.cell)) {
+    if (p.portal == at.portal || !may_pass(p, at.cell)) continue;
+    const Crossing next{p.portal, p.to, p.left, p.right, p.size};
     if (!passes(n, next)) continue;
     at = next;
     return true;
@@ -295,20 +279,19 @@ bool WaySearch::pass_on(const Node& n, Crossing& at) const {
 /// A view between two rays is taken through all portals that it passes without meeting an end: in between it has one
 /// successor each, with the same rays.
 void WaySearch::leap(int number) {
+  constexpr int kFewPortals = 12;  // are passed as fast one by one
   const Node n = nodes_[number];
-  const double size = size_of_root(n), size_here = std::max(size, plan_.shrunk(n.portal).size);
-  if (n.left_turns || n.right_turns || n.cell == goal_cell_ || is_void(n.left_ray, size_here) ||
-      is_void(n.right_ray, size_here))
-    return;
+  if (n.straight < kFewPortals || n.cell == goal_cell_) return;
+  const double size_here = std::max(n.root_size, plan_.shrunk(n.portal).size);
+  if (is_void(norm(n.left_ray), size_here) || is_void(norm(n.right_ray), size_here)) return;
   if (norm(n.left - n.root) <= kRounding * size_here || norm(n.right - n.root) <= kRounding * size_here) return;
-  const View view{n.root, n.left_ray, n.right_ray, kRounding, size};
+  const View view{n.root, n.left_ray, n.right_ray, kRounding, n.root_size};
   Crossing at = crossing_into(n.portal, n.cell);
   do {
-    int first = 0;
-    const int corridor = corridor_from(at.portal, at.cell, first);
-    const auto grown = [&](int length) {
+    const auto [corridor, first] = corridor_from(at.portal, at.cell);
+    const auto grown = [&, number = corridor](int length) {
       ++steps_;
-      return grow(corridor, length);
+      return grow(number, length);
     };
     const auto passes_one = [&](const Crossing& c) { return passes(n, c); };
     at = corridors_[corridor][corridors_[corridor].last_passed(first, view, grown, passes_one)];
@@ -321,6 +304,7 @@ void WaySearch::leap(int number) {
   node.first_cell = n.cell;
   node.portal = at.portal;
   node.cell = at.cell;
+  node.from_left = map_.portals[at.portal].right == at.cell;
   node.right = at.right + right * (at.left - at.right);
   node.left = at.right + left * (at.left - at.right);
 }
@@ -332,78 +316,83 @@ void WaySearch::expand(int number) {
     nodes_.push_back(n);
     return;
   }
-  for (const CellMap::CellPortal& p : map_.cell_portals[n.cell]) {
-    const Portal& portal = map_.portals[p.portal];
-    const int to = p.is_left ? portal.right : portal.left;
-    if (p.portal == n.portal || !plan_.shrunk(p.portal).open || !may_enter(n.cell, to)) continue;
+  const double right_length = norm(n.right_ray), left_length = norm(n.left_ray);
+  for (const Passage& p : plan_.passages(n.cell)) {
+    if (p.portal == n.portal || !may_pass(p, n.cell)) continue;
     ++steps_;
-    const Ends e = ends_seen(p);
-    const double width = norm(e.left - e.right);
-    const double size = std::max(size_of_root(n), plan_.shrunk(p.portal).size), snap = kRounding * size;
-    if (width < snap) {
-      expand_to_point(number, p.portal, to, e, size);
+    const double size = std::max(n.root_size, p.size), snap = kRounding * size;
+    if (p.width < snap) {
+      expand_to_point(number, p, size);
       continue;
     }
-    const double right =
-        is_void(n.right_ray, size) ? -1.0 : snapped(share_met(n.root, n.right_ray, e.right, e.left, snap), width, snap);
-    const double left =
-        is_void(n.left_ray, size) ? 2.0 : snapped(share_met(n.root, n.left_ray, e.right, e.left, snap), width, snap);
-    const auto at = [&](double share) {
-      return share <= 0.0 ? e.right : share >= 1.0 ? e.left : e.right + share * (e.left - e.right);
+    const auto met = [&](Vec2 ray, double length) {
+      return snapped(share_met(n.root, ray, length, p.right, p.left, snap), p.width, snap);
     };
-    if (right > 0.0 &&
-        n.right_turns) {  // turning right round `right`, it sees from the portal's right end up to the ray
+    const double right = is_void(right_length, size) ? -1.0 : met(n.right_ray, right_length);
+    const double left = is_void(left_length, size) ? 2.0 : met(n.left_ray, left_length);
+    const auto at = [&](double share) {
+      return share <= 0.0 ? p.right : share >= 1.0 ? p.left : p.right + share * (p.left - p.right);
+    };
+    if (right > 0.0 && n.right_turns) {  // turning right round `right`, it sees from the right end up to the ray
       const Vec2 end = at(right);
-      turn(n, number, corner_at(n.portal, n.right), n.right, p.portal, to, end, e.right,
-           right >= 1.0 ? end - n.right : n.right_ray, e.right - n.right, right >= 1.0 && e.left_turns, e.right_turns);
+      turn(n, number, false, p,
+           {end, p.right, right >= 1.0 ? end - n.right : n.right_ray, p.right - n.right, right >= 1.0 && p.left_turns,
+            p.right_turns});
     }
     const double low = std::max(right, 0.0), high = std::min(left, 1.0);
     if (low < high) {
       const Vec2 l = at(high), r = at(low);
-      add({to, p.portal, number, n.corner, l, r, n.root, high >= 1.0 ? l - n.root : n.left_ray,
-           low <= 0.0 ? r - n.root : n.right_ray, high >= 1.0 && e.left_turns, low <= 0.0 && e.right_turns, n.length});
+      const bool is_straight = low > 0.0 && high < 1.0;
+      const int straight = is_straight ? std::min(n.straight + 1, 255) : 0;
+      add({p.to, p.portal, number, n.corner, l, r, n.root, high >= 1.0 ? l - n.root : n.left_ray,
+           low <= 0.0 ? r - n.root : n.right_ray, high >= 1.0 && p.left_turns, low <= 0.0 && p.right_turns, p.from_left,
+           static_cast<std::uint8_t>(straight), n.length, n.root_size},
+          p);
     }
     if (left < 1.0 && n.left_turns) {
       const Vec2 end = at(left);
-      turn(n, number, corner_at(n.portal, n.left), n.left, p.portal, to, e.left, end, e.left - n.left,
-           left <= 0.0 ? end - n.left : n.left_ray, e.left_turns, left <= 0.0 && e.right_turns);
+      turn(n, number, true, p,
+           {p.left, end, p.left - n.left, left <= 0.0 ? end - n.left : n.left_ray, p.left_turns,
+            left <= 0.0 && p.right_turns});
     }
   }
 }
 
 /// A portal that the disc just fits through is a point: it is seen whole or not at all, and turned at on both sides.
-void WaySearch::expand_to_point(int number, int portal, int to, const Ends& e, double size) {
+void WaySearch::expand_to_point(int number, const Passage& p, double size) {
   const Node n = nodes_[number];
   const auto beyond = [&](Vec2 ray, double side) {
-    return !is_void(ray, size) && side * cross(ray, e.left - n.root) > kRounding * size * norm(ray);
+    const double length = norm(ray);
+    return !is_void(length, size) && side * cross(ray, p.left - n.root) > kRounding * size * length;
+  };
+  const auto turn_round = [&](bool left) {
+    const Vec2 root = left ? n.left : n.right;
+    turn(n, number, left, p, {p.left, p.right, p.left - root, p.right - root, p.left_turns, p.right_turns});
   };
   if (beyond(n.left_ray, 1.0)) {
-    if (n.left_turns)
-      turn(n, number, corner_at(n.portal, n.left), n.left, portal, to, e.left, e.right, e.left - n.left,
-           e.right - n.left, e.left_turns, e.right_turns);
+    if (n.left_turns) turn_round(true);
   } else if (beyond(n.right_ray, -1.0)) {
-    if (n.right_turns)
-      turn(n, number, corner_at(n.portal, n.right), n.right, portal, to, e.left, e.right, e.left - n.right,
-           e.right - n.right, e.left_turns, e.right_turns);
+    if (n.right_turns) turn_round(false);
   } else {
-    add({to, portal, number, n.corner, e.left, e.right, n.root, e.left - n.root, e.right - n.root, e.left_turns,
-         e.right_turns, n.length});
+    add({p.to, p.portal, number, n.corner, p.left, p.right, n.root, p.left - n.root, p.right - n.root, p.left_turns,
+         p.right_turns, p.from_left, 0, n.length, n.root_size},
+        p);
   }
 }
 
-void WaySearch::turn(const Node& node, int parent, int corner, Vec2 root, int portal, int to, Vec2 left, Vec2 right,
-                     Vec2 left_ray, Vec2 right_ray, bool left_turns, bool right_turns) {
-  const double length = node.length + norm(root - node.root);
-  if (is_outdone_at(corner, length)) return;
-  const auto keep_least = [&](Marks& seen, std::vector<double>& best, int key) {
-    if (!seen.has(key) || length < best[key]) {
-      seen.add(key);
-      best[key] = length;
-    }
-  };
-  keep_least(seen_, best_, corner);
-  keep_least(seen_in_sector_, best_in_sector_, plan_.sector(corner));
-  add({to, portal, parent, corner, left, right, root, left_ray, right_ray, left_turns, right_turns, length});
+void WaySearch::turn(const Node& node, int parent, bool round_left, const Passage& p, const Sight& seen) {
+  const Vec2 root = round_left ? node.left : node.right;
+  const int corner = round_left ? node.left_corner() : node.right_corner();
+  const double length = node.length + norm(root - node.root), size = plan_.shrunk(node.portal).size;
+  if (is_outdone_at(corner, length, size)) return;
+  const double* best = best_.find(corner);
+  if (best == nullptr || length < *best) best_.set(corner, length);
+  const ClearancePlan::InSector& sector = plan_.sector(corner);
+  const ReachedInSector* reached = best_in_sector_.find(sector.number);
+  if (reached == nullptr || length < reached->length) best_in_sector_.set(sector.number, {length, sector.at});
+  add({p.to, p.portal, parent, corner, seen.left, seen.right, root, seen.left_ray, seen.right_ray, seen.left_turns,
+       seen.right_turns, p.from_left, 0, length, size},
+      p);
 }
 
 // --- From the last node back to the way ---

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
@@ -65,12 +66,18 @@ class WaySearch {
     int corner;  ///< the portal end at which the root lies: 2 portal + (0: from, 1: to); -1: the start
     Vec2 left, right, root, left_ray, right_ray;
     bool left_turns, right_turns;
+    bool from_left;  ///< the portal is crossed from its left cell
+    std::uint8_t
+        straight;  ///< portals that the view has passed without meeting an end, one after the other; at most 255
     double length;
+    double root_size;                        ///< m, as `ShrunkPortal::size`
     int first_cell = -1, first_portal = -1;  ///< where it was before it leapt; -1: it did not
+    int left_corner() const { return 2 * portal + (from_left ? 1 : 0); }
+    int right_corner() const { return 2 * portal + (from_left ? 0 : 1); }
   };
-  struct Ends {
-    Vec2 right, left;
-    bool right_turns, left_turns;
+
+  struct InCorridor {
+    int corridor, place;
   };
 
   bool search(Vec2 s, int start, Vec2 t, int goal, Way& way);
@@ -80,23 +87,25 @@ class WaySearch {
   bool pass_on(const Node& node, Crossing& at) const;
   bool passes(const Node& node, const Crossing& c) const;
   std::pair<double, double> shares_seen(const Node& node, const Crossing& c) const;
-  int corridor_from(int portal, int cell, int& place);
+  InCorridor corridor_from(int portal, int cell);
   bool grow(int corridor, int length);
   Crossing crossing_into(int portal, int cell) const;
   void expand(int number);
-  void expand_to_point(int number, int portal, int to, const Ends& e, double size);
-  double size_of_root(const Node& node) const;
-  void add(const Node& node);
-  void turn(const Node& node, int parent, int corner, Vec2 root, int portal, int to, Vec2 left, Vec2 right,
-            Vec2 left_ray, Vec2 right_ray, bool left_turns, bool right_turns);
+  void expand_to_point(int number, const Passage& p, double size);
+  void add(const Node& node, const Passage& through);
+  /// What is seen through a passage from one end of the node's interval.
+  struct Sight {
+    Vec2 left, right, left_ray, right_ray;
+    bool left_turns, right_turns;
+  };
+  void turn(const Node& node, int parent, bool round_left, const Passage& p, const Sight& seen);
   void queue_fresh(Vec2 t);
   int next_from_queue(double& bound);
   bool is_outdone(const Node& node) const;
-  bool is_outdone_at(int corner, double length) const;
-  bool may_enter(int from, int to) const {
-    return plan_.way_out(to) < 0 || allowed_.has(to) || plan_.way_out(from) == to;
+  bool is_outdone_at(int corner, double length, double size) const;
+  bool may_pass(const Passage& p, int from) const {
+    return !p.leads_into_dead_end || allowed_.has(p.to) || plan_.way_out(from) == p.to;
   }
-  Ends ends_seen(const CellMap::CellPortal& portal) const;
   int corner_at(int portal, Vec2 x) const;
   void trace(int number, Vec2 t, Way& way) const;
 
@@ -110,17 +119,20 @@ class WaySearch {
   std::vector<Node> nodes_;
   std::size_t fresh_ = 0;  ///< nodes from here on were made by the expansion under way
   std::vector<std::pair<double, int>> queue_;
-  std::vector<double> best_, best_in_sector_;
-  Marks seen_, seen_in_sector_, allowed_;
+  Remembered<double> best_;  ///< of a corner: the least length after which it was reached, m
+  struct ReachedInSector {
+    double length, at;
+  };
+  Remembered<ReachedInSector> best_in_sector_;
+  Marks allowed_;
   std::vector<Corridor> corridors_;
-  std::vector<int> corridor_of_, place_in_corridor_;  ///< of a portal as it is crossed: 2 portal + (1: from its left)
-  Marks in_corridor_;
+  Remembered<InCorridor> in_corridor_;  ///< a portal as it is crossed: 2 portal + (1: from its left)
   int goal_cell_ = -1;
   std::size_t steps_ = 0;
   bool was_second_search_ = false;
   /// Corner, portal, cell, interval and rays of a node.
-  using Sight = std::array<double, 11>;
-  std::map<Sight, double> beside_root_;  ///< lengths of nodes whose interval ends at their root
+  using Key = std::array<double, 11>;
+  std::map<Key, double> beside_root_;  ///< lengths of nodes whose interval ends at their root
 };
 
 }  // namespace exactvo::geometry::routing

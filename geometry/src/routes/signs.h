@@ -60,6 +60,8 @@ inline bool cross_properly(const Point& p, const Point& q, const Point& a, const
 
 /// Whether the segment pq keeps a distance of at least r from the segment ab; where r is 0, whether they do not touch.
 inline bool keeps_clear(const Point& p, const Point& q, const Point& a, const Point& b, double r) {
+  // Of two that do not touch, most lie on one side of the other's line.
+  if (r == 0.0 && (orient(p, q, a) * orient(p, q, b) > 0 || orient(a, b, p) * orient(a, b, q) > 0)) return true;
   return !is_too_near(p, a, b, r) && !is_too_near(q, a, b, r) && !is_too_near(a, p, q, r) && !is_too_near(b, p, q, r) &&
          !cross_properly(p, q, a, b);
 }

@@ -9,9 +9,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <sstream>
 #include <utility>
+
+#include "routes/edge_numbers.h"
 
 namespace exactvo::geometry::routing {
 namespace {
@@ -52,11 +53,11 @@ std::vector<Triangle> triangles_over(const PlanarGraph& graph, const Vec2 (&corn
   cdt.insert(points.begin(), points.end());
   std::vector<typename Cdt::Vertex_handle> handle(points.size());
   for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v) handle[v->info()] = v;
-  std::map<std::pair<int, int>, int> wall_of;
+  EdgeNumbers wall_of(graph.edges.size());
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const PlanarGraph::Edge& e = graph.edges[i];
     cdt.insert_constraint(handle[e.a], handle[e.b]);
-    wall_of[std::minmax(e.a, e.b)] = static_cast<int>(i);
+    wall_of.set(e.a, e.b, static_cast<int>(i));
   }
   int count = 0;
   for (auto f = cdt.all_faces_begin(); f != cdt.all_faces_end(); ++f) f->info() = cdt.is_infinite(f) ? -1 : count++;
@@ -69,7 +70,7 @@ std::vector<Triangle> triangles_over(const PlanarGraph& graph, const Vec2 (&corn
       t.wall[i] = -1;
       if (!f->is_constrained(i)) continue;
       const int a = f->vertex(Cdt::ccw(i))->info(), b = f->vertex(Cdt::cw(i))->info();
-      t.wall[i] = wall_of.at(std::minmax(a, b));
+      t.wall[i] = wall_of.at(a, b);
     }
   }
   return triangles;

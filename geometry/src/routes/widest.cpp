@@ -58,8 +58,9 @@ double largest_with(double guess, const F& f) {
     }
     low = guess * (1.0 - step);
   }
+  // From the last one on, not from the guess: that may be 0 where the distance to a crossing of walls rounds to it.
   for (double step = 0x1p-50; high == low; step *= 16.0) {
-    const double next = std::max(std::nextafter(guess, kInfinity), guess * (1.0 + step));
+    const double next = std::max(std::nextafter(low, kInfinity), low * (1.0 + step));
     (f(next) ? low : high) = next;
     if (low == next) high = low;
     if (!(next < kInfinity)) return low;
