@@ -26,7 +26,7 @@ constexpr const char* kMixed = R"({"name": "mixed", "time_step": 0.1, "time_limi
 
 /// Long enough to be killed in.
 constexpr const char* kRing = R"({"name": "ring", "time_step": 0.05, "time_limit": 40, "horizons": {"least": 0.3},
-  "robots": [{"circle": {"count": 1500, "radius": 400}, "max_speed": 1.5}],
+  "robots": [{"circle": {"count": 4000, "radius": 1000}, "max_speed": 1.5}],
   "moving_obstacles": [{"id": "tram", "polygon": [[-1, -9], [1, -9], [1, -6], [-1, -6]],
                         "path": [[0, -7], [0, 70]], "speed": 1.3}]})";
 
@@ -74,7 +74,7 @@ void write_killer(const Workplace& here) {
 rm -f ranks; touch before; sleep 0.1
 mpirun --oversubscribe -n 3 sh -c 'echo $OMPI_COMM_WORLD_RANK $$ >> ranks; exec "$@"' sh "$@" &
 run=$!
-for k in $(seq 2000); do [ killed.evr.snapshot -nt before ] && break; kill -0 $run || break; sleep 0.05; done
+for k in $(seq 9000); do [ killed.evr.snapshot -nt before ] && break; kill -0 $run || break; sleep 0.01; done
 if [ $whom = mpirun ]; then kill -$signal $run; else kill -$signal $(awk -v rank=$whom '$1 == rank { print $2 }' ranks); fi
 wait $run
 )");
@@ -99,15 +99,27 @@ TEST(CrowdOverRanks, ARankThatDiesEndsTheRunWithAWordAndResumeGoesOnToTheSameByt
     EXPECT_FALSE(here.has("killed.evr"));
   }
   // Whoever started it, another number of ranks goes on.
-  const Outcome stopped = here.run(run, kEnvironment + "sh kill.sh TERM mpirun");
-  EXPECT_NE(stopped.status, 0);
-  EXPECT_FALSE(here.has("killed.evr"));
   const Outcome outcome = here.run(run, over(2));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("goes on from killed.evr.snapshot"));
   EXPECT_EQ(results_of(outcome), results_of(whole));
   EXPECT_TRUE(here.read("killed.evr") == here.read("whole.evr"));
   EXPECT_FALSE(here.has("killed.evr.snapshot") || here.has("killed.evr.unfinished"));
+}
+
+TEST(CrowdOverRanks, AnMpirunThatIsToldToEndLeavesASnapshot) {
+  const Workplace here;
+  here.write("long.json", R"({"name": "long", "time_step": 0.05, "time_limit": 100000, "horizons": {"least": 0.3},
+    "robots": [{"circle": {"count": 400, "radius": 100000}, "max_speed": 1}]})");
+  write_killer(here);
+  const Outcome stopped = here.run(
+      "simulate long.json --engine crowd --guidance none --every 1000 --record killed.evr --snapshot-every 25 --resume",
+      kEnvironment + "sh kill.sh TERM mpirun");
+  EXPECT_NE(stopped.status, 0);
+  EXPECT_TRUE(stopped.out.empty()) << stopped.out;
+  EXPECT_THAT(stopped.err, HasSubstr("; --resume goes on"));
+  EXPECT_TRUE(here.has("killed.evr.snapshot") && here.has("killed.evr.unfinished"));
+  EXPECT_FALSE(here.has("killed.evr"));
 }
 
 TEST(CrowdOverRanks, OneProcessGoesOnWithWhatRanksLeft) {
