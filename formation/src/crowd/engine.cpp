@@ -435,24 +435,43 @@ class CrowdEngine final : public CrowdCore {
   }
 
   void collect(const Pack& pack, Scratch& s) const {
-    std::size_t at = 0;
+    s.others.count = 0;
     for (std::int64_t row = pack.cells.row0; row <= pack.cells.row1; ++row) {
       const std::int64_t nth = row - pack.cells.row0;
       const Stretch stretch = nth < kKeptStretches ? pack.stretches[nth] : robots.stretch(pack.cells, row);
-      const std::size_t count = stretch.to - stretch.from;
-      copy(robots.x.data() + stretch.from, count, s.others.x + at);
-      copy(robots.y.data() + stretch.from, count, s.others.y + at);
-      copy(robots.mx.data() + stretch.from, count, s.others.mx + at);
-      copy(robots.my.data() + stretch.from, count, s.others.my + at);
-      if (rule_.mixed)
-        for (std::size_t k = 0; k < count; ++k)
-          s.others.kind[at + k] = static_cast<std::int32_t>(kind_of(stretch.from + k));
-      const std::size_t first = std::max(pack.begin, stretch.from), last = std::min(pack.end, stretch.to);
-      for (std::size_t i = first; i < last; ++i)
-        s.self[i - pack.begin] = static_cast<std::int32_t>(at + i - stretch.from);
-      at += count;
+      const bool is_own = stretch.from < pack.end && pack.begin < stretch.to;
+      const bool is_outermost = row == pack.cells.row0 || row == pack.cells.row1;
+      if (is_outermost && !is_own && !rule_.mixed)
+        collect_near(pack, stretch, s);
+      else
+        collect_all(pack, stretch, s);
     }
-    s.others.count = at;
+  }
+
+  void collect_all(const Pack& pack, const Stretch& stretch, Scratch& s) const {
+    const std::size_t count = stretch.to - stretch.from, at = s.others.count;
+    copy(robots.x.data() + stretch.from, count, s.others.x + at);
+    copy(robots.y.data() + stretch.from, count, s.others.y + at);
+    copy(robots.mx.data() + stretch.from, count, s.others.mx + at);
+    copy(robots.my.data() + stretch.from, count, s.others.my + at);
+    if (rule_.mixed)
+      for (std::size_t k = 0; k < count; ++k)
+        s.others.kind[at + k] = static_cast<std::int32_t>(kind_of(stretch.from + k));
+    const std::size_t first = std::max(pack.begin, stretch.from), last = std::min(pack.end, stretch.to);
+    for (std::size_t i = first; i < last; ++i)
+      s.self[i - pack.begin] = static_cast<std::int32_t>(at + i - stretch.from);
+    s.others.count += count;
+  }
+
+  /// Of a strip that reaches beyond the window: those that are not farther from the box in y than the pack looks.
+  void collect_near(const Pack& pack, const Stretch& stretch, Scratch& s) const {
+    const Window w = grown(pack.box, pack.reach);
+    const auto within = [](std::int64_t y) {
+      return static_cast<std::int32_t>(std::clamp<std::int64_t>(y, -kLatticeEnd, kLatticeEnd));
+    };
+    const RobotColumns some{robots.x.data() + stretch.from, robots.y.data() + stretch.from,
+                            robots.mx.data() + stretch.from, robots.my.data() + stretch.from};
+    add_between(some, stretch.to - stretch.from, within(w.y0), within(w.y1), s.others);
   }
 
   /// A robot is the first of its own list, unless others stand in its place.

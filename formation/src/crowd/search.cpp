@@ -106,6 +106,22 @@ void nearest(const Candidates& among, const std::int32_t* x, const std::int32_t*
   return nearest_in<16>(among, x, y, none, out);
 }
 
+void add_some_between(const RobotColumns& robots, std::size_t count, std::int32_t low, std::int32_t high,
+                      Candidates& to) {
+  const Words words;
+  const auto lowest = hn::Set(words, low), highest = hn::Set(words, high);
+  for (std::size_t k = 0; k < count; k += hn::Lanes(words)) {
+    const auto y = hn::LoadU(words, robots.y + k);
+    const auto there = hn::FirstN(words, std::min(hn::Lanes(words), count - k));
+    const auto taken = hn::AndNot(hn::Or(hn::Lt(y, lowest), hn::Gt(y, highest)), there);
+    hn::StoreU(hn::Compress(hn::LoadU(words, robots.x + k), taken), words, to.x + to.count);
+    hn::StoreU(hn::Compress(y, taken), words, to.y + to.count);
+    hn::StoreU(hn::Compress(hn::LoadU(words, robots.mx + k), taken), words, to.mx + to.count);
+    hn::StoreU(hn::Compress(hn::LoadU(words, robots.my + k), taken), words, to.my + to.count);
+    to.count += hn::CountTrue(words, taken);
+  }
+}
+
 template <class Mask>
 HWY_INLINE std::uint32_t bits_from(Mask mask, std::size_t lane) {
   std::uint8_t bytes[8] = {};
@@ -173,12 +189,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace exactvo::formation::crowd {
 
+HWY_EXPORT(add_some_between);
 HWY_EXPORT(nearest);
 HWY_EXPORT(behind_others);
 HWY_EXPORT(count_all);
 
 int ranks_sought(int wanted) {
   return wanted <= 6 ? 6 : wanted <= 11 ? 11 : 16;
+}
+
+void add_between(const RobotColumns& robots, std::size_t count, std::int32_t low, std::int32_t high, Candidates& to) {
+  HWY_DYNAMIC_DISPATCH(add_some_between)(robots, count, low, high, to);
 }
 
 void find_nearest(const Candidates& among, const std::int32_t* x, const std::int32_t* y, const float* none, int ranks,

@@ -11,6 +11,14 @@ namespace exactvo::formation::crowd {
 /// Ranks for which there is code: the least of these that is at least `wanted`.
 int ranks_sought(int wanted);
 
+/// Robots side by side, as of Robots; arrays are read to a multiple of kPack.
+struct RobotColumns {
+  const std::int32_t *x = nullptr, *y = nullptr, *mx = nullptr, *my = nullptr;
+};
+
+/// Adds those of `count` robots with low <= y <= high, in their order, as candidates but for their kinds.
+void add_between(const RobotColumns& robots, std::size_t count, std::int32_t low, std::int32_t high, Candidates& to);
+
 /// The `ranks` nearest candidates of each lane, by squared distance in float cut to 16 bits below its leading one, then
 /// by number. A lane's own robot is among them. Distances from none[lane] on do not count. `x` and `y` are read to
 /// kPack. REQUIRES: ranks as of ranks_sought.
