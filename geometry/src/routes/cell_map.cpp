@@ -219,6 +219,56 @@ CellMap::CellMap(PlanarGraph g, const Vec2 (&corners)[4], double widest_gate)
   triangulate_and_link(corners);
   mark_crossings(*this);
   cut_into_cells(*this);
+  find_smooth_vertices();
+}
+
+CellMap::CellMap(const CellMap& map, const std::vector<int>& kept_links)
+    : graph(map.graph),
+      vertices(map.vertices),
+      triangles(map.triangles),
+      side_of(map.side_of),
+      sides(unmarked(map.sides)),
+      widest_gate_(map.widest_gate_) {
+  for (const int l : kept_links) links.push_back(map.links[l]);
+  mark_crossings(*this);
+  cut_into_cells(*this);
+}
+
+std::vector<Side> CellMap::unmarked(const std::vector<Side>& sides) {
+  std::vector<Side> out;
+  out.reserve(sides.size());
+  for (const Side& side : sides) out.push_back({side.a, side.b, side.right, side.left, {}});
+  return out;
+}
+
+void CellMap::find_smooth_vertices() {
+  constexpr double kCosine = 0.966;  // of 15 degrees: the arc round such a corner is its chord up to 0.003 of itself
+  struct Walls {
+    int count = 0;
+    Vec2 first;
+    bool is_smooth = false;
+  };
+  std::vector<Walls> at(graph.vertices.size());
+  const auto add = [&](int v, int other) {
+    Walls& w = at[v];
+    const Vec2 along = normalized(vertex(other).rounded() - vertex(v).rounded());
+    w.is_smooth = ++w.count == 2 && dot(w.first, along) <= -kCosine;
+    if (w.count == 1) w.first = along;
+  };
+  for (const PlanarGraph::Edge& e : graph.edges) {
+    add(e.a, e.b);
+    add(e.b, e.a);
+  }
+  is_smooth_.reserve(at.size());
+  for (const Walls& w : at) is_smooth_.push_back(w.is_smooth ? 1 : 0);
+}
+
+std::vector<int> CellMap::needed_links(double r) const {
+  constexpr double kMuchWider = 4.0;
+  std::vector<int> needed;
+  for (std::size_t l = 0; l < links.size(); ++l)
+    if (!is_smooth_[links[l].vertex] || links[l].length < kMuchWider * r) needed.push_back(static_cast<int>(l));
+  return needed;
 }
 
 /// As many links and crossings as vertices, up to a constant: where there are more, crowded walls are cut. (Maps

@@ -88,6 +88,11 @@ class CellMap {
   /// The cells of point_cells.h.
   struct ForPoints {};
   CellMap(const CellMap& map, ForPoints);
+  /// The cells that some of its Links make, by their numbers; the others cut nothing. REQUIRES: ascending.
+  CellMap(const CellMap& map, const std::vector<int>& kept_links);
+  /// The Links that a search for a disc of this radius cannot do without: all that are not much wider than it, and
+  /// those at corners. Along a smooth curve the vertices' Links tell a search nothing, and there are as many as cells.
+  std::vector<int> needed_links(double r) const;
 
   bool has_all_gates() const { return widest_gate_ == kAllGates; }
   double widest_gate() const { return widest_gate_; }
@@ -128,10 +133,14 @@ class CellMap {
   std::vector<int> first_cell;
 
  private:
+  /// Sides by their ends and triangles alone.
+  static std::vector<Side> unmarked(const std::vector<Side>& sides);
+  void find_smooth_vertices();
   void triangulate_and_link(const Vec2 (&corners)[4]);
   void number_sides();
 
   double widest_gate_;
+  std::vector<char> is_smooth_;  ///< of the graph's vertices: two walls meet there that go on in almost one direction
 };
 
 }  // namespace exactvo::geometry::routing

@@ -106,6 +106,8 @@ ClearancePlan::ClearancePlan(const CellMap& map, const PieceTree& grid, double r
 }
 
 void ClearancePlan::decide_gates() {
+  link_admits_.reserve(map_->links.size());
+  side_admits_.reserve(map_->sides.size());
   for (const Link& link : map_->links) link_admits_.push_back(map_->link_admits(link, radius_));
   for (const Side& side : map_->sides) side_admits_.push_back(side.right >= 0 && map_->side_admits(side, radius_));
 }
@@ -118,6 +120,7 @@ void ClearancePlan::find_components() {
 }
 
 void ClearancePlan::shrink_all() {
+  shrunk_.reserve(map_->portals.size());
   for (const Portal& portal : map_->portals) {
     const bool passed = portal.right >= 0 && admits(portal);
     shrunk_.push_back(!passed ? ShrunkPortal{} : portal.link >= 0 ? shrunk_link(portal) : shrunk_side(portal));
@@ -208,14 +211,22 @@ void ClearancePlan::find_turns() {
   };
   std::vector<std::size_t> first{0};  // of a Link's crossings
   for (const Link& link : map_->links) first.push_back(first.back() + link.exits.size());
-  std::vector<std::vector<End>> meeting(first.back());
+  struct Crossing {
+    End ends[4];
+    int count = 0;
+    void add(int portal, bool is_from) {
+      if (count < 4) ends[count] = {portal, is_from};
+      ++count;
+    }
+  };
+  std::vector<Crossing> meeting(first.back());
   for (std::size_t p = 0; p < map_->portals.size(); ++p) {
     const Portal& portal = map_->portals[p];
     const int number = static_cast<int>(p);
     if (portal.link >= 0) {
       const std::size_t base = first[portal.link] + static_cast<std::size_t>(portal.piece);
-      if (portal.piece > 0) meeting[base - 1].push_back({number, portal.outward});
-      meeting[base].push_back({number, !portal.outward});
+      if (portal.piece > 0) meeting[base - 1].add(number, portal.outward);
+      meeting[base].add(number, !portal.outward);
       continue;
     }
     for (const bool is_from : {true, false}) {
@@ -224,18 +235,18 @@ void ClearancePlan::find_turns() {
       const std::vector<Link::Exit>& exits = map_->links[link].exits;
       std::size_t k = 0;
       while (map_->side_of[exits[k].triangle][exits[k].side] != portal.side) ++k;
-      meeting[first[link] + k].push_back({number, is_from});
+      meeting[first[link] + k].add(number, is_from);
     }
   }
   for (std::size_t l = 0; l < map_->links.size(); ++l) {
     for (std::size_t k = first[l]; k + 1 < first[l + 1]; ++k) {  // the last lies on the wall
-      const bool all_reach =
-          meeting[k].size() == 4 && std::all_of(meeting[k].begin(), meeting[k].end(), [&](const End& e) {
-            const ShrunkPortal& q = shrunk_[e.portal];
-            return q.open && !(e.is_from ? q.from_moved : q.to_moved);
-          });
+      const Crossing& c = meeting[k];
+      const bool all_reach = c.count == 4 && std::all_of(c.ends, c.ends + 4, [&](const End& e) {
+                               const ShrunkPortal& q = shrunk_[e.portal];
+                               return q.open && !(e.is_from ? q.from_moved : q.to_moved);
+                             });
       if (!all_reach) continue;
-      for (const End& e : meeting[k]) (e.is_from ? shrunk_[e.portal].from_turns : shrunk_[e.portal].to_turns) = false;
+      for (const End& e : c.ends) (e.is_from ? shrunk_[e.portal].from_turns : shrunk_[e.portal].to_turns) = false;
     }
   }
 }

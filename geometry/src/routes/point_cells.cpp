@@ -97,9 +97,8 @@ CellMap::CellMap(const CellMap& map, ForPoints)
       vertices(map.vertices),
       triangles(map.triangles),
       side_of(map.side_of),
+      sides(unmarked(map.sides)),
       widest_gate_(map.widest_gate_) {
-  sides.reserve(map.sides.size());
-  for (const Side& side : map.sides) sides.push_back({side.a, side.b, side.right, side.left, {}});
   CellJoiner joiner(*this);
   joiner.join_all();
   std::vector<int> number(triangles.size(), -1), portal_of(sides.size(), -1);

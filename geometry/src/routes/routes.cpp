@@ -125,7 +125,7 @@ bool RouteMap::covers(Vec2 p) const {
 
 struct RoutePlan::State {
   RouteMap map;
-  std::optional<CellMap> point_cells;  ///< where the radius is 0
+  std::optional<CellMap> own_cells;  ///< where the map's are more than the radius needs
   ClearancePlan plan;
   std::mutex mutex;
   std::vector<std::unique_ptr<routing::WaySearch>> idle;  ///< scratch memory between queries
@@ -134,10 +134,17 @@ struct RoutePlan::State {
 
   State(const RouteMap& m, double radius)
       : map(m),
-        point_cells(radius == 0.0 && !m.is_for_chains_only()
-                        ? std::make_optional(routing::cells_for_points(m.parts().cells))
-                        : std::nullopt),
-        plan(point_cells ? *point_cells : map.parts().cells, map.parts().grid, radius) {}
+        own_cells(cells_for(map.parts(), radius)),
+        plan(own_cells ? *own_cells : map.parts().cells, map.parts().grid, radius) {}
+
+  static std::optional<CellMap> cells_for(const RouteMap::Parts& parts, double radius) {
+    constexpr std::size_t kWorthIt = 2;  // times as many Links as are needed: cutting anew takes a few plans' time
+    if (parts.chains_only) return std::nullopt;
+    if (radius == 0.0) return routing::cells_for_points(parts.cells);
+    const std::vector<int> needed = parts.cells.needed_links(radius);
+    if (kWorthIt * needed.size() >= parts.cells.links.size()) return std::nullopt;
+    return CellMap(parts.cells, needed);
+  }
 
   std::unique_ptr<routing::WaySearch> take() {
     const std::lock_guard<std::mutex> lock(mutex);

@@ -64,7 +64,7 @@ Gate StraightWays::gate_of(int number, bool from_left) const {
   const int sense = from_left ? 1 : -1;
   return {Point(Rational((a.x + b.x) / 2), Rational((a.y + b.y) / 2)),
           {Rational(sense * d.y), Rational(-sense * d.x)},
-          norm(q.rounded() - p.rounded())};
+          length_of(d)};  // of the exact difference: gates of crossings of walls may lie in one double
 }
 
 bool StraightWays::is_gabriel(int number) const {
