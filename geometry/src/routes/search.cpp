@@ -3,12 +3,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <queue>
-#include <unordered_map>
-
-#include "exactvo/geometry/infinity.h"
-#include "exactvo/geometry/pi.h"
-#include "routes/funnel.h"
 
 namespace exactvo::geometry::routing {
 namespace {
@@ -19,14 +13,6 @@ constexpr double kRounding = 0x1p-45;
 
 /// A share of a way's length that is more than the search's rounding makes of it.
 constexpr double kSearchRounding = 0x1p-30;
-
-Vec2 mirrored(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 d = b - a;
-  const double squared = squared_norm(d);
-  if (squared == 0.0) return p;
-  const Vec2 n{-d.y, d.x};
-  return p - (2.0 * dot(p - a, n) / squared) * n;
-}
 
 /// The length of the shortest way from `root` through the interval to t.
 double way_through(Vec2 root, Vec2 left, Vec2 right, Vec2 t) {
@@ -56,12 +42,6 @@ double snapped(double share, double length, double snap) {
   if (std::fabs(share) * length < snap) return 0.0;
   if (std::fabs(share - 1.0) * length < snap) return 1.0;
   return share;
-}
-
-Vec2 nearest_point(Vec2 a, Vec2 b, Vec2 x) {
-  const Vec2 d = b - a;
-  const double squared = squared_norm(d);
-  return squared > 0.0 ? a + std::clamp(dot(x - a, d) / squared, 0.0, 1.0) * d : a;
 }
 
 /// Too short to aim with: a ray that passes through its own corner.
@@ -393,146 +373,6 @@ void WaySearch::turn(const Node& node, int parent, bool round_left, const Passag
   add({p.to, p.portal, parent, corner, seen.left, seen.right, root, seen.left_ray, seen.right_ray, seen.left_turns,
        seen.right_turns, p.from_left, 0, length, size},
       p);
-}
-
-// --- From the last node back to the way ---
-
-void WaySearch::trace(int number, Vec2 t, Way& way) const {
-  std::vector<const Node*> nodes;
-  for (int k = number; k >= 0; k = nodes_[k].parent) nodes.push_back(&nodes_[k]);
-  std::reverse(nodes.begin(), nodes.end());
-  std::vector<bool> from_left;       // of each portal of the way: whether it is crossed from its left cell
-  std::vector<std::size_t> last_of;  // of each node: the place of its last portal
-  std::unordered_map<int, std::size_t> first_place;  // of a portal
-  const auto pass = [&](int portal, int cell) {
-    first_place.emplace(portal, way.portals.size());
-    way.portals.push_back(portal);
-    from_left.push_back(map_.portals[portal].right == cell);
-  };
-  for (const Node* n : nodes) {
-    if (n->first_portal >= 0) {
-      Crossing at = crossing_into(n->first_portal, n->first_cell);
-      do pass(at.portal, at.cell);
-      while (pass_on(*n, at) && !(at.portal == n->portal && at.cell == n->cell));
-    }
-    pass(n->portal, n->cell);
-    last_of.push_back(way.portals.size() - 1);
-  }
-  const auto vertex_at = [&](int corner) {
-    const ShrunkPortal& q = plan_.shrunk(corner / 2);
-    return corner % 2 ? q.to_corner : q.from_corner;
-  };
-  const auto place_of = [&](int portal, std::size_t otherwise) {
-    const auto found = first_place.find(portal);
-    return found == first_place.end() ? otherwise : found->second;
-  };
-  std::vector<Waypoint> list;
-  const auto add_vertex = [&](int corner, std::size_t otherwise) {
-    const std::size_t at = place_of(corner / 2, otherwise);
-    const int vertex = vertex_at(corner);
-    if (vertex < 0 || plan_.shrunk(corner / 2).tight) return;
-    // Its portal's left cell sees `to` on the left.
-    list.push_back({-1, false, vertex, from_left[at] == (corner % 2 == 1), static_cast<int>(at)});
-  };
-
-  for (std::size_t k = 0; k < way.portals.size(); ++k)
-    if (plan_.shrunk(way.portals[k]).tight)
-      list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
-  int last = -1;
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    if (nodes[k]->corner < 0 || nodes[k]->corner == last) continue;
-    last = nodes[k]->corner;
-    add_vertex(last, last_of[k]);
-  }
-  // The last turn may be at an end of the last interval.
-  const Node& n = *nodes.back();
-  const Vec2 d = n.left - n.right;
-  const Vec2 goal = squared_norm(d) > 0.0 && cross(d, t - n.right) > 0.0 ? mirrored(t, n.right, n.left) : t;
-  int corner = -1;
-  if (cross(n.left - n.root, goal - n.root) > 0.0)
-    corner = corner_at(n.portal, n.left);
-  else if (cross(n.right - n.root, goal - n.root) < 0.0)
-    corner = corner_at(n.portal, n.right);
-  if (corner >= 0 && corner != last) add_vertex(corner, way.portals.size() - 1);
-
-  std::stable_sort(list.begin(), list.end(), [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
-  way.waypoints = std::move(list);
-  drop_repeated(way.waypoints);
-}
-
-/// Of waypoints in a row that are pieces of one gate, or the same turn, the first.
-void WaySearch::drop_repeated(std::vector<Waypoint>& list) const {
-  const auto same = [&](const Waypoint& a, const Waypoint& b) {
-    if ((a.portal < 0) != (b.portal < 0)) return false;
-    if (a.portal < 0) return a.vertex == b.vertex && a.on_left == b.on_left;
-    const Portal &p = map_.portals[a.portal], &q = map_.portals[b.portal];
-    return p.link >= 0 && p.link == q.link;
-  };
-  list.erase(std::unique(list.begin(), list.end(), same), list.end());
-}
-
-// --- The second search ---
-
-bool WaySearch::search_nearly_open(Vec2 s, int start, Vec2 t, int goal, Way& way) {
-  way.lower_bound = bound_;
-  // Portals that are clearly empty come last: a gate that the disc fits through may have some.
-  using Cost = std::pair<int, double>;  // of those, how many; then the length, m
-  struct Reached {
-    Cost cost{std::numeric_limits<int>::max(), kInfinity};
-    int through = -1;  ///< the portal
-    Vec2 at;
-  };
-  std::vector<Reached> reached(map_.cell_portals.size());
-  reached[start] = {{0, 0.0}, -1, s};
-  std::priority_queue<std::pair<Cost, int>, std::vector<std::pair<Cost, int>>, std::greater<>> queue;
-  queue.emplace(Cost{0, 0.0}, start);
-  while (!queue.empty()) {
-    const auto [cost, cell] = queue.top();
-    queue.pop();
-    if (cost > reached[cell].cost) continue;
-    if (cell == goal) break;
-    for (const CellMap::CellPortal& p : map_.cell_portals[cell]) {
-      const Portal& portal = map_.portals[p.portal];
-      if (portal.right < 0 || !plan_.admits(portal)) continue;
-      const ShrunkPortal& q = plan_.shrunk(p.portal);
-      const int to = p.is_left ? portal.right : portal.left;
-      const Vec2 next = nearest_point(q.from, q.to, reached[cell].at);
-      const Cost there{cost.first + (q.nearly ? 0 : 1), cost.second + norm(next - reached[cell].at)};
-      if (!(there < reached[to].cost)) continue;
-      reached[to] = {there, p.portal, next};
-      queue.emplace(there, to);
-    }
-  }
-  if (reached[goal].through < 0) return false;
-  std::vector<bool> from_left;
-  for (int c = goal; c != start;) {
-    const Portal& portal = map_.portals[reached[c].through];
-    from_left.push_back(portal.right == c);
-    way.portals.push_back(reached[c].through);
-    c = from_left.back() ? portal.left : portal.right;
-  }
-  std::reverse(way.portals.begin(), way.portals.end());
-  std::reverse(from_left.begin(), from_left.end());
-  pull_through(s, t, from_left, way);
-  return true;
-}
-
-/// The waypoints of the shortest curve through the portals of a way.
-void WaySearch::pull_through(Vec2 s, Vec2 t, const std::vector<bool>& from_left, Way& way) const {
-  std::vector<Waypoint> list;
-  for (std::size_t k = 0; k < way.portals.size(); ++k)
-    if (plan_.shrunk(way.portals[k]).tight)
-      list.push_back({way.portals[k], from_left[k], -1, false, static_cast<int>(k)});
-  const PortalRow row(plan_, way.portals, from_left);
-  for (const Turn& turn : turns_through(row, s, t)) {
-    const int vertex = row.vertex(turn.at, turn.left);
-    if (vertex >= 0 && !plan_.shrunk(row.portal(turn.at)).tight)
-      list.push_back({-1, false, vertex, turn.left, static_cast<int>(turn.at)});
-  }
-  for (const Waypoint& w : list) way.waypoints.push_back(w);
-  std::stable_sort(way.waypoints.begin(), way.waypoints.end(),
-                   [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
-  drop_repeated(way.waypoints);
 }
 
 }  // namespace exactvo::geometry::routing

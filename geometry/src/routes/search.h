@@ -39,6 +39,9 @@ struct Way {
   double lower_bound = 0.0;  ///< m; no route is shorter, up to rounding
 };
 
+/// p beyond the line ab.
+Vec2 mirrored(Vec2 p, Vec2 a, Vec2 b);
+
 /// Scratch memory of a search, to be used again and again by one thread.
 class WaySearch {
  public:
