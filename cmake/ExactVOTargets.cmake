@@ -5,7 +5,8 @@ include(GoogleTest)
 
 # exactvo_add_module(<name> [STATIC] SOURCES ... [CGAL_SOURCES ...] [PUBLIC targets...] [PRIVATE targets...])
 # The library exactvo::<name>, headers under <name>/include. CGAL_SOURCES are compiled with CGAL's own flags
-# (-frounding-math), which the plain and vectorised sources must not get.
+# (-frounding-math), which the plain and vectorised sources must not get: they are objects of a target of their own,
+# exactvo_<name>_cgal.
 function(exactvo_add_module name)
   cmake_parse_arguments(arg "STATIC" "" "SOURCES;CGAL_SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target exactvo_${name})
@@ -13,7 +14,7 @@ function(exactvo_add_module name)
   if(arg_STATIC)
     set(type STATIC)
   endif()
-  add_library(${target} ${type} ${arg_SOURCES} ${arg_CGAL_SOURCES})
+  add_library(${target} ${type} ${arg_SOURCES})
   add_library(exactvo::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target}
@@ -21,8 +22,17 @@ function(exactvo_add_module name)
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_compile_features(${target} PUBLIC cxx_std_17)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:exactvo_build_flags>)
+  # CGAL's warnings print to stderr; ours are errors and answers.
+  target_compile_definitions(${target} PRIVATE CGAL_NO_WARNINGS)
   if(arg_CGAL_SOURCES)
-    set_source_files_properties(${arg_CGAL_SOURCES} PROPERTIES COMPILE_OPTIONS "-frounding-math;-Wno-conversion;-Wno-shadow")
+    add_library(${target}_cgal OBJECT ${arg_CGAL_SOURCES})
+    set_target_properties(${target}_cgal PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD_MODE GROUP)
+    target_include_directories(${target}_cgal
+      PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/include ${CMAKE_CURRENT_SOURCE_DIR}/src)
+    target_compile_definitions(${target}_cgal PRIVATE CGAL_NO_WARNINGS)
+    target_link_libraries(${target}_cgal PRIVATE ${arg_PUBLIC} ${arg_PRIVATE} exactvo_build_flags)
+    target_compile_options(${target}_cgal PRIVATE -frounding-math -Wno-conversion -Wno-shadow)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_cgal>)
   endif()
   install(TARGETS ${target} EXPORT ExactVO-${name}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)

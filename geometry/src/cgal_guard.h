@@ -8,7 +8,7 @@
 /// What fails none the less becomes a CgalFailure with the values. CGAL's failure handlers are plain process-wide
 /// variables: saving and restoring them would race between threads and with the user's own CGAL, so they are left
 /// alone. Under their default (throw) they print nothing with g++, and warnings are compiled out (CGAL_NO_WARNINGS in
-/// geometry/CMakeLists.txt).
+/// cmake/ExactVOTargets.cmake).
 
 #include <CGAL/exceptions.h>
 

@@ -133,7 +133,7 @@ TEST_P(Kinds, EveryTargetLayoutAndThreadCountGivesTheSameBits) {
     EXPECT_EQ(widest.status, other.status);
     EXPECT_EQ(widest.active, other.active);
   };
-  for (const char* target : {"AVX2", "SSE4", "SSSE3"}) {
+  for (const char* target : {"AVX2", "SSE4", "SSE2"}) {
     if (!limit_batch_target(target)) continue;
     Batch<double> narrow(mixture(GetParam()));
     solve_batch(narrow.in(), narrow.out(), 0, narrow.problems().size());
@@ -414,7 +414,7 @@ const auto in_pieces = [](const auto& in, const auto& out) {
 };
 
 TEST(Batch, TheWalkBeginsAtTheHint) {
-  for (const char* target : {"", "AVX2", "SSE4", "SSSE3"}) {
+  for (const char* target : {"", "AVX2", "SSE4", "SSE2"}) {
     if (!limit_batch_target(target)) continue;
     expect_hints_followed<double>(all_at_once);
     expect_hints_followed<double>(on_threads);

@@ -221,3 +221,36 @@ def test_solutions_are_pickled():
     answer = lp.solve([(-1, 0)], [-0.5], (2, 0), max_speed=2)
     again = pickle.loads(pickle.dumps(answer))
     assert again == answer and again.check() == "none"
+
+
+@pytest.mark.parametrize("given", [{}, {"prove": True}, {"certificates": True}], ids=str)
+def test_answers_of_a_batch_are_pickled(given):
+    arrays = lp.batch_arrays(40, 3)
+    random = np.random.default_rng(7)
+    turn = random.uniform(0, 2 * np.pi, (40, 3))
+    arrays[0][:] = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    arrays[1][:] = random.uniform(-1, 0.5, (40, 3))
+    arrays[2][:] = random.uniform(-1, 1, (40, 2))
+    answer = lp.solve_batch(*arrays, max_speed=1.5, **given)
+    again = pickle.loads(pickle.dumps(answer))
+    for name in ("velocity", "violation", "status", "active", "proven"):
+        one, other = getattr(answer, name), getattr(again, name)
+        assert (one is None) == (other is None) and (one is None or one.tobytes() == other.tobytes())
+        assert other is None or not other.flags.writeable
+    assert (again.copied, again.scalar_count, again.exact_count) == (answer.copied, answer.scalar_count, answer.exact_count)
+    assert repr(again) == repr(answer)
+    if "certificates" in given:
+        assert (lp.check_batch(*arrays, again.certificates, max_speed=1.5) == again.certificates.present).all()
+        assert again.certificates.present.any()
+    else:
+        assert again.certificates is None
+
+
+def test_what_is_no_pickled_batch_is_refused():
+    batch = lp.solve_batch(*lp.batch_arrays(2, 1), max_speed=1.0)._native
+    state = batch.__getstate__()
+    blank = type(batch).__new__(type(batch))
+    with pytest.raises(ValueError, match="numbers are missing"):
+        blank.__setstate__((3,) + state[1:])
+    with pytest.raises(ValueError, match="another version"):
+        blank.__setstate__(state[:4])

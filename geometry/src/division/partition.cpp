@@ -52,7 +52,7 @@ Pieces partition_by_cgal(const std::vector<Kernel::Point_2>& points, PartitionMe
   return pieces;
 }
 
-ConvexPolygon from_cgal(const Traits::Polygon_2& piece) {
+ConvexPolygon piece_from_cgal(const Traits::Polygon_2& piece) {
   ConvexPolygon out;
   for (auto v = piece.vertices_begin(); v != piece.vertices_end(); ++v) out.vertices.push_back({v->x(), v->y()});
   return out;
@@ -63,7 +63,7 @@ std::vector<ConvexPolygon> pieces_by_cgal(const Ring& ring, PartitionMethod meth
   points.reserve(ring.size());
   for (const Vec2 p : ring) points.emplace_back(p.x, p.y);
   std::vector<ConvexPolygon> out;
-  for (const Traits::Polygon_2& piece : partition_by_cgal(points, method)) out.push_back(from_cgal(piece));
+  for (const Traits::Polygon_2& piece : partition_by_cgal(points, method)) out.push_back(piece_from_cgal(piece));
   return out;
 }
 

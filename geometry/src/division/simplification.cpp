@@ -17,13 +17,14 @@ namespace {
 
 namespace PS = CGAL::Polyline_simplification_2;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Vertex = PS::Vertex_base_2<Kernel>;
-using Face = CGAL::Constrained_triangulation_face_base_2<Kernel>;
-using Structure = CGAL::Triangulation_data_structure_2<Vertex, Face>;
-using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::No_constraint_intersection_tag>;
-using Triangulation = CGAL::Constrained_triangulation_plus_2<Delaunay>;
+using ChainVertex = PS::Vertex_base_2<Kernel>;
+using ChainFace = CGAL::Constrained_triangulation_face_base_2<Kernel>;
+using ChainStructure = CGAL::Triangulation_data_structure_2<ChainVertex, ChainFace>;
+using ChainDelaunay =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, ChainStructure, CGAL::No_constraint_intersection_tag>;
+using ChainTriangulation = CGAL::Constrained_triangulation_plus_2<ChainDelaunay>;
 
-Triangulation::Constraint_id insert(Triangulation& triangulation, const Chain& chain) {
+ChainTriangulation::Constraint_id insert(ChainTriangulation& triangulation, const Chain& chain) {
   std::vector<Kernel::Point_2> points;
   points.reserve(chain.points->size());
   for (const Vec2 p : *chain.points) points.emplace_back(p.x, p.y);
@@ -31,7 +32,8 @@ Triangulation::Constraint_id insert(Triangulation& triangulation, const Chain& c
 }
 
 // The remaining vertices stand in the order of the chain, so one walk finds them.
-std::vector<bool> remaining(const Triangulation& triangulation, Triangulation::Constraint_id id, const Chain& chain) {
+std::vector<bool> remaining(const ChainTriangulation& triangulation, ChainTriangulation::Constraint_id id,
+                            const Chain& chain) {
   const std::vector<Vec2>& points = *chain.points;
   std::vector<bool> kept(points.size(), false);
   std::size_t i = 0;
@@ -49,8 +51,8 @@ std::vector<bool> remaining(const Triangulation& triangulation, Triangulation::C
 std::vector<std::vector<bool>> kept_vertices(const std::vector<Chain>& chains, double tolerance) {
   const auto values = [&] { return std::to_string(chains.size()) + " chains, tolerance " + hex_text(tolerance); };
   return without_cgal_failures("kept_vertices", values, [&] {
-    Triangulation triangulation;
-    std::vector<Triangulation::Constraint_id> ids;
+    ChainTriangulation triangulation;
+    std::vector<ChainTriangulation::Constraint_id> ids;
     for (const Chain& chain : chains) ids.push_back(insert(triangulation, chain));
     PS::simplify(triangulation, PS::Squared_distance_cost(), PS::Stop_above_cost_threshold(tolerance * tolerance));
     std::vector<std::vector<bool>> kept;

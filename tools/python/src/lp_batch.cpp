@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "exactvo/vo/lp/batch.h"
 #include "exactvo/vo/lp/solvers.h"
@@ -279,6 +280,10 @@ py::dict as_arrays(const std::vector<std::optional<lp::Certificate>>& all) {
     for (std::size_t v = 0; v < std::min<std::size_t>(c.vertex.size(), 2); ++v)
       a.vertex.mutable_data()[2 * i + v] = as_number(c.vertex[v]);
   }
+  for (py::array array : {py::array(a.present), py::array(a.status), py::array(a.velocity), py::array(a.violation),
+                          py::array(a.gap), py::array(a.bound), py::array(a.contradiction), py::array(a.vertex),
+                          py::array(a.bound_multiplier), py::array(a.contradiction_multiplier)})
+    make_read_only(array);
   py::dict result;
   result["present"] = a.present;
   result["status"] = a.status;
@@ -372,8 +377,7 @@ struct Batch {
   std::vector<std::int32_t> active;
   lp::BatchCounts counts;
   bool is_copied = false;
-  bool is_certified = false;
-  std::vector<std::optional<lp::Certificate>> certificates;
+  py::object certificate_arrays = py::none();  ///< a dict, where they were asked for
 };
 
 /// Of the answer that the lanes gave, what binds; the disc, which they do not name, wherever it may.
@@ -392,12 +396,12 @@ lp::Solution solution_at(const Batch& batch, const BatchArrays& b, std::size_t i
   return s;
 }
 
-void certify(Batch& batch, const BatchArrays& b) {
-  batch.certificates.resize(batch.count);
+std::vector<std::optional<lp::Certificate>> certify(Batch& batch, const BatchArrays& b) {
+  std::vector<std::optional<lp::Certificate>> certificates(batch.count);
   for (std::size_t i = 0; i < batch.count; ++i) {
     lp::Proven answer{solution_at(batch, b, i), std::nullopt, false};
     prove(problem_at(b, i), answer);
-    batch.certificates[i] = std::move(answer.certificate);
+    certificates[i] = std::move(answer.certificate);
     const lp::Solution& s = answer.solution;
     if (answer.exact_stage) {
       batch.velocity[i] = s.velocity.x;
@@ -411,8 +415,9 @@ void certify(Batch& batch, const BatchArrays& b) {
       }
       ++batch.counts.exact;
     }
-    batch.proven[i] = batch.certificates[i].has_value();
+    batch.proven[i] = certificates[i].has_value();
   }
+  return certificates;
 }
 
 Batch solve_batch(py::handle normals, py::handle offsets, py::handle preferred, py::handle max_speed, py::handle hard,
@@ -427,7 +432,6 @@ Batch solve_batch(py::handle normals, py::handle offsets, py::handle preferred, 
   Batch batch;
   batch.count = b.count;
   batch.is_copied = b.is_copied;
-  batch.is_certified = certificates;
   batch.velocity.resize(2 * b.count);
   batch.violation.resize(b.count);
   batch.status.resize(b.count);
@@ -437,6 +441,7 @@ Batch solve_batch(py::handle normals, py::handle offsets, py::handle preferred, 
   std::optional<py::gil_scoped_release> released;
   if (b.count * b.lines > kLarge || certificates) released.emplace();
   require_in_range(b);
+  std::vector<std::optional<lp::Certificate>> proofs;
   if (b.count > 0) {
     const lp::BatchAnswers<double> answers{batch.velocity.data(),
                                            batch.velocity.data() + b.count,
@@ -447,8 +452,10 @@ Batch solve_batch(py::handle normals, py::handle offsets, py::handle preferred, 
                                            prove ? batch.proven.data() : nullptr};
     batch.counts =
         parallel ? solve_batch_parallel(b.problems, answers) : lp::solve_batch(b.problems, answers, 0, b.count);
-    if (certificates) certify(batch, b);
+    if (certificates) proofs = certify(batch, b);
   }
+  released.reset();
+  if (certificates) batch.certificate_arrays = as_arrays(proofs);
   return batch;
 }
 
@@ -466,6 +473,43 @@ py::array view(const std::vector<T>& data, std::size_t count, std::size_t column
 
 const Batch& batch_of(const py::object& self) {
   return self.cast<const Batch&>();
+}
+
+// --- Pickled ---
+
+template <class T>
+py::bytes bytes_of(const std::vector<T>& data) {
+  return {reinterpret_cast<const char*>(data.data()), data.size() * sizeof(T)};
+}
+
+template <class T>
+std::vector<T> numbers_of(const py::handle& bytes, std::size_t count) {
+  const auto text = bytes.cast<std::string_view>();
+  if (text.size() != count * sizeof(T)) throw py::value_error("not a pickled BatchSolution: numbers are missing");
+  std::vector<T> data(count);
+  std::copy(text.begin(), text.end(), reinterpret_cast<char*>(data.data()));
+  return data;
+}
+
+py::tuple state_of(const Batch& b) {
+  return py::make_tuple(b.count, bytes_of(b.velocity), bytes_of(b.violation), bytes_of(b.status), bytes_of(b.proven),
+                        bytes_of(b.active), b.counts.scalar, b.counts.exact, b.is_copied, b.certificate_arrays);
+}
+
+Batch batch_from(const py::tuple& state) {
+  if (state.size() != 10) throw py::value_error("not a pickled BatchSolution: of another version");
+  Batch b;
+  b.count = state[0].cast<std::size_t>();
+  b.velocity = numbers_of<double>(state[1], 2 * b.count);
+  b.violation = numbers_of<double>(state[2], b.count);
+  b.status = numbers_of<std::uint8_t>(state[3], b.count);
+  b.proven = numbers_of<std::uint8_t>(state[4], py::len(state[4]) == 0 ? 0 : b.count);
+  b.active = numbers_of<std::int32_t>(state[5], 3 * b.count);
+  b.counts.scalar = state[6].cast<std::size_t>();
+  b.counts.exact = state[7].cast<std::size_t>();
+  b.is_copied = state[8].cast<bool>();
+  b.certificate_arrays = state[9];
+  return b;
 }
 
 }  // namespace
@@ -493,9 +537,8 @@ void bind_lp_batch(py::module_& module) {
       .def_readonly("copied", &Batch::is_copied)
       .def_property_readonly("scalar_count", [](const Batch& b) { return b.counts.scalar; })
       .def_property_readonly("exact_count", [](const Batch& b) { return b.counts.exact; })
-      .def("certificate_arrays", [](const Batch& b) -> py::object {
-        return b.is_certified ? py::object(as_arrays(b.certificates)) : py::none();
-      });
+      .def("certificate_arrays", [](const Batch& b) { return b.certificate_arrays; })
+      .def(py::pickle(&state_of, &batch_from));
   module.def("lp_solve_batch", &solve_batch);
   module.def("lp_check_batch", &check_batch);
 }

@@ -28,19 +28,15 @@ template <class T>
 BatchCounts run_range(const BatchProblems<T>& in, const BatchAnswers<T>& out, std::size_t first, std::size_t last,
                       Leftover<T> leftover) {
   using D = hn::ScalableTag<T>;
-  const auto run = [&](auto hard, auto prove, auto active) {
-    using Here = Lockstep<D, decltype(hard)::value, decltype(prove)::value, decltype(active)::value>;
+  const auto run = [&](auto hard, auto index) {
+    using Here = Lockstep<D, decltype(hard)::value, decltype(index)::value>;
     return Here(in, out, leftover, conveyor_memory<T>(Here::memory(in.lines))).run(first, last);
   };
-  const auto with_active = [&](auto hard, auto prove) {
-    return out.active ? run(hard, prove, std::true_type()) : run(hard, prove, std::false_type());
-  };
-  const auto with_hard = [&](auto prove) {
-    return in.hard ? with_active(std::true_type(), prove) : with_active(std::false_type(), prove);
-  };
-  if constexpr (sizeof(T) == 8)
-    if (out.proven) return with_hard(std::true_type());
-  return with_hard(std::false_type());
+#if HWY_TARGET != HWY_SSE2  // where nothing better was built in twenty years, the one general variant is enough
+  if (!in.hard && out.active) return run(std::false_type(), std::true_type());
+  if (!in.hard) return run(std::false_type(), std::false_type());
+#endif
+  return run(std::true_type(), std::true_type());
 }
 
 BatchCounts run_double(const BatchProblems<double>& in, const BatchAnswers<double>& out, std::size_t first,

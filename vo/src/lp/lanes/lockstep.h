@@ -21,8 +21,11 @@ namespace exactvo::lp::HWY_NAMESPACE {
 template <class T>
 using Leftover = bool (*)(const BatchProblems<T>&, const BatchAnswers<T>&, std::size_t);
 
-template <class D, bool kHard, bool kProve, bool kActive>
+/// kHard: some lines may be hard; kIndex: numbers of lines are asked for, or hard lines need them. Two flags and no
+/// more: every flag doubles what is compiled for every target, so what is asked once a pack is asked at run time.
+template <class D, bool kHard, bool kIndex>
 class Lockstep {
+  static_assert(kIndex || !kHard, "hard lines are known by their numbers");
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
@@ -55,7 +58,7 @@ class Lockstep {
   }
 
  private:
-  static constexpr bool kIndex = kHard || kActive;  ///< whether numbers of lines are asked for
+  static constexpr bool kMayProve = sizeof(T) == 8;
   static constexpr std::size_t kLanes = hn::MaxLanes(D());
 
   static std::size_t stage_numbers(std::size_t lines) { return (3 * lines + 4) * kLanes; }
@@ -261,7 +264,7 @@ class Lockstep {
     p.py = hn::LoadU(d, in_.preferred_y + at);
     p.speed = hn::LoadU(d, in_.disc + at);
     p.hard_count = hn::Zero(d);
-    if (kHard) p.hard_count = load_counts(in_.hard + at);
+    if (kHard) p.hard_count = in_.hard ? load_counts(in_.hard + at) : hn::Zero(D());
     p.id = numbers_from(at);
     state.begin(hn::FirstN(d, kLanes));
     ask_for(std::min(at + packs_ * kLanes, (in_.count - 1) / kLanes * kLanes), state);
@@ -302,7 +305,7 @@ class Lockstep {
       stage_[state + lane] = in_.preferred_x[i];
       stage_[state + kLanes + lane] = in_.preferred_y[i];
       stage_[state + 2 * kLanes + lane] = in_.disc[i];
-      stage_[state + 3 * kLanes + lane] = kHard ? static_cast<T>(in_.hard[i]) : T(0);
+      stage_[state + 3 * kLanes + lane] = kHard && in_.hard ? static_cast<T>(in_.hard[i]) : T(0);
     }
     PackStates states;
     Pack<D>& p = states[0].pack;
@@ -366,8 +369,8 @@ class Lockstep {
       std::memset(out_.status + at, 0, kLanes);
     else
       for (std::size_t lane = 0; lane < kLanes; ++lane) out_.status[at + lane] = relaxed >> lane & 1U;
-    if (kActive) put_active(p, done);
-    if (!kProve) return;
+    if (kIndex && out_.active) put_active(p, done);
+    if (!proves()) return;
     std::memset(out_.proven + at, 1, kLanes);
     leave_unproven(p, done);
   }
@@ -391,17 +394,21 @@ class Lockstep {
       out_.velocity_y[i] = y[lane];
       out_.violation[i] = by[lane];
       out_.status[i] = relaxed >> lane & 1U;
-      if (kProve) out_.proven[i] = 1;
+      if (proves()) out_.proven[i] = 1;
     }
-    if (kActive) put_active(p, done);
-    if (kProve) leave_unproven(p, done);
+    if (kIndex && out_.active) put_active(p, done);
+    if (proves()) leave_unproven(p, done);
   }
 
-  HWY_INLINE void leave_unproven(const Pack<D>& p, M done) {
-    const D d;
-    const M relaxed = hn::And(done, p.relaxing), optimal = hn::AndNot(p.relaxing, done);
-    if (!hn::AllFalse(d, optimal)) leave(p, hn::AndNot(Proof<D>(p).optimum(), optimal));
-    if (!hn::AllFalse(d, relaxed)) leave(p, hn::AndNot(Proof<D>(p).relaxation(), relaxed));
+  HWY_INLINE bool proves() const { return kMayProve && out_.proven; }
+
+  HWY_NOINLINE void leave_unproven(const Pack<D>& p, M done) {
+    if constexpr (kMayProve) {
+      const D d;
+      const M relaxed = hn::And(done, p.relaxing), optimal = hn::AndNot(p.relaxing, done);
+      if (!hn::AllFalse(d, optimal)) leave(p, hn::AndNot(Proof<D>(p).optimum(), optimal));
+      if (!hn::AllFalse(d, relaxed)) leave(p, hn::AndNot(Proof<D>(p).relaxation(), relaxed));
+    }
   }
 
   void put_active(const Pack<D>& p, M done) const {
