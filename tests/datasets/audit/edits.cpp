@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -113,6 +114,19 @@ Scenario crowd() {
   return s;
 }
 
+/// Two meet head-on where they cannot pass; they wait for each other, then one plan moves both.
+Scenario passage() {
+  Scenario s = kinematic("passage");
+  s.guidance = formation::Guidance::route;
+  s.liveness = formation::Liveness::plan;
+  s.time_step = 0.15;
+  s.time_limit = 4.5;
+  s.robots = {robot("a", {-0.5, 0.0}, {2.5, 0.0}), robot("b", {0.5, 0.0}, {-2.5, 0.0})};
+  for (Robot& r : s.robots) r.radius = 0.4;
+  s.obstacles = {{"north", box({-1.5, 0.6}, {1.5, 1.0})}, {"south", box({-1.5, -1.0}, {1.5, -0.6})}};
+  return s;
+}
+
 Scenario three(const std::string& name) {
   Scenario s;
   s.guidance = formation::Guidance::none;
@@ -173,6 +187,7 @@ std::vector<ShortRun> short_runs() {
       {corner(), Method::orca, false},
       {corner(), Method::ivo_edge, false},
       {guided(corner()), Method::ivo, false},
+      {passage(), Method::ivo, false},
       {cart(), Method::ivo, false},
       {cart(), Method::orca, true},
       {crowd(), Method::ivo, false},
@@ -432,6 +447,38 @@ Edit change_consistently(Lines& lines, SeededRandom& random) {
   return {"row.robots.chosen", "moved", place};
 }
 
+/// Edits of plans alone, which are few lines among many: another way that may be as good, or not.
+Edit change_plan(json& plan, SeededRandom& random) {
+  json& moves = plan["moves"];
+  const std::size_t m = any(random, moves.size());
+  const double size = std::pow(10.0, random.uniform(-12.0, 0.5));
+  const std::string place = "move " + std::to_string(m);
+  switch (random.integer(0, 5)) {
+    case 0:
+      moves[m]["to"] = moved_by(moves[m]["to"], size * random.direction());
+      return {"plan.moves.to", "moved", place};
+    case 1:
+      moves.erase(m);
+      return {"plan.moves", "an entry less", place};
+    case 2:
+      std::swap(moves[m], moves[any(random, moves.size())]);
+      return {"plan.moves", "entries swapped", place};
+    case 3:
+      moves[m]["robot"] = 1 - moves[m]["robot"].get<int>();
+      return {"plan.moves.robot", "the other", place};
+    case 4: {
+      json& start = plan["robots"][any(random, plan["robots"].size())]["start"];
+      start = moved_by(start, size * random.direction());
+      return {"plan.robots.start", "moved", place};
+    }
+    default: {
+      json& row = plan[random.integer(0, 1) ? "row" : "from_row"];
+      row = row.get<int>() + random.integer(-2, 2);
+      return {"plan.row, plan.from_row", "others", place};
+    }
+  }
+}
+
 Edit change_anything(Lines& lines, SeededRandom& random) {
   const std::size_t line = any(random, lines.size());
   std::vector<Place> all;
@@ -460,9 +507,12 @@ Edit change_anything(Lines& lines, SeededRandom& random) {
 
 Edit edit(Lines& lines, SeededRandom& random) {
   const int kind = random.integer(0, 19);
-  Edit done = kind == 0  ? change_lines(lines, random)
-              : kind < 4 ? change_consistently(lines, random)
-                         : change_anything(lines, random);
+  const auto plan = std::find_if(lines.begin(), lines.end(), [](const json& line) { return line.contains("plan"); });
+  const bool in_plan = plan != lines.end() && random.integer(0, 1);
+  Edit done = in_plan     ? change_plan((*plan)["plan"], random)
+              : kind == 0 ? change_lines(lines, random)
+              : kind < 4  ? change_consistently(lines, random)
+                          : change_anything(lines, random);
   std::size_t rows = 0;
   for (const json& line : lines) rows += line.is_object() && line.contains("row");
   if (!lines.empty() && lines.back().is_object() && lines.back().contains("end") && lines.back()["end"].is_object() &&

@@ -45,6 +45,14 @@ TEST(AuditEdits, ThatOncePassedWronglyAreRejected) {
   }
 }
 
+/// One of the runs has a plan, or nothing above would be asked of plans.
+TEST(AuditEdits, PlansAreAmongWhatIsEdited) {
+  const auto has_plan = [](const ShortRun& run) {
+    return std::any_of(run.lines.begin(), run.lines.end(), [](const auto& line) { return line.contains("plan"); });
+  };
+  EXPECT_EQ(std::count_if(runs().begin(), runs().end(), has_plan), 1);
+}
+
 /// The second opinion sees what the first must.
 TEST(SecondOpinion, SeesCrudeForgeries) {
   const auto forged = [](const char* name, const auto& how) {

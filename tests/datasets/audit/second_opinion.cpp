@@ -15,8 +15,9 @@ namespace {
 using geometry::Vec2;
 using nlohmann::json;
 
-constexpr double kClose = 1e-9;  // m, m/s: what sampling in doubles can tell
-constexpr double kSame = 1e-6;   // of laws of motion that are integrated here in another way
+constexpr double kClose = 1e-9;      // m, m/s: what sampling in doubles can tell
+constexpr double kPlanClose = 2e-8;  // m: plans are rounded by a share of 1e-8 of the radii, here below a metre
+constexpr double kSame = 1e-6;       // of laws of motion that are integrated here in another way
 
 // --- Plain values out of JSON ---
 
@@ -86,6 +87,16 @@ double distance(const Outline& o, Vec2 p) {
   double least = 1e300;
   for (const auto& edge : o.edges) least = std::min(least, norm(p - nearest_on(edge, p)));
   return o.solid && inside(o, p) ? -least : least;
+}
+
+/// Of two segments; that of an end from the other segment, unless they cross.
+double distance(const std::pair<Vec2, Vec2>& one, const std::pair<Vec2, Vec2>& other) {
+  const auto side = [](const std::pair<Vec2, Vec2>& s, Vec2 p) { return cross(s.second - s.first, p - s.first); };
+  if (side(one, other.first) * side(one, other.second) < 0.0 && side(other, one.first) * side(other, one.second) < 0.0)
+    return 0.0;
+  return std::min({norm(one.first - nearest_on(other, one.first)), norm(one.second - nearest_on(other, one.second)),
+                   norm(other.first - nearest_on(one, other.first)),
+                   norm(other.second - nearest_on(one, other.second))});
 }
 
 // --- Scenarios ---
@@ -348,6 +359,7 @@ class Opinion {
       }
     }
     bodies();
+    for (const json& plan : plans_) check_plan(plan);
     return why_;
   }
 
@@ -373,6 +385,9 @@ class Opinion {
       bodies_[b.at("number")] = body;
     } else if (line.contains("outlook")) {
       outlooks_.push_back(line["outlook"]);
+    } else if (line.contains("plan")) {
+      plans_.push_back(line["plan"]);
+      if (plans_.back().at("row") != rows_.size()) wrong("a plan of another row");
     } else if (line.contains("row")) {
       const json& r = line["row"];
       Row row;
@@ -696,6 +711,35 @@ class Opinion {
     }
   }
 
+  /// It begins where its robots were; no move ends in an obstacle, or is nearer to one or to a robot of the plan than
+  /// it begins and radii allow.
+  void check_plan(const json& plan) {
+    const std::size_t from = plan.at("from_row");
+    if (from > plan.at("row").get<std::size_t>()) return wrong("a plan from a row to come");
+    std::map<std::size_t, Vec2> at;
+    for (const json& robot : plan.at("robots")) {
+      const std::size_t i = robot.at("robot");
+      at[i] = point(robot.at("start"));
+      if (rows_.at(from).robots.at(i).position != at[i]) return wrong("a plan that begins elsewhere");
+    }
+    for (const json& move : plan.at("moves")) {
+      const std::size_t i = move.at("robot");
+      const std::pair<Vec2, Vec2> way{at.at(i), point(move.at("to"))};
+      for (const Outline& o : obstacles_) {
+        if (distance(o, way.first) < radius_[i] - kPlanClose) continue;
+        if (distance(o, way.second) < radius_[i] - kPlanClose) wrong("a plan's move into an obstacle");
+        for (const auto& edge : o.edges)
+          if (distance(way, edge) < radius_[i] - kPlanClose) wrong("a plan's move along an obstacle");
+      }
+      for (const auto& [j, other] : at) {
+        const double reach = radius_[i] + radius_.at(j);
+        if (j == i || norm(way.first - other) < reach - kPlanClose) continue;
+        if (norm(other - nearest_on(way, other)) < reach - kPlanClose) wrong("a plan's move too near to a robot");
+      }
+      at[i] = way.second;
+    }
+  }
+
   /// Every edge lies in some body of every outlook; edges are edges.
   void bodies() {
     for (const auto& [number, body] : bodies_) {
@@ -732,7 +776,7 @@ class Opinion {
   std::vector<bool> cooperates_;
   std::vector<Row> rows_;
   std::map<std::size_t, BodyOf> bodies_;
-  std::vector<json> outlooks_;
+  std::vector<json> outlooks_, plans_;
   std::string why_;
 };
 
