@@ -314,7 +314,7 @@ double processor_time() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-using Answer = std::function<std::string(const LiveQuestion&)>;
+using AnswerOfPage = std::function<std::string(const LiveQuestion&)>;
 
 /// What is wrong with a question, as JSON for the page.
 void refuse(Response& response, const datasets::DataError& error) {
@@ -328,7 +328,7 @@ void refuse(Response& response, const datasets::DataError& error) {
 }
 
 void answer(const Request& request, Response& response, const OptionsOfRun& options_of, const char* type,
-            const Answer& answer_of) {
+            const AnswerOfPage& answer_of) {
   const Clock::time_point begin = Clock::now();
   const double processor_begin = processor_time();
   try {

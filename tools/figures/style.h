@@ -32,6 +32,8 @@ inline const char* series_dash(std::size_t i) {
 
 inline constexpr const char* kCollisionColour = "#e00000";
 inline constexpr const char* kSeparatorColour = "#b2182b";  ///< what separates a goal out of reach
+inline constexpr const char* kRouteColour = "#0072B2";
+inline constexpr const char* kGoalColour = "#CC79A7";
 inline constexpr const char* kObstacleFill = "#c9ccd2";
 inline constexpr const char* kObstacleLine = "#3f444d";
 

@@ -90,12 +90,6 @@ ExitCode convert(const ConvertFlags& flags) {
   return file.rejected.empty() ? ExitCode::success : ExitCode::negative;
 }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += " " + word;
-  return text;
-}
-
 Action declare_convert(CLI::App& app) {
   const auto flags = std::make_shared<ConvertFlags>();
   app.add_option("in", flags->in, "An obstacle file of any readable format, or a crowd's recording, .evr, for FILE.csv")

@@ -31,12 +31,6 @@ namespace {
 
 const std::vector<std::string> kUnits{"automatic", "metres", "degrees"};
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += " " + word;
-  return text;
-}
-
 void check_word(const std::string& option, const std::string& word, const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), word) != known.end()) return;
   throw UsageError(option, word, "one of" + listed(known) + suggestion(word, known));
@@ -136,6 +130,12 @@ OrderedJson code_of(const FileAnswer& answer) {
 }
 
 }  // namespace
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + word;
+  return text;
+}
 
 void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string& format_name) {
   app.add_option(

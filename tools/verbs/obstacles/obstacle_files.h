@@ -33,6 +33,9 @@ void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string
 /// Throws UsageError with the nearest known word. Reading goes on past bad obstacles.
 datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::string& format_name = "--format");
 
+/// Each with a space before it.
+std::string listed(const std::vector<std::string>& words);
+
 /// Throws UsageError where `format` is neither empty nor among `known`.
 void check_format(const std::string& option, const std::string& format, const std::vector<std::string>& known);
 

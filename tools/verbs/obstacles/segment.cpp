@@ -215,7 +215,7 @@ std::string words_of(const TakenApart& t) {
       s.trap_free.ellipse ? fmt::format("{:.6g} m^2 ({})", f.trap_free_area, word(s.trap_free_contains)) : "none");
 }
 
-std::string title_of(const std::vector<std::string>& files, std::size_t obstacles) {
+std::string title_of_shapes(const std::vector<std::string>& files, std::size_t obstacles) {
   const std::string name = std::filesystem::path(files.front()).filename().string();
   return fmt::format("{}{}: {}", name, files.size() > 1 ? " and others" : "", counted(obstacles, "obstacle"));
 }
@@ -224,7 +224,7 @@ void draw_figure(const std::vector<TakenApart>& all, const SegmentFlags& flags) 
   if (all.empty()) return message("no figure: no obstacle");
   std::vector<ObstacleShapes> shapes;
   for (const TakenApart& t : all) shapes.push_back(t.shapes);
-  write_figure(shapes_figure(shapes, title_of(flags.files, all.size())), flags.figure);
+  write_figure(shapes_figure(shapes, title_of_shapes(flags.files, all.size())), flags.figure);
 }
 
 // --- The verb ---

@@ -15,15 +15,9 @@ using geometry::Separated;
 
 namespace {
 
-constexpr const char* kRouteColour = "#0072B2";
 constexpr const char* kSweptColour = "#cfe3f1";
 constexpr const char* kStartColour = "#009E73";
-constexpr const char* kGoalColour = "#CC79A7";
 constexpr const char* kChainColour = "#D55E00";
-
-Points circle(Vec2 centre, double radius) {
-  return outline(geometry::Disc{centre, radius});
-}
 
 Points points_of(const Route& route) {
   Points points;
@@ -75,7 +69,7 @@ void add_chain(const Separated& separated, MapLayers& map) {
              fmt::format("with labels left offset 0.6,0.6 font ',11' tc rgb '{}'", kChainColour));
 }
 
-std::string title_of(const AnsweredRoute& answered, const AskedMap& map) {
+std::string title_of_route(const AnsweredRoute& answered, const AskedMap& map) {
   const std::string file = std::filesystem::path(map.file).filename().string();
   const std::string disc = fmt::format("{}: a disc of radius {:.6g} m", file, answered.question.radius);
   if (const auto* route = std::get_if<Route>(&*answered.answer))
@@ -96,12 +90,14 @@ Figure route_figure(const AnsweredRoute& answered, const AskedMap& asked) {
   add_obstacles(asked.shapes, true, map);
   if (const auto* separated = std::get_if<Separated>(&*answered.answer)) add_chain(*separated, map);
   if (route) map.curves("route", {points_of(*route)}, line_style(2.2, kRouteColour), false);
-  map.curves("disc at the start", {circle(question.start, question.radius)}, line_style(2.0, kStartColour), true);
-  map.curves("disc at the goal", {circle(question.goal, question.radius)}, line_style(2.0, kGoalColour), true);
+  map.curves("disc at the start", {outline(geometry::Disc{question.start, question.radius})},
+             line_style(2.0, kStartColour), true);
+  map.curves("disc at the goal", {outline(geometry::Disc{question.goal, question.radius})},
+             line_style(2.0, kGoalColour), true);
   constexpr const char* kMiddle = "with points pt 7 ps 0.5 lc rgb '{}'";
   map.curves("start", {{question.start}}, fmt::format(kMiddle, kStartColour), false, false);
   map.curves("goal", {{question.goal}}, fmt::format(kMiddle, kGoalColour), false, false);
-  return map.figure(title_of(answered, asked));
+  return map.figure(title_of_route(answered, asked));
 }
 
 }  // namespace exactvo::tools

@@ -15,13 +15,7 @@
 namespace exactvo::tools {
 namespace {
 
-constexpr const char* kRouteColour = "#0072B2";
 constexpr const char* kRobotColour = "#009E73";
-constexpr const char* kGoalColour = "#CC79A7";
-
-Points circle(Vec2 centre, double radius) {
-  return outline(geometry::Disc{centre, radius});
-}
 
 void add_chain(const std::vector<geometry::ChainPoint>& chain, MapLayers& map) {
   std::vector<Points> along, across;
@@ -56,7 +50,7 @@ Figure route_map_figure(const Decision& decision, const formation::RouteAhead& a
   add_chain(ahead.route.chain, map);
   if (!ahead.route.points.empty())
     map.curves("route from here", {ahead.route.points}, line_style(2.2, kRouteColour), false);
-  map.curves(robot.id, {circle(here, robot.radius)}, line_style(2.0, kRobotColour), true);
+  map.curves(robot.id, {outline(geometry::Disc{here, robot.radius})}, line_style(2.0, kRobotColour), true);
   if (ahead.heads_for) {
     map.curves("heads for", {{here, *ahead.heads_for}}, line_style(1.2, kRobotColour, " dt (4,3)"), false);
     map.curves("", {{*ahead.heads_for}}, fmt::format("with points pt 6 ps 1.2 lw 2 lc rgb '{}'", kRobotColour), false,
