@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 struct Asked {
   std::string out, routes;
   std::vector<std::string> suites, methods, peers;
-  std::size_t jobs = 0, seeds = 0;
+  std::size_t jobs = 0, seeds = 0, first_seed = 1;
   bool quick = false;
 };
 
@@ -95,11 +95,13 @@ std::vector<Job> jobs_of(const Asked& asked, const std::vector<ArenaMethod>& met
   known.emplace_back(kRoutesSuite);
   require_known("--suite", asked.suites, known);
   const Extent extent = asked.quick ? Extent::quick : Extent::full;
-  const auto seeds = asked.seeds > 0 ? std::optional<std::uint64_t>(asked.seeds) : std::nullopt;
+  Draws draws;
+  draws.first = asked.first_seed;
+  if (asked.seeds > 0) draws.count = asked.seeds;
   std::vector<Job> jobs;
   for (const std::string& suite : suite_names()) {
     if (!is_asked_for(suite, asked)) continue;
-    for (const Scene& scene : scenes_of(suite, extent, seeds))
+    for (const Scene& scene : scenes_of(suite, extent, draws))
       for (const ArenaMethod& method : methods)
         jobs.push_back(
             {{suite, scene.name, scene.seed, method.name}, [=] { return run_scene(scene, method, is_interrupted); }});
@@ -252,6 +254,7 @@ int main(int argc, char** argv) {
     options.text("--routes", asked.routes,
                  "Folder of Moving AI maps with lengths, NAME.map and NAME.lengths.tsv: suite routes");
     options.whole_number("--seeds", asked.seeds, 1, "Draws of each random scene");
+    options.whole_number("--first-seed", asked.first_seed, 1, "Seed of the first draw; 1 unless given");
     options.whole_number("--jobs", asked.jobs, 1, "Runs at a time");
     options.flag("--quick", asked.quick, "A few small scenes of each suite");
     if (!options.parse(argc, argv)) return 0;

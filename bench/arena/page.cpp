@@ -69,7 +69,7 @@ SuiteTable table_of(const std::string& suite, const std::vector<RunResult>& resu
   table.has_makespans = suite != "cross";
   std::vector<std::string> known;
   for (const Extent extent : {Extent::full, Extent::quick})
-    for (const Scene& scene : scenes_of(suite, extent, 1)) known.push_back(scene.name);
+    for (const Scene& scene : scenes_of(suite, extent, {1})) known.push_back(scene.name);
   std::set<std::string> there;
   for (const RunResult& r : results)
     if (r.suite == suite) {

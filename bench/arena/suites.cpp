@@ -25,7 +25,7 @@ std::string number(double x) {
 
 class Scenes {
  public:
-  Scenes(std::string suite, std::optional<std::uint64_t> seeds) : suite_(std::move(suite)), seeds_(seeds) {}
+  Scenes(std::string suite, const Draws& draws) : suite_(std::move(suite)), draws_(draws) {}
 
   void add(const std::string& name, std::function<Scenario()> make) {
     all_.push_back({suite_, name, 1, Success::all_arrive, std::move(make)});
@@ -34,7 +34,8 @@ class Scenes {
   template <class Make>
   void add_seeds(const std::string& name, std::uint64_t seeds, const Make& make,
                  Success success = Success::all_arrive) {
-    for (std::uint64_t seed = 1; seed <= seeds_.value_or(seeds); ++seed)
+    const std::uint64_t end = draws_.first + draws_.count.value_or(seeds);
+    for (std::uint64_t seed = draws_.first; seed < end; ++seed)
       all_.push_back({suite_, name, seed, success, [seed, make] {
                         SeededRandom random(seed);
                         return make(random);
@@ -44,7 +45,7 @@ class Scenes {
 
  private:
   std::string suite_;
-  std::optional<std::uint64_t> seeds_;
+  Draws draws_;
   std::vector<Scene> all_;
 };
 
@@ -139,11 +140,7 @@ void add_papers(Scenes& suite, bool full) {
 }
 
 void add_crosses(Scenes& suite, bool full) {
-  const auto with_random_margin = [](SeededRandom& random) {
-    const double margin = random.uniform(0.0, 0.25);
-    return scenes::cross(margin, random);
-  };
-  suite.add_seeds("margin 0 to 0.25 m", full ? 250 : 2, with_random_margin, Success::nobody_stands);
+  suite.add_seeds("margin 0 to 0.25 m", full ? 250 : 2, scenes::cross_with_any_margin, Success::nobody_stands);
 }
 
 void add_maps(Scenes& suite, bool full) {
@@ -196,10 +193,10 @@ std::vector<std::string> suite_names() {
   return names;
 }
 
-std::vector<Scene> scenes_of(const std::string& suite, Extent extent, std::optional<std::uint64_t> seeds) {
+std::vector<Scene> scenes_of(const std::string& suite, Extent extent, const Draws& draws) {
   for (const SuiteEntry& entry : entries()) {
     if (entry.info.name != suite) continue;
-    Scenes scenes(suite, seeds);
+    Scenes scenes(suite, draws);
     entry.add(scenes, extent == Extent::full);
     return std::move(scenes).all();
   }

@@ -37,7 +37,13 @@ struct SuiteInfo {
 const std::vector<SuiteInfo>& suites();
 std::vector<std::string> suite_names();
 
-/// `seeds`: how many of each random scene, instead of the suite's own number. REQUIRES: one of `suite_names`.
-std::vector<Scene> scenes_of(const std::string& suite, Extent extent, std::optional<std::uint64_t> seeds);
+/// Which draws of each random scene.
+struct Draws {
+  std::optional<std::uint64_t> count = {};  ///< the suite's own number unless given
+  std::uint64_t first = 1;                  ///< seed
+};
+
+/// REQUIRES: one of `suite_names`.
+std::vector<Scene> scenes_of(const std::string& suite, Extent extent, const Draws& draws);
 
 }  // namespace exactvo::bench

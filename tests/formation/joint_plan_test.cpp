@@ -12,6 +12,7 @@
 #include "decision/decision.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/vo/reciprocal.h"
+#include "liveness/distances.h"
 #include "liveness/groups.h"
 #include "liveness/plan.h"
 #include "support/seeded_random.h"
@@ -126,7 +127,8 @@ TEST(JointSearch, Properties1To3_EveryPlanIsASequenceOfClearMovesToTheGoals) {
   for (int k = 0; k < 40; ++k) {
     const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
     Problem p(walls, 2 + random.integer(0, 12), random);
-    const JointAnswer answer = JointSearch(p.joint).run(k, {200000, 3000});
+    const GuidedBy guided_by = k % 4 < 2 ? GuidedBy::lengths : GuidedBy::lanes;
+    const JointAnswer answer = JointSearch(p.joint).run(k, {200000, 3000}, guided_by);
     if (answer.end != SearchEnd::found) continue;
     ++found;
     const std::vector<Vec2> starts = positions(p.map, p.joint.starts);
@@ -142,6 +144,35 @@ TEST(JointSearch, Properties1To3_EveryPlanIsASequenceOfClearMovesToTheGoals) {
     EXPECT_LE(plan.size(), answer.moves.size());
   }
   EXPECT_GE(found, 35u);
+}
+
+/// A robot that goes along a street, and one that comes the other way: by lengths they meet on one line, with traffic
+/// they keep a robot's width apart.
+TEST(Traffic, WhoComesTheOtherWayTakesAnotherLane) {
+  const Walls walls({{{-40, -2}, {40, -2}}, {{-40, 2}, {40, 2}}});
+  Roadmap map(walls, {{-12, -1.44}, {12, 1.44}}, 0.5);
+  const PlaceNumber west = map.attach({-10, 0.1}, 0.5), east = map.attach({10, 0.1}, 0.5);
+  Traffic traffic(map);
+  const auto cost = [&](PlaceNumber a, PlaceNumber b) { return traffic.cost(a, b); };
+  const auto way = [&](PlaceNumber from, PlaceNumber to) {
+    return traffic.way_from(from, distances_to(map, to, 0.5, cost));
+  };
+  const auto nearest = [&](const std::vector<PlaceNumber>& a, const std::vector<PlaceNumber>& b) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const PlaceNumber p : a)
+      for (const PlaceNumber q : b)
+        if (std::fabs(map.place(p).x) < 6.0) least = std::min(least, norm(map.place(p) - map.place(q)));
+    return least;
+  };
+  const std::vector<PlaceNumber> there = way(west, east), back = way(east, west);
+  ASSERT_EQ(there.front(), west);
+  ASSERT_EQ(there.back(), east);
+  EXPECT_LT(nearest(there, back), 0.5) << "the street is no test";
+  traffic.add(there, 1.0);
+  EXPECT_GE(nearest(there, way(east, west)), 1.0);
+  EXPECT_EQ(way(west, east), there) << "who goes the same way may follow";
+  traffic.add(there, -1.0);
+  EXPECT_EQ(way(east, west), back);
 }
 
 TEST(JointSearch, Property4_TheSameSeedGivesTheSameMoves) {

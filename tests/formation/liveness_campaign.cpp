@@ -28,7 +28,9 @@ Scenario scene(const std::string& kind, int count, double size, std::uint64_t se
   if (kind == "box") return test_scenes::crowded_box(count, size, random);
   if (kind == "siding") return test_scenes::siding();
   if (kind == "cross") return test_scenes::cross(size, random);
-  std::fprintf(stderr, "KIND: found '%s', expected circle, street, door, rooms, box, siding or cross\n", kind.c_str());
+  if (kind == "crosses") return test_scenes::cross_with_any_margin(random);
+  std::fprintf(stderr, "KIND: found '%s', expected circle, street, door, rooms, box, siding, cross or crosses\n",
+               kind.c_str());
   std::exit(2);
 }
 

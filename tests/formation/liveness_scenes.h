@@ -159,6 +159,12 @@ inline Scenario cross(double margin, test::SeededRandom& random) {
   return s;
 }
 
+/// As navground draws it for each run.
+inline Scenario cross_with_any_margin(test::SeededRandom& random) {
+  const double margin = random.uniform(0.0, 0.25);
+  return cross(margin, random);
+}
+
 /// Two head-on in a corridor 1.5 m wide with a niche.
 inline Scenario siding() {
   Scenario s;

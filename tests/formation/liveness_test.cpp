@@ -2,6 +2,7 @@
 // Robots that are in each other's way: they turn to the right, and no half-plane between them is relaxed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <thread>
@@ -95,6 +96,23 @@ TEST(Liveness, NothingBetweenRobotsIsRelaxedInACrowd) {
   }
 }
 
+/// Robots in a jam that were held from all sides had half-planes that no double kept, a few 1e-15 m/s apart.
+TEST(Liveness, EveryDecisionOfALongJamIsOptimal) {
+  Scenario s = test_scenes::street(14, 4.0);
+  s.time_limit = 60.0;
+  SimulationOptions bias;
+  bias.liveness = Liveness::bias;
+  const Recording run = simulate(s, bias);
+  std::size_t others = 0;
+  for (const Step& row : run.steps)
+    for (const RobotStep& r : row.robots) others += r.status != lp::Status::optimal;
+  EXPECT_EQ(others, 0u);
+  const Metrics m = measure(s, run);
+  EXPECT_FALSE(m.all_arrived) << "the street is no test";
+  EXPECT_TRUE(m.collisions.empty());
+  EXPECT_EQ(m.uncertified_half_planes, 0u);
+}
+
 void expect_all_arrive(Scenario s, const SimulationOptions& options = {}) {
   s.time_limit = 400.0;
   const Recording run = simulate(s, options);
@@ -185,6 +203,13 @@ std::string as_json(const Scenario& s) {
   return "{\"name\": \"" + s.name + "\", \"robots\": [" + robots + "], \"obstacles\": [" + walls + "]}";
 }
 
+/// s, of the longest straight way at full speed.
+double straight_way(const Scenario& s) {
+  double longest = 0.0;
+  for (const Robot& r : s.robots) longest = std::max(longest, norm(r.goals[0] - r.position) / r.max_speed);
+  return longest;
+}
+
 void expect_all_arrive_by_default(const Scenario& as_drawn, double time_limit) {
   Scenario s = datasets::parse_scenario(as_json(as_drawn), "mine.json", ".");
   s.time_limit = time_limit;
@@ -202,7 +227,15 @@ TEST(Liveness, CirclesAndStreetsAsANewUserWritesThemArrive) {
 }
 
 TEST(Liveness, AStreetOfSixtyAsANewUserWritesItArrives) {
-  expect_all_arrive_by_default(test_scenes::street(60, 4.0), 400.0);
+  const Scenario s = test_scenes::street(60, 4.0);
+  expect_all_arrive_by_default(s, 6.0 * straight_way(s));
+}
+
+TEST(Liveness, TwelveOnACircleArriveInLessThanAThirdMoreThanTheStraightWay) {
+  const Scenario s = circle(12);
+  const Metrics m = measure(s, simulate(s));
+  ASSERT_TRUE(m.all_arrived) << m.outcome;
+  EXPECT_LE(*m.last_arrival_time, 1.3 * straight_way(s));
 }
 
 /// The bytes of every choice, with one, two and four runs at a time.
@@ -344,6 +377,32 @@ TEST(Liveness, WhoHeadsForItsNextGoalIsNotStalled) {
   EXPECT_TRUE(m.all_arrived) << m.outcome;
   ASSERT_TRUE(m.plans.has_value());
   EXPECT_EQ(m.plans->groups, 0u);
+}
+
+/// Who was at the end of its way stood there until the last robot of its plan was at the end of its own, although it
+/// had another goal to go to.
+TEST(Liveness, WhoHasGoneItsWayGoesOnToItsNextGoalWithoutTheOthers) {
+  Scenario s = test_scenes::street(14, 3.0);
+  s.time_limit = 400.0;
+  for (Robot& r : s.robots) r.goals.push_back(r.goals[0] + Vec2{r.goals[0].x > 0.0 ? 9.0 : -9.0, 0.0});
+  const Recording run = simulate(s);
+  const Metrics m = measure(s, run);
+  EXPECT_TRUE(m.all_arrived) << m.outcome;
+  EXPECT_TRUE(m.collisions.empty());
+  EXPECT_EQ(relaxed(run), 0u);
+  ASSERT_FALSE(run.plans.empty()) << "the street is no test";
+  const JointPlan& plan = run.plans.front();
+  const std::size_t end = run.plans.size() > 1 ? run.plans[1].row : run.steps.size() - 1;
+  double alone = 0.0;  // s, that some of the plan's robots went on and others were still by plan
+  for (std::size_t k = plan.row; k < end; ++k) {
+    std::size_t by_plan = 0;
+    for (const std::size_t i : plan.robots) {
+      const Mode mode = run.steps[k].robots[i].mode;
+      by_plan += mode == Mode::by_plan || mode == Mode::going_back;
+    }
+    alone += by_plan > 0 && by_plan < plan.robots.size() ? s.time_step : 0.0;
+  }
+  EXPECT_GT(alone, 1.0);
 }
 
 /// navground's Cross: 20 robots go to and fro for 300 s, with margins up to three radii wide. Nobody stands at the end.

@@ -70,7 +70,10 @@ PairConstraints at_rest(const Scenario& scenario, const std::vector<Anchor>& anc
   options.time_horizon = options.contact_time = time_horizon;
   const Party a = party(scenario, anchors, scene, i, {}), b = party(scenario, anchors, scene, j, {});
   const double centres = norm(a.disc.position - b.disc.position);
-  const bool is_in_contact = centres - (a.disc.radius + b.disc.radius) <= kContactSkin;
+  // With some rounding: where a robot is held from all sides, half-planes through 0 leave it 0, and others a region
+  // between doubles.
+  constexpr double kUsedUp = 1.001;
+  const bool is_in_contact = centres - (a.disc.radius + b.disc.radius) <= kUsedUp * kContactSkin;
   if (!is_in_contact) options.margin = kContactSkin;
   PairConstraints pair = half_each(a, b, options);
   if (is_in_contact)

@@ -175,11 +175,19 @@ Groups::Members Groups::everyone() const {
   return all;
 }
 
+Groups::Members Groups::members_of(const Group& g) const {
+  Members all;
+  for (const std::size_t i : g.who)
+    if (is_member(i) && &group(i) == &g) all.push_back(i);
+  return all;
+}
+
 Groups::Members Groups::with_groups_of(Members who) const {
-  Members more;
+  std::vector<std::size_t> numbers;
   for (const std::size_t i : who)
-    if (is_member(i)) more.insert(more.end(), group(i).who.begin(), group(i).who.end());
-  return merged(std::move(who), more);
+    if (is_member(i)) numbers.push_back(group_of_[i]);
+  for (const std::size_t g : merged(std::move(numbers), {})) who = merged(std::move(who), members_of(groups_[g]));
+  return who;
 }
 
 /// All that are joined to the seeds by gaps under a diameter, those next: over one gap, over two, and so on. Who keeps
@@ -285,7 +293,7 @@ void Groups::make_due_plans() {
     if (groups_[g].is_over || time_ - groups_[g].progress < kNoProgress * patience_ || is_stopped_()) continue;
     const int replans = groups_[g].replans + 1;
     constexpr int kThenAll = 3;
-    const Members who = groups_[g].who;
+    const Members who = members_of(groups_[g]);
     const bool all = replans >= kThenAll && now_.size() <= kEveryoneUpTo && fits(everyone(), history_.back(), replans);
     plan_for(all ? everyone() : as_many_as_fit(by_nearness_to(who), replans), who, replans);
   }
@@ -409,8 +417,11 @@ std::optional<std::vector<PlannedMove>> Groups::search(JointProblem problem, std
   int found = 0;
   end = PlanEnd::out_of_budget;
   const int wanted = radii.size() <= kChoosesUpTo ? kPlansToChooseFrom : 1;
+  const bool has_lanes = static_cast<double>(map.size() * radii.size()) <= kMostDistances;
   for (std::size_t calls = 0, limit = most; calls < limit && found < wanted && !is_stopped_();) {
-    const JointAnswer answer = joint.run(++seed_, {limit - calls, static_cast<std::size_t>(nodes)});
+    const bool in_lanes = has_lanes && seed_ % 2 == 0;  // where there is room for detours, lanes can be some
+    const JointAnswer answer = joint.run(++seed_, {limit - calls, static_cast<std::size_t>(nodes)},
+                                         in_lanes ? GuidedBy::lanes : GuidedBy::lengths);
     calls += answer.calls + 1;
     course_.search_nodes += answer.nodes;
     if (answer.end == SearchEnd::none_on_map) {
@@ -469,6 +480,7 @@ Groups::PlanEnd Groups::plan_from(const Members& members, const Members& seeds, 
   for (const std::size_t i : who) {
     group_of_[i] = groups_.size() - 1;
     of_robot_[i].failures = 0;
+    of_robot_[i].planned_goal = now_[i].goal_number;
   }
   ++course_.groups;
   course_.largest = std::max(course_.largest, who.size());
@@ -495,7 +507,7 @@ std::string Groups::plan_words(const Group& g) const {
 
 void Groups::dissolve(std::size_t number) {
   Group& g = groups_[number];
-  for (const std::size_t i : g.who) {
+  for (const std::size_t i : members_of(g)) {
     group_of_[i] = kNone;
     restart_watch(i);
   }
@@ -557,6 +569,19 @@ void Groups::advance(Group& g) {
   for (const std::size_t i : g.who) at.push_back(here[i]);
   g.following.advance(at);
   if (g.following.moves_left() < before) g.progress = time_;
+  let_go_on(g);
+}
+
+/// Who has gone its way and heads for its next goal does not wait until the others are there: nobody's move depends on
+/// it any more.
+void Groups::let_go_on(const Group& g) {
+  for (std::size_t k = 0; k < g.who.size(); ++k) {
+    const std::size_t i = g.who[k];
+    const bool is_on = is_member(i) && &group(i) == &g;
+    if (!is_on || !g.following.is_there(k) || now_[i].goal_number == of_robot_[i].planned_goal) continue;
+    group_of_[i] = kNone;
+    restart_watch(i);
+  }
 }
 
 void Groups::want() {

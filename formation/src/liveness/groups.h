@@ -71,7 +71,7 @@ class Groups {
   using Members = std::vector<std::size_t>;  ///< sorted
 
   struct Group {
-    Members who;
+    Members who;  ///< that it was planned for; who has left it is no member (`members_of`)
     Following following;
     std::size_t back_at = 0, back_to = 0;  ///< rows of the history: going back while the first is above the second
     double progress = 0.0;                 ///< s, when something was done last
@@ -80,12 +80,13 @@ class Groups {
     bool stands_still = false;  ///< in this step
   };
   struct OfRobot {
-    std::size_t goal_number = 0;  ///< that the next one is of
-    double shortest = 0.0;        ///< m, its way to the goal, since it was made shorter last
-    double since = 0.0;           ///< s
-    double planned_at = 0.0;      ///< s, when a plan for it was looked for last
-    int failures = 0;             ///< of planning, in a row
-    bool is_named = false;        ///< its stall was noted
+    std::size_t goal_number = 0;   ///< that the next one is of
+    double shortest = 0.0;         ///< m, its way to the goal, since it was made shorter last
+    double since = 0.0;            ///< s
+    double planned_at = 0.0;       ///< s, when a plan for it was looked for last
+    int failures = 0;              ///< of planning, in a row
+    std::size_t planned_goal = 0;  ///< number of the goal that it goes to by plan
+    bool is_named = false;         ///< its stall was noted
   };
   enum class PlanEnd { planned, none_on_map, out_of_budget, too_large };
   struct WithoutPlan {
@@ -99,6 +100,7 @@ class Groups {
 
   void advance();
   void advance(Group& g);
+  void let_go_on(const Group& g);
   void watch(const std::function<double(std::size_t)>& way_left);
   void make_due_plans();
   void want();
@@ -106,6 +108,7 @@ class Groups {
   void restart_watch(std::size_t robot);
 
   Members everyone() const;
+  Members members_of(const Group& g) const;
   double largest_radius(const Members& who) const;  ///< m
   Members cluster_of(const Members& seeds) const;
   std::vector<std::size_t> by_nearness_to(const Members& seeds) const;

@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
-#include <queue>
 #include <unordered_map>
 #include <utility>
+
+#include "liveness/distances.h"
 
 namespace exactvo::formation::detail {
 namespace {
 
 using Joint = std::vector<PlaceNumber>;
 
-constexpr float kFarAway = std::numeric_limits<float>::infinity();
 /// Of robots that push each other within a joint step, since each takes some of the stack. More can still move, in
 /// several steps: sequences of single moves need no chains at all, so that the search stays complete.
 constexpr std::size_t kLongestChain = 256;
@@ -36,27 +35,6 @@ class SplitMix64 {
  private:
   std::uint64_t state_;
 };
-
-/// m: from every place to the goal along ways that have room for the radius (Dijkstra).
-std::vector<float> distances_to(const Roadmap& map, PlaceNumber goal, double radius) {
-  std::vector<float> distance(map.size(), kFarAway);
-  using Entry = std::pair<float, PlaceNumber>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> open;
-  distance[goal] = 0.0f;
-  open.push({0.0f, goal});
-  while (!open.empty()) {
-    const auto [so_far, at] = open.top();
-    open.pop();
-    if (so_far > distance[at]) continue;
-    for (const PlaceNumber next : map.ways(at)) {
-      const float all = so_far + static_cast<float>(norm(map.place(at) - map.place(next)));
-      if (!(all < distance[next]) || map.room(next) < radius) continue;
-      distance[next] = all;
-      open.push({all, next});
-    }
-  }
-  return distance;
-}
 
 /// Robots by where they are, in square cells.
 class RobotGrid {
@@ -290,16 +268,35 @@ std::uint64_t digest_of(const Joint& at) {
 
 struct JointSearch::Data {
   explicit Data(JointProblem p) : problem(std::move(p)) {
+    const auto length = [&](PlaceNumber a, PlaceNumber b) { return length_of_way(*problem.map, a, b); };
     for (std::size_t i = 0; i < problem.goals.size() && !is_stopped(problem); ++i)
-      distances.push_back(distances_to(*problem.map, problem.goals[i], problem.radii[i]));
+      distances.push_back(distances_to(*problem.map, problem.goals[i], problem.radii[i], length));
   }
   bool can_each_alone() const {
     for (std::size_t i = 0; i < problem.starts.size(); ++i)
       if (distances[i][problem.starts[i]] == kFarAway) return false;
     return true;
   }
+  /// With lanes; some have none where it was stopped. REQUIRES: can_each_alone().
+  const std::vector<std::vector<float>>& lanes() {
+    constexpr int kRounds = 2;  // the first robots chose before there was traffic
+    if (!in_lanes.empty()) return in_lanes;
+    in_lanes = distances;
+    Traffic traffic(*problem.map);
+    const auto cost = [&](PlaceNumber a, PlaceNumber b) { return traffic.cost(a, b); };
+    std::vector<std::vector<PlaceNumber>> ways(distances.size());
+    for (int round = 0; round < kRounds; ++round)
+      for (std::size_t i = 0; i < distances.size(); ++i) {
+        if (is_stopped(problem)) return in_lanes;
+        traffic.add(ways[i], -1.0);
+        in_lanes[i] = distances_to(*problem.map, problem.goals[i], problem.radii[i], cost);
+        ways[i] = traffic.way_from(problem.starts[i], in_lanes[i]);
+        traffic.add(ways[i], 1.0);
+      }
+    return in_lanes;
+  }
   JointProblem problem;
-  std::vector<std::vector<float>> distances;
+  std::vector<std::vector<float>> distances, in_lanes;
 };
 
 namespace {
@@ -387,7 +384,7 @@ void add_constraints(Node& node, const Constraints& so_far, const JointProblem& 
 JointSearch::JointSearch(JointProblem problem) : data_(std::make_unique<Data>(std::move(problem))) {}
 JointSearch::~JointSearch() = default;
 
-JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget) {
+JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget, GuidedBy guided_by) {
   JointAnswer answer;
   if (data_->distances.size() < data_->problem.goals.size()) return answer;  // stopped
   if (!data_->can_each_alone()) {
@@ -396,8 +393,9 @@ JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget) {
   }
   const JointProblem& problem = data_->problem;
   SplitMix64 random(seed);
-  Generator generator(problem, data_->distances);
-  Tree tree(problem, data_->distances);
+  const std::vector<std::vector<float>>& distances = guided_by == GuidedBy::lanes ? data_->lanes() : data_->distances;
+  Generator generator(problem, distances);
+  Tree tree(problem, distances);
   std::vector<std::size_t> open{tree.add(problem.starts, 0, {})};
   answer.end = SearchEnd::none_on_map;
   while (!open.empty()) {

@@ -57,6 +57,12 @@ struct JointAnswer {
   std::size_t calls = 0, nodes = 0;
 };
 
+/// What each robot heads for first.
+enum class GuidedBy {
+  lengths,  ///< the shortest way to its goal
+  lanes     ///< a way on which few come the other way
+};
+
 /// One problem, searched as often as wanted: with other seeds, other ways are tried first.
 class JointSearch {
  public:
@@ -64,7 +70,7 @@ class JointSearch {
   explicit JointSearch(JointProblem problem);
   ~JointSearch();
 
-  JointAnswer run(std::uint64_t seed, const SearchBudget& budget);
+  JointAnswer run(std::uint64_t seed, const SearchBudget& budget, GuidedBy guided_by = GuidedBy::lengths);
 
  private:
   struct Data;

@@ -135,7 +135,7 @@ bool Following::may_finish(std::size_t move) const {
 void Following::advance(const std::vector<Vec2>& at) {
   constexpr double kThere = 1e-5;  // radii
   for (std::size_t i = 0; i < of_robot_.size(); ++i) {
-    if (next_[i] == of_robot_[i].size()) continue;
+    if (is_there(i)) continue;
     const std::size_t move = of_robot_[i][next_[i]];
     if (!(norm(at[i] - plan_[move].to) <= kThere * radii_[i]) || !may_finish(move)) continue;
     ++next_[i];
@@ -168,7 +168,7 @@ double Following::clear_share(std::size_t move, std::size_t earlier, double shar
 }
 
 Vec2 Following::within_reach(std::size_t robot, const std::vector<Vec2>& at) const {
-  if (next_[robot] == of_robot_[robot].size()) return at[robot];
+  if (is_there(robot)) return at[robot];
   const std::size_t move = of_robot_[robot][next_[robot]];
   double share = 1.0;
   for (const std::size_t earlier : plan_[move].after)

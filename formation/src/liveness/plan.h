@@ -36,6 +36,8 @@ class Following {
 
   const std::vector<PlannedMove>& plan() const { return plan_; }
   std::size_t moves_left() const { return left_; }
+  /// Whether the robot has no moves left.
+  bool is_there(std::size_t robot) const { return next_[robot] == of_robot_[robot].size(); }
 
   /// Takes note of moves that are done. `at`: m, where the robots are.
   void advance(const std::vector<Vec2>& at);

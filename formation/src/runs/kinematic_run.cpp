@@ -278,8 +278,7 @@ class KinematicRun {
   // --- Repair ---
 
   bool is_contradicted(std::size_t i, const RobotStep& step) const {
-    return step.status == lp::Status::relaxed || step.status == lp::Status::infeasible ||
-           (goes_by_plan(i) && held_by_all_[i]);
+    return step.status != lp::Status::optimal || (goes_by_plan(i) && held_by_all_[i]);
   }
 
   /// Instead of relaxing. As long as there are robots whose half-planes contradict each other, all pairs of these fall
@@ -308,6 +307,12 @@ class KinematicRun {
         choose_again(i, time, row.robots[i], &fallen[i]);
         if (is_contradicted(i, row.robots[i])) contradicted.insert(i);
       }
+    }
+    // Held from all sides, with less room than there is between doubles: it stands still, which they all allow.
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      if (row.robots[i].status != lp::Status::no_interior || goes_by_plan(i)) continue;
+      row.robots[i].preferred = {};
+      choose_again(i, time, row.robots[i], &fallen[i]);
     }
   }
 
