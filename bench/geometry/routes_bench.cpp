@@ -121,6 +121,19 @@ void ask_point(benchmark::State& state) {
   ask(state, 0.0);
 }
 
+/// The tree of gates is made before.
+void ask_widest(benchmark::State& state) {
+  const Field field(static_cast<int>(state.range(0)));
+  const RouteMap map(field.obstacles);
+  double sum = map.widest_radius(field.questions[0].first, field.questions[0].second);
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const auto& [start, goal] = field.questions[k++ % kQuestions];
+    sum += map.widest_radius(start, goal);
+  }
+  benchmark::DoNotOptimize(sum);
+}
+
 /// Mean of our lengths over the shortest; nothing where one contradicts it.
 std::optional<double> compared(const Field& field, const VisibilityGraph& graph, double radius) {
   constexpr double kSame = 1e-9;
@@ -164,6 +177,7 @@ BENCHMARK(ask_point)
     ->RangeMultiplier(10)
     ->Range(100, 100000)
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(ask_widest)->Name("routes/widest")->RangeMultiplier(10)->Range(100, 100000)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(make_visibility_graph, disc, kRadius)
     ->Name("visibility_graph/map")
     ->Arg(100)

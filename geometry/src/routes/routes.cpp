@@ -260,8 +260,9 @@ double RouteMap::widest_radius(Vec2 start, Vec2 goal) const {
   const int from = cells.cell_in(s, start), to = cells.cell_in(t, goal);
   const routing::GateTree& tree = parts_->gate_tree();
   if (!tree.connects(from, to)) return 0.0;
-  const double widest = std::min({tree.widest_radius(from, to), routing::clearance_of(cells, parts_->grid, start),
-                                  routing::clearance_of(cells, parts_->grid, goal), largest_radius()});
+  double widest = std::min(tree.widest_radius(from, to), largest_radius());
+  for (const Vec2 x : {start, goal})
+    if (!routing::is_clear(cells, parts_->grid, x, widest)) widest = routing::clearance_of(cells, parts_->grid, x);
   return widest >= kSmallestRadius ? widest : 0.0;
 }
 

@@ -49,17 +49,18 @@ bool is_wider(const CellMap& map, int one, int other) {
 /// none.
 template <typename F>
 double largest_with(double guess, const F& f) {
+  constexpr double kFirstStep = 0x1p-53;  // to a neighbour: the guess is mostly right, and each f near it is exact
   double low = guess, high = guess;
-  for (double step = 0x1p-50; !f(low); step *= 16.0) {
+  for (double step = kFirstStep; !f(low); step *= 16.0) {
     high = low;
     if (step >= 1.0 || low == 0.0) {
       low = 0.0;
       break;
     }
-    low = guess * (1.0 - step);
+    low = std::min(std::nextafter(low, 0.0), guess * (1.0 - step));
   }
   // From the last one on, not from the guess: that may be 0 where the distance to a crossing of walls rounds to it.
-  for (double step = 0x1p-50; high == low; step *= 16.0) {
+  for (double step = kFirstStep; high == low; step *= 16.0) {
     const double next = std::max(std::nextafter(low, kInfinity), low * (1.0 + step));
     (f(next) ? low : high) = next;
     if (low == next) high = low;
@@ -123,15 +124,16 @@ double GateTree::widest_radius(int one, int other) const {
                       [&](double r) { return map_->side_admits(side, r); });
 }
 
+bool is_clear(const CellMap& map, const PieceTree& grid, Vec2 x, double r) {
+  const Point p = x;
+  return grid.for_each_near(x, x, r, [&](int piece) {
+    const auto [a, b] = map.ends_of(piece);
+    return compare_segment_distance(p, map.vertex(a), map.vertex(b), r) >= 0;
+  });
+}
+
 double clearance_of(const CellMap& map, const PieceTree& grid, Vec2 x) {
   if (map.graph.vertices.empty()) return kInfinity;
-  const Point p = x;
-  const auto is_clear = [&](double r) {
-    return grid.for_each_near(x, x, r, [&](int piece) {
-      const auto [a, b] = map.ends_of(piece);
-      return compare_segment_distance(p, map.vertex(a), map.vertex(b), r) >= 0;
-    });
-  };
   // A distance at which some piece is found, then the least of those within it.
   double nearest = norm(map.vertex(0).rounded() - x);
   for (double r = 0x1p-20 * nearest; r < nearest; r *= 4.0) {
@@ -142,7 +144,7 @@ double clearance_of(const CellMap& map, const PieceTree& grid, Vec2 x) {
       return true;
     });
   }
-  return largest_with(nearest, is_clear);
+  return largest_with(nearest, [&](double r) { return is_clear(map, grid, x, r); });
 }
 
 }  // namespace exactvo::geometry::routing

@@ -31,6 +31,9 @@ class GateTree {
   std::vector<int> joined_;  ///< by which of `gates_` the cell came under its parent: increasing towards the root
 };
 
+/// Whether every piece stays at least r away from x. Exact.
+bool is_clear(const CellMap& map, const PieceTree& grid, Vec2 x, double r);
+
 /// The largest double r such that every piece stays at least r away from x; infinite where there are none.
 double clearance_of(const CellMap& map, const PieceTree& grid, Vec2 x);
 
