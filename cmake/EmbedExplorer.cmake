@@ -5,6 +5,7 @@
 # the end) are left out.
 # No other tool is needed to build the page. What asks a server (served.js) stands apart: pages from a file have none of
 # it.
+include(WriteIfChanged)
 
 # Compilers bound the length of one literal; adjacent ones are joined.
 function(exactvo_literals out text)
@@ -50,11 +51,5 @@ ${served_literals};
 
 }  // namespace exactvo::tools
 ")
-  set(written "")
-  if(EXISTS "${out}")
-    file(READ "${out}" written)
-  endif()
-  if(NOT written STREQUAL source)
-    file(WRITE "${out}" "${source}")
-  endif()
+  exactvo_write_if_changed("${out}" "${source}")
 endfunction()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # exactvo_embed_templates(OUT FILES...): writes OUT, a source file with the text of the gnuplot templates FILES, so that
 # the program needs no files of its own to draw.
+include(WriteIfChanged)
+
 function(exactvo_embed_templates out)
   set(entries "")
   foreach(file ${ARGN})
@@ -21,11 +23,5 @@ ${entries}  };
 
 }  // namespace exactvo::tools
 ")
-  set(written "")
-  if(EXISTS "${out}")
-    file(READ "${out}" written)
-  endif()
-  if(NOT written STREQUAL source)
-    file(WRITE "${out}" "${source}")
-  endif()
+  exactvo_write_if_changed("${out}" "${source}")
 endfunction()

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 
+#include "bytes.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/vo/lp/solvers.h"
 #include "problem_kinds.h"
@@ -16,32 +16,7 @@ namespace {
 
 constexpr std::size_t kMostConstraints = 12;
 
-/// Numbers from the fuzzer's bytes: small integers (ties and degeneracies) or raw doubles within 2^+-60.
-class Bytes {
- public:
-  Bytes(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
-  bool empty() const { return left_ == 0; }
-
-  std::uint8_t byte() {
-    if (left_ == 0) return 0;
-    --left_;
-    return *data_++;
-  }
-
-  double number() {
-    const std::uint8_t kind = byte();
-    if (kind < 160) return static_cast<double>(static_cast<std::int8_t>(byte())) / (kind % 2 == 0 ? 8.0 : 3.0);
-    std::uint64_t bits = 0;
-    for (int k = 0; k < 8; ++k) bits = bits << 8 | byte();
-    double x = 0.0;
-    std::memcpy(&x, &bits, sizeof x);
-    return std::isfinite(x) && (x == 0.0 || (std::abs(x) > 0x1p-60 && std::abs(x) < 0x1p60)) ? x : 1.0;
-  }
-
- private:
-  const std::uint8_t* data_;
-  std::size_t left_;
-};
+using fuzz::Bytes;
 
 Problem problem_from(Bytes bytes) {
   Problem p;
