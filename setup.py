@@ -26,7 +26,7 @@ class CMakeBuild(build_ext):
     def build_extension(self, ext):
         build = Path(self.build_temp).resolve()
         generator = ["-G", "Ninja"] if shutil.which("ninja") else []
-        options = ["CMAKE_BUILD_TYPE=Release", "EXACTVO_PYTHON=ON", f"Python3_EXECUTABLE={sys.executable}"]
+        options = ["CMAKE_BUILD_TYPE=Release", "EXACTVO_PYTHON=ON", "EXACTVO_UNITY=ON", f"Python3_EXECUTABLE={sys.executable}"]
         options += [f"EXACTVO_{part}=OFF" for part in ("TOOLS", "TESTS", "BENCH", "EXAMPLES")]
         given = shlex.split(os.environ.get("CMAKE_ARGS", ""))
         subprocess.run(["cmake", "-S", ROOT, "-B", build, *generator, *(f"-D{o}" for o in options), *given], check=True)

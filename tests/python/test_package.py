@@ -85,7 +85,17 @@ def test_it_is_imported_from_anywhere(tmp_path):
     assert done.stdout.startswith(exactvo.__version__)
 
 
+def test_another_python_is_told_so(tmp_path):
+    shutil.copytree(FOLDER, tmp_path / "exactvo", ignore=shutil.ignore_patterns("*.so"))
+    (tmp_path / "exactvo/_exactvo.cpython-37m-x86_64-linux-gnu.so").touch()
+    done = subprocess.run([sys.executable, "-c", "import exactvo"], cwd=tmp_path, env={}, capture_output=True, text=True, check=False)
+    last = done.stderr.splitlines()[-1]
+    assert last.startswith("ImportError: exactvo: ") and sys.executable in last and "cpython-37m-x86_64-linux-gnu" in last, done.stderr
+
+
 def test_a_mistyped_name_gets_a_suggestion():
     with pytest.raises(AttributeError, match="did you mean 'simulate'"):
         exactvo.Simulate
+    done = subprocess.run([sys.executable, "-c", "import exactvo; exactvo.Simulate"], capture_output=True, text=True, check=False)
+    assert done.stderr.lower().count("did you mean") == 1, done.stderr
     assert exactvo.rvo2.PyRVOSimulator and not hasattr(exactvo, "__wrapped__")

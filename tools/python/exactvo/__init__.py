@@ -13,8 +13,16 @@ radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``c
 
 import typing as _typing
 
+try:
+    from ._exactvo import version as __version__
+except ModuleNotFoundError as _error:
+    # Else the first module that uses it would speak of a circular import.
+    if _error.name != "exactvo._exactvo":
+        raise
+    from .errors import _extension_missing
+
+    raise _extension_missing() from None
 from . import datasets, lp, routes, shapes, vo
-from ._exactvo import version as __version__
 from .crowd import Crowd, RobotKind, StepReport
 from .errors import ArgumentError, CrowdError, DataError, ExactVOError, MissingFileError, RouteNotProvenError
 from .explorer import ExplorerPage, view
@@ -76,4 +84,6 @@ def __getattr__(name: str) -> _typing.Any:
         return importlib.import_module("exactvo.rvo2")
     near = {known.lower(): known for known in __all__}
     found = difflib.get_close_matches(name.lower(), near, n=1, cutoff=0.6)
-    raise AttributeError(f"module 'exactvo' has no attribute {name!r}" + (f"; did you mean {near[found[0]]!r}?" if found else ""))
+    error = AttributeError(f"module 'exactvo' has no attribute {name!r}" + (f"; did you mean {near[found[0]]!r}?" if found else ""))
+    error.name = name  # or the interpreter adds a suggestion of its own
+    raise error

@@ -15,6 +15,8 @@ from __future__ import annotations
 
 import difflib
 import re
+import sys
+from pathlib import Path
 from typing import Any
 
 __all__ = [
@@ -56,6 +58,17 @@ def _restore(kind: type[ExactVOError], args: tuple[Any, ...], state: dict[str, A
     error.args = args
     error.__dict__.update(state)
     return error
+
+
+def _extension_missing() -> ImportError:
+    """What to say where the extension is not there, or is another Python's."""
+    folder = Path(__file__).parent
+    built = ", ".join(sorted(p.name.split(".")[1] for p in folder.glob("_exactvo.*.so"))) or "none"
+    return ImportError(
+        f"exactvo: {folder} has no extension for this Python, {sys.executable} ({sys.implementation.cache_tag}); built there: {built}. "
+        "Run the Python that it was built for, or build it for this one with -DPython3_EXECUTABLE (docs/guide/python.md)",
+        name="exactvo._exactvo",
+    )
 
 
 def _suggestion(found: str, expected: str) -> str:
