@@ -159,8 +159,14 @@ def make_tutorials(site, environment):
                "<h1>Tutorials</h1>\n<p>Python scripts; the tests run them.</p>\n<ul>\n" + "\n".join(rows) + "\n</ul>")
 
 
+def words_of(text):
+    """A documentation string in a folder of the site: names as code, pages of the guide as links, nothing that only doctest reads."""
+    words = re.sub(r"``?([^`\n]+)``?", r"<code>\1</code>", html.escape(re.sub(r" *# doctest: .*", "", text)))
+    return re.sub(r"\bdocs/guide/([a-z-]+)\.md", r'<a href="../guide/\1.html">\g<0></a>', words)
+
+
 def documentation_of(value):
-    return f'<pre class="words">{html.escape(inspect.getdoc(value) or "")}</pre>\n'
+    return f'<pre class="words">{words_of(inspect.getdoc(value) or "")}</pre>\n'
 
 
 def signature_of(value):
@@ -191,7 +197,7 @@ def make_python_reference(site, folder):
                 body += f'<h3 id="{public}.{member}"><code>{html.escape(public + "." + member + call)}</code></h3>\n'
                 body += documentation_of(getattr(value, member))
         site.write(pathlib.Path("python", name + ".html"), f"exactvo.{name}", body)
-        rows.append(f'<li><a href="{name}.html">exactvo.{name}</a>: {html.escape((module.__doc__ or "").strip().splitlines()[0])}</li>')
+        rows.append(f'<li><a href="{name}.html">exactvo.{name}</a>: {words_of((module.__doc__ or "").strip().splitlines()[0])}</li>')
     site.write(pathlib.Path("python/index.html"), "The Python package",
                f"<h1>The Python package</h1>\n{documentation_of(package)}<ul>\n" + "\n".join(rows) + "\n</ul>")
 

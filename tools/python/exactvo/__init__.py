@@ -6,9 +6,9 @@
 >>> run.plot()                                                 # doctest: +SKIP
 
 `exactvo.vo` velocity obstacles and free velocities, `exactvo.lp` the best velocity, `exactvo.routes` from A to B with proof,
-`exactvo.Crowd` many robots, `exactvo.rvo2` the names of
-Python-RVO2, `exactvo.simulate` scenarios, `exactvo.datasets` obstacle files. SI units: metres, seconds,
-radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``code``, ``file`` and ``where``. docs/guide/python.md.
+`exactvo.Crowd` many robots, `exactvo.rvo2` the names of Python-RVO2, `exactvo.simulate` scenarios, `exactvo.datasets` obstacle files.
+SI units: metres, seconds, radians. Options are keywords. Every error is an `exactvo.ExactVOError` with ``code``, ``file`` and
+``where``. The guide: docs/guide/python.md.
 """
 
 import typing as _typing
