@@ -142,7 +142,7 @@ def main():
             wrong += 1
             print("%d: not proven: %r" % (count + 1, error))
         count += 1
-    print("%d certificates, %d proven" % (count, count - wrong))
+    print("%d certificate%s, %d proven" % (count, "" if count == 1 else "s", count - wrong))
     sys.exit(2 if count == 0 else bool(wrong))
 
 main()
