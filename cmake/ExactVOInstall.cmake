@@ -58,8 +58,13 @@ if(TARGET exactvo)
   install(DIRECTORY ${pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime OPTIONAL)
   install(FILES ${pages}/completions/exactvo.bash RENAME exactvo
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime OPTIONAL)
+  # Debian's zsh looks below /usr in the folder for packages alone, below /usr/local in that of zsh.
+  set(zsh_folder site-functions)
+  if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND EXISTS /etc/debian_version)
+    set(zsh_folder vendor-completions)
+  endif()
   install(FILES ${pages}/completions/_exactvo
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT runtime OPTIONAL)
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${zsh_folder} COMPONENT runtime OPTIONAL)
 endif()
 # The README's links hold where it is installed as well.
 install(FILES LICENSE README.md CITATION.cff CHANGELOG.md HACKING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
