@@ -22,12 +22,23 @@ def jobs():
     return max(1, min(os.cpu_count() or 1, memory // 2_000_000_000))
 
 
+def pybind11_options():
+    """Where pip has put pybind11 for this build; Debian's pybind11-dev CMake finds by itself."""
+    try:
+        import pybind11
+
+        return [f"pybind11_DIR={pybind11.get_cmake_dir()}"]
+    except ImportError:
+        return []
+
+
 class CMakeBuild(build_ext):
     def build_extension(self, ext):
         build = Path(self.build_temp).resolve()
         generator = ["-G", "Ninja"] if shutil.which("ninja") else []
         options = ["CMAKE_BUILD_TYPE=Release", "EXACTVO_PYTHON=ON", "EXACTVO_UNITY=ON", f"Python3_EXECUTABLE={sys.executable}"]
         options += [f"EXACTVO_{part}=OFF" for part in ("TOOLS", "TESTS", "BENCH", "EXAMPLES")]
+        options += pybind11_options()
         given = shlex.split(os.environ.get("CMAKE_ARGS", ""))
         subprocess.run(["cmake", "-S", ROOT, "-B", build, *generator, *(f"-D{o}" for o in options), *given], check=True)
         subprocess.run(["cmake", "--build", build, "--target", "exactvo_python", "--parallel", str(jobs())], check=True)

@@ -21,6 +21,7 @@ for_tests=(
   libgtest-dev libgmock-dev librapidcheck-dev libvalijson-dev       # tests
   chromium chromium-driver python3-selenium                         # tests of the explorer's page in a browser
   python3-dev pybind11-dev python3-numpy                            # the Python package
+  python3-venv python3-setuptools python3-wheel                     # pip install . without an index
   python3-pytest mypy python3-matplotlib python3-pandas python3-shapely  # its tests
   doxygen pandoc                                                    # the site
 )
