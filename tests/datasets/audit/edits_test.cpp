@@ -53,6 +53,21 @@ TEST(AuditEdits, PlansAreAmongWhatIsEdited) {
   EXPECT_EQ(std::count_if(runs().begin(), runs().end(), has_plan), 1);
 }
 
+/// A scenario that leaves out what is a default is the same one.
+TEST(SecondOpinion, TakesWhatIsLeftOutForItsDefault) {
+  std::size_t guided = 0;
+  for (const ShortRun& run : runs()) {
+    Lines lines = run.lines;
+    nlohmann::json& scenario = lines.front()["header"]["scenario"];
+    if (scenario.value("guidance", "") != "route") continue;
+    ++guided;
+    scenario.erase("guidance");
+    EXPECT_EQ(second_opinion(lines, run.lines), "") << run.name;
+    EXPECT_EQ(judge(run, lines).fate, Fate::holds) << run.name;
+  }
+  EXPECT_GT(guided, 0u);
+}
+
 /// The second opinion sees what the first must.
 TEST(SecondOpinion, SeesCrudeForgeries) {
   const auto forged = [](const char* name, const auto& how) {

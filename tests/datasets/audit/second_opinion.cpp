@@ -107,7 +107,8 @@ const json& defaults() {
     "cooperates": true, "goals": [], "obstacles": [], "moving_obstacles": [], "speed_bound": "disc", "least": 0.3,
     "most": 3, "speed_floor": 0.5, "orca": 2, "robots": 2, "obstacle": 0.08, "robot": 0.04, "time_step": 0.05,
     "time_limit": 120, "arrival_tolerance": 0.1, "neighbour_distance": 15, "k1": 0.25, "k2": 0.45, "k3": 37.5,
-    "kappa": 1.5, "recentre": true, "catch_up_speed": 1.5})");
+    "kappa": 1.5, "recentre": true, "catch_up_speed": 1.5, "guidance": "route", "unreachable": "stay",
+    "liveness": "plan"})");
   return all;
 }
 
