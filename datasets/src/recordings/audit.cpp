@@ -6,16 +6,15 @@
 #include <optional>
 
 #include "exactvo/datasets/input_text.h"
-#include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/scenario_file.h"
-#include "files/sha256.h"
-#include "files/text_file.h"
 #include "json/json_text.h"
 #include "recordings/audit_bodies.h"
 #include "recordings/audit_decisions.h"
 #include "recordings/audit_motions.h"
 #include "recordings/audit_plans.h"
+#include "recordings/audit_rows.h"
 #include "recordings/audit_sequence.h"
+#include "recordings/recording_lines.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -25,39 +24,6 @@ using exact::Rational;
 using formation::MotionLaw;
 using formation::Step;
 using geometry::Vec2;
-
-/// What keeps a recording from being audited at all; empty where nothing does.
-std::string obstruction(const RecordingFile& file) {
-  const formation::Recording& recording = file.recording;
-  const bool is_exponential = recording.motion == MotionLaw::exponential;
-  if (!(recording.time_step > 0.0) || !std::isfinite(recording.time_step)) return "the time step is not above 0";
-  if (is_exponential && (!(recording.tracking_gain > 0.0) || !std::isfinite(recording.tracking_gain)))
-    return "the tracking gain is not above 0";
-  if (recording.time_step > kLargestCoordinate) return "the time step is out of range";
-  const auto in_range = [](Vec2 v) {
-    return std::fabs(v.x) <= kLargestCoordinate && std::fabs(v.y) <= kLargestCoordinate;
-  };
-  for (const Step& step : recording.steps) {
-    if (!(std::fabs(step.time) <= kLargestCoordinate)) return "a row's time is not finite, or out of range";
-    for (const formation::MovedObstacle& moved : step.moving)
-      if (!in_range(moved.displacement) || !in_range(moved.velocity))
-        return "where a moving obstacle is is not finite, or out of range";
-    for (const formation::RobotStep& robot : step.robots) {
-      if (!in_range(robot.position)) return "a robot's position is not finite, or out of range";
-      if (!in_range(robot.velocity)) return "a robot's velocity is not finite, or out of range";
-      if (!in_range(robot.anchor) || !in_range(robot.anchor_velocity))
-        return "where a robot's half-planes are built is not finite, or out of range";
-    }
-  }
-  for (const formation::JointPlan& plan : recording.plans) {
-    if (!std::all_of(plan.starts.begin(), plan.starts.end(), in_range) ||
-        !std::all_of(plan.moves.begin(), plan.moves.end(),
-                     [&](const formation::PlanMove& m) { return in_range(m.to); }))
-      return "a place of a plan is not finite, or out of range";
-    if (plan.row >= recording.steps.size()) return "a plan is made after the last row";
-  }
-  return recording.steps.empty() ? "there are no rows" : "";
-}
 
 /// How robots move between rows: straight without a formation; with one, as its integrator has it.
 MotionLaw law_of(const RecordingFile& file) {
@@ -83,7 +49,8 @@ bool has_its_offsets(const RecordingFile& file) {
 }
 
 /// Point (1), and where the run begins: the header against its own scenario and against the one that was meant.
-void check_header(const RecordingFile& file, const formation::Scenario* meant, AuditTally& tally) {
+void check_header(const RecordingFile& file, const RunOutline& outline, const formation::Scenario* meant,
+                  AuditTally& tally) {
   const auto require = [&](AuditPoint point, bool ok, const char* what) {
     ok ? tally.proven(point) : tally.refuted(point, what);
   };
@@ -107,106 +74,95 @@ void check_header(const RecordingFile& file, const formation::Scenario* meant, A
             "the scenario of the recording is not the one given");
   }
   const std::vector<formation::Robot>& robots = file.scenario.robots;
-  const std::vector<formation::RobotStep>& first = recording.steps.front().robots;
+  const std::vector<RunOutline::Glimpse::Robot>& first = outline.first.robots;
   const bool starts = std::equal(robots.begin(), robots.end(), first.begin(), first.end(),
-                                 [](const formation::Robot& robot, const formation::RobotStep& step) {
-                                   return robot.position == step.position && robot.velocity == step.velocity;
+                                 [](const formation::Robot& robot, const RunOutline::Glimpse::Robot& seen) {
+                                   return robot.position == seen.position && robot.velocity == seen.velocity;
                                  });
-  require(AuditPoint::sequence, recording.steps.front().time == 0.0, "the first row is not at t = 0");
+  require(AuditPoint::sequence, outline.first.time == 0.0, "the first row is not at t = 0");
   require(AuditPoint::sequence, starts, "the first row is not the scenario's start");
 }
 
-bool has_arrived(const formation::Robot& robot, const formation::RobotStep& state, double tolerance) {
-  const exact::Point d = exact::exactly(state.position) - exact::exactly(robot.goals.back());
+bool has_arrived(const formation::Robot& robot, Vec2 position, double tolerance) {
+  const exact::Point d = exact::exactly(position) - exact::exactly(robot.goals.back());
   const Rational reach(tolerance);
   return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));  // distances in a run are rounded
 }
 
 /// In the row before the last, which has no decisions.
-bool stayed(const RecordingFile& file, std::size_t robot) {
-  const std::vector<Step>& rows = file.recording.steps;
-  return rows.size() > 1 && rows[rows.size() - 2].robots[robot].mode == formation::Mode::staying;
+bool stayed(const RunOutline& outline, std::size_t robot) {
+  return outline.rows > 1 && outline.before_last.robots[robot].mode == formation::Mode::staying;
 }
 
 /// Without a formation a run ends before its time limit where all robots have arrived or, as nothing comes to push
 /// them, stay because their goals are out of reach.
-bool has_ended(const RecordingFile& file, bool& somebody_stays) {
-  const formation::Scenario& s = file.scenario;
+bool has_ended(const formation::Scenario& s, const RunOutline& outline, bool& somebody_stays) {
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
-    if (has_arrived(s.robots[i], file.recording.steps.back().robots[i], s.arrival_tolerance)) continue;
-    if (!stayed(file, i) || !s.moving_obstacles.empty()) return false;
+    if (has_arrived(s.robots[i], outline.last.robots[i].position, s.arrival_tolerance)) continue;
+    if (!stayed(outline, i) || !s.moving_obstacles.empty()) return false;
     somebody_stays = true;
   }
   return true;
 }
 
 /// A run ends at its time limit, when nobody goes on, or when a formation has left every bound.
-bool is_whole(const RecordingFile& file, bool& somebody_stays) {
+bool is_whole(const formation::Scenario& s, const RunOutline& outline, bool& somebody_stays) {
   constexpr double kSameRow = 1e-6;     // of a step
   constexpr double kOutOfBounds = 1e6;  // m and m/s
-  const formation::Scenario& s = file.scenario;
-  const std::vector<Step>& rows = file.recording.steps;
   const double steps = std::ceil(s.time_limit / s.time_step - kSameRow);
-  if (static_cast<double>(rows.size() - 1) >= steps) return true;
-  const std::vector<formation::RobotStep>& last = rows.back().robots;
+  if (static_cast<double>(outline.rows - 1) >= steps) return true;
+  const std::vector<RunOutline::Glimpse::Robot>& last = outline.last.robots;
   if (s.formation)
-    return std::any_of(last.begin(), last.end(), [](const formation::RobotStep& r) {
+    return std::any_of(last.begin(), last.end(), [](const RunOutline::Glimpse::Robot& r) {
       return !(geometry::norm(r.position) < kOutOfBounds && geometry::norm(r.velocity) < kOutOfBounds);
     });
-  return s.robots.size() == last.size() && has_ended(file, somebody_stays);
+  return s.robots.size() == last.size() && has_ended(s, outline, somebody_stays);
 }
 
-void check_end(const RecordingFile& file, AuditTally& tally) {
-  is_whole(file, tally.report.has_staying)
+void check_end(const formation::Scenario& scenario, const RunOutline& outline, AuditTally& tally) {
+  is_whole(scenario, outline, tally.report.has_staying)
       ? tally.proven(AuditPoint::sequence)
       : tally.refuted(AuditPoint::sequence, "the last row is before the time limit, and not every robot has arrived");
 }
 
-void check_rows(const RecordingFile& file, AuditTally& tally) {
+/// Point (2), the rows, and point (8), whose findings come in this order though all rows are needed for the first.
+void check_rows(const RecordingFile& file, const RunOutline& outline, const EachRow& each, AuditTally& tally) {
   const std::vector<RationalObstacle> obstacles = rational_obstacles(file.scenario);
-  const std::vector<Step>& rows = file.recording.steps;
-  Rational end(0);
-  for (const Step& step : rows) end = std::max(end, Rational(step.time));
   std::vector<ExactWay> ways;
-  for (const formation::MovingObstacle& o : file.scenario.moving_obstacles) ways.emplace_back(o.motion, end);
+  for (const formation::MovingObstacle& o : file.scenario.moving_obstacles)
+    ways.emplace_back(o.motion, Rational(outline.latest));
   std::optional<exact::ExponentialLaw> law;
   if (file.recording.motion == MotionLaw::exponential)
     law.emplace(Rational(file.recording.tracking_gain), Rational(file.recording.time_step));
-  BodyAudit(file, obstacles, tally).check();
-  audit_plans(file, obstacles, tally);
+  PlacesInRows places(file, outline);
   DecisionAudit decisions(file, obstacles, tally);
-  SequenceAudit sequence(file, ways, law ? &*law : nullptr, tally);
+  SequenceAudit sequence(file, ways, law ? &*law : nullptr, outline.last.time, tally);
   MotionAudit motions(file, obstacles, ways, law ? &*law : nullptr, tally);
-  for (std::size_t k = 0; k < rows.size(); ++k) {
+  const auto of_header = static_cast<std::ptrdiff_t>(tally.report.findings.size());
+  walk(each, [&](const RowInRun& at) {
     call_wait_hook();  // a long audit ends where its caller wants to
-    sequence.check_row(k);
-    if (k + 1 == rows.size()) continue;
-    decisions.check(k);
-    sequence.check_step(k);
-    if (rows[k].time >= 0.0 && rows[k].time < rows[k + 1].time) motions.check(k);
-  }
+    places.take(at.number, at.row);
+    sequence.check_row(at);
+    if (!at.next) return;
+    decisions.check(at);
+    sequence.check_step(at);
+    if (at.row.time >= 0.0 && at.row.time < at.next->time) motions.check(at);
+  });
+  std::vector<std::string>& findings = tally.report.findings;
+  const auto of_rows = static_cast<std::ptrdiff_t>(findings.size());
+  BodyAudit(file, obstacles, places, tally).check();
+  audit_plans(file, obstacles, places, tally);
+  std::rotate(findings.begin() + of_header, findings.begin() + of_rows, findings.end());
 }
 
-/// The seal in the last line against all above it.
-void check_seal(const std::string& text, AuditTally& tally) {
-  const std::size_t end = text.find_last_not_of('\n');
-  const std::size_t before = text.rfind('\n', end);
-  const std::size_t last_line = before == std::string::npos ? 0 : before + 1;
-  Sha256 hash;
-  hash.add(std::string_view(text).substr(0, last_line));
-  const Json last = Json::parse(text.begin() + static_cast<std::ptrdiff_t>(last_line), text.end());
-  if (last.contains("end") && last["end"].value("sha256", "") == hash.digest())
-    return tally.proven(AuditPoint::scenario);
-  tally.refuted(AuditPoint::scenario, "the lines are not those that the sha256 of the last one was made of");
-}
-
-AuditTally audited(const RecordingFile& file, const formation::Scenario* scenario) {
+AuditTally audited(const RecordingFile& run, const RunOutline& outline, const EachRow& each,
+                   const formation::Scenario* scenario) {
   AuditTally tally;
-  const std::string why = obstruction(file);
+  const std::string why = obstruction_of(run, outline);
   if (why.empty()) {
-    check_header(file, scenario, tally);
-    check_rows(file, tally);
-    check_end(file, tally);
+    check_header(run, outline, scenario, tally);
+    check_rows(run, outline, each, tally);
+    check_end(run.scenario, outline, tally);
   } else {
     tally.refuted(AuditPoint::sequence, why);
   }
@@ -238,13 +194,28 @@ bool AuditReport::clean() const {
 }
 
 AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario) {
-  return finished(audited(file, scenario));
+  const EachRow each = [&](const auto& take) {
+    for (const Step& row : file.recording.steps) take(SharedRow(SharedRow(), &row));
+  };
+  RunOutline outline;
+  for (const Step& row : file.recording.steps) outline.add(row);
+  return finished(audited(file, outline, each, scenario));
 }
 
 AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario) {
-  const std::string text = read_text_file(path);  // once: of a pipe nothing is left
-  AuditTally tally = audited(parse_recording(text, path.string()), scenario);
-  check_seal(text, tally);
+  SealedRecording recording(path);
+  RunOutline outline;
+  const RecordingFile run =
+      recording.read([&](const RecordingFile&, const Step& row, const formation::LyapunovRow*) { outline.add(row); });
+  const EachRow each = [&](const auto& take) {
+    recording.read([&](const RecordingFile&, Step row, const formation::LyapunovRow*) {
+      take(std::make_shared<const Step>(std::move(row)));
+    });
+  };
+  AuditTally tally = audited(run, outline, each, scenario);
+  const AuditPoint point = AuditPoint::scenario;
+  recording.is_sealed() ? tally.proven(point)
+                        : tally.refuted(point, "the lines are not those that the sha256 of the last one was made of");
   return finished(std::move(tally));
 }
 

@@ -2,7 +2,6 @@
 #include "recordings/audit_bodies.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <variant>
 
@@ -28,8 +27,9 @@ bool is_edge_of(const geometry::ConvexShape& shape, const RationalObstacle& obst
 
 }  // namespace
 
-BodyAudit::BodyAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, AuditTally& tally)
-    : file_(file), obstacles_(obstacles), covered_(file.recording.bodies.size()), tally_(tally) {}
+BodyAudit::BodyAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles,
+                     const PlacesInRows& places, AuditTally& tally)
+    : file_(file), obstacles_(obstacles), places_(places), covered_(file.recording.bodies.size()), tally_(tally) {}
 
 void BodyAudit::check() {
   for (std::size_t number = 0; number < file_.recording.bodies.size(); ++number) check_body(number);
@@ -108,12 +108,10 @@ bool BodyAudit::is_in_order(const Outlook& outlook, const Outlook* before) const
   const formation::Robot& robot = file_.scenario.robots[outlook.robot];
   if (outlook.goal != before->goal + 1 || outlook.goal >= robot.goals.size() || outlook.time < before->time)
     return false;
-  const double row = std::round(outlook.time / file_.recording.time_step);
-  if (!(row >= 0.0) || !(row < static_cast<double>(file_.recording.steps.size()))) return false;
-  const formation::Step& step = file_.recording.steps[static_cast<std::size_t>(row)];
-  if (step.time != outlook.time) return false;
+  const PlacesInRows::Place* place = places_.of_outlook(outlook);
+  if (!place || place->time != outlook.time) return false;
   // Reached within the robot's radius; distances there are rounded.
-  const Point d = exactly(step.robots[outlook.robot].position) - exactly(robot.goals[before->goal]);
+  const Point d = exactly(place->position) - exactly(robot.goals[before->goal]);
   const Rational reach(std::max(robot.radius, file_.scenario.arrival_tolerance));
   return exact::dot(d, d) <= reach * reach * (1 + Rational(0x1p-48));
 }

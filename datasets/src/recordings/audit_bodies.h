@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "recordings/audit_rows.h"
 #include "recordings/audit_scene.h"
 #include "recordings/audit_tally.h"
 
@@ -13,8 +14,9 @@ namespace exactvo::datasets {
 
 class BodyAudit {
  public:
-  /// Keeps references.
-  BodyAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, AuditTally& tally);
+  /// Keeps references. REQUIRES: `places` of all rows.
+  BodyAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, const PlacesInRows& places,
+            AuditTally& tally);
 
   void check();
 
@@ -34,6 +36,7 @@ class BodyAudit {
 
   const RecordingFile& file_;
   const std::vector<RationalObstacle>& obstacles_;
+  const PlacesInRows& places_;
   std::vector<std::vector<Covered>> covered_;  ///< of each body; of enclosures only
   AuditTally& tally_;
 };

@@ -106,11 +106,10 @@ double DecisionAudit::fastest(std::size_t robot) const {
   return file_.scenario.speed_bound == formation::SpeedBoundKind::disc ? speed : kDiagonal * speed;
 }
 
-DecisionAudit::Seen DecisionAudit::seen(std::size_t row, std::size_t robot) const {
-  const Step& step = file_.recording.steps[row];
-  const RobotStep& state = step.robots[robot];
+DecisionAudit::Seen DecisionAudit::seen(const RowInRun& at, std::size_t robot) const {
+  const RobotStep& state = at.row.robots[robot];
   const Rational radius(file_.scenario.robots[robot].radius), reach = duration_ * Rational(fastest(robot));
-  return {row, robot, &step, &state, exactly(state.anchor), radius, reach, exact::at_least(radius + reach)};
+  return {at.number, robot, &at.row, &state, exactly(state.anchor), radius, reach, exact::at_least(radius + reach)};
 }
 
 void DecisionAudit::place_moving(const Step& step) {
@@ -119,11 +118,10 @@ void DecisionAudit::place_moving(const Step& step) {
     moved_.push_back(formation::hull_of(file_.scenario.moving_obstacles[k], step.moving[k].displacement));
 }
 
-void DecisionAudit::check(std::size_t row) {
-  const Step& step = file_.recording.steps[row];
-  place_moving(step);
+void DecisionAudit::check(const RowInRun& at) {
+  place_moving(at.row);
   std::vector<Seen> all;
-  for (std::size_t i = 0; i < step.robots.size(); ++i) all.push_back(seen(row, i));
+  for (std::size_t i = 0; i < at.row.robots.size(); ++i) all.push_back(seen(at, i));
   for (const Seen& s : all) {
     nothing_is_missing(s);
     half_planes_hold(s);

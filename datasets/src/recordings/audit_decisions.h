@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "exactvo/vo/lp/certificate.h"
+#include "recordings/audit_rows.h"
 #include "recordings/audit_scene.h"
 #include "recordings/audit_tally.h"
 
@@ -25,8 +26,8 @@ class DecisionAudit {
   /// Keeps references.
   DecisionAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, AuditTally& tally);
 
-  /// A row that decides, which the last does not.
-  void check(std::size_t row);
+  /// REQUIRES: not the last row, which does not decide.
+  void check(const RowInRun& at);
 
  private:
   using Constraints = std::vector<formation::RecordedConstraint>;
@@ -41,7 +42,7 @@ class DecisionAudit {
     double near;  ///< no less than their sum
   };
 
-  Seen seen(std::size_t row, std::size_t robot) const;
+  Seen seen(const RowInRun& at, std::size_t robot) const;
   void place_moving(const formation::Step& step);
   const std::string& id(const Seen& s) const { return file_.scenario.robots[s.robot].id; }
 

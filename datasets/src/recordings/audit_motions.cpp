@@ -49,9 +49,8 @@ void MotionAudit::Answer::take(Verdict verdict, const char* kind, const std::str
   if (where.empty()) where = std::string(kind) + " '" + id + "'";
 }
 
-void MotionAudit::check(std::size_t row) {
-  const formation::Step& from = file_.recording.steps[row];
-  const formation::Step& to = file_.recording.steps[row + 1];
+void MotionAudit::check(const RowInRun& at) {
+  const formation::Step &from = at.row, &to = *at.next;
   AuditReport& report = tally_.report;
   std::vector<Driven> driven;
   for (std::size_t i = 0; i < file_.scenario.robots.size(); ++i) {
@@ -60,29 +59,29 @@ void MotionAudit::check(std::size_t row) {
     report.largest_bulge = std::max(report.largest_bulge, exact::at_least(whole.stray));
     driven.push_back({motion, box_of(whole)});
   }
-  const Moved moved = displacements(row);
+  const Moved moved = displacements(from, to);
   for (std::size_t i = 0; i < driven.size(); ++i) {
     if (file_.recording.motion != MotionLaw::straight) ++report.curved_steps;
     Answer answer;
     meet_obstacles(driven[i], i, answer);
-    meet_moving(driven[i], i, row, moved, answer);
+    meet_moving(driven[i], i, moved, answer);
     meet_robots(driven, i, answer);
     const std::string& robot = file_.scenario.robots[i].id;
     if (!answer.met.empty())
-      tally_.refuted(AuditPoint::motions, at_row(row, robot + " overlaps " + answer.met));
+      tally_.refuted(AuditPoint::motions, at_row(at.number, robot + " overlaps " + answer.met));
     else if (!answer.open.empty())
       tally_.open(AuditPoint::motions,
-                  at_row(row, robot + " comes too near to " + answer.open + " to be proven clear of it"));
+                  at_row(at.number, robot + " comes too near to " + answer.open + " to be proven clear of it"));
     else
       tally_.proven(AuditPoint::motions);
   }
 }
 
-MotionAudit::Moved MotionAudit::displacements(std::size_t row) const {
-  const Rational from(file_.recording.steps[row].time), to(file_.recording.steps[row + 1].time);
-  Moved all;
-  for (const ExactWay& way : ways_) all.push_back(way.over(from, to));
-  return all;
+MotionAudit::Moved MotionAudit::displacements(const formation::Step& from, const formation::Step& to) const {
+  const Rational start(from.time), end(to.time);
+  Moved moved{start, end - start, {}};
+  for (const ExactWay& way : ways_) moved.ways.push_back(way.over(start, end));
+  return moved;
 }
 
 void MotionAudit::meet_obstacles(const Driven& d, std::size_t i, Answer& answer) {
@@ -99,13 +98,13 @@ void MotionAudit::meet_obstacles(const Driven& d, std::size_t i, Answer& answer)
 }
 
 /// Piece after piece of the obstacle's way, seen from the obstacle.
-void MotionAudit::meet_moving(const Driven& d, std::size_t i, std::size_t row, const Moved& moved, Answer& answer) {
+void MotionAudit::meet_moving(const Driven& d, std::size_t i, const Moved& moved, Answer& answer) {
   const double radius = file_.scenario.robots[i].radius;
   const Rational r(radius);
-  const Rational from(file_.recording.steps[row].time), passed = Rational(file_.recording.steps[row + 1].time) - from;
+  const Rational &from = moved.start, &passed = moved.passed;
   for (std::size_t k = 0; k < moving_.size(); ++k) {
     ++tally_.report.moving_questions;
-    for (const ExactWay::TimedChord& piece : moved[k]) {
+    for (const ExactWay::TimedChord& piece : moved.ways[k]) {
       const Rational start = (piece.start - from) / passed, end = (piece.end - from) / passed;
       const AuditBox seen = box_of(d.motion.over(start, end) - piece.chord);
       if (are_apart(seen, moving_[k].box, radius)) continue;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "recordings/audit_rows.h"
 #include "recordings/audit_scene.h"
 #include "recordings/audit_tally.h"
 
@@ -19,8 +20,8 @@ class MotionAudit {
   MotionAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles,
               const std::vector<exact::ExactWay>& ways, const exact::ExponentialLaw* law, AuditTally& tally);
 
-  /// From this row to the next. REQUIRES: times that rise.
-  void check(std::size_t row);
+  /// From this row to the next. REQUIRES: there is one, and times rise.
+  void check(const RowInRun& at);
 
  private:
   /// A row's time step as one robot drives it.
@@ -33,11 +34,15 @@ class MotionAudit {
     std::string met, open;
     void take(exact::Verdict verdict, const char* kind, const std::string& id);
   };
-  using Moved = std::vector<std::vector<exact::ExactWay::TimedChord>>;
+  /// What moving obstacles do between two rows.
+  struct Moved {
+    exact::Rational start, passed;  ///< s
+    std::vector<std::vector<exact::ExactWay::TimedChord>> ways;
+  };
 
-  Moved displacements(std::size_t row) const;
+  Moved displacements(const formation::Step& from, const formation::Step& to) const;
   void meet_obstacles(const Driven& d, std::size_t i, Answer& answer);
-  void meet_moving(const Driven& d, std::size_t i, std::size_t row, const Moved& moved, Answer& answer);
+  void meet_moving(const Driven& d, std::size_t i, const Moved& moved, Answer& answer);
   void meet_robots(const std::vector<Driven>& driven, std::size_t i, Answer& answer);
 
   const RecordingFile& file_;

@@ -16,9 +16,9 @@ using formation::JointPlan;
 /// A plan on its way: who stands where.
 class PlanAudit {
  public:
-  PlanAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, const JointPlan& plan,
-            AuditTally& tally)
-      : file_(file), obstacles_(obstacles), plan_(plan), tally_(tally), at_(plan.starts) {}
+  PlanAudit(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, const PlacesInRows& places,
+            const JointPlan& plan, AuditTally& tally)
+      : file_(file), obstacles_(obstacles), places_(places), plan_(plan), tally_(tally), at_(plan.starts) {}
 
   void check() {
     for (std::size_t k = 0; k < plan_.robots.size(); ++k) begins(k);
@@ -31,8 +31,8 @@ class PlanAudit {
 
   void begins(std::size_t k) {
     const std::size_t robot = plan_.robots[k];
-    const std::vector<formation::Step>& rows = file_.recording.steps;
-    if (plan_.from_row < rows.size() && rows[plan_.from_row].robots[robot].position == plan_.starts[k])
+    const PlacesInRows::Place* place = places_.of(plan_.from_row, robot);
+    if (place && place->position == plan_.starts[k])
       tally_.proven(AuditPoint::plans);
     else
       tally_.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin where " + id(robot) +
@@ -91,6 +91,7 @@ class PlanAudit {
 
   const RecordingFile& file_;
   const std::vector<RationalObstacle>& obstacles_;
+  const PlacesInRows& places_;
   const JointPlan& plan_;
   AuditTally& tally_;
   std::vector<geometry::Vec2> at_;  ///< m
@@ -98,8 +99,9 @@ class PlanAudit {
 
 }  // namespace
 
-void audit_plans(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, AuditTally& tally) {
-  for (const JointPlan& plan : file.recording.plans) PlanAudit(file, obstacles, plan, tally).check();
+void audit_plans(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, const PlacesInRows& places,
+                 AuditTally& tally) {
+  for (const JointPlan& plan : file.recording.plans) PlanAudit(file, obstacles, places, plan, tally).check();
 }
 
 }  // namespace exactvo::datasets

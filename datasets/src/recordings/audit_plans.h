@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "recordings/audit_rows.h"
 #include "recordings/audit_scene.h"
 #include "recordings/audit_tally.h"
 
@@ -16,7 +17,8 @@ namespace exactvo::datasets {
 /// compared to within a share of 1e-9, and a place within 1e-9 diameters of a known one counts as that one.
 inline constexpr double kPlanRounding = 1e-8;
 
-/// REQUIRES: plans as read_recording gives them.
-void audit_plans(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, AuditTally& tally);
+/// REQUIRES: plans as read_recording gives them, and `places` of all rows.
+void audit_plans(const RecordingFile& file, const std::vector<RationalObstacle>& obstacles, const PlacesInRows& places,
+                 AuditTally& tally);
 
 }  // namespace exactvo::datasets

@@ -57,10 +57,10 @@ Point scaled(const Interval& x, const Point& p) {
 }  // namespace
 
 SequenceAudit::SequenceAudit(const RecordingFile& file, const std::vector<ExactWay>& ways,
-                             const exact::ExponentialLaw* law, AuditTally& tally)
+                             const exact::ExponentialLaw* law, double end, AuditTally& tally)
     : file_(file), ways_(ways), duration_(file.recording.time_step), tally_(tally) {
   if (!file.scenario.formation) return;
-  leader_.emplace(file.scenario.formation->leader, Rational(file.recording.steps.back().time) + 1);
+  leader_.emplace(file.scenario.formation->leader, Rational(end) + 1);
   const std::string integrator = file.info.integrator.value_or("exact");
   const Rational k(file.scenario.formation->gains.k3), z = k * duration_;
   if (law) {
@@ -84,8 +84,9 @@ void SequenceAudit::ask(bool holds, std::size_t row, const std::string& what) {
   holds ? tally_.proven(AuditPoint::sequence) : tally_.refuted(AuditPoint::sequence, at_row(row, what));
 }
 
-void SequenceAudit::check_row(std::size_t row) {
-  const Step& step = file_.recording.steps[row];
+void SequenceAudit::check_row(const RowInRun& at) {
+  const Step& step = at.row;
+  const std::size_t row = at.number;
   ask(step.time == static_cast<double>(row) * file_.recording.time_step, row,
       "its time is not its number of time steps");
   if (leader_) {
@@ -94,8 +95,7 @@ void SequenceAudit::check_row(std::size_t row) {
     ask(is_on_way(*leader_, motion, step.time, step.leader_position - start, step.leader_velocity), row,
         "the leader is not where its path has it");
   }
-  const bool decides = row + 1 < file_.recording.steps.size();
-  if (decides && step.moving.size() != file_.scenario.moving_obstacles.size())
+  if (at.next && step.moving.size() != file_.scenario.moving_obstacles.size())
     tally_.refuted(AuditPoint::sequence, at_row(row, "it does not say where the moving obstacles are"));
   for (std::size_t k = 0; k < step.moving.size(); ++k) {
     const formation::MovingObstacle& o = file_.scenario.moving_obstacles[k];
@@ -103,7 +103,7 @@ void SequenceAudit::check_row(std::size_t row) {
         "moving obstacle '" + o.id + "' is not where its path has it");
   }
   for (std::size_t i = 0; i < step.robots.size(); ++i)
-    ask(has_its_anchor(row, i), row,
+    ask(has_its_anchor(at, i), row,
         "half-planes of " + file_.scenario.robots[i].id + " are not built where its controller builds them");
 }
 
@@ -122,15 +122,14 @@ bool SequenceAudit::is_on_way(const ExactWay& way, const Leader& motion, double 
 
 /// Kinematic robots and controllers without a brake point build half-planes at the robot. The brake point is
 /// x + v / k3, round what was tracked before.
-bool SequenceAudit::has_its_anchor(std::size_t row, std::size_t i) const {
-  const RobotStep& r = file_.recording.steps[row].robots[i];
+bool SequenceAudit::has_its_anchor(const RowInRun& at, std::size_t i) const {
+  const RobotStep& r = at.row.robots[i];
   const std::optional<formation::Remedies>& remedies = file_.recording.remedies;
-  const bool is_last = row + 1 == file_.recording.steps.size();
   if (file_.scenario.formation && !remedies) return true;  // nothing is known of its controller
-  if (is_last || !remedies || !remedies->brake_point) return r.anchor == r.position && r.anchor_velocity == r.velocity;
+  if (!at.next || !remedies || !remedies->brake_point) return r.anchor == r.position && r.anchor_velocity == r.velocity;
   if (r.anchor != r.position + r.velocity / file_.scenario.formation->gains.k3) return false;
-  if (row == 0) return r.anchor_velocity == r.velocity;
-  return !tracks_its_choice() || r.anchor_velocity == file_.recording.steps[row - 1].robots[i].chosen;
+  if (!at.before) return r.anchor_velocity == r.velocity;
+  return !tracks_its_choice() || r.anchor_velocity == at.before->robots[i].chosen;
 }
 
 bool SequenceAudit::tracks_its_choice() const {
@@ -138,14 +137,14 @@ bool SequenceAudit::tracks_its_choice() const {
   return remedies && remedies->filter_last && remedies->absolute_frame && !(remedies->acceleration_bound > 0.0);
 }
 
-void SequenceAudit::check_step(std::size_t row) {
+void SequenceAudit::check_step(const RowInRun& at) {
   for (std::size_t i = 0; i < file_.scenario.robots.size(); ++i) {
-    const bool holds = follows(file_.recording.steps[row].robots[i], file_.recording.steps[row + 1].robots[i]);
+    const bool holds = follows(at.row.robots[i], at.next->robots[i]);
     const std::string& robot = file_.scenario.robots[i].id;
     if (holds && law_ && is_adaptive_)
-      tally_.open(AuditPoint::sequence, at_row(row, robot + " was integrated with a tolerance"));
+      tally_.open(AuditPoint::sequence, at_row(at.number, robot + " was integrated with a tolerance"));
     else
-      ask(holds, row, robot + " does not get to the next row by its law of motion");
+      ask(holds, at.number, robot + " does not get to the next row by its law of motion");
   }
 }
 

@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "recordings/audit_rows.h"
 #include "recordings/audit_tally.h"
 #include "recordings/exact_motion.h"
 
@@ -21,14 +22,14 @@ namespace exactvo::datasets {
 
 class SequenceAudit {
  public:
-  /// `ways` of the moving obstacles, `law` where motion is exponential. Keeps references.
+  /// `ways` of the moving obstacles, `law` where motion is exponential; the last row is at `end`, s. Keeps references.
   SequenceAudit(const RecordingFile& file, const std::vector<exact::ExactWay>& ways, const exact::ExponentialLaw* law,
-                AuditTally& tally);
+                double end, AuditTally& tally);
 
   /// A row by itself: its time, where leader and moving obstacles are, and where half-planes are built.
-  void check_row(std::size_t row);
+  void check_row(const RowInRun& at);
   /// The next row. REQUIRES: there is one.
-  void check_step(std::size_t row);
+  void check_step(const RowInRun& at);
 
  private:
   struct Law {
@@ -40,7 +41,7 @@ class SequenceAudit {
   void ask(bool holds, std::size_t row, const std::string& what);
   bool is_on_way(const exact::ExactWay& way, const formation::Leader& motion, double time, geometry::Vec2 displacement,
                  geometry::Vec2 velocity) const;
-  bool has_its_anchor(std::size_t row, std::size_t robot) const;
+  bool has_its_anchor(const RowInRun& at, std::size_t robot) const;
   bool tracks_its_choice() const;
   bool follows(const formation::RobotStep& from, const formation::RobotStep& to) const;
   bool follows_tracking(const formation::RobotStep& from, const formation::RobotStep& to) const;

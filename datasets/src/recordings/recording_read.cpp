@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -12,6 +11,7 @@
 #include "json/json_cursor.h"
 #include "recordings/codec.h"
 #include "recordings/recording_extras.h"
+#include "recordings/recording_lines.h"
 #include "recordings/recording_names.h"
 
 namespace exactvo::datasets {
@@ -228,8 +228,6 @@ class LineReader {
   bool at_end_ = false;
 };
 
-using NextLine = std::function<bool(std::string_view&)>;  ///< gives the lines of a file, false at the end
-
 /// What a file is that is no recording, as far as that is seen in its beginning.
 std::string kind_of(std::string_view first_line, const NextLine& next_line) {
   constexpr std::size_t kBeginning = 1 << 20;
@@ -256,7 +254,27 @@ void require_recording(std::string_view first_line, const NextLine& next_line, c
                   "a recording.jsonl, as simulate --out writes it");
 }
 
-RecordingFile parse_lines(const NextLine& next_line, const std::string& name, const TakeRow& take) {
+/// Keeps all rows.
+struct AllRows {
+  std::vector<Step> steps;
+  std::vector<formation::LyapunovRow> lyapunov;
+
+  TakeRow taker() {
+    return [this](const RecordingFile&, Step row, const formation::LyapunovRow* values) {
+      steps.push_back(std::move(row));
+      if (values) lyapunov.push_back(*values);
+    };
+  }
+  RecordingFile with_rows(RecordingFile file) {
+    file.recording.steps = std::move(steps);
+    file.lyapunov = std::move(lyapunov);
+    return file;
+  }
+};
+
+}  // namespace
+
+RecordingFile read_recording_lines(const NextLine& next_line, const std::string& name, const TakeRow& take) {
   std::string_view line;
   if (!next_line(line)) line = {};
   require_recording(line, next_line, name);
@@ -280,29 +298,9 @@ RecordingFile parse_lines(const NextLine& next_line, const std::string& name, co
   return file;
 }
 
-/// Keeps all rows.
-struct AllRows {
-  std::vector<Step> steps;
-  std::vector<formation::LyapunovRow> lyapunov;
-
-  TakeRow taker() {
-    return [this](const RecordingFile&, Step row, const formation::LyapunovRow* values) {
-      steps.push_back(std::move(row));
-      if (values) lyapunov.push_back(*values);
-    };
-  }
-  RecordingFile with_rows(RecordingFile file) {
-    file.recording.steps = std::move(steps);
-    file.lyapunov = std::move(lyapunov);
-    return file;
-  }
-};
-
-}  // namespace
-
 RecordingFile read_recording(const std::filesystem::path& path, const TakeRow& take) {
   TextLines lines(path);
-  return parse_lines([&](std::string_view& line) { return lines.next(line); }, path.string(), take);
+  return read_recording_lines([&](std::string_view& line) { return lines.next(line); }, path.string(), take);
 }
 
 RecordingFile read_recording(const std::filesystem::path& path) {
@@ -311,16 +309,8 @@ RecordingFile read_recording(const std::filesystem::path& path) {
 }
 
 RecordingFile parse_recording(const std::string& text, const std::string& name) {
-  std::string_view rest = text;
-  const auto next_line = [&](std::string_view& line) {
-    if (rest.empty()) return false;
-    const std::size_t end = rest.find('\n');
-    line = rest.substr(0, end);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-    return true;
-  };
   AllRows rows;
-  return rows.with_rows(parse_lines(next_line, name, rows.taker()));
+  return rows.with_rows(read_recording_lines(lines_of(text), name, rows.taker()));
 }
 
 }  // namespace exactvo::datasets

@@ -20,7 +20,7 @@ namespace {
 
 using geometry::Vec2;
 
-const Json& parsed_schema() {
+const Json& lp_schema_tree() {
   static const Json schema = parse_json(lp_schema(), "lp.schema.json");
   return schema;
 }
@@ -91,7 +91,7 @@ class Line {
 lp::Problem parse_line(const std::string& text, std::size_t number, const std::string& file) {
   const Json tree = parse_json_line(text, file, number);
   try {
-    check_against_schema(tree, parsed_schema(), file);
+    check_against_schema(tree, lp_schema_tree(), file);
     return Line(tree, file).problem();
   } catch (const DataError& e) {
     const std::string line = "line " + std::to_string(number);
@@ -109,7 +109,7 @@ lp::Problem parse_document(const std::string& bytes, const std::string& file) {
                       e.expected() + "; one JSON document per line, or one document over several lines");
     }
   }();
-  check_against_schema(tree, parsed_schema(), file);
+  check_against_schema(tree, lp_schema_tree(), file);
   return Line(tree, file).problem();
 }
 

@@ -25,7 +25,7 @@ namespace {
 using formation::Scenario;
 using geometry::Vec2;
 
-const Json& parsed_schema() {
+const Json& scenario_schema_tree() {
   static const Json schema = parse_json(scenario_schema(), "scenario.schema.json");
   return schema;
 }
@@ -106,7 +106,7 @@ class ScenarioReader {
   Scenario read_scenario(const Json& tree, const AdvanceScenario& advance) {
     refuse_geojson(tree);
     refuse_motion_of_obstacles(tree);
-    check_against_schema(tree, parsed_schema(), file_);
+    check_against_schema(tree, scenario_schema_tree(), file_);
     Scenario scenario;
     scenario.name = tree.at("name").get<std::string>();
     scenario.description = tree.value("description", std::string());

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -23,14 +25,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Those that the run itself wrote, else measured again.
-std::string metrics_beside(const fs::path& recording, const datasets::RecordingFile& file) {
-  if (recording.filename() == "recording.jsonl") {
-    std::ifstream in(recording.parent_path() / "metrics.json");
-    std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    if (!text.empty()) return text;
-  }
-  return datasets::metrics_json(file.info, formation::measure(file.scenario, file.recording));
+/// Those that the run itself wrote; empty where it did not.
+std::string metrics_beside(const fs::path& recording) {
+  if (recording.filename() != "recording.jsonl") return "";
+  std::ifstream in(recording.parent_path() / "metrics.json");
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
 /// What a recorded run was made with.
@@ -50,9 +49,22 @@ formation::SimulationOptions options_of(const datasets::RecordingFile& file) {
   return options;
 }
 
+/// Row by row: what stays in memory is what the page keeps of them.
 MadeRun recorded(const PageFlags& flags, const fs::path& path) {
-  const datasets::RecordingFile file = datasets::read_recording(path);
-  return {recorded_run(file, metrics_beside(path, file), flags.limits), options_of(file)};
+  RunPacker packer(flags.limits);
+  std::string metrics = metrics_beside(path);
+  formation::Scenario scenario;  // the evaluator refers to it
+  std::optional<formation::Evaluator> evaluator;
+  const auto take = [&](const datasets::RecordingFile& so_far, formation::Step row, const formation::LyapunovRow*) {
+    packer.add(row);
+    if (!metrics.empty()) return;
+    if (!evaluator) evaluator.emplace(scenario = so_far.scenario, so_far.recording);
+    evaluator->add(std::make_shared<const formation::Step>(std::move(row)));
+  };
+  const datasets::RecordingFile file = datasets::read_recording(path, take);
+  if (evaluator) metrics = datasets::metrics_json(file.info, evaluator->finish(file.recording).metrics);
+  const std::string title = title_of(file);
+  return {{page_key(title), title, "", packer.finish(file, metrics)}, options_of(file)};
 }
 
 /// Nothing computes with it: it has neither goals nor decisions.

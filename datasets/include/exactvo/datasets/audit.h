@@ -109,7 +109,8 @@ inline constexpr std::size_t kMostAuditFindings = 20;
 AuditReport audit(const RecordingFile& file, const formation::Scenario* scenario = nullptr);
 
 /// The same for a file, with its seal: the digest of all lines in the last one (recording_file.h), so that a row that
-/// was altered in a way that is still safe, an ulp inward, is found too. Throws DataError where it can't be read.
+/// was altered in a way that is still safe, an ulp inward, is found too. Reads it twice, row by row: memory does not
+/// grow with the rows (of a pipe the text is kept). Throws DataError where it can't be read, or changes meanwhile.
 AuditReport audit_recording(const std::filesystem::path& path, const formation::Scenario* scenario = nullptr);
 
 /// Counts added up, findings joined.
