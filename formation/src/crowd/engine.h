@@ -36,6 +36,11 @@ class CrowdCore {
   virtual CrowdExplanation explain(std::size_t robot) = 0;
   virtual std::size_t bytes() const = 0;
 
+  /// m/s
+  Vec2 velocity_of(std::int32_t mx, std::int32_t my) const {
+    return {options.position_step * mx / options.time_step, options.position_step * my / options.time_step};
+  }
+
   CrowdOptions options;
   std::vector<CrowdKind> kinds;
   crowd::Robots robots;

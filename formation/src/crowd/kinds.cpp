@@ -2,12 +2,14 @@
 #include "crowd/kinds.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "crowd/layout.h"
 
 namespace exactvo::formation::crowd {
 namespace {
+
+/// m, how far a search for neighbours goes at least.
+constexpr double kNearby = 0.01;
 
 /// Half a lattice step in both coordinates, sqrt(1/2), and what it is rounded by.
 constexpr double kHalfDiagonal = 0.7072;
@@ -26,11 +28,7 @@ T rounded_down(double value) {
 }  // namespace
 
 float without_number(float squared) {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &squared, sizeof bits);
-  bits &= ~static_cast<std::uint32_t>(kIndexBits);
-  std::memcpy(&squared, &bits, sizeof bits);
-  return squared;
+  return float_of(bits_of(squared) & ~kIndexBits);
 }
 
 template <class T>
@@ -44,6 +42,7 @@ KindTable<T> kind_table(const CrowdOptions& options, const std::vector<CrowdKind
   }
   KindTable<T> table;
   table.velocity_step = q / dt;
+  table.nearby = kNearby / q;
   if (options.certified) {
     table.lattice_slack = static_cast<T>(kSlackSteps * q / dt + 2.0 * kCheckUnits * u * fastest);
     table.spare = kSpareSteps * q / dt + 1.5 * kCheckUnits * u * fastest;

@@ -13,21 +13,28 @@
 
 namespace exactvo::formation::crowd {
 
-template <class T>
-struct KindTable {
-  std::vector<T> radius;           ///< m, rounded up
-  std::vector<T> inverse_horizon;  ///< 1/s
-  std::vector<T> least_offset;     ///< m/s, below it an offset never binds
-  std::vector<T> disc;             ///< m/s, less what rounding to the lattice adds
-  std::vector<T> allowed;          ///< m/s, what may be missing of a line with its lattice slack, as computed in T
+/// What a search for neighbours looks up, of every kind.
+struct ReachTable {
   std::vector<float> none;     ///< squared lattice steps, without the bits of a number: keys from here on do not count
   std::vector<float> reach;    ///< squared lattice steps, rounded up: who is farther cannot be met within the step
   std::vector<double> window;  ///< lattice steps, how far a search goes at most
   std::vector<std::int32_t> whole_window;  ///< the same, down to a whole number, 2^30 at most
   std::vector<int> neighbours;
   int most_neighbours = 1;
-  T lattice_slack = 0;  ///< m/s, in every offset
-  double spare = 0.0;   ///< m/s, how much of it the rounding to the lattice may use up; the rest covers underflow
+  double nearby = 0.0;  ///< lattice steps, how far a search goes at least
+
+  bool is_mixed() const { return none.size() > 1; }
+};
+
+template <class T>
+struct KindTable : ReachTable {
+  std::vector<T> radius;           ///< m, rounded up
+  std::vector<T> inverse_horizon;  ///< 1/s
+  std::vector<T> least_offset;     ///< m/s, below it an offset never binds
+  std::vector<T> disc;             ///< m/s, less what rounding to the lattice adds
+  std::vector<T> allowed;          ///< m/s, what may be missing of a line with its lattice slack, as computed in T
+  T lattice_slack = 0;             ///< m/s, in every offset
+  double spare = 0.0;  ///< m/s, how much of it the rounding to the lattice may use up; the rest covers underflow
   double velocity_step = 0.0;  ///< m/s, q / dt
 };
 

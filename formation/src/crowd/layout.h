@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <new>
 #include <vector>
 
@@ -51,6 +52,18 @@ struct Candidates {
   alignas(64) std::int32_t x[kRoom], y[kRoom], mx[kRoom], my[kRoom], kind[kRoom];
   std::size_t count = 0;
 };
+
+inline std::int32_t bits_of(float value) {
+  std::int32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+inline float float_of(std::int32_t bits) {
+  float value = 0;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
 
 /// key[r][lane]: the r-th smallest of a lane, a squared distance (lattice steps) whose low bits hold the candidate's
 /// number; `none` of the lane where there are fewer.

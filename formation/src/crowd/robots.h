@@ -22,6 +22,12 @@ struct Window {
   std::int64_t x0, x1, y0, y1;
 };
 
+/// By at least `by` lattice steps on every side.
+inline Window grown(const Window& w, double by) {
+  const auto g = static_cast<std::int64_t>(by) + 2;
+  return {w.x0 - g, w.x1 + g, w.y0 - g, w.y1 + g};
+}
+
 /// The cells of a window, and its ends in x.
 struct Cells {
   std::int64_t column0, column1, row0, row1, x0, x1;
@@ -43,6 +49,7 @@ class Robots {
   static constexpr std::uint16_t kKind = 0x3FFF, kKept = 0x4000, kSettled = 0x8000;
 
   std::size_t size() const { return size_; }
+  std::size_t kind(std::size_t i) const { return tag[i] & kKind; }
   double strip() const { return strip_; }
   void set_strip(double strip) { strip_ = strip; }
   Window bounds() const { return bounds_; }

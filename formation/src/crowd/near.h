@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The neighbours of one robot, however many: by the order that packs have (packs.h).
+
+#include <cstdint>
+#include <vector>
+
+#include "crowd/kinds.h"
+#include "crowd/robots.h"
+
+namespace exactvo::formation::crowd {
+
+/// A robot near another, by cut squared distance and place in the sorted order.
+struct Near {
+  float squared;  ///< lattice steps
+  std::int32_t robot;
+  bool operator<(const Near& o) const { return squared != o.squared ? squared < o.squared : robot < o.robot; }
+};
+
+/// Into `near`, nearest first: as many as its kind has neighbours, and all that can be met within the step. `last`: the
+/// squared distance (lattice steps) of the last of its kind's number. True where more can be met than that, or as many.
+bool neighbours_of(const Robots& robots, const ReachTable& table, std::size_t robot, std::vector<Near>& near,
+                   float& last);
+
+/// Lattice steps, from a squared distance or a key of a search: what the next step's search begins with.
+std::int32_t hint_of(const ReachTable& table, float key, std::size_t kind);
+
+}  // namespace exactvo::formation::crowd

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crowd/one_robot.h"
+
+#include <limits>
+
+#include "crowd/nudge.h"
+#include "exactvo/vo/lp/batch.h"
+
+namespace exactvo::formation {
+
+using namespace crowd;
+
+template <class T>
+CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b, CrowdExplanation* words) const {
+  CrowdDecision d{};
+  float last = 0;
+  d.widened = neighbours_of(crowd_.robots, table_, robot, b.near, last);
+  d.hint = hint_of(table_, last, crowd_.robots.kind(robot));
+  lines_of_edges(robot, b);
+  b.body_lines.clear();
+  b.still = 0;
+  if (!crowd_.bodies.empty()) lines_of_bodies(robot, b);
+  d.neighbours = b.near.size();
+  d.edges = b.edge_lines.size();
+  d.bodies = b.body_lines.size();
+  const std::size_t lines = d.edges + d.bodies + d.neighbours, rows = std::max<std::size_t>(1, lines);
+  b.row_x.assign(rows * kPack, T(1));
+  b.row_y.assign(rows * kPack, T(0));
+  b.row_c.assign(rows * kPack, static_cast<T>(kNever));
+  put_obstacles(robot, b, words);
+  for (std::size_t k = 0; k < b.near.size(); k += kPack) d.touching |= put_neighbours(robot, k, b, words);
+  d.motion = solve(robot, preferred, lines, static_cast<std::int32_t>(d.edges + b.still), b);
+  return d;
+}
+
+/// Into b.edge_lines.
+template <class T>
+void OneRobot<T>::lines_of_edges(std::size_t robot, Buffers& b) const {
+  const CrowdKind& kind = kind_of(robot);
+  const Robots& robots = crowd_.robots;
+  EdgeQuery query;
+  query.position = {crowd_.options.position_step * robots.x[robot], crowd_.options.position_step * robots.y[robot]};
+  query.velocity = crowd_.velocity_of(robots.mx[robot], robots.my[robot]);
+  query.radius = kind.radius;
+  query.horizon = edge_horizon(kind);
+  query.max_speed = kind.max_speed;
+  query.float_normals = sizeof(T) == 4;
+  edge_lines(crowd_.edges, query, b.near_edges, b.edge_lines);
+}
+
+template <class T>
+void OneRobot<T>::lines_of_bodies(std::size_t robot, Buffers& b) const {
+  const CrowdKind& kind = kind_of(robot);
+  const Robots& robots = crowd_.robots;
+  BodyQuery query;
+  query.x = robots.x[robot];
+  query.y = robots.y[robot];
+  query.velocity = crowd_.velocity_of(robots.mx[robot], robots.my[robot]);
+  query.radius = kind.radius;
+  query.still_horizon = edge_horizon(kind);
+  query.horizon = kind.time_horizon;
+  query.max_speed = kind.max_speed;
+  query.float_normals = sizeof(T) == 4;
+  b.still = crowd_.bodies.lines(query, b.near_bodies, b.body_lines);
+}
+
+/// Returns the half-plane without what covers the rounding to the lattice.
+template <class T>
+template <class Line>
+geometry::HalfPlane OneRobot<T>::put_row(const Line& line, std::size_t robot, std::size_t row, Buffers& b) const {
+  const std::size_t to = row * kPack;
+  put(line, robot, b.row_x[to], b.row_y[to], b.row_c[to]);
+  return {line.normal, static_cast<double>(b.row_c[to]) - table_.spare};
+}
+
+template <class T>
+void OneRobot<T>::put_obstacles(std::size_t robot, Buffers& b, CrowdExplanation* words) const {
+  for (std::size_t k = 0; k < b.edge_lines.size(); ++k) {
+    const EdgeLine& line = b.edge_lines[k];
+    const geometry::HalfPlane h = put_row(line, robot, k, b);
+    if (words) words->edges.push_back({crowd_.edges.edges()[line.edge], h, line.touching});
+  }
+  for (std::size_t k = 0; k < b.body_lines.size(); ++k) {
+    const BodyLine& line = b.body_lines[k];
+    const std::size_t row = b.edge_lines.size() + k + (k < b.still ? 0 : b.near.size());
+    const geometry::HalfPlane h = put_row(line, robot, row, b);
+    if (words) words->bodies.push_back({crowd_.bodies.all()[line.body].id, h, line.touching});
+  }
+}
+
+/// The lines of neighbours `first` to `first` + 15, one per lane; whether one of them touches.
+template <class T>
+bool OneRobot<T>::put_neighbours(std::size_t robot, std::size_t first, Buffers& b, CrowdExplanation* words) const {
+  const Robots& robots = crowd_.robots;
+  const std::size_t count = std::min(kPack, b.near.size() - first);
+  Candidates others;
+  others.count = kPack;
+  std::int32_t own[5][kPack];
+  alignas(64) float none[kPack];
+  Ranked ranked;
+  for (std::size_t lane = 0; lane < kPack; ++lane) {
+    const auto j = static_cast<std::size_t>(b.near[first + std::min(lane, count - 1)].robot);
+    others.x[lane] = robots.x[j];
+    others.y[lane] = robots.y[j];
+    others.mx[lane] = robots.mx[j];
+    others.my[lane] = robots.my[j];
+    others.kind[lane] = static_cast<std::int32_t>(robots.kind(j));
+    own[0][lane] = robots.x[robot];
+    own[1][lane] = robots.y[robot];
+    own[2][lane] = robots.mx[robot];
+    own[3][lane] = robots.my[robot];
+    own[4][lane] = static_cast<std::int32_t>(robots.kind(robot));
+    none[lane] = std::numeric_limits<float>::infinity();
+    ranked.key[0][lane] = float_of(static_cast<std::int32_t>(lane));
+  }
+  const LineQuery query{&others, &ranked, none, 0, 1, own[0], own[1], own[2], own[3], own[4]};
+  alignas(64) T x[kPack], y[kPack], c[kPack];
+  const LineFlags flags = make_lines(rule_, query, LineRows<T>{x, y, c, kPack});
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const auto other = static_cast<std::size_t>(b.near[first + lane].robot);
+    if (flags.coincident >> lane & 1U) part(robot, other, x[lane], y[lane], c[lane]);
+    const std::size_t to = (b.edge_lines.size() + b.still + first + lane) * kPack;
+    b.row_x[to] = x[lane];
+    b.row_y[to] = y[lane];
+    b.row_c[to] = c[lane];
+    if (!words) continue;
+    const geometry::HalfPlane h{{static_cast<double>(x[lane]), static_cast<double>(y[lane])},
+                                static_cast<double>(c[lane]) - table_.spare};
+    words->neighbours.push_back({static_cast<RobotId>(robots.id[other]), h, (flags.touching >> lane & 1U) != 0});
+  }
+  return (flags.touching & ((1U << count) - 1U)) != 0;
+}
+
+/// Two robots in one place, as fast as each other: the lower id leaves to the left (-x), the other to the right.
+template <class T>
+void OneRobot<T>::part(std::size_t robot, std::size_t other, T& x, T& y, T& c) const {
+  const Robots& robots = crowd_.robots;
+  x = robots.id[robot] < robots.id[other] ? T(-1) : T(1);
+  y = T(0);
+  const double radius = static_cast<double>(table_.radius[robots.kind(robot)]) + table_.radius[robots.kind(other)];
+  const double own = static_cast<double>(x) * robots.mx[robot] * table_.velocity_step;
+  const double half = radius / (2.0 * crowd_.options.time_step) * (1.0 + 0x1p-50);
+  c = rounded_up<T>(own + half + static_cast<double>(table_.lattice_slack));
+}
+
+/// From the rows to a motion.
+template <class T>
+CrowdMotion OneRobot<T>::solve(std::size_t robot, Vec2 preferred, std::size_t lines, std::int32_t hard,
+                               const Buffers& b) const {
+  alignas(64) T vx[kPack] = {}, vy[kPack] = {}, violation[kPack] = {}, px[kPack], py[kPack], disc[kPack];
+  std::uint8_t status[kPack] = {};
+  std::fill(px, px + kPack, static_cast<T>(preferred.x));
+  std::fill(py, py + kPack, static_cast<T>(preferred.y));
+  std::fill(disc, disc + kPack, table_.disc[crowd_.robots.kind(robot)]);
+  const std::int32_t hard_of_lane[kPack] = {hard};
+  lp::BatchProblems<T> in;
+  in.count = 1;
+  in.lines = lines;
+  in.block = kPack;
+  in.hard = hard > 0 ? hard_of_lane : nullptr;
+  in.normal_x = b.row_x.data();
+  in.normal_y = b.row_y.data();
+  in.offset = b.row_c.data();
+  in.preferred_x = px;
+  in.preferred_y = py;
+  in.disc = disc;
+  lp::BatchAnswers<T> out;
+  out.velocity_x = vx;
+  out.velocity_y = vy;
+  out.violation = violation;
+  out.status = status;
+  out.stride = kPack;
+  lp::solve_batch(in, out, 0, 1);
+  const Answers<T> answer{vx, vy, b.row_x.data(), b.row_y.data(), b.row_c.data(), lines, kPack};
+  Rounded<T> rounded;
+  round_to_lattice(rule_, answer, rounded);
+  const bool kept = is_kept(table_, rule_, crowd_.robots.kind(robot), rounded.excess[0], status[0]);
+  const CrowdMotion m{rounded.mx[0], rounded.my[0], kept};
+  return kept ? m : settled(robot, answer, status[0], hard, m);
+}
+
+template <class T>
+CrowdMotion OneRobot<T>::settled(std::size_t robot, const Answers<T>& in, std::uint8_t status, std::int32_t hard,
+                                 CrowdMotion m) const {
+  if (!crowd_.options.certified) return m;
+  if (status == 0) m.kept = m.nudged = nudge(table_, in, kind_of(robot).max_speed, m.mx, m.my);
+  return m.kept ? m : kept_off_edges(robot, in, static_cast<std::size_t>(hard), m);
+}
+
+/// No velocity may lead onto an edge or a body at rest, also where half-planes against robots had to give: another
+/// place of the lattice nearby, or none. REQUIRES: the first `hard` lines are theirs.
+template <class T>
+CrowdMotion OneRobot<T>::kept_off_edges(std::size_t robot, Answers<T> in, std::size_t hard, CrowdMotion m) const {
+  if (hard == 0 || !crowd_.options.certified) return m;
+  in.lines = hard;
+  const double speed = kind_of(robot).max_speed;
+  if (keeps(table_, in, m.mx, m.my, speed) || nudge(table_, in, speed, m.mx, m.my)) return m;
+  m.mx = m.my = 0;
+  m.stopped = true;
+  return m;
+}
+
+template class OneRobot<float>;
+template class OneRobot<double>;
+
+}  // namespace exactvo::formation

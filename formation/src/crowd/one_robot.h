@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// One robot decided alone, with any number of neighbours, to the bits that a pack gives it; and what a pack leaves to
+/// be done robot by robot.
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "crowd/engine.h"
+#include "crowd/near.h"
+
+namespace exactvo::formation {
+
+struct CrowdMotion {
+  std::int32_t mx, my;  ///< lattice steps
+  bool kept;            ///< all half-planes
+  bool nudged = false, stopped = false;
+};
+
+struct CrowdDecision {
+  CrowdMotion motion;
+  std::int32_t hint;  ///< lattice steps, for the next search
+  bool touching, widened;
+  std::size_t neighbours, edges, bodies;  ///< half-planes
+};
+
+/// Of a thread.
+template <class T>
+struct OneRobotBuffers {
+  std::vector<crowd::Near> near;
+  std::vector<crowd::NearEdge> near_edges;
+  std::vector<crowd::EdgeLine> edge_lines;
+  std::vector<std::uint32_t> near_bodies;
+  std::vector<crowd::BodyLine> body_lines;
+  std::size_t still = 0;                ///< of body_lines, the first: against bodies at rest
+  crowd::Array<T> row_x, row_y, row_c;  ///< half-planes of edges and bodies at rest, of robots, of bodies that move
+};
+
+template <class T>
+class OneRobot {
+ public:
+  using Buffers = OneRobotBuffers<T>;
+
+  /// All of them are looked at when a robot is decided.
+  OneRobot(const CrowdCore& crowd, const crowd::KindTable<T>& table, const crowd::LineRule<T>& rule)
+      : crowd_(crowd), table_(table), rule_(rule) {}
+
+  /// `words`: gets the half-planes, unless null.
+  CrowdDecision decide(std::size_t robot, Vec2 preferred, Buffers& b, CrowdExplanation* words) const;
+
+  /// Into b.body_lines and b.still.
+  void lines_of_bodies(std::size_t robot, Buffers& b) const;
+
+  /// Of a motion that does not keep all half-planes, another one nearby, or none. `hard`: so many of the first lines
+  /// are of edges and bodies at rest.
+  CrowdMotion settled(std::size_t robot, const crowd::Answers<T>& in, std::uint8_t status, std::int32_t hard,
+                      CrowdMotion m) const;
+
+  /// An EdgeLine or a BodyLine as a row.
+  template <class Line>
+  void put(const Line& line, std::size_t robot, T& x, T& y, T& c) const {
+    x = static_cast<T>(line.normal.x);
+    y = static_cast<T>(line.normal.y);
+    c = std::max(table_.least_offset[crowd_.robots.kind(robot)],
+                 crowd::rounded_up<T>(line.offset + static_cast<double>(table_.lattice_slack)));
+  }
+
+ private:
+  const CrowdKind& kind_of(std::size_t robot) const { return crowd_.kinds[crowd_.robots.kind(robot)]; }
+  void lines_of_edges(std::size_t robot, Buffers& b) const;
+  void put_obstacles(std::size_t robot, Buffers& b, CrowdExplanation* words) const;
+  template <class Line>
+  geometry::HalfPlane put_row(const Line& line, std::size_t robot, std::size_t row, Buffers& b) const;
+  bool put_neighbours(std::size_t robot, std::size_t first, Buffers& b, CrowdExplanation* words) const;
+  void part(std::size_t robot, std::size_t other, T& x, T& y, T& c) const;
+  CrowdMotion solve(std::size_t robot, Vec2 preferred, std::size_t lines, std::int32_t hard, const Buffers& b) const;
+  CrowdMotion kept_off_edges(std::size_t robot, crowd::Answers<T> in, std::size_t hard, CrowdMotion m) const;
+
+  const CrowdCore& crowd_;
+  const crowd::KindTable<T>& table_;
+  const crowd::LineRule<T>& rule_;
+};
+
+}  // namespace exactvo::formation

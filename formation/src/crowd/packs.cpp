@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crowd/packs.h"
+
+#include <algorithm>
+
+#include "crowd/search.h"
+
+namespace exactvo::formation::crowd {
+namespace {
+
+/// Candidates that a pack may look at in vain rather than be cut at the end of its strip.
+constexpr std::size_t kWorthCutting = 48;
+
+void copy(const std::int32_t* from, std::size_t count, std::int32_t* to) {
+  for (std::size_t k = 0; k < count; k += kPack) std::memcpy(to + k, from + k, kPack * sizeof *to);
+}
+
+class PackSearch {
+ public:
+  PackSearch(Robots& robots, const ReachTable& table) : robots_(robots), table_(table), mixed_(table.is_mixed()) {}
+
+  Pack find(std::size_t begin, std::size_t last, PackBuffers& out) const {
+    Pack pack = first_pack(begin, last);
+    const int ranks = ranks_sought(table_.most_neighbours + 1);
+    for (;;) {
+      if (pack.candidates > kMostCandidates) return give_up(pack, out);
+      load_lanes(pack, out);
+      collect(pack, out);
+      find_nearest(out.others, &robots_.x[pack.begin], &robots_.y[pack.begin], out.limits.none, ranks, out.ranked);
+      drop_selves(pack, ranks, out);
+      const auto seen = static_cast<float>(pack.reach * pack.reach * kWholeKey);
+      count_neighbours(out.limits, seen, ranks, mixed_, out.ranked, out.finds);
+      if (!somebody_may_be_missing(pack, out)) break;
+      pack.reach = std::min(widest_window(pack), pack.reach * kWiderReach);
+      look(pack);
+      halve(pack);
+    }
+    take_finds(pack, out);
+    return pack;
+  }
+
+ private:
+  Window box_of(std::size_t begin, std::size_t end, double& hint) const {
+    const std::int32_t *x = robots_.x.data(), *y = robots_.y.data(), *hints = robots_.hint.data();
+    std::int32_t x0 = x[begin], x1 = x0, y0 = y[begin], y1 = y0, farthest = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      x0 = std::min(x0, x[i]);
+      x1 = std::max(x1, x[i]);
+      y0 = std::min(y0, y[i]);
+      y1 = std::max(y1, y[i]);
+      farthest = std::max(farthest, hints[i]);
+    }
+    hint = farthest;
+    return {x0, x1, y0, y1};
+  }
+
+  double widest_window(const Pack& pack) const {
+    if (!mixed_) return table_.window[0];
+    double most = 0.0;
+    for (std::size_t i = pack.begin; i < pack.end; ++i) most = std::max(most, table_.window[robots_.kind(i)]);
+    return most;
+  }
+
+  void place(Pack& pack, std::size_t end) const {
+    double hint = 0.0;
+    pack.end = end;
+    pack.box = box_of(pack.begin, end, hint);
+    pack.reach = std::min(widest_window(pack), kFirstReach * hint + table_.nearby);
+    look(pack);
+  }
+
+  void look(Pack& pack) const {
+    pack.cells = robots_.cells_of(grown(pack.box, pack.reach));
+    pack.candidates = 0;
+    for (std::int64_t row = pack.cells.row0; row <= pack.cells.row1; ++row) {
+      const Stretch stretch = robots_.stretch(pack.cells, row);
+      const std::int64_t nth = row - pack.cells.row0;
+      if (nth < Pack::kKeptStretches) pack.stretches[nth] = stretch;
+      pack.candidates += stretch.to - stretch.from;
+    }
+  }
+
+  /// The robots from b on that are searched for together: fewer than kPack where they have too many candidates.
+  Pack first_pack(std::size_t b, std::size_t last) const {
+    Pack pack{};
+    pack.begin = b;
+    place(pack, std::min(b + kPack, last));
+    if (pack.candidates <= kWorthCutting) return pack;
+    const std::size_t strip_end = robots_.strip_end(b);
+    if (pack.end > strip_end) {
+      Pack cut = pack;
+      place(cut, strip_end);
+      if (pack.candidates > kMostCandidates || pack.candidates > kWorthCutting + cut.candidates) pack = cut;
+    }
+    halve(pack);
+    return pack;
+  }
+
+  /// Until the candidates have room in the table. One robot is decided alone if it comes to that.
+  void halve(Pack& pack) const {
+    while (pack.candidates > kMostCandidates && pack.size() > 1) place(pack, pack.begin + pack.size() / 2);
+  }
+
+  /// One robot among more candidates than the table has room for.
+  Pack give_up(Pack pack, PackBuffers& out) const {
+    pack.alone = 1;
+    pack.ranks = 0;
+    load_lanes(pack, out);
+    for (auto& row : out.ranked.key) std::copy(out.limits.none, out.limits.none + kPack, row);
+    out.others.count = 0;
+    return pack;
+  }
+
+  void load_lanes(const Pack& pack, PackBuffers& out) const {
+    LaneLimits& limits = out.limits;
+    if (mixed_) {
+      for (std::size_t lane = 0; lane < kPack; ++lane)
+        limits.kind[lane] = lane < pack.size() ? static_cast<std::int32_t>(robots_.kind(pack.begin + lane)) : 0;
+      for (std::size_t lane = 0; lane < kPack; ++lane) limit(limits, lane, static_cast<std::size_t>(limits.kind[lane]));
+    } else {
+      std::fill(limits.kind, limits.kind + kPack, 0);
+      for (std::size_t lane = 0; lane < kPack; ++lane) limit(limits, lane, 0);
+    }
+    for (std::size_t lane = pack.size(); lane < kPack; ++lane) limits.none[lane] = 0.0F;
+  }
+
+  void limit(LaneLimits& limits, std::size_t lane, std::size_t kind) const {
+    limits.none[lane] = table_.none[kind];
+    limits.reach[lane] = table_.reach[kind];
+    limits.wanted[lane] = table_.neighbours[kind];
+    limits.window[lane] = table_.whole_window[kind];
+  }
+
+  void collect(const Pack& pack, PackBuffers& out) const {
+    out.others.count = 0;
+    for (std::int64_t row = pack.cells.row0; row <= pack.cells.row1; ++row) {
+      const std::int64_t nth = row - pack.cells.row0;
+      const Stretch stretch = nth < Pack::kKeptStretches ? pack.stretches[nth] : robots_.stretch(pack.cells, row);
+      const bool is_own = stretch.from < pack.end && pack.begin < stretch.to;
+      const bool is_outermost = row == pack.cells.row0 || row == pack.cells.row1;
+      if (is_outermost && !is_own && !mixed_)
+        collect_near(pack, stretch, out);
+      else
+        collect_all(pack, stretch, out);
+    }
+  }
+
+  void collect_all(const Pack& pack, const Stretch& stretch, PackBuffers& out) const {
+    const std::size_t count = stretch.to - stretch.from, at = out.others.count;
+    copy(robots_.x.data() + stretch.from, count, out.others.x + at);
+    copy(robots_.y.data() + stretch.from, count, out.others.y + at);
+    copy(robots_.mx.data() + stretch.from, count, out.others.mx + at);
+    copy(robots_.my.data() + stretch.from, count, out.others.my + at);
+    if (mixed_)
+      for (std::size_t k = 0; k < count; ++k)
+        out.others.kind[at + k] = static_cast<std::int32_t>(robots_.kind(stretch.from + k));
+    const std::size_t first = std::max(pack.begin, stretch.from), last = std::min(pack.end, stretch.to);
+    for (std::size_t i = first; i < last; ++i)
+      out.self[i - pack.begin] = static_cast<std::int32_t>(at + i - stretch.from);
+    out.others.count += count;
+  }
+
+  /// Of a strip that reaches beyond the window: those that are not farther from the box in y than the pack looks.
+  void collect_near(const Pack& pack, const Stretch& stretch, PackBuffers& out) const {
+    const Window w = grown(pack.box, pack.reach);
+    const auto within = [](std::int64_t y) {
+      return static_cast<std::int32_t>(std::clamp<std::int64_t>(y, -kLatticeEnd, kLatticeEnd));
+    };
+    const RobotColumns some{robots_.x.data() + stretch.from, robots_.y.data() + stretch.from,
+                            robots_.mx.data() + stretch.from, robots_.my.data() + stretch.from};
+    add_between(some, stretch.to - stretch.from, within(w.y0), within(w.y1), out.others);
+  }
+
+  /// A robot is the first of its own list, unless others stand in its place.
+  void drop_selves(const Pack& pack, int ranks, PackBuffers& out) const {
+    std::uint32_t behind = lanes_behind_others(out.ranked, out.self) & pack.lanes();
+    for (std::size_t lane = 0; behind != 0; ++lane, behind >>= 1U)
+      if (behind & 1U) drop_self(lane, ranks, out);
+  }
+
+  void drop_self(std::size_t lane, int ranks, PackBuffers& out) const {
+    const std::int32_t none = bits_of(out.limits.none[lane]);
+    int at = ranks - 1;  // the last one, where as many others stand in its place
+    for (int r = 0; r < ranks; ++r) {
+      const std::int32_t key = bits_of(out.ranked.key[r][lane]);
+      if (key < none && (key & kIndexBits) == out.self[lane]) at = r;
+    }
+    for (int r = at; r > 0; --r) out.ranked.key[r][lane] = out.ranked.key[r - 1][lane];
+  }
+
+  /// Whether a robot outside the window could be nearer than the last neighbour of a lane.
+  bool somebody_may_be_missing(const Pack& pack, const PackBuffers& found) const {
+    std::uint32_t unseen = found.finds.unseen & pack.lanes();
+    for (std::size_t lane = 0; unseen != 0; ++lane, unseen >>= 1U)
+      if ((unseen & 1U) && pack.reach < table_.window[static_cast<std::size_t>(found.limits.kind[lane])]) return true;
+    return false;
+  }
+
+  /// Who has how many, whom the next step will ask how far, and who has more in reach than neighbours.
+  void take_finds(Pack& pack, const PackBuffers& found) const {
+    std::copy(found.finds.hint, found.finds.hint + pack.size(), robots_.hint.data() + pack.begin);
+    for (std::size_t lane = 0; lane < kPack; ++lane)
+      pack.neighbours[lane] = static_cast<std::uint8_t>(found.finds.have[lane]);
+    pack.alone |= found.finds.crowded & pack.lanes();
+    pack.ranks = found.finds.most;
+  }
+
+  Robots& robots_;
+  const ReachTable& table_;
+  bool mixed_;
+};
+
+}  // namespace
+
+Pack find_pack(Robots& robots, const ReachTable& table, std::size_t begin, std::size_t last, PackBuffers& out) {
+  return PackSearch(robots, table).find(begin, last, out);
+}
+
+}  // namespace exactvo::formation::crowd
