@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what the project needs and is missing, on Debian and its relatives; elsewhere prints what is needed and stops.
 # Nothing missing: says so and changes nothing. `install-dependencies.sh program`: what the libraries, the program and the
-# benchmarks need, without what only tests and the site need.
+# benchmarks need, without what only tests and the site need; `install-dependencies.sh python`: that and the Python package.
 set -euo pipefail
 export PATH="${PATH:-/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin}"
 
@@ -17,19 +17,22 @@ for_program=(
   gnuplot-nox fonts-dejavu-core                                     # figures
   libbenchmark-dev                                                  # benchmarks
 )
+for_python=(
+  python3-dev pybind11-dev python3-numpy python3-matplotlib         # the package, and what its plots are drawn with
+  python3-venv python3-setuptools python3-wheel                     # pip install . without an index
+)
 for_tests=(
   libgtest-dev libgmock-dev librapidcheck-dev libvalijson-dev       # tests
   chromium chromium-driver python3-selenium                         # tests of the explorer's page in a browser
-  python3-dev pybind11-dev python3-numpy                            # the Python package
-  python3-venv python3-setuptools python3-wheel                     # pip install . without an index
-  python3-pytest mypy python3-matplotlib python3-pandas python3-shapely  # its tests
+  python3-pytest mypy python3-pandas python3-shapely                # tests of the Python package
   doxygen pandoc                                                    # the site
 )
 case "${1:-all}" in
-  all) packages=("${for_program[@]}" "${for_tests[@]}") ;;
+  all) packages=("${for_program[@]}" "${for_python[@]}" "${for_tests[@]}") ;;
   program) packages=("${for_program[@]}") ;;
+  python) packages=("${for_program[@]}" "${for_python[@]}") ;;
   *)
-    echo "install-dependencies: found '$1', expected 'program' or nothing" >&2
+    echo "install-dependencies: found '$1', expected 'program', 'python' or nothing" >&2
     exit 2
     ;;
 esac
