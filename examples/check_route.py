@@ -9,7 +9,7 @@ Obstacles stand in the first certificate of a file. docs/guide/routes.md says wh
                 different sides of it (by the parity of crossings)
     blocked     the start or goal lies in a polygon, or nearer than a radius to an edge
 Radius 0 is a point, which touches no edge."""
-import json, math, re, sys
+import argparse, json, math, re, sys
 from fractions import Fraction
 
 KINDS = ("route", "separated", "blocked")
@@ -59,16 +59,18 @@ class Obstacle:
         rings = [[point(p, (2,)) for p in listed(ring)] for ring in rings]
         require(all(len(ring) >= 2 + self.is_solid for ring in rings), data)
         self.edges = [e for ring in rings for e in zip(ring, ring[1:] + ring[:1] if self.is_solid else ring[1:])]
+        self.boxes = [[(float(min(x)), float(max(x))) for x in zip(*e)] for e in self.edges]  # of doubles: as they are
 
 def named(things, index):
     require(type(index) is int and index >= 0, index)
     return things[index]
 
 def require_clear(p, q, radius, obstacles):
-    box = [(min(x) - radius, max(x) + radius) for x in zip(p, q)]
+    (west, east), (south, north) = [(math.nextafter(float(min(x) - radius), -math.inf), math.nextafter(float(max(x) + radius), math.inf))
+                                    for x in zip(p, q)]  # rounded outwards: most edges are outside, and doubles compare faster
     for i, obstacle in enumerate(obstacles):
-        for k, (a, b) in enumerate(obstacle.edges):
-            if any(max(x) < low or min(x) > high for x, (low, high) in zip(zip(a, b), box)):
+        for k, ((a, b), (x, y)) in enumerate(zip(obstacle.edges, obstacle.boxes)):
+            if x[1] < west or x[0] > east or y[1] < south or y[0] > north:
                 continue
             across = turn(p, q, a) * turn(p, q, b) < 0 and turn(a, b, p) * turn(a, b, q) < 0
             nearest = min(square_to(p, (a, b)), square_to(q, (a, b)), square_to(a, (p, q)), square_to(b, (p, q)))
@@ -119,7 +121,9 @@ def once(pairs):
 
 def main():
     obstacles, count, wrong = None, 0, 0
-    text = open(sys.argv[1], encoding="utf-8-sig").read() if len(sys.argv) > 1 else sys.stdin.read().lstrip("\ufeff")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("answers", nargs="?", type=argparse.FileType(encoding="utf-8"), default=sys.stdin, help="by default stdin")
+    text = parser.parse_args().answers.read().lstrip("\ufeff")
     try:  # one value, or one a line
         pending = [json.loads(text, object_pairs_hook=once)]
     except (RecursionError, ValueError):
@@ -136,6 +140,7 @@ def main():
                 continue
             listing, obstacles = c.get("obstacles"), None if "obstacles" in c else obstacles
             obstacles = [Obstacle(o) for o in listed(listing)] if "obstacles" in c else obstacles
+            require(obstacles is not None, "no obstacles: neither in it nor in one before it")
             check(c, obstacles)
             require(c is answer or agrees(answer, c), "not what stands beside it")
         except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:

@@ -730,6 +730,49 @@ class Live(Page):
         marks = self.run_script("return [...document.querySelectorAll('#half-planes .mark')].map((m) => m.textContent)")
         self.assertEqual(marks, ["\u2713 proven"] * 2)
 
+    def test_another_robot_has_all_its_half_planes_while_a_preferred_velocity_is_changed(self):
+        """They were those of the robot whose preferred velocity had been dragged, and of the one shown only what held it."""
+        robots = [{"id": f"R{k}", "position": [0, 3 * k], "goal": [12, 3 * k]} for k in range(3)]
+        self.serve_instead({**self.SCENARIO, "robots": robots, "obstacles": []})
+        self.show()
+        self.drag("space", "plane", self.run_script("return exactvo.page.space.decision.preferred"), (0.5, -1.0))
+        counts = "return [0, 1, 2].map((i) => exactvo.page.live.run.decision(0, i).halfPlanes.length)"
+        self.assertEqual(self.run_script(counts), [2, 1, 1])
+        self.run_script("exactvo.chooseRobot(1)")
+        self.answered()
+        self.assertEqual(self.run_script(counts), [1, 2, 1])
+        preferred = self.run_script("return exactvo.page.live.run.decision(0, 0).preferred")
+        self.assertAlmostEqual(preferred[0], 0.5, delta=0.1)
+        self.assertAlmostEqual(preferred[1], -1.0, delta=0.1)
+
+    def test_a_coordinate_by_number_leaves_the_other_as_it_is(self):
+        self.show()
+        self.fill("live-y", "-0.123456789")
+        self.fill("live-y", "")  # while it is typed anew
+        self.fill("live-x", "0.5")
+        self.assertEqual(self.run_script("return exactvo.live.edit.scenario.robots[0].position"), [0.5, -0.123456789])
+
+    def test_a_robot_is_dragged_by_its_centre_and_not_a_goal_beside_it(self):
+        robots = [{"id": "R1", "position": [0, 0], "goal": [12, 0]}, {"id": "R2", "position": [12, 0], "goal": [0, 0.3]},
+                  {"id": "R3", "position": [5, 5], "goal": [5, 5]}]
+        self.serve_instead({**self.SCENARIO, "robots": robots, "obstacles": []})
+        self.show()
+        self.assertLess(self.run_script("return 0.3 * exactvo.page.world.scale"), 10, "the goal is within reach of the pointer")
+        self.drag("world", "world", (0, 0), (-2, 2))
+        self.drag("world", "world", (5, 5), (7, 4))
+        scenario = self.run_script("return exactvo.live.edit.scenario")
+        self.assertAlmostEqual(scenario["robots"][0]["position"][0], -2, delta=0.2)
+        self.assertEqual(scenario["robots"][1]["goals"], [[0, 0.3]])
+        self.assertEqual(scenario["robots"][2]["position"], [5, 5], "the goal that it stands on is taken first")
+        self.assertAlmostEqual(scenario["robots"][2]["goals"][0][0], 7, delta=0.2)
+
+    def test_run_from_here_without_a_change(self):
+        self.show()
+        self.run_script("document.getElementById('live-run').click()")
+        self.await_script("for (let k = 0; k < 600 && exactvo.page.key !== 'changed-1'; ++k) await new Promise((r) => setTimeout(r, 50))")
+        self.settle()
+        self.assertEqual(self.text("#live-message"), "", "it no longer simulates")
+
     def test_run_from_here_and_back(self):
         self.show("t=2")
         self.drag("world", "world", (6, 0), (6, 6))

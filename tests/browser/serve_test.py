@@ -205,7 +205,8 @@ class Serve(unittest.TestCase):
             with self.subTest(place):
                 status, answer = self.server.ask(scenario={**SCENARIO, **change})
                 self.assertEqual((status, json.loads(answer)["place"]), (400, place))
-        for change, place in [({"robot": 1}, "/robot"), ({"robot": -1}, "/robot"), ({"robot": "R1"}, "/robot"), ({"preferred": [1]}, "/preferred"),
+        for change, place in [({"robot": 1}, "/robot"), ({"robot": -1}, "/robot"), ({"robot": "R1"}, "/robot"), ({"robot": 0.5}, "/robot"),
+                              ({"preferred": [1, 0], "preferred_robot": 1}, "/preferred_robot"), ({"preferred": [1]}, "/preferred"),
                               ({"preferred": [1, None]}, "/preferred/1"), ({"preferred": [1e300, 0]}, "/preferred/0"), ({"time": -1}, "/time"),
                               ({"time": "now"}, "/time"), ({"method": "best"}, "/method"), ({"method": 3}, "/method")]:
             with self.subTest(change):

@@ -332,6 +332,14 @@ TEST(RouteCertificates, CrossingsThatAreNoDoublesStandAsFractions) {
   EXPECT_GE(fractions, 3u);
 }
 
+TEST(RouteCertificates, ThePythonCheckerSaysThatAFileIsMissing) {
+  if (!has_python()) GTEST_SKIP() << "no python3 with math.nextafter (3.9)";
+  const Workplace here;
+  const std::string command = "cd '" + here.path().string() + "' && python3 '" EXACTVO_CHECK_ROUTE "' missing.jsonl";
+  EXPECT_EQ(WEXITSTATUS(std::system((command + " 2>said").c_str())), 2) << "1 would say that a certificate is wrong";
+  EXPECT_THAT(here.read("said"), AllOf(HasSubstr("missing.jsonl"), Not(HasSubstr("Traceback"))));
+}
+
 /// The exit statuses of both checkers for a file; of the one in Python nothing where there is no Python.
 struct Statuses {
   int audit;
@@ -477,6 +485,9 @@ TEST(RouteCertificates, ObstaclesStandInTheFirstOneOfAFile) {
   const Outcome second = rooms.here.run("audit --certificate second.jsonl");
   EXPECT_EQ(second.status, 1);
   EXPECT_THAT(second.out, HasSubstr("no obstacles: neither in it nor in one before it"));
+  if (has_python()) {
+    EXPECT_THAT(python_verdicts(rooms.here, lines[1].dump()), HasSubstr("no obstacles: neither in it nor"));
+  }
   rooms.here.write("cut.jsonl", outcome.out.substr(0, outcome.out.size() - 9));
   EXPECT_THAT(rooms.here.run("audit --certificate cut.jsonl").out, HasSubstr("2: unreadable JSON"));
 }

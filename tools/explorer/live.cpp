@@ -139,6 +139,16 @@ double number_in(const Json& value, const std::string& place, double least, doub
   return number;
 }
 
+std::optional<std::size_t> robot_in(const Json& question, const char* key, std::size_t count) {
+  const auto found = question.find(key);
+  if (found == question.end()) return std::nullopt;
+  const std::string place = std::string("/") + key;
+  constexpr const char* kExpected = "the index of a robot of the scenario";
+  const double index = number_in(*found, place, 0.0, static_cast<double>(count) - 1.0, kExpected);
+  if (index != std::floor(index)) refuse(DataCode::out_of_range, place, found->dump(), kExpected);
+  return static_cast<std::size_t>(index);
+}
+
 std::optional<Vec2> preferred_in(const Json& question) {
   const auto found = question.find("preferred");
   if (found == question.end() || found->is_null()) return std::nullopt;
@@ -212,9 +222,10 @@ class MomentRecorder : public formation::RunSink {
   void add_body(const vo::Body&) override {}
   void add_outlook(const formation::Outlook&) override {}
   void add_row(formation::Step row) override {
+    const std::size_t changed = question_.preferred_robot;
     if (rows_.empty() && question_.preferred)
-      choose_anew(question_.scenario, question_.scenario.robots[question_.robot].max_speed, *question_.preferred,
-                  row.robots[question_.robot]);
+      choose_anew(question_.scenario, question_.scenario.robots[changed].max_speed, *question_.preferred,
+                  row.robots[changed]);
     keep_what_is_shown(question_.robot, row);
     rows_.push_back(std::move(row));
   }
@@ -282,11 +293,10 @@ LiveQuestion parse_live_question(const std::string& text, const OptionsOfRun& op
   const double time =
       question.contains("time") ? number_in(question["time"], "/time", 0.0, kLatest, "seconds from 0 to 10^9") : 0.0;
   asked.scenario = scenario_in(question, time);
-  const double last = static_cast<double>(asked.scenario.robots.size()) - 1.0;
-  if (question.contains("robot"))
-    asked.robot = static_cast<std::size_t>(
-        number_in(question["robot"], "/robot", 0.0, last, "the index of a robot of the scenario"));
+  const std::size_t count = asked.scenario.robots.size();
+  asked.robot = robot_in(question, "robot", count).value_or(0);
   asked.preferred = preferred_in(question);
+  asked.preferred_robot = robot_in(question, "preferred_robot", count).value_or(asked.robot);
   return asked;
 }
 

@@ -24,8 +24,9 @@ namespace exactvo::tools {
 struct LiveQuestion {
   formation::Scenario scenario;  ///< at the moment: robots, leader and moving obstacles where they are then
   formation::SimulationOptions options;
-  std::size_t robot = 0;                    ///< whose preferred velocity may be replaced
+  std::size_t robot = 0;                    ///< of which all half-planes are wanted
   std::optional<geometry::Vec2> preferred;  ///< m/s, in place of what the method prefers
+  std::size_t preferred_robot = 0;          ///< whose preferred velocity `preferred` replaces
 };
 
 /// Robots that a question may have.
@@ -36,10 +37,12 @@ using OptionsOfRun = std::function<std::optional<formation::SimulationOptions>(c
 
 /// From JSON: `run` (the key of a run of the page), `scenario` (as the schema has it, robots and obstacles in it one by
 /// one), `time` (s: how far its leader and moving obstacles have come), `robot` (index), `preferred` ([x, y] or null),
-/// `method` (in place of the run's). Reads no file whatever the question names. Throws datasets::DataError.
+/// `preferred_robot` (index; by default `robot`), `method` (in place of the run's). Reads no file whatever the question
+/// names. Throws datasets::DataError.
 LiveQuestion parse_live_question(const std::string& json, const OptionsOfRun& options_of);
 
-/// Packed: what every robot decides at the moment, with every half-plane.
+/// Packed: what every robot decides at the moment, with every half-plane of `robot`, and of the others those that hold
+/// them and their halves of pairs with it.
 std::string live_decision(const LiveQuestion& question);
 
 /// JSON: the robot's free velocities and what its half-planes give away of them, between certified bounds.

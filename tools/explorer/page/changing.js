@@ -10,6 +10,9 @@ import {currentDecision} from './views.js';
 import {chooseRobot} from './moment.js';
 import {setPlaying} from './playing.js';
 
+const HANDLE_REACH = 10;  // px
+const HANDLE_LEAD = 3;  // px; a handle is taken before a robot's centre that is nearer by less, such as the goal that it stands on
+
 const live = {edit: null, isAsking: false, isAgain: false, freeTimer: 0, made: 0, server: window.exactvoServer || null, keys: new Map()};
 
 // Recordings of crowds have positions alone: neither goals nor decisions.
@@ -81,7 +84,7 @@ function askForFree(edit) {
   $('live-free').textContent = '';
   live.freeTimer = setTimeout(async () => {
     try {
-      const {bytes} = await live.server.ask('free', {...edit.question(ui.robot), robot: ui.robot, preferred: null});
+      const {bytes} = await live.server.ask('free', {...edit.question(ui.robot), preferred: null});
       if (live.edit !== edit) return;
       const answer = JSON.parse(new TextDecoder().decode(bytes)), middle = ([low, high]) => number((low + high) / 2);
       $('live-free').textContent = answer.why_not ? `Free velocities: ${answer.why_not}.`
@@ -106,6 +109,7 @@ async function runFromHere() {
     page.list.push({key, title: `${page.run.about.name}, on from ${number(edit.time)} s (${live.made})`, description: ''});
     fillList(page.isGuide);
     await openRun(key);
+    liveMessage('', false);  // also where nothing had been changed
     chooseRobot(robot);
     setPlaying(true);
   } catch (error) {
@@ -158,10 +162,13 @@ function fillLiveNumbers() {
 // Where a drag begins: on a handle, a robot or an obstacle; null where the view is to be moved.
 function grabbed(where, view, px, py) {
   if (!canEdit()) return null;
-  const edit = editOfMoment(), handles = liveHandles(edit);
-  let handle = pickHandle(view, handles, where, px, py);
-  if (!handle && where === 'world') {
-    const found = pickInWorld(view, shownRun(), shownPositions(), px, py) || {};
+  const edit = editOfMoment(), handles = liveHandles(edit), positions = shownPositions();
+  const found = (where === 'world' && pickInWorld(view, shownRun(), positions, px, py)) || {};
+  let reach = HANDLE_REACH;
+  if (found.robot !== undefined)
+    reach = Math.min(reach, Math.hypot(view.px(positions.x[found.robot]) - px, view.py(positions.y[found.robot]) - py) + HANDLE_LEAD);
+  let handle = pickHandle(view, handles, where, px, py, reach);
+  if (!handle) {
     if (found.robot !== undefined) handle = handles.find((h) => h.kind === 'robot' && h.robot === found.robot);
     else if (found.obstacle !== undefined) handle = obstacleHandle(edit, found.obstacle, view.x(px), view.y(py));
   }
@@ -189,9 +196,12 @@ function connectLive() {
     change(id, (edit, value) => {
       edit.horizon = value;
     });
-  const move = (edit, x, y) => liveHandles(edit)[Number($('live-handle').value) || 0].put(x, y);
-  change('live-x', (edit, x) => move(edit, x, Number($('live-y').value)));
-  change('live-y', (edit, y) => move(edit, Number($('live-x').value), y));
+  const move = (edit, place) => {  // the other coordinate is kept, to the last digit, whatever its field shows
+    const handle = liveHandles(edit)[Number($('live-handle').value) || 0];
+    handle.put(...place(handle.at()));
+  };
+  change('live-x', (edit, x) => move(edit, ([, y]) => [x, y]));
+  change('live-y', (edit, y) => move(edit, ([x]) => [x, y]));
   $('live-handle').addEventListener('change', fillLiveNumbers);
   $('live-method').addEventListener('change', () => {
     const edit = editOfMoment();

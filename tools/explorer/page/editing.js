@@ -37,8 +37,9 @@ class Edit {
   }
 
   question(robot) {
-    return {run: this.key, scenario: this.scenario, time: this.time, robot: this.preferred ? this.preferred.robot : robot,
-      preferred: this.preferred ? this.preferred.value : null, method: this.method};
+    const preferred = this.preferred || {robot, value: null};
+    return {run: this.key, scenario: this.scenario, time: this.time, robot, preferred: preferred.value, preferred_robot: preferred.robot,
+      method: this.method};
   }
 
   // The horizon of the velocity obstacles, one number in place of the scenario's several.
@@ -102,9 +103,9 @@ function obstacleHandle(edit, k, x0, y0) {
     }))};
 }
 
-// The nearest handle to a point of the screen within reach, smaller things first; null where there is none.
-function pickHandle(view, handles, where, px, py) {
-  let best = null, nearest = 10;
+// The nearest handle to a point of the screen that is less than `reach` pixels away, robots aside; null where there is none.
+function pickHandle(view, handles, where, px, py, reach) {
+  let best = null, nearest = reach;
   for (const h of handles) {
     if (h.where !== where || h.kind === 'robot') continue;
     const [x, y] = h.at(), d = Math.hypot(view.px(x) - px, view.py(y) - py);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
 #include "verbs/obstacles/map_layers.h"
 #include "verbs/route/answer.h"
@@ -32,7 +33,7 @@ Points capsule(Vec2 a, Vec2 b, double radius) {
   Points ring;
   for (const auto& [centre, forward] : {std::pair(b, along), std::pair(a, -along)}) {
     for (int k = 0; k <= kSteps; ++k) {
-      const double angle = (static_cast<double>(k) / kSteps - 0.5) * 3.14159265358979;
+      const double angle = (static_cast<double>(k) / kSteps - 0.5) * geometry::kPi;
       ring.push_back(centre + radius * geometry::rotated(forward, angle));
     }
   }

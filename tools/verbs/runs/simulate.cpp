@@ -69,7 +69,7 @@ std::string collision_lines(const std::vector<formation::Collision>& all) {
 std::string formation_lines(const formation::Metrics& m) {
   const formation::FormationCourse& course = *m.formation_course;
   return fmt::format(
-      "  formation    position error {}, velocity error {} at the end; leader arrived at {}\n"
+      "  formation    position error {}, velocity error {} at the end; leader at the end of its path: {}\n"
       "  formation    largest error {:.3g} m, of {} at {:.4g} s; first formed at {}, holds since {}\n",
       or_dash(m.formation_position_error, "m"), or_dash(m.formation_velocity_error, "m/s"),
       or_dash(m.leader_arrival_time, "s"), course.largest_error, shown(course.largest_error_of),
