@@ -586,6 +586,7 @@ TEST(RouteVerb, BadInputIsRefusedWithItsPlace) {
   rooms.here.write("empty.wkt", "");
   rooms.here.write("empty.csv", "");
   rooms.here.write("words.csv", "a,b\n1,1,3,1\n");
+  rooms.here.write("twice.csv", "start_x,start_y,goal_x,goal_y,start_x\n1,1,3,1,2\n");
   rooms.here.write("nan.csv", "start_x,start_y,goal_x,goal_y\n1,1,3,1\n1,1,nan,1\n");
   rooms.here.write("short.csv", "start_x,start_y,goal_x,goal_y\n1,1,3\n");
   rooms.here.write("far.csv", "start_x,start_y,goal_x,goal_y\n1,1,1e6,1\n");
@@ -608,6 +609,7 @@ TEST(RouteVerb, BadInputIsRefusedWithItsPlace) {
       {"rooms.json --from 3,1 --to 4,1 --widest --figure f.svg", "--figure: found '--figure without --radius'"},
       {"rooms.json --queries empty.csv --radius 1", "empty.csv: found an empty file, expected a header"},
       {"rooms.json --queries words.csv --radius 1", "words.csv: line 1: found a,b, expected a header"},
+      {"rooms.json --queries twice.csv --radius 1", "twice.csv: line 1: found the column start_x twice"},
       {"rooms.json --queries nan.csv --radius 1", "nan.csv: line 3: found nan, expected a number in the column goal_x"},
       {"rooms.json --queries short.csv --radius 1", "short.csv: line 2: found 3 fields, expected 4 fields [E_COUNT]"},
       {"rooms.json --queries far.csv --radius 1", "far.csv: line 2: found the goal 1000000,1, expected a point within"},

@@ -144,9 +144,9 @@ function checkHalfPlane(claim) {
   return excludes(claim, Exact.of(claim.c).minus(exactDot(n, exactVector(claim.ux, claim.uy))));
 }
 
-// A robot's half of a pair: any two velocities that satisfy their halves keep the pair apart for tau. Either it takes
-// half of what the relative velocity must change, which is 2 c - n.(v_a + v_b), or it does together with the other
-// robot's half of the opposite normal. halves: the other's [{nx, ny, c}] against this one; velocities: [v_a, v_b].
+// A robot's half of a pair, by which two velocities keep the pair apart for tau. Either it takes half of what the
+// relative velocity must change along n, with 2 c - n.(v_a + v_b) for c: enough where the other robot takes as much
+// along -n. Or it is enough together with the half of the opposite normal that the other robot has. halves: the other's [{nx, ny, c}] against this one; velocities: [v_a, v_b].
 function checkHalfOfPair(claim, velocities, halves) {
   if (!isWellFormed(claim)) return refuted('the claim is not well formed');
   const n = exactVector(claim.nx, claim.ny), c = Exact.of(claim.c);

@@ -66,6 +66,8 @@ void RouteQueries::take_header() {
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     const auto found = std::find(words.begin(), words.end(), kColumns[k]);
     if (found == words.end()) refuse(DataCode::format_syntax, std::string(line_), kHeader);
+    if (std::find(found + 1, words.end(), kColumns[k]) != words.end())
+      refuse(DataCode::format_syntax, fmt::format("the column {} twice", kColumns[k]), "each column once");
     columns_[k] = static_cast<std::size_t>(found - words.begin());
   }
 }
