@@ -165,6 +165,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 void run_world(Scenario s, const Flags& flags, std::uint64_t seed, Counts& counts) {
   test::SeededRandom random(seed);
   ++counts.worlds;
+  if (s.obstacles.empty()) {
+    ++counts.empty;
+    std::printf("%s: no obstacles\n", s.name.c_str());
+    return;
+  }
   for (std::size_t k = 0; k < flags.robots; ++k) {
     const double radius = flags.radius_mm > 0 ? 1e-3 * static_cast<double>(flags.radius_mm) : random.uniform(0.15, 0.3);
     if (!add_robot(s, random, radius)) break;
@@ -229,7 +234,8 @@ int run(const Flags& flags) {
     }
   }
   std::printf(
-      "%zu worlds, %zu without room, %zu robots: %zu arrived, %zu proven out of reach, %zu open, %zu failed; "
+      "%zu worlds, %zu without room or obstacles, %zu robots: %zu arrived, %zu proven out of reach, %zu open, %zu "
+      "failed; "
       "touched %zu, audits not clean %zu\n",
       counts.worlds, counts.empty, counts.robots, counts.arrived, counts.proven, counts.open, counts.failed,
       counts.touched, counts.unaudited);

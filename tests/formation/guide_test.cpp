@@ -235,6 +235,42 @@ TEST(Guidance, TheWayLeftBecomesShorterAlsoWhereTheNextPointIsHidden) {
   }
 }
 
+// On the map brc504d of Moving AI: the 34 m before a corner were halved to pieces of half a metre, and the robot went
+// back to the last of them for ever, beside a piece whose end is hidden by micrometres.
+TEST(Guidance, HeadsForNothingBehindItOnALongPiece) {
+  const auto solid = [](std::vector<Vec2> vertices) { return geometry::Polygon{std::move(vertices), {}}; };
+  Scenario s = scene({}, {224.31276594643947, 205.06648740593178}, {231, 170}, 0.23867846012971189);
+  s.obstacles = {{"above", solid({{229, 171}, {235, 171}, {235, 180}, {229, 180}})},
+                 {"below", solid({{229, 160}, {229, 169}, {228, 169}, {228, 160}})}};
+  s.robots[0].max_speed = 1.5;
+  const GuidedRun run = guided(s);
+  EXPECT_TRUE(run.metrics.robots[0].arrived) << run.metrics.outcome;
+  for (std::size_t k = 1; k < run.recording.steps.size(); ++k) {
+    const Vec2 before = run.recording.steps[k - 1].robots[0].position, now = run.recording.steps[k].robots[0].position;
+    EXPECT_LE(now.y, before.y) << k;
+  }
+}
+
+TEST(Guidance, WhoIsOnANarrowPieceIsNotSentBackToItsStart) {
+  constexpr double kRadius = 0.5, kPlay = 2e-4;
+  const Scenario s = scene({Polyline{{{11, -5}, {11, -kRadius - kPlay}}}, Polyline{{{11, kRadius + kPlay}, {11, 5}}}},
+                           {0, 0}, {20, 0}, kRadius);
+  detail::Guide guide(s, 0.08);
+  detail::Course course;
+  course.points = {{0, 0}, {10, 0}, {20, 0}};
+  course.keeps = {0.58, 0.58, kRadius + 0.5 * kPlay};
+  course.to = {{20, 0}, 0.1};
+  course.next = 1;
+  for (const double aside : {-9e-4, -5e-4, 5e-4, 9e-4}) {
+    const Vec2 here{10.4, aside};
+    const detail::Heading heading = guide.heading(course, kRadius, here);
+    ASSERT_FALSE(heading.is_new);
+    ASSERT_EQ(course.next, 1u) << "the end is in sight, and nothing is tried";
+    EXPECT_GT(heading.place.x, here.x) << aside;
+  }
+  EXPECT_EQ(guide.heading(course, kRadius, {9.0, 0.3}).place, (Vec2{10, 0}));
+}
+
 TEST(Guidance, WhomACartPushesOutOfSightOfItsRoutePlansAgainAndSaysSo) {
   // Down a shaft, and along the tunnel at its bottom.
   Scenario s =

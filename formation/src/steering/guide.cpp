@@ -24,11 +24,18 @@ constexpr double kSkins = 2.0 * kContactSkin;
 /// which they do ever more slowly.
 constexpr double kPlay = 1.25;
 
-/// Whether the course goes on with less room at its next point, which the robot has not come to yet.
+/// Whether the course goes on with less room after its next point, and the robot is not on that piece yet.
 bool is_before_narrow(const Course& course, std::size_t next, Vec2 here) {
   constexpr double kThere = 1e-3;  // m
-  return next + 1 < course.points.size() && course.keeps[next + 1] < course.keeps[next] &&
-         norm(here - course.points[next]) > kThere;
+  if (next + 1 == course.points.size() || !(course.keeps[next + 1] < course.keeps[next])) return false;
+  const Segment piece{course.points[next], course.points[next + 1]};
+  return norm(here - geometry::nearest_point(piece, here)) > kThere;
+}
+
+/// Which point of the piece is nearest, as a share of it.
+double share_beside(Vec2 from, Vec2 piece, Vec2 here) {
+  const double length2 = geometry::dot(piece, piece);
+  return length2 > 0.0 ? std::clamp(geometry::dot(here - from, piece) / length2, 0.0, 1.0) : 0.0;
 }
 
 }  // namespace
@@ -185,7 +192,9 @@ Heading Guide::heading_on(Course& course, double radius, Vec2 here) const {
   const double stands = clearance_at(here, radius + most_margin_ + kSkins);
   const double clearance = std::max(radius, std::min(course.keeps[next + 1], stands)) - 0.5 * kSkins;
   const Vec2 piece = course.points[next + 1] - from;
-  double seen = 0.0, hidden = 1.0;
+  // From where the robot is beside the piece: halving a long one from its start can end behind the robot.
+  const double beside = share_beside(from, piece, here);
+  double seen = is_in_sight(here, from + beside * piece, clearance) ? beside : 0.0, hidden = 1.0;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (seen + hidden);
     (is_in_sight(here, from + middle * piece, clearance) ? seen : hidden) = middle;
