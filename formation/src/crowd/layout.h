@@ -19,6 +19,8 @@ inline constexpr std::size_t kGroupPacks = 6, kSlots = kGroupPacks * kPack;
 /// A candidate's number rides in the low bits of its squared distance.
 inline constexpr std::size_t kMostCandidates = 256;
 inline constexpr std::int32_t kIndexBits = 0xFF;
+/// A robot's kind rides in the low bits of its tag.
+inline constexpr std::int32_t kKindBits = 0x3FFF;
 inline constexpr int kMostNeighbours = 15, kMostRanks = kMostNeighbours + 1;
 /// Edges and bodies at rest that a robot of a pack has half-planes against; who has more is decided alone.
 inline constexpr std::size_t kMostEdges = 12;
@@ -86,6 +88,7 @@ struct LaneFinds {
   alignas(
       64) std::int32_t hint[kPack];  ///< lattice steps, distance of the last neighbour; the window if there are fewer
   int most = 0;                      ///< neighbours of any lane
+  int neighbours = 0;                ///< of all lanes
   std::uint32_t unseen = 0;          ///< bit `lane`: the last neighbour is farther than `seen`, or is missing
   std::uint32_t crowded = 0;         ///< has as many as it wants, and could meet all of them within the step
 };

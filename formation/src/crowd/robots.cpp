@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crowd/order.h"
+
 namespace exactvo::formation::crowd {
 namespace {
 
@@ -14,6 +16,9 @@ constexpr double kStripFactor = 1.35;
 
 /// Buckets a strip's height.
 constexpr double kBucketsPerStrip = 3.0;
+
+/// Robots that are looked at together for one that is not above the last.
+constexpr std::size_t kBlock = 64;
 
 /// Room for more than there can be robots is not made.
 constexpr std::size_t kMostReserved = std::size_t{1} << 30U;
@@ -69,13 +74,8 @@ void Robots::follow_density(double least, double most) {
 }
 
 void Robots::find_bounds() {
-  bounds_ = {x[0], x[0], y[0], y[0]};
-  for (std::size_t i = 1; i < size_; ++i) {
-    bounds_.x0 = std::min<std::int64_t>(bounds_.x0, x[i]);
-    bounds_.x1 = std::max<std::int64_t>(bounds_.x1, x[i]);
-    bounds_.y0 = std::min<std::int64_t>(bounds_.y0, y[i]);
-    bounds_.y1 = std::max<std::int64_t>(bounds_.y1, y[i]);
-  }
+  const Extent in_x = extent_of(x.data(), size_), in_y = extent_of(y.data(), size_);
+  bounds_ = {in_x.low, in_x.high, in_y.low, in_y.high};
 }
 
 /// About as many cells as robots at most.
@@ -92,66 +92,81 @@ void Robots::lay_out_cells() {
   columns_ = column_of(bounds_.x1) - first_column_ + 1;
 }
 
-/// The numbers go to next_my, which is free while robots are sorted.
-void Robots::number_cells(Tasks& tasks) {
-  tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t i = first; i < last; ++i)
-      next_my[i] = static_cast<std::int32_t>((row_of(y[i]) - first_row_) * columns_ + column_of(x[i]) - first_column_);
-  });
-}
-
-/// Robots into their cells, in any order. First start_[c + 2] counts cell c, then start_[c + 1] is where it begins, and
-/// while it fills, where its next robot goes; in the end start_[c] is where it begins.
+/// Robots into their cells, in any order. The number of a robot's cell goes to next_my, how many came to it before to
+/// next_mx; both are free while robots are sorted.
 void Robots::scatter(Tasks& tasks) {
   const std::size_t cells = static_cast<std::size_t>(rows_ * columns_);
-  start_.assign(cells + 2, 0);
-  const std::int32_t* cell = next_my.data();
-  std::int32_t* count = start_.data() + 2;
-  std::int32_t* next = start_.data() + 1;
-  std::int32_t* order = order_.data();
+  const CellRule rule{per_bucket_, per_strip_, static_cast<double>(first_column_), static_cast<double>(first_row_),
+                      static_cast<double>(columns_)};
+  start_.assign(cells + 1, 0);
+  std::int32_t *cell = next_my.data(), *nth = next_mx.data(), *count = start_.data() + 1, *order = order_.data();
   const bool alone = tasks.threads() == 1;
   tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
+    number_cells(rule, x.data() + first, y.data() + first, last - first, cell + first);
     if (alone)
-      for (std::size_t i = first; i < last; ++i) ++count[cell[i]];
+      for (std::size_t i = first; i < last; ++i) nth[i] = count[cell[i]]++;
     else
-      for (std::size_t i = first; i < last; ++i) __atomic_fetch_add(count + cell[i], 1, __ATOMIC_RELAXED);
+      for (std::size_t i = first; i < last; ++i) nth[i] = __atomic_fetch_add(count + cell[i], 1, __ATOMIC_RELAXED);
   });
-  for (std::size_t c = 1; c < cells + 2; ++c) start_[c] += start_[c - 1];
+  std::int32_t before = 0;
+  for (std::size_t c = 1; c <= cells; ++c) start_[c] = before += start_[c];
+  const std::int32_t* start = start_.data();
   tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
-    if (alone)
-      for (std::size_t i = first; i < last; ++i) order[next[cell[i]]++] = static_cast<std::int32_t>(i);
-    else
-      for (std::size_t i = first; i < last; ++i)
-        order[__atomic_fetch_add(next + cell[i], 1, __ATOMIC_RELAXED)] = static_cast<std::int32_t>(i);
+    for (std::size_t i = first; i < last; ++i) order[start[cell[i]] + nth[i]] = static_cast<std::int32_t>(i);
   });
 }
 
+/// Most are in order, since they were in the step before: only those that are not above the last one are looked at. Of
+/// each range of cells the x of its robots go to next_mx, in the new order.
 void Robots::order_within_cells(Tasks& tasks) {
-  const auto before = [this](std::int32_t a, std::int32_t b) { return x[a] != x[b] ? x[a] < x[b] : id[a] < id[b]; };
   const std::size_t cells = static_cast<std::size_t>(rows_ * columns_);
   tasks.for_ranges(cells, kGrain, [&](std::size_t first, std::size_t last, int) {
-    std::int32_t* order = order_.data();
-    for (std::size_t c = first; c < last; ++c) {
-      const std::int32_t begin = start_[c], end = start_[c + 1];
-      if (end - begin > kFewInCell) {
-        std::sort(order + begin, order + end, before);
-        continue;
-      }
-      for (std::int32_t a = begin + 1; a < end; ++a) {
-        const std::int32_t robot = order[a];
-        std::int32_t k = a;
-        for (; k > begin && before(robot, order[k - 1]); --k) order[k] = order[k - 1];
-        order[k] = robot;
+    const auto begin = static_cast<std::size_t>(start_[first]), end = static_cast<std::size_t>(start_[last]);
+    for (std::size_t p = begin; p < end; ++p) next_mx[p] = x[order_[p]];
+    for (std::size_t from = begin + 1; from < end; from += kBlock) {
+      std::uint64_t low = not_above_the_last(next_mx.data() + from, std::min(kBlock, end - from));
+      while (low != 0) {
+        const auto k = static_cast<std::size_t>(__builtin_ctzll(low));
+        low &= low - 1;
+        const std::size_t p = from + k;
+        const std::int32_t cell = next_my[order_[p]];
+        if (next_my[order_[p - 1]] != cell) continue;
+        put_in_order(p, start_[cell], start_[cell + 1]);
+        // Whoever is next was above another.
+        if (k + 1 < kBlock && p + 1 < end && next_mx[p + 1] <= next_mx[p]) low |= std::uint64_t{1} << (k + 1);
       }
     }
   });
+  x.swap(next_mx);
+}
+
+/// The robot at p of the cell that begins and ends there, among those before it, which are in order.
+void Robots::put_in_order(std::size_t p, std::int32_t begin, std::int32_t end) {
+  std::int32_t* const order = order_.data();
+  std::int32_t* const at_x = next_mx.data();
+  if (end - begin > kFewInCell) {
+    std::sort(order + begin, order + end,
+              [this](std::int32_t a, std::int32_t b) { return x[a] != x[b] ? x[a] < x[b] : id[a] < id[b]; });
+    for (std::int32_t k = begin; k < end; ++k) at_x[k] = x[order[k]];
+    return;
+  }
+  const std::int32_t robot = order[p], its_x = at_x[p];
+  auto k = static_cast<std::int32_t>(p);
+  for (; k > begin; --k) {
+    if (at_x[k - 1] < its_x || (at_x[k - 1] == its_x && id[order[k - 1]] < id[robot])) break;
+    order[k] = order[k - 1];
+    at_x[k] = at_x[k - 1];
+  }
+  order[k] = robot;
+  at_x[k] = its_x;
 }
 
 /// next_mx is free while robots are sorted.
 void Robots::permute(Array<std::int32_t>& field, Tasks& tasks) {
   tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
-    const std::int32_t* from = field.data();
-    for (std::size_t i = first; i < last; ++i) next_mx[i] = from[order_[i]];
+    const std::int32_t *from = field.data(), *order = order_.data();
+    std::int32_t* to = next_mx.data();
+    for (std::size_t i = first; i < last; ++i) to[i] = from[order[i]];
   });
   field.swap(next_mx);
 }
@@ -160,10 +175,9 @@ void Robots::sort(Tasks& tasks) {
   if (size_ == 0) return;
   find_bounds();
   lay_out_cells();
-  number_cells(tasks);
   scatter(tasks);
   order_within_cells(tasks);
-  for (auto* field : {&x, &y, &mx, &my, &id, &hint}) permute(*field, tasks);
+  for (auto* field : {&y, &mx, &my, &id, &hint}) permute(*field, tasks);
   tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t i = first; i < last; ++i) tags_scratch_[i] = tag[order_[i]];
   });

@@ -46,7 +46,7 @@ class Robots {
   Array<std::int32_t> next_mx, next_my;
   Array<std::uint8_t> next_kept;
 
-  static constexpr std::uint16_t kKind = 0x3FFF, kKept = 0x4000, kSettled = 0x8000;
+  static constexpr std::uint16_t kKind = kKindBits, kKept = 0x4000, kSettled = 0x8000;
 
   std::size_t size() const { return size_; }
   std::size_t kind(std::size_t i) const { return tag[i] & kKind; }
@@ -95,9 +95,9 @@ class Robots {
   void resize(std::size_t robots);
   void find_bounds();
   void lay_out_cells();
-  void number_cells(Tasks& tasks);
   void scatter(Tasks& tasks);
   void order_within_cells(Tasks& tasks);
+  void put_in_order(std::size_t p, std::int32_t begin, std::int32_t end);
   void permute(Array<std::int32_t>& field, Tasks& tasks);
   Stretch searched(const Cells& cells, std::int32_t from, std::int32_t to) const;
   /// std::floor, which is a call on targets before SSE4.1.
