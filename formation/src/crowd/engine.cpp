@@ -149,13 +149,13 @@ class CrowdEngine final : public CrowdCore {
   CrowdExplanation explain(std::size_t robot) override {
     if (scratch_.empty()) scratch_.push_back(std::make_unique<Scratch>());
     Scratch& s = *scratch_[0];
-    read_preferred(robot, robot + 1, s);
+    const Vec2 preferred = preferred_of(robot, s);
     CrowdExplanation words;
     words.robot = static_cast<RobotId>(robots.id[robot]);
     words.position = {options.position_step * robots.x[robot], options.position_step * robots.y[robot]};
     words.velocity = velocity_of(robots.mx[robot], robots.my[robot]);
-    words.preferred = {static_cast<double>(static_cast<T>(s.preferred[0].x)),
-                       static_cast<double>(static_cast<T>(s.preferred[0].y))};
+    words.preferred = {static_cast<double>(static_cast<T>(preferred.x)),
+                       static_cast<double>(static_cast<T>(preferred.y))};
     const CrowdDecision d = one_.decide(robot, words.preferred, s.one, &words);
     words.chosen = velocity_of(d.motion.mx, d.motion.my);
     words.kept = d.motion.kept;
@@ -194,18 +194,20 @@ class CrowdEngine final : public CrowdCore {
                          std::to_string(v.x) + ", " + std::to_string(v.y) + "), expected numbers below 2^20 m/s");
   }
 
+  /// What set_preferred was told, nothing: 0.
+  T told(std::size_t place) const { return place < preferred_.size() ? preferred_[place] : T(0); }
+
+  std::size_t place_of_told(std::size_t robot) const { return 2 * static_cast<std::size_t>(robots.id[robot]); }
+
+  Vec2 preferred_of(std::size_t robot, Scratch& s) const {
+    if (steering) return ask_steering(robot, robot + 1, s), s.preferred[0];
+    const std::size_t place = place_of_told(robot);
+    return {static_cast<double>(told(place)), static_cast<double>(told(place + 1))};
+  }
+
   /// Into s.preferred, from `first` on.
-  void read_preferred(std::size_t first, std::size_t last, Scratch& s) const {
+  void ask_steering(std::size_t first, std::size_t last, Scratch& s) const {
     const std::size_t count = last - first;
-    if (!steering) {
-      for (std::size_t k = 0; k < count; ++k) {
-        const auto id = 2 * static_cast<std::size_t>(robots.id[first + k]);
-        s.preferred[k] = id < preferred_.size()
-                             ? Vec2{static_cast<double>(preferred_[id]), static_cast<double>(preferred_[id + 1])}
-                             : Vec2{};
-      }
-      return;
-    }
     std::fill(s.preferred, s.preferred + count, Vec2{});
     CrowdSlice slice;
     slice.count_ = count;
@@ -222,6 +224,34 @@ class CrowdEngine final : public CrowdCore {
     for (std::size_t k = 0; k < count; ++k) require_preference(s.preferred[k], first + k);
   }
 
+  /// Into s.px, s.py, s.disc, by slot; 0 of lanes that hold nobody.
+  void put_preferred(const Pack* packs, std::size_t count, Scratch& s) const {
+    if (steering) ask_steering(packs[0].begin, packs[count - 1].end, s);
+    for (std::size_t p = 0; p < count; ++p) {
+      const std::size_t slot = p * kPack, begin = packs[p].begin, size = packs[p].size();
+      for (std::size_t lane = 0; steering && lane < size; ++lane) {
+        const Vec2 v = s.preferred[begin - packs[0].begin + lane];
+        s.px[slot + lane] = static_cast<T>(v.x);
+        s.py[slot + lane] = static_cast<T>(v.y);
+      }
+      for (std::size_t lane = 0; !steering && lane < size; ++lane) {
+        const std::size_t place = place_of_told(begin + lane);
+        s.px[slot + lane] = told(place);
+        s.py[slot + lane] = told(place + 1);
+      }
+      for (std::size_t lane = size; lane < kPack; ++lane) s.px[slot + lane] = s.py[slot + lane] = T(0);
+      put_by_kind(packs[p], table_.disc, T(1), s.disc + slot);
+    }
+  }
+
+  /// Of each lane what a table says of its kind; `otherwise` where nobody is.
+  void put_by_kind(const Pack& pack, const std::vector<T>& table, T otherwise, T* by_lane) const {
+    std::fill(by_lane, by_lane + kPack, table[0]);
+    for (std::size_t lane = 0; rule_.mixed && lane < pack.size(); ++lane)
+      by_lane[lane] = table[kind_of(pack.begin + lane)];
+    for (std::size_t lane = pack.size(); lane < kPack; ++lane) by_lane[lane] = otherwise;
+  }
+
   // --- Packs ---
 
   void decide_range(std::size_t first, std::size_t last, Scratch& s) {
@@ -229,22 +259,22 @@ class CrowdEngine final : public CrowdCore {
     for (std::size_t b = first; b < last;) {
       std::size_t count = 0;
       for (; b < last && count < kGroupPacks; b = packs[count++].end) {
-        packs[count] = find(b, last, s);
+        find(b, last, packs[count], s);
         lines_of(packs[count], count * kPack, s);
       }
-      read_preferred(packs[0].begin, b, s);
+      put_preferred(packs, count, s);
       const std::size_t hard = obstacles_of(packs, count, s);
       const std::size_t ranks = level_ranks(packs, count, s);
       const std::size_t lines = hard + ranks + moving_of(count, kRobotRows + ranks * kSlots, s);
-      solve(packs, count, hard, lines, s);
+      solve(count, hard, lines, s);
       finish(packs, count, hard, lines, s);
     }
     s.counts.robots += last - first;
   }
 
-  Pack find(std::size_t begin, std::size_t last, Scratch& s) {
+  void find(std::size_t begin, std::size_t last, Pack& pack, Scratch& s) {
     const Timed timed(options.time_phases, s.phases.search);
-    return find_pack(robots, table_, begin, last, s.found);
+    find_pack(robots, table_, begin, last, pack, s.found);
   }
 
   void lines_of(Pack& pack, std::size_t slot, Scratch& s) {
@@ -264,8 +294,9 @@ class CrowdEngine final : public CrowdCore {
     pack.alone |= flags.coincident & lanes;
     pack.touching = flags.touching & lanes & ~pack.alone;
     s.counts.touching += static_cast<std::size_t>(__builtin_popcount(pack.touching));
-    for (std::size_t lane = 0; lane < pack.size(); ++lane)
-      if (!(pack.alone >> lane & 1U)) s.counts.neighbours += pack.neighbours[lane];
+    s.counts.neighbours += static_cast<std::size_t>(s.found.finds.neighbours);
+    for (std::uint32_t alone = pack.alone; alone != 0; alone &= alone - 1)
+      s.counts.neighbours -= static_cast<std::size_t>(pack.neighbours[__builtin_ctz(alone)]);
   }
 
   static LineRows<T> robot_rows(Scratch& s, std::size_t slot) {
@@ -394,7 +425,7 @@ class CrowdEngine final : public CrowdCore {
   /// Takes a robot out of its pack, and what was counted of it.
   void be_alone(Pack& pack, std::size_t lane, Scratch& s) const {
     pack.alone |= 1U << lane;
-    s.counts.neighbours -= pack.neighbours[lane];
+    s.counts.neighbours -= static_cast<std::size_t>(pack.neighbours[lane]);
     s.counts.touching -= pack.touching >> lane & 1U;
   }
 
@@ -412,17 +443,8 @@ class CrowdEngine final : public CrowdCore {
     return static_cast<std::size_t>(most);
   }
 
-  void solve(const Pack* packs, std::size_t count, std::size_t hard, std::size_t lines, Scratch& s) const {
+  void solve(std::size_t count, std::size_t hard, std::size_t lines, Scratch& s) const {
     const Timed timed(options.time_phases, s.phases.solve);
-    for (std::size_t p = 0; p < count; ++p)
-      for (std::size_t lane = 0; lane < kPack; ++lane) {
-        const std::size_t slot = p * kPack + lane, robot = packs[p].begin + lane;
-        const bool there = lane < packs[p].size();
-        const Vec2 v = there ? s.preferred[robot - packs[0].begin] : Vec2{};
-        s.px[slot] = static_cast<T>(v.x);
-        s.py[slot] = static_cast<T>(v.y);
-        s.disc[slot] = there ? table_.disc[rule_.mixed ? kind_of(robot) : 0] : T(1);
-      }
     lp::BatchProblems<T> in;
     in.count = count * kPack;
     in.lines = lines;
@@ -450,24 +472,38 @@ class CrowdEngine final : public CrowdCore {
 
   void finish(const Pack* packs, std::size_t count, std::size_t hard, std::size_t lines, Scratch& s) {
     const Timed timed(options.time_phases, s.phases.finish);
-    Rounded<T> rounded;
+    Rounded rounded;
+    alignas(64) T allowed[kPack];
     for (std::size_t p = 0; p < count; ++p) {
+      const Pack& pack = packs[p];
       const std::size_t slot = p * kPack, at = kRobotRows - hard * kSlots + slot;
-      const Answers<T> in{s.vx + slot, s.vy + slot, s.x + at, s.y + at, s.c + at, lines, kSlots};
-      round_to_lattice(rule_, in, rounded);
-      for (std::size_t lane = 0; lane < packs[p].size(); ++lane) {
-        const std::size_t robot = packs[p].begin + lane;
-        if (packs[p].alone >> lane & 1U) {
-          take(robot, one_.decide(robot, s.preferred[robot - packs[0].begin], s.one, nullptr), s);
+      put_by_kind(pack, table_.allowed, T(0), allowed);
+      const Answers<T> in{s.vx + slot, s.vy + slot, s.x + at,        s.y + at, s.c + at,
+                          lines,       kSlots,      s.status + slot, allowed};
+      const std::uint32_t kept = round_to_lattice(rule_, in, rounded) & ~pack.alone;
+      take_all(pack, rounded, kept);
+      for (std::uint32_t rest = pack.lanes() & ~kept; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::size_t>(__builtin_ctz(rest));
+        const std::size_t robot = pack.begin + lane;
+        if (pack.alone >> lane & 1U) {
+          const Vec2 preferred{static_cast<double>(s.px[slot + lane]), static_cast<double>(s.py[slot + lane])};
+          take(robot, one_.decide(robot, preferred, s.one, nullptr), s);
           continue;
         }
-        const std::size_t kind = rule_.mixed ? kind_of(robot) : 0;
-        const std::uint8_t status = s.status[slot + lane];
-        CrowdMotion m{rounded.mx[lane], rounded.my[lane], is_kept(table_, rule_, kind, rounded.excess[lane], status)};
-        if (!m.kept) m = one_.settled(robot, offset(in, lane), status, hard > 0 ? s.hard[slot + lane] : 0, m);
-        take(robot, m, s);
+        const CrowdMotion m{rounded.mx[lane], rounded.my[lane], false};
+        take(robot, one_.settled(robot, offset(in, lane), s.status[slot + lane], hard > 0 ? s.hard[slot + lane] : 0, m),
+             s);
       }
     }
+  }
+
+  /// The motions of a pack. Bits of `kept`: lanes.
+  void take_all(const Pack& pack, const Rounded& motions, std::uint32_t kept) {
+    const std::size_t size = pack.size();
+    std::memcpy(&robots.next_mx[pack.begin], motions.mx, size * sizeof(std::int32_t));
+    std::memcpy(&robots.next_my[pack.begin], motions.my, size * sizeof(std::int32_t));
+    for (std::size_t lane = 0; lane < size; ++lane)
+      robots.next_kept[pack.begin + lane] = static_cast<std::uint8_t>(kept >> lane & 1U);
   }
 
   void take(std::size_t robot, const CrowdMotion& m, Scratch& s) {

@@ -176,11 +176,12 @@ LineFlags double_lines(const LineRule<double>& rule, const LineQuery& q, const L
 }
 
 template <class T>
-void round_some(const LineRule<T>& rule, const Answers<T>& in, Rounded<T>& out) {
+std::uint32_t round_some(const LineRule<T>& rule, const Answers<T>& in, Rounded& out) {
   const hn::CappedTag<T, kPack> d;
   using V = hn::Vec<hn::CappedTag<T, kPack>>;
   const WordsOf<hn::CappedTag<T, kPack>> words;
   const V per_metre = hn::Set(d, rule.inverse_step), unit = hn::Set(d, rule.velocity_step);
+  std::uint32_t kept = 0;
   for (std::size_t lane = 0; lane < kPack; lane += hn::Lanes(d)) {
     const V x = hn::Round(hn::Mul(hn::LoadU(d, in.vx + lane), per_metre));
     const V y = hn::Round(hn::Mul(hn::LoadU(d, in.vy + lane), per_metre));
@@ -191,6 +192,7 @@ void round_some(const LineRule<T>& rule, const Answers<T>& in, Rounded<T>& out) 
       hn::StoreU(hn::ConvertTo(words, x), words, out.mx + lane);
       hn::StoreU(hn::ConvertTo(words, y), words, out.my + lane);
     }
+    if (!rule.certified) continue;
     const V vx = hn::Mul(x, unit), vy = hn::Mul(y, unit);
     V most = hn::Set(d, static_cast<T>(kNever));
     for (std::size_t k = 0; k < in.lines; ++k) {
@@ -198,15 +200,18 @@ void round_some(const LineRule<T>& rule, const Answers<T>& in, Rounded<T>& out) 
       const V met = hn::Add(hn::Mul(vx, hn::LoadU(d, in.x + at)), hn::Mul(vy, hn::LoadU(d, in.y + at)));
       most = hn::Max(most, hn::Sub(hn::LoadU(d, in.c + at), met));
     }
-    hn::StoreU(most, d, out.excess + lane);
+    kept |= bits_of(d, hn::Le(most, hn::LoadU(d, in.allowed + lane)), lane);
   }
+  if (!rule.certified)
+    for (std::size_t lane = 0; lane < kPack; ++lane) kept |= std::uint32_t{in.status[lane] == 0} << lane;
+  return kept;
 }
 
-void round_floats(const LineRule<float>& rule, const Answers<float>& in, Rounded<float>& out) {
-  round_some(rule, in, out);
+std::uint32_t round_floats(const LineRule<float>& rule, const Answers<float>& in, Rounded& out) {
+  return round_some(rule, in, out);
 }
-void round_doubles(const LineRule<double>& rule, const Answers<double>& in, Rounded<double>& out) {
-  round_some(rule, in, out);
+std::uint32_t round_doubles(const LineRule<double>& rule, const Answers<double>& in, Rounded& out) {
+  return round_some(rule, in, out);
 }
 
 }  // namespace exactvo::formation::crowd::HWY_NAMESPACE
@@ -226,11 +231,11 @@ LineFlags make_lines(const LineRule<float>& rule, const LineQuery& query, const 
 LineFlags make_lines(const LineRule<double>& rule, const LineQuery& query, const LineRows<double>& out) {
   return HWY_DYNAMIC_DISPATCH(double_lines)(rule, query, out);
 }
-void round_to_lattice(const LineRule<float>& rule, const Answers<float>& answers, Rounded<float>& out) {
-  HWY_DYNAMIC_DISPATCH(round_floats)(rule, answers, out);
+std::uint32_t round_to_lattice(const LineRule<float>& rule, const Answers<float>& answers, Rounded& out) {
+  return HWY_DYNAMIC_DISPATCH(round_floats)(rule, answers, out);
 }
-void round_to_lattice(const LineRule<double>& rule, const Answers<double>& answers, Rounded<double>& out) {
-  HWY_DYNAMIC_DISPATCH(round_doubles)(rule, answers, out);
+std::uint32_t round_to_lattice(const LineRule<double>& rule, const Answers<double>& answers, Rounded& out) {
+  return HWY_DYNAMIC_DISPATCH(round_doubles)(rule, answers, out);
 }
 
 }  // namespace exactvo::formation::crowd

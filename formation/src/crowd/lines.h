@@ -14,22 +14,24 @@ namespace exactvo::formation::crowd {
 LineFlags make_lines(const LineRule<float>& rule, const LineQuery& query, const LineRows<float>& out);
 LineFlags make_lines(const LineRule<double>& rule, const LineQuery& query, const LineRows<double>& out);
 
-/// Answers of the linear program.
+/// Answers of the linear program, by lane.
 template <class T>
 struct Answers {
   const T *vx = nullptr, *vy = nullptr;              ///< m/s
   const T *x = nullptr, *y = nullptr, *c = nullptr;  ///< rows of lines
   std::size_t lines = 0, stride = 0;
+  const std::uint8_t* status = nullptr;  ///< 0: all lines are kept
+  const T* allowed = nullptr;            ///< m/s, by how much a rounded velocity may violate its lines
 };
 
-/// Velocities rounded to whole motions, and by how much each violates its lines at most, in T: max c - n.v.
-template <class T>
+/// Whole motions, lattice steps.
 struct Rounded {
   alignas(64) std::int32_t mx[kPack], my[kPack];
-  alignas(64) T excess[kPack];
 };
 
-void round_to_lattice(const LineRule<float>& rule, const Answers<float>& answers, Rounded<float>& out);
-void round_to_lattice(const LineRule<double>& rule, const Answers<double>& answers, Rounded<double>& out);
+/// Velocities rounded to whole motions. Bit `lane`: kept, max c - n.v, computed in T, is not above what is allowed; of
+/// lines that are not certified: the status is 0.
+std::uint32_t round_to_lattice(const LineRule<float>& rule, const Answers<float>& answers, Rounded& out);
+std::uint32_t round_to_lattice(const LineRule<double>& rule, const Answers<double>& answers, Rounded& out);
 
 }  // namespace exactvo::formation::crowd

@@ -11,12 +11,6 @@
 
 namespace exactvo::formation::crowd {
 
-/// Whether a rounded motion keeps all half-planes. `excess`: m/s, as of Rounded; `status`: of the linear program.
-template <class T>
-bool is_kept(const KindTable<T>& table, const LineRule<T>& rule, std::size_t kind, T excess, std::uint8_t status) {
-  return rule.certified ? excess <= table.allowed[kind] : status == 0;
-}
-
 /// Whether a motion of (mx, my) lattice steps keeps all lines of lane 0. In double, where a line is off by at most
 /// 2^-48 max_speed (m/s).
 template <class T>

@@ -171,10 +171,11 @@ CrowdMotion OneRobot<T>::solve(std::size_t robot, Vec2 preferred, std::size_t li
   out.status = status;
   out.stride = kPack;
   lp::solve_batch(in, out, 0, 1);
-  const Answers<T> answer{vx, vy, b.row_x.data(), b.row_y.data(), b.row_c.data(), lines, kPack};
-  Rounded<T> rounded;
-  round_to_lattice(rule_, answer, rounded);
-  const bool kept = is_kept(table_, rule_, crowd_.robots.kind(robot), rounded.excess[0], status[0]);
+  alignas(64) T allowed[kPack];
+  std::fill(allowed, allowed + kPack, table_.allowed[crowd_.robots.kind(robot)]);
+  const Answers<T> answer{vx, vy, b.row_x.data(), b.row_y.data(), b.row_c.data(), lines, kPack, status, allowed};
+  Rounded rounded;
+  const bool kept = (round_to_lattice(rule_, answer, rounded) & 1U) != 0;
   const CrowdMotion m{rounded.mx[0], rounded.my[0], kept};
   return kept ? m : settled(robot, answer, status[0], hard, m);
 }

@@ -11,36 +11,44 @@ namespace {
 /// Candidates that a pack may look at in vain rather than be cut at the end of its strip.
 constexpr std::size_t kWorthCutting = 48;
 
-void copy(const std::int32_t* from, std::size_t count, std::int32_t* to) {
-  for (std::size_t k = 0; k < count; k += kPack) std::memcpy(to + k, from + k, kPack * sizeof *to);
-}
-
 class PackSearch {
  public:
   PackSearch(Robots& robots, const ReachTable& table) : robots_(robots), table_(table), mixed_(table.is_mixed()) {}
 
-  Pack find(std::size_t begin, std::size_t last, PackBuffers& out) const {
-    Pack pack = first_pack(begin, last);
-    const int ranks = ranks_sought(table_.most_neighbours + 1);
+  void find(std::size_t begin, std::size_t last, Pack& pack, PackBuffers& out) const {
+    first_pack(begin, last, pack);
+    LaneQuery query;
+    query.x = &robots_.x[begin];
+    query.y = &robots_.y[begin];
+    query.self = out.self;
+    query.ranks = ranks_sought(table_.most_neighbours + 1);
+    query.mixed = mixed_;
     for (;;) {
       if (pack.candidates > kMostCandidates) return give_up(pack, out);
       load_lanes(pack, out);
       collect(pack, out);
-      find_nearest(out.others, &robots_.x[pack.begin], &robots_.y[pack.begin], out.limits.none, ranks, out.ranked);
-      drop_selves(pack, ranks, out);
-      const auto seen = static_cast<float>(pack.reach * pack.reach * kWholeKey);
-      count_neighbours(out.limits, seen, ranks, mixed_, out.ranked, out.finds);
+      query.lanes = pack.lanes();
+      query.seen = static_cast<float>(pack.reach * pack.reach * kWholeKey);
+      const std::uint32_t behind = find_nearest(out.others, query, out.limits, out.ranked, out.finds);
+      if (behind != 0) {
+        drop_selves(behind, query.ranks, out);
+        count_neighbours(query, out.limits, out.ranked, out.finds);
+      }
       if (!somebody_may_be_missing(pack, out)) break;
       pack.reach = std::min(widest_window(pack), pack.reach * kWiderReach);
       look(pack);
       halve(pack);
     }
     take_finds(pack, out);
-    return pack;
   }
 
  private:
   Window box_of(std::size_t begin, std::size_t end, double& hint) const {
+    if (end - begin == kPack) {
+      const LaneBox box = box_of_pack(&robots_.x[begin], &robots_.y[begin], &robots_.hint[begin]);
+      hint = box.hint;
+      return {box.x0, box.x1, box.y0, box.y1};
+    }
     const std::int32_t *x = robots_.x.data(), *y = robots_.y.data(), *hints = robots_.hint.data();
     std::int32_t x0 = x[begin], x1 = x0, y0 = y[begin], y1 = y0, farthest = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -81,11 +89,11 @@ class PackSearch {
   }
 
   /// The robots from b on that are searched for together: fewer than kPack where they have too many candidates.
-  Pack first_pack(std::size_t b, std::size_t last) const {
-    Pack pack{};
+  void first_pack(std::size_t b, std::size_t last, Pack& pack) const {
+    pack.clear();
     pack.begin = b;
     place(pack, std::min(b + kPack, last));
-    if (pack.candidates <= kWorthCutting) return pack;
+    if (pack.candidates <= kWorthCutting) return;
     const std::size_t strip_end = robots_.strip_end(b);
     if (pack.end > strip_end) {
       Pack cut = pack;
@@ -93,7 +101,6 @@ class PackSearch {
       if (pack.candidates > kMostCandidates || pack.candidates > kWorthCutting + cut.candidates) pack = cut;
     }
     halve(pack);
-    return pack;
   }
 
   /// Until the candidates have room in the table. One robot is decided alone if it comes to that.
@@ -102,13 +109,14 @@ class PackSearch {
   }
 
   /// One robot among more candidates than the table has room for.
-  Pack give_up(Pack pack, PackBuffers& out) const {
+  void give_up(Pack& pack, PackBuffers& out) const {
     pack.alone = 1;
     pack.ranks = 0;
     load_lanes(pack, out);
     for (auto& row : out.ranked.key) std::copy(out.limits.none, out.limits.none + kPack, row);
     out.others.count = 0;
-    return pack;
+    out.finds.neighbours = 0;
+    std::fill(pack.neighbours, pack.neighbours + kPack, 0);
   }
 
   void load_lanes(const Pack& pack, PackBuffers& out) const {
@@ -119,7 +127,10 @@ class PackSearch {
       for (std::size_t lane = 0; lane < kPack; ++lane) limit(limits, lane, static_cast<std::size_t>(limits.kind[lane]));
     } else {
       std::fill(limits.kind, limits.kind + kPack, 0);
-      for (std::size_t lane = 0; lane < kPack; ++lane) limit(limits, lane, 0);
+      std::fill(limits.none, limits.none + kPack, table_.none[0]);
+      std::fill(limits.reach, limits.reach + kPack, table_.reach[0]);
+      std::fill(limits.wanted, limits.wanted + kPack, table_.neighbours[0]);
+      std::fill(limits.window, limits.window + kPack, table_.whole_window[0]);
     }
     for (std::size_t lane = pack.size(); lane < kPack; ++lane) limits.none[lane] = 0.0F;
   }
@@ -132,48 +143,31 @@ class PackSearch {
   }
 
   void collect(const Pack& pack, PackBuffers& out) const {
-    out.others.count = 0;
-    for (std::int64_t row = pack.cells.row0; row <= pack.cells.row1; ++row) {
-      const std::int64_t nth = row - pack.cells.row0;
-      const Stretch stretch = nth < Pack::kKeptStretches ? pack.stretches[nth] : robots_.stretch(pack.cells, row);
-      const bool is_own = stretch.from < pack.end && pack.begin < stretch.to;
-      const bool is_outermost = row == pack.cells.row0 || row == pack.cells.row1;
-      if (is_outermost && !is_own && !mixed_)
-        collect_near(pack, stretch, out);
-      else
-        collect_all(pack, stretch, out);
-    }
-  }
-
-  void collect_all(const Pack& pack, const Stretch& stretch, PackBuffers& out) const {
-    const std::size_t count = stretch.to - stretch.from, at = out.others.count;
-    copy(robots_.x.data() + stretch.from, count, out.others.x + at);
-    copy(robots_.y.data() + stretch.from, count, out.others.y + at);
-    copy(robots_.mx.data() + stretch.from, count, out.others.mx + at);
-    copy(robots_.my.data() + stretch.from, count, out.others.my + at);
-    if (mixed_)
-      for (std::size_t k = 0; k < count; ++k)
-        out.others.kind[at + k] = static_cast<std::int32_t>(robots_.kind(stretch.from + k));
-    const std::size_t first = std::max(pack.begin, stretch.from), last = std::min(pack.end, stretch.to);
-    for (std::size_t i = first; i < last; ++i)
-      out.self[i - pack.begin] = static_cast<std::int32_t>(at + i - stretch.from);
-    out.others.count += count;
-  }
-
-  /// Of a strip that reaches beyond the window: those that are not farther from the box in y than the pack looks.
-  void collect_near(const Pack& pack, const Stretch& stretch, PackBuffers& out) const {
     const Window w = grown(pack.box, pack.reach);
     const auto within = [](std::int64_t y) {
       return static_cast<std::int32_t>(std::clamp<std::int64_t>(y, -kLatticeEnd, kLatticeEnd));
     };
-    const RobotColumns some{robots_.x.data() + stretch.from, robots_.y.data() + stretch.from,
-                            robots_.mx.data() + stretch.from, robots_.my.data() + stretch.from};
-    add_between(some, stretch.to - stretch.from, within(w.y0), within(w.y1), out.others);
+    const RobotColumns columns{robots_.x.data(), robots_.y.data(), robots_.mx.data(), robots_.my.data(),
+                               robots_.tag.data()};
+    const CandidateRule rule{pack.begin, pack.end, within(w.y0), within(w.y1), mixed_};
+    CandidateStretch some[Pack::kKeptStretches];
+    std::size_t count = 0;
+    out.others.count = 0;
+    for (std::int64_t row = pack.cells.row0; row <= pack.cells.row1; ++row) {
+      const std::int64_t nth = row - pack.cells.row0;
+      const Stretch stretch = nth < Pack::kKeptStretches ? pack.stretches[nth] : robots_.stretch(pack.cells, row);
+      if (stretch.from == stretch.to) continue;
+      // A strip that reaches beyond the window: who is farther from the box in y than the pack looks is left out.
+      some[count++] = {stretch.from, stretch.to, row == pack.cells.row0 || row == pack.cells.row1};
+      if (count < Pack::kKeptStretches) continue;
+      add_candidates(columns, rule, some, count, out.others, out.self);
+      count = 0;
+    }
+    add_candidates(columns, rule, some, count, out.others, out.self);
   }
 
   /// A robot is the first of its own list, unless others stand in its place.
-  void drop_selves(const Pack& pack, int ranks, PackBuffers& out) const {
-    std::uint32_t behind = lanes_behind_others(out.ranked, out.self) & pack.lanes();
+  void drop_selves(std::uint32_t behind, int ranks, PackBuffers& out) const {
     for (std::size_t lane = 0; behind != 0; ++lane, behind >>= 1U)
       if (behind & 1U) drop_self(lane, ranks, out);
   }
@@ -196,12 +190,15 @@ class PackSearch {
     return false;
   }
 
-  /// Who has how many, whom the next step will ask how far, and who has more in reach than neighbours.
+  /// Whom the next step will ask how far, and who has more in reach than neighbours.
   void take_finds(Pack& pack, const PackBuffers& found) const {
-    std::copy(found.finds.hint, found.finds.hint + pack.size(), robots_.hint.data() + pack.begin);
-    for (std::size_t lane = 0; lane < kPack; ++lane)
-      pack.neighbours[lane] = static_cast<std::uint8_t>(found.finds.have[lane]);
-    pack.alone |= found.finds.crowded & pack.lanes();
+    std::int32_t* const hints = robots_.hint.data() + pack.begin;
+    if (pack.size() == kPack)
+      std::copy(found.finds.hint, found.finds.hint + kPack, hints);
+    else
+      std::copy(found.finds.hint, found.finds.hint + pack.size(), hints);
+    std::copy(found.finds.have, found.finds.have + kPack, pack.neighbours);
+    pack.alone = found.finds.crowded & pack.lanes();
     pack.ranks = found.finds.most;
   }
 
@@ -212,8 +209,9 @@ class PackSearch {
 
 }  // namespace
 
-Pack find_pack(Robots& robots, const ReachTable& table, std::size_t begin, std::size_t last, PackBuffers& out) {
-  return PackSearch(robots, table).find(begin, last, out);
+void find_pack(Robots& robots, const ReachTable& table, std::size_t begin, std::size_t last, Pack& pack,
+               PackBuffers& out) {
+  PackSearch(robots, table).find(begin, last, pack, out);
 }
 
 }  // namespace exactvo::formation::crowd

@@ -21,7 +21,7 @@ inline constexpr double kWholeKey = 1.0 - 0x1p-13;
 struct Pack {
   static constexpr std::int64_t kKeptStretches = 8;
 
-  std::size_t begin, end;
+  std::size_t begin = 0, end = 0;
   Window box;
   double reach;  ///< lattice steps, how far it looks
   Cells cells;
@@ -30,11 +30,12 @@ struct Pack {
   int ranks = 0;               ///< the last at which a lane has somebody
   std::uint32_t alone = 0;     ///< lanes that are decided alone
   std::uint32_t touching = 0;  ///< lanes that touch another robot
-  std::uint8_t neighbours[kPack] = {};
+  std::int32_t neighbours[kPack];
 
   std::size_t size() const { return end - begin; }
   /// Bit `lane`: holds a robot.
   std::uint32_t lanes() const { return (1U << size()) - 1U; }
+  void clear() { ranks = 0, alone = touching = 0; }
 };
 
 /// Of a thread.
@@ -43,10 +44,12 @@ struct PackBuffers {
   Ranked ranked;
   LaneLimits limits;
   LaneFinds finds;
-  alignas(64) std::int32_t self[kPack];  ///< by lane: its own number among the others
+  alignas(64) std::int32_t self[2 * kPack];  ///< by lane: its own number among the others
 };
 
-/// The robots from `begin` on, before `last`, and their neighbours in `out`. Writes the hints of these robots.
-Pack find_pack(Robots& robots, const ReachTable& table, std::size_t begin, std::size_t last, PackBuffers& out);
+/// Into `pack` the robots from `begin` on, before `last`, and into `out` their neighbours. Writes the hints of these
+/// robots.
+void find_pack(Robots& robots, const ReachTable& table, std::size_t begin, std::size_t last, Pack& pack,
+               PackBuffers& out);
 
 }  // namespace exactvo::formation::crowd

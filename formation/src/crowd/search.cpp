@@ -99,26 +99,71 @@ void nearest_in(const Candidates& among, const std::int32_t* x, const std::int32
   }
 }
 
-void nearest(const Candidates& among, const std::int32_t* x, const std::int32_t* y, const float* none, int ranks,
-             Ranked& out) {
-  if (ranks == 6) return nearest_in<6>(among, x, y, none, out);
-  if (ranks == 11) return nearest_in<11>(among, x, y, none, out);
-  return nearest_in<16>(among, x, y, none, out);
+void nearest(const Candidates& among, const LaneQuery& q, const float* none, Ranked& out) {
+  if (q.ranks == 6) return nearest_in<6>(among, q.x, q.y, none, out);
+  if (q.ranks == 11) return nearest_in<11>(among, q.x, q.y, none, out);
+  return nearest_in<16>(among, q.x, q.y, none, out);
 }
 
-void add_some_between(const RobotColumns& robots, std::size_t count, std::int32_t low, std::int32_t high,
-                      Candidates& to) {
+LaneBox box_of_lanes(const std::int32_t* x, const std::int32_t* y, const std::int32_t* hint) {
+  const Words d;
+  auto x0 = hn::LoadU(d, x), x1 = x0, y0 = hn::LoadU(d, y), y1 = y0, farthest = hn::LoadU(d, hint);
+  for (std::size_t lane = hn::Lanes(d); lane < kPack; lane += hn::Lanes(d)) {
+    x0 = hn::Min(x0, hn::LoadU(d, x + lane));
+    x1 = hn::Max(x1, hn::LoadU(d, x + lane));
+    y0 = hn::Min(y0, hn::LoadU(d, y + lane));
+    y1 = hn::Max(y1, hn::LoadU(d, y + lane));
+    farthest = hn::Max(farthest, hn::LoadU(d, hint + lane));
+  }
+  return {hn::GetLane(hn::MinOfLanes(d, x0)), hn::GetLane(hn::MaxOfLanes(d, x1)), hn::GetLane(hn::MinOfLanes(d, y0)),
+          hn::GetLane(hn::MaxOfLanes(d, y1)), hn::GetLane(hn::MaxOfLanes(d, farthest))};
+}
+
+void add_near(const RobotColumns& robots, const CandidateRule& rule, const CandidateStretch& s, Candidates& to) {
   const Words words;
-  const auto lowest = hn::Set(words, low), highest = hn::Set(words, high);
-  for (std::size_t k = 0; k < count; k += hn::Lanes(words)) {
-    const auto y = hn::LoadU(words, robots.y + k);
-    const auto there = hn::FirstN(words, std::min(hn::Lanes(words), count - k));
+  const auto lowest = hn::Set(words, rule.low), highest = hn::Set(words, rule.high);
+  for (std::size_t i = s.from; i < s.to; i += hn::Lanes(words)) {
+    const auto y = hn::LoadU(words, robots.y + i);
+    const auto there = hn::FirstN(words, std::min(hn::Lanes(words), s.to - i));
     const auto taken = hn::AndNot(hn::Or(hn::Lt(y, lowest), hn::Gt(y, highest)), there);
-    hn::StoreU(hn::Compress(hn::LoadU(words, robots.x + k), taken), words, to.x + to.count);
+    hn::StoreU(hn::Compress(hn::LoadU(words, robots.x + i), taken), words, to.x + to.count);
     hn::StoreU(hn::Compress(y, taken), words, to.y + to.count);
-    hn::StoreU(hn::Compress(hn::LoadU(words, robots.mx + k), taken), words, to.mx + to.count);
-    hn::StoreU(hn::Compress(hn::LoadU(words, robots.my + k), taken), words, to.my + to.count);
+    hn::StoreU(hn::Compress(hn::LoadU(words, robots.mx + i), taken), words, to.mx + to.count);
+    hn::StoreU(hn::Compress(hn::LoadU(words, robots.my + i), taken), words, to.my + to.count);
     to.count += hn::CountTrue(words, taken);
+  }
+}
+
+void add_all(const RobotColumns& robots, const CandidateStretch& s, bool with_kinds, Candidates& to) {
+  const Words words;
+  const hn::Rebind<std::uint16_t, Words> tags;
+  for (std::size_t i = s.from, k = to.count; i < s.to; i += hn::Lanes(words), k += hn::Lanes(words)) {
+    hn::StoreU(hn::LoadU(words, robots.x + i), words, to.x + k);
+    hn::StoreU(hn::LoadU(words, robots.y + i), words, to.y + k);
+    hn::StoreU(hn::LoadU(words, robots.mx + i), words, to.mx + k);
+    hn::StoreU(hn::LoadU(words, robots.my + i), words, to.my + k);
+    if (with_kinds) {
+      const auto tag = hn::PromoteTo(words, hn::LoadU(tags, robots.tag + i));
+      hn::StoreU(hn::And(tag, hn::Set(words, kKindBits)), words, to.kind + k);
+    }
+  }
+  to.count += s.to - s.from;
+}
+
+void add_to_table(const RobotColumns& robots, const CandidateRule& rule, const CandidateStretch* stretches,
+                  std::size_t count, Candidates& to, std::int32_t* self) {
+  const Words words;
+  for (const CandidateStretch* s = stretches; s != stretches + count; ++s) {
+    const std::size_t first = std::max(rule.begin, s->from), last = std::min(rule.end, s->to);
+    if (first < last) {  // what is written beyond is overwritten by later stretches, or nobody's
+      const auto number = static_cast<std::int32_t>(to.count + first - s->from);
+      for (std::size_t k = 0; k < last - first; k += hn::Lanes(words))
+        hn::StoreU(hn::Iota(words, number + static_cast<std::int32_t>(k)), words, self + (first - rule.begin) + k);
+    } else if (s->outer && !rule.mixed) {
+      add_near(robots, rule, *s, to);
+      continue;
+    }
+    add_all(robots, *s, rule.mixed, to);
   }
 }
 
@@ -144,18 +189,18 @@ std::uint32_t behind_others(const Ranked& ranked, const std::int32_t* self) {
 constexpr float kFarthestHint = 0x1p30F;
 
 template <bool kMixed>
-void count_in(const LaneLimits& limits, float seen, int ranks, Ranked& ranked, LaneFinds& out) {
+void count_in(const LaneQuery& q, const LaneLimits& limits, Ranked& ranked, LaneFinds& out) {
   const Floats d;
   const Words words;
   const F distance_bits = hn::BitCast(d, hn::Set(words, ~kIndexBits));
-  out.most = 0;
+  out.most = out.neighbours = 0;
   out.unseen = out.crowded = 0;
   for (std::size_t lane = 0; lane < kPack; lane += hn::Lanes(d)) {
     const F none = hn::LoadU(d, limits.none + lane);
     const auto wanted = hn::LoadU(words, limits.wanted + lane);
     auto have = hn::Zero(words);
     F last = none;
-    for (int r = 1; r < ranks; ++r) {
+    for (int r = 1; r < q.ranks; ++r) {
       F key = hn::LoadU(d, ranked.key[r] + lane);
       const auto rank = hn::Set(words, r);
       if constexpr (kMixed) {
@@ -167,20 +212,29 @@ void count_in(const LaneLimits& limits, float seen, int ranks, Ranked& ranked, L
       last = hn::IfThenElse(hn::RebindMask(d, hn::Eq(rank, wanted)), key, last);
     }
     hn::StoreU(have, words, out.have + lane);
-    out.most = std::max(out.most, static_cast<int>(hn::GetLane(hn::MaxOfLanes(words, have))));
+    out.most = std::max(out.most, hn::GetLane(hn::MaxOfLanes(words, have)));
+    out.neighbours += hn::GetLane(hn::SumOfLanes(words, have));
     const auto is_full = hn::Lt(last, none);
     const F squared = hn::And(last, distance_bits);
     const auto distance = hn::ConvertTo(words, hn::Min(hn::Sqrt(squared), hn::Set(d, kFarthestHint)));
     const auto window = hn::LoadU(words, limits.window + lane);
     const auto hint = hn::IfThenElse(hn::RebindMask(words, is_full), hn::Min(distance, window), window);
     hn::StoreU(hint, words, out.hint + lane);
-    out.unseen |= bits_from(hn::Gt(last, hn::Set(d, seen)), lane);
+    out.unseen |= bits_from(hn::Gt(last, hn::Set(d, q.seen)), lane);
     out.crowded |= bits_from(hn::And(is_full, hn::Lt(squared, hn::LoadU(d, limits.reach + lane))), lane);
   }
 }
 
-void count_all(const LaneLimits& limits, float seen, int ranks, bool mixed, Ranked& ranked, LaneFinds& out) {
-  mixed ? count_in<true>(limits, seen, ranks, ranked, out) : count_in<false>(limits, seen, ranks, ranked, out);
+void count_all(const LaneQuery& q, const LaneLimits& limits, Ranked& ranked, LaneFinds& out) {
+  q.mixed ? count_in<true>(q, limits, ranked, out) : count_in<false>(q, limits, ranked, out);
+}
+
+std::uint32_t find_and_count(const Candidates& among, const LaneQuery& q, const LaneLimits& limits, Ranked& ranked,
+                             LaneFinds& out) {
+  nearest(among, q, limits.none, ranked);
+  const std::uint32_t behind = behind_others(ranked, q.self) & q.lanes;
+  if (behind == 0) count_all(q, limits, ranked, out);
+  return behind;
 }
 
 }  // namespace exactvo::formation::crowd::HWY_NAMESPACE
@@ -189,30 +243,31 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace exactvo::formation::crowd {
 
-HWY_EXPORT(add_some_between);
-HWY_EXPORT(nearest);
-HWY_EXPORT(behind_others);
+HWY_EXPORT(box_of_lanes);
+HWY_EXPORT(add_to_table);
+HWY_EXPORT(find_and_count);
 HWY_EXPORT(count_all);
 
 int ranks_sought(int wanted) {
   return wanted <= 6 ? 6 : wanted <= 11 ? 11 : 16;
 }
 
-void add_between(const RobotColumns& robots, std::size_t count, std::int32_t low, std::int32_t high, Candidates& to) {
-  HWY_DYNAMIC_DISPATCH(add_some_between)(robots, count, low, high, to);
+LaneBox box_of_pack(const std::int32_t* x, const std::int32_t* y, const std::int32_t* hint) {
+  return HWY_DYNAMIC_DISPATCH(box_of_lanes)(x, y, hint);
 }
 
-void find_nearest(const Candidates& among, const std::int32_t* x, const std::int32_t* y, const float* none, int ranks,
-                  Ranked& out) {
-  HWY_DYNAMIC_DISPATCH(nearest)(among, x, y, none, ranks, out);
+void add_candidates(const RobotColumns& robots, const CandidateRule& rule, const CandidateStretch* stretches,
+                    std::size_t count, Candidates& to, std::int32_t* self) {
+  HWY_DYNAMIC_DISPATCH(add_to_table)(robots, rule, stretches, count, to, self);
 }
 
-std::uint32_t lanes_behind_others(const Ranked& ranked, const std::int32_t* self) {
-  return HWY_DYNAMIC_DISPATCH(behind_others)(ranked, self);
+std::uint32_t find_nearest(const Candidates& among, const LaneQuery& query, const LaneLimits& limits, Ranked& ranked,
+                           LaneFinds& out) {
+  return HWY_DYNAMIC_DISPATCH(find_and_count)(among, query, limits, ranked, out);
 }
 
-void count_neighbours(const LaneLimits& limits, float seen, int ranks, bool mixed, Ranked& ranked, LaneFinds& out) {
-  HWY_DYNAMIC_DISPATCH(count_all)(limits, seen, ranks, mixed, ranked, out);
+void count_neighbours(const LaneQuery& query, const LaneLimits& limits, Ranked& ranked, LaneFinds& out) {
+  HWY_DYNAMIC_DISPATCH(count_all)(query, limits, ranked, out);
 }
 
 }  // namespace exactvo::formation::crowd
