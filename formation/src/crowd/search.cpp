@@ -15,18 +15,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, kPack>;
 using Words = hn::RebindToSigned<Floats>;
 using F = hn::Vec<Floats>;
+using W = hn::Vec<Words>;
 
 /// Candidates that are sorted before they are merged into a list.
 constexpr std::size_t kBatch = 8;
 
-HWY_INLINE void order(F& a, F& b) {
-  const F low = hn::Min(a, b);
+/// Keys are floats that are not negative: their order is that of their bits, and processors have more units for whole
+/// numbers.
+HWY_INLINE void order(W& a, W& b) {
+  const W low = hn::Min(a, b);
   b = hn::Max(a, b);
   a = low;
 }
 
 /// The optimal network of eight: 19 comparators.
-HWY_INLINE void sort_batch(F* c) {
+HWY_INLINE void sort_batch(W* c) {
   order(c[0], c[2]), order(c[1], c[3]), order(c[4], c[6]), order(c[5], c[7]);
   order(c[0], c[4]), order(c[1], c[5]), order(c[2], c[6]), order(c[3], c[7]);
   order(c[0], c[1]), order(c[2], c[3]), order(c[4], c[5]), order(c[6], c[7]);
@@ -39,13 +42,12 @@ HWY_INLINE void sort_batch(F* c) {
 template <int kRanks>
 class SortedLists {
  public:
-  explicit HWY_INLINE SortedLists(F none) {
-    for (F& entry : list_) entry = none;
+  explicit HWY_INLINE SortedLists(W none) {
+    for (W& entry : list_) entry = none;
   }
 
-  HWY_INLINE void merge(F* batch) {
+  HWY_INLINE void merge(W* batch) {
     sort_batch(batch);
-    if (hn::AllFalse(Floats(), hn::Lt(batch[0], list_[kRanks - 1]))) return;
 #pragma GCC unroll 8
     for (int i = 0; i < static_cast<int>(kBatch); ++i)
       if (kRanks - 1 - i >= 0) list_[kRanks - 1 - i] = hn::Min(list_[kRanks - 1 - i], batch[i]);
@@ -56,7 +58,7 @@ class SortedLists {
   }
 
   HWY_INLINE void store(Ranked& out, std::size_t lane) const {
-    for (int r = 0; r < kRanks; ++r) hn::StoreU(list_[r], Floats(), out.key[r] + lane);
+    for (int r = 0; r < kRanks; ++r) hn::StoreU(hn::BitCast(Floats(), list_[r]), Floats(), out.key[r] + lane);
   }
 
  private:
@@ -69,30 +71,48 @@ class SortedLists {
       if ((i & kDistance) == 0 && i + kDistance < 16) order(list_[i - kBefore], list_[i + kDistance - kBefore]);
   }
 
-  F list_[kRanks];
+  W list_[kRanks];
+};
+
+/// What the candidates' keys are made of.
+struct KeyMaker {
+  W own_x, own_y, nobody;
+
+  /// Of kBatch candidates from k on; of those from `end` on, nobody's.
+  template <bool kSome>
+  HWY_INLINE void make(const Candidates& among, std::size_t k, W* key) const {
+    const Floats d;
+    const Words words;
+    const W distance_bits = hn::Set(words, ~kIndexBits), end = hn::Set(words, static_cast<std::int32_t>(among.count));
+    W number = hn::Set(words, static_cast<std::int32_t>(k));
+#pragma GCC unroll 8
+    for (std::size_t j = 0; j < kBatch; ++j) {
+      const F dx = hn::ConvertTo(d, hn::Sub(hn::Set(words, among.x[k + j]), own_x));
+      const F dy = hn::ConvertTo(d, hn::Sub(hn::Set(words, among.y[k + j]), own_y));
+      const W squared = hn::BitCast(words, hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
+      key[j] = hn::OrAnd(number, squared, distance_bits);
+      if constexpr (kSome) key[j] = hn::IfThenElse(hn::Lt(number, end), key[j], nobody);
+      number = hn::Add(number, hn::Set(words, 1));
+    }
+  }
 };
 
 template <int kRanks>
 void nearest_in(const Candidates& among, const std::int32_t* x, const std::int32_t* y, const float* none, Ranked& out) {
   const Floats d;
   const Words words;
-  const F distance_bits = hn::BitCast(d, hn::Set(words, ~kIndexBits));
   for (std::size_t lane = 0; lane < kPack; lane += hn::Lanes(d)) {
-    const auto own_x = hn::LoadU(words, x + lane), own_y = hn::LoadU(words, y + lane);
-    const F nobody = hn::LoadU(d, none + lane);
-    SortedLists<kRanks> lists(nobody);
-    for (std::size_t k = 0; k < among.count; k += kBatch) {
-      F key[kBatch];
-#pragma GCC unroll 8
-      for (std::size_t j = 0; j < kBatch; ++j) {
-        const F dx = hn::ConvertTo(d, hn::Sub(hn::Set(words, among.x[k + j]), own_x));
-        const F dy = hn::ConvertTo(d, hn::Sub(hn::Set(words, among.y[k + j]), own_y));
-        const F squared = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
-        const F number = hn::BitCast(d, hn::Set(words, static_cast<std::int32_t>(k + j)));
-        key[j] = hn::Or(hn::And(squared, distance_bits), number);
-      }
-      if (k + kBatch > among.count)
-        for (std::size_t j = among.count - k; j < kBatch; ++j) key[j] = nobody;
+    const KeyMaker keys{hn::LoadU(words, x + lane), hn::LoadU(words, y + lane),
+                        hn::BitCast(words, hn::LoadU(d, none + lane))};
+    SortedLists<kRanks> lists(keys.nobody);
+    W key[kBatch];
+    std::size_t k = 0;
+    for (; k + kBatch <= among.count; k += kBatch) {
+      keys.template make<false>(among, k, key);
+      lists.merge(key);
+    }
+    if (k < among.count) {
+      keys.template make<true>(among, k, key);
       lists.merge(key);
     }
     lists.store(out, lane);
