@@ -107,6 +107,33 @@ HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask, std::size_t lane) {
   return (static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U) << lane;
 }
 
+/// Ranks whose half-planes are made side by side.
+constexpr int kAtOnce = 6;
+
+/// The other robots of a rank, seen from those of some lanes. Nobody's are anything.
+template <bool kMixed, class D>
+HWY_INLINE Pair<D> pair_of(D d, const LineRule<hn::TFromD<D>>& rule, const LineQuery& q, const Own<D>& own,
+                           const hn::Vec<WordsOf<D>>& at) {
+  const hn::Vec<D> step = hn::Set(d, rule.position_step), unit = hn::Set(d, rule.velocity_step);
+  const Lookup<D> of(at, q.others->count);
+  Pair<D> pair;
+  pair.px = hn::Mul(numbers(d, hn::Sub(of(q.others->x), own.x)), step);
+  pair.py = hn::Mul(numbers(d, hn::Sub(of(q.others->y), own.y)), step);
+  pair.vx = own.vx;
+  pair.vy = own.vy;
+  pair.ox = hn::Mul(numbers(d, of(q.others->mx)), unit);
+  pair.oy = hn::Mul(numbers(d, of(q.others->my)), unit);
+  if (kMixed) {
+    const auto kind = of(q.others->kind);
+    pair.radius = hn::Add(own.radius, by_kind(d, rule.radius, kind));
+    pair.inverse_horizon = hn::Max(own.inverse_horizon, by_kind(d, rule.inverse_horizon, kind));
+  } else {
+    pair.radius = hn::Add(own.radius, own.radius);
+    pair.inverse_horizon = own.inverse_horizon;
+  }
+  return pair;
+}
+
 template <bool kCertified, bool kMixed, class D>
 HWY_INLINE LineFlags lines_of_lanes(D d, const LineRule<hn::TFromD<D>>& rule, const LineQuery& q,
                                     const LineRows<hn::TFromD<D>>& out, std::size_t lane) {
@@ -114,38 +141,34 @@ HWY_INLINE LineFlags lines_of_lanes(D d, const LineRule<hn::TFromD<D>>& rule, co
   using V = hn::Vec<D>;
   const WordsOf<D> words;
   const Own<D> own(rule, q, lane);
-  const V step = hn::Set(d, rule.position_step), unit = hn::Set(d, rule.velocity_step);
   const auto none = hn::BitCast(words, hn::LoadU(hn::Rebind<float, D>(), q.none + lane));
   auto touching = hn::MaskFromVec(hn::Zero(d)), coincident = touching;
-  for (int rank = q.first_rank; rank < q.end_rank; ++rank) {
-    const auto key = hn::BitCast(words, hn::LoadU(hn::Rebind<float, D>(), q.ranked->key[rank] + lane));
-    const auto there_words = hn::Lt(key, none);
-    // Lanes without one read the first entry: what stands elsewhere may be anything.
-    const auto at = hn::And(hn::IfThenElseZero(there_words, key), hn::Set(words, kIndexBits));
-    const auto there = hn::Ne(numbers(d, hn::IfThenElseZero(there_words, hn::Set(words, 1))), hn::Zero(d));
-    const Lookup<D> of(at, q.others->count);
-    Pair<D> pair;
-    pair.px = hn::Mul(numbers(d, hn::Sub(of(q.others->x), own.x)), step);
-    pair.py = hn::Mul(numbers(d, hn::Sub(of(q.others->y), own.y)), step);
-    pair.vx = own.vx;
-    pair.vy = own.vy;
-    pair.ox = hn::Mul(numbers(d, of(q.others->mx)), unit);
-    pair.oy = hn::Mul(numbers(d, of(q.others->my)), unit);
-    if (kMixed) {
-      const auto kind = of(q.others->kind);
-      pair.radius = hn::Add(own.radius, by_kind(d, rule.radius, kind));
-      pair.inverse_horizon = hn::Max(own.inverse_horizon, by_kind(d, rule.inverse_horizon, kind));
-    } else {
-      pair.radius = hn::Add(own.radius, own.radius);
-      pair.inverse_horizon = own.inverse_horizon;
+  PairWork<kCertified, D> work[kAtOnce];
+  V radius[kAtOnce];
+  hn::Mask<D> there[kAtOnce];
+  for (int first = q.first_rank; first < q.end_rank; first += kAtOnce) {
+    const int ranks = std::min(kAtOnce, q.end_rank - first);
+    for (int k = 0; k < ranks; ++k) {
+      const auto key = hn::BitCast(words, hn::LoadU(hn::Rebind<float, D>(), q.ranked->key[first + k] + lane));
+      const auto there_words = hn::Lt(key, none);
+      // Lanes without one read the first entry: what stands elsewhere may be anything.
+      const auto at = hn::And(hn::IfThenElseZero(there_words, key), hn::Set(words, kIndexBits));
+      there[k] = hn::Ne(numbers(d, hn::IfThenElseZero(there_words, hn::Set(words, 1))), hn::Zero(d));
+      const Pair<D> pair = pair_of<kMixed>(d, rule, q, own, at);
+      radius[k] = pair.radius;
+      work[k].begin(d, pair, rule.inverse_time);
     }
-    const PairLine<D> line = pair_line<kCertified>(d, pair, rule.inverse_time, rule.lattice_slack);
-    const std::size_t to = static_cast<std::size_t>(rank - q.first_rank) * out.stride + lane;
-    hn::StoreU(hn::IfThenElse(there, line.x, hn::Set(d, T(1))), d, out.x + to);
-    hn::StoreU(hn::IfThenElseZero(there, line.y), d, out.y + to);
-    hn::StoreU(hn::IfThenElse(there, hn::Max(line.c, own.least), hn::Set(d, static_cast<T>(kNever))), d, out.c + to);
-    touching = hn::Or(touching, hn::And(line.touching, there));
-    coincident = hn::Or(coincident, hn::And(line.coincident, there));
+    for (int k = 0; k < ranks; ++k) work[k].divide(d);
+    for (int k = 0; k < ranks; ++k) {
+      const PairLine<D> line = work[k].line(d, own.vx, own.vy, radius[k], rule.lattice_slack);
+      const std::size_t to = static_cast<std::size_t>(first + k - q.first_rank) * out.stride + lane;
+      hn::StoreU(hn::IfThenElse(there[k], line.x, hn::Set(d, T(1))), d, out.x + to);
+      hn::StoreU(hn::IfThenElseZero(there[k], line.y), d, out.y + to);
+      const V offset = hn::Max(line.c, own.least);
+      hn::StoreU(hn::IfThenElse(there[k], offset, hn::Set(d, static_cast<T>(kNever))), d, out.c + to);
+      touching = hn::Or(touching, hn::And(line.touching, there[k]));
+      coincident = hn::Or(coincident, hn::And(line.coincident, there[k]));
+    }
   }
   return {bits_of(d, touching, lane), bits_of(d, coincident, lane)};
 }

@@ -48,64 +48,94 @@ struct PairLine {
   hn::Mask<D> coincident;  ///< in one place, with one velocity: what parts them is decided elsewhere, by ids
 };
 
+template <class D>
+HWY_INLINE hn::Vec<D> times_u(D d, hn::Vec<D> a, int units) {
+  using T = hn::TFromD<D>;
+  constexpr T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
+  return hn::Mul(a, hn::Set(d, T(units) * u));
+}
+
+/// A half-plane is a chain of some two hundred cycles, with a root and a division in it, which a processor cannot look
+/// past. So it is made in three parts, each of them for all the others of a robot: the gaps of one are filled by the
+/// next.
 template <bool kCertified, class D>
-HWY_INLINE PairLine<D> pair_line(D d, const Pair<D>& p, hn::TFromD<D> inverse_time, hn::TFromD<D> lattice_slack) {
+struct PairWork {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
-  constexpr T u = sizeof(T) == 8 ? static_cast<T>(0x1p-53) : static_cast<T>(0x1p-24);
-  const auto times_u = [&](V a, int units) { return hn::Mul(a, hn::Set(d, T(units) * u)); };
-  const V zero = hn::Zero(d), one = hn::Set(d, T(1)), half = hn::Set(d, T(0.5));
-  const V squared_distance = hn::Add(hn::Mul(p.px, p.px), hn::Mul(p.py, p.py));
-  const V size = hn::Add(hn::Add(hn::Abs(p.px), hn::Abs(p.py)), p.radius);
-  const V grown = kCertified ? hn::Add(p.radius, times_u(size, 32)) : p.radius;
-  const V squared_radius = hn::Mul(grown, grown);
-  const auto touching = hn::Le(squared_distance, squared_radius);
-  const V inverse = hn::IfThenElse(touching, hn::Set(d, inverse_time), p.inverse_horizon);
 
-  // w: the relative velocity, seen from the centre of the cut-off.
-  const V rx = hn::Sub(p.vx, p.ox), ry = hn::Sub(p.vy, p.oy);
-  V wx = hn::Sub(rx, hn::Mul(inverse, p.px)), wy = hn::Sub(ry, hn::Mul(inverse, p.py));
-  V squared_w = hn::Add(hn::Mul(wx, wx), hn::Mul(wy, wy));
-  const auto aimless = hn::And(touching, hn::Lt(squared_w, hn::Set(d, static_cast<T>(0x1p-100))));
-  auto coincident = aimless;
-  if (HWY_UNLIKELY(!hn::AllFalse(d, aimless))) {  // as fast as can be to where the other is: straight away from it
-    wx = hn::IfThenElse(aimless, hn::Neg(p.px), wx);
-    wy = hn::IfThenElse(aimless, hn::Neg(p.py), wy);
-    squared_w = hn::Add(hn::Mul(wx, wx), hn::Mul(wy, wy));
-    coincident = hn::And(aimless, hn::Eq(squared_w, zero));
+  V px, py, rx, ry, wx, wy;
+  V squared_distance, under_root, grown, size, inverse, terms;
+  V root, scale;
+  hn::Mask<D> touching, coincident, cut_off;
+
+  HWY_INLINE void begin(D d, const Pair<D>& p, T inverse_time) {
+    const V zero = hn::Zero(d);
+    px = p.px;
+    py = p.py;
+    squared_distance = hn::Add(hn::Mul(px, px), hn::Mul(py, py));
+    size = hn::Add(hn::Add(hn::Abs(px), hn::Abs(py)), p.radius);
+    grown = kCertified ? hn::Add(p.radius, times_u(d, size, 32)) : p.radius;
+    const V squared_radius = hn::Mul(grown, grown);
+    touching = hn::Le(squared_distance, squared_radius);
+    inverse = hn::IfThenElse(touching, hn::Set(d, inverse_time), p.inverse_horizon);
+
+    // w: the relative velocity, seen from the centre of the cut-off.
+    rx = hn::Sub(p.vx, p.ox);
+    ry = hn::Sub(p.vy, p.oy);
+    wx = hn::Sub(rx, hn::Mul(inverse, px));
+    wy = hn::Sub(ry, hn::Mul(inverse, py));
+    V squared_w = hn::Add(hn::Mul(wx, wx), hn::Mul(wy, wy));
+    const auto aimless = hn::And(touching, hn::Lt(squared_w, hn::Set(d, static_cast<T>(0x1p-100))));
+    coincident = aimless;
+    if (HWY_UNLIKELY(!hn::AllFalse(d, aimless))) {  // as fast as can be to where the other is: straight away from it
+      wx = hn::IfThenElse(aimless, hn::Neg(px), wx);
+      wy = hn::IfThenElse(aimless, hn::Neg(py), wy);
+      squared_w = hn::Add(hn::Mul(wx, wx), hn::Mul(wy, wy));
+      coincident = hn::And(aimless, hn::Eq(squared_w, zero));
+    }
+    const V along = hn::Add(hn::Mul(wx, px), hn::Mul(wy, py));
+    const auto ahead = hn::And(hn::Lt(along, zero), hn::Gt(hn::Mul(along, along), hn::Mul(squared_radius, squared_w)));
+    cut_off = hn::Or(touching, ahead);
+    const V squared_tangent = hn::Max(hn::Sub(squared_distance, squared_radius), zero);
+    under_root = hn::IfThenElse(cut_off, squared_w, squared_tangent);
+    if (kCertified) {
+      const V own = hn::Add(hn::Abs(p.vx), hn::Abs(p.vy)), other = hn::Add(hn::Abs(p.ox), hn::Abs(p.oy));
+      terms = hn::Add(own, other);
+    }
   }
-  const V along = hn::Add(hn::Mul(wx, p.px), hn::Mul(wy, p.py));
-  const auto ahead = hn::And(hn::Lt(along, zero), hn::Gt(hn::Mul(along, along), hn::Mul(squared_radius, squared_w)));
-  const auto cut_off = hn::Or(touching, ahead);
 
-  // Cut-off: n along w. Leg: the tangent on the side of w.
-  const V squared_tangent = hn::Max(hn::Sub(squared_distance, squared_radius), zero);
-  const V root = hn::Sqrt(hn::IfThenElse(cut_off, squared_w, squared_tangent));
-  const V scale =
-      hn::Div(one, hn::Max(hn::IfThenElse(cut_off, root, squared_distance), hn::Set(d, static_cast<T>(0x1p-100))));
-  const V turn = hn::Sub(hn::Mul(p.px, wy), hn::Mul(p.py, wx));
-  const V leg = hn::IfThenElse(hn::Gt(turn, zero), root, hn::Neg(root));
-  const V lx = hn::Neg(hn::Add(hn::Mul(grown, p.px), hn::Mul(leg, p.py)));
-  const V ly = hn::Sub(hn::Mul(leg, p.px), hn::Mul(grown, p.py));
-  V nx = hn::Mul(hn::IfThenElse(cut_off, wx, lx), scale);
-  const V ny = hn::Mul(hn::IfThenElse(cut_off, wy, ly), scale);
-
-  if (HWY_UNLIKELY(!hn::AllFalse(d, coincident))) nx = hn::IfThenElse(coincident, one, nx);  // any: see `coincident`
-
-  const V sum = hn::Add(hn::Add(hn::Mul(nx, p.px), hn::Mul(ny, p.py)), p.radius);
-  const V quotient = hn::Mul(kCertified ? hn::Add(sum, times_u(size, 12)) : sum, inverse);
-  const V rounded_up = kCertified ? hn::Add(quotient, times_u(hn::Abs(quotient), 4)) : quotient;
-  const V joint = hn::IfThenElseZero(cut_off, rounded_up);
-  const V at_relative = hn::Add(hn::Mul(nx, rx), hn::Mul(ny, ry));
-  const V at_own = hn::Add(hn::Mul(nx, p.vx), hn::Mul(ny, p.vy));
-  V offset = hn::Add(at_own, hn::Mul(half, hn::Sub(joint, at_relative)));
-  if (kCertified) {
-    const V own = hn::Add(hn::Abs(p.vx), hn::Abs(p.vy)), other = hn::Add(hn::Abs(p.ox), hn::Abs(p.oy));
-    const V terms = hn::Add(hn::Add(own, other), hn::Abs(joint));
-    offset = hn::Add(offset, hn::Add(times_u(terms, 16), hn::Set(d, lattice_slack)));
+  HWY_INLINE void divide(D d) {
+    root = hn::Sqrt(under_root);
+    const V length = hn::IfThenElse(cut_off, root, squared_distance);
+    scale = hn::Div(hn::Set(d, T(1)), hn::Max(length, hn::Set(d, static_cast<T>(0x1p-100))));
   }
-  return {nx, ny, offset, touching, coincident};
-}
+
+  HWY_INLINE PairLine<D> line(D d, const V& vx, const V& vy, const V& radius, T lattice_slack) const {
+    const V zero = hn::Zero(d), half = hn::Set(d, T(0.5));
+    // Cut-off: n along w. Leg: the tangent on the side of w.
+    const V turn = hn::Sub(hn::Mul(px, wy), hn::Mul(py, wx));
+    const V leg = hn::IfThenElse(hn::Gt(turn, zero), root, hn::Neg(root));
+    const V lx = hn::Neg(hn::Add(hn::Mul(grown, px), hn::Mul(leg, py)));
+    const V ly = hn::Sub(hn::Mul(leg, px), hn::Mul(grown, py));
+    V nx = hn::Mul(hn::IfThenElse(cut_off, wx, lx), scale);
+    const V ny = hn::Mul(hn::IfThenElse(cut_off, wy, ly), scale);
+    // Any direction: see `coincident`.
+    if (HWY_UNLIKELY(!hn::AllFalse(d, coincident))) nx = hn::IfThenElse(coincident, hn::Set(d, T(1)), nx);
+
+    const V sum = hn::Add(hn::Add(hn::Mul(nx, px), hn::Mul(ny, py)), radius);
+    const V quotient = hn::Mul(kCertified ? hn::Add(sum, times_u(d, size, 12)) : sum, inverse);
+    const V rounded_up = kCertified ? hn::Add(quotient, times_u(d, hn::Abs(quotient), 4)) : quotient;
+    const V joint = hn::IfThenElseZero(cut_off, rounded_up);
+    const V at_relative = hn::Add(hn::Mul(nx, rx), hn::Mul(ny, ry));
+    const V at_own = hn::Add(hn::Mul(nx, vx), hn::Mul(ny, vy));
+    V offset = hn::Add(at_own, hn::Mul(half, hn::Sub(joint, at_relative)));
+    if (kCertified) {
+      const V all_terms = hn::Add(terms, hn::Abs(joint));
+      offset = hn::Add(offset, hn::Add(times_u(d, all_terms, 16), hn::Set(d, lattice_slack)));
+    }
+    return {nx, ny, offset, touching, coincident};
+  }
+};
 
 }  // namespace exactvo::formation::crowd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
