@@ -135,7 +135,7 @@ class CrowdEngine final : public CrowdCore {
     const std::vector<std::size_t> ends = share_ends(robots.size(), ranks() ? ranks()->size() : 1);
     const std::size_t own = ranks() ? static_cast<std::size_t>(ranks()->rank()) : 0,
                       begin = own > 0 ? ends[own - 1] : 0;
-    const std::size_t count = ends[own] - begin, share = count / (4 * static_cast<std::size_t>(tasks.threads()));
+    const std::size_t count = ends[own] - begin, share = count / (8 * static_cast<std::size_t>(tasks.threads()));
     const std::size_t grain = range > 0 ? range : std::clamp<std::size_t>(share, 256, 4096);
     tasks.for_ranges(count, grain, [&](std::size_t first, std::size_t last, int thread) {
       decide_range(begin + first, begin + last, *scratch_[static_cast<std::size_t>(thread)]);

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "crowd/order.h"
+#include <limits>
 
 namespace exactvo::formation::crowd {
 namespace {
@@ -19,6 +18,37 @@ constexpr double kBucketsPerStrip = 3.0;
 
 /// Robots that are looked at together for one that is not above the last.
 constexpr std::size_t kBlock = 64;
+
+/// Robots whose cells are numbered before they are counted.
+constexpr std::size_t kNumbered = 4096;
+
+/// Ranges for counting, at most.
+constexpr std::size_t kRangesPerThread = 4;
+
+std::size_t ranges_of(std::size_t count, std::size_t grain) {
+  return (count + grain - 1) / grain;
+}
+
+Extent both(Extent a, Extent b) {
+  return {std::min(a.low, b.low), std::max(a.high, b.high)};
+}
+
+/// Of ranges of cells, in any order: what lies between those before and those after, both ends excluded. A cell there
+/// is in no other range.
+void make_exclusive(std::vector<Extent>& ranges) {
+  std::int32_t after = std::numeric_limits<std::int32_t>::max();
+  std::vector<std::int32_t> highs(ranges.size());
+  for (std::size_t k = ranges.size(); k-- > 0;) {
+    highs[k] = after;
+    after = std::min(after, ranges[k].low);
+  }
+  std::int32_t before = -1;
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    const std::int32_t high = ranges[k].high;
+    ranges[k] = {before, highs[k]};
+    before = std::max(before, high);
+  }
+}
 
 /// Room for more than there can be robots is not made.
 constexpr std::size_t kMostReserved = std::size_t{1} << 30U;
@@ -73,8 +103,17 @@ void Robots::follow_density(double least, double most) {
   if (size_ > 0) strip_ = std::clamp(kStripFactor * static_cast<double>(sum) / static_cast<double>(size_), least, most);
 }
 
-void Robots::find_bounds() {
-  const Extent in_x = extent_of(x.data(), size_), in_y = extent_of(y.data(), size_);
+void Robots::find_bounds(Tasks& tasks) {
+  extents_.resize(2 * ranges_of(size_, kGrain));
+  tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
+    extents_[2 * (first / kGrain)] = extent_of(x.data() + first, last - first);
+    extents_[2 * (first / kGrain) + 1] = extent_of(y.data() + first, last - first);
+  });
+  Extent in_x = extents_[0], in_y = extents_[1];
+  for (std::size_t k = 2; k < extents_.size(); k += 2) {
+    in_x = both(in_x, extents_[k]);
+    in_y = both(in_y, extents_[k + 1]);
+  }
   bounds_ = {in_x.low, in_x.high, in_y.low, in_y.high};
 }
 
@@ -96,23 +135,48 @@ void Robots::lay_out_cells() {
 /// next_mx; both are free while robots are sorted.
 void Robots::scatter(Tasks& tasks) {
   const std::size_t cells = static_cast<std::size_t>(rows_ * columns_);
-  const CellRule rule{per_bucket_, per_strip_, static_cast<double>(first_column_), static_cast<double>(first_row_),
-                      static_cast<double>(columns_)};
-  start_.assign(cells + 1, 0);
-  std::int32_t *cell = next_my.data(), *nth = next_mx.data(), *count = start_.data() + 1, *order = order_.data();
-  const bool alone = tasks.threads() == 1;
-  tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
-    number_cells(rule, x.data() + first, y.data() + first, last - first, cell + first);
-    if (alone)
-      for (std::size_t i = first; i < last; ++i) nth[i] = count[cell[i]]++;
-    else
-      for (std::size_t i = first; i < last; ++i) nth[i] = __atomic_fetch_add(count + cell[i], 1, __ATOMIC_RELAXED);
+  start_.resize(cells + 1);
+  tasks.for_ranges(cells + 1, kGrain, [&](std::size_t first, std::size_t last, int) {
+    std::fill(start_.begin() + static_cast<std::ptrdiff_t>(first), start_.begin() + static_cast<std::ptrdiff_t>(last),
+              0);
   });
+  count_in_cells(tasks);
   std::int32_t before = 0;
   for (std::size_t c = 1; c <= cells; ++c) start_[c] = before += start_[c];
-  const std::int32_t* start = start_.data();
+  const std::int32_t *start = start_.data(), *cell = next_my.data(), *nth = next_mx.data();
+  std::int32_t* order = order_.data();
   tasks.for_ranges(size_, kGrain, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t i = first; i < last; ++i) order[start[cell[i]] + nth[i]] = static_cast<std::int32_t>(i);
+  });
+}
+
+/// start_[c + 1] counts cell c. Ranges are long, so that few cells have robots of two: only there threads meet.
+void Robots::count_in_cells(Tasks& tasks) {
+  const auto threads = static_cast<std::size_t>(tasks.threads());
+  const std::size_t grain = threads == 1 ? size_ : std::max(kGrain, size_ / (kRangesPerThread * threads) + 1);
+  const CellRule rule{per_bucket_, per_strip_, static_cast<double>(first_column_), static_cast<double>(first_row_),
+                      static_cast<double>(columns_)};
+  std::int32_t *cell = next_my.data(), *nth = next_mx.data(), *count = start_.data() + 1;
+  if (size_ <= grain) {
+    for (std::size_t first = 0; first < size_; first += kNumbered) {
+      const std::size_t last = std::min(size_, first + kNumbered);
+      number_cells(rule, x.data() + first, y.data() + first, last - first, cell + first);
+      for (std::size_t i = first; i < last; ++i) nth[i] = count[cell[i]]++;
+    }
+    return;
+  }
+  extents_.resize(ranges_of(size_, grain));
+  tasks.for_ranges(size_, grain, [&](std::size_t first, std::size_t last, int) {
+    number_cells(rule, x.data() + first, y.data() + first, last - first, cell + first);
+    extents_[first / grain] = extent_of(cell + first, last - first);
+  });
+  make_exclusive(extents_);
+  tasks.for_ranges(size_, grain, [&](std::size_t first, std::size_t last, int) {
+    const Extent own = extents_[first / grain];
+    for (std::size_t i = first; i < last; ++i) {
+      const std::int32_t c = cell[i];
+      nth[i] = c > own.low && c < own.high ? count[c]++ : __atomic_fetch_add(count + c, 1, __ATOMIC_RELAXED);
+    }
   });
 }
 
@@ -173,7 +237,7 @@ void Robots::permute(Array<std::int32_t>& field, Tasks& tasks) {
 
 void Robots::sort(Tasks& tasks) {
   if (size_ == 0) return;
-  find_bounds();
+  find_bounds(tasks);
   lay_out_cells();
   scatter(tasks);
   order_within_cells(tasks);

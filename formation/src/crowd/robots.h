@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "crowd/layout.h"
+#include "crowd/order.h"
 #include "crowd/tasks.h"
 #include "exactvo/formation/crowd.h"
 
@@ -93,9 +95,10 @@ class Robots {
     what(tag), what(tags_scratch_), what(next_kept);
   }
   void resize(std::size_t robots);
-  void find_bounds();
+  void find_bounds(Tasks& tasks);
   void lay_out_cells();
   void scatter(Tasks& tasks);
+  void count_in_cells(Tasks& tasks);
   void order_within_cells(Tasks& tasks);
   void put_in_order(std::size_t p, std::int32_t begin, std::int32_t end);
   void permute(Array<std::int32_t>& field, Tasks& tasks);
@@ -118,6 +121,7 @@ class Robots {
   std::int64_t first_row_ = 0, first_column_ = 0, rows_ = 1, columns_ = 1;
   Array<std::int32_t> start_;  ///< where a cell begins, and the end of the last
   Array<std::int32_t> order_;
+  std::vector<Extent> extents_;  ///< of a few ranges of robots
   Array<std::uint16_t> tags_scratch_;
 };
 
