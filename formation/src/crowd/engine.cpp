@@ -490,6 +490,10 @@ class CrowdEngine final : public CrowdCore {
           take(robot, one_.decide(robot, preferred, s.one, nullptr), s);
           continue;
         }
+        if (hard == 0 && s.status[slot + lane] != 0) {  // relaxed: there is nothing to try
+          ++s.counts.relaxed;
+          continue;
+        }
         const CrowdMotion m{rounded.mx[lane], rounded.my[lane], false};
         take(robot, one_.settled(robot, offset(in, lane), s.status[slot + lane], hard > 0 ? s.hard[slot + lane] : 0, m),
              s);
