@@ -186,7 +186,8 @@ TEST(CrowdVerb, AKilledRunGoesOnToTheSameBytes) {
     outcome = here.run(run, "timeout -s KILL 0." + std::to_string(std::min(tenths, 9)));
     if (outcome.status == 0 || tenths > 200) break;
     ++kills;
-    EXPECT_FALSE(here.has("killed.evr"));
+    // A kill may come when the recording stands in its place and the program has not ended yet.
+    EXPECT_TRUE(!here.has("killed.evr") || here.read("killed.evr") == here.read("whole.evr"));
   }
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GT(kills, 0);
