@@ -18,13 +18,13 @@ using detail::RelativeState;
 using geometry::norm;
 using geometry::squared_norm;
 
-RelativeState relative_state(const Step& row, const std::vector<Vec2>& offsets) {
-  RelativeState s;
+void take_relative_state(const Step& row, const std::vector<Vec2>& offsets, RelativeState& s) {
+  s.position.clear();
+  s.velocity.clear();
   for (std::size_t i = 0; i < row.robots.size(); ++i) {
     s.position.push_back(row.robots[i].position - row.leader_position - offsets[i]);
     s.velocity.push_back(row.robots[i].velocity - row.leader_velocity);
   }
-  return s;
 }
 
 double sum_of_squares(const std::vector<Vec2>& v) {
@@ -172,7 +172,7 @@ std::optional<LyapunovRow> LyapunovAccumulator::add(std::shared_ptr<const Step> 
     integral_ += integral_over_step(run_, *row_, *row);
     before = values_;
   }
-  state_ = relative_state(*row, run_.offsets);
+  take_relative_state(*row, run_.offsets, state_);
   values_ = {};
   values_.time = row->time;
   values_.has_rates = false;

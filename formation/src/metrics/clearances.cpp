@@ -143,7 +143,7 @@ class ClearanceSweep::Sweep {
 
   void lower_to_obstacles(std::size_t step, double end, std::size_t robot) {
     double& least = least_[robot];
-    if (!stays_quiet(robot, enough(least))) {
+    if (!scenario_.obstacles.empty() && !stays_quiet(robot, enough(least))) {
       for (const std::size_t o : near_obstacles(robot, reach_that_matters(robot, enough(least))))
         note(robot, {CollisionKind::obstacle, o}, step, end,
              obstacle_clearance(o, robot, motions_[robot], enough(least)), least);

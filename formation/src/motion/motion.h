@@ -18,6 +18,8 @@ struct Motion {
   double duration;  ///< s
   double gain;      ///< k3 where exponential
   Vec2 from, from_velocity, to, to_velocity;
+  /// m/s: w where exponential, asked for so often that it is computed once.
+  Vec2 tracked = law == MotionLaw::exponential ? tracked_between(from_velocity, to_velocity) : Vec2{};
 
   /// Where the robot is a share s in [0, 1] of the way through the step.
   Vec2 at(double s) const {
@@ -26,7 +28,7 @@ struct Motion {
       case MotionLaw::straight:
         return from + s * (to - from);
       case MotionLaw::exponential:
-        return from + t * tracked() + lag(t) * (from_velocity - tracked());
+        return from + t * tracked + lag(t) * (from_velocity - tracked);
       case MotionLaw::hermite:
         return cubic(s);
     }
@@ -37,7 +39,7 @@ struct Motion {
 
   /// m: the greatest length met in computing where the robot is: what its coordinates are rounded in proportion to.
   double reach() const {
-    return law == MotionLaw::exponential ? duration * norm(tracked()) : duration * norm(to_velocity);
+    return law == MotionLaw::exponential ? duration * norm(tracked) : duration * norm(to_velocity);
   }
 
   /// A bound of |x''| over the step, m/s^2.
@@ -46,7 +48,7 @@ struct Motion {
       case MotionLaw::straight:
         return 0.0;
       case MotionLaw::exponential:
-        return gain * norm(from_velocity - tracked());
+        return gain * norm(from_velocity - tracked);
       case MotionLaw::hermite:
         return std::max(norm(second_derivative(0.0)), norm(second_derivative(1.0)));
     }
@@ -65,9 +67,9 @@ struct Motion {
  private:
   double lag(double t) const { return -std::expm1(-gain * t) / gain; }
   /// w, from v(T) = w + e^{-k T} (v(0) - w).
-  Vec2 tracked() const {
+  Vec2 tracked_between(Vec2 first, Vec2 last) const {
     const double decayed = std::exp(-gain * duration);
-    return (to_velocity - decayed * from_velocity) / -std::expm1(-gain * duration);
+    return (last - decayed * first) / -std::expm1(-gain * duration);
   }
   Vec2 cubic(double s) const {
     const Vec2 m0 = duration * from_velocity, m1 = duration * to_velocity;

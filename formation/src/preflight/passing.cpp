@@ -2,13 +2,13 @@
 #include "exactvo/formation/passing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <deque>
 #include <initializer_list>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include "exactvo/geometry/box_grid.h"
@@ -37,13 +37,53 @@ std::uint64_t key(Square q) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(q.x)) << 32 | static_cast<std::uint32_t>(q.y);
 }
 
+/// The numbers of squares, by place. Most of the time of a cover goes into looking squares up: open addressing, in
+/// memory of one piece that is never more than half full.
+class SquareNumbers {
+ public:
+  static constexpr std::uint32_t kUnknown = 0xffffffff;
+
+  SquareNumbers() : slots_(kSlots) {}
+
+  std::uint32_t find(Square q) const { return slot(q).number; }
+  /// REQUIRES: the square is unknown.
+  void add(Square q, std::uint32_t number) { slots_[place(q)] = {q, number}; }
+
+ private:
+  struct Slot {
+    Square square{};
+    std::uint32_t number = kUnknown;
+  };
+  static constexpr std::size_t kSlots = 16384;
+  static_assert(kSlots >= 2 * (kMostSquares + 2) && (kSlots & (kSlots - 1)) == 0, "a power of two, half of it empty");
+
+  const Slot& slot(Square q) const { return slots_[place(q)]; }
+  /// Where the square stands, or would.
+  std::size_t place(Square q) const {
+    std::size_t at = static_cast<std::size_t>(key(q) * 0x9e3779b97f4a7c15u >> 50);
+    while (slots_[at].number != kUnknown && key(slots_[at].square) != key(q)) at = (at + 1) % kSlots;
+    return at;
+  }
+
+  std::vector<Slot> slots_;
+};
+
+/// The squares that share a side or a corner with one.
+struct Beside {
+  std::uint32_t count = 0;
+  std::uint32_t number[8] = {};
+
+  const std::uint32_t* begin() const { return number; }
+  const std::uint32_t* end() const { return number + count; }
+};
+
 /// The squares that cover where a disc can get from its start.
 struct Cover {
   double radius = 0.0, side = 0.0;
   bool is_whole = false;  ///< else there are more squares than are looked at
   std::vector<Square> squares;
-  std::vector<std::vector<std::uint32_t>> beside;  ///< of each: those that share a side or a corner
-  std::unordered_map<std::uint64_t, std::uint32_t> number;
+  std::vector<Beside> beside;  ///< of each square; of none where the cover is not whole
+  SquareNumbers number;
 };
 
 class Walls {
@@ -100,31 +140,40 @@ Square square_at(Vec2 p, double side) {
   return {static_cast<std::int32_t>(std::floor(p.x / side)), static_cast<std::int32_t>(std::floor(p.y / side))};
 }
 
+std::array<Square, 8> squares_beside(Square q) {
+  return {{{q.x - 1, q.y - 1},
+           {q.x, q.y - 1},
+           {q.x + 1, q.y - 1},
+           {q.x - 1, q.y},
+           {q.x + 1, q.y},
+           {q.x - 1, q.y + 1},
+           {q.x, q.y + 1},
+           {q.x + 1, q.y + 1}}};
+}
+
 Cover cover_from(Vec2 start, double radius, double side, const Walls& walls, std::size_t& looks) {
   Cover cover;
   cover.radius = radius;
   cover.side = side;
   std::vector<Square>& squares = cover.squares;
   squares.push_back(square_at(start, side));
-  cover.number.emplace(key(squares[0]), 0u);
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    cover.beside.emplace_back();
-    for (std::int32_t dy = -1; dy <= 1; ++dy)
-      for (std::int32_t dx = -1; dx <= 1; ++dx) {
-        const Square q{squares[k].x + dx, squares[k].y + dy};
-        if (dx == 0 && dy == 0) continue;
-        auto known = cover.number.find(key(q));
-        if (known == cover.number.end()) {
-          if (squares.size() > kMostSquares || looks == 0) return cover;
-          --looks;
-          if (walls.exclude(q, side, radius)) continue;
-          known = cover.number.emplace(key(q), static_cast<std::uint32_t>(squares.size())).first;
-          squares.push_back(q);
-        }
-        cover.beside[k].push_back(known->second);
-      }
-  }
+  cover.number.add(squares[0], 0);
+  for (std::size_t k = 0; k < squares.size(); ++k)
+    for (const Square q : squares_beside(squares[k])) {
+      if (cover.number.find(q) != SquareNumbers::kUnknown) continue;
+      if (squares.size() > kMostSquares || looks == 0) return cover;
+      --looks;
+      if (walls.exclude(q, side, radius)) continue;
+      cover.number.add(q, static_cast<std::uint32_t>(squares.size()));
+      squares.push_back(q);
+    }
   cover.is_whole = true;
+  for (const Square middle : squares) {
+    Beside& beside = cover.beside.emplace_back();
+    for (const Square q : squares_beside(middle))
+      if (const std::uint32_t known = cover.number.find(q); known != SquareNumbers::kUnknown)
+        beside.number[beside.count++] = known;
+  }
   return cover;
 }
 
@@ -220,7 +269,7 @@ class Proofs {
   }
 
   bool is_in(const Cover& cover, std::size_t robot) const {
-    return cover.number.count(key(square_at(scenario_.robots[robot].position, cover.side))) > 0;
+    return cover.number.find(square_at(scenario_.robots[robot].position, cover.side)) != SquareNumbers::kUnknown;
   }
 
   /// Null where it is not whole. Robots in one another's cover share it.
@@ -236,7 +285,7 @@ class Proofs {
 
   Traveller traveller(std::size_t robot, const Cover& cover) const {
     const Robot& r = scenario_.robots[robot];
-    return {&cover, cover.number.at(key(square_at(r.position, cover.side))),
+    return {&cover, cover.number.find(square_at(r.position, cover.side)),
             squares_at(r.goals[0], detail::reach_of(scenario_, r, 0), cover)};
   }
 

@@ -100,39 +100,41 @@ class FormationRun {
     return remedies_.brake_point ? robots_[i].tracked : robots_[i].body.velocity;
   }
 
-  RelativeState relative_to(const LeaderState& leader) const {
-    RelativeState s;
+  void take_relative_states(const LeaderState& leader) {
+    relative_.position.clear();
+    relative_.velocity.clear();
     for (std::size_t i = 0; i < robots_.size(); ++i) {
-      s.position.push_back(robots_[i].body.position - leader.position - offsets_[i]);
-      s.velocity.push_back(robots_[i].body.velocity - leader.velocity);
+      relative_.position.push_back(robots_[i].body.position - leader.position - offsets_[i]);
+      relative_.velocity.push_back(robots_[i].body.velocity - leader.velocity);
     }
-    return s;
   }
 
   Step decide_all(double time) {
     Step row = state_row(time);
     const LeaderState leader{row.leader_position, row.leader_velocity};
-    const RelativeState relative = relative_to(leader);
+    take_relative_states(leader);
     anchors_.clear();
     for (std::size_t i = 0; i < robots_.size(); ++i) anchors_.push_back({anchor(i), anchor_velocity(i)});
     robot_constraints(scenario_, options_, anchors_, scene_, others_);
     move_obstacles(scenario_, time, scene_, row.moving);
-    for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, relative, row.robots[i]);
+    for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, row.robots[i]);
     return row;
   }
 
-  void decide_one(std::size_t i, double time, const LeaderState& leader, const RelativeState& relative,
-                  RobotStep& step) {
+  void decide_one(std::size_t i, double time, const LeaderState& leader, RobotStep& step) {
     const Robot& spec = scenario_.robots[i];
     const Viewpoint here{anchor(i), anchor_velocity(i), spec.radius, spec.max_speed};
     step.anchor = here.position;
     step.anchor_velocity = here.velocity;
     robots_[i].field.constraints(here, statics_);
     add_moving_constraints(scenario_, here, scene_, others_[i]);
-    const Vec2 wanted = wanted_velocity(i, leader, relative);
-    const SlotFollower::Situation situation{
-        time,  norm(relative.position[i]), scenario_.arrival_tolerance, spec_.catch_up_speed, leader.velocity == Vec2{},
-        wanted};
+    const Vec2 wanted = wanted_velocity(i, leader);
+    const SlotFollower::Situation situation{time,
+                                            norm(relative_.position[i]),
+                                            scenario_.arrival_tolerance,
+                                            spec_.catch_up_speed,
+                                            leader.velocity == Vec2{},
+                                            wanted};
     DecisionInput in{steered(i, situation, statics_, others_[i], step), here, &statics_, &others_[i],
                      clock_.keeps_all(time)};
     decider_.decide(in, step);
@@ -143,11 +145,11 @@ class FormationRun {
   }
 
   /// The preference, with the consensus term in it where the filter comes last.
-  Vec2 wanted_velocity(std::size_t i, const LeaderState& leader, const RelativeState& relative) const {
+  Vec2 wanted_velocity(std::size_t i, const LeaderState& leader) const {
     const Vec2 slotwards =
-        preference(spec_, remedies_, relative.position[i], leader.velocity, scenario_.robots[i].max_speed);
+        preference(spec_, remedies_, relative_.position[i], leader.velocity, scenario_.robots[i].max_speed);
     if (!remedies_.filter_last) return slotwards;
-    return slotwards + consensus_input(spec_, relative, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
+    return slotwards + consensus_input(spec_, relative_, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
   }
 
   Vec2 steered(std::size_t i, SlotFollower::Situation situation, const std::vector<Constraint>& statics,
@@ -168,9 +170,10 @@ class FormationRun {
   }
 
   /// What v follows: the filter's answer itself, or, in the paper's order, the sum in which it is one term.
-  Vec2 tracked_velocity(std::size_t i, const Step& row, const RelativeState& relative) const {
+  Vec2 tracked_velocity(std::size_t i, const Step& row) const {
     Vec2 w = row.robots[i].chosen;
-    if (!remedies_.filter_last) w += consensus_input(spec_, relative, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
+    if (!remedies_.filter_last)
+      w += consensus_input(spec_, relative_, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
     if (!remedies_.absolute_frame) w += row.leader_velocity;
     return bounded_change(i, w);
   }
@@ -185,10 +188,10 @@ class FormationRun {
     return asked <= most ? w : v + (most / asked) * (w - v);
   }
 
+  /// From where the row was decided.
   void move(const Step& row) {
-    const RelativeState relative = relative_to({row.leader_position, row.leader_velocity});
     for (std::size_t i = 0; i < robots_.size(); ++i) {
-      robots_[i].tracked = tracked_velocity(i, row, relative);
+      robots_[i].tracked = tracked_velocity(i, row);
       robots_[i].body =
           step_body(options_.integrator, robots_[i].body, robots_[i].tracked, spec_.gains.k3, scenario_.time_step);
     }
@@ -200,13 +203,13 @@ class FormationRun {
     const LeaderState leader = leader_at(spec_.leader, time);
     row.leader_position = leader.position;
     row.leader_velocity = leader.velocity;
+    row.robots.reserve(robots_.size());
     for (const FormationRobot& r : robots_) {
-      RobotStep step;
+      RobotStep& step = row.robots.emplace_back();
       step.position = r.body.position;
       step.velocity = r.body.velocity;
       step.anchor = step.position;
       step.anchor_velocity = step.velocity;
-      row.robots.push_back(step);
     }
     return row;
   }
@@ -237,6 +240,7 @@ class FormationRun {
   std::vector<Vec2> offsets_;
   std::vector<FormationRobot> robots_;
   // Memory that a step leaves to the next.
+  RelativeState relative_;  ///< of the row that is decided
   std::vector<Anchor> anchors_;
   std::vector<Constraint> statics_;
   std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles

@@ -38,18 +38,29 @@ struct Checker {
   void require(bool ok, const std::string& pointer, const std::string& found, const std::string& expected) {
     if (!ok) problems.push_back({pointer, found, expected});
   }
-  // Words are made for what is wrong only: of many robots they took most of the time.
+  // Words are made for what is wrong only: of many robots they took most of the time. So `at` is a pointer, or what
+  // makes one.
 
-  void positive(double x, const std::string& pointer, const char* unit) {
+  template <class At>
+  void positive(double x, const At& at, const char* unit) {
     if (std::isfinite(x) && x > 0.0) return;
-    require(false, pointer, show(x), std::string("a finite number above 0 (") + unit + ")");
+    require(false, words_of(at), show(x), std::string("a finite number above 0 (") + unit + ")");
   }
-  void not_negative(double x, const std::string& pointer, const char* unit) {
+  template <class At>
+  void not_negative(double x, const At& at, const char* unit) {
     if (std::isfinite(x) && x >= 0.0) return;
-    require(false, pointer, show(x), std::string("a finite number, 0 or more (") + unit + ")");
+    require(false, words_of(at), show(x), std::string("a finite number, 0 or more (") + unit + ")");
   }
-  void finite(Vec2 v, const std::string& pointer) {
-    if (!geometry::is_finite(v)) require(false, pointer, show(v), "two finite numbers (m or m/s)");
+  template <class At>
+  void finite(Vec2 v, const At& at) {
+    if (!geometry::is_finite(v)) require(false, words_of(at), show(v), "two finite numbers (m or m/s)");
+  }
+
+ private:
+  static std::string words_of(const std::string& pointer) { return pointer; }
+  template <class At>
+  static auto words_of(const At& make_pointer) -> decltype(make_pointer()) {
+    return make_pointer();
   }
 };
 
@@ -94,17 +105,18 @@ void check_robots(const Scenario& s, Checker& c) {
   const RobotBoxes boxes(s.robots);
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
     const Robot& r = s.robots[i];
-    const std::string at = "/robots/" + std::to_string(i);
-    c.positive(r.radius, at + "/radius", "m");
-    c.positive(r.max_speed, at + "/max_speed", "m/s");
-    c.finite(r.position, at + "/position");
-    c.finite(r.velocity, at + "/velocity");
-    c.require(s.formation || !r.goals.empty(), at + "/goal", "no goal", "a goal, since the scenario has no formation");
-    for (Vec2 g : r.goals) c.finite(g, at + "/goal");
+    const auto at = [i](const char* key) { return [i, key] { return "/robots/" + std::to_string(i) + key; }; };
+    c.positive(r.radius, at("/radius"), "m");
+    c.positive(r.max_speed, at("/max_speed"), "m/s");
+    c.finite(r.position, at("/position"));
+    c.finite(r.velocity, at("/velocity"));
+    if (!s.formation && r.goals.empty())
+      c.require(false, at("/goal")(), "no goal", "a goal, since the scenario has no formation");
+    for (Vec2 g : r.goals) c.finite(g, at("/goal"));
     for (const std::size_t j : boxes.before(i)) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
       if (!(gap < 0.0)) continue;  // words are made for what is wrong only: a crowd has very many pairs
-      c.require(false, at + "/position",
+      c.require(false, at("/position")(),
                 show(r.position) + ", overlapping robot '" + s.robots[j].id + "' by " + show(-gap) + " m",
                 "robots that do not overlap at the start");
     }
@@ -187,13 +199,13 @@ bool reaches_leader(const Topology& t) {
   const std::size_t n = t.pinning.size();
   std::vector<bool> heard(n);
   for (std::size_t i = 0; i < n; ++i) heard[i] = t.pinning[i] > 0.0;
-  for (std::size_t round = 0; round < n; ++round)
+  for (bool is_news = true; is_news;) {
+    is_news = false;
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        if (t.adjacency[i][j] > 0.0 && heard[j]) heard[i] = true;
-  for (std::size_t i = 0; i < n; ++i)
-    if (!heard[i]) return false;
-  return true;
+      for (std::size_t j = 0; j < n && !heard[i]; ++j)
+        if (t.adjacency[i][j] > 0.0 && heard[j]) heard[i] = is_news = true;
+  }
+  return std::all_of(heard.begin(), heard.end(), [](bool known) { return known; });
 }
 
 void check_topology(const Topology& t, std::size_t n, Checker& c) {
@@ -206,11 +218,13 @@ void check_topology(const Topology& t, std::size_t n, Checker& c) {
             "an n x n adjacency and n pinning gains, n = " + geometry::counted(n, "robot"));
   if (!shaped) return;
   for (std::size_t i = 0; i < n; ++i) {
-    c.not_negative(t.pinning[i], at + "/pinning/" + std::to_string(i), "gain");
+    c.not_negative(
+        t.pinning[i], [&] { return at + "/pinning/" + std::to_string(i); }, "gain");
     for (std::size_t j = 0; j < n; ++j) {
-      const std::string entry = at + "/adjacency/" + std::to_string(i) + "/" + std::to_string(j);
+      const auto entry = [&] { return at + "/adjacency/" + std::to_string(i) + "/" + std::to_string(j); };
       c.not_negative(t.adjacency[i][j], entry, "weight");
-      c.require(t.adjacency[i][j] == t.adjacency[j][i], entry, show(t.adjacency[i][j]),
+      if (t.adjacency[i][j] == t.adjacency[j][i]) continue;
+      c.require(false, entry(), show(t.adjacency[i][j]),
                 "a symmetric matrix: the same as its mirror entry, " + show(t.adjacency[j][i]));
     }
   }
@@ -222,7 +236,8 @@ void check_formation(const FormationSpec& f, std::size_t n, Checker& c) {
   check_topology(f.topology, n, c);
   c.require(f.offsets.size() == n, "/formation/offsets", geometry::counted(f.offsets.size(), "offset"),
             "one a robot: " + std::to_string(n));
-  for (std::size_t i = 0; i < f.offsets.size(); ++i) c.finite(f.offsets[i], "/formation/offsets/" + std::to_string(i));
+  for (std::size_t i = 0; i < f.offsets.size(); ++i)
+    c.finite(f.offsets[i], [i] { return "/formation/offsets/" + std::to_string(i); });
   c.require(!f.leader.path.empty(), "/formation/leader/path", "no points", "at least one point");
   for (Vec2 p : f.leader.path) c.finite(p, "/formation/leader/path");
   c.not_negative(f.leader.speed, "/formation/leader/speed", "m/s");
