@@ -139,6 +139,42 @@ TEST(Multipliers, OfARobotThatIsTouchedAllAroundProveItsVelocity) {
   EXPECT_GT(by_doubles, 3000) << exactly << " exactly";
 }
 
+/// An answer with a number of its own changed, or left as it is.
+Solution edited(Solution s, SeededRandom& random) {
+  const double factor = random.integer(0, 1) == 0 ? 1.0 + random.uniform(-1e-12, 1e-12) : random.uniform(-1.0, 2.0);
+  switch (random.integer(0, 4)) {
+    case 0:
+      s.velocity.x *= factor;
+      break;
+    case 1:
+      s.velocity.y *= factor;
+      break;
+    case 2:
+      if (s.active_count > 0) s.active[0].multiplier *= factor;
+      break;
+    case 3:
+      if (s.active_count > 0) --s.active_count;
+      break;
+    default:
+      break;
+  }
+  return s;
+}
+
+TEST(Multipliers, AreSaidToProveOnlyWhatTheCheckerAccepts) {
+  SeededRandom random(test::seed_of_run(87));
+  std::size_t proven = 0, refused = 0;
+  for_each_kind(88, [&](const Problem& problem) {
+    Solution s = edited(solve(problem), random);
+    const bool is_proven = is_proven_by_multipliers(problem, s);
+    (is_proven ? proven : refused) += 1;
+    if (!is_proven) return;
+    EXPECT_STREQ(name(check(problem, claim_of(problem, s))), "none") << name(s.status) << '\n' << text_of(problem);
+  });
+  EXPECT_GT(proven, refused);
+  EXPECT_GT(refused, 10U * well_formed_kinds().size());
+}
+
 TEST(Multipliers, OfAnotherVelocityProveNothing) {
   for_each_kind(85, [](const Problem& problem) {
     Solution s = solve_certified(problem).solution;

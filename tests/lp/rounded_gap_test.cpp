@@ -66,11 +66,6 @@ struct Case {
   Claim claim;
 };
 
-Scope scope_of(Status status) {
-  if (status == Status::optimal) return Scope::all_must_hold;
-  return status == Status::relaxed ? Scope::soft_may_give : Scope::hard_may_give;
-}
-
 /// Multipliers of several parts cannot be said here.
 bool is_plain(const Certificate& c) {
   bool plain = c.status != Status::no_interior;

@@ -12,7 +12,7 @@ namespace {
 std::optional<ProofInDoubles> proven_with_multipliers(const Problem& problem, Solution& solution) {
   require_well_formed(problem);
   std::optional<ProofInDoubles> proof = proof_in_doubles(problem, solution);
-  if (proof && !has_multipliers_of(proof->bound, solution)) set_multipliers(problem, proof->bound, solution);
+  if (proof && !has_multipliers_of(problem, proof->bound, solution)) set_multipliers(problem, proof->bound, solution);
   return proof;
 }
 
@@ -32,7 +32,8 @@ Proven certified(const Problem& problem, const Solution& solution) {
 }
 
 bool is_proven_by_multipliers(const Problem& problem, Solution& solution) {
-  return proven_with_multipliers(problem, solution).has_value();
+  require_well_formed(problem);
+  return own_multipliers_prove(problem, solution) || proven_with_multipliers(problem, solution).has_value();
 }
 
 Proven solve_exact(const Problem& problem) {

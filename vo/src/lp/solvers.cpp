@@ -182,7 +182,7 @@ void prove(const Problem& problem, Proven& answer) {
   answer.certificate = certify(problem, answer.solution);
   if (!answer.certificate)
     answer = solve_exactly(problem, active_bindings(answer.solution));
-  else if (!has_multipliers_of(*answer.certificate, answer.solution))
+  else if (!has_multipliers_of(problem, *answer.certificate, answer.solution))
     set_multipliers(problem, *answer.certificate, answer.solution);
 }
 

@@ -95,7 +95,7 @@ Proven rounded_inward(const Problem& problem, Status status, const ExactRegion& 
   set_multipliers(problem, answer.solution);
   answer.certificate = certificate_for(problem, answer.solution, tight, contradiction);
   const auto& certificate = answer.certificate;
-  if (certificate && is_tight(problem, *certificate) && !has_multipliers_of(*certificate, answer.solution))
+  if (certificate && is_tight(problem, *certificate) && !has_multipliers_of(problem, *certificate, answer.solution))
     take_from(*certificate, problem, tight, answer.solution);
   return answer;
 }

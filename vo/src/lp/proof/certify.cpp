@@ -51,11 +51,6 @@ Multipliers without_implied_disc(const Problem& problem, const Multipliers& all)
   return m;
 }
 
-Scope scope_of(Status status) {
-  if (status == Status::relaxed) return Scope::soft_may_give;
-  return status == Status::infeasible ? Scope::hard_may_give : Scope::all_must_hold;
-}
-
 /// The longest normal of the terms that may be violated: violations are in units of |n|.
 double length_of_giving(const Problem& problem, Scope scope, const Multipliers& m) {
   double longest = 0.0;
@@ -109,6 +104,12 @@ std::optional<double> exact_gap(const Problem& problem, Scope scope, const Claim
        gap *= 4.0)
     if (bounds(problem, scope, claim, sum, gap)) return gap;
   return std::nullopt;
+}
+
+/// Nothing is nearer, and nothing is needed to prove that.
+bool is_preferred(const Problem& problem, Scope scope, const Claim& claim, const Multipliers& m) {
+  return m.count == 0 && scope == Scope::all_must_hold && problem.objective == Objective::nearest &&
+         claim.velocity == problem.preferred;
 }
 
 /// Finds the multipliers that prove the claim with the smallest gap.
@@ -179,7 +180,7 @@ class Search {
 
   /// A gap of at most `limit` with which m proves the claim: rounding settles nearly all.
   std::optional<double> gap_within(const Multipliers& m, double limit) const {
-    if (is_preferred(m)) return 0.0;
+    if (is_preferred(problem_, scope_, claim_, m)) return 0.0;
     const auto rough = rounded_gap(problem_, m, scope_, claim_, Digits::of_double);
     if (rough && rough->low > limit) return std::nullopt;
     const auto fine = rounded_gap(problem_, m, scope_, claim_, Digits::twice);
@@ -189,12 +190,6 @@ class Search {
       return exact_gap(problem_, scope_, claim_, sum(), least_gap(unit_.of(m)), limit);
     const bool may_be_none = fine->low <= 0.0 && fine->high > 0.0;
     return may_be_none && bounds(problem_, scope_, claim_, sum(), 0.0) ? 0.0 : std::max(0.0, fine->high);
-  }
-
-  /// Nothing is nearer, and nothing is needed to prove that.
-  bool is_preferred(const Multipliers& m) const {
-    return m.count == 0 && scope_ == Scope::all_must_hold && problem_.objective == Objective::nearest &&
-           claim_.velocity == problem_.preferred;
   }
 
   const Problem& problem_;
@@ -225,22 +220,19 @@ double violation_not_less(const Problem& problem, const Solution& s) {
   return most;
 }
 
+/// What a certificate of the solution claims; nothing where it is not so.
+std::optional<Claim> claim_that_holds(const Problem& problem, const Solution& s) {
+  if (s.status == Status::no_interior || !is_finite(s.velocity)) return std::nullopt;
+  if (!holds(problem, s.status, s.velocity)) return std::nullopt;
+  const bool gives = s.status != Status::optimal;
+  const Claim claim{s.velocity, gives ? violation_not_less(problem, s) : 0.0};
+  return std::isfinite(claim.violation) ? std::optional<Claim>(claim) : std::nullopt;
+}
+
 std::vector<Binding> usable_candidates(const Problem& problem, std::vector<Binding> candidates, Scope scope) {
   const auto unusable = [&](const Binding& b) { return !can_be_used(problem, b, scope); };
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(), unusable), candidates.end());
   return candidates;
-}
-
-/// Those that count in (2), (3) or (4); none where one can't be used.
-Multipliers own_multipliers(const Problem& problem, const Solution& s, Scope scope) {
-  const bool disc_counts = scope == Scope::all_must_hold && problem.objective == Objective::nearest;
-  Multipliers m;
-  for (std::size_t k = 0; k < s.active_count; ++k) {
-    const ActiveConstraint& a = s.active[k];
-    if (!can_be_used(problem, a.binding, scope)) return {};
-    if (a.multiplier > 0.0 && (disc_counts || a.binding != kDisc)) m.add(a.binding, a.multiplier);
-  }
-  return m;
 }
 
 /// Whether they contradict by (1): rounding settles nearly all.
@@ -324,7 +316,7 @@ std::optional<Certificate> certificate_for(const Problem& problem, const Solutio
   const bool gives = scope != Scope::all_must_hold;
   const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
   if (!std::isfinite(claim.violation)) return std::nullopt;
-  const auto bound = bound_of(problem, scope, claim, own_multipliers(problem, solution, scope),
+  const auto bound = bound_of(problem, scope, claim, own_multipliers(problem, solution),
                               usable_candidates(problem, candidates, scope));
   if (!bound) return std::nullopt;
   Certificate c{solution.status, claim.velocity, claim.violation, {}, bound->terms, bound->gap, {}};
@@ -357,7 +349,7 @@ Certificate claim_of(const Problem& problem, const Solution& solution) {
   claim.velocity = solution.velocity;
   if (solution.status == Status::no_interior) return claim;
   const Scope scope = scope_of(solution.status);
-  const Multipliers own = own_multipliers(problem, solution, scope);
+  const Multipliers own = own_multipliers(problem, solution);
   claim.bound = terms_of(own);
   if (scope != Scope::all_must_hold) {
     claim.violation = violation_not_less(problem, solution);
@@ -367,21 +359,31 @@ Certificate claim_of(const Problem& problem, const Solution& solution) {
   return claim;
 }
 
-std::optional<ProofInDoubles> proof_in_doubles(const Problem& problem, const Solution& solution) {
-  if (solution.status == Status::no_interior || !is_finite(solution.velocity)) return std::nullopt;
-  if (!holds(problem, solution.status, solution.velocity)) return std::nullopt;
+bool own_multipliers_prove(const Problem& problem, const Solution& solution) {
   const Scope scope = scope_of(solution.status);
-  const bool gives = scope != Scope::all_must_hold;
-  const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
-  if (!std::isfinite(claim.violation)) return std::nullopt;
+  const std::optional<Claim> claim = claim_that_holds(problem, solution);
+  if (!claim) return false;
+  const Multipliers own = own_multipliers(problem, solution);
+  if (!usable(own)) return false;
+  if (is_preferred(problem, scope, *claim, own)) return true;
+  const auto gap = rounded_gap(problem, own, scope, *claim, Digits::of_double);
+  if (!gap || !(gap->high <= kWidestGap * UnitOfGap(problem, scope, *claim, Stage::doubles).of(own))) return false;
+  return scope == Scope::all_must_hold || proves_contradiction(problem, own, scope);
+}
+
+std::optional<ProofInDoubles> proof_in_doubles(const Problem& problem, const Solution& solution) {
+  const Scope scope = scope_of(solution.status);
+  const std::optional<Claim> claim = claim_that_holds(problem, solution);
+  if (!claim) return std::nullopt;
   std::array<Binding, 3> candidates{};
   std::size_t count = 0;
   for (std::size_t k = 0; k < solution.active_count; ++k)
     if (can_be_used(problem, solution.active[k].binding, scope)) candidates[count++] = solution.active[k].binding;
-  Search search(problem, scope, claim, Stage::doubles);
-  search.run(own_multipliers(problem, solution, scope), candidates.data(), count);
+  Search search(problem, scope, *claim, Stage::doubles);
+  search.run(own_multipliers(problem, solution), candidates.data(), count);
+  const bool gives = scope != Scope::all_must_hold;
   if (!search.found() || (gives && !proves_contradiction(problem, search.best(), scope))) return std::nullopt;
-  return ProofInDoubles{claim, search.best(), search.gap()};
+  return ProofInDoubles{*claim, search.best(), search.gap()};
 }
 
 Certificate certificate_of(const ProofInDoubles& proof, Status status) {

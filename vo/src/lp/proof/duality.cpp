@@ -43,6 +43,11 @@ bool bounds_farthest(const Problem& problem, const Combination& sum, Vec2 veloci
 
 }  // namespace
 
+Scope scope_of(Status status) {
+  if (status == Status::relaxed) return Scope::soft_may_give;
+  return status == Status::infeasible ? Scope::hard_may_give : Scope::all_must_hold;
+}
+
 bool can_be_used(const Problem& problem, Binding binding, Scope scope) {
   if (binding == kDisc) return std::isfinite(problem.bound.disc);
   if (is_speed_bound(binding)) return std::isfinite(half_plane_at(problem, binding).offset);

@@ -27,6 +27,7 @@ enum class Scope {
   soft_may_give,  ///< relaxed
   hard_may_give   ///< infeasible: soft ones are not to be used at all
 };
+Scope scope_of(Status status);
 
 /// Whether it names a constraint, a finite side of the box or a finite disc, and not a soft one where soft ones are
 /// out.

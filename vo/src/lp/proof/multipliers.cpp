@@ -140,6 +140,18 @@ void complete_disc(const Problem& problem, Solution& s) {
     Stationarity(normals_of(problem, s), problem.objective, problem.preferred, s).set_of_disc();
 }
 
+/// But for those that are 0.
+bool are_among(const Multipliers& some, const Multipliers& all) {
+  const auto is_there = [&](Binding binding, double value) {
+    for (std::size_t k = 0; k < all.count; ++k)
+      if (all.binding[k] == binding && all.value[k] == value) return true;
+    return value == 0.0;
+  };
+  for (std::size_t k = 0; k < some.count; ++k)
+    if (!is_there(some.binding[k], some.value[k])) return false;
+  return true;
+}
+
 }  // namespace
 
 Multipliers multipliers_of_optimum(const Problem& problem, Vec2 v, const Chosen& chosen) {
@@ -199,23 +211,30 @@ void set_multipliers(const Problem& problem, Solution& s) {
   set_multipliers(normals_of(problem, s), problem.objective, problem.preferred, s);
 }
 
-bool has_multipliers_of(const Certificate& certificate, const Solution& s) {
-  const auto is_active = [&](const Term& term) {
-    return std::any_of(s.active.begin(), s.active.begin() + s.active_count, [&](const ActiveConstraint& a) {
-      return a.binding == term.binding && term.multiplier.size() == 1 && a.multiplier == term.multiplier.front();
-    });
-  };
-  return std::all_of(certificate.bound.begin(), certificate.bound.end(), is_active);
+Multipliers own_multipliers(const Problem& problem, const Solution& s) {
+  const Scope scope = scope_of(s.status);
+  const bool disc_counts = scope == Scope::all_must_hold && problem.objective == Objective::nearest;
+  Multipliers m;
+  for (std::size_t k = 0; k < s.active_count; ++k) {
+    const ActiveConstraint& a = s.active[k];
+    if (!can_be_used(problem, a.binding, scope)) return {};
+    if (a.multiplier > 0.0 && (disc_counts || a.binding != kDisc)) m.add(a.binding, a.multiplier);
+  }
+  return m;
 }
 
-bool has_multipliers_of(const Multipliers& proof, const Solution& s) {
-  for (std::size_t k = 0; k < proof.count; ++k) {
-    const auto is_it = [&](const ActiveConstraint& a) {
-      return a.binding == proof.binding[k] && a.multiplier == proof.value[k];
-    };
-    if (proof.value[k] > 0.0 && std::none_of(s.active.begin(), s.active.begin() + s.active_count, is_it)) return false;
+bool has_multipliers_of(const Problem& problem, const Multipliers& proof, const Solution& s) {
+  const Multipliers own = own_multipliers(problem, s);
+  return are_among(own, proof) && are_among(proof, own);
+}
+
+bool has_multipliers_of(const Problem& problem, const Certificate& certificate, const Solution& s) {
+  Multipliers proof;
+  for (const Term& term : certificate.bound) {
+    if (term.multiplier.size() != 1 || proof.count == proof.binding.size()) return false;
+    proof.add(term.binding, term.multiplier.front());
   }
-  return true;
+  return has_multipliers_of(problem, proof, s);
 }
 
 void set_multipliers(const Problem& problem, const Multipliers& proof, Solution& s) {

@@ -41,9 +41,13 @@ using Normals = std::array<Vec2, 3>;
 void set_multipliers(const Normals& normals, Objective objective, Vec2 preferred, Solution& solution);
 void set_multipliers(const Problem& problem, Solution& solution);
 
-/// Whether the terms of the certificate, or these, are the multipliers that the solution has.
-bool has_multipliers_of(const Certificate& certificate, const Solution& solution);
-bool has_multipliers_of(const Multipliers& proof, const Solution& solution);
+/// The multipliers of a solution that count in (2), (3) or (4) of certificate.h, none of them 0; none at all where one
+/// cannot be used.
+Multipliers own_multipliers(const Problem& problem, const Solution& solution);
+
+/// Whether the terms of the certificate, or these, are the solution's own multipliers, all of them.
+bool has_multipliers_of(const Problem& problem, const Certificate& certificate, const Solution& solution);
+bool has_multipliers_of(const Problem& problem, const Multipliers& proof, const Solution& solution);
 
 /// Sets the multipliers of the certificate, or these, and that of a disc which they leave out.
 void set_multipliers(const Problem& problem, const Certificate& certificate, Solution& solution);

@@ -100,9 +100,9 @@ Proven solve_certified(const Problem& problem);
 /// The same of an answer that is there already: of `solve`, say.
 Proven certified(const Problem& problem, const Solution& solution);
 
-/// Whether `certified` needs no exact stage: then `solution` gets the multipliers that it has there, which are its
-/// proof (`claim_of`), and no certificate is written out. Allocates only where signs are computed exactly. REQUIRES: a
-/// well-formed problem.
+/// Whether `certified` needs no exact stage: then the multipliers of `solution` are its proof (`claim_of`), and no
+/// certificate is written out. They stay what they are where that shows by rounding, and else are those that `certified`
+/// finds. Allocates only where signs are computed exactly. REQUIRES: a well-formed problem.
 bool is_proven_by_multipliers(const Problem& problem, Solution& solution);
 
 /// The exact answer: every branch decided in exact arithmetic, the optimum an algebraic point, rounded inward.
