@@ -4,7 +4,7 @@
 // Before anything is timed each scene is run twice, and the digests compared.
 //
 //   bench_simulate --benchmark_filter=ivo/willow
-//   bench_simulate --table --against OTHER/bench_simulate       # two builds side by side, as ratios (table.h)
+//   bench_simulate --table --against OTHER/bench_simulate --rounds 11   # two builds side by side, as ratios (table.h)
 //   bench_simulate --duration=0.5 --benchmark_filter=ivo/barn   # s: shorter runs; what comes before a first step
 #include <benchmark/benchmark.h>
 
@@ -94,7 +94,7 @@ void add(Scenario scenario, Method method, bool along_routes, double duration) {
     Case c{scenario, {}, measured};
     c.options.method = method;
     c.options.guidance = along_routes ? formation::Guidance::route : formation::Guidance::none;
-    c.options.liveness = along_routes ? formation::Liveness::bias : formation::Liveness::off;
+    c.options.liveness = along_routes ? formation::Liveness::plan : formation::Liveness::off;
     const std::string title =
         std::string(name(method)) + (along_routes ? "+route/" : "/") + scenario.name + (measured ? "/measured" : "");
     benchmark::RegisterBenchmark(title.c_str(), run_case, c)->Unit(benchmark::kMillisecond);
@@ -117,7 +117,8 @@ int print_table_as_asked(int argc, char** argv) {
   options.text("--scenes", asked.scenes, "Regular expression of the scenes' names");
   std::string duration;
   options.text("--duration", duration, "No run is longer than this, s; OTHER must know the option too");
-  options.word("--method", asked.method, {"ivo", "orca"}, "Method");
+  options.word("--method", asked.method, {"ivo", "orca", "ivo+route", "orca+route"}, "Method; +route: as by default");
+  options.whole_number("--rounds", asked.rounds, 1, "Rounds in which the builds take turns");
   if (!options.parse(argc, argv)) return EXIT_SUCCESS;
   if (!duration.empty()) asked.duration = seconds_of(duration);
   print_table(asked);

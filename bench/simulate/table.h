@@ -15,11 +15,12 @@ struct TableOptions {
   std::string scenes;   ///< a regular expression of scene names; empty: all
   std::string method = "ivo";
   double duration = 0.0;  ///< s, that no run is longer than; 0: as the scenes are
+  int rounds = 1;         ///< in which the builds take turns
 };
 
-/// Runs the programs scene by scene, one after the other, and prints the table as Markdown, the CPU above it. Where the
-/// labels (digests of the runs) differ, it says so: then the two do not drive the same runs. Throws std::runtime_error
-/// where a program cannot be run.
+/// Runs the programs scene by scene, one after the other, and prints the table as Markdown, the CPU above it: medians
+/// of the rounds, and the quartiles of the ratio. Where the labels (digests of the runs) differ, it says so: then the
+/// two do not drive the same runs. Throws std::runtime_error where a program cannot be run.
 void print_table(const TableOptions& options);
 
 }  // namespace exactvo::bench
