@@ -10,10 +10,8 @@
 
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
-#include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/enclosure.h"
-#include "exactvo/vo/constraint.h"
-#include "exactvo/vo/orca_obstacle.h"
+#include "scene/scene.h"
 
 namespace exactvo::formation::detail {
 
@@ -35,58 +33,6 @@ struct Viewpoint {
   double radius = 0.0;   ///< m
   double max_speed = 0;  ///< m/s
   double horizon = 0.0;  ///< s: instead of what the scenario says; 0: none
-};
-
-/// The bodies of a run: convex pieces or edges of the obstacles, robots, moving obstacles, and the enclosures that
-/// fields add for their robots. Shared by all robots of a run, and for one thread.
-class Scene {
- public:
-  Scene(const Scenario& scenario, const SimulationOptions& options);
-
-  const vo::BodyTable& bodies() const { return bodies_; }
-  vo::BodyTable& bodies() { return bodies_; }
-  /// All bodies, for a recording.
-  std::vector<vo::Body> copied_bodies() const;
-
-  /// The obstacles' facades and pieces; none for Method::orca, which needs neither.
-  const std::vector<geometry::ObstacleParts>& parts() const { return parts_; }
-  /// Pieces of the whole scene are counted through: those of an obstacle begin here, and end where the next begin.
-  std::size_t first_piece(std::size_t obstacle) const { return first_piece_[obstacle]; }
-  vo::BodyTable::Number piece(std::size_t number) const { return pieces_[number]; }
-  const geometry::BoxGrid& pieces_by_place() const { return pieces_by_place_; }
-
-  /// Method::ivo_edge: the ellipses round the facades, the same for every robot.
-  vo::BodyTable::Number facade_ellipse(std::size_t number) const { return facade_ellipses_[number]; }
-  const geometry::BoxGrid& facade_ellipses_by_place() const { return facade_ellipses_by_place_; }
-
-  /// Method::orca: chains of edges, which are counted over the scene by their vertices.
-  const std::vector<vo::OrcaChain>& chains() const { return chains_; }
-  std::size_t first_edge(std::size_t chain) const { return first_edge_[chain]; }
-  std::size_t chain_of(std::size_t edge) const { return chain_of_[edge]; }
-  vo::BodyTable::Number edge(std::size_t number) const { return edges_[number]; }
-  const geometry::BoxGrid& edges_by_place() const { return edges_by_place_; }
-
-  vo::BodyTable::Number robot(std::size_t i) const { return first_robot_ + i; }
-  vo::BodyTable::Number moving_obstacle(std::size_t k) const { return first_moving_ + k; }
-
- private:
-  void add_pieces(const Scenario& scenario);
-  void add_facade_ellipses(const Scenario& scenario, const SimulationOptions& options);
-  void add_chains(const Scenario& scenario);
-  geometry::BoxGrid by_place(const std::vector<vo::BodyTable::Number>& some) const;
-
-  vo::BodyTable bodies_;
-  std::vector<geometry::ObstacleParts> parts_;
-  std::vector<std::size_t> first_piece_;
-  std::vector<vo::BodyTable::Number> pieces_;
-  geometry::BoxGrid pieces_by_place_;
-  std::vector<vo::BodyTable::Number> facade_ellipses_;
-  geometry::BoxGrid facade_ellipses_by_place_;
-  std::vector<vo::OrcaChain> chains_;
-  std::vector<std::size_t> first_edge_, chain_of_;
-  std::vector<vo::BodyTable::Number> edges_;
-  geometry::BoxGrid edges_by_place_;
-  std::size_t first_robot_ = 0, first_moving_ = 0;
 };
 
 /// Which static shapes a decision needs: those within reach, and those whose half-plane may leave the robot's velocity
@@ -217,5 +163,28 @@ class StaticField {
   std::vector<Shape> enclosures_;           ///< fitted for this robot; method ivo_edge has the scene's
   std::vector<std::uint32_t> tight_index_;  ///< of each piece of the scene, its number here; kEnclosed: an enclosure's
 };
+
+template <class Visit>
+void StaticField::for_each_shape_within(Vec2 x, double reach, const Visit& visit) const {
+  if (method_ == Method::ivo_edge) {
+    scene_->facade_ellipses_by_place().for_each_within(x, reach, [&](std::size_t k) {
+      visit(Shape{scene_->facade_ellipse(k), k, geometry::EnclosureGrade::containing});
+    });
+    return;
+  }
+  for (const Shape& e : enclosures_)
+    if (geometry::distance_below(scene_->bodies().box(e.body), x) <= reach) visit(e);
+  scene_->pieces_by_place().for_each_within(x, reach, [&](std::size_t k) {
+    if (tight_index_[k] != kEnclosed) visit(Shape{scene_->piece(k), tight_index_[k], geometry::EnclosureGrade::tight});
+  });
+}
+
+template <class Visit>
+void StaticField::for_each_piece_of(const Shape& shape, const Visit& visit) const {
+  std::size_t number = 0;
+  for (const std::size_t obstacle : scene_->bodies()[shape.body].owners)
+    for (std::size_t k = scene_->first_piece(obstacle); k < scene_->first_piece(obstacle + 1); ++k)
+      visit(scene_->piece(k), Name{shape.index, ++number, geometry::EnclosureGrade::tight});
+}
 
 }  // namespace exactvo::formation::detail

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/scene.h"
+
+#include <utility>
+
+#include "scene/moving.h"
+
+namespace exactvo::formation::detail {
+
+using vo::BodyKind;
+using vo::BodyTable;
+
+Scene::Scene(const Scenario& scenario, const SimulationOptions& options) {
+  if (options.method == Method::orca)
+    add_chains(scenario);
+  else
+    add_pieces(scenario);
+  if (options.method == Method::ivo_edge) add_facade_ellipses(scenario, options);
+  first_robot_ = bodies_.size();
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const Robot& r = scenario.robots[i];
+    bodies_.add({BodyKind::robot, geometry::Disc{r.position, r.radius}, r.velocity, {i}});
+  }
+  first_moving_ = bodies_.size();
+  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k)
+    bodies_.add({BodyKind::moving_obstacle, shape_at(scenario.moving_obstacles[k], 0.0), {}, {k}});
+}
+
+std::vector<vo::Body> Scene::copied_bodies() const {
+  std::vector<vo::Body> all;
+  all.reserve(bodies_.size());
+  for (BodyTable::Number k = 0; k < bodies_.size(); ++k) all.push_back(bodies_[k]);
+  return all;
+}
+
+geometry::BoxGrid Scene::by_place(const std::vector<BodyTable::Number>& some) const {
+  std::vector<geometry::Box> boxes;
+  boxes.reserve(some.size());
+  for (const BodyTable::Number body : some) boxes.push_back(bodies_.box(body));
+  return geometry::BoxGrid(std::move(boxes));
+}
+
+void Scene::add_pieces(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
+    first_piece_.push_back(pieces_.size());
+    parts_.push_back(geometry::parts_of(scenario.obstacles[i].shape));
+    for (const geometry::ConvexShape& piece : parts_.back().pieces)
+      pieces_.push_back(bodies_.add({BodyKind::enclosure, piece, {}, {i}}));
+  }
+  first_piece_.push_back(pieces_.size());
+  pieces_by_place_ = by_place(pieces_);
+}
+
+void Scene::add_facade_ellipses(const Scenario& scenario, const SimulationOptions& options) {
+  const geometry::FacadeEllipseOptions ellipse{options.facade_minor_to_major, options.facade_fixed_minor,
+                                               scenario.margins.obstacle};
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    for (const geometry::Segment& facade : parts_[i].facades)
+      facade_ellipses_.push_back(
+          bodies_.add({BodyKind::enclosure, geometry::facade_ellipse(facade, ellipse), {}, {i}}));
+  facade_ellipses_by_place_ = by_place(facade_ellipses_);
+}
+
+void Scene::add_chains(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
+    for (vo::OrcaChain& chain : vo::orca_chains(scenario.obstacles[i].shape)) {
+      // A closed chain has an edge a vertex, an open one is walked there and back: an edge begins at every vertex.
+      first_edge_.push_back(edges_.size());
+      const std::size_t n = chain.vertices.size();
+      for (std::size_t k = 0; k < n; ++k) {
+        const geometry::Segment edge{chain.vertices[k], chain.vertices[(k + 1) % n]};
+        edges_.push_back(bodies_.add({BodyKind::obstacle_edge, edge, {}, {i}}));
+        chain_of_.push_back(chains_.size());
+      }
+      chains_.push_back(std::move(chain));
+    }
+  }
+  edges_by_place_ = by_place(edges_);
+}
+
+}  // namespace exactvo::formation::detail
