@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "figures/label_places.h"
+#include "figures/panel_layers.h"
+#include "figures/paths_figure.h"
+#include "figures/style.h"
+
+namespace exactvo::tools {
+
+using formation::Robot;
+using formation::Step;
+
+namespace {
+
+/// With more robots than this, only the middle time and the last are written, and smaller.
+constexpr int kFewRobots = 3;
+/// With more robots than this, not even the last time is written over something else.
+constexpr int kSomeRobots = 12;
+
+class RobotLayers {
+ public:
+  explicit RobotLayers(PanelLayers& to) : to_(to), times_(to.view, scale_of(to.view)) {}
+
+  void add() {
+    if (to_.detailed) note_lines();
+    add_leader();
+    for (std::size_t i = 0; i < to_.run.scenario.robots.size(); ++i) add_way(i);
+    if (to_.detailed) add_times_of_moving_obstacles();
+    add_goals();
+    add_collisions();
+  }
+
+ private:
+  int robot_count() const { return static_cast<int>(to_.run.scenario.robots.size()); }
+
+  void add_leader() {
+    if (!to_.run.scenario.formation) return;
+    const int index = to_.data.begin("virtual leader", "x [m], y [m]");
+    for (const Step& step : to_.run.recording.steps) to_.data.row({step.leader_position.x, step.leader_position.y});
+    to_.plot.data(index, to_.origin.using_columns() + " with lines lw 1.5 dt (2,4) lc rgb 'black'",
+                  to_.key("virtual leader"));
+  }
+
+  /// Where there is room, after the robots' times; the first and the last have theirs in any case.
+  void add_times_of_moving_obstacles() {
+    if (to_.run.scenario.moving_obstacles.empty()) return;
+    const std::vector<const Step*> marks = time_marks(to_.run);
+    const int index = to_.data.begin("times of the moving obstacles", "x [m], y [m], t");
+    for (const auto& obstacle : to_.run.scenario.moving_obstacles) {
+      for (std::size_t k = 0; k < marks.size(); ++k) {
+        const bool is_end = k == 0 || k + 1 == marks.size();
+        const Vec2 p = middle_at(obstacle, marks[k]->time);
+        if (!to_.is_drawable(p)) continue;
+        double half_width = 0.0;
+        for (const Vec2 q : vertices_at(obstacle, marks[k]->time))
+          half_width = std::max(half_width, std::fabs(q.x - p.x));
+        if (const std::optional<Vec2> place = times_.place_at_side(p, half_width, is_end))
+          to_.data.labelled_row({place->x, place->y}, fmt::format("{:.3g} s", marks[k]->time));
+      }
+    }
+    to_.plot.data(index, to_.origin.using_columns(1, 2, ":3") +
+                             fmt::format(" with labels center font ',8' textcolor rgb '{}'", kObstacleLine));
+  }
+
+  void add_way(std::size_t i) {
+    const Robot& robot = to_.run.scenario.robots[i];
+    const int way = to_.data.begin("path of " + robot.id, "x [m], y [m], t [s]");
+    for (const Step& step : to_.run.recording.steps) {
+      const Vec2 p = step.robots[i].position;
+      if (!to_.is_drawable(p)) break;
+      to_.data.row({p.x, p.y, step.time});
+    }
+    to_.plot.data(way,
+                  fmt::format("{} with lines lw {}{} lc rgb '{}'", to_.origin.using_columns(), to_.detailed ? 2.5 : 1.5,
+                              series_dash(i), series_colour(i)),
+                  to_.key(shortened(robot.id, kLegendName)));
+    add_places(i);
+  }
+
+  /// The robot to scale: at every time mark that it has moved to (without details at its start only) and at its end.
+  void add_places(std::size_t i) {
+    const Robot& robot = to_.run.scenario.robots[i];
+    const int index =
+        to_.data.begin("places of " + robot.id, "x [m], y [m], radius [m], where t is written [m], [m], t");
+    const std::vector<const Step*> places = places_of(i);
+    // The last one first: its label is always there, and the others give way.
+    for (std::size_t k = places.size(); k-- > 0;) {
+      const Vec2 p = places[k]->robots[i].position;
+      const Label time = label(p, robot.radius, places[k]->time, k, places.size());
+      to_.data.labelled_row({p.x, p.y, robot.radius, time.place.x, time.place.y}, time.text);
+    }
+    to_.plot.data(index, to_.origin.using_columns(1, 2, ":3") +
+                             fmt::format(" with circles fc rgb '{0}' fs transparent solid 0.25 border lc rgb '{0}'",
+                                         series_colour(i)));
+    if (!to_.detailed) return;
+    to_.plot.data(index, to_.origin.using_columns(4, 5, ":6") +
+                             fmt::format(" with labels center font ',{}' textcolor rgb '{}'",
+                                         robot_count() <= kFewRobots ? 10 : 8, series_colour(i)));
+  }
+
+  /// The row at which the robot came to rest, or the last one that can be drawn.
+  const Step* last_place(std::size_t i) const {
+    const double end = end_of_motion(to_.run, i);
+    const Step* last = nullptr;
+    for (const Step& step : to_.run.recording.steps) {
+      if (!to_.is_drawable(step.robots[i].position)) break;
+      last = &step;
+      if (step.time > end || end == 0.0) break;
+    }
+    return last;
+  }
+
+  std::vector<const Step*> places_of(std::size_t i) const {
+    std::vector<const Step*> places;
+    std::vector<const Step*> marks = time_marks(to_.run);
+    const Step* last = last_place(i);
+    if (last == nullptr) return {};
+    if (!to_.detailed && marks.size() > 1) marks.resize(1);
+    const double apart = to_.run.scenario.robots[i].radius;
+    const auto moved = [&](const Step* from, const Step* to) {
+      return norm(to->robots[i].position - from->robots[i].position) > apart;
+    };
+    for (const Step* step : marks) {
+      if (step->time < last->time && moved(step, last) && (places.empty() || moved(places.back(), step)))
+        places.push_back(step);
+    }
+    places.push_back(last);
+    return places;
+  }
+
+  /// What no time may be written on.
+  void note_lines() {
+    for (const auto& obstacle : to_.run.scenario.obstacles)
+      for (const geometry::Segment& edge : edges_of(obstacle.shape)) times_.keep_off({edge.a, edge.b}, false);
+    std::vector<Points> rings;
+    for (const formation::Outlook& outlook : to_.run.recording.outlooks)
+      if (outlook.goal == 0) add_ellipses(to_.run, outlook, rings);
+    for (const Points& ring : rings) times_.keep_off(ring, true);
+    for (std::size_t i = 0; i < to_.run.scenario.robots.size(); ++i) {
+      Points way;
+      for (const Step& step : to_.run.recording.steps)
+        if (to_.is_drawable(step.robots[i].position)) way.push_back(step.robots[i].position);
+      times_.keep_off(way, false);
+      for (const Vec2 goal : to_.run.scenario.robots[i].goals) times_.keep_off({goal}, false);
+    }
+    if (to_.run.scenario.formation) {
+      Points way;
+      for (const Step& step : to_.run.recording.steps)
+        if (to_.is_drawable(step.leader_position)) way.push_back(step.leader_position);
+      times_.keep_off(way, false);
+    }
+    for (const auto& obstacle : to_.run.scenario.moving_obstacles)
+      for (const Step* mark : time_marks(to_.run)) times_.keep_off(vertices_at(obstacle, mark->time), true);
+  }
+
+  struct Label {
+    Vec2 place;
+    std::string text;
+  };
+  /// The time; nothing where it would lie on something, unless it is the robot's last.
+  Label label(Vec2 p, double radius, double time, std::size_t k, std::size_t count) {
+    const bool last = k + 1 == count;
+    const bool middle = k == count / 2;
+    if (!to_.detailed || (robot_count() > kFewRobots && !last && !middle)) return {p, ""};
+    const std::optional<Vec2> place = times_.place_beside(p, radius, last && robot_count() <= kSomeRobots);
+    if (!place) return {p, ""};
+    return {*place, fmt::format("{:.3g} s", time)};
+  }
+
+  void add_collisions() {
+    Points marks;
+    for (const formation::Collision& c : to_.run.collisions)
+      if (to_.is_drawable(c.place)) marks.push_back(c.place);
+    to_.has_collisions = !marks.empty();
+    if (marks.empty()) return;
+    const int index = to_.data.begin("collisions: where they were deepest", "x [m], y [m]");
+    for (const Vec2 p : marks) to_.data.row({p.x, p.y});
+    to_.plot.data(index,
+                  fmt::format("{} with points pt 1 ps {} lw {} lc rgb '{}'", to_.origin.using_columns(),
+                              to_.detailed ? 2.5 : 1.2, to_.detailed ? 4 : 2, kCollisionColour),
+                  to_.key("collision"));
+  }
+
+  void add_goals() {
+    bool any = false;
+    for (std::size_t i = 0; i < to_.run.scenario.robots.size(); ++i) {
+      const Robot& robot = to_.run.scenario.robots[i];
+      if (robot.goals.empty()) continue;
+      const int index = to_.data.begin("goals of " + robot.id, "x [m], y [m]");
+      for (const Vec2 goal : robot.goals) to_.data.row({goal.x, goal.y});
+      to_.plot.data(index, fmt::format("{} with points pt 2 ps {} lw {} lc rgb '{}'", to_.origin.using_columns(),
+                                       to_.detailed ? 1.3 : 0.8, to_.detailed ? 2.5 : 1.5, series_colour(i)));
+      any = true;
+    }
+    if (any && to_.detailed) to_.plot.item("keyentry with points pt 2 ps 1.3 lw 2.5 lc rgb '#222222'", "goal");
+  }
+
+  PanelLayers& to_;
+  LabelPlaces times_;
+};
+
+}  // namespace
+
+void add_robots(PanelLayers& to) {
+  RobotLayers(to).add();
+}
+
+}  // namespace exactvo::tools

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "figures/panel_layers.h"
+#include "figures/passing_area.h"
+#include "figures/style.h"
+#include "support/routes_of_run.h"
+
+namespace exactvo::tools {
+
+using datasets::RecordingFile;
+using formation::Step;
+
+namespace {
+
+std::vector<const geometry::Polygon*> polygons_of(const RecordingFile& run) {
+  std::vector<const geometry::Polygon*> all;
+  for (const auto& obstacle : run.scenario.obstacles)
+    if (const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape)) all.push_back(polygon);
+  return all;
+}
+
+/// gnuplot cuts lines at the axes but lets fillings run over the labels: those are cut here. Holes stay free, for
+/// what stands in them.
+void add_polygons(PanelLayers& to) {
+  bool in_view = false;
+  const int inside = to.data.begin("obstacles with an inside, as far as in view", "x [m], y [m]");
+  for (const geometry::Polygon* polygon : polygons_of(to.run)) {
+    const Points seen = clipped_to(tied_together(*polygon), to.view);
+    in_view |= !seen.empty();
+    to.add_ring(seen);
+  }
+  const int border = to.data.begin("obstacles with an inside: outlines", "x [m], y [m]");
+  for (const geometry::Polygon* polygon : polygons_of(to.run)) {
+    to.add_ring(polygon->outer);
+    for (const geometry::Ring& hole : polygon->holes) to.add_ring(hole);
+  }
+  if (!in_view) return;
+  to.plot.data(inside,
+               fmt::format("{} with filledcurves closed fc rgb '{}' fs solid noborder", to.origin.using_columns(),
+                           kObstacleFill),
+               to.key("obstacle"));
+  to.plot.data(border, fmt::format("{} with lines lw 1 lc rgb '{}'", to.origin.using_columns(), kObstacleLine));
+}
+
+void add_walls(PanelLayers& to) {
+  const int index = to.data.begin("walls", "x [m], y [m]");
+  for (const auto& obstacle : to.run.scenario.obstacles) {
+    const auto* wall = std::get_if<geometry::Polyline>(&obstacle.shape);
+    if (wall == nullptr) continue;
+    for (const Vec2 p : wall->points) to.data.row({p.x, p.y});
+    to.data.gap();
+  }
+  to.plot.data(
+      index,
+      fmt::format("{} with lines lw {} lc rgb '{}'", to.origin.using_columns(), to.detailed ? 4 : 2.5, kObstacleLine),
+      to.key("wall"));
+}
+
+void add_obstacles(PanelLayers& to) {
+  bool polygons = false;
+  bool walls = false;
+  for (const auto& obstacle : to.run.scenario.obstacles) {
+    const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape);
+    polygons |= polygon != nullptr;
+    walls |= polygon == nullptr;
+  }
+  if (polygons) add_polygons(to);
+  if (walls) add_walls(to);
+}
+
+/// Where they are at every time mark, and the way of their middle.
+void add_moving_obstacles(PanelLayers& to) {
+  if (to.run.scenario.moving_obstacles.empty()) return;
+  const std::vector<const Step*> marks = time_marks(to.run);
+  const int index = to.data.begin("moving obstacles at the time marks", "x [m], y [m]");
+  for (const auto& obstacle : to.run.scenario.moving_obstacles)
+    for (const Step* mark : marks) to.add_ring(vertices_at(obstacle, mark->time));
+  const int ways = to.data.begin("paths of the moving obstacles", "x [m], y [m]");
+  for (const auto& obstacle : to.run.scenario.moving_obstacles) {
+    for (const Step* mark : marks) {
+      const Vec2 p = middle_at(obstacle, mark->time);
+      to.data.row({p.x, p.y});
+    }
+    to.data.gap();
+  }
+  to.plot.data(index,
+               fmt::format("{} with lines lw 1.5 dt (8,3) lc rgb '{}'", to.origin.using_columns(), kObstacleLine),
+               to.key("moving obstacle"));
+  to.plot.data(ways, fmt::format("{} with linespoints lw 1 pt 7 ps 0.5 dt (2,3) lc rgb '{}'", to.origin.using_columns(),
+                                 kObstacleLine));
+}
+
+bool add_enclosures_of(PanelLayers& to, std::size_t i) {
+  std::vector<Points> rings;
+  for (const formation::Outlook& outlook : to.run.recording.outlooks)
+    if (outlook.robot == i) add_ellipses(to.run, outlook, rings);
+  if (rings.empty()) return false;
+  const int index = to.data.begin("enclosures seen by " + to.run.scenario.robots[i].id, "x [m], y [m]");
+  for (const Points& ring : rings) to.add_ring(ring);
+  to.plot.data(index,
+               fmt::format("{} with lines lw 1.2 dt (6,5) lc rgb '{}'", to.origin.using_columns(), series_colour(i)));
+  return true;
+}
+
+void add_enclosures(PanelLayers& to) {
+  bool any = false;
+  for (std::size_t i = 0; i < to.run.scenario.robots.size(); ++i) any |= add_enclosures_of(to, i);
+  if (any) to.plot.item("keyentry with lines lw 1.2 dt (6,5) lc rgb '#222222'", "enclosures");
+}
+
+bool add_routes_of(PanelLayers& to, std::size_t i, const std::vector<formation::PlannedRoute>& routes) {
+  bool any = false;
+  for (const formation::PlannedRoute& route : routes) any |= route.robot == i && !route.points.empty();
+  if (!any) return false;
+  const int index = to.data.begin("routes of " + to.run.scenario.robots[i].id, "x [m], y [m]");
+  for (const formation::PlannedRoute& route : routes) {
+    if (route.robot != i) continue;
+    for (const Vec2 p : route.points) to.data.row({p.x, p.y});
+    to.data.gap();
+  }
+  const std::string pale = std::string("#c0") + (series_colour(i) + 1);
+  to.plot.data(index, fmt::format("{} with lines lw 7 lc rgb '{}'", to.origin.using_columns(), pale));
+  return true;
+}
+
+/// Solid along obstacles, dashed across gaps.
+void add_chains(PanelLayers& to, const std::vector<formation::PlannedRoute>& routes) {
+  for (const bool across : {false, true}) {
+    bool any = false;
+    for (const formation::PlannedRoute& route : routes)
+      for (const geometry::ChainPoint& p : route.chain) any |= p.gap_follows == across;
+    if (!any) continue;
+    const int index = to.data.begin(across ? "gaps that are too narrow" : "closed chains", "x [m], y [m]");
+    for (const formation::PlannedRoute& route : routes)
+      for (std::size_t k = 0; k < route.chain.size(); ++k) {
+        if (route.chain[k].gap_follows != across) continue;
+        for (const std::size_t end : {k, (k + 1) % route.chain.size()})
+          to.data.row({route.chain[end].point.rounded.x, route.chain[end].point.rounded.y});
+        to.data.gap();
+      }
+    to.plot.data(index,
+                 fmt::format("{} with lines lw {}{} lc rgb '{}'", to.origin.using_columns(), across ? 2.5 : 3.5,
+                             across ? " dt (4,3)" : "", kSeparatorColour),
+                 across ? "gap, too narrow" : "closed chain");
+  }
+}
+
+/// Wide and pale, under the paths; and what separates goals out of reach.
+void add_routes(PanelLayers& to) {
+  const std::vector<formation::PlannedRoute> routes =
+      routes_of(to.run).value_or(std::vector<formation::PlannedRoute>{});
+  bool any = false;
+  for (std::size_t i = 0; i < to.run.scenario.robots.size(); ++i) any |= add_routes_of(to, i, routes);
+  if (any) to.plot.item("keyentry with lines lw 7 lc rgb '#c0222222'", "route");
+  add_chains(to, routes);
+}
+
+void add_passing_area(PanelLayers& to) {
+  const std::vector<Points> area = passing_area(to.run);
+  if (area.empty()) return;
+  const int index = to.data.begin("no room to pass: where robots can be that would have to", "x [m], y [m]");
+  for (const Points& rectangle : area) to.add_ring(rectangle);
+  to.plot.data(index,
+               fmt::format("{} with filledcurves closed fc rgb '{}' fs transparent solid 0.15 noborder",
+                           to.origin.using_columns(), kSeparatorColour),
+               "no room to pass");
+}
+
+}  // namespace
+
+void add_scene(PanelLayers& to) {
+  add_obstacles(to);
+  add_moving_obstacles(to);
+  if (!to.detailed) return;
+  add_enclosures(to);
+  add_routes(to);
+  add_passing_area(to);
+}
+
+}  // namespace exactvo::tools
