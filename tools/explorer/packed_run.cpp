@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
-#include <variant>
 
-#include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/waiting.h"
 #include "explorer/deflate.h"
-#include "support/routes_of_run.h"
+#include "explorer/packed_columns.h"
+#include "explorer/packed_head.h"
 
 namespace exactvo::tools {
 
@@ -22,62 +20,6 @@ using formation::RobotStep;
 using formation::Step;
 using geometry::Vec2;
 using Json = nlohmann::ordered_json;
-
-/// Columns one after the other, each beginning at a multiple of 8 bytes.
-class RunPacker::Columns {
- public:
-  /// Each entry XORed with the one `stride` before it, which leaves few bits of what changes slowly; then the bytes of
-  /// all entries by their place in the entry. `stride` 0: no XOR.
-  void add(const char* name, const std::vector<double>& values, std::size_t stride) {
-    std::vector<std::uint64_t> bits(values.size());
-    if (!values.empty()) std::memcpy(bits.data(), values.data(), 8 * values.size());
-    const std::vector<std::uint64_t> plain = bits;
-    if (stride > 0)
-      for (std::size_t k = stride; k < bits.size(); ++k) bits[k] ^= plain[k - stride];
-    append(name, "f64", stride, bits);
-  }
-
-  /// The zigzag of each entry's second difference along `stride`: 0 of what moves evenly.
-  void add(const char* name, const std::vector<std::int32_t>& values, std::size_t stride) {
-    std::vector<std::uint32_t> coded(values.size());
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      const auto at = [&](std::size_t back) {
-        return k < back * stride ? 0U : static_cast<std::uint32_t>(values[k - back * stride]);
-      };
-      const auto difference = static_cast<std::int32_t>(k < 2 * stride ? at(0) - at(1) : at(0) - 2 * at(1) + at(2));
-      coded[k] = (static_cast<std::uint32_t>(difference) << 1) ^ static_cast<std::uint32_t>(difference >> 31);
-    }
-    append(name, "i32", stride, coded);
-  }
-
-  void add(const char* name, const std::vector<std::uint32_t>& values) { append(name, "u32", 0, values); }
-
-  void add(const char* name, const std::vector<std::uint8_t>& values, std::size_t stride) {
-    std::vector<std::uint8_t> coded = values;
-    for (std::size_t k = stride; k < values.size() && stride > 0; ++k)
-      coded[k] = static_cast<std::uint8_t>(values[k] - values[k - stride]);
-    append(name, "u8", stride, coded);
-  }
-
-  const Json& names() const { return names_; }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  template <class Word>
-  void append(const char* name, const char* type, std::size_t stride, const std::vector<Word>& words) {
-    names_.push_back({{"name", name}, {"type", type}, {"count", words.size()}, {"stride", stride}});
-    const std::size_t begin = bytes_.size();
-    bytes_.resize(begin + words.size() * sizeof(Word));
-    for (std::size_t plane = 0; plane < sizeof(Word); ++plane)
-      for (std::size_t k = 0; k < words.size(); ++k)
-        bytes_[begin + plane * words.size() + k] =
-            static_cast<char>(static_cast<std::uint64_t>(words[k]) >> (8 * plane));
-    bytes_.resize((bytes_.size() + 7) / 8 * 8);
-  }
-
-  Json names_ = Json::array();
-  std::string bytes_;
-};
 
 namespace {
 
@@ -88,156 +30,6 @@ constexpr std::size_t kMostEvents = 2000;
 constexpr double kFinestQuantum = 0x1p-13;
 /// Doubles of a decision beside its half-planes, and of a half-plane.
 constexpr std::size_t kNumbersOfDecision = 14, kNumbersOfHalfPlane = 6;
-
-// --- The head ---
-
-Json to_json(Vec2 p) {
-  return Json::array({p.x, p.y});
-}
-
-Json flat(const std::vector<Vec2>& points) {
-  Json all = Json::array();
-  for (const Vec2 p : points) {
-    all.push_back(p.x);
-    all.push_back(p.y);
-  }
-  return all;
-}
-
-struct ShapeToJson {
-  Json operator()(const geometry::Disc& d) const { return {{"disc", {d.center.x, d.center.y, d.radius}}}; }
-  Json operator()(const geometry::Segment& s) const { return {{"segment", {s.a.x, s.a.y, s.b.x, s.b.y}}}; }
-  Json operator()(const geometry::ConvexPolygon& p) const { return {{"polygon", flat(p.vertices)}}; }
-  Json operator()(const geometry::Ellipse& e) const {
-    return {{"ellipse", {e.center.x, e.center.y, e.l11, e.l21, e.l22}}};
-  }
-};
-
-Json to_json(const std::string& id, const geometry::Obstacle& shape) {
-  Json rings = Json::array();
-  if (const auto* line = std::get_if<geometry::Polyline>(&shape)) {
-    rings.push_back(flat(line->points));
-  } else {
-    const auto& polygon = std::get<geometry::Polygon>(shape);
-    rings.push_back(flat(polygon.outer));
-    for (const geometry::Ring& hole : polygon.holes) rings.push_back(flat(hole));
-  }
-  return {{"id", id}, {"solid", geometry::has_interior(shape)}, {"rings", std::move(rings)}};
-}
-
-const char* name(vo::BodyKind kind) {
-  switch (kind) {
-    case vo::BodyKind::enclosure:
-      return "enclosure";
-    case vo::BodyKind::obstacle_edge:
-      return "edge";
-    case vo::BodyKind::robot:
-      return "robot";
-    case vo::BodyKind::moving_obstacle:
-      return "moving";
-  }
-  return "";
-}
-
-Json to_json(const vo::Body& body) {
-  Json json = {{"kind", name(body.kind)}, {"owners", body.owners}};
-  const bool is_placed = body.kind == vo::BodyKind::enclosure || body.kind == vo::BodyKind::obstacle_edge;
-  if (is_placed) json["shape"] = std::visit(ShapeToJson{}, body.shape);
-  return json;
-}
-
-Json robots_json(const formation::Scenario& scenario) {
-  Json robots = Json::array();
-  for (const formation::Robot& robot : scenario.robots)
-    robots.push_back({{"id", robot.id},
-                      {"radius", robot.radius},
-                      {"max_speed", robot.max_speed},
-                      {"goals", flat(robot.goals)},
-                      {"cooperates", robot.cooperates}});
-  return robots;
-}
-
-Json scene_json(const formation::Scenario& scenario) {
-  Json obstacles = Json::array(), moving = Json::array();
-  for (const formation::SceneObstacle& o : scenario.obstacles) obstacles.push_back(to_json(o.id, o.shape));
-  for (const formation::MovingObstacle& o : scenario.moving_obstacles) moving.push_back(to_json(o.id, o.shape));
-  return {{"robots", robots_json(scenario)}, {"obstacles", std::move(obstacles)}, {"moving", std::move(moving)}};
-}
-
-template <class Text>
-Json or_null(const std::optional<Text>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json about_json(const datasets::RecordingFile& file) {
-  const formation::Scenario& scenario = file.scenario;
-  const formation::Recording& run = file.recording;
-  Json json = {{"name", scenario.name},
-               {"description", scenario.description},
-               {"method", file.info.method},
-               {"controller", or_null(file.info.controller)},
-               {"guidance", or_null(file.info.guidance)},
-               {"liveness", or_null(file.info.liveness)},
-               {"time_step", run.time_step},
-               {"straight", run.motion == formation::MotionLaw::straight},
-               {"relative_frame", run.relative_frame},
-               {"all_half_planes", run.all_half_planes},
-               {"speed_bound", scenario.speed_bound == formation::SpeedBoundKind::disc ? "disc" : "box"},
-               {"arrival_tolerance", scenario.arrival_tolerance},
-               {"version", file.info.provenance.version},
-               {"commit", file.info.provenance.commit},
-               {"outcome", file.outcome.empty() ? run.outcome : file.outcome},
-               {"warnings", run.warnings}};
-  if (scenario.formation)
-    json["formation"] = {{"offsets", flat(run.offsets)}, {"path", flat(scenario.formation->leader.path)}};
-  json["stuck"] = Json::array();
-  for (const formation::StuckReport& report : file.stuck)
-    json["stuck"].push_back({{"robot", report.robot}, {"text", report.text}});
-  json["collisions"] = Json::array();
-  for (const formation::Collision& c : file.collisions)
-    json["collisions"].push_back({{"robot", c.robot},
-                                  {"kind", name(c.kind)},
-                                  {"with", c.with},
-                                  {"from", c.from},
-                                  {"until", c.until},
-                                  {"at", c.deepest_at},
-                                  {"depth", c.depth},
-                                  {"place", to_json(c.place)}});
-  return json;
-}
-
-Json bodies_json(const formation::Recording& run) {
-  Json bodies = Json::array();
-  for (const vo::Body& body : run.bodies) bodies.push_back(to_json(body));
-  return bodies;
-}
-
-Json outlooks_json(const formation::Recording& run) {
-  Json outlooks = Json::array();
-  for (const formation::Outlook& o : run.outlooks)
-    outlooks.push_back({{"time", o.time}, {"robot", o.robot}, {"goal", o.goal}, {"bodies", o.bodies}});
-  return outlooks;
-}
-
-/// Places of all moves one after the other, as are those who make them.
-Json plans_json(const formation::Recording& run) {
-  Json plans = Json::array();
-  for (const formation::JointPlan& plan : run.plans) {
-    Json movers = Json::array();
-    std::vector<Vec2> places;
-    for (const formation::PlanMove& move : plan.moves) {
-      movers.push_back(move.robot);
-      places.push_back(move.to);
-    }
-    plans.push_back({{"time", static_cast<double>(plan.row) * run.time_step},
-                     {"from", static_cast<double>(plan.from_row) * run.time_step},
-                     {"robots", plan.robots},
-                     {"starts", flat(plan.starts)},
-                     {"movers", std::move(movers)},
-                     {"places", flat(places)}});
-  }
-  return plans;
-}
 
 // --- Events ---
 
@@ -299,8 +91,7 @@ void keep_every_second(std::vector<Value>& all) {
   all.resize((all.size() + 1) / 2);
 }
 
-template <class Columns>
-void add_decisions(const std::vector<Step>& rows, const formation::Scenario& scenario, Columns& columns) {
+void add_decisions(const std::vector<Step>& rows, const formation::Scenario& scenario, PackedColumns& columns) {
   std::vector<double> time, moving, state, violation, pressed, line, tau, clearance, multiplier;
   std::vector<std::uint32_t> counts, parts, waits, body, index, piece;
   std::vector<std::uint8_t> flags, kinds, status, exact;
@@ -357,32 +148,6 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   columns.add("half_plane.tau", tau, 0);
   columns.add("half_plane.clearance", clearance, 0);
   columns.add("half_plane.multiplier", multiplier, 0);
-}
-
-/// Without what differs between equal runs, so that their pages do not.
-Json shown_metrics(const std::string& text) {
-  Json metrics = Json::parse(text, nullptr, false);
-  if (!metrics.is_object()) return nullptr;
-  metrics.erase("wall_time");
-  metrics.erase("provenance");
-  return metrics;
-}
-
-/// Planned again as the run did; null where it had none, or where that would take long.
-Json routes_json(const datasets::RecordingFile& about, const PackedRunLimits& limits) {
-  const auto planned = routes_of(about, {limits.routed_robots, limits.routed_vertices});
-  if (!planned) return nullptr;
-  Json routes = Json::array();
-  for (const formation::PlannedRoute& route : *planned)
-    routes.push_back(
-        {{"robot", route.robot}, {"goal", route.goal}, {"points", flat(route.points)}, {"why_not", route.why_not}});
-  return routes;
-}
-
-/// Null where a name is no UTF-8.
-Json scenario_json(const formation::Scenario& scenario) {
-  Json json = Json::parse(datasets::write_scenario(scenario), nullptr, false);
-  return json.is_discarded() ? Json(nullptr) : json;
 }
 
 std::string whole(const Json& head, const std::string& columns) {
@@ -474,7 +239,7 @@ void RunPacker::add_positions(const Step& row) {
 }
 
 /// Of the rows the columns, and the quanta they are rounded to.
-Json RunPacker::add_rows(std::size_t robots, Columns& columns) const {
+Json RunPacker::add_rows(std::size_t robots, PackedColumns& columns) const {
   double reach = 0.0, speed = 0.0;
   for (const Row& row : rows_)
     for (const State& s : row.states) {
@@ -528,16 +293,11 @@ Json RunPacker::events_json() const {
 }
 
 std::string RunPacker::finish(const datasets::RecordingFile& about, const std::string& metrics_json) const {
-  Columns columns;
+  PackedColumns columns;
   const Json quantum = add_rows(about.scenario.robots.size(), columns);
   const std::vector<Step> decisions = decided();
   add_decisions(decisions, about.scenario, columns);
-  Json head = {{"run", about_json(about)}, {"scene", scene_json(about.scenario)}};
-  if (limits_.has_scenario) head["scenario"] = scenario_json(about.scenario);
-  head["bodies"] = bodies_json(about.recording);
-  head["outlooks"] = outlooks_json(about.recording);
-  head["plans"] = plans_json(about.recording);
-  head["routes"] = routes_json(about, limits_);
+  Json head = packed_head(about, limits_);
   head["events"] = events_json();
   head["events_left_out"] = events_left_out_;
   head["metrics"] = shown_metrics(metrics_json);

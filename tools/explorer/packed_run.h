@@ -28,6 +28,8 @@
 
 namespace exactvo::tools {
 
+class PackedColumns;
+
 /// What a page holds at most. A state is one robot in one row.
 struct PackedRunLimits {
   std::size_t states = 1U << 20;            ///< positions and velocities
@@ -69,9 +71,7 @@ class RunPacker {
     std::string kind, text;
   };
 
-  class Columns;
-
-  nlohmann::ordered_json add_rows(std::size_t robots, Columns& columns) const;
+  nlohmann::ordered_json add_rows(std::size_t robots, PackedColumns& columns) const;
   nlohmann::ordered_json events_json() const;
   std::vector<formation::Step> decided() const;
   void note_events(const formation::Step& row);
