@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// The bytes of a recording of a crowd (docs/guide/crowd-recordings.md): a mark, the head, rows, the end, each a block
+/// behind its size and checksum. crowd_recording_write.cpp writes them, crowd_recording_read.cpp reads them.
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "exactvo/datasets/crowd_recording.h"
+
+namespace exactvo::datasets {
+
+/// Of recordings without bodies, and with.
+inline constexpr std::string_view kCrowdMark = "EXACTVR1", kCrowdMarkOfBodies = "EXACTVR2";
+inline constexpr char kCrowdRow = 'R', kCrowdEnd = 'E';
+
+std::uint64_t checksum(std::string_view bytes);
+
+/// Of all blocks so far, and of one more.
+std::uint64_t chained(std::uint64_t sum, std::uint64_t next);
+
+template <class T>
+void append(std::string& to, T value) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  to.append(bytes, sizeof value);
+}
+
+/// Zigzag, seven bits a byte, the lowest first.
+void append_difference(std::string& to, std::int64_t difference);
+
+/// Bytes of a row or head that has been checked.
+class CrowdBytes {
+ public:
+  CrowdBytes(std::string_view left, const std::string& file, std::uint64_t at) : left_(left), file_(file), at_(at) {}
+
+  template <class T>
+  T get() {
+    need(sizeof(T));
+    T value{};
+    std::memcpy(&value, left_.data(), sizeof value);
+    skip(sizeof value);
+    return value;
+  }
+  std::string text(std::size_t size) {
+    need(size);
+    std::string out(left_.substr(0, size));
+    skip(size);
+    return out;
+  }
+  /// As `append_difference` writes it.
+  std::int64_t difference() {
+    std::uint64_t value = 0;
+    for (unsigned shift = 0;; shift += 7) {
+      const auto byte = get<std::uint8_t>();
+      if (shift >= 63) refuse("a number of more than nine bytes");
+      value |= std::uint64_t{byte & 0x7FU} << shift;
+      if (byte < 0x80) break;
+    }
+    return static_cast<std::int64_t>(value >> 1U) ^ -static_cast<std::int64_t>(value & 1U);
+  }
+  void require_end() const {
+    if (!left_.empty()) refuse("more bytes than it needs");
+  }
+  void require(bool holds, const char* found) const {
+    if (!holds) refuse(found);
+  }
+  [[noreturn]] void refuse(const std::string& found) const;
+
+ private:
+  void need(std::size_t size) const {
+    if (left_.size() < size) refuse("its end too early");
+  }
+  void skip(std::size_t size) {
+    left_.remove_prefix(size);
+    at_ += size;
+  }
+
+  std::string_view left_;
+  const std::string& file_;
+  std::uint64_t at_;
+};
+
+std::string to_bytes(const CrowdRecordingHead& head);
+
+/// Throws DataError (E_FORMAT_SYNTAX) where it is not as `to_bytes` writes it.
+CrowdRecordingHead to_head(CrowdBytes in, bool has_bodies);
+
+}  // namespace exactvo::datasets

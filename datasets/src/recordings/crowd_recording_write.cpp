@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <iterator>
+#include <ostream>
+#include <utility>
+
+#include "exactvo/geometry/require.h"
+#include "recordings/crowd_recording_format.h"
+
+namespace exactvo::datasets {
+
+CrowdRecorder::CrowdRecorder(const std::filesystem::path& path, const formation::Scenario& scenario,
+                             std::uint32_t every, Unfinished unfinished)
+    : file_(path, MissingFolder::is_made, unfinished) {
+  EXACTVO_REQUIRE(every > 0, "every 0");
+  head_.scenario = scenario.name;
+  head_.every = every;
+  for (const formation::SceneObstacle& o : scenario.obstacles) {
+    const std::vector<geometry::Segment> edges = geometry::edges_of(o.shape);
+    head_.edges.insert(head_.edges.end(), edges.begin(), edges.end());
+  }
+}
+
+void CrowdRecorder::put(const std::string& bytes) {
+  file_.write(bytes);
+  bytes_ += bytes.size();
+}
+
+/// Takes the head and what follows from it.
+std::string CrowdRecorder::head_of(const formation::Crowd& crowd) {
+  head_.time_step = crowd.options().time_step;
+  head_.position_step = crowd.options().position_step;
+  const std::size_t robots = crowd.id_end();
+  std::size_t kinds = 0;
+  for (std::size_t i = 0; i < robots; ++i) {
+    head_.kind_of.push_back(crowd.kind_of(static_cast<formation::RobotId>(i)));
+    kinds = std::max<std::size_t>(kinds, head_.kind_of.back() + 1U);
+  }
+  for (std::size_t k = 0; k < kinds; ++k) {
+    const formation::CrowdKind& kind = crowd.kind(static_cast<formation::KindId>(k));
+    head_.kinds.push_back({kind.radius, kind.max_speed});
+  }
+  for (const formation::CrowdBodyState& body : crowd.bodies()) {
+    head_.bodies.push_back({body.shape, body.moves});
+    body_ids_.push_back(body.id);
+    body_start_.push_back(body.displacement);
+  }
+  row_.body_x.assign(head_.bodies.size(), 0);
+  last_body_x_ = last_body_y_ = row_.body_y = row_.body_x;
+  row_.x.assign(robots, 0);
+  row_.y.assign(robots, 0);
+  last_x_ = last_y_ = row_.x;
+  row_.kept.assign(robots, 1);
+  const std::string head = to_bytes(head_);
+  std::string out(head_.bodies.empty() ? kCrowdMark : kCrowdMarkOfBodies);
+  append(out, static_cast<std::uint64_t>(head.size()));
+  head_sum_ = sum_ = checksum(head);
+  append(out, sum_);
+  return out + head;
+}
+
+void CrowdRecorder::begin(const formation::Crowd& crowd) {
+  file_.continue_behind(0);
+  put(head_of(crowd));
+  take(crowd);
+  write_row();
+}
+
+// What a row is the difference from, and what will be in the next one. The positions of that one come with its step.
+
+void CrowdRecorder::save(std::ostream& to) {
+  file_.sync();
+  std::string out;
+  for (const std::uint64_t number : {head_sum_, bytes_, rows_, sum_, std::uint64_t{row_.step}, std::uint64_t{is_due_}})
+    append(out, number);
+  for (const geometry::Vec2 start : body_start_) append(out, start);
+  for (const auto* all : {&last_x_, &last_y_, &row_.x, &row_.y})
+    for (const std::int32_t number : *all) append(out, number);
+  for (const auto* all : {&last_body_x_, &last_body_y_, &row_.body_x, &row_.body_y})
+    for (const std::int64_t number : *all) append(out, number);
+  for (const std::uint8_t kept : row_.kept) append(out, kept);
+  to.write(out.data(), static_cast<std::streamsize>(out.size()));
+}
+
+void CrowdRecorder::restore(const formation::Crowd& crowd, std::istream& from) {
+  head_of(crowd);
+  const std::string bytes{std::istreambuf_iterator<char>(from), std::istreambuf_iterator<char>()};
+  const std::string name = "a snapshot";
+  CrowdBytes in(bytes, name, 0);
+  in.require(in.get<std::uint64_t>() == head_sum_, "a recording of something else");
+  bytes_ = in.get<std::uint64_t>();
+  rows_ = in.get<std::uint64_t>();
+  sum_ = in.get<std::uint64_t>();
+  row_.step = static_cast<std::uint32_t>(in.get<std::uint64_t>());
+  is_due_ = in.get<std::uint64_t>() != 0;
+  for (geometry::Vec2& start : body_start_) start = in.get<geometry::Vec2>();
+  for (auto* all : {&last_x_, &last_y_, &row_.x, &row_.y})
+    for (std::int32_t& number : *all) number = in.get<std::int32_t>();
+  for (auto* all : {&last_body_x_, &last_body_y_, &row_.body_x, &row_.body_y})
+    for (std::int64_t& number : *all) number = in.get<std::int64_t>();
+  for (std::uint8_t& kept : row_.kept) kept = in.get<std::uint8_t>();
+  in.require_end();
+  file_.continue_behind(bytes_);
+}
+
+void CrowdRecorder::take(const formation::Crowd& crowd) {
+  crowd.positions(at_);
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    row_.x[i] = static_cast<std::int32_t>(at_[i].x / head_.position_step);
+    row_.y[i] = static_cast<std::int32_t>(at_[i].y / head_.position_step);
+  }
+  for (std::size_t k = 0; k < body_ids_.size(); ++k) {
+    const geometry::Vec2 at = crowd.body_displacement(body_ids_[k]) - body_start_[k];
+    row_.body_x[k] = static_cast<std::int64_t>(at.x / head_.position_step);
+    row_.body_y[k] = static_cast<std::int64_t>(at.y / head_.position_step);
+  }
+}
+
+void CrowdRecorder::add_step(const formation::Crowd& crowd, std::size_t steps) {
+  crowd.kept(kept_);
+  for (std::size_t i = 0; i < kept_.size(); ++i) row_.kept[i] &= kept_[i];
+  row_.step = static_cast<std::uint32_t>(steps);
+  take(crowd);
+  is_due_ = true;
+  if (steps % head_.every == 0) write_row();
+}
+
+void CrowdRecorder::write_row() {
+  std::string out;
+  append(out, row_.step);
+  for (auto [now, last] : {std::pair(&row_.x, &last_x_), std::pair(&row_.y, &last_y_)}) {
+    for (std::size_t i = 0; i < now->size(); ++i)
+      append_difference(out, std::int64_t{(*now)[i]} - std::int64_t{(*last)[i]});
+    *last = *now;
+  }
+  for (auto [now, last] : {std::pair(&row_.body_x, &last_body_x_), std::pair(&row_.body_y, &last_body_y_)}) {
+    for (std::size_t k = 0; k < now->size(); ++k) append_difference(out, (*now)[k] - (*last)[k]);
+    *last = *now;
+  }
+  for (std::size_t first = 0; first < row_.kept.size(); first += 8) {
+    unsigned bits = 0;
+    for (std::size_t k = first; k < std::min(first + 8, row_.kept.size()); ++k)
+      bits |= unsigned{row_.kept[k]} << (k - first);
+    out.push_back(static_cast<char>(bits));
+  }
+  std::string before(1, kCrowdRow);
+  append(before, static_cast<std::uint64_t>(out.size()));
+  append(before, checksum(out));
+  sum_ = chained(sum_, checksum(out));
+  ++rows_;
+  put(before);
+  put(out);
+  row_.kept.assign(row_.kept.size(), 1);
+  is_due_ = false;
+}
+
+void CrowdRecorder::finish() {
+  if (is_due_) write_row();
+  std::string seal;
+  append(seal, rows_);
+  append(seal, sum_);
+  std::string end(1, kCrowdEnd);
+  append(end, static_cast<std::uint64_t>(seal.size()));
+  append(end, checksum(seal));
+  put(end + seal);
+  file_.commit();
+}
+
+}  // namespace exactvo::datasets
