@@ -15,7 +15,7 @@ namespace exactvo::tools {
 /// What the program answers with; listed in --help.
 enum class ExitCode : int {
   success = 0,         ///< done
-  negative = 1,        ///< done, and the answer is no (of verbs that judge)
+  negative = 1,        ///< completed; the check failed
   bad_input = 2,       ///< a file, an option or a place to write to is wrong; nothing was written
   internal_error = 3,  ///< a defect of the program
   interrupted = 130    ///< by the user (143: by SIGTERM); no file is left half-written

@@ -26,7 +26,7 @@ struct Panel {
   const datasets::RecordingFile* run = nullptr;
 };
 
-/// Many runs side by side on one sheet, a panel each with its letter, all at one scale, with one legend below: for
+/// Many runs side by side on one sheet, each in a panel with its letter, all at one scale, with one legend below: for
 /// comparing. REQUIRES: a panel.
 Figure paths_sheet(const std::string& name, const std::string& title, const std::vector<Panel>& panels, int columns);
 

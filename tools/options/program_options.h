@@ -51,7 +51,7 @@ class ProgramOptions {
   /// Whether `name` was on the command line. REQUIRES: parsed.
   bool given(const std::string& name) const;
 
-  /// False where help was asked for and printed. Throws UsageError for what means nothing.
+  /// False where help was asked for and printed. Throws UsageError for an unknown option.
   bool parse(int argc, const char* const* argv);
 
  private:

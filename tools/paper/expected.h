@@ -14,7 +14,7 @@ namespace exactvo::tools {
 struct Expected {
   const char* scenario;
   double orca;         ///< s; kStuck
-  bool edge_thin;      ///< an ellipse a facade, b = 0.1 m: arrives
+  bool edge_thin;      ///< one ellipse per facade, b = 0.1 m: arrives
   bool edge_half;      ///< b = a / 2: arrives
   bool cluster;        ///< pure equation (12)
   bool has_obstacles;  ///< A0 has none

@@ -19,37 +19,9 @@ int workers_of(const BatchRun& run) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-const char* name_of(Units units) {
-  switch (units) {
-    case Units::automatic:
-      return "automatic";
-    case Units::metres:
-      return "metres";
-    case Units::degrees:
-      return "degrees";
-  }
-  return "automatic";
-}
-
-const char* name_of(geometry::PartitionMethod method) {
-  switch (method) {
-    case geometry::PartitionMethod::automatic:
-      return "automatic";
-    case geometry::PartitionMethod::greene:
-      return "greene";
-    case geometry::PartitionMethod::approximate:
-      return "approximate";
-    case geometry::PartitionMethod::optimal:
-      return "optimal";
-    case geometry::PartitionMethod::triangles:
-      return "triangles";
-  }
-  return "automatic";
-}
-
 void append_shape_options(JsonWriter& json, const geometry::ShapeOptions& o) {
   json.key("shapes").begin_object();
-  json.member("facade_tolerance", o.facades.tolerance).member("partition", name_of(o.partition));
+  json.member("facade_tolerance", o.facades.tolerance).member("partition", name(o.partition));
   json.member("minor_to_major", o.facade_ellipses.minor_to_major);
   json.member("fixed_minor", o.facade_ellipses.fixed_minor).member("facade_margin", o.facade_ellipses.margin);
   json.member("margin", o.enclosure.margin).member("slack", o.enclosure.slack);
@@ -87,7 +59,7 @@ double ratio(double part, std::uint64_t whole) {
 
 std::string to_json(const BatchConfiguration& c) {
   JsonWriter json(JsonWriter::Layout::compact);
-  json.begin_object().member("format", c.reading.format).member("units", name_of(c.reading.units));
+  json.begin_object().member("format", c.reading.format).member("units", name(c.reading.units));
   json.member("cell_size", c.reading.cell_size).member("repair", c.reading.repair);
   json.member("memory_limit", c.memory_limit);
   append_shape_options(json, c.shapes);

@@ -2,10 +2,10 @@
 #include "exactvo/datasets/random_fields.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
+#include "exactvo/geometry/names.h"
 #include "exactvo/geometry/pi.h"
 #include "generators/counter_random.h"
 
@@ -140,28 +140,21 @@ Scenario formation_field(Draws& draws) {
   return s;
 }
 
-constexpr std::array<std::pair<FieldKind, const char*>, 3> kNames{
+constexpr geometry::Names<FieldKind, 3> kNames{
     {{FieldKind::convex, "convex"}, {FieldKind::open, "open"}, {FieldKind::formation, "formation"}}};
 
 }  // namespace
 
 const char* name(FieldKind kind) {
-  return kNames.at(static_cast<std::size_t>(kind)).second;
+  return geometry::name_in(kNames, kind);
 }
 
 std::vector<std::string> field_kind_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : kNames) names.emplace_back(entry.second);
-  return names;
+  return geometry::words_in(kNames);
 }
 
 bool parse(const std::string& text, FieldKind& out) {
-  for (const auto& [kind, known] : kNames) {
-    if (text != known) continue;
-    out = kind;
-    return true;
-  }
-  return false;
+  return geometry::parse_in(kNames, text, out);
 }
 
 Scenario random_field(FieldKind kind, std::uint64_t k, std::uint64_t seed) {

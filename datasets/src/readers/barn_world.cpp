@@ -31,8 +31,8 @@ void add_model(const XmlFile& xml, const pugi::xml_node& model, Collector& out) 
 
 }  // namespace
 
-bool looks_like_barn_world(const Glimpse& glimpse) {
-  return first_element_is(glimpse.beginning, "sdf") && glimpse.beginning.find("<world") != std::string::npos;
+bool looks_like_barn_world(const FormatProbe& probe) {
+  return first_element_is(probe.beginning, "sdf") && probe.beginning.find("<world") != std::string::npos;
 }
 
 void read_barn_world(const std::filesystem::path& path, Collector& out) {

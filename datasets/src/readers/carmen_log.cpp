@@ -43,8 +43,8 @@ void add_scan(const LineReader& lines, const std::vector<std::string_view>& word
 
 }  // namespace
 
-bool looks_like_carmen_log(const Glimpse& glimpse) {
-  const std::string& text = glimpse.beginning;
+bool looks_like_carmen_log(const FormatProbe& probe) {
+  const std::string& text = probe.beginning;
   return text.rfind("FLASER ", 0) == 0 || text.find("\nFLASER ") != std::string::npos ||
          text.rfind("# CARMEN Logfile", 0) == 0;
 }

@@ -73,8 +73,8 @@ void add_scan(const JsonCursor& scan, std::vector<geometry::Vec2>& hits) {
 
 }  // namespace
 
-bool looks_like_csm_log(const Glimpse& glimpse) {
-  return glimpse.beginning.find('{') < 8 && glimpse.beginning.find("\"nrays\"") != std::string::npos;
+bool looks_like_csm_log(const FormatProbe& probe) {
+  return probe.beginning.find('{') < 8 && probe.beginning.find("\"nrays\"") != std::string::npos;
 }
 
 void read_csm_log(const std::filesystem::path& path, Collector& out) {

@@ -94,10 +94,10 @@ bool is_count(std::string_view word) {
 }
 
 /// The fields of the first two lines that hold something.
-std::vector<std::vector<std::string_view>> first_lines(const Glimpse& glimpse) {
+std::vector<std::vector<std::string_view>> first_lines(const FormatProbe& probe) {
   std::vector<std::vector<std::string_view>> lines;
   const std::string name;
-  LineReader reader(glimpse.beginning, name);
+  LineReader reader(probe.beginning, name);
   while (lines.size() < 2 && reader.next()) {
     std::vector<std::string_view> words = words_of(reader.line());
     if (!words.empty()) lines.push_back(std::move(words));
@@ -107,8 +107,8 @@ std::vector<std::vector<std::string_view>> first_lines(const Glimpse& glimpse) {
 
 }  // namespace
 
-bool looks_like_graphml(const Glimpse& glimpse) {
-  return first_element_is(glimpse.beginning, "graphml");
+bool looks_like_graphml(const FormatProbe& probe) {
+  return first_element_is(probe.beginning, "graphml");
 }
 
 void read_graphml(const std::filesystem::path& path, Collector& out) {
@@ -117,9 +117,9 @@ void read_graphml(const std::filesystem::path& path, Collector& out) {
     add_graph(read_graph(xml, graph, out.file()), xml.place_of(graph), out);
 }
 
-bool looks_like_counted_rings(const Glimpse& glimpse) {
-  const auto lines = first_lines(glimpse);
-  return glimpse.extension == ".line" && !lines.empty() && lines[0].size() == 1 && is_count(lines[0][0]);
+bool looks_like_counted_rings(const FormatProbe& probe) {
+  const auto lines = first_lines(probe);
+  return probe.extension == ".line" && !lines.empty() && lines[0].size() == 1 && is_count(lines[0][0]);
 }
 
 /// Rings, each its count and its points; the first is outside.
@@ -137,9 +137,9 @@ void read_counted_rings(const std::filesystem::path& path, Collector& out) {
   out.add(raw);
 }
 
-bool looks_like_pslg(const Glimpse& glimpse) {
-  const auto lines = first_lines(glimpse);
-  if (glimpse.extension != ".txt" && glimpse.extension != ".pslg") return false;
+bool looks_like_pslg(const FormatProbe& probe) {
+  const auto lines = first_lines(probe);
+  if (probe.extension != ".txt" && probe.extension != ".pslg") return false;
   return lines.size() == 2 && lines[0].size() == 2 && lines[1].size() == 2 && is_count(lines[0][0]) &&
          is_count(lines[0][1]);
 }

@@ -18,8 +18,8 @@ void add_argument(const XmlFile& xml, const pugi::xml_node& argument, std::size_
 
 }  // namespace
 
-bool looks_like_jts_xml(const Glimpse& glimpse) {
-  return first_element_is(glimpse.beginning, "run");
+bool looks_like_jts_xml(const FormatProbe& probe) {
+  return first_element_is(probe.beginning, "run");
 }
 
 void read_jts_xml(const std::filesystem::path& path, Collector& out) {

@@ -37,8 +37,8 @@ class RoomReader {
 
 }  // namespace
 
-bool looks_like_jupedsim_xml(const Glimpse& glimpse) {
-  return first_element_is(glimpse.beginning, "geometry");
+bool looks_like_jupedsim_xml(const FormatProbe& probe) {
+  return first_element_is(probe.beginning, "geometry");
 }
 
 void read_jupedsim_xml(const std::filesystem::path& path, Collector& out) {

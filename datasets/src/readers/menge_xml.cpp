@@ -4,8 +4,8 @@
 
 namespace exactvo::datasets {
 
-bool looks_like_menge_xml(const Glimpse& glimpse) {
-  return first_element_is(glimpse.beginning, "Experiment");
+bool looks_like_menge_xml(const FormatProbe& probe) {
+  return first_element_is(probe.beginning, "Experiment");
 }
 
 void read_menge_xml(const std::filesystem::path& path, Collector& out) {

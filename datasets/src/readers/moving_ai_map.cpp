@@ -112,9 +112,9 @@ MapSize read_map_size(const std::filesystem::path& map) {
   return {static_cast<std::int64_t>(header.width), static_cast<std::int64_t>(header.height)};
 }
 
-bool looks_like_moving_ai_map(const Glimpse& glimpse) {
-  if (glimpse.extension != ".map") return false;
-  const std::string& text = glimpse.beginning;
+bool looks_like_moving_ai_map(const FormatProbe& probe) {
+  if (probe.extension != ".map") return false;
+  const std::string& text = probe.beginning;
   return text.rfind("type ", 0) == 0 || text.rfind("height ", 0) == 0 || text.rfind("width ", 0) == 0;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Moving AI tasks: "version 1", then one line per task: bucket, map, width, height, start x y, goal x y, optimal length.
+// Moving AI tasks: "version 1", then one line per task: bucket, map, width, height, start x y, goal x y, optimal
+// length.
 #include "exactvo/datasets/moving_ai.h"
 #include "exactvo/geometry/counted.h"
 #include "files/text_file.h"
@@ -66,8 +67,8 @@ geometry::Vec2 middle_of(GridCell cell, std::int64_t height, double cell_size) {
           (static_cast<double>(height - 1 - cell.row) + 0.5) * cell_size};
 }
 
-bool looks_like_moving_ai_scen(const Glimpse& glimpse) {
-  return glimpse.extension == ".scen" && glimpse.beginning.rfind("version ", 0) == 0;
+bool looks_like_moving_ai_scen(const FormatProbe& probe) {
+  return probe.extension == ".scen" && probe.beginning.rfind("version ", 0) == 0;
 }
 
 void read_moving_ai_scen(const std::filesystem::path& path, Collector& out) {

@@ -9,6 +9,7 @@
 #include <new>
 
 #include "exactvo/datasets/atomic_file.h"
+#include "exactvo/geometry/names.h"
 #include "exactvo/geometry/require.h"
 #include "files/system_error.h"
 #include "files/text_file.h"
@@ -22,17 +23,20 @@ constexpr std::array<const char*, 19> kVectorExtensions{
     ".geojson", ".json", ".shp", ".dbf", ".gpkg",     ".fgb",      ".csv",      ".osm",        ".pbf",   ".dxf",
     ".kml",     ".gml",  ".gpx", ".tab", ".topojson", ".geojsonl", ".geojsons", ".geojsonseq", ".ndjson"};
 
+constexpr geometry::Names<Units, 3> kUnits{
+    {{Units::automatic, "automatic"}, {Units::metres, "metres"}, {Units::degrees, "degrees"}}};
+
 void read_with_gdal(const std::filesystem::path& path, Collector& out) {
   vector_library().read_vector_file(path, out);
 }
 
-Glimpse glimpse_of(const std::filesystem::path& path) {
-  Glimpse glimpse;
-  glimpse.path = path;
-  glimpse.extension = path.extension().string();
-  for (char& c : glimpse.extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  glimpse.beginning = read_beginning(path, kGlimpseLength);
-  return glimpse;
+FormatProbe probe_of(const std::filesystem::path& path) {
+  FormatProbe probe;
+  probe.path = path;
+  probe.extension = path.extension().string();
+  for (char& c : probe.extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  probe.beginning = read_beginning(path, kProbeLength);
+  return probe;
 }
 
 std::string all_names() {
@@ -49,19 +53,19 @@ const Reader& reader_named(const std::string& name, const std::filesystem::path&
 }
 
 /// What would help with a file that no reader takes by itself.
-std::string hint_for(const Glimpse& glimpse) {
+std::string hint_for(const FormatProbe& probe) {
   for (const char* image : {".pgm", ".png", ".pnm", ".bmp", ".tif"})
-    if (glimpse.extension == image) return "; of a ROS map give the .yaml that names its image";
+    if (probe.extension == image) return "; of a ROS map give the .yaml that names its image";
   return "; if its format is one of these, name it with --format (convert: --from): " + all_names();
 }
 
 const Reader& reader_for(const std::filesystem::path& path) {
-  const Glimpse glimpse = glimpse_of(path);
+  const FormatProbe probe = probe_of(path);
   for (const Reader& reader : readers()) {
-    if (reader.recognises(glimpse)) return reader;
+    if (reader.matches(probe)) return reader;
   }
-  throw DataError(DataCode::format_unknown, path.string(), "", excerpt(glimpse.beginning, 0),
-                  "a file of obstacles" + hint_for(glimpse));
+  throw DataError(DataCode::format_unknown, path.string(), "", excerpt(probe.beginning, 0),
+                  "a file of obstacles" + hint_for(probe));
 }
 
 /// Missing and unreadable files are named before any reader is asked; an empty one holds nothing in any format.
@@ -121,6 +125,18 @@ ObstacleFile read_into(const std::filesystem::path& path, const ReadOptions& opt
 
 }  // namespace
 
+const char* name(Units units) {
+  return geometry::name_in(kUnits, units);
+}
+
+bool parse(const std::string& text, Units& out) {
+  return geometry::parse_in(kUnits, text, out);
+}
+
+std::vector<std::string> unit_names() {
+  return geometry::words_in(kUnits);
+}
+
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> kReaders{
       {"wkt", looks_like_wkt, read_wkt},
@@ -150,8 +166,8 @@ const std::vector<Reader>& readers() {
 }
 
 // By name alone, so that a build without GDAL can say what it lacks.
-bool looks_like_vector_file(const Glimpse& glimpse) {
-  return std::find(kVectorExtensions.begin(), kVectorExtensions.end(), glimpse.extension) != kVectorExtensions.end();
+bool looks_like_vector_file(const FormatProbe& probe) {
+  return std::find(kVectorExtensions.begin(), kVectorExtensions.end(), probe.extension) != kVectorExtensions.end();
 }
 
 ObstacleFile read_obstacles(const std::filesystem::path& path, const ReadOptions& options) {

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Points joined by edges, as some formats hold their polygons: taken apart into rings and open chains.
+/// Points joined by edges, as some formats hold their polygons: decomposed into rings and open chains.
 
 #include <cstddef>
 #include <utility>

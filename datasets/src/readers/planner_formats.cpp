@@ -48,8 +48,8 @@ std::vector<std::vector<std::uint8_t>> read_rows(LineReader& lines) {
 
 }  // namespace
 
-bool looks_like_ompl_circles(const Glimpse& glimpse) {
-  return begins_with(glimpse.beginning, "units:") && glimpse.extension == ".txt";
+bool looks_like_ompl_circles(const FormatProbe& probe) {
+  return begins_with(probe.beginning, "units:") && probe.extension == ".txt";
 }
 
 /// "units: meter", a line of names, then "number x y r".
@@ -72,8 +72,8 @@ void read_ompl_circles(const std::filesystem::path& path, Collector& out) {
   out.note("", "circles stand as polygons of 16 corners round them, 1.3 % larger in area");
 }
 
-bool looks_like_ompl_grid(const Glimpse& glimpse) {
-  return begins_with(glimpse.beginning, "discretization(cells):");
+bool looks_like_ompl_grid(const FormatProbe& probe) {
+  return begins_with(probe.beginning, "discretization(cells):");
 }
 
 void read_ompl_grid(const std::filesystem::path& path, Collector& out) {
@@ -89,8 +89,8 @@ void read_ompl_grid(const std::filesystem::path& path, Collector& out) {
   add_grid(grid, {{0.0, 0.0}, size, 0.0, 0, 0}, out);
 }
 
-bool looks_like_opentraj_xml(const Glimpse& glimpse) {
-  return first_element_is(glimpse.beginning, "Trial") && glimpse.beginning.find("<obstacles") != std::string::npos;
+bool looks_like_opentraj_xml(const FormatProbe& probe) {
+  return first_element_is(probe.beginning, "Trial") && probe.beginning.find("<obstacles") != std::string::npos;
 }
 
 /// <Line x1 y1 x2 y2 thickness/> in metres; the thickness is of the drawing.

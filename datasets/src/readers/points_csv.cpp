@@ -45,9 +45,9 @@ geometry::Vec2 to_point(const LineReader& lines) {
 }  // namespace
 
 /// The first line that is no comment, or the second where the first is a header of two words.
-bool looks_like_points_csv(const Glimpse& glimpse) {
-  if (glimpse.extension != ".csv") return false;
-  std::string_view rest = glimpse.beginning;
+bool looks_like_points_csv(const FormatProbe& probe) {
+  if (probe.extension != ".csv") return false;
+  std::string_view rest = probe.beginning;
   for (bool may_be_header = true; !rest.empty();) {
     const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
     const std::string_view line = trimmed(rest.substr(0, end));

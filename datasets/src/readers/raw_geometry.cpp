@@ -146,21 +146,22 @@ RingFinding finding_at(DataCode code, const RawGeometry& raw, const geometry::Ri
   return finding;
 }
 
-Judgement judged(geometry::Obstacle shape, const std::vector<geometry::RingProblem>& problems, const RawGeometry& raw) {
-  Judgement judgement{std::move(shape), {}, {}};
+ValidationResult validation_of(geometry::Obstacle shape, const std::vector<geometry::RingProblem>& problems,
+                               const RawGeometry& raw) {
+  ValidationResult checked{std::move(shape), {}, {}};
   bool is_refused = false;
   for (const geometry::RingProblem& problem : problems) {
     const DataCode code = data_code(problem.code);
     if (problem.repaired && !is_worth_a_note(raw, code)) continue;
     const bool first_refusal = !problem.repaired && !is_refused;
     is_refused = is_refused || !problem.repaired;
-    if (judgement.findings.size() < kMostFindings || first_refusal) {
-      judgement.findings.push_back(finding_at(code, raw, problem));
+    if (checked.findings.size() < kMostFindings || first_refusal) {
+      checked.findings.push_back(finding_at(code, raw, problem));
     } else {
-      ++judgement.unlisted[code];
+      ++checked.unlisted[code];
     }
   }
-  return judgement;
+  return checked;
 }
 
 /// The first coordinate beyond kLargestCoordinate of each ring; what is not finite is another problem.
@@ -207,14 +208,14 @@ std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_
   return raw.place + ", ring " + std::to_string(ring) + ", vertex " + std::to_string(vertex);
 }
 
-Judgement judge(const RawGeometry& raw) {
+ValidationResult validate(const RawGeometry& raw) {
   if (raw.kind == RawKind::polyline) {
     geometry::NormalizedPolyline normal = geometry::normalize_polyline(raw.rings.at(0));
-    return judged(std::move(normal.polyline), normal.problems, raw);
+    return validation_of(std::move(normal.polyline), normal.problems, raw);
   }
   try {
     geometry::NormalizedPolygon normal = geometry::normalize(raw.rings);
-    return judged(std::move(normal.polygon), normal.problems, raw);
+    return validation_of(std::move(normal.polygon), normal.problems, raw);
   } catch (const geometry::TooManyContacts&) {
     geometry::RingProblem at{};
     at.where = raw.rings[0].empty() ? geometry::Vec2{} : raw.rings[0].front();
@@ -227,8 +228,8 @@ DataError ring_refusal(const RingFinding& finding, const std::string& file) {
           expectation(finding.code)};
 }
 
-void refuse_unrepaired(const Judgement& judgement, const std::string& file) {
-  for (const RingFinding& finding : judgement.findings) {
+void refuse_unrepaired(const ValidationResult& checked, const std::string& file) {
+  for (const RingFinding& finding : checked.findings) {
     if (!finding.repaired) throw ring_refusal(finding, file);
   }
 }
@@ -243,15 +244,15 @@ void Collector::add(const RawGeometry& raw) {
   call_wait_hook();
   if (reject_far(raw)) return;
   if (options_.repair && raw.kind == RawKind::polygon) return add_repaired(raw);
-  Judgement judgement = judge(raw);
-  take_findings(judgement.findings, judgement.unlisted);
+  ValidationResult checked = validate(raw);
+  take_findings(checked.findings, checked.unlisted);
   try {
-    refuse_unrepaired(judgement, result_.file);
+    refuse_unrepaired(checked, result_.file);
   } catch (const DataError& error) {
     return reject(error);
   }
-  count(judgement.findings);
-  keep(raw, raw.id, std::move(judgement.shape), !judgement.findings.empty());
+  count(checked.findings);
+  keep(raw, raw.id, std::move(checked.shape), !checked.findings.empty());
 }
 
 bool Collector::reject_far(const RawGeometry& raw) {
@@ -264,23 +265,23 @@ bool Collector::reject_far(const RawGeometry& raw) {
 
 void Collector::add_repaired(const RawGeometry& raw) {
   Repair repaired = repair(raw.rings);
-  const Judgement judgement = judged(geometry::Polygon{}, repaired.problems, raw);
-  take_findings(judgement.findings, judgement.unlisted);
+  const ValidationResult checked = validation_of(geometry::Polygon{}, repaired.problems, raw);
+  take_findings(checked.findings, checked.unlisted);
   if (repaired.changed() && stream_ == nullptr) {
-    result_.repairs.push_back({raw.place, raw.id, codes_of(judgement.findings), repaired.refused, repaired.recombined,
+    result_.repairs.push_back({raw.place, raw.id, codes_of(checked.findings), repaired.refused, repaired.recombined,
                                repaired.moved, repaired.recombined ? raw.rings : std::vector<geometry::Ring>{},
                                repaired.before, repaired.after});
   }
-  if (!repaired.ok()) return reject(refusal_of(*repaired.refused, judgement, raw.place));
-  count(judgement.findings);
+  if (!repaired.ok()) return reject(refusal_of(*repaired.refused, checked, raw.place));
+  count(checked.findings);
   for (std::size_t k = 0; k < repaired.polygons.size(); ++k) {
     keep(raw, k == 0 ? raw.id : raw.id + "-" + std::to_string(k + 1), std::move(repaired.polygons[k]),
-         !judgement.findings.empty());
+         !checked.findings.empty());
   }
 }
 
-DataError Collector::refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const {
-  for (const RingFinding& finding : judgement.findings) {
+DataError Collector::refusal_of(DataCode reason, const ValidationResult& checked, const std::string& place) const {
+  for (const RingFinding& finding : checked.findings) {
     if (finding.code == reason && !finding.repaired) return ring_refusal(finding, result_.file);
   }
   return repair_refusal(reason, result_.file, place);

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What a reader hands on: rings as they stand in the file, not yet judged; and the collector that judges them.
+/// What a reader hands on: rings as they stand in the file, not yet validated; and the collector that validates them.
 
 #include <functional>
 #include <map>
@@ -38,18 +38,18 @@ struct RawGeometry {
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex);
 
 /// The shape put in order, and what was found in it; to be used only if all of that was repaired.
-struct Judgement {
+struct ValidationResult {
   geometry::Obstacle shape;
   std::vector<RingFinding> findings;         ///< kMostFindings at most, the first that was not repaired among them
   std::map<DataCode, std::size_t> unlisted;  ///< the others
 };
-Judgement judge(const RawGeometry& raw);
+ValidationResult validate(const RawGeometry& raw);
 
 /// The refusal that a finding is.
 DataError ring_refusal(const RingFinding& finding, const std::string& file);
 
 /// Throws DataError for the first finding that was not repaired.
-void refuse_unrepaired(const Judgement& judgement, const std::string& file);
+void refuse_unrepaired(const ValidationResult& checked, const std::string& file);
 
 /// Gathers a file's geometries into an ObstacleFile and keeps the books. Virtual, so that a reader in a module that is
 /// loaded (vector_library.h) runs the program's copy of the geometry behind it, not one of its own.
@@ -83,9 +83,9 @@ class Collector {
  private:
   /// Whether it has a coordinate beyond kLargestCoordinate.
   bool reject_far(const RawGeometry& raw);
-  /// Where `repair` may do more than `judge`.
+  /// Where `repair` may do more than `validate`.
   void add_repaired(const RawGeometry& raw);
-  DataError refusal_of(DataCode reason, const Judgement& judgement, const std::string& place) const;
+  DataError refusal_of(DataCode reason, const ValidationResult& checked, const std::string& place) const;
   void take_findings(const std::vector<RingFinding>& findings, const std::map<DataCode, std::size_t>& unlisted = {});
   void count(const std::vector<RingFinding>& findings);
   void keep(const RawGeometry& raw, std::string id, geometry::Obstacle shape, bool repaired);

@@ -13,16 +13,16 @@
 namespace exactvo::datasets {
 
 /// What a reader may look at to know its own: the name and the first bytes.
-struct Glimpse {
+struct FormatProbe {
   std::filesystem::path path;
   std::string extension;  ///< lower case, with its dot
-  std::string beginning;  ///< the first kGlimpseLength bytes
+  std::string beginning;  ///< the first kProbeLength bytes
 };
-inline constexpr std::size_t kGlimpseLength = 4096;
+inline constexpr std::size_t kProbeLength = 4096;
 
 struct Reader {
   const char* name;
-  bool (*recognises)(const Glimpse& glimpse);
+  bool (*matches)(const FormatProbe& probe);
   void (*read)(const std::filesystem::path& path, Collector& out);
 };
 
@@ -33,53 +33,53 @@ const std::vector<Reader>& readers();
 inline constexpr int kDeepestCollection = 64;
 
 // wkt_reader.cpp
-bool looks_like_wkt(const Glimpse& glimpse);
+bool looks_like_wkt(const FormatProbe& probe);
 void read_wkt(const std::filesystem::path& path, Collector& out);
 /// The polygon is the walkable area: its shell is a wall, its holes are solid. Nothing in the text tells it from plain
 /// WKT.
 void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out);
-bool only_by_name(const Glimpse& glimpse);
+bool only_by_name(const FormatProbe& probe);
 /// Well-known text within another file: places and ids begin with those given.
 void read_wkt_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 
 // moving_ai_map.cpp, moving_ai_scen.cpp
-bool looks_like_moving_ai_map(const Glimpse& glimpse);
+bool looks_like_moving_ai_map(const FormatProbe& probe);
 void read_moving_ai_map(const std::filesystem::path& path, Collector& out);
-bool looks_like_moving_ai_scen(const Glimpse& glimpse);
+bool looks_like_moving_ai_scen(const FormatProbe& probe);
 void read_moving_ai_scen(const std::filesystem::path& path, Collector& out);
 
 // ros_map.cpp
-bool looks_like_ros_map(const Glimpse& glimpse);
+bool looks_like_ros_map(const FormatProbe& probe);
 void read_ros_map(const std::filesystem::path& path, Collector& out);
 /// The picture that the map names, in the map's folder or below. Throws DataError as the reader does.
 std::filesystem::path picture_of_ros_map(const std::filesystem::path& map);
 
 // carmen_log.cpp, csm_log.cpp, points_csv.cpp: hits become the cells that hold them (hits.h)
-bool looks_like_carmen_log(const Glimpse& glimpse);
+bool looks_like_carmen_log(const FormatProbe& probe);
 void read_carmen_log(const std::filesystem::path& path, Collector& out);
-bool looks_like_csm_log(const Glimpse& glimpse);
+bool looks_like_csm_log(const FormatProbe& probe);
 void read_csm_log(const std::filesystem::path& path, Collector& out);
-bool looks_like_points_csv(const Glimpse& glimpse);
+bool looks_like_points_csv(const FormatProbe& probe);
 void read_points_csv(const std::filesystem::path& path, Collector& out);
 
 // graph_formats.cpp
-bool looks_like_graphml(const Glimpse& glimpse);
+bool looks_like_graphml(const FormatProbe& probe);
 void read_graphml(const std::filesystem::path& path, Collector& out);
-bool looks_like_counted_rings(const Glimpse& glimpse);
+bool looks_like_counted_rings(const FormatProbe& probe);
 void read_counted_rings(const std::filesystem::path& path, Collector& out);
-bool looks_like_pslg(const Glimpse& glimpse);
+bool looks_like_pslg(const FormatProbe& probe);
 void read_pslg(const std::filesystem::path& path, Collector& out);
 
 // planner_formats.cpp
-bool looks_like_ompl_circles(const Glimpse& glimpse);
+bool looks_like_ompl_circles(const FormatProbe& probe);
 void read_ompl_circles(const std::filesystem::path& path, Collector& out);
-bool looks_like_ompl_grid(const Glimpse& glimpse);
+bool looks_like_ompl_grid(const FormatProbe& probe);
 void read_ompl_grid(const std::filesystem::path& path, Collector& out);
-bool looks_like_opentraj_xml(const Glimpse& glimpse);
+bool looks_like_opentraj_xml(const FormatProbe& probe);
 void read_opentraj_xml(const std::filesystem::path& path, Collector& out);
 
 // scenario_obstacles.cpp
-bool looks_like_scenario(const Glimpse& glimpse);
+bool looks_like_scenario(const FormatProbe& probe);
 void read_scenario_obstacles(const std::filesystem::path& path, Collector& out);
 
 // wkb_text.cpp, within another file: places and ids begin with those given
@@ -87,25 +87,25 @@ bool is_wkb_text(std::string_view text);
 void read_wkb_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 
 // jts_xml.cpp
-bool looks_like_jts_xml(const Glimpse& glimpse);
+bool looks_like_jts_xml(const FormatProbe& probe);
 void read_jts_xml(const std::filesystem::path& path, Collector& out);
 
 // rings_json.cpp, in the style of the earcut test files: [shell, hole, ...]
-bool looks_like_rings_json(const Glimpse& glimpse);
+bool looks_like_rings_json(const FormatProbe& probe);
 void read_rings_json(const std::filesystem::path& path, Collector& out);
 
 // menge_xml.cpp, sumo_poly.cpp, jupedsim_xml.cpp, barn_world.cpp
-bool looks_like_menge_xml(const Glimpse& glimpse);
+bool looks_like_menge_xml(const FormatProbe& probe);
 void read_menge_xml(const std::filesystem::path& path, Collector& out);
-bool looks_like_sumo_poly(const Glimpse& glimpse);
+bool looks_like_sumo_poly(const FormatProbe& probe);
 void read_sumo_poly(const std::filesystem::path& path, Collector& out);
-bool looks_like_jupedsim_xml(const Glimpse& glimpse);
+bool looks_like_jupedsim_xml(const FormatProbe& probe);
 void read_jupedsim_xml(const std::filesystem::path& path, Collector& out);
-bool looks_like_barn_world(const Glimpse& glimpse);
+bool looks_like_barn_world(const FormatProbe& probe);
 void read_barn_world(const std::filesystem::path& path, Collector& out);
 
 // obstacle_file.cpp; gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL, called through vector_library.h
-bool looks_like_vector_file(const Glimpse& glimpse);
+bool looks_like_vector_file(const FormatProbe& probe);
 void read_vector_file(const std::filesystem::path& path, Collector& out);
 
 }  // namespace exactvo::datasets

@@ -21,9 +21,9 @@ geometry::Ring to_ring(const JsonCursor& at) {
 
 }  // namespace
 
-bool looks_like_rings_json(const Glimpse& glimpse) {
+bool looks_like_rings_json(const FormatProbe& probe) {
   std::size_t brackets = 0;
-  for (const char c : glimpse.beginning) {
+  for (const char c : probe.beginning) {
     if (c == '[') ++brackets;
     if (c != '[' && std::isspace(static_cast<unsigned char>(c)) == 0) break;
   }

@@ -184,9 +184,9 @@ Grid to_grid(const GreyImage& image, const MapFacts& map, Collector& out) {
 
 }  // namespace
 
-bool looks_like_ros_map(const Glimpse& glimpse) {
-  return (glimpse.extension == ".yaml" || glimpse.extension == ".yml") &&
-         glimpse.beginning.find("image:") != std::string::npos;
+bool looks_like_ros_map(const FormatProbe& probe) {
+  return (probe.extension == ".yaml" || probe.extension == ".yml") &&
+         probe.beginning.find("image:") != std::string::npos;
 }
 
 std::filesystem::path picture_of_ros_map(const std::filesystem::path& map) {

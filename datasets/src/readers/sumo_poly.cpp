@@ -35,9 +35,9 @@ RawGeometry to_raw(const XmlFile& xml, const pugi::xml_node& poly, const std::st
 
 }  // namespace
 
-bool looks_like_sumo_poly(const Glimpse& glimpse) {
-  const bool by_name = glimpse.path.filename().string().find(".poly.xml") != std::string::npos;
-  return by_name || first_element_is(glimpse.beginning, "shapes") || first_element_is(glimpse.beginning, "additional");
+bool looks_like_sumo_poly(const FormatProbe& probe) {
+  const bool by_name = probe.path.filename().string().find(".poly.xml") != std::string::npos;
+  return by_name || first_element_is(probe.beginning, "shapes") || first_element_is(probe.beginning, "additional");
 }
 
 void read_sumo_poly(const std::filesystem::path& path, Collector& out) {

@@ -224,9 +224,9 @@ void read_in_blocks(const std::filesystem::path& path, WktReader::Inside inside,
 
 }  // namespace
 
-bool looks_like_wkt(const Glimpse& glimpse) {
+bool looks_like_wkt(const FormatProbe& probe) {
   const std::string name = "";
-  WktScanner scan(glimpse.beginning, name);
+  WktScanner scan(probe.beginning, name);
   scan.skip_between_geometries();
   const std::string word = without_dimension(scan.peek_word());
   return word == "SRID" || std::find(kGeometryWords.begin(), kGeometryWords.end(), word) != kGeometryWords.end();
@@ -244,7 +244,7 @@ void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out) {
   read_in_blocks(path, WktReader::Inside::walkable, out);
 }
 
-bool only_by_name(const Glimpse&) {
+bool only_by_name(const FormatProbe&) {
   return false;
 }
 

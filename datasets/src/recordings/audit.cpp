@@ -74,9 +74,9 @@ void check_header(const RecordingFile& file, const RunOutline& outline, const fo
             "the scenario of the recording is not the one given");
   }
   const std::vector<formation::Robot>& robots = file.scenario.robots;
-  const std::vector<RunOutline::Glimpse::Robot>& first = outline.first.robots;
+  const std::vector<RunOutline::Places::Robot>& first = outline.first.robots;
   const bool starts = std::equal(robots.begin(), robots.end(), first.begin(), first.end(),
-                                 [](const formation::Robot& robot, const RunOutline::Glimpse::Robot& seen) {
+                                 [](const formation::Robot& robot, const RunOutline::Places::Robot& seen) {
                                    return robot.position == seen.position && robot.velocity == seen.velocity;
                                  });
   require(AuditPoint::sequence, outline.first.time == 0.0, "the first row is not at t = 0");
@@ -111,9 +111,9 @@ bool is_whole(const formation::Scenario& s, const RunOutline& outline, bool& som
   constexpr double kOutOfBounds = 1e6;  // m and m/s
   const double steps = std::ceil(s.time_limit / s.time_step - kSameRow);
   if (static_cast<double>(outline.rows - 1) >= steps) return true;
-  const std::vector<RunOutline::Glimpse::Robot>& last = outline.last.robots;
+  const std::vector<RunOutline::Places::Robot>& last = outline.last.robots;
   if (s.formation)
-    return std::any_of(last.begin(), last.end(), [](const RunOutline::Glimpse::Robot& r) {
+    return std::any_of(last.begin(), last.end(), [](const RunOutline::Places::Robot& r) {
       return !(geometry::norm(r.position) < kOutOfBounds && geometry::norm(r.velocity) < kOutOfBounds);
     });
   return s.robots.size() == last.size() && has_ended(s, outline, somebody_stays);

@@ -17,8 +17,8 @@ bool is_in_range(Vec2 v) {
   return std::fabs(v.x) <= kLargestCoordinate && std::fabs(v.y) <= kLargestCoordinate;
 }
 
-RunOutline::Glimpse glimpse_of(const Step& row) {
-  RunOutline::Glimpse seen{row.time, {}};
+RunOutline::Places places_in(const Step& row) {
+  RunOutline::Places seen{row.time, {}};
   seen.robots.reserve(row.robots.size());
   for (const RobotStep& r : row.robots) seen.robots.push_back({r.position, r.velocity, r.mode});
   return seen;
@@ -79,7 +79,7 @@ std::string obstruction_of(const RecordingFile& run, const RunOutline& outline) 
 void RunOutline::add(const Step& row) {
   if (obstruction.empty()) obstruction = obstruction_in(row);
   before_last = std::move(last);
-  last = glimpse_of(row);
+  last = places_in(row);
   if (rows++ == 0) first = last;
   latest = std::max(latest, row.time);
 }

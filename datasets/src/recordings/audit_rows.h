@@ -35,7 +35,7 @@ void walk(const EachRow& each, const std::function<void(const RowInRun& at)>& ju
 class RunOutline {
  public:
   /// Of a row where and in which mode robots were.
-  struct Glimpse {
+  struct Places {
     struct Robot {
       geometry::Vec2 position, velocity;
       formation::Mode mode;
@@ -47,7 +47,7 @@ class RunOutline {
   void add(const formation::Step& row);
 
   std::size_t rows = 0;
-  Glimpse first, before_last, last;
+  Places first, before_last, last;
   double latest = 0.0;      ///< s
   std::string obstruction;  ///< in the first row that has one
 };

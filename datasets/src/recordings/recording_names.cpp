@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "recordings/recording_names.h"
 
+#include <initializer_list>
+
 namespace exactvo::datasets {
+
+namespace {
+
+/// Each with the name that the library has for it.
+template <class E>
+std::vector<Word<E>> named(std::initializer_list<E> values) {
+  std::vector<Word<E>> words;
+  for (const E value : values) words.push_back({value, name(value)});
+  return words;
+}
+
+}  // namespace
 
 template <>
 const std::vector<Word<lp::Status>>& words() {
-  static const std::vector<Word<lp::Status>> kWords{{lp::Status::optimal, "optimal"},
-                                                    {lp::Status::relaxed, "relaxed"},
-                                                    {lp::Status::infeasible, "infeasible"},
-                                                    {lp::Status::no_interior, "no-interior"}};
+  using lp::Status;
+  static const auto kWords = named({Status::optimal, Status::relaxed, Status::infeasible, Status::no_interior});
   return kWords;
 }
 
@@ -26,10 +38,8 @@ const std::vector<Word<lp::BindingKind>>& words() {
 template <>
 const std::vector<Word<formation::Mode>>& words() {
   using formation::Mode;
-  static const std::vector<Word<Mode>> kWords{
-      {Mode::direct, "direct"},           {Mode::guided, "guided"},         {Mode::boost, "boost"},
-      {Mode::by_plan, "by-plan"},         {Mode::going_back, "going-back"}, {Mode::following, "following"},
-      {Mode::pushing_out, "pushing-out"}, {Mode::staying, "staying"},       {Mode::arrived, "arrived"}};
+  static const auto kWords = named({Mode::direct, Mode::guided, Mode::boost, Mode::by_plan, Mode::going_back,
+                                    Mode::following, Mode::pushing_out, Mode::staying, Mode::arrived});
   return kWords;
 }
 

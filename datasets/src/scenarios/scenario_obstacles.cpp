@@ -43,11 +43,11 @@ thread_local int Level::depth_ = 0;
 
 }  // namespace
 
-bool looks_like_scenario(const Glimpse& glimpse) {
-  const std::size_t first = glimpse.beginning.find_first_not_of(" \t\r\n");
-  return first != std::string::npos && glimpse.beginning[first] == '{' &&
-         glimpse.beginning.find("\"robots\"") != std::string::npos &&
-         glimpse.beginning.find("\"FeatureCollection\"") == std::string::npos;
+bool looks_like_scenario(const FormatProbe& probe) {
+  const std::size_t first = probe.beginning.find_first_not_of(" \t\r\n");
+  return first != std::string::npos && probe.beginning[first] == '{' &&
+         probe.beginning.find("\"robots\"") != std::string::npos &&
+         probe.beginning.find("\"FeatureCollection\"") == std::string::npos;
 }
 
 void read_scenario_obstacles(const std::filesystem::path& path, Collector& out) {

@@ -165,9 +165,9 @@ class ScenarioReader {
         read_obstacle_file(list[k], pointer, scenario);
       } else {
         const std::string id = list[k].value("id", "O" + std::to_string(k + 1));
-        Judgement judgement = judge(to_raw(list[k], id, pointer));
-        refuse_unrepaired(judgement, file_);
-        scenario.obstacles.push_back({id, std::move(judgement.shape)});
+        ValidationResult checked = validate(to_raw(list[k], id, pointer));
+        refuse_unrepaired(checked, file_);
+        scenario.obstacles.push_back({id, std::move(checked.shape)});
       }
       origin_of_.resize(scenario.obstacles.size(), {pointer, list[k].contains("id")});
     }
@@ -177,13 +177,13 @@ class ScenarioReader {
     for (std::size_t k = 0; k < list.size(); ++k) {
       const std::string pointer = "/moving_obstacles/" + std::to_string(k);
       const std::string id = list[k].value("id", "M" + std::to_string(k + 1));
-      Judgement judgement = judge(to_raw(list[k], id, pointer));
-      refuse_unrepaired(judgement, file_);
+      ValidationResult checked = validate(to_raw(list[k], id, pointer));
+      refuse_unrepaired(checked, file_);
       formation::Leader motion{to_points(list[k].at("path"))};
       motion.speed = list[k].value("speed", 0.0);
       if (list[k].contains("profile"))
         motion.profile = to_profile(list[k].at("profile"), motion.path, file_, pointer + "/profile");
-      scenario.moving_obstacles.push_back({id, std::move(judgement.shape), std::move(motion)});
+      scenario.moving_obstacles.push_back({id, std::move(checked.shape), std::move(motion)});
     }
   }
 

@@ -2,10 +2,9 @@
 #include "exactvo/formation/patterns.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
+#include "exactvo/geometry/names.h"
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
 
@@ -14,7 +13,7 @@ namespace {
 
 using geometry::kPi;
 
-constexpr std::array<std::pair<Pattern, const char*>, 4> kNames{
+constexpr geometry::Names<Pattern, 4> kNames{
     {{Pattern::line, "line"}, {Pattern::wedge, "wedge"}, {Pattern::circle, "circle"}, {Pattern::grid, "grid"}}};
 
 Vec2 on_line(std::size_t k) {
@@ -60,16 +59,11 @@ Vec2 slot(Pattern pattern, std::size_t k, std::size_t n) {
 }  // namespace
 
 const char* name(Pattern pattern) {
-  return kNames.at(static_cast<std::size_t>(pattern)).second;
+  return geometry::name_in(kNames, pattern);
 }
 
 bool parse(const std::string& text, Pattern& out) {
-  for (const auto& [pattern, known] : kNames) {
-    if (text != known) continue;
-    out = pattern;
-    return true;
-  }
-  return false;
+  return geometry::parse_in(kNames, text, out);
 }
 
 std::vector<Vec2> pattern_offsets(Pattern pattern, std::size_t n, double spacing, Vec2 heading) {

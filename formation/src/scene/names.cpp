@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <array>
-#include <utility>
-
+#include "exactvo/geometry/names.h"
 #include "exactvo/formation/simulation.h"
 
 namespace exactvo::formation {
 namespace {
 
-template <typename Enum, std::size_t N>
-using Names = std::array<std::pair<Enum, const char*>, N>;
+using geometry::name_in;
+using geometry::Names;
+using geometry::parse_in;
+using geometry::words_in;
 
 constexpr Names<Method, 4> kMethods{{{Method::orca, "orca"},
                                      {Method::ivo_edge, "ivo-edge"},
@@ -36,30 +36,6 @@ constexpr Names<Mode, 9> kModes{{{Mode::direct, "direct"},
                                  {Mode::pushing_out, "pushing-out"},
                                  {Mode::arrived, "arrived"}}};
 
-template <typename Enum, std::size_t N>
-const char* name_in(const Names<Enum, N>& names, Enum value) {
-  for (const auto& [e, text] : names)
-    if (e == value) return text;
-  return "";
-}
-
-template <typename Enum, std::size_t N>
-bool parse_in(const Names<Enum, N>& names, const std::string& text, Enum& out) {
-  for (const auto& [e, known] : names) {
-    if (text != known) continue;
-    out = e;
-    return true;
-  }
-  return false;
-}
-
-template <typename Enum, std::size_t N>
-std::vector<std::string> all_of(const Names<Enum, N>& names) {
-  std::vector<std::string> out;
-  for (const auto& entry : names) out.emplace_back(entry.second);
-  return out;
-}
-
 }  // namespace
 
 const char* name(Method m) {
@@ -85,20 +61,20 @@ const char* name(Mode m) {
   return name_in(kModes, m);
 }
 std::vector<std::string> method_names() {
-  return all_of(kMethods);
+  return words_in(kMethods);
 }
 std::vector<std::string> controller_names() {
-  return all_of(kControllers);
+  return words_in(kControllers);
 }
 std::vector<std::string> integrator_names() {
-  return all_of(kIntegrators);
+  return words_in(kIntegrators);
 }
 std::vector<std::string> liveness_names() {
-  return all_of(kLivenesses);
+  return words_in(kLivenesses);
 }
 
 std::vector<std::string> guidance_names() {
-  return all_of(kGuidances);
+  return words_in(kGuidances);
 }
 bool parse(const std::string& text, Method& out) {
   return parse_in(kMethods, text, out);

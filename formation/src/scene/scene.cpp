@@ -64,7 +64,7 @@ void Scene::add_facade_ellipses(const Scenario& scenario, const SimulationOption
 void Scene::add_chains(const Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.obstacles.size(); ++i) {
     for (vo::OrcaChain& chain : vo::orca_chains(scenario.obstacles[i].shape)) {
-      // A closed chain has an edge a vertex, an open one is walked there and back: an edge begins at every vertex.
+      // A closed chain has one edge per vertex, an open one is walked there and back: an edge begins at every vertex.
       first_edge_.push_back(edges_.size());
       const std::size_t n = chain.vertices.size();
       for (std::size_t k = 0; k < n; ++k) {

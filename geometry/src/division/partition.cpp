@@ -15,6 +15,7 @@
 #include "division/partition_certificate.h"
 #include "division/triangulation.h"
 #include "exactvo/geometry/hull.h"
+#include "exactvo/geometry/names.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/geometry/validity.h"
@@ -26,6 +27,12 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Traits = CGAL::Partition_traits_2<Kernel>;
 using Pieces = std::list<Traits::Polygon_2>;
+
+constexpr Names<PartitionMethod, 5> kMethods{{{PartitionMethod::automatic, "automatic"},
+                                              {PartitionMethod::greene, "greene"},
+                                              {PartitionMethod::approximate, "approximate"},
+                                              {PartitionMethod::optimal, "optimal"},
+                                              {PartitionMethod::triangles, "triangles"}}};
 
 /// Up to here the optimal partition takes under 2 ms; it grows with the fourth power of the size.
 constexpr std::size_t kMostForOptimal = 32;
@@ -140,6 +147,18 @@ std::vector<Ring> rings_split_where_they_touch(const Polygon& polygon) {
 }
 
 }  // namespace
+
+const char* name(PartitionMethod method) {
+  return name_in(kMethods, method);
+}
+
+bool parse(const std::string& text, PartitionMethod& out) {
+  return parse_in(kMethods, text, out);
+}
+
+std::vector<std::string> partition_method_names() {
+  return words_in(kMethods);
+}
 
 std::vector<ConvexPolygon> convex_pieces(const Ring& ring, PartitionMethod method) {
   EXACTVO_REQUIRE(std::all_of(ring.begin(), ring.end(), is_finite), excerpt(ring));

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// The extension module `exactvo._exactvo`: what the package's Python calls. One unit a topic; each adds its names
+/// The extension module `exactvo._exactvo`: what the package's Python calls. One unit per topic; each adds its names
 /// here. Arguments arrive as objects and are converted with their names (arguments.h), so that a message names the
 /// argument.
 

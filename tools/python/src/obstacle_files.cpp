@@ -18,18 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using datasets::ObstacleFile;
 
-bool parse_units(const std::string& text, datasets::Units& out) {
-  if (text == "automatic")
-    out = datasets::Units::automatic;
-  else if (text == "metres")
-    out = datasets::Units::metres;
-  else if (text == "degrees")
-    out = datasets::Units::degrees;
-  else
-    return false;
-  return true;
-}
-
 datasets::ReadOptions reading(const py::object& format, const std::string& units, py::handle cell_size,
                               bool skip_invalid, bool repair) {
   datasets::ReadOptions options;
@@ -42,7 +30,7 @@ datasets::ReadOptions reading(const py::object& format, const std::string& units
       return false;
     });
   }
-  options.units = word<datasets::Units>(units, "units", {"automatic", "metres", "degrees"}, &parse_units);
+  options.units = word<datasets::Units>(units, "units", datasets::unit_names(), &datasets::parse);
   options.cell_size = at_least_zero(cell_size, "cell_size");
   options.keep_going = skip_invalid;
   options.repair = repair;

@@ -90,20 +90,6 @@ py::tuple leg_tuple(const vo::Leg& leg) {
                         as_tuple(leg.touch));
 }
 
-const char* name_of(vo::BoundaryPart part) {
-  switch (part) {
-    case vo::BoundaryPart::left_leg:
-      return "left leg";
-    case vo::BoundaryPart::right_leg:
-      return "right leg";
-    case vo::BoundaryPart::cut_off:
-      return "cut-off";
-    case vo::BoundaryPart::apex:
-      break;
-  }
-  return "apex";
-}
-
 py::array_t<bool> contains_many(const Cone& cone, py::handle velocities) {
   require_apart(cone, "contains");
   const std::vector<Vec2> all = points(velocities, "velocities");
@@ -206,7 +192,7 @@ void bind_vo(py::module_& module) {
            [](const Cone& c, py::handle velocity) {
              require_apart(c, "nearest_boundary");
              const auto b = c.obstacle().nearest_boundary(vector(velocity, "velocity") - c.shape_velocity);
-             return py::make_tuple(as_tuple(b.normal), b.signed_distance, as_tuple(b.u), name_of(b.part));
+             return py::make_tuple(as_tuple(b.normal), b.signed_distance, as_tuple(b.u), name(b.part));
            })
       .def("half_plane",
            [](const Cone& c, py::handle velocity, py::handle responsibility) {

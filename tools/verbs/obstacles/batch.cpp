@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// exactvo batch: every obstacle of every file taken apart, enclosed and certified.
+// exactvo batch: every obstacle of every file decomposed, enclosed and certified.
 #include "exactvo/datasets/batch.h"
 #include "exactvo/geometry/counted.h"
 
@@ -69,25 +69,15 @@ Vec2 parse_point(const std::string& option, const std::string& text) {
 }
 
 datasets::Units units_named(const std::string& text) {
-  if (text == "automatic") return datasets::Units::automatic;
-  if (text == "metres") return datasets::Units::metres;
-  if (text == "degrees") return datasets::Units::degrees;
-  throw UsageError("--units", text, "automatic, metres or degrees");
+  datasets::Units units{};
+  if (!parse(text, units)) throw UsageError("--units", text, "automatic, metres or degrees");
+  return units;
 }
 
 geometry::PartitionMethod partition_named(const std::string& text) {
-  using geometry::PartitionMethod;
-  static const std::vector<std::pair<std::string, PartitionMethod>> kMethods{
-      {"automatic", PartitionMethod::automatic},
-      {"greene", PartitionMethod::greene},
-      {"approximate", PartitionMethod::approximate},
-      {"optimal", PartitionMethod::optimal},
-      {"triangles", PartitionMethod::triangles}};
-  std::vector<std::string> names;
-  for (const auto& [name, method] : kMethods) {
-    if (text == name) return method;
-    names.push_back(name);
-  }
+  geometry::PartitionMethod method{};
+  if (parse(text, method)) return method;
+  const std::vector<std::string> names = geometry::partition_method_names();
   throw UsageError("--partition", text, fmt::format("one of {}{}", fmt::join(names, " "), suggestion(text, names)));
 }
 
@@ -163,7 +153,7 @@ void parse_shard(const std::string& text, BatchRun& run) {
 
 /// The command line without what leaves the results as they are, so that a resumed run's provenance is the same: how
 /// it is run, and where the results lie.
-std::vector<std::string> lasting_words(const std::vector<std::string>& words) {
+std::vector<std::string> reproducible_arguments(const std::vector<std::string>& words) {
   const auto takes_value = [](const std::string& w) {
     return w == "-j" || w == "--jobs" || w == "--shard" || w == "--out" || w == "-o";
   };
@@ -189,7 +179,7 @@ BatchRun run_of(const BatchFlags& flags) {
   run.out = flags.out;
   run.workers = flags.workers == 0 && datasets::under_mpi() ? 1 : flags.workers;  // ranks share a machine's processors
   run.resume = flags.resume;
-  run.command_line = lasting_words(command_line());
+  run.command_line = reproducible_arguments(command_line());
   parse_shard(flags.shard, run);
   return run;
 }

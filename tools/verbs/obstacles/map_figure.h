@@ -16,7 +16,7 @@ namespace exactvo::tools {
 /// Solid grey with holes left free, and walls as lines.
 Figure map_figure(const std::vector<formation::SceneObstacle>& obstacles, const std::string& title);
 
-/// The same for obstacles taken apart: pieces filled in pale colours, facades as bold lines, hulls dashed, the smallest
+/// The same for decomposed obstacles: pieces filled in pale colours, facades as bold lines, hulls dashed, the smallest
 /// ellipses, the facades' and the trap-free ones.
 Figure shapes_figure(const std::vector<geometry::ObstacleShapes>& obstacles, const std::string& title);
 

@@ -29,8 +29,6 @@ using datasets::RingFinding;
 
 namespace {
 
-const std::vector<std::string> kUnits{"automatic", "metres", "degrees"};
-
 void check_word(const std::string& option, const std::string& word, const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), word) != known.end()) return;
   throw UsageError(option, word, "one of" + listed(known) + suggestion(word, known));
@@ -151,13 +149,12 @@ void check_format(const std::string& option, const std::string& format, const st
 
 datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::string& format_name) {
   check_format(format_name, flags.format, datasets::readable_formats());
-  check_word("--units", flags.units, kUnits);
+  check_word("--units", flags.units, datasets::unit_names());
   if (!(flags.cell_size >= 0.0) || std::isinf(flags.cell_size))
     throw UsageError("--cell-size", fmt::format("{}", flags.cell_size), "a length in m, or 0 for the default");
   datasets::ReadOptions options;
   options.format = flags.format;
-  if (flags.units == "metres") options.units = datasets::Units::metres;
-  if (flags.units == "degrees") options.units = datasets::Units::degrees;
+  parse(flags.units, options.units);
   options.cell_size = flags.cell_size;
   options.keep_going = true;
   return options;

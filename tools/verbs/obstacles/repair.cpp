@@ -265,13 +265,13 @@ std::size_t number_recombined(const std::vector<FileAnswer>& answers) {
 }
 
 /// Those that are drawn: each takes a look at all findings and obstacles.
-std::vector<MendedPolygon> recombined(const std::vector<FileAnswer>& answers) {
-  std::vector<MendedPolygon> polygons;
+std::vector<RepairedPolygon> recombined(const std::vector<FileAnswer>& answers) {
+  std::vector<RepairedPolygon> polygons;
   for (const FileAnswer& answer : answers) {
     if (!answer.content) continue;
     for (const RepairRecord& r : answer.content->repairs) {
       if (!r.recombined) continue;
-      if (polygons.size() == kMostMendedDrawn) return polygons;
+      if (polygons.size() == kMostRepairedDrawn) return polygons;
       const std::string name = std::filesystem::path(answer.file).filename().string();
       polygons.push_back(
           {name + ", " + r.place, r.given, places_of_problems(*answer.content, r), outcome(*answer.content, r)});
@@ -281,7 +281,7 @@ std::vector<MendedPolygon> recombined(const std::vector<FileAnswer>& answers) {
 }
 
 void draw_figure(const std::vector<FileAnswer>& answers, const std::string& out) {
-  const std::vector<MendedPolygon> polygons = recombined(answers);
+  const std::vector<RepairedPolygon> polygons = recombined(answers);
   if (polygons.empty()) return message("no figure: nothing had to be cut");
   const std::size_t number = number_recombined(answers);
   if (number > polygons.size())

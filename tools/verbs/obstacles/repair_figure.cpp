@@ -22,7 +22,7 @@ using geometry::Ring;
 using geometry::Vec2;
 
 /// A square.
-Box view_of(const MendedPolygon& polygon) {
+Box view_of(const RepairedPolygon& polygon) {
   Box box;
   for (const Ring& ring : polygon.before) {
     for (const Vec2 p : ring) box.add(p);
@@ -51,7 +51,7 @@ constexpr const char* kProblemMark = "with points pt 6 ps 1.6 lw 2.5 lc rgb '#e0
 
 class Panels {
  public:
-  void row(const MendedPolygon& polygon) {
+  void row(const RepairedPolygon& polygon) {
     LocalOrigin(view_of(polygon)).prepare(data_);
     before(polygon);
     after(polygon);
@@ -72,7 +72,7 @@ class Panels {
   }
 
  private:
-  void before(const MendedPolygon& polygon) {
+  void before(const RepairedPolygon& polygon) {
     const LocalOrigin origin(view_of(polygon));
     PlotCommand plot;
     plot.data(rings("before: " + polygon.title, polygon.before),
@@ -84,7 +84,7 @@ class Panels {
   }
 
   /// Each polygon with its own holes: what lies in a hole of another keeps its colour.
-  void after(const MendedPolygon& polygon) {
+  void after(const RepairedPolygon& polygon) {
     const LocalOrigin origin(view_of(polygon));
     PlotCommand plot;
     std::vector<Ring> all;
@@ -128,10 +128,10 @@ class Panels {
 
 }  // namespace
 
-Figure repair_figure(const std::vector<MendedPolygon>& polygons) {
+Figure repair_figure(const std::vector<RepairedPolygon>& polygons) {
   EXACTVO_REQUIRE(!polygons.empty(), std::string("no polygon"));
   Panels panels;
-  const std::size_t rows = std::min(polygons.size(), kMostMendedDrawn);
+  const std::size_t rows = std::min(polygons.size(), kMostRepairedDrawn);
   for (std::size_t k = 0; k < rows; ++k) panels.row(polygons[k]);
   return std::move(panels).figure();
 }

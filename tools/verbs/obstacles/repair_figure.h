@@ -14,7 +14,7 @@
 namespace exactvo::tools {
 
 /// One polygon that was recombined.
-struct MendedPolygon {
+struct RepairedPolygon {
   std::string title;
   std::vector<geometry::Ring> before;
   std::vector<geometry::Vec2> problems;  ///< where
@@ -22,9 +22,9 @@ struct MendedPolygon {
 };
 
 /// At most so many are drawn, a row each.
-inline constexpr std::size_t kMostMendedDrawn = 6;
+inline constexpr std::size_t kMostRepairedDrawn = 6;
 
 /// REQUIRES: at least one.
-Figure repair_figure(const std::vector<MendedPolygon>& polygons);
+Figure repair_figure(const std::vector<RepairedPolygon>& polygons);
 
 }  // namespace exactvo::tools

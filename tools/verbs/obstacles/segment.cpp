@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// exactvo segment: obstacles taken apart: facades, convex pieces, hulls, ellipses, each with its certificate.
+// exactvo segment: obstacles decomposed: facades, convex pieces, hulls, ellipses, each with its certificate.
 #include <fmt/format.h>
 
 #include <algorithm>

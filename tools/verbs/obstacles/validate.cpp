@@ -24,7 +24,7 @@ bool has_findings(const FileAnswer& answer) {
   return answer.content && !answer.content->findings.empty();
 }
 
-/// Mended problems have one right answer: they fail only where asked.
+/// Repaired problems have one right answer: they fail only where asked.
 bool passes(const FileAnswer& answer, bool strict) {
   return answer.is_whole() && !(strict && has_findings(answer));
 }

@@ -35,20 +35,6 @@ Place place_of(const VoAnswer& a, const vo::LostPiece& piece) {
   return place_of(a.question, a.free->cone_of[piece.half_plane]);
 }
 
-const char* name(vo::BoundaryPart part) {
-  switch (part) {
-    case vo::BoundaryPart::cut_off:
-      return "cut-off";
-    case vo::BoundaryPart::apex:
-      return "apex";
-    case vo::BoundaryPart::left_leg:
-      return "left leg";
-    case vo::BoundaryPart::right_leg:
-      break;
-  }
-  return "right leg";
-}
-
 namespace {
 
 const char* word_of(Taken taken) {

@@ -74,9 +74,6 @@ const char* why_no_certificate(const ConeAnswer& answer);
 /// Whose half-plane excludes the piece.
 Place place_of(const VoAnswer& answer, const vo::LostPiece& piece);
 
-/// "cut-off", "apex", "left leg", "right leg".
-const char* name(vo::BoundaryPart part);
-
 /// "its 3 convex pieces", "the smallest ellipse round it".
 std::string in_words(const AskedObstacle& obstacle);
 

@@ -145,7 +145,7 @@ void require(bool ok, const char* option, const std::string& found, const char* 
 }
 
 /// Many velocities are answered by whether they collide, and by nothing else.
-void check_company_of_velocities(const VoFlags& flags) {
+void check_option_conflicts_of_velocities(const VoFlags& flags) {
   const bool by_rule = flags.time_horizon == "paper" || flags.time_horizon == "clamped";
   require(!by_rule, "--time-horizon", flags.time_horizon + " beside --velocities",
           "a time in s, or infinite: the rule gives each velocity its own");
@@ -157,7 +157,7 @@ void check_company_of_velocities(const VoFlags& flags) {
 }
 
 /// What goes with what, and what would be ignored.
-void check_company(const VoFlags& flags) {
+void check_option_conflicts(const VoFlags& flags) {
   require(flags.radius || !flags.robot.empty(), "--radius", "nothing", "the robot's radius in m (or --robot WKT)");
   require(!flags.radius || flags.robot.empty(), "--radius", "--radius beside --robot", "one of the two");
   require(flags.max_speed || !flags.free, "--max-speed", "nothing", "a speed in m/s, which --free needs");
@@ -167,7 +167,7 @@ void check_company(const VoFlags& flags) {
           "--radius, which the enclosure is fitted for");
   require(!flags.velocity.empty() || !flags.velocities.empty(), "--velocity", "nothing",
           "X,Y in m/s, or --velocities FILE for many");
-  if (!flags.velocities.empty()) check_company_of_velocities(flags);
+  if (!flags.velocities.empty()) check_option_conflicts_of_velocities(flags);
   require(flags.alpha == 1.0 || !flags.free, "--alpha", "--alpha beside --free", "one of the two");
   require(flags.variants.empty() || !flags.free, "--variant", "--variant beside --free", "one of the two");
 }
@@ -247,7 +247,7 @@ Place place_of(const VoQuestion& question, std::size_t encounter) {
 }
 
 VoQuestion question_of(const VoFlags& flags) {
-  check_company(flags);
+  check_option_conflicts(flags);
   check_words(flags);
   check_numbers(flags);
   VoQuestion q;

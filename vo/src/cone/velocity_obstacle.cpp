@@ -26,6 +26,11 @@ std::optional<Leg> leg_of(const geometry::GrownShape& s, const detail::Tangent& 
 
 }  // namespace
 
+const char* name(BoundaryPart part) {
+  constexpr const char* kNames[] = {"left leg", "right leg", "cut-off", "apex"};
+  return kNames[static_cast<int>(part)];
+}
+
 VelocityObstacle::VelocityObstacle(geometry::ConvexShape obstacle, Vec2 robot_position, double robot_radius,
                                    double time_horizon)
     : grown_{std::move(obstacle), robot_position, robot_radius}, tau_(time_horizon) {

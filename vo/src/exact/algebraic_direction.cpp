@@ -41,7 +41,7 @@ RationalVector turned(const RationalVector& v, int k) {
 }
 
 AlgebraicDirection direction_of(Root slope, int quarter_turns) {
-  return AlgebraicDoor::direction({std::move(slope), quarter_turns % 4});
+  return AlgebraicAccess::direction({std::move(slope), quarter_turns % 4});
 }
 
 AlgebraicDirection direction_of(const RationalVector& v) {

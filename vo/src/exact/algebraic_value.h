@@ -28,8 +28,8 @@ struct AlgebraicValue {
   int quarter_turns = 0;  ///< 0 to 3
 };
 
-/// The way into an AlgebraicDirection and out of it, for this folder alone.
-struct AlgebraicDoor {
+/// Access key: makes and reads an AlgebraicDirection, for this folder alone.
+struct AlgebraicAccess {
   static AlgebraicDirection direction(AlgebraicValue value) {
     return AlgebraicDirection(std::make_shared<const AlgebraicValue>(std::move(value)));
   }
@@ -37,7 +37,7 @@ struct AlgebraicDoor {
 };
 
 inline const AlgebraicValue& value_of(const AlgebraicDirection& a) {
-  return AlgebraicDoor::value(a);
+  return AlgebraicAccess::value(a);
 }
 
 /// Counter-clockwise by k quarter turns, k of any sign.

@@ -110,7 +110,7 @@ Point vector_of(const AlgebraicDirection& d) {
 /// What of a cone is needed: in velocities, relative to the apex.
 class ConeCurves {
  public:
-  ConeCurves(const ShiftedCone& cone, const GrownBody& body)
+  ConeCurves(const ShiftedCone& cone, const ExactSum& body)
       : apex_(apex_of(cone)),
         scale_(std::isfinite(cone.cone.time_horizon()) ? Rational(1 / Rational(cone.cone.time_horizon()))
                                                        : Rational(0)),
@@ -249,7 +249,7 @@ Owner allowed_by(const HalfPlane& h) {
 }
 
 Owner outside_of(const ShiftedCone& cone) {
-  const GrownBody body = grown_body(cone.cone);
+  const ExactSum body = exact_sum(cone.cone);
   const ExactLegs legs = legs_of(body);
   const bool is_ray = compare(legs.left, legs.right) == geometry::Sign::zero;
   return {is_ray ? Owner::Kind::ray : Owner::Kind::cone, {}, ConeCurves(cone, body).all(legs)};

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "exact/grown_body.h"
+#include "exact/exact_sum.h"
 #include "exactvo/vo/free_arrangement.h"
 #include "free/number.h"
 

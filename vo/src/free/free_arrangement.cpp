@@ -44,7 +44,7 @@ auto guarded(const std::vector<ShiftedCone>& cones, Work&& work) {
 /// Two legs, and over the front an arc round each centre with an edge between two.
 std::size_t most_curves_of(const std::vector<ShiftedCone>& cones) {
   std::size_t most = 0;
-  for (const ShiftedCone& cone : cones) most += 2 * detail::grown_body(cone.cone).centres.size() + 1;
+  for (const ShiftedCone& cone : cones) most += 2 * detail::exact_sum(cone.cone).centres.size() + 1;
   return most;
 }
 
@@ -161,7 +161,7 @@ const char* name(ArcKind kind) {
 }
 
 bool FreeArrangement::can_hold(const ShiftedCone& cone) {
-  return detail::grown_body(cone.cone).body.is_disc();
+  return detail::exact_sum(cone.cone).body.is_disc();
 }
 
 std::size_t FreeArrangement::curves_of(const ShiftedCone& cone) {

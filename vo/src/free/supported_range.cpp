@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exact/grown_body.h"
+#include "exact/exact_sum.h"
 
 namespace exactvo::vo::detail {
 namespace {
@@ -37,12 +37,12 @@ bool is_in_supported_range(Vec2 v) {
 }
 
 bool is_in_supported_range(const ShiftedCone& cone) {
-  const Given given = as_given(cone.cone);
+  const UnroundedInput input = unrounded_input(cone.cone);
   const double tau = cone.cone.time_horizon();
-  return (std::isinf(tau) || is_in_supported_range(tau)) && is_in_supported_range(given.position) &&
-         is_in_supported_range(given.radius) && are_in_supported_range(cone.minus_apex.terms) &&
-         (!given.robot || are_in_supported_range(given.robot->vertices)) &&
-         std::visit(ShapeIsInSupportedRange{}, given.obstacle);
+  return (std::isinf(tau) || is_in_supported_range(tau)) && is_in_supported_range(input.position) &&
+         is_in_supported_range(input.radius) && are_in_supported_range(cone.minus_apex.terms) &&
+         (!input.robot || are_in_supported_range(input.robot->vertices)) &&
+         std::visit(ShapeIsInSupportedRange{}, input.obstacle);
 }
 
 }  // namespace exactvo::vo::detail

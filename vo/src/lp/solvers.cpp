@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "exactvo/geometry/names.h"
 #include "exactvo/vo/lp/solve.h"
 #include "lp/exact/exact.h"
 #include "lp/lanes/layout.h"
@@ -15,7 +16,10 @@
 namespace exactvo::lp {
 namespace {
 
-constexpr Solver kSolvers[] = {Solver::incremental, Solver::batch, Solver::certified, Solver::exact};
+constexpr geometry::Names<Solver, 4> kSolvers{{{Solver::incremental, "incremental"},
+                                               {Solver::batch, "batch"},
+                                               {Solver::certified, "certified"},
+                                               {Solver::exact, "exact"}}};
 
 /// Padding that always holds (batch.h).
 constexpr double kAlwaysHolds = -1e30;
@@ -123,23 +127,15 @@ Proven solve_one(Solver solver, const Problem& problem) {
 }  // namespace
 
 const char* name(Solver solver) {
-  constexpr const char* kNames[] = {"incremental", "batch", "certified", "exact"};
-  return kNames[static_cast<int>(solver)];
+  return geometry::name_in(kSolvers, solver);
 }
 
 std::vector<std::string> solver_names() {
-  std::vector<std::string> names;
-  for (const Solver solver : kSolvers) names.emplace_back(name(solver));
-  return names;
+  return geometry::words_in(kSolvers);
 }
 
 bool parse(const std::string& text, Solver& solver) {
-  for (const Solver candidate : kSolvers) {
-    if (text != name(candidate)) continue;
-    solver = candidate;
-    return true;
-  }
-  return false;
+  return geometry::parse_in(kSolvers, text, solver);
 }
 
 struct Solving::State {

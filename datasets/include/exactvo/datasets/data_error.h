@@ -23,7 +23,7 @@ enum class DataCode {
   json_syntax,         ///< E_JSON_SYNTAX: not JSON; the place is line and column
   json_duplicate_key,  ///< E_JSON_DUPLICATE_KEY: a key twice in one object
   key_missing,         ///< E_KEY_MISSING: a required key is not there
-  key_unknown,         ///< E_KEY_UNKNOWN: a key that means nothing; the nearest known one is suggested
+  key_unknown,         ///< E_KEY_UNKNOWN: an unknown key; the nearest known one is suggested
   wrong_type,          ///< E_TYPE: a string where a number belongs, and so on
   out_of_range,        ///< E_RANGE: a number outside its stated range
   not_an_option,       ///< E_OPTION: a word that is none of the listed ones

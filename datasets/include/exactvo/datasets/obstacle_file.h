@@ -43,6 +43,12 @@ enum class Units {
   metres,     ///< m, whatever the file says
   degrees     ///< longitude, latitude on WGS 84
 };
+/// "automatic", "metres", "degrees".
+const char* name(Units units);
+/// False where the word names none.
+bool parse(const std::string& text, Units& out);
+/// All, in the order of the enumeration.
+std::vector<std::string> unit_names();
 
 /// How a file is read.
 struct ReadOptions {

@@ -128,7 +128,7 @@ void refuse_large_file(const Input& input, const ReadOptions& options, std::uint
 }
 
 /// The file's outcome is the best of its obstacles'; all rejected is rejected, by the first one's code.
-void judge(InputFacts& facts, const ReadCounts& counts, const std::optional<DataError>& first_rejected) {
+void set_outcome(InputFacts& facts, const ReadCounts& counts, const std::optional<DataError>& first_rejected) {
   facts.tally.read = counts.done + counts.repaired + counts.rejected;
   facts.tally.done = counts.done;
   facts.tally.repaired = counts.repaired;
@@ -187,7 +187,7 @@ InputFacts read_into(Chunker& chunker, const Input& input, const ReadOptions& gi
     facts.extent = file.extent;
     facts.coverage = file.coverage;
     for (const DataNote& note : file.notes) facts.notes.push_back(note.text);
-    judge(facts, file.counts, first_rejected);
+    set_outcome(facts, file.counts, first_rejected);
   } catch (const DataError& error) {
     facts.tally = {};
     reject(facts, code_name(error.code()), error.what());

@@ -20,7 +20,7 @@ namespace exactvo::formation {
 /// How robots avoid obstacles.
 enum class Method {
   orca,         ///< van den Berg et al. 2011: the baseline
-  ivo_edge,     ///< the paper: an ellipse a facade
+  ivo_edge,     ///< the paper: one ellipse per facade
   ivo_cluster,  ///< enclosures merged where they overlap and fitted trap-free; pure equation (12)
   ivo           ///< ivo_cluster, boost where certified, following after a stall
 };

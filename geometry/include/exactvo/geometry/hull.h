@@ -23,6 +23,12 @@ enum class PartitionMethod {
   optimal,      ///< CGAL's: the least number of pieces, O(n^4)
   triangles     ///< a constrained Delaunay triangulation merged after Hertel and Mehlhorn (1983): the same bound
 };
+/// "automatic", "greene", "approximate", "optimal", "triangles".
+const char* name(PartitionMethod method);
+/// False where the word names none.
+bool parse(const std::string& text, PartitionMethod& out);
+/// All, in the order of the enumeration.
+std::vector<std::string> partition_method_names();
 
 /// Splits a simple polygon without holes into convex pieces whose union is the polygon and whose interiors are
 /// disjoint. Exact (it only selects vertices), and every answer is proved so before it is given. Never fails on a

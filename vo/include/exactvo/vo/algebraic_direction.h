@@ -50,7 +50,7 @@ namespace exactvo::vo {
 
 namespace detail {
 struct AlgebraicValue;
-struct AlgebraicDoor;
+struct AlgebraicAccess;
 }  // namespace detail
 
 /// A direction, unrounded. Immutable; copies share.
@@ -78,7 +78,7 @@ class AlgebraicDirection {
   geometry::Vec2 rounded() const;
 
  private:
-  friend struct detail::AlgebraicDoor;
+  friend struct detail::AlgebraicAccess;
   explicit AlgebraicDirection(std::shared_ptr<const detail::AlgebraicValue> value);
 
   std::shared_ptr<const detail::AlgebraicValue> value_;

@@ -109,7 +109,7 @@ class FreeArrangement {
   /// The same as the constructor; a scene that is refused is a value, not an exception.
   static Attempt attempt(std::vector<ShiftedCone> cones, double max_speed);
 
-  /// What is told before anything is computed; `numbers_apart` is not.
+  /// The refusals that are known before anything is computed; `numbers_apart` is not one.
   static Refusal refusal_of(const std::vector<ShiftedCone>& cones, double max_speed);
 
   /// Whether no curve of the cone is worse than a circle: not an ellipse, unless it is a disc or a segment.

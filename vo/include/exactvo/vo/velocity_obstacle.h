@@ -49,10 +49,10 @@ using geometry::Vec2;
 
 class VelocityObstacle;
 namespace detail {
-struct GrownBody;
-struct Given;
-GrownBody grown_body(const VelocityObstacle& obstacle);
-Given as_given(const VelocityObstacle& obstacle);
+struct ExactSum;
+struct UnroundedInput;
+ExactSum exact_sum(const VelocityObstacle& obstacle);
+UnroundedInput unrounded_input(const VelocityObstacle& obstacle);
 }  // namespace detail
 
 /// One side of the cone.
@@ -76,6 +76,8 @@ enum class BoundaryPart {
   cut_off,    ///< the shape divided by the horizon
   apex        ///< v = 0, of a cone that is not truncated
 };
+/// "left leg", "right leg", "cut-off", "apex".
+const char* name(BoundaryPart part);
 
 /// The boundary point of VO nearest to a velocity. Rounded.
 struct NearestBoundary {
@@ -148,8 +150,8 @@ class VelocityObstacle {
     double error;
   };
 
-  friend detail::GrownBody detail::grown_body(const VelocityObstacle& obstacle);
-  friend detail::Given detail::as_given(const VelocityObstacle& obstacle);
+  friend detail::ExactSum detail::exact_sum(const VelocityObstacle& obstacle);
+  friend detail::UnroundedInput detail::unrounded_input(const VelocityObstacle& obstacle);
 
   geometry::GrownShape grown_;
   double tau_;

@@ -52,7 +52,7 @@ void round_point(ExactOptimum& o) {
 }
 
 /// The same direction by a power of two, of a length near 1, so that doubles follow the search: exact, or as it was.
-Vec2 brought_near(Vec2 direction) {
+Vec2 scaled_to_unit(Vec2 direction) {
   const int exponent = std::ilogb(std::max(std::abs(direction.x), std::abs(direction.y)));
   const Vec2 near = {std::scalbn(direction.x, -exponent), std::scalbn(direction.y, -exponent)};
   const bool same = std::scalbn(near.x, exponent) == direction.x && std::scalbn(near.y, exponent) == direction.y;
@@ -76,7 +76,7 @@ ExactOptimum start_of(const ExactRegion& region, const Aim& aim) {
     o.point = {Exact(aim.target.x), 0, Exact(aim.target.y), 0, 1, 0};
   } else {
     o.point =
-        top_of_disc(exact(brought_near(aim.directions.empty() ? aim.target : aim.directions.front())), region.disc);
+        top_of_disc(exact(scaled_to_unit(aim.directions.empty() ? aim.target : aim.directions.front())), region.disc);
     o.on_disc = true;
   }
   round_point(o);
@@ -156,13 +156,13 @@ std::size_t entering(const Scan& scan, const std::vector<std::size_t>* among) {
   return search.line();
 }
 
-/// A line in hand, and where it stands in the region.
+/// A line of the working set, and where it stands in the region.
 struct Held {
   ExactLine line;
   std::size_t position = kNone;
 };
 
-/// The optimum on the boundary of `entering` inside the lines in hand and the disc. `tight` is left to the caller
+/// The optimum on the boundary of `entering` inside the working set and the disc. `tight` is left to the caller
 /// where feasible; where not, it names the contradiction.
 ExactOptimum best_on_line(const Held& entering, const std::vector<Held>& others, const ExactRegion& region,
                           const Aim& aim) {
@@ -215,7 +215,7 @@ ExactOptimum best_step(const ExactRegion& region, const Aim& aim, const ExactOpt
   return next;
 }
 
-/// The lowest point of the plane of soft line `top`: a linear program in the plane, the lines in hand one by one.
+/// The lowest point of the plane of soft line `top`: a linear program in the plane, the working set line by line.
 ExactOptimum lowest_on_plane(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& in_hand,
                              std::size_t top) {
   const ExactLine plane = exact(region.lines[top].half_plane);
@@ -235,7 +235,7 @@ ExactOptimum lowest_on_plane(const ExactRegion& region, const Aim& aim, const st
   return o;
 }
 
-/// The point of the hard line `wall` where the soft lines in hand are violated least.
+/// The point of the hard line `wall` where the soft lines of the working set are violated least.
 ExactOptimum lowest_on_wall(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& in_hand,
                             std::size_t wall) {
   WallSearch search(carrier_of(exact(region.lines[wall].half_plane), region.has_disc, region.disc), aim);

@@ -212,7 +212,7 @@ Problem scaled(Problem problem, int exponent) {
 // is the one-dimensional problem of Seidel's incremental algorithm (1991; de Berg et al., chapter 4). What cannot all
 // hold is relaxed in the minimax sense, as van den Berg et al. (2011) do, by the same steps one dimension higher.
 //
-//    preferred velocity allowed?  --yes-->  optimal, nothing binds
+//    preferred velocity allowed?  --yes-->  optimal, no active constraint
 //           | no
 //    FEASIBILITY PHASE
 //           v

@@ -31,7 +31,7 @@ bool parse(const std::string& text, Solver& solver);
 /// REQUIRES: well-formed problems.
 std::vector<Proven> solve_all(Solver solver, const std::vector<Problem>& problems);
 
-/// The same in steps, for who wants to know what the solver alone takes: `batch` lays problems out for its lanes first,
+/// The same in steps, to time the solver alone: `batch` lays problems out for its lanes first,
 /// and gathers their answers afterwards, which takes longer than solving them. The others lay nothing out. Keeps a
 /// reference to `problems`. REQUIRES: well-formed problems.
 class Solving {

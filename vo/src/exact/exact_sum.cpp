@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exact/grown_body.h"
+#include "exact/exact_sum.h"
 
 namespace exactvo::vo::detail {
 namespace {
@@ -18,14 +18,14 @@ Rational square(const Rational& x) {
 }
 
 struct BodyOf {
-  GrownBody operator()(const Disc& d) const { return {{exact(d.center)}, disc(d.radius)}; }
-  GrownBody operator()(const Segment& s) const { return {{exact(s.a), exact(s.b)}, {}}; }
-  GrownBody operator()(const ConvexPolygon& p) const {
-    GrownBody out;
+  ExactSum operator()(const Disc& d) const { return {{exact(d.center)}, disc(d.radius)}; }
+  ExactSum operator()(const Segment& s) const { return {{exact(s.a), exact(s.b)}, {}}; }
+  ExactSum operator()(const ConvexPolygon& p) const {
+    ExactSum out;
     for (const Vec2 v : p.vertices) out.centres.push_back(exact(v));
     return out;
   }
-  GrownBody operator()(const Ellipse& e) const {
+  ExactSum operator()(const Ellipse& e) const {
     const RationalVector c = exact(e.center);
     const Rational l11(e.l11), l21(e.l21), l22(e.l22);
     if (sgn(l22) == 0) return {{{c.x - l11, c.y - l21}, {c.x + l11, c.y + l21}}, {}};
@@ -37,7 +37,7 @@ struct BodyOf {
   static Body disc(double radius) { return {0, 0, 0, abs(Rational(radius))}; }
 };
 
-GrownBody seen_from(Vec2 origin, GrownBody s, const Rational& radius) {
+ExactSum seen_from(Vec2 origin, ExactSum s, const Rational& radius) {
   for (RationalVector& c : s.centres) c = c - exact(origin);
   s.body.radius += radius;
   return s;
@@ -141,24 +141,24 @@ int sign_with_roots(const Rational& k, const Rational& b, const Rational& d) {
   return sgn(Rational(4 * b * d - square(rest)));
 }
 
-Given as_given(const VelocityObstacle& obstacle) {
+UnroundedInput unrounded_input(const VelocityObstacle& obstacle) {
   const geometry::GrownShape& s = obstacle.grown_;
   if (!obstacle.polygonal_) return {s.shape, nullptr, s.origin, s.radius};
   return {obstacle.polygonal_->obstacle, &obstacle.polygonal_->robot, s.origin, 0.0};
 }
 
-GrownBody grown_body(const VelocityObstacle& obstacle) {
+ExactSum exact_sum(const VelocityObstacle& obstacle) {
   const geometry::GrownShape& s = obstacle.grown_;
   if (!obstacle.polygonal_) return seen_from(s.origin, std::visit(BodyOf{}, s.shape), Rational(s.radius));
-  const GrownBody alone = seen_from(s.origin, std::visit(BodyOf{}, obstacle.polygonal_->obstacle), 0);
-  GrownBody out{{}, alone.body};
+  const ExactSum alone = seen_from(s.origin, std::visit(BodyOf{}, obstacle.polygonal_->obstacle), 0);
+  ExactSum out{{}, alone.body};
   for (const RationalVector& c : alone.centres)
     for (const Vec2 v : obstacle.polygonal_->robot.vertices) out.centres.push_back(c - exact(v));
   return out;
 }
 
 // 0 is not in S, so that all of S lies less than half a turn wide: `turn` orders the legs of its bodies.
-ExactLegs legs_of(const GrownBody& s) {
+ExactLegs legs_of(const ExactSum& s) {
   if (s.body.is_disc() && sgn(s.body.radius) == 0) return legs_of_points(s.centres);
   ExactLegs legs = legs_of(s.centres.front(), s.body);
   for (std::size_t i = 1; i < s.centres.size(); ++i) {
@@ -175,7 +175,7 @@ namespace exactvo::vo {
 
 std::optional<ExactLegs> VelocityObstacle::exact_legs() const {
   if (overlaps()) return std::nullopt;
-  return detail::legs_of(detail::grown_body(*this));
+  return detail::legs_of(detail::exact_sum(*this));
 }
 
 }  // namespace exactvo::vo

@@ -2,8 +2,9 @@
 #pragma once
 
 /// \file
-/// S of a velocity obstacle as the hull of bodies that are all alike: a disc, or an ellipse with a disc, put at each of
-/// some points, all in rationals. A polygon's bodies are discs round its vertices, an ellipse is one body.
+/// S of a velocity obstacle, the exact Minkowski sum of obstacle and robot, as the hull of bodies that are all alike: a
+/// disc, or an ellipse with a disc, put at each of some points, all in rationals. A polygon's bodies are discs round
+/// its vertices, an ellipse is one body.
 
 #include <vector>
 
@@ -22,27 +23,27 @@ struct Body {
 };
 
 /// hull(centres) (+) body, seen from the robot.
-struct GrownBody {
+struct ExactSum {
   std::vector<RationalVector> centres;  ///< of a polygon counter-clockwise, as given; of a sum in no order
   Body body;
 };
 
 /// What a velocity obstacle was made of, unrounded. It refers to the obstacle.
-struct Given {
+struct UnroundedInput {
   const geometry::ConvexShape& obstacle;
   const geometry::ConvexPolygon* robot;  ///< null for a disc
   Vec2 position;
   double radius;  ///< 0 for a polygon
 };
-Given as_given(const VelocityObstacle& obstacle);
+UnroundedInput unrounded_input(const VelocityObstacle& obstacle);
 
 /// S, unrounded, also where the robot is a polygon.
-GrownBody grown_body(const VelocityObstacle& obstacle);
+ExactSum exact_sum(const VelocityObstacle& obstacle);
 
 /// The sign of k + sqrt(b) + sqrt(d), b, d >= 0.
 int sign_with_roots(const Rational& k, const Rational& b, const Rational& d);
 
 /// Both legs. REQUIRES: 0 is not in S.
-ExactLegs legs_of(const GrownBody& s);
+ExactLegs legs_of(const ExactSum& s);
 
 }  // namespace exactvo::vo::detail
