@@ -6,7 +6,7 @@
 
 #include "competitor.h"
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/instances.h"
+#include "lp/sets/generated_sets.h"
 #include "violation.h"
 
 namespace exactvo::bench {

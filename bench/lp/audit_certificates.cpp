@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "exactvo/vo/lp/instances.h"
 #include "exactvo/vo/lp/solvers.h"
+#include "lp/sets/generated_sets.h"
 #include "options/program_options.h"
 #include "problem_file.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/instances.h"
+#include "lp/sets/generated_sets.h"
 #include "options/program_options.h"
 #include "sets.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exactvo/geometry/exact_offset.h"
+#include "geometry/exact_offset.h"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +15,8 @@
 namespace exactvo::geometry {
 namespace {
 
+using test::ExactOffset;
+using test::OffsetCurve;
 using test::Rational;
 using test::SeededRandom;
 

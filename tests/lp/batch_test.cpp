@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/instances.h"
+#include "lp/sets/generated_sets.h"
 #include "problem_text.h"
 #include "support/seeded_random.h"
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/instances.h"
 #include "exactvo/vo/lp/solve.h"
+#include "lp/sets/generated_sets.h"
 #include "problem_text.h"
 #include "support/seeded_random.h"
 

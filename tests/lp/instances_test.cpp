@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "exactvo/vo/lp/certificate.h"
+#include "lp/sets/generated_sets.h"
 
 namespace exactvo::lp {
 namespace {

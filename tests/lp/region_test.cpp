@@ -8,8 +8,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "exactvo/vo/lp/instances.h"
 #include "lp/problem/exact_sign.h"
+#include "lp/sets/generated_sets.h"
 
 namespace exactvo::lp {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/instances.h"
 #include "lp/proof/double_double.h"
 #include "lp/proof/exact_number.h"
 #include "lp/proof/rounded_gap.h"
+#include "lp/sets/generated_sets.h"
 #include "problem_text.h"
 #include "support/seeded_random.h"
 

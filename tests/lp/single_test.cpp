@@ -10,7 +10,7 @@
 
 #include "exactvo/vo/lp/batch.h"
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/instances.h"
+#include "lp/sets/generated_sets.h"
 #include "problem_text.h"
 
 namespace exactvo::lp {

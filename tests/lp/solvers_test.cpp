@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exactvo/vo/lp/instances.h"
+#include "lp/sets/generated_sets.h"
 #include "problem_text.h"
 
 namespace exactvo::lp {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The arena's measure of violations: what is kept exactly counts as 0, whatever doubles make of it.
 #include "violation.h"
+#include "lp/sets/generated_sets.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "exactvo/vo/lp/certificate.h"
-#include "exactvo/vo/lp/instances.h"
 
 namespace exactvo::bench {
 namespace {

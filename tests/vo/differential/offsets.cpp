@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exactvo/geometry/exact_offset.h"
+#include "geometry/exact_offset.h"
 #include "geometry/random_grown.h"
 #include "vo/differential/tally.h"
 
 namespace exactvo::test {
 namespace {
 
-using geometry::ExactOffset;
 using geometry::GrownShape;
 using geometry::Place;
 using geometry::Vec2;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exactvo/vo/lp/instances.h"
+#include "lp/sets/generated_sets.h"
 
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace exactvo::lp {

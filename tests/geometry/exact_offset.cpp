@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exactvo/geometry/exact_offset.h"
+#include "geometry/exact_offset.h"
 
 #include <CGAL/Arr_conic_traits_2.h>
 #include <CGAL/CORE_algebraic_number_traits.h>
@@ -14,8 +14,12 @@
 #include "cgal_guard.h"
 #include "sums/polygon_sum.h"
 
-namespace exactvo::geometry {
+namespace exactvo::test {
 namespace {
+
+using geometry::excerpt;
+using geometry::hex_text;
+namespace detail = geometry::detail;
 
 using Numbers = CGAL::CORE_algebraic_number_traits;
 using RationalKernel = CGAL::Cartesian<Numbers::Rational>;
@@ -120,4 +124,4 @@ double ExactOffset::area() const {
   return 0.5 * twice;
 }
 
-}  // namespace exactvo::geometry
+}  // namespace exactvo::test

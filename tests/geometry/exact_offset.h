@@ -5,8 +5,8 @@
 /// A polygon grown by a disc, unrounded: segments that may lie on irrational lines, and circular arcs. CGAL's conic
 /// arcs over algebraic numbers carry it (offset_polygon_2 with Arr_conic_traits_2), behind an immutable handle.
 ///
-/// It is the exact object to study and the oracle in tests, not a part of any loop: 0.5 ms for a square, seconds for a
-/// star of a hundred corners. Certified polygons round it and inside it are `offset_polygon` in minkowski.h.
+/// The oracle for grown shapes: 0.5 ms for a square, seconds for a star of a hundred corners. Certified polygons round
+/// it and inside it are `offset_polygon` in minkowski.h.
 
 #include <cstddef>
 #include <memory>
@@ -15,7 +15,11 @@
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/shapes.h"
 
-namespace exactvo::geometry {
+namespace exactvo::test {
+
+using geometry::Place;
+using geometry::Polygon;
+using geometry::Vec2;
 
 /// A piece of the boundary as doubles can show it: each coordinate rounded.
 struct OffsetCurve {
@@ -45,4 +49,4 @@ class ExactOffset {
   std::shared_ptr<const Parts> parts_;
 };
 
-}  // namespace exactvo::geometry
+}  // namespace exactvo::test
