@@ -3,17 +3,19 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <functional>
 #include <iterator>
-#include <limits>
+#include <memory>
+#include <optional>
 
 #include "exactvo/datasets/input_text.h"
 #include "exactvo/geometry/box.h"
 #include "files/text_file.h"
 #include "gdal/gdal_session.h"
+#include "gdal/geojson_scan.h"
 #include "gdal/geojson_sequence.h"
 #include "gdal/geojson_shape.h"
+#include "gdal/geometry_visitor.h"
+#include "gdal/layer_plane.h"
 #include "gdal/plane_system.h"
 #include "gdal/properties.h"
 #include "json/json_text.h"
@@ -22,53 +24,6 @@
 namespace exactvo::datasets {
 namespace {
 
-geometry::Ring points_of(const OGRSimpleCurve& curve) {
-  geometry::Ring points(static_cast<std::size_t>(curve.getNumPoints()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i] = {curve.getX(static_cast<int>(i)), curve.getY(static_cast<int>(i))};
-  }
-  return points;
-}
-
-std::vector<geometry::Ring> rings_of(const OGRPolygon& polygon) {
-  std::vector<geometry::Ring> rings;
-  for (const OGRLinearRing* ring : polygon) rings.push_back(points_of(*ring));
-  return rings;
-}
-
-/// The lines and polygons inside a geometry of any kind, in order, and a word about what else is there.
-struct Visitor {
-  std::function<void(RawKind, std::vector<geometry::Ring>)> shape;
-  std::function<void(const std::string&)> other;
-};
-
-void visit(const OGRGeometry& geometry, const Visitor& visitor, int depth = 0) {
-  if (depth > kDeepestCollection) return visitor.other("collections nested too deeply skipped");
-  if (geometry.IsEmpty()) return visitor.other(std::string("an empty ") + geometry.getGeometryName() + " skipped");
-  switch (wkbFlatten(geometry.getGeometryType())) {
-    case wkbPoint:
-    case wkbMultiPoint:
-      return visitor.other("a " + std::string(geometry.getGeometryName()) + " skipped: points are no obstacles");
-    case wkbLineString:
-      return visitor.shape(RawKind::polyline, {points_of(*geometry.toLineString())});
-    case wkbPolygon:
-    case wkbTriangle:
-      return visitor.shape(RawKind::polygon, rings_of(*geometry.toPolygon()));
-    case wkbMultiLineString:
-    case wkbMultiPolygon:
-    case wkbGeometryCollection:
-      for (const OGRGeometry* part : *geometry.toGeometryCollection()) visit(*part, visitor, depth + 1);
-      return;
-    default:
-      break;
-  }
-  const std::unique_ptr<OGRGeometry> straight(geometry.getLinearGeometry());
-  if (straight && wkbFlatten(straight->getGeometryType()) != wkbFlatten(geometry.getGeometryType())) {
-    return visit(*straight, visitor, depth + 1);
-  }
-  visitor.other(std::string("a ") + geometry.getGeometryName() + " skipped: no line or polygon");
-}
-
 /// Degrees that a coordinate may lie beyond 180 or 90 and still be one: writers round, and some files hold
 /// 180.00000000000014. A millionth of a degree is 0.1 m on the ground.
 constexpr double kDegreesBeyond = 1e-6;
@@ -76,14 +31,6 @@ constexpr double kDegreesBeyond = 1e-6;
 bool is_longitude_latitude(const geometry::Box& box) {
   constexpr double kEast = 180.0 + kDegreesBeyond, kNorth = 90.0 + kDegreesBeyond;
   return box.low.x >= -kEast && box.high.x <= kEast && box.low.y >= -kNorth && box.high.y <= kNorth;
-}
-
-/// A millionth of a degree (0.1 m): a centre that people can copy. A billionth (0.1 mm): a place to zoom to.
-constexpr double kCentreDecimals = 1e6;
-constexpr double kCrossingDecimals = 1e9;
-
-double rounded_degrees(double degrees, double decimals) {
-  return std::round(degrees * decimals) / decimals;
 }
 
 /// Characters of a text that is no geometry.
@@ -102,11 +49,22 @@ bool is_sequence_name(const std::filesystem::path& path) {
   return std::find(std::begin(known), std::end(known), extension) != std::end(known);
 }
 
+/// What begins so, in words.
+std::string kind_of_value(char c) {
+  if (c == '"') return "a string";
+  if (c == '[') return "an array";
+  if (c == 'n') return "null";
+  return c == 't' || c == 'f' ? "true or false" : "a number";
+}
+
 class VectorReader {
  public:
-  VectorReader(const std::filesystem::path& path, Collector& out) : path_(path), out_(out), geojson_parsing_(path) {
-    if (is_sequence_file()) return;  // GDAL is not asked: it would read all of it now
-    data_ = open_vectors(path);
+  VectorReader(const std::filesystem::path& path, Collector& out)
+      : path_(path), out_(out), geojson_parsing_(path), plane_(path_, out, complaints_) {
+    const std::string driver = vector_driver_of(path);
+    if (is_sequence_file(driver)) return;  // GDAL is not asked: it would read all of it now
+    if (driver == "GeoJSON") refuse_bulky_geojson();
+    data_ = open_vectors(path, driver);
     if (data_ == nullptr && is_sequence_name(path)) {
       complaints_.take_failure();  // of a bad first line, which is reported with its number
       return;
@@ -121,7 +79,7 @@ class VectorReader {
       settle_coordinates();
       for_each_feature([this](const Item& item) { add(item); });
     }
-    if (driver() == "GeoJSON") for_each_stray_entry(path_, [this](const DataError& stray) { out_.reject(stray); });
+    if (driver() == "GeoJSON") reject_strays();
     if (!malformed_.empty() && !has_told_malformed_) refuse_malformed();
     note_extent();
     for (const std::string& words : complaints_.take_warnings()) out_.note("", words);
@@ -148,9 +106,32 @@ class VectorReader {
     check_json_syntax(read_text_file(path_), path_.string());
   }
 
+  /// Of GeoJSON alone.
+  const GeoJsonScan& scan() {
+    if (!scan_) scan_ = scan_geojson(path_, is_sequence_name(path_));
+    return *scan_;
+  }
+
+  /// Of a collection GDAL takes one feature after the other, with a limit of its own (GeoJsonParsing), which leaves out
+  /// what stands before them.
+  void refuse_bulky_geojson() {
+    std::error_code error;
+    const double size = static_cast<double>(std::filesystem::file_size(path_, error));
+    const JsonMemory& memory = scan().memory;
+    const bool is_bulky =
+        scan().is_collection() ? !error && memory.bytes() > parser_memory_for(size) : memory.is_too_much();
+    if (is_bulky) throw too_bulky(memory, path_.string(), "");
+  }
+
+  void reject_strays() {
+    for (const StrayEntry& stray : scan().strays)
+      out_.reject({DataCode::format_syntax, path_.string(), "/features/" + std::to_string(stray.number),
+                   kind_of_value(stray.begin), "a feature"});
+  }
+
   /// GeoJSON that GDAL does not take for such: it looks for the type in the first 6000 bytes.
-  void refuse_late_type() const {
-    const std::string type = beginning_of_geojson(path_).type;
+  void refuse_late_type() {
+    const std::string& type = scan().type;
     if (type != "FeatureCollection" && !is_type_of_record(type)) return;
     throw DataError(DataCode::format_syntax, path_.string(), "/type", "\"" + type + "\" behind long members",
                     "GeoJSON with its member \"type\" first");
@@ -163,13 +144,12 @@ class VectorReader {
     const OGRGeometry* shape = nullptr;
     const OGRFeature* feature = nullptr;  ///< none of a sequence
     const DataError* fault = nullptr;     ///< of a sequence
-    std::string_view text{};              ///< of a sequence: the record
+    const GeoJsonText* json = nullptr;    ///< of a sequence
   };
 
-  bool is_sequence_file() const {
-    const std::string driver = vector_driver_of(path_);
+  bool is_sequence_file(const std::string& driver) {
     if (driver.empty()) return is_sequence_name(path_);
-    return driver == "GeoJSONSeq" || (driver == "GeoJSON" && begins_as_sequence(path_, is_sequence_name(path_)));
+    return driver == "GeoJSONSeq" || (driver == "GeoJSON" && scan().is_sequence);
   }
 
   /// GDAL's driver would leave malformed lines out; they are read here.
@@ -184,7 +164,7 @@ class VectorReader {
     while (const std::optional<GeoJsonRecord> record = sequence.next()) {
       complaints_.take_failure();  // of its parser: the record's fault says it
       action(Item{number++, record->place, record->shape.get(), nullptr, record->fault ? &*record->fault : nullptr,
-                  record->text});
+                  &record->text});
     }
   }
 
@@ -211,7 +191,7 @@ class VectorReader {
     while (const std::unique_ptr<OGRFeature> feature{layer_->GetNextFeature()}) {
       set_malformed_aside();
       refuse_complaints("feature " + std::to_string(number));
-      action(Item{number, place_of(number), feature->GetGeometryRef(), feature.get(), nullptr});
+      action(Item{number, place_of(number), feature->GetGeometryRef(), feature.get()});
       ++number;
     }
     set_malformed_aside();
@@ -235,12 +215,9 @@ class VectorReader {
     return box;
   }
 
-  /// What the numbers of this layer mean: sets `scale_` or `to_metres_`.
+  /// What the numbers of this layer mean: sets `plane_`.
   void settle_coordinates() {
-    to_metres_.reset();
-    from_metres_.reset();
-    scale_ = 1.0;
-    given_ = GivenPlane{};
+    plane_.reset();
     const OGRSpatialReference* system = is_sequence() ? OGRSpatialReference::GetWGS84SRS() : layer_->GetSpatialRef();
     const Units units = units_of_layer();
     if (units == Units::metres) return settle_metres("metres: " + reason_);
@@ -250,10 +227,13 @@ class VectorReader {
     const geometry::Box box = bounding_box();
     if (box.is_empty()) return;
     if (!is_longitude_latitude(box)) return settle_impossible_degrees(units);
-    project_round(box, system != nullptr && system->IsGeographic() ? *system : *OGRSpatialReference::GetWGS84SRS());
-    const std::string where = given_.plane.reference_system.empty() ? "round longitude " + number(origin_->longitude) +
-                                                                          ", latitude " + number(origin_->latitude)
-                                                                    : "of the reference system that it names";
+    const bool names_degrees = system != nullptr && system->IsGeographic();
+    const bool is_projected = plane_.project_round(box, names_degrees ? *system : *OGRSpatialReference::GetWGS84SRS());
+    refuse_complaints(layer_name(), !is_projected);
+    out_.set_plane(plane_.plane());
+    const std::string where = plane_.is_named() ? "of the reference system that it names"
+                                                : "round longitude " + number(plane_.origin().longitude) +
+                                                      ", latitude " + number(plane_.origin().latitude);
     note_units("degrees: " + reason_ + "; brought to metres " + where);
   }
 
@@ -263,16 +243,18 @@ class VectorReader {
   }
 
   void settle_projected(const OGRSpatialReference& system) {
-    scale_ = system.GetLinearUnits();
+    const double metres_a_unit = system.GetLinearUnits();
+    plane_.set_scale(metres_a_unit);
     LocalPlane plane;
     if (system.IsProjected()) {
       OGRSpatialReference in_metres = system;
-      if (scale_ != 1.0) in_metres.SetLinearUnitsAndUpdateParameters("metre", 1.0);
+      if (metres_a_unit != 1.0) in_metres.SetLinearUnitsAndUpdateParameters("metre", 1.0);
       plane.reference_system = wkt_of(in_metres);
     }
     out_.set_plane(plane);
     const char* name = system.GetName();
-    note_units(number(scale_) + " m a unit: by its reference system " + (name != nullptr ? name : "without a name"));
+    note_units(number(metres_a_unit) + " m a unit: by its reference system " +
+               (name != nullptr ? name : "without a name"));
   }
 
   static std::string number(double value) {
@@ -303,7 +285,7 @@ class VectorReader {
     const char* native = is_sequence() ? nullptr : layer_->GetMetadataItem("NATIVE_DATA", "NATIVE_DATA");
     if (native == nullptr) return Units::automatic;
     const Json members = parse_json(native, path_.string());
-    given_ = given_plane(members, path_.string());
+    plane_.set_given(given_plane(members, path_.string()));
     const auto units = members.find("units");
     if (units == members.end()) return Units::automatic;
     reason_ = "by its member \"units\"";
@@ -323,89 +305,20 @@ class VectorReader {
     settle_metres("taken as metres: says nothing of units and has coordinates that are no longitude or latitude");
   }
 
-  /// To the plane that the file names, else to one of its own, round the middle of its box.
-  void project_round(const geometry::Box& box, OGRSpatialReference from) {
-    from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    LocalPlane plane = given_.plane;
-    OGRSpatialReference local;
-    if (!plane.reference_system.empty()) {
-      const char* const without_files[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
-      const bool known = local.SetFromUserInput(plane.reference_system.c_str(), without_files) == OGRERR_NONE &&
-                         local.IsProjected() && local.GetLinearUnits() == 1.0;
-      complaints_.take_failure();
-      if (!known) {
-        throw DataError(DataCode::projection, path_.string(), "/local_metres/reference_system",
-                        excerpt(plane.reference_system, 0, kShownText),
-                        "a projected reference system in metres, as WKT");
-      }
-      local.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-      plane.reference_system = wkt_of(local);
-    } else {
-      if (!origin_) {
-        origin_ =
-            plane.origin.value_or(ProjectionOrigin{rounded_degrees((box.low.x + box.high.x) / 2, kCentreDecimals),
-                                                   rounded_degrees((box.low.y + box.high.y) / 2, kCentreDecimals)});
-        if (given_.is_placed) out_.set_origin(*origin_);
-      }
-      local = plane_round(from, *origin_);
-      plane.origin = origin_;
-      if (from.IsSameGeogCS(OGRSpatialReference::GetWGS84SRS()) == FALSE)
-        plane = {std::nullopt, wkt_of(local), plane.offset};
-    }
-    to_metres_.reset(OGRCreateCoordinateTransformation(&from, &local));
-    refuse_complaints(layer_name(), to_metres_ == nullptr);
-    out_.set_plane(given_.is_placed ? plane : LocalPlane{});
-  }
-
-  void bring_to_metres(geometry::Ring& ring, const std::string& place) {
-    if (to_metres_ != nullptr) return project(ring, place);
-    for (geometry::Vec2& p : ring)
-      if (geometry::is_finite(p)) p = scale_ * p;
-  }
-
-  /// Many points a call: PROJ takes longer to be asked than to answer.
-  void project(geometry::Ring& ring, const std::string& place) {
-    constexpr std::size_t kPoints = 4096;
-    std::vector<std::size_t> taken;
-    std::vector<double> x, y;
-    std::vector<int> success(kPoints);
-    for (std::size_t begin = 0; begin < ring.size(); begin += kPoints) {
-      taken.clear();
-      x.clear();
-      y.clear();
-      for (std::size_t k = begin; k < std::min(begin + kPoints, ring.size()); ++k) {
-        if (!geometry::is_finite(ring[k])) continue;
-        taken.push_back(k);
-        x.push_back(ring[k].x);
-        y.push_back(ring[k].y);
-      }
-      to_metres_->Transform(static_cast<int>(taken.size()), x.data(), y.data(), nullptr, success.data());
-      for (std::size_t k = 0; k < taken.size(); ++k) {
-        geometry::Vec2& p = ring[taken[k]];
-        if (!success[k]) refuse_unplaced(p, place);
-        p = given_.rounded(geometry::Vec2{x[k], y[k]} + given_.plane.offset);
-      }
-    }
-  }
-
-  [[noreturn]] void refuse_unplaced(geometry::Vec2 written, const std::string& place) {
-    complaints_.take_failure();
-    throw DataError(DataCode::projection, path_.string(), place,
-                    "a point that has no place on the local plane: " + number(written.x) + ", " + number(written.y),
-                    "coordinates near each other");
-  }
-
   void add(const Item& item) {
     const std::string& place = item.place;
     if (item.fault != nullptr) return out_.reject(*item.fault);
+    std::optional<GeoJsonText> of_feature;
+    if (driver() == "GeoJSON") of_feature.emplace(text_of(*item.feature));
+    const GeoJsonText* json = of_feature ? &*of_feature : item.json;
     if (item.feature != nullptr) {
-      if (const std::optional<DataError> lost = lost_geometry(*item.feature, place)) {
+      if (const std::optional<DataError> lost = lost_geometry(*item.feature, json, place)) {
         has_told_malformed_ = true;
         return out_.reject(*lost);
       }
     }
     if (item.shape == nullptr) return out_.pass_over(place, "a feature without geometry skipped");
-    const FeatureProperties properties = properties_of(item);
+    const FeatureProperties properties = properties_of(item, json);
     std::size_t part = 0;
     Visitor visitor;
     visitor.other = [&](const std::string& words) { out_.pass_over(place, words); };
@@ -415,26 +328,29 @@ class VectorReader {
     visit(*item.shape, visitor);
   }
 
-  FeatureProperties properties_of(const Item& item) const {
+  /// A geometry that stands alone is the whole file.
+  static bool stands_alone(const OGRFeature& feature) { return feature.GetNativeData() == nullptr; }
+  std::string text_of(const OGRFeature& feature) const {
+    return stands_alone(feature) ? read_text_file(path_) : feature.GetNativeData();
+  }
+
+  FeatureProperties properties_of(const Item& item, const GeoJsonText* json) const {
     if (!out_.options().keep_properties) return {};
-    if (item.feature == nullptr) return properties_of_geojson(item.text);
-    const char* native = driver() == "GeoJSON" ? item.feature->GetNativeData() : nullptr;
-    return native != nullptr ? properties_of_geojson(native)
-                             : datasets::properties_of(*item.feature, driver() == "GPKG");
+    if (json != nullptr && (item.feature == nullptr || !stands_alone(*item.feature))) return json->properties();
+    return datasets::properties_of(*item.feature, driver() == "GPKG");
   }
 
   /// GDAL says nothing of a geometry that it cannot make out, or of the parts of one.
-  std::optional<DataError> lost_geometry(const OGRFeature& feature, const std::string& place) const {
-    if (driver() == "GeoJSON") return lost_from_geojson(feature, place);
+  std::optional<DataError> lost_geometry(const OGRFeature& feature, const GeoJsonText* json,
+                                         const std::string& place) const {
+    if (json != nullptr) return lost_from_geojson(feature, *json, place);
     return driver() == "CSV" ? lost_from_csv(feature, place) : std::nullopt;
   }
 
-  /// A geometry that stands alone is the whole file.
-  std::optional<DataError> lost_from_geojson(const OGRFeature& feature, const std::string& place) const {
-    const char* native = feature.GetNativeData();
+  std::optional<DataError> lost_from_geojson(const OGRFeature& feature, const GeoJsonText& json,
+                                             const std::string& place) const {
     const OGRGeometry* shape = feature.GetGeometryRef();
-    const bool read = shape != nullptr && !shape->IsEmpty();
-    const std::optional<GeoJsonFault> fault = geojson_fault(native != nullptr ? native : read_text_file(path_), read);
+    const std::optional<GeoJsonFault> fault = json.fault(shape != nullptr && !shape->IsEmpty());
     if (!fault) return std::nullopt;
     return DataError(DataCode::format_syntax, path_.string(), place + place_within(*fault), fault->found,
                      fault->expected);
@@ -447,33 +363,6 @@ class VectorReader {
     if (begin == std::string::npos) return std::nullopt;
     return DataError(DataCode::format_syntax, path_.string(), place, excerpt(text, begin, kShownText),
                      "a geometry as WKT, or nothing");
-  }
-
-  /// What stands in the column that the driver takes geometries from. It calls the geometries of a column X "X" or
-  /// "geom_X", and "" those of a column WKT.
-  static std::string text_of_geometry(const OGRFeature& feature) {
-    if (feature.GetGeomFieldCount() == 0) return "";
-    const std::string name = feature.GetGeomFieldDefnRef(0)->GetNameRef();
-    int column = feature.GetFieldIndex(name.empty() ? "WKT" : name.c_str());
-    if (column < 0 && name.rfind("geom_", 0) == 0) column = feature.GetFieldIndex(name.c_str() + 5);
-    return column < 0 ? "" : feature.GetFieldAsString(column);
-  }
-
-  AsWritten as_written(const std::vector<geometry::Ring>& rings) {
-    if (to_metres_ == nullptr) return {rings, [scale = scale_](geometry::Vec2 p) { return p / scale; }, false};
-    return {rings, [this](geometry::Vec2 p) { return back_to_degrees(p); }, true};
-  }
-
-  /// For people: a crossing that rounding moved.
-  geometry::Vec2 back_to_degrees(geometry::Vec2 p) {
-    p = p - given_.plane.offset;
-    if (from_metres_ == nullptr) from_metres_.reset(to_metres_->GetInverse());
-    if (from_metres_ == nullptr || !from_metres_->Transform(1, &p.x, &p.y)) {
-      complaints_.take_failure();
-      constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-      return {kNowhere, kNowhere};
-    }
-    return {rounded_degrees(p.x, kCrossingDecimals), rounded_degrees(p.y, kCrossingDecimals)};
   }
 
   std::string place_of(std::size_t number) const {
@@ -490,9 +379,9 @@ class VectorReader {
     if (layers() > 1) raw.id = layer_name() + "/" + raw.id;
     raw.place = place + (part > 0 ? ", part " + std::to_string(part) : "");
     raw.rings = std::move(rings);
-    if (to_metres_ != nullptr || scale_ != 1.0) raw.as_written = as_written(raw.rings);
+    raw.as_written = plane_.as_written(raw.rings);
     try {
-      for (geometry::Ring& ring : raw.rings) bring_to_metres(ring, raw.place);
+      for (geometry::Ring& ring : raw.rings) plane_.bring_to_metres(ring, raw.place);
     } catch (const DataError& error) {
       return out_.reject(error);
     }
@@ -507,12 +396,9 @@ class VectorReader {
   bool has_told_malformed_ = false;  ///< in words of our own, with the feature
   std::unique_ptr<GDALDataset> data_;
   OGRLayer* layer_ = nullptr;
-  std::optional<ProjectionOrigin> origin_;  ///< one for all layers
-  GivenPlane given_;                        ///< by GeoJSON's member "local_metres"
-  double scale_ = 1.0;                      ///< m a unit
-  std::string reason_;                      ///< why the layer's units are what they are
-  std::unique_ptr<OGRCoordinateTransformation> to_metres_;
-  std::unique_ptr<OGRCoordinateTransformation> from_metres_;  ///< made when a place is to be named
+  LayerPlane plane_;
+  std::string reason_;  ///< why the layer's units are what they are
+  std::optional<GeoJsonScan> scan_;
 };
 
 /// As our own XML readers do. Entities are declared before the first element; what is hidden behind a longer comment is

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "exactvo/datasets/input_text.h"
-#include "gdal/geojson_sequence.h"
 #include "gdal/json_memory.h"
 
 namespace exactvo::datasets {
@@ -111,10 +110,6 @@ std::size_t count_of_points(std::string_view text) {
   return points;
 }
 
-void refuse_bulky_json(const std::filesystem::path& path) {
-  if (const auto bulky = bulky_json_file(path)) throw *bulky;
-}
-
 void refuse_bulky_kml(const std::filesystem::path& path) {
   constexpr double kBytesOfPoint = 180.0;  // measured, of the whole reading
   const std::string text = read_text_file(path);
@@ -124,22 +119,10 @@ void refuse_bulky_kml(const std::filesystem::path& path) {
                   "fewer points in a file, or another format, such as WKT");
 }
 
-/// Of a collection GDAL's driver of GeoJSON takes one feature after the other, with a limit of its own
-/// (GeoJsonParsing), which leaves out what stands before them.
-void refuse_bulky_geojson(const std::filesystem::path& path) {
-  const GeoJsonBeginning beginning = beginning_of_geojson(path);
-  if (!beginning.is_collection()) return refuse_bulky_json(path);
-  std::error_code error;
-  const auto size = static_cast<double>(std::filesystem::file_size(path, error));
-  if (!error && beginning.before_features.bytes() > parser_memory_for(size))
-    throw too_bulky(beginning.before_features, path.string(), "");
-}
-
-/// What GDAL parses whole as soon as it is opened: TopoJSON, a single feature or geometry, KML.
+/// What GDAL parses whole as soon as it is opened.
 void refuse_bulky(const std::filesystem::path& path, std::string_view driver) {
   if (driver == "KML") refuse_bulky_kml(path);
-  if (driver == "TopoJSON") refuse_bulky_json(path);
-  if (driver == "GeoJSON") refuse_bulky_geojson(path);
+  if (const auto bulky = driver == "TopoJSON" ? bulky_json_file(path) : std::nullopt) throw *bulky;
 }
 
 }  // namespace
@@ -150,8 +133,7 @@ std::string vector_driver_of(const std::filesystem::path& path) {
   return driver == nullptr ? "" : GDALGetDriverShortName(driver);
 }
 
-std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path) {
-  const std::string driver = vector_driver_of(path);
+std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path, const std::string& driver) {
   refuse_bulky(path, driver);
   return std::unique_ptr<GDALDataset>(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kVectorDrivers, options_for(driver), nullptr));

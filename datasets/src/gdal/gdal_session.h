@@ -40,11 +40,11 @@ void register_gdal_once();
 /// The driver that would open the file, by its content and name; "" where there is none.
 std::string vector_driver_of(const std::filesystem::path& path);
 
-/// Only drivers that read a local file of vectors: none that follow links to other files or to the network. Throws
-/// DataError (E_SIZE) for what GDAL parses whole where that would take more memory than a reader may (20 bytes for each
-/// of the input and 200 MB beside): TopoJSON and GeoJSON of one feature or geometry, estimated from their objects,
-/// lists and values (gdal/json_memory.h), and KML, estimated from its points.
-std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path);
+/// Only drivers that read a local file of vectors: none that follow links to other files or to the network. `driver`:
+/// that of `vector_driver_of`. Throws DataError (E_SIZE) for KML and TopoJSON, which GDAL parses whole, where that
+/// would take more memory than a reader may (20 bytes for each of the input and 200 MB beside), estimated from the
+/// points of KML, and from the objects, lists and values of TopoJSON (gdal/json_memory.h).
+std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path, const std::string& driver);
 
 /// In this thread while it lives: holds each feature of a GeoJSON collection to the same memory, by GDAL's estimate of
 /// its size, and makes no fields of properties, which are read from the native data of the features.

@@ -3,21 +3,20 @@
 
 /// \file
 /// A GeoJSON sequence: features or geometries one after the other, on lines of their own or not, or begun by RS (RFC
-/// 8142). GDAL's driver leaves a
-/// malformed line out, or refuses the whole file for the first one; here each is told by its line, and the others are
-/// read. The geometries themselves are GDAL's to make.
+/// 8142). GDAL's driver leaves a malformed line out, or refuses the whole file for the first one; here each is told by
+/// its line, and the others are read. The geometries themselves are GDAL's to make.
 
 #include <ogr_geometry.h>
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "exactvo/datasets/data_error.h"
-#include "gdal/json_memory.h"
+#include "gdal/geojson_scan.h"
+#include "gdal/geojson_shape.h"
 
 namespace exactvo::datasets {
 
@@ -25,22 +24,7 @@ struct GeoJsonRecord {
   std::string place;                   ///< "line 3", or "line 3, column 70" behind another: where it begins
   std::unique_ptr<OGRGeometry> shape;  ///< none for a feature without one, and for a fault
   std::optional<DataError> fault;      ///< E_JSON_SYNTAX, E_FORMAT_SYNTAX, E_SIZE
-  std::string text{};                  ///< as it stands in the file
-};
-
-/// How deep in objects and strings the next byte of a text of JSON stands.
-class JsonNesting {
- public:
-  void take(char c);
-  long objects() const { return objects_; }
-  long arrays() const { return arrays_; }
-  bool in_string() const { return in_string_; }
-
- private:
-  long objects_ = 0;
-  long arrays_ = 0;
-  bool in_string_ = false;
-  bool is_escaped_ = false;
+  GeoJsonText text{};                  ///< of one without a fault
 };
 
 struct GeoJsonPlace {
@@ -73,24 +57,5 @@ class GeoJsonSequence {
   bool is_spoilt_ = false;       ///< more than white space follows its object, which GDAL's parser skips
   bool has_begun_ = false;       ///< some record was read
 };
-
-/// Whether the first object is complete and more than white space follows it, and it is a feature or a geometry, or
-/// the file's `name_says` that it is a sequence: GDAL may take such a file for GeoJSON of one object, and then says
-/// nothing of the rest. Memory does not grow with the file.
-bool begins_as_sequence(const std::filesystem::path& path, bool name_says);
-
-/// What a reader of collections has to know of a GeoJSON file before it opens one.
-struct GeoJsonBeginning {
-  std::string type;            ///< the first member "type" of the outermost object, wherever it stands
-  JsonMemory before_features;  ///< of a collection: of the members before "features", which GDAL parses at once
-
-  bool is_collection() const { return type == "FeatureCollection"; }
-};
-/// Reads as far as that takes, which is the whole file where "type" comes last. Memory does not grow with the file.
-GeoJsonBeginning beginning_of_geojson(const std::filesystem::path& path);
-
-/// Tells of the entries of a collection's "features" that are no objects, by their JSON pointers: GDAL skips them
-/// without a word. Memory does not grow with the file.
-void for_each_stray_entry(const std::filesystem::path& path, const std::function<void(const DataError&)>& action);
 
 }  // namespace exactvo::datasets

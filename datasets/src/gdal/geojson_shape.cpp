@@ -4,7 +4,9 @@
 #include <cpl_port.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "gdal/properties.h"
 #include "json/json_if_any.h"
 #include "readers/readers.h"
 
@@ -92,7 +94,7 @@ Fault fault_of_geometry(const Json& geometry, const std::string& pointer, int de
 }
 
 /// GDAL takes attributes in any encoding; the shape needs only ASCII.
-Json parsed(std::string text) {
+Json parsed_as_ascii(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0x80) != 0; }, '?');
   return parse_json_if_any(text);
@@ -108,9 +110,7 @@ bool is_feature_or_geometry(const Json& json) {
   return is_name(json["type"], "Feature") || type_of(json) != nullptr;
 }
 
-}  // namespace
-
-std::optional<GeoJsonFault> geojson_fault(const Json& record) {
+Fault fault_of_feature(const Json& record) {
   if (!record.is_object()) return GeoJsonFault{"", described(record), "a feature"};
   const auto geometry = record.find("geometry");
   if (geometry != record.end()) return fault_of_geometry(*geometry, "/geometry", 0);
@@ -118,26 +118,47 @@ std::optional<GeoJsonFault> geojson_fault(const Json& record) {
   return stands_alone ? fault_of_geometry(record, "", 0) : std::nullopt;
 }
 
-std::optional<GeoJsonFault> geojson_fault(const std::string& record, bool read) {
-  const Json json = parsed(record);
-  if (!json.is_discarded()) {
-    const bool bare = !read && json.is_object() && !json.contains("geometry") && holds_position(json);
-    return bare ? GeoJsonFault{"", "a geometry", "a feature"} : geojson_fault(json);
+Fault fault_where_read(const Json& record, bool read) {
+  const bool bare = !read && record.is_object() && !record.contains("geometry") && holds_position(record);
+  return bare ? GeoJsonFault{"", "a geometry", "a feature"} : fault_of_feature(record);
+}
+
+Fault fault_in_sequence(const Json& record) {
+  if (is_feature_or_geometry(record)) return fault_of_feature(record);
+  const bool named = record.is_object() && record.contains("type");
+  return GeoJsonFault{named ? "/type" : "", described(named ? record["type"] : record), "a feature or a geometry"};
+}
+
+}  // namespace
+
+GeoJsonText::GeoJsonText(std::string text) : text_(std::move(text)), json_(parse_json_if_any(text_)) {
+  is_utf8_ = !json_.is_discarded();
+  if (!is_utf8_) json_ = parsed_as_ascii(text_);
+}
+
+// What is quoted from a text is ASCII in any case.
+
+std::optional<GeoJsonFault> GeoJsonText::fault(bool read) const {
+  if (json_.is_discarded()) {
+    if (read || text_.find("\"coordinates\"") == std::string::npos) return std::nullopt;
+    return GeoJsonFault{"", "coordinates that are no JSON", "finite numbers"};
   }
-  if (read || record.find("\"coordinates\"") == std::string::npos) return std::nullopt;
-  return GeoJsonFault{"", "coordinates that are no JSON", "finite numbers"};
+  const Fault fault = fault_where_read(json_, read);
+  return fault && is_utf8_ ? fault_where_read(parsed_as_ascii(text_), read) : fault;
+}
+
+std::optional<GeoJsonFault> GeoJsonText::fault_as_record() const {
+  if (json_.is_discarded()) return std::nullopt;
+  const Fault fault = fault_in_sequence(json_);
+  return fault && is_utf8_ ? fault_in_sequence(parsed_as_ascii(text_)) : fault;
+}
+
+FeatureProperties GeoJsonText::properties() const {
+  return is_utf8_ ? properties_of_geojson(json_) : FeatureProperties{};
 }
 
 bool is_type_of_record(const std::string& type) {
   return is_feature_or_geometry(Json{{"type", type}});
-}
-
-std::optional<GeoJsonFault> fault_of_record(const std::string& text) {
-  const Json record = parsed(text);
-  if (record.is_discarded()) return std::nullopt;
-  if (is_feature_or_geometry(record)) return geojson_fault(record);
-  const bool named = record.is_object() && record.contains("type");
-  return GeoJsonFault{named ? "/type" : "", described(named ? record["type"] : record), "a feature or a geometry"};
 }
 
 std::string place_within(const GeoJsonFault& fault) {

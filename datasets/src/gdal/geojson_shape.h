@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "exactvo/datasets/obstacle_file.h"
 #include "json/json_text.h"
 
 namespace exactvo::datasets {
@@ -18,19 +19,29 @@ struct GeoJsonFault {
   std::string expected;
 };
 
-/// The first fault of a feature's geometry, or of a geometry that stands alone. None where there is no geometry, or an
-/// empty one. A point is no obstacle, but a malformed one may have been meant for something else.
-std::optional<GeoJsonFault> geojson_fault(const Json& record);
+/// The text of a feature, or of a geometry that stands alone, parsed once.
+class GeoJsonText {
+ public:
+  GeoJsonText() = default;
+  explicit GeoJsonText(std::string text);
 
-/// The same of text. What does not parse (GDAL takes NaN and Infinity) is a fault only where coordinates were not
-/// `read`.
-std::optional<GeoJsonFault> geojson_fault(const std::string& record, bool read);
+  /// The first fault of its geometry. None where there is no geometry, or an empty one. A point is no obstacle, but a
+  /// malformed one may have been meant for something else. What does not parse (GDAL takes NaN and Infinity) is a fault
+  /// only where coordinates were not `read`.
+  std::optional<GeoJsonFault> fault(bool read) const;
+  /// The same of a record of a sequence, which is a feature or a geometry. None where the text does not parse.
+  std::optional<GeoJsonFault> fault_as_record() const;
+  /// Byte for byte but for white space; nothing of what is no feature or no JSON.
+  FeatureProperties properties() const;
+
+ private:
+  std::string text_;
+  Json json_;             ///< discarded where the text is no JSON
+  bool is_utf8_ = false;  ///< else every byte beyond ASCII has become a question mark in `json_`
+};
 
 /// Whether a member "type" says that it is of a feature or a geometry.
 bool is_type_of_record(const std::string& type);
-
-/// The same of a record of a sequence, which is a feature or a geometry. None where the text does not parse.
-std::optional<GeoJsonFault> fault_of_record(const std::string& text);
 
 /// ", /geometry/coordinates/0" or "", to be put behind the record's place.
 std::string place_within(const GeoJsonFault& fault);

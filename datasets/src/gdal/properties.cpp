@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "json/json_cursor.h"
-#include "json/json_if_any.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -82,8 +81,7 @@ double bounded(const JsonCursor& at, double largest) {
 
 }  // namespace
 
-FeatureProperties properties_of_geojson(std::string_view record) {
-  const Json feature = parse_json_if_any(record);
+FeatureProperties properties_of_geojson(const Json& feature) {
   FeatureProperties properties;
   if (!feature.is_object()) return properties;
   const auto members = feature.find("properties");
@@ -109,6 +107,14 @@ FeatureProperties properties_of(const OGRFeature& feature, bool with_id) {
   json.end_object();
   if (any) properties.members = json.take();
   return properties;
+}
+
+std::string text_of_geometry(const OGRFeature& feature) {
+  if (feature.GetGeomFieldCount() == 0) return "";
+  const std::string name = feature.GetGeomFieldDefnRef(0)->GetNameRef();
+  int column = feature.GetFieldIndex(name.empty() ? "WKT" : name.c_str());
+  if (column < 0 && name.rfind("geom_", 0) == 0) column = feature.GetFieldIndex(name.c_str() + 5);
+  return column < 0 ? "" : feature.GetFieldAsString(column);
 }
 
 geometry::Vec2 GivenPlane::rounded(geometry::Vec2 p) const {

@@ -7,18 +7,20 @@
 #include <ogr_feature.h>
 
 #include <string>
-#include <string_view>
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "json/json_text.h"
 
 namespace exactvo::datasets {
 
-/// Of a feature's text, byte for byte but for white space; nothing of what is no feature or no JSON.
-FeatureProperties properties_of_geojson(std::string_view record);
+/// Of a feature as GeoJSON has it; nothing of what is none.
+FeatureProperties properties_of_geojson(const Json& feature);
 
 /// Of the feature's fields, but for the column that its geometry was read from. `with_id`: the feature's number counts.
 FeatureProperties properties_of(const OGRFeature& feature, bool with_id);
+
+/// What stands in the column that a CSV's geometries are taken from.
+std::string text_of_geometry(const OGRFeature& feature);
 
 /// GeoJSON's top-level member "local_metres" (obstacle_write.h).
 struct GivenPlane {
