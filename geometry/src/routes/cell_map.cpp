@@ -222,23 +222,20 @@ CellMap::CellMap(PlanarGraph g, const Vec2 (&corners)[4], double widest_gate)
   find_smooth_vertices();
 }
 
-CellMap::CellMap(const CellMap& map, const std::vector<int>& kept_links)
+CellMap::CellMap(const CellMap& map, Uncut)
     : graph(map.graph),
       vertices(map.vertices),
       triangles(map.triangles),
       side_of(map.side_of),
-      sides(unmarked(map.sides)),
       widest_gate_(map.widest_gate_) {
+  sides.reserve(map.sides.size());
+  for (const Side& side : map.sides) sides.push_back({side.a, side.b, side.right, side.left, {}});
+}
+
+CellMap::CellMap(const CellMap& map, const std::vector<int>& kept_links) : CellMap(map, Uncut{}) {
   for (const int l : kept_links) links.push_back(map.links[l]);
   mark_crossings(*this);
   cut_into_cells(*this);
-}
-
-std::vector<Side> CellMap::unmarked(const std::vector<Side>& sides) {
-  std::vector<Side> out;
-  out.reserve(sides.size());
-  for (const Side& side : sides) out.push_back({side.a, side.b, side.right, side.left, {}});
-  return out;
 }
 
 void CellMap::find_smooth_vertices() {

@@ -133,8 +133,9 @@ class CellMap {
   std::vector<int> first_cell;
 
  private:
-  /// Sides by their ends and triangles alone.
-  static std::vector<Side> unmarked(const std::vector<Side>& sides);
+  /// The triangles of a map, not cut into cells yet.
+  struct Uncut {};
+  CellMap(const CellMap& map, Uncut);
   void find_smooth_vertices();
   void triangulate_and_link(const Vec2 (&corners)[4]);
   void number_sides();

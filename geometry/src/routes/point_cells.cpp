@@ -92,13 +92,7 @@ class CellJoiner {
 
 }  // namespace
 
-CellMap::CellMap(const CellMap& map, ForPoints)
-    : graph(map.graph),
-      vertices(map.vertices),
-      triangles(map.triangles),
-      side_of(map.side_of),
-      sides(unmarked(map.sides)),
-      widest_gate_(map.widest_gate_) {
+CellMap::CellMap(const CellMap& map, ForPoints) : CellMap(map, Uncut{}) {
   CellJoiner joiner(*this);
   joiner.join_all();
   std::vector<int> number(triangles.size(), -1), portal_of(sides.size(), -1);

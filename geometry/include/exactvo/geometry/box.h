@@ -31,6 +31,11 @@ struct Box {
   bool is_empty() const { return !(low.x <= high.x && low.y <= high.y); }
 };
 
+/// Whether they have a point in common; none where one is empty. Exact.
+inline bool meet(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
+}
+
 /// Holds the shape: exact for segments and polygons, rounded outward for discs and ellipses.
 Box box_of(const ConvexShape& shape);
 

@@ -38,9 +38,7 @@ class BoxGrid {
   template <class Visit>
   void for_each_meeting(const Box& window, const Visit& visit) const {
     for_each_in(cells_of(window), [&](std::size_t i) {
-      const Box& b = boxes_[i];
-      if (b.low.x <= window.high.x && window.low.x <= b.high.x && b.low.y <= window.high.y && window.low.y <= b.high.y)
-        visit(i);
+      if (meet(boxes_[i], window)) visit(i);
     });
   }
 
