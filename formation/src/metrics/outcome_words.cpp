@@ -2,21 +2,16 @@
 #include "metrics/outcome_words.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
 namespace {
 
-std::string number(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g", x);
-  return text;
-}
-
 /// "R1 overlapped moving obstacle 'cart' by 1.4 m at 2.5 s".
 std::string sentence(const Collision& c) {
-  return c.robot + " overlapped " + name(c.kind) + " '" + c.with + "' by " + number(c.depth) + " m at " +
-         number(c.deepest_at) + " s";
+  return c.robot + " overlapped " + name(c.kind) + " '" + c.with + "' by " + number_text(c.depth, 3) + " m at " +
+         number_text(c.deepest_at, 3) + " s";
 }
 
 std::string of_collisions(const Metrics& m) {
@@ -41,11 +36,11 @@ std::string of_detours(const Metrics& m) {
   for (const RobotMetrics& r : m.robots) {
     const double detour = r.detour.value_or(0.0);
     if (!(detour > 1.0 && detour > kLongDetour * (r.path_length - detour))) continue;
-    text += "; " + r.id + " went a detour of " + number(detour) + " m, up to " +
-            number(r.largest_slot_error.value_or(0.0)) + " m from its slot";
+    text += "; " + r.id + " went a detour of " + number_text(detour, 3) + " m, up to " +
+            number_text(r.largest_slot_error.value_or(0.0), 3) + " m from its slot";
   }
   if (!text.empty() && m.formation_course->formed_since)
-    text += "; the formation holds since " + number(*m.formation_course->formed_since) + " s";
+    text += "; the formation holds since " + number_text(*m.formation_course->formed_since, 3) + " s";
   return text;
 }
 

@@ -18,12 +18,8 @@ using geometry::dot;
 using geometry::norm;
 using geometry::Segment;
 
-geometry::Box box_of(const Segment& edge, double grown = 0.0) {
-  geometry::Box box;
-  box.add(edge.a);
-  box.add(edge.b);
-  const Vec2 by{grown, grown};
-  return {box.low - by, box.high + by};
+geometry::Box grown(const geometry::Box& box, double by) {
+  return {box.low - Vec2{by, by}, box.high + Vec2{by, by}};
 }
 
 /// Where centres stand at an offset from an edge: on two pieces of lines and two circles.
@@ -88,23 +84,12 @@ std::string words_of(const NearestPlace& nearest) {
   return least > 0.0 ? at + " (no place nearer than " + metres(least) + " can be reached)" : at;
 }
 
-void NearestPlaces::prepare() {
-  if (by_place_) return;
-  std::vector<geometry::Box> boxes;
-  for (const SceneObstacle& o : scenario_.obstacles)
-    for (const Segment& edge : geometry::edges_of(o.shape)) {
-      edges_.push_back(edge);
-      boxes.push_back(box_of(edge));
-    }
-  by_place_.emplace(std::move(boxes));
-}
-
 /// Of the goal on the outlines of single edges.
 std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 goal) const {
   constexpr int kDirections = 16;  // about a vertex in which the goal lies: then all are as near
   std::vector<Candidate> all;
   const auto add = [&](Vec2 place) { all.push_back({norm(place - goal), place}); };
-  for (const Segment& edge : edges_) {
+  for (const Segment& edge : edges_->all()) {
     const Outline outline = outline_of(edge, offset);
     for (const Segment& side : {outline.left, outline.right})
       if (!(side.a == side.b)) add(geometry::nearest_point(side, goal));
@@ -126,11 +111,11 @@ std::vector<NearestPlaces::Candidate> NearestPlaces::feet(double offset, Vec2 go
 std::vector<NearestPlaces::Candidate> NearestPlaces::crossings(double offset, Vec2 goal, double nearer_than) const {
   std::vector<Candidate> all;
   std::vector<Vec2> points;
-  by_place_->for_each_within(goal, nearer_than + offset, [&](std::size_t i) {
-    const Outline outline = outline_of(edges_[i], offset);
+  edges_->grid().for_each_within(goal, nearer_than + offset, [&](std::size_t i) {
+    const Outline outline = outline_of((*edges_)[i], offset);
     points.clear();
-    by_place_->for_each_meeting(box_of(edges_[i], 2.0 * offset), [&](std::size_t k) {
-      if (k < i) cross_outlines(outline, outline_of(edges_[k], offset), offset, points);
+    edges_->grid().for_each_meeting(grown(edges_->grid().box(i), 2.0 * offset), [&](std::size_t k) {
+      if (k < i) cross_outlines(outline, outline_of((*edges_)[k], offset), offset, points);
     });
     for (const Vec2 p : points)
       if (norm(p - goal) < nearer_than) all.push_back({norm(p - goal), p});
@@ -147,8 +132,8 @@ std::optional<NearestPlaces::Candidate> NearestPlaces::first_reachable(std::vect
   const geometry::RoutePlan& plan = reach_.plan(radius);
   const auto has_room = [&](Vec2 place) {
     bool clear = true;
-    by_place_->for_each_within(place, radius,
-                               [&](std::size_t k) { clear = clear && geometry::distance(edges_[k], place) >= radius; });
+    edges_->grid().for_each_within(
+        place, radius, [&](std::size_t k) { clear = clear && geometry::distance((*edges_)[k], place) >= radius; });
     return clear;
   };
   for (const Candidate& c : all)
@@ -159,7 +144,7 @@ std::optional<NearestPlaces::Candidate> NearestPlaces::first_reachable(std::vect
 std::optional<NearestPlace> NearestPlaces::nearest(double radius, double room, Vec2 from, Vec2 goal) {
   if (!reach_.map().covers(from) || !reach_.map().covers(goal)) return std::nullopt;
   if (!reach_.plan(radius + room).is_reachable(from, from)) return std::nullopt;
-  prepare();
+  if (!edges_) edges_.emplace(scenario_.obstacles);
   const double offset = radius + 1.5 * room;  // half of the room is left for rounding
   std::vector<Candidate> all = feet(offset, goal);
   all.push_back({norm(from - goal), from});
@@ -192,8 +177,9 @@ double NearestPlaces::proven_distance(double radius, Vec2 from, Vec2 goal) {
   const auto* blocked = std::get_if<geometry::Blocked>(&answer);
   if (!blocked || blocked->end == geometry::Blocked::End::start) return 0.0;
   double nearest_edge = std::numeric_limits<double>::infinity();
-  by_place_->for_each_within(
-      goal, radius, [&](std::size_t k) { nearest_edge = std::min(nearest_edge, geometry::distance(edges_[k], goal)); });
+  edges_->grid().for_each_within(goal, radius, [&](std::size_t k) {
+    nearest_edge = std::min(nearest_edge, geometry::distance((*edges_)[k], goal));
+  });
   // A polygon's boundary lies between what is inside of it and every free place.
   double bound = std::max(0.0, radius - nearest_edge);
   for (const SceneObstacle& o : scenario_.obstacles) {

@@ -11,9 +11,9 @@
 #include <optional>
 #include <vector>
 
-#include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/routes.h"
 #include "preflight/reachability.h"
+#include "scene/edges_by_place.h"
 
 namespace exactvo::formation::detail {
 
@@ -40,7 +40,6 @@ class NearestPlaces {
     double distance;  ///< m, from the goal
     Vec2 place;       ///< m
   };
-  void prepare();
   std::optional<Candidate> first_reachable(std::vector<Candidate> all, double radius, Vec2 from);
   std::vector<Candidate> feet(double offset, Vec2 goal) const;
   std::vector<Candidate> crossings(double offset, Vec2 goal, double nearer_than) const;
@@ -49,8 +48,7 @@ class NearestPlaces {
 
   const Scenario& scenario_;
   Reachability& reach_;
-  std::vector<geometry::Segment> edges_;  ///< of all obstacles
-  std::optional<geometry::BoxGrid> by_place_;
+  std::optional<EdgesByPlace> edges_;  ///< from the first question on
 };
 
 }  // namespace exactvo::formation::detail

@@ -133,26 +133,11 @@ class OpenWay::Search {
   std::unordered_map<std::uint64_t, Seen> looked_at_;
 };
 
-OpenWay::OpenWay(const std::vector<SceneObstacle>& obstacles) {
-  std::vector<geometry::Box> boxes;
-  for (const SceneObstacle& o : obstacles) {
-    for (const Segment& s : geometry::edges_of(o.shape)) {
-      edges_.push_back(s);
-      geometry::Box& box = boxes.emplace_back();
-      for (const Vec2 p : {s.a, s.b}) {
-        box.add(p);
-        largest_ = std::max({largest_, std::fabs(p.x), std::fabs(p.y)});
-      }
-    }
-  }
-  edges_by_place_ = geometry::BoxGrid(std::move(boxes));
-}
-
 double OpenWay::clearance_below(Vec2 x, double enough) const {
-  const double rounding = geometry::rounding_of_distance(std::max({largest_, std::fabs(x.x), std::fabs(x.y)}));
+  const double rounding = geometry::rounding_of_distance(edges_.largest_with(x));
   double least = enough;
-  edges_by_place_.for_each_within(x, enough + rounding, [&](std::size_t k) {
-    if (distance_below(edges_by_place_.box(k), x) - rounding < least)
+  edges_.grid().for_each_within(x, enough + rounding, [&](std::size_t k) {
+    if (distance_below(edges_.grid().box(k), x) - rounding < least)
       least = std::min(least, geometry::distance(edges_[k], x) - rounding);
   });
   return least;
@@ -179,7 +164,7 @@ bool OpenWay::is_found(Vec2 start, Vec2 goal, double radius) const {
 /// From each end: no more than the map of all routes would cost, several times over.
 std::size_t OpenWay::most_places(double steps) const {
   constexpr double kPlaces = 2000.0, kPlacesAStep = 4.0, kPlacesAnEdge = 0.25;
-  return static_cast<std::size_t>(std::min(kPlaces, kPlacesAnEdge * static_cast<double>(edges_.size())) +
+  return static_cast<std::size_t>(std::min(kPlaces, kPlacesAnEdge * static_cast<double>(edges_.all().size())) +
                                   kPlacesAStep * steps);
 }
 

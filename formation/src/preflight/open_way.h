@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "exactvo/formation/scenario.h"
-#include "exactvo/geometry/box_grid.h"
+#include "scene/edges_by_place.h"
 
 namespace exactvo::formation::detail {
 
 class OpenWay {
  public:
-  explicit OpenWay(const std::vector<SceneObstacle>& obstacles);
+  explicit OpenWay(const std::vector<SceneObstacle>& obstacles) : edges_(obstacles) {}
 
   /// For a disc of `radius` m, between places that lie in no polygon. Looks at a few thousand places at most, at more
   /// the farther the two are apart, and at fewer where there are few edges.
@@ -32,9 +32,7 @@ class OpenWay {
   /// m, no more than the distance from x to any edge; `enough` where all are beyond that.
   double clearance_below(Vec2 x, double enough) const;
 
-  std::vector<geometry::Segment> edges_;
-  geometry::BoxGrid edges_by_place_;
-  double largest_ = 0.0;  ///< m, coordinate
+  EdgesByPlace edges_;
 };
 
 }  // namespace exactvo::formation::detail

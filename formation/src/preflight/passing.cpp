@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/distance.h"
+#include "scene/edges_by_place.h"
 #include "steering/goals.h"
 
 namespace exactvo::formation {
@@ -88,19 +88,7 @@ struct Cover {
 
 class Walls {
  public:
-  explicit Walls(const std::vector<SceneObstacle>& obstacles) {
-    std::vector<geometry::Box> boxes;
-    for (const SceneObstacle& o : obstacles)
-      for (const Segment& s : geometry::edges_of(o.shape)) {
-        edges_.push_back(s);
-        geometry::Box& box = boxes.emplace_back();
-        for (const Vec2 p : {s.a, s.b}) {
-          box.add(p);
-          largest_ = std::max({largest_, std::fabs(p.x), std::fabs(p.y)});
-        }
-      }
-    by_place_ = geometry::BoxGrid(std::move(boxes));
-  }
+  explicit Walls(const std::vector<SceneObstacle>& obstacles) : edges_(obstacles) {}
 
   /// Whether some edge is nearer than the radius to every point of the square; false where rounding leaves it open. The
   /// distance to an edge is convex, so that it is largest at a corner.
@@ -114,20 +102,18 @@ class Walls {
 
  private:
   bool exclude_hull(std::initializer_list<Vec2> corners, double radius) const {
-    double largest = largest_;
-    for (const Vec2 p : corners) largest = std::max({largest, std::fabs(p.x), std::fabs(p.y)});
+    double largest = 0.0;
+    for (const Vec2 p : corners) largest = std::max(largest, edges_.largest_with(p));
     const double near = radius - 2.0 * geometry::rounding_of_distance(largest);
     bool found = false;
-    by_place_.for_each_within(*corners.begin(), radius, [&](std::size_t k) {
+    edges_.grid().for_each_within(*corners.begin(), radius, [&](std::size_t k) {
       found = found || std::all_of(corners.begin(), corners.end(),
                                    [&](Vec2 p) { return geometry::distance(edges_[k], p) < near; });
     });
     return found;
   }
 
-  std::vector<Segment> edges_;
-  geometry::BoxGrid by_place_;
-  double largest_ = 0.0;  ///< m, coordinate
+  detail::EdgesByPlace edges_;
 };
 
 bool fits_grid(Vec2 p, double side) {

@@ -15,6 +15,7 @@
 #include "motion/leader.h"
 #include "motion/moving_way.h"
 #include "preflight/open_way.h"
+#include "scene/number_text.h"
 #include "scene/obstacle_boxes.h"
 #include "steering/goals.h"
 
@@ -111,12 +112,6 @@ void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
   out.push_back(std::string("the leader reaches the end of its path ") + (std::isfinite(arrival) ? when : "never"));
 }
 
-std::string rounded(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", x);
-  return text;
-}
-
 /// Of a speed: what is exactly as fast as a robot may go does not count as faster, however its direction was rounded.
 constexpr double kRounding = 1e-12;
 
@@ -157,8 +152,8 @@ void warn_of_fast_leader(const Scenario& s, std::vector<std::string>& out) {
   const TopSpeed top = top_speed(s, s.formation->leader);
   for (const Robot& robot : s.robots) {
     if (!exceeds(top.counted, robot.max_speed)) continue;
-    out.push_back("the leader moves at up to " + rounded(top.speed) + " m/s, faster than " + robot.id +
-                  " can (max_speed " + rounded(robot.max_speed) + " m/s): the formation falls behind");
+    out.push_back("the leader moves at up to " + number_text(top.speed, 6) + " m/s, faster than " + robot.id +
+                  " can (max_speed " + number_text(robot.max_speed, 6) + " m/s): the formation falls behind");
     return;
   }
 }
@@ -166,8 +161,8 @@ void warn_of_fast_leader(const Scenario& s, std::vector<std::string>& out) {
 void warn_of_fast_start(const Scenario& s, const Robot& robot, std::vector<std::string>& out) {
   const double speed = counted(s, robot.velocity);
   if (exceeds(speed, robot.max_speed))
-    out.push_back(robot.id + " starts at " + rounded(speed) + " m/s, beyond its max_speed of " +
-                  rounded(robot.max_speed) + " m/s");
+    out.push_back(robot.id + " starts at " + number_text(speed, 6) + " m/s, beyond its max_speed of " +
+                  number_text(robot.max_speed, 6) + " m/s");
 }
 
 /// Moving obstacles are avoided by their convex hulls, and only by robots that can get away.
@@ -182,8 +177,8 @@ void warn_of_moving(const Scenario& s, const MovingObstacle& o, std::vector<std:
   const TopSpeed top = top_speed(s, o.motion);
   for (const Robot& robot : s.robots) {
     if (!exceeds(top.counted, robot.max_speed)) continue;
-    out.push_back("moving obstacle '" + o.id + "' moves at up to " + rounded(top.speed) + " m/s, faster than " +
-                  robot.id + " (max_speed " + rounded(robot.max_speed) + " m/s): it can be run over");
+    out.push_back("moving obstacle '" + o.id + "' moves at up to " + number_text(top.speed, 6) + " m/s, faster than " +
+                  robot.id + " (max_speed " + number_text(robot.max_speed, 6) + " m/s): it can be run over");
     return;
   }
 }
@@ -214,7 +209,7 @@ void warn_of_rests(const Scenario& s, const Robot& robot, const Target& last, st
     const std::optional<Rest> rest = rest_of(s, o);
     if (!rest || geometry::signed_distance(o.shape, last.place - rest->moved) + last.reach >= robot.radius) continue;
     out.push_back(last.name + ", lies where moving obstacle '" + o.id + "' comes to rest" +
-                  (rest->since > 0.0 ? " after " + rounded(rest->since) + " s" : "") +
+                  (rest->since > 0.0 ? " after " + number_text(rest->since, 6) + " s" : "") +
                   ": from then on it cannot be reached");
   }
 }

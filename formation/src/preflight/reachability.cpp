@@ -84,12 +84,6 @@ bool winds_round(const std::vector<Vec2>& chain, Vec2 place) {
 
 }  // namespace
 
-std::string metres(double length) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g m", length);
-  return text;
-}
-
 std::string printed_place(Vec2 place) {
   char text[80];
   std::snprintf(text, sizeof text, "(%.6g, %.6g)", place.x, place.y);

@@ -14,6 +14,7 @@
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/routes.h"
+#include "scene/number_text.h"
 
 namespace exactvo::formation::detail {
 
@@ -22,9 +23,6 @@ struct Destination {
   Vec2 place;          ///< m
   double reach = 0.0;  ///< m, >= 0
 };
-
-/// "0.158 m".
-std::string metres(double length);
 
 /// "(1.5, -2)", m.
 std::string printed_place(Vec2 place);

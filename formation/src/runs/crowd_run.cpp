@@ -19,6 +19,7 @@
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/require.h"
 #include "runs/crowd_run_state.h"
+#include "scene/number_text.h"
 #include "steering/guide.h"
 
 namespace exactvo::formation {
@@ -84,12 +85,6 @@ CrowdOptions options_of(const Scenario& s, const CrowdRunOptions& options) {
   out.ranks = options.ranks;
   out.position_step = position_step_for(s);
   return out;
-}
-
-std::string in_metres(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g m", x);
-  return text;
 }
 
 class CrowdRun {
@@ -448,12 +443,13 @@ std::vector<ScenarioProblem> crowd_problems(const Scenario& s) {
   require(!s.formation, "/formation", "a formation", "robots with goals, for a crowd");
   for (std::size_t k = 0; k < s.moving_obstacles.size(); ++k)
     require(fastest(s.moving_obstacles[k]) <= kFastestBody, "/moving_obstacles/" + std::to_string(k),
-            in_metres(fastest(s.moving_obstacles[k])) + "/s", "at most " + in_metres(kFastestBody) + "/s, for a crowd");
+            detail::metres(fastest(s.moving_obstacles[k]), 6) + "/s",
+            "at most " + detail::metres(kFastestBody, 6) + "/s, for a crowd");
   require(s.speed_bound == SpeedBoundKind::disc, "/speed_bound", "box", "disc, for a crowd");
   require(s.horizons.orca >= s.time_step, "/horizons/orca", "less than /time_step", "at least /time_step, for a crowd");
   const double step = position_step_for(s);
-  require(s.arrival_tolerance >= step, "/arrival_tolerance", in_metres(s.arrival_tolerance),
-          "at least " + in_metres(step) + ", the lattice of positions of a crowd of this extent and speed");
+  require(s.arrival_tolerance >= step, "/arrival_tolerance", detail::metres(s.arrival_tolerance, 6),
+          "at least " + detail::metres(step, 6) + ", the lattice of positions of a crowd of this extent and speed");
   for (std::size_t i = 0; i < s.robots.size() && problems.empty(); ++i)
     require(s.robots[i].cooperates, "/robots/" + std::to_string(i) + "/cooperates", "false", "true, for a crowd");
   return problems;

@@ -14,6 +14,7 @@
 #include "runs/run_clock.h"
 #include "runs/runs.h"
 #include "scene/moving.h"
+#include "scene/number_text.h"
 #include "scene/static_field.h"
 #include "steering/remedies.h"
 #include "steering/slot_follower.h"
@@ -35,12 +36,6 @@ struct FormationRobot {
 Scenario with_margins(Scenario scenario, const Remedies& remedies) {
   if (!remedies.margins) scenario.margins.robot = 0.0;
   return scenario;
-}
-
-std::string metres(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3g m", x);
-  return text;
 }
 
 class FormationRun {

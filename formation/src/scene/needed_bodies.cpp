@@ -24,10 +24,6 @@ using vo::BodyTable;
 
 namespace {
 
-bool meet(const geometry::Box& a, const geometry::Box& b) {
-  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
-}
-
 double largest_coordinate(const geometry::Box& b) {
   return std::max({std::fabs(b.low.x), std::fabs(b.low.y), std::fabs(b.high.x), std::fabs(b.high.y)});
 }

@@ -188,8 +188,7 @@ double distance_to(const GrownShape& shape, Vec2 p) {
 }
 
 bool boxes_meet(const GrownShape& a, const GrownShape& b) {
-  const geometry::Box x = box_of(a), y = box_of(b);
-  return x.low.x <= y.high.x && y.low.x <= x.high.x && x.low.y <= y.high.y && y.low.y <= x.high.y;
+  return meet(box_of(a), box_of(b));
 }
 
 std::vector<Crossing> crossings(const GrownShape& a, const GrownShape& b) {
