@@ -32,7 +32,10 @@ class CrowdFigures : public testing::Test {
   }
   ~CrowdFigures() override { std::filesystem::remove(path_); }
 
-  const std::filesystem::path path_ = std::filesystem::temp_directory_path() / "exactvo_crowd_figures.evr";
+  /// One of its own for each test: they run at the same time.
+  const std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() /
+      (std::string("exactvo_crowd_figures_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".evr");
   formation::CrowdRunReport report_;
   CrowdCourse course_;
 };
