@@ -213,34 +213,61 @@ class EdgeLanes {
   }
 
  private:
-  HWY_INLINE Vec end(const double* ends, hn::Vec<Index> at) const {
+  /// The edges of a row as seen from the robots: that of each lane's cell, its last where it has fewer, any where it
+  /// has none. An edge is one load, and four by four they are transposed: processors take gathers apart, number by
+  /// number.
+  HWY_INLINE void edges_of_row(std::size_t row, Vec& a, Vec& b) const {
     const Doubles d;
-    const Vec p = {hn::GatherIndex(d, ends, at), hn::GatherIndex(d, ends + 1, at)};
-    return p - place_;
+    static_assert(sizeof(Segment) == 4 * sizeof(double));
+    const auto edge_of = [&](std::size_t lane) {
+      return &query_.edges[query_.items[HWY_MIN(first_[lane] + row, last_[lane])]].a.x;
+    };
+#if HWY_CAP_GE256
+    if constexpr (hn::MaxLanes(Doubles()) >= 4) {
+      V v[4];
+      for (std::size_t k = 0; k < 4; ++k) {
+        const hn::CappedTag<double, 4> four;
+        if constexpr (hn::MaxLanes(Doubles()) == 8)
+          v[k] = hn::Combine(d, hn::LoadU(four, edge_of(k + 4)), hn::LoadU(four, edge_of(k)));
+        else
+          v[k] = hn::LoadU(d, edge_of(k));
+      }
+      const V x01 = hn::InterleaveLower(d, v[0], v[1]), x23 = hn::InterleaveLower(d, v[2], v[3]);
+      const V y01 = hn::InterleaveUpper(d, v[0], v[1]), y23 = hn::InterleaveUpper(d, v[2], v[3]);
+      a = {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(x23), x01), hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y23), y01)};
+      b = {hn::OddEvenBlocks(x23, hn::SwapAdjacentBlocks(x01)), hn::OddEvenBlocks(y23, hn::SwapAdjacentBlocks(y01))};
+      a = a - place_;
+      b = b - place_;
+      return;
+    }
+#endif
+    alignas(64) double ends[4][kPack];
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane)
+      for (std::size_t k = 0; k < 4; ++k) ends[k][lane] = edge_of(lane)[k];
+    a = Vec{hn::Load(d, ends[0]), hn::Load(d, ends[1])} - place_;
+    b = Vec{hn::Load(d, ends[2]), hn::Load(d, ends[3])} - place_;
   }
 
   /// The edges of the lanes' cells, as seen from the robots, by row; the nearest of each lane.
   HWY_INLINE void gather() {
     const Doubles d;
-    const Words words;
-    static_assert(sizeof(Segment) == 4 * sizeof(double));
-    const double* edges = &query_.edges->a.x;
-    const auto* items = reinterpret_cast<const std::int32_t*>(query_.items);
-    const auto first = hn::LoadU(words, query_.first + lane_), count = hn::LoadU(words, query_.count + lane_);
+    const V count = hn::PromoteTo(d, hn::LoadU(Words(), query_.count + lane_));
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {  // of a lane without edges, `first` may be past the end
+      const auto edges = static_cast<std::size_t>(query_.count[lane_ + lane]);
+      first_[lane] = edges > 0 ? static_cast<std::size_t>(query_.first[lane_ + lane]) : 0;
+      last_[lane] = edges > 0 ? first_[lane] + edges - 1 : 0;
+    }
     const V max_speed = hn::LoadU(d, query_.max_speed + lane_);
     const V range = hn::Mul(hn::Add(hn::Mul(horizon_, max_speed), radius_), set(kWiden));
     const V far = hn::Mul(set(kCutRanges), range), squared_range = hn::Mul(range, range);
     best_squared_ = set(kInfinity);
     best_row_ = set(0.0);
     for (std::size_t row = 0; row < count_; ++row) {
-      const auto at = hn::Set(words, static_cast<std::int32_t>(row));
-      const auto there = hn::Lt(at, count);
-      const auto item = hn::GatherIndex(words, items, hn::IfThenElseZero(there, hn::Add(first, at)));
-      const auto edge = hn::ShiftLeft<2>(hn::PromoteTo(Index(), item));
-      Vec a = end(edges, edge), b = end(edges + 2, edge);
+      Vec a, b;
+      edges_of_row(row, a, b);
       const Vec nearest = nearest_point(a, b);
       V squared = dot(nearest, nearest);
-      const M row_there = hn::Lt(set(static_cast<double>(row)), hn::PromoteTo(d, count));
+      const M row_there = hn::Lt(set(static_cast<double>(row)), count);
       const M within = hn::And(row_there, hn::Le(squared, squared_range));
       if (hn::AllFalse(d, within)) continue;
       squared = hn::IfThenElse(within, squared, set(kInfinity));
@@ -351,6 +378,7 @@ class EdgeLanes {
   const EdgePackQuery<T>& query_;
   EdgePackTable& t_;
   std::size_t lane_, count_ = 0, used_ = 0;
+  std::size_t first_[kPack], last_[kPack];  ///< of each lane's cell in the query's items
   Vec place_, velocity_;
   V radius_, horizon_, least_;
   V best_squared_, best_row_;  ///< of the nearest edge that is left; infinite: none
