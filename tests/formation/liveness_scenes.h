@@ -183,4 +183,23 @@ inline Scenario siding() {
   return s;
 }
 
+/// The same as a formation: the leader rests at the origin, and goals are slots.
+inline Scenario at_slots(Scenario s, double k3 = 37.5) {
+  const std::size_t n = s.robots.size();
+  FormationSpec& formation = s.formation.emplace();
+  formation.leader.path = {{0.0, 0.0}};
+  formation.recentre = false;
+  formation.gains = {0.25, 0.45, k3, 1.5};
+  formation.catch_up_speed = 1.5;
+  formation.topology.adjacency.assign(n, std::vector<double>(n, 1.0));
+  for (std::size_t i = 0; i < n; ++i) formation.topology.adjacency[i][i] = 0.0;
+  formation.topology.pinning.assign(n, 1.0);
+  for (Robot& r : s.robots) {
+    formation.offsets.push_back(r.goals.front());
+    r.goals.clear();
+  }
+  s.time_step = 0.02;
+  return s;
+}
+
 }  // namespace exactvo::formation::test_scenes

@@ -34,12 +34,11 @@ datasets::RunInfo run_info(const Scenario& scenario, const SimulationOptions& op
   if (scenario.formation) {
     info.controller = name(options.controller);
     info.integrator = name(options.integrator);
-  } else {
-    const formation::Guidance guidance = guidance_of(scenario, options);
-    const formation::Liveness liveness = liveness_of(scenario, options);
-    if (guidance != formation::Guidance::none) info.guidance = name(guidance);
-    if (liveness != formation::Liveness::off) info.liveness = name(liveness);
   }
+  const formation::Guidance guidance = guidance_of(scenario, options);
+  const formation::Liveness liveness = liveness_of(scenario, options);
+  if (guidance != formation::Guidance::none) info.guidance = name(guidance);
+  if (liveness != formation::Liveness::off) info.liveness = name(liveness);
   return info;
 }
 

@@ -103,8 +103,13 @@ void BodyAudit::check_outlooks() {
 }
 
 /// The first at t = 0 for the first goal, then goal after goal, each from a row at which the last goal was reached.
+/// Robots of a formation have no goals and see otherwise when they begin and end to go by a plan.
 bool BodyAudit::is_in_order(const Outlook& outlook, const Outlook* before) const {
   if (!before) return outlook.time == 0.0 && outlook.goal == 0;
+  if (file_.scenario.formation) {
+    const PlacesInRows::Place* place = places_.of_outlook(outlook);
+    return outlook.goal == 0 && outlook.time > before->time && place && place->time == outlook.time;
+  }
   const formation::Robot& robot = file_.scenario.robots[outlook.robot];
   if (outlook.goal != before->goal + 1 || outlook.goal >= robot.goals.size() || outlook.time < before->time)
     return false;

@@ -32,7 +32,7 @@ class PlanAudit {
   void begins(std::size_t k) {
     const std::size_t robot = plan_.robots[k];
     const PlacesInRows::Place* place = places_.of(plan_.from_row, robot);
-    if (place && place->position == plan_.starts[k])
+    if (place && place->anchor == plan_.starts[k])
       tally_.proven(AuditPoint::plans);
     else
       tally_.refuted(AuditPoint::plans, at_row(plan_.row, "the plan does not begin where " + id(robot) +

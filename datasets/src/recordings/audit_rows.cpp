@@ -100,7 +100,7 @@ std::optional<std::size_t> PlacesInRows::row_of(const formation::Outlook& outloo
 
 void PlacesInRows::take(std::size_t number, const Step& row) {
   for (auto at = places_.lower_bound({number, 0}); at != places_.end() && at->first.first == number; ++at)
-    at->second = {row.time, row.robots[at->first.second].position};
+    at->second = {row.time, row.robots[at->first.second].position, row.robots[at->first.second].anchor};
 }
 
 const PlacesInRows::Place* PlacesInRows::of_outlook(const formation::Outlook& outlook) const {

@@ -61,6 +61,7 @@ class PlacesInRows {
   struct Place {
     double time;              ///< s, of the row
     geometry::Vec2 position;  ///< m
+    geometry::Vec2 anchor;    ///< m, the place itself or, of second-order robots, the brake point
   };
 
   /// REQUIRES: rows of the number that `outline` says.

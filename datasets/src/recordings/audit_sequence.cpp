@@ -23,6 +23,8 @@ constexpr double kRoundings = 64 * 0x1p-53;
 /// Of dopri5 and rosenbrock4, whose tolerance is 1e-12 a step: what is farther off than this did not come from them.
 constexpr double kAdaptive = 0x1p-20;
 constexpr double kAdaptiveAtRest = 1e-9;  ///< m/s
+/// m/s: who stands for a thousand steps has velocities below the smallest normal number, which round absolutely.
+constexpr double kSubnormal = 0x1p-1050;
 
 /// A path counts as covered when all but 1e-12 of it is (formation's leader.h): places are known to within a share of
 /// the path, and a leader that brakes to rest there is at rest this much earlier (s).
@@ -160,7 +162,7 @@ bool SequenceAudit::follows(const RobotStep& from, const RobotStep& to) const {
 /// m: what a step's position may be off, of terms of this size; speeds in m/s are worth a step and what z makes of it.
 Rational SequenceAudit::rounding(const Rational& position, const Rational& speeds) const {
   const Rational z = law_->z, growth = is_adaptive_ ? Rational(1) : Rational(1 + z + z * z + z * z * z + z * z * z * z);
-  const Rational at_rest(is_adaptive_ ? kAdaptiveAtRest : 0.0);
+  const Rational at_rest(is_adaptive_ ? kAdaptiveAtRest : kSubnormal);
   return Rational(is_adaptive_ ? kAdaptive : kRoundings) * (position + duration_ * growth * speeds) +
          duration_ * at_rest;
 }

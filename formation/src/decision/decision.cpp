@@ -58,14 +58,14 @@ PairConstraints half_each(Party a, Party b, const vo::ReciprocalOptions& rule) {
 
 Constraint* against(std::size_t robot, const Scene& scene, std::vector<Constraint>& all) {
   for (Constraint& c : all)
-    if (scene.bodies()[c.body].kind == vo::BodyKind::robot && c.index == robot) return &c;
+    if (is_of_robot(scene, c) && c.index == robot) return &c;
   return nullptr;
 }
 
-/// The half-planes of two robots that stand still, which keep a skin between them. Where it is used up, neither comes
+/// The half-planes of two robots that stand still, which keep a gap between them. Where it is used up, neither comes
 /// nearer.
 PairConstraints at_rest(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
-                        std::size_t j, double time_horizon) {
+                        std::size_t j, double time_horizon, double gap) {
   vo::ReciprocalOptions options;
   options.time_horizon = options.contact_time = time_horizon;
   const Party a = party(scenario, anchors, scene, i, {}), b = party(scenario, anchors, scene, j, {});
@@ -73,8 +73,8 @@ PairConstraints at_rest(const Scenario& scenario, const std::vector<Anchor>& anc
   // With some rounding: where a robot is held from all sides, half-planes through 0 leave it 0, and others a region
   // between doubles.
   constexpr double kUsedUp = 1.001;
-  const bool is_in_contact = centres - (a.disc.radius + b.disc.radius) <= kUsedUp * kContactSkin;
-  if (!is_in_contact) options.margin = kContactSkin;
+  const bool is_in_contact = centres - (a.disc.radius + b.disc.radius) <= kUsedUp * gap;
+  if (!is_in_contact) options.margin = gap;
   PairConstraints pair = half_each(a, b, options);
   if (is_in_contact)
     for (Constraint* c : {&pair.of_a, &pair.of_b}) c->half_plane.offset = std::max(0.0, c->half_plane.offset);
@@ -91,8 +91,8 @@ PairConstraints with_plans(const Scenario& scenario, const std::vector<Anchor>& 
 
 /// One of them goes by a plan: the whole gap is its.
 PairConstraints with_a_plan(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
-                            std::size_t i, std::size_t j, bool it_is_i) {
-  PairConstraints pair = at_rest(scenario, anchors, scene, i, j, scenario.time_step);
+                            std::size_t i, std::size_t j, bool it_is_i, double gap) {
+  PairConstraints pair = at_rest(scenario, anchors, scene, i, j, scenario.time_step, gap);
   const double whole = 2.0 * std::max(pair.of_a.half_plane.offset, pair.of_b.half_plane.offset);
   pair.of_a.half_plane.offset = it_is_i ? whole : 0.0;
   pair.of_b.half_plane.offset = it_is_i ? 0.0 : whole;
@@ -150,23 +150,35 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
   for (std::size_t i = 0; i < n; ++i) sort_by_distance(scene.bodies(), anchors[i].position, out[i]);
 }
 
+bool is_of_robot(const Scene& scene, const Constraint& c) {
+  return scene.bodies()[c.body].kind == vo::BodyKind::robot;
+}
+
+std::vector<std::size_t> robots_met_by(const Scene& scene, const std::vector<Constraint>& constraints) {
+  std::vector<std::size_t> all;
+  for (const Constraint& c : constraints)
+    if (is_of_robot(scene, c)) all.push_back(c.index);
+  return all;
+}
+
 void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
-               std::size_t j, std::vector<std::vector<Constraint>>& constraints) {
+               std::size_t j, std::vector<std::vector<Constraint>>& constraints, double gap) {
   Constraint* mine = against(j, scene, constraints[i]);
   Constraint* theirs = against(i, scene, constraints[j]);
   if (!mine || !theirs) return;
-  const PairConstraints pair = at_rest(scenario, anchors, scene, i, j, contact_time(scenario));
+  const PairConstraints pair = at_rest(scenario, anchors, scene, i, j, contact_time(scenario), gap);
   *mine = pair.of_a;
   *theirs = pair.of_b;
 }
 
 void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
-                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints) {
+                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints,
+                  double gap) {
   const auto yields = [&](std::size_t i) { return scenario.robots[i].cooperates; };
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     std::vector<Constraint>& mine = constraints[i];
     const auto is_theirs = [&](const Constraint& c) {
-      return scene.bodies()[c.body].kind == vo::BodyKind::robot && yields(c.index) && (planned[i] || planned[c.index]);
+      return is_of_robot(scene, c) && yields(c.index) && (planned[i] || planned[c.index]);
     };
     const auto is_far = [&](const Constraint& c) {
       const double speeds = scenario.robots[i].max_speed + scenario.robots[c.index].max_speed;
@@ -177,7 +189,7 @@ void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, 
       if (!is_theirs(c)) continue;
       const std::size_t j = c.index;
       c = planned[i] && planned[j] ? with_plans(scenario, anchors, scene, i, *planned[i], j, *planned[j]).of_a
-                                   : with_a_plan(scenario, anchors, scene, i, j, planned[i].has_value()).of_a;
+                                   : with_a_plan(scenario, anchors, scene, i, j, planned[i].has_value(), gap).of_a;
     }
   }
 }

@@ -51,11 +51,16 @@ void sort_by_distance(const vo::BodyTable& bodies, Vec2 from, std::vector<Constr
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
                        Scene& scene, std::vector<std::vector<Constraint>>& out);
 
+bool is_of_robot(const Scene& scene, const Constraint& c);
+
+/// Whom these half-planes keep clear of, among the robots.
+std::vector<std::size_t> robots_met_by(const Scene& scene, const std::vector<Constraint>& constraints);
+
 /// The half-planes of two robots that both yield give way to those that they would have at rest, looking ahead as far
-/// as `contact_time` and leaving `kContactSkin` between them: v = 0 satisfies them as long as the robots do not
+/// as `contact_time` and leaving `gap` (m) between their rims: v = 0 satisfies them as long as the robots do not
 /// overlap, and they are as certain (liveness, rule R0).
 void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
-               std::size_t j, std::vector<std::vector<Constraint>>& constraints);
+               std::size_t j, std::vector<std::vector<Constraint>>& constraints, double gap = kContactSkin);
 
 /// The same of all pairs of which one goes by a plan, for robots that both yield (liveness, rule R4). `planned`: m/s,
 /// what those who go by a plan want. Two that do have the half-plane nearest to what they want, split there with half
@@ -63,7 +68,8 @@ void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, con
 /// does not the first takes the whole gap, and the other does not come nearer. Pairs that cannot meet within a step
 /// have none.
 void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
-                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints);
+                  const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints,
+                  double gap = kContactSkin);
 
 /// The largest share of a velocity, in [0, 1], that all these allow; nothing where none does.
 std::optional<double> allowed_share(Vec2 velocity, const std::vector<Constraint>& statics,

@@ -315,6 +315,11 @@ bool Groups::plan_for(Members who, const Members& seeds, int replans) {
     if (end == PlanEnd::planned) return true;
     if (to == history_.first()) break;
   }
+  // A map that has no plan may lack a place: that far in a niche, say. Then from now and from the first row again.
+  for (const std::size_t to : {now, history_.first()})
+    if (end == PlanEnd::none_on_map && !is_stopped_() &&
+        plan_from(who, seeds, replans, to, Detail::dense) == PlanEnd::planned)
+      return true;
   for (const std::size_t i : seeds) ++of_robot_[i].failures;
   forget_without_plan(seeds);
   without_plan_.push_back({seeds, end});
@@ -357,12 +362,13 @@ bool Groups::uses_whole_map(const Members& who) const {
 }
 
 /// For the largest of the members: who is larger and not among them needs no room.
-Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int replans) const {
+Roadmap Groups::map_for(const Members& who, const std::vector<Vec2>& from, int replans, Detail detail) const {
   const double radius = largest_radius(who);
-  if (!uses_whole_map(who)) return Roadmap(*space_, region_for(who, from, replans), radius);
-  const auto known = whole_maps_.find(radius);
+  if (!uses_whole_map(who)) return Roadmap(*space_, region_for(who, from, replans), radius, detail);
+  const std::pair key{radius, detail};
+  const auto known = whole_maps_.find(key);
   if (known != whole_maps_.end()) return known->second;
-  return whole_maps_.emplace(radius, Roadmap(*space_, whole_scene(radius), radius)).first->second;
+  return whole_maps_.emplace(key, Roadmap(*space_, whole_scene(radius), radius, detail)).first->second;
 }
 
 /// Each member's goal, or, where that is outside the map or taken, the nearest place that is free.
@@ -450,12 +456,13 @@ void Groups::dissolve_those_of(const Members& who) {
   }
 }
 
-Groups::PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int replans, std::size_t row) {
+Groups::PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int replans, std::size_t row,
+                                  Detail detail) {
   const Members who = with_groups_of(members);
   const std::vector<Vec2>& from = history_[row];
   if (!fits(who, from, replans)) return PlanEnd::too_large;
   dissolve_those_of(seeds);
-  Roadmap map = map_for(who, from, replans);
+  Roadmap map = map_for(who, from, replans, detail);
   for (std::size_t j = 0; j < now_.size(); ++j)
     if (!has(who, j) && (now_[j].has_arrived || !now_[j].may_join))
       map.block(now_[j].position, (1.0 + kPlannedGap) * (largest_radius(who) + scenario_.robots[j].radius));

@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactvo/formation/recording.h"
@@ -118,13 +119,14 @@ class Groups {
   Members with_those_in_the_way_back(Members who, std::size_t to) const;
   /// `seeds`: those who wait. Only their groups end, and only their patience, where no plan is found.
   bool plan_for(Members who, const Members& seeds, int replans);
-  PlanEnd plan_from(const Members& who, const Members& seeds, int replans, std::size_t row);
+  PlanEnd plan_from(const Members& who, const Members& seeds, int replans, std::size_t row,
+                    Detail detail = Detail::seen);
   /// Ends the groups of these, who are planned for now.
   void dissolve_those_of(const Members& who);
   void forget_without_plan(const Members& who);
   geometry::Box whole_scene(double radius) const;
   bool uses_whole_map(const Members& who) const;
-  Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int replans) const;
+  Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int replans, Detail detail) const;
   geometry::Box region_for(const Members& who, const std::vector<Vec2>& from, int replans) const;
   std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
   std::optional<std::vector<PlannedMove>> search(JointProblem problem, std::size_t row, PlanEnd& end);
@@ -151,8 +153,8 @@ class Groups {
     std::size_t robot = 0;
     bool is_dead = false;
   };
-  std::vector<Due> due_;                          ///< who was stalled in the last row
-  mutable std::map<double, Roadmap> whole_maps_;  // by radius
+  std::vector<Due> due_;                                             ///< who was stalled in the last row
+  mutable std::map<std::pair<double, Detail>, Roadmap> whole_maps_;  ///< by radius
   std::vector<WithoutPlan> without_plan_;
   LivenessCourse course_;
   std::vector<JointPlan> made_;

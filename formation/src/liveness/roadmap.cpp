@@ -14,6 +14,7 @@ constexpr double kLongestWay = 1.6;
 constexpr double kCell = 2.0;
 constexpr double kFine = 0.125;       ///< the grid of points that guards must see
 constexpr double kSeesWithin = 0.8;   ///< of a guard
+constexpr double kDense = 0.5;        ///< the same of a dense map
 constexpr double kLatticeGap = 0.03;  ///< beside the radius
 constexpr double kGuardGap = 0.02;
 constexpr double kWayGap = 0.01;
@@ -36,7 +37,7 @@ class DisjointSets {
 
 }  // namespace
 
-Roadmap::Roadmap(const FreeSpace& space, const geometry::Box& region, double radius)
+Roadmap::Roadmap(const FreeSpace& space, const geometry::Box& region, double radius, Detail detail)
     : space_(&space),
       diameter_(2.0 * radius),
       way_clearance_(radius + kWayGap * diameter_),
@@ -44,7 +45,7 @@ Roadmap::Roadmap(const FreeSpace& space, const geometry::Box& region, double rad
       cells_(kCell * diameter_) {
   add_lattice(region);
   const std::vector<FreePoint> narrow = space.is_open() ? std::vector<FreePoint>{} : narrow_points(region);
-  add_guards(narrow);
+  add_guards(narrow, detail);
   add_ways();
   add_connectors(narrow);
 }
@@ -143,10 +144,11 @@ std::vector<Roadmap::FreePoint> Roadmap::narrow_points(const geometry::Box& regi
   return points;
 }
 
-void Roadmap::add_guards(const std::vector<FreePoint>& narrow) {
+void Roadmap::add_guards(const std::vector<FreePoint>& narrow, Detail detail) {
+  const double reach = (detail == Detail::dense ? kDense : kSeesWithin) * diameter_;
   for (const FreePoint& point : narrow) {
     bool is_seen = false;
-    for_each_near(point.place, kSeesWithin * diameter_, [&](PlaceNumber p) {
+    for_each_near(point.place, reach, [&](PlaceNumber p) {
       is_seen = is_seen || space_->is_clear(point.place, places_[p], way_clearance_);
     });
     if (!is_seen) add(point.place);

@@ -17,34 +17,22 @@
 #include "exactvo/geometry/box.h"
 #include "liveness/cells.h"
 #include "liveness/sweeps.h"
+#include "scene/free_space.h"
 
 namespace exactvo::formation::detail {
 
-/// What stands still.
-class FreeSpace {
- public:
-  virtual ~FreeSpace() = default;
-  virtual bool is_open() const = 0;  ///< nothing stands anywhere
-  /// m, from the place to what stands nearest, negative inside it; beyond `enough` any number that is not less.
-  virtual double clearance(Vec2 place, double enough) const = 0;
-  /// Whether the straight way stays `least` (m) from everything.
-  virtual bool is_clear(Vec2 from, Vec2 to, double least) const = 0;
-};
-
-/// Nothing stands anywhere.
-class OpenSpace : public FreeSpace {
- public:
-  bool is_open() const override { return true; }
-  double clearance(Vec2, double enough) const override { return enough; }
-  bool is_clear(Vec2, Vec2, double) const override { return true; }
-};
-
 using PlaceNumber = std::uint32_t;
+
+/// How many places narrow parts have.
+enum class Detail {
+  seen,   ///< every free point sees one
+  dense,  ///< every free point has one within half a diameter: also at the ends of niches
+};
 
 class Roadmap {
  public:
   /// For discs of that radius, m, in the region. `space` must outlive the map.
-  Roadmap(const FreeSpace& space, const geometry::Box& region, double radius);
+  Roadmap(const FreeSpace& space, const geometry::Box& region, double radius, Detail detail = Detail::seen);
 
   std::size_t size() const { return places_.size(); }
   Vec2 place(PlaceNumber p) const { return places_[p]; }
@@ -97,7 +85,7 @@ class Roadmap {
   void link(PlaceNumber a, PlaceNumber b);
   void add_lattice(const geometry::Box& region);
   std::vector<FreePoint> narrow_points(const geometry::Box& region) const;
-  void add_guards(const std::vector<FreePoint>& narrow);
+  void add_guards(const std::vector<FreePoint>& narrow, Detail detail);
   void add_ways();
   void add_connectors(const std::vector<FreePoint>& narrow);
 

@@ -7,12 +7,14 @@
 
 #include "control/consensus.h"
 #include "decision/decision.h"
+#include "decision/repair.h"
 #include "metrics/divergence.h"
 #include "motion/integrators.h"
 #include "motion/leader.h"
 #include "runs/rows.h"
 #include "runs/run_clock.h"
 #include "runs/runs.h"
+#include "runs/slot_plans.h"
 #include "scene/moving.h"
 #include "scene/number_text.h"
 #include "scene/static_field.h"
@@ -31,6 +33,10 @@ struct FormationRobot {
   StaticField field;
   SideCommitment side;
   SlotFollower slot;
+  // With joint plans.
+  std::optional<StaticField> pieces = {};  ///< what it sees of obstacles while it goes by plan, made when it first does
+  bool sees_pieces = false;                ///< it went by plan when it decided last
+  bool held_by_all = false;                ///< it goes by plan, and no share of what it wants is allowed
 };
 
 Scenario with_margins(Scenario scenario, const Remedies& remedies) {
@@ -48,7 +54,10 @@ class FormationRun {
         scene_(scenario_, options),
         clock_(scenario_, options),
         decider_(scenario_, scene_.bodies()),
-        offsets_(offsets_in_use(spec_, remedies_)) {
+        offsets_(offsets_in_use(spec_, remedies_)),
+        planned_(scenario_.robots.size()) {
+    if (liveness_of(scenario, options) == Liveness::plan)
+      plans_.emplace(scenario_, offsets_, [this] { return clock_.is_stopped(now_); });
     const HorizonRule rule = remedies_.tau_clamp ? HorizonRule::clamped : HorizonRule::literal;
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const Robot& r = scenario_.robots[i];
@@ -68,10 +77,9 @@ class FormationRun {
     recording.relative_frame = !remedies_.absolute_frame;
     recording.remedies = remedies_;
     recording.offsets = offsets_;
-    for (std::size_t i = 0; i < robots_.size(); ++i)
-      recording.outlooks.push_back({0.0, i, 0, robots_[i].field.shapes()});
+    for (std::size_t i = 0; i < robots_.size(); ++i) outlooks_.push_back({0.0, i, 0, robots_[i].field.shapes()});
     sink.begin(recording);
-    RowFeed rows(scene_.bodies(), recording.outlooks, nullptr, sink);
+    RowFeed rows(scene_.bodies(), outlooks_, plans_ ? &plans_->groups().plans() : nullptr, sink);
     const double first_error = formation_error(state_row(0.0), offsets_);
     std::size_t k = 0;
     for (; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
@@ -82,6 +90,11 @@ class FormationRun {
     const Step last = state_row(clock_.time(k));
     rows.add(last);
     recording.bodies = scene_.copied_bodies();
+    recording.outlooks = std::move(outlooks_);
+    if (plans_) {
+      recording.liveness = plans_->groups().course();
+      recording.plans = plans_->groups().plans();
+    }
     judge(first_error, last, recording);
   }
 
@@ -105,24 +118,47 @@ class FormationRun {
   }
 
   Step decide_all(double time) {
+    now_ = time;
     Step row = state_row(time);
     const LeaderState leader{row.leader_position, row.leader_velocity};
     take_relative_states(leader);
     anchors_.clear();
     for (std::size_t i = 0; i < robots_.size(); ++i) anchors_.push_back({anchor(i), anchor_velocity(i)});
-    robot_constraints(scenario_, options_, anchors_, scene_, others_);
+    if (plans_) plans_->begin_step(time, anchors_, leader);
+    look_at_robots();
     move_obstacles(scenario_, time, scene_, row.moving);
     for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, row.robots[i]);
+    if (!plans_) return row;
+    repair(time, row);
+    Groups& groups = plans_->groups();
+    while (groups.any() && groups.halt_those_held_back(row)) decide_again(time, row);
+    groups.end_step(row);
     return row;
   }
 
-  void decide_one(std::size_t i, double time, const LeaderState& leader, RobotStep& step) {
+  /// Half-planes of robots against robots, as they are or as plans have them.
+  void look_at_robots() {
+    robot_constraints(scenario_, options_, anchors_, scene_, others_);
+    if (!plans_ || !plans_->groups().any()) return;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      planned_[i] = goes_by_plan(i) ? std::optional<Vec2>(plans_->groups().wanted(i)) : std::nullopt;
+    follow_plans(scenario_, anchors_, scene_, planned_, others_, plans_->gap());
+  }
+
+  Viewpoint viewpoint(std::size_t i) const {
     const Robot& spec = scenario_.robots[i];
-    const Viewpoint here{anchor(i), anchor_velocity(i), spec.radius, spec.max_speed};
+    return {anchor(i), anchor_velocity(i), spec.radius, spec.max_speed};
+  }
+
+  void decide_one(std::size_t i, double time, const LeaderState& leader, RobotStep& step) {
+    const Viewpoint here = viewpoint(i);
     step.anchor = here.position;
     step.anchor_velocity = here.velocity;
-    robots_[i].field.constraints(here, statics_);
     add_moving_constraints(scenario_, here, scene_, others_[i]);
+    if (plans_) step.note = plans_->groups().note(i);
+    if (goes_by_plan(i) != robots_[i].sees_pieces) look_otherwise(i, time);
+    if (goes_by_plan(i)) return choose_by_plan(i, time, step, nullptr);
+    robots_[i].field.constraints(here, statics_);
     const Vec2 wanted = wanted_velocity(i, leader);
     const SlotFollower::Situation situation{time,
                                             norm(relative_.position[i]),
@@ -137,6 +173,77 @@ class FormationRun {
     // Math: v_pref <- (v_pref + 4 w_prev) / 5, projected.
     in.preferred = (in.preferred + 4.0 * robots_[i].tracked) / 5.0;
     decider_.decide(in, step);
+  }
+
+  // --- Robots that go by plan, and repair ---
+
+  bool goes_by_plan(std::size_t i) const { return plans_ && plans_->groups().is_member(i); }
+
+  /// Who begins to go by plan sees the pieces of obstacles instead of what encloses them, and who ends the other way
+  /// round.
+  void look_otherwise(std::size_t i, double time) {
+    FormationRobot& r = robots_[i];
+    r.sees_pieces = !r.sees_pieces;
+    if (r.sees_pieces && !r.pieces) r.pieces = field_of_pieces(i);
+    r.side = {};
+    r.slot = {};
+    outlooks_.push_back({time, i, 0, (r.sees_pieces ? *r.pieces : r.field).shapes()});
+  }
+
+  /// Along the plan, as fast as all half-planes allow.
+  void choose_by_plan(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    FormationRobot& r = robots_[i];
+    step.mode = plans_->groups().goes_back(i) ? Mode::going_back : Mode::by_plan;
+    Viewpoint here = viewpoint(i);
+    const Vec2 wanted = plans_->groups().wanted(i);
+    here.velocity = wanted;
+    here.horizon = scenario_.time_step;
+    r.pieces->constraints(here, statics_, reach_of_step(scenario_, here));
+    const std::optional<double> share = allowed_share(wanted, statics_, others_[i]);
+    r.held_by_all = !share;
+    decider_.decide(
+        {share.value_or(0.0) * wanted, here, &statics_, &others_[i], clock_.keeps_all(time), nullptr, fallen_back},
+        step);
+  }
+
+  StaticField field_of_pieces(std::size_t i) {
+    const double radius = scenario_.robots[i].radius;
+    StaticField field(scene_, scenario_, options_, radius, anchor(i), anchor(i), HorizonRule::clamped, SeenAs::pieces);
+    field.set_margin(plans_->gap_to_obstacles());
+    return field;
+  }
+
+  void choose_again(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
+    if (goes_by_plan(i)) return choose_by_plan(i, time, step, fallen_back);
+    const Viewpoint here = viewpoint(i);
+    robots_[i].field.constraints(here, statics_);
+    decider_.decide({step.preferred, here, &statics_, &others_[i], clock_.keeps_all(time), nullptr, fallen_back}, step);
+  }
+
+  /// After groups were halted: their robots want something else.
+  void decide_again(double time, Step& row) {
+    look_at_robots();
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
+      choose_again(i, time, row.robots[i], nullptr);
+    }
+    repair(time, row);
+  }
+
+  void repair(double time, Step& row) {
+    const auto is_contradicted = [&](std::size_t i) {
+      return row.robots[i].status != lp::Status::optimal || (goes_by_plan(i) && robots_[i].held_by_all);
+    };
+    const auto fallen = detail::repair(
+        scenario_, anchors_, scene_, others_, is_contradicted,
+        [&](std::size_t i, const std::vector<std::size_t>& with) { choose_again(i, time, row.robots[i], &with); },
+        plans_->gap());
+    // With less room than there is between doubles it stands still, which all half-planes allow.
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      if (row.robots[i].status != lp::Status::no_interior || goes_by_plan(i)) continue;
+      row.robots[i].preferred = {};
+      choose_again(i, time, row.robots[i], &fallen[i]);
+    }
   }
 
   /// The preference, with the consensus term in it where the filter comes last.
@@ -156,8 +263,10 @@ class FormationRun {
     step.side = answer.side;
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
+    step.note = joined_notes(step.note, answer.note);
+    if (plans_) return answer.preferred;  // who is blocked by robots stands still, and a plan is made
     const SlotFollower::Answer round = robots_[i].slot.steer(situation, statics, others);
-    step.note = joined_notes(answer.note, round.note);
+    step.note = joined_notes(step.note, round.note);
     if (round.mode != Mode::following) return answer.preferred;
     step.mode = Mode::following;
     step.side = round.side;
@@ -221,8 +330,18 @@ class FormationRun {
     recording.outcome = recording.diverged
                             ? "diverged: the formation error grew from " + metres(first) + " to " + metres(last)
                             : "formation error " + metres(last) + " at the end";
+    if (plans_) add_words_of_plans(end, recording);
     if (leader_arrival(spec_.leader) > end.time) recording.outcome += "; the leader did not reach its end";
     if (!spec_.leader.why_short.empty()) recording.outcome += "; " + spec_.leader.why_short;
+  }
+
+  void add_words_of_plans(const Step& end, Recording& recording) const {
+    std::vector<std::size_t> not_there;
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+      if (norm(end.robots[i].position - end.leader_position - offsets_[i]) > scenario_.arrival_tolerance)
+        not_there.push_back(i);
+    const std::string words = plans_->groups().no_plan_words(not_there);
+    if (!words.empty()) recording.outcome += "; " + words;
   }
 
   Remedies remedies_;
@@ -234,9 +353,13 @@ class FormationRun {
   Decider decider_;
   std::vector<Vec2> offsets_;
   std::vector<FormationRobot> robots_;
+  double now_ = 0.0;                ///< s, of the present row
+  std::optional<SlotPlans> plans_;  ///< with Liveness::plan
+  std::vector<Outlook> outlooks_;
   // Memory that a step leaves to the next.
   RelativeState relative_;  ///< of the row that is decided
   std::vector<Anchor> anchors_;
+  std::vector<std::optional<Vec2>> planned_;  ///< m/s, what those who go by plan want
   std::vector<Constraint> statics_;
   std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
 };

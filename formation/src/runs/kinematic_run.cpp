@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Kinematic robots with goals: Section V.A.
 #include <algorithm>
-#include <set>
 #include <string>
 #include <utility>
 
 #include "decision/decision.h"
+#include "decision/repair.h"
 #include "exactvo/formation/passing.h"
 #include "liveness/groups.h"
 #include "runs/own_decision.h"
@@ -58,8 +58,8 @@ class KinematicRun {
         planned_(scenario.robots.size()),
         held_by_all_(scenario.robots.size(), 0) {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
-      groups_.emplace(scenario, guide ? static_cast<const FreeSpace&>(*guide) : open_space_,
-                      liveness_ == Liveness::plan, [this] { return clock_.is_stopped(now_); });
+      groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan,
+                      [this] { return clock_.is_stopped(now_); });
     if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
@@ -281,33 +281,10 @@ class KinematicRun {
     return step.status != lp::Status::optimal || (goes_by_plan(i) && held_by_all_[i]);
   }
 
-  /// Instead of relaxing. As long as there are robots whose half-planes contradict each other, all pairs of these fall
-  /// back. In each round some pair does so for good, so that it ends. Half-planes of moving obstacles and of robots
-  /// that do not yield may still be relaxed.
   void repair(double time, Step& row) {
-    std::set<std::size_t> contradicted;
-    for (std::size_t i = 0; i < robots_.size(); ++i)
-      if (is_contradicted(i, row.robots[i])) contradicted.insert(i);
-    std::vector<std::vector<std::size_t>> fallen(robots_.size());  // with whom
-    while (!contradicted.empty()) {
-      std::set<std::size_t> changed;
-      for (const std::size_t i : contradicted) {
-        for (const std::size_t j : robots_met_by(i)) {
-          const bool both_yield = scenario_.robots[i].cooperates && scenario_.robots[j].cooperates;
-          if (!both_yield || std::find(fallen[i].begin(), fallen[i].end(), j) != fallen[i].end()) continue;
-          fall_back(scenario_, anchors_, scene_, i, j, others_);
-          fallen[i].push_back(j);
-          fallen[j].push_back(i);
-          changed.insert(i);
-          changed.insert(j);
-        }
-      }
-      contradicted.clear();
-      for (const std::size_t i : changed) {
-        choose_again(i, time, row.robots[i], &fallen[i]);
-        if (is_contradicted(i, row.robots[i])) contradicted.insert(i);
-      }
-    }
+    const auto fallen = detail::repair(
+        scenario_, anchors_, scene_, others_, [&](std::size_t i) { return is_contradicted(i, row.robots[i]); },
+        [&](std::size_t i, const std::vector<std::size_t>& with) { choose_again(i, time, row.robots[i], &with); });
     // Held from all sides, with less room than there is between doubles: it stands still, which they all allow.
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       if (row.robots[i].status != lp::Status::no_interior || goes_by_plan(i)) continue;
@@ -316,17 +293,9 @@ class KinematicRun {
     }
   }
 
-  bool is_of_robot(const Constraint& c) const { return scene_.bodies()[c.body].kind == vo::BodyKind::robot; }
-
   bool meets_robots(std::size_t i) const {
-    return std::any_of(others_[i].begin(), others_[i].end(), [&](const Constraint& c) { return is_of_robot(c); });
-  }
-
-  std::vector<std::size_t> robots_met_by(std::size_t i) const {
-    std::vector<std::size_t> all;
-    for (const Constraint& c : others_[i])
-      if (is_of_robot(c)) all.push_back(c.index);
-    return all;
+    return std::any_of(others_[i].begin(), others_[i].end(),
+                       [&](const Constraint& c) { return is_of_robot(scene_, c); });
   }
 
   RobotStep decide_one(std::size_t i, double time) {

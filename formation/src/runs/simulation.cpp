@@ -90,9 +90,23 @@ Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options)
   return options.guidance.value_or(scenario.guidance);
 }
 
+namespace {
+
+/// Whether the brake points of a formation move at exactly what the filter chooses, as plans need it.
+bool follows_choices(const Remedies& remedies) {
+  return remedies.brake_point && remedies.absolute_frame && remedies.filter_last && remedies.tau_clamp &&
+         remedies.margins && !(remedies.acceleration_bound > 0.0);
+}
+
+}  // namespace
+
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options) {
-  if (scenario.formation) return Liveness::off;
   const Liveness wanted = options.liveness.value_or(scenario.liveness);
+  if (scenario.formation) {
+    const bool has_margins = options.method == Method::ivo || options.method == Method::ivo_cluster;
+    const bool can_plan = has_margins && follows_choices(remedies_in_use(scenario, options));
+    return wanted == Liveness::plan && can_plan ? Liveness::plan : Liveness::off;
+  }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();
   return wanted == Liveness::plan && !is_guided ? Liveness::bias : wanted;
 }

@@ -48,10 +48,10 @@ void sort_by_clearance(std::vector<Constraint>& lines) {
 }
 
 StaticField::StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius,
-                         Vec2 start, Vec2 goal, HorizonRule rule)
+                         Vec2 start, Vec2 goal, HorizonRule rule, SeenAs seen_as)
     : scene_(&scene), scenario_(&scenario), method_(options.method), rule_(rule), margin_(scenario.margins.obstacle) {
   if (method_ != Method::ivo_cluster && method_ != Method::ivo) return;
-  if (guidance_of(scenario, options) == Guidance::route) {
+  if (seen_as == SeenAs::pieces || guidance_of(scenario, options) == Guidance::route) {
     tight_index_.resize(scene.pieces_by_place().size());
     std::iota(tight_index_.begin(), tight_index_.end(), 0u);
     return;

@@ -51,13 +51,19 @@ inline constexpr double kContactSkin = 1e-6;
 /// What the literal paper does instead of clamping tau.
 enum class HorizonRule { clamped, literal };
 
+/// The shapes that obstacles are seen as.
+enum class SeenAs {
+  by_rule,  ///< pieces with guidance, else what encloses them for the robot's goal
+  pieces    ///< of methods that have pieces
+};
+
 class StaticField {
  public:
   static constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 
   /// Shapes for a robot of `radius` going from `start` to `goal`: with guidance the pieces of obstacles alone.
   StaticField(Scene& scene, const Scenario& scenario, const SimulationOptions& options, double radius, Vec2 start,
-              Vec2 goal, HorizonRule rule);
+              Vec2 goal, HorizonRule rule, SeenAs seen_as = SeenAs::by_rule);
 
   /// m: what a piece is kept away from beside the radius while there is room; the scenario's by default.
   void set_margin(double margin) { margin_ = margin; }

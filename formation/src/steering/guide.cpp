@@ -44,15 +44,8 @@ Guide::Guide(const Scenario& scenario, double most_margin, double most_radius)
     : unreachable_(scenario.unreachable),
       most_margin_(most_margin),
       reach_(scenario, most_margin + kSkins + most_radius),
-      nearest_(scenario, reach_) {
-  std::vector<geometry::Box> boxes;
-  for (const SceneObstacle& o : scenario.obstacles) {
-    edges_.push_back(geometry::edges_of(o.shape));
-    obstacles_.emplace_back(o.shape);
-    boxes.push_back(obstacles_.back().box());
-  }
-  by_place_ = geometry::BoxGrid(std::move(boxes));
-}
+      nearest_(scenario, reach_),
+      space_(scenario.obstacles) {}
 
 CourseAnswer Guide::course(double radius, Vec2 from, const Destination& to) {
   CourseAnswer answer = course_to(radius, from, to);
@@ -65,12 +58,12 @@ CourseAnswer Guide::course(double radius, Vec2 from, const Destination& to) {
 }
 
 bool Guide::can_go(double radius, Vec2 from, const Destination& to) {
-  return obstacles_.empty() || reach_.reachable_place(radius + kSkins, from, to).has_value();
+  return space_.is_open() || reach_.reachable_place(radius + kSkins, from, to).has_value();
 }
 
 CourseAnswer Guide::course_to(double radius, Vec2 from, const Destination& to) {
   CourseAnswer answer;
-  if (obstacles_.empty()) {
+  if (space_.is_open()) {
     answer.course = direct(radius, from, to);
     return answer;
   }
@@ -129,9 +122,9 @@ bool Guide::has_play(double radius, Vec2 first, Vec2 last) {
 Vec2 Guide::roomy_place_near(double radius, Vec2 place, double wanted) const {
   constexpr double kFarthest = 2.0;  // margins: enough for a corner
   const double least = radius + kSkins;
-  if (clearance_at(place, wanted) >= wanted) return place;
+  if (space_.clearance(place, wanted) >= wanted) return place;
   for (const Vec2 near : places_about(place, kFarthest * most_margin_))
-    if (clearance_at(near, wanted) >= wanted && is_in_sight(place, near, least)) return near;
+    if (space_.clearance(near, wanted) >= wanted && space_.is_clear(place, near, least)) return near;
   return place;
 }
 
@@ -145,33 +138,12 @@ std::string Guide::why_not(double radius, Vec2 from, const Destination& to) {
   return text;
 }
 
-/// m, from the centre; beyond `enough` any number that is not less.
-double Guide::clearance_at(Vec2 here, double enough) const {
-  double least = enough;
-  by_place_.for_each_within(here, enough, [&](std::size_t o) {
-    least = std::min(least, obstacles_[o].swept_distance({here, here}, enough));
-  });
-  return least;
-}
-
-bool Guide::is_in_sight(Vec2 here, Vec2 there, double clearance) const {
-  const Vec2 reach{clearance, clearance};
-  geometry::Box box;
-  box.add(here);
-  box.add(there);
-  bool clear = true;
-  by_place_.for_each_meeting({box.low - reach, box.high + reach}, [&](std::size_t o) {
-    clear = clear && obstacles_[o].swept_distance(Segment{here, there}, clearance) >= clearance;
-  });
-  return clear;
-}
-
 /// Whether a point of the course is in sight; `next` becomes the farthest of them, counted on from where it was. A
 /// robot that was pushed nearer to an obstacle sees past it as near as it stands.
 bool Guide::look_ahead(Course& course, double radius, Vec2 here) const {
-  const double stands = clearance_at(here, radius + most_margin_ + kSkins);
+  const double stands = space_.clearance(here, radius + most_margin_ + kSkins);
   const auto sees = [&](std::size_t k) {
-    return is_in_sight(here, course.points[k], std::max(radius, std::min(course.keeps[k], stands)) - 0.5 * kSkins);
+    return space_.is_clear(here, course.points[k], std::max(radius, std::min(course.keeps[k], stands)) - 0.5 * kSkins);
   };
   std::size_t next = course.next;
   while (!sees(next))
@@ -189,15 +161,15 @@ Heading Guide::heading_on(Course& course, double radius, Vec2 here) const {
   const Vec2 from = course.points[next];
   course.seen = 0.0;
   if (next + 1 == course.points.size() || is_before_narrow(course, next, here)) return {from, margin(next)};
-  const double stands = clearance_at(here, radius + most_margin_ + kSkins);
+  const double stands = space_.clearance(here, radius + most_margin_ + kSkins);
   const double clearance = std::max(radius, std::min(course.keeps[next + 1], stands)) - 0.5 * kSkins;
   const Vec2 piece = course.points[next + 1] - from;
   // From where the robot is beside the piece: halving a long one from its start can end behind the robot.
   const double beside = share_beside(from, piece, here);
-  double seen = is_in_sight(here, from + beside * piece, clearance) ? beside : 0.0, hidden = 1.0;
+  double seen = space_.is_clear(here, from + beside * piece, clearance) ? beside : 0.0, hidden = 1.0;
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (seen + hidden);
-    (is_in_sight(here, from + middle * piece, clearance) ? seen : hidden) = middle;
+    (space_.is_clear(here, from + middle * piece, clearance) ? seen : hidden) = middle;
   }
   course.seen = seen;
   return {from + seen * piece, margin(next + 1)};
@@ -226,22 +198,13 @@ double Guide::way_left(const Course& course, Vec2 here) const {
 
 bool Guide::has_room(double radius, Vec2 here) const {
   const double enough = radius + kSkins;
-  return clearance_at(here, enough) >= enough;
+  return space_.clearance(here, enough) >= enough;
 }
 
 Vec2 Guide::way_out(double radius, Vec2 here) const {
   const double wanted = radius + 2.0 * kSkins;
-  double least = wanted;
-  Vec2 away;
-  by_place_.for_each_within(here, wanted, [&](std::size_t o) {
-    for (const Segment& edge : edges_[o]) {
-      const Vec2 from = here - geometry::nearest_point(edge, here);
-      if (!(norm(from) < least)) continue;
-      least = norm(from);
-      away = from;
-    }
-  });
-  return here + (wanted - least) * geometry::normalized(away);
+  const Vec2 away = space_.from_nearest_edge(here, wanted);
+  return here + (wanted - norm(away)) * geometry::normalized(away);
 }
 
 std::optional<Guide> guide_for(const Scenario& scenario, const SimulationOptions& options) {

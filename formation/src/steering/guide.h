@@ -13,12 +13,10 @@
 
 #include "exactvo/formation/scenario.h"
 #include "exactvo/formation/simulation.h"
-#include "exactvo/geometry/box_grid.h"
-#include "exactvo/geometry/obstacle_index.h"
 #include "exactvo/geometry/routes.h"
-#include "liveness/roadmap.h"
 #include "preflight/nearest_place.h"
 #include "preflight/reachability.h"
+#include "scene/free_space.h"
 
 namespace exactvo::formation::detail {
 
@@ -48,7 +46,7 @@ struct Heading {
   bool is_new = false;  ///< the course was planned again, as nothing of it was in sight
 };
 
-class Guide : public FreeSpace {
+class Guide {
  public:
   /// `most_margin`: what robots keep beside their radius where there is room, m. `most_radius`: of what is guided, m,
   /// beside the robots. The scenario must outlive the guide.
@@ -75,9 +73,8 @@ class Guide : public FreeSpace {
   /// m, straight to where the robot heads, and on along the rest of the course.
   double way_left(const Course& course, Vec2 here) const;
 
-  bool is_open() const override { return obstacles_.empty(); }
-  double clearance(Vec2 here, double enough) const override { return clearance_at(here, enough); }
-  bool is_clear(Vec2 from, Vec2 to, double least) const override { return is_in_sight(from, to, least); }
+  /// What it goes round.
+  const FreeSpace& space() const { return space_; }
 
   /// Whether a robot has room to plan a course.
   bool has_room(double radius, Vec2 here) const;
@@ -92,8 +89,6 @@ class Guide : public FreeSpace {
   bool has_play(double radius, Vec2 first, Vec2 last);
   Vec2 roomy_place_near(double radius, Vec2 place, double wanted) const;
   std::string why_not(double radius, Vec2 from, const Destination& to);
-  double clearance_at(Vec2 here, double enough) const;
-  bool is_in_sight(Vec2 here, Vec2 there, double clearance) const;
   bool look_ahead(Course& course, double radius, Vec2 here) const;
   Heading heading_on(Course& course, double radius, Vec2 here) const;
 
@@ -101,9 +96,7 @@ class Guide : public FreeSpace {
   double most_margin_;
   Reachability reach_;
   NearestPlaces nearest_;
-  std::vector<std::vector<geometry::Segment>> edges_;  ///< of each obstacle
-  std::vector<geometry::ObstacleIndex> obstacles_;
-  geometry::BoxGrid by_place_;
+  ObstacleSpace space_;
 };
 
 /// The guide of a run; nothing where its robots go without.

@@ -60,7 +60,6 @@ datasets::RunInfo info_of(const formation::Scenario& scenario, const formation::
   if (scenario.formation) {
     info.controller = name(options.controller);
     info.integrator = name(options.integrator);
-    return info;
   }
   const formation::Guidance guidance = guidance_of(scenario, options);
   const formation::Liveness liveness = liveness_of(scenario, options);

@@ -69,8 +69,8 @@ const formation::Step& last_decision(const formation::Recording& recording) {
 }
 
 std::string method_words(const Scenario& scenario, const formation::SimulationOptions& options) {
-  const std::string method = std::string("method ") + name(options.method);
-  if (scenario.formation) return method + ", controller " + name(options.controller);
+  const std::string method = std::string("method ") + name(options.method) +
+                             (scenario.formation ? std::string(", controller ") + name(options.controller) : "");
   const formation::Guidance guidance = guidance_of(scenario, options);
   const formation::Liveness liveness = liveness_of(scenario, options);
   return method + (guidance == formation::Guidance::none ? "" : std::string(", guidance ") + name(guidance)) +

@@ -142,7 +142,7 @@ struct Scenario {
   std::optional<FormationSpec> formation;             ///< none: kinematic robots with goals (Section V.A)
   Guidance guidance = Guidance::route;                ///< of robots with goals
   Unreachable unreachable = Unreachable::stay;        ///< of robots with goals along routes
-  Liveness liveness = Liveness::plan;                 ///< of robots with goals
+  Liveness liveness = Liveness::plan;                 ///< of robots with goals or slots
   SpeedBoundKind speed_bound = SpeedBoundKind::disc;  ///< how every robot's max_speed is meant
   Horizons horizons;                                  ///< of the velocity obstacles
   Margins margins;                                    ///< beside radii and facades

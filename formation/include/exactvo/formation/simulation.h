@@ -87,7 +87,9 @@ struct SimulationOptions {
 /// whose ellipses would close what a route passes.
 Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options);
 
-/// What is done against waiting in a run: nothing in a formation, no plans without guidance among obstacles.
+/// What is done against waiting in a run. Robots with goals have no plans without guidance among obstacles. Those of a
+/// formation have plans or nothing: nothing where their brake points do not move as chosen, or the method keeps no
+/// margins.
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options);
 
 /// What can be said before a run, a line each: a step beyond the integrator's limit, goals, slots or a leader's end

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Robots of a formation that block each other's slots: they go by joint plans once the leader rests.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "exactvo/datasets/audit.h"
+#include "exactvo/formation/metrics.h"
+#include "exactvo/formation/simulation.h"
+#include "liveness_scenes.h"
+#include "support/seeded_random.h"
+
+namespace exactvo::formation {
+namespace {
+
+using test_scenes::at_slots;
+using testing::ElementsAre;
+
+struct SlotRun {
+  Scenario scenario;
+  Recording recording;
+  Metrics metrics;
+
+  bool is_formed() const { return metrics.formation_course && metrics.formation_course->formed_since.has_value(); }
+  std::size_t not_optimal() const {
+    std::size_t count = 0;
+    for (const Step& row : recording.steps)
+      for (const RobotStep& r : row.robots) count += r.status != lp::Status::optimal;
+    return count;
+  }
+};
+
+SlotRun run(Scenario s, const SimulationOptions& options = {}) {
+  SlotRun r{std::move(s), {}, {}};
+  r.recording = simulate(r.scenario, options);
+  r.metrics = measure(r.scenario, r.recording);
+  return r;
+}
+
+datasets::AuditReport audited(const SlotRun& r) {
+  const SimulationOptions options;
+  datasets::RunInfo info{r.scenario.name, name(options.method), name(options.controller), name(options.integrator), {},
+                         std::nullopt,    name(Liveness::plan)};
+  return datasets::audit({std::move(info), r.scenario, r.recording});
+}
+
+SimulationOptions without_plans() {
+  SimulationOptions options;
+  options.liveness = Liveness::off;
+  return options;
+}
+
+Scenario limited(Scenario s, double time_limit) {
+  s.time_limit = time_limit;
+  return s;
+}
+
+void expect_formed(const std::string& what, Scenario s) {
+  SCOPED_TRACE(what);
+  const SlotRun r = run(limited(std::move(s), 150.0));
+  EXPECT_TRUE(r.is_formed()) << r.metrics.outcome;
+  EXPECT_TRUE(r.metrics.collisions.empty()) << r.metrics.outcome;
+  EXPECT_EQ(r.not_optimal(), 0u) << "relaxed, or without room";
+  EXPECT_EQ(r.metrics.uncertified_half_planes, 0u);
+  const datasets::AuditReport report = audited(r);
+  EXPECT_TRUE(report.clean());
+  for (const std::string& finding : report.findings) ADD_FAILURE() << finding;
+}
+
+TEST(SlotPlans, WhoBlockEachOthersSlotsInAStreetPass) {
+  for (const int count : {4, 8, 14})
+    expect_formed(std::to_string(count), at_slots(test_scenes::street(count, count == 4 ? 3.0 : 4.0)));
+}
+
+TEST(SlotPlans, TwoHeadOnInACorridorPassInItsNiche) {
+  const Scenario s = limited(at_slots(test_scenes::siding()), 100.0);
+  EXPECT_FALSE(run(s, without_plans()).is_formed()) << "it shows nothing";
+  expect_formed("siding", s);
+}
+
+TEST(SlotPlans, ThroughADoorAndInAFullBox) {
+  test::SeededRandom random(test::seed_of_run(31));
+  expect_formed("door", at_slots(test_scenes::door(10, 1.5, random)));
+  expect_formed("rooms", at_slots(test_scenes::rooms(6, 1.5, random)));
+  for (const double percent : {20.0, 30.0})
+    expect_formed("box", at_slots(test_scenes::crowded_box(20, percent, random)));
+}
+
+TEST(SlotPlans, LargeCirclesForm) {
+  expect_formed("circle", at_slots(test_scenes::circle(40)));
+}
+
+TEST(SlotPlans, RunsAreTheSameBits) {
+  const Scenario s = limited(at_slots(test_scenes::street(8, 4.0)), 40.0);
+  const SlotRun a = run(s), b = run(s);
+  ASSERT_EQ(a.recording.steps.size(), b.recording.steps.size());
+  for (std::size_t k = 0; k < a.recording.steps.size(); ++k)
+    for (std::size_t i = 0; i < s.robots.size(); ++i)
+      ASSERT_EQ(a.recording.steps[k].robots[i].position, b.recording.steps[k].robots[i].position) << k;
+  EXPECT_FALSE(a.recording.plans.empty());
+}
+
+/// A formation that nobody blocks has the bits that it has without plans, and while the leader moves none is made.
+TEST(SlotPlans, ChangeNothingWhereNobodyIsBlocked) {
+  Scenario s = at_slots(test_scenes::circle(6));
+  s.formation->leader.path = {{0.0, 0.0}, {20.0, 0.0}};
+  s.formation->leader.speed = 0.7;
+  s.time_limit = 25.0;
+  const SlotRun with = run(s), without = run(s, without_plans());
+  ASSERT_TRUE(with.recording.liveness);
+  EXPECT_EQ(with.recording.liveness->groups, 0u);
+  ASSERT_EQ(with.recording.steps.size(), without.recording.steps.size());
+  for (std::size_t k = 0; k < with.recording.steps.size(); ++k)
+    for (std::size_t i = 0; i < s.robots.size(); ++i)
+      ASSERT_EQ(with.recording.steps[k].robots[i].position, without.recording.steps[k].robots[i].position) << k;
+}
+
+TEST(SlotPlans, AreMadeOnlyWhereBrakePointsDoAsChosen) {
+  const Scenario s = at_slots(test_scenes::circle(4));
+  EXPECT_EQ(liveness_of(s, {}), Liveness::plan);
+  EXPECT_EQ(liveness_of(s, without_plans()), Liveness::off);
+  SimulationOptions options;
+  options.liveness = Liveness::bias;
+  EXPECT_EQ(liveness_of(s, options), Liveness::off);
+  for (const Method method : {Method::orca, Method::ivo_edge}) {
+    SimulationOptions without_margins;
+    without_margins.method = method;
+    EXPECT_EQ(liveness_of(s, without_margins), Liveness::off);
+  }
+  for (const Controller controller : {Controller::paper_literal, Controller::paper_signs}) {
+    SimulationOptions paper;
+    paper.controller = controller;
+    EXPECT_EQ(liveness_of(s, paper), Liveness::off);
+  }
+  const std::vector<std::function<void(Remedies&)>> switches = {
+      [](Remedies& r) { r.brake_point = false; }, [](Remedies& r) { r.absolute_frame = false; },
+      [](Remedies& r) { r.filter_last = false; }, [](Remedies& r) { r.acceleration_bound = 8.0; }};
+  for (std::size_t k = 0; k < switches.size(); ++k) {
+    SimulationOptions one;
+    one.remedies = remedies_of(one.controller);
+    switches[k](*one.remedies);
+    EXPECT_EQ(liveness_of(s, one), Liveness::off) << k;
+  }
+}
+
+/// A slot inside a wall cannot be reached. Nobody plans for it for ever, and the others form.
+TEST(SlotPlans, ASlotThatIsTakenByAWallIsNotPlannedFor) {
+  Scenario s = at_slots(test_scenes::circle(2));
+  s.formation->offsets[0] = {0.0, 9.0};
+  test_scenes::add_wall(s, {{-1.0, 9.0}, {1.0, 9.0}});  // through the slot of the first
+  s.time_limit = 30.0;
+  const SlotRun r = run(s);
+  EXPECT_FALSE(r.is_formed());
+  EXPECT_EQ(r.recording.liveness->groups, 0u);
+  EXPECT_TRUE(r.metrics.collisions.empty()) << r.metrics.outcome;
+}
+
+/// Property of lemma 4 for brake points: the rows that go back pass the places of the rows before.
+TEST(SlotPlans, BrakePointsGoBackAsTheyCame) {
+  const SlotRun r = run(limited(at_slots(test_scenes::street(14, 4.0)), 60.0));
+  std::size_t compared = 0;
+  for (const JointPlan& plan : r.recording.plans)
+    for (std::size_t k = 0; k < plan.robots.size(); ++k) {
+      const Step& from = r.recording.steps[plan.from_row];
+      EXPECT_EQ(from.robots[plan.robots[k]].anchor, plan.starts[k]);
+      ++compared;
+    }
+  EXPECT_GT(compared, 0u);
+}
+
+}  // namespace
+}  // namespace exactvo::formation
