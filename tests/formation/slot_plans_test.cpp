@@ -146,6 +146,23 @@ TEST(SlotPlans, AreMadeOnlyWhereBrakePointsDoAsChosen) {
   }
 }
 
+/// A leader that begins at rest, with a start in which no slot is free: slots count where it ends.
+TEST(SlotPlans, AreMadeForTheSlotsAtTheLeadersEnd) {
+  Scenario s = at_slots(test_scenes::siding());
+  s.formation->leader.path = {{0.0, 3.0}, {0.0, 0.0}};
+  s.formation->leader.profile = {{0.0, 0.0}, {1.0, 2.0}, {2.0, 1.0}, {3.0, 0.5}};
+  s.time_limit = 100.0;
+  EXPECT_TRUE(run(s).is_formed());
+}
+
+TEST(SlotPlans, NobodyPlansForRobotsThatDoNotCooperateNorAmongMovingObstacles) {
+  Scenario s = limited(at_slots(test_scenes::siding()), 30.0);
+  s.robots[1].cooperates = false;
+  for (const JointPlan& plan : run(s).recording.plans) EXPECT_THAT(plan.robots, ElementsAre(0u));
+  s.moving_obstacles.emplace_back();
+  EXPECT_EQ(liveness_of(s, {}), Liveness::off);
+}
+
 /// A slot inside a wall cannot be reached. Nobody plans for it for ever, and the others form.
 TEST(SlotPlans, ASlotThatIsTakenByAWallIsNotPlannedFor) {
   Scenario s = at_slots(test_scenes::circle(2));

@@ -83,13 +83,12 @@ std::optional<formation::Remedies> remedies_of(const SimulationFlags& flags, for
 void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
   CLI::Option* method = app.add_option("--method,-m", flags.method, help("Avoidance method", formation::method_names()))
                             ->capture_default_str();
-  flags.of_goals = {
-      app.add_option(
-          "--guidance,-g", flags.guidance,
-          help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names())),
-      app.add_option("--liveness", flags.liveness,
-                     help("What keeps robots with goals from waiting for ever, instead of what the scenario says",
-                          formation::liveness_names()))};
+  flags.of_goals = {app.add_option(
+      "--guidance,-g", flags.guidance,
+      help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names()))};
+  app.add_option("--liveness", flags.liveness,
+                 help("What keeps robots with goals from waiting for ever, instead of what the scenario says",
+                      formation::liveness_names()));
   flags.of_formations = {
       app.add_option("--controller,-c", flags.controller, help("Formation controller", formation::controller_names()))
           ->capture_default_str(),

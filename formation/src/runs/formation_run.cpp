@@ -264,7 +264,8 @@ class FormationRun {
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
     step.note = joined_notes(step.note, answer.note);
-    if (plans_) return answer.preferred;  // who is blocked by robots stands still, and a plan is made
+    // Who is blocked by robots stands still then, and a plan is made.
+    if (plans_ && plans_->is_active(situation.time)) return answer.preferred;
     const SlotFollower::Answer round = robots_[i].slot.steer(situation, statics, others);
     step.note = joined_notes(step.note, round.note);
     if (round.mode != Mode::following) return answer.preferred;

@@ -104,7 +104,8 @@ Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options)
   const Liveness wanted = options.liveness.value_or(scenario.liveness);
   if (scenario.formation) {
     const bool has_margins = options.method == Method::ivo || options.method == Method::ivo_cluster;
-    const bool can_plan = has_margins && follows_choices(remedies_in_use(scenario, options));
+    const bool can_plan =
+        has_margins && scenario.moving_obstacles.empty() && follows_choices(remedies_in_use(scenario, options));
     return wanted == Liveness::plan && can_plan ? Liveness::plan : Liveness::off;
   }
   const bool is_guided = guidance_of(scenario, options) != Guidance::none || scenario.obstacles.empty();

@@ -42,6 +42,7 @@ double way_left(double distance, double diameter) {
 
 SlotPlans::SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, std::function<bool()> is_stopped)
     : offsets_(std::move(offsets)),
+      leader_arrival_(detail::leader_arrival(scenario.formation->leader)),
       tolerance_(scenario.arrival_tolerance),
       gap_(gap_of(scenario)),
       gap_to_obstacles_(kShareOfGap * gap_),
@@ -55,14 +56,14 @@ bool SlotPlans::has_place(std::size_t robot, Vec2 slot) const {
 }
 
 void SlotPlans::begin_step(double time, const std::vector<Anchor>& anchors, const LeaderState& leader) {
-  const bool rests = leader.velocity == Vec2{};
+  const bool rests = is_active(time);
   if (rests && has_place_.empty())
     for (std::size_t i = 0; i < anchors.size(); ++i) has_place_.push_back(has_place(i, leader.position + offsets_[i]));
   std::vector<RobotNow> now;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     const Vec2 slot = leader.position + offsets_[i];
     const bool is_there = !rests || !has_place_[i] || norm(slot - anchors[i].position) <= tolerance_;
-    now.push_back({anchors[i].position, slot, is_there, rests, 0});
+    now.push_back({anchors[i].position, slot, is_there, rests && larger_.robots[i].cooperates, 0});
   }
   groups_.begin_step(time, std::move(now), [&](std::size_t i) {
     return way_left(norm(leader.position + offsets_[i] - anchors[i].position), 2.0 * larger_.robots[i].radius);

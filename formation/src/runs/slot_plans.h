@@ -21,14 +21,17 @@ class SlotPlans {
  public:
   /// `offsets`: m, of the slots from the leader. `is_stopped`: as in Groups. REQUIRES: a formation.
   SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, std::function<bool()> is_stopped);
+  SlotPlans(const SlotPlans&) = delete;  // groups refer to members
 
-  /// m: what brake points of pairs that fall back, and of robots of a plan and others, keep between the rims. The bodies
-  /// behind them cut corners by less, where k3 is large.
+  /// m: what brake points of pairs that fall back, and of robots of a plan and others, keep between the rims. The
+  /// bodies behind them cut corners by less, where k3 is large.
   double gap() const { return gap_; }
   /// m: what robots that go by plan keep from obstacles.
   double gap_to_obstacles() const { return gap_to_obstacles_; }
 
-  /// Plans are made while the leader rests.
+  /// Whether plans are made: once the leader has come to its end, for good.
+  bool is_active(double time) const { return time >= leader_arrival_; }
+
   void begin_step(double time, const std::vector<Anchor>& anchors, const LeaderState& leader);
 
   Groups& groups() { return groups_; }
@@ -38,7 +41,8 @@ class SlotPlans {
   bool has_place(std::size_t robot, Vec2 slot) const;
 
   std::vector<Vec2> offsets_;
-  double tolerance_;  ///< m
+  double leader_arrival_;  ///< s
+  double tolerance_;       ///< m
   double gap_, gap_to_obstacles_;
   Scenario larger_;  ///< with robots larger by what they keep from obstacles
   ObstacleSpace space_;

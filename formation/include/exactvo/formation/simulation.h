@@ -88,8 +88,8 @@ struct SimulationOptions {
 Guidance guidance_of(const Scenario& scenario, const SimulationOptions& options);
 
 /// What is done against waiting in a run. Robots with goals have no plans without guidance among obstacles. Those of a
-/// formation have plans or nothing: nothing where their brake points do not move as chosen, or the method keeps no
-/// margins.
+/// formation have plans or nothing: plans where the controller moves brake points exactly as chosen, the method keeps
+/// margins, and there are no moving obstacles.
 Liveness liveness_of(const Scenario& scenario, const SimulationOptions& options);
 
 /// What can be said before a run, a line each: a step beyond the integrator's limit, goals, slots or a leader's end
