@@ -163,7 +163,7 @@ TEST(SlotPlans, NobodyPlansForRobotsThatDoNotCooperateNorAmongMovingObstacles) {
   EXPECT_EQ(liveness_of(s, {}), Liveness::off);
 }
 
-/// A slot inside a wall cannot be reached. Nobody plans for it for ever, and the others form.
+/// A slot inside a wall cannot be reached, and nobody plans for it.
 TEST(SlotPlans, ASlotThatIsTakenByAWallIsNotPlannedFor) {
   Scenario s = at_slots(test_scenes::circle(2));
   s.formation->offsets[0] = {0.0, 9.0};
@@ -175,8 +175,7 @@ TEST(SlotPlans, ASlotThatIsTakenByAWallIsNotPlannedFor) {
   EXPECT_TRUE(r.metrics.collisions.empty()) << r.metrics.outcome;
 }
 
-/// Property of lemma 4 for brake points: the rows that go back pass the places of the rows before.
-TEST(SlotPlans, BrakePointsGoBackAsTheyCame) {
+TEST(SlotPlans, BeginWhereTheBrakePointsWere) {
   const SlotRun r = run(limited(at_slots(test_scenes::street(14, 4.0)), 60.0));
   std::size_t compared = 0;
   for (const JointPlan& plan : r.recording.plans)

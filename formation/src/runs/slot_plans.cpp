@@ -12,7 +12,7 @@ using geometry::norm;
 
 /// What robots keep anyway, so that a plan can begin from wherever half-planes let them go.
 double gap_of(const Scenario& scenario) {
-  return std::min(scenario.margins.robot, scenario.margins.obstacle);
+  return std::max(kContactSkin, std::min(scenario.margins.robot, scenario.margins.obstacle));
 }
 
 /// Plans leave a share of the radii beside that (sweeps.h), and slots may be that near to each other.
