@@ -6,13 +6,15 @@
 #include <CGAL/Cartesian.h>
 #include <CGAL/General_polygon_set_2.h>
 #include <CGAL/Gps_traits_2.h>
+#include <CGAL/Polygon_with_holes_2.h>
 #include <CGAL/offset_polygon_2.h>
 
 #include <cmath>
 #include <utility>
 
 #include "cgal_guard.h"
-#include "sums/polygon_sum.h"
+#include "exactvo/geometry/require.h"
+#include "exactvo/geometry/validity.h"
 
 namespace exactvo::test {
 namespace {
@@ -29,6 +31,28 @@ using SetTraits = CGAL::Gps_traits_2<Conics>;
 using ConicRing = SetTraits::Polygon_2;
 using ConicPolygon = SetTraits::Polygon_with_holes_2;
 using ConicCurve = Conics::X_monotone_curve_2;
+
+/// The polygon with its rings the right way round. Throws std::logic_error if it is not valid.
+Polygon checked_polygon(const Polygon& polygon) {
+  std::vector<geometry::Ring> rings = {polygon.outer};
+  rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+  geometry::NormalizedPolygon normalized = geometry::normalize(rings);
+  EXACTVO_REQUIRE(normalized.ok(),
+                  "outer ring " + excerpt(polygon.outer) + " and " + std::to_string(polygon.holes.size()) + " holes");
+  return std::move(normalized.polygon);
+}
+
+CGAL::Polygon_2<RationalKernel> to_cgal(const geometry::Ring& ring) {
+  CGAL::Polygon_2<RationalKernel> out;
+  for (const Vec2 p : ring) out.push_back({Numbers::Rational(p.x), Numbers::Rational(p.y)});
+  return out;
+}
+
+CGAL::Polygon_with_holes_2<RationalKernel> to_cgal(const Polygon& polygon) {
+  CGAL::Polygon_with_holes_2<RationalKernel> out(to_cgal(polygon.outer));
+  for (const geometry::Ring& hole : polygon.holes) out.add_hole(to_cgal(hole));
+  return out;
+}
 
 Vec2 rounded(const Conics::Point_2& p) {
   return {CGAL::to_double(p.x()), CGAL::to_double(p.y())};
@@ -90,11 +114,11 @@ struct ExactOffset::Parts {
 
 ExactOffset::ExactOffset(const Polygon& polygon, double radius) {
   EXACTVO_REQUIRE(std::isfinite(radius) && radius > 0.0, hex_text(radius));
-  const Polygon checked = detail::checked_polygon(polygon);
+  const Polygon checked = checked_polygon(polygon);
   const auto values = [&] { return excerpt(polygon.outer) + " (+) disc of radius " + hex_text(radius); };
   parts_ = detail::without_cgal_failures("ExactOffset", values, [&] {
     const Conics traits;
-    const auto exact = detail::to_cgal<RationalKernel>(checked);
+    const auto exact = to_cgal(checked);
     const ConicPolygon offset = CGAL::offset_polygon_2(exact, Numbers::Rational(radius), traits);
     auto parts = std::make_shared<Parts>();
     parts->set.insert(offset);

@@ -5,8 +5,7 @@
 /// A polygon grown by a disc, unrounded: segments that may lie on irrational lines, and circular arcs. CGAL's conic
 /// arcs over algebraic numbers carry it (offset_polygon_2 with Arr_conic_traits_2), behind an immutable handle.
 ///
-/// The oracle for grown shapes: 0.5 ms for a square, seconds for a star of a hundred corners. Certified polygons round
-/// it and inside it are `offset_polygon` in minkowski.h.
+/// The oracle for grown shapes: 0.5 ms for a square, seconds for a star of a hundred corners.
 
 #include <cstddef>
 #include <memory>

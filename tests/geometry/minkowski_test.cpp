@@ -71,19 +71,6 @@ Rational exact_support(const std::vector<Vec2>& vertices, Vec2 n) {
   return best;
 }
 
-TEST(ConvexSum, IntoMemoryThatIsUsedAgain) {
-  SeededRandom random(test::seed_of_run(79));
-  ConvexSum again;
-  for (int i = 0; i < 2000; ++i) {
-    const ConvexPolygon a = random_convex(random, random.integer(1, 9), i % 2 == 0);
-    const ConvexPolygon b = random_convex(random, random.integer(1, 9), i % 2 == 0);
-    minkowski_sum(a, b, again);
-    const ConvexSum once = minkowski_sum(a, b);
-    ASSERT_EQ(again.polygon.vertices, once.polygon.vertices);
-    ASSERT_EQ(again.error, once.error);
-  }
-}
-
 // Property 3, in rationals; with the certified error where vertices were rounded.
 TEST(ConvexSum, Property3SupportsAddUp) {
   SeededRandom random(test::seed_of_run(72));
@@ -143,144 +130,26 @@ TEST(ConvexSum, RefusesWhatIsNotConvex) {
   EXPECT_THROW(minkowski_sum({{{0, 3}, {-2, -3}, {3, 1}, {-3, 1}, {2, -3}}}, square), std::logic_error);
 }
 
-Polygon star(SeededRandom& random, int size) {
-  return {test::star_ring(random, size, 0.3), {}};
-}
-
-Rational area_of(const Polygon& p) {
-  Rational sum = test::doubled_area(p.outer);
-  for (const Ring& hole : p.holes) sum += test::doubled_area(hole);
-  return sum / 2;
-}
-
-// Both of CGAL's methods, which share little: the same rings, and every sum of points of the two is inside.
-TEST(PolygonSum, ConvolutionAgreesWithDecomposition) {
-  SeededRandom random(test::seed_of_run(74));
-  for (int i = 0; i < 60; ++i) {
-    const Polygon a = star(random, random.integer(3, 12));
-    const Polygon b = star(random, random.integer(3, 8));
-    const PolygonSum fast = minkowski_sum(a, b);
-    const PolygonSum check = minkowski_sum(a, b, SumMethod::decomposition);
-    SCOPED_TRACE(to_string(a.outer) + " (+) " + to_string(b.outer));
-    ASSERT_LE(fast.error, 1e-15);  // an ulp of each coordinate, below 2 m
-    ASSERT_EQ(fast.polygon.holes.size(), check.polygon.holes.size());
-    ASSERT_NEAR(CGAL::to_double(area_of(fast.polygon)), CGAL::to_double(area_of(check.polygon)), 1e-12);
-    for (int k = 0; k < 100; ++k) {
-      const Vec2 p = random.in_box(1.0), q = random.in_box(1.0);
-      if (!contains(a, p) || !contains(b, q)) continue;
-      ASSERT_LE(signed_distance(fast.polygon, p + q), 1e-15);
-    }
-  }
-}
-
-// A ring-shaped room: what the robot leaves of the hole stays a hole; a robot too big fills it.
-TEST(PolygonSum, HolesStayWhileTheyFit) {
-  const Polygon room = {{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{{1, 1}, {1, 9}, {9, 9}, {9, 1}}}};
-  const auto robot = [](double h) { return Polygon{{{-h, -h}, {h, -h}, {h, h}, {-h, h}}, {}}; };
-  for (const SumMethod method : {SumMethod::convolution, SumMethod::decomposition}) {
-    const PolygonSum grown = minkowski_sum(room, robot(1), method);
-    ASSERT_EQ(grown.polygon.holes.size(), 1U);
-    EXPECT_EQ(CGAL::to_double(area_of(grown.polygon)), 144.0 - 36.0);
-    EXPECT_EQ(grown.error, 0.0);
-    EXPECT_TRUE(minkowski_sum(room, robot(5), method).polygon.holes.empty());
-  }
-}
-
-TEST(PolygonSum, RefusesInvalidPolygons) {
-  const Polygon square = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {}};
-  EXPECT_THROW(minkowski_sum(Polygon{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}, {}}, square), std::logic_error);
-  EXPECT_THROW(minkowski_sum(square, Polygon{{{0, 0}, {1, 0}}, {}}), std::logic_error);
-  EXPECT_THROW(minkowski_sum(square, Polygon{{{0, 0}, {1, 0}, {0, std::nan("")}}, {}}), std::logic_error);
-}
-
-Rational squared_distance_to(const Polygon& polygon, Vec2 x) {
-  if (contains(polygon, x)) return 0;
-  Rational least = test::squared_distance({polygon.outer[0], polygon.outer[0]}, x);
-  for (const Segment& e : edges_of(polygon)) least = std::min(least, test::squared_distance(e, x));
-  return least;
-}
-
-bool near(const Polygon& polygon, Vec2 x, double distance) {
-  return squared_distance_to(polygon, x) <= Rational(distance) * Rational(distance);
-}
-
-// Inside lies within the exact sum, outside contains it, and both keep the tolerance: membership in rationals.
-TEST(OffsetPolygon, CertifiedFromBothSides) {
-  SeededRandom random(test::seed_of_run(75));
-  for (int i = 0; i < 25; ++i) {
-    Polygon polygon = star(random, random.integer(3, 9));
-    if (i % 3 == 0) {
-      for (auto p = polygon.outer.rbegin(); p != polygon.outer.rend(); ++p) {
-        if (polygon.holes.empty()) polygon.holes.emplace_back();
-        polygon.holes[0].push_back(0.9 * *p);
-      }
-    }
-    const double radius = random.uniform(0.02, 0.5);
-    const double tolerance = radius * std::pow(10.0, random.uniform(-4, -1));
-    const PolygonSum in = offset_polygon(polygon, radius, Side::inside, tolerance);
-    const PolygonSum out = offset_polygon(polygon, radius, Side::outside, tolerance);
-    SCOPED_TRACE(to_string(polygon.outer) + " radius " + hex_text(radius) + " tolerance " + hex_text(tolerance));
-    ASSERT_LE(std::max(in.error, out.error), tolerance);
-    for (const Vec2 v : in.polygon.outer) ASSERT_TRUE(near(polygon, v, radius));
-    for (const Vec2 v : out.polygon.outer) {
-      ASSERT_FALSE(near(polygon, v, radius * (1 - 1e-12)));
-      ASSERT_TRUE(near(polygon, v, radius + tolerance));
-    }
-    for (int k = 0; k < 400; ++k) {
-      const Vec2 x = random.in_box(1.6);
-      const bool exact = near(polygon, x, radius);
-      const std::string at = hex_text(x.x) + " " + hex_text(x.y);
-      ASSERT_TRUE(exact || !contains(in.polygon, x)) << at;
-      ASSERT_TRUE(!exact || contains(out.polygon, x)) << at;
-      ASSERT_TRUE(!near(polygon, x, radius - tolerance) || contains(in.polygon, x)) << at;
-    }
-  }
-}
-
-TEST(OffsetPolygon, RefusesWhatItCannotCertify) {
-  const Polygon square = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {}};
-  EXPECT_THROW(offset_polygon(square, 0.0, Side::inside, 0.1), std::logic_error);
-  EXPECT_THROW(offset_polygon(square, -1.0, Side::inside, 0.1), std::logic_error);
-  EXPECT_THROW(offset_polygon(square, 1.0, Side::inside, 0.0), std::logic_error);
-  EXPECT_THROW(offset_polygon(square, 1.0, Side::inside, 1e-15), std::logic_error);
-  EXPECT_THROW(offset_polygon(square, std::nan(""), Side::outside, 0.1), std::logic_error);
-}
-
 // Rounded points: about a hundred ulps of the shape's size.
 constexpr double kRounding = 1e-13;
 
-TEST(Outline, StaysWithinItsStatedError) {
+TEST(GrownByPolygon, AnEllipseIsHeldWithinTheStatedError) {
   SeededRandom random(test::seed_of_run(76));
   for (int i = 0; i < 300; ++i) {
+    const double size = std::exp2(random.uniform(-10, 10));
     const Ellipse ellipse =
-        ellipse_from_axes(random.in_box(1.0), {1.0, random.uniform(0.0, 1.0), random.uniform(-1, 1)});
-    const GrownShape shape = {i % 2 == 0 ? ConvexShape(ellipse) : ConvexShape(random_convex(random, 6, true)),
-                              random.in_box(1.0), random.integer(0, 1) == 0 ? 0.0 : random.uniform(0.01, 2.0)};
-    const double tolerance = std::pow(10.0, random.uniform(-6, -1));
-    const Outline drawn = outline(shape, tolerance);
-    SCOPED_TRACE(to_string(shape.shape) + " radius " + hex_text(shape.radius));
-    ASSERT_LE(drawn.error, tolerance);
-    const Polygon ring = {drawn.ring, {}};
-    for (int k = 0; k < 50; ++k) {
-      const Vec2 x = support_point(shape, random.direction());
-      double least = 1e9;
-      for (const Segment& e : edges_of(ring)) least = std::min(least, distance(e, x));
-      ASSERT_LE(least, drawn.error + kRounding);
-    }
-    for (const Vec2 x : drawn.ring) {
-      GrownShape larger = shape;
-      larger.radius += kRounding;
-      ASSERT_NE(locate(larger, x), Place::outside);
-    }
+        ellipse_from_axes(size * random.in_box(1.0), {size, size * random.uniform(0.0, 1.0), random.uniform(-1, 1)});
+    const OuterShape outer = grown_by_polygon(ellipse, {{{0.0, 0.0}}}, {});
+    SCOPED_TRACE(to_string(ConvexShape{ellipse}));
+    ASSERT_LE(outer.error, 0x1p-10 * size);
+    GrownShape larger = outer.shape;
+    larger.radius += kRounding * size;
+    for (int k = 0; k < 50; ++k)
+      ASSERT_NE(locate(larger, support_point({ellipse, {}, 0.0}, random.direction())), Place::outside);
+    const GrownShape reach{ellipse, {}, outer.error - outer.shape.radius + kRounding * size};
+    for (const Vec2 x : std::get<ConvexPolygon>(outer.shape.shape).vertices)
+      ASSERT_NE(locate(reach, x), Place::outside);
   }
-}
-
-TEST(Outline, PolygonsKeepTheirCorners) {
-  const GrownShape square = {ConvexPolygon{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, {}, 0.0};
-  EXPECT_EQ(outline(square, 0.01).ring.size(), 4U);
-  EXPECT_EQ(outline({Disc{{1, 2}, 0.0}, {}, 0.0}, 0.1).ring.size(), 1U);
-  EXPECT_THROW(outline(square, 0.0), std::logic_error);
-  EXPECT_THROW(outline({Disc{{1, 2}, -1.0}, {}, 0.0}, 0.1), std::logic_error);
 }
 
 }  // namespace

@@ -118,7 +118,6 @@ TEST(ObstacleShapes, InvalidOnesGiveCodesAndNothingElse) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(shapes_of(Polygon{{{0, 0}, {1, nan}, {0, 1}}, {}}).problems.at(0).code, RingProblemCode::not_finite);
   EXPECT_EQ(shapes_of(Polygon{}).problems.back().code, RingProblemCode::too_few_points);
-  EXPECT_FALSE(shapes_of_points({}).valid);
   EXPECT_FALSE(shapes_of(Polyline{}).valid);
 }
 
@@ -234,19 +233,6 @@ TEST(ObstacleShapes, HullMembershipAgreesWithTheEvenOddRule) {
       }
     }
   }
-}
-
-TEST(ObstacleShapes, PointsAndScansHaveWallsAndEnclosures) {
-  std::vector<Vec2> hits;
-  for (int i = 0; i <= 40; ++i) hits.push_back({0.1 * i, 2.0});
-  for (int i = 1; i <= 20; ++i) hits.push_back({4.0, 2.0 - 0.1 * i});
-  for (const ObstacleShapes& shapes : {shapes_of_scan(hits), shapes_of_points(hits)}) {
-    EXPECT_TRUE(shapes.certified()) << shapes.facades_follow.reason;
-    for (const Vec2 p : hits) EXPECT_TRUE(contains(shapes.smallest_ellipse, p));
-  }
-  EXPECT_EQ(shapes_of_scan(hits).facades.facades.size(), 2u);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(shapes_of_points({{1, 1}, {nan, 0}}).certified()) << "one point is an obstacle";
 }
 
 TEST(ObstacleShapes, SimplifiedFacadesStayWithinTheirTolerance) {

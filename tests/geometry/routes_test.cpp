@@ -355,15 +355,16 @@ TEST(RouteMapSize, CutWallsAnswerAsWholeOnesDo) {
 }
 
 TEST(RouteMarks, AreEmptyAgainAfterTheirCounterHasComeRound) {
-  routing::Marks marks(3, std::numeric_limits<std::uint32_t>::max() - 1);
-  marks.add(0);
+  routing::Remembered<int> marks(3, std::numeric_limits<std::uint32_t>::max() - 1);
+  marks.set(0, 7);
   marks.clear();
-  EXPECT_FALSE(marks.has(0));
-  marks.add(1);
+  EXPECT_EQ(marks.find(0), nullptr);
+  marks.set(1, 7);
   marks.clear();
-  for (int k = 0; k < 3; ++k) EXPECT_FALSE(marks.has(k));
-  marks.add(2);
-  EXPECT_TRUE(marks.has(2));
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(marks.find(k), nullptr);
+  marks.set(2, 7);
+  ASSERT_NE(marks.find(2), nullptr);
+  EXPECT_EQ(*marks.find(2), 7);
 }
 
 // --- Scales ---

@@ -23,16 +23,6 @@ double distance_upper_bound(const Segment& s, Vec2 x, double largest) {
   return distance(s, x) * (1.0 + 8.0 * kUnitRoundoff) + 16.0 * kUnitRoundoff * largest;
 }
 
-Farthest farthest_between(const std::vector<Vec2>& points, std::size_t i, std::size_t j, double largest) {
-  const Segment edge = {points[i], points[j < points.size() ? j : 0]};
-  Farthest farthest = {0.0, i};
-  for (std::size_t k = i + 1; k < j; ++k) {
-    const double d = distance_upper_bound(edge, points[k], largest);
-    if (d > farthest.distance) farthest = {d, k};
-  }
-  return farthest;
-}
-
 double refine_gap(const std::vector<Vec2>& points, std::vector<bool>& kept, std::size_t i, std::size_t j,
                   double tolerance, double largest) {
   double deviation = 0.0;
@@ -40,14 +30,21 @@ double refine_gap(const std::vector<Vec2>& points, std::vector<bool>& kept, std:
   while (!gaps.empty()) {
     const auto [from, to] = gaps.back();
     gaps.pop_back();
-    const Farthest far = farthest_between(points, from, to, largest);
-    if (far.distance <= tolerance) {
-      deviation = std::max(deviation, far.distance);
+    const Segment edge = {points[from], points[to < points.size() ? to : 0]};
+    double most = 0.0;
+    std::size_t farthest = from;
+    for (std::size_t k = from + 1; k < to; ++k) {
+      const double d = distance_upper_bound(edge, points[k], largest);
+      if (d > most) farthest = k;
+      most = std::max(most, d);
+    }
+    if (most <= tolerance) {
+      deviation = std::max(deviation, most);
       continue;
     }
-    kept[far.index] = true;
-    gaps.emplace_back(from, far.index);
-    gaps.emplace_back(far.index, to);
+    kept[farthest] = true;
+    gaps.emplace_back(from, farthest);
+    gaps.emplace_back(farthest, to);
   }
   return deviation;
 }

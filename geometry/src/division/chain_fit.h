@@ -16,17 +16,9 @@ double largest_coordinate(const std::vector<Vec2>& points);
 /// An upper bound of the distance from x to s. `largest` bounds the magnitudes of the coordinates. Certified.
 double distance_upper_bound(const Segment& s, Vec2 x, double largest);
 
-struct Farthest {
-  double distance = 0.0;  ///< m; certified upper bound
-  std::size_t index = 0;
-};
-
-/// Of the points strictly between i and j: the one farthest from the segment that would replace them. j may be
-/// points.size(), which stands for the first point again.
-Farthest farthest_between(const std::vector<Vec2>& points, std::size_t i, std::size_t j, double largest);
-
 /// Douglas and Peucker (1973) between i and j: keeps points until all others are certified within the tolerance of the
-/// segments between the kept ones. Returns the largest certified distance.
+/// segments between the kept ones. Returns the largest certified distance. j may be points.size(), which stands for the
+/// first point again.
 double refine_gap(const std::vector<Vec2>& points, std::vector<bool>& kept, std::size_t i, std::size_t j,
                   double tolerance, double largest);
 

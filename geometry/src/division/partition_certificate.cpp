@@ -2,7 +2,9 @@
 #include "division/partition_certificate.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <utility>
 
 #include "rings/convexity.h"
 #include "rings/ring_contacts.h"
@@ -11,56 +13,38 @@ namespace exactvo::geometry::detail {
 namespace {
 
 /// An edge, its lesser end first, and how often it is run along less how often against.
-struct Run {
-  Segment edge;
-  int times = 0;
-};
+using Run = std::pair<std::array<double, 4>, int>;
 
-bool same_edge(const Run& s, const Run& t) {
-  return s.edge.a == t.edge.a && s.edge.b == t.edge.b;
+void add_runs(const std::vector<Vec2>& ring, int times, std::vector<Run>& runs) {
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vec2 a = ring[i], b = ring[(i + 1) % ring.size()];
+    const bool along = lexicographically_less(a, b);
+    runs.push_back(along ? Run{{a.x, a.y, b.x, b.y}, times} : Run{{b.x, b.y, a.x, a.y}, -times});
+  }
 }
 
-bool lexicographically_less(const Run& s, const Run& t) {
-  if (s.edge.a != t.edge.a) return detail::lexicographically_less(s.edge.a, t.edge.a);
-  return detail::lexicographically_less(s.edge.b, t.edge.b);
+/// Whether every edge is run along as often as against.
+bool cancel_out(std::vector<Run>& runs) {
+  std::sort(runs.begin(), runs.end());
+  for (std::size_t i = 0; i < runs.size();) {
+    int sum = 0;
+    const std::size_t first = i;
+    for (; i < runs.size() && runs[i].first == runs[first].first; ++i) sum += runs[i].second;
+    if (sum != 0) return false;
+  }
+  return true;
 }
-
-class Boundary {
- public:
-  void add(const std::vector<Vec2>& ring, int times) {
-    for (std::size_t i = 0; i < ring.size(); ++i) add(ring[i], ring[(i + 1) % ring.size()], times);
-  }
-
-  /// Whether every edge is run along as often as against.
-  bool is_empty() {
-    std::sort(runs_.begin(), runs_.end(), lexicographically_less);
-    for (std::size_t i = 0; i < runs_.size();) {
-      int sum = 0;
-      const Run& first = runs_[i];
-      for (; i < runs_.size() && same_edge(first, runs_[i]); ++i) sum += runs_[i].times;
-      if (sum != 0) return false;
-    }
-    return true;
-  }
-
- private:
-  void add(Vec2 a, Vec2 b, int times) {
-    runs_.push_back(detail::lexicographically_less(a, b) ? Run{{a, b}, times} : Run{{b, a}, -times});
-  }
-
-  std::vector<Run> runs_;
-};
 
 }  // namespace
 
 bool is_convex_partition(const std::vector<Ring>& rings, const std::vector<ConvexPolygon>& pieces) {
-  Boundary boundary;
-  for (const Ring& ring : rings) boundary.add(ring, -1);
+  std::vector<Run> boundary;
+  for (const Ring& ring : rings) add_runs(ring, -1, boundary);
   for (const ConvexPolygon& piece : pieces) {
     if (!is_convex_ccw(piece.vertices)) return false;
-    boundary.add(piece.vertices, 1);
+    add_runs(piece.vertices, 1, boundary);
   }
-  return boundary.is_empty();
+  return cancel_out(boundary);
 }
 
 }  // namespace exactvo::geometry::detail

@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "division/ear_clipping.h"
@@ -144,26 +143,21 @@ class Loops {
     }
   }
 
-  struct Ends {
-    std::size_t low, high, edge;
-  };
-
   // The two half-edges between the same two vertices.
   void find_twins() {
-    std::vector<Ends> all;
+    std::vector<std::array<std::size_t, 3>> all;  // the lesser and the greater end, and the half-edge
     all.reserve(edges_.size());
     for (std::size_t h = 0; h < edges_.size(); ++h) {
       const std::size_t from = edges_[h].from;
       const std::size_t to = edges_[edges_[h].after].from;
       all.push_back({std::min(from, to), std::max(from, to), h});
     }
-    std::sort(all.begin(), all.end(), [](const Ends& a, const Ends& b) {
-      return std::tie(a.low, a.high, a.edge) < std::tie(b.low, b.high, b.edge);
-    });
+    std::sort(all.begin(), all.end());
     for (std::size_t k = 1; k < all.size(); ++k) {
-      if (all[k - 1].low != all[k].low || all[k - 1].high != all[k].high) continue;
-      edges_[all[k - 1].edge].twin = all[k].edge;
-      edges_[all[k].edge].twin = all[k - 1].edge;
+      const auto [low, high, edge] = all[k - 1];
+      if (low != all[k][0] || high != all[k][1]) continue;
+      edges_[edge].twin = all[k][2];
+      edges_[all[k][2]].twin = edge;
     }
   }
 

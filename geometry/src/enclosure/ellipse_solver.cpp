@@ -330,10 +330,6 @@ EllipseFrame fitted_round_center(Vec2 center, const std::vector<Vec2>& points) {
 /// The rounding of the norm, of the two triangular solves and of ellipse_of, and room for the predicate's filter.
 constexpr double kRoom = 64.0 * kUnitRoundoff;
 
-bool contains_all(const Ellipse& e, const std::vector<Vec2>& points) {
-  return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(e, p); });
-}
-
 Ellipse grown_until_certified(EllipseFrame frame, const std::vector<Vec2>& points) {
   const double ulp = kUnitRoundoff * std::max(frame.k11, std::fabs(frame.k21));
   for (double growth = 1.0;; growth *= 2.0) {
@@ -345,6 +341,10 @@ Ellipse grown_until_certified(EllipseFrame frame, const std::vector<Vec2>& point
 }
 
 }  // namespace
+
+bool contains_all(const Ellipse& ellipse, const std::vector<Vec2>& points) {
+  return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(ellipse, p); });
+}
 
 void require_places(const std::vector<Vec2>& points) {
   constexpr double kLargest = 0x1p1000;
@@ -379,6 +379,16 @@ Ellipse certified_ellipse(const EllipseFrame& candidate, const std::vector<Vec2>
     reach = largest_norm(frame, points);
   }
   return grown_until_certified(scaled(frame, reach * (1.0 + kRoom)), points);
+}
+
+std::optional<Ellipse> inflate_to_contain(Ellipse e, const std::vector<Vec2>& points) {
+  constexpr double kFirstStep = 0x1p-50;
+  for (double step = kFirstStep; step < 1.0; step *= 2.0) {
+    if (contains_all(e, points)) return e;
+    const double f = 1.0 + step;
+    e = {e.center, e.l11 * f, e.l21 * f, e.l22 * f};
+  }
+  return std::nullopt;
 }
 
 Ellipse ellipse_of_segment(Vec2 a, Vec2 b) {

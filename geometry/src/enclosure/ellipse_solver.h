@@ -10,7 +10,7 @@
 /// polytopes in the real number model of computation, 1996). Newton's method on at most a handful of points with
 /// positive weight, and the worst outsider joins until there is none.
 
-#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "exactvo/geometry/shapes.h"
@@ -44,6 +44,13 @@ EllipseCandidate solve_smallest_ellipse(const std::vector<Vec2>& points);
 
 /// The candidate scaled to fit, then grown in steps until every point lies in it by predicate E.
 Ellipse certified_ellipse(const EllipseFrame& candidate, const std::vector<Vec2>& points);
+
+/// Every point lies in the ellipse. Exact.
+bool contains_all(const Ellipse& ellipse, const std::vector<Vec2>& points);
+
+/// Inflates until predicate E holds for every point: the ellipse was rounded, the answer may not be. Nothing of one
+/// that is a segment to rounding.
+std::optional<Ellipse> inflate_to_contain(Ellipse e, const std::vector<Vec2>& points);
 
 /// The segment itself (l22 = 0) where doubles can say it, else a certified sliver 2^-36 of the coordinates wide.
 /// REQUIRES: a != b.

@@ -8,7 +8,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "enclosure/trap_free_fit.h"
 #include "exactvo/geometry/box.h"

@@ -3,26 +3,12 @@
 #include <cmath>
 #include <string>
 
-#include "enclosure/inflate.h"
+#include "enclosure/ellipse_solver.h"
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
-
-namespace detail {
-
-std::optional<Ellipse> inflate_to_contain(Ellipse e, const std::vector<Vec2>& points) {
-  constexpr double kFirstStep = 0x1p-50;
-  for (double step = kFirstStep; step < 1.0; step *= 2.0) {
-    if (std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(e, p); })) return e;
-    const double f = 1.0 + step;
-    e = {e.center, e.l11 * f, e.l21 * f, e.l22 * f};
-  }
-  return std::nullopt;
-}
-
-}  // namespace detail
 
 Ellipse facade_ellipse(const Segment& facade, const FacadeEllipseOptions& options) {
   EXACTVO_REQUIRE(is_finite(facade.a) && is_finite(facade.b), to_string(ConvexShape{facade}));

@@ -6,7 +6,6 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <iterator>
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "enclosure/candidate_search.h"
-#include "enclosure/inflate.h"
+#include "enclosure/ellipse_solver.h"
 #include "enclosure/trap_free_fit.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/enclosure.h"
@@ -18,24 +18,7 @@
 #include "exactvo/geometry/require.h"
 
 namespace exactvo::geometry {
-namespace {
-
-using detail::Candidate;
-using detail::CandidateSearch;
-using detail::Ends;
-using detail::FitGoal;
-using detail::inflate_to_contain;
-using detail::kMinors;
-using detail::kMinorShares;
-using detail::Known;
-using detail::kOffsets;
-using detail::kOffsetShares;
-using detail::MajorFit;
-using detail::Orientation;
-using detail::Touching;
-using detail::Turn;
-using detail::turn_by;
-using detail::TurnedPoints;
+namespace detail {
 
 /// What a fit leaves to the next: memory.
 struct FitMemory {
@@ -48,6 +31,28 @@ struct FitMemory {
   Orientation here, aside;      ///< of the pattern search
   std::vector<double> width;
 };
+
+}  // namespace detail
+
+namespace {
+
+using detail::Candidate;
+using detail::CandidateSearch;
+using detail::Ends;
+using detail::FitGoal;
+using detail::FitMemory;
+using detail::inflate_to_contain;
+using detail::kMinors;
+using detail::kMinorShares;
+using detail::Known;
+using detail::kOffsets;
+using detail::kOffsetShares;
+using detail::MajorFit;
+using detail::Orientation;
+using detail::Touching;
+using detail::Turn;
+using detail::turn_by;
+using detail::TurnedPoints;
 
 constexpr std::size_t kAngles = 18;
 
@@ -280,24 +285,13 @@ class LocalFit {
 }  // namespace
 
 const char* name(EnclosureGrade grade) {
-  switch (grade) {
-    case EnclosureGrade::trap_free:
-      return "trap-free";
-    case EnclosureGrade::trap_free_thin:
-      return "trap-free-thin";
-    case EnclosureGrade::containing:
-      return "containing";
-    case EnclosureGrade::tight:
-      return "tight";
-  }
-  return "tight";
+  constexpr const char* kNames[] = {"trap-free", "trap-free-thin", "containing", "tight"};
+  return kNames[static_cast<int>(grade)];
 }
 
 namespace detail {
 
-struct TrapFreeFit::Memory : FitMemory {};
-
-TrapFreeFit::TrapFreeFit() : memory_(std::make_unique<Memory>()) {}
+TrapFreeFit::TrapFreeFit() : memory_(std::make_unique<FitMemory>()) {}
 TrapFreeFit::~TrapFreeFit() = default;
 
 std::optional<FittedEllipse> TrapFreeFit::operator()(const std::vector<Vec2>& hull, double robot_radius, Vec2 start,

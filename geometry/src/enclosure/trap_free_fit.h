@@ -13,6 +13,7 @@
 namespace exactvo::geometry::detail {
 
 /// Keeps its memory from one fit to the next, and nothing else.
+struct FitMemory;
 class TrapFreeFit {
  public:
   TrapFreeFit();
@@ -22,8 +23,7 @@ class TrapFreeFit {
                                           const EnclosureOptions& options);
 
  private:
-  struct Memory;
-  std::unique_ptr<Memory> memory_;
+  std::unique_ptr<FitMemory> memory_;
 };
 
 }  // namespace exactvo::geometry::detail

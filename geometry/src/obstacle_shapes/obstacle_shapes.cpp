@@ -14,10 +14,6 @@
 namespace exactvo::geometry {
 namespace detail {
 
-bool contains_all(const Ellipse& ellipse, const std::vector<Vec2>& points) {
-  return std::all_of(points.begin(), points.end(), [&](Vec2 p) { return contains(ellipse, p); });
-}
-
 Verdict verdict_of(const Ellipse& ellipse, const ObstacleShapes& out) {
   if (!out.hull_contains.certified) return {false, "no certified hull"};
   return verdict(contains_all(ellipse, out.hull.vertices), kNotInside);
@@ -31,7 +27,6 @@ using detail::attempt;
 using detail::divide;
 using detail::enclose_free_of_traps;
 using detail::kNotInside;
-using detail::points_near_facades;
 using detail::split;
 using detail::Subject;
 using detail::verdict;
@@ -157,34 +152,6 @@ void require_sensible(const ShapeOptions& options) {
   EXACTVO_REQUIRE(!options.way || (is_finite(options.way->start) && is_finite(options.way->goal)), std::string("NaN"));
 }
 
-std::vector<Vec2> finite_points(const std::vector<Vec2>& points) {
-  std::vector<Vec2> finite;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(finite), [](Vec2 p) { return is_finite(p); });
-  return finite;
-}
-
-template <class Divide>
-ObstacleShapes shapes_of_hits(const std::vector<Vec2>& hits, const ShapeOptions& options, const Divide& divide_hits) {
-  require_sensible(options);
-  ObstacleShapes out;
-  const Subject subject{finite_points(hits), {}, false};
-  if (subject.points.empty()) {
-    out.problems.push_back({RingProblemCode::too_few_points, 0, 0, {}, false});
-    return out;
-  }
-  out.valid = true;
-  attempt(out.facades_follow, [&] {
-    const DividedPoints divided = divide_hits();
-    out.facades = {divided.facades, divided.deviation};
-    out.facades_follow = points_near_facades(hits, divided);
-  });
-  if (!out.facades.facades.empty()) out.obstacle = Polyline{{out.facades.facades[0].a, out.facades.facades[0].b}};
-  out.pieces.assign(out.facades.facades.begin(), out.facades.facades.end());
-  out.pieces_cover = out.facades_follow;
-  enclose_and_measure(subject, options, out);
-  return out;
-}
-
 }  // namespace
 
 bool ObstacleShapes::certified() const {
@@ -209,14 +176,6 @@ ObstacleShapes shapes_of(const Obstacle& obstacle, const ShapeOptions& options) 
   split(subject, options, out);
   enclose_and_measure(subject, options, out);
   return out;
-}
-
-ObstacleShapes shapes_of_points(const std::vector<Vec2>& points, const PointOptions& how, const ShapeOptions& options) {
-  return shapes_of_hits(points, options, [&] { return divide_points(points, how); });
-}
-
-ObstacleShapes shapes_of_scan(const std::vector<Vec2>& hits, const ScanOptions& how, const ShapeOptions& options) {
-  return shapes_of_hits(hits, options, [&] { return divide_scan(hits, how); });
 }
 
 //   v0 o-----o v1       The fan from v0 is searched for the wedge v0, v[k], v[k+1] that x lies in;

@@ -92,14 +92,4 @@ void split(const Subject& subject, const ShapeOptions& options, ObstacleShapes& 
   });
 }
 
-Verdict points_near_facades(const std::vector<Vec2>& points, const DividedPoints& divided) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!is_finite(points[i])) continue;
-    const bool near =
-        divided.facade_of[i] && lies_within(divided.facades[*divided.facade_of[i]], points[i], divided.deviation);
-    if (!near) return {false, "a point lies off its facade"};
-  }
-  return {true, {}};
-}
-
 }  // namespace exactvo::geometry::detail

@@ -7,6 +7,7 @@
 #include <exception>
 #include <vector>
 
+#include "enclosure/ellipse_solver.h"
 #include "exactvo/geometry/obstacle_shapes.h"
 
 namespace exactvo::geometry::detail {
@@ -15,7 +16,7 @@ inline constexpr const char* kNotInside = "a point lies outside";
 
 /// What must lie in the enclosures, and the course that the facades must keep to.
 struct Subject {
-  std::vector<Vec2> points;                ///< every vertex or hit, finite
+  std::vector<Vec2> points;                ///< every vertex
   std::vector<std::vector<Vec2>> courses;  ///< rings and chains
   bool closed = false;                     ///< courses are rings
 };
@@ -37,17 +38,11 @@ inline Verdict verdict(bool holds, const char* reason) {
 /// An ellipse holds every point iff it holds the corners of their hull.
 Verdict verdict_of(const Ellipse& ellipse, const ObstacleShapes& out);
 
-/// Every point lies in the ellipse. Exact.
-bool contains_all(const Ellipse& ellipse, const std::vector<Vec2>& points);
-
 /// Facades of the courses, certified to follow them.
 void divide(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out);
 
 /// Convex pieces; of a wall its own edges.
 void split(const Subject& subject, const ShapeOptions& options, ObstacleShapes& out);
-
-/// Points stand for walls: every one lies within the deviation of its facade.
-Verdict points_near_facades(const std::vector<Vec2>& points, const DividedPoints& divided);
 
 /// The ellipse that traps no robot on its way, or on any. REQUIRES: hull and smallest ellipse are in `out`.
 void enclose_free_of_traps(const ShapeOptions& options, ObstacleShapes& out);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The trap-free ellipse of an obstacle: along a way, or for every goal.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 

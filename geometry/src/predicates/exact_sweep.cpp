@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "predicates/exact_sweep.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "predicates/grown_ellipse.h"
 
 namespace exactvo::geometry::detail {
@@ -44,33 +41,6 @@ bool hull_meets(const std::vector<Point>& v, const Exact& r, const Point& end) {
   return false;
 }
 
-struct Meets {
-  const GrownShape& s;
-  const Point& d;
-  const Exact& t;
-
-  bool operator()(const Disc& disc) const {
-    const Point p = difference<Exact>(disc.center, s.origin);
-    return distance_sign(p, {Exact(0), Exact(0)}, end(), Exact(disc.radius) + Exact(s.radius)) != Sign::positive;
-  }
-  bool operator()(const Segment& g) const { return of_vertices({g.a, g.b}); }
-  bool operator()(const ConvexPolygon& p) const { return of_vertices(p.vertices); }
-  bool operator()(const Ellipse& e) const {
-    const Point to = end();
-    if (is_zero(to)) return locate_exactly(e, s, to) != Place::outside;
-    return segment_meets_exactly(e, s, d, t);
-  }
-
- private:
-  Point end() const { return {t * d.x, t * d.y}; }
-  static bool is_zero(const Point& p) { return sign_of(p.x) == Sign::zero && sign_of(p.y) == Sign::zero; }
-  bool of_vertices(const std::vector<Vec2>& vertices) const {
-    std::vector<Point> seen;
-    for (const Vec2 v : vertices) seen.push_back(difference<Exact>(v, s.origin));
-    return hull_meets(seen, Exact(s.radius), end());
-  }
-};
-
 }  // namespace
 
 Sign distance_sign(const Point& q, const Point& a, const Point& b, const Exact& r) {
@@ -86,7 +56,18 @@ Sign distance_sign(const Point& q, const Point& a, const Point& b, const Exact& 
 }
 
 bool segment_meets_exactly(const GrownShape& s, const Vector<Exact>& d, const Exact& t) {
-  return std::visit(Meets{s, d, t}, s.shape);
+  const Point start{Exact(0), Exact(0)}, end{t * d.x, t * d.y};
+  if (const auto* disc = std::get_if<Disc>(&s.shape)) {
+    const Exact reach = Exact(disc->radius) + Exact(s.radius);
+    return distance_sign(difference<Exact>(disc->center, s.origin), start, end, reach) != Sign::positive;
+  }
+  if (const auto* e = std::get_if<Ellipse>(&s.shape)) {
+    const bool stays = sign_of(end.x) == Sign::zero && sign_of(end.y) == Sign::zero;
+    return stays ? locate_exactly(*e, s, end) != Place::outside : segment_meets_exactly(*e, s, d, t);
+  }
+  std::vector<Point> seen;
+  for (const Vec2 v : corners_of(s.shape)) seen.push_back(difference<Exact>(v, s.origin));
+  return hull_meets(seen, Exact(s.radius), end);
 }
 
 Exact beyond(const Vector<Exact>& d, double extent) {

@@ -4,8 +4,6 @@
 /// \file
 /// The exact stages of motion questions: segments and polygons over exact numbers. No filters.
 
-#include <vector>
-
 #include "exact/exact_vector.h"
 #include "exactvo/geometry/predicates.h"
 

@@ -87,10 +87,6 @@ constexpr double kErrorB = 16.0 * kUnitRoundoff;
 constexpr double kErrorC = 24.0 * kUnitRoundoff;
 constexpr double kErrorDiscriminant = 96.0 * kUnitRoundoff;
 
-double cube_discriminant(double b, double c, double d) {
-  return 18.0 * b * c * d - 4.0 * b * b * b * d + b * b * c * c - 4.0 * c * c * c - 27.0 * d * d;
-}
-
 }  // namespace
 
 bool locate_rounded(const Ellipse& e, Vec2 u, Vec2 size, double r, Place& place) {
@@ -118,7 +114,7 @@ bool locate_rounded(const Ellipse& e, Vec2 u, Vec2 size, double r, Place& place)
     return true;
   }
   const double d = R * D;
-  const double disc = cube_discriminant(b, c, d);
+  const double disc = discriminant(SeparationCubic<double>{b, c, d});
   const double size_disc = size_b * (size_c * (18.0 * d + size_b * size_c) + 4.0 * size_b * size_b * d) +
                            4.0 * size_c * size_c * size_c + 27.0 * d * d;
   const double error = kErrorDiscriminant * size_disc + kUnderflowDiscriminant;

@@ -86,25 +86,17 @@ Exact exact_squared_norm(Vec2 n) {
   return dot_of(make<Exact>(n), make<Exact>(n));
 }
 
-struct PartsOf {
-  const GrownShape& s;
-  Vec2 n;
-
-  SupportParts operator()(const Disc& disc) const {
-    const Exact grown = Exact(disc.radius) + Exact(s.radius);
-    return {exact_offset(n, disc.center, s.origin), Exact(0), squared(grown) * exact_squared_norm(n)};
+SupportParts parts_of(const GrownShape& s, Vec2 n) {
+  const auto from_radius = [&](const Exact& radius) { return squared(radius) * exact_squared_norm(n); };
+  if (const auto* disc = std::get_if<Disc>(&s.shape))
+    return {exact_offset(n, disc->center, s.origin), Exact(0), from_radius(Exact(disc->radius) + Exact(s.radius))};
+  if (const auto* e = std::get_if<Ellipse>(&s.shape)) {
+    const Exact wx = Exact(e->l11) * Exact(n.x) + Exact(e->l21) * Exact(n.y);
+    const Exact wy = Exact(e->l22) * Exact(n.y);
+    return {exact_offset(n, e->center, s.origin), wx * wx + wy * wy, from_radius(Exact(s.radius))};
   }
-  SupportParts operator()(const Segment& segment) const { return of_vertices({segment.a, segment.b}); }
-  SupportParts operator()(const ConvexPolygon& polygon) const { return of_vertices(polygon.vertices); }
-  SupportParts operator()(const Ellipse& e) const {
-    const Exact wx = Exact(e.l11) * Exact(n.x) + Exact(e.l21) * Exact(n.y);
-    const Exact wy = Exact(e.l22) * Exact(n.y);
-    return {exact_offset(n, e.center, s.origin), wx * wx + wy * wy, squared(Exact(s.radius)) * exact_squared_norm(n)};
-  }
-  SupportParts of_vertices(const std::vector<Vec2>& vertices) const {
-    return {farthest(vertices, n, s.origin), Exact(0), squared(Exact(s.radius)) * exact_squared_norm(n)};
-  }
-};
+  return {farthest(corners_of(s.shape), n, s.origin), Exact(0), from_radius(Exact(s.radius))};
+}
 
 // --- Predicates B1 and B2 ---
 
@@ -220,7 +212,7 @@ T evolute_polynomial(const Ellipse& e, Vec2 goal, double factor) {
 [[gnu::noinline, gnu::cold]] Sign sign_of_support_exactly(const GrownShape& s, Vec2 n, double tau, double c) {
   count_exact();
   require_valid(s);
-  const SupportParts parts = std::visit(PartsOf{s, n}, s.shape);
+  const SupportParts parts = parts_of(s, n);
   return sign_with_two_roots(parts.k - Exact(tau) * Exact(c), parts.b, parts.d);
 }
 

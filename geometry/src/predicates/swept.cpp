@@ -47,18 +47,15 @@ double size_of(Vec2 v) {
 }
 
 /// No point of the shape has a larger coordinate, up to rounding.
-struct Extent {
-  double operator()(const Disc& d) const { return size_of(d.center) + d.radius; }
-  double operator()(const Segment& s) const { return size_of(s.a) + size_of(s.b); }
-  double operator()(const ConvexPolygon& p) const {
-    double largest = 0.0;
-    for (const Vec2 v : p.vertices) largest = std::max(largest, size_of(v));
-    return largest;
-  }
-  double operator()(const Ellipse& e) const {
-    return size_of(e.center) + std::fabs(e.l11) + std::fabs(e.l21) + std::fabs(e.l22);
-  }
-};
+double extent_of(const ConvexShape& shape) {
+  if (const auto* d = std::get_if<Disc>(&shape)) return size_of(d->center) + d->radius;
+  if (const auto* e = std::get_if<Ellipse>(&shape))
+    return size_of(e->center) + std::fabs(e->l11) + std::fabs(e->l21) + std::fabs(e->l22);
+  if (const auto* s = std::get_if<Segment>(&shape)) return size_of(s->a) + size_of(s->b);
+  double largest = 0.0;
+  for (const Vec2 v : std::get<ConvexPolygon>(shape).vertices) largest = std::max(largest, size_of(v));
+  return largest;
+}
 
 /// A time after which t v lies beyond S, if a double can say it: the fast predicate then does for ever, too.
 double time_beyond(double t_max, Vec2 v, double extent) {
@@ -148,38 +145,39 @@ bool disc_meets(const Sweep& b, const Exact& radius) {
   return false;
 }
 
-struct SweepMeets {
-  const Sweep& sweep;
+bool meets(const Disc& d, Sweep seen) {
+  const Point c = make<Exact>(d.center);
+  for (auto* corners : {&seen.start, &seen.end})
+    for (Point& p : *corners) p = minus(p, c);
+  return disc_meets(seen, Exact(d.radius));
+}
 
-  bool operator()(const Disc& d) const {
-    Sweep seen = sweep;
-    const Point c = make<Exact>(d.center);
-    for (auto* corners : {&seen.start, &seen.end})
-      for (Point& p : *corners) p = minus(p, c);
-    return disc_meets(seen, Exact(d.radius));
-  }
-  bool operator()(const Segment& s) const { return !apart({{make<Exact>(s.a), make<Exact>(s.b)}, Exact(0)}, sweep); }
-  bool operator()(const ConvexPolygon& p) const {
-    Flat flat;
-    for (const Vec2 v : p.vertices) flat.vertices.push_back(make<Exact>(v));
-    return !apart(flat, sweep);
-  }
-  bool operator()(const Ellipse& e) const {
-    if (e.l11 == 0.0) return !apart({{make<Exact>(e.center)}, squared(Exact(e.l21)) + squared(Exact(e.l22))}, sweep);
-    if (e.l22 == 0.0) return !apart({{tip(e, 1.0), tip(e, -1.0)}, Exact(0)}, sweep);
-    Sweep seen;
-    for (const Point& p : sweep.start) seen.start.push_back(mapped(e, p));
-    for (const Point& p : sweep.end) seen.end.push_back(mapped(e, p));
-    seen.step = minus(seen.end.front(), seen.start.front());
-    const Exact det = Exact(e.l11) * Exact(e.l22);
-    return disc_meets(seen, sign_of(det) == Sign::negative ? Exact(0) - det : det);
-  }
+/// With a width and a height.
+bool meets(const Ellipse& e, const Sweep& sweep) {
+  Sweep seen;
+  for (const Point& p : sweep.start) seen.start.push_back(mapped(e, p));
+  for (const Point& p : sweep.end) seen.end.push_back(mapped(e, p));
+  seen.step = minus(seen.end.front(), seen.start.front());
+  const Exact det = Exact(e.l11) * Exact(e.l22);
+  return disc_meets(seen, sign_of(det) == Sign::negative ? Exact(0) - det : det);
+}
 
- private:
-  static Point tip(const Ellipse& e, double side) {
-    return {Exact(e.center.x) + Exact(side * e.l11), Exact(e.center.y) + Exact(side * e.l21)};
-  }
-};
+Flat flat_of(const Ellipse& e) {
+  if (e.l11 == 0.0) return {{make<Exact>(e.center)}, squared(Exact(e.l21)) + squared(Exact(e.l22))};
+  const auto tip = [&](double side) {
+    return Point{Exact(e.center.x) + Exact(side * e.l11), Exact(e.center.y) + Exact(side * e.l21)};
+  };
+  return {{tip(1.0), tip(-1.0)}, Exact(0)};
+}
+
+bool meets(const ConvexShape& shape, const Sweep& sweep) {
+  if (const auto* d = std::get_if<Disc>(&shape)) return meets(*d, sweep);
+  if (const auto* e = std::get_if<Ellipse>(&shape))
+    return e->l11 == 0.0 || e->l22 == 0.0 ? !apart(flat_of(*e), sweep) : meets(*e, sweep);
+  Flat flat;
+  for (const Vec2 v : corners_of(shape)) flat.vertices.push_back(make<Exact>(v));
+  return !apart(flat, sweep);
+}
 
 }  // namespace
 
@@ -193,7 +191,7 @@ bool segment_meets(const GrownShape& s, const VectorSum& direction, double t_max
   EXACTVO_REQUIRE(is_valid(s.shape) && is_finite(s.origin) && s.radius >= 0.0 && std::isfinite(s.radius),
                   excerpt(s.shape));
   const Point d = exact_sum(direction);
-  const double extent = std::visit(Extent{}, s.shape) + size_of(s.origin) + s.radius;
+  const double extent = extent_of(s.shape) + size_of(s.origin) + s.radius;
   const Vec2 whole = rounded(direction);
   const double t = time_beyond(t_max, whole, extent);
   if (std::isfinite(t) && is_zero(minus(d, make<Exact>(whole)))) return segment_meets(s, whole, t);
@@ -208,9 +206,9 @@ bool sweep_meets(const ConvexShape& obstacle, const ConvexPolygon& robot, Vec2 p
   EXACTVO_REQUIRE(is_valid(ConvexShape{robot}) && is_finite(position), excerpt(robot.vertices));
   detail::count_exact();
   const Point d = exact_sum(direction);
-  const double extent = std::visit(Extent{}, obstacle) + Extent{}(robot) + size_of(position);
+  const double extent = extent_of(obstacle) + extent_of(robot) + size_of(position);
   const Exact t = finite_time(t_max, d, extent);
-  return std::visit(SweepMeets{sweep_of(robot, make<Exact>(position), {t * d.x, t * d.y})}, obstacle);
+  return meets(obstacle, sweep_of(robot, make<Exact>(position), {t * d.x, t * d.y}));
 }
 
 }  // namespace exactvo::geometry

@@ -10,15 +10,12 @@
 namespace exactvo::geometry::detail {
 namespace {
 
-enum class Turn { left, straight, right_or_back };
-
 // The lexicographic order splits directions in two open halves and no edge is without one; on a straight run the next
 // edge goes on in the same half, on a spike it comes back in the other.
-Turn turn_at(Vec2 before, Vec2 at, Vec2 after) {
+bool turns_right_or_back(Vec2 before, Vec2 at, Vec2 after) {
   const Sign turn = orientation(before, at, after);
-  if (turn == Sign::positive) return Turn::left;
   const bool goes_on = lexicographically_less(before, at) == lexicographically_less(at, after);
-  return turn == Sign::zero && goes_on ? Turn::straight : Turn::right_or_back;
+  return turn == Sign::negative || (turn == Sign::zero && !goes_on);
 }
 
 // A ring that only turns left and goes k times round changes k times from rightward to leftward and k times back.
@@ -39,7 +36,7 @@ bool is_convex_ccw(const std::vector<Vec2>& ring) {
   if (n < 3) return false;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 at = ring[(i + 1) % n];
-    if (ring[i] == at || turn_at(ring[i], at, ring[(i + 2) % n]) == Turn::right_or_back) return false;
+    if (ring[i] == at || turns_right_or_back(ring[i], at, ring[(i + 2) % n])) return false;
   }
   return changes_of_half(ring) == 2;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/geometry/even_odd.h"
-#include "exact/cgal_rounding.h"
 
 #include <CGAL/Arr_consolidated_curve_data_traits_2.h>
 #include <CGAL/Arr_extended_dcel.h>
@@ -60,6 +59,12 @@ double nearest_double(const Number& x) {
   return best;
 }
 
+// An upper bound of |exact - rounded|. Certified.
+double rounding_of(const Number& exact, double rounded) {
+  const auto interval = CGAL::to_interval(exact - Number(rounded));
+  return std::max(std::fabs(interval.first), std::fabs(interval.second));
+}
+
 // Not less than the exact sum of two numbers >= 0. Nothing and nothing stays nothing.
 double sum_rounded_up(double a, double b) {
   if (a == 0.0 || b == 0.0) return a + b;
@@ -72,7 +77,7 @@ class Rounding {
   Vec2 operator()(const Kernel::Point_2& exact) {
     const Vec2 p = {coordinate(exact.x()), coordinate(exact.y())};
     // The sum of both is not less than their hypotenuse.
-    moved_ = std::max(moved_, sum_rounded_up(detail::rounding_of(exact.x(), p.x), detail::rounding_of(exact.y(), p.y)));
+    moved_ = std::max(moved_, sum_rounded_up(rounding_of(exact.x(), p.x), rounding_of(exact.y(), p.y)));
     return p;
   }
   double moved() const { return moved_; }

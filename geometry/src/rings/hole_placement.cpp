@@ -2,12 +2,12 @@
 #include "rings/hole_placement.h"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
 
+#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/too_many_contacts.h"
 #include "rings/ring_contacts.h"
@@ -80,25 +80,14 @@ bool is_crossing(const Ring& a, std::size_t edge_a, const Ring& b, std::size_t e
   return points_left(through_a, through_b.before) != points_left(through_a, through_b.after);
 }
 
-struct Box {
-  double x_low = std::numeric_limits<double>::infinity();
-  double x_high = -std::numeric_limits<double>::infinity();
-  double y_low = std::numeric_limits<double>::infinity();
-  double y_high = -std::numeric_limits<double>::infinity();
-
-  bool contains(const Box& other) const {
-    return x_low <= other.x_low && other.x_high <= x_high && y_low <= other.y_low && other.y_high <= y_high;
-  }
-};
+bool contains(const Box& box, const Box& other) {
+  return box.low.x <= other.low.x && other.high.x <= box.high.x && box.low.y <= other.low.y &&
+         other.high.y <= box.high.y;
+}
 
 Box box_of(const Ring& ring) {
   Box box;
-  for (const Vec2 p : ring) {
-    box.x_low = std::min(box.x_low, p.x);
-    box.x_high = std::max(box.x_high, p.x);
-    box.y_low = std::min(box.y_low, p.y);
-    box.y_high = std::max(box.y_high, p.y);
-  }
+  for (const Vec2 p : ring) box.add(p);
   return box;
 }
 
@@ -133,7 +122,7 @@ class PointLocator {
 
   // By the even-odd rule. Exact.
   Place locate(Vec2 p) const {
-    if (!slabs_.empty() && (p.y < box_.y_low || p.y > box_.y_high)) return Place::outside;
+    if (!slabs_.empty() && (p.y < box_.low.y || p.y > box_.high.y)) return Place::outside;
     bool odd = false;
     bool on_edge = false;
     for_each_candidate(p.y, [&](std::size_t i) {
@@ -152,7 +141,7 @@ class PointLocator {
 
  private:
   std::size_t slab_of(double y) const {
-    const double share = (y - box_.y_low) / (box_.y_high - box_.y_low);
+    const double share = (y - box_.low.y) / (box_.high.y - box_.low.y);
     const auto last = static_cast<double>(slabs_.size() - 1);
     return static_cast<std::size_t>(std::min(std::max(share, 0.0) * static_cast<double>(slabs_.size()), last));
   }
@@ -265,10 +254,10 @@ class Search {
 
   void report_wrong_side(std::size_t i) {
     const Ring& hole = *rings_[i];
-    if (!boxes_[0].contains(boxes_[i]) || !lies_within(hole, 0)) report(i, 0, hole[0]);
+    if (!contains(boxes_[0], boxes_[i]) || !lies_within(hole, 0)) report(i, 0, hole[0]);
     for (const std::size_t j : different_) {
       if (found_[i]) return;
-      if (j > 0 && j != i && boxes_[j].contains(boxes_[i]) && lies_within(hole, j)) report(i, 0, hole[0]);
+      if (j > 0 && j != i && contains(boxes_[j], boxes_[i]) && lies_within(hole, j)) report(i, 0, hole[0]);
     }
   }
 

@@ -30,31 +30,8 @@ std::vector<Box> boxes_of(const std::vector<Chain>& chains) {
   return boxes;
 }
 
+/// Ends the search: an exception is the only way out of CGAL's.
 struct TooMany {};
-
-// Counts crossings, and ends the search by an exception, the only way out of CGAL's.
-class CrossingCount {
- public:
-  CrossingCount(std::size_t most, const std::vector<Ring>& rings) : most_(most), rings_(rings) {}
-
-  void operator()(const Box& a, const Box& b) {
-    if (++pairs_ > kMostBoxPairs) throw TooMany{};
-    if (are_neighbours(a.info(), b.info()) || !intersect(edge(a.info()), edge(b.info()))) return;
-    if (++crossings_ > most_) throw TooMany{};
-  }
-
- private:
-  Segment edge(EdgeId id) const { return Chain{&rings_[id.chain]}.edge(id.edge); }
-  bool are_neighbours(EdgeId a, EdgeId b) const {
-    const std::size_t n = rings_[a.chain].size();
-    return a.chain == b.chain && ((a.edge + 1) % n == b.edge || (b.edge + 1) % n == a.edge);
-  }
-
-  std::size_t most_;
-  const std::vector<Ring>& rings_;
-  std::size_t pairs_ = 0;
-  std::size_t crossings_ = 0;
-};
 
 auto key(const Contact& c) {
   return std::make_tuple(c.first.chain, c.first.edge, c.second.chain, c.second.edge);
@@ -100,9 +77,19 @@ bool has_more_crossings_than(std::size_t most, const std::vector<Ring>& rings) {
   std::vector<Chain> chains;
   for (const Ring& ring : rings) chains.push_back(Chain{&ring});
   std::vector<Box> boxes = boxes_of(chains);
-  CrossingCount count(most, rings);
+  const auto are_neighbours = [&](EdgeId a, EdgeId b) {
+    const std::size_t n = rings[a.chain].size();
+    return a.chain == b.chain && ((a.edge + 1) % n == b.edge || (b.edge + 1) % n == a.edge);
+  };
+  std::size_t pairs = 0, crossings = 0;
+  const auto count = [&](const Box& box_a, const Box& box_b) {
+    if (++pairs > kMostBoxPairs) throw TooMany{};
+    const EdgeId a = box_a.info(), b = box_b.info();
+    if (are_neighbours(a, b) || !intersect(chains[a.chain].edge(a.edge), chains[b.chain].edge(b.edge))) return;
+    if (++crossings > most) throw TooMany{};
+  };
   try {
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) { count(a, b); });
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), count);
   } catch (const TooMany&) {
     return true;
   }

@@ -138,25 +138,11 @@ std::size_t lowest_vertex(const Ring& ring) {
 }  // namespace
 
 const char* code_name(RingProblemCode code) {
-  switch (code) {
-    case RingProblemCode::not_finite:
-      return "E_NOT_FINITE";
-    case RingProblemCode::too_few_points:
-      return "E_TOO_FEW_POINTS";
-    case RingProblemCode::unclosed:
-      return "E_UNCLOSED";
-    case RingProblemCode::repeated_vertex:
-      return "E_REPEATED_VERTEX";
-    case RingProblemCode::clockwise:
-      return "E_CLOCKWISE";
-    case RingProblemCode::zero_area:
-      return "E_ZERO_AREA";
-    case RingProblemCode::self_intersection:
-      return "E_SELF_INTERSECTION";
-    case RingProblemCode::hole_outside:
-      return "E_HOLE_OUTSIDE";
-  }
-  EXACTVO_REQUIRE(false, std::to_string(static_cast<int>(code)));
+  constexpr const char* kNames[] = {"E_NOT_FINITE", "E_TOO_FEW_POINTS", "E_UNCLOSED",          "E_REPEATED_VERTEX",
+                                    "E_CLOCKWISE",  "E_ZERO_AREA",      "E_SELF_INTERSECTION", "E_HOLE_OUTSIDE"};
+  const auto number = static_cast<std::size_t>(code);
+  EXACTVO_REQUIRE(number < std::size(kNames), std::to_string(number));
+  return kNames[number];
 }
 
 bool NormalizedPolygon::ok() const {

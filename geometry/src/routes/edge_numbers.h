@@ -25,12 +25,7 @@ class EdgeNumbers {
   static std::uint64_t key_of(int a, int b) {
     return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b));
   }
-  struct Hash {
-    std::size_t operator()(std::uint64_t key) const {
-      return static_cast<std::size_t>(key * 0x9E3779B97F4A7C15u >> 16);
-    }
-  };
-  std::unordered_map<std::uint64_t, int, Hash> numbers_;
+  std::unordered_map<std::uint64_t, int> numbers_;
 };
 
 }  // namespace exactvo::geometry::routing

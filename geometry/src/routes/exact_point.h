@@ -12,7 +12,6 @@
 #include <gmpxx.h>
 
 #include <memory>
-#include <utility>
 
 #include "exact/exact_number.h"
 #include "exact/exact_vector.h"

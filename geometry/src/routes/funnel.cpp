@@ -2,7 +2,6 @@
 #include "routes/funnel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 
 namespace exactvo::geometry::routing {

@@ -2,39 +2,20 @@
 #pragma once
 
 /// \file
-/// A set of numbers, and a value for each number, that are emptied in no time: each number remembers the round in which
-/// it was marked.
+/// A value for each number, emptied in no time: each number remembers the round in which it was given one.
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace exactvo::geometry::routing {
 
-class Marks {
- public:
-  /// `round` for tests: how many times it was emptied before.
-  explicit Marks(std::size_t count = 0, std::uint32_t round = 1) : round_(round), marked_in_(count, 0) {}
-
-  void clear() {
-    if (++round_ != 0) return;
-    std::fill(marked_in_.begin(), marked_in_.end(), 0u);
-    round_ = 1;
-  }
-  void add(int i) { marked_in_[static_cast<std::size_t>(i)] = round_; }
-  bool has(int i) const { return marked_in_[static_cast<std::size_t>(i)] == round_; }
-
- private:
-  std::uint32_t round_;
-  std::vector<std::uint32_t> marked_in_;
-};
-
 /// Values of numbers, of which most are never given one.
 template <typename T>
 class Remembered {
  public:
-  explicit Remembered(std::size_t count = 0) : entries_(count) {}
+  /// `round` for tests: how many times it was emptied before.
+  explicit Remembered(std::size_t count = 0, std::uint32_t round = 1) : round_(round), entries_(count) {}
 
   void clear() {
     if (++round_ != 0) return;
@@ -54,7 +35,7 @@ class Remembered {
     T value{};
     std::uint32_t round = 0;
   };
-  std::uint32_t round_ = 1;
+  std::uint32_t round_;
   std::vector<Entry> entries_;
 };
 

@@ -2,35 +2,12 @@
 #include "routes/plan.h"
 
 #include <algorithm>
-#include <numeric>
+#include <boost/pending/disjoint_sets.hpp>
 
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
 namespace {
-
-/// Disjoint sets with path halving.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int a, int b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-  std::vector<int> roots() {
-    std::vector<int> out(parent_.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = find(static_cast<int>(i));
-    return out;
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// Gates up to this many diameters wide are crossed through their exact middle.
 constexpr double kTight = 1.01;
@@ -113,10 +90,10 @@ void ClearancePlan::decide_gates() {
 }
 
 void ClearancePlan::find_components() {
-  DisjointSets cells(map_->cell_portals.size());
+  boost::disjoint_sets_with_storage<> cells(map_->cell_portals.size());
   for (const Portal& portal : map_->portals)
-    if (portal.right >= 0 && admits(portal)) cells.join(portal.left, portal.right);
-  component_ = cells.roots();
+    if (portal.right >= 0 && admits(portal)) cells.union_set(portal.left, portal.right);
+  for (std::size_t c = 0; c < map_->cell_portals.size(); ++c) component_.push_back(cells.find_set(c));
 }
 
 void ClearancePlan::shrink_all() {

@@ -62,7 +62,7 @@ class ClearancePlan {
   bool side_admits(int side) const { return side_admits_[side]; }
   const ShrunkPortal& shrunk(int portal) const { return shrunk_[portal]; }
   /// Equal for two cells iff a disc can go from one to the other.
-  int component(int cell) const { return component_[cell]; }
+  std::size_t component(int cell) const { return component_[cell]; }
   /// Ends of portals round the same vertex between which the centre can go from end to end have the same sector.
   struct InSector {
     int number;
@@ -109,7 +109,8 @@ class ClearancePlan {
   double radius_;
   std::vector<char> link_admits_, side_admits_;
   std::vector<ShrunkPortal> shrunk_;
-  std::vector<int> component_, way_out_;
+  std::vector<std::size_t> component_;
+  std::vector<int> way_out_;
   std::vector<InSector> sectors_;
   std::vector<Passage> passages_;
   std::vector<std::size_t> first_passage_;  ///< of a cell

@@ -6,6 +6,7 @@
 #include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
+#include <boost/functional/hash.hpp>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -35,21 +36,11 @@ Bits bits_of(Vec2 p) {
   return bits;
 }
 
-std::size_t hash_of(const Bits& b) {
-  return static_cast<std::size_t>((b.first * 0x9E3779B97F4A7C15u ^ b.second) * 0xD6E8FEB86659FD93u >> 7);
-}
-struct BitsHash {
-  std::size_t operator()(const Bits& b) const { return hash_of(b); }
-  std::size_t operator()(const std::pair<Bits, Bits>& ends) const {
-    return hash_of({hash_of(ends.first), hash_of(ends.second)});
-  }
-};
-
 /// Equal ones once: each pair of edges that meet is looked at.
 std::vector<CutEdge> edges_of_all(const std::vector<Obstacle>& obstacles) {
   std::vector<CutEdge> all;
   all.reserve(obstacles.size());
-  std::unordered_map<std::pair<Bits, Bits>, std::size_t, BitsHash> by_ends;
+  std::unordered_map<std::pair<Bits, Bits>, std::size_t, boost::hash<std::pair<Bits, Bits>>> by_ends;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const std::vector<Segment> edges = edges_of(obstacles[i]);
     const int solids = has_interior(obstacles[i]) ? 1 : 0;
@@ -142,7 +133,7 @@ class Vertices {
     }
   };
   PlanarGraph& graph_;
-  std::unordered_map<Bits, int, BitsHash> doubles_;
+  std::unordered_map<Bits, int, boost::hash<Bits>> doubles_;
   std::map<Vector<Rational>, int, Less> fractions_;
 };
 

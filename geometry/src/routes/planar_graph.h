@@ -5,7 +5,6 @@
 /// The boundaries of all obstacles as one planar graph: cut wherever two of them cross or touch, equal pieces merged.
 /// Exact.
 
-#include <cstddef>
 #include <vector>
 
 #include "exactvo/geometry/routes.h"

@@ -2,7 +2,6 @@
 #include "routes/realise.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "exactvo/geometry/pi.h"
 #include "routes/straight_ways.h"

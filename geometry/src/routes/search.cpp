@@ -91,7 +91,7 @@ bool WaySearch::search(Vec2 s, int start, Vec2 t, int goal, Way& way) {
   best_in_sector_.clear();
   allowed_.clear();
   in_corridor_.clear();
-  for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_.add(c);
+  for (int c = goal; c >= 0; c = plan_.way_out(c)) allowed_.set(c, 1);
   open_start(s, start);
   const std::size_t most = std::min(most_, 1000000 + 1000 * map_.cell_portals.size());
   bound_ = norm(t - s);

@@ -12,7 +12,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -107,7 +106,7 @@ class WaySearch {
   bool is_outdone(const Node& node) const;
   bool is_outdone_at(int corner, double length, double size) const;
   bool may_pass(const Passage& p, int from) const {
-    return !p.leads_into_dead_end || allowed_.has(p.to) || plan_.way_out(from) == p.to;
+    return !p.leads_into_dead_end || allowed_.find(p.to) != nullptr || plan_.way_out(from) == p.to;
   }
   int corner_at(int portal, Vec2 x) const;
   void trace(int number, Vec2 t, Way& way) const;
@@ -127,7 +126,7 @@ class WaySearch {
     double length, at;
   };
   Remembered<ReachedInSector> best_in_sector_;
-  Marks allowed_;
+  Remembered<char> allowed_;
   std::vector<Corridor> corridors_;
   Remembered<InCorridor> in_corridor_;  ///< a portal as it is crossed: 2 portal + (1: from its left)
   int goal_cell_ = -1;

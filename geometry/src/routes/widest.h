@@ -5,7 +5,6 @@
 /// The widest disc that gets from one cell to another: the narrowest gate on the widest way, from a maximum spanning
 /// tree of the cells over the widths of gates. Exact: widths are compared, not rounded.
 
-#include <optional>
 #include <vector>
 
 #include "routes/cell_map.h"

@@ -18,27 +18,18 @@ Box round(Vec2 centre, Vec2 half) {
   return {centre - sides, centre + sides};
 }
 
-struct BoxOf {
-  Box operator()(const Disc& d) const { return round(d.center, {d.radius, d.radius}); }
-  Box operator()(const Segment& s) const {
-    Box box;
-    box.add(s.a);
-    box.add(s.b);
-    return box;
-  }
-  Box operator()(const ConvexPolygon& p) const {
-    Box box;
-    for (const Vec2 v : p.vertices) box.add(v);
-    return box;
-  }
-  /// h(e_x) = |l11|, h(e_y) = |(l21, l22)|.
-  Box operator()(const Ellipse& e) const { return round(e.center, {std::fabs(e.l11), std::hypot(e.l21, e.l22)}); }
-};
-
 }  // namespace
 
 Box box_of(const ConvexShape& shape) {
-  return std::visit(BoxOf{}, shape);
+  if (const auto* d = std::get_if<Disc>(&shape)) return round(d->center, {d->radius, d->radius});
+  // h(e_x) = |l11|, h(e_y) = |(l21, l22)|.
+  if (const auto* e = std::get_if<Ellipse>(&shape))
+    return round(e->center, {std::fabs(e->l11), std::hypot(e->l21, e->l22)});
+  if (const auto* s = std::get_if<Segment>(&shape))
+    return {{std::min(s->a.x, s->b.x), std::min(s->a.y, s->b.y)}, {std::max(s->a.x, s->b.x), std::max(s->a.y, s->b.y)}};
+  Box box;
+  for (const Vec2 v : std::get<ConvexPolygon>(shape).vertices) box.add(v);
+  return box;
 }
 
 // A difference of doubles carries u and never underflows. Where the sum of squares is neither tiny nor infinite, what

@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/geometry/shape_numbers.h"
 
-#include <utility>
 #include <variant>
 
 namespace exactvo::geometry {
-namespace {
-
-struct NumbersOf {
-  std::vector<double> operator()(const Disc& s) const { return {s.center.x, s.center.y, s.radius}; }
-  std::vector<double> operator()(const Segment& s) const { return {s.a.x, s.a.y, s.b.x, s.b.y}; }
-  std::vector<double> operator()(const ConvexPolygon& s) const {
-    std::vector<double> all;
-    for (const Vec2 v : s.vertices) all.push_back(v.x), all.push_back(v.y);
-    return all;
-  }
-  std::vector<double> operator()(const Ellipse& s) const { return {s.center.x, s.center.y, s.l11, s.l21, s.l22}; }
-};
-
-}  // namespace
 
 std::vector<double> numbers_of(const ConvexShape& shape) {
-  return std::visit(NumbersOf{}, shape);
+  if (const auto* d = std::get_if<Disc>(&shape)) return {d->center.x, d->center.y, d->radius};
+  if (const auto* e = std::get_if<Ellipse>(&shape)) return {e->center.x, e->center.y, e->l11, e->l21, e->l22};
+  std::vector<double> all;
+  for (const Vec2 v : corners_of(shape)) all.insert(all.end(), {v.x, v.y});
+  return all;
 }
 
 std::optional<ConvexShape> shape_of(std::size_t kind, const std::vector<double>& v) {

@@ -108,6 +108,12 @@ bool is_valid(const ConvexShape& shape) {
   return std::visit([](const auto& s) { return valid(s); }, shape);
 }
 
+std::vector<Vec2> corners_of(const ConvexShape& shape) {
+  if (const auto* s = std::get_if<Segment>(&shape)) return {s->a, s->b};
+  if (const auto* p = std::get_if<ConvexPolygon>(&shape)) return p->vertices;
+  return {};
+}
+
 std::vector<Segment> edges_of(const Obstacle& obstacle) {
   std::vector<Segment> edges;
   if (const auto* polyline = std::get_if<Polyline>(&obstacle)) {

@@ -17,43 +17,38 @@ namespace {
 //   adding the three        2 u of the partial sums.
 // Together at most 9 u H; kSupportError = 16 u leaves 7 u for second-order terms and for H being rounded itself.
 
-struct Terms {
-  double h;
-  double magnitude;
-};
-
-Terms linear_term(Vec2 n, Vec2 d) {
+SupportValue linear_term(Vec2 n, Vec2 d) {
   return {n.x * d.x + n.y * d.y, std::fabs(n.x * d.x) + std::fabs(n.y * d.y)};
 }
 
-Terms farthest_vertex(const Vec2* first, const Vec2* last, Vec2 origin, Vec2 n) {
-  Terms best = linear_term(n, *first - origin);
+SupportValue farthest_vertex(const Vec2* first, const Vec2* last, Vec2 origin, Vec2 n) {
+  SupportValue best = linear_term(n, *first - origin);
   // The error of the maximum is at most the largest error of a candidate, so the largest magnitude stands for all.
   for (const Vec2* v = first + 1; v != last; ++v) {
-    const Terms t = linear_term(n, *v - origin);
+    const SupportValue t = linear_term(n, *v - origin);
     best.h = std::max(best.h, t.h);
     best.magnitude = std::max(best.magnitude, t.magnitude);
   }
   return best;
 }
 
-Terms shape_terms(const Disc& d, Vec2 origin, Vec2 n) {
-  const Terms t = linear_term(n, d.center - origin);
+SupportValue shape_terms(const Disc& d, Vec2 origin, Vec2 n) {
+  const SupportValue t = linear_term(n, d.center - origin);
   const double grown = d.radius * std::sqrt(squared_norm(n));
   return {t.h + grown, t.magnitude + grown};
 }
 
-Terms shape_terms(const Segment& s, Vec2 origin, Vec2 n) {
+SupportValue shape_terms(const Segment& s, Vec2 origin, Vec2 n) {
   const Vec2 ends[2] = {s.a, s.b};
   return farthest_vertex(ends, ends + 2, origin, n);
 }
 
-Terms shape_terms(const ConvexPolygon& p, Vec2 origin, Vec2 n) {
+SupportValue shape_terms(const ConvexPolygon& p, Vec2 origin, Vec2 n) {
   return farthest_vertex(p.vertices.data(), p.vertices.data() + p.vertices.size(), origin, n);
 }
 
-Terms shape_terms(const Ellipse& e, Vec2 origin, Vec2 n) {
-  const Terms t = linear_term(n, e.center - origin);
+SupportValue shape_terms(const Ellipse& e, Vec2 origin, Vec2 n) {
+  const SupportValue t = linear_term(n, e.center - origin);
   const double wx = e.l11 * n.x + e.l21 * n.y;
   const double wy = e.l22 * n.y;
   return {t.h + std::sqrt(wx * wx + wy * wy),
@@ -77,7 +72,7 @@ Vec2 farthest_point(const Ellipse& e, Vec2 n) {
 }  // namespace
 
 SupportValue support(const GrownShape& s, Vec2 n) {
-  const Terms t = std::visit([&](const auto& shape) { return shape_terms(shape, s.origin, n); }, s.shape);
+  const SupportValue t = std::visit([&](const auto& shape) { return shape_terms(shape, s.origin, n); }, s.shape);
   const double grown = s.radius * std::sqrt(squared_norm(n));
   return {t.h + grown, t.magnitude + grown};
 }

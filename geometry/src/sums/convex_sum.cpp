@@ -302,14 +302,10 @@ bool merge(const std::vector<Vec2>& va, const std::vector<Vec2>& vb, ConvexSum& 
 
 }  // namespace
 
-void minkowski_sum(const ConvexPolygon& a, const ConvexPolygon& b, ConvexSum& sum) {
-  EXACTVO_REQUIRE(!a.vertices.empty() && !b.vertices.empty(), "no vertices");
-  if (!merge(a.vertices, b.vertices, sum)) merge_and_check(a, b, sum);
-}
-
 ConvexSum minkowski_sum(const ConvexPolygon& a, const ConvexPolygon& b) {
+  EXACTVO_REQUIRE(!a.vertices.empty() && !b.vertices.empty(), "no vertices");
   ConvexSum sum;
-  minkowski_sum(a, b, sum);
+  if (!merge(a.vertices, b.vertices, sum)) merge_and_check(a, b, sum);
   return sum;
 }
 

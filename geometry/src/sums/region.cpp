@@ -11,7 +11,6 @@
 #include "cgal_guard.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/require.h"
-#include "sums/polygon_sum.h"
 
 namespace exactvo::geometry {
 namespace {
@@ -198,16 +197,8 @@ Region Region::cut(const HalfPlane& keep) const {
   });
 }
 
-Region Region::union_with(const Region& other) const {
-  return guarded("Region::united", [&] {
-    auto out = std::make_shared<Set>(*set_);
-    out->set.join(other.set_->set);
-    return Region(std::move(out));
-  });
-}
-
 Region Region::difference(const Region& other) const {
-  return guarded("Region::minus", [&] {
+  return guarded("Region::difference", [&] {
     auto out = std::make_shared<Set>(*set_);
     out->set.difference(other.set_->set);
     return Region(std::move(out));
@@ -215,7 +206,7 @@ Region Region::difference(const Region& other) const {
 }
 
 Region Region::intersection(const Region& other) const {
-  return guarded("Region::met", [&] {
+  return guarded("Region::intersection", [&] {
     auto out = std::make_shared<Set>(*set_);
     out->set.intersection(other.set_->set);
     return Region(std::move(out));

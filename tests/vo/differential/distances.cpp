@@ -22,7 +22,7 @@ Point exact(Vec2 p) {
   return {Number(p.x), Number(p.y)};
 }
 
-std::vector<Point> corners_of(const geometry::ConvexShape& shape) {
+std::vector<Point> exact_corners(const geometry::ConvexShape& shape) {
   if (const auto* d = std::get_if<geometry::Disc>(&shape)) return {exact(d->center)};
   if (const auto* s = std::get_if<geometry::Segment>(&shape)) return {exact(s->a), exact(s->b)};
   std::vector<Point> out;
@@ -55,7 +55,7 @@ Number squared_distance_to_hull(const std::vector<Point>& corners, const Point& 
 
 /// Where q (absolute) lies. Without a radius the boundary is where the hull's interior is not.
 Place expected_place(const GrownShape& s, const Point& q) {
-  const std::vector<Point> corners = corners_of(s.shape);
+  const std::vector<Point> corners = exact_corners(s.shape);
   const Number r = radius_of(s), d2 = squared_distance_to_hull(corners, q, q);
   if (CGAL::is_zero(d2)) {
     if (!CGAL::is_zero(r)) return Place::inside;
@@ -85,7 +85,7 @@ bool agrees(const Case& c, Tally& tally) {
   const Point end(o.x() + Number(c.tau) * Number(c.v.x), o.y() + Number(c.tau) * Number(c.v.y));
   const Place place = expected_place(c.s, q);
   const Number r = radius_of(c.s);
-  const auto met = CGAL::compare(squared_distance_to_hull(corners_of(c.s.shape), o, end), r * r);
+  const auto met = CGAL::compare(squared_distance_to_hull(exact_corners(c.s.shape), o, end), r * r);
   if (place == Place::boundary || met == CGAL::EQUAL) tally.at_a_contact();
   return locate(c.s, c.v) == place && segment_meets(c.s, c.v, c.tau) == (met != CGAL::LARGER);
 }

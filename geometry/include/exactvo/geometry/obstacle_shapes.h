@@ -11,7 +11,7 @@
 /// Nothing throws for an obstacle, valid or not: an invalid one has its problems and nothing else, and a shape that
 /// can't be had has a failed verdict that says why. Deterministic; no time in it.
 ///
-/// Neighbours: validity.h (the problems), facades.h, hull.h, enclosure.h, scan.h (the parts, one by one).
+/// Neighbours: validity.h (the problems), facades.h, hull.h, enclosure.h (the parts, one by one).
 
 #include <optional>
 #include <string>
@@ -20,7 +20,6 @@
 #include "exactvo/geometry/enclosure.h"
 #include "exactvo/geometry/facades.h"
 #include "exactvo/geometry/hull.h"
-#include "exactvo/geometry/scan.h"
 #include "exactvo/geometry/shapes.h"
 #include "exactvo/geometry/validity.h"
 
@@ -92,10 +91,10 @@ struct ShapeFigures {
 /// All shapes of one obstacle, with their verdicts.
 struct ObstacleShapes {
   std::vector<RingProblem> problems;  ///< all that was found; where one is not repaired nothing else is here
-  Obstacle obstacle;                  ///< as put right; walls of a scan or of loose points: the first facade
+  Obstacle obstacle;                  ///< as put right
   FacadeSet facades;                  ///< what they stand for, and how closely
   /// Disjoint inside, their union is the obstacle, whatever the facades' tolerance. A wall's are its edges, straight
-  /// runs merged. Of a scan or of loose points, where there is no obstacle but the facades: the facades.
+  /// runs merged.
   std::vector<ConvexShape> pieces;
   ConvexPolygon hull;                            ///< smallest convex set round every vertex
   Ellipse smallest_ellipse;                      ///< round every vertex, certified by `ellipse_contains`
@@ -103,10 +102,10 @@ struct ObstacleShapes {
   TrapFreeEllipse trap_free;                     ///< round every vertex, certified by `trap_free_contains`
   ShapeFigures figures;                          ///< areas and counts
 
-  Verdict facades_follow;    ///< the facades keep to the boundary, within their deviation
-  Verdict pieces_cover;      ///< the pieces are convex and cover the obstacle and nothing else; scans: as facades
-  Verdict hull_contains;     ///< every vertex lies in the hull
-  Verdict ellipse_contains;  ///< every vertex lies in the smallest ellipse
+  Verdict facades_follow;           ///< the facades keep to the boundary, within their deviation
+  Verdict pieces_cover;             ///< the pieces are convex and cover the obstacle and nothing else
+  Verdict hull_contains;            ///< every vertex lies in the hull
+  Verdict ellipse_contains;         ///< every vertex lies in the smallest ellipse
   Verdict facade_ellipses_contain;  ///< both ends of every facade lie in its ellipse
   Verdict trap_free_contains;       ///< every vertex lies in the trap-free ellipse; reason where there is none
 
@@ -118,15 +117,6 @@ struct ObstacleShapes {
 
 /// One obstacle. REQUIRES: sensible options (tolerance and radius finite and >= 0, a finite way).
 ObstacleShapes shapes_of(const Obstacle& obstacle, const ShapeOptions& options = {});
-
-/// Loose points: facades by region growing (scan.h). Hull and ellipses hold every finite point, the facades are within
-/// their deviation of them. Points that are not finite are skipped; without any the answer is not valid.
-ObstacleShapes shapes_of_points(const std::vector<Vec2>& points, const PointOptions& how = {},
-                                const ShapeOptions& options = {});
-
-/// The hits of a laser in their order: facades by split and merge (scan.h); the rest as for points.
-ObstacleShapes shapes_of_scan(const std::vector<Vec2>& hits, const ScanOptions& how = {},
-                              const ShapeOptions& options = {});
 
 /// Whether no goal outside the closed ellipse can make a robot of any radius stall there (predicate F for all of them
 /// at once): a^2 <= 2 b^2, that is 2 (l11^2 + l21^2 + l22^2)^2 <= 9 (l11 l22)^2. Exact.

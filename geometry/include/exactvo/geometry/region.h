@@ -2,13 +2,13 @@
 #pragma once
 
 /// \file
-/// Regions with straight edges over exact numbers: unions, intersections and differences that do not round (CGAL's
+/// Regions with straight edges over exact numbers: intersections and differences that do not round (CGAL's
 /// Polygon_set_2 over lazy rationals), behind an immutable handle. Milliseconds for hundreds of edges.
 ///
 /// Exact: everything but the doubles that show it (`pieces`, `area`), whose rounding is stated. Regions are
 /// regularised: closures of their interiors, so that what has no area is nothing.
 ///
-/// Neighbours: exact_offset.h (one polygon with arcs), vo/free_velocities.h (what this is for).
+/// Neighbour: vo/free_velocities.h (what this is for).
 
 #include <memory>
 #include <vector>
@@ -46,8 +46,6 @@ class Region {
   /// same.
   static Region cut(const ConvexPolygon& polygon, const std::vector<HalfPlane>& keep);
 
-  /// Both together.
-  Region union_with(const Region& other) const;
   /// This one without the other.
   Region difference(const Region& other) const;
   /// What both have in common.

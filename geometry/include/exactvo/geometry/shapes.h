@@ -84,6 +84,9 @@ double area(const Ellipse& ellipse);
 /// tolerated. Exact; O(n) orientation tests for a polygon.
 bool is_valid(const ConvexShape& shape);
 
+/// The ends of a segment or the vertices of a polygon; none of a disc or an ellipse.
+std::vector<Vec2> corners_of(const ConvexShape& shape);
+
 /// Every edge of the obstacle: a polyline's segments; a polygon's outer ring, then its holes.
 std::vector<Segment> edges_of(const Obstacle& obstacle);
 
