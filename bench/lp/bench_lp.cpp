@@ -16,6 +16,7 @@
 #include "exactvo/vo/lp/certificate.h"
 #include "exactvo_commit.h"
 #include "lp/sets/generated_sets.h"
+#include "lp/sets/target.h"
 #include "options/program_options.h"
 #include "problem_file.h"
 #include "recorded.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/lp/solve.h"
@@ -116,7 +117,9 @@ void add_walls(const Scenario& scenario, int self, lp::Problem& problem) {
   const Robot& robot = scenario.robots[self];
   for (const vo::OrcaChain& wall : scenario.walls) {
     if (distance_to_box_of(wall, robot.position) > kWallDistance) continue;
-    for (const auto& h : vo::orca_half_planes(wall, robot.position, robot.velocity, kRadius, kWallHorizon))
+    std::vector<std::size_t> edges(wall.vertices.size());
+    std::iota(edges.begin(), edges.end(), std::size_t{0});
+    for (const auto& h : vo::orca_half_planes(wall, edges, robot.position, robot.velocity, kRadius, kWallHorizon))
       problem.constraints.push_back({h.half_plane, lp::Priority::hard, -1});
   }
 }

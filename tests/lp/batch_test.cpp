@@ -12,6 +12,7 @@
 
 #include "exactvo/vo/lp/certificate.h"
 #include "lp/sets/generated_sets.h"
+#include "lp/sets/target.h"
 #include "problem_text.h"
 #include "support/seeded_random.h"
 

@@ -195,7 +195,8 @@ TEST(Multipliers, OfOneProblemInArraysAreThoseOfSolve) {
       h.normal = normalized(h.normal);
       x[j] = h.normal.x, y[j] = h.normal.y, c[j] = h.offset;
     }
-    const Solution s = solve_single({x.data(), y.data(), c.data(), p.constraints.size(), 0, p.preferred, p.bound.disc});
+    Solution s;
+    solve_single({x.data(), y.data(), c.data(), p.constraints.size(), 0, p.preferred, p.bound.disc}, s);
     EXPECT_LE(missed(p, s), kStationary) << text_of(p);
     EXPECT_EQ(check(p, claim_of(p, s)), CertificateError::none) << name(s.status) << '\n' << text_of(p);
   }
@@ -299,8 +300,9 @@ TEST(Multipliers, OfOneProblemInArraysAreFiniteAndNotNegativeAtTangency) {
     }
     const SingleProblem single{x.data(), y.data(),          c.data(),          problem.constraints.size(),
                                hard,     problem.preferred, problem.bound.disc};
-    expect_usable_multipliers(solve_single(single), "solve_single", problem);
-    Solution certified;
+    Solution plain, certified;
+    solve_single(single, plain);
+    expect_usable_multipliers(plain, "solve_single", problem);
     solve_single_certified(single, certified);
     expect_usable_multipliers(certified, "solve_single_certified", problem);
   }

@@ -8,13 +8,18 @@
 #include <utility>
 #include <vector>
 
+#include "decision/feasible.h"
 #include "exactvo/vo/lp/batch.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "lp/sets/generated_sets.h"
+#include "lp/sets/target.h"
 #include "problem_text.h"
 
 namespace exactvo::lp {
 namespace {
+
+using bench::keeps;
+using bench::solve_feasible;
 
 /// A problem as arrays; what stands beyond its lines would forbid everything, if it were looked at.
 class Arrays {
@@ -32,7 +37,11 @@ class Arrays {
     }
   }
   SingleProblem problem() const { return {x_.data(), y_.data(), offset_.data(), count_, hard_, preferred_, disc_}; }
-  Solution solve() const { return solve_single(problem()); }
+  Solution solve() const {
+    Solution answer;
+    solve_single(problem(), answer);
+    return answer;
+  }
 
  private:
   double disc_;

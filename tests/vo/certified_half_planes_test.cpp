@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "exactvo/vo/orca_obstacle.h"
 #include "exactvo/vo/reciprocal.h"
@@ -148,7 +149,9 @@ TEST(Orca, EdgesOfPolygonsAndWallsAreSafe) {
     const Vec2 position = polygon.vertices[0] + size * random.in_box(3.0);
     const double radius = size * random.uniform(0.0, 0.5), tau = random.uniform(0.2, 5.0);
     for (const vo::OrcaChain& chain : vo::orca_chains(obstacle)) {
-      for (const auto& line : vo::orca_half_planes(chain, position, random.in_box(3.0), radius, tau)) {
+      std::vector<std::size_t> edges(chain.vertices.size());
+      std::iota(edges.begin(), edges.end(), std::size_t{0});
+      for (const auto& line : vo::orca_half_planes(chain, edges, position, random.in_box(3.0), radius, tau)) {
         if (!line.certified) continue;
         const std::size_t n = chain.vertices.size();
         const geometry::Segment edge{chain.vertices[line.edge], chain.vertices[(line.edge + 1) % n]};

@@ -61,7 +61,7 @@ TEST(ExactLegs, ADiscOfKnownSlopes) {
   EXPECT_EQ(legs.left.polynomial(), (std::vector<std::string>{"-1", "0", "3"}));
   EXPECT_EQ(legs.right.polynomial(), legs.left.polynomial());
   EXPECT_EQ(legs.left.quarter_turns(), 0);
-  EXPECT_FALSE(legs.left.is_rational());
+  EXPECT_NE(legs.left.low(), legs.left.high());
   EXPECT_NEAR(legs.left.rounded().y, 0.5, 1e-15);
   EXPECT_NEAR(legs.right.rounded().y, -0.5, 1e-15);
   EXPECT_EQ(compare(legs.right, legs.left), Sign::negative);
@@ -70,7 +70,7 @@ TEST(ExactLegs, ADiscOfKnownSlopes) {
 TEST(ExactLegs, ARationalRootIsKnown) {
   // Radius 3 at distance 5: slopes +-3/4.
   const ExactLegs legs = legs_of(Disc{{5.0, 0.0}, 3.0});
-  EXPECT_TRUE(legs.left.is_rational());
+  EXPECT_EQ(legs.left.low(), legs.left.high());
   EXPECT_EQ(legs.left.low(), "3/4");
   EXPECT_EQ(legs.right.high(), "-3/4");
   EXPECT_EQ(legs.right.polynomial(), (std::vector<std::string>{"3", "4"}));

@@ -268,8 +268,8 @@ TEST(VelocityObstacle, CallersMistakesAreLogicErrors) {
     EXPECT_THROW(vo::reciprocal_half_planes({{0, bad}, {0, 0}, 1}, {{5, 0}, {}, 1}), std::logic_error);
     EXPECT_THROW(vo::reciprocal_half_planes({{0, 0}, {0, 0}, bad}, {{5, 0}, {}, 1}), std::logic_error);
     vo::OrcaChain chain = vo::orca_chains(geometry::Polyline{{{0, 0}, {1, 0}}})[0];
-    EXPECT_THROW(vo::orca_half_planes(chain, {bad, 2}, {}, 0.5, 1.0), std::logic_error);
-    EXPECT_THROW(vo::orca_half_planes(chain, {0, 2}, {0, bad}, 0.5, 1.0), std::logic_error);
+    EXPECT_THROW(vo::orca_half_planes(chain, {0}, {bad, 2}, {}, 0.5, 1.0), std::logic_error);
+    EXPECT_THROW(vo::orca_half_planes(chain, {0}, {0, 2}, {0, bad}, 0.5, 1.0), std::logic_error);
   }
   EXPECT_THROW(VelocityObstacle(disc, {}, 1.0, 0.0), std::logic_error);
   EXPECT_THROW(VelocityObstacle(ConvexPolygon{}, {}, 1.0, 1.0), std::logic_error);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "exactvo/vo/lp/single.h"
+#include "decision/feasible.h"
 #include "exactvo/vo/velocity_obstacle.h"
 #include "half_plane/plain.h"
 
@@ -85,7 +85,7 @@ Vec2 proven_velocity(const Scene& scene) {
   Lines lines;
   if (!lines.fill(scene, [](const GrownShape& s, double tau, Vec2 v) { return vo::half_plane(s, tau, v); })) return {};
   Vec2 v;
-  return lp::solve_feasible(lines.problem(scene), v) ? v : Vec2{};
+  return solve_feasible(lines.problem(scene), v) ? v : Vec2{};
 }
 
 Vec2 plain_velocity(const Scene& scene) {

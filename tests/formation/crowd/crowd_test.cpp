@@ -15,6 +15,7 @@
 #include "crowd_scenes.h"
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/vo/lp/batch.h"
+#include "lp/sets/target.h"
 
 namespace exactvo::formation {
 namespace {

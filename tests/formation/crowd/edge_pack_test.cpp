@@ -12,6 +12,7 @@
 #include "crowd/kinds.h"
 #include "crowd_scenes.h"
 #include "exactvo/vo/lp/batch.h"
+#include "lp/sets/target.h"
 
 namespace exactvo::formation::crowd {
 namespace {

@@ -14,6 +14,7 @@
 #include "crowd_scenes.h"
 #include "exactvo/formation/crowd_run.h"
 #include "exactvo/vo/lp/batch.h"
+#include "lp/sets/target.h"
 #include "support/thread_ranks.h"
 
 namespace exactvo::formation {

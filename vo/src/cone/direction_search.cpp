@@ -10,15 +10,10 @@ namespace exactvo::vo::detail {
 namespace {
 
 using geometry::ConvexPolygon;
-using geometry::cross;
 using geometry::Disc;
-using geometry::dot;
 using geometry::Ellipse;
-using geometry::norm;
 using geometry::normalized;
-using geometry::perp;
 using geometry::Segment;
-using geometry::squared_norm;
 
 Vec2 unit_or(Vec2 v, Vec2 fallback) {
   return v == Vec2{} ? fallback : normalized(v);
@@ -186,25 +181,13 @@ Normals EllipseNormals::all() const {
   return out;
 }
 
-namespace {
-
-struct NormalsOf {
-  const GrownShape& s;
-  Vec2 y;
-  Normals operator()(const Disc& d) const {
-    Normals out;
-    out.add(unit_or(y - (d.center - s.origin), kAnyDirection));
-    return out;
-  }
-  Normals operator()(const Segment& g) const { return of_segment(g.a - s.origin, g.b - s.origin, y); }
-  Normals operator()(const ConvexPolygon& p) const { return of_polygon(p.vertices, s.origin, s.radius, y); }
-  Normals operator()(const Ellipse& e) const { return EllipseNormals(e, e.center - s.origin, y).all(); }
-};
-
-}  // namespace
-
 Normals nearest_normals(const GrownShape& s, Vec2 y) {
-  return std::visit(NormalsOf{s, y}, s.shape);
+  if (const auto* e = std::get_if<Ellipse>(&s.shape)) return EllipseNormals(*e, e->center - s.origin, y).all();
+  if (const auto* g = std::get_if<Segment>(&s.shape)) return of_segment(g->a - s.origin, g->b - s.origin, y);
+  if (const auto* p = std::get_if<ConvexPolygon>(&s.shape)) return of_polygon(p->vertices, s.origin, s.radius, y);
+  Normals out;
+  out.add(unit_or(y - (std::get<Disc>(s.shape).center - s.origin), kAnyDirection));
+  return out;
 }
 
 }  // namespace exactvo::vo::detail

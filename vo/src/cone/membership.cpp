@@ -9,10 +9,8 @@
 namespace exactvo::vo {
 namespace {
 
-using geometry::dot;
 using geometry::GrownShape;
 using geometry::kUnitRoundoff;
-using geometry::perp;
 
 // A product n.v with |n.x|, |n.y| < 1 + 2^-20 errs by less than 3 u (|v.x| + |v.y|), that sum and its product with the
 // band by 2 u of themselves, the sum with an offset by u of both (the offsets have room for theirs).

@@ -12,16 +12,12 @@ namespace exactvo::vo::detail {
 namespace {
 
 using geometry::ConvexPolygon;
-using geometry::cross;
 using geometry::Disc;
-using geometry::dot;
 using geometry::Ellipse;
 using geometry::kSupportError;
 using geometry::kSupportUnderflow;
 using geometry::kUnitRoundoff;
-using geometry::perp;
 using geometry::Segment;
-using geometry::squared_norm;
 using geometry::support;
 using geometry::SupportValue;
 
@@ -88,20 +84,13 @@ struct Best {
 // --- Tilting ---
 
 /// A point well inside S.
-struct Middle {
-  Vec2 operator()(const Disc& d) const { return d.center; }
-  Vec2 operator()(const Segment& g) const { return 0.5 * (g.a + g.b); }
-  Vec2 operator()(const Ellipse& e) const { return e.center; }
-  Vec2 operator()(const ConvexPolygon& p) const {
-    const Vec2 a = p.vertices[0];
-    const Vec2 b = p.vertices[p.vertices.size() / 3];
-    const Vec2 c = p.vertices[2 * p.vertices.size() / 3];
-    return a + ((b - a) + (c - a)) / 3.0;
-  }
-};
-
 Vec2 middle_of(const GrownShape& s) {
-  return std::visit(Middle{}, s.shape);
+  if (const auto* d = std::get_if<Disc>(&s.shape)) return d->center;
+  if (const auto* e = std::get_if<Ellipse>(&s.shape)) return e->center;
+  if (const auto* g = std::get_if<Segment>(&s.shape)) return 0.5 * (g->a + g->b);
+  const std::vector<Vec2>& v = std::get<ConvexPolygon>(s.shape).vertices;
+  const Vec2 a = v[0], b = v[v.size() / 3], c = v[2 * v.size() / 3];
+  return a + ((b - a) + (c - a)) / 3.0;
 }
 
 Vec2 origin_of(const GrownShape& s) {

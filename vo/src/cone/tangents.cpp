@@ -7,13 +7,9 @@ namespace exactvo::vo::detail {
 namespace {
 
 using geometry::ConvexPolygon;
-using geometry::cross;
 using geometry::Disc;
-using geometry::dot;
 using geometry::Ellipse;
-using geometry::perp;
 using geometry::Segment;
-using geometry::squared_norm;
 
 /// To the disc of radius r round p; side +1 is the left tangent. Nothing where the disc holds the origin.
 std::optional<Tangent> disc_tangent(Vec2 p, double r, double side) {
@@ -99,35 +95,24 @@ std::optional<Tangents> ellipse_tangents(const Ellipse& e, Vec2 p, double r) {
   return Tangents{{perp(left) / length_left, left}, {-perp(right) / length_right, right}};
 }
 
-struct TangentsOf {
-  const GrownShape& s;
-
-  std::optional<Tangents> operator()(const Disc& d) const {
-    const Vec2 p = d.center - s.origin;
-    return both(disc_tangent(p, d.radius + s.radius, 1.0), disc_tangent(p, d.radius + s.radius, -1.0));
-  }
-  std::optional<Tangents> operator()(const Segment& g) const {
-    const Vec2 ends[2] = {g.a, g.b};
-    return polygon(ends, 2);
-  }
-  std::optional<Tangents> operator()(const ConvexPolygon& p) const {
-    return polygon(p.vertices.data(), p.vertices.size());
-  }
-  std::optional<Tangents> operator()(const Ellipse& e) const {
-    return ellipse_tangents(e, e.center - s.origin, s.radius);
-  }
-
- private:
-  std::optional<Tangents> polygon(const Vec2* v, std::size_t count) const {
-    return both(polygon_tangent(v, count, s.origin, s.radius, 1.0),
-                polygon_tangent(v, count, s.origin, s.radius, -1.0));
-  }
-};
-
 }  // namespace
 
 std::optional<Tangents> tangents(const GrownShape& s) {
-  return std::visit(TangentsOf{s}, s.shape);
+  const auto to_disc = [&](const Disc& d, double side) {
+    return disc_tangent(d.center - s.origin, d.radius + s.radius, side);
+  };
+  const auto to_polygon = [&](const Vec2* v, std::size_t count) {
+    return both(polygon_tangent(v, count, s.origin, s.radius, 1.0),
+                polygon_tangent(v, count, s.origin, s.radius, -1.0));
+  };
+  if (const auto* d = std::get_if<Disc>(&s.shape)) return both(to_disc(*d, 1.0), to_disc(*d, -1.0));
+  if (const auto* e = std::get_if<Ellipse>(&s.shape)) return ellipse_tangents(*e, e->center - s.origin, s.radius);
+  if (const auto* g = std::get_if<Segment>(&s.shape)) {
+    const Vec2 ends[2] = {g->a, g->b};
+    return to_polygon(ends, 2);
+  }
+  const std::vector<Vec2>& v = std::get<ConvexPolygon>(s.shape).vertices;
+  return to_polygon(v.data(), v.size());
 }
 
 }  // namespace exactvo::vo::detail

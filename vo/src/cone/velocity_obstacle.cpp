@@ -14,9 +14,6 @@
 namespace exactvo::vo {
 namespace {
 
-using geometry::dot;
-using geometry::perp;
-
 std::optional<Leg> leg_of(const geometry::GrownShape& s, const detail::Tangent& tangent, double side) {
   const std::optional<Vec2> inside = detail::certified_inside(s, tangent.normal);
   const std::optional<Vec2> outside = detail::certified_outside(s, tangent.normal);

@@ -101,9 +101,6 @@ std::string AlgebraicDirection::high() const {
 int AlgebraicDirection::quarter_turns() const {
   return value_->quarter_turns;
 }
-bool AlgebraicDirection::is_rational() const {
-  return value_->slope.is_settled();
-}
 
 AlgebraicDirection AlgebraicDirection::refined(double width) const {
   EXACTVO_REQUIRE(width > 0.0 && std::isfinite(width), geometry::hex_text(width));

@@ -4,10 +4,8 @@
 namespace exactvo::vo::detail {
 namespace {
 
-using geometry::ConvexPolygon;
 using geometry::Disc;
 using geometry::Ellipse;
-using geometry::Segment;
 
 RationalVector exact(Vec2 v) {
   return {Rational(v.x), Rational(v.y)};
@@ -17,25 +15,20 @@ Rational square(const Rational& x) {
   return x * x;
 }
 
-struct BodyOf {
-  ExactSum operator()(const Disc& d) const { return {{exact(d.center)}, disc(d.radius)}; }
-  ExactSum operator()(const Segment& s) const { return {{exact(s.a), exact(s.b)}, {}}; }
-  ExactSum operator()(const ConvexPolygon& p) const {
-    ExactSum out;
-    for (const Vec2 v : p.vertices) out.centres.push_back(exact(v));
-    return out;
-  }
-  ExactSum operator()(const Ellipse& e) const {
-    const RationalVector c = exact(e.center);
-    const Rational l11(e.l11), l21(e.l21), l22(e.l22);
+ExactSum sum_of(const geometry::ConvexShape& shape) {
+  const auto disc = [](double radius) { return Body{0, 0, 0, abs(Rational(radius))}; };
+  if (const auto* d = std::get_if<Disc>(&shape)) return {{exact(d->center)}, disc(d->radius)};
+  if (const auto* e = std::get_if<Ellipse>(&shape)) {
+    const RationalVector c = exact(e->center);
+    const Rational l11(e->l11), l21(e->l21), l22(e->l22);
     if (sgn(l22) == 0) return {{{c.x - l11, c.y - l21}, {c.x + l11, c.y + l21}}, {}};
-    if (sgn(l21) == 0 && abs(l11) == abs(l22)) return {{c}, disc(e.l11)};
+    if (sgn(l21) == 0 && abs(l11) == abs(l22)) return {{c}, disc(e->l11)};
     return {{c}, {square(l11), l11 * l21, square(l21) + square(l22), 0}};
   }
-
- private:
-  static Body disc(double radius) { return {0, 0, 0, abs(Rational(radius))}; }
-};
+  ExactSum out;
+  for (const Vec2 v : corners_of(shape)) out.centres.push_back(exact(v));
+  return out;
+}
 
 ExactSum seen_from(Vec2 origin, ExactSum s, const Rational& radius) {
   for (RationalVector& c : s.centres) c = c - exact(origin);
@@ -149,8 +142,8 @@ UnroundedInput unrounded_input(const VelocityObstacle& obstacle) {
 
 ExactSum exact_sum(const VelocityObstacle& obstacle) {
   const geometry::GrownShape& s = obstacle.grown_;
-  if (!obstacle.polygonal_) return seen_from(s.origin, std::visit(BodyOf{}, s.shape), Rational(s.radius));
-  const ExactSum alone = seen_from(s.origin, std::visit(BodyOf{}, obstacle.polygonal_->obstacle), 0);
+  if (!obstacle.polygonal_) return seen_from(s.origin, sum_of(s.shape), Rational(s.radius));
+  const ExactSum alone = seen_from(s.origin, sum_of(obstacle.polygonal_->obstacle), 0);
   ExactSum out{{}, alone.body};
   for (const RationalVector& c : alone.centres)
     for (const Vec2 v : obstacle.polygonal_->robot.vertices) out.centres.push_back(c - exact(v));

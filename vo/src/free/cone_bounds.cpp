@@ -12,8 +12,6 @@
 namespace exactvo::vo::detail {
 namespace {
 
-using geometry::cross;
-using geometry::dot;
 using geometry::GrownShape;
 using geometry::kUnitRoundoff;
 using geometry::Region;

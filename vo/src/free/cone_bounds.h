@@ -4,8 +4,6 @@
 /// \file
 /// Polygons inside and outside a shifted cone, and the same of a disc of velocities.
 
-#include <vector>
-
 #include "exactvo/geometry/region.h"
 #include "exactvo/vo/family.h"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -147,17 +146,8 @@ const char* name(Refusal refusal) {
 }
 
 const char* name(ArcKind kind) {
-  switch (kind) {
-    case ArcKind::speed_circle:
-      return "speed circle";
-    case ArcKind::cut_off_arc:
-      return "cut-off arc";
-    case ArcKind::offset_edge:
-      return "offset edge";
-    case ArcKind::leg:
-      break;
-  }
-  return "leg";
+  constexpr const char* kNames[] = {"speed circle", "cut-off arc", "offset edge", "leg"};
+  return kNames[static_cast<int>(kind)];
 }
 
 bool FreeArrangement::can_hold(const ShiftedCone& cone) {

@@ -5,26 +5,15 @@
 #include <cmath>
 
 #include "exact/exact_sum.h"
+#include "exactvo/geometry/shape_numbers.h"
 
 namespace exactvo::vo::detail {
 namespace {
 
-template <class Points>
-bool are_in_supported_range(const Points& points) {
-  return std::all_of(points.begin(), points.end(), [](Vec2 v) { return is_in_supported_range(v); });
+template <class Numbers>
+bool are_in_supported_range(const Numbers& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](const auto& x) { return is_in_supported_range(x); });
 }
-
-struct ShapeIsInSupportedRange {
-  bool operator()(const geometry::Disc& d) const {
-    return is_in_supported_range(d.center) && is_in_supported_range(d.radius);
-  }
-  bool operator()(const geometry::Segment& s) const { return is_in_supported_range(s.a) && is_in_supported_range(s.b); }
-  bool operator()(const geometry::ConvexPolygon& p) const { return are_in_supported_range(p.vertices); }
-  bool operator()(const geometry::Ellipse& e) const {
-    return is_in_supported_range(e.center) && is_in_supported_range(e.l11) && is_in_supported_range(e.l21) &&
-           is_in_supported_range(e.l22);
-  }
-};
 
 }  // namespace
 
@@ -42,7 +31,7 @@ bool is_in_supported_range(const ShiftedCone& cone) {
   return (std::isinf(tau) || is_in_supported_range(tau)) && is_in_supported_range(input.position) &&
          is_in_supported_range(input.radius) && are_in_supported_range(cone.minus_apex.terms) &&
          (!input.robot || are_in_supported_range(input.robot->vertices)) &&
-         std::visit(ShapeIsInSupportedRange{}, input.obstacle);
+         are_in_supported_range(geometry::numbers_of(input.obstacle));
 }
 
 }  // namespace exactvo::vo::detail

@@ -11,16 +11,15 @@
 #include <vector>
 
 #include "exactvo/geometry/infinity.h"
+#include "exactvo/geometry/shape_numbers.h"
 #include "proof/certificate_words.h"
 
 namespace exactvo::vo {
 namespace {
 
 using detail::Fnv;
-using geometry::ConvexPolygon;
 using geometry::Disc;
 using geometry::Ellipse;
-using geometry::Segment;
 using geometry::Vec2;
 using Rational = mpq_class;
 
@@ -42,37 +41,27 @@ Rational square(const Rational& x) {
   return x * x;
 }
 
-struct SupportOf {
-  const HalfPlaneClaim& claim;
-
-  RootSum operator()(const Disc& disc) const {
-    return {at(disc.center), 0, square(Rational(disc.radius) + Rational(claim.radius)) * length2()};
+RootSum support(const HalfPlaneClaim& c) {
+  const Rational nx(c.half_plane.normal.x), ny(c.half_plane.normal.y), length2 = square(nx) + square(ny);
+  const auto at = [&](Vec2 x) -> Rational {
+    return nx * (Rational(x.x) - Rational(c.position.x)) + ny * (Rational(x.y) - Rational(c.position.y));
+  };
+  const Rational grown = square(Rational(c.radius)) * length2;
+  if (const auto* disc = std::get_if<Disc>(&c.shape))
+    return {at(disc->center), 0, square(Rational(disc->radius) + Rational(c.radius)) * length2};
+  if (const auto* e = std::get_if<Ellipse>(&c.shape)) {
+    const Rational x = Rational(e->l11) * nx + Rational(e->l21) * ny;
+    return {at(e->center), square(x) + square(Rational(e->l22) * ny), grown};
   }
-  RootSum operator()(const Segment& s) const { return {std::max(at(s.a), at(s.b)), 0, grown()}; }
-  RootSum operator()(const ConvexPolygon& p) const {
-    Rational most = at(p.vertices.front());
-    for (const Vec2 v : p.vertices) most = std::max(most, at(v));
-    return {most, 0, grown()};
-  }
-  RootSum operator()(const Ellipse& e) const {
-    const Rational x = Rational(e.l11) * nx() + Rational(e.l21) * ny();
-    const Rational y = Rational(e.l22) * ny();
-    return {at(e.center), square(x) + square(y), grown()};
-  }
-
- private:
-  Rational nx() const { return Rational(claim.half_plane.normal.x); }
-  Rational ny() const { return Rational(claim.half_plane.normal.y); }
-  Rational length2() const { return square(nx()) + square(ny()); }
-  Rational grown() const { return square(Rational(claim.radius)) * length2(); }
-  Rational at(Vec2 x) const {
-    return nx() * (Rational(x.x) - Rational(claim.position.x)) + ny() * (Rational(x.y) - Rational(claim.position.y));
-  }
-};
+  const std::vector<Vec2> corners = corners_of(c.shape);
+  Rational most = at(corners.front());
+  for (const Vec2 v : corners) most = std::max(most, at(v));
+  return {most, 0, grown};
+}
 
 /// h_S(normal) - min(0, tau (offset - normal.u)): minus the margin.
 RootSum excess(const HalfPlaneClaim& c) {
-  RootSum h = std::visit(SupportOf{c}, c.shape);
+  RootSum h = support(c);
   const Vec2 n = c.half_plane.normal;
   const Rational moved = Rational(n.x) * Rational(c.shape_velocity.x) + Rational(n.y) * Rational(c.shape_velocity.y);
   const Rational beyond = Rational(c.half_plane.offset) - moved;
@@ -146,32 +135,12 @@ double exact_margin(const RootSum& excess) {
 
 // --- The digest ---
 
-struct AddTo {
-  Fnv& hash;
-  void operator()(const Disc& d) const {
-    hash.add(d.center);
-    hash.add(d.radius);
-  }
-  void operator()(const Segment& s) const {
-    hash.add(s.a);
-    hash.add(s.b);
-  }
-  void operator()(const ConvexPolygon& p) const {
-    hash.add(static_cast<std::uint64_t>(p.vertices.size()));
-    for (const Vec2 v : p.vertices) hash.add(v);
-  }
-  void operator()(const Ellipse& e) const {
-    hash.add(e.center);
-    hash.add(e.l11);
-    hash.add(e.l21);
-    hash.add(e.l22);
-  }
-};
-
 std::uint64_t digest_of(const HalfPlaneClaim& c, double margin) {
   Fnv hash;
   hash.add(static_cast<std::uint64_t>(c.shape.index()));
-  std::visit(AddTo{hash}, c.shape);
+  if (const auto* p = std::get_if<geometry::ConvexPolygon>(&c.shape))
+    hash.add(static_cast<std::uint64_t>(p->vertices.size()));
+  for (const double x : geometry::numbers_of(c.shape)) hash.add(x);
   hash.add(c.position);
   hash.add(c.radius);
   hash.add(c.time_horizon);
@@ -205,17 +174,8 @@ Verdict check(const Certificate& c) {
 }
 
 const char* name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::valid:
-      return "valid";
-    case Verdict::malformed:
-      return "malformed";
-    case Verdict::altered:
-      return "altered";
-    case Verdict::wrong_margin:
-      break;
-  }
-  return "wrong margin";
+  constexpr const char* kNames[] = {"valid", "malformed", "altered", "wrong margin"};
+  return kNames[static_cast<int>(verdict)];
 }
 
 }  // namespace exactvo::vo

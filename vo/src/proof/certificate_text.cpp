@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <iterator>
 #include <string_view>
+#include <vector>
 
+#include "exactvo/geometry/shape_numbers.h"
 #include "exactvo/vo/certificate.h"
 #include "proof/certificate_words.h"
 
@@ -17,28 +21,19 @@ std::string text(Vec2 v) {
 }
 
 geometry::ConvexShape read_shape(Reader& in) {
-  const std::string_view kind = in.next();
-  if (kind == "disc") {
-    const Vec2 center = in.point();
-    return geometry::Disc{center, in.number()};
-  }
-  if (kind == "segment") {
-    const Vec2 a = in.point();
-    return geometry::Segment{a, in.point()};
-  }
-  if (kind == "ellipse") {
-    geometry::Ellipse e;
-    e.center = in.point();
-    e.l11 = in.number();
-    e.l21 = in.number();
-    e.l22 = in.number();
-    return e;
-  }
-  geometry::ConvexPolygon polygon;
-  if (kind != "convex_polygon") in.expect("convex_polygon");
-  const auto count = in.integer<std::size_t>(10);
-  for (std::size_t i = 0; i < count && in.ok(); ++i) polygon.vertices.push_back(in.point());
-  return polygon;
+  constexpr std::string_view kKinds[] = {"disc", "segment", "convex_polygon", "ellipse"};
+  constexpr std::size_t kCounts[] = {3, 4, 0, 5};
+  const auto kind = static_cast<std::size_t>(std::find(std::begin(kKinds), std::end(kKinds), in.next()) - kKinds);
+  if (kind == std::size(kKinds)) in.expect("a shape");
+  std::vector<double> numbers;
+  const auto read = [&](std::size_t count) {
+    for (std::size_t i = 0; i < count && in.ok(); ++i) numbers.push_back(in.number());
+  };
+  if (kind == 2)
+    for (auto left = in.integer<std::size_t>(10); left > 0 && in.ok(); --left) read(2);
+  else if (in.ok())
+    read(kCounts[kind]);
+  return geometry::shape_of(kind, numbers).value_or(geometry::Disc{});
 }
 
 }  // namespace
@@ -64,22 +59,14 @@ std::optional<Certificate> read_certificate(const std::string& text) {
   in.expect("half-plane-certificate");
   in.expect("1");
   c.claim.shape = read_shape(in);
-  in.expect("position");
-  c.claim.position = in.point();
-  in.expect("radius");
-  c.claim.radius = in.number();
-  in.expect("horizon");
-  c.claim.time_horizon = in.number();
-  in.expect("velocity");
-  c.claim.shape_velocity = in.point();
-  in.expect("normal");
-  c.claim.half_plane.normal = in.point();
-  in.expect("offset");
-  c.claim.half_plane.offset = in.number();
-  in.expect("margin");
-  c.margin = in.number();
-  in.expect("digest");
-  c.digest = in.integer<std::uint64_t>(16);
+  c.claim.position = in.point("position");
+  c.claim.radius = in.number("radius");
+  c.claim.time_horizon = in.number("horizon");
+  c.claim.shape_velocity = in.point("velocity");
+  c.claim.half_plane.normal = in.point("normal");
+  c.claim.half_plane.offset = in.number("offset");
+  c.margin = in.number("margin");
+  c.digest = in.digest();
   if (!in.finished() || write_certificate(c) != text) return std::nullopt;
   return c;
 }

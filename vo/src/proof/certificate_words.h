@@ -48,6 +48,15 @@ class Reader {
     const double x = number();
     return {x, number()};
   }
+  /// The same behind a word.
+  double number(std::string_view name) {
+    expect(name);
+    return number();
+  }
+  Vec2 point(std::string_view name) {
+    expect(name);
+    return point();
+  }
   template <typename Integer>
   Integer integer(int base) {
     const std::string_view word = next();
@@ -55,6 +64,10 @@ class Reader {
     const auto result = std::from_chars(word.data(), word.data() + word.size(), value, base);
     ok_ = ok_ && result.ec == std::errc() && result.ptr == word.data() + word.size();
     return value;
+  }
+  std::uint64_t digest() {
+    expect("digest");
+    return integer<std::uint64_t>(16);
   }
   bool ok() const { return ok_; }
   bool finished() const { return ok_ && at_end_; }

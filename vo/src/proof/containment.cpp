@@ -81,10 +81,8 @@ std::optional<Containment> read_containment(const std::string& text) {
   in.expect("points");
   const auto count = in.integer<std::size_t>(10);
   for (std::size_t k = 0; k < count && in.ok(); ++k) c.points.push_back(in.point());
-  in.expect("margin");
-  c.margin = in.number();
-  in.expect("digest");
-  c.digest = in.integer<std::uint64_t>(16);
+  c.margin = in.number("margin");
+  c.digest = in.digest();
   if (!in.finished() || write_containment(c) != text) return std::nullopt;
   return c;
 }

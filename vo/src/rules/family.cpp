@@ -14,27 +14,14 @@
 namespace exactvo::vo {
 namespace {
 
-using geometry::ConvexPolygon;
 using geometry::ConvexShape;
-using geometry::cross;
-using geometry::Disc;
-using geometry::dot;
-using geometry::Ellipse;
 using geometry::kUnitRoundoff;
-using geometry::Segment;
 using geometry::VectorSum;
 
 VelocityObstacle cone_round(const ConvexShape& shape, const Encounter& e, double time_horizon) {
   if (e.robot) return {shape, e.position, *e.robot, time_horizon};
   return {shape, e.position, e.radius, time_horizon};
 }
-
-struct Enclosed {
-  ConvexShape operator()(const Disc& d) const { return d; }
-  ConvexShape operator()(const Ellipse& e) const { return e; }
-  ConvexShape operator()(const Segment& s) const { return geometry::smallest_ellipse({s.a, s.b}); }
-  ConvexShape operator()(const ConvexPolygon& p) const { return geometry::smallest_ellipse(p.vertices); }
-};
 
 ShiftedCone cone_of_vo(const Encounter& e) {
   return {cone_of(e), VectorSum{{-e.obstacle_velocity}}, e.obstacle_velocity};
@@ -90,7 +77,9 @@ std::optional<HalfPlane> half_plane_of(const VelocityObstacle& obstacle, const E
 }
 
 ConvexShape enclosure_of(const Encounter& e) {
-  return e.enclosure ? ConvexShape{*e.enclosure} : std::visit(Enclosed{}, e.obstacle);
+  if (e.enclosure) return *e.enclosure;
+  const std::vector<Vec2> corners = corners_of(e.obstacle);
+  return corners.empty() ? e.obstacle : geometry::smallest_ellipse(corners);
 }
 
 double distance_ahead(const VelocityObstacle& obstacle) {
@@ -100,19 +89,8 @@ double distance_ahead(const VelocityObstacle& obstacle) {
 }  // namespace
 
 const char* name(Variant variant) {
-  switch (variant) {
-    case Variant::vo:
-      return "VO";
-    case Variant::rvo:
-      return "RVO";
-    case Variant::hrvo:
-      return "HRVO";
-    case Variant::orca:
-      return "ORCA";
-    case Variant::ivo:
-      break;
-  }
-  return "IVO";
+  constexpr const char* kNames[] = {"VO", "RVO", "HRVO", "ORCA", "IVO"};
+  return kNames[static_cast<int>(variant)];
 }
 
 VelocityObstacle cone_of(const Encounter& e) {
@@ -154,11 +132,9 @@ double paper_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity) {
   return distance / speed;
 }
 
-double clamped_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity, const HorizonBounds& bounds) {
-  EXACTVO_REQUIRE(bounds.least > 0.0 && bounds.least <= bounds.most && bounds.least_speed > 0.0,
-                  std::to_string(bounds.least) + ", " + std::to_string(bounds.most));
-  const double asked = distance_ahead(obstacle) / std::max(norm(velocity), bounds.least_speed);
-  return std::clamp(asked, bounds.least, bounds.most);
+double clamped_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity) {
+  constexpr double kLeast = 0.3, kMost = 3.0, kLeastSpeed = 0.5;
+  return std::clamp(distance_ahead(obstacle) / std::max(norm(velocity), kLeastSpeed), kLeast, kMost);
 }
 
 }  // namespace exactvo::vo

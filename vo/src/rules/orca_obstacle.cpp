@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <string>
 
@@ -18,13 +17,7 @@
 namespace exactvo::vo {
 namespace {
 
-using geometry::cross;
-using geometry::dot;
-using geometry::norm;
-using geometry::normalized;
-using geometry::perp;
 using geometry::Segment;
-using geometry::squared_norm;
 
 /// REQUIRES of an edge that its ends differ: repeated vertices go first.
 std::vector<Vec2> without_repeats(std::vector<Vec2> vertices) {
@@ -197,13 +190,6 @@ std::vector<OrcaChain> orca_chains(const geometry::Obstacle& obstacle) {
   chains.push_back(with_turns(polygon.outer));
   for (const geometry::Ring& hole : polygon.holes) chains.push_back(with_turns(hole));
   return chains;
-}
-
-std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, Vec2 position, Vec2 velocity, double radius,
-                                            double time_horizon) {
-  std::vector<std::size_t> all(chain.vertices.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  return orca_half_planes(chain, all, position, velocity, radius, time_horizon);
 }
 
 std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, const std::vector<std::size_t>& edges,

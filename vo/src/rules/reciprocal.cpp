@@ -12,24 +12,14 @@
 namespace exactvo::vo {
 namespace {
 
-using geometry::dot;
-
-/// n.(v_A' - v_B') >= offset.
-struct Joint {
-  Vec2 normal;
-  double offset;
-  bool certified;
-};
-
-/// The half-plane of the relative velocity, by the static construction around b seen from a.
-Joint relative_half_plane(const MovingDisc& a, const MovingDisc& b, const ReciprocalOptions& options) {
+/// The half-plane of the relative velocity, n.(v_A' - v_B') >= offset, by the static construction around b seen from a.
+ProvenHalfPlane relative_half_plane(const MovingDisc& a, const MovingDisc& b, const ReciprocalOptions& options) {
   geometry::GrownShape seen{geometry::Disc{b.position, b.radius}, a.position, a.radius};
   ClearancePolicy policy;
   policy.time_horizon = options.time_horizon;
   policy.room = options.margin;
   policy.restore_within = options.contact_time;
-  const ProvenHalfPlane found = half_plane_against(seen, {}, a.velocity - b.velocity, policy);
-  return {found.half_plane.normal, found.half_plane.offset, found.proof == Proof::alone};
+  return half_plane_against(seen, {}, a.velocity - b.velocity, policy);
 }
 
 /// n.v + share (c - (n.v_A - n.v_B)), rounded up, where v is v_A. In units of u, a product of n.v passes 3 roundings
@@ -52,11 +42,12 @@ bool comes_first(const MovingDisc& a, const MovingDisc& b) {
 }
 
 ReciprocalHalfPlanes ordered(const MovingDisc& a, const MovingDisc& b, const ReciprocalOptions& options) {
-  const Joint joint = relative_half_plane(a, b, options);
-  const Vec2 n = joint.normal;
-  const double c_a = half_offset(options.share_of_a, joint.offset, n, a.velocity, b.velocity);
-  const double c_b = half_offset(1.0 - options.share_of_a, joint.offset, -n, b.velocity, a.velocity);
-  return {{n, c_a}, {-n, c_b}, joint.certified};
+  const ProvenHalfPlane joint = relative_half_plane(a, b, options);
+  const Vec2 n = joint.half_plane.normal;
+  const double c = joint.half_plane.offset;
+  const double c_a = half_offset(options.share_of_a, c, n, a.velocity, b.velocity);
+  const double c_b = half_offset(1.0 - options.share_of_a, c, -n, b.velocity, a.velocity);
+  return {{n, c_a}, {-n, c_b}, joint.proof == Proof::alone};
 }
 
 }  // namespace

@@ -61,15 +61,13 @@ class AlgebraicDirection {
 
   /// Integers in decimal, from the constant term up; the last one is positive.
   std::vector<std::string> polynomial() const;
-  /// Rationals in decimal, "p/q" or "p": the slope t lies between them, or is both of them.
+  /// Rationals in decimal, "p/q" or "p": the slope t lies between them, or is both of them. (A root of a polynomial of
+  /// degree 4 may be rational without being known to be.)
   std::string low() const;
   /// As `low`: the other end.
   std::string high() const;
   /// k above.
   int quarter_turns() const;
-  /// Whether the slope is known to be rational: then `low` and `high` are it. A root of a polynomial of degree 4 may be
-  /// rational without being known to be.
-  bool is_rational() const;
 
   /// The same direction with an interval no wider than `width`. REQUIRES: width > 0.
   AlgebraicDirection refined(double width) const;

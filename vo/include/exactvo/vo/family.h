@@ -93,14 +93,8 @@ Member family_member(Variant variant, const Encounter& encounter);
 /// The paper's horizon (equation (9)): distance to S over speed; infinite at rest, 0 in contact. Rounded.
 double paper_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity);
 
-/// Between what a horizon is kept.
-struct HorizonBounds {
-  double least = 0.3;        ///< s, > 0
-  double most = 3.0;         ///< s, >= least
-  double least_speed = 0.5;  ///< m/s, > 0; slower robots look ahead as far as one of this speed
-};
-
-/// The same within bounds, so that it is a horizon for every robot: clamp(distance / max(speed, least_speed)). Rounded.
-double clamped_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity, const HorizonBounds& bounds = {});
+/// The same within 0.3 s and 3 s, so that it is a horizon for every robot: clamp(distance / max(speed, 0.5 m/s)):
+/// slower robots look ahead as far as one of that speed. Rounded.
+double clamped_time_horizon(const VelocityObstacle& obstacle, Vec2 velocity);
 
 }  // namespace exactvo::vo

@@ -38,14 +38,10 @@ struct OrcaHalfPlane {
   bool certified = false;  ///< false only where the robot overlaps the edge
 };
 
-/// The same of some of its edges alone, by number, ascending: those within `d` of the robot decide about half-planes
-/// nearer than d as all do, since none is covered by a farther one.
+/// Of some edges of the chain, by number, ascending. Those within `d` of the robot decide about half-planes nearer than
+/// d as all do, since none is covered by a farther one.
 /// REQUIRES: radius >= 0, time_horizon > 0, finite numbers.
 std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, const std::vector<std::size_t>& edges,
                                             Vec2 position, Vec2 velocity, double radius, double time_horizon);
-
-/// REQUIRES: radius >= 0, time_horizon > 0, finite numbers.
-std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, Vec2 position, Vec2 velocity, double radius,
-                                            double time_horizon);
 
 }  // namespace exactvo::vo

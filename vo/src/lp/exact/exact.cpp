@@ -2,10 +2,9 @@
 #include "lp/exact/exact.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "lp/exact/exact_search.h"
-#include "lp/problem/satisfaction.h"
+#include "lp/problem/exact_sign.h"
 #include "lp/proof/certify.h"
 #include "lp/proof/duality.h"
 #include "lp/proof/multipliers.h"

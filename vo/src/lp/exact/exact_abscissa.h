@@ -7,7 +7,6 @@
 ///        d ^      s < 0 | s > 0         every cut with another line is rational in s,
 ///          |   ---------+---------->    the ends at the disc are +-sqrt(radius^2 |n|^2 - c^2)
 ///
-#include <array>
 
 #include "lp/proof/exact_number.h"
 

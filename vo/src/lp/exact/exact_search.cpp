@@ -156,12 +156,6 @@ std::size_t entering(const Scan& scan, const std::vector<std::size_t>* among) {
   return search.line();
 }
 
-/// A line of the working set, and where it stands in the region.
-struct Held {
-  ExactLine line;
-  std::size_t position = kNone;
-};
-
 /// The optimum on the boundary of `entering` inside the working set and the disc. `tight` is left to the caller
 /// where feasible; where not, it names the contradiction.
 ExactOptimum best_on_line(const Held& entering, const std::vector<Held>& others, const ExactRegion& region,

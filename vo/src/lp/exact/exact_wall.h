@@ -14,6 +14,12 @@ namespace exactvo::lp {
 inline constexpr std::size_t kNoOwner = static_cast<std::size_t>(-1);
 inline constexpr std::size_t kDiscOwner = static_cast<std::size_t>(-2);
 
+/// A line of the working set, and where it stands in the region.
+struct Held {
+  ExactLine line;
+  std::size_t position = kNoOwner;
+};
+
 /// The part of a carrier that is left, and which line or disc cut it off.
 struct Stretch {
   Abscissa low = end(-1), high = end(1);
@@ -45,10 +51,6 @@ class WallSearch {
   bool on_disc() const { return at_disc(carrier_, best_); }
 
  private:
-  struct Soft {
-    ExactLine line;
-    std::size_t position;
-  };
   void consider(const Abscissa& s);
   void consider_crossings();
   std::size_t highest_at(const Abscissa& s) const;
@@ -58,7 +60,7 @@ class WallSearch {
   Aim aim_;
   Abscissa wish_;
   Stretch stretch_;
-  std::vector<Soft> soft_;
+  std::vector<Held> soft_;
   Abscissa best_;
   bool found_ = false;
   std::size_t highest_ = 0;

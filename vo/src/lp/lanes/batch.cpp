@@ -168,20 +168,5 @@ const char* batch_target() {
   return hwy::TargetName(supported & -supported);  // the lowest bit is the best target
 }
 
-bool limit_batch_target(const char* name) {
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
-  if (std::strlen(name) == 0) return true;
-  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
-  for (std::int64_t left = supported; left != 0; left &= left - 1) {
-    const std::int64_t bit = left & -left;
-    if (std::strcmp(hwy::TargetName(bit), name) != 0) continue;
-    hwy::SetSupportedTargetsForTest(supported & ~(bit - 1));
-    hwy::GetChosenTarget().DeInit();
-    return true;
-  }
-  return false;
-}
-
 }  // namespace exactvo::lp
 #endif  // HWY_ONCE

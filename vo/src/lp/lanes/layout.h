@@ -5,7 +5,6 @@
 /// Where the lines of a problem stand in the arrays of a batch.
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "exactvo/vo/lp/batch.h"

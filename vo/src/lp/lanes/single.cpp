@@ -539,11 +539,5 @@ bool solve_single_certified(const SingleProblem& problem, Solution& answer) {
   return HWY_DYNAMIC_DISPATCH(run_single_proven)(problem, answer) || certify_copied(problem, answer);
 }
 
-Solution solve_single(const SingleProblem& problem) {
-  Solution answer;
-  solve_single(problem, answer);
-  return answer;
-}
-
 }  // namespace exactvo::lp
 #endif  // HWY_ONCE

@@ -3,6 +3,7 @@
 
 #include <CGAL/Mpzf.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace exactvo::lp {
@@ -38,6 +39,28 @@ int sign_of_excess_speed(Vec2 v, double radius) {
 
 bool within(const SpeedBound& bound, Vec2 v) {
   return std::abs(v.x) <= bound.box_x && std::abs(v.y) <= bound.box_y && sign_of_excess_speed(v, bound.disc) <= 0;
+}
+
+bool must_hold(const Constraint& c, Status status) {
+  if (status == Status::optimal || status == Status::no_interior) return true;
+  return status == Status::relaxed && c.priority == Priority::hard;
+}
+
+bool holds(const Problem& problem, Status status, Vec2 v) {
+  if (!is_finite(v) || !within(problem.bound, v)) return false;
+  for (const Constraint& c : problem.constraints)
+    if (must_hold(c, status) && sign_of_violation(c.half_plane, v) > 0) return false;
+  return true;
+}
+
+double violation_that_counts(const Problem& problem, Status status, Vec2 v) {
+  double most = 0.0;
+  for (const Constraint& c : problem.constraints) {
+    const bool gives = status == Status::no_interior || (status == Status::relaxed && c.priority == Priority::soft) ||
+                       (status == Status::infeasible && c.priority == Priority::hard);
+    if (gives) most = std::max(most, geometry::violation(c.half_plane, v));
+  }
+  return most;
 }
 
 }  // namespace exactvo::lp

@@ -9,7 +9,6 @@
 #include "exactvo/geometry/infinity.h"
 #include "lp/problem/exact_sign.h"
 #include "lp/problem/region.h"
-#include "lp/problem/satisfaction.h"
 #include "lp/proof/duality.h"
 #include "lp/proof/multipliers.h"
 #include "lp/proof/rounded_gap.h"
@@ -311,16 +310,14 @@ std::optional<Bound> bound_of(const Problem& problem, Scope scope, const Claim& 
 std::optional<Certificate> certificate_for(const Problem& problem, const Solution& solution,
                                            const std::vector<Binding>& candidates,
                                            const std::vector<Term>& contradiction) {
-  if (!holds(problem, solution.status, solution.velocity)) return std::nullopt;
+  const std::optional<Claim> claim = claim_that_holds(problem, solution);
+  if (!claim) return std::nullopt;
   const Scope scope = scope_of(solution.status);
-  const bool gives = scope != Scope::all_must_hold;
-  const Claim claim{solution.velocity, gives ? violation_not_less(problem, solution) : 0.0};
-  if (!std::isfinite(claim.violation)) return std::nullopt;
-  const auto bound = bound_of(problem, scope, claim, own_multipliers(problem, solution),
+  const auto bound = bound_of(problem, scope, *claim, own_multipliers(problem, solution),
                               usable_candidates(problem, candidates, scope));
   if (!bound) return std::nullopt;
-  Certificate c{solution.status, claim.velocity, claim.violation, {}, bound->terms, bound->gap, {}};
-  if (!gives) return c;
+  Certificate c{solution.status, claim->velocity, claim->violation, {}, bound->terms, bound->gap, {}};
+  if (scope == Scope::all_must_hold) return c;
   const bool by_itself = proves_contradiction(problem, c.bound, scope);
   if (!by_itself && !contradicts(problem, combine(problem, contradiction, scope))) return std::nullopt;
   c.contradiction = by_itself ? c.bound : contradiction;

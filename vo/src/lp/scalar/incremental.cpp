@@ -6,7 +6,7 @@
 #include "lp/scalar/active_set.h"
 
 #include "exactvo/vo/lp/solve.h"
-#include "lp/problem/satisfaction.h"
+#include "lp/problem/exact_sign.h"
 #include "lp/proof/multipliers.h"
 #include "lp/scalar/inward.h"
 

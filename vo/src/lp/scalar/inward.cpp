@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lp/problem/satisfaction.h"
+#include "lp/problem/exact_sign.h"
 #include "lp/scalar/active_set.h"
 
 namespace exactvo::lp {

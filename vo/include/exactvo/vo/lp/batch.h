@@ -81,8 +81,4 @@ BatchCounts solve_batch_parallel(const BatchProblems<float>& problems, const Bat
 /// The name of the target that runs ("AVX3", "AVX2", "SSE4", ...).
 const char* batch_target();
 
-/// Runs on targets no wider than `name` from now on ("AVX2", "SSE4", "" for the best again). Not thread-safe: for
-/// benches and tests. False where no such target is compiled in and supported.
-bool limit_batch_target(const char* name);
-
 }  // namespace exactvo::lp

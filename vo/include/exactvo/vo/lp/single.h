@@ -29,25 +29,11 @@ struct SingleProblem {
 /// Solves as a lane of `solve_batch` does, with the same slack and guarantees, but faster for one problem. What this
 /// method cannot settle goes to `solve`, which allocates. Deterministic: the same bits on every target.
 /// REQUIRES: finite numbers as described.
-Solution solve_single(const SingleProblem& problem);
-
-/// The same, written to `answer`, which saves a copy.
 void solve_single(const SingleProblem& problem, Solution& answer);
 
 /// The same with what `solve_certified` promises: `optimal` and `relaxed` hold exactly, and no velocity is better by
 /// more than kWidestGap of certificate.h. Certified: the multipliers are proven in doubles with their rounding errors,
 /// and what these cannot show goes to `solve_certified`, which allocates. False where there is no proof either.
 bool solve_single_certified(const SingleProblem& problem, Solution& answer);
-
-/// Whether v keeps every line, hard or soft, and the disc. Exact. With certified half-planes of velocity obstacles this
-/// is the proof that v lies in the interior of none. REQUIRES: finite numbers.
-bool keeps(const SingleProblem& problem, geometry::Vec2 v);
-
-/// Finds a velocity that keeps every constraint, or none. True: `velocity` satisfies `keeps`, and is the nearest to the
-/// preferred one up to the inward rounding of `solve_single`. False: no velocity keeps everything, or too few do to
-/// round inward (for a disc below 2^-200 m/s always); `velocity` then means nothing. A robot among static obstacles can
-/// stop in this case, since v = 0 keeps all their half-planes. With at most 16 lines nothing is relaxed or allocated;
-/// with more it works as `solve_single` does. REQUIRES: as `solve_single`.
-bool solve_feasible(const SingleProblem& problem, geometry::Vec2& velocity);
 
 }  // namespace exactvo::lp

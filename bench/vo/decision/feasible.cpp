@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One answer and one exact look at it. The look is the proof, so the walk need not be analysed: few lines are walked in
 // the textbook's order (de Berg et al., chapter 4), with the slack of the other solvers.
+#include "decision/feasible.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "exactvo/vo/lp/single.h"
 #include "lp/lanes/layout.h"
 #include "lp/problem/exact_sign.h"
 
-namespace exactvo::lp {
+namespace exactvo::bench {
 namespace {
 
 using geometry::dot;
+using geometry::Vec2;
+using lp::SingleProblem;
 using geometry::perp;
 using geometry::squared_norm;
 
@@ -23,9 +26,9 @@ class FewLines {
  public:
   explicit FewLines(const SingleProblem& problem)
       : p_(problem),
-        slack_(kSlackUnits * 0x1p-53 * problem.disc),
-        noise_(kNoiseUnits * 0x1p-53 * problem.disc),
-        disc_(problem.disc * (1.0 - kDiscUnits * 0x1p-53)) {}
+        slack_(lp::kSlackUnits * 0x1p-53 * problem.disc),
+        noise_(lp::kNoiseUnits * 0x1p-53 * problem.disc),
+        disc_(problem.disc * (1.0 - lp::kDiscUnits * 0x1p-53)) {}
 
   /// False where a line cuts off all that the ones before it leave.
   bool run(Vec2& v) const {
@@ -49,7 +52,7 @@ class FewLines {
     if (!(room >= 0.0)) return false;
     double low = -std::sqrt(room), high = -low;
     for (std::size_t i = 0; i < k; ++i) {
-      const double slope = dot(normal(i), along) + kParallel<double>;
+      const double slope = dot(normal(i), along) + lp::kParallel<double>;
       const double cut = (p_.offset[i] + slack_ - dot(normal(i), foot)) / slope;
       if (slope > 0.0)
         low = std::max(low, cut);
@@ -70,7 +73,7 @@ bool keeps_plainly(const SingleProblem& p, Vec2 v) {
   std::int64_t doubtful = 0;
   for (std::size_t k = 0; k < p.count; ++k) {
     const double px = p.normal_x[k] * v.x, py = p.normal_y[k] * v.y, c = p.offset[k];
-    const double error = kSignError * (std::fabs(px) + std::fabs(py) + std::fabs(c)) + kSignUnderflow;
+    const double error = lp::kSignError * (std::fabs(px) + std::fabs(py) + std::fabs(c)) + lp::kSignUnderflow;
     doubtful += static_cast<std::int64_t>(!((px + py) - c > error));
   }
   return doubtful == 0;
@@ -78,32 +81,32 @@ bool keeps_plainly(const SingleProblem& p, Vec2 v) {
 
 bool keeps_each(const SingleProblem& p, Vec2 v) {
   for (std::size_t k = 0; k < p.count; ++k)
-    if (sign_of_violation({{p.normal_x[k], p.normal_y[k]}, p.offset[k]}, v) > 0) return false;
+    if (lp::sign_of_violation({{p.normal_x[k], p.normal_y[k]}, p.offset[k]}, v) > 0) return false;
   return true;
 }
 
 /// Whether the squares of FewLines neither overflow nor lose digits.
 bool squares_are_in_range(const SingleProblem& p) {
   const double limit = p.disc * p.disc;
-  return limit >= kLeastSquare<double> && std::max(squared_norm(p.preferred), limit) <= kMostSquare<double>;
+  return limit >= lp::kLeastSquare<double> && std::max(squared_norm(p.preferred), limit) <= lp::kMostSquare<double>;
 }
 
 bool walk(const SingleProblem& problem, Vec2& v) {
   if (problem.count <= kFewLines && squares_are_in_range(problem)) return FewLines(problem).run(v);
-  Solution answer;
+  lp::Solution answer;
   solve_single(problem, answer);
   v = answer.velocity;
-  return answer.status == Status::optimal;
+  return answer.status == lp::Status::optimal;
 }
 
 }  // namespace
 
 bool keeps(const SingleProblem& p, Vec2 v) {
-  return sign_of_excess_speed(v, p.disc) <= 0 && (keeps_plainly(p, v) || keeps_each(p, v));
+  return lp::sign_of_excess_speed(v, p.disc) <= 0 && (keeps_plainly(p, v) || keeps_each(p, v));
 }
 
 bool solve_feasible(const SingleProblem& problem, Vec2& velocity) {
   return walk(problem, velocity) && is_finite(velocity) && keeps(problem, velocity);
 }
 
-}  // namespace exactvo::lp
+}  // namespace exactvo::bench
