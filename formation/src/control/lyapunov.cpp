@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "control/consensus.h"
@@ -15,8 +14,6 @@ namespace exactvo::formation {
 namespace {
 
 using detail::RelativeState;
-using geometry::norm;
-using geometry::squared_norm;
 
 void take_relative_state(const Step& row, const std::vector<Vec2>& offsets, RelativeState& s) {
   s.position.clear();
@@ -122,8 +119,8 @@ Vec2 acceleration(const RowPair& p, std::size_t i) {
   return p.run.tracking_gain / -std::expm1(-p.run.tracking_gain * p.run.time_step) * change;
 }
 
-PaperRates paper_rates(const FormationSpec& f, const RowPair& p, const RelativeState& s) {
-  PaperRates r;
+PaperTerms paper_rates(const FormationSpec& f, const RowPair& p, const RelativeState& s) {
+  PaperTerms r;
   for (std::size_t i = 0; i < s.velocity.size(); ++i) r.kinetic += dot(s.velocity[i], acceleration(p, i));
   r.consensus = f.gains.k1 * across(f.topology, s.position, s.velocity);
   r.pinning = f.gains.k1 * pinned(f.topology, s.position, s.velocity);

@@ -58,10 +58,6 @@ Vec2 slot(Pattern pattern, std::size_t k, std::size_t n) {
 
 }  // namespace
 
-const char* name(Pattern pattern) {
-  return geometry::name_in(kNames, pattern);
-}
-
 bool parse(const std::string& text, Pattern& out) {
   return geometry::parse_in(kNames, text, out);
 }

@@ -4,8 +4,6 @@
 namespace exactvo::formation {
 namespace {
 
-using geometry::norm;
-
 /// Into the allowed side; of the disc its length is that of the velocity, as its multiplier has it (solution.h).
 Vec2 normal_of(const lp::Binding& bound, Vec2 chosen) {
   switch (bound.kind) {

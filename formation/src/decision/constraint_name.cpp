@@ -89,6 +89,21 @@ struct Named {
   std::string owner;  ///< empty where there is none
 };
 
+/// The ids of the obstacles that a shape stands for, in the order of the scenario: those with a facade that the ellipse
+/// was built on, else those wholly inside it, else those with an edge inside it; the owner of an edge; what a convex
+/// piece touches.
+std::vector<std::string> obstacles_behind(const ConvexShape& shape, const Scenario& scenario) {
+  if (const auto* ellipse = std::get_if<Ellipse>(&shape)) return behind_ellipse(*ellipse, scenario);
+  std::vector<std::string> ids;
+  if (const auto* edge = std::get_if<Segment>(&shape))
+    for (const SceneObstacle& o : scenario.obstacles)
+      if (has_edge(o.shape, *edge)) ids.push_back(o.id);
+  if (!ids.empty()) return ids;
+  for (const SceneObstacle& o : scenario.obstacles)
+    if (touches(shape, o.shape)) ids.push_back(o.id);
+  return ids;
+}
+
 std::string owner_of(const ConvexShape& shape, const Scenario& scenario) {
   const std::vector<std::string> ids = obstacles_behind(shape, scenario);
   if (ids.empty()) return "";
@@ -125,18 +140,6 @@ std::string words_of(const Group& g) {
 }
 
 }  // namespace
-
-std::vector<std::string> obstacles_behind(const ConvexShape& shape, const Scenario& scenario) {
-  if (const auto* ellipse = std::get_if<Ellipse>(&shape)) return behind_ellipse(*ellipse, scenario);
-  std::vector<std::string> ids;
-  if (const auto* edge = std::get_if<Segment>(&shape))
-    for (const SceneObstacle& o : scenario.obstacles)
-      if (has_edge(o.shape, *edge)) ids.push_back(o.id);
-  if (!ids.empty()) return ids;
-  for (const SceneObstacle& o : scenario.obstacles)
-    if (touches(shape, o.shape)) ids.push_back(o.id);
-  return ids;
-}
 
 std::string name_of(const std::vector<RecordedConstraint>& constraints, const Scenario& scenario) {
   std::vector<Group> groups;

@@ -10,8 +10,6 @@
 namespace exactvo::formation::detail {
 namespace {
 
-using geometry::norm;
-
 /// The farthest velocity of a box bound, in sides of it.
 const double kFastest = std::sqrt(2.0);
 

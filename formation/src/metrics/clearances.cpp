@@ -18,7 +18,6 @@
 namespace exactvo::formation::detail {
 namespace {
 
-using geometry::norm;
 using geometry::Segment;
 
 using geometry::kInfinity;

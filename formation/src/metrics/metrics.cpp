@@ -15,13 +15,10 @@
 #include "metrics/divergence.h"
 #include "metrics/metrics_accumulator.h"
 #include "metrics/outcome_words.h"
-#include "metrics/stuck_accumulator.h"
 #include "runs/rows.h"
 
 namespace exactvo::formation {
 namespace {
-
-using geometry::norm;
 
 using geometry::kInfinity;
 
@@ -63,7 +60,7 @@ struct Evaluator::Parts {
   TakeRow take_row;
   detail::ClearanceSweep clearances;
   detail::MetricsAccumulator measures;
-  detail::StuckAccumulator stuck;
+  StuckWatch stuck;
   std::optional<detail::LyapunovAccumulator> lyapunov;
   std::shared_ptr<const Step> last;
 };
@@ -93,13 +90,10 @@ Evaluation Evaluator::finish(const Recording& run) {
   for (const Robot& r : parts_->scenario.robots) m.robots.emplace_back().id = r.id;
   parts_->measures.write_to(m);
   write_clearances(parts_->clearances.result(), m);
-  if (run.liveness) {
-    m.plans->groups = run.liveness->groups;
-    m.plans->largest = run.liveness->largest;
-    m.plans->search_nodes = run.liveness->search_nodes;
-  } else {
+  if (run.liveness)
+    static_cast<LivenessCourse&>(*m.plans) = *run.liveness;
+  else
     m.plans.reset();
-  }
   m.routes = run.routes;
   m.wall_time = run.wall_time;
   m.warnings = run.warnings;

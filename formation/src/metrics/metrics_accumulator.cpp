@@ -10,8 +10,6 @@
 
 namespace exactvo::formation::detail {
 
-using geometry::norm;
-
 namespace {
 
 /// rad: smaller turns have no sign worth counting.

@@ -11,17 +11,12 @@
 #include "exactvo/formation/waiting.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/velocity_obstacle.h"
-#include "metrics/stuck_accumulator.h"
 #include "motion/leader.h"
 #include "runs/rows.h"
 #include "traps/boundary.h"
 
 namespace exactvo::formation {
 namespace {
-
-using geometry::norm;
-
-using detail::StuckAccumulator;
 
 /// How a run ended.
 struct RunEnd {
@@ -127,12 +122,6 @@ std::string motion_words(const RunEnd& run, const StuckReport& r) {
                  : printed("moving at %.4g s", end) + " (" + speed + ")";
 }
 
-/// Of a robot that went away from where it wanted to, as one that circles does.
-std::string nearest_words(const StuckAccumulator::Nearest& nearest, const StuckReport& r) {
-  if (r.speed < kAtRest || nearest.distance >= r.goal_distance) return "";
-  return printed("; it was nearest at %.4g s, ", nearest.time) + length(nearest.distance) + " away";
-}
-
 std::string curvature_words(const Equilibrium& e) {
   return "(the goal lies straight behind the boundary, whose radius of curvature there is " +
          length(e.radius_of_curvature) + (e.stable ? ", more" : ", less") + " than the distance to the goal)";
@@ -203,11 +192,10 @@ std::string cause_words(const RunEnd& end, const StuckReport& r) {
   return text;
 }
 
-std::string sentence(const RunEnd& end, const StuckReport& r, const StuckAccumulator::Nearest& nearest) {
+std::string sentence(const RunEnd& end, const StuckReport& r) {
   return end.scenario.robots[r.robot].id + " is " + length(r.goal_distance) +
          (end.scenario.formation ? " from its slot" : " from its goal") +
-         printed(", at (%.3f, %.3f), ", r.position.x, r.position.y) + motion_words(end, r) + "; " +
-         cause_words(end, r) + nearest_words(nearest, r);
+         printed(", at (%.3f, %.3f), ", r.position.x, r.position.y) + motion_words(end, r) + "; " + cause_words(end, r);
 }
 
 /// Whether standing elsewhere means anything.
@@ -216,25 +204,23 @@ bool is_settled(const RunEnd& end) {
   return !end.run.diverged && detail::leader_arrival(end.scenario.formation->leader) <= end.last.time;
 }
 
-StuckReport report_on(const RunEnd& end, std::size_t robot, const StuckAccumulator::OfRobot& before, Vec2 target) {
+StuckReport report_on(const RunEnd& end, std::size_t robot, std::optional<double> at_rest_since, Vec2 target) {
   const RobotStep& state = end.last.robots[robot];
   StuckReport r;
   r.robot = robot;
   r.position = state.position;
   r.goal_distance = norm(target - state.position);
   r.speed = norm(state.velocity);
-  if (before.at_rest_since) r.rest_time = end.last.time - *before.at_rest_since;
+  if (at_rest_since) r.rest_time = end.last.time - *at_rest_since;
   if (const RobotStep* decision = last_decision(end, robot)) r.binding = binding_in(*decision, state.position);
   r.equilibrium = equilibrium_of(r, target);
-  StuckAccumulator::Nearest nearest = before.nearest;
-  if (!(nearest.distance < r.goal_distance)) nearest = {end.last.time, r.goal_distance};
-  r.text = sentence(end, r, nearest);
+  r.text = sentence(end, r);
   return r;
 }
 
 }  // namespace
 
-void detail::StuckAccumulator::add(std::shared_ptr<const Step> row) {
+void StuckWatch::add(std::shared_ptr<const Step> row) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     OfRobot& r = robots_[i];
     if (!(norm(row->robots[i].velocity) < kAtRest)) {
@@ -244,13 +230,15 @@ void detail::StuckAccumulator::add(std::shared_ptr<const Step> row) {
     }
     if (scenario_.formation) continue;
     const double distance = norm(scenario_.robots[i].goals.back() - row->robots[i].position);
-    if (distance < r.nearest.distance) r.nearest = {row->time, distance};
+    if (!(distance < r.nearest)) continue;
+    r.nearest = distance;
+    r.nearest_at = row->time;
   }
   decided_ = std::move(last_);
   last_ = std::move(row);
 }
 
-std::vector<StuckReport> detail::StuckAccumulator::reports(const Recording& run) const {
+std::vector<StuckReport> StuckWatch::reports(const Recording& run) const {
   EXACTVO_REQUIRE(last_ != nullptr, "an empty recording");
   const RunEnd end{scenario_, run, *last_, decided_.get(),
                    decided_ ? waiting_in(scenario_, *decided_) : WaitForGraph{}};
@@ -259,12 +247,15 @@ std::vector<StuckReport> detail::StuckAccumulator::reports(const Recording& run)
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const Vec2 target = target_of(end, i);
     if (norm(target - last_->robots[i].position) <= scenario_.arrival_tolerance) continue;
-    reports.push_back(report_on(end, i, robots_[i], target));
+    const OfRobot& before = robots_[i];
+    StuckReport& r = reports.emplace_back(report_on(end, i, before.at_rest_since, target));
+    if (r.speed >= kAtRest && before.nearest < r.goal_distance)
+      r.text += printed("; it was nearest at %.4g s, ", before.nearest_at) + length(before.nearest) + " away";
   }
   return reports;
 }
 
-std::vector<std::size_t> detail::StuckAccumulator::deadlock() const {
+std::vector<std::size_t> StuckWatch::deadlock() const {
   if (!decided_) return {};
   const auto rests = [&](std::size_t i) { return norm(last_->robots[i].velocity) < kAtRest; };
   for (std::vector<std::size_t>& cycle : deadlocks_in(waiting_in(scenario_, *decided_)))
@@ -273,18 +264,9 @@ std::vector<std::size_t> detail::StuckAccumulator::deadlock() const {
 }
 
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording) {
-  detail::StuckAccumulator watch(scenario);
+  StuckWatch watch(scenario);
   for (const Step& row : recording.steps) watch.add(detail::borrowed(row));
   return watch.reports(recording);
-}
-
-StuckWatch::StuckWatch(const Scenario& scenario) : rows_(std::make_unique<detail::StuckAccumulator>(scenario)) {}
-StuckWatch::~StuckWatch() = default;
-void StuckWatch::add(std::shared_ptr<const Step> row) {
-  rows_->add(std::move(row));
-}
-std::vector<StuckReport> StuckWatch::reports(const Recording& run) const {
-  return rows_->reports(run);
 }
 
 }  // namespace exactvo::formation

@@ -13,9 +13,6 @@
 namespace exactvo::formation::detail {
 namespace {
 
-using geometry::cross;
-using geometry::dot;
-using geometry::norm;
 using geometry::Segment;
 
 geometry::Box grown(const geometry::Box& box, double by) {

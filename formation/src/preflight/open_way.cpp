@@ -7,13 +7,11 @@
 #include <queue>
 #include <tuple>
 #include <unordered_map>
-#include <utility>
 
 #include "exactvo/geometry/distance.h"
 
 namespace exactvo::formation::detail {
 
-using geometry::norm;
 using geometry::Segment;
 
 enum class OpenWay::Answer {

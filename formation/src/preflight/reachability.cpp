@@ -17,7 +17,6 @@ namespace exactvo::formation::detail {
 namespace {
 
 using geometry::Blocked;
-using geometry::norm;
 using geometry::RouteAnswer;
 using geometry::Separated;
 

@@ -8,10 +8,6 @@
 
 namespace exactvo::formation::detail {
 
-geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time) {
-  return hull_of(obstacle, displacement_at(obstacle, time));
-}
-
 void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved) {
   for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
     const MovingObstacle& obstacle = scenario.moving_obstacles[k];

@@ -18,9 +18,6 @@ struct Constraint;
 struct Viewpoint;
 class Scene;
 
-/// The convex hull of the obstacle as it stands at `time`.
-geometry::ConvexShape shape_at(const MovingObstacle& obstacle, double time);
-
 /// Brings the bodies of moving obstacles to where they are at `time`, and says where that is.
 void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved);
 

@@ -206,26 +206,23 @@ void StaticField::add_needed(const Viewpoint& from, const Need& had, const Need&
     const double room = room_of(body, from, std::max(need.room, had.room));
     return !(had.room > 0.0 && room < had.room) && (is_near || room < need.room);
   };
-  const auto add_if_new = [&](BodyTable::Number body, const Name& name) {
-    if (is_new(body)) add_body(body, name, from, out);
+  const auto add_if_new = [&](const Shape& s) {
+    if (is_new(s.body)) build(s, from, out);
   };
   for_each_shape_meeting(window_of(from, need), [&](const Shape& s) {
     if (gives_way(s, from))
       for_each_piece_of(s, add_if_new);
     else
-      add_if_new(s.body, {s.index, 0, s.grade});
+      add_if_new(s);
   });
 }
 
-StaticField::NearBody StaticField::near_body(BodyTable::Number body, const Name& name) const {
+StaticField::NearBody StaticField::near_body(const Shape& shape) const {
   NearBody b;
-  b.body = body;
-  b.index = name.index;
-  b.piece = name.piece;
-  b.grade = name.grade;
-  b.box = scene_->bodies().box(body);
+  static_cast<Shape&>(b) = shape;
+  b.box = scene_->bodies().box(shape.body);
   b.largest_coordinate = largest_coordinate(b.box);
-  if (const auto* s = std::get_if<geometry::Segment>(&scene_->bodies()[body].shape)) {
+  if (const auto* s = std::get_if<geometry::Segment>(&scene_->bodies()[shape.body].shape)) {
     b.is_segment = true;
     b.a = s->a;
     b.along = s->b - s->a;
@@ -238,7 +235,7 @@ void StaticField::bodies_near(const Viewpoint& from, double reach, double room_t
                               std::vector<NearBody>& out) const {
   out.clear();
   for_each_shape_within(from.position, distance_within(from, reach) + room_to_move, [&](const Shape& s) {
-    out.push_back(near_body(s.body, {s.index, 0, s.grade}));
+    out.push_back(near_body(s));
     out.back().gathered = geometry::distance_below(out.back().box, from.position);
   });
   std::sort(out.begin(), out.end(), [](const NearBody& a, const NearBody& b) { return a.gathered < b.gathered; });
@@ -267,10 +264,7 @@ bool StaticField::see(const NearBody& b, const Sight& sight, Candidate& out) con
   const double rounding = kRounding * (b.largest_coordinate + sight.size + out.distance);
   // In the box nothing is known of the depth; outside, clearances are rounded.
   out.nearest = out.distance > 0.0 ? out.distance - from.radius - rounding : -std::numeric_limits<double>::infinity();
-  out.body = b.body;
-  out.index = b.index;
-  out.piece = b.piece;
-  out.grade = b.grade;
+  static_cast<Shape&>(out) = b;
   if (!b.is_segment) {
     out.room = room_of(b.body, from, std::numeric_limits<double>::infinity());
     return true;
@@ -304,12 +298,11 @@ void StaticField::candidates(const std::vector<NearBody>& near, double moved, co
   };
   for (const NearBody& b : near) {
     if (b.gathered > sight.within + kRounding * moved) break;
-    if (b.grade == EnclosureGrade::tight || !gives_way({b.body, b.index, b.grade}, from)) {
+    if (b.grade == EnclosureGrade::tight || !gives_way(b, from)) {
       see_if_near(b);
       continue;
     }
-    for_each_piece_of({b.body, b.index, b.grade},
-                      [&](BodyTable::Number piece, const Name& name) { see_if_near(near_body(piece, name)); });
+    for_each_piece_of(b, [&](const Shape& piece) { see_if_near(near_body(piece)); });
   }
 }
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/scenario.h"
-#include "exactvo/geometry/counted.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 #include "exactvo/formation/simulation.h"
 #include "exactvo/geometry/box_grid.h"
+#include "exactvo/geometry/counted.h"
 #include "exactvo/geometry/distance.h"
 #include "scene/field_problems.h"
 #include "scene/obstacle_boxes.h"
@@ -64,45 +63,34 @@ struct Checker {
   }
 };
 
-/// Robots by place, those whose numbers are none left out.
-class RobotBoxes {
- public:
-  explicit RobotBoxes(const std::vector<Robot>& robots) {
-    constexpr double kRounding = 0x1p-40;  // far more than the gap of a pair is off by
-    std::vector<geometry::Box> boxes;
-    for (std::size_t i = 0; i < robots.size(); ++i) {
-      const Robot& r = robots[i];
-      const double reach = std::fabs(r.radius) + kRounding * (std::fabs(r.position.x) + std::fabs(r.position.y));
-      const Vec2 corner{reach, reach};
-      if (!geometry::is_finite(r.position - corner) || !geometry::is_finite(r.position + corner)) continue;
-      box_of_.emplace(i, boxes.size());
-      robot_of_.push_back(i);
-      boxes.push_back({r.position - corner, r.position + corner});
-    }
-    by_place_ = geometry::BoxGrid(std::move(boxes));
+/// Of every robot, those before it that could overlap it, in order. Robots whose numbers are none overlap nothing.
+std::vector<std::vector<std::size_t>> near_each_other(const std::vector<Robot>& robots) {
+  constexpr double kRounding = 0x1p-40;  // far more than the gap of a pair is off by
+  std::vector<geometry::Box> boxes;
+  std::vector<std::size_t> robot_of;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const Robot& r = robots[i];
+    const double reach = std::fabs(r.radius) + kRounding * (std::fabs(r.position.x) + std::fabs(r.position.y));
+    const geometry::Box box{r.position - Vec2{reach, reach}, r.position + Vec2{reach, reach}};
+    if (!geometry::is_finite(box.low) || !geometry::is_finite(box.high)) continue;
+    robot_of.push_back(i);
+    boxes.push_back(box);
   }
-
-  /// Every robot before i that could overlap it, in order.
-  std::vector<std::size_t> before(std::size_t i) const {
-    std::vector<std::size_t> found;
-    const auto box = box_of_.find(i);
-    if (box == box_of_.end()) return found;
-    by_place_.for_each_meeting(by_place_.box(box->second), [&](std::size_t k) {
-      if (robot_of_[k] < i) found.push_back(robot_of_[k]);
+  const geometry::BoxGrid by_place(std::move(boxes));
+  std::vector<std::vector<std::size_t>> before(robots.size());
+  for (std::size_t k = 0; k < by_place.size(); ++k) {
+    std::vector<std::size_t>& found = before[robot_of[k]];
+    by_place.for_each_meeting(by_place.box(k), [&](std::size_t other) {
+      if (other < k) found.push_back(robot_of[other]);
     });
     std::sort(found.begin(), found.end());
-    return found;
   }
-
- private:
-  std::unordered_map<std::size_t, std::size_t> box_of_;
-  std::vector<std::size_t> robot_of_;
-  geometry::BoxGrid by_place_;
-};
+  return before;
+}
 
 void check_robots(const Scenario& s, Checker& c) {
   c.require(!s.robots.empty(), "/robots", "no robots", "at least one robot");
-  const RobotBoxes boxes(s.robots);
+  const std::vector<std::vector<std::size_t>> near = near_each_other(s.robots);
   for (std::size_t i = 0; i < s.robots.size(); ++i) {
     const Robot& r = s.robots[i];
     const auto at = [i](const char* key) { return [i, key] { return "/robots/" + std::to_string(i) + key; }; };
@@ -113,7 +101,7 @@ void check_robots(const Scenario& s, Checker& c) {
     if (!s.formation && r.goals.empty())
       c.require(false, at("/goal")(), "no goal", "a goal, since the scenario has no formation");
     for (Vec2 g : r.goals) c.finite(g, at("/goal"));
-    for (const std::size_t j : boxes.before(i)) {
+    for (const std::size_t j : near[i]) {
       const double gap = norm(r.position - s.robots[j].position) - r.radius - s.robots[j].radius;
       if (!(gap < 0.0)) continue;  // words are made for what is wrong only: a crowd has very many pairs
       c.require(false, at("/position")(),

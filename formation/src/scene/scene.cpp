@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "scene/moving.h"
+#include "exactvo/formation/speed_profile.h"
 
 namespace exactvo::formation::detail {
 
@@ -22,8 +22,10 @@ Scene::Scene(const Scenario& scenario, const SimulationOptions& options) {
     bodies_.add({BodyKind::robot, geometry::Disc{r.position, r.radius}, r.velocity, {i}});
   }
   first_moving_ = bodies_.size();
-  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k)
-    bodies_.add({BodyKind::moving_obstacle, shape_at(scenario.moving_obstacles[k], 0.0), {}, {k}});
+  for (std::size_t k = 0; k < scenario.moving_obstacles.size(); ++k) {
+    const MovingObstacle& o = scenario.moving_obstacles[k];
+    bodies_.add({BodyKind::moving_obstacle, hull_of(o, displacement_at(o, 0.0)), {}, {k}});
+  }
 }
 
 std::vector<vo::Body> Scene::copied_bodies() const {

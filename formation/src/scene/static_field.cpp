@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -148,37 +147,33 @@ bool StaticField::gives_way(const Shape& shape, const Viewpoint& from) const {
 
 void StaticField::add_shape(const Shape& shape, const Viewpoint& from, double reach,
                             std::vector<Constraint>& out) const {
-  if (!gives_way(shape, from)) return add_body(shape.body, {shape.index, 0, shape.grade}, from, out);
-  for_each_piece_of(shape, [&](BodyTable::Number piece, const Name& name) {
-    if (distance_below(scene_->bodies().box(piece), from.position) <= reach) add_body(piece, name, from, out);
+  if (!gives_way(shape, from)) return build(shape, from, out);
+  for_each_piece_of(shape, [&](const Shape& piece) {
+    if (distance_below(scene_->bodies().box(piece.body), from.position) <= reach) build(piece, from, out);
   });
 }
-void StaticField::build(const Candidate& c, const Viewpoint& from, std::vector<Constraint>& out) const {
-  add_body(c.body, {c.index, c.piece, c.grade}, from, out);
-}
 
-void StaticField::add_body(BodyTable::Number body, const Name& name, const Viewpoint& from,
-                           std::vector<Constraint>& out) const {
-  geometry::GrownShape& seen = scene_->bodies().seen(body, from.position, from.radius);
+void StaticField::build(const Shape& shape, const Viewpoint& from, std::vector<Constraint>& out) const {
+  geometry::GrownShape& seen = scene_->bodies().seen(shape.body, from.position, from.radius);
   const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);
   vo::ClearancePolicy policy;
   policy.time_horizon = horizon(nearest.distance, from);
   if (is_beyond_reach(nearest.distance, from, policy.time_horizon)) return;
   // An ellipse has its margin inside; a bare piece gets it here.
-  policy.room = name.grade == EnclosureGrade::tight ? margin_ + kContactSkin : kContactSkin;
+  policy.room = shape.grade == EnclosureGrade::tight ? margin_ + kContactSkin : kContactSkin;
   policy.push_out_time = kPushOutTime;
   policy.push_out_speed = kPushOutShare * from.max_speed;
   const vo::ProvenHalfPlane found = vo::half_plane_against(seen, nearest, from.velocity, policy);
   Constraint& c = out.emplace_back();
   c.half_plane = found.half_plane;
   c.proof = found.proof;
-  c.body = body;
+  c.body = shape.body;
   c.clearance = nearest.distance;
   c.normal = nearest.normal;
   c.time_horizon = policy.time_horizon;
-  c.index = name.index;
-  c.piece = name.piece;
-  c.trap_free = name.grade == EnclosureGrade::trap_free || name.grade == EnclosureGrade::trap_free_thin;
+  c.index = shape.index;
+  c.piece = shape.piece;
+  c.trap_free = shape.grade == EnclosureGrade::trap_free || shape.grade == EnclosureGrade::trap_free_thin;
 }
 
 /// The baseline's rule walks each chain from its nearest edge; edges beyond `reach` take no part in it, since they

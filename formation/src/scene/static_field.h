@@ -77,11 +77,15 @@ class StaticField {
   /// bound of that is certain beyond all rounding. REQUIRES: HorizonRule::clamped; a method other than orca.
   void add_needed(const Viewpoint& from, const Need& had, const Need& need, std::vector<Constraint>& out) const;
 
-  /// A body of the field as it is looked at again and again, from places near each other.
-  struct NearBody {
+  /// A body of the field, under the names that recordings use.
+  struct Shape {
     vo::BodyTable::Number body = 0;
-    std::size_t index = 0, piece = 0;
+    std::size_t index = 0;
     geometry::EnclosureGrade grade = geometry::EnclosureGrade::tight;
+    std::size_t piece = 0;
+  };
+  /// A body of the field as it is looked at again and again, from places near each other.
+  struct NearBody : Shape {
     geometry::Box box;
     double largest_coordinate = 0.0;  ///< m, of the box
     bool is_segment = false;          ///< a piece that is one: from `a`, along `along`
@@ -94,10 +98,7 @@ class StaticField {
   void bodies_near(const Viewpoint& from, double reach, double room_to_move, std::vector<NearBody>& out) const;
 
   /// One body of the field as a robot sees it, before its half-plane is built. Rounded.
-  struct Candidate {
-    vo::BodyTable::Number body = 0;
-    std::size_t index = 0, piece = 0;
-    geometry::EnclosureGrade grade = geometry::EnclosureGrade::tight;
+  struct Candidate : Shape {
     double nearest = 0.0;  ///< m, from the rim: no more than its clearance
     double room = 0.0;     ///< m/s: no more than n.v - c of its half-plane at v = from.velocity, where this is > 0
     bool is_segment = false;
@@ -114,7 +115,8 @@ class StaticField {
   /// what `bodies_near` gave for that reach and a place `moved` (m) away, within its room to move.
   void candidates(const std::vector<NearBody>& near, double moved, const Viewpoint& from, double reach,
                   std::vector<Candidate>& out) const;
-  void build(const Candidate& candidate, const Viewpoint& from, std::vector<Constraint>& out) const;
+  /// Adds the half-plane of a shape.
+  void build(const Shape& shape, const Viewpoint& from, std::vector<Constraint>& out) const;
 
   /// The shapes by their number in this field, as bodies: `Constraint::index` counts them.
   std::vector<vo::BodyTable::Number> shapes() const;
@@ -122,17 +124,6 @@ class StaticField {
   std::vector<geometry::Enclosure> enclosures() const;
 
  private:
-  struct Shape {
-    vo::BodyTable::Number body = 0;
-    std::size_t index = 0;
-    geometry::EnclosureGrade grade = geometry::EnclosureGrade::tight;
-  };
-  struct Name {
-    std::size_t index;
-    std::size_t piece;
-    geometry::EnclosureGrade grade;
-  };
-
   void take_enclosures(const std::vector<geometry::Enclosure>& enclosures);
   template <class Visit>
   void for_each_shape_within(Vec2 x, double reach, const Visit& visit) const;
@@ -144,8 +135,6 @@ class StaticField {
   template <class Visit>
   void for_each_piece_of(const Shape& shape, const Visit& visit) const;
   void add_shape(const Shape& shape, const Viewpoint& from, double reach, std::vector<Constraint>& out) const;
-  void add_body(vo::BodyTable::Number body, const Name& name, const Viewpoint& from,
-                std::vector<Constraint>& out) const;
   void add_edges(const Viewpoint& from, double reach, std::vector<Constraint>& out) const;
   void add_edge(std::size_t chain, const vo::OrcaHalfPlane& found, const Viewpoint& from,
                 std::vector<Constraint>& out) const;
@@ -156,7 +145,7 @@ class StaticField {
   geometry::Box window_of(const Viewpoint& from, const Need& need) const;
   double room_below(const geometry::Box& box, const Viewpoint& from) const;
   double room_of(vo::BodyTable::Number body, const Viewpoint& from, double enough) const;
-  NearBody near_body(vo::BodyTable::Number body, const Name& name) const;
+  NearBody near_body(const Shape& shape) const;
   struct Sight;
   bool see(const NearBody& b, const Sight& sight, Candidate& out) const;
   double distance_of_room(const Viewpoint& from, double room) const;
@@ -190,7 +179,7 @@ void StaticField::for_each_piece_of(const Shape& shape, const Visit& visit) cons
   std::size_t number = 0;
   for (const std::size_t obstacle : scene_->bodies()[shape.body].owners)
     for (std::size_t k = scene_->first_piece(obstacle); k < scene_->first_piece(obstacle + 1); ++k)
-      visit(scene_->piece(k), Name{shape.index, ++number, geometry::EnclosureGrade::tight});
+      visit(Shape{scene_->piece(k), shape.index, geometry::EnclosureGrade::tight, ++number});
 }
 
 }  // namespace exactvo::formation::detail

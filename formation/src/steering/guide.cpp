@@ -2,8 +2,6 @@
 #include "steering/guide.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "exactvo/geometry/distance.h"
@@ -12,7 +10,6 @@
 namespace exactvo::formation::detail {
 namespace {
 
-using geometry::norm;
 using geometry::RouteAnswer;
 using geometry::Segment;
 

@@ -2,7 +2,6 @@
 #include "exactvo/formation/leader_route.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "control/consensus.h"
@@ -14,7 +13,6 @@ namespace {
 
 using detail::CourseAnswer;
 using detail::Guide;
-using geometry::norm;
 
 /// Where the robots are nearest to their slots.
 Vec2 middle_of(const Scenario& scenario, const std::vector<Vec2>& offsets) {

@@ -2,7 +2,6 @@
 #include "exactvo/formation/planned_routes.h"
 
 #include <optional>
-#include <utility>
 
 #include "steering/goals.h"
 #include "steering/guide.h"

@@ -14,9 +14,8 @@ Remedies none() {
   return r;
 }
 
-template <typename Change>
-NamedRemedies changed(const std::string& name, Remedies from, const Change& change) {
-  change(from);
+NamedRemedies flipped(const std::string& name, Remedies from, bool Remedies::*on) {
+  from.*on = !(from.*on);
   return {name, from};
 }
 
@@ -41,33 +40,35 @@ Remedies remedies_of(Controller controller) {
 }
 
 std::vector<NamedRemedies> remedy_ladder() {
+  using R = Remedies;
   std::vector<NamedRemedies> rungs{{"signs", remedies_of(Controller::paper_signs)}};
   rungs.front().remedies.margins = false;
-  const auto add = [&rungs](const std::string& name, const auto& change) {
-    rungs.push_back(changed("+ " + name, rungs.back().remedies, change));
+  const auto add = [&rungs](const std::string& name, bool R::*on) {
+    rungs.push_back(flipped("+ " + name, rungs.back().remedies, on));
   };
-  add("absolute frame", [](Remedies& r) { r.absolute_frame = true; });
-  add("recentred offsets", [](Remedies& r) { r.recentred = true; });
-  add("saturation", [](Remedies& r) { r.saturation = true; });
-  add("tau clamp", [](Remedies& r) { r.tau_clamp = true; });
-  add("filter last", [](Remedies& r) { r.filter_last = true; });
-  add("brake point", [](Remedies& r) { r.brake_point = true; });
-  add("margins", [](Remedies& r) { r.margins = true; });
-  add("side commitment", [](Remedies& r) { r.side_commitment = true; });
+  add("absolute frame", &R::absolute_frame);
+  add("recentred offsets", &R::recentred);
+  add("saturation", &R::saturation);
+  add("tau clamp", &R::tau_clamp);
+  add("filter last", &R::filter_last);
+  add("brake point", &R::brake_point);
+  add("margins", &R::margins);
+  add("side commitment", &R::side_commitment);
   return rungs;
 }
 
 std::vector<NamedRemedies> remedy_ablations() {
-  const Remedies all;
+  using R = Remedies;
+  const R all;
   return {{"default", all},
-          changed("relative frame", all, [](Remedies& r) { r.absolute_frame = false; }),
-          changed("constant |v_pref|", all, [](Remedies& r) { r.saturation = false; }),
-          changed("literal tau", all, [](Remedies& r) { r.tau_clamp = false; }),
-          changed("filter first", all, [](Remedies& r) { r.filter_last = false; }),
-          changed("no brake point", all, [](Remedies& r) { r.brake_point = false; }),
-          changed("no margins", all, [](Remedies& r) { r.margins = false; }),
-          changed("no side commitment", all, [](Remedies& r) { r.side_commitment = false; }),
-          changed("with smoothing", all, [](Remedies& r) { r.smoothing = true; })};
+          flipped("relative frame", all, &R::absolute_frame),
+          flipped("constant |v_pref|", all, &R::saturation),
+          flipped("literal tau", all, &R::tau_clamp),
+          flipped("filter first", all, &R::filter_last),
+          flipped("no brake point", all, &R::brake_point),
+          flipped("no margins", all, &R::margins),
+          flipped("no side commitment", all, &R::side_commitment),
+          flipped("with smoothing", all, &R::smoothing)};
 }
 
 const std::vector<RemedySwitch>& remedy_switches() {

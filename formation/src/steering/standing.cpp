@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "steering/standing.h"
 
-#include <algorithm>
-
 #include "exactvo/geometry/distance.h"
 
 namespace exactvo::formation::detail {

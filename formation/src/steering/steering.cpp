@@ -11,9 +11,6 @@
 namespace exactvo::formation::detail {
 namespace {
 
-using geometry::dot;
-using geometry::norm;
-
 using geometry::kPi;
 
 double angle_of(Vec2 v) {

@@ -15,7 +15,6 @@ namespace exactvo::formation::detail {
 namespace {
 
 using geometry::GrownShape;
-using geometry::norm;
 
 constexpr double kMostTurn = 0.1;  // rad, of one stretch of a curved boundary
 /// An arc that turns by less than kMostTurn is at most this many times as long as its chord: 1 / cos(turn / 2).

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
@@ -19,9 +18,7 @@ namespace exactvo::formation {
 namespace {
 
 using geometry::ConvexShape;
-using geometry::dot;
 using geometry::Ellipse;
-using geometry::norm;
 
 bool clear_of(const ConvexShape& shape, double radius, Vec2 point) {
   return geometry::locate(geometry::GrownShape{shape, {}, radius}, point) == geometry::Place::outside;
@@ -305,12 +302,6 @@ double Equilibrium::rate_at(double max_speed) const {
 std::vector<Equilibrium> equilibria(const ConvexShape& shape, double robot_radius, Vec2 goal) {
   EXACTVO_REQUIRE(clear_of(shape, robot_radius, goal), geometry::to_string(shape));
   return equilibria_of(detail::Boundary(shape, robot_radius), goal);
-}
-
-double escape_time(const Equilibrium& e, double max_speed, double s0, double s1) {
-  EXACTVO_REQUIRE(s0 > 0.0 && s0 <= s1, std::to_string(s0) + ", " + std::to_string(s1));
-  EXACTVO_REQUIRE(e.rate_at(max_speed) > 0.0, std::to_string(e.rate_at(max_speed)));
-  return std::log(s1 / s0) / e.rate_at(max_speed);
 }
 
 bool stall_possible(const ConvexShape& shape, Vec2 goal) {

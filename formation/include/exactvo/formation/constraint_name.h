@@ -15,11 +15,6 @@
 
 namespace exactvo::formation {
 
-/// The ids of the obstacles that a shape stands for, in the order of the scenario: those with a facade that the ellipse
-/// was built on, else those wholly inside it, else those with an edge inside it; the owner of an edge; what a convex
-/// piece touches.
-std::vector<std::string> obstacles_behind(const geometry::ConvexShape& shape, const Scenario& scenario);
-
 /// "enclosure 1 of obstacle wall", "enclosure 1, piece 2, of obstacles wall and desk", "robot R2", "the edge
 /// (1, 2)-(3, 4) of obstacle wall", "moving obstacle cart"; of more than three obstacles "a, b, c and 2 more".
 std::string name_of(const RecordedConstraint& constraint, const Scenario& scenario);

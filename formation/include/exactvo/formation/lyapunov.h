@@ -19,13 +19,15 @@
 
 namespace exactvo::formation {
 
-/// Terms of equation (18), summed over robots.
+/// Terms of equation (18), summed over robots, or of its derivative (19) with the robots' actual accelerations. For
+/// motion laws other than `exponential`, the derivative takes the mean acceleration over the step.
 struct PaperTerms {
-  double kinetic = 0.0;    ///< 1/2 sum |v^_i|^2
-  double consensus = 0.0;  ///< k1/4 sum a_ij |x^_i - x^_j|^2
-  double pinning = 0.0;    ///< k1/2 sum b_i |x^_i|^2
-  double integral = 0.0;   ///< k3 sum of the integral of v^_i.(v^_i - V_IVO), V_IVO relative to the leader
-  /// The function: the sum of its terms.
+  double kinetic = 0.0;    ///< 1/2 sum |v^_i|^2; derivative: sum v^_i.u_i
+  double consensus = 0.0;  ///< k1/4 sum a_ij |x^_i - x^_j|^2; derivative: k1/2 sum a_ij (x^_i - x^_j).(v^_i - v^_j)
+  double pinning = 0.0;    ///< k1/2 sum b_i |x^_i|^2; derivative: k1 sum b_i x^_i.v^_i
+  /// k3 sum of the integral of v^_i.(v^_i - V_IVO), V_IVO relative to the leader; derivative: of the integrand.
+  double integral = 0.0;
+  /// The function, or its derivative: the sum of its terms.
   double value() const { return kinetic + consensus + pinning + integral; }
 };
 
@@ -36,17 +38,6 @@ struct SoundTerms {
   double slots = 0.0;      ///< k3 sum Phi(x^_i)
   /// The function: the sum of its terms.
   double value() const { return kinetic + consensus + slots; }
-};
-
-/// The terms of (19) with the robots' actual accelerations: the true derivative of (18). For motion laws other than
-/// `exponential`, the mean acceleration over the step is used.
-struct PaperRates {
-  double kinetic = 0.0;    ///< sum v^_i.u_i
-  double consensus = 0.0;  ///< k1/2 sum a_ij (x^_i - x^_j).(v^_i - v^_j)
-  double pinning = 0.0;    ///< k1 sum b_i x^_i.v^_i
-  double integral = 0.0;   ///< k3 sum v^_i.(v^_i - V_IVO)
-  /// The derivative: the sum of its terms.
-  double value() const { return kinetic + consensus + pinning + integral; }
 };
 
 /// The derivative of the function that holds, near obstacles too, and whatever the controller: e_i is what v_i follows
@@ -64,7 +55,7 @@ struct LyapunovRow {
   double time = 0.0;        ///< s
   bool has_rates = true;    ///< false in the last row, which has no decision: its derivatives are nothing
   PaperTerms paper;         ///< of (18)
-  PaperRates paper_rates;   ///< its derivative, by terms
+  PaperTerms paper_rates;   ///< its derivative, by terms
   double paper_rate = 0.0;  ///< (20): what the paper says V' is
   SoundTerms sound;         ///< of the function that holds
   SoundRates sound_rates;   ///< its derivative, by terms

@@ -67,12 +67,9 @@ struct FormationCourse {
 };
 
 /// Joint plans of robots that waited for each other (liveness).
-struct PlanMetrics {
-  std::size_t groups = 0;        ///< that went by a plan
-  std::size_t largest = 0;       ///< robots in one
-  double time_by_plan = 0.0;     ///< s, in which some robot went by plan
-  double time_back = 0.0;        ///< s, in which some robot went back to where its plan begins
-  std::size_t search_nodes = 0;  ///< joint places that were looked at
+struct PlanMetrics : LivenessCourse {
+  double time_by_plan = 0.0;  ///< s, in which some robot went by plan
+  double time_back = 0.0;     ///< s, in which some robot went back to where its plan begins
 };
 
 /// What a run came to.

@@ -5,7 +5,6 @@
 /// Formation patterns by name, and topologies for any number of robots. Offsets are in metres, in the frame whose x
 /// axis is `heading`, with their mean at the origin.
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +20,7 @@ enum class Pattern {
   grid     ///< rows of ceil(sqrt n), the last one centred
 };
 
-/// "line", "wedge", "circle", "grid".
-const char* name(Pattern pattern);
-/// False for an unknown name; `out` is then unchanged.
+/// By "line", "wedge", "circle" or "grid". False for an unknown name; `out` is then unchanged.
 bool parse(const std::string& text, Pattern& out);
 
 /// `n` slots, neighbours `spacing` (m, > 0) apart, in a fixed order. REQUIRES: n >= 1.

@@ -5,6 +5,7 @@
 /// Why a robot did not arrive, from what its run recorded: whether it stood or moved at the end, for how long, what
 /// blocked it, and, where that is one static shape, the equilibrium it rests at (trap.h). Rounded.
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,23 +52,28 @@ struct StuckReport {
 /// leader is still under way. REQUIRES: a recording of this scenario.
 std::vector<StuckReport> explain_stuck(const Scenario& scenario, const Recording& recording);
 
-namespace detail {
-class StuckAccumulator;
-}
-
-/// The same of rows that come one after the other: keeps the last two.
+/// The same of rows that come one after the other: keeps the last two, where it ended and what was decided last.
 class StuckWatch {
  public:
   /// `scenario` must outlive the watch.
-  explicit StuckWatch(const Scenario& scenario);
-  ~StuckWatch();
+  explicit StuckWatch(const Scenario& scenario) : scenario_(scenario), robots_(scenario.robots.size()) {}
   /// The next row of the run.
   void add(std::shared_ptr<const Step> row);
   /// As if the run had ended with the last row added. `run` has what is known beside its rows. REQUIRES: a row.
   std::vector<StuckReport> reports(const Recording& run) const;
+  /// Robots at rest in the last row of which each waits for the next (waiting.h); empty where there are none.
+  std::vector<std::size_t> deadlock() const;
 
  private:
-  std::unique_ptr<detail::StuckAccumulator> rows_;
+  struct OfRobot {
+    std::optional<double> at_rest_since;                       ///< s
+    double nearest = std::numeric_limits<double>::infinity();  ///< m, the least distance from its last goal
+    double nearest_at = 0.0;                                   ///< s; of kinematic robots: a slot moves
+  };
+
+  const Scenario& scenario_;
+  std::vector<OfRobot> robots_;
+  std::shared_ptr<const Step> decided_, last_;
 };
 
 }  // namespace exactvo::formation

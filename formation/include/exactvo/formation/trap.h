@@ -34,10 +34,6 @@ struct Equilibrium {
 /// REQUIRES: the goal outside the grown shape.
 std::vector<Equilibrium> equilibria(const geometry::ConvexShape& shape, double robot_radius, Vec2 goal);
 
-/// s; how long an offset s0 from an unstable equilibrium takes to grow to s1: ln(s1 / s0) / rate. Linearised: right to
-/// second order in s1 / rho. REQUIRES: 0 < s0 <= s1, an unstable equilibrium.
-double escape_time(const Equilibrium& e, double max_speed, double s0, double s1);
-
 /// Whether some start may stall at `shape` on the way to `goal`. Exact for ellipses and discs. A segment has two free
 /// sides.
 bool stall_possible(const geometry::ConvexShape& shape, Vec2 goal);
