@@ -59,11 +59,8 @@ std::vector<std::string> verb_names() {
 void check_verb() {
   std::vector<std::string> names = verb_names();
   names.push_back(kHelp);
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    if (words[i].rfind('-', 0) == 0) continue;
-    if (std::find(names.begin(), names.end(), words[i]) != names.end()) return;
-    throw UsageError("verb", words[i], fmt::format("one of {}{}", fmt::join(names, " "), suggestion(words[i], names)));
-  }
+  const auto verb = std::find_if(words.begin() + 1, words.end(), [](const auto& w) { return w.rfind('-', 0) != 0; });
+  if (verb != words.end()) require_known("verb", *verb, names);
 }
 
 /// What the parser is given: `help VERB` is `VERB --help`.
@@ -74,8 +71,7 @@ std::vector<std::string> parsed_words() {
   const std::vector<std::string> names = verb_names();
   const std::string verb = help + 1 == out.end() ? "" : *(help + 1);
   if (verb.empty()) return {out.front(), "--help"};
-  if (std::find(names.begin(), names.end(), verb) == names.end())
-    throw UsageError("help", verb, fmt::format("one of {}{}", fmt::join(names, " "), suggestion(verb, names)));
+  require_known("help", verb, names);
   return {out.front(), verb, "--help"};
 }
 

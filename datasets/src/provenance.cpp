@@ -51,10 +51,7 @@ std::string sha256_of(std::string_view bytes) {
 
 std::string sha256_of_file(const std::filesystem::path& path) {
   read_beginning(path, 0);  // refuses what is missing and what is no regular file: a pipe would be waited for
-  struct Close {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
-  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) throw cannot_read(path, errno);
   Sha256 hash;
   char block[1 << 16];
@@ -90,9 +87,7 @@ std::string to_json(const Provenance& provenance) {
   json.member("compiler", provenance.compiler).member("build_type", provenance.build_type);
   json.member("cgal", provenance.cgal).member("gmp", provenance.gmp).member("gdal", provenance.gdal);
   json.member("seed", provenance.seed);
-  json.key("command_line").begin_array();
-  for (const std::string& word : provenance.command_line) json.value(word);
-  json.end_array();
+  json.list("command_line", provenance.command_line);
   json.key("inputs").begin_array();
   for (const InputFile& input : provenance.inputs) {
     json.begin_object().member("path", input.path).member("sha256", input.sha256).end_object();

@@ -73,8 +73,8 @@ TEST_P(DrawnVelocityObstacle, HoldsExactlyTheCollidingVelocities) {
 TEST_P(DrawnVelocityObstacle, LegNormalsAreWhereTheSupportChangesSign) {
   const auto legs = leg_normals(seen_);
   ASSERT_TRUE(legs.has_value());
-  for (const Vec2 n : {legs->left, legs->right}) EXPECT_NEAR(support(seen_, n).h, 0.0, 1e-12);
-  EXPECT_GT(cross(perp(legs->right), -perp(legs->left)), 0.0) << "the left leg lies left of the right one";
+  for (const Vec2 n : {legs->first, legs->second}) EXPECT_NEAR(support(seen_, n).h, 0.0, 1e-12);
+  EXPECT_GT(cross(perp(legs->second), -perp(legs->first)), 0.0) << "the left leg lies left of the right one";
 }
 
 TEST_P(DrawnVelocityObstacle, OutlineTouchesTheSupportLines) {

@@ -302,7 +302,7 @@ LiveQuestion parse_live_question(const std::string& text, const OptionsOfRun& op
 
 std::string live_decision(const LiveQuestion& question) {
   Moment moment = moment_of(question);
-  const RunName names = name_of(question.scenario, question.options);
+  const datasets::RunInfo names = datasets::run_info(question.scenario, question.options, {});
   datasets::RecordingFile about;
   about.info = {names.scenario, names.method,   names.controller, std::nullopt,
                 provenance(),   names.guidance, names.liveness};

@@ -57,20 +57,12 @@ std::string ranges(const Box& plane) {
 void add_obstacles(const CrowdCourse& course, const Box& plane, DataFile& data, PlotCommand& plot) {
   if (!course.edges.empty()) {
     const int index = data.begin("edges of obstacles", "x [m], y [m]");
-    for (const geometry::Segment& edge : course.edges) {
-      for (const Vec2 p : segment_within(plane, edge.a, edge.b)) data.row({p.x, p.y});
-      data.gap();
-    }
+    for (const geometry::Segment& edge : course.edges) data.curve(segment_within(plane, edge.a, edge.b));
     plot.data(index, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", kObstacleLine));
   }
   if (course.bodies.empty()) return;
   const int index = data.begin("bodies at the start", "x [m], y [m]");
-  for (const geometry::ConvexShape& body : course.bodies) {
-    const Points ring = outline(body);
-    for (const Vec2 p : ring) data.row({p.x, p.y});
-    if (!ring.empty()) data.row({ring.front().x, ring.front().y});
-    data.gap();
-  }
+  for (const geometry::ConvexShape& body : course.bodies) data.ring(outline(body));
   plot.data(index, fmt::format("using 1:2 with lines lw 1 dt (4,3) lc rgb '{}'", kObstacleLine));
 }
 
@@ -138,12 +130,11 @@ Figure paths_of_some(const CrowdCourse& course) {
   add_obstacles(course, plane, data, plot);
   for (std::size_t p = 0; p < course.paths.size(); ++p) {
     const int index = data.begin("the way of a robot", "x [m], y [m]");
-    for (const Vec2 at : course.paths[p]) data.row({at.x, at.y});
+    data.rows(course.paths[p]);
     plot.data(index, fmt::format("using 1:2 with lines lw 1.2 lc rgb '{}'", series_colour(p)));
     if (course.paths[p].empty()) continue;
-    const Vec2 end = course.paths[p].back();
     const int last = data.begin("where it was at the end", "x [m], y [m]");
-    data.row({end.x, end.y});
+    data.rows({course.paths[p].back()});
     plot.data(last, fmt::format("using 1:2 with points pt 7 ps 0.4 lc rgb '{}'", series_colour(p)));
   }
   const std::string what = course.paths.size() == course.robots

@@ -87,6 +87,21 @@ void DataFile::row(const std::vector<double>& values) {
   empty_ = lifted_ = false;
 }
 
+void DataFile::rows(const std::vector<geometry::Vec2>& points) {
+  for (const geometry::Vec2 p : points) row({p.x, p.y});
+}
+
+void DataFile::curve(const std::vector<geometry::Vec2>& points) {
+  rows(points);
+  gap();
+}
+
+void DataFile::ring(const std::vector<geometry::Vec2>& points) {
+  if (points.empty()) return;
+  rows(points);
+  curve({points.front()});
+}
+
 void DataFile::labelled_row(std::initializer_list<double> values, const std::string& label) {
   row(values);
   text_.pop_back();

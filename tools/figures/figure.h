@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "exactvo/geometry/vec2.h"
+
 namespace exactvo::tools {
 
 struct Canvas {
@@ -56,6 +58,12 @@ class DataFile {
   /// One line of the current data set.
   void row(std::initializer_list<double> values);
   void row(const std::vector<double>& values);
+  /// A line a point.
+  void rows(const std::vector<geometry::Vec2>& points);
+  /// The same, with the pen lifted behind them.
+  void curve(const std::vector<geometry::Vec2>& points);
+  /// The same, closed; nothing of no points.
+  void ring(const std::vector<geometry::Vec2>& points);
   /// One line of numbers and a closing word of the program's own, for labels; gnuplot's markup works in it.
   void labelled_row(std::initializer_list<double> values, const std::string& label);
   /// Lifts the pen: the next row starts a new curve or polygon of the same data set. Lifted twice is lifted once.

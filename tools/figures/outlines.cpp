@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "figures/outlines.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -61,17 +62,16 @@ double sign_change(const GrownShape& s, double inside, double outside) {
   return inside;
 }
 
-struct Arc {
-  double first;
-  double last;
-};
-
-/// The angles at which h_S < 0; the normals of the legs are its ends. h is positive at right angles beyond the nearest
+/// The first and the last of the angles at which h_S < 0; the normals of the legs are its ends. h is positive at right angles beyond the nearest
 /// point's normal, so the ends lie within half a turn of the deepest direction.
-std::optional<Arc> negative_arc(const GrownShape& s) {
+std::optional<std::pair<double, double>> negative_arc(const GrownShape& s) {
   const std::optional<double> deepest = deepest_angle(s);
   if (!deepest) return std::nullopt;
-  return Arc{sign_change(s, *deepest, *deepest - kPi), sign_change(s, *deepest, *deepest + kPi)};
+  return std::pair(sign_change(s, *deepest, *deepest - kPi), sign_change(s, *deepest, *deepest + kPi));
+}
+
+std::array<HalfPlane, 4> sides_of(const Box& box) {
+  return {{{{1.0, 0.0}, box.low.x}, {{-1.0, 0.0}, -box.high.x}, {{0.0, 1.0}, box.low.y}, {{0.0, -1.0}, -box.high.y}}};
 }
 
 }  // namespace
@@ -119,17 +119,14 @@ Points clipped(const Points& ring, const HalfPlane& keep) {
 }
 
 Points clipped_to(const Points& ring, const Box& keep) {
-  Points kept = clipped(ring, HalfPlane{{1.0, 0.0}, keep.low.x});
-  kept = clipped(kept, HalfPlane{{-1.0, 0.0}, -keep.high.x});
-  kept = clipped(kept, HalfPlane{{0.0, 1.0}, keep.low.y});
-  return clipped(kept, HalfPlane{{0.0, -1.0}, -keep.high.y});
+  Points kept = ring;
+  for (const HalfPlane& side : sides_of(keep)) kept = clipped(kept, side);
+  return kept;
 }
 
 /// Cut by the four sides of the box in turn.
 Points segment_within(const Box& box, Vec2 a, Vec2 b) {
-  const HalfPlane sides[] = {
-      {{1.0, 0.0}, box.low.x}, {{-1.0, 0.0}, -box.high.x}, {{0.0, 1.0}, box.low.y}, {{0.0, -1.0}, -box.high.y}};
-  for (const HalfPlane& side : sides) {
+  for (const HalfPlane& side : sides_of(box)) {
     const double out_a = violation(side, a);
     const double out_b = violation(side, b);
     if (out_a > 0.0 && out_b > 0.0) return {};
@@ -161,19 +158,19 @@ std::vector<Points> hatching(const Points& boundary, Vec2 normal, double gap) {
   return strokes;
 }
 
-std::optional<LegNormals> leg_normals(const GrownShape& s) {
-  const std::optional<Arc> arc = negative_arc(s);
+std::optional<std::pair<Vec2, Vec2>> leg_normals(const GrownShape& s) {
+  const auto arc = negative_arc(s);
   if (!arc) return std::nullopt;
   // The leg along t has the outward normal perp(t) on its left side, -perp(t) on its right.
-  return LegNormals{direction(arc->first), direction(arc->last)};
+  return std::pair(direction(arc->first), direction(arc->second));
 }
 
 Points velocity_obstacle_in(const Box& box, const GrownShape& s, double tau, Vec2 shift) {
-  const std::optional<Arc> arc = negative_arc(s);
+  const auto arc = negative_arc(s);
   if (!arc) return {};
   Points ring = corners(box);
   for (int i = 0; i <= kDirections && !ring.empty(); ++i) {
-    const Vec2 n = direction(arc->first + (arc->last - arc->first) * i / kDirections);
+    const Vec2 n = direction(arc->first + (arc->second - arc->first) * i / kDirections);
     const double reach = support(s, n).h / tau;
     ring = clipped(ring, {-n, -(reach + dot(n, shift))});
   }

@@ -5,6 +5,7 @@
 /// Shapes as rings of points, for drawing only: sampled finely enough for the eye, certified for nothing.
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "exactvo/geometry/half_plane.h"
@@ -45,13 +46,9 @@ Points boundary_within(const Box& box, const geometry::HalfPlane& half_plane);
 /// Strokes from a boundary into its forbidden side, aslant, `gap` apart; `normal` points into the allowed side.
 std::vector<Points> hatching(const Points& boundary, Vec2 normal, double gap);
 
-/// The two directions at which the support of S changes sign: outward normals of the legs, of length 1.
-/// [0] is that of the left leg seen from the origin. Nothing where the origin lies in S, so that there is no cone.
-struct LegNormals {
-  Vec2 left;
-  Vec2 right;
-};
-std::optional<LegNormals> leg_normals(const geometry::GrownShape& s);
+/// The two directions at which the support of S changes sign: outward normals of the legs, of length 1, the left one
+/// seen from the origin first. Nothing where the origin lies in S, so that there is no cone.
+std::optional<std::pair<Vec2, Vec2>> leg_normals(const geometry::GrownShape& s);
 
 /// The truncated velocity obstacle { v : t (v - shift) in S, 0 < t <= tau } within a box: the box cut by
 /// n.(v - shift) <= h_S(n)/tau for many n with h_S(n) <= 0. Empty where the origin lies in S or nothing is in view.

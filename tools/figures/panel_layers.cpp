@@ -29,13 +29,6 @@ bool PanelLayers::is_drawable(Vec2 p) const {
   return is_finite(p) && view.grown(kFarAway).contains(p);
 }
 
-void PanelLayers::add_ring(const Points& ring) {
-  if (ring.empty()) return;
-  for (const Vec2 p : ring) data.row({p.x, p.y});
-  data.row({ring.front().x, ring.front().y});
-  data.gap();
-}
-
 double scale_of(const Box& view) {
   return std::min(760.0 / view.width(), 620.0 / view.height());
 }

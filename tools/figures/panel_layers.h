@@ -26,8 +26,6 @@ struct PanelLayers {
   std::string key(const std::string& text) const { return detailed ? text : ""; }
   /// Whether it lies no farther beyond the view than gnuplot can bear.
   bool is_drawable(Vec2 p) const;
-  /// A closed line.
-  void add_ring(const Points& ring);
 
   const datasets::RecordingFile& run;
   DataFile& data;

@@ -182,7 +182,7 @@ class RobotLayers {
     to_.has_collisions = !marks.empty();
     if (marks.empty()) return;
     const int index = to_.data.begin("collisions: where they were deepest", "x [m], y [m]");
-    for (const Vec2 p : marks) to_.data.row({p.x, p.y});
+    to_.data.rows(marks);
     to_.plot.data(index,
                   fmt::format("{} with points pt 1 ps {} lw {} lc rgb '{}'", to_.origin.using_columns(),
                               to_.detailed ? 2.5 : 1.2, to_.detailed ? 4 : 2, kCollisionColour),
@@ -195,7 +195,7 @@ class RobotLayers {
       const Robot& robot = to_.run.scenario.robots[i];
       if (robot.goals.empty()) continue;
       const int index = to_.data.begin("goals of " + robot.id, "x [m], y [m]");
-      for (const Vec2 goal : robot.goals) to_.data.row({goal.x, goal.y});
+      to_.data.rows(robot.goals);
       to_.plot.data(index, fmt::format("{} with points pt 2 ps {} lw {} lc rgb '{}'", to_.origin.using_columns(),
                                        to_.detailed ? 1.3 : 0.8, to_.detailed ? 2.5 : 1.5, series_colour(i)));
       any = true;

@@ -33,12 +33,12 @@ void add_polygons(PanelLayers& to) {
   for (const geometry::Polygon* polygon : polygons_of(to.run)) {
     const Points seen = clipped_to(tied_together(*polygon), to.view);
     in_view |= !seen.empty();
-    to.add_ring(seen);
+    to.data.ring(seen);
   }
   const int border = to.data.begin("obstacles with an inside: outlines", "x [m], y [m]");
   for (const geometry::Polygon* polygon : polygons_of(to.run)) {
-    to.add_ring(polygon->outer);
-    for (const geometry::Ring& hole : polygon->holes) to.add_ring(hole);
+    to.data.ring(polygon->outer);
+    for (const geometry::Ring& hole : polygon->holes) to.data.ring(hole);
   }
   if (!in_view) return;
   to.plot.data(inside,
@@ -52,9 +52,7 @@ void add_walls(PanelLayers& to) {
   const int index = to.data.begin("walls", "x [m], y [m]");
   for (const auto& obstacle : to.run.scenario.obstacles) {
     const auto* wall = std::get_if<geometry::Polyline>(&obstacle.shape);
-    if (wall == nullptr) continue;
-    for (const Vec2 p : wall->points) to.data.row({p.x, p.y});
-    to.data.gap();
+    if (wall != nullptr) to.data.curve(wall->points);
   }
   to.plot.data(
       index,
@@ -63,15 +61,9 @@ void add_walls(PanelLayers& to) {
 }
 
 void add_obstacles(PanelLayers& to) {
-  bool polygons = false;
-  bool walls = false;
-  for (const auto& obstacle : to.run.scenario.obstacles) {
-    const auto* polygon = std::get_if<geometry::Polygon>(&obstacle.shape);
-    polygons |= polygon != nullptr;
-    walls |= polygon == nullptr;
-  }
-  if (polygons) add_polygons(to);
-  if (walls) add_walls(to);
+  const std::size_t polygons = polygons_of(to.run).size();
+  if (polygons > 0) add_polygons(to);
+  if (polygons < to.run.scenario.obstacles.size()) add_walls(to);
 }
 
 /// Where they are at every time mark, and the way of their middle.
@@ -80,13 +72,10 @@ void add_moving_obstacles(PanelLayers& to) {
   const std::vector<const Step*> marks = time_marks(to.run);
   const int index = to.data.begin("moving obstacles at the time marks", "x [m], y [m]");
   for (const auto& obstacle : to.run.scenario.moving_obstacles)
-    for (const Step* mark : marks) to.add_ring(vertices_at(obstacle, mark->time));
+    for (const Step* mark : marks) to.data.ring(vertices_at(obstacle, mark->time));
   const int ways = to.data.begin("paths of the moving obstacles", "x [m], y [m]");
   for (const auto& obstacle : to.run.scenario.moving_obstacles) {
-    for (const Step* mark : marks) {
-      const Vec2 p = middle_at(obstacle, mark->time);
-      to.data.row({p.x, p.y});
-    }
+    for (const Step* mark : marks) to.data.rows({middle_at(obstacle, mark->time)});
     to.data.gap();
   }
   to.plot.data(index,
@@ -102,7 +91,7 @@ bool add_enclosures_of(PanelLayers& to, std::size_t i) {
     if (outlook.robot == i) add_ellipses(to.run, outlook, rings);
   if (rings.empty()) return false;
   const int index = to.data.begin("enclosures seen by " + to.run.scenario.robots[i].id, "x [m], y [m]");
-  for (const Points& ring : rings) to.add_ring(ring);
+  for (const Points& ring : rings) to.data.ring(ring);
   to.plot.data(index,
                fmt::format("{} with lines lw 1.2 dt (6,5) lc rgb '{}'", to.origin.using_columns(), series_colour(i)));
   return true;
@@ -119,11 +108,8 @@ bool add_routes_of(PanelLayers& to, std::size_t i, const std::vector<formation::
   for (const formation::PlannedRoute& route : routes) any |= route.robot == i && !route.points.empty();
   if (!any) return false;
   const int index = to.data.begin("routes of " + to.run.scenario.robots[i].id, "x [m], y [m]");
-  for (const formation::PlannedRoute& route : routes) {
-    if (route.robot != i) continue;
-    for (const Vec2 p : route.points) to.data.row({p.x, p.y});
-    to.data.gap();
-  }
+  for (const formation::PlannedRoute& route : routes)
+    if (route.robot == i) to.data.curve(route.points);
   const std::string pale = std::string("#c0") + (series_colour(i) + 1);
   to.plot.data(index, fmt::format("{} with lines lw 7 lc rgb '{}'", to.origin.using_columns(), pale));
   return true;
@@ -138,12 +124,9 @@ void add_chains(PanelLayers& to, const std::vector<formation::PlannedRoute>& rou
     if (!any) continue;
     const int index = to.data.begin(across ? "gaps that are too narrow" : "closed chains", "x [m], y [m]");
     for (const formation::PlannedRoute& route : routes)
-      for (std::size_t k = 0; k < route.chain.size(); ++k) {
-        if (route.chain[k].gap_follows != across) continue;
-        for (const std::size_t end : {k, (k + 1) % route.chain.size()})
-          to.data.row({route.chain[end].point.rounded.x, route.chain[end].point.rounded.y});
-        to.data.gap();
-      }
+      for (std::size_t k = 0; k < route.chain.size(); ++k)
+        if (route.chain[k].gap_follows == across)
+          to.data.curve({route.chain[k].point.rounded, route.chain[(k + 1) % route.chain.size()].point.rounded});
     to.plot.data(index,
                  fmt::format("{} with lines lw {}{} lc rgb '{}'", to.origin.using_columns(), across ? 2.5 : 3.5,
                              across ? " dt (4,3)" : "", kSeparatorColour),
@@ -165,7 +148,7 @@ void add_passing_area(PanelLayers& to) {
   const std::vector<Points> area = passing_area(to.run);
   if (area.empty()) return;
   const int index = to.data.begin("no room to pass: where robots can be that would have to", "x [m], y [m]");
-  for (const Points& rectangle : area) to.add_ring(rectangle);
+  for (const Points& rectangle : area) to.data.ring(rectangle);
   to.plot.data(index,
                fmt::format("{} with filledcurves closed fc rgb '{}' fs transparent solid 0.15 noborder",
                            to.origin.using_columns(), kSeparatorColour),

@@ -73,16 +73,6 @@ class VelocitySpace {
     return {{-reach, -reach}, {reach, reach}};
   }
 
-  void add_points(const Points& points) {
-    for (const Vec2 p : points) data_.row({p.x, p.y});
-    data_.gap();
-  }
-  void add_ring(Points ring) {
-    if (ring.empty()) return;
-    ring.push_back(ring.front());
-    add_points(ring);
-  }
-
   Points speed_bound_ring() const {
     const double v = limit();
     if (d_.scenario.speed_bound == formation::SpeedBoundKind::box) return corners(Box{{-v, -v}, {v, v}});
@@ -94,7 +84,7 @@ class VelocitySpace {
     for (const RecordedConstraint& c : constraints()) ring = clipped(ring, c.half_plane);
     if (ring.size() < 3) return;
     const int index = data_.begin("allowed velocities", "v_x [m/s], v_y [m/s]");
-    add_ring(ring);
+    data_.ring(ring);
     plot_.data(index, fmt::format("using 1:2 with filledcurves closed fc rgb '{}' fs solid noborder", kAllowedColour),
                "allowed velocities");
   }
@@ -142,7 +132,7 @@ class VelocitySpace {
                  [&](const Points& c) { return is_in_view(c); });
     if (seen.empty()) return;
     const int index = data_.begin(what, "v_x [m/s], v_y [m/s]");
-    for (const Points& curve : seen) add_points(curve);
+    for (const Points& curve : seen) data_.curve(curve);
     plot_.data(index, style, title);
   }
 
@@ -170,25 +160,22 @@ class VelocitySpace {
   }
 
   void add_legs(const RecordedConstraint& c, std::vector<Points>& curves) const {
-    const std::optional<LegNormals> legs = leg_normals(grown_shape(c));
+    const auto legs = leg_normals(grown_shape(c));
     if (!legs) return;
+    const Vec2 left = tangent_point(c, legs->first), right = tangent_point(c, legs->second);
     // Beyond any corner of the view, wherever in it or near it the leg starts.
-    const double length =
-        4.0 * view_.diagonal() + norm(tangent_point(c, legs->left)) + norm(tangent_point(c, legs->right));
-    const Vec2 left = tangent_point(c, legs->left);
-    const Vec2 right = tangent_point(c, legs->right);
-    curves.push_back({left, left - length * perp(legs->left)});
-    curves.push_back({right, right + length * perp(legs->right)});
+    const double length = 4.0 * view_.diagonal() + norm(left) + norm(right);
+    curves.push_back({left, left - length * perp(legs->first)});
+    curves.push_back({right, right + length * perp(legs->second)});
   }
 
   void add_cut_off(const RecordedConstraint& c, std::vector<Points>& curves) const {
-    const std::optional<LegNormals> legs = leg_normals(grown_shape(c));
+    const auto legs = leg_normals(grown_shape(c));
     if (!legs) return;
-    const double turn = std::atan2(cross(legs->left, legs->right), dot(legs->left, legs->right));
+    const auto& [from, to] = *legs;
+    const double turn = std::atan2(cross(from, to), dot(from, to));
     Points arc;
-    for (int i = 0; i <= kArcPoints; ++i) {
-      arc.push_back(tangent_point(c, rotated(legs->left, turn * i / kArcPoints)));
-    }
+    for (int i = 0; i <= kArcPoints; ++i) arc.push_back(tangent_point(c, rotated(from, turn * i / kArcPoints)));
     curves.push_back(arc);
   }
 
@@ -209,10 +196,10 @@ class VelocitySpace {
     }
     if (lines.empty()) return;
     const int boundaries = data_.begin(title + ": boundaries", "v_x [m/s], v_y [m/s]");
-    for (const auto& [line, normal] : lines) add_points(line);
+    for (const auto& [line, normal] : lines) data_.curve(line);
     const int strokes = data_.begin(title + ": hatching on the forbidden side", "v_x [m/s], v_y [m/s]");
     for (const auto& [line, normal] : lines)
-      for (const Points& stroke : hatching(line, normal, view_.width() / kHatchesAcross)) add_points(stroke);
+      for (const Points& stroke : hatching(line, normal, view_.width() / kHatchesAcross)) data_.curve(stroke);
     plot_.data(boundaries, fmt::format("using 1:2 with lines lw {} lc rgb '{}'", width, colour), title);
     plot_.data(strokes, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", colour));
   }
@@ -235,7 +222,7 @@ class VelocitySpace {
 
   void add_speed_bound() {
     const int index = data_.begin("speed bound", "v_x [m/s], v_y [m/s]");
-    add_ring(speed_bound_ring());
+    data_.ring(speed_bound_ring());
     plot_.data(index, "using 1:2 with lines lw 1.5 dt (6,4) lc rgb 'black'", "speed bound");
   }
 

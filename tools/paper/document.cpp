@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "exactvo/datasets/markup.h"
 #include "support/base64.h"
@@ -57,36 +57,7 @@ std::string markdown_row(const std::vector<std::string>& cells) {
 }
 
 /// The formats in which a picture stands beside its PNG.
-constexpr const char* kForPrint[] = {"pdf", "svg"};
-
-std::string upper_case(std::string word) {
-  for (char& c : word) c = static_cast<char>(c - 'a' + 'A');
-  return word;
-}
-
-std::string beside(const std::string& picture, const std::string& format) {
-  return fs::path(picture).replace_extension(format).string();
-}
-
-struct MarkdownWriter {
-  std::string operator()(const Heading& h) const {
-    return std::string(static_cast<std::size_t>(h.level), '#') + " " + escaped_markdown(h.text) + "\n\n";
-  }
-  std::string operator()(const Paragraph& p) const { return escaped_markdown(p.text) + "\n\n"; }
-  std::string operator()(const Link& l) const { return "[" + escaped_markdown(l.text) + "](" + l.file + ")\n\n"; }
-  std::string operator()(const Table& t) const {
-    std::string text = markdown_row(t.head) + "|";
-    for (std::size_t i = 0; i < t.head.size(); ++i) text += "---|";
-    text += "\n";
-    for (const auto& row : t.rows) text += markdown_row(row);
-    return text + "\n";
-  }
-  std::string operator()(const Picture& p) const {
-    std::string text = "![" + escaped_markdown(p.caption) + "](" + p.file + ")\n\n" + escaped_markdown(p.caption);
-    for (const char* format : kForPrint) text += fmt::format(" [{}]({})", upper_case(format), beside(p.file, format));
-    return text + "\n\n";
-  }
-};
+constexpr std::pair<const char*, const char*> kForPrint[] = {{"pdf", "PDF"}, {"svg", "SVG"}};
 
 std::optional<std::string> bytes_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -100,51 +71,59 @@ std::string html_row(const std::vector<std::string>& cells, const char* tag) {
   return row + "</tr>\n";
 }
 
-struct HtmlWriter {
-  const fs::path& folder;
-
-  std::string operator()(const Heading& h) const {
-    return fmt::format("<h{0}>{1}</h{0}>\n", h.level, escaped_html(h.text));
-  }
-  std::string operator()(const Paragraph& p) const { return "<p>" + escaped_html(p.text) + "</p>\n"; }
-  std::string operator()(const Link& l) const {
-    return fmt::format("<p><a href=\"{}\">{}</a></p>\n", l.file, escaped_html(l.text));
-  }
-  std::string operator()(const Table& t) const {
-    std::string text = "<table>\n<thead>" + html_row(t.head, "th") + "</thead>\n<tbody>\n";
-    for (const auto& row : t.rows) text += html_row(row, "td");
-    return text + "</tbody>\n</table>\n";
-  }
-  std::string operator()(const Picture& p) const {
-    const auto bytes = bytes_of(folder / p.file);
-    const std::string caption = escaped_html(p.caption);
-    const std::string image =
-        bytes ? fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", caption, base64(*bytes))
-              : "<p>(not drawn: " + escaped_html(p.file) + ")</p>";
-    std::string links;
-    for (const char* format : kForPrint) {
-      const std::string file = beside(p.file, format);
-      if (bytes && fs::exists(folder / file))
-        links += fmt::format(" <a href=\"{}\">{}</a>", escaped_html(file), upper_case(format));
-    }
-    return "<figure>" + image + "<figcaption>" + caption + links + "</figcaption></figure>\n";
-  }
-};
-
 }  // namespace
 
-std::string markdown(const Document& document) {
-  std::string text = "# " + escaped_markdown(document.title) + "\n\n";
-  for (const Block& block : document.blocks) text += std::visit(MarkdownWriter{}, block);
-  return text;
+Document::Document(const std::string& title, fs::path folder)
+    : folder_(std::move(folder)), markdown_("# " + escaped_markdown(title) + "\n\n") {
+  const std::string head = escaped_html(title);
+  html_ = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + head +
+          "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + head + "</h1>\n";
 }
 
-std::string html(const Document& document, const fs::path& folder) {
-  const std::string title = escaped_html(document.title);
-  std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + title +
-                     "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n";
-  for (const Block& block : document.blocks) text += std::visit(HtmlWriter{folder}, block);
-  return text + "</body>\n</html>\n";
+void Document::heading(int level, const std::string& text) {
+  markdown_ += std::string(static_cast<std::size_t>(level), '#') + " " + escaped_markdown(text) + "\n\n";
+  html_ += fmt::format("<h{0}>{1}</h{0}>\n", level, escaped_html(text));
+}
+
+void Document::paragraph(const std::string& text) {
+  markdown_ += escaped_markdown(text) + "\n\n";
+  html_ += "<p>" + escaped_html(text) + "</p>\n";
+}
+
+void Document::table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows) {
+  markdown_ += markdown_row(head) + "|";
+  for (std::size_t i = 0; i < head.size(); ++i) markdown_ += "---|";
+  markdown_ += "\n";
+  html_ += "<table>\n<thead>" + html_row(head, "th") + "</thead>\n<tbody>\n";
+  for (const auto& row : rows) {
+    markdown_ += markdown_row(row);
+    html_ += html_row(row, "td");
+  }
+  markdown_ += "\n";
+  html_ += "</tbody>\n</table>\n";
+}
+
+void Document::picture(const std::string& file, const std::string& caption) {
+  const std::string in_markdown = escaped_markdown(caption), in_html = escaped_html(caption);
+  const auto bytes = bytes_of(folder_ / file);
+  markdown_ += "![" + in_markdown + "](" + file + ")\n\n" + in_markdown;
+  html_ += "<figure>" +
+           (bytes ? fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">", in_html, base64(*bytes))
+                  : "<p>(not drawn: " + escaped_html(file) + ")</p>") +
+           "<figcaption>" + in_html;
+  for (const auto& [extension, name] : kForPrint) {
+    const std::string beside = fs::path(file).replace_extension(extension).string();
+    markdown_ += fmt::format(" [{}]({})", name, beside);
+    if (bytes && fs::exists(folder_ / beside))
+      html_ += fmt::format(" <a href=\"{}\">{}</a>", escaped_html(beside), name);
+  }
+  markdown_ += "\n\n";
+  html_ += "</figcaption></figure>\n";
+}
+
+void Document::link(const std::string& file, const std::string& text) {
+  markdown_ += "[" + escaped_markdown(text) + "](" + file + ")\n\n";
+  html_ += fmt::format("<p><a href=\"{}\">{}</a></p>\n", file, escaped_html(text));
 }
 
 }  // namespace exactvo::tools

@@ -8,43 +8,31 @@
 
 #include <filesystem>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace exactvo::tools {
 
-struct Heading {
-  int level = 2;
-  std::string text;
-};
-struct Paragraph {
-  std::string text;
-};
-struct Table {
-  std::vector<std::string> head;
-  std::vector<std::vector<std::string>> rows;
-};
-struct Picture {
-  std::string file;  ///< a PNG, relative to the folder of the document
-  std::string caption;
-};
-/// A paragraph that leads to a file beside the document.
-struct Link {
-  std::string file;  ///< a plain name, relative to the folder of the document
-  std::string text;
-};
-using Block = std::variant<Heading, Paragraph, Table, Picture, Link>;
+/// Written block by block, in both formats at once.
+class Document {
+ public:
+  /// `folder`: the document's own. Files are named relative to it.
+  Document(const std::string& title, std::filesystem::path folder);
 
-struct Document {
-  std::string title;
-  std::vector<Block> blocks;
+  void heading(int level, const std::string& text);
+  void paragraph(const std::string& text);
+  void table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows);
+  /// `file` is a PNG. In Markdown a link to it; in HTML a part of the text itself, or said to be missing where it is
+  /// not there. With links to the PDF and SVG beside it, in HTML where these are there.
+  void picture(const std::string& file, const std::string& caption);
+  /// A paragraph that leads to a file beside the document, which has a plain name.
+  void link(const std::string& file, const std::string& text);
+
+  const std::string& markdown() const { return markdown_; }
+  std::string html() const { return html_ + "</body>\n</html>\n"; }
+
+ private:
+  std::filesystem::path folder_;
+  std::string markdown_, html_;
 };
-
-/// Pictures as links to their files, with links to the PDF and SVG beside them.
-std::string markdown(const Document& document);
-
-/// Pictures in the text itself, read from `folder`, with links to the PDF and SVG beside them where these are there; a
-/// picture that is not there is said to be missing.
-std::string html(const Document& document, const std::filesystem::path& folder);
 
 }  // namespace exactvo::tools

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -21,6 +20,7 @@ namespace exactvo::tools {
 
 namespace fs = std::filesystem;
 using Json = ReportData::Json;
+using Rows = std::vector<std::vector<std::string>>;
 
 namespace {
 
@@ -58,28 +58,28 @@ std::string recorded_words(const ReportData& data, const std::string& equation) 
 }
 
 void add_equations(const ReportData& data, Document& d) {
-  d.blocks.push_back(Heading{2, "Equations"});
-  d.blocks.push_back(
-      Paragraph{"What is printed, what is wrong with it, and what runs. Controller `paper-literal` runs the formation "
-                "equations as printed, `paper-signs` with the signs of (15) and (17) corrected, `corrected` all of the "
-                "fourth column in the paper's order, `default` what makes it hold."});
-  Table t{{"eq.", "printed", "what is wrong", "implemented", "where"}, {}};
+  d.heading(2, "Equations");
+  d.paragraph(
+      "What is printed, what is wrong with it, and what runs. Controller `paper-literal` runs the formation "
+      "equations as printed, `paper-signs` with the signs of (15) and (17) corrected, `corrected` all of the "
+      "fourth column in the paper's order, `default` what makes it hold.");
+  Rows rows;
   for (const Equation& e : equations())
-    t.rows.push_back({e.number, e.printed, e.trouble.empty() ? "-" : e.trouble,
-                      e.implemented + recorded_words(data, e.number), places_of(e)});
-  d.blocks.push_back(t);
+    rows.push_back({e.number, e.printed, e.trouble.empty() ? "-" : e.trouble,
+                    e.implemented + recorded_words(data, e.number), places_of(e)});
+  d.table({"eq.", "printed", "what is wrong", "implemented", "where"}, rows);
 }
 
 void add_claims(const ReportData& data, Document& d) {
-  d.blocks.push_back(Heading{2, "Claims"});
-  d.blocks.push_back(
-      Paragraph{"Verdicts are on the paper's own method, and on what it leaves open by the default, computed from the "
-                "runs below: a claim about many runs holds in part where it holds for some of them, and is not judged "
-                "where one is missing."});
-  Table t{{"where", "the paper says", "verdict", "on", "seen", "figure"}, {}};
+  d.heading(2, "Claims");
+  d.paragraph(
+      "Verdicts are on the paper's own method, and on what it leaves open by the default, computed from the "
+      "runs below: a claim about many runs holds in part where it holds for some of them, and is not judged "
+      "where one is missing.");
+  Rows rows;
   for (const Claim& c : claims(data))
-    t.rows.push_back({c.where, c.text, name(c.verdict), "`" + c.judged + "`", c.evidence, "`" + c.figure + "`"});
-  d.blocks.push_back(t);
+    rows.push_back({c.where, c.text, name(c.verdict), "`" + c.judged + "`", c.evidence, "`" + c.figure + "`"});
+  d.table({"where", "the paper says", "verdict", "on", "seen", "figure"}, rows);
 }
 
 // --- Tables I and II, and the parameters ---
@@ -102,20 +102,29 @@ std::string compared(double seen, double paper) {
   return fmt::format("{:g}", seen) + unless(seen == paper);
 }
 
-void add_table_one(const ReportData& data, Document& d) {
-  const std::array<PaperRobot, 2> paper{{{"robot1", {0, 0}, {25, 13}}, {"robot2", {24, 14}, {10, 0}}}};
-  const formation::Scenario s = datasets::load_scenario(data.scenarios() / "A1.json");
-  Table t{{"robot", "initial position", "as run", "target position", "as run", "initial velocity", "as run",
-           "radius [m]", "as run"},
-          {}};
+/// The initial states of a table: the paper's, and those as run. `target` names what `target_of` a robot's number
+/// gives.
+template <class Target>
+void add_robots(const std::vector<PaperRobot>& paper, const formation::Scenario& s, const char* target,
+                const Target& target_of, Document& d) {
+  Rows rows;
   for (std::size_t i = 0; i < paper.size(); ++i) {
     const formation::Robot& r = s.robots.at(i);
-    t.rows.push_back({paper[i].name, shown(paper[i].start), compared(r.position, paper[i].start),
-                      shown(paper[i].target), compared(r.goals.back(), paper[i].target), "(0, 0)",
-                      compared(r.velocity, {}), fmt::format("{:g}", kPaperRadius), compared(r.radius, kPaperRadius)});
+    rows.push_back({paper[i].name, shown(paper[i].start), compared(r.position, paper[i].start), shown(paper[i].target),
+                    compared(target_of(i), paper[i].target), "(0, 0)", compared(r.velocity, {}),
+                    fmt::format("{:g}", kPaperRadius), compared(r.radius, kPaperRadius)});
   }
-  d.blocks.push_back(Heading{3, "Table I: the two robots of Section V.A (paper, and as run in A1)"});
-  d.blocks.push_back(t);
+  d.table(
+      {"robot", "initial position", "as run", target, "as run", "initial velocity", "as run", "radius [m]", "as run"},
+      rows);
+}
+
+void add_table_one(const ReportData& data, Document& d) {
+  const formation::Scenario s = datasets::load_scenario(data.scenarios() / "A1.json");
+  d.heading(3, "Table I: the two robots of Section V.A (paper, and as run in A1)");
+  add_robots(
+      {{"robot1", {0, 0}, {25, 13}}, {"robot2", {24, 14}, {10, 0}}}, s, "target position",
+      [&](std::size_t i) { return s.robots.at(i).goals.back(); }, d);
 }
 
 bool is_near(double seen, double expected) {
@@ -128,14 +137,14 @@ bool are_near(const std::vector<double>& seen, const std::vector<double>& expect
 }
 
 /// Section V.B's parameters, the paper's and those of the run.
-Table parameters(const formation::FormationSpec& spec) {
+void add_parameters(const formation::FormationSpec& spec, Document& d) {
   const formation::Gains& g = spec.gains;
   const formation::Leader& leader = spec.leader;
   const formation::Stability stability = stability_of(spec);
   const double paper_speed = std::hypot(3.0, 3.0);  // m/s
   const bool same_path = leader.path.size() == 2 && leader.path.front() == geometry::Vec2{0, 0} &&
                          leader.path.back() == geometry::Vec2{25, 25};
-  return {
+  d.table(
       {"parameter", "paper", "as run"},
       {{"k1, k2, k3", "0.25, 0.45, 37.5",
         fmt::format("{:g}, {:g}, {:g}", g.k1, g.k2, g.k3) + unless(are_near({g.k1, g.k2, g.k3}, {0.25, 0.45, 37.5}))},
@@ -146,25 +155,16 @@ Table parameters(const formation::FormationSpec& spec) {
        {"eigenvalues of L + B", "(1, 4, 4 follow from (21))",
         fmt::format("{:.6g}", fmt::join(stability.eigenvalues, ", ")) +
             unless(are_near({stability.eigenvalues.begin(), stability.eigenvalues.end()}, {1.0, 4.0, 4.0}))},
-       {"explicit Euler's step limit", "-", fmt::format("{:.4f} s", stability.euler_step_limit)}}};
+       {"explicit Euler's step limit", "-", fmt::format("{:.4f} s", stability.euler_step_limit)}});
 }
 
 void add_table_two(const ReportData& data, Document& d) {
-  const std::array<PaperRobot, 3> paper{
-      {{"robot1", {3, 0}, {1, 1}}, {"robot2", {0, 3}, {-1, 1}}, {"robot3", {-3, 0}, {1, -1}}}};
   const formation::Scenario s = datasets::load_scenario(data.scenarios() / "B1.json");
-  Table t{{"robot", "initial position", "as run", "Delta_i", "as run", "initial velocity", "as run", "radius [m]",
-           "as run"},
-          {}};
-  for (std::size_t i = 0; i < paper.size(); ++i) {
-    const formation::Robot& r = s.robots.at(i);
-    t.rows.push_back({paper[i].name, shown(paper[i].start), compared(r.position, paper[i].start),
-                      shown(paper[i].target), compared(s.formation->offsets.at(i), paper[i].target), "(0, 0)",
-                      compared(r.velocity, {}), fmt::format("{:g}", kPaperRadius), compared(r.radius, kPaperRadius)});
-  }
-  d.blocks.push_back(Heading{3, "Table II: the three robots of Section V.B (paper, and as run in B1)"});
-  d.blocks.push_back(t);
-  d.blocks.push_back(parameters(*s.formation));
+  d.heading(3, "Table II: the three robots of Section V.B (paper, and as run in B1)");
+  add_robots(
+      {{"robot1", {3, 0}, {1, 1}}, {"robot2", {0, 3}, {-1, 1}}, {"robot3", {-3, 0}, {1, -1}}}, s, "Delta_i",
+      [&](std::size_t i) { return s.formation->offsets.at(i); }, d);
+  add_parameters(*s.formation, d);
 }
 
 // --- Section V.A ---
@@ -205,36 +205,36 @@ std::string metres(const std::optional<double>& x) {
 }
 
 void add_section_a(const ReportData& data, Document& d) {
-  d.blocks.push_back(Heading{2, "Section V.A: robots among polyhedral obstacles"});
-  d.blocks.push_back(Paragraph{
+  d.heading(2, "Section V.A: robots among polyhedral obstacles");
+  d.paragraph(
       "Last arrival in seconds, seen / expected; X: stuck; !: touched something; DIFFERS: not as expected, or "
       "something touched by another method than orca. Of ivo-edge and ivo-cluster no times are expected. The "
-      "paper's figures do not give their obstacles: A0-A15 stand in for them."});
-  Table t{{"scenario", "orca", "ivo-edge, b = a/2", "ivo-cluster", "ivo", "ivo: minimum clearance to obstacles [m]",
-           "between robots [m]"},
-          {}};
+      "paper's figures do not give their obstacles: A0-A15 stand in for them.");
+  Rows rows;
   for (const Expected& e : kExpected) {
     const Json& ours = data.run(e.scenario, "ivo");
-    t.rows.push_back({e.scenario, orca_cell(data.run(e.scenario, "orca"), e),
-                      arrives_cell(data.run(e.scenario, "ivo-edge"), e.edge_half),
-                      arrives_cell(data.run(e.scenario, "ivo-cluster"), e.cluster), default_cell(ours),
-                      metres(value_of(ours, "min_obstacle_clearance")), metres(value_of(ours, "min_robot_clearance"))});
+    rows.push_back({e.scenario, orca_cell(data.run(e.scenario, "orca"), e),
+                    arrives_cell(data.run(e.scenario, "ivo-edge"), e.edge_half),
+                    arrives_cell(data.run(e.scenario, "ivo-cluster"), e.cluster), default_cell(ours),
+                    metres(value_of(ours, "min_obstacle_clearance")), metres(value_of(ours, "min_robot_clearance"))});
   }
-  d.blocks.push_back(t);
-  d.blocks.push_back(Picture{"figures/fig5-orca/A2/paths.png",
-                             "Scenario A2 with ORCA: both robots stop at the obstacles (Fig. 5(a) of the paper)."});
-  d.blocks.push_back(Picture{"figures/fig5-orca/A2/obstacle_distance.png",
-                             "The same run: distance of each robot from the nearest obstacle over time (Fig. 5(b))."});
-  d.blocks.push_back(Picture{"figures/fig6-ivo-edge/A2/paths.png",
-                             "Scenario A2 with the paper's ellipses, method ivo-edge (Fig. 6(a))."});
-  d.blocks.push_back(Picture{"figures/fig6-ivo-edge/A2/obstacle_distance.png",
-                             "The same run: distance of each robot from the nearest obstacle over time (Fig. 6(b))."});
-  d.blocks.push_back(Picture{"figures/fig6-ivo-edge/A2/robot_distance.png",
-                             "The same run: distance between the robots over time (Fig. 6(c))."});
-  d.blocks.push_back(Picture{"figures/fig6-ivo/A2/paths.png", "Scenario A2 with the default method, ivo."});
+  d.table({"scenario", "orca", "ivo-edge, b = a/2", "ivo-cluster", "ivo", "ivo: minimum clearance to obstacles [m]",
+           "between robots [m]"},
+          rows);
+  d.picture("figures/fig5-orca/A2/paths.png",
+            "Scenario A2 with ORCA: both robots stop at the obstacles (Fig. 5(a) of the paper).");
+  d.picture("figures/fig5-orca/A2/obstacle_distance.png",
+            "The same run: distance of each robot from the nearest obstacle over time (Fig. 5(b)).");
+  d.picture("figures/fig6-ivo-edge/A2/paths.png",
+            "Scenario A2 with the paper's ellipses, method ivo-edge (Fig. 6(a)).");
+  d.picture("figures/fig6-ivo-edge/A2/obstacle_distance.png",
+            "The same run: distance of each robot from the nearest obstacle over time (Fig. 6(b)).");
+  d.picture("figures/fig6-ivo-edge/A2/robot_distance.png",
+            "The same run: distance between the robots over time (Fig. 6(c)).");
+  d.picture("figures/fig6-ivo/A2/paths.png", "Scenario A2 with the default method, ivo.");
   for (const char* method : {"orca", "ivo-edge", "ivo-cluster", "ivo"})
-    d.blocks.push_back(Picture{std::string("figures/all-") + method + ".png",
-                               std::string("Paths in scenarios A0 to A15, method ") + method + ", all at one scale."});
+    d.picture(std::string("figures/all-") + method + ".png",
+              std::string("Paths in scenarios A0 to A15, method ") + method + ", all at one scale.");
 }
 
 // --- Section V.B ---
@@ -279,17 +279,16 @@ std::vector<std::string> formation_row(const Json& run, const char* scene, const
 }
 
 void add_section_b(const ReportData& data, Document& d) {
-  d.blocks.push_back(Heading{2, "Section V.B: three robots and a virtual leader"});
-  d.blocks.push_back(
-      Paragraph{"DIFFERS: not as expected. Of the default it is also expected that nothing is touched."});
-  Table t{{"scenario", "controller", "position error [m]", "expected", "velocity error [m/s]", "expected",
-           "to obstacles [m]", "between robots [m]", "jitter J [m/s²]", "peak acceleration [m/s²]", "heading reversals",
-           "active-set switches"},
-          {}};
+  d.heading(2, "Section V.B: three robots and a virtual leader");
+  d.paragraph("DIFFERS: not as expected. Of the default it is also expected that nothing is touched.");
+  Rows rows;
   for (const char* scene : {"B0", "B1", "B2", "B3"})
     for (const ExpectedFormation& e : kExpectedFormations)
-      t.rows.push_back(formation_row(data.run(scene, "ivo", e.controller), scene, e));
-  d.blocks.push_back(t);
+      rows.push_back(formation_row(data.run(scene, "ivo", e.controller), scene, e));
+  d.table({"scenario", "controller", "position error [m]", "expected", "velocity error [m/s]", "expected",
+           "to obstacles [m]", "between robots [m]", "jitter J [m/s²]", "peak acceleration [m/s²]", "heading reversals",
+           "active-set switches"},
+          rows);
   const std::pair<const char*, const char*> pictures[] = {
       {"paths", "Paths of the three robots in scenario B3 (Fig. 8(a), (b), (e))"},
       {"velocity", "Velocity of each robot in B3, along x and y (Fig. 8(c))"},
@@ -299,14 +298,12 @@ void add_section_b(const ReportData& data, Document& d) {
   for (const auto& [folder, controller] : {std::pair{"fig8-paper-signs", "controller paper-signs (signs corrected)"},
                                            std::pair{"fig8-formation", "default controller"}})
     for (const auto& [stem, caption] : pictures)
-      d.blocks.push_back(
-          Picture{fmt::format("figures/{}/B3/{}.png", folder, stem), fmt::format("{}, {}.", caption, controller)});
-  d.blocks.push_back(
-      Picture{"figures/jitter.png",
-              "Jitter (sum of the changes of acceleration) with controller paper-signs and with the default."});
-  d.blocks.push_back(Picture{
+      d.picture(fmt::format("figures/{}/B3/{}.png", folder, stem), fmt::format("{}, {}.", caption, controller));
+  d.picture("figures/jitter.png",
+            "Jitter (sum of the changes of acceleration) with controller paper-signs and with the default.");
+  d.picture(
       "figures/all-formation.png",
-      "Paths in scenarios B0 to B3 with the controller as printed, with its signs corrected, and with the default."});
+      "Paths in scenarios B0 to B3 with the controller as printed, with its signs corrected, and with the default.");
 }
 
 // --- The campaigns ---
@@ -322,31 +319,29 @@ std::string share(const Json& row) {
 }
 
 void add_random(const ReportData& data, Document& d) {
-  d.blocks.push_back(Heading{2, "Random fields"});
+  d.heading(2, "Random fields");
   if (data.random().is_null()) {
-    d.blocks.push_back(Paragraph{"Not run: `exactvo paper --out DIR --random 1000` adds them."});
+    d.paragraph("Not run: `exactvo paper --out DIR --random 1000` adds them.");
     return;
   }
-  d.blocks.push_back(Paragraph{
-      fmt::format("Reached and safe; seed {}, fields 0 to {}. Expected of ivo: all; DIFFERS where not.",
-                  data.random()["seed"].get<std::uint64_t>(), data.random()["fields"].get<std::uint64_t>() - 1)});
-  Table t{{"fields", "orca", "ivo-edge, b = a/2", "ivo-cluster", "ivo"}, {}};
+  d.paragraph(fmt::format("Reached and safe; seed {}, fields 0 to {}. Expected of ivo: all; DIFFERS where not.",
+                          data.random()["seed"].get<std::uint64_t>(),
+                          data.random()["fields"].get<std::uint64_t>() - 1));
+  Rows rows;
   for (const char* kind : {"convex", "open", "formation"})
-    t.rows.push_back({kind, share(data.random(kind, "orca")), share(data.random(kind, "ivo-edge")),
-                      share(data.random(kind, "ivo-cluster")),
-                      share(data.random(kind, "ivo")) + unless(all_reached(data.random(kind, "ivo")))});
-  d.blocks.push_back(t);
+    rows.push_back({kind, share(data.random(kind, "orca")), share(data.random(kind, "ivo-edge")),
+                    share(data.random(kind, "ivo-cluster")),
+                    share(data.random(kind, "ivo")) + unless(all_reached(data.random(kind, "ivo")))});
+  d.table({"fields", "orca", "ivo-edge, b = a/2", "ivo-cluster", "ivo"}, rows);
 }
 
 void add_ablations(const ReportData& data, Document& d) {
-  d.blocks.push_back(
-      Heading{2, "Ablations: the controller options added one by one, and the default less one at a time"});
+  d.heading(2, "Ablations: the controller options added one by one, and the default less one at a time");
   if (data.ablations().is_null()) {
-    d.blocks.push_back(Paragraph{"Not run: `exactvo paper --out DIR --ablations` adds them."});
+    d.paragraph("Not run: `exactvo paper --out DIR --ablations` adds them.");
     return;
   }
-  Table t{{"controller options", "reached and safe", "reached", "jitter J in B0 [m/s²]", "B1", "B2", "B3", "median J"},
-          {}};
+  Rows rows;
   for (const Json& row : data.ablations()["rows"]) {
     std::vector<std::string> cells{row["variant"].get<std::string>(), share(row),
                                    std::to_string(row["reached"].get<std::uint64_t>())};
@@ -356,43 +351,44 @@ void add_ablations(const ReportData& data, Document& d) {
     }
     const auto median = value_of(row, "median_jitter");
     cells.push_back(median ? fmt::format("{:.0f}", *median) : "-");
-    t.rows.push_back(cells);
+    rows.push_back(cells);
   }
-  d.blocks.push_back(t);
-  d.blocks.push_back(
-      Picture{"ablations/remedies.png",
-              "How many random formations reach their goal without a collision, for each set of controller options."});
-  d.blocks.push_back(
-      Picture{"ablations/remedies_jitter.png", "Jitter in B0 to B3 for each set of controller options."});
+  d.table({"controller options", "reached and safe", "reached", "jitter J in B0 [m/s²]", "B1", "B2", "B3", "median J"},
+          rows);
+  d.picture("ablations/remedies.png",
+            "How many random formations reach their goal without a collision, for each set of controller options.");
+  d.picture("ablations/remedies_jitter.png", "Jitter in B0 to B3 for each set of controller options.");
 }
 
 /// Which program made each file that this is made of, whoever puts the report together.
 void add_sources(const ReportData& data, Document& d) {
-  Table t{{"made of", "by ExactVO", "of (SHA-256 begins)"}, {}};
+  Rows rows;
   std::set<std::string> programs;
   for (const SourceFile& s : data.sources()) {
-    t.rows.push_back({"`" + s.name + "`", fmt::format("{}", fmt::join(s.programs, "; ")),
-                      s.inputs.empty() ? "-" : fmt::format("{}", fmt::join(s.inputs, ", "))});
+    rows.push_back({"`" + s.name + "`", fmt::format("{}", fmt::join(s.programs, "; ")),
+                    s.inputs.empty() ? "-" : fmt::format("{}", fmt::join(s.inputs, ", "))});
     programs.insert(s.programs.begin(), s.programs.end());
   }
-  d.blocks.push_back(t);
+  d.table({"made of", "by ExactVO", "of (SHA-256 begins)"}, rows);
   if (programs.size() > 1)
-    d.blocks.push_back(
-        Paragraph{"These files were not all written by one program: repeat the older runs to compare like with "
-                  "like."});
+    d.paragraph(
+        "These files were not all written by one program: repeat the older runs to compare like with "
+        "like.");
 }
 
 }  // namespace
 
-Document reproduction_report(const ReportData& data) {
-  Document d{"Multi-Robot Formation with Obstacle Avoidance: a reproduction", {}};
-  d.blocks.push_back(Paragraph{
+Document reproduction_report(const ReportData& data, const fs::path& folder) {
+  Document d("Multi-Robot Formation with Obstacle Avoidance: a reproduction", folder);
+  d.paragraph(
       "Of \"Multi-Robot Formation with Obstacle Avoidance: An Improved Velocity Obstacle-Based Approach\", by "
-      "ExactVO. SI units."});
+      "ExactVO. SI units.");
+  if (fs::exists(folder / kPageName))
+    d.link(kPageName, "Every run of Section V, to play and to look into, in a browser");
   add_sources(data, d);
   add_claims(data, d);
   add_equations(data, d);
-  d.blocks.push_back(Heading{2, "Initial states and parameters"});
+  d.heading(2, "Initial states and parameters");
   add_table_one(data, d);
   add_table_two(data, d);
   add_section_a(data, d);
@@ -403,12 +399,9 @@ Document reproduction_report(const ReportData& data) {
 }
 
 void write_report(const ReportData& data, const fs::path& folder) {
-  Document document = reproduction_report(data);
-  if (fs::exists(folder / kPageName))
-    document.blocks.insert(document.blocks.begin() + 1,
-                           Link{kPageName, "Every run of Section V, to play and to look into, in a browser"});
-  datasets::write_file_atomically(folder / "report.md", markdown(document));
-  datasets::write_file_atomically(folder / "report.html", html(document, folder));
+  const Document document = reproduction_report(data, folder);
+  datasets::write_file_atomically(folder / "report.md", document.markdown());
+  datasets::write_file_atomically(folder / "report.html", document.html());
 }
 
 }  // namespace exactvo::tools

@@ -13,9 +13,10 @@
 
 namespace exactvo::tools {
 
-Document reproduction_report(const ReportData& data);
+/// Pictures are looked for in `folder`.
+Document reproduction_report(const ReportData& data, const std::filesystem::path& folder);
 
-/// report.html and report.md in `folder`, each whole or not at all. Pictures and figures are looked for in `folder`.
+/// report.html and report.md in `folder`, each whole or not at all.
 void write_report(const ReportData& data, const std::filesystem::path& folder);
 
 }  // namespace exactvo::tools

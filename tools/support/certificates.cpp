@@ -32,11 +32,6 @@ namespace {
 
 constexpr const char* kFirstWords[] = {"half-plane-certificate ", "containment-certificate "};
 
-std::string text_of(const std::string& file) {
-  const std::string text = file == "-" ? datasets::read_standard_input() : datasets::read_text_file(file);
-  return std::string(without_mark(text, 1));
-}
-
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -295,7 +290,7 @@ JudgedCertificates judge_certificates_in(const std::string& text) {
 }
 
 JudgedCertificates judge_certificates(const std::string& file) {
-  const std::string text = text_of(file);
+  const std::string whole = datasets::read_file_or_input(file), text(without_mark(whole));
   JudgedCertificates judged = judge_certificates_in(text);
   const bool is_empty = judged.all.empty() && judged.none == 0;
   if (is_empty || (!is_json(text) && !has_a_line_of_one(text)))

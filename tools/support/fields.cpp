@@ -18,9 +18,9 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-std::string_view without_mark(std::string_view line, std::size_t number) {
+std::string_view without_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
-  return number == 1 && line.substr(0, kMark.size()) == kMark ? line.substr(kMark.size()) : line;
+  return text.substr(0, kMark.size()) == kMark ? text.substr(kMark.size()) : text;
 }
 
 std::vector<std::string_view> fields_of(std::string_view line) {
@@ -41,6 +41,20 @@ std::optional<double> number_in(std::string_view field) {
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
   return value;
+}
+
+bool TableLines::next() {
+  while (lines_.next(line_)) {
+    line_ = trimmed(number() == 1 ? without_mark(line_) : line_);
+    if (!line_.empty() && line_.front() != '#') return true;
+  }
+  return false;
+}
+
+void TableLines::refuse(datasets::DataCode code, std::string_view found, const std::string& expected) const {
+  constexpr std::size_t kShown = 60;
+  throw datasets::DataError(code, file(), "line " + std::to_string(number()),
+                            std::string(found.substr(0, kShown)) + (found.size() > kShown ? "..." : ""), expected);
 }
 
 }  // namespace exactvo::tools

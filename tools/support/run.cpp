@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <iostream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "exactvo/datasets/data_error.h"
+#include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/metrics_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "figures/gnuplot.h"
@@ -27,20 +27,6 @@ using formation::Scenario;
 using formation::SimulationOptions;
 
 namespace {
-
-datasets::RunInfo run_info(const Scenario& scenario, const SimulationOptions& options,
-                           const datasets::Provenance& provenance) {
-  datasets::RunInfo info{scenario.name, name(options.method), std::nullopt, std::nullopt, provenance};
-  if (scenario.formation) {
-    info.controller = name(options.controller);
-    info.integrator = name(options.integrator);
-  }
-  const formation::Guidance guidance = guidance_of(scenario, options);
-  const formation::Liveness liveness = liveness_of(scenario, options);
-  if (guidance != formation::Guidance::none) info.guidance = name(guidance);
-  if (liveness != formation::Liveness::off) info.liveness = name(liveness);
-  return info;
-}
 
 /// Hands the warnings on before the first row.
 class WarningRecorder : public RunRecorder {
@@ -92,8 +78,7 @@ datasets::LoadedScenario load(const std::string& path) {
     refuse_run(path);
     return datasets::load_scenario_with_notes(path);
   }
-  const std::string text{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
-  return datasets::parse_scenario_with_notes(text, "-", fs::current_path());
+  return datasets::parse_scenario_with_notes(datasets::read_file_or_input("-"), "-", fs::current_path());
 }
 
 }  // namespace
@@ -109,7 +94,7 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
     return !interrupted();
   };
   datasets::RecordingFile about;
-  about.info = run_info(scenario, options, provenance);
+  about.info = datasets::run_info(scenario, options, provenance);
   about.scenario = scenario;
   WarningRecorder recorder(std::move(about), output);
   formation::Recording recording = simulate(scenario, options, recorder);
@@ -121,17 +106,12 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
   return finished;
 }
 
-RunName name_of(const Scenario& scenario, const SimulationOptions& options) {
-  const datasets::RunInfo info = run_info(scenario, options, {});
-  return {info.scenario, info.method, info.controller, info.guidance, info.liveness};
-}
-
-std::string in_words(const RunName& run) {
+std::string in_words(const datasets::RunInfo& run) {
   return run.scenario + ", method " + run.method + (run.controller ? ", controller " + *run.controller : "") +
          (run.guidance ? ", guidance " + *run.guidance : "") + (run.liveness ? ", liveness " + *run.liveness : "");
 }
 
-std::optional<RunName> run_in(const fs::path& folder) {
+std::optional<datasets::RunInfo> run_in(const fs::path& folder) {
   std::ifstream file(folder / "metrics.json");
   const auto metrics = nlohmann::json::parse(file, nullptr, false);
   if (!metrics.is_object()) return std::nullopt;
@@ -140,13 +120,16 @@ std::optional<RunName> run_in(const fs::path& folder) {
     if (found == metrics.end() || !found->is_string()) return std::nullopt;
     return found->get<std::string>();
   };
-  return RunName{text("scenario").value_or(""), text("method").value_or(""), text("controller"), text("guidance"),
-                 text("liveness")};
+  return datasets::RunInfo{text("scenario").value_or(""), text("method").value_or(""), text("controller"), {}, {},
+                           text("guidance"), text("liveness")};
 }
 
-void check_same_run(const fs::path& folder, const RunName& run) {
-  const std::optional<RunName> earlier = run_in(folder);
-  if (!earlier || *earlier == run) return;
+void check_same_run(const fs::path& folder, const datasets::RunInfo& run) {
+  const std::optional<datasets::RunInfo> earlier = run_in(folder);
+  const auto name = [](const datasets::RunInfo& r) {
+    return std::tie(r.scenario, r.method, r.controller, r.guidance, r.liveness);
+  };
+  if (!earlier || name(*earlier) == name(run)) return;
   throw datasets::DataError(datasets::DataCode::other_run, folder.string(), "",
                             "an earlier run of " + in_words(*earlier),
                             "an earlier run of " + in_words(run) + ", another folder, or --force to replace it");
@@ -195,10 +178,10 @@ void draw(const std::vector<fs::path>& scripts) {
   }
 }
 
-ReadScenario read_scenario(const std::string& path) {
+datasets::LoadedScenario read_scenario(const std::string& path) {
   datasets::LoadedScenario loaded = load(path);
   for (const std::string& note : loaded.notes) message(note);
-  return {std::move(loaded.scenario), std::move(loaded.files), loaded.names_liveness};
+  return loaded;
 }
 
 }  // namespace exactvo::tools

@@ -12,6 +12,7 @@
 
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/datasets/recording_file.h"
+#include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "explorer/packed_run.h"
@@ -41,24 +42,14 @@ struct RunOutput {
 FinishedRun run(const formation::Scenario& scenario, formation::SimulationOptions options,
                 const datasets::Provenance& provenance, const RunOutput& output = {});
 
-/// What tells one run from another in a folder.
-struct RunName {
-  std::string scenario, method;
-  std::optional<std::string> controller, guidance, liveness;
-  bool operator==(const RunName& other) const {
-    return scenario == other.scenario && method == other.method && controller == other.controller &&
-           guidance == other.guidance && liveness == other.liveness;
-  }
-};
-RunName name_of(const formation::Scenario& scenario, const formation::SimulationOptions& options);
 /// "A2, method ivo, controller default".
-std::string in_words(const RunName& run);
+std::string in_words(const datasets::RunInfo& run);
 
-/// The run whose metrics.json stands in the folder, if any.
-std::optional<RunName> run_in(const std::filesystem::path& folder);
+/// The run whose metrics.json stands in the folder, if any; its integrator and provenance are not read.
+std::optional<datasets::RunInfo> run_in(const std::filesystem::path& folder);
 
-/// Throws datasets::DataError (E_OTHER_RUN) if the folder holds an earlier run of another name.
-void check_same_run(const std::filesystem::path& folder, const RunName& run);
+/// Throws datasets::DataError (E_OTHER_RUN) if the folder holds an earlier run of another scenario, or run otherwise.
+void check_same_run(const std::filesystem::path& folder, const datasets::RunInfo& run);
 
 /// Throws datasets::DataError (E_FORMAT_UNKNOWN) where the path is figures/ or a file beside a recording, such as
 /// trajectory.csv: what is meant is the folder of the run, which is named.
@@ -78,13 +69,7 @@ std::vector<std::filesystem::path> write_figures(const std::vector<Figure>& figu
 /// Runs gnuplot on the scripts; a message where it is absent. Throws std::runtime_error where it fails.
 void draw(const std::vector<std::filesystem::path>& scripts);
 
-struct ReadScenario {
-  formation::Scenario scenario;
-  std::vector<std::filesystem::path> files;  ///< for provenance: the file itself and those it names; none where stdin
-  bool names_liveness = false;               ///< else the scenario has the default
-};
-
-/// A scenario from a file or a pipe, which is read once, or from stdin where `path` is "-".
-ReadScenario read_scenario(const std::string& path);
+/// A scenario from a file or a pipe, which is read once, or from stdin where `path` is "-". Its notes are said.
+datasets::LoadedScenario read_scenario(const std::string& path);
 
 }  // namespace exactvo::tools

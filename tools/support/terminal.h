@@ -5,6 +5,7 @@
 /// Words for people, on stderr: messages, and a line that says how far a long run has come. Results go to stdout.
 
 #include <chrono>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +19,23 @@ void set_quiet(bool quiet);
 void print(const std::string& text);
 /// The same for what was printed by other means.
 void check_stdout();
+
+/// Prints in chunks: neither a system call a line nor the whole text in memory.
+class ChunkedOutput {
+ public:
+  void add(const std::string& text) {
+    text_ += text;
+    if (text_.size() > kChunk) flush();
+  }
+  void flush() {
+    print(text_);
+    text_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kChunk = std::size_t{1} << 16;
+  std::string text_;
+};
 
 /// Nobody reads stdout any more (`| head`): what would go on printing for long ends here, with success.
 struct ReaderLeft : std::runtime_error {

@@ -13,14 +13,24 @@ namespace exactvo::tools {
 UsageError::UsageError(const std::string& where, const std::string& found, const std::string& expected)
     : std::runtime_error(where + ": found '" + found + "', expected " + expected) {}
 
-UsageError::UsageError(const std::string& message) : std::runtime_error(message) {}
+UsageError missing_option(const std::string& verb, const std::string& what, const std::string& description) {
+  return UsageError("missing " + what + ": " + description + " (see 'exactvo " + verb + " --help')");
+}
 
-MissingOption::MissingOption(const std::string& verb, const std::string& what, const std::string& description)
-    : UsageError("missing " + what + ": " + description + " (see 'exactvo " + verb + " --help')") {}
+UsageError unknown_word(const std::string& where, const std::string& word, const std::vector<std::string>& known) {
+  return {where, word, fmt::format("one of {}{}", fmt::join(known, " "), suggestion(word, known))};
+}
+
+void require_known(const std::string& where, const std::string& word, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), word) == known.end()) throw unknown_word(where, word, known);
+}
+
+void require(bool holds, const std::string& where, const std::string& found, const std::string& expected) {
+  if (!holds) throw UsageError(where, found, expected);
+}
 
 void require_length(const std::string& option, double value) {
-  if (!(value >= 0.0) || std::isinf(value))
-    throw UsageError(option, fmt::format("{}", value), "a length in m, at least 0");
+  require(value >= 0.0 && !std::isinf(value), option, fmt::format("{}", value), "a length in m, at least 0");
 }
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {

@@ -15,17 +15,21 @@ class UsageError : public std::runtime_error {
  public:
   /// "WHERE: found 'FOUND', expected EXPECTED".
   UsageError(const std::string& where, const std::string& found, const std::string& expected);
-
- protected:
-  explicit UsageError(const std::string& message);
+  explicit UsageError(const std::string& message) : std::runtime_error(message) {}
 };
 
-/// What no verb works without, where the parser does not ask for it because something else may stand in its place.
-class MissingOption : public UsageError {
- public:
-  /// `what`: "option --out" or "argument kind". "missing WHAT: DESCRIPTION (see 'exactvo VERB --help')".
-  MissingOption(const std::string& verb, const std::string& what, const std::string& description);
-};
+/// What no verb works without, where the parser does not ask for it because something else may stand in its place:
+/// "missing WHAT: DESCRIPTION (see 'exactvo VERB --help')". `what`: "option --out" or "argument kind".
+UsageError missing_option(const std::string& verb, const std::string& what, const std::string& description);
+
+/// "WHERE: found 'WORD', expected one of" the known ones, with the nearest.
+UsageError unknown_word(const std::string& where, const std::string& word, const std::vector<std::string>& known);
+
+/// Throws unknown_word unless the word is known.
+void require_known(const std::string& where, const std::string& word, const std::vector<std::string>& known);
+
+/// Throws UsageError unless it holds.
+void require(bool holds, const std::string& where, const std::string& found, const std::string& expected);
 
 /// Throws UsageError unless `value` is a finite length of 0 m or more.
 void require_length(const std::string& option, double value);
@@ -45,9 +49,7 @@ template <class Value>
 Value parse_choice(const std::string& option, const std::string& text, const std::vector<std::string>& names) {
   Value value{};
   if (parse(text, value)) return value;
-  std::string expected = "one of";
-  for (const std::string& name : names) expected += " " + name;
-  throw UsageError(option, text, expected + suggestion(text, names));
+  throw unknown_word(option, text, names);
 }
 
 }  // namespace exactvo::tools

@@ -32,9 +32,7 @@ void append_shape_options(JsonWriter& json, const geometry::ShapeOptions& o) {
 
 void append_robot(JsonWriter& json, const BatchRobot& robot) {
   json.key("robot").begin_object().member("radius", robot.radius).member("time_horizon", robot.time_horizon);
-  json.member("velocity", robot.velocity).key("positions").begin_array();
-  for (const geometry::Vec2 p : robot.positions) json.value(p);
-  json.end_array().member("goal", robot.goal).end_object();
+  json.member("velocity", robot.velocity)json.list("positions", robot.positions).member("goal", robot.goal).end_object();
 }
 
 /// Said before the work, not after.

@@ -6,6 +6,51 @@
 namespace exactvo::datasets {
 namespace {
 
+constexpr std::pair<DataCode, const char*> kCodeNames[] = {{DataCode::file_missing, "E_FILE_MISSING"},
+                                                           {DataCode::file_unreadable, "E_FILE_UNREADABLE"},
+                                                           {DataCode::file_unwritable, "E_FILE_UNWRITABLE"},
+                                                           {DataCode::json_syntax, "E_JSON_SYNTAX"},
+                                                           {DataCode::json_duplicate_key, "E_JSON_DUPLICATE_KEY"},
+                                                           {DataCode::key_missing, "E_KEY_MISSING"},
+                                                           {DataCode::key_unknown, "E_KEY_UNKNOWN"},
+                                                           {DataCode::wrong_type, "E_TYPE"},
+                                                           {DataCode::out_of_range, "E_RANGE"},
+                                                           {DataCode::not_an_option, "E_OPTION"},
+                                                           {DataCode::wrong_count, "E_COUNT"},
+                                                           {DataCode::no_alternative, "E_NO_ALTERNATIVE"},
+                                                           {DataCode::scenario, "E_SCENARIO"},
+                                                           {DataCode::format_unknown, "E_FORMAT_UNKNOWN"},
+                                                           {DataCode::format_unavailable, "E_FORMAT_UNAVAILABLE"},
+                                                           {DataCode::format_syntax, "E_FORMAT_SYNTAX"},
+                                                           {DataCode::number, "E_NUMBER"},
+                                                           {DataCode::nesting, "E_NESTING"},
+                                                           {DataCode::size, "E_SIZE"},
+                                                           {DataCode::path_escape, "E_PATH_ESCAPE"},
+                                                           {DataCode::image, "E_IMAGE"},
+                                                           {DataCode::projection, "E_PROJECTION"},
+                                                           {DataCode::other_run, "E_OTHER_RUN"},
+                                                           {DataCode::ranks_differ, "E_RANKS_DIFFER"},
+                                                           {DataCode::library, "E_LIBRARY"},
+                                                           {DataCode::not_finite, "E_NOT_FINITE"},
+                                                           {DataCode::too_few_points, "E_TOO_FEW_POINTS"},
+                                                           {DataCode::unclosed, "E_UNCLOSED"},
+                                                           {DataCode::repeated_vertex, "E_REPEATED_VERTEX"},
+                                                           {DataCode::clockwise, "E_CLOCKWISE"},
+                                                           {DataCode::zero_area, "E_ZERO_AREA"},
+                                                           {DataCode::self_intersection, "E_SELF_INTERSECTION"},
+                                                           {DataCode::hole_outside, "E_HOLE_OUTSIDE"},
+                                                           {DataCode::rounding, "E_ROUNDING"}};
+
+constexpr std::pair<geometry::RingProblemCode, DataCode> kOfRings[] = {
+    {geometry::RingProblemCode::not_finite, DataCode::not_finite},
+    {geometry::RingProblemCode::too_few_points, DataCode::too_few_points},
+    {geometry::RingProblemCode::unclosed, DataCode::unclosed},
+    {geometry::RingProblemCode::repeated_vertex, DataCode::repeated_vertex},
+    {geometry::RingProblemCode::clockwise, DataCode::clockwise},
+    {geometry::RingProblemCode::zero_area, DataCode::zero_area},
+    {geometry::RingProblemCode::self_intersection, DataCode::self_intersection},
+    {geometry::RingProblemCode::hole_outside, DataCode::hole_outside}};
+
 std::string one_line(const std::string& file, const std::string& place, const std::string& found,
                      const std::string& expected, DataCode code) {
   std::string text = file;
@@ -20,98 +65,14 @@ std::string one_line(const std::string& file, const std::string& place, const st
 }  // namespace
 
 const char* code_name(DataCode code) {
-  switch (code) {
-    case DataCode::file_missing:
-      return "E_FILE_MISSING";
-    case DataCode::file_unreadable:
-      return "E_FILE_UNREADABLE";
-    case DataCode::file_unwritable:
-      return "E_FILE_UNWRITABLE";
-    case DataCode::json_syntax:
-      return "E_JSON_SYNTAX";
-    case DataCode::json_duplicate_key:
-      return "E_JSON_DUPLICATE_KEY";
-    case DataCode::key_missing:
-      return "E_KEY_MISSING";
-    case DataCode::key_unknown:
-      return "E_KEY_UNKNOWN";
-    case DataCode::wrong_type:
-      return "E_TYPE";
-    case DataCode::out_of_range:
-      return "E_RANGE";
-    case DataCode::not_an_option:
-      return "E_OPTION";
-    case DataCode::wrong_count:
-      return "E_COUNT";
-    case DataCode::no_alternative:
-      return "E_NO_ALTERNATIVE";
-    case DataCode::scenario:
-      return "E_SCENARIO";
-    case DataCode::format_unknown:
-      return "E_FORMAT_UNKNOWN";
-    case DataCode::format_unavailable:
-      return "E_FORMAT_UNAVAILABLE";
-    case DataCode::format_syntax:
-      return "E_FORMAT_SYNTAX";
-    case DataCode::number:
-      return "E_NUMBER";
-    case DataCode::nesting:
-      return "E_NESTING";
-    case DataCode::size:
-      return "E_SIZE";
-    case DataCode::path_escape:
-      return "E_PATH_ESCAPE";
-    case DataCode::image:
-      return "E_IMAGE";
-    case DataCode::projection:
-      return "E_PROJECTION";
-    case DataCode::other_run:
-      return "E_OTHER_RUN";
-    case DataCode::ranks_differ:
-      return "E_RANKS_DIFFER";
-    case DataCode::library:
-      return "E_LIBRARY";
-    case DataCode::not_finite:
-      return "E_NOT_FINITE";
-    case DataCode::too_few_points:
-      return "E_TOO_FEW_POINTS";
-    case DataCode::unclosed:
-      return "E_UNCLOSED";
-    case DataCode::repeated_vertex:
-      return "E_REPEATED_VERTEX";
-    case DataCode::clockwise:
-      return "E_CLOCKWISE";
-    case DataCode::zero_area:
-      return "E_ZERO_AREA";
-    case DataCode::self_intersection:
-      return "E_SELF_INTERSECTION";
-    case DataCode::hole_outside:
-      return "E_HOLE_OUTSIDE";
-    case DataCode::rounding:
-      return "E_ROUNDING";
-  }
+  for (const auto& [known, name] : kCodeNames)
+    if (known == code) return name;
   return "E_UNKNOWN";
 }
 
 DataCode data_code(geometry::RingProblemCode code) {
-  switch (code) {
-    case geometry::RingProblemCode::not_finite:
-      return DataCode::not_finite;
-    case geometry::RingProblemCode::too_few_points:
-      return DataCode::too_few_points;
-    case geometry::RingProblemCode::unclosed:
-      return DataCode::unclosed;
-    case geometry::RingProblemCode::repeated_vertex:
-      return DataCode::repeated_vertex;
-    case geometry::RingProblemCode::clockwise:
-      return DataCode::clockwise;
-    case geometry::RingProblemCode::zero_area:
-      return DataCode::zero_area;
-    case geometry::RingProblemCode::self_intersection:
-      return DataCode::self_intersection;
-    case geometry::RingProblemCode::hole_outside:
-      return DataCode::hole_outside;
-  }
+  for (const auto& [of_ring, of_data] : kOfRings)
+    if (of_ring == code) return of_data;
   return DataCode::self_intersection;
 }
 

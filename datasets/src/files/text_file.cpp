@@ -35,9 +35,11 @@ void refuse_irregular(const std::filesystem::path& path, mode_t mode) {
     throw DataError(DataCode::file_unreadable, path.string(), "", word, "a file or a pipe");
 }
 
-/// A regular file or a pipe, open for reading without ever blocking.
+/// A regular file, a pipe or standard input, read without ever blocking.
 class Input {
  public:
+  /// Standard input, whatever it is.
+  Input() : path_("standard input"), descriptor_(STDIN_FILENO), is_standard_(true) {}
   explicit Input(const std::filesystem::path& path) : path_(path) {
     struct stat facts {};
     // Asked before it is opened: opening a device may do something.
@@ -52,7 +54,9 @@ class Input {
       throw;
     }
   }
-  ~Input() { ::close(descriptor_); }
+  ~Input() {
+    if (!is_standard_) ::close(descriptor_);
+  }
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
@@ -64,7 +68,8 @@ class Input {
     const std::size_t before = text.size();
     text.resize(before + count);
     ssize_t got = 0;
-    while ((got = read_once(text.data() + before, count)) < 0) wait();
+    while (is_standard_ && !is_ready()) continue;  // reading it may block
+    while ((got = read_once(text.data() + before, count)) < 0) is_ready();
     text.resize(before + static_cast<std::size_t>(got));
     has_begun_ = has_begun_ || got > 0;
     return got > 0;
@@ -90,14 +95,18 @@ class Input {
     return got == 0 && !has_begun_ ? -1 : got;
   }
 
-  void wait() {
+  /// Waits a little for it.
+  bool is_ready() {
     call_wait_hook();
     pollfd one{descriptor_, POLLIN, 0};
-    if (::poll(&one, 1, kWaitMilliseconds) > 0) has_begun_ = true;  // there was a writer, who may have left
+    const bool is_ready = ::poll(&one, 1, kWaitMilliseconds) > 0;
+    has_begun_ = has_begun_ || is_ready;  // there was a writer, who may have left
+    return is_ready;
   }
 
-  const std::filesystem::path& path_;
+  std::filesystem::path path_;
   int descriptor_ = -1;
+  bool is_standard_ = false;
   bool is_pipe_ = false;
   bool has_begun_ = true;  ///< from then on, nothing to read is the end
   std::uint64_t size_ = 0;
@@ -105,9 +114,21 @@ class Input {
 
 constexpr std::size_t kBlock = std::size_t{1} << 16;
 
-[[noreturn]] void refuse_size(const std::filesystem::path& path, const std::string& found) {
-  throw DataError(DataCode::size, path.string(), "", found,
+[[noreturn]] void refuse_size(const std::string& file, const std::string& found) {
+  throw DataError(DataCode::size, file, "", found,
                   "at most " + std::to_string(kLargestWholeFile) + " bytes: it is read whole");
+}
+
+/// To its end.
+std::string text_of(Input&& input, const std::string& file) {
+  if (input.size() > kLargestWholeFile) refuse_size(file, std::to_string(input.size()) + " bytes");
+  std::string text;
+  text.reserve(input.size() + kBlock);
+  while (input.append(text, kBlock)) {
+    if (text.size() > kLargestWholeFile) refuse_size(file, "more than that");
+    call_wait_hook();
+  }
+  return text;
 }
 
 }  // namespace
@@ -134,28 +155,37 @@ std::string read_beginning(const std::filesystem::path& path, std::size_t count)
 }
 
 std::string read_text_file(const std::filesystem::path& path) {
-  Input input(path);
-  if (input.size() > kLargestWholeFile) refuse_size(path, std::to_string(input.size()) + " bytes");
-  std::string text;
-  text.reserve(input.size() + kBlock);
-  while (input.append(text, kBlock)) {
-    if (text.size() > kLargestWholeFile) refuse_size(path, "more than that in a pipe");
-    call_wait_hook();
-  }
-  return text;
+  return text_of(Input(path), path.string());
+}
+
+std::string read_file_or_input(const std::string& file) {
+  return file == "-" ? text_of(Input(), "standard input") : read_text_file(file);
 }
 
 struct TextLines::State {
-  explicit State(const std::filesystem::path& file) : path(file), input(path) {}
-  std::filesystem::path path;
+  explicit State(const std::filesystem::path& path) : name(path.string()), input(path) {}
+  State(const std::string& file, std::size_t most)
+      : name(file == "-" ? "standard input" : file), input(file == "-" ? Input() : Input(file)), longest(most) {}
+  std::string name;
   Input input;
-  std::string buffer;
+  std::size_t longest = kLargestWholeFile;
+  std::string buffer{};
   std::size_t begin = 0;  ///< of what was not given yet
+  std::size_t number = 0;
   bool at_end = false;
 };
 
 TextLines::TextLines(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {}
+TextLines::TextLines(const std::string& file, std::size_t longest) : state_(std::make_unique<State>(file, longest)) {}
 TextLines::~TextLines() = default;
+
+std::size_t TextLines::number() const {
+  return state_->number;
+}
+
+const std::string& TextLines::file() const {
+  return state_->name;
+}
 
 bool TextLines::next(std::string_view& line) {
   State& s = *state_;
@@ -164,30 +194,19 @@ bool TextLines::next(std::string_view& line) {
     s.buffer.erase(0, s.begin);
     s.begin = 0;
     searched = s.buffer.size();
-    if (searched > kLargestWholeFile) refuse_size(s.path, "a line of more than that");
+    if (searched > s.longest) break;
     s.at_end = !s.input.append(s.buffer, kBlock);
     call_wait_hook();
   }
   if (s.begin == s.buffer.size()) return false;
+  ++s.number;
   end = std::min(end, s.buffer.size());
+  if (end - s.begin > s.longest)
+    throw DataError(DataCode::size, s.name, "line " + std::to_string(s.number),
+                    "a line of more than " + std::to_string(s.longest) + " bytes", "shorter lines");
   line = std::string_view(s.buffer).substr(s.begin, end - s.begin);
   s.begin = std::min(end + 1, s.buffer.size());
   return true;
-}
-
-std::string read_standard_input() {
-  std::string text;
-  char block[kBlock];
-  for (;;) {
-    call_wait_hook();
-    pollfd one{STDIN_FILENO, POLLIN, 0};
-    if (::poll(&one, 1, kWaitMilliseconds) <= 0) continue;
-    const ssize_t got = ::read(STDIN_FILENO, block, sizeof block);
-    if (got == 0) return text;
-    if (got < 0 && errno != EINTR && errno != EAGAIN) throw cannot_read("standard input", errno);
-    if (got > 0) text.append(block, static_cast<std::size_t>(got));
-    if (text.size() > kLargestWholeFile) refuse_size("standard input", "more than that");
-  }
 }
 
 std::string line_and_column(std::string_view text, std::size_t byte) {

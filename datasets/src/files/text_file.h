@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 
@@ -19,20 +18,6 @@ bool is_pipe(const std::filesystem::path& path);
 
 /// The first `count` bytes of a regular file, or all. Refuses a pipe as well: what was read of it would be lost.
 std::string read_beginning(const std::filesystem::path& path, std::size_t count);
-
-/// The lines of a file or a pipe, one after the other: memory does not grow with the file. Throws DataError as
-/// `read_text_file` does, and E_SIZE for a line beyond kLargestWholeFile.
-class TextLines {
- public:
-  explicit TextLines(const std::filesystem::path& path);
-  ~TextLines();
-  /// The next line without its \n, valid until the next call; false at the end.
-  bool next(std::string_view& line);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
 
 /// "line 3, column 7", both from 1; columns count bytes.
 std::string line_and_column(std::string_view text, std::size_t byte);

@@ -1,29 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Obstacles as GDAL's formats: made in memory, so that the file on disk appears whole or not at all.
-#include <cpl_conv.h>
-#include <cpl_vsi.h>
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
-#include <atomic>
 
 #include "exactvo/datasets/data_error.h"
 #include "gdal/gdal_session.h"
+#include "gdal/memory_file.h"
 #include "gdal/plane_system.h"
 #include "writers/property_table.h"
 #include "writers/writers.h"
 
 namespace exactvo::datasets {
 namespace {
-
-/// GeoPackage records when it was written: always the same, so that equal obstacles are equal bytes.
-class FixedDate {
- public:
-  FixedDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"); }
-  ~FixedDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", nullptr); }
-  FixedDate(const FixedDate&) = delete;
-  FixedDate& operator=(const FixedDate&) = delete;
-};
 
 void add_points(OGRSimpleCurve& curve, const std::vector<geometry::Vec2>& points) {
   curve.setNumPoints(static_cast<int>(points.size()));
@@ -45,28 +34,6 @@ OGRGeometryUniquePtr ogr_of(const geometry::Obstacle& shape) {
   return OGRGeometryUniquePtr(polygon.release());
 }
 
-/// A file in memory with a name of its own, gone with the object.
-class MemoryFile {
- public:
-  explicit MemoryFile(const std::string& extension) {
-    static std::atomic<unsigned> number{0};
-    name_ = "/vsimem/exactvo_written_" + std::to_string(number++) + extension;
-  }
-  ~MemoryFile() { VSIUnlink(name_.c_str()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  const std::string& name() const { return name_; }
-  std::string bytes() const {
-    vsi_l_offset length = 0;
-    const GByte* data = VSIGetMemFileBuffer(name_.c_str(), &length, FALSE);
-    return data == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(data), length);
-  }
-
- private:
-  std::string name_;
-};
-
 class LayerWriter {
  public:
   LayerWriter(const std::string& driver, const std::string& file, const WriteOptions& options)
@@ -75,11 +42,10 @@ class LayerWriter {
   }
 
   Written write(const Obstacles& obstacles) {
-    const FixedDate date;
-    const MemoryFile memory(driver_ == "GPKG" ? ".gpkg" : ".fgb");
+    const MemoryFile memory(driver_ == "GPKG" ? ".gpkg" : ".fgb", "2000-01-01T00:00:00.000Z");
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_.c_str());
     refuse_unless(driver != nullptr);
-    std::unique_ptr<GDALDataset> data(driver->Create(memory.name().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    std::unique_ptr<GDALDataset> data(driver->Create(memory.name(), 0, 0, 0, GDT_Unknown, nullptr));
     refuse_unless(data != nullptr);
     fill(*data, obstacles);
     data.reset();

@@ -78,6 +78,25 @@ class JsonWriter {
     key(name);
     return v ? value(*v) : null();
   }
+  /// What `append` appends of it, or null.
+  template <class T, class Append>
+  JsonWriter& member(std::string_view name, const std::optional<T>& v, const Append& append) {
+    key(name);
+    if (!v) return null();
+    append(*v);
+    return *this;
+  }
+  /// What `append` appends of each entry.
+  template <class List, class Append>
+  JsonWriter& list(std::string_view name, const List& entries, const Append& append) {
+    key(name).begin_array();
+    for (const auto& entry : entries) append(entry);
+    return end_array();
+  }
+  template <class List>
+  JsonWriter& list(std::string_view name, const List& entries) {
+    return list(name, entries, [this](const auto& entry) { value(entry); });
+  }
 
   const std::string& text() const { return text_; }
   std::string take() { return std::move(text_); }

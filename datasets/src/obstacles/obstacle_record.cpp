@@ -28,12 +28,7 @@ void append_verdict(JsonWriter& json, const char* name, const Verdict& verdict) 
 void append_trap_free(JsonWriter& json, const ObstacleShapes& shapes) {
   const geometry::TrapFreeEllipse& free = shapes.trap_free;
   json.key("trap_free").begin_object();
-  json.key("grade");
-  if (free.ellipse) {
-    json.value(name(free.grade));
-  } else {
-    json.null();
-  }
+  json.member("grade", free.ellipse, [&](const auto&) { json.value(name(free.grade)); });
   json.member("for_every_goal", free.for_every_goal);
   append_verdict(json, "contains", shapes.trap_free_contains);
   json.end_object();
@@ -49,25 +44,14 @@ void append_problems(JsonWriter& json, const ObstacleShapes& shapes) {
 }
 
 void append_shapes(JsonWriter& json, const ObstacleShapes& shapes) {
-  json.key("facades").begin_array();
-  for (const geometry::Segment& s : shapes.facades.facades) append_points(json, {s.a, s.b});
-  json.end_array();
-  json.key("pieces").begin_array();
-  for (const geometry::ConvexShape& piece : shapes.pieces) append_piece(json, piece);
-  json.end_array();
+  json.list("facades", shapes.facades.facades, [&](const geometry::Segment& s) { append_points(json, {s.a, s.b}); });
+  json.list("pieces", shapes.pieces, [&](const geometry::ConvexShape& piece) { append_piece(json, piece); });
   json.key("hull");
   append_points(json, shapes.hull.vertices);
   json.key("smallest_ellipse");
   append_ellipse(json, shapes.smallest_ellipse);
-  json.key("facade_ellipses").begin_array();
-  for (const geometry::FacadeEnclosure& e : shapes.facade_ellipses) append_ellipse(json, e.ellipse, e.clearance);
-  json.end_array();
-  json.key("trap_free_ellipse");
-  if (shapes.trap_free.ellipse) {
-    append_ellipse(json, *shapes.trap_free.ellipse);
-  } else {
-    json.null();
-  }
+  json.list("facade_ellipses", shapes.facade_ellipses, [&](const geometry::FacadeEnclosure& e) { append_ellipse(json, e.ellipse, e.clearance); });
+  json.member("trap_free_ellipse", shapes.trap_free.ellipse, [&](const auto& e) { append_ellipse(json, e); });
 }
 
 }  // namespace
@@ -92,12 +76,8 @@ void append_figures(JsonWriter& json, const ObstacleShapes& shapes) {
   json.member("pieces_count", std::uint64_t{shapes.pieces.size()});
   json.member("area", f.area).member("perimeter", f.perimeter).member("hull_area", f.hull_area);
   json.member("ellipse_area", f.ellipse_area).member("least_ellipse_area", f.least_ellipse_area);
-  json.key("inflation");  // of the smallest ellipse over the obstacle; walls have no area to compare with
-  if (f.area > 0.0) {
-    json.value(f.ellipse_area / f.area);
-  } else {
-    json.null();
-  }
+  // Of the smallest ellipse over the obstacle; walls have no area to compare with.
+  json.member("inflation", f.area > 0.0 ? std::optional(f.ellipse_area / f.area) : std::nullopt);
   json.member("deviation", shapes.facades.deviation);
   json.member("trap_free_area", f.trap_free_area).member("trap_free_beyond", f.trap_free_beyond);
 }

@@ -264,43 +264,35 @@ std::vector<std::string> not_audited(const AuditReport& report) {
 
 std::string to_json(const AuditReport& report) {
   JsonWriter json(JsonWriter::Layout::indented);
-  const auto count = [&json](const char* key, std::size_t n) { json.member(key, static_cast<std::uint64_t>(n)); };
   json.begin_object();
-  count("half_planes", report.half_planes);
-  count("unsafe", report.unsafe);
-  count("steps", report.steps);
-  count("collisions", report.collisions);
-  count("unproven", report.unproven);
-  count("inconsistencies", report.inconsistencies);
+  json.member("half_planes", report.half_planes);
+  json.member("unsafe", report.unsafe);
+  json.member("steps", report.steps);
+  json.member("collisions", report.collisions);
+  json.member("unproven", report.unproven);
+  json.member("inconsistencies", report.inconsistencies);
   json.key("points").begin_object();
   for (std::size_t p = 0; p < kAuditPoints; ++p) {
     const PointCount& point = report.points[p];
     json.key(name(static_cast<AuditPoint>(p))).begin_object();
-    count("asked", point.asked());
-    count("proven", point.proven);
-    count("refuted", point.refuted);
-    count("open", point.open);
-    count("unlisted", point.unlisted);
+    json.member("asked", point.asked());
+    json.member("proven", point.proven);
+    json.member("refuted", point.refuted);
+    json.member("open", point.open);
+    json.member("unlisted", point.unlisted);
     json.end_object();
   }
   json.end_object().member("largest_violation", report.largest_violation);
   json.key("proved").begin_object();
-  count("half_planes", report.half_planes - std::min(report.half_planes, report.unsafe));
-  count("clear_steps", report.steps - report.collisions - report.unproven);
-  count("curved_steps", report.curved_steps);
-  count("against_obstacles", report.obstacle_questions);
-  count("against_moving_obstacles", report.moving_questions);
-  count("against_robots", report.robot_questions);
+  json.member("half_planes", report.half_planes - std::min(report.half_planes, report.unsafe));
+  json.member("clear_steps", report.steps - report.collisions - report.unproven);
+  json.member("curved_steps", report.curved_steps);
+  json.member("against_obstacles", report.obstacle_questions);
+  json.member("against_moving_obstacles", report.moving_questions);
+  json.member("against_robots", report.robot_questions);
   json.member("largest_bulge", report.largest_bulge).end_object();
-  const auto texts = [&json](const char* key, const std::vector<std::string>& all) {
-    json.key(key).begin_array();
-    for (const std::string& text : all) json.value(text);
-    json.end_array();
-  };
-  texts("not_audited", not_audited(report));
-  texts("findings", report.findings);
-  json.end_object();
-  return json.take();
+  json.list("not_audited", not_audited(report)).list("findings", report.findings);
+  return json.end_object().take();
 }
 
 }  // namespace exactvo::datasets

@@ -92,9 +92,7 @@ void append_body(JsonWriter& json, std::size_t number, const vo::Body& body) {
     json.key("shape");
     append_convex(json, body.shape);
   }
-  json.key("owners").begin_array();
-  for (const std::size_t owner : body.owners) json.value(owner);
-  json.end_array().end_object();
+  json.list("owners", body.owners).end_object();
 }
 
 vo::Body to_body(const JsonCursor& at) {
@@ -138,9 +136,7 @@ void append_robot(JsonWriter& json, const RobotStep& robot) {
   if (!robot.note.empty()) json.member("note", robot.note);
   if (robot.uncertified != 0) json.member("uncertified", robot.uncertified);
   if (!robot.constraints.empty()) {
-    json.key("constraints").begin_array();
-    for (const RecordedConstraint& constraint : robot.constraints) append_constraint(json, constraint);
-    json.end_array();
+    json.list("constraints", robot.constraints, [&](const RecordedConstraint& constraint) { append_constraint(json, constraint); });
   }
   json.end_object();
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/datasets/metrics_file.h"
 
+#include <utility>
+
 #include "json/json_text.h"
 #include "recordings/recording_extras.h"
 
@@ -15,42 +17,21 @@ void append_robot(JsonWriter& json, const formation::RobotMetrics& robot) {
   json.end_object();
 }
 
-void append_course(JsonWriter& json, const std::optional<formation::FormationCourse>& course) {
-  json.key("formation_course");
-  if (!course) {
-    json.null();
-    return;
-  }
-  json.begin_inline_object().member("largest_error", course->largest_error);
-  json.member("largest_error_at", course->largest_error_at).member("largest_error_of", course->largest_error_of);
-  json.member("first_formed", course->first_formed).member("formed_since", course->formed_since).end_object();
+void append(JsonWriter& json, const formation::FormationCourse& course) {
+  json.begin_inline_object().member("largest_error", course.largest_error);
+  json.member("largest_error_at", course.largest_error_at).member("largest_error_of", course.largest_error_of);
+  json.member("first_formed", course.first_formed).member("formed_since", course.formed_since).end_object();
 }
 
-void append_plans(JsonWriter& json, const std::optional<formation::PlanMetrics>& plans) {
-  json.key("plans");
-  if (!plans) {
-    json.null();
-    return;
-  }
-  json.begin_inline_object().member("groups", plans->groups).member("largest", plans->largest);
-  json.member("time_by_plan", plans->time_by_plan).member("time_back", plans->time_back);
-  json.member("search_nodes", plans->search_nodes).end_object();
+void append(JsonWriter& json, const formation::PlanMetrics& plans) {
+  json.begin_inline_object().member("groups", plans.groups).member("largest", plans.largest);
+  json.member("time_by_plan", plans.time_by_plan).member("time_back", plans.time_back);
+  json.member("search_nodes", plans.search_nodes).end_object();
 }
 
-void append_routes(JsonWriter& json, const std::optional<formation::RoutesCourse>& routes) {
-  json.key("routes");
-  if (!routes) {
-    json.null();
-    return;
-  }
-  json.begin_inline_object().member("planned", routes->planned).member("pushed_off", routes->pushed_off);
-  json.member("cut", routes->cut).member("nearest", routes->nearest).end_object();
-}
-
-void append_texts(JsonWriter& json, const char* key, const std::vector<std::string>& texts) {
-  json.key(key).begin_array();
-  for (const std::string& text : texts) json.value(text);
-  json.end_array();
+void append(JsonWriter& json, const formation::RoutesCourse& routes) {
+  json.begin_inline_object().member("planned", routes.planned).member("pushed_off", routes.pushed_off);
+  json.member("cut", routes.cut).member("nearest", routes.nearest).end_object();
 }
 
 void append_course(JsonWriter& json, const char* key, const formation::LyapunovCourse& c) {
@@ -58,15 +39,10 @@ void append_course(JsonWriter& json, const char* key, const formation::LyapunovC
   json.member("largest_rise", c.largest_rise).end_object();
 }
 
-void append_lyapunov(JsonWriter& json, const std::optional<formation::LyapunovSummary>& summary) {
-  json.key("lyapunov");
-  if (!summary) {
-    json.null();
-    return;
-  }
+void append(JsonWriter& json, const formation::LyapunovSummary& summary) {
   json.begin_object();
-  append_course(json, "paper", summary->paper);
-  append_course(json, "sound", summary->sound);
+  append_course(json, "paper", summary.paper);
+  append_course(json, "sound", summary.sound);
   json.end_object();
 }
 
@@ -83,8 +59,23 @@ std::string indented(const std::string& text) {
 
 }  // namespace
 
+RunInfo run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
+                 Provenance provenance) {
+  RunInfo info{scenario.name, name(options.method), std::nullopt, std::nullopt, std::move(provenance)};
+  if (scenario.formation) {
+    info.controller = name(options.controller);
+    info.integrator = name(options.integrator);
+  }
+  const formation::Guidance guidance = guidance_of(scenario, options);
+  const formation::Liveness liveness = liveness_of(scenario, options);
+  if (guidance != formation::Guidance::none) info.guidance = name(guidance);
+  if (liveness != formation::Liveness::off) info.liveness = name(liveness);
+  return info;
+}
+
 std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   JsonWriter json(JsonWriter::Layout::indented);
+  const auto appended = [&json](const auto& part) { append(json, part); };
   json.begin_object();
   json.member("scenario", info.scenario).member("method", info.method).member("controller", info.controller);
   if (info.guidance) json.member("guidance", *info.guidance);
@@ -95,25 +86,20 @@ std::string metrics_json(const RunInfo& info, const formation::Metrics& m) {
   json.member("formation_position_error", m.formation_position_error);
   json.member("formation_velocity_error", m.formation_velocity_error);
   json.member("leader_arrival_time", m.leader_arrival_time);
-  append_course(json, m.formation_course);
+  json.member("formation_course", m.formation_course, appended);
   json.member("jitter", m.jitter);
   json.member("velocity_variation", m.velocity_variation).member("peak_acceleration", m.peak_acceleration);
   json.member("heading_reversals", m.heading_reversals).member("active_set_switches", m.active_set_switches);
   json.member("relaxed_steps", m.relaxed_steps).member("uncertified_half_planes", m.uncertified_half_planes);
   json.member("steps", m.steps).member("wall_time", m.wall_time);
   json.member("outcome", m.outcome);
-  append_texts(json, "warnings", m.warnings);
-  append_plans(json, m.plans);
-  append_routes(json, m.routes);
+  json.list("warnings", m.warnings).member("plans", m.plans, appended).member("routes", m.routes, appended);
   if (m.deadlock.empty())
     json.key("deadlock").null();
   else
-    append_texts(json, "deadlock", m.deadlock);
-  append_texts(json, "stuck", m.stuck);
-  append_lyapunov(json, m.lyapunov);
-  json.key("robots").begin_array();
-  for (const formation::RobotMetrics& robot : m.robots) append_robot(json, robot);
-  json.end_array();
+    json.list("deadlock", m.deadlock);
+  json.list("stuck", m.stuck).member("lyapunov", m.lyapunov, appended);
+  json.list("robots", m.robots, [&](const formation::RobotMetrics& robot) { append_robot(json, robot); });
   json.key("provenance").raw(to_json(info.provenance));
   return json.end_object().take() + "\n";
 }

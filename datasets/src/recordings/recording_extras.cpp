@@ -53,10 +53,8 @@ void append_equilibrium(JsonWriter& json, const formation::Equilibrium& e) {
 void append_report(JsonWriter& json, const StuckReport& r) {
   json.begin_object().member("robot", r.robot).member("position", r.position);
   json.member("goal_distance", r.goal_distance).member("speed", r.speed);
-  json.key("binding").begin_array();
-  for (const BindingConstraint& b : r.binding) append_binding(json, b);
-  json.end_array().key("equilibrium");
-  r.equilibrium ? append_equilibrium(json, *r.equilibrium) : void(json.null());
+  json.list("binding", r.binding, [&](const BindingConstraint& b) { append_binding(json, b); });
+  json.member("equilibrium", r.equilibrium, [&](const auto& e) { append_equilibrium(json, e); });
   json.member("text", r.text).member("rest_time", r.rest_time).end_object();
 }
 
@@ -140,9 +138,7 @@ std::vector<formation::Collision> to_collisions(const JsonCursor& at) {
 }
 
 void append_stuck(JsonWriter& json, const RecordingFile& file) {
-  json.key("stuck").begin_array();
-  for (const StuckReport& report : file.stuck) append_report(json, report);
-  json.end_array();
+  json.list("stuck", file.stuck, [&](const StuckReport& report) { append_report(json, report); });
 }
 
 void read_stuck(const JsonCursor& at, RecordingFile& file) {

@@ -4,10 +4,10 @@
 #include <string_view>
 
 #include "exactvo/datasets/crowd_recording.h"
+#include "exactvo/datasets/input_text.h"
 #include "exactvo/datasets/recording_file.h"
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/geometry/counted.h"
-#include "files/text_file.h"
 #include "json/json_cursor.h"
 #include "recordings/codec.h"
 #include "recordings/recording_extras.h"

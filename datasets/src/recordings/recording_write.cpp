@@ -47,9 +47,7 @@ void append_header(JsonWriter& json, const RecordingFile& file) {
 
 void append_outlook(JsonWriter& json, const Outlook& outlook) {
   json.begin_object().member("time", outlook.time).member("robot", outlook.robot).member("goal", outlook.goal);
-  json.key("bodies").begin_array();
-  for (const std::size_t body : outlook.bodies) json.value(body);
-  json.end_array().end_object();
+  json.list("bodies", outlook.bodies).end_object();
 }
 
 void append_plan(JsonWriter& json, const formation::JointPlan& plan) {
@@ -75,9 +73,7 @@ void append_row(JsonWriter& json, const Step& step, bool has_leader, const forma
       json.begin_object().member("displacement", o.displacement).member("velocity", o.velocity).end_object();
     json.end_array();
   }
-  json.key("robots").begin_array();
-  for (const RobotStep& robot : step.robots) append_robot(json, robot);
-  json.end_array();
+  json.list("robots", step.robots, [&](const RobotStep& robot) { append_robot(json, robot); });
   if (lyapunov) append_lyapunov(json, *lyapunov);
   json.end_object();
 }
@@ -87,9 +83,7 @@ void append_end(JsonWriter& json, const RecordingFile& file, std::size_t rows, c
   json.begin_object().member("rows", rows).member("diverged", recording.diverged);
   json.member("outcome", file.outcome.empty() ? recording.outcome : file.outcome);
   json.member("ended", recording.outcome);
-  json.key("warnings").begin_array();
-  for (const std::string& warning : recording.warnings) json.value(warning);
-  json.end_array();
+  json.list("warnings", recording.warnings);
   append_stuck(json, file);
   append_collisions(json, file.collisions);
   json.member("wall_time", recording.wall_time).member("written_at", file.info.provenance.written_at);

@@ -27,9 +27,7 @@ void append_shape(JsonWriter& json, const geometry::Polygon& polygon) {
   json.key("polygon");
   append_points(json, polygon.outer);
   if (polygon.holes.empty()) return;
-  json.key("holes").begin_array();
-  for (const geometry::Ring& hole : polygon.holes) append_points(json, hole);
-  json.end_array();
+  json.list("holes", polygon.holes, [&](const geometry::Ring& hole) { append_points(json, hole); });
 }
 
 void append_obstacle(JsonWriter& json, const formation::SceneObstacle& obstacle) {
@@ -70,9 +68,7 @@ void append_numbers(JsonWriter& json, const std::vector<double>& numbers) {
 
 void append_topology(JsonWriter& json, const formation::Topology& topology) {
   json.key("topology").begin_object();
-  json.key("adjacency").begin_array();
-  for (const std::vector<double>& row : topology.adjacency) append_numbers(json, row);
-  json.end_array();
+  json.list("adjacency", topology.adjacency, [&](const std::vector<double>& row) { append_numbers(json, row); });
   json.key("pinning");
   append_numbers(json, topology.pinning);
   json.end_object();
@@ -134,15 +130,9 @@ void append_points(JsonWriter& json, const std::vector<geometry::Vec2>& points) 
 
 void append_scenario(JsonWriter& json, const Scenario& scenario) {
   json.begin_object().member("name", scenario.name).member("description", scenario.description);
-  json.key("robots").begin_array();
-  for (const formation::Robot& robot : scenario.robots) append_robot(json, robot);
-  json.end_array();
-  json.key("obstacles").begin_array();
-  for (const formation::SceneObstacle& obstacle : scenario.obstacles) append_obstacle(json, obstacle);
-  json.end_array();
-  json.key("moving_obstacles").begin_array();
-  for (const formation::MovingObstacle& obstacle : scenario.moving_obstacles) append_moving(json, obstacle);
-  json.end_array();
+  json.list("robots", scenario.robots, [&](const formation::Robot& robot) { append_robot(json, robot); });
+  json.list("obstacles", scenario.obstacles, [&](const formation::SceneObstacle& obstacle) { append_obstacle(json, obstacle); });
+  json.list("moving_obstacles", scenario.moving_obstacles, [&](const formation::MovingObstacle& obstacle) { append_moving(json, obstacle); });
   if (scenario.formation) append_formation(json, *scenario.formation);
   append_figures(json, scenario);
   json.end_object();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arguments.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "exactvo/datasets/data_error.h"
@@ -115,6 +116,16 @@ Vec2 vector(py::handle object, const char* name) {
   }
   if (!std::isfinite(xy[0]) || !std::isfinite(xy[1])) return refuse();
   return {xy[0], xy[1]};
+}
+
+void refuse_word(const std::string& text, const char* name, const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& w : words) list += (list.empty() ? "" : ", ") + ("\"" + w + "\"");
+  throw ArgumentError(name, "\"" + text + "\"", "one of " + list);
+}
+
+void require_word(const std::string& text, const char* name, const std::vector<std::string>& words) {
+  if (std::find(words.begin(), words.end(), text) == words.end()) refuse_word(text, name, words);
 }
 
 std::string shape_words(const py::array& array) {

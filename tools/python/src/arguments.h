@@ -26,6 +26,13 @@ struct ArgumentError : std::invalid_argument {
   std::string where, found, expected;
 };
 
+/// What `compute` gives; meanwhile other threads of Python run.
+template <class Compute>
+auto without_gil(const Compute& compute) {
+  const py::gil_scoped_release released;
+  return compute();
+}
+
 /// repr(object), shortened to a line.
 std::string shown(py::handle object);
 
@@ -59,15 +66,17 @@ inline void make_read_only(py::array& array) {
 /// n x 2.
 py::array_t<double> as_array(const std::vector<Vec2>& points);
 
+/// Throws the ArgumentError of a word that is none of `words`.
+[[noreturn]] void refuse_word(const std::string& text, const char* name, const std::vector<std::string>& words);
+void require_word(const std::string& text, const char* name, const std::vector<std::string>& words);
+
 /// The word's value, or an ArgumentError that lists `words`.
 template <class T>
 T word(const std::string& text, const char* name, const std::vector<std::string>& words,
        bool (*parse)(const std::string&, T&)) {
   T value{};
   if (parse(text, value)) return value;
-  std::string list;
-  for (const std::string& w : words) list += (list.empty() ? "" : ", ") + ("\"" + w + "\"");
-  throw ArgumentError(name, "\"" + text + "\"", "one of " + list);
+  refuse_word(text, name, words);
 }
 
 }  // namespace exactvo::python

@@ -2,7 +2,7 @@
 #include "certificate_arrays.h"
 
 #include <algorithm>
-#include <string>
+#include <type_traits>
 
 #include "arguments.h"
 #include "exactvo/vo/lp/problem.h"
@@ -11,15 +11,6 @@
 namespace exactvo::python {
 
 namespace {
-
-/// Every multiplier has `parts` doubles.
-struct CertificateArrays {
-  py::array_t<bool> present;
-  py::array_t<std::uint8_t> status;
-  py::array_t<double> velocity, violation, gap;
-  py::array_t<std::int32_t> bound, contradiction, vertex;
-  py::array_t<double> bound_multiplier, contradiction_multiplier;
-};
 
 constexpr std::size_t kTerms = 3;
 
@@ -55,90 +46,71 @@ std::vector<lp::Term> terms_at(const py::array_t<std::int32_t>& bindings, const 
   return terms;
 }
 
-template <class T>
-py::array_t<T, py::array::c_style | py::array::forcecast> member(const py::dict& arrays, const char* name,
-                                                                 const std::vector<py::ssize_t>& shape) {
-  const auto array = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(arrays[name]);
-  bool fits = array && array.ndim() == static_cast<py::ssize_t>(shape.size());
-  for (std::size_t k = 0; fits && k < shape.size(); ++k)
-    fits = shape[k] < 0 || array.shape(static_cast<py::ssize_t>(k)) == shape[k];
-  if (!fits) {
-    PyErr_Clear();
-    throw ArgumentError(name, shown(arrays[name]), "as many as problems, in the shape that solve_batch gives");
-  }
-  return array;
-}
-
 }  // namespace
 
-py::dict as_arrays(const std::vector<std::optional<lp::Certificate>>& all) {
-  const auto n = static_cast<py::ssize_t>(all.size());
+template <class Take>
+void CertificateArrays::each(py::ssize_t count, py::ssize_t parts, const Take& take) {
+  using Shape = std::vector<py::ssize_t>;
+  take("present", present_, Shape{count});
+  take("status", status_, Shape{count});
+  take("velocity", velocity_, Shape{count, 2});
+  take("violation", violation_, Shape{count});
+  take("gap", gap_, Shape{count});
+  take("bound", bound_, Shape{count, 3});
+  take("bound_multiplier", bound_multiplier_, Shape{count, 3, parts});
+  take("contradiction", contradiction_, Shape{count, 3});
+  take("contradiction_multiplier", contradiction_multiplier_, Shape{count, 3, parts});
+  take("vertex", vertex_, Shape{count, 2});
+}
+
+CertificateArrays::CertificateArrays(const std::vector<std::optional<lp::Certificate>>& all) {
   const std::size_t parts = most_parts(all);
-  const auto p = static_cast<py::ssize_t>(parts);
-  CertificateArrays a{py::array_t<bool>(n),
-                      py::array_t<std::uint8_t>(n),
-                      py::array_t<double>({n, py::ssize_t{2}}),
-                      py::array_t<double>(n),
-                      py::array_t<double>(n),
-                      py::array_t<std::int32_t>({n, py::ssize_t{3}}),
-                      py::array_t<std::int32_t>({n, py::ssize_t{3}}),
-                      py::array_t<std::int32_t>({n, py::ssize_t{2}}),
-                      py::array_t<double>({n, py::ssize_t{3}, p}),
-                      py::array_t<double>({n, py::ssize_t{3}, p})};
-  for (auto* bindings : {&a.bound, &a.contradiction, &a.vertex})
-    std::fill_n(bindings->mutable_data(), bindings->size(), kNoBinding);
-  for (auto* numbers : {&a.velocity, &a.violation, &a.gap, &a.bound_multiplier, &a.contradiction_multiplier})
-    std::fill_n(numbers->mutable_data(), numbers->size(), 0.0);
+  each(static_cast<py::ssize_t>(all.size()), static_cast<py::ssize_t>(parts), [](const char*, auto& array, auto shape) {
+    using Number = std::remove_reference_t<decltype(*array.mutable_data())>;
+    array = std::remove_reference_t<decltype(array)>(shape);
+    const int empty = std::is_same_v<Number, std::int32_t> ? kNoBinding : 0;
+    std::fill_n(array.mutable_data(), array.size(), static_cast<Number>(empty));
+  });
   for (std::size_t i = 0; i < all.size(); ++i) {
-    a.present.mutable_data()[i] = all[i].has_value();
-    a.status.mutable_data()[i] = 0;
+    present_.mutable_data()[i] = all[i].has_value();
     if (!all[i]) continue;
     const lp::Certificate& c = *all[i];
-    a.status.mutable_data()[i] = static_cast<std::uint8_t>(c.status);
-    a.velocity.mutable_data()[2 * i] = c.velocity.x;
-    a.velocity.mutable_data()[2 * i + 1] = c.velocity.y;
-    a.violation.mutable_data()[i] = c.violation;
-    a.gap.mutable_data()[i] = c.gap;
-    put_terms(c.bound, a.bound.mutable_data() + kTerms * i, a.bound_multiplier.mutable_data() + kTerms * parts * i,
+    status_.mutable_data()[i] = static_cast<std::uint8_t>(c.status);
+    velocity_.mutable_data()[2 * i] = c.velocity.x;
+    velocity_.mutable_data()[2 * i + 1] = c.velocity.y;
+    violation_.mutable_data()[i] = c.violation;
+    gap_.mutable_data()[i] = c.gap;
+    put_terms(c.bound, bound_.mutable_data() + kTerms * i, bound_multiplier_.mutable_data() + kTerms * parts * i,
               parts);
-    put_terms(c.contradiction, a.contradiction.mutable_data() + kTerms * i,
-              a.contradiction_multiplier.mutable_data() + kTerms * parts * i, parts);
+    put_terms(c.contradiction, contradiction_.mutable_data() + kTerms * i,
+              contradiction_multiplier_.mutable_data() + kTerms * parts * i, parts);
     for (std::size_t v = 0; v < std::min<std::size_t>(c.vertex.size(), 2); ++v)
-      a.vertex.mutable_data()[2 * i + v] = as_number(c.vertex[v]);
+      vertex_.mutable_data()[2 * i + v] = as_number(c.vertex[v]);
   }
-  for (py::array array : {py::array(a.present), py::array(a.status), py::array(a.velocity), py::array(a.violation),
-                          py::array(a.gap), py::array(a.bound), py::array(a.contradiction), py::array(a.vertex),
-                          py::array(a.bound_multiplier), py::array(a.contradiction_multiplier)})
-    make_read_only(array);
+}
+
+CertificateArrays::CertificateArrays(const py::dict& arrays, std::size_t count) {
+  each(static_cast<py::ssize_t>(count), -1, [&](const char* name, auto& array, const auto& shape) {
+    array = std::remove_reference_t<decltype(array)>::ensure(arrays[name]);
+    bool fits = array && array.ndim() == static_cast<py::ssize_t>(shape.size());
+    for (std::size_t k = 0; fits && k < shape.size(); ++k)
+      fits = shape[k] < 0 || array.shape(static_cast<py::ssize_t>(k)) == shape[k];
+    if (fits) return;
+    PyErr_Clear();
+    throw ArgumentError(name, shown(arrays[name]), "as many as problems, in the shape that solve_batch gives");
+  });
+}
+
+py::dict CertificateArrays::dict() {
   py::dict result;
-  result["present"] = a.present;
-  result["status"] = a.status;
-  result["velocity"] = a.velocity;
-  result["violation"] = a.violation;
-  result["gap"] = a.gap;
-  result["bound"] = a.bound;
-  result["bound_multiplier"] = a.bound_multiplier;
-  result["contradiction"] = a.contradiction;
-  result["contradiction_multiplier"] = a.contradiction_multiplier;
-  result["vertex"] = a.vertex;
+  each(0, 0, [&](const char* name, auto& array, const auto&) {
+    make_read_only(array);
+    result[name] = array;
+  });
   return result;
 }
 
-CertificateReader::CertificateReader(const py::dict& arrays, std::size_t count) {
-  const auto n = static_cast<py::ssize_t>(count);
-  present_ = member<bool>(arrays, "present", {n});
-  status_ = member<std::uint8_t>(arrays, "status", {n});
-  velocity_ = member<double>(arrays, "velocity", {n, 2});
-  violation_ = member<double>(arrays, "violation", {n});
-  gap_ = member<double>(arrays, "gap", {n});
-  bound_ = member<std::int32_t>(arrays, "bound", {n, 3});
-  bound_multiplier_ = member<double>(arrays, "bound_multiplier", {n, 3, -1});
-  contradiction_ = member<std::int32_t>(arrays, "contradiction", {n, 3});
-  contradiction_multiplier_ = member<double>(arrays, "contradiction_multiplier", {n, 3, -1});
-  vertex_ = member<std::int32_t>(arrays, "vertex", {n, 2});
-}
-
-std::optional<lp::Certificate> CertificateReader::at(std::size_t i) const {
+std::optional<lp::Certificate> CertificateArrays::at(std::size_t i) const {
   if (status_.data()[i] > static_cast<std::uint8_t>(lp::Status::no_interior)) return std::nullopt;
   lp::Certificate c;
   c.status = static_cast<lp::Status>(status_.data()[i]);

@@ -8,6 +8,7 @@
 #include <pybind11/numpy.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -18,12 +19,14 @@ namespace exactvo::python {
 namespace py = pybind11;
 
 /// By name: present, status, velocity, violation, gap, bound, contradiction, vertex and their multipliers.
-py::dict as_arrays(const std::vector<std::optional<lp::Certificate>>& all);
-
-/// The same arrays from the caller. Throws ArgumentError where they do not fit each other.
-class CertificateReader {
+class CertificateArrays {
  public:
-  CertificateReader(const py::dict& arrays, std::size_t count);
+  explicit CertificateArrays(const std::vector<std::optional<lp::Certificate>>& all);
+  /// From the caller. Throws ArgumentError where they do not fit each other.
+  CertificateArrays(const py::dict& arrays, std::size_t count);
+
+  /// Arrays that cannot be written.
+  py::dict dict();
   bool has(std::size_t i) const { return present_.data()[i]; }
   /// Nothing where the status is none. Needs no interpreter. REQUIRES: has(i).
   std::optional<lp::Certificate> at(std::size_t i) const;
@@ -32,11 +35,15 @@ class CertificateReader {
   template <class T>
   using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
+  /// `take(name, array, shape)` of each.
+  template <class Take>
+  void each(py::ssize_t count, py::ssize_t parts, const Take& take);
+
   Array<bool> present_;
   Array<std::uint8_t> status_;
   Array<double> velocity_, violation_, gap_;
   Array<std::int32_t> bound_, contradiction_, vertex_;
-  Array<double> bound_multiplier_, contradiction_multiplier_;
+  Array<double> bound_multiplier_, contradiction_multiplier_;  ///< every multiplier has as many doubles
 };
 
 }  // namespace exactvo::python

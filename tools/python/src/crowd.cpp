@@ -393,10 +393,7 @@ void bind_crowd(py::module_& module) {
            [](PythonCrowd& self, const py::int_& id) {
              const PythonCrowd::Use use(self);
              const RobotId robot = robot_id(id);
-             const formation::CrowdExplanation explained = [&] {
-               const py::gil_scoped_release released;
-               return self.crowd().explain(robot);
-             }();
+             const formation::CrowdExplanation explained = without_gil([&] { return self.crowd().explain(robot); });
              return as_dict(explained);
            })
       .def("snapshot", &snapshot);

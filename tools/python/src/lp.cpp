@@ -166,10 +166,7 @@ void bind_lp(py::module_& module) {
                 py::handle box_x, py::handle box_y, const std::string& objective, const std::string& solver) {
                const lp::Problem problem = problem_of(normals, offsets, preferred, soft, disc, box_x, box_y, objective);
                const auto chosen = word<lp::Solver>(solver, "solver", lp::solver_names(), &lp::parse);
-               const lp::Proven proven = [&] {
-                 const py::gil_scoped_release released;
-                 return solved(problem, chosen);
-               }();
+               const lp::Proven proven = without_gil([&] { return solved(problem, chosen); });
                return answer_of(proven);
              });
   module.def("lp_check",

@@ -21,7 +21,7 @@ py::array_t<std::uint8_t> check_batch(py::handle normals, py::handle offsets, py
                                       py::handle max_speed, py::handle hard, const py::dict& arrays) {
   const BatchArrays b = batch_arrays(normals, offsets, preferred, max_speed, hard, true);
   require_in_range(b);
-  const CertificateReader certificates(arrays, b.count);
+  const CertificateArrays certificates(arrays, b.count);
   py::array_t<std::uint8_t> result(static_cast<py::ssize_t>(b.count));
   std::uint8_t* const out = result.mutable_data();
   const py::gil_scoped_release released;
@@ -116,7 +116,7 @@ Batch solve_batch(py::handle normals, py::handle offsets, py::handle preferred, 
     if (certificates) proofs = certify(batch, b);
   }
   released.reset();
-  if (certificates) batch.certificate_arrays = as_arrays(proofs);
+  if (certificates) batch.certificate_arrays = CertificateArrays(proofs).dict();
   return batch;
 }
 

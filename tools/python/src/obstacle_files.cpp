@@ -23,12 +23,7 @@ datasets::ReadOptions reading(const py::object& format, const std::string& units
   datasets::ReadOptions options;
   if (!format.is_none()) {
     options.format = py::str(format);
-    const std::vector<std::string> known = datasets::readable_formats();
-    word<std::string>(options.format, "format", known, [](const std::string& text, std::string& out) {
-      for (const std::string& name : datasets::readable_formats())
-        if (name == text) return out = text, true;
-      return false;
-    });
+    require_word(options.format, "format", datasets::readable_formats());
   }
   options.units = word<datasets::Units>(units, "units", datasets::unit_names(), &datasets::parse);
   options.cell_size = at_least_zero(cell_size, "cell_size");
@@ -96,10 +91,7 @@ py::dict as_dict(ObstacleFile file) {
 py::dict read(const fs::path& path, const py::object& format, const std::string& units, py::handle cell_size,
               bool skip_invalid, bool repair) {
   const datasets::ReadOptions options = reading(format, units, cell_size, skip_invalid, repair);
-  ObstacleFile file = [&] {
-    const py::gil_scoped_release released;
-    return datasets::read_obstacles(path, options);
-  }();
+  ObstacleFile file = without_gil([&] { return datasets::read_obstacles(path, options); });
   return as_dict(std::move(file));
 }
 
@@ -113,10 +105,7 @@ py::list write(const fs::path& path, const Obstacles& obstacles, const py::objec
     options.plane = c.plane;
     if (c.properties.size() == obstacles.list.size()) options.properties = c.properties;
   }
-  const std::vector<std::string> lost = [&] {
-    const py::gil_scoped_release released;
-    return datasets::write_obstacles(path, obstacles.list, options);
-  }();
+  const std::vector<std::string> lost = without_gil([&] { return datasets::write_obstacles(path, obstacles.list, options); });
   return py::cast(lost);
 }
 
@@ -138,10 +127,7 @@ py::tuple repair(const py::list& rings) {
     given.push_back(std::move(r));
   }
   if (given.empty()) throw ArgumentError("rings", "no ring", "at least one ring");
-  const datasets::Repair done = [&] {
-    const py::gil_scoped_release released;
-    return datasets::repair(given);
-  }();
+  const datasets::Repair done = without_gil([&] { return datasets::repair(given); });
   py::list polygons, problems;
   for (const geometry::Polygon& polygon : done.polygons) polygons.append(rings_of(polygon));
   for (const geometry::RingProblem& p : done.problems)
@@ -198,11 +184,7 @@ py::tuple batch(const std::vector<fs::path>& paths, const fs::path& out, const s
 }
 
 Obstacles generate(const std::string& kind, std::uint64_t count, std::uint64_t seed) {
-  word<std::string>(kind, "kind", datasets::generator_kind_names(), [](const std::string& text, std::string& out) {
-    for (const std::string& name : datasets::generator_kind_names())
-      if (name == text) return out = text, true;
-    return false;
-  });
+  require_word(kind, "kind", datasets::generator_kind_names());
   Obstacles result;
   const py::gil_scoped_release released;
   for (std::uint64_t k = 0; k < count; ++k)

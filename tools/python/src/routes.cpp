@@ -141,10 +141,7 @@ void bind_routes(py::module_& module) {
            })
       .def("query", [](const Plan& p, py::handle start, py::handle goal) {
         const Vec2 a = covered(p.map, start, "start"), b = covered(p.map, goal, "goal");
-        const geometry::RouteAnswer answer = [&] {
-          const py::gil_scoped_release released;
-          return p.plan.query(a, b);
-        }();
+        const geometry::RouteAnswer answer = without_gil([&] { return p.plan.query(a, b); });
         return answer_tuple(answer);
       });
   module.def("check_route",

@@ -23,11 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct ScenarioHandle {
-  formation::Scenario scenario;
-  std::vector<std::string> notes;
-  std::vector<fs::path> files;
-};
+using datasets::LoadedScenario;
 
 /// A run with its columns: [step][robot][xy].
 struct Run {
@@ -53,22 +49,7 @@ void fill_columns(Run& run) {
   }
 }
 
-datasets::RunInfo info_of(const formation::Scenario& scenario, const formation::SimulationOptions& options,
-                          const std::vector<fs::path>& files) {
-  datasets::RunInfo info{scenario.name, name(options.method), std::nullopt, std::nullopt,
-                         datasets::make_provenance({"exactvo.simulate"}, 0, files)};
-  if (scenario.formation) {
-    info.controller = name(options.controller);
-    info.integrator = name(options.integrator);
-  }
-  const formation::Guidance guidance = guidance_of(scenario, options);
-  const formation::Liveness liveness = liveness_of(scenario, options);
-  if (guidance != formation::Guidance::none) info.guidance = name(guidance);
-  if (liveness != formation::Liveness::off) info.liveness = name(liveness);
-  return info;
-}
-
-std::unique_ptr<Run> simulate(const ScenarioHandle& handle, const std::string& method, const py::object& guidance,
+std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& method, const py::object& guidance,
                               const py::object& liveness, const std::string& controller, const std::string& integrator,
                               bool record_all, const py::object& progress) {
   using namespace formation;
@@ -89,7 +70,8 @@ std::unique_ptr<Run> simulate(const ScenarioHandle& handle, const std::string& m
   run->file.scenario = handle.scenario;
   {
     const py::gil_scoped_release released;
-    run->file.info = info_of(handle.scenario, options, handle.files);
+    run->file.info = datasets::run_info(handle.scenario, options,
+                                        datasets::make_provenance({"exactvo.simulate"}, 0, handle.files));
     run->file.recording = formation::simulate(handle.scenario, options);
     Evaluation evaluation = evaluate(handle.scenario, run->file.recording);
     run->metrics = std::move(evaluation.metrics);
@@ -194,34 +176,32 @@ py::list problems_of(const formation::Scenario& scenario) {
 }  // namespace
 
 void bind_simulate(py::module_& module) {
-  py::class_<ScenarioHandle>(module, "Scenario")
+  py::class_<LoadedScenario>(module, "Scenario")
       .def_static("load",
                   [](const std::string& path) {
                     const py::gil_scoped_release released;
-                    datasets::LoadedScenario loaded = datasets::load_scenario_with_notes(path);
-                    return ScenarioHandle{std::move(loaded.scenario), std::move(loaded.notes), std::move(loaded.files)};
+                    return datasets::load_scenario_with_notes(path);
                   })
       .def_static("parse",
                   [](const std::string& text, const std::string& file_name, const std::string& base_dir) {
                     const py::gil_scoped_release released;
-                    datasets::LoadedScenario loaded = datasets::parse_scenario_with_notes(text, file_name, base_dir);
-                    return ScenarioHandle{std::move(loaded.scenario), std::move(loaded.notes), std::move(loaded.files)};
+                    return datasets::parse_scenario_with_notes(text, file_name, base_dir);
                   })
       .def("to_json",
-           [](const ScenarioHandle& s) {
+           [](const LoadedScenario& s) {
              const py::gil_scoped_release released;
              return datasets::write_scenario(s.scenario);
            })
-      .def("problems", [](const ScenarioHandle& s) { return problems_of(s.scenario); })
+      .def("problems", [](const LoadedScenario& s) { return problems_of(s.scenario); })
       .def("warnings",
-           [](const ScenarioHandle& s) {
+           [](const LoadedScenario& s) {
              const py::gil_scoped_release released;
              return formation::warnings_before(s.scenario);
            })
-      .def_property_readonly("name", [](const ScenarioHandle& s) { return s.scenario.name; })
-      .def_property_readonly("notes", [](const ScenarioHandle& s) { return s.notes; })
-      .def("obstacles", [](const ScenarioHandle& s) { return Obstacles{s.scenario.obstacles}; })
-      .def("robots", [](const ScenarioHandle& s) {
+      .def_property_readonly("name", [](const LoadedScenario& s) { return s.scenario.name; })
+      .def_property_readonly("notes", [](const LoadedScenario& s) { return s.notes; })
+      .def("obstacles", [](const LoadedScenario& s) { return Obstacles{s.scenario.obstacles}; })
+      .def("robots", [](const LoadedScenario& s) {
         py::list result;
         for (const formation::Robot& r : s.scenario.robots)
           result.append(py::make_tuple(r.id, as_tuple(r.position), as_array(r.goals), r.radius, r.max_speed));
@@ -250,7 +230,7 @@ void bind_simulate(py::module_& module) {
       .def_property_readonly("warnings", [](const Run& run) { return run.metrics.warnings; })
       .def("scenario",
            [](const Run& run) {
-             return ScenarioHandle{run.file.scenario, {}, {}};
+             return LoadedScenario{run.file.scenario, {}, {}};
            })
       .def("half_planes", &half_planes)
       .def("plans", &plans)

@@ -130,10 +130,7 @@ std::vector<HalfPlane> half_planes_of(py::handle normals, py::handle offsets) {
 
 py::tuple compare(const vo::FreeVelocities& free, py::handle normals, py::handle offsets) {
   const std::vector<HalfPlane> half_planes = half_planes_of(normals, offsets);
-  const vo::RegionReport report = [&] {
-    const py::gil_scoped_release released;
-    return free.compare(half_planes);
-  }();
+  const vo::RegionReport report = without_gil([&] { return free.compare(half_planes); });
   py::list lost;
   for (const vo::LostPiece& piece : report.lost)
     lost.append(
@@ -158,10 +155,7 @@ vo::FreeVelocities make_free(const py::list& cones, py::handle max_speed, py::ha
 py::object exact_free(const py::list& cones, py::handle max_speed) {
   std::vector<vo::ShiftedCone> shifted = cones_of(cones);
   const double speed = positive(max_speed, "max_speed");
-  const vo::FreeArrangement::Attempt attempt = [&] {
-    const py::gil_scoped_release released;
-    return vo::FreeArrangement::attempt(std::move(shifted), speed);
-  }();
+  const vo::FreeArrangement::Attempt attempt = without_gil([&] { return vo::FreeArrangement::attempt(std::move(shifted), speed); });
   if (!attempt.free) return py::str(name(attempt.refusal));
   return py::make_tuple(attempt.free->pieces().size(), bracket(attempt.free->area()));
 }

@@ -29,11 +29,6 @@ struct LpFlags {
   bool json = false;
 };
 
-/// A file, a pipe or stdin.
-std::string read_all(const std::string& file) {
-  return file == "-" ? datasets::read_standard_input() : datasets::read_text_file(file);
-}
-
 double thread_nanoseconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -99,23 +94,6 @@ nlohmann::ordered_json summary_json(const Summary& s) {
   return {{"summary", fields}};
 }
 
-/// Prints in chunks: neither a system call a line nor the whole text in memory.
-class Output {
- public:
-  void add(const std::string& line) {
-    text_ += line;
-    if (text_.size() > kChunk) flush();
-  }
-  void flush() {
-    print(text_);
-    text_.clear();
-  }
-
- private:
-  static constexpr std::size_t kChunk = std::size_t{1} << 16;
-  std::string text_;
-};
-
 /// What the table says of an answer's proof.
 std::string proof_words(const lp::Proven& answer, bool is_proven, bool is_asked_for) {
   if (is_proven) return "proven";
@@ -124,7 +102,7 @@ std::string proof_words(const lp::Proven& answer, bool is_proven, bool is_asked_
 }
 
 void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
-  Output out;
+  ChunkedOutput out;
   out.add(fmt::format("{:>8} {:<11}{:>22}{:>24}{:>12}  {}\n", "problem", "status", "v_x [m/s]", "v_y [m/s]",
                       "violation", "certificate"));
   for (std::size_t k = 0; k < answers.size(); ++k) {
@@ -143,7 +121,7 @@ void print_table(const std::vector<lp::Proven>& answers, const Summary& s) {
 }
 
 void print_lines(const std::vector<lp::Proven>& answers, const Summary& summary) {
-  Output out;
+  ChunkedOutput out;
   for (std::size_t k = 0; k < answers.size(); ++k) out.add(result_line(k, answers[k]).dump() + "\n");
   out.add(summary_json(summary).dump() + "\n");
   out.flush();
@@ -155,7 +133,7 @@ bool asks_for_proofs(lp::Solver solver, const LpFlags& flags) {
 
 ExitCode run(const LpFlags& flags) {
   const auto solver = parse_choice<lp::Solver>("--solver", flags.solver, lp::solver_names());
-  const std::vector<lp::Problem> problems = datasets::parse_lp_problems(read_all(flags.file), flags.file);
+  const std::vector<lp::Problem> problems = datasets::parse_lp_problems(datasets::read_file_or_input(flags.file), flags.file);
   lp::Solving solving(solver, problems);
   const double before = thread_nanoseconds();
   solving.solve();

@@ -75,10 +75,7 @@ datasets::Units units_named(const std::string& text) {
 }
 
 geometry::PartitionMethod partition_named(const std::string& text) {
-  geometry::PartitionMethod method{};
-  if (parse(text, method)) return method;
-  const std::vector<std::string> names = geometry::partition_method_names();
-  throw UsageError("--partition", text, fmt::format("one of {}{}", fmt::join(names, " "), suggestion(text, names)));
+  return parse_choice<geometry::PartitionMethod>("--partition", text, geometry::partition_method_names());
 }
 
 void choose_outputs(const std::string& text, BatchConfiguration& configuration) {

@@ -49,17 +49,13 @@ ExitCode list_kinds() {
 }
 
 void check_kind(const std::string& kind) {
-  if (kind.empty()) throw MissingOption("generate", "argument kind", kind_help());
-  const std::vector<std::string> known = datasets::generator_kind_names();
-  for (const std::string& name : known) {
-    if (kind == name) return;
-  }
-  throw UsageError("kind", kind, fmt::format("one of {}{}", fmt::join(known, " "), suggestion(kind, known)));
+  if (kind.empty()) throw missing_option("generate", "argument kind", kind_help());
+  require_known("kind", kind, datasets::generator_kind_names());
 }
 
 void check(const GenerateFlags& flags) {
   check_kind(flags.kind);
-  if (flags.out.empty()) throw MissingOption("generate", "option --out", kOutHelp);
+  if (flags.out.empty()) throw missing_option("generate", "option --out", kOutHelp);
   constexpr std::int64_t kMostItems = 100'000'000;
   if (flags.count < 1 || flags.count > kMostItems)
     throw UsageError("--count", std::to_string(flags.count), "a whole number from 1 to 100000000");

@@ -81,11 +81,7 @@ Box MapLayers::axes() const {
 
 int MapLayers::write(const Layer& layer, DataFile& data) {
   const int index = data.begin(layer.title, layer.labels.empty() ? "x, y [m]" : "x, y [m], label");
-  for (const Points& curve : layer.curves) {
-    for (const Vec2 p : curve) data.row({p.x, p.y});
-    if (layer.closed && !curve.empty()) data.row({curve.front().x, curve.front().y});
-    data.gap();
-  }
+  for (const Points& curve : layer.curves) layer.closed ? data.ring(curve) : data.curve(curve);
   for (const Label& label : layer.labels) data.labelled_row({label.place.x, label.place.y}, label.text);
   return index;
 }

@@ -29,11 +29,6 @@ using datasets::RingFinding;
 
 namespace {
 
-void check_word(const std::string& option, const std::string& word, const std::vector<std::string>& known) {
-  if (std::find(known.begin(), known.end(), word) != known.end()) return;
-  throw UsageError(option, word, "one of" + listed(known) + suggestion(word, known));
-}
-
 FileAnswer read_one(const std::string& file, const datasets::ReadOptions& options) {
   try {
     FileAnswer answer{file, datasets::read_obstacles(file, options), std::nullopt};
@@ -144,12 +139,12 @@ void declare_reading_flags(CLI::App& app, ReadingFlags& flags, const std::string
 }
 
 void check_format(const std::string& option, const std::string& format, const std::vector<std::string>& known) {
-  if (!format.empty()) check_word(option, format, known);
+  if (!format.empty()) require_known(option, format, known);
 }
 
 datasets::ReadOptions reading_options(const ReadingFlags& flags, const std::string& format_name) {
   check_format(format_name, flags.format, datasets::readable_formats());
-  check_word("--units", flags.units, datasets::unit_names());
+  require_known("--units", flags.units, datasets::unit_names());
   if (!(flags.cell_size >= 0.0) || std::isinf(flags.cell_size))
     throw UsageError("--cell-size", fmt::format("{}", flags.cell_size), "a length in m, or 0 for the default");
   datasets::ReadOptions options;

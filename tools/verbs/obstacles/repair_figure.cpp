@@ -78,7 +78,7 @@ class Panels {
     plot.data(rings("before: " + polygon.title, polygon.before),
               origin.using_columns() + " with lines lw 2 lc rgb '#3f444d'");
     const int marks = data_.begin("problems", "x, y [m]");
-    for (const Vec2 p : polygon.problems) data_.row({p.x, p.y});
+    data_.rows(polygon.problems);
     plot.data(marks, origin.using_columns() + " " + kProblemMark);
     panel("before: " + polygon.title, view_of(polygon), plot);
   }
@@ -104,11 +104,7 @@ class Panels {
 
   int rings(const std::string& title, const std::vector<Ring>& rings) {
     const int index = data_.begin(title, "x, y [m]");
-    for (const Ring& ring : rings) {
-      for (const Vec2 p : ring) data_.row({p.x, p.y});
-      if (!ring.empty()) data_.row({ring.front().x, ring.front().y});
-      data_.gap();
-    }
+    for (const Ring& ring : rings) data_.ring(ring);
     return index;
   }
 

@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "exactvo/datasets/data_error.h"
-#include "support/fields.h"
 
 namespace exactvo::tools {
 
 using datasets::DataCode;
-using datasets::DataError;
 
 namespace {
 
@@ -37,77 +35,65 @@ std::vector<std::string_view> task_fields(std::string_view line) {
 }  // namespace
 
 RouteQueries::RouteQueries(const std::string& file, const AskedMap& map) : lines_(file), map_(map) {
-  if (!next_line()) throw DataError(DataCode::format_syntax, lines_.file(), "", "an empty file", kHeader);
+  if (!lines_.next()) throw datasets::DataError(DataCode::format_syntax, lines_.file(), "", "an empty file", kHeader);
   take_header();
 }
 
-void RouteQueries::refuse(DataCode code, const std::string& found, const std::string& expected) const {
-  constexpr std::size_t kShown = 60;
-  throw DataError(code, lines_.file(), lines_.place(), found.size() > kShown ? found.substr(0, kShown) + "..." : found,
-                  expected);
-}
-
-bool RouteQueries::next_line() {
-  while (lines_.next()) {
-    line_ = trimmed(without_mark(lines_.line(), lines_.number()));
-    if (!line_.empty() && line_.front() != '#') return true;
-  }
-  return false;
-}
-
 void RouteQueries::take_header() {
-  const std::vector<std::string_view> words = fields_of(line_);
+  const std::vector<std::string_view> words = fields_of(lines_.line());
   is_scen_ = words.size() == 2 && words[0] == "version" && (words[1] == "1" || words[1] == "1.0");
   if (is_scen_ && !map_.cells)
-    refuse(DataCode::format_syntax, "cells of a Moving AI map",
-           fmt::format("CSV with coordinates, since {} is {}", map_.file, map_.format));
+    lines_.refuse(DataCode::format_syntax, "cells of a Moving AI map",
+                  fmt::format("CSV with coordinates, since {} is {}", map_.file, map_.format));
   if (is_scen_) return;
   column_count_ = words.size();
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     const auto found = std::find(words.begin(), words.end(), kColumns[k]);
-    if (found == words.end()) refuse(DataCode::format_syntax, std::string(line_), kHeader);
+    if (found == words.end()) lines_.refuse(DataCode::format_syntax, lines_.line(), kHeader);
     if (std::find(found + 1, words.end(), kColumns[k]) != words.end())
-      refuse(DataCode::format_syntax, fmt::format("the column {} twice", kColumns[k]), "each column once");
+      lines_.refuse(DataCode::format_syntax, fmt::format("the column {} twice", kColumns[k]), "each column once");
     columns_[k] = static_cast<std::size_t>(found - words.begin());
   }
 }
 
 std::optional<RouteQuery> RouteQueries::next() {
-  if (!next_line()) return std::nullopt;
+  if (!lines_.next()) return std::nullopt;
   RouteQuery query = is_scen_ ? from_task() : from_columns();
   query.index = count_++;
   return query;
 }
 
 RouteQuery RouteQueries::from_columns() const {
-  const std::vector<std::string_view> fields = fields_of(line_);
+  const std::vector<std::string_view> fields = fields_of(lines_.line());
   if (fields.size() != column_count_)
-    refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()), fmt::format("{} fields", column_count_));
+    lines_.refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()),
+                  fmt::format("{} fields", column_count_));
   std::array<double, 4> numbers{};
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     const std::optional<double> number = number_in(fields[columns_[k]]);
     if (!number || !std::isfinite(*number))
-      refuse(DataCode::number, std::string(fields[columns_[k]]), fmt::format("a number in the column {}", kColumns[k]));
+      lines_.refuse(DataCode::number, fields[columns_[k]], fmt::format("a number in the column {}", kColumns[k]));
     numbers[k] = *number;
   }
   return {0, {numbers[0], numbers[1]}, {numbers[2], numbers[3]}};
 }
 
 RouteQuery RouteQueries::from_task() const {
-  const std::vector<std::string_view> fields = task_fields(line_);
+  const std::vector<std::string_view> fields = task_fields(lines_.line());
   if (fields.size() != kTaskFields)
-    refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()), fmt::format("{} fields", kTaskFields));
+    lines_.refuse(DataCode::wrong_count, fmt::format("{} fields", fields.size()),
+                  fmt::format("{} fields", kTaskFields));
   std::array<double, 6> numbers{};
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const std::optional<double> number = number_in(fields[kWidthField + k]);
     if (!number || *number != std::floor(*number))
-      refuse(DataCode::number, std::string(fields[kWidthField + k]), "a whole number of cells");
+      lines_.refuse(DataCode::number, fields[kWidthField + k], "a whole number of cells");
     numbers[k] = *number;
   }
   const datasets::MapSize& size = map_.cells->size;
   if (numbers[0] != static_cast<double>(size.columns) || numbers[1] != static_cast<double>(size.rows))
-    refuse(DataCode::out_of_range, fmt::format("a task for a map of {} x {} cells", numbers[0], numbers[1]),
-           fmt::format("{} x {} cells, as {} has", size.columns, size.rows, map_.file));
+    lines_.refuse(DataCode::out_of_range, fmt::format("a task for a map of {} x {} cells", numbers[0], numbers[1]),
+                  fmt::format("{} x {} cells, as {} has", size.columns, size.rows, map_.file));
   static_assert(kStartField == kWidthField + 2);
   return {0, {numbers[2], numbers[3]}, {numbers[4], numbers[5]}};
 }

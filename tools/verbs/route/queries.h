@@ -9,9 +9,8 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 
-#include "support/line_stream.h"
+#include "support/fields.h"
 #include "verbs/route/map.h"
 
 namespace exactvo::tools {
@@ -30,17 +29,17 @@ class RouteQueries {
   std::optional<RouteQuery> next();
 
   /// Throws DataError for the question that `next` gave last.
-  [[noreturn]] void refuse(datasets::DataCode code, const std::string& found, const std::string& expected) const;
+  [[noreturn]] void refuse(datasets::DataCode code, const std::string& found, const std::string& expected) const {
+    lines_.refuse(code, found, expected);
+  }
 
  private:
-  bool next_line();
   void take_header();
   RouteQuery from_columns() const;
   RouteQuery from_task() const;
 
-  LineStream lines_;
+  TableLines lines_;
   const AskedMap& map_;
-  std::string_view line_;
   bool is_scen_ = false;
   std::array<std::size_t, 4> columns_{};  ///< of start x, y, goal x, y
   std::size_t column_count_ = 0;

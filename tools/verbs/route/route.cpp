@@ -43,10 +43,6 @@ struct RouteFlags {
 
 // --- What goes together ---
 
-void require(bool ok, const char* option, const std::string& found, const char* expected) {
-  if (!ok) throw UsageError(option, found, expected);
-}
-
 void check_radius(const RouteFlags& flags) {
   require(flags.radius || flags.widest, "--radius", "nothing", "the radius of the disc in m, or --widest");
   if (!flags.radius) return;

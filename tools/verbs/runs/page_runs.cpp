@@ -79,7 +79,7 @@ MadeRun recorded_crowd(const PageFlags& flags, const fs::path& path) {
 MadeRun simulated(const PageFlags& flags, const std::string& path) {
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = true;
-  const ReadScenario read = read_scenario(path);
+  const datasets::LoadedScenario read = read_scenario(path);
   note_unused(flags.simulation, read.scenario);
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
   ProgressLine line(read.scenario.time_limit, "s simulated");

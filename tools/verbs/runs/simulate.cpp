@@ -124,7 +124,7 @@ void announce(const formation::Scenario& scenario) {
 }
 
 /// Into the folder, which may be none.
-FinishedRun run_with_progress(const SimulateFlags& flags, const ReadScenario& read,
+FinishedRun run_with_progress(const SimulateFlags& flags, const datasets::LoadedScenario& read,
                               const formation::SimulationOptions& options, const std::filesystem::path& folder) {
   const formation::Scenario& scenario = read.scenario;
   const auto provenance = datasets::make_provenance(command_line(), flags.simulation.seed, read.files);
@@ -141,15 +141,15 @@ void print_results(const SimulateFlags& flags, const FinishedRun& finished) {
 }
 
 /// Printed before it is published: where stdout takes no more, nothing is written at all.
-FinishedRun run_into_folder(const SimulateFlags& flags, const ReadScenario& read,
+FinishedRun run_into_folder(const SimulateFlags& flags, const datasets::LoadedScenario& read,
                             const formation::SimulationOptions& options) {
-  const std::optional<RunName> replaced = run_in(flags.out);
+  const std::optional<datasets::RunInfo> replaced = run_in(flags.out);
   StagedFolder folder(flags.out);
   FinishedRun finished = run_with_progress(flags, read, options, folder.path());
   if (!flags.no_figures) {
     const TerminateOnSignal terminate_on_signal;
     draw(write_figures(finished.file, folder.path() / "figures"));
-    const std::string title = in_words(name_of(read.scenario, options));
+    const std::string title = in_words(datasets::run_info(read.scenario, options, {}));
     write_text(folder.path() / kPageName, explorer_page({{page_key(title), title, "", finished.packed}}));
   }
   if (interrupted()) throw Interrupted();
@@ -160,7 +160,7 @@ FinishedRun run_into_folder(const SimulateFlags& flags, const ReadScenario& read
   return finished;
 }
 
-FinishedRun run_and_print(const SimulateFlags& flags, const ReadScenario& read,
+FinishedRun run_and_print(const SimulateFlags& flags, const datasets::LoadedScenario& read,
                           const formation::SimulationOptions& options) {
   FinishedRun finished = run_with_progress(flags, read, options, {});
   print_results(flags, finished);
@@ -176,13 +176,13 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
     throw UsageError("scenario", "-", "a file: every rank reads it, and only the first has a stdin");
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = flags.record_all;
-  const ReadScenario read = read_scenario(flags.scenario);
+  const datasets::LoadedScenario read = read_scenario(flags.scenario);
   if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json, ranks);
   const formation::Scenario& scenario = read.scenario;
   note_unused(flags.simulation, scenario);
   if (!flags.out.empty()) {
     check_output_folder(flags.out);
-    if (!flags.force) check_same_run(flags.out, name_of(scenario, options));
+    if (!flags.force) check_same_run(flags.out, datasets::run_info(scenario, options, {}));
   }
   announce(scenario);
   const FinishedRun finished =

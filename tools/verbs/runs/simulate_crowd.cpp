@@ -222,7 +222,7 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
 }
 
 ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& file,
-                        const ReadScenario& read, bool json, formation::Ranks* ranks) {
+                        const datasets::LoadedScenario& read, bool json, formation::Ranks* ranks) {
   const bool is_first = !ranks || ranks->rank() == 0;
   const formation::Scenario& scenario = read.scenario;
   for (const formation::ScenarioProblem& p : crowd_problems(scenario))

@@ -36,6 +36,6 @@ bool wants_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, con
 
 /// `ranks`: who runs it together with this process, or null. Only the first prints and writes.
 ExitCode simulate_crowd(const CrowdFlags& flags, const SimulationFlags& simulation, const std::string& file,
-                        const ReadScenario& read, bool json, formation::Ranks* ranks);
+                        const datasets::LoadedScenario& read, bool json, formation::Ranks* ranks);
 
 }  // namespace exactvo::tools

@@ -38,19 +38,14 @@ class Panel {
     if (points.empty()) return;
     points.push_back(points.front());
     const int index = data_.begin(title, "v_x [m/s], v_y [m/s]");
-    for (const Vec2 p : points) data_.row({p.x, p.y});
+    data_.rows(points);
     plot_.data(index, "using 1:2 " + style, title);
   }
   /// Each ring a polygon of its own: holes are drawn in white over them.
   void rings(const std::string& title, const std::vector<Points>& all, const std::string& style) {
     if (std::all_of(all.begin(), all.end(), [](const Points& points) { return points.empty(); })) return;
     const int index = data_.begin(title, "v_x [m/s], v_y [m/s]");
-    for (const Points& points : all) {
-      if (points.empty()) continue;
-      for (const Vec2 p : points) data_.row({p.x, p.y});
-      data_.row({points.front().x, points.front().y});
-      data_.gap();
-    }
+    for (const Points& points : all) data_.ring(points);
     plot_.data(index, "using 1:2 " + style, title);
   }
   /// With their forbidden sides hatched. One data set however many they are: gnuplot reads the file anew for each.
@@ -77,7 +72,7 @@ class Panel {
   }
   void point(const std::string& title, Vec2 at, const char* colour) {
     const int index = data_.begin(title, "v_x [m/s], v_y [m/s]");
-    data_.row({at.x, at.y});
+    data_.rows({at});
     plot_.data(index, fmt::format("using 1:2 with points pt 7 ps 1 lc rgb '{}'", colour), title);
   }
   /// `title` in gnuplot's markup.
@@ -103,10 +98,7 @@ class Panel {
   void curves(const std::string& title, const std::vector<Points>& all, const char* style) {
     if (all.empty()) return;
     const int index = data_.begin(title.empty() ? "strokes" : title, "v_x [m/s], v_y [m/s]");
-    for (const Points& points : all) {
-      for (const Vec2 p : points) data_.row({p.x, p.y});
-      data_.gap();
-    }
+    for (const Points& points : all) data_.curve(points);
     plot_.data(index, std::string("using 1:2 ") + style, title);
   }
 

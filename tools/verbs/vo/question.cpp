@@ -140,10 +140,6 @@ std::vector<vo::Variant> variants_of(const std::vector<std::string>& names) {
   return variants;
 }
 
-void require(bool ok, const char* option, const std::string& found, const char* expected) {
-  if (!ok) throw UsageError(option, found, expected);
-}
-
 /// Many velocities are answered by whether they collide, and by nothing else.
 void check_option_conflicts_of_velocities(const VoFlags& flags) {
   const bool by_rule = flags.time_horizon == "paper" || flags.time_horizon == "clamped";

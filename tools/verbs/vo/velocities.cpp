@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -17,7 +17,6 @@
 #include "exactvo/geometry/counted.h"
 #include "exactvo/vo/membership.h"
 #include "support/fields.h"
-#include "support/line_stream.h"
 #include "support/robot_limits.h"
 #include "support/terminal.h"
 #include "support/unsigned_zero.h"
@@ -39,11 +38,10 @@ class VelocityReader {
   /// The next one; nothing at the end.
   std::optional<Vec2> next() {
     while (lines_.next()) {
-      const std::string_view line = trimmed(without_mark(lines_.line(), lines_.number()));
-      if (line.empty() || line.front() == '#') continue;
+      const std::string_view line = lines_.line();
       if (!std::exchange(has_begun_, true) && takes_header(line)) continue;
       const Vec2 v = velocity_in(line);
-      if (!is_in_range(v)) refuse(DataCode::out_of_range, line, "velocities within 2^100 m/s");
+      if (!is_in_range(v)) lines_.refuse(DataCode::out_of_range, line, "velocities within 2^100 m/s");
       return v;
     }
     return std::nullopt;
@@ -51,13 +49,6 @@ class VelocityReader {
   std::size_t number() const { return lines_.number(); }
 
  private:
-  [[noreturn]] void refuse(DataCode code, std::string_view found, const std::string& expected) const {
-    constexpr std::size_t kShown = 60;
-    std::string text(found.substr(0, kShown));
-    if (found.size() > kShown) text += "...";
-    throw DataError(code, lines_.file(), lines_.place(), text, expected);
-  }
-
   /// Whether the line names columns; then says which are which.
   bool takes_header(std::string_view line) {
     const std::vector<std::string_view> names = fields_of(line);
@@ -81,35 +72,34 @@ class VelocityReader {
     }
     const std::optional<Vec2> v = from_fields(fields_of(line), columns_);
     if (!v)
-      refuse(DataCode::number, line, columns_.count == 2 ? kExpected : "a number in each of the columns vx and vy");
+      lines_.refuse(DataCode::number, line, columns_[2] == 2 ? kExpected : "a number in each of the columns vx and vy");
     return *v;
   }
 
-  struct Columns {
-    std::size_t x = 0, y = 1, count = 2;
-  };
+  /// Which columns have x and y, and how many there are.
+  using Columns = std::array<std::size_t, 3>;
 
   static std::optional<Vec2> from_fields(const std::vector<std::string_view>& fields, const Columns& columns) {
-    if (fields.size() != columns.count) return std::nullopt;
-    const std::optional<double> x = number_in(fields[columns.x]), y = number_in(fields[columns.y]);
+    if (fields.size() != columns[2]) return std::nullopt;
+    const std::optional<double> x = number_in(fields[columns[0]]), y = number_in(fields[columns[1]]);
     if (!x || !y) return std::nullopt;
     return Vec2{*x, *y};
   }
 
   Vec2 from_json(std::string_view line) const {
     const nlohmann::json read = nlohmann::json::parse(line.begin(), line.end(), nullptr, /*allow_exceptions=*/false);
-    if (read.is_discarded()) refuse(DataCode::json_syntax, line, kExpected);
+    if (read.is_discarded()) lines_.refuse(DataCode::json_syntax, line, kExpected);
     const bool is_object = read.is_object();
-    if (is_object && !read.contains("velocity")) refuse(DataCode::format_syntax, line, kExpected);
+    if (is_object && !read.contains("velocity")) lines_.refuse(DataCode::format_syntax, line, kExpected);
     const nlohmann::json& pair = is_object ? read.at("velocity") : read;
     const bool is_pair = pair.is_array() && pair.size() == 2 && pair[0].is_number() && pair[1].is_number();
-    if (!is_pair) refuse(DataCode::wrong_type, line, kExpected);
+    if (!is_pair) lines_.refuse(DataCode::wrong_type, line, kExpected);
     return {pair[0].get<double>(), pair[1].get<double>()};
   }
 
-  LineStream lines_;
+  TableLines lines_;
   bool has_begun_ = false;
-  Columns columns_;
+  Columns columns_{0, 1, 2};
 };
 
 // --- Answering ---
@@ -136,27 +126,6 @@ class PreparedCone {
   vo::Membership membership_;
 };
 
-/// Prints in chunks: neither a system call a line nor the whole answer in memory.
-class Output {
- public:
-  template <class... Values>
-  void add(const char* format, const Values&... values) {
-    fmt::format_to(std::back_inserter(text_), fmt::runtime(format), values...);
-  }
-  void end_line() {
-    text_ += '\n';
-    if (text_.size() > kChunk) flush();
-  }
-  void flush() {
-    print(std::exchange(text_, {}));
-    throw_if_reader_left();
-  }
-
- private:
-  static constexpr std::size_t kChunk = std::size_t{1} << 16;
-  std::string text_;
-};
-
 enum class Answer { free, collides, contact };
 
 class Answers {
@@ -176,8 +145,8 @@ class Answers {
     const bool is_hit = hit != cones_.end();
     const Answer answer = contact_ ? Answer::contact : is_hit ? Answer::collides : Answer::free;
     const std::size_t with = contact_ ? *contact_ : static_cast<std::size_t>(hit - cones_.begin());
-    json_ ? add_json(line, v, answer, with) : add_words(v, answer, with);
-    out_.end_line();
+    out_.add((json_ ? json_of(line, v, answer, with) : words_of(v, answer, with)) + "\n");
+    throw_if_reader_left();
   }
   void flush() { out_.flush(); }
 
@@ -191,29 +160,31 @@ class Answers {
   }
 
  private:
-  void add_json(std::size_t line, Vec2 v, Answer answer, std::size_t with) {
+  std::string json_of(std::size_t line, Vec2 v, Answer answer, std::size_t with) const {
     constexpr const char* kCollides[] = {"false", "true", "null"};
-    out_.add("{{\"line\": {}, \"velocity\": [{}, {}], \"collides\": {}", line, unsigned_zero(v.x), unsigned_zero(v.y),
-             kCollides[static_cast<int>(answer)]);
-    if (answer == Answer::free) return out_.add("}}");
+    const std::string text = fmt::format("{{\"line\": {}, \"velocity\": [{}, {}], \"collides\": {}", line,
+                                         unsigned_zero(v.x), unsigned_zero(v.y), kCollides[static_cast<int>(answer)]);
+    if (answer == Answer::free) return text + "}";
     const Place place = place_of(question_, with);
-    out_.add(", \"obstacle\": {}, \"cone\": {}}}", place.obstacle, place.cone);
+    return text + fmt::format(", \"obstacle\": {}, \"cone\": {}}}", place.obstacle, place.cone);
   }
 
-  void add_words(Vec2 v, Answer answer, std::size_t with) {
+  std::string words_of(Vec2 v, Answer answer, std::size_t with) const {
     constexpr const char* kWords[] = {"free", "collides", "contact"};
-    out_.add("{},{} {}", unsigned_zero(v.x), unsigned_zero(v.y), kWords[static_cast<int>(answer)]);
-    if (answer == Answer::free || question_.encounters.size() == 1) return;
+    const std::string text =
+        fmt::format("{},{} {}", unsigned_zero(v.x), unsigned_zero(v.y), kWords[static_cast<int>(answer)]);
+    if (answer == Answer::free || question_.encounters.size() == 1) return text;
     const Place place = place_of(question_, with);
-    out_.add(" with obstacle {}", place.obstacle);
-    if (question_.obstacles[place.obstacle].encounters > 1) out_.add(", piece {}", place.cone);
+    const bool has_pieces = question_.obstacles[place.obstacle].encounters > 1;
+    return text +
+           fmt::format(" with obstacle {}{}", place.obstacle, has_pieces ? fmt::format(", piece {}", place.cone) : "");
   }
 
   const VoQuestion& question_;
   bool json_;
   std::vector<PreparedCone> cones_;     ///< none in contact
   std::optional<std::size_t> contact_;  ///< the first encounter in which the robot touches or overlaps the obstacle
-  Output out_;
+  ChunkedOutput out_;
 };
 
 /// Reads the file without an answer, so that a line that is wrong is refused before the first answer.

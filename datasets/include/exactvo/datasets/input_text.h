@@ -7,7 +7,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <string_view>
 
 namespace exactvo::datasets {
 
@@ -29,7 +31,30 @@ inline constexpr std::uint64_t kLargestWholeFile = std::uint64_t{1} << 31;
 /// (also a directory, a device, a socket), E_SIZE beyond kLargestWholeFile.
 std::string read_text_file(const std::filesystem::path& path);
 
-/// Standard input to its end, whatever it is.
-std::string read_standard_input();
+/// The same; "-" is standard input, whatever that is.
+std::string read_file_or_input(const std::string& file);
+
+/// The lines of a file or a pipe, one after the other, as they come: memory does not grow with the input.
+class TextLines {
+ public:
+  /// Throws DataError as `read_text_file` does.
+  explicit TextLines(const std::filesystem::path& path);
+  /// The same; "-" is standard input. No line may have more than `longest` bytes.
+  TextLines(const std::string& file, std::size_t longest);
+  ~TextLines();
+
+  /// The next line without its \n, valid until the next call; false at the end. Throws DataError (E_SIZE) for one that
+  /// is too long.
+  bool next(std::string_view& line);
+
+  /// Of the line that was given last, from 1.
+  std::size_t number() const;
+  /// As messages name it.
+  const std::string& file() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace exactvo::datasets

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "exactvo/datasets/provenance.h"
+#include "exactvo/formation/simulation.h"
 
 namespace exactvo::datasets {
 
@@ -21,5 +22,9 @@ struct RunInfo {
   std::optional<std::string> guidance = std::nullopt;  ///< "route"; none where robots go without
   std::optional<std::string> liveness = std::nullopt;  ///< "bias"; none where nothing is done against waiting
 };
+
+/// Of a run of `scenario`: what of `options` it depends on.
+RunInfo run_info(const formation::Scenario& scenario, const formation::SimulationOptions& options,
+                 Provenance provenance);
 
 }  // namespace exactvo::datasets

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/formats/package_schema.h"
 
-#include <cpl_conv.h>
-#include <cpl_vsi.h>
 #include <ogrsf_frmts.h>
 
 #include <memory>
 
 #include "batch/formats/features.h"
 #include "exactvo/datasets/data_error.h"
-#include "files/unique_word.h"
 #include "gdal/gdal_session.h"
+#include "gdal/memory_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -26,34 +24,6 @@ OGRFieldType type_of(FieldType type) {
   }
   return OFTString;
 }
-
-/// Set for this thread while it lives.
-class FixedDate {
- public:
-  FixedDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", "1970-01-01T00:00:00.000Z"); }
-  ~FixedDate() { CPLSetThreadLocalConfigOption("OGR_CURRENT_DATE", nullptr); }
-  FixedDate(const FixedDate&) = delete;
-  FixedDate& operator=(const FixedDate&) = delete;
-};
-
-/// A file of GDAL's in memory, gone with the object.
-class MemoryFile {
- public:
-  MemoryFile() : name_("/vsimem/" + unique_word() + ".gpkg") {}
-  ~MemoryFile() { VSIUnlink(name_.c_str()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  const char* name() const { return name_.c_str(); }
-  std::string bytes() const {
-    vsi_l_offset length = 0;
-    const GByte* data = VSIGetMemFileBuffer(name(), &length, FALSE);
-    return data == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(data), length);
-  }
-
- private:
-  std::string name_;
-};
 
 class Schema {
  public:
@@ -104,8 +74,7 @@ class Schema {
 
 std::string empty_package(const std::string& provenance, const std::filesystem::path& path) {
   register_gdal_once();
-  const FixedDate date;
-  const MemoryFile file;
+  const MemoryFile file(".gpkg", "1970-01-01T00:00:00.000Z");
   Schema schema(file.name(), path);
   schema.describe(provenance);
   for (const Layer& layer : layers()) schema.create_layer(layer);

@@ -50,15 +50,12 @@ void SqliteFile::close() {
   database_ = nullptr;
 }
 
-SqliteStatement::SqliteStatement(SqliteFile& file, const std::string& sql) : file_(&file) {
+SqliteStatement::SqliteStatement(SqliteFile& file, const std::string& sql)
+    : file_(&file), statement_(nullptr, sqlite3_finalize) {
   sqlite3_stmt* prepared = nullptr;
   file.need(sqlite3_prepare_v3(file.database_, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT, &prepared, nullptr) ==
             SQLITE_OK);
   statement_.reset(prepared);
-}
-
-void SqliteStatement::Finalize::operator()(sqlite3_stmt* statement) const {
-  sqlite3_finalize(statement);
 }
 
 SqliteStatement& SqliteStatement::bind(int value, std::int64_t number) {

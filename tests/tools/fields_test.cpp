@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/line_stream.h"
+#include "support/fields.h"
 
 #include <gtest/gtest.h>
 
@@ -22,13 +22,14 @@ class Lines : public testing::Test {
 
   std::vector<std::string> lines_of(const std::string& text) const {
     std::ofstream(path_, std::ios::binary) << text;
-    LineStream stream(path_);
+    datasets::TextLines stream(path_, TableLines::kLongestLine);
     std::vector<std::string> lines;
-    while (stream.next()) {
-      lines.emplace_back(stream.line());
+    std::string_view line;
+    while (stream.next(line)) {
+      lines.emplace_back(line);
       EXPECT_EQ(stream.number(), lines.size());
     }
-    EXPECT_FALSE(stream.next()) << "the end stays the end";
+    EXPECT_FALSE(stream.next(line)) << "the end stays the end";
     return lines;
   }
 
@@ -46,7 +47,7 @@ TEST_F(Lines, EndsInEveryWayThatTextEnds) {
   EXPECT_EQ(lines_of(""), Strings{});
   EXPECT_EQ(lines_of("a"), Strings{"a"});
   EXPECT_EQ(lines_of("a\n"), Strings{"a"});
-  EXPECT_EQ(lines_of("\n\na\r\n\r\nb"), (Strings{"", "", "a", "", "b"}));
+  EXPECT_EQ(lines_of("\n\na\r\n\r\nb"), (Strings{"", "", "a\r", "\r", "b"}));
 }
 
 TEST_F(Lines, AcrossBlocksAsGetline) {
@@ -55,12 +56,12 @@ TEST_F(Lines, AcrossBlocksAsGetline) {
   Strings expected;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) expected.push_back(line);
-  EXPECT_GT(text.size(), 4 * LineStream::kLongestLine);
+  EXPECT_GT(text.size(), 4 * TableLines::kLongestLine);
   EXPECT_EQ(lines_of(text), expected);
 }
 
 TEST_F(Lines, ALineMayBeAsLongAsTheLimitAndNoLonger) {
-  const std::string longest(LineStream::kLongestLine, 'x');
+  const std::string longest(TableLines::kLongestLine, 'x');
   EXPECT_EQ(lines_of("a\n" + longest + "\nb\n"), (Strings{"a", longest, "b"}));
   EXPECT_EQ(lines_of("a\n" + longest), (Strings{"a", longest}));
   for (const std::string end : {"\nb\n", "", "xxxx\n"}) {
@@ -74,12 +75,24 @@ TEST_F(Lines, ALineMayBeAsLongAsTheLimitAndNoLonger) {
   }
 }
 
+TEST_F(Lines, ATableSkipsWhatHoldsNothingAndItsMark) {
+  std::ofstream(path_, std::ios::binary) << "\xEF\xBB\xBF"
+                                            "a,b\r\n\n# comment\n  1, 2 \n";
+  TableLines table(path_);
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.line(), "a,b");
+  ASSERT_TRUE(table.next());
+  EXPECT_EQ(table.line(), "1, 2");
+  EXPECT_EQ(table.number(), 4u);
+  EXPECT_FALSE(table.next());
+}
+
 TEST_F(Lines, AFileThatIsNotThereOrAFolderIsRefused) {
   for (const auto& [file, code] :
        {std::pair{path_ + ".missing", datasets::DataCode::file_missing},
         std::pair{fs::temp_directory_path().string(), datasets::DataCode::file_unreadable}}) {
     try {
-      const LineStream stream(file);
+      const TableLines stream(file);
       ADD_FAILURE() << file;
     } catch (const datasets::DataError& error) {
       EXPECT_EQ(error.code(), code);
