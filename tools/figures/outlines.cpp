@@ -62,8 +62,8 @@ double sign_change(const GrownShape& s, double inside, double outside) {
   return inside;
 }
 
-/// The first and the last of the angles at which h_S < 0; the normals of the legs are its ends. h is positive at right angles beyond the nearest
-/// point's normal, so the ends lie within half a turn of the deepest direction.
+/// The first and the last of the angles at which h_S < 0; the normals of the legs are its ends. h is positive at right
+/// angles beyond the nearest point's normal, so the ends lie within half a turn of the deepest direction.
 std::optional<std::pair<double, double>> negative_arc(const GrownShape& s) {
   const std::optional<double> deepest = deepest_angle(s);
   if (!deepest) return std::nullopt;

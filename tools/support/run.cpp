@@ -120,8 +120,13 @@ std::optional<datasets::RunInfo> run_in(const fs::path& folder) {
     if (found == metrics.end() || !found->is_string()) return std::nullopt;
     return found->get<std::string>();
   };
-  return datasets::RunInfo{text("scenario").value_or(""), text("method").value_or(""), text("controller"), {}, {},
-                           text("guidance"), text("liveness")};
+  return datasets::RunInfo{text("scenario").value_or(""),
+                           text("method").value_or(""),
+                           text("controller"),
+                           {},
+                           {},
+                           text("guidance"),
+                           text("liveness")};
 }
 
 void check_same_run(const fs::path& folder, const datasets::RunInfo& run) {

@@ -50,7 +50,8 @@ void append_shapes(JsonWriter& json, const ObstacleShapes& shapes) {
   append_points(json, shapes.hull.vertices);
   json.key("smallest_ellipse");
   append_ellipse(json, shapes.smallest_ellipse);
-  json.list("facade_ellipses", shapes.facade_ellipses, [&](const geometry::FacadeEnclosure& e) { append_ellipse(json, e.ellipse, e.clearance); });
+  json.list("facade_ellipses", shapes.facade_ellipses,
+            [&](const geometry::FacadeEnclosure& e) { append_ellipse(json, e.ellipse, e.clearance); });
   json.member("trap_free_ellipse", shapes.trap_free.ellipse, [&](const auto& e) { append_ellipse(json, e); });
 }
 

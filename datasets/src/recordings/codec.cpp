@@ -136,7 +136,8 @@ void append_robot(JsonWriter& json, const RobotStep& robot) {
   if (!robot.note.empty()) json.member("note", robot.note);
   if (robot.uncertified != 0) json.member("uncertified", robot.uncertified);
   if (!robot.constraints.empty()) {
-    json.list("constraints", robot.constraints, [&](const RecordedConstraint& constraint) { append_constraint(json, constraint); });
+    json.list("constraints", robot.constraints,
+              [&](const RecordedConstraint& constraint) { append_constraint(json, constraint); });
   }
   json.end_object();
 }

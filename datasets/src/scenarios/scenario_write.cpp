@@ -131,8 +131,10 @@ void append_points(JsonWriter& json, const std::vector<geometry::Vec2>& points) 
 void append_scenario(JsonWriter& json, const Scenario& scenario) {
   json.begin_object().member("name", scenario.name).member("description", scenario.description);
   json.list("robots", scenario.robots, [&](const formation::Robot& robot) { append_robot(json, robot); });
-  json.list("obstacles", scenario.obstacles, [&](const formation::SceneObstacle& obstacle) { append_obstacle(json, obstacle); });
-  json.list("moving_obstacles", scenario.moving_obstacles, [&](const formation::MovingObstacle& obstacle) { append_moving(json, obstacle); });
+  json.list("obstacles", scenario.obstacles,
+            [&](const formation::SceneObstacle& obstacle) { append_obstacle(json, obstacle); });
+  json.list("moving_obstacles", scenario.moving_obstacles,
+            [&](const formation::MovingObstacle& obstacle) { append_moving(json, obstacle); });
   if (scenario.formation) append_formation(json, *scenario.formation);
   append_figures(json, scenario);
   json.end_object();

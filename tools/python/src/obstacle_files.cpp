@@ -105,7 +105,8 @@ py::list write(const fs::path& path, const Obstacles& obstacles, const py::objec
     options.plane = c.plane;
     if (c.properties.size() == obstacles.list.size()) options.properties = c.properties;
   }
-  const std::vector<std::string> lost = without_gil([&] { return datasets::write_obstacles(path, obstacles.list, options); });
+  const std::vector<std::string> lost =
+      without_gil([&] { return datasets::write_obstacles(path, obstacles.list, options); });
   return py::cast(lost);
 }
 

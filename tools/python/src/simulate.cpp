@@ -70,8 +70,8 @@ std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& m
   run->file.scenario = handle.scenario;
   {
     const py::gil_scoped_release released;
-    run->file.info = datasets::run_info(handle.scenario, options,
-                                        datasets::make_provenance({"exactvo.simulate"}, 0, handle.files));
+    run->file.info =
+        datasets::run_info(handle.scenario, options, datasets::make_provenance({"exactvo.simulate"}, 0, handle.files));
     run->file.recording = formation::simulate(handle.scenario, options);
     Evaluation evaluation = evaluate(handle.scenario, run->file.recording);
     run->metrics = std::move(evaluation.metrics);

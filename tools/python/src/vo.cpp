@@ -155,7 +155,8 @@ vo::FreeVelocities make_free(const py::list& cones, py::handle max_speed, py::ha
 py::object exact_free(const py::list& cones, py::handle max_speed) {
   std::vector<vo::ShiftedCone> shifted = cones_of(cones);
   const double speed = positive(max_speed, "max_speed");
-  const vo::FreeArrangement::Attempt attempt = without_gil([&] { return vo::FreeArrangement::attempt(std::move(shifted), speed); });
+  const vo::FreeArrangement::Attempt attempt =
+      without_gil([&] { return vo::FreeArrangement::attempt(std::move(shifted), speed); });
   if (!attempt.free) return py::str(name(attempt.refusal));
   return py::make_tuple(attempt.free->pieces().size(), bracket(attempt.free->area()));
 }
