@@ -2,14 +2,22 @@
 // Scenes of docs/guide/liveness.md, run by hand: who arrives, and how long it takes over the longest straight way at
 // full speed. With `audit` the recording is proven in rationals, which takes longer than the run.
 //
-//   formation_liveness_campaign KIND COUNT [SIZE] [SEED] [off|bias|plan] [audit]
+// No row is kept: memory does not grow with the run. For the audit the recording stands in the present folder
+// meanwhile.
+//
+//   formation_liveness_campaign KIND COUNT [SIZE] [SEED] [off|bias|plan] [audit|FILE]
 //   formation_liveness_campaign street 60 4
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "exactvo/datasets/audit.h"
+#include "exactvo/datasets/recording_file.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
 #include "liveness_scenes.h"
@@ -39,16 +47,62 @@ Scenario scene(const std::string& kind, int count, double size, std::uint64_t se
   std::exit(2);
 }
 
-bool audits_clean(const Scenario& s, const Recording& run) {
-  datasets::RecordingFile file;
-  file.scenario = s;
-  if (s.formation) {
+/// Measures a run as it is made, and writes its recording where it is to be audited: no row is kept.
+class MeasuredRun : public RunSink {
+ public:
+  MeasuredRun(const Scenario& scenario, std::filesystem::path recording) : recording_(std::move(recording)) {
+    about_.scenario = scenario;
+    if (!scenario.formation) return;
     const SimulationOptions options;
-    file.info.controller = name(options.controller);
-    file.info.integrator = name(options.integrator);
+    about_.info.controller = name(options.controller);
+    about_.info.integrator = name(options.integrator);
   }
-  file.recording = run;
-  const datasets::AuditReport report = datasets::audit(file);
+
+  void begin(const Recording& run) override {
+    about_.recording = run;
+    if (!recording_.empty()) file_.emplace(recording_, about_);
+    evaluator_.emplace(about_.scenario, about_.recording, [this](const Step& row, const LyapunovRow* lyapunov) {
+      if (file_) file_->add(row, bodies_, lyapunov);
+    });
+  }
+  void add_body(const vo::Body& body) override { bodies_.push_back(body); }
+  // The row before has to stand before these in the file, and it is written when the next one comes.
+  void add_outlook(const Outlook& outlook) override { outlooks_.push_back(outlook); }
+  void add_plan(const JointPlan& plan) override { plans_.push_back(plan); }
+  void add_row(Step row) override {
+    if (std::getenv("NOTES")) print_notes(row);
+    evaluator_->add(std::make_shared<const Step>(std::move(row)));
+    for (const Outlook& outlook : std::exchange(outlooks_, {}))
+      if (file_) file_->add(outlook, bodies_);
+    for (const JointPlan& plan : std::exchange(plans_, {}))
+      if (file_) file_->add(plan);
+  }
+
+  Metrics finish(const Recording& run) {
+    Evaluation found = evaluator_->finish(run);
+    about_.recording = run;
+    if (file_) file_->finish(about_);
+    return found.metrics;
+  }
+
+ private:
+  void print_notes(const Step& row) const {
+    for (std::size_t i = 0; i < row.robots.size(); ++i)
+      if (!row.robots[i].note.empty())
+        std::printf("  %.2f %s: %s\n", row.time, about_.scenario.robots[i].id.c_str(), row.robots[i].note.c_str());
+  }
+
+  std::filesystem::path recording_;
+  datasets::RecordingFile about_;
+  std::optional<datasets::RecordingWriter> file_;
+  std::optional<Evaluator> evaluator_;
+  std::vector<vo::Body> bodies_;
+  std::vector<Outlook> outlooks_;
+  std::vector<JointPlan> plans_;
+};
+
+bool audits_clean(const std::filesystem::path& recording) {
+  const datasets::AuditReport report = datasets::audit_recording(recording);
   std::printf("  audit: %zu motions, %zu collisions, %zu unproven, %zu refuted half-planes: %s\n", report.steps,
               report.collisions, report.unproven, report.unsafe, report.clean() ? "clean" : "NOT CLEAN");
   for (const std::string& finding : report.findings) std::printf("    %s\n", finding.c_str());
@@ -73,10 +127,13 @@ int main(int argc, char** argv) {
     bound = std::max(bound, norm(goal - r.position) / r.max_speed);
   }
   if (s.name != "cross") s.time_limit = 15.0 * bound + 200.0;  // there they go to and fro
+  std::filesystem::path recording;
+  if (argc > 6) recording = argv[6] == std::string("audit") ? "liveness_campaign.jsonl" : argv[6];
   const auto start = std::chrono::steady_clock::now();
-  const Recording run = simulate(s, options);
+  MeasuredRun measured(s, recording);
+  const Recording run = simulate(s, options, measured);
+  const Metrics m = measured.finish(run);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const Metrics m = measure(s, run);
   std::size_t arrived = 0;
   for (const RobotMetrics& r : m.robots) arrived += r.arrived;
   std::optional<double> end = m.last_arrival_time;
@@ -90,14 +147,10 @@ int main(int argc, char** argv) {
       "%s %s %g seed %llu: %zu of %zu arrived, %.2f of the bound, %zu collisions, %zu relaxed, %zu plans, largest %zu, "
       "%zu nodes, %.2f s\n",
       argv[1], argv[2], size, static_cast<unsigned long long>(seed), arrived, s.robots.size(),
-      end.value_or(run.steps.back().time) / bound, m.collisions.size(), m.relaxed_steps, course.groups, course.largest,
-      course.search_nodes, wall);
+      end.value_or(static_cast<double>(m.steps) * s.time_step) / bound, m.collisions.size(), m.relaxed_steps,
+      course.groups, course.largest, course.search_nodes, wall);
   if (!all_arrived) std::printf("  %s\n", m.outcome.c_str());
-  if (std::getenv("NOTES"))
-    for (const Step& row : run.steps)
-      for (std::size_t i = 0; i < row.robots.size(); ++i)
-        if (!row.robots[i].note.empty())
-          std::printf("  %.2f %s: %s\n", row.time, s.robots[i].id.c_str(), row.robots[i].note.c_str());
-  const bool is_clean = argc <= 6 || audits_clean(s, run);
+  const bool is_clean = argc <= 6 || audits_clean(recording);
+  if (argc > 6) std::filesystem::remove(recording);
   return all_arrived && is_clean ? 0 : 1;
 }

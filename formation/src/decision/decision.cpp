@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
+#include "scene/near_pairs.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -115,14 +117,28 @@ PairConstraints against_each_other(const Party& a, const Party& b, vo::Reciproca
           against_robot(pair.b, pair.certified, b, a, rule.time_horizon)};
 }
 
-void sort_by_distance(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines) {
-  const auto distance = [&](const Constraint& c) {
-    return norm(std::get<geometry::Disc>(bodies[c.body].shape).center - from);
-  };
-  std::sort(lines.begin(), lines.end(), [&](const Constraint& x, const Constraint& y) {
-    const double dx = distance(x), dy = distance(y);
-    return dx != dy ? dx < dy : x.index < y.index;
+void NearestFirst::sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines) {
+  keys_.clear();
+  for (const Constraint& c : lines) {
+    const double distance = norm(std::get<geometry::Disc>(bodies[c.body].shape).center - from);
+    keys_.push_back({distance, c.index, keys_.size()});
+  }
+  std::sort(keys_.begin(), keys_.end(), [](const Key& x, const Key& y) {
+    return std::tie(x.distance, x.index, x.at) < std::tie(y.distance, y.index, y.at);
   });
+  // Half-planes are large: each moves once, round the cycles of the permutation.
+  for (std::size_t first = 0; first < lines.size(); ++first) {
+    if (keys_[first].at == first) continue;
+    const Constraint kept = lines[first];
+    std::size_t to = first;
+    for (std::size_t next = keys_[to].at; next != first; next = keys_[to].at) {
+      lines[to] = lines[next];
+      keys_[to].at = to;
+      to = next;
+    }
+    lines[to] = kept;
+    keys_[to].at = to;
+  }
 }
 
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
@@ -135,17 +151,19 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
                         anchors[i].velocity);
   }
   const vo::ReciprocalOptions rule = pair_rule(scenario, options);
-  for (std::size_t i = 0; i < n; ++i) {
+  std::vector<Vec2> places;
+  places.reserve(n);
+  for (const Anchor& anchor : anchors) places.push_back(anchor.position);
+  for_each_near_pair(places, scenario.neighbour_distance, [&](std::size_t i, std::size_t j) {
+    if (norm(places[i] - places[j]) > scenario.neighbour_distance) return;
     const Party a = party(scenario, anchors, scene, i, anchors[i].velocity);
-    for (std::size_t j = i + 1; j < n; ++j) {
-      if (norm(anchors[i].position - anchors[j].position) > scenario.neighbour_distance) continue;
-      const Party b = party(scenario, anchors, scene, j, anchors[j].velocity);
-      const PairConstraints pair = against_each_other(a, b, rule);
-      if (a.yields) out[i].push_back(pair.of_a);
-      if (b.yields) out[j].push_back(pair.of_b);
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) sort_by_distance(scene.bodies(), anchors[i].position, out[i]);
+    const Party b = party(scenario, anchors, scene, j, anchors[j].velocity);
+    const PairConstraints pair = against_each_other(a, b, rule);
+    if (a.yields) out[i].push_back(pair.of_a);
+    if (b.yields) out[j].push_back(pair.of_b);
+  });
+  NearestFirst nearest_first;
+  for (std::size_t i = 0; i < n; ++i) nearest_first.sort(scene.bodies(), anchors[i].position, out[i]);
 }
 
 bool is_of_robot(const Scene& scene, const Constraint& c) {

@@ -41,9 +41,21 @@ vo::ReciprocalOptions pair_rule(const Scenario& scenario, const SimulationOption
 /// Soft. Each half is the same bits whoever is `a`.
 PairConstraints against_each_other(const Party& a, const Party& b, vo::ReciprocalOptions rule);
 
-/// By the distance of the robots from `from`; of robots equally near, by their numbers. REQUIRES: half-planes against
-/// robots only.
-void sort_by_distance(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines);
+/// Sorts half-planes against robots by the distance of the robots; of robots equally near, by their numbers. Keeps its
+/// memory from one time to the next.
+class NearestFirst {
+ public:
+  /// REQUIRES: half-planes against robots only, each against another one.
+  void sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines);
+
+ private:
+  struct Key {
+    double distance = 0.0;  ///< m
+    std::size_t index = 0;
+    std::size_t at = 0;  ///< where the half-plane stood
+  };
+  std::vector<Key> keys_;
+};
 
 /// All half-planes of every robot against every other within `neighbour_distance`, nearest first: entry i belongs to
 /// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who

@@ -14,6 +14,7 @@
 #include "exactvo/geometry/obstacle_index.h"
 #include "motion/motion.h"
 #include "motion/moving_way.h"
+#include "scene/near_pairs.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -311,16 +312,23 @@ class ClearanceSweep::Sweep {
   /// Pairs that stay farther apart than the least so far are skipped: twice their ways would not bring them nearer.
   void lower_between(std::size_t step, double end) {
     ways_of_step_.clear();
-    for (const Motion& m : motions_) ways_of_step_.push_back(strays(m));
-    for (std::size_t i = 0; i < motions_.size(); ++i) {
-      for (std::size_t j = i + 1; j < motions_.size(); ++j) {
-        const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
-        const double apart = norm(motions_[i].from - motions_[j].from) - radii;
-        if (apart > enough(between_) + 2.0 * (ways_of_step_[i] + ways_of_step_[j])) continue;
-        note(i, {CollisionKind::robot, j}, step, end, pair_clearance(motions_[i], motions_[j], radii, enough(between_)),
-             between_);
-      }
+    starts_.clear();
+    double longest = 0.0, largest_radius = 0.0;
+    for (const Motion& m : motions_) {
+      starts_.push_back(m.from);
+      const double way = ways_of_step_.emplace_back(strays(m));
+      longest = std::isnan(way) ? kInfinity : std::max(longest, way);
     }
+    for (const Robot& r : scenario_.robots) largest_radius = std::max(largest_radius, r.radius);
+    // The least clearance falls meanwhile: what is too far for it now is too far then.
+    const double reach = enough(between_) + 4.0 * longest + 2.0 * largest_radius;
+    for_each_near_pair(starts_, (1.0 + 1e-9) * reach, [&](std::size_t i, std::size_t j) {
+      const double radii = scenario_.robots[i].radius + scenario_.robots[j].radius;
+      const double apart = norm(starts_[i] - starts_[j]) - radii;
+      if (apart > enough(between_) + 2.0 * (ways_of_step_[i] + ways_of_step_[j])) return;
+      note(i, {CollisionKind::robot, j}, step, end, pair_clearance(motions_[i], motions_[j], radii, enough(between_)),
+           between_);
+    });
   }
 
   static double pair_clearance(const Motion& a, const Motion& b, double radii, double enough) {
@@ -404,6 +412,7 @@ class ClearanceSweep::Sweep {
   // Memory that a step leaves to the next.
   std::vector<Motion> motions_;
   std::vector<double> ways_of_step_;  ///< m
+  std::vector<Vec2> starts_;          ///< m
   std::vector<std::size_t> near_;
   std::vector<Quiet> quiet_;  ///< of each robot
 };

@@ -321,7 +321,7 @@ class Navigator::Core {
       const Party other{n.id, body, {n.position, n.velocity, n.radius}, n.max_speed, n.cooperates};
       others_.push_back(against_each_other(self, other, rule_).of_a);
     }
-    sort_by_distance(scene_.bodies(), now_.position, others_);
+    nearest_first_.sort(scene_.bodies(), now_.position, others_);
     for (std::size_t k = 0; k < moving.size(); ++k) {
       const vo::BodyTable::Number body = slot(moving_, k, vo::BodyKind::moving_obstacle);
       scene_.bodies().move(body, moving[k].shape, moving[k].velocity);
@@ -357,6 +357,7 @@ class Navigator::Core {
   std::vector<vo::BodyTable::Number> robots_, moving_;  ///< bodies, in the order of the lists
   // Memory that a decision leaves to the next.
   std::vector<Constraint> others_;
+  NearestFirst nearest_first_;
   Decision decision_;
   std::vector<DecisionConstraint> kept_;
 };
