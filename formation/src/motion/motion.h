@@ -3,7 +3,8 @@
 
 /// \file
 /// The continuous motion of a robot between two rows of a recording, with a certified bound of how far it strays from
-/// its chords, and the search for a least clearance along it: the ground of every swept clearance.
+/// its chords, and the search for a least clearance along it: the ground of every swept clearance. For measuring only;
+/// robots are driven by integrators.h and runs/kinematic_run.cpp.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Formations: Sections IV and V.B, with the remedies of remedies.h.
+// Formations: Sections IV and V.B, with the remedies of remedies.h. The loop over time and when it ends, and how the
+// controller is put together from the terms of control/consensus.h: `wanted_velocity`, `tracked_velocity`.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

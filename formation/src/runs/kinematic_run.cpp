@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinematic robots with goals: Section V.A.
+// Kinematic robots with goals: Section V.A. The loop over time and when it ends, the order in which a step is decided,
+// and the turn to the right of robots in each other's way (`biased`, liveness, rule R1).
 #include <algorithm>
 #include <string>
 #include <utility>

@@ -9,10 +9,9 @@
 
 namespace exactvo::formation::detail {
 
-/// Kinematic robots with goals (Section V.A).
 class Guide;
 
-/// Without a guide robots head straight for their goals.
+/// Kinematic robots with goals (Section V.A). Without a guide robots head straight for their goals.
 void run_kinematic(const Scenario& scenario, const SimulationOptions& options, Guide* guide, Recording& recording,
                    RunSink& sink);
 

@@ -3,7 +3,7 @@
 
 /// \file
 /// What holds a decision's velocity where it is: the multipliers of the Karush-Kuhn-Tucker conditions, as recorded.
-/// Rounded: they are the solver's, not certified.
+/// Rounded: they are the solver's, not certified. (How two robots share an avoidance is vo/reciprocal.h.)
 
 #include <cstddef>
 #include <optional>

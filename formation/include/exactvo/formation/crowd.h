@@ -10,9 +10,8 @@
 /// driven. "Float" and "double" name the arithmetic of half-planes and of the linear program only.
 ///
 /// Promises (tests quote the numbers). Let a robot be *kept* in a step if its velocity provably satisfies all its
-/// half-planes, and let two robots *touch* if they are nearer than the sum R of their radii and a rounding error: 40 u
-/// (|dx|
-/// + |dy| + R), u = 2^-24 (float) or 2^-53.
+/// half-planes, and let two robots *touch* if they are nearer than the sum R of their radii and a rounding error:
+/// 40 u (|dx| + |dy| + R), u = 2^-24 (float) or 2^-53.
 ///  (1) Two kept robots that do not touch at the beginning of a step are apart at every moment of it. Certified, for
 ///      `CrowdOptions::certified`.
 ///  (2) Both robots of a pair use the same normal, one negated, bit for bit; their offsets add up to at least what the

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Figures of a run, from its recording alone. SI units. Nothing where a value does not apply.
+/// Measurements of a run, from its recording alone. SI units. Nothing where a value does not apply.
 ///
 /// Clearances are swept and certified: lower bounds over the continuous motion between rows (of the cubic through both
 /// ends, where the integrator has no closed form) and of what moves beside the robot, round its corners and through
