@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// Which numbers the command line takes for a robot wherever velocity obstacles are asked for: within these, squares and
-/// the squares of sums stay far within doubles. (How fast a robot may drive is its `max_speed`, in the scenario.)
+/// Which numbers the command line takes for a robot wherever velocity obstacles are asked for: within these, squares
+/// and the squares of sums stay far within doubles. (How fast a robot may drive is its `max_speed`, in the scenario.)
 
 #include <cmath>
 

@@ -87,7 +87,7 @@ void declare_simulation_flags(CLI::App& app, SimulationFlags& flags) {
       "--guidance,-g", flags.guidance,
       help("How robots with goals find their way, instead of what the scenario says", formation::guidance_names()))};
   app.add_option("--liveness", flags.liveness,
-                 help("What keeps robots with goals from waiting for ever, instead of what the scenario says",
+                 help("What prevents deadlocks, instead of what the scenario says (in formations plan or off)",
                       formation::liveness_names()));
   flags.of_formations = {
       app.add_option("--controller,-c", flags.controller, help("Formation controller", formation::controller_names()))

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// The terms of a formation's controller: the consensus law (14) and the preferred velocity towards the slot (17), as the
-/// options of remedies.h have them (paper, Section IV; docs/guide/errata.md). runs/formation_run.cpp adds them up.
+/// The terms of a formation's controller: the consensus law (14) and the preferred velocity towards the slot (17), as
+/// the options of remedies.h have them (paper, Section IV; docs/guide/errata.md). runs/formation_run.cpp adds them up.
 
 #include <vector>
 

@@ -28,7 +28,7 @@ struct Party {
   vo::BodyTable::Number body = 0;  ///< a disc, where it is
   vo::MovingDisc disc;
   double max_speed = 0.0;  ///< m/s
-  bool yields = true;      ///< false: the other one takes the whole avoiding
+  bool yields = true;      ///< false: the other one takes the whole responsibility
 };
 
 /// Both halves of a pair.
@@ -59,7 +59,7 @@ class NearestFirst {
 
 /// All half-planes of every robot against every other within `neighbour_distance`, nearest first: entry i belongs to
 /// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who
-/// meets it takes the whole avoiding. Moves the robots' bodies to their anchors.
+/// meets it takes the whole responsibility. Moves the robots' bodies to their anchors.
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,
                        Scene& scene, std::vector<std::vector<Constraint>>& out);
 

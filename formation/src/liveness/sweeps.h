@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// Distances between what discs sweep, rounded, for searching: plans leave `kPlannedGap` between discs, which is far more
-/// than any rounding, and half-planes decide in the end.
+/// Distances between what discs sweep, rounded, for searching: plans leave `kPlannedGap` between discs, which is far
+/// more than any rounding, and half-planes decide in the end.
 
 #include <algorithm>
 #include <limits>

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// What both kinds of run share: time steps, the end by time limit or by the caller, when the caller hears of them, when
-/// everything is kept. That robots have arrived or diverged ends a run too: the loops in kinematic_run.cpp and
+/// What both kinds of run share: time steps, the end by time limit or by the caller, when the caller hears of them,
+/// when everything is kept. That robots have arrived or diverged ends a run too: the loops in kinematic_run.cpp and
 /// formation_run.cpp ask for that.
 
 #include <chrono>

@@ -3,8 +3,8 @@
 
 /// \file
 /// Going round robots that stand between a robot and its slot (how slots are kept is control/consensus.h): three robots
-/// whose slots are filled in the wrong order press against each other for ever, since each half of a pair yields only as
-/// much as it is pressed.
+/// whose slots are filled in the wrong order press against each other for ever, since each half of a pair yields only
+/// as much as it is pressed.
 ///
 /// Heuristic; ties go left. Touches no half-plane: what comes out is a preference.
 

@@ -214,16 +214,16 @@ Action declare_route(CLI::App& app) {
   const auto flags = std::make_shared<RouteFlags>();
   app.add_option("map", flags->map, "An obstacle file of any readable format, or a scenario")->required();
   app.add_option("--from", flags->from,
-                 "Start X,Y: m as the reader lays the file out (degrees are projected first, and it says how); on a "
-                 "Moving AI map cells, as in its .scen");
+                 "Start X,Y in metres of the map as it is read (one in degrees is projected, and a message says how); "
+                 "on a Moving AI map a cell, as in its .scen");
   app.add_option("--to", flags->to, "Goal X,Y, likewise");
-  app.add_option("--radius", flags->radius, "Of the disc, m; 0: a point, which touches nothing");
+  app.add_option("--radius", flags->radius, "Radius of the disc, m; 0: a point, which touches no obstacle");
   app.add_flag("--widest", flags->widest, "The largest radius for which there is a route, an exact double");
   app.add_option("--queries", flags->queries,
                  "FILE, or - for stdin: many questions, one line of answer each. CSV with the columns "
                  "start_x,start_y,goal_x,goal_y, or a .scen of the Moving AI benchmarks");
   app.add_option("--cell-point", flags->cell_point,
-                 "What of a cell of a Moving AI map is meant: middle, or corner (its top left one)")
+                 "Which point of a cell of a Moving AI map is meant: middle, or corner (top left)")
       ->capture_default_str();
   declare_reading_flags(app, flags->reading);
   app.add_flag("--repair", flags->repair, "Repair invalid geometry first");

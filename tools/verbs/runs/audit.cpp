@@ -243,7 +243,7 @@ ExitCode audit(const AuditFlags& flags) {
 Action declare_audit(CLI::App& app) {
   const auto flags = std::make_shared<AuditFlags>();
   app.add_option("path", flags->path, "A recording.jsonl, a crowd's FILE.evr, or a folder searched for both");
-  app.add_option("--sample", flags->sample, "Of a crowd: judge about so many motions; 0 for all");
+  app.add_option("--sample", flags->sample, "Of a recording of a crowd, check about this many motions; 0: all");
   app.add_option("--scenario", flags->scenario, "FILE that the recordings must be of, with its obstacle files");
   app.add_option("--certificate", flags->certificates,
                  "FILE with one certificate per line, or the output of vo --json or route --json; - for stdin");

@@ -248,7 +248,7 @@ class Crowd {
   /// keep off it as off edges, and one that starts inside is led out by the shortest way that it finds. Bodies are laid
   /// out anew before the next step, in O(bodies).
   ObstacleId add_body(const geometry::ConvexShape& shape);
-  /// A solid body that moves, without turning: robots take the whole avoiding upon themselves, (9). It goes the nearest
+  /// A solid body that moves, without turning: robots take the whole responsibility, (9). It goes the nearest
   /// whole number of lattice steps in a time step, whatever is in its way, until `set_body_velocity`. Velocity in m/s,
   /// at most 2^15 and 2^22 lattice steps a time step.
   ObstacleId add_moving_body(const geometry::ConvexShape& shape, Vec2 velocity);

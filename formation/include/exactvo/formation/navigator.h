@@ -68,7 +68,7 @@ struct Neighbour {
   Vec2 velocity = {};      ///< m/s
   double radius = 0.5;     ///< m, > 0
   double max_speed = 3.0;  ///< m/s, > 0
-  bool cooperates = true;  ///< false: it does not yield, and this robot takes the whole avoiding
+  bool cooperates = true;  ///< false: it does not yield, and this robot takes the whole responsibility
 };
 
 /// Something else that moves: nobody expects it to yield.

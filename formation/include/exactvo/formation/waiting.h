@@ -5,9 +5,10 @@
 /// Which robots wait for which, from the half-planes that a row was decided on.
 ///
 /// Robot i waits for robot j if all three hold: j's half-plane excludes the preferred velocity of i or has a multiplier
-/// above 0; i drives less than `kHeldBelow` of its preferred velocity, measured along it; and the gap between their rims
-/// is less than the radius of i, or than one and a half margins between robots if that is more. A cycle of such robots
-/// is a deadlock: none goes before the next does. Exact about what was recorded; that a cycle stays one is a prediction.
+/// above 0; i drives less than `kHeldBelow` of its preferred velocity, measured along it; and the gap between their
+/// rims is less than the radius of i, or than one and a half margins between robots if that is more. A cycle of such
+/// robots is a deadlock: none goes before the next does. Exact about what was recorded; that a cycle stays one is a
+/// prediction.
 
 #include <cstddef>
 #include <string>
