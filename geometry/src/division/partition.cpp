@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// `convex_pieces` of hull.h: chooses a method, asks CGAL or triangulation.cpp, and proves every answer
+// (partition_certificate.h) before it is given.
 #define CGAL_DEBUG 1  // assertions on whatever the build: see proved_pieces_by_cgal
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Partition_traits_2.h>

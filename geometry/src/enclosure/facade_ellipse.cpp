@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The ellipse of one facade, in closed form (paper, equation (8)), and the inflation that certifies ellipses.
 #include <algorithm>
 #include <cmath>
 #include <string>

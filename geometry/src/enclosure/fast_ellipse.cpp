@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// `fast_smallest_ellipse` of hull.h: flat input here, the rest by Newton's method in ellipse_solver.cpp. Certified.
 #include <algorithm>
 
 #include "enclosure/ellipse_solver.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// `smallest_circle` of hull.h. The search rounds; what it returns is certified to contain the points.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Notation: E = { centre + L w : |w| <= 1 }, L = [l11 0; l21 l22]; r the radius of the disc; u the centre seen from the
+// point; T = |L|^2 (Frobenius), D = det(L)^2, R = r^2, Q = |adj(L) u|^2, U = |u|^2.
+//
+// A point is outside E (+) D(0, r) iff the disc of radius r round it and E are separate. By Wang, Wang and Kim (2001)
+// they are iff the cubic g(x) = x^3 + b x^2 + c x + d with b = T + R - U, c = D + R T - Q, d = R D has two distinct
+// positive roots; they touch from outside iff it has a double positive root. Since d > 0, the product of the roots is
+// negative: one root is negative, and the others are positive iff they are real and b < 0 or c < 0 (Descartes). Hence
+//
+//     outside:  discriminant > 0 and (b < 0 or c < 0)        boundary:  discriminant = 0 and (b < 0 or c < 0)
+//
+// This does not hold for R D = 0. A point against the bare ellipse (R = 0) is decided by the sign of c; E without width
+// (D = 0) by the distance from a segment.
 #include "predicates/grown_ellipse.h"
 
 #include <cmath>
@@ -11,7 +23,7 @@ namespace {
 
 // --- A point against ellipse (+) disc, exactly ---
 
-/// The coefficients of g(x) = x^3 + b x^2 + c x + d (Wang, Wang and Kim 2001), u = centre - point.
+/// The coefficients of g.
 template <typename T>
 struct SeparationCubic {
   T b, c, d;

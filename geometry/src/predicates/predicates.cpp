@@ -1,4 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Which filter is asked first, and which exact stage decides what the filter leaves open:
+//
+//   predicate                          filter                                 exact stage
+//   sign_of_support (A)                support.h: |error| <= 16 u H           here: k + sqrt(b) + sqrt(d), squared away
+//   locate (B1)        disc            here: static bound                     here
+//                      hull (+) disc   grown_polygon.cpp, sign by sign        the same file
+//                      ellipse         grown_ellipse.cpp, locate_rounded      the same file, locate_exactly
+//   segment_meets (B2) disc            segment_disc_filter.h                  exact_sweep.cpp
+//                      hull (+) disc   grown_polygon.cpp, sign by sign        the same file
+//                      ellipse         grown_ellipse.cpp                      the same file, by way of exact_sweep.cpp
+//   contains (E), orientation,         running_error.h: a bound that          here: the same polynomial over Mpzf
+//   goal_outside_evolute (F)           is computed with the value
+//
+// Static bounds are multiples of u = 2^-53 times a sum of absolute terms, derived where they are defined. There is no
+// interval arithmetic here. A filter decides nothing with NaN or infinity: these reach the exact stage, which refuses
+// them.
+//
+// Notation: S = (shape - origin) (+) D(0, radius); h_S its support function; H the sum of the absolute terms of h_S(n);
+// tau the time horizon; an ellipse is { center + L w : |w| <= 1 }, Sigma = L L^T, with semi-axes a >= b.
 #include "exactvo/geometry/predicates.h"
 
 #include <cmath>

@@ -2,8 +2,9 @@
 #pragma once
 
 /// \file
-/// The exact questions of distance that routes ask. Every answer is a sign: -1, 0 or 1. All are polynomials in the
-/// coordinates, so that no square root is taken. Lengths r are doubles >= 0.
+/// The questions of distance that routes ask. Exact: each is the sign (-1, 0 or 1) of a polynomial in the coordinates,
+/// so that no square root is taken; `sign_of` of exact_point.h evaluates it with a running error bound first. Lengths r
+/// are doubles >= 0.
 
 #include "routes/exact_point.h"
 

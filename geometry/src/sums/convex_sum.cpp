@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Convex (+) convex, by merging edges in the order of their directions. The turn from one edge to the next is
+// decided in doubles with a static bound, then exactly.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,8 +16,8 @@ namespace {
 
 /// Products below this may have lost bits to underflow, so that comparing them decides nothing.
 constexpr double kSafeProduct = 0x1p-960;
-/// First-order bound of the error of (b - a) x (d - c): 1 u a difference, 1 u a product, 1 u the last; 3 u (|p| + |q|)
-/// from the products' factors and results and 1 u more; 8 leaves room for the second order.
+/// The error of (b - a) x (d - c) = p - q, p and q its products: two rounded factors and the rounding of the product
+/// make 3 u of each, the subtraction 1 u of their difference. 4 u (|p| + |q|) to first order; 8 u leaves room for more.
 constexpr double kTurnError = 8.0 * kUnitRoundoff;
 
 Sign exact_turn(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {

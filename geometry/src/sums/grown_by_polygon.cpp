@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Obstacles grown by a robot that is a convex polygon, rounded outward.
 #include <algorithm>
 #include <cmath>
 

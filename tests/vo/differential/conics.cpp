@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Points against ellipse (+) disc: `locate` against the crossings of the ellipse with the disc's circle, which CGAL's
+// conic traits compute.
 #include <CGAL/Arr_conic_traits_2.h>
 #include <CGAL/CORE_algebraic_number_traits.h>
 #include <CGAL/Cartesian.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Points and segments against discs, segments and polygons grown by discs: `locate` and `segment_meets` against squared
+// distances in CGAL's exact kernel.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_2.h>
 #include <CGAL/squared_distance_2.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The smallest enclosing ellipse, by both of our ways, against CGAL's Min_ellipse_2 in rationals.
 #include <CGAL/Gmpq.h>
 #include <CGAL/Min_ellipse_2.h>
 #include <CGAL/Min_ellipse_2_traits_2.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Points against polygon (+) disc: `locate` against the conic arrangement of CGAL's offset_polygon_2 (exact_offset.h).
 #include "geometry/exact_offset.h"
 #include "geometry/random_grown.h"
 #include "vo/differential/tally.h"

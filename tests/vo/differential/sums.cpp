@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Minkowski sums of convex and of other polygons against CGAL's minkowski_sum_2, by convolution and by decomposition.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_vertical_decomposition_2.h>
 #include <CGAL/minkowski_sum_2.h>

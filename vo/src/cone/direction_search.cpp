@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The normals of S at the points nearest to y, shape by shape. Rounded.
+//
+// The foot on an ellipse follows Eberly (Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid, 2013),
+// with s for his s + 1: in the frame of the axes, with semi-axes a >= b and y folded into the first quadrant as
+// (qx, qy), it has r0 = (a/b)^2, n0 = a qx / b^2, z1 = qy / b, and solves
+// F(s) = (n0/(s + r0 - 1))^2 + (z1/s)^2 - 1 = 0.
 #include "cone/direction_search.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Notation: S the obstacle grown by the robot and seen from it; h = h_S, with H (`magnitude`) the sum of its absolute
+// terms; tau the horizon, v the velocity, y = tau v; n a normal; f(n) = h(n) - n.y, so that -f(n)/tau is how far v lies
+// beyond { w : n.w = h(n)/tau }; m a direction with h(m) = -depth < 0; kappa the tilt from n towards m; u = 2^-53.
+//
+// Rounded: the search for n. Certified: the half-plane, by h(n) + 16 u H <= 0 in doubles (discs: a closed form with
+// bounds of its own). Only `contact` asks an exact predicate. What is not certified here is that n is the best normal.
 #include "cone/separation.h"
 
 #include <algorithm>

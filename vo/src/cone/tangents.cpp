@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Notation: p the centre of a disc seen from the robot, r its radius, a = sqrt(|p|^2 - r^2) the length of its tangents.
+// All is rounded, and nothing here says by how much: separation.cpp certifies what is made of it.
 #include "cone/tangents.h"
 
 #include <cmath>

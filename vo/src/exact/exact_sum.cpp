@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// S in rationals, and its exact legs: `legs_of` finds them for `VelocityObstacle::exact_legs`. The equations are those
+// of algebraic_direction.h; algebraic_root.h isolates their roots.
 #include "exact/exact_sum.h"
 
 namespace exactvo::vo::detail {

@@ -4,7 +4,7 @@
 /// \file
 /// S of a velocity obstacle, the exact Minkowski sum of obstacle and robot, as the hull of bodies that are all alike: a
 /// disc, or an ellipse with a disc, put at each of some points, all in rationals. A polygon's bodies are discs round
-/// its vertices, an ellipse is one body.
+/// its vertices, an ellipse is one body. And the legs of such a sum (its tangents from 0) as algebraic numbers. Exact.
 
 #include <vector>
 

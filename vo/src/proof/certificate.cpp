@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Certificates of half-planes, made and checked in rationals: no filter, and no line shared with the construction in
+// cone/. With S as in velocity_obstacle.h, the margin of { v : n.v >= c } against an obstacle of velocity u is min(0,
+// tau (c - n.u)) - h_S(n); `excess` is minus that, as k + sqrt(b) + sqrt(d).
 #include "exactvo/vo/certificate.h"
 
 #include <gmpxx.h>

@@ -2,8 +2,9 @@
 #pragma once
 
 /// \file
-/// The active-set searches of the scalar double solver. Heuristic at the last digit: their verdicts are proven
-/// elsewhere (certificate.h). Every search ends after kMostRounds at the latest, whatever the numbers.
+/// The active-set searches of the scalar double solver: in each round the line that is violated most enters, of equal
+/// ones the first. Heuristic at the last digit: their verdicts are proven elsewhere (certificate.h). Every search ends
+/// after kMostRounds at the latest, whatever the numbers.
 
 #include "lp/problem/region.h"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// `solve` of solve.h: the phases of a solution, and the repetition with more slack. Which line enters, and where the
+// optimum then lies, is decided in active_set.cpp. The figure above `solve` shows the whole.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
