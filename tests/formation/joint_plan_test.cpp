@@ -5,16 +5,18 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <set>
+#include <thread>
 
 #include "decision/decision.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/vo/reciprocal.h"
 #include "liveness/distances.h"
 #include "liveness/groups.h"
-#include "liveness/plan.h"
+#include "liveness/plan_search.h"
 #include "support/seeded_random.h"
 
 namespace exactvo::formation::detail {
@@ -188,6 +190,59 @@ TEST(JointSearch, Property4_TheSameSeedGivesTheSameMoves) {
   ASSERT_EQ(a.end, SearchEnd::found);
   EXPECT_EQ(moves_of(a), moves_of(b));
   EXPECT_EQ(a.calls, b.calls);
+}
+
+/// One thread takes the searches in turn; more take some ahead, which count only where one would have done the same.
+/// The small budgets end within a search.
+TEST(PlanSearch, AnyNumberOfThreadsFindsTheSamePlan) {
+  SeededRandom random(test::seed_of_run(77));
+  std::size_t planned = 0, spent = 0;
+  for (int k = 0; k < 24; ++k) {
+    const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
+    Problem p(walls, 2 + random.integer(0, 12), random);
+    const std::size_t calls = random.integer(0, 1) == 0 ? random.integer(50, 3000) : 75000;
+    PlanSearch alone(1);
+    // The second goes on with the seeds where the first ended: these have to be the same too.
+    const PlanFound first[] = {alone.best_plan(p.joint, calls, k % 3 != 0), alone.best_plan(p.joint, calls, true)};
+    for (const int threads : {2, 3, 7}) {
+      PlanSearch several(threads);
+      const PlanFound again[] = {several.best_plan(p.joint, calls, k % 3 != 0),
+                                 several.best_plan(p.joint, calls, true)};
+      for (int n = 0; n < 2; ++n) {
+        ASSERT_EQ(first[n].end, again[n].end) << k << " with " << threads << " threads, " << calls << " calls";
+        ASSERT_EQ(first[n].nodes, again[n].nodes) << k << " with " << threads << " threads, " << calls << " calls";
+        ASSERT_EQ(first[n].plan.size(), again[n].plan.size()) << k;
+        for (std::size_t m = 0; m < first[n].plan.size(); ++m) {
+          const PlannedMove &a = first[n].plan[m], &b = again[n].plan[m];
+          ASSERT_TRUE(a.robot == b.robot && a.from == b.from && a.to == b.to && a.after == b.after) << k << " " << m;
+        }
+      }
+    }
+    for (const PlanFound& f : first) {
+      planned += f.end == PlanEnd::planned;
+      spent += f.end == PlanEnd::out_of_budget;
+    }
+  }
+  EXPECT_GE(planned, 20u);
+  EXPECT_GE(spent, 1u);
+}
+
+/// The question is not put by threads that help, which may not be the interpreter's.
+TEST(PlanSearch, OnlyTheCallersThreadIsAskedWhetherToStop) {
+  SeededRandom random(test::seed_of_run(78));
+  Problem p(Walls({}), 12, random);
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<int> asked{0}, elsewhere{0};
+  p.joint.is_stopped = [&] {
+    ++asked;
+    elsewhere += std::this_thread::get_id() != caller;
+    return asked > 40;
+  };
+  PlanSearch(4).best_plan(p.joint, 1000000, true);
+  EXPECT_GT(asked, 0);
+  EXPECT_EQ(elsewhere, 0);
+  p.joint.is_stopped = [] { return true; };
+  EXPECT_EQ(PlanSearch(4).best_plan(p.joint, 1000000, true).end, PlanEnd::out_of_budget);
 }
 
 /// Two in a dead end cannot change their order: every joint place is tried, and that there is no plan is said.
@@ -376,7 +431,7 @@ TEST(Groups, OnALargeRingPlansAreMadeForAsManyAsFit) {
   }
   const OpenSpace open;
   int asked = 0;
-  Groups groups(s, open, true, [&] { return ++asked > 300; });  // a few plans are enough
+  Groups groups(s, open, true, 1, [&] { return ++asked > 300; });  // a few plans are enough
   const auto way_left = [](std::size_t) { return 3.0; };
   groups.begin_step(0.0, now, way_left);
   groups.end_step(row);

@@ -267,6 +267,49 @@ TEST(Liveness, PlansAreTheSameOnAnyNumberOfThreads) {
   }
 }
 
+/// With searches for plans on other threads.
+TEST(Liveness, ThreadsThatSearchForPlansChangeNothing) {
+  for (const Scenario& s : {test_scenes::street(18, 4.0), test_scenes::at_slots(test_scenes::street(14, 4.0))}) {
+    SimulationOptions options;
+    const Recording alone = simulate(s, options);
+    ASSERT_GT(alone.liveness.value().groups, 0u);
+    for (const int threads : {2, 5}) {
+      options.threads = threads;
+      const Recording run = simulate(s, options);
+      ASSERT_EQ(run.steps.size(), alone.steps.size()) << threads;
+      EXPECT_EQ(run.liveness->search_nodes, alone.liveness->search_nodes) << threads;
+      for (std::size_t k = 0; k < run.steps.size(); ++k)
+        for (std::size_t i = 0; i < s.robots.size(); ++i)
+          ASSERT_EQ(run.steps[k].robots[i].chosen, alone.steps[k].robots[i].chosen) << threads << " " << k << " " << i;
+    }
+  }
+}
+
+/// Robots far from a jam drive the same bits as without it, and the plan is for those of the jam alone.
+TEST(Liveness, AJamInOneCornerOfACrowdConcernsNobodyElse) {
+  Scenario jammed = test_scenes::street(14, 3.0);
+  const std::size_t in_jam = jammed.robots.size();
+  for (int i = 0; i < 24; ++i)
+    for (int j = 0; j < 24; ++j) {
+      const Vec2 from{100.0 + 3.0 * i, 100.0 + 3.0 * j};
+      test_scenes::add_robot(jammed, from, from + Vec2{i % 2 == 0 ? 20.0 : -20.0, 0.1 * j});
+    }
+  jammed.time_limit = 40.0;
+  Scenario free = jammed;
+  for (std::size_t i = 0; i < in_jam; ++i) free.robots[i].goals = {free.robots[i].position};
+  const Recording with = simulate(jammed), without = simulate(free);
+  ASSERT_EQ(without.liveness->groups, 0u);
+  ASSERT_EQ(with.liveness->groups, 1u);
+  EXPECT_EQ(with.liveness->largest, in_jam);
+  // The run without it ends sooner; nothing is chosen in the last row.
+  ASSERT_GT(without.steps.size(), 200u);
+  for (std::size_t k = 0; k + 1 < std::min(with.steps.size(), without.steps.size()); ++k)
+    for (std::size_t i = in_jam; i < jammed.robots.size(); ++i) {
+      ASSERT_EQ(with.steps[k].robots[i].position, without.steps[k].robots[i].position) << k << " " << i;
+      ASSERT_EQ(with.steps[k].robots[i].chosen, without.steps[k].robots[i].chosen) << k << " " << i;
+    }
+}
+
 TEST(Liveness, PlansAreTheSameEveryTime) {
   const Scenario s = test_scenes::street(14, 3.0);
   const Recording a = simulate(s), b = simulate(s);

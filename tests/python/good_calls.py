@@ -122,7 +122,7 @@ def good_calls(folder):
         ("simulation.Scenario", simulation.Scenario, dict(source=ONE)),
         ("simulation.Scenario.build", simulation.Scenario.build, dict(starts=[(-5, 0)], goals=[(-1, 1)], obstacles=DOOR, radius=0.1, max_speed=1.0, name="x")),
         ("simulation.Scenario.to_json", run.scenario.to_json, {}),
-        ("simulation.simulate", simulation.simulate, dict(scenario=run.scenario, method="ivo", guidance=None, liveness=None, controller="default", integrator="exact", record_all=False, progress=None)),
+        ("simulation.simulate", simulation.simulate, dict(scenario=run.scenario, method="ivo", guidance=None, liveness=None, controller="default", integrator="exact", record_all=False, threads=2, progress=None)),
         ("simulation.read_recording", simulation.read_recording, dict(path=str(folder / "recording.jsonl"))),
         ("simulation.Recording.half_planes", run.half_planes, dict(step=0, robot=0)),
         ("simulation.Recording.audit", run.audit, {}),

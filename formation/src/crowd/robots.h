@@ -14,10 +14,12 @@
 
 #include "crowd/layout.h"
 #include "crowd/order.h"
-#include "crowd/tasks.h"
 #include "exactvo/formation/crowd.h"
+#include "tasks.h"
 
 namespace exactvo::formation::crowd {
+
+using detail::Tasks;
 
 /// Lattice coordinates, both ends included.
 struct Window {

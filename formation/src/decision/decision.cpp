@@ -193,8 +193,9 @@ void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, 
   const auto yields = [&](std::size_t i) { return scenario.robots[i].cooperates; };
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     std::vector<Constraint>& mine = constraints[i];
+    // What a large crowd answers at once comes first: most have no plan, and nobody near them has one.
     const auto is_theirs = [&](const Constraint& c) {
-      return is_of_robot(scene, c) && yields(c.index) && (planned[i] || planned[c.index]);
+      return (planned[i] || (c.index < planned.size() && planned[c.index])) && is_of_robot(scene, c) && yields(c.index);
     };
     const auto is_far = [&](const Constraint& c) {
       const double speeds = scenario.robots[i].max_speed + scenario.robots[c.index].max_speed;

@@ -31,12 +31,8 @@ constexpr double kBesideTheWayBack = 0.3;
 constexpr double kOpenMargin = 3.0;  ///< of a region round its robots and goals
 constexpr double kSceneMargin = 2.0;
 
-/// Searches are restarted with growing limits, since their lengths are heavy-tailed; of some plans the best is taken.
-constexpr std::size_t kFirstNodes = 200;
-constexpr double kMoreNodes = 1.15;
-constexpr int kPlansToChooseFrom = 12;
-constexpr std::size_t kChoosesUpTo = 100;  ///< robots
-constexpr std::size_t kCalls = 75000, kCallsGoingBack = 175000, kCallsFromTheStart = 1000000, kCallsForABetter = 150000;
+/// Calls of the generator.
+constexpr std::size_t kCalls = 75000, kCallsGoingBack = 175000, kCallsFromTheStart = 1000000;
 /// The whole scene is planned for at most that many robots.
 constexpr std::size_t kEveryoneUpTo = 200;
 /// A map of the whole scene or of all goals has at most this many places, which take 0.1 s to a second, and this many
@@ -72,7 +68,8 @@ Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way) {
   return length > fastest * scenario.time_step ? fastest / length * way : way / scenario.time_step;
 }
 
-Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans, std::function<bool()> is_stopped)
+Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans, int threads,
+               std::function<bool()> is_stopped)
     : scenario_(scenario),
       space_(&space),
       plans_(plans),
@@ -80,7 +77,8 @@ Groups::Groups(const Scenario& scenario, const FreeSpace& space, bool plans, std
       of_robot_(scenario.robots.size()),
       group_of_(scenario.robots.size(), kNone),
       wanted_(scenario.robots.size()),
-      notes_(scenario.robots.size()) {
+      notes_(scenario.robots.size()),
+      search_(threads) {
   for (const SceneObstacle& o : scenario.obstacles)
     for (const Segment& edge : geometry::edges_of(o.shape)) {
       scene_.add(edge.a);
@@ -411,42 +409,10 @@ std::vector<PlaceNumber> Groups::targets_for(const Members& who, const std::vect
   return targets;
 }
 
-std::optional<std::vector<PlannedMove>> Groups::search(JointProblem problem, std::size_t row, PlanEnd& end) {
-  const std::vector<double> radii = problem.radii;
-  const Roadmap& map = *problem.map;
-  JointSearch joint(std::move(problem));
-  const std::size_t most = row == history_.last()    ? kCalls
-                           : row == history_.first() ? kCallsFromTheStart
-                                                     : kCallsGoingBack;
-  std::optional<std::vector<PlannedMove>> best;
-  double shortest = kInfinity, nodes = kFirstNodes;
-  int found = 0;
-  end = PlanEnd::out_of_budget;
-  const int wanted = radii.size() <= kChoosesUpTo ? kPlansToChooseFrom : 1;
-  const bool has_lanes = static_cast<double>(map.size() * radii.size()) <= kMostDistances;
-  for (std::size_t calls = 0, limit = most; calls < limit && found < wanted && !is_stopped_();) {
-    const bool in_lanes = has_lanes && seed_ % 2 == 0;  // where there is room for detours, lanes can be some
-    const JointAnswer answer = joint.run(++seed_, {limit - calls, static_cast<std::size_t>(nodes)},
-                                         in_lanes ? GuidedBy::lanes : GuidedBy::lengths);
-    calls += answer.calls + 1;
-    course_.search_nodes += answer.nodes;
-    if (answer.end == SearchEnd::none_on_map) {
-      end = PlanEnd::none_on_map;
-      break;
-    }
-    if (answer.end == SearchEnd::out_of_budget) {
-      if (!best) nodes *= kMoreNodes;
-      continue;
-    }
-    if (found++ == 0) limit = calls + kCallsForABetter;
-    std::vector<PlannedMove> plan = plan_of(map, answer.moves, radii);
-    const double length = critical_length(plan);
-    if (!(length < shortest)) continue;
-    shortest = length;
-    best = std::move(plan);
-  }
-  if (best) end = PlanEnd::planned;
-  return best;
+/// Of the generator, for a plan from where the robots were in that row.
+std::size_t Groups::most_calls(std::size_t row) const {
+  if (row == history_.last()) return kCalls;
+  return row == history_.first() ? kCallsFromTheStart : kCallsGoingBack;
 }
 
 void Groups::dissolve_those_of(const Members& who) {
@@ -456,8 +422,7 @@ void Groups::dissolve_those_of(const Members& who) {
   }
 }
 
-Groups::PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int replans, std::size_t row,
-                                  Detail detail) {
+PlanEnd Groups::plan_from(const Members& members, const Members& seeds, int replans, std::size_t row, Detail detail) {
   const Members who = with_groups_of(members);
   const std::vector<Vec2>& from = history_[row];
   if (!fits(who, from, replans)) return PlanEnd::too_large;
@@ -474,12 +439,12 @@ Groups::PlanEnd Groups::plan_from(const Members& members, const Members& seeds, 
     problem.radii.push_back(scenario_.robots[i].radius);
     problem.starts.push_back(map.attach(from[i], scenario_.robots[i].radius));
   }
-  const std::vector<double> radii = problem.radii;
-  PlanEnd end;
-  std::optional<std::vector<PlannedMove>> plan = search(std::move(problem), row, end);
-  if (!plan) return end;
+  const bool has_lanes = static_cast<double>(map.size() * who.size()) <= kMostDistances;
+  PlanFound found = search_.best_plan(problem, most_calls(row), has_lanes);
+  course_.search_nodes += found.nodes;
+  if (found.end != PlanEnd::planned) return found.end;
   dissolve_those_of(who);
-  Group& g = groups_.emplace_back(Group{who, Following(std::move(*plan), radii)});
+  Group& g = groups_.emplace_back(Group{who, Following(std::move(found.plan), problem.radii)});
   g.back_at = history_.last();
   g.back_to = row;
   g.progress = time_;

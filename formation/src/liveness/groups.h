@@ -17,7 +17,7 @@
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/waiting.h"
 #include "liveness/history.h"
-#include "liveness/plan.h"
+#include "liveness/plan_search.h"
 
 namespace exactvo::formation::detail {
 
@@ -39,9 +39,10 @@ Vec2 velocity_along(const Scenario& scenario, std::size_t robot, Vec2 way);
 
 class Groups {
  public:
-  /// `space` must outlive the groups. Without `plans` stalls are noted and nothing is done about them. `is_stopped` is
-  /// asked while plans are made, which can take seconds: true ends that without a plan.
-  Groups(const Scenario& scenario, const FreeSpace& space, bool plans, std::function<bool()> is_stopped);
+  /// `space` must outlive the groups. Without `plans` stalls are noted and nothing is done about them. `threads`: that
+  /// search for plans, 0 for one per processor. `is_stopped` is asked while plans are made, which can take seconds:
+  /// true ends that without a plan.
+  Groups(const Scenario& scenario, const FreeSpace& space, bool plans, int threads, std::function<bool()> is_stopped);
 
   /// Makes plans where they are due, and what members want. `way_left`: m, of a robot from where it is to its goal.
   void begin_step(double time, std::vector<RobotNow> now, const std::function<double(std::size_t)>& way_left);
@@ -89,7 +90,6 @@ class Groups {
     std::size_t planned_goal = 0;  ///< number of the goal that it goes to by plan
     bool is_named = false;         ///< its stall was noted
   };
-  enum class PlanEnd { planned, none_on_map, out_of_budget, too_large };
   struct WithoutPlan {
     Members who;
     PlanEnd why;
@@ -129,7 +129,7 @@ class Groups {
   Roadmap map_for(const Members& who, const std::vector<Vec2>& from, int replans, Detail detail) const;
   geometry::Box region_for(const Members& who, const std::vector<Vec2>& from, int replans) const;
   std::vector<PlaceNumber> targets_for(const Members& who, const std::vector<Vec2>& from, Roadmap& map) const;
-  std::optional<std::vector<PlannedMove>> search(JointProblem problem, std::size_t row, PlanEnd& end);
+  std::size_t most_calls(std::size_t row) const;
   void dissolve(std::size_t group);
   JointPlan recorded(const Group& g) const;
   std::string plan_words(const Group& g) const;
@@ -158,7 +158,7 @@ class Groups {
   std::vector<WithoutPlan> without_plan_;
   LivenessCourse course_;
   std::vector<JointPlan> made_;
-  std::size_t seed_ = 0;
+  PlanSearch search_;
 };
 
 }  // namespace exactvo::formation::detail

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <mutex>
 #include <unordered_map>
 #include <utility>
 
@@ -267,10 +268,20 @@ std::uint64_t digest_of(const Joint& at) {
 }  // namespace
 
 struct JointSearch::Data {
-  explicit Data(JointProblem p) : problem(std::move(p)) {
+  Data(JointProblem p, Tasks* tasks) : problem(std::move(p)), distances(problem.goals.size()) {
     const auto length = [&](PlaceNumber a, PlaceNumber b) { return length_of_way(*problem.map, a, b); };
-    for (std::size_t i = 0; i < problem.goals.size() && !is_stopped(problem); ++i)
-      distances.push_back(distances_to(*problem.map, problem.goals[i], problem.radii[i], length));
+    const auto measure = [&](std::size_t first, std::size_t last, int) {
+      for (std::size_t i = first; i < last && !is_stopped(problem); ++i)
+        distances[i] = distances_to(*problem.map, problem.goals[i], problem.radii[i], length);
+    };
+    if (tasks)
+      tasks->for_ranges(distances.size(), 1, measure);
+    else
+      measure(0, distances.size(), 0);
+  }
+  /// Not where it was stopped.
+  bool is_whole() const {
+    return std::none_of(distances.begin(), distances.end(), [](const auto& d) { return d.empty(); });
   }
   bool can_each_alone() const {
     for (std::size_t i = 0; i < problem.starts.size(); ++i)
@@ -279,24 +290,27 @@ struct JointSearch::Data {
   }
   /// With lanes; some have none where it was stopped. REQUIRES: can_each_alone().
   const std::vector<std::vector<float>>& lanes() {
+    std::call_once(has_lanes, [&] { find_lanes(); });
+    return in_lanes;
+  }
+  void find_lanes() {
     constexpr int kRounds = 2;  // the first robots chose before there was traffic
-    if (!in_lanes.empty()) return in_lanes;
     in_lanes = distances;
     Traffic traffic(*problem.map);
     const auto cost = [&](PlaceNumber a, PlaceNumber b) { return traffic.cost(a, b); };
     std::vector<std::vector<PlaceNumber>> ways(distances.size());
     for (int round = 0; round < kRounds; ++round)
       for (std::size_t i = 0; i < distances.size(); ++i) {
-        if (is_stopped(problem)) return in_lanes;
+        if (is_stopped(problem)) return;
         traffic.add(ways[i], -1.0);
         in_lanes[i] = distances_to(*problem.map, problem.goals[i], problem.radii[i], cost);
         ways[i] = traffic.way_from(problem.starts[i], in_lanes[i]);
         traffic.add(ways[i], 1.0);
       }
-    return in_lanes;
   }
   JointProblem problem;
   std::vector<std::vector<float>> distances, in_lanes;
+  std::once_flag has_lanes;
 };
 
 namespace {
@@ -381,12 +395,13 @@ void add_constraints(Node& node, const Constraints& so_far, const JointProblem& 
 
 }  // namespace
 
-JointSearch::JointSearch(JointProblem problem) : data_(std::make_unique<Data>(std::move(problem))) {}
+JointSearch::JointSearch(JointProblem problem, Tasks* tasks)
+    : data_(std::make_unique<Data>(std::move(problem), tasks)) {}
 JointSearch::~JointSearch() = default;
 
 JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget, GuidedBy guided_by) {
   JointAnswer answer;
-  if (data_->distances.size() < data_->problem.goals.size()) return answer;  // stopped
+  if (!data_->is_whole()) return answer;  // stopped
   if (!data_->can_each_alone()) {
     answer.end = SearchEnd::none_on_map;
     return answer;

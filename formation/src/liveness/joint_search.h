@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "liveness/roadmap.h"
+#include "tasks.h"
 
 namespace exactvo::formation::detail {
 
@@ -63,11 +64,12 @@ enum class GuidedBy {
   lanes     ///< a way on which few come the other way
 };
 
-/// One problem, searched as often as wanted: with other seeds, other ways are tried first.
+/// One problem, searched as often as wanted: with other seeds, other ways are tried first. Several threads may search
+/// at a time.
 class JointSearch {
  public:
-  /// Keeps a reference to the map.
-  explicit JointSearch(JointProblem problem);
+  /// Keeps a reference to the map. What guides the searches is computed by `tasks`, without them by this thread.
+  explicit JointSearch(JointProblem problem, Tasks* tasks = nullptr);
   ~JointSearch();
 
   JointAnswer run(std::uint64_t seed, const SearchBudget& budget, GuidedBy guided_by = GuidedBy::lengths);

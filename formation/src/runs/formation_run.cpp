@@ -58,7 +58,7 @@ class FormationRun {
         offsets_(offsets_in_use(spec_, remedies_)),
         planned_(scenario_.robots.size()) {
     if (liveness_of(scenario, options) == Liveness::plan)
-      plans_.emplace(scenario_, offsets_, [this] { return clock_.is_stopped(now_); });
+      plans_.emplace(scenario_, offsets_, options.threads, [this] { return clock_.is_stopped(now_); });
     const HorizonRule rule = remedies_.tau_clamp ? HorizonRule::clamped : HorizonRule::literal;
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const Robot& r = scenario_.robots[i];

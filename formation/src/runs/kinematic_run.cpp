@@ -59,7 +59,7 @@ class KinematicRun {
         planned_(scenario.robots.size()),
         held_by_all_(scenario.robots.size(), 0) {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
-      groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan,
+      groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan, options.threads,
                       [this] { return clock_.is_stopped(now_); });
     if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {

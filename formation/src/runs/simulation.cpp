@@ -128,6 +128,7 @@ Recording simulate(const Scenario& scenario, const SimulationOptions& options, R
   const std::vector<ScenarioProblem> problems = validate(scenario);
   EXACTVO_REQUIRE(problems.empty(),
                   problems.front().pointer + ": " + problems.front().found + ", expected " + problems.front().expected);
+  EXACTVO_REQUIRE(options.threads >= 0 && options.threads <= 1024, "threads: 0 to 1024");
   const Clock::time_point start = Clock::now();
   Recording recording;
   std::optional<Guide> guide = guide_for(scenario, options);

@@ -40,7 +40,7 @@ double way_left(double distance, double diameter) {
 
 }  // namespace
 
-SlotPlans::SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, std::function<bool()> is_stopped)
+SlotPlans::SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, int threads, std::function<bool()> is_stopped)
     : offsets_(std::move(offsets)),
       leader_arrival_(detail::leader_arrival(scenario.formation->leader)),
       tolerance_(scenario.arrival_tolerance),
@@ -48,7 +48,7 @@ SlotPlans::SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, std::f
       gap_to_obstacles_(kShareOfGap * gap_),
       larger_(with_larger_robots(scenario, offsets_, gap_)),
       space_(scenario.obstacles),
-      groups_(larger_, space_, true, std::move(is_stopped)) {}
+      groups_(larger_, space_, true, threads, std::move(is_stopped)) {}
 
 bool SlotPlans::has_place(std::size_t robot, Vec2 slot) const {
   const double radius = larger_.robots[robot].radius;

@@ -20,7 +20,7 @@ namespace exactvo::formation::detail {
 class SlotPlans {
  public:
   /// `offsets`: m, of the slots from the leader. `is_stopped`: as in Groups. REQUIRES: a formation.
-  SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, std::function<bool()> is_stopped);
+  SlotPlans(const Scenario& scenario, std::vector<Vec2> offsets, int threads, std::function<bool()> is_stopped);
   SlotPlans(const SlotPlans&) = delete;  // groups refer to members
 
   /// m: what brake points of pairs that fall back, and of robots of a plan and others, keep between the rims. The

@@ -364,6 +364,7 @@ def simulate(
     controller: str = "default",
     integrator: str = "exact",
     record_all: bool = False,
+    threads: int = 1,
     progress: Callable[[float], Union[bool, None]] | None = None,
 ) -> Recording:
     """Runs a scenario: a `Scenario`, a path, JSON text or a dict. The same scenario and options give the same numbers as
@@ -375,13 +376,18 @@ def simulate(
     controller   of formations: "paper-literal", "paper-signs", "corrected", "default"
     integrator   of formations: "exact", "euler", "rk4", "dopri5", "rosenbrock4"
     record_all   keep every half-plane of every decision, not only those that bind
+    threads      that search for joint plans, 0 to 1024; 0: as many as there are. The result is the same
     progress     called with the simulated time (s) about ten times a second; False ends the run there
 
     Raises `ArgumentError`, `DataError`, `MissingFileError`. Ctrl-C ends it. Releases the interpreter's lock.
     """
     given = scenario if isinstance(scenario, Scenario) else Scenario(scenario)
+    if isinstance(threads, int) and not 0 <= threads <= 1024:
+        raise ArgumentError("threads", repr(threads)[:60], "0 to 1024")
     return Recording(
-        _exactvo.simulate(given._native, method, guidance, liveness, controller, integrator, record_all, progress)
+        _exactvo.simulate(
+            given._native, method, guidance, liveness, controller, integrator, record_all, threads, progress
+        )
     )
 
 

@@ -51,7 +51,7 @@ void fill_columns(Run& run) {
 
 std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& method, const py::object& guidance,
                               const py::object& liveness, const std::string& controller, const std::string& integrator,
-                              bool record_all, const py::object& progress) {
+                              bool record_all, int threads, const py::object& progress) {
   using namespace formation;
   SimulationOptions options;
   options.method = word<Method>(method, "method", method_names(), &parse);
@@ -60,6 +60,7 @@ std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& m
   options.controller = word<Controller>(controller, "controller", controller_names(), &parse);
   options.integrator = word<Integrator>(integrator, "integrator", integrator_names(), &parse);
   options.record_all = record_all;
+  options.threads = threads;
   // Python is asked about ten times a second: for Ctrl-C, and whether to go on. What it raises ends the run.
   options.progress = [&](double time) {
     const py::gil_scoped_acquire held;

@@ -176,6 +176,7 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
     throw UsageError("scenario", "-", "a file: every rank reads it, and only the first has a stdin");
   formation::SimulationOptions options = simulation_options(flags.simulation);
   options.record_all = flags.record_all;
+  options.threads = flags.crowd.threads;
   const datasets::LoadedScenario read = read_scenario(flags.scenario);
   if (is_crowd) return simulate_crowd(flags.crowd, flags.simulation, flags.scenario, read, flags.json, ranks);
   const formation::Scenario& scenario = read.scenario;

@@ -185,13 +185,14 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
       ->check(CLI::Range(1, 1000000000));
   app.add_flag("--resume", flags.resume,
                "With --snapshot-every: go on with an interrupted run from its last snapshot. The result is the same");
-  app.add_option("--threads", flags.threads, "With --engine crowd: 0 for one per processor. The result is the same")
+  app.add_option("--threads", flags.threads,
+                 "Of the crowd, or that search for joint plans; 0 for one per processor. The result is the same")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024));
   app.add_option("--precision", flags.precision, "With --engine crowd: float or double, both certified")
       ->capture_default_str();
   flags.method = app.get_option("--method");
-  for (const char* option : {"--every", "--snapshot-every", "--resume", "--threads", "--precision"})
+  for (const char* option : {"--every", "--snapshot-every", "--resume", "--precision"})
     flags.of_crowd.push_back(app.get_option(option));
   for (const char* option : {"--liveness", "--record-all", "--fail-on-collision", "--no-figures", "--force"})
     flags.of_standard.push_back(app.get_option(option));

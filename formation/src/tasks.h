@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// Ranges of robots on oneTBB's threads. What a range computes must not depend on where ranges begin.
+/// Ranges of robots, or of other work, on oneTBB's threads. What a range computes must not depend on where ranges
+/// begin.
 
 #include <algorithm>
 #include <cstddef>
@@ -14,7 +15,7 @@
 
 #include "exactvo/geometry/seen_by_tsan.h"
 
-namespace exactvo::formation::crowd {
+namespace exactvo::formation::detail {
 
 class Tasks {
  public:
@@ -49,4 +50,4 @@ class Tasks {
   std::unique_ptr<tbb::task_arena> arena_;
 };
 
-}  // namespace exactvo::formation::crowd
+}  // namespace exactvo::formation::detail

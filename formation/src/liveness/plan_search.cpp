@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "liveness/plan_search.h"
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <limits>
+#include <thread>
+#include <utility>
+
+namespace exactvo::formation::detail {
+namespace {
+
+constexpr std::size_t kFirstNodes = 200;
+constexpr double kMoreNodes = 1.15;
+constexpr int kPlansToChooseFrom = 12;
+constexpr std::size_t kChoosesUpTo = 100;  ///< robots
+constexpr std::size_t kCallsForABetter = 150000;
+
+/// For all threads: the question is put by the one that made this, and the others hear of the answer.
+class StopForAll {
+ public:
+  explicit StopForAll(std::function<bool()> is_stopped)
+      : is_stopped_(std::move(is_stopped)), asks_(std::this_thread::get_id()) {}
+
+  bool operator()() {
+    if (std::this_thread::get_id() == asks_ && is_stopped_ && is_stopped_()) stopped_ = true;
+    return stopped_;
+  }
+
+ private:
+  std::function<bool()> is_stopped_;
+  std::thread::id asks_;
+  std::atomic<bool> stopped_{false};
+};
+
+}  // namespace
+
+/// One search, within the limits that it would have if all before it ended without a plan.
+struct PlanSearch::Attempt {
+  SearchBudget budget;
+  JointAnswer answer = {};
+  std::vector<PlannedMove> plan = {};  ///< where one was found
+  double length = 0.0;                 ///< m, of the plan
+
+  /// Whether the same comes of these limits.
+  bool holds_for(const SearchBudget& limits) const {
+    return budget.nodes == limits.nodes &&
+           (budget.calls == limits.calls || answer.calls <= std::min(budget.calls, limits.calls));
+  }
+};
+
+std::vector<PlanSearch::Attempt> PlanSearch::searched(JointSearch& joint, const JointProblem& about,
+                                                      SearchBudget budget, double growth, bool lanes) {
+  std::vector<Attempt> attempts(static_cast<std::size_t>(tasks_.threads()));
+  double nodes = nodes_;
+  for (std::size_t k = 0; k < attempts.size(); ++k, nodes *= growth) {
+    budget.nodes = static_cast<std::size_t>(nodes);
+    attempts[k].budget = budget;
+  }
+  tasks_.for_ranges(attempts.size(), 1, [&](std::size_t first, std::size_t last, int) {
+    for (std::size_t k = first; k < last; ++k) {
+      Attempt& a = attempts[k];
+      const std::uint64_t seed = seed_ + k;
+      a.answer = joint.run(seed + 1, a.budget, lanes && seed % 2 == 0 ? GuidedBy::lanes : GuidedBy::lengths);
+      if (a.answer.end != SearchEnd::found) continue;
+      a.plan = plan_of(*about.map, a.answer.moves, about.radii);
+      a.length = critical_length(a.plan);
+    }
+  });
+  return attempts;
+}
+
+PlanFound PlanSearch::best_plan(JointProblem problem, std::size_t calls, bool lanes) {
+  StopForAll stop(problem.is_stopped);
+  problem.is_stopped = [&stop] { return stop(); };
+  JointSearch joint(problem, &tasks_);
+  const int wanted = problem.radii.size() <= kChoosesUpTo ? kPlansToChooseFrom : 1;
+  PlanFound best;
+  double shortest = std::numeric_limits<double>::infinity();
+  int found = 0;
+  std::vector<Attempt> attempts;
+  std::size_t next = 0;
+  nodes_ = kFirstNodes;
+  for (std::size_t spent = 0, limit = calls; spent < limit && found < wanted && !stop();) {
+    const SearchBudget budget{limit - spent, static_cast<std::size_t>(nodes_)};
+    if (next == attempts.size() || !attempts[next].holds_for(budget)) {
+      attempts = searched(joint, problem, budget, found > 0 ? 1.0 : kMoreNodes, lanes);
+      next = 0;
+    }
+    Attempt& a = attempts[next++];
+    ++seed_;
+    spent += a.answer.calls + 1;
+    best.nodes += a.answer.nodes;
+    if (a.answer.end == SearchEnd::none_on_map) {
+      best.end = PlanEnd::none_on_map;
+      break;
+    }
+    if (a.answer.end == SearchEnd::out_of_budget) {
+      if (found == 0) nodes_ *= kMoreNodes;
+      continue;
+    }
+    if (found++ == 0) limit = spent + kCallsForABetter;
+    if (!(a.length < shortest)) continue;
+    shortest = a.length;
+    best.plan = std::move(a.plan);
+  }
+  if (found > 0) best.end = PlanEnd::planned;
+  return best;
+}
+
+}  // namespace exactvo::formation::detail
