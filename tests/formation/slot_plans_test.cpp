@@ -10,6 +10,7 @@
 #include "exactvo/datasets/audit.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/simulation.h"
+#include "exactvo/formation/waiting.h"
 #include "liveness_scenes.h"
 #include "support/seeded_random.h"
 
@@ -185,6 +186,25 @@ TEST(SlotPlans, BeginWhereTheBrakePointsWere) {
       ++compared;
     }
   EXPECT_GT(compared, 0u);
+}
+
+/// Two head-on in a corridor without a siding stand for good, which is said by name; while the leader drives, nothing
+/// of the kind is.
+TEST(SlotPlans, ADeadlockOfAFormationIsNamedOnceItsLeaderRests) {
+  Scenario s;
+  test_scenes::add_box(s, 8.0, 0.75);
+  test_scenes::add_robot(s, {-5.0, 0.0}, {5.0, 0.0});
+  test_scenes::add_robot(s, {5.0, 0.0}, {-5.0, 0.0});
+  const SlotRun blocked = run(limited(at_slots(s), 60.0));
+  EXPECT_FALSE(blocked.is_formed());
+  EXPECT_THAT(blocked.metrics.deadlock, ElementsAre("R1", "R2"));
+  ASSERT_EQ(blocked.metrics.stuck.size(), 2u);
+  EXPECT_THAT(blocked.metrics.stuck.front(),
+              testing::HasSubstr("R1 waits for R2, which waits for R1: a deadlock of two"));
+  Scenario driving = blocked.scenario;
+  driving.formation->leader.path.push_back({1e6, 0.0});
+  for (const Step& row : blocked.recording.steps)
+    for (const std::vector<std::size_t>& by : waiting_in(driving, row)) ASSERT_TRUE(by.empty());
 }
 
 }  // namespace

@@ -99,10 +99,15 @@ TEST(Waiting, ALongCycleIsAbridged) {
 }
 
 /// Robots of a formation wait for nobody: they have no goals.
-TEST(Waiting, FormationsHaveNone) {
+TEST(Waiting, AFormationHasNoneWhileItsLeaderDrives) {
   Row row({{1}, {0}});
-  row.scenario.formation.emplace();
+  Leader& leader = row.scenario.formation.emplace().leader;
+  leader.path = {{0.0, 0.0}, {10.0, 0.0}};
+  leader.speed = 1.0;
+  row.step.time = 5.0;
   EXPECT_THAT(row.graph(), ElementsAre(IsEmpty(), IsEmpty()));
+  row.step.time = 60.0;
+  EXPECT_THAT(row.graph(), ElementsAre(ElementsAre(1), ElementsAre(0)));
 }
 
 /// Two that meet in a corridor in which they cannot pass: outcome, metrics and reports name the deadlock.

@@ -150,7 +150,8 @@ void Groups::end_step(const Step& row) {
     const double stalled = stalled_for(i);
     const double pause = kBetweenPlans * patience_ * static_cast<double>(1 << std::min(r.failures, 6));
     if (stalled < kStalledAfter * patience_ || time_ - r.planned_at < pause) continue;
-    if (!graph) graph = waiting_in(scenario_, row);
+    // In a formation who stands waits, for whomever: its robots creep up to their slots.
+    if (!graph) graph = scenario_.formation ? WaitForGraph(now_.size()) : waiting_in(scenario_, row);
     const bool dead = is_dead(scenario_, *graph, row, i);
     if (!r.is_named && dead && !(*graph)[i].empty()) {
       r.is_named = true;

@@ -6,6 +6,7 @@
 
 #include "decision/decision.h"
 #include "liveness/groups.h"
+#include "motion/leader.h"
 
 namespace exactvo::formation {
 namespace {
@@ -99,7 +100,8 @@ std::string end_words(const RobotStep& r, const Robot& robot) {
 
 WaitForGraph waiting_in(const Scenario& scenario, const Step& row) {
   WaitForGraph graph(row.robots.size());
-  if (scenario.formation) return graph;
+  // While the leader drives, a formation's robots hold each other up and go on.
+  if (scenario.formation && row.time < detail::leader_arrival(scenario.formation->leader)) return graph;
   for (std::size_t i = 0; i < graph.size(); ++i) graph[i] = held_by(row.robots[i], scenario, i);
   return graph;
 }
