@@ -45,6 +45,8 @@ PairConstraints against_each_other(const Party& a, const Party& b, vo::Reciproca
 /// memory from one time to the next.
 class NearestFirst {
  public:
+  /// Sorting so many allocates nothing then.
+  void reserve(std::size_t lines) { keys_.reserve(lines); }
   /// REQUIRES: half-planes against robots only, each against another one.
   void sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines);
 

@@ -335,7 +335,7 @@ class KinematicRun {
   /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).
   /// Less near the goal: else it could go round and round it.
   Vec2 biased(std::size_t i, Vec2 preferred, Mode mode) {
-    constexpr double kSmoothing = 0.1, kLeast = 0.03, kMost = 1.3;  // of a step; rad; rad
+    constexpr double kSmoothing = 0.2, kLeast = 0.03, kMost = 1.3;  // of a step; rad; rad
     constexpr double kNearGoal = 4.0;                               // radii
     const bool is_free = mode == Mode::direct || mode == Mode::guided;
     if (!is_free || preferred == Vec2{} || !meets_robots(i)) return preferred;

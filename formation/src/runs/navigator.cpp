@@ -202,6 +202,7 @@ class Navigator::Core {
     const std::size_t statics = std::min(shapes, kMostShapes), others = 2 * setup.neighbours;
     own_.reserve(statics, others);
     others_.reserve(others);
+    nearest_first_.reserve(others);
     kept_.reserve(statics + others);
     decision_.bound.reserve(4);
     decision_.note.reserve(kNoteLength);
