@@ -43,17 +43,9 @@ Vec2 on_grid(std::size_t k, std::size_t n) {
 }
 
 Vec2 slot(Pattern pattern, std::size_t k, std::size_t n) {
-  switch (pattern) {
-    case Pattern::line:
-      return on_line(k);
-    case Pattern::wedge:
-      return on_wedge(k);
-    case Pattern::circle:
-      return on_circle(k, n);
-    case Pattern::grid:
-      return on_grid(k, n);
-  }
-  return {};
+  if (pattern == Pattern::line) return on_line(k);
+  if (pattern == Pattern::wedge) return on_wedge(k);
+  return pattern == Pattern::circle ? on_circle(k, n) : on_grid(k, n);
 }
 
 }  // namespace

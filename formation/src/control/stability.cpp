@@ -57,15 +57,10 @@ struct Held {
 };
 Held held_step(Integrator integrator, double k3, double dt) {
   const double z = -k3 * dt;
-  switch (integrator) {
-    case Integrator::euler:
-      return {1.0 + z, dt};
-    case Integrator::rk4:
-      return {1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0))),
-              dt * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))};
-    default:
-      return {std::exp(z), -std::expm1(z) / k3};
-  }
+  if (integrator == Integrator::euler) return {1.0 + z, dt};
+  if (integrator != Integrator::rk4) return {std::exp(z), -std::expm1(z) / k3};
+  const double share = 1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0));
+  return {1.0 + z * share, dt * share};
 }
 
 /// x+ = x + dt w + lag (v - w), v+ = w + left (v - w), w = -(kappa + k1 l / k3) x - (k2 l / k3) v.

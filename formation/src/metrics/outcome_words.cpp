@@ -55,15 +55,8 @@ std::string outcome_words(const Metrics& m, const std::string& end) {
 namespace exactvo::formation {
 
 const char* name(CollisionKind kind) {
-  switch (kind) {
-    case CollisionKind::obstacle:
-      return "obstacle";
-    case CollisionKind::moving_obstacle:
-      return "moving obstacle";
-    case CollisionKind::robot:
-      return "robot";
-  }
-  return "unknown";
+  constexpr const char* kNames[] = {"obstacle", "moving obstacle", "robot"};
+  return kNames[static_cast<int>(kind)];
 }
 
 }  // namespace exactvo::formation

@@ -101,14 +101,8 @@ BodyState step_body(Integrator integrator, const BodyState& state, Vec2 tracked,
 }
 
 MotionLaw motion_of(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::exact:
-      return MotionLaw::exponential;
-    case Integrator::euler:
-      return MotionLaw::straight;
-    default:
-      return MotionLaw::hermite;
-  }
+  if (integrator == Integrator::exact) return MotionLaw::exponential;
+  return integrator == Integrator::euler ? MotionLaw::straight : MotionLaw::hermite;
 }
 
 }  // namespace exactvo::formation::detail

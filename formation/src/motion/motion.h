@@ -25,15 +25,9 @@ struct Motion {
   /// Where the robot is a share s in [0, 1] of the way through the step.
   Vec2 at(double s) const {
     const double t = s * duration;
-    switch (law) {
-      case MotionLaw::straight:
-        return from + s * (to - from);
-      case MotionLaw::exponential:
-        return from + t * tracked + lag(t) * (from_velocity - tracked);
-      case MotionLaw::hermite:
-        return cubic(s);
-    }
-    return from;
+    if (law == MotionLaw::straight) return from + s * (to - from);
+    if (law == MotionLaw::exponential) return from + t * tracked + lag(t) * (from_velocity - tracked);
+    return cubic(s);
   }
 
   geometry::Segment chord(double start, double end) const { return {at(start), at(end)}; }
@@ -45,15 +39,9 @@ struct Motion {
 
   /// A bound of |x''| over the step, m/s^2.
   double acceleration_bound() const {
-    switch (law) {
-      case MotionLaw::straight:
-        return 0.0;
-      case MotionLaw::exponential:
-        return gain * norm(from_velocity - tracked);
-      case MotionLaw::hermite:
-        return std::max(norm(second_derivative(0.0)), norm(second_derivative(1.0)));
-    }
-    return 0.0;
+    if (law == MotionLaw::straight) return 0.0;
+    if (law == MotionLaw::exponential) return gain * norm(from_velocity - tracked);
+    return std::max(norm(second_derivative(0.0)), norm(second_derivative(1.0)));
   }
 
   /// A bound of |x'| over the step, m/s: somewhere it is the mean, and nowhere does it change faster than |x''|.

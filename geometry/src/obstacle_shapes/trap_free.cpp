@@ -98,15 +98,9 @@ void free_along_way(const ShapeOptions& options, ObstacleShapes& out) {
 }
 
 const char* reason_of(TrapFreeAnswer answer) {
-  switch (answer) {
-    case TrapFreeAnswer::no_room:
-      return "the start or the goal lies too near";
-    case TrapFreeAnswer::too_large:
-      return "only larger ellipses than allowed leave the start and the goal outside";
-    case TrapFreeAnswer::found:
-    case TrapFreeAnswer::failed:
-      break;
-  }
+  if (answer == TrapFreeAnswer::no_room) return "the start or the goal lies too near";
+  if (answer == TrapFreeAnswer::too_large)
+    return "only larger ellipses than allowed leave the start and the goal outside";
   return "no such ellipse found";
 }
 

@@ -44,14 +44,9 @@ Passage passage_through(const Ring& ring, std::size_t edge, Vec2 at) {
 bool points_left(const Passage& p, Vec2 q) {
   const bool left_of_after = orientation(p.at, p.after, q) == Sign::positive;
   const bool right_of_before = orientation(p.at, p.before, q) == Sign::negative;
-  switch (orientation(p.at, p.after, p.before)) {
-    case Sign::positive:
-      return left_of_after && right_of_before;
-    case Sign::zero:
-      return left_of_after;
-    case Sign::negative:
-      break;
-  }
+  const Sign turn = orientation(p.at, p.after, p.before);
+  if (turn == Sign::positive) return left_of_after && right_of_before;
+  if (turn == Sign::zero) return left_of_after;
   const bool right_of_after = orientation(p.at, p.after, q) == Sign::negative;
   const bool left_of_before = orientation(p.at, p.before, q) == Sign::positive;
   return !(right_of_after && left_of_before);

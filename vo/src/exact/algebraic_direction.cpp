@@ -28,16 +28,10 @@ int place_in_turn(const AlgebraicValue& a) {
 }  // namespace
 
 RationalVector turned(const RationalVector& v, int k) {
-  switch (((k % 4) + 4) % 4) {
-    case 1:
-      return {-v.y, v.x};
-    case 2:
-      return {-v.x, -v.y};
-    case 3:
-      return {v.y, -v.x};
-    default:
-      return v;
-  }
+  const int turns = ((k % 4) + 4) % 4;
+  if (turns == 1) return {-v.y, v.x};
+  if (turns == 2) return {-v.x, -v.y};
+  return turns == 3 ? RationalVector{v.y, -v.x} : v;
 }
 
 AlgebraicDirection direction_of(Root slope, int quarter_turns) {
