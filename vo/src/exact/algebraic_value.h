@@ -8,20 +8,12 @@
 #include <utility>
 
 #include "exact/algebraic_root.h"
+#include "exact/vector_over.h"
 #include "exactvo/vo/algebraic_direction.h"
 
 namespace exactvo::vo::detail {
 
-struct RationalVector {
-  Rational x, y;
-};
-
-inline RationalVector operator-(const RationalVector& a, const RationalVector& b) {
-  return {a.x - b.x, a.y - b.y};
-}
-inline Rational cross(const RationalVector& a, const RationalVector& b) {
-  return a.x * b.y - a.y * b.x;
-}
+using RationalVector = VectorOver<Rational>;
 
 struct AlgebraicValue {
   Root slope;             ///< -1 < t <= 1

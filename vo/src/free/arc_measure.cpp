@@ -61,7 +61,7 @@ class Real {
 /// The angle between two vectors from 0 to pi, minus its sine. Ends that are rounded may lie the wrong way round by
 /// their rounding: then the arc is nothing, or half of the circle.
 Rational angle_without_sine(const RationalVector& a, const RationalVector& b, mpfr_prec_t precision) {
-  const Rational across = cross(a, b), along = a.x * b.x + a.y * b.y;
+  const Rational across = cross(a, b), along = dot(a, b);
   if (sgn(across) < 0 && sgn(along) > 0) return 0;
   Real y(precision, across), x(precision, along), angle(precision), sine(precision);
   mpfr_atan2(angle.get(), y.get(), x.get(), MPFR_RNDN);

@@ -10,12 +10,6 @@ namespace {
 Rational square(const Rational& x) {
   return x * x;
 }
-Rational dot(const RationalVector& a, const RationalVector& b) {
-  return a.x * b.x + a.y * b.y;
-}
-RationalVector moved(const RationalVector& a, const Rational& s, const RationalVector& d) {
-  return {a.x + s * d.x, a.y + s * d.y};
-}
 
 Curve line_through(ArcKind kind, const Point& anchor, const Point& direction) {
   Curve line;
@@ -144,7 +138,7 @@ class ConeCurves {
   /// The corner, moved out along the normal of an edge.
   Point offset(const RationalVector& corner, const RationalVector& from, const RationalVector& to) const {
     const RationalVector normal = outward_normal(from, to);
-    const Point centre = point(moved(apex_, scale_, corner));
+    const Point centre = point(apex_ + scale_ * corner);
     if (sgn(radius_) == 0) return centre;
     return centre + quotient(Number(Rational(scale_ * radius_)), root_of(Number(dot(normal, normal)))) * point(normal);
   }
@@ -157,7 +151,7 @@ class ConeCurves {
   /// From right to left: an arc round each corner, an edge between two.
   void add_front(const std::vector<Point>& stops, std::vector<Curve>& out) const {
     for (std::size_t i = front_.size(); i-- > 0;) {
-      const Circle circle{moved(apex_, scale_, front_[i]), scale_ * radius_};
+      const Circle circle{apex_ + scale_ * front_[i], scale_ * radius_};
       if (sgn(radius_) != 0) out.push_back(arc(ArcKind::cut_off_arc, circle, stops[2 * i + 1], stops[2 * i], false));
       if (i > 0)
         out.push_back(segment(ArcKind::offset_edge, stops[2 * i], stops[2 * i - 1], front_[i - 1] - front_[i]));
@@ -182,7 +176,7 @@ std::vector<Point> of_circles(const Circle& a, const Circle& b) {
   const Rational along = (d2 + square(a.radius) - square(b.radius)) / (2 * d2);
   const Rational height2 = square(a.radius) / d2 - square(along);  // both of |between|
   if (sgn(height2) < 0) return {};
-  const Point foot = point(moved(a.centre, along, between));
+  const Point foot = point(a.centre + along * between);
   if (sgn(height2) == 0) return {foot};
   const Point across = root_of(Number(height2)) * perp(point(between));
   return {foot - across, foot + across};

@@ -11,33 +11,13 @@
 #include <vector>
 
 #include "exact/exact_sum.h"
+#include "exact/vector_over.h"
 #include "exactvo/vo/free_arrangement.h"
 #include "free/number.h"
 
 namespace exactvo::vo::detail {
 
-struct Point {
-  Number x, y;
-};
-
-inline Point operator+(const Point& a, const Point& b) {
-  return {a.x + b.x, a.y + b.y};
-}
-inline Point operator-(const Point& a, const Point& b) {
-  return {a.x - b.x, a.y - b.y};
-}
-inline Point operator*(const Number& s, const Point& a) {
-  return {s * a.x, s * a.y};
-}
-inline Number dot(const Point& a, const Point& b) {
-  return a.x * b.x + a.y * b.y;
-}
-inline Number cross(const Point& a, const Point& b) {
-  return a.x * b.y - a.y * b.x;
-}
-inline Point perp(const Point& a) {
-  return {-a.y, a.x};
-}
+using Point = VectorOver<Number>;
 
 Point point(const RationalVector& v);
 

@@ -49,7 +49,7 @@ bool at_disc(const Carrier& carrier, const Abscissa& s) {
 }
 
 ExactLine below(const ExactLine& top, const ExactLine& other) {
-  return {{other.normal.x - top.normal.x, other.normal.y - top.normal.y}, other.offset - top.offset};
+  return {other.normal - top.normal, other.offset - top.offset};
 }
 
 WallSearch::WallSearch(Carrier carrier, Aim aim) : carrier_(std::move(carrier)), aim_(std::move(aim)) {

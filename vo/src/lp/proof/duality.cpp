@@ -27,8 +27,7 @@ Exact magnitude(const Exact& x) {
 
 bool bounds_nearest(const Problem& problem, const Combination& sum, Vec2 velocity, double gap) {
   const ExactVector p = exact(problem.preferred);
-  const ExactVector away{Exact(velocity.x) - p.x, Exact(velocity.y) - p.y};
-  const ExactVector pulled{p.x + sum.normal.x, p.y + sum.normal.y};
+  const ExactVector away = exact(velocity) - p, pulled = p + sum.normal;
   const Exact weight = Exact(1) + sum.disc;
   Exact most = dot(p, p) + Exact(2) * sum.offset;
   if (sign_of(sum.disc) > 0) most = most - sum.disc * Exact(problem.bound.disc) * Exact(problem.bound.disc);
@@ -38,7 +37,7 @@ bool bounds_nearest(const Problem& problem, const Combination& sum, Vec2 velocit
 bool bounds_farthest(const Problem& problem, const Combination& sum, Vec2 velocity, double gap) {
   const ExactVector d = exact(problem.preferred);
   const Exact limit = dot(d, exact(velocity)) + Exact(gap) + sum.offset;
-  return reaches_less(problem.bound, {d.x + sum.normal.x, d.y + sum.normal.y}, limit, false);
+  return reaches_less(problem.bound, d + sum.normal, limit, false);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <CGAL/Mpzf.h>
 
+#include "exact/vector_over.h"
 #include "exactvo/vo/lp/problem.h"
 
 namespace exactvo::lp {
@@ -26,21 +27,10 @@ inline int sign_of_root(const Exact& alpha, const Exact& beta, const Exact& d) {
   return a * sign_of(alpha * alpha - beta * beta * d);
 }
 
-struct ExactVector {
-  Exact x, y;
-};
+using ExactVector = vo::detail::VectorOver<Exact>;
 
 inline ExactVector exact(Vec2 v) {
   return {Exact(v.x), Exact(v.y)};
-}
-inline Exact dot(const ExactVector& a, const ExactVector& b) {
-  return a.x * b.x + a.y * b.y;
-}
-inline Exact cross(const ExactVector& a, const ExactVector& b) {
-  return a.x * b.y - a.y * b.x;
-}
-inline ExactVector perp(const ExactVector& a) {
-  return {-a.y, a.x};
 }
 
 /// normal . v >= offset.
