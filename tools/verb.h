@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,16 @@ struct Verb {
   std::string examples;  ///< lines under "Examples:"
   std::function<Action(CLI::App&)> declare;
 };
+
+/// The `declare` of a verb whose options are put into `Flags`, with which it is run.
+template <class Flags>
+std::function<Action(CLI::App&)> with_flags(void (*declare)(CLI::App&, Flags&), ExitCode (*run)(const Flags&)) {
+  return [=](CLI::App& app) -> Action {
+    const auto flags = std::make_shared<Flags>();
+    declare(app, *flags);
+    return [=] { return run(*flags); };
+  };
+}
 
 /// In the order of --help.
 const std::vector<Verb>& verbs();

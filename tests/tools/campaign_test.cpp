@@ -34,12 +34,12 @@ TEST(Parts, WhatIsThereIsNotDoneAgain) {
                       }});
     return list;
   };
-  const std::vector<std::string> first = run_parts(tasks(5), {here.path() / "parts", "key", 2});
+  const std::vector<std::string> first = run_parts(tasks(5), here.path() / "parts", "key", 2);
   EXPECT_EQ(calls, 5);
   EXPECT_EQ(first[3], "text 3\n");
-  EXPECT_EQ(run_parts(tasks(7), {here.path() / "parts", "key", 1})[6], "text 6\n");
+  EXPECT_EQ(run_parts(tasks(7), here.path() / "parts", "key", 1)[6], "text 6\n");
   EXPECT_EQ(calls, 7);
-  run_parts(tasks(5), {here.path() / "parts", "another key", 1});
+  run_parts(tasks(5), here.path() / "parts", "another key", 1);
   EXPECT_EQ(calls, 12);
 }
 
@@ -50,11 +50,11 @@ TEST(Parts, ADamagedPartIsDoneAgain) {
                                        ++calls;
                                        return std::string("whole\n");
                                      }}};
-  run_parts(tasks, {here.path(), "key", 1});
+  run_parts(tasks, here.path(), "key", 1);
   here.write("p.part", here.read("p.part").substr(0, 40));
-  EXPECT_EQ(run_parts(tasks, {here.path(), "key", 1})[0], "whole\n");
+  EXPECT_EQ(run_parts(tasks, here.path(), "key", 1)[0], "whole\n");
   here.write("p.part", here.read("p.part") + "more");
-  EXPECT_EQ(run_parts(tasks, {here.path(), "key", 1})[0], "whole\n");
+  EXPECT_EQ(run_parts(tasks, here.path(), "key", 1)[0], "whole\n");
   EXPECT_EQ(calls, 3);
 }
 
@@ -62,7 +62,7 @@ TEST(Parts, AMistakeInOneGoesThrough) {
   const Workplace here;
   const std::vector<PartTask> tasks{{"good", [] { return std::string("x"); }},
                                     {"bad", []() -> std::string { throw std::runtime_error("broken"); }}};
-  EXPECT_THROW(run_parts(tasks, {here.path(), "key", 2}), std::runtime_error);
+  EXPECT_THROW(run_parts(tasks, here.path(), "key", 2), std::runtime_error);
   EXPECT_TRUE(here.has("good.part"));
 }
 

@@ -166,7 +166,7 @@ Json plans_json(const formation::Recording& run) {
 
 /// Planned again as the run did; null where it had none, or where that would take long.
 Json routes_json(const datasets::RecordingFile& about, const PackedRunLimits& limits) {
-  const auto planned = routes_of(about, {limits.routed_robots, limits.routed_vertices});
+  const auto planned = routes_of(about, limits.routed_robots, limits.routed_vertices);
   if (!planned) return nullptr;
   Json routes = Json::array();
   for (const formation::PlannedRoute& route : *planned)

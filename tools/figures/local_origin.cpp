@@ -28,7 +28,7 @@ LocalOrigin::LocalOrigin(const Box& view) {
 LocalOrigin::Coordinate LocalOrigin::round_number_near(double low, double high, double extent) {
   const double farthest = std::max(std::abs(low), std::abs(high));
   const bool is_near = farthest <= 2.0 * extent || (farthest < kReadable && farthest <= kMostViews * extent);
-  if (is_near) return {};
+  if (is_near) return {0.0, "0"};
   const int exponent = static_cast<int>(std::ceil(std::log10(extent)));
   const std::string text =
       fmt::format("{:.{}f}", std::round(0.5 * (low + high) / std::pow(10.0, exponent)) * std::pow(10.0, exponent),
@@ -41,18 +41,19 @@ std::string LocalOrigin::using_columns(int x, int y, const std::string& more) co
 }
 
 std::string LocalOrigin::ranges(const Box& view) const {
-  const std::string settings = is_far() ? fmt::format("x0 = {:#}\ny0 = {:#}\n", x_.value, y_.value) : "";
-  return settings + fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]", view.low.x - x_.value,
-                                view.high.x - x_.value, view.low.y - y_.value, view.high.y - y_.value);
+  const std::string settings = is_far() ? fmt::format("x0 = {:#}\ny0 = {:#}\n", x_.first, y_.first) : "";
+  return settings + fmt::format("set xrange [{:.9g}:{:.9g}]\nset yrange [{:.9g}:{:.9g}]", view.low.x - x_.first,
+                                view.high.x - x_.first, view.low.y - y_.first, view.high.y - y_.first);
 }
 
 std::string LocalOrigin::in_title() const {
-  return is_far() ? fmt::format(" - ({}, {})", x_.text, y_.text) : "";
+  return is_far() ? fmt::format(" - ({}, {})", x_.second, y_.second) : "";
 }
 
 std::string LocalOrigin::label(const char* axis, const Coordinate& c) {
-  if (c.value == 0.0) return fmt::format("{} [m]", axis);
-  return c.value < 0.0 ? fmt::format("{} + {} [m]", axis, c.text.substr(1)) : fmt::format("{} - {} [m]", axis, c.text);
+  if (c.first == 0.0) return fmt::format("{} [m]", axis);
+  return c.first < 0.0 ? fmt::format("{} + {} [m]", axis, c.second.substr(1))
+                       : fmt::format("{} - {} [m]", axis, c.second);
 }
 
 }  // namespace exactvo::tools

@@ -7,6 +7,7 @@
 /// digits; the scripts subtract. Exact enough for drawing: a difference of doubles that are near each other.
 
 #include <string>
+#include <utility>
 
 #include "figures/figure.h"
 #include "figures/style.h"
@@ -18,8 +19,8 @@ class LocalOrigin {
   /// (0, 0) where the numbers in view can be read as they are: below 10^5 and a hundred times the view.
   explicit LocalOrigin(const Box& view);
 
-  bool is_far() const { return x_.value != 0.0 || y_.value != 0.0; }
-  Vec2 place() const { return {x_.value, y_.value}; }
+  bool is_far() const { return x_.first != 0.0 || y_.first != 0.0; }
+  Vec2 place() const { return {x_.first, y_.first}; }
 
   /// "using 1:2" or the same with x0 and y0 subtracted; `more` are further columns: ":3".
   std::string using_columns(int x = 1, int y = 2, const std::string& more = "") const;
@@ -36,14 +37,12 @@ class LocalOrigin {
   }
 
  private:
-  struct Coordinate {
-    double value = 0.0;
-    std::string text = "0";
-  };
+  /// A number, and its text.
+  using Coordinate = std::pair<double, std::string>;
   static Coordinate round_number_near(double low, double high, double extent);
   static std::string label(const char* axis, const Coordinate& c);
 
-  Coordinate x_, y_;
+  Coordinate x_{0.0, "0"}, y_{0.0, "0"};
 };
 
 }  // namespace exactvo::tools

@@ -157,7 +157,7 @@ std::vector<VariantResult> run_campaign(const std::vector<Variant>& variants, co
       owner.push_back(v);
     }
   }
-  const std::vector<std::string> texts = run_parts(tasks, {options.folder, program_key(), options.jobs});
+  const std::vector<std::string> texts = run_parts(tasks, options.folder, program_key(), options.jobs);
   std::vector<VariantResult> results;
   for (const Variant& v : variants) results.push_back({datasets::name(v.kind), v.name, {}});
   for (std::size_t i = 0; i < texts.size(); ++i) append_fields(texts[i], results[owner[i]].fields);

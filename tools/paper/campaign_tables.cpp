@@ -85,8 +85,7 @@ std::vector<Json> run_scenes(const std::vector<Variant>& variants, const Campaig
   for (std::size_t i = 0; i < variants.size(); ++i)
     tasks.push_back({fmt::format("scenes-{:02}", i), [&, i] { return scenes_of(variants[i], scenarios); }});
   std::vector<Json> rows;
-  for (const std::string& text : run_parts(tasks, {options.folder, key, options.jobs}))
-    rows.push_back(Json::parse(text));
+  for (const std::string& text : run_parts(tasks, options.folder, key, options.jobs)) rows.push_back(Json::parse(text));
   return rows;
 }
 

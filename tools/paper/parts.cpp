@@ -41,14 +41,15 @@ class PartsProgress {
 
 }  // namespace
 
-std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const PartsOptions& options) {
-  const datasets::PartFolder folder(options.folder);
+std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const fs::path& path, const std::string& key,
+                                   unsigned jobs) {
+  const datasets::PartFolder folder(path);
   folder.create();
   const auto file_of = [&](std::size_t task) { return folder.path(tasks[task].name + ".part"); };
   std::vector<std::string> texts(tasks.size());
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    std::optional<std::string> text = folder.read_sealed(file_of(i), options.key);
+    std::optional<std::string> text = folder.read_sealed(file_of(i), key);
     if (!text) open.push_back(i);
     texts[i] = std::move(text).value_or("");
   }
@@ -57,12 +58,12 @@ std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const Par
   PartsProgress progress(open.size());
   std::size_t next = 0;
   std::size_t done = 0;
-  datasets::run_in_order(static_cast<int>(options.jobs), [&]() -> std::optional<datasets::OrderedTask> {
+  datasets::run_in_order(static_cast<int>(jobs), [&]() -> std::optional<datasets::OrderedTask> {
     if (interrupted() || next == open.size()) return std::nullopt;
     const std::size_t i = open[next++];
     const auto work = [&, i] {
       texts[i] = tasks[i].work();
-      if (!interrupted()) folder.write_sealed(file_of(i), options.key, texts[i]);  // what was cut short is no part
+      if (!interrupted()) folder.write_sealed(file_of(i), key, texts[i]);  // what was cut short is no part
     };
     return datasets::OrderedTask{work, [&, i] { progress.show(++done, tasks[i].name); }};
   });

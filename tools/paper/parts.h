@@ -17,16 +17,12 @@ struct PartTask {
   std::function<std::string()> work;  ///< gives the part's text; called from any thread
 };
 
-struct PartsOptions {
-  std::filesystem::path folder;  ///< created where missing
-  /// What a part depends on beside its name: one made under another key is done again.
-  std::string key;
-  unsigned jobs = 1;  ///< threads
-};
-
-/// Does every part that is not there yet. Returns the texts of all, in the tasks' order. Throws Interrupted after a
-/// request to stop, with the parts kept that are done; what a task throws goes through.
-std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const PartsOptions& options);
+/// Does every part that is not in the folder yet, which is created where missing, on so many threads. `key`: what a
+/// part depends on beside its name; one made under another key is done again. Returns the texts of all, in the tasks'
+/// order. Throws Interrupted after a request to stop, with the parts kept that are done; what a task throws goes
+/// through.
+std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const std::filesystem::path& folder,
+                                   const std::string& key, unsigned jobs);
 
 /// The key of everything that this very program computes: the digest of its own file where the system shows it, else
 /// its version, commit and compiler.

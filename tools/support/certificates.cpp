@@ -59,13 +59,13 @@ std::string claim_words(const vo::Containment& c) {
                      geometry::counted(c.points.size(), "point"));
 }
 
-JudgedCertificate judged_as(vo::Verdict verdict, std::string claim) {
+CheckedCertificate checked_as(vo::Verdict verdict, std::string claim) {
   return {name(verdict), std::move(claim), verdict == vo::Verdict::valid};
 }
 
-JudgedCertificate judge(const std::string& text) {
-  if (const auto c = vo::read_certificate(text)) return judged_as(check(*c), claim_words(c->claim));
-  if (const auto c = vo::read_containment(text)) return judged_as(check(*c), claim_words(*c));
+CheckedCertificate check_one(const std::string& text) {
+  if (const auto c = vo::read_certificate(text)) return checked_as(check(*c), claim_words(c->claim));
+  if (const auto c = vo::read_containment(text)) return checked_as(check(*c), claim_words(*c));
   return {"not a certificate", "", false};
 }
 
@@ -192,37 +192,37 @@ bool is_of_another_half_plane(const std::optional<vo::Certificate>& c, const Jso
   });
 }
 
-JudgedCertificate judge_beside(const std::string& text, const Json& object) {
-  JudgedCertificate judged = judge(text);
-  if (!judged.valid) return judged;
+CheckedCertificate checked_beside(const std::string& text, const Json& object) {
+  CheckedCertificate checked = check_one(text);
+  if (!checked.valid) return checked;
   const auto c = vo::read_certificate(text);
-  if (c && is_of_another_ellipse(c->claim, object)) return {"of another ellipse", judged.claim, false};
-  if (c && is_of_another_obstacle(c->claim, object)) return {"of another obstacle", judged.claim, false};
-  if (is_of_another_half_plane(c, object)) return {"of another half-plane", judged.claim, false};
-  return judged;
+  if (c && is_of_another_ellipse(c->claim, object)) return {"of another ellipse", checked.claim, false};
+  if (c && is_of_another_obstacle(c->claim, object)) return {"of another obstacle", checked.claim, false};
+  if (is_of_another_half_plane(c, object)) return {"of another half-plane", checked.claim, false};
+  return checked;
 }
 
 /// The certificates of one JSON value or of several lines of JSON, in order.
-class TreeJudge {
+class TreeChecker {
  public:
-  void judge(const std::string& text) {
+  void add(const std::string& text) {
     if (const auto json = parsed(text)) {
       walk(*json);
     } else {
-      judged_.all.push_back({"unreadable JSON", "", false});
+      checked_.all.push_back({"unreadable JSON", "", false});
     }
   }
-  JudgedCertificates judged() && { return std::move(judged_); }
+  CheckedCertificates checked() && { return std::move(checked_); }
 
  private:
   void walk(const Json& value) {
     if (value.is_string() && begins_as_one(value.get_ref<const std::string&>()))
-      judged_.all.push_back(tools::judge(value.get<std::string>()));
+      checked_.all.push_back(check_one(value.get<std::string>()));
     if (value.is_array())
       for (const Json& item : value) walk(item);
     if (!value.is_object()) return;
-    if (RouteJudge::is_one(value)) return judged_.all.push_back(routes_.judge(value, nullptr));
-    if (RouteJudge::lacks_one(value)) return judged_.all.push_back({"no certificate", "", false});
+    if (RouteChecker::is_one(value)) return checked_.all.push_back(routes_.check_one(value, nullptr));
+    if (RouteChecker::lacks_one(value)) return checked_.all.push_back({"no certificate", "", false});
     for (const auto& [key, member] : value.items()) {
       if (key == "certificate") {
         add(member, value);
@@ -234,16 +234,16 @@ class TreeJudge {
 
   void add(const Json& certificate, const Json& object) {
     if (certificate.is_null()) {
-      ++judged_.none;
-    } else if (RouteJudge::is_one(certificate)) {
-      judged_.all.push_back(routes_.judge(certificate, object));
+      ++checked_.none;
+    } else if (RouteChecker::is_one(certificate)) {
+      checked_.all.push_back(routes_.check_one(certificate, object));
     } else {
-      judged_.all.push_back(judge_beside(text_in(certificate).value_or(""), object));
+      checked_.all.push_back(checked_beside(text_in(certificate).value_or(""), object));
     }
   }
 
-  RouteJudge routes_;
-  JudgedCertificates judged_;
+  RouteChecker routes_;
+  CheckedCertificates checked_;
 };
 
 /// Whether the text is a JSON value a line, several of them.
@@ -252,20 +252,20 @@ bool is_json_lines(const std::string& text) {
   return lines.size() > 1 && !Json::accept(text) && Json::accept(lines.front());
 }
 
-JudgedCertificates judge_json(const std::string& text) {
-  TreeJudge judge;
+CheckedCertificates checked_in_json(const std::string& text) {
+  TreeChecker tree;
   if (is_json_lines(text)) {
-    for (const std::string& line : lines_of(text)) judge.judge(line);
+    for (const std::string& line : lines_of(text)) tree.add(line);
   } else {
-    judge.judge(text);
+    tree.add(text);
   }
-  return std::move(judge).judged();
+  return std::move(tree).checked();
 }
 
-JudgedCertificates judge_lines(const std::string& text) {
-  JudgedCertificates judged;
-  for (const std::string& one : lines_of(text)) judged.all.push_back(judge(one));
-  return judged;
+CheckedCertificates checked_in_lines(const std::string& text) {
+  CheckedCertificates checked;
+  for (const std::string& one : lines_of(text)) checked.all.push_back(check_one(one));
+  return checked;
 }
 
 bool is_json(const std::string& text) {
@@ -279,43 +279,43 @@ bool has_a_line_of_one(const std::string& text) {
   return std::any_of(lines.begin(), lines.end(), begins_as_one);
 }
 
-auto count_valid(const JudgedCertificates& judged) {
-  return std::count_if(judged.all.begin(), judged.all.end(), [](const JudgedCertificate& j) { return j.valid; });
+auto count_valid(const CheckedCertificates& checked) {
+  return std::count_if(checked.all.begin(), checked.all.end(), [](const CheckedCertificate& j) { return j.valid; });
 }
 
 }  // namespace
 
-JudgedCertificates judge_certificates_in(const std::string& text) {
-  return is_json(text) ? judge_json(text) : judge_lines(text);
+CheckedCertificates check_certificates_in(const std::string& text) {
+  return is_json(text) ? checked_in_json(text) : checked_in_lines(text);
 }
 
-JudgedCertificates judge_certificates(const std::string& file) {
+CheckedCertificates check_certificates(const std::string& file) {
   const std::string whole = datasets::read_file_or_input(file), text(without_mark(whole));
-  JudgedCertificates judged = judge_certificates_in(text);
-  const bool is_empty = judged.all.empty() && judged.none == 0;
+  CheckedCertificates checked = check_certificates_in(text);
+  const bool is_empty = checked.all.empty() && checked.none == 0;
   if (is_empty || (!is_json(text) && !has_a_line_of_one(text)))
     throw UsageError("--certificate", file + ": no certificate", "a certificate a line");
-  return judged;
+  return checked;
 }
 
-std::string to_json(const JudgedCertificates& judged) {
+std::string to_json(const CheckedCertificates& checked) {
   std::string verdicts;
-  for (const JudgedCertificate& j : judged.all)
+  for (const CheckedCertificate& j : checked.all)
     verdicts += fmt::format("{}\"{}\"", verdicts.empty() ? "" : ", ", j.verdict);
-  return fmt::format("{{\"certificates\": {}, \"valid\": {}, \"none\": {}, \"verdicts\": [{}]}}\n", judged.all.size(),
-                     count_valid(judged), judged.none, verdicts);
+  return fmt::format("{{\"certificates\": {}, \"valid\": {}, \"none\": {}, \"verdicts\": [{}]}}\n", checked.all.size(),
+                     count_valid(checked), checked.none, verdicts);
 }
 
-std::string in_words(const JudgedCertificates& judged) {
+std::string in_words(const CheckedCertificates& checked) {
   std::string text;
-  for (std::size_t k = 0; k < judged.all.size(); ++k) {
-    text += fmt::format("{}: {}", k + 1, judged.all[k].verdict);
-    if (!judged.all[k].claim.empty()) text += "; " + judged.all[k].claim;
+  for (std::size_t k = 0; k < checked.all.size(); ++k) {
+    text += fmt::format("{}: {}", k + 1, checked.all[k].verdict);
+    if (!checked.all[k].claim.empty()) text += "; " + checked.all[k].claim;
     text += "\n";
   }
-  const std::string none = judged.none > 0 ? fmt::format(", {} none", judged.none) : "";
-  return text + fmt::format("{} {}, {} valid{}\n", judged.all.size(),
-                            judged.all.size() == 1 ? "certificate" : "certificates", count_valid(judged), none);
+  const std::string none = checked.none > 0 ? fmt::format(", {} none", checked.none) : "";
+  return text + fmt::format("{} {}, {} valid{}\n", checked.all.size(),
+                            checked.all.size() == 1 ? "certificate" : "certificates", count_valid(checked), none);
 }
 
 }  // namespace exactvo::tools

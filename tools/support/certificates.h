@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Certificates of half-planes and of containment as text, and of routes as JSON (route_certificates.h), judged by the
+/// Certificates of half-planes and of containment as text, and of routes as JSON (route_certificates.h), checked by the
 /// checkers of vo/certificate.h, vo/containment.h and geometry/route_certificate.h, which share nothing with what makes
 /// them.
 
@@ -12,16 +12,16 @@
 
 namespace exactvo::tools {
 
-struct JudgedCertificate {
+struct CheckedCertificate {
   std::string verdict;  ///< vo::name(Verdict), "not a certificate", "of another half-plane", "of another ellipse",
-                        ///< "of another obstacle", "unreadable JSON"; of a route RouteJudge's
+                        ///< "of another obstacle", "unreadable JSON"; of a route RouteChecker's
   std::string claim;    ///< what is claimed, rounded for people; empty where it is none
   bool valid = false;
 };
 
-struct JudgedCertificates {
-  std::vector<JudgedCertificate> all;  ///< in order
-  std::size_t none = 0;                ///< places of JSON that say that there is none: "certificate": null
+struct CheckedCertificates {
+  std::vector<CheckedCertificate> all;  ///< in order
+  std::size_t none = 0;                 ///< places of JSON that say that there is none: "certificate": null
 };
 
 /// Every certificate of a text, which may be JSON, JSON lines or plain lines: one a line, where blank lines do not
@@ -31,13 +31,13 @@ struct JudgedCertificates {
 /// number, and it must be of the `shape` beside it, or where a `robot` stands there of their sum, made again by
 /// `geometry::grown_by_polygon`. Beside a `taken_as` that is an ellipse the shape must be an ellipse, and the same one
 /// where that has a certificate of containment. In lines, nothing says which belong together, and this is not checked.
-JudgedCertificates judge_certificates_in(const std::string& text);
+CheckedCertificates check_certificates_in(const std::string& text);
 
 /// The same of a file, or of stdin where its name is "-". Throws DataError where it can't be read, UsageError where
 /// neither a certificate nor a place that says there is none is in it: no line begins as one, no JSON has any.
-JudgedCertificates judge_certificates(const std::string& file);
+CheckedCertificates check_certificates(const std::string& file);
 
-std::string to_json(const JudgedCertificates& judged);
-std::string in_words(const JudgedCertificates& judged);
+std::string to_json(const CheckedCertificates& checked);
+std::string in_words(const CheckedCertificates& checked);
 
 }  // namespace exactvo::tools

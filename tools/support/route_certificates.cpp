@@ -312,16 +312,16 @@ RouteJson certificate_json(const RouteQuestion& question, const RouteAnswer& ans
   return json;
 }
 
-bool RouteJudge::is_one(const RouteJson& certificate) {
+bool RouteChecker::is_one(const RouteJson& certificate) {
   return is_status(member(certificate, "kind"));
 }
 
-bool RouteJudge::lacks_one(const RouteJson& object) {
+bool RouteChecker::lacks_one(const RouteJson& object) {
   const RouteJson* certificate = member(object, "certificate");
   return is_status(member(object, "status")) && (certificate == nullptr || certificate->is_null());
 }
 
-JudgedCertificate RouteJudge::judge(const RouteJson& certificate, const RouteJson& beside) {
+CheckedCertificate RouteChecker::check_one(const RouteJson& certificate, const RouteJson& beside) {
   const std::optional<RouteQuestion> question = question_in(certificate);
   const std::optional<RouteAnswer> answer = answer_in(certificate);
   if (!question || !answer) return {"not a certificate", "", false};

@@ -6,7 +6,7 @@
 /// written so that they read back as the same; a coordinate that is no double stands as a fraction beside its rounded
 /// value. docs/guide/routes.md has the format; examples/check_route.py checks it without this program.
 ///
-/// Neighbours: certificates.h judges whole files, geometry/route_certificate.h decides.
+/// Neighbours: certificates.h checks whole files, geometry/route_certificate.h decides.
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -31,8 +31,8 @@ RouteJson rounded_json(const std::vector<geometry::ExactPoint>& points);
 RouteJson certificate_json(const geometry::RouteQuestion& question, const geometry::RouteAnswer& answer,
                            const std::vector<formation::SceneObstacle>* obstacles);
 
-/// Judges the certificates of one file in order.
-class RouteJudge {
+/// Checks the certificates of one file in order.
+class RouteChecker {
  public:
   /// Whether an object claims to be one: it has a `kind` that is a status.
   static bool is_one(const RouteJson& certificate);
@@ -43,7 +43,7 @@ class RouteJudge {
   /// `beside`: the object whose `certificate` it is. What it says of status, radius, start, goal, points, lengths,
   /// gaps, the blocked end and the widest radius must agree with the certificate; else the verdict is "of another
   /// answer". REQUIRES: is_one(certificate).
-  JudgedCertificate judge(const RouteJson& certificate, const RouteJson& beside);
+  CheckedCertificate check_one(const RouteJson& certificate, const RouteJson& beside);
 
  private:
   std::optional<std::vector<geometry::Obstacle>> obstacles_;  ///< of the last certificate that had any

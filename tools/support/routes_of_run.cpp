@@ -11,11 +11,11 @@ std::optional<formation::SimulationOptions> guided_options(const datasets::RunIn
 }
 
 std::optional<std::vector<formation::PlannedRoute>> routes_of(const datasets::RecordingFile& run,
-                                                              const RouteLimits& limits) {
+                                                              std::size_t most_robots, std::size_t most_vertices) {
   std::size_t vertices = 0;
   for (const formation::SceneObstacle& o : run.scenario.obstacles) vertices += geometry::vertices_of(o.shape).size();
   const std::optional<formation::SimulationOptions> options = guided_options(run.info);
-  if (!options || run.scenario.robots.size() > limits.robots || vertices > limits.vertices) return std::nullopt;
+  if (!options || run.scenario.robots.size() > most_robots || vertices > most_vertices) return std::nullopt;
   return formation::planned_routes(run.scenario, *options);
 }
 

@@ -13,17 +13,12 @@
 
 namespace exactvo::tools {
 
-/// Planning again must cost little.
-struct RouteLimits {
-  std::size_t robots = 50;
-  std::size_t vertices = 20'000;  ///< of obstacles
-};
-
 /// What the run was made with, as far as routes depend on it; nothing where it had none.
 std::optional<formation::SimulationOptions> guided_options(const datasets::RunInfo& info);
 
-/// Nothing where the run had none, or where it is larger than the limits.
+/// Nothing where the run had none, or where it is larger than these limits: planning again must cost little. `vertices`
+/// are those of obstacles.
 std::optional<std::vector<formation::PlannedRoute>> routes_of(const datasets::RecordingFile& run,
-                                                              const RouteLimits& limits = {});
+                                                              std::size_t robots = 50, std::size_t vertices = 20'000);
 
 }  // namespace exactvo::tools

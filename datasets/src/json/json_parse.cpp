@@ -123,23 +123,11 @@ class GuardedBuilder : public JsonBuilder {
 };
 
 /// Keeps nothing.
-class SyntaxCheck : public nlohmann::json_sax<Json> {
+class SyntaxCheck : public nlohmann::detail::json_sax_acceptor<Json> {
  public:
   explicit SyntaxCheck(const SyntaxErrors& errors) : errors_(errors) {}
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(string_t&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-  bool parse_error(std::size_t bytes, const std::string&, const nlohmann::detail::exception& error) override {
+  bool parse_error(std::size_t bytes, const std::string&, const nlohmann::detail::exception& error) {
     errors_.refuse(bytes, error);
   }
 
@@ -147,7 +135,8 @@ class SyntaxCheck : public nlohmann::json_sax<Json> {
   const SyntaxErrors& errors_;
 };
 
-bool parse_into(nlohmann::json_sax<Json>& events, std::string_view text, std::size_t& position) {
+template <class Events>
+bool parse_into(Events& events, std::string_view text, std::size_t& position) {
   const char* begin = text.data();
   return Json::sax_parse(CountingIterator(begin, begin, &position),
                          CountingIterator(begin + text.size(), begin, &position), &events);

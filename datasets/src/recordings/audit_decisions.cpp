@@ -145,7 +145,7 @@ void DecisionAudit::answer(Verdict verdict, const Seen& s, const std::string& wh
 }
 
 void DecisionAudit::nothing_is_missing(const Seen& s) {
-  const AuditBox here = box_of(s.state->anchor);
+  const geometry::Box here = box_of(s.state->anchor);
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     if (are_apart(here, obstacles_[k].box, s.near)) continue;
     bool in_reach = false;

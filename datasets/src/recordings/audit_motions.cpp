@@ -106,7 +106,7 @@ void MotionAudit::meet_moving(const Driven& d, std::size_t i, const Moved& moved
     ++tally_.report.moving_questions;
     for (const ExactWay::TimedChord& piece : moved.ways[k]) {
       const Rational start = (piece.start - from) / passed, end = (piece.end - from) / passed;
-      const AuditBox seen = box_of(d.motion.over(start, end) - piece.chord);
+      const geometry::Box seen = box_of(d.motion.over(start, end) - piece.chord);
       if (are_apart(seen, moving_[k].box, radius)) continue;
       const std::vector<std::size_t> edges = moving_[k].near(seen, radius);
       const auto over = [&](const Rational& s, const Rational& e) {

@@ -27,7 +27,7 @@ class MotionAudit {
   /// A row's time step as one robot drives it.
   struct Driven {
     exact::StepMotion motion;
-    AuditBox box;
+    geometry::Box box;
   };
   /// Of one robot and step: whom it meets, and from whom it cannot be told apart; empty where there is nobody.
   struct Answer {

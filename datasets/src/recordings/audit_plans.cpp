@@ -60,7 +60,7 @@ class PlanAudit {
   void meet_obstacles(std::size_t mover, geometry::Vec2 to, std::string& met, std::string& open) const {
     const std::size_t robot = plan_.robots[mover];
     const Rational reach = radius(robot) * (1 - Rational(kPlanRounding));
-    const AuditBox swept = box_of(geometry::Segment{at_[mover], to});
+    const geometry::Box swept = box_of(geometry::Segment{at_[mover], to});
     const Straight way{exact::exactly(at_[mover]), exact::exactly(to)};
     const Straight start{way.from, way.from};
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {

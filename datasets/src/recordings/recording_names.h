@@ -5,6 +5,7 @@
 /// The words that stand for enumerators in recordings, the same both ways.
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactvo/formation/metrics.h"
@@ -14,10 +15,7 @@
 namespace exactvo::datasets {
 
 template <class E>
-struct Word {
-  E value;
-  const char* word;
-};
+using Word = std::pair<E, const char*>;
 
 /// Specialised for the enumerators of a recording.
 template <class E>
@@ -38,9 +36,8 @@ const std::vector<Word<formation::CollisionKind>>& words();
 
 template <class E>
 const char* word_for(E value) {
-  for (const Word<E>& known : words<E>()) {
-    if (known.value == value) return known.word;
-  }
+  for (const auto& [known, word] : words<E>())
+    if (known == value) return word;
   return "unknown";
 }
 
@@ -48,9 +45,9 @@ const char* word_for(E value) {
 template <class E>
 E enumerator(const JsonCursor& at) {
   std::string options;
-  for (const Word<E>& known : words<E>()) {
-    if (at.text() == known.word) return known.value;
-    options += (options.empty() ? "" : ", ") + std::string(known.word);
+  for (const auto& [known, word] : words<E>()) {
+    if (at.text() == word) return known;
+    options += (options.empty() ? "" : ", ") + std::string(word);
   }
   at.refuse("one of " + options, DataCode::not_an_option);
 }

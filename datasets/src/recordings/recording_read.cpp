@@ -254,23 +254,19 @@ void require_recording(std::string_view first_line, const NextLine& next_line, c
                   "a recording.jsonl, as simulate --out writes it");
 }
 
-/// Keeps all rows.
-struct AllRows {
+/// What `read` reads, with all rows that it gives its argument.
+template <class Read>
+RecordingFile with_all_rows(const Read& read) {
   std::vector<Step> steps;
   std::vector<formation::LyapunovRow> lyapunov;
-
-  TakeRow taker() {
-    return [this](const RecordingFile&, Step row, const formation::LyapunovRow* values) {
-      steps.push_back(std::move(row));
-      if (values) lyapunov.push_back(*values);
-    };
-  }
-  RecordingFile with_rows(RecordingFile file) {
-    file.recording.steps = std::move(steps);
-    file.lyapunov = std::move(lyapunov);
-    return file;
-  }
-};
+  RecordingFile file = read([&](const RecordingFile&, Step row, const formation::LyapunovRow* values) {
+    steps.push_back(std::move(row));
+    if (values) lyapunov.push_back(*values);
+  });
+  file.recording.steps = std::move(steps);
+  file.lyapunov = std::move(lyapunov);
+  return file;
+}
 
 }  // namespace
 
@@ -304,13 +300,11 @@ RecordingFile read_recording(const std::filesystem::path& path, const TakeRow& t
 }
 
 RecordingFile read_recording(const std::filesystem::path& path) {
-  AllRows rows;
-  return rows.with_rows(read_recording(path, rows.taker()));
+  return with_all_rows([&](const TakeRow& take) { return read_recording(path, take); });
 }
 
 RecordingFile parse_recording(const std::string& text, const std::string& name) {
-  AllRows rows;
-  return rows.with_rows(read_recording_lines(lines_of(text), name, rows.taker()));
+  return with_all_rows([&](const TakeRow& take) { return read_recording_lines(lines_of(text), name, take); });
 }
 
 }  // namespace exactvo::datasets

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace exactvo::datasets {
 namespace {
@@ -38,17 +39,14 @@ class Checker {
 
  private:
   using Rule = void (Checker::*)(const Json& rule, const Json& value, const Json& rules, const Place& at) const;
-  struct Keyword {
-    const char* name;
-    Rule rule;
-  };
+  using Keyword = std::pair<const char*, Rule>;
   static const std::vector<Keyword>& keywords();
 
   void apply(const std::string& keyword, const Json& rule, const Json& value, const Json& rules,
              const Place& at) const {
-    for (const Keyword& known : keywords()) {
-      if (keyword != known.name) continue;
-      if (known.rule != nullptr) (this->*known.rule)(rule, value, rules, at);
+    for (const auto& [known, check] : keywords()) {
+      if (keyword != known) continue;
+      if (check != nullptr) (this->*check)(rule, value, rules, at);
       return;
     }
     throw std::logic_error("schema keyword not supported: " + keyword);

@@ -56,12 +56,6 @@ py::list properties_of(const ObstacleFile& file) {
   return result;
 }
 
-/// What a write needs to know of where obstacles lie, and their properties.
-struct FileContext {
-  datasets::LocalPlane plane;
-  std::vector<datasets::FeatureProperties> properties;
-};
-
 py::dict as_dict(ObstacleFile file) {
   py::list rejected, findings;
   for (const datasets::DataError& e : file.rejected) rejected.append(as_tuple(e));
@@ -84,7 +78,8 @@ py::dict as_dict(ObstacleFile file) {
   result["origin"] = origin;
   result["properties"] = properties_of(file);
   result["obstacles"] = py::cast(Obstacles{std::move(file.obstacles)});
-  result["context"] = py::cast(FileContext{std::move(file.plane), std::move(file.properties)});
+  // What a write needs to know of where obstacles lie, and their properties.
+  result["context"] = py::cast(datasets::WriteOptions{{}, std::move(file.plane), false, std::move(file.properties)});
   return result;
 }
 
@@ -98,13 +93,12 @@ py::dict read(const fs::path& path, const py::object& format, const std::string&
 py::list write(const fs::path& path, const Obstacles& obstacles, const py::object& context, const py::object& format,
                bool metres) {
   datasets::WriteOptions options;
+  if (!context.is_none()) {
+    options = context.cast<datasets::WriteOptions>();
+    if (options.properties.size() != obstacles.list.size()) options.properties.clear();
+  }
   if (!format.is_none()) options.format = py::str(format);
   options.metres = metres;
-  if (!context.is_none()) {
-    const auto& c = context.cast<const FileContext&>();
-    options.plane = c.plane;
-    if (c.properties.size() == obstacles.list.size()) options.properties = c.properties;
-  }
   const std::vector<std::string> lost =
       without_gil([&] { return datasets::write_obstacles(path, obstacles.list, options); });
   return py::cast(lost);
@@ -197,7 +191,7 @@ Obstacles generate(const std::string& kind, std::uint64_t count, std::uint64_t s
 }  // namespace
 
 void bind_obstacle_files(py::module_& module) {
-  py::class_<FileContext>(module, "FileContext");
+  py::class_<datasets::WriteOptions>(module, "FileContext");
   module.def("read_obstacles", &read);
   module.def("parse_wkt", [](const std::string& text, bool repair) {
     datasets::ReadOptions options;

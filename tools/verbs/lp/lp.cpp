@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 
 #include "exactvo/datasets/data_error.h"
@@ -156,14 +155,12 @@ ExitCode run(const LpFlags& flags) {
   return ExitCode::negative;
 }
 
-Action declare_lp(CLI::App& app) {
-  const auto flags = std::make_shared<LpFlags>();
-  app.add_option("file", flags->file, "Problems: JSON Lines, one JSON document or a binary instance file; - for stdin")
+void declare_lp(CLI::App& app, LpFlags& flags) {
+  app.add_option("file", flags.file, "Problems: JSON Lines, one JSON document or a binary instance file; - for stdin")
       ->required();
-  app.add_option("--solver", flags->solver, "incremental, batch, certified or exact")->capture_default_str();
-  app.add_flag("--certify", flags->certify, "Certify every answer; those that cannot be certified are solved exactly");
-  app.add_flag("--json", flags->json, "One JSON result per line, then a summary");
-  return [flags] { return run(*flags); };
+  app.add_option("--solver", flags.solver, "incremental, batch, certified or exact")->capture_default_str();
+  app.add_flag("--certify", flags.certify, "Certify every answer; those that cannot be certified are solved exactly");
+  app.add_flag("--json", flags.json, "One JSON result per line, then a summary");
 }
 
 }  // namespace
@@ -181,7 +178,7 @@ Verb lp_verb() {
       "    the file: not reading, laying out for `batch`, gathering, printing, nor what --certify adds. Of a file of "
       "few\n"
       "    problems it says little; to compare solvers run bench_lp --instances FILE)\n",
-      declare_lp};
+      with_flags(declare_lp, run)};
 }
 
 }  // namespace exactvo::tools

@@ -11,7 +11,6 @@
 #include <csignal>
 #include <filesystem>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -392,12 +391,10 @@ void declare_robot(CLI::App& app, BatchFlags& flags) {
                  "X,Y, m; trap-free ellipses are fitted for a robot going there from the first position");
 }
 
-Action declare_batch(CLI::App& app) {
-  const auto flags = std::make_shared<BatchFlags>();
-  declare_run(app, *flags);
-  declare_reading(app, *flags);
-  declare_robot(app, *flags);
-  return [flags] { return batch(*flags); };
+void declare_batch(CLI::App& app, BatchFlags& flags) {
+  declare_run(app, flags);
+  declare_reading(app, flags);
+  declare_robot(app, flags);
 }
 
 }  // namespace
@@ -410,7 +407,7 @@ Verb batch_verb() {
           "    (status 1: a result is not certified, or no obstacle was produced; rejected files are listed)\n"
           "  mpirun -n 4 exactvo batch maps --out out/maps -j 1\n"
           "  exactvo batch map.yaml --out out/map --time-horizon 3 --radius 0.3 --position 1,2 --position 4,2\n",
-          declare_batch};
+          with_flags(declare_batch, batch)};
 }
 
 }  // namespace exactvo::tools

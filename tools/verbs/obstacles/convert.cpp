@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -90,19 +89,17 @@ ExitCode convert(const ConvertFlags& flags) {
   return file.rejected.empty() ? ExitCode::success : ExitCode::negative;
 }
 
-Action declare_convert(CLI::App& app) {
-  const auto flags = std::make_shared<ConvertFlags>();
-  app.add_option("in", flags->in, "An obstacle file of any readable format, or a crowd's recording, .evr, for FILE.csv")
+void declare_convert(CLI::App& app, ConvertFlags& flags) {
+  app.add_option("in", flags.in, "An obstacle file of any readable format, or a crowd's recording, .evr, for FILE.csv")
       ->required();
-  app.add_option("out", flags->out,
+  app.add_option("out", flags.out,
                  "The file to write; its extension says the format. - is stdout (wkt, or as --to says)")
       ->required();
-  declare_reading_flags(app, flags->reading, "--from");
-  app.add_option("--to", flags->to, "What to write:" + listed(datasets::writable_formats()));
-  declare_metres(app, flags->metres);
-  app.add_flag("--repair", flags->repair, "Repair invalid geometry (exactvo repair lists the changes)");
-  app.add_flag("--skip", flags->skip, "Omit invalid obstacles, and end with status 1");
-  return [flags] { return convert(*flags); };
+  declare_reading_flags(app, flags.reading, "--from");
+  app.add_option("--to", flags.to, "What to write:" + listed(datasets::writable_formats()));
+  declare_metres(app, flags.metres);
+  app.add_flag("--repair", flags.repair, "Repair invalid geometry (exactvo repair lists the changes)");
+  app.add_flag("--skip", flags.skip, "Omit invalid obstacles, and end with status 1");
 }
 
 }  // namespace
@@ -111,7 +108,7 @@ Verb convert_verb() {
   return {"convert", "Convert obstacles from one file format to another",
           "  exactvo convert map.yaml map.geojson\n"
           "  exactvo convert city.osm city.gpkg --repair --skip\n",
-          declare_convert};
+          with_flags(declare_convert, convert)};
 }
 
 }  // namespace exactvo::tools

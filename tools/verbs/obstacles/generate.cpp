@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 
 #include "exactvo/datasets/atomic_file.h"
@@ -116,17 +115,15 @@ ExitCode generate(const GenerateFlags& flags) {
   return ExitCode::success;
 }
 
-Action declare_generate(CLI::App& app) {
-  const auto flags = std::make_shared<GenerateFlags>();
-  app.add_option("kind", flags->kind, kind_help());
-  declare_seed(app, flags->seed, "Of the generator; the same seed gives the same bytes on every machine");
-  app.add_option("--count", flags->count, "Number of items; one maze, block or field consists of several obstacles");
-  app.add_option("--out", flags->out, kOutHelp);
-  app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
-  declare_metres(app, flags->metres);
-  app.add_option("--figure", flags->figure, std::string("The first 400 items. ") + kFigureFileHelp);
-  app.add_flag("--list", flags->list, "Print the kinds");
-  return [flags] { return generate(*flags); };
+void declare_generate(CLI::App& app, GenerateFlags& flags) {
+  app.add_option("kind", flags.kind, kind_help());
+  declare_seed(app, flags.seed, "Of the generator; the same seed gives the same bytes on every machine");
+  app.add_option("--count", flags.count, "Number of items; one maze, block or field consists of several obstacles");
+  app.add_option("--out", flags.out, kOutHelp);
+  app.add_option("--to", flags.to, "The format of --out, if its extension does not determine it");
+  declare_metres(app, flags.metres);
+  app.add_option("--figure", flags.figure, std::string("The first 400 items. ") + kFigureFileHelp);
+  app.add_flag("--list", flags.list, "Print the kinds");
 }
 
 }  // namespace
@@ -135,7 +132,7 @@ Verb generate_verb() {
   return {"generate", "Generate obstacles from a seed: polygons, stars, walls, mazes, blocks, floors, needles, fields",
           "  exactvo generate --list\n"
           "  exactvo generate maze --seed 7 --count 4 --out mazes.geojson --figure mazes.svg\n",
-          declare_generate};
+          with_flags(declare_generate, generate)};
 }
 
 }  // namespace exactvo::tools

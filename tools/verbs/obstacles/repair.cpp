@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "exactvo/datasets/obstacle_write.h"
@@ -328,18 +327,16 @@ ExitCode repair(const RepairFlags& flags) {
   return code;
 }
 
-Action declare_repair(CLI::App& app) {
-  const auto flags = std::make_shared<RepairFlags>();
-  app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
-  app.add_option("--out", flags->out,
+void declare_repair(CLI::App& app, RepairFlags& flags) {
+  app.add_option("files", flags.files, "Obstacle files of any readable format")->required();
+  app.add_option("--out", flags.out,
                  "Output file for the repaired obstacles of all inputs; its extension selects the format")
       ->required();
-  app.add_option("--to", flags->to, "The format of --out, if its extension does not determine it");
-  declare_reading_flags(app, flags->reading);
-  declare_metres(app, flags->metres);
-  app.add_flag("--json", flags->json, "The report as JSON on stdout");
-  app.add_option("--figure", flags->figure, std::string("Every changed polygon before and after. ") + kFigureFileHelp);
-  return [flags] { return repair(*flags); };
+  app.add_option("--to", flags.to, "The format of --out, if its extension does not determine it");
+  declare_reading_flags(app, flags.reading);
+  declare_metres(app, flags.metres);
+  app.add_flag("--json", flags.json, "The report as JSON on stdout");
+  app.add_option("--figure", flags.figure, std::string("Every changed polygon before and after. ") + kFigureFileHelp);
 }
 
 }  // namespace
@@ -348,7 +345,7 @@ Verb repair_verb() {
   return {"repair", "Repair invalid obstacle files: winding, closure, spikes, self-crossings, overlaps",
           "  exactvo repair countries.geojson --out repaired.geojson --figure repaired.svg\n"
           "    (status 1: some obstacles cannot be repaired; the others are written)\n",
-          declare_repair};
+          with_flags(declare_repair, repair)};
 }
 
 }  // namespace exactvo::tools

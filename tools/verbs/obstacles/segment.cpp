@@ -265,21 +265,19 @@ ExitCode segment(const SegmentFlags& flags) {
   return exit_code(answers, all);
 }
 
-Action declare_segment(CLI::App& app) {
-  const auto flags = std::make_shared<SegmentFlags>();
-  app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
-  declare_reading_flags(app, flags->reading);
-  app.add_option("--tolerance", flags->tolerance, "Largest distance of a facade from its obstacle, m");
-  app.add_option("--radius", flags->radius, "Of the robot, for clearances by equation (8), m");
-  app.add_option("--facade-margin", flags->facade_margin,
+void declare_segment(CLI::App& app, SegmentFlags& flags) {
+  app.add_option("files", flags.files, "Obstacle files of any readable format")->required();
+  declare_reading_flags(app, flags.reading);
+  app.add_option("--tolerance", flags.tolerance, "Largest distance of a facade from its obstacle, m");
+  app.add_option("--radius", flags.radius, "Of the robot, for clearances by equation (8), m");
+  app.add_option("--facade-margin", flags.facade_margin,
                  "Least depth of a facade inside its ellipse, m; choose a smaller value for obstacles of millimetres")
       ->capture_default_str();
-  app.add_flag("--repair", flags->repair, "Repair invalid geometry first");
-  app.add_flag("--json", flags->json, "One JSON record per obstacle and line on stdout");
-  declare_metres(app, flags->metres);
-  app.add_option("--out", flags->out, "FILE.jsonl: the records; FILE.geojson: every shape as a feature");
-  app.add_option("--figure", flags->figure, kFigureFileHelp);
-  return [flags] { return segment(*flags); };
+  app.add_flag("--repair", flags.repair, "Repair invalid geometry first");
+  app.add_flag("--json", flags.json, "One JSON record per obstacle and line on stdout");
+  declare_metres(app, flags.metres);
+  app.add_option("--out", flags.out, "FILE.jsonl: the records; FILE.geojson: every shape as a feature");
+  app.add_option("--figure", flags.figure, kFigureFileHelp);
 }
 
 }  // namespace
@@ -289,7 +287,7 @@ Verb segment_verb() {
           "  exactvo segment floor.geojson --figure floor.svg\n"
           "  exactvo segment city.gpkg --repair --tolerance 0.1 --out city.jsonl\n"
           "    (status 1: an obstacle is invalid, or a result is not certified)\n",
-          declare_segment};
+          with_flags(declare_segment, segment)};
 }
 
 }  // namespace exactvo::tools

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 
 #include "support/terminal.h"
 #include "verb.h"
@@ -57,14 +56,12 @@ ExitCode validate(const ValidateFlags& flags) {
   return exit_code(answers, flags.strict);
 }
 
-Action declare_validate(CLI::App& app) {
-  const auto flags = std::make_shared<ValidateFlags>();
-  app.add_option("files", flags->files, "Obstacle files of any readable format")->required();
-  declare_reading_flags(app, flags->reading);
-  app.add_flag("--json", flags->json, "Everything as JSON on stdout");
-  app.add_flag("--strict", flags->strict,
+void declare_validate(CLI::App& app, ValidateFlags& flags) {
+  app.add_option("files", flags.files, "Obstacle files of any readable format")->required();
+  declare_reading_flags(app, flags.reading);
+  app.add_flag("--json", flags.json, "Everything as JSON on stdout");
+  app.add_flag("--strict", flags.strict,
                "Status 1 also for what is repaired silently: winding, closure, repeated vertices");
-  return [flags] { return validate(*flags); };
 }
 
 }  // namespace
@@ -75,7 +72,7 @@ Verb validate_verb() {
           "  exactvo validate --json --strict maps/*.yaml\n"
           "    (status 0: every obstacle can be used; 1: some cannot; 2: a file cannot be read. Codes: "
           "docs/guide/codes.md)\n",
-          declare_validate};
+          with_flags(declare_validate, validate)};
 }
 
 }  // namespace exactvo::tools

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -210,26 +209,24 @@ ExitCode route(const RouteFlags& flags) {
   return flags.queries.empty() ? answer_one(map, flags) : answer_many(map, flags);
 }
 
-Action declare_route(CLI::App& app) {
-  const auto flags = std::make_shared<RouteFlags>();
-  app.add_option("map", flags->map, "An obstacle file of any readable format, or a scenario")->required();
-  app.add_option("--from", flags->from,
+void declare_route(CLI::App& app, RouteFlags& flags) {
+  app.add_option("map", flags.map, "An obstacle file of any readable format, or a scenario")->required();
+  app.add_option("--from", flags.from,
                  "Start X,Y in metres of the map as it is read (one in degrees is projected, and a message says how); "
                  "on a Moving AI map a cell, as in its .scen");
-  app.add_option("--to", flags->to, "Goal X,Y, likewise");
-  app.add_option("--radius", flags->radius, "Radius of the disc, m; 0: a point, which touches no obstacle");
-  app.add_flag("--widest", flags->widest, "The largest radius for which there is a route, an exact double");
-  app.add_option("--queries", flags->queries,
+  app.add_option("--to", flags.to, "Goal X,Y, likewise");
+  app.add_option("--radius", flags.radius, "Radius of the disc, m; 0: a point, which touches no obstacle");
+  app.add_flag("--widest", flags.widest, "The largest radius for which there is a route, an exact double");
+  app.add_option("--queries", flags.queries,
                  "FILE, or - for stdin: many questions, one line of answer each. CSV with the columns "
                  "start_x,start_y,goal_x,goal_y, or a .scen of the Moving AI benchmarks");
-  app.add_option("--cell-point", flags->cell_point,
+  app.add_option("--cell-point", flags.cell_point,
                  "Which point of a cell of a Moving AI map is meant: middle, or corner (top left)")
       ->capture_default_str();
-  declare_reading_flags(app, flags->reading);
-  app.add_flag("--repair", flags->repair, "Repair invalid geometry first");
-  app.add_flag("--json", flags->json, "One line of JSON per question, with its certificate");
-  app.add_option("--figure", flags->figure, kFigureFileHelp);
-  return [flags] { return route(*flags); };
+  declare_reading_flags(app, flags.reading);
+  app.add_flag("--repair", flags.repair, "Repair invalid geometry first");
+  app.add_flag("--json", flags.json, "One line of JSON per question, with its certificate");
+  app.add_option("--figure", flags.figure, kFigureFileHelp);
 }
 
 }  // namespace
@@ -243,7 +240,7 @@ Verb route_verb() {
           "    (status 1: for one question at least there is no route; answers of --queries are printed as the "
           "questions are\n"
           "    read, so those before a bad line stay)\n",
-          declare_route};
+          with_flags(declare_route, route)};
 }
 
 }  // namespace exactvo::tools

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -221,11 +220,11 @@ ExitCode audit_recordings(const AuditFlags& flags) {
 // --- Certificates ---
 
 ExitCode audit_certificates(const AuditFlags& flags) {
-  const JudgedCertificates judged = judge_certificates(flags.certificates);
-  const std::string text = flags.json ? to_json(judged) : in_words(judged);
+  const CheckedCertificates checked = check_certificates(flags.certificates);
+  const std::string text = flags.json ? to_json(checked) : in_words(checked);
   print(text);
   const bool all =
-      std::all_of(judged.all.begin(), judged.all.end(), [](const JudgedCertificate& c) { return c.valid; });
+      std::all_of(checked.all.begin(), checked.all.end(), [](const CheckedCertificate& c) { return c.valid; });
   return all ? ExitCode::success : ExitCode::negative;
 }
 
@@ -240,15 +239,13 @@ ExitCode audit(const AuditFlags& flags) {
   return audit_certificates(flags);
 }
 
-Action declare_audit(CLI::App& app) {
-  const auto flags = std::make_shared<AuditFlags>();
-  app.add_option("path", flags->path, "A recording.jsonl, a crowd's FILE.evr, or a folder searched for both");
-  app.add_option("--sample", flags->sample, "Of a recording of a crowd, check about this many motions; 0: all");
-  app.add_option("--scenario", flags->scenario, "FILE that the recordings must be of, with its obstacle files");
-  app.add_option("--certificate", flags->certificates,
+void declare_audit(CLI::App& app, AuditFlags& flags) {
+  app.add_option("path", flags.path, "A recording.jsonl, a crowd's FILE.evr, or a folder searched for both");
+  app.add_option("--sample", flags.sample, "Of a recording of a crowd, check about this many motions; 0: all");
+  app.add_option("--scenario", flags.scenario, "FILE that the recordings must be of, with its obstacle files");
+  app.add_option("--certificate", flags.certificates,
                  "FILE with one certificate per line, or the output of vo --json or route --json; - for stdin");
-  app.add_flag("--json", flags->json, "Counts and findings, or one verdict per certificate, as JSON on stdout");
-  return [flags] { return audit(*flags); };
+  app.add_flag("--json", flags.json, "Counts and findings, or one verdict per certificate, as JSON on stdout");
 }
 
 }  // namespace
@@ -262,7 +259,7 @@ Verb audit_verb() {
       "  exactvo audit out/A1 --scenario datasets/data/paper/A1.json\n"
       "  exactvo vo --obstacle 'DISC(4 0, 1)' --position 0,0 --velocity 1,0 --radius 0.5 --time-horizon 2 --json \\\n"
       "      | exactvo audit --certificate -\n",
-      declare_audit};
+      with_flags(declare_audit, audit)};
 }
 
 }  // namespace exactvo::tools

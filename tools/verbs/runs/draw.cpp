@@ -2,8 +2,6 @@
 // exactvo draw: the figures of a recorded run.
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "exactvo/datasets/recording_file.h"
 #include "figures/crowd_figures.h"
 #include "support/files.h"
@@ -75,12 +73,10 @@ ExitCode draw_figures(const DrawFlags& flags) {
   return ExitCode::negative;
 }
 
-Action declare_draw(CLI::App& app) {
-  const auto flags = std::make_shared<DrawFlags>();
-  app.add_option("recording", flags->recording, "recording.jsonl, the folder of a run, or a crowd's FILE.evr")
+void declare_draw(CLI::App& app, DrawFlags& flags) {
+  app.add_option("recording", flags.recording, "recording.jsonl, the folder of a run, or a crowd's FILE.evr")
       ->required();
-  declare_out(app, flags->out, "Folder for the figures; by default figures/ beside the recording");
-  return [flags] { return draw_figures(*flags); };
+  declare_out(app, flags.out, "Folder for the figures; by default figures/ beside the recording");
 }
 
 }  // namespace
@@ -90,7 +86,7 @@ Verb draw_verb() {
           "  exactvo simulate datasets/data/paper/A2.json --no-figures --out out/A2\n"
           "  exactvo draw out/A2\n"
           "  exactvo draw out/crowd.evr --out out/crowd_figures\n",
-          declare_draw};
+          with_flags(declare_draw, draw_figures)};
 }
 
 }  // namespace exactvo::tools

@@ -217,17 +217,15 @@ ExitCode explain(const ExplainFlags& flags) {
   return ExitCode::success;
 }
 
-Action declare_explain(CLI::App& app) {
-  const auto flags = std::make_shared<ExplainFlags>();
-  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin; or the recording of a run, or its folder")
+void declare_explain(CLI::App& app, ExplainFlags& flags) {
+  app.add_option("scenario", flags.scenario, "JSON file, or - for stdin; or the recording of a run, or its folder")
       ->required();
-  app.add_option("--time,-t", flags->time, "Time of the decision, s")->required();
-  app.add_option("--robot,-r", flags->robot, "The robot: its id, or its index from 0")->required();
-  declare_out(app, flags->out, kFigureFileHelp);
-  app.add_option("--map", flags->map,
+  app.add_option("--time,-t", flags.time, "Time of the decision, s")->required();
+  app.add_option("--robot,-r", flags.robot, "The robot: its id, or its index from 0")->required();
+  declare_out(app, flags.out, kFigureFileHelp);
+  app.add_option("--map", flags.map,
                  "The same for a map: the robot's route, where it heads for, and what separates a goal out of reach");
-  declare_simulation_flags(app, flags->simulation);
-  return [flags] { return explain(*flags); };
+  declare_simulation_flags(app, flags.simulation);
 }
 
 }  // namespace
@@ -238,7 +236,7 @@ Verb explain_verb() {
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
           "  exactvo explain out/A7 --time 3 --robot R1\n"
           "  exactvo explain mine.json --time 2 --robot R1 --map out/route.svg\n",
-          declare_explain};
+          with_flags(declare_explain, explain)};
 }
 
 }  // namespace exactvo::tools

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <thread>
 
 #include "paper/campaign.h"
@@ -134,31 +133,29 @@ ExitCode paper(const PaperFlags& flags) {
   return flags.random > 0 || flags.ablations ? campaigns(flags) : section_five(flags);
 }
 
-Action declare_paper(CLI::App& app) {
-  const auto flags = std::make_shared<PaperFlags>();
-  declare_out(app, flags->out,
+void declare_paper(CLI::App& app, PaperFlags& flags) {
+  declare_out(app, flags.out,
               "Folder for summary.json, report.html, report.md, explorer.html and figures/; random/ or ablations/")
       ->required();
-  app.add_option("--data", flags->data,
+  app.add_option("--data", flags.data,
                  "Folder that contains paper/A1.json and so on; by default the one installed with the program");
   app.add_option(
-         "--random", flags->random,
+         "--random", flags.random,
          "Instead of Section V: run this many random fields of each kind and count those each method crosses safely")
       ->check(whole_number(1, 1000000));
-  app.add_flag("--ablations", flags->ablations,
+  app.add_flag("--ablations", flags.ablations,
                "Instead of Section V: the controller options added one by one, and the default less one at a time");
-  flags->fields_given =
-      app.add_option("--fields", flags->fields, "Random formations for each set of controller options of --ablations")
+  flags.fields_given =
+      app.add_option("--fields", flags.fields, "Random formations for each set of controller options of --ablations")
           ->capture_default_str()
           ->check(whole_number(1, 1000000));
-  flags->jobs_given =
-      app.add_option("--jobs,-j", flags->jobs,
+  flags.jobs_given =
+      app.add_option("--jobs,-j", flags.jobs,
                      "Threads for --random and --ablations, by default one per processor; results do not depend on it")
           ->check(whole_number(1, 1024));
-  declare_seed(app, flags->seed, "Seed of the random fields; recorded in the provenance");
-  app.add_flag("--json", flags->json, "Print the JSON instead of the tables");
-  app.add_flag("--no-figures", flags->no_figures, "Write no figures and no explorer.html");
-  return [flags] { return paper(*flags); };
+  declare_seed(app, flags.seed, "Seed of the random fields; recorded in the provenance");
+  app.add_flag("--json", flags.json, "Print the JSON instead of the tables");
+  app.add_flag("--no-figures", flags.no_figures, "Write no figures and no explorer.html");
 }
 
 }  // namespace
@@ -168,7 +165,7 @@ Verb paper_verb() {
           "  exactvo paper --out out/paper\n"
           "  exactvo paper --out out/paper --random 1000 --jobs 2\n"
           "  exactvo paper --out out/paper --ablations\n",
-          declare_paper};
+          with_flags(declare_paper, paper)};
 }
 
 }  // namespace exactvo::tools

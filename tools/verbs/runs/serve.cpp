@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 
 #include "explorer/server.h"
@@ -47,10 +46,11 @@ OptionsOfRun options_by_key(const std::vector<MadeRun>& runs) {
   };
 }
 
-ExitCode serve_page(ServeFlags flags) {
+ExitCode serve_page(const ServeFlags& given) {
   if (!has_http())
     throw UsageError("serve", "a program built without cpp-httplib (Debian: libcpp-httplib-dev)",
                      "one built with it; exactvo view makes a page that needs no server [E_NOT_BUILT]");
+  ServeFlags flags = given;
   flags.page.limits.has_scenario = true;
   const std::vector<MadeRun> runs = page_runs(flags.page);
   ServerOptions options;
@@ -69,17 +69,15 @@ ExitCode serve_page(ServeFlags flags) {
   return ExitCode::success;
 }
 
-Action declare_serve(CLI::App& app) {
-  const auto flags = std::make_shared<ServeFlags>();
+void declare_serve(CLI::App& app, ServeFlags& flags) {
   declare_page_flags(
-      app, flags->page, 1,
+      app, flags.page, 1,
       "A scenario, which is run with every half-plane, the folder of a run, or a recording (.jsonl, of a "
       "crowd .evr); none: three scenes to start from");
-  app.add_option("--port", flags->port, "Port of 127.0.0.1; 0: one that is free")
+  app.add_option("--port", flags.port, "Port of 127.0.0.1; 0: one that is free")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));
-  app.add_flag("--open", flags->opens, "Open the address in the desktop's browser (xdg-open)");
-  return [flags] { return serve_page(*flags); };
+  app.add_flag("--open", flags.opens, "Open the address in the desktop's browser (xdg-open)");
 }
 
 }  // namespace
@@ -90,7 +88,7 @@ Verb serve_verb() {
           "  exactvo serve datasets/data/paper/A7.json\n"
           "  exactvo serve out/A7 --port 8080\n"
           "    (status 0 when Ctrl-C or SIGTERM ends the server)\n",
-          declare_serve};
+          with_flags(declare_serve, serve_page)};
 }
 
 }  // namespace exactvo::tools

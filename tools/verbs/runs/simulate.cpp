@@ -200,23 +200,21 @@ ExitCode simulate_anywhere(const SimulateFlags& flags) {
   return over_ranks(*ranks, [&] { return simulate(flags, ranks.get()); });
 }
 
-Action declare_simulate(CLI::App& app) {
-  const auto flags = std::make_shared<SimulateFlags>();
-  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
-  declare_simulation_flags(app, flags->simulation);
-  declare_out(app, flags->out,
+void declare_simulate(CLI::App& app, SimulateFlags& flags) {
+  app.add_option("scenario", flags.scenario, "JSON file, or - for stdin")->required();
+  declare_simulation_flags(app, flags.simulation);
+  declare_out(app, flags.out,
               "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations), figures/ and "
               "explorer.html; "
               "whole or not at all");
-  app.add_flag("--record-all", flags->record_all,
+  app.add_flag("--record-all", flags.record_all,
                "Keep every half-plane of every decision, so that `audit` verifies the whole run");
-  app.add_flag("--json", flags->json, "Print the metrics as JSON");
-  app.add_flag("--no-figures", flags->no_figures, "Write no figures and no explorer.html");
-  app.add_flag("--fail-on-collision", flags->fail_on_collision, "Exit status 1 if a robot overlaps anything");
-  app.add_flag("--force", flags->force,
+  app.add_flag("--json", flags.json, "Print the metrics as JSON");
+  app.add_flag("--no-figures", flags.no_figures, "Write no figures and no explorer.html");
+  app.add_flag("--fail-on-collision", flags.fail_on_collision, "Exit status 1 if a robot overlaps anything");
+  app.add_flag("--force", flags.force,
                "Let --out replace an earlier run of another scenario, method, guidance, liveness or controller");
-  declare_crowd_flags(app, flags->crowd);
-  return [flags] { return simulate_anywhere(*flags); };
+  declare_crowd_flags(app, flags.crowd);
 }
 
 }  // namespace
@@ -230,7 +228,7 @@ Verb simulate_verb() {
           "  exactvo simulate crowd.json --engine crowd --record out/crowd.evr --every 10\n"
           "  mpirun -n 4 exactvo simulate crowd.json --engine crowd --record out/crowd.evr\n"
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7 && exactvo audit out/A7\n",
-          declare_simulate};
+          with_flags(declare_simulate, simulate_anywhere)};
 }
 
 }  // namespace exactvo::tools

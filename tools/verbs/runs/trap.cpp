@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include "exactvo/formation/constraint_name.h"
@@ -167,12 +166,10 @@ ExitCode trap(const TrapFlags& flags) {
   return ExitCode::success;
 }
 
-Action declare_trap(CLI::App& app) {
-  const auto flags = std::make_shared<TrapFlags>();
-  app.add_option("scenario", flags->scenario, "JSON file, or - for stdin")->required();
-  declare_simulation_flags(app, flags->simulation);
-  app.add_flag("--json", flags->json, "Print the findings as JSON; infinite and inapplicable values are null");
-  return [flags] { return trap(*flags); };
+void declare_trap(CLI::App& app, TrapFlags& flags) {
+  app.add_option("scenario", flags.scenario, "JSON file, or - for stdin")->required();
+  declare_simulation_flags(app, flags.simulation);
+  app.add_flag("--json", flags.json, "Print the findings as JSON; infinite and inapplicable values are null");
 }
 
 }  // namespace
@@ -181,7 +178,7 @@ Verb trap_verb() {
   return {"trap", "Find where a robot may stall, before any run",
           "  exactvo trap datasets/data/paper/A4.json\n"
           "  exactvo trap datasets/data/paper/A11.json --method ivo-edge --json\n",
-          declare_trap};
+          with_flags(declare_trap, trap)};
 }
 
 }  // namespace exactvo::tools

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <utility>
 
 #include "exactvo/datasets/atomic_file.h"
@@ -49,13 +48,11 @@ ExitCode view(const ViewFlags& flags) {
   return ExitCode::success;
 }
 
-Action declare_view(CLI::App& app) {
-  const auto flags = std::make_shared<ViewFlags>();
-  declare_page_flags(app, flags->page, CLI::detail::expected_max_vector_size,
+void declare_view(CLI::App& app, ViewFlags& flags) {
+  declare_page_flags(app, flags.page, CLI::detail::expected_max_vector_size,
                      "Folders of runs, recordings (.jsonl, of crowds .evr), or scenarios, which are run with every "
                      "half-plane; none: three scenes to start from");
-  declare_out(app, flags->out, "The page: one file, FILE.html, that needs no network")->required();
-  return [flags] { return view(*flags); };
+  declare_out(app, flags.out, "The page: one file, FILE.html, that needs no network")->required();
 }
 
 }  // namespace
@@ -66,7 +63,7 @@ Verb view_verb() {
           "  exactvo simulate datasets/data/paper/A7.json --record-all --out out/A7\n"
           "  exactvo view out/A7 --out a7.html\n"
           "  exactvo view datasets/data/paper/A1.json --method orca --out a1.html\n",
-          declare_view};
+          with_flags(declare_view, view)};
 }
 
 }  // namespace exactvo::tools

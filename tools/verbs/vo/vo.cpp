@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // exactvo vo: velocity obstacles, their answers and certificates; the family; the free velocities.
-#include <memory>
 
 #include "figures/figure_file.h"
 #include "support/terminal.h"
@@ -25,10 +24,8 @@ ExitCode show(const VoFlags& flags) {
   return ExitCode::success;
 }
 
-Action declare_vo(CLI::App& app) {
-  const auto flags = std::make_shared<VoFlags>();
-  declare_options(app, *flags);
-  return [flags] { return show(*flags); };
+void declare_vo(CLI::App& app, VoFlags& flags) {
+  declare_options(app, flags);
 }
 
 }  // namespace
@@ -45,7 +42,7 @@ Verb vo_verb() {
           "      --velocity 1,0.2 --radius 0.5 --time-horizon 2 --figure out/free.svg\n"
           "  printf '1,0.2\\n0,1\\n' | exactvo vo --obstacle 'DISC(4 0, 1)' --velocities - --position 0,0 \\\n"
           "      --radius 0.5 --time-horizon 2\n",
-          declare_vo};
+          with_flags(declare_vo, show)};
 }
 
 }  // namespace exactvo::tools

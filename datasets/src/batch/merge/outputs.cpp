@@ -20,32 +20,29 @@ class GeoJsonLayers {
     const std::string units = in_metres ? ",\"units\":\"m\"" : "";
     for (const Layer& layer : layers()) {
       files_.push_back({output_file(folder / (std::string(layer.name) + ".geojson")), true});
-      files_.back().file->write("{\"type\":\"FeatureCollection\",\"name\":\"" + std::string(layer.name) + "\"" + units +
-                                ",\"provenance\":" + provenance + ",\"features\":[\n");
+      files_.back().first->write("{\"type\":\"FeatureCollection\",\"name\":\"" + std::string(layer.name) + "\"" +
+                                 units + ",\"provenance\":" + provenance + ",\"features\":[\n");
     }
   }
 
   void add(const PartView& part) {
     for (std::size_t k = 0; k < files_.size(); ++k) {
       if (part.features[k].empty()) continue;
-      if (!std::exchange(files_[k].empty, false)) files_[k].file->write(",\n");
-      files_[k].file->write(part.features[k]);
+      auto& [file, is_empty] = files_[k];
+      if (!std::exchange(is_empty, false)) file->write(",\n");
+      file->write(part.features[k]);
     }
   }
 
   void finish() {
-    for (Open& open : files_) {
-      open.file->write("\n]}\n");
-      open.file->commit();
+    for (auto& [file, is_empty] : files_) {
+      file->write("\n]}\n");
+      file->commit();
     }
   }
 
  private:
-  struct Open {
-    std::unique_ptr<AtomicFile> file;
-    bool empty = true;
-  };
-  std::vector<Open> files_;
+  std::vector<std::pair<std::unique_ptr<AtomicFile>, bool>> files_;  ///< with whether nothing was added yet
 };
 
 /// The final folder, which goes unless .parts went with it.
