@@ -421,7 +421,8 @@ JointAnswer JointSearch::run(std::uint64_t seed, const SearchBudget& budget, Gui
       answer.moves = tree.moves_to(number);
       break;
     }
-    if (tree.size() > budget.nodes || generator.calls() > budget.calls || is_stopped(problem)) {
+    const bool is_cancelled = budget.cancelled && *budget.cancelled;
+    if (tree.size() > budget.nodes || generator.calls() > budget.calls || is_cancelled || is_stopped(problem)) {
       answer.end = SearchEnd::out_of_budget;
       break;
     }

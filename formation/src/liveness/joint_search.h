@@ -18,6 +18,7 @@
 ///  (3) after the last move each robot is at its goal;
 ///  (4) the same problem and seed give the same answer; budgets are counted, not timed.
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -44,6 +45,7 @@ struct JointMove {
 struct SearchBudget {
   std::size_t calls = 0;  ///< of the generator for a robot
   std::size_t nodes = 0;
+  const std::atomic<bool>* cancelled = nullptr;  ///< true ends the search out of budget, wherever it is
 };
 
 enum class SearchEnd {

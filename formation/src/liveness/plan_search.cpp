@@ -36,38 +36,46 @@ class StopForAll {
 
 }  // namespace
 
-/// One search, within the limits that it would have if all before it ended without a plan.
+/// One search, within limits that it may turn out to have once those before it are done.
 struct PlanSearch::Attempt {
   SearchBudget budget;
   JointAnswer answer = {};
   std::vector<PlannedMove> plan = {};  ///< where one was found
   double length = 0.0;                 ///< m, of the plan
 
-  /// Whether the same comes of these limits.
+  /// Whether the same comes of these limits: they are its own, or it reached neither.
   bool holds_for(const SearchBudget& limits) const {
-    return budget.nodes == limits.nodes &&
+    return (budget.nodes == limits.nodes || answer.nodes <= std::min(budget.nodes, limits.nodes)) &&
            (budget.calls == limits.calls || answer.calls <= std::min(budget.calls, limits.calls));
   }
+  /// No search comes after it within the same budget.
+  bool has_spent_all() const { return answer.calls >= budget.calls; }
 };
 
 std::vector<PlanSearch::Attempt> PlanSearch::searched(JointSearch& joint, const JointProblem& about,
                                                       SearchBudget budget, double growth, bool lanes) {
   std::vector<Attempt> attempts(static_cast<std::size_t>(tasks_.threads()));
+  std::atomic<bool> first_spent_all{false};
   double nodes = nodes_;
   for (std::size_t k = 0; k < attempts.size(); ++k, nodes *= growth) {
     budget.nodes = static_cast<std::size_t>(nodes);
     attempts[k].budget = budget;
+    // As if the first one found a plan.
+    if (growth > 1.0) budget.calls = kCallsForABetter;
+    budget.cancelled = &first_spent_all;
   }
   tasks_.for_ranges(attempts.size(), 1, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t k = first; k < last; ++k) {
       Attempt& a = attempts[k];
       const std::uint64_t seed = seed_ + k;
       a.answer = joint.run(seed + 1, a.budget, lanes && seed % 2 == 0 ? GuidedBy::lanes : GuidedBy::lengths);
+      if (k == 0 && a.has_spent_all()) first_spent_all = true;
       if (a.answer.end != SearchEnd::found) continue;
       a.plan = plan_of(*about.map, a.answer.moves, about.radii);
       a.length = critical_length(a.plan);
     }
   });
+  if (first_spent_all) attempts.resize(1);
   return attempts;
 }
 
