@@ -20,10 +20,43 @@ const char* const kVectorDrivers[] = {
     "GeoJSON", "GeoJSONSeq", "TopoJSON", "ESRI Shapefile", "GPKG",   "FlatGeobuf", "CSV", "OSM", "DXF",
     "KML",     "GML",        "GPX",      "MapInfo File",   "SQLite", nullptr};
 
+/// NATIVE_DATA keeps the members of a GeoJSON collection that GDAL has no place for, `units` among them.
+const char* const kGeoJsonOptions[] = {"NATIVE_DATA=YES", nullptr};
 /// What people call a column of WKT.
 const char* const kCsvOptions[] = {"GEOM_POSSIBLE_NAMES=WKT,wkt,geometry,geom,the_geom,wkt_geom", nullptr};
+const char* const kNoOptions[] = {nullptr};
+
+/// A driver warns of options that it does not know.
+const char* const* options_for(const std::string& name) {
+  if (name == "CSV") return kCsvOptions;
+  return name == "GeoJSON" ? kGeoJsonOptions : kNoOptions;
+}
+
+/// Of GDAL's estimate of a feature's size, measured on polygons of two digits a point.
+constexpr double kBytesOfEstimated = 3.05;
+constexpr const char* kSizeOption = "OGR_GEOJSON_MAX_OBJ_SIZE";  // MB
+/// Properties are read from native data; as GDAL's fields they take quadratic time.
+constexpr const char* kNoFieldsOption = "ATTRIBUTES_SKIP";
 
 }  // namespace
+
+GeoJsonParsing::GeoJsonParsing(const std::filesystem::path& path) {
+  CPLSetThreadLocalConfigOption(kNoFieldsOption, "YES");
+  std::error_code error;
+  const auto size = static_cast<double>(std::filesystem::file_size(path, error));
+  if (error) return;
+  const double megabytes = parser_memory_for(size) / kBytesOfEstimated / 1e6;
+  CPLSetThreadLocalConfigOption(kSizeOption, std::to_string(static_cast<long long>(megabytes)).c_str());
+}
+
+GeoJsonParsing::~GeoJsonParsing() {
+  CPLSetThreadLocalConfigOption(kSizeOption, nullptr);
+  CPLSetThreadLocalConfigOption(kNoFieldsOption, nullptr);
+}
+
+bool GeoJsonParsing::is_size_limit_in(const std::string& complaint) {
+  return complaint.find("too complex/large") != std::string::npos;
+}
 
 void register_gdal_once() {
   static std::once_flag done;
@@ -41,13 +74,20 @@ GdalComplaints::~GdalComplaints() {
 void CPL_STDCALL GdalComplaints::hear(CPLErr severity, CPLErrorNum, const char* words) {
   auto& self = *static_cast<GdalComplaints*>(CPLGetErrorHandlerUserData());
   if (severity == CE_Failure) {
-    if (self.failure_.empty()) self.failure_ = words;
+    std::string& first = std::string_view(words).rfind("Invalid ", 0) == 0 ? self.malformed_ : self.failure_;
+    if (first.empty()) first = words;
   }
   if (severity == CE_Warning) self.warnings_.emplace_back(words);
 }
 
 std::string GdalComplaints::take_failure() {
-  return std::exchange(failure_, {});
+  const std::string malformed = take_malformed();
+  const std::string failure = std::exchange(failure_, {});
+  return failure.empty() ? malformed : failure;
+}
+
+std::string GdalComplaints::take_malformed() {
+  return std::exchange(malformed_, {});
 }
 
 std::vector<std::string> GdalComplaints::take_warnings() {
@@ -96,9 +136,7 @@ std::string vector_driver_of(const std::filesystem::path& path) {
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path, const std::string& driver) {
   refuse_bulky(path, driver);
   return std::unique_ptr<GDALDataset>(
-      // A driver warns of options that it does not know.
-      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kVectorDrivers,
-                        driver == "CSV" ? kCsvOptions : nullptr, nullptr));
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kVectorDrivers, options_for(driver), nullptr));
 }
 
 }  // namespace exactvo::datasets

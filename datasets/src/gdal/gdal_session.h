@@ -21,14 +21,17 @@ class GdalComplaints {
   GdalComplaints(const GdalComplaints&) = delete;
   GdalComplaints& operator=(const GdalComplaints&) = delete;
 
-  /// The first failure since the last call, or "".
+  /// The first failure since the last call, or ""; one that a geometry is malformed comes after all others.
   std::string take_failure();
+  /// The first one that a geometry is malformed (GDAL's words begin with "Invalid "), or "". Others stay.
+  std::string take_malformed();
   std::vector<std::string> take_warnings();
 
  private:
   static void CPL_STDCALL hear(CPLErr severity, CPLErrorNum number, const char* words);
 
   std::string failure_;
+  std::string malformed_;
   std::vector<std::string> warnings_;
 };
 
@@ -42,5 +45,18 @@ std::string vector_driver_of(const std::filesystem::path& path);
 /// would take more memory than a reader may (20 bytes for each of the input and 200 MB beside), estimated from the
 /// points of KML, and from the objects, lists and values of TopoJSON (gdal/json_memory.h).
 std::unique_ptr<GDALDataset> open_vectors(const std::filesystem::path& path, const std::string& driver);
+
+/// In this thread while it lives: holds each feature of a GeoJSON collection to the same memory, by GDAL's estimate of
+/// its size, and makes no fields of properties, which are read from the native data of the features.
+class GeoJsonParsing {
+ public:
+  explicit GeoJsonParsing(const std::filesystem::path& path);
+  ~GeoJsonParsing();
+  GeoJsonParsing(const GeoJsonParsing&) = delete;
+  GeoJsonParsing& operator=(const GeoJsonParsing&) = delete;
+
+  /// Whether these are GDAL's words for a feature beyond the limit.
+  static bool is_size_limit_in(const std::string& complaint);
+};
 
 }  // namespace exactvo::datasets

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gdal/geojson_scan.h"
 
-#include <system_error>
-#include <utility>
+#include <cpl_port.h>
 
 #include "exactvo/datasets/input_text.h"
 #include "gdal/geojson_shape.h"
-#include "gdal/json_memory.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -26,48 +24,70 @@ void for_each_byte(std::ifstream& file, const Take& take) {
 
 class Scanner {
  public:
-  Scanner(bool name_says_sequence, double file_size)
-      : name_says_sequence_(name_says_sequence), limit_(parser_memory_for(file_size)), first_(name_says_sequence) {}
+  explicit Scanner(bool name_says_sequence) : name_says_sequence_(name_says_sequence), first_(name_says_sequence) {}
 
   /// False once the rest of the file does not matter.
   bool take(char c) {
-    const bool was_in_string = members_.nesting().in_string(), was_in_features = members_.is_in_features();
+    const bool was_in_string = members_.nesting().in_string(), was_among = members_.is_among_features();
     members_.take(c);
     if (!first_.is_over()) {
       first_.take(c, was_in_string, members_);
       found_.is_sequence = first_.more_follows() && (name_says_sequence_ || first_.is_record());
       if (found_.is_sequence) return false;
     }
-    if (!was_in_features || !members_.is_in_features()) take_head(c);
-    has_more_ = has_more_ || (is_complete_ && !is_json_blank(c));
-    is_complete_ = members_.nesting().objects() == 0 && (is_complete_ || c == '}');
+    is_text_ = is_text_ && c != '\0';  // JSON has no such byte, but GDAL takes it within a string
+    if (is_text_) take_memory(c);
+    take_entry(c, was_among);
     zeros_ = c == '\0' ? zeros_ + 1 : 0;
     return zeros_ < kHole;
   }
+  /// Before the first byte: of a byte order mark.
+  void take_mark() {
+    for (const char* c = kByteOrderMark; *c != '\0'; ++c) whole_.take(*c);
+  }
 
-  GeoJsonScan result(const std::string& file) && {
-    if (!found_.is_sequence && memory_.bytes() > limit_) throw too_bulky(memory_, file, "");
-    found_.is_broken = !is_complete_ || has_more_;
-    found_.type = members_.type();
+  GeoJsonScan result() && {
+    found_.memory = found_.is_collection() ? before_features_ : whole_;
+    if (!EQUAL(first_.type().c_str(), "FeatureCollection")) found_.strays.clear();
     return std::move(found_);
   }
 
  private:
-  void take_head(char c) {
-    memory_.take(c);
-    if (memory_.bytes() <= limit_) found_.head += c;
+  /// Until the type is known, and of a collection the first entry has come.
+  void take_memory(char c) {
+    if (is_object_ == Answer::open && !is_json_blank(c)) is_object_ = c == '{' ? Answer::yes : Answer::no;
+    if (!is_type_settled_ && is_object_ != Answer::no) {
+      is_before_features_ = is_before_features_ && !members_.is_among_features();
+      if (is_before_features_) before_features_.take(c);
+      if (found_.type != members_.type()) found_.type = members_.type();
+      is_type_settled_ = !found_.type.empty() && !(found_.is_collection() && is_before_features_);
+    }
+    if (!is_type_settled_ || !found_.is_collection()) whole_.take(c);
+  }
+
+  void take_entry(char c, bool was_among) {
+    if (is_entry_awaited_ && !is_json_blank(c)) {
+      if (c != '{' && c != ']') found_.strays.push_back({entries_, c});
+      ++entries_;
+      is_entry_awaited_ = false;
+    }
+    if (members_.is_among_features() && c == (was_among ? ',' : '[')) is_entry_awaited_ = true;
   }
 
   static constexpr std::size_t kHole = 1 << 16;  ///< zeros one after the other: a sparse file
+  enum class Answer { open, yes, no };
 
   bool name_says_sequence_;
-  double limit_;
   GeoJsonScan found_;
   JsonMembers members_;
   FirstObject first_;
-  JsonMemory memory_;  ///< of the head
-  bool is_complete_ = false, has_more_ = false;
+  JsonMemory before_features_, whole_;
+  bool is_text_ = true;
   std::size_t zeros_ = 0;  ///< the last bytes
+  Answer is_object_ = Answer::open;
+  bool is_before_features_ = true, is_type_settled_ = false;
+  bool is_entry_awaited_ = false;
+  std::size_t entries_ = 0;
 };
 
 }  // namespace
@@ -85,11 +105,9 @@ void JsonNesting::take(char c) {
 
 void JsonMembers::take(char c) {
   constexpr std::size_t kLongestWord = 40;  // no name that is asked for is as long
-  const bool was_in_string = nesting_.in_string(), was_at_members = is_at(0);
+  const bool was_in_string = nesting_.in_string();
   nesting_.take(c);
-  if (was_at_members && !was_in_string && c == '[') is_in_features_ = member_ == "features";
-  if (!is_at(0)) return;
-  is_in_features_ = false;
+  if (nesting_.objects() != 1 || nesting_.arrays() != 0) return;
   if (was_in_string && nesting_.in_string()) {
     if (text_.size() < kLongestWord) text_ += c;
   } else if (nesting_.in_string()) {
@@ -139,13 +157,17 @@ bool FirstObject::is_record() const {
   return is_complete_ && is_type_of_record(first_type_) && is_type_of_record(last_type_);
 }
 
+const std::string& FirstObject::type() const {
+  return first_type_.empty() || is_type_of_record(first_type_) ? last_type_ : first_type_;
+}
+
 GeoJsonScan scan_geojson(const std::filesystem::path& path, bool name_says_sequence) {
-  std::error_code error;
   std::ifstream file(path, std::ios::binary);
   skip_byte_order_mark(file);
-  Scanner scanner(name_says_sequence, static_cast<double>(std::filesystem::file_size(path, error)));
+  Scanner scanner(name_says_sequence);
+  if (file.tellg() > 0) scanner.take_mark();
   for_each_byte(file, [&](char c) { return scanner.take(c); });
-  return std::move(scanner).result(path.string());
+  return std::move(scanner).result();
 }
 
 bool first_record_spans_lines(std::ifstream& file) {

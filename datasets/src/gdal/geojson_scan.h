@@ -2,13 +2,16 @@
 #pragma once
 
 /// \file
-/// What has to be known of a GeoJSON file before its features are read, from one pass over its bytes. Memory does not
-/// grow with the features of a collection.
+/// What has to be known of a GeoJSON file before GDAL opens it, from one pass over its bytes. Memory does not grow with
+/// the file, but for the entries that GDAL will skip.
 
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
+
+#include "gdal/json_memory.h"
 
 namespace exactvo::datasets {
 
@@ -40,19 +43,16 @@ class JsonMembers {
   const JsonNesting& nesting() const { return nesting_; }
   /// The last value of a member "type" so far.
   const std::string& type() const { return type_; }
-  /// Within the list that is the value of "features", behind its bracket.
-  bool is_in_features() const { return is_in_features_; }
-  /// Between its entries.
-  bool is_among_features() const { return is_in_features_ && is_at(1) && !nesting_.in_string(); }
+  /// Between the entries of "features".
+  bool is_among_features() const {
+    return nesting_.objects() == 1 && nesting_.arrays() == 1 && !nesting_.in_string() && member_ == "features";
+  }
 
  private:
-  bool is_at(long arrays) const { return nesting_.objects() == 1 && nesting_.arrays() == arrays; }
-
   JsonNesting nesting_;
   std::string text_;
   std::string member_;
   std::string type_;
-  bool is_in_features_ = false;
 };
 
 /// The object that stands first: whether it is one of a sequence.
@@ -71,6 +71,8 @@ class FirstObject {
   bool spans_lines() const { return spans_lines_; }
   /// More than white space follows its end.
   bool more_follows() const { return more_follows_; }
+  /// "" before it is known: the first one where that is of no record, else the last one.
+  const std::string& type() const;
 
  private:
   enum class Stage { before, inside, behind, over };
@@ -82,17 +84,25 @@ class FirstObject {
   std::string first_type_, last_type_;
 };
 
-struct GeoJsonScan {
-  /// More than white space follows the first object, which is complete, and it is a feature or a geometry, or the
-  /// file's name says that it is a sequence. Then nothing else here is known.
-  bool is_sequence = false;
-  bool is_broken = false;  ///< the outermost object has no end, or more than white space follows it
-  std::string type{};      ///< its member "type"
-  std::string head{};      ///< all but the entries of the outermost "features"
+/// An entry of a collection's "features" that is no object: GDAL skips it without a word.
+struct StrayEntry {
+  std::size_t number = 0;  ///< among the entries
+  char begin = 0;          ///< its first byte
 };
 
-/// Calls the wait hook on its way. Throws DataError (E_SIZE) where parsing the head would take more memory than a
-/// reader may.
+struct GeoJsonScan {
+  /// More than white space follows the first object, which is complete, and it is a feature or a geometry, or the
+  /// file's name says that it is a sequence: GDAL may take such a file for GeoJSON of one object, and then says nothing
+  /// of the rest. Then nothing else here is known.
+  bool is_sequence = false;
+  std::string type;                ///< the first member "type" of the outermost object, wherever it stands
+  JsonMemory memory;               ///< of what GDAL parses at once: all before a collection's "features", else the file
+  std::vector<StrayEntry> strays;  ///< of a collection
+
+  bool is_collection() const { return type == "FeatureCollection"; }
+};
+
+/// Calls the wait hook on its way.
 GeoJsonScan scan_geojson(const std::filesystem::path& path, bool name_says_sequence);
 
 /// Whether a sequence's records span lines: the first one does. The stream stands at the first byte, and does so again.

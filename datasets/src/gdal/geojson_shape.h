@@ -31,8 +31,6 @@ class GeoJsonText {
   std::optional<GeoJsonFault> fault(bool read) const;
   /// The same of a record of a sequence, which is a feature or a geometry. None where the text does not parse.
   std::optional<GeoJsonFault> fault_as_record() const;
-  /// Discarded where it is no JSON.
-  const Json& json() const { return json_; }
   /// Byte for byte but for white space; nothing of what is no feature or no JSON.
   FeatureProperties properties() const;
 

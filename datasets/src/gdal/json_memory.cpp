@@ -91,14 +91,13 @@ DataError too_bulky(const JsonMemory& memory, const std::string& file, const std
           "fewer at a time: features of their own, a line each, or another format"};
 }
 
-std::optional<DataError> bulky_json(std::string_view text, double input_bytes, const std::string& file,
-                                    const std::string& place) {
+std::optional<DataError> bulky_json(std::string_view text, const std::string& file, const std::string& place) {
   JsonMemory memory;
   for (std::size_t begin = 0; begin < text.size(); begin += kWaitHookBytes) {
     call_wait_hook();
     for (const char c : text.substr(begin, kWaitHookBytes)) memory.take(c);
   }
-  if (memory.bytes() <= parser_memory_for(input_bytes)) return std::nullopt;
+  if (!memory.is_too_much()) return std::nullopt;
   return too_bulky(memory, file, place);
 }
 

@@ -43,10 +43,8 @@ class JsonMemory {
 /// E_SIZE, in the words of all that is refused for its estimate.
 DataError too_bulky(const JsonMemory& memory, const std::string& file, const std::string& place);
 
-/// E_SIZE, if parsing `text` would take more memory than a reader of so many bytes may (an estimate). Calls the wait
-/// hook on its way.
-std::optional<DataError> bulky_json(std::string_view text, double input_bytes, const std::string& file,
-                                    const std::string& place);
+/// E_SIZE, if parsing `text` would take more memory than a reader may (an estimate). Calls the wait hook on its way.
+std::optional<DataError> bulky_json(std::string_view text, const std::string& file, const std::string& place);
 
 /// The same of a whole file, which is not kept in memory.
 std::optional<DataError> bulky_json_file(const std::filesystem::path& path);
