@@ -227,22 +227,30 @@ TEST(PlanSearch, AnyNumberOfThreadsFindsTheSamePlan) {
   EXPECT_GE(spent, 1u);
 }
 
-/// The question is not put by threads that help, which may not be the interpreter's.
+/// The question is not put by threads that help, which may not be the interpreter's. There is no plan, and the budget
+/// lasts for minutes. An exception is passed on.
 TEST(PlanSearch, OnlyTheCallersThreadIsAskedWhetherToStop) {
   SeededRandom random(test::seed_of_run(78));
   Problem p(Walls({}), 12, random);
   const std::thread::id caller = std::this_thread::get_id();
   std::atomic<int> asked{0}, elsewhere{0};
-  p.joint.is_stopped = [&] {
-    ++asked;
+  const auto asks = [&] {
     elsewhere += std::this_thread::get_id() != caller;
-    return asked > 40;
+    return ++asked > 60;
   };
-  PlanSearch(4).best_plan(p.joint, 1000000, true);
-  EXPECT_GT(asked, 0);
+  constexpr std::size_t kMinutes = 1000000000;
+  p.joint.is_stopped = asks;
+  p.joint.goals[1] = p.joint.goals[0];
+  EXPECT_EQ(PlanSearch(4).best_plan(p.joint, kMinutes, true).end, PlanEnd::out_of_budget);
+  EXPECT_GT(asked, 60);
   EXPECT_EQ(elsewhere, 0);
-  p.joint.is_stopped = [] { return true; };
-  EXPECT_EQ(PlanSearch(4).best_plan(p.joint, 1000000, true).end, PlanEnd::out_of_budget);
+  struct Interrupted {};
+  asked = 0;
+  p.joint.is_stopped = [&] {
+    if (asks()) throw Interrupted();
+    return false;
+  };
+  EXPECT_THROW(PlanSearch(4).best_plan(p.joint, kMinutes, true), Interrupted);
 }
 
 /// Two in a dead end cannot change their order: every joint place is tried, and that there is no plan is said.

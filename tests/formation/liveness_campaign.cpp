@@ -3,10 +3,12 @@
 // full speed. With `audit` the recording is proven in rationals, which takes longer than the run.
 //
 // No row is kept: memory does not grow with the run. For the audit the recording stands in the present folder
-// meanwhile.
+// meanwhile, or stays in FILE. The seconds are those of the run with its metrics and, if asked for, its recording.
 //
 //   formation_liveness_campaign KIND COUNT [SIZE] [SEED] [off|bias|plan] [audit|FILE]
 //   formation_liveness_campaign street 60 4
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -128,7 +130,8 @@ int main(int argc, char** argv) {
   }
   if (s.name != "cross") s.time_limit = 15.0 * bound + 200.0;  // there they go to and fro
   std::filesystem::path recording;
-  if (argc > 6) recording = argv[6] == std::string("audit") ? "liveness_campaign.jsonl" : argv[6];
+  const bool is_kept = argc > 6 && argv[6] != std::string("audit");
+  if (argc > 6) recording = is_kept ? argv[6] : "liveness_campaign." + std::to_string(getpid()) + ".jsonl";
   const auto start = std::chrono::steady_clock::now();
   MeasuredRun measured(s, recording);
   const Recording run = simulate(s, options, measured);
@@ -151,6 +154,6 @@ int main(int argc, char** argv) {
       course.groups, course.largest, course.search_nodes, wall);
   if (!all_arrived) std::printf("  %s\n", m.outcome.c_str());
   const bool is_clean = argc <= 6 || audits_clean(recording);
-  if (argc > 6) std::filesystem::remove(recording);
+  if (argc > 6 && !is_kept) std::filesystem::remove(recording);
   return all_arrived && is_clean ? 0 : 1;
 }

@@ -98,7 +98,6 @@ TEST(Waiting, ALongCycleIsAbridged) {
   EXPECT_THAT(Row(edges).words(0), HasSubstr(" and so on through six more to R1: a deadlock of 12"));
 }
 
-/// Robots of a formation wait for nobody: they have no goals.
 TEST(Waiting, AFormationHasNoneWhileItsLeaderDrives) {
   Row row({{1}, {0}});
   Leader& leader = row.scenario.formation.emplace().leader;

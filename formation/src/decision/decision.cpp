@@ -195,7 +195,7 @@ void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, 
     std::vector<Constraint>& mine = constraints[i];
     // What a large crowd answers at once comes first: most have no plan, and nobody near them has one.
     const auto is_theirs = [&](const Constraint& c) {
-      return (planned[i] || (c.index < planned.size() && planned[c.index])) && is_of_robot(scene, c) && yields(c.index);
+      return (planned[i] || planned[c.index]) && is_of_robot(scene, c) && yields(c.index);
     };
     const auto is_far = [&](const Constraint& c) {
       const double speeds = scenario.robots[i].max_speed + scenario.robots[c.index].max_speed;

@@ -47,7 +47,7 @@ class NearestFirst {
  public:
   /// Sorting so many allocates nothing then.
   void reserve(std::size_t lines) { keys_.reserve(lines); }
-  /// REQUIRES: half-planes against robots only, each against another one.
+  /// REQUIRES: half-planes against robots only.
   void sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines);
 
  private:
@@ -80,7 +80,7 @@ void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, con
 /// what those who go by a plan want. Two that do have the half-plane nearest to what they want, split there with half
 /// the slack each, so that both keep it where the plan is free of collision (lemma 2). Of one that does and one that
 /// does not the first takes the whole gap, and the other does not come nearer. Pairs that cannot meet within a step
-/// have none.
+/// have none. REQUIRES: half-planes against robots only.
 void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
                   const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints,
                   double gap = kContactSkin);

@@ -150,7 +150,7 @@ void Groups::end_step(const Step& row) {
     const double stalled = stalled_for(i);
     const double pause = kBetweenPlans * patience_ * static_cast<double>(1 << std::min(r.failures, 6));
     if (stalled < kStalledAfter * patience_ || time_ - r.planned_at < pause) continue;
-    // In a formation who stands waits, for whomever: its robots creep up to their slots.
+    // In a formation whoever stands counts as waiting: robots that creep up to their slots wait for nobody.
     if (!graph) graph = scenario_.formation ? WaitForGraph(now_.size()) : waiting_in(scenario_, row);
     const bool dead = is_dead(scenario_, *graph, row, i);
     if (!r.is_named && dead && !(*graph)[i].empty()) {

@@ -22,13 +22,24 @@ class StopForAll {
  public:
   explicit StopForAll(std::function<bool()> is_stopped)
       : is_stopped_(std::move(is_stopped)), asks_(std::this_thread::get_id()) {}
+  StopForAll(const StopForAll&) = delete;
 
   bool operator()() {
-    if (std::this_thread::get_id() == asks_ && is_stopped_ && is_stopped_()) stopped_ = true;
+    if (std::this_thread::get_id() == asks_ && is_stopped_ && asks()) stopped_ = true;
     return stopped_;
   }
 
  private:
+  /// Who answers with an exception stops the others too.
+  bool asks() {
+    try {
+      return is_stopped_();
+    } catch (...) {
+      stopped_ = true;
+      throw;
+    }
+  }
+
   std::function<bool()> is_stopped_;
   std::thread::id asks_;
   std::atomic<bool> stopped_{false};
@@ -54,28 +65,33 @@ struct PlanSearch::Attempt {
 
 std::vector<PlanSearch::Attempt> PlanSearch::searched(JointSearch& joint, const JointProblem& about,
                                                       SearchBudget budget, double growth, bool lanes) {
-  std::vector<Attempt> attempts(static_cast<std::size_t>(tasks_.threads()));
-  std::atomic<bool> first_spent_all{false};
-  double nodes = nodes_;
-  for (std::size_t k = 0; k < attempts.size(); ++k, nodes *= growth) {
+  std::vector<Attempt> attempts;
+  std::atomic<bool> first_ends_all{false};
+  // No more than can count: a node costs about a call for each robot.
+  const double most_nodes =
+      static_cast<double>(std::max(budget.calls, kCallsForABetter) / std::max<std::size_t>(1, about.radii.size()));
+  double nodes = nodes_, sum = 0.0;
+  const auto most = static_cast<std::size_t>(tasks_.threads());
+  for (; attempts.size() < most && (attempts.empty() || sum < most_nodes); sum += nodes, nodes *= growth) {
     budget.nodes = static_cast<std::size_t>(nodes);
-    attempts[k].budget = budget;
+    attempts.emplace_back().budget = budget;
     // As if the first one found a plan.
     if (growth > 1.0) budget.calls = kCallsForABetter;
-    budget.cancelled = &first_spent_all;
+    budget.cancelled = &first_ends_all;
   }
   tasks_.for_ranges(attempts.size(), 1, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t k = first; k < last; ++k) {
       Attempt& a = attempts[k];
       const std::uint64_t seed = seed_ + k;
       a.answer = joint.run(seed + 1, a.budget, lanes && seed % 2 == 0 ? GuidedBy::lanes : GuidedBy::lengths);
-      if (k == 0 && a.has_spent_all()) first_spent_all = true;
+      const bool is_enough = a.answer.end == SearchEnd::found && about.radii.size() > kChoosesUpTo;
+      if (k == 0 && (a.has_spent_all() || is_enough)) first_ends_all = true;
       if (a.answer.end != SearchEnd::found) continue;
       a.plan = plan_of(*about.map, a.answer.moves, about.radii);
       a.length = critical_length(a.plan);
     }
   });
-  if (first_spent_all) attempts.resize(1);
+  if (first_ends_all) attempts.resize(1);
   return attempts;
 }
 

@@ -25,8 +25,8 @@ inline constexpr double kHeldBelow = 0.3;
 /// Of each robot, whom it waits for; the one that holds it most comes first.
 using WaitForGraph = std::vector<std::vector<std::size_t>>;
 
-/// Of a formation once its leader rests: before, the graph has no edges. Nor has that of a run's last row, which decides
-/// nothing. REQUIRES: a row of a run of this scenario.
+/// Who waits for whom. In a formation nobody does before its leader has come to the end of its path, and in a run's last
+/// row, which decides nothing, nobody does either. REQUIRES: a row of a run of this scenario.
 WaitForGraph waiting_in(const Scenario& scenario, const Step& row);
 
 /// The cycles that are met by going from each robot to the one that holds it most: disjoint, each from its lowest
