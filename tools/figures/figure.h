@@ -58,7 +58,7 @@ class DataFile {
   /// One line of the current data set.
   void row(std::initializer_list<double> values);
   void row(const std::vector<double>& values);
-  /// A line a point.
+  /// One line per point.
   void rows(const std::vector<geometry::Vec2>& points);
   /// The same, with the pen lifted behind them.
   void curve(const std::vector<geometry::Vec2>& points);

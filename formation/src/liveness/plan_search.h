@@ -8,8 +8,8 @@
 /// Restarted with growing limits, since the lengths of such searches are heavy-tailed (Luby, Sinclair and Zuckerman,
 /// "Optimal speedup of Las Vegas algorithms", Information Processing Letters 47, 1993).
 ///
-/// The same plan with any number of threads: what is searched ahead counts only where the searches before it have left
-/// its limits as they were.
+/// The same plan with any number of threads: what is searched ahead counts only if the limits that the searches before
+/// it have left would have given the same.
 
 #include <cstdint>
 #include <vector>

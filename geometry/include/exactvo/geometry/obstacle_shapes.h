@@ -91,7 +91,7 @@ struct ShapeFigures {
 /// All shapes of one obstacle, with their verdicts.
 struct ObstacleShapes {
   std::vector<RingProblem> problems;  ///< all that was found; where one is not repaired nothing else is here
-  Obstacle obstacle;                  ///< as put right
+  Obstacle obstacle;                  ///< after repair
   FacadeSet facades;                  ///< what they stand for, and how closely
   /// Disjoint inside, their union is the obstacle, whatever the facades' tolerance. A wall's are its edges, straight
   /// runs merged.
