@@ -8,10 +8,10 @@
 
 #include "control/consensus.h"
 #include "decision/decision.h"
-#include "decision/repair.h"
 #include "metrics/divergence.h"
 #include "motion/integrators.h"
 #include "motion/leader.h"
+#include "runs/joint_decisions.h"
 #include "runs/rows.h"
 #include "runs/run_clock.h"
 #include "runs/runs.h"
@@ -37,7 +37,6 @@ struct FormationRobot {
   // With joint plans.
   std::optional<StaticField> pieces = {};  ///< what it sees of obstacles while it goes by plan, made when it first does
   bool sees_pieces = false;                ///< it went by plan when it decided last
-  bool held_by_all = false;                ///< it goes by plan, and no share of what it wants is allowed
 };
 
 Scenario with_margins(Scenario scenario, const Remedies& remedies) {
@@ -56,9 +55,11 @@ class FormationRun {
         clock_(scenario_, options),
         decider_(scenario_, scene_.bodies()),
         offsets_(offsets_in_use(spec_, remedies_)),
-        planned_(scenario_.robots.size()) {
-    if (liveness_of(scenario, options) == Liveness::plan)
+        joint_(scenario_, options_, scene_, clock_, decider_) {
+    if (liveness_of(scenario, options) == Liveness::plan) {
       plans_.emplace(scenario_, offsets_, options.threads, [this] { return clock_.is_stopped(now_); });
+      joint_.gap = plans_->gap();
+    }
     const HorizonRule rule = remedies_.tau_clamp ? HorizonRule::clamped : HorizonRule::literal;
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const Robot& r = scenario_.robots[i];
@@ -123,27 +124,17 @@ class FormationRun {
     Step row = state_row(time);
     const LeaderState leader{row.leader_position, row.leader_velocity};
     take_relative_states(leader);
-    anchors_.clear();
-    for (std::size_t i = 0; i < robots_.size(); ++i) anchors_.push_back({anchor(i), anchor_velocity(i)});
-    if (plans_) plans_->begin_step(time, anchors_, leader);
-    look_at_robots();
+    joint_.anchors.clear();
+    for (std::size_t i = 0; i < robots_.size(); ++i) joint_.anchors.push_back({anchor(i), anchor_velocity(i)});
+    if (plans_) plans_->begin_step(time, joint_.anchors, leader);
+    joint_.look_at_robots(plans_ ? &plans_->groups() : nullptr);
     move_obstacles(scenario_, time, scene_, row.moving);
     for (std::size_t i = 0; i < robots_.size(); ++i) decide_one(i, time, leader, row.robots[i]);
     if (!plans_) return row;
-    repair(time, row);
-    Groups& groups = plans_->groups();
-    while (groups.any() && groups.halt_those_held_back(row)) decide_again(time, row);
-    groups.end_step(row);
+    joint_.settle(
+        plans_->groups(), row, [&](std::size_t i) { return viewpoint(i); },
+        [&](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, time, step, fallen_back); });
     return row;
-  }
-
-  /// Half-planes of robots against robots, as they are or as plans have them.
-  void look_at_robots() {
-    robot_constraints(scenario_, options_, anchors_, scene_, others_);
-    if (!plans_ || !plans_->groups().any()) return;
-    for (std::size_t i = 0; i < robots_.size(); ++i)
-      planned_[i] = goes_by_plan(i) ? std::optional<Vec2>(plans_->groups().wanted(i)) : std::nullopt;
-    follow_plans(scenario_, anchors_, scene_, planned_, others_, plans_->gap());
   }
 
   Viewpoint viewpoint(std::size_t i) const {
@@ -155,7 +146,7 @@ class FormationRun {
     const Viewpoint here = viewpoint(i);
     step.anchor = here.position;
     step.anchor_velocity = here.velocity;
-    add_moving_constraints(scenario_, here, scene_, others_[i]);
+    add_moving_constraints(scenario_, here, scene_, joint_.others[i]);
     if (plans_) step.note = plans_->groups().note(i);
     if (goes_by_plan(i) != robots_[i].sees_pieces) look_otherwise(i, time);
     if (goes_by_plan(i)) return choose_by_plan(i, time, step, nullptr);
@@ -167,7 +158,7 @@ class FormationRun {
                                             spec_.catch_up_speed,
                                             leader.velocity == Vec2{},
                                             wanted};
-    DecisionInput in{steered(i, situation, statics_, others_[i], step), here, &statics_, &others_[i],
+    DecisionInput in{steered(i, situation, statics_, joint_.others[i], step), here, &statics_, &joint_.others[i],
                      clock_.keeps_all(time)};
     decider_.decide(in, step);
     if (!remedies_.smoothing) return;
@@ -176,7 +167,7 @@ class FormationRun {
     decider_.decide(in, step);
   }
 
-  // --- Robots that go by plan, and repair ---
+  // --- Robots that go by plan ---
 
   bool goes_by_plan(std::size_t i) const { return plans_ && plans_->groups().is_member(i); }
 
@@ -191,20 +182,10 @@ class FormationRun {
     outlooks_.push_back({time, i, 0, (r.sees_pieces ? *r.pieces : r.field).shapes()});
   }
 
-  /// Along the plan, as fast as all half-planes allow.
   void choose_by_plan(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
-    FormationRobot& r = robots_[i];
-    step.mode = plans_->groups().goes_back(i) ? Mode::going_back : Mode::by_plan;
-    Viewpoint here = viewpoint(i);
-    const Vec2 wanted = plans_->groups().wanted(i);
-    here.velocity = wanted;
-    here.horizon = scenario_.time_step;
-    r.pieces->constraints(here, statics_, reach_of_step(scenario_, here));
-    const std::optional<double> share = allowed_share(wanted, statics_, others_[i]);
-    r.held_by_all = !share;
-    decider_.decide(
-        {share.value_or(0.0) * wanted, here, &statics_, &others_[i], clock_.keeps_all(time), nullptr, fallen_back},
-        step);
+    const Groups& groups = plans_->groups();
+    step.mode = groups.goes_back(i) ? Mode::going_back : Mode::by_plan;
+    joint_.choose_by_plan(i, groups.wanted(i), viewpoint(i), *robots_[i].pieces, time, step, fallen_back);
   }
 
   StaticField field_of_pieces(std::size_t i) {
@@ -218,33 +199,8 @@ class FormationRun {
     if (goes_by_plan(i)) return choose_by_plan(i, time, step, fallen_back);
     const Viewpoint here = viewpoint(i);
     robots_[i].field.constraints(here, statics_);
-    decider_.decide({step.preferred, here, &statics_, &others_[i], clock_.keeps_all(time), nullptr, fallen_back}, step);
-  }
-
-  /// After groups were halted: their robots want something else.
-  void decide_again(double time, Step& row) {
-    look_at_robots();
-    for (std::size_t i = 0; i < robots_.size(); ++i) {
-      add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
-      choose_again(i, time, row.robots[i], nullptr);
-    }
-    repair(time, row);
-  }
-
-  void repair(double time, Step& row) {
-    const auto is_contradicted = [&](std::size_t i) {
-      return row.robots[i].status != lp::Status::optimal || (goes_by_plan(i) && robots_[i].held_by_all);
-    };
-    const auto fallen = detail::repair(
-        scenario_, anchors_, scene_, others_, is_contradicted,
-        [&](std::size_t i, const std::vector<std::size_t>& with) { choose_again(i, time, row.robots[i], &with); },
-        plans_->gap());
-    // With less room than there is between doubles it stands still, which all half-planes allow.
-    for (std::size_t i = 0; i < robots_.size(); ++i) {
-      if (row.robots[i].status != lp::Status::no_interior || goes_by_plan(i)) continue;
-      row.robots[i].preferred = {};
-      choose_again(i, time, row.robots[i], &fallen[i]);
-    }
+    decider_.decide({step.preferred, here, &statics_, &joint_.others[i], clock_.keeps_all(time), nullptr, fallen_back},
+                    step);
   }
 
   /// The preference, with the consensus term in it where the filter comes last.
@@ -360,10 +316,8 @@ class FormationRun {
   std::vector<Outlook> outlooks_;
   // Memory that a step leaves to the next.
   RelativeState relative_;  ///< of the row that is decided
-  std::vector<Anchor> anchors_;
-  std::vector<std::optional<Vec2>> planned_;  ///< m/s, what those who go by plan want
+  JointDecisions joint_;
   std::vector<Constraint> statics_;
-  std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
 };
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "decision/decision.h"
-#include "decision/repair.h"
 #include "exactvo/formation/passing.h"
 #include "liveness/groups.h"
+#include "runs/joint_decisions.h"
 #include "runs/own_decision.h"
 #include "runs/rows.h"
 #include "runs/run_clock.h"
@@ -55,9 +55,7 @@ class KinematicRun {
         scene_(scenario, options),
         clock_(scenario, options),
         own_(scenario, options, scene_.bodies()),
-        anchors_(scenario.robots.size()),
-        planned_(scenario.robots.size()),
-        held_by_all_(scenario.robots.size(), 0) {
+        joint_(scenario, options, scene_, clock_, own_.decider()) {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
       groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan, options.threads,
                       [this] { return clock_.is_stopped(now_); });
@@ -149,8 +147,9 @@ class KinematicRun {
   Step decide_all(double time) {
     now_ = time;
     if (groups_) look_at_groups(time);
-    for (std::size_t i = 0; i < robots_.size(); ++i) anchors_[i] = {robots_[i].position, robots_[i].velocity};
-    look_at_robots();
+    joint_.anchors.clear();
+    for (const KinematicRobot& r : robots_) joint_.anchors.push_back({r.position, r.velocity});
+    joint_.look_at_robots(groups_ ? &*groups_ : nullptr);
     Step row;
     row.time = time;
     move_obstacles(scenario_, time, scene_, row.moving);
@@ -158,9 +157,9 @@ class KinematicRun {
     row.robots.reserve(robots_.size());
     for (std::size_t i = 0; i < robots_.size(); ++i) row.robots.push_back(decide_one(i, time));
     if (!groups_) return row;
-    repair(time, row);
-    while (groups_->any() && groups_->halt_those_held_back(row)) decide_again(time, row);
-    groups_->end_step(row);
+    joint_.settle(
+        *groups_, row, [&](std::size_t i) { return viewpoint(i); },
+        [&](std::size_t i, RobotStep& step, const auto* fallen_back) { choose_again(i, time, step, fallen_back); });
     return row;
   }
 
@@ -236,73 +235,26 @@ class KinematicRun {
 
   bool goes_by_plan(std::size_t i) const { return groups_ && groups_->is_member(i); }
 
-  /// Half-planes of robots against robots, as they are or as plans have them.
-  void look_at_robots() {
-    robot_constraints(scenario_, options_, anchors_, scene_, others_);
-    if (!groups_ || !groups_->any()) return;
-    for (std::size_t i = 0; i < robots_.size(); ++i)
-      planned_[i] = goes_by_plan(i) ? std::optional<Vec2>(groups_->wanted(i)) : std::nullopt;
-    follow_plans(scenario_, anchors_, scene_, planned_, others_);
-  }
-
-  /// After groups were halted: their robots want something else.
-  void decide_again(double time, Step& row) {
-    look_at_robots();
-    for (std::size_t i = 0; i < robots_.size(); ++i) {
-      add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
-      choose_again(i, time, row.robots[i], nullptr);
-    }
-    repair(time, row);
-  }
-
   void choose_again(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
     if (goes_by_plan(i)) return choose_by_plan(i, time, step, fallen_back);
     look(i);
     choose(i, step.preferred, time, step, fallen_back);
   }
 
-  /// Along the plan, as fast as all half-planes allow. Those of obstacles look a time step ahead: nearer to what is
-  /// wanted than they need not be.
   void choose_by_plan(std::size_t i, double time, RobotStep& step, const std::vector<std::size_t>* fallen_back) {
-    Viewpoint here = viewpoint(i);
-    const Vec2 wanted = groups_->wanted(i);
-    here.velocity = wanted;
-    here.horizon = scenario_.time_step;
     robots_[i].field->set_margin(0.0);
-    robots_[i].field->constraints(here, all_, reach_of_step(scenario_, here));
-    const std::optional<double> share = allowed_share(wanted, all_, others_[i]);
-    held_by_all_[i] = !share;
-    own_.decider().decide(
-        {share.value_or(0.0) * wanted, here, &all_, &others_[i], clock_.keeps_all(time), nullptr, fallen_back}, step);
-  }
-
-  // --- Repair ---
-
-  bool is_contradicted(std::size_t i, const RobotStep& step) const {
-    return step.status != lp::Status::optimal || (goes_by_plan(i) && held_by_all_[i]);
-  }
-
-  void repair(double time, Step& row) {
-    const auto fallen = detail::repair(
-        scenario_, anchors_, scene_, others_, [&](std::size_t i) { return is_contradicted(i, row.robots[i]); },
-        [&](std::size_t i, const std::vector<std::size_t>& with) { choose_again(i, time, row.robots[i], &with); });
-    // Held from all sides, with less room than there is between doubles: it stands still, which they all allow.
-    for (std::size_t i = 0; i < robots_.size(); ++i) {
-      if (row.robots[i].status != lp::Status::no_interior || goes_by_plan(i)) continue;
-      row.robots[i].preferred = {};
-      choose_again(i, time, row.robots[i], &fallen[i]);
-    }
+    joint_.choose_by_plan(i, groups_->wanted(i), viewpoint(i), *robots_[i].field, time, step, fallen_back);
   }
 
   bool meets_robots(std::size_t i) const {
-    return std::any_of(others_[i].begin(), others_[i].end(),
+    return std::any_of(joint_.others[i].begin(), joint_.others[i].end(),
                        [&](const Constraint& c) { return is_of_robot(scene_, c); });
   }
 
   RobotStep decide_one(std::size_t i, double time) {
     pass_waypoint(i, time);
     if (!goes_by_plan(i)) look(i);
-    add_moving_constraints(scenario_, viewpoint(i), scene_, others_[i]);
+    add_moving_constraints(scenario_, viewpoint(i), scene_, joint_.others[i]);
     KinematicRobot& r = robots_[i];
     RobotStep step;
     step.position = step.anchor = r.position;
@@ -329,7 +281,7 @@ class KinematicRun {
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, double time, RobotStep& step,
               const std::vector<std::size_t>* fallen_back = nullptr) {
-    own_.choose(preferred, viewpoint(i), others_[i], clock_.keeps_all(time), fallen_back, step);
+    own_.choose(preferred, viewpoint(i), joint_.others[i], clock_.keeps_all(time), fallen_back, step);
   }
 
   /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).
@@ -468,13 +420,8 @@ class KinematicRun {
   std::vector<KinematicRobot> robots_;
   OpenSpace open_space_;
   std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
+  JointDecisions joint_;
   std::vector<Outlook> outlooks_;
-  // Memory that a step leaves to the next.
-  std::vector<Anchor> anchors_;
-  std::vector<std::optional<Vec2>> planned_;     ///< m/s, what those who go by plan want
-  std::vector<char> held_by_all_;                ///< of those: no share of it is allowed
-  std::vector<Constraint> all_;                  ///< static ones of those who go by plan
-  std::vector<std::vector<Constraint>> others_;  ///< of each robot: robots and moving obstacles
 };
 
 }  // namespace

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// What the robots of a run decide with regard to each other: half-planes of pairs, motion along joint plans, and
+/// repair (liveness, rules R0 and R4). Both kinds of run go through it alike.
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "decision/decision.h"
+#include "liveness/groups.h"
+#include "runs/run_clock.h"
+
+namespace exactvo::formation::detail {
+
+class JointDecisions {
+ public:
+  /// All must outlive it.
+  JointDecisions(const Scenario& scenario, const SimulationOptions& options, Scene& scene, const RunClock& clock,
+                 Decider& decider)
+      : scenario_(scenario),
+        options_(options),
+        scene_(scene),
+        clock_(clock),
+        decider_(decider),
+        held_by_all_(scenario.robots.size(), 0) {}
+
+  // Of each robot, in their order.
+
+  std::vector<Anchor> anchors;                  ///< where half-planes of this step are built
+  std::vector<std::vector<Constraint>> others;  ///< its half-planes against robots and moving obstacles
+  double gap = kContactSkin;                    ///< m, that pairs which fall back keep, as in `fall_back`
+
+  /// Half-planes of robots against robots, as they are or as plans have them. `groups`: null without plans.
+  void look_at_robots(const Groups* groups);
+
+  /// Along the plan, as fast as all half-planes allow. Those of `field` look a time step ahead: nearer to what is
+  /// wanted than they need not be.
+  void choose_by_plan(std::size_t i, Vec2 wanted, Viewpoint here, const StaticField& field, double time,
+                      RobotStep& step, const std::vector<std::size_t>* fallen_back);
+
+  /// Robot i decides again with `others[i]` as they are now; `fallen_back`: as in DecisionInput.
+  using ChooseAgain = std::function<void(std::size_t i, RobotStep& step, const std::vector<std::size_t>* fallen_back)>;
+
+  /// Once all have decided: half-planes that contradict each other are repaired, groups that are held back are halted,
+  /// whereupon all decide again, and the groups hear how the step ended.
+  void settle(Groups& groups, Step& row, const std::function<Viewpoint(std::size_t)>& viewpoint,
+              const ChooseAgain& choose_again);
+
+ private:
+  void repair(const Groups& groups, Step& row, const ChooseAgain& choose_again);
+
+  const Scenario& scenario_;
+  const SimulationOptions& options_;
+  Scene& scene_;
+  const RunClock& clock_;
+  Decider& decider_;
+  std::vector<char> held_by_all_;    ///< of those who go by plan: no share of what they want is allowed
+  std::vector<Constraint> statics_;  ///< of one who goes by plan; memory that is kept
+};
+
+}  // namespace exactvo::formation::detail
