@@ -34,17 +34,6 @@ double one_norm(Vec2 v) {
   return std::fabs(v.x) + std::fabs(v.y);
 }
 
-/// 0 where there is no direction.
-Vec2 direction(Vec2 a) {
-  const double squared = geometry::squared_norm(a);
-  return squared > kNoDirection ? 1.0 / std::sqrt(squared) * a : Vec2{};
-}
-
-/// Out of line, since GCC 12 drops such conversions where it sees two side by side.
-[[gnu::noinline]] double rounded_to_float(double x) {
-  return static_cast<double>(static_cast<float>(x));
-}
-
 std::vector<Vec2> corners_round(const geometry::Ellipse& e) {
   std::vector<Vec2> corners;
   Vec2 w = {kRoundIt, 0.0};
@@ -197,7 +186,7 @@ class Sight {
 
   BodyLine rounded(Vec2 n) const {
     BodyLine line;
-    line.normal = query_.float_normals ? Vec2{rounded_to_float(n.x), rounded_to_float(n.y)} : n;
+    line.normal = query_.float_normals ? rounded_to_floats(n) : n;
     return line;
   }
 

@@ -2,8 +2,12 @@
 #pragma once
 
 /// \file
-/// The constants by which half-planes against edges are rounded to the safe side, the same for one robot and for a
-/// pack.
+/// By what half-planes against edges and bodies are rounded to the safe side: constants, the same for one robot and for
+/// a pack, and the rounding of one robot's normals.
+
+#include <cmath>
+
+#include "exactvo/geometry/vec2.h"
 
 namespace exactvo::formation::crowd::edge_rounding {
 
@@ -35,5 +39,19 @@ inline constexpr double kWiden = 1.0 + 0x1p-20;
 
 /// Ends of edges are cut at so many times the range.
 inline constexpr double kCutRanges = 2.0;
+
+/// Of length 1, or 0 where there is no direction.
+inline geometry::Vec2 direction(geometry::Vec2 a) {
+  const double squared = geometry::squared_norm(a);
+  return squared > kNoDirection ? 1.0 / std::sqrt(squared) * a : geometry::Vec2{};
+}
+
+/// Out of line, since GCC 12 drops such conversions where it sees two side by side.
+[[gnu::noinline]] inline double rounded_to_float(double x) {
+  return static_cast<double>(static_cast<float>(x));
+}
+inline geometry::Vec2 rounded_to_floats(geometry::Vec2 v) {
+  return {rounded_to_float(v.x), rounded_to_float(v.y)};
+}
 
 }  // namespace exactvo::formation::crowd::edge_rounding

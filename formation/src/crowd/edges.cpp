@@ -17,12 +17,6 @@ using geometry::dot;
 /// How far beyond a cell its edges are looked for: rounding moves a point by far less into the next one.
 constexpr double kHalfDiagonal = 0.7072;
 
-/// 0 where there is no direction.
-Vec2 direction(Vec2 a) {
-  const double squared = geometry::squared_norm(a);
-  return squared > kNoDirection ? 1.0 / std::sqrt(squared) * a : Vec2{};
-}
-
 Vec2 nearest_point(const Segment& s) {
   const Vec2 along = s.b - s.a;
   const double length = geometry::squared_norm(along);
@@ -35,11 +29,6 @@ double squared_distance(const Segment& s) {
 
 double magnitude(const Segment& s) {
   return std::fabs(s.a.x) + std::fabs(s.a.y) + std::fabs(s.b.x) + std::fabs(s.b.y);
-}
-
-/// Out of line, since GCC 12 drops such conversions where it sees two side by side.
-[[gnu::noinline]] double rounded_to_float(double x) {
-  return static_cast<double>(static_cast<float>(x));
 }
 
 /// The part of an edge within |x|, |y| <= far: what is beyond the range cannot be met, and a normal that is rounded
@@ -116,7 +105,7 @@ class Cone {
 
   EdgeLine rounded(Vec2 n) const {
     EdgeLine line;
-    line.normal = query_.float_normals ? Vec2{rounded_to_float(n.x), rounded_to_float(n.y)} : n;
+    line.normal = query_.float_normals ? rounded_to_floats(n) : n;
     return line;
   }
 

@@ -27,24 +27,16 @@ double seconds() {
 }
 
 void add(StepReport& sum, const StepReport& more) {
-  sum.robots += more.robots;
-  sum.neighbours += more.neighbours;
-  sum.relaxed += more.relaxed;
-  sum.touching += more.touching;
-  sum.widened += more.widened;
-  sum.nudged += more.nudged;
-  sum.edges += more.edges;
-  sum.bodies += more.bodies;
-  sum.stopped += more.stopped;
+  using R = StepReport;
+  for (const auto count : {&R::robots, &R::neighbours, &R::relaxed, &R::touching, &R::widened, &R::nudged, &R::edges,
+                           &R::bodies, &R::stopped})
+    sum.*count += more.*count;
 }
 
 void add(CrowdPhases& sum, const CrowdPhases& more) {
-  sum.sort += more.sort;
-  sum.search += more.search;
-  sum.edges += more.edges;
-  sum.lines += more.lines;
-  sum.solve += more.solve;
-  sum.finish += more.finish;
+  using P = CrowdPhases;
+  for (const auto phase : {&P::sort, &P::search, &P::edges, &P::lines, &P::solve, &P::finish})
+    sum.*phase += more.*phase;
 }
 
 /// Adds the time it lives to a phase, where phases are timed.

@@ -125,6 +125,13 @@ class RVOSimulator::State {
   bool is_changed = true;     ///< the crowd is made anew
   StepReport report;
 
+  /// To be set: the crowd is made anew.
+  Agent& changed(std::size_t number) {
+    Agent& a = agent(number);
+    is_changed = true;
+    return a;
+  }
+
   Agent& agent(std::size_t number) {
     if (number < agents.size()) return agents[number];
     throw CrowdError(CrowdProblem::unknown_robot, "agent: found " + std::to_string(number) + ", expected below " +
@@ -476,40 +483,32 @@ void RVOSimulator::setAgentPrefVelocity(std::size_t agentNo, const Vector2& pref
   state_->agent(agentNo).preferred = prefVelocity;
 }
 void RVOSimulator::setAgentPosition(std::size_t agentNo, const Vector2& position) {
-  Agent& a = state_->agent(agentNo);
+  Agent& a = state_->changed(agentNo);
   a.position = position;
   a.at = exact(position);
-  state_->is_changed = true;
 }
 void RVOSimulator::setAgentVelocity(std::size_t agentNo, const Vector2& velocity) {
-  Agent& a = state_->agent(agentNo);
+  Agent& a = state_->changed(agentNo);
   a.velocity = velocity;
   a.moves = exact(velocity);
-  state_->is_changed = true;
 }
 void RVOSimulator::setAgentMaxNeighbors(std::size_t agentNo, std::size_t maxNeighbors) {
-  state_->agent(agentNo).parameters.neighbours = maxNeighbors;
-  state_->is_changed = true;
+  state_->changed(agentNo).parameters.neighbours = maxNeighbors;
 }
 void RVOSimulator::setAgentMaxSpeed(std::size_t agentNo, float maxSpeed) {
-  state_->agent(agentNo).parameters.max_speed = maxSpeed;
-  state_->is_changed = true;
+  state_->changed(agentNo).parameters.max_speed = maxSpeed;
 }
 void RVOSimulator::setAgentNeighborDist(std::size_t agentNo, float neighborDist) {
-  state_->agent(agentNo).parameters.neighbour_distance = neighborDist;
-  state_->is_changed = true;
+  state_->changed(agentNo).parameters.neighbour_distance = neighborDist;
 }
 void RVOSimulator::setAgentRadius(std::size_t agentNo, float radius) {
-  state_->agent(agentNo).parameters.radius = radius;
-  state_->is_changed = true;
+  state_->changed(agentNo).parameters.radius = radius;
 }
 void RVOSimulator::setAgentTimeHorizon(std::size_t agentNo, float timeHorizon) {
-  state_->agent(agentNo).parameters.time_horizon = timeHorizon;
-  state_->is_changed = true;
+  state_->changed(agentNo).parameters.time_horizon = timeHorizon;
 }
 void RVOSimulator::setAgentTimeHorizonObst(std::size_t agentNo, float timeHorizonObst) {
-  state_->agent(agentNo).parameters.time_horizon_obstacles = timeHorizonObst;
-  state_->is_changed = true;
+  state_->changed(agentNo).parameters.time_horizon_obstacles = timeHorizonObst;
 }
 void RVOSimulator::setTimeStep(float timeStep) {
   state_->time_step = timeStep;
