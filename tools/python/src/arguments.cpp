@@ -134,17 +134,19 @@ std::string shape_words(const py::array& array) {
   return "(" + text + (array.ndim() == 1 ? ",)" : ")");
 }
 
+bool has_shape(const py::array& array, const std::vector<py::ssize_t>& shape) {
+  return std::equal(array.shape(), array.shape() + array.ndim(), shape.begin(), shape.end(),
+                    [](py::ssize_t found, py::ssize_t wanted) { return wanted < 0 || found == wanted; });
+}
+
 Doubles doubles(py::handle object, const char* name, const std::vector<py::ssize_t>& shape) {
   const Doubles array = Doubles::ensure(object);
   if (!array) {
     PyErr_Clear();
     throw ArgumentError(name, shown(object), expected_shape(shape));
   }
-  bool fits = array.ndim() == static_cast<py::ssize_t>(shape.size());
-  for (std::size_t k = 0; fits && k < shape.size(); ++k)
-    fits = shape[k] < 0 || array.shape(static_cast<py::ssize_t>(k)) == shape[k];
-  if (!fits) throw ArgumentError(name, "an array of shape " + shape_words(array), expected_shape(shape));
-  return array;
+  if (has_shape(array, shape)) return array;
+  throw ArgumentError(name, "an array of shape " + shape_words(array), expected_shape(shape));
 }
 
 std::vector<Vec2> points(py::handle object, const char* name) {

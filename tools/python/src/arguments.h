@@ -52,6 +52,20 @@ std::vector<Vec2> points(py::handle object, const char* name);
 
 /// "(3, 2)".
 std::string shape_words(const py::array& array);
+/// Whether it has that shape, in which -1 is any length.
+bool has_shape(const py::array& array, const std::vector<py::ssize_t>& shape);
+
+/// `object` as an array of T of that shape, in C order; an ArgumentError says that `expected` was. Copies where it
+/// must.
+template <class T>
+py::array_t<T, py::array::c_style | py::array::forcecast> array_of(py::handle object, const char* name,
+                                                                   const std::vector<py::ssize_t>& shape,
+                                                                   const std::string& expected) {
+  const auto array = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(object);
+  if (array && has_shape(array, shape)) return array;
+  PyErr_Clear();
+  throw ArgumentError(name, shown(object), expected);
+}
 
 inline py::tuple as_tuple(Vec2 v) {
   return py::make_tuple(v.x, v.y);

@@ -92,10 +92,7 @@ CertificateArrays::CertificateArrays(const std::vector<std::optional<lp::Certifi
 CertificateArrays::CertificateArrays(const py::dict& arrays, std::size_t count) {
   each(static_cast<py::ssize_t>(count), -1, [&](const char* name, auto& array, const auto& shape) {
     array = std::remove_reference_t<decltype(array)>::ensure(arrays[name]);
-    bool fits = array && array.ndim() == static_cast<py::ssize_t>(shape.size());
-    for (std::size_t k = 0; fits && k < shape.size(); ++k)
-      fits = shape[k] < 0 || array.shape(static_cast<py::ssize_t>(k)) == shape[k];
-    if (fits) return;
+    if (array && has_shape(array, shape)) return;
     PyErr_Clear();
     throw ArgumentError(name, shown(arrays[name]), "as many as problems, in the shape that solve_batch gives");
   });

@@ -21,6 +21,8 @@ namespace {
 
 using formation::RobotId;
 
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
 /// Numbers by id that Python sees. They grow by a new allocation; what saw the old one keeps it alive.
 template <class T>
 class Column {
@@ -96,7 +98,6 @@ class PythonCrowd {
 
   void remove_robot(RobotId id) {
     crowd_.remove_robot(id);
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     for (double* xy : {positions_.data() + 2 * id, velocities_.data() + 2 * id}) xy[0] = xy[1] = kNone;
     double* const preferred = preferred_.data() + 2 * id;
     preferred[0] = preferred[1] = 0.0;
@@ -105,7 +106,6 @@ class PythonCrowd {
 
   /// After a change of the crowd: rows for new ids.
   void grow() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     const std::size_t rows = crowd_.id_end();
     positions_.grow(rows, kNone);
     velocities_.grow(rows, kNone);
@@ -158,7 +158,7 @@ class PythonCrowd {
     const Use use(*this);
     const py::gil_scoped_release released;
     goal_copy_.assign(goals.data(), goals.data() + goals.size());
-    goal_copy_.resize(2 * crowd_.id_end(), std::numeric_limits<double>::quiet_NaN());
+    goal_copy_.resize(2 * crowd_.id_end(), kNone);
     const double time_step = crowd_.options().time_step;
     crowd_.set_steering([this, speed, time_step](formation::CrowdSlice& slice) {
       for (std::size_t k = 0; k < slice.size(); ++k) {
@@ -188,19 +188,15 @@ class PythonCrowd {
 
  private:
   static void add(formation::StepReport& sum, const formation::StepReport& step) {
+    using R = formation::StepReport;
     sum.robots = step.robots;
-    sum.neighbours += step.neighbours;
-    sum.relaxed += step.relaxed;
-    sum.touching += step.touching;
-    sum.widened += step.widened;
-    sum.edges += step.edges;
-    sum.stopped += step.stopped;
-    sum.nudged += step.nudged;
+    for (const auto count :
+         {&R::neighbours, &R::relaxed, &R::touching, &R::widened, &R::edges, &R::stopped, &R::nudged})
+      sum.*count += step.*count;
   }
 
   /// By way of an array that is kept: entries of ids that name nobody are not written.
   void write(void (formation::Crowd::*fill)(std::vector<Vec2>&) const, double* out) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     by_id_.assign(crowd_.id_end(), {kNone, kNone});
     (crowd_.*fill)(by_id_);
     for (std::size_t k = 0; k < by_id_.size(); ++k) {
@@ -220,22 +216,20 @@ class PythonCrowd {
   std::size_t steps_ = 0;
 };
 
-RobotId robot_id(const py::int_& id) {
-  const long long value = PyLong_AsLongLong(id.ptr());
+/// `nobody`: what a number that no Id has is said to be.
+template <class Id>
+Id id_of(const py::int_& number, formation::CrowdProblem problem, const char* nobody) {
+  const long long value = PyLong_AsLongLong(number.ptr());
   PyErr_Clear();
-  if (value < 0 || value > std::numeric_limits<RobotId>::max())
-    throw formation::CrowdError(formation::CrowdProblem::unknown_robot,
-                                "no robot has the id " + std::string(py::repr(id)));
-  return static_cast<RobotId>(value);
+  if (value < 0 || value > std::numeric_limits<Id>::max())
+    throw formation::CrowdError(problem, nobody + std::string(py::repr(number)));
+  return static_cast<Id>(value);
 }
-
+RobotId robot_id(const py::int_& id) {
+  return id_of<RobotId>(id, formation::CrowdProblem::unknown_robot, "no robot has the id ");
+}
 formation::KindId kind_id(const py::int_& id) {
-  const long long value = PyLong_AsLongLong(id.ptr());
-  PyErr_Clear();
-  if (value < 0 || value > std::numeric_limits<formation::KindId>::max())
-    throw formation::CrowdError(formation::CrowdProblem::unknown_kind,
-                                "no kind has the number " + std::string(py::repr(id)));
-  return static_cast<formation::KindId>(value);
+  return id_of<formation::KindId>(id, formation::CrowdProblem::unknown_kind, "no kind has the number ");
 }
 
 py::tuple as_tuple(const formation::StepReport& r) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exactvo/geometry/names.h"
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/lp/solvers.h"
 #include "lp_values.h"
@@ -14,19 +15,16 @@ namespace exactvo::python {
 
 namespace {
 
+constexpr geometry::Names<lp::Objective, 2> kObjectives{
+    {{lp::Objective::nearest, "nearest"}, {lp::Objective::farthest, "farthest"}}};
+
 bool parse_objective(const std::string& text, lp::Objective& out) {
-  if (text != "nearest" && text != "farthest") return false;
-  out = text == "nearest" ? lp::Objective::nearest : lp::Objective::farthest;
-  return true;
+  return geometry::parse_in(kObjectives, text, out);
 }
 
 bool parse_status(const std::string& text, lp::Status& out) {
-  for (const auto status :
-       {lp::Status::optimal, lp::Status::relaxed, lp::Status::infeasible, lp::Status::no_interior}) {
-    if (text != name(status)) continue;
-    out = status;
-    return true;
-  }
+  for (const auto status : {lp::Status::optimal, lp::Status::relaxed, lp::Status::infeasible, lp::Status::no_interior})
+    if (text == name(status)) return out = status, true;
   return false;
 }
 
@@ -44,13 +42,9 @@ lp::Problem problem_of(py::handle normals, py::handle offsets, py::handle prefer
   require_finite(n, "normals");
   require_finite(c, "offsets");
   py::array_t<bool> s;
-  if (!soft.is_none()) {
-    s = py::array_t<bool, py::array::c_style | py::array::forcecast>::ensure(soft);
-    if (!s || s.ndim() != 1 || s.shape(0) != n.shape(0)) {
-      PyErr_Clear();
-      throw ArgumentError("soft", shown(soft), "as many truth values as constraints, " + std::to_string(n.shape(0)));
-    }
-  }
+  if (!soft.is_none())
+    s = array_of<bool>(soft, "soft", {n.shape(0)},
+                       "as many truth values as constraints, " + std::to_string(n.shape(0)));
   for (py::ssize_t k = 0; k < n.shape(0); ++k) {
     const Vec2 normal{n.data()[2 * k], n.data()[2 * k + 1]};
     if (normal == Vec2{}) throw ArgumentError("normals", "(0, 0) in row " + std::to_string(k), "a direction");

@@ -136,6 +136,13 @@ const Batch& batch_of(const py::object& self) {
   return self.cast<const Batch&>();
 }
 
+template <class T>
+auto column(std::vector<T> Batch::*data, std::size_t columns) {
+  return [data, columns](const py::object& self) {
+    return view(batch_of(self).*data, batch_of(self).count, columns, self);
+  };
+}
+
 // --- Pickled ---
 
 template <class T>
@@ -178,16 +185,10 @@ Batch batch_from(const py::tuple& state) {
 void bind_lp_batch(py::module_& module) {
   py::class_<Batch>(module, "Batch")
       .def("__len__", [](const Batch& b) { return b.count; })
-      .def_property_readonly(
-          "velocity",
-          [](const py::object& self) { return view(batch_of(self).velocity, batch_of(self).count, 2, self); })
-      .def_property_readonly(
-          "violation",
-          [](const py::object& self) { return view(batch_of(self).violation, batch_of(self).count, 1, self); })
-      .def_property_readonly(
-          "status", [](const py::object& self) { return view(batch_of(self).status, batch_of(self).count, 1, self); })
-      .def_property_readonly(
-          "active", [](const py::object& self) { return view(batch_of(self).active, batch_of(self).count, 3, self); })
+      .def_property_readonly("velocity", column(&Batch::velocity, 2))
+      .def_property_readonly("violation", column(&Batch::violation, 1))
+      .def_property_readonly("status", column(&Batch::status, 1))
+      .def_property_readonly("active", column(&Batch::active, 3))
       .def_property_readonly("proven",
                              [](const py::object& self) -> py::object {
                                const Batch& b = batch_of(self);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "arguments.h"
@@ -42,20 +43,13 @@ void refuse_copy(const char* name, const py::array& array) {
                       "a float64 array in Fortran order, since copy=False");
 }
 
-double at(const py::array& array, std::size_t i, std::size_t k) {
-  const auto* bytes = static_cast<const char*>(array.data());
+/// The number at these indices, whatever the order of the array.
+template <class... Indices>
+double at(const py::array& array, Indices... indices) {
+  py::ssize_t axis = 0, offset = 0;
+  ((offset += static_cast<py::ssize_t>(indices) * array.strides(axis++)), ...);
   double value;
-  std::copy_n(bytes + static_cast<py::ssize_t>(i) * array.strides(0) + static_cast<py::ssize_t>(k) * array.strides(1),
-              sizeof value, reinterpret_cast<char*>(&value));
-  return value;
-}
-
-double at(const py::array& array, std::size_t i, std::size_t k, std::size_t axis) {
-  const auto* bytes = static_cast<const char*>(array.data());
-  double value;
-  std::copy_n(bytes + static_cast<py::ssize_t>(i) * array.strides(0) + static_cast<py::ssize_t>(k) * array.strides(1) +
-                  static_cast<py::ssize_t>(axis) * array.strides(2),
-              sizeof value, reinterpret_cast<char*>(&value));
+  std::memcpy(&value, static_cast<const char*>(array.data()) + offset, sizeof value);
   return value;
 }
 
@@ -140,11 +134,8 @@ void take_hard(BatchArrays& b, py::handle hard) {
                   static_cast<std::int32_t>(std::clamp<long long>(PyLong_AsLongLong(hard.ptr()), -1, 1LL << 31)));
     PyErr_Clear();
   } else {
-    const auto array = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(hard);
-    if (!array || array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != b.count) {
-      PyErr_Clear();
-      throw ArgumentError("hard", shown(hard), "a whole number, or as many as problems");
-    }
+    const auto array = array_of<std::int64_t>(hard, "hard", {static_cast<py::ssize_t>(b.count)},
+                                              "a whole number, or as many as problems");
     for (std::size_t i = 0; i < b.count; ++i)
       b.hard.push_back(static_cast<std::int32_t>(std::clamp<std::int64_t>(array.data()[i], -1, std::int64_t{1} << 30)));
   }

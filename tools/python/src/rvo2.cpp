@@ -25,8 +25,12 @@ RVO::Vector2 vector2(py::handle object, const char* name) {
   return {static_cast<float>(v.x), static_cast<float>(v.y)};
 }
 
-py::tuple as_tuple(const RVO::Vector2& v) {
+py::tuple as_value(const RVO::Vector2& v) {
   return py::make_tuple(v.x(), v.y());
+}
+template <class Number>
+Number as_value(Number value) {
+  return value;
 }
 
 /// What RVO2 takes for a size, or an ArgumentError.
@@ -50,9 +54,9 @@ std::size_t agent(const RVOSimulator& sim, py::handle object) {
   return index(object, "agent_no", sim.getNumAgents());
 }
 
-template <class Get>
-auto of_agent(Get get) {
-  return [get](const RVOSimulator& sim, py::handle no) { return get(sim, agent(sim, no)); };
+template <class Value>
+auto of_agent(Value (RVOSimulator::*get)(std::size_t) const) {
+  return [get](const RVOSimulator& sim, py::handle no) { return as_value((sim.*get)(agent(sim, no))); };
 }
 
 template <class Set>
@@ -92,28 +96,18 @@ std::size_t add_agent(RVOSimulator& sim, py::handle pos, const py::object& neigh
 }
 
 void bind_agents(py::class_<RVOSimulator>& c) {
-  c.def("getAgentPosition",
-        of_agent([](const RVOSimulator& s, std::size_t k) { return as_tuple(s.getAgentPosition(k)); }))
-      .def("getAgentVelocity",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return as_tuple(s.getAgentVelocity(k)); }))
-      .def("getAgentPrefVelocity",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return as_tuple(s.getAgentPrefVelocity(k)); }))
-      .def("getAgentMaxNeighbors",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentMaxNeighbors(k); }))
-      .def("getAgentMaxSpeed", of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentMaxSpeed(k); }))
-      .def("getAgentNeighborDist",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentNeighborDist(k); }))
-      .def("getAgentRadius", of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentRadius(k); }))
-      .def("getAgentTimeHorizon",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentTimeHorizon(k); }))
-      .def("getAgentTimeHorizonObst",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentTimeHorizonObst(k); }))
-      .def("getAgentNumAgentNeighbors",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentNumAgentNeighbors(k); }))
-      .def("getAgentNumObstacleNeighbors",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentNumObstacleNeighbors(k); }))
-      .def("getAgentNumORCALines",
-           of_agent([](const RVOSimulator& s, std::size_t k) { return s.getAgentNumORCALines(k); }))
+  c.def("getAgentPosition", of_agent(&RVOSimulator::getAgentPosition))
+      .def("getAgentVelocity", of_agent(&RVOSimulator::getAgentVelocity))
+      .def("getAgentPrefVelocity", of_agent(&RVOSimulator::getAgentPrefVelocity))
+      .def("getAgentMaxNeighbors", of_agent(&RVOSimulator::getAgentMaxNeighbors))
+      .def("getAgentMaxSpeed", of_agent(&RVOSimulator::getAgentMaxSpeed))
+      .def("getAgentNeighborDist", of_agent(&RVOSimulator::getAgentNeighborDist))
+      .def("getAgentRadius", of_agent(&RVOSimulator::getAgentRadius))
+      .def("getAgentTimeHorizon", of_agent(&RVOSimulator::getAgentTimeHorizon))
+      .def("getAgentTimeHorizonObst", of_agent(&RVOSimulator::getAgentTimeHorizonObst))
+      .def("getAgentNumAgentNeighbors", of_agent(&RVOSimulator::getAgentNumAgentNeighbors))
+      .def("getAgentNumObstacleNeighbors", of_agent(&RVOSimulator::getAgentNumObstacleNeighbors))
+      .def("getAgentNumORCALines", of_agent(&RVOSimulator::getAgentNumORCALines))
       .def("getAgentAgentNeighbor",
            [](const RVOSimulator& s, py::handle no, py::handle neighbour) {
              const std::size_t k = agent(s, no);
@@ -169,7 +163,7 @@ void bind_rvo2(py::module_& module) {
       .def("getNumAgents", &RVOSimulator::getNumAgents)
       .def("getNumObstacleVertices", &RVOSimulator::getNumObstacleVertices)
       .def("getObstacleVertex",
-           [](const RVOSimulator& s, py::handle no) { return as_tuple(s.getObstacleVertex(vertex(s, no))); })
+           [](const RVOSimulator& s, py::handle no) { return as_value(s.getObstacleVertex(vertex(s, no))); })
       .def("getNextObstacleVertexNo",
            [](const RVOSimulator& s, py::handle no) { return s.getNextObstacleVertexNo(vertex(s, no)); })
       .def("getPrevObstacleVertexNo",

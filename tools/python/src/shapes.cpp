@@ -49,11 +49,9 @@ ConvexShape polygon_shape(std::vector<Vec2> vertices, const char* name) {
 
 /// What a ragged array's offsets promise: from 0, never falling, to `end`.
 std::vector<std::size_t> offsets(py::handle object, const char* name, std::size_t end) {
-  const auto array = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(object);
-  if (!array || array.ndim() != 1 || array.shape(0) < 1) {
-    PyErr_Clear();
-    throw ArgumentError(name, shown(object), "a one-dimensional array of whole numbers, at least one");
-  }
+  constexpr const char* kExpected = "a one-dimensional array of whole numbers, at least one";
+  const auto array = array_of<std::int64_t>(object, name, {-1}, kExpected);
+  if (array.size() == 0) throw ArgumentError(name, shown(object), kExpected);
   std::vector<std::size_t> result;
   std::int64_t before = 0;
   for (py::ssize_t k = 0; k < array.shape(0); ++k) {
@@ -97,17 +95,12 @@ Obstacles obstacles_from_ragged(py::handle coordinates, py::handle ring_offsets,
   require_within_range(all, "coordinates");
   const std::vector<std::size_t> ring = offsets(ring_offsets, "ring_offsets", all.size());
   const std::vector<std::size_t> obstacle = offsets(obstacle_offsets, "obstacle_offsets", ring.size() - 1);
-  const auto kinds = py::array_t<bool, py::array::c_style | py::array::forcecast>::ensure(is_polygon);
-  if (!kinds || kinds.ndim() != 1 || static_cast<std::size_t>(kinds.shape(0)) + 1 != obstacle.size()) {
-    PyErr_Clear();
-    throw ArgumentError("is_polygon", shown(is_polygon),
-                        "as many as obstacles: " + std::to_string(obstacle.size() - 1));
-  }
-  if (ids.size() + 1 != obstacle.size())
-    throw ArgumentError("ids", std::to_string(ids.size()),
-                        "as many as obstacles: " + std::to_string(obstacle.size() - 1));
+  const std::size_t count = obstacle.size() - 1;
+  const std::string as_many = "as many as obstacles: " + std::to_string(count);
+  const auto kinds = array_of<bool>(is_polygon, "is_polygon", {static_cast<py::ssize_t>(count)}, as_many);
+  if (ids.size() != count) throw ArgumentError("ids", std::to_string(ids.size()), as_many);
   Obstacles result;
-  for (std::size_t k = 0; k + 1 < obstacle.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     std::vector<geometry::Ring> rings;
     for (std::size_t r = obstacle[k]; r < obstacle[k + 1]; ++r)
       rings.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(ring[r]),

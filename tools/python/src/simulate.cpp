@@ -24,6 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 using datasets::LoadedScenario;
+/// Of a function that touches no Python object.
+using WithoutGil = py::call_guard<py::gil_scoped_release>;
 
 /// A run with its columns: [step][robot][xy].
 struct Run {
@@ -85,19 +87,9 @@ std::unique_ptr<Run> simulate(const LoadedScenario& handle, const std::string& m
   return run;
 }
 
-std::unique_ptr<Run> read_run(const std::string& path) {
+std::unique_ptr<Run> recorded(datasets::RecordingFile file) {
   auto run = std::make_unique<Run>();
-  const py::gil_scoped_release released;
-  run->file = datasets::read_recording(path);
-  run->metrics = formation::measure(run->file.scenario, run->file.recording);
-  fill_columns(*run);
-  return run;
-}
-
-std::unique_ptr<Run> parse_run(const std::string& text) {
-  auto run = std::make_unique<Run>();
-  const py::gil_scoped_release released;
-  run->file = datasets::parse_recording(text, "<pickled>");
+  run->file = std::move(file);
   run->metrics = formation::measure(run->file.scenario, run->file.recording);
   fill_columns(*run);
   return run;
@@ -105,7 +97,6 @@ std::unique_ptr<Run> parse_run(const std::string& text) {
 
 /// The page of `exactvo view` of some runs.
 std::string explorer_page(const std::vector<const Run*>& runs) {
-  const py::gil_scoped_release released;
   std::vector<tools::PageRun> shown;
   std::set<std::string> taken;
   for (const Run* run : runs) {
@@ -116,14 +107,9 @@ std::string explorer_page(const std::vector<const Run*>& runs) {
   return tools::explorer_page(shown);
 }
 
-py::array view(const std::vector<double>& data, const std::vector<py::ssize_t>& shape, const py::object& owner) {
-  py::array_t<double> array(shape, data.data(), owner);
-  make_read_only(array);
-  return std::move(array);
-}
-
-py::array view(const std::vector<std::uint8_t>& data, const std::vector<py::ssize_t>& shape, const py::object& owner) {
-  py::array_t<std::uint8_t> array(shape, data.data(), owner);
+template <class T>
+py::array view(const std::vector<T>& data, const std::vector<py::ssize_t>& shape, const py::object& owner) {
+  py::array_t<T> array(shape, data.data(), owner);
   make_read_only(array);
   return std::move(array);
 }
@@ -178,27 +164,19 @@ py::list problems_of(const formation::Scenario& scenario) {
 
 void bind_simulate(py::module_& module) {
   py::class_<LoadedScenario>(module, "Scenario")
-      .def_static("load",
-                  [](const std::string& path) {
-                    const py::gil_scoped_release released;
-                    return datasets::load_scenario_with_notes(path);
-                  })
-      .def_static("parse",
-                  [](const std::string& text, const std::string& file_name, const std::string& base_dir) {
-                    const py::gil_scoped_release released;
-                    return datasets::parse_scenario_with_notes(text, file_name, base_dir);
-                  })
-      .def("to_json",
-           [](const LoadedScenario& s) {
-             const py::gil_scoped_release released;
-             return datasets::write_scenario(s.scenario);
-           })
+      .def_static(
+          "load", [](const std::string& path) { return datasets::load_scenario_with_notes(path); }, WithoutGil())
+      .def_static(
+          "parse",
+          [](const std::string& text, const std::string& file_name, const std::string& base_dir) {
+            return datasets::parse_scenario_with_notes(text, file_name, base_dir);
+          },
+          WithoutGil())
+      .def(
+          "to_json", [](const LoadedScenario& s) { return datasets::write_scenario(s.scenario); }, WithoutGil())
       .def("problems", [](const LoadedScenario& s) { return problems_of(s.scenario); })
-      .def("warnings",
-           [](const LoadedScenario& s) {
-             const py::gil_scoped_release released;
-             return formation::warnings_before(s.scenario);
-           })
+      .def(
+          "warnings", [](const LoadedScenario& s) { return formation::warnings_before(s.scenario); }, WithoutGil())
       .def_property_readonly("name", [](const LoadedScenario& s) { return s.scenario.name; })
       .def_property_readonly("notes", [](const LoadedScenario& s) { return s.notes; })
       .def("obstacles", [](const LoadedScenario& s) { return Obstacles{s.scenario.obstacles}; })
@@ -209,23 +187,23 @@ void bind_simulate(py::module_& module) {
         return result;
       });
   py::class_<Run> run_class(module, "Run");
-  run_class.def_static("read", &read_run)
-      .def_static("parse", &parse_run)
-      .def("write",
-           [](const Run& run, const std::string& path) {
-             const py::gil_scoped_release released;
-             datasets::write_recording(path, run.file);
-           })
+  run_class
+      .def_static(
+          "read", [](const std::string& path) { return recorded(datasets::read_recording(path)); }, WithoutGil())
+      .def_static(
+          "parse", [](const std::string& text) { return recorded(datasets::parse_recording(text, "<pickled>")); },
+          WithoutGil())
+      .def(
+          "write", [](const Run& run, const std::string& path) { datasets::write_recording(path, run.file); },
+          WithoutGil())
       .def_property_readonly("time",
                              [](const py::object& self) {
                                const Run& run = self.cast<const Run&>();
                                return view(run.time, {static_cast<py::ssize_t>(run.time.size())}, self);
                              })
-      .def("metrics_json",
-           [](const Run& run) {
-             const py::gil_scoped_release released;
-             return datasets::metrics_json(run.file.info, run.metrics);
-           })
+      .def(
+          "metrics_json", [](const Run& run) { return datasets::metrics_json(run.file.info, run.metrics); },
+          WithoutGil())
       .def_property_readonly("outcome", [](const Run& run) { return run.metrics.outcome; })
       .def_property_readonly("method", [](const Run& run) { return run.file.info.method; })
       .def_property_readonly("warnings", [](const Run& run) { return run.metrics.warnings; })
@@ -235,10 +213,8 @@ void bind_simulate(py::module_& module) {
            })
       .def("half_planes", &half_planes)
       .def("plans", &plans)
-      .def("audit", [](const Run& run) {
-        const py::gil_scoped_release released;
-        return datasets::to_json(datasets::audit(run.file));
-      });
+      .def(
+          "audit", [](const Run& run) { return datasets::to_json(datasets::audit(run.file)); }, WithoutGil());
   def_column(run_class, "position", &Run::position, true);
   def_column(run_class, "velocity", &Run::velocity, true);
   def_column(run_class, "preferred", &Run::preferred, true);
@@ -246,11 +222,11 @@ void bind_simulate(py::module_& module) {
   def_column(run_class, "status", &Run::status, false);
   def_column(run_class, "mode", &Run::mode, false);
   module.def("simulate", &simulate);
-  module.def("explorer_page", &explorer_page);
-  module.def("write_text", [](const std::string& path, const std::string& text) {
-    const py::gil_scoped_release released;
-    datasets::write_file_atomically(path, text);
-  });
+  module.def("explorer_page", &explorer_page, WithoutGil());
+  module.def(
+      "write_text",
+      [](const std::string& path, const std::string& text) { datasets::write_file_atomically(path, text); },
+      WithoutGil());
   module.def("method_names", &formation::method_names);
   module.attr("mode_names") = [] {
     std::vector<std::string> names;
