@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "exactvo/geometry/distance.h"
+#include "preflight/open_window.h"
 #include "scene/edges_by_place.h"
 #include "steering/goals.h"
 
@@ -20,8 +21,9 @@ namespace {
 
 using geometry::Segment;
 
-constexpr std::size_t kMostSquares = 4000;      ///< of a robot: about 250 squares of its radius
-constexpr std::size_t kMostLooks = 200000;      ///< at squares, in all: 0.1 s
+constexpr std::size_t kMostSquares = 4000;  ///< of a robot: about 250 squares of its radius
+constexpr std::size_t kMostLooks = 200000;  ///< at squares, in all: 0.1 s
+constexpr std::size_t kMostLooksOfCover = 8 * (kMostSquares + 1);
 constexpr std::size_t kMostPairs = 8000000;     ///< that are gone to, in all: half a second
 constexpr double kCoarsestSquare = 0.25;        ///< side of a square, of the smaller radius
 constexpr double kFinestSquare = 1.0 / 16.0;    ///< the same
@@ -99,6 +101,21 @@ class Walls {
 
   /// The same of a single point.
   bool exclude(Vec2 p, double radius) const { return exclude_hull({p}, radius); }
+
+  /// Whether a disc that starts in the square has more than `kMostSquares` to go to, none of which is excluded; false
+  /// where that takes a closer look.
+  bool leave_open(Square start, double side, double radius) const {
+    // Beyond it a coordinate of an edge could be off by a thousandth of a square.
+    constexpr double kMost = 0x1p40;
+    if (edges_.largest_with({}) > kMost * side) return false;
+    constexpr int kColumn = detail::OpenWindow::kColumns / 2, kRow = detail::OpenWindow::kRows / 2;
+    detail::OpenWindow window(start.x - kColumn, start.y - kRow, side);
+    const geometry::Box box = window.box();
+    const double margin = radius + 2.0 * side;
+    edges_.grid().for_each_meeting({box.low - Vec2{margin, margin}, box.high + Vec2{margin, margin}},
+                                   [&](std::size_t k) { window.take_away(edges_[k], radius); });
+    return window.has_more_than(kMostSquares + 1, kColumn, kRow);
+  }
 
  private:
   bool exclude_hull(std::initializer_list<Vec2> corners, double radius) const {
@@ -219,7 +236,11 @@ PairSearch search(const Traveller& a, const Traveller& b, std::size_t most) {
 
 class Proofs {
  public:
-  explicit Proofs(const Scenario& scenario) : scenario_(scenario), walls_(scenario.obstacles) {}
+  /// `spares`: makes no cover of a robot that stands in the open.
+  Proofs(const Scenario& scenario, bool spares) : scenario_(scenario), walls_(scenario.obstacles), spares_(spares) {}
+
+  /// Whether the covers that were spared could not have used up the looks: without sparing the same is found.
+  bool is_sure() const { return looks_left_ > spared_; }
 
   /// Whether proofs about this robot are looked for. Who starts in a wall is pushed out of it: nothing holds it in its
   /// cover.
@@ -265,6 +286,10 @@ class Proofs {
     for (const Cover& c : covers_)
       if (c.radius == r.radius && c.side == side && is_in(c, robot)) return c.is_whole ? &c : nullptr;
     if (looks_left_ == 0) return nullptr;
+    if (spares_ && walls_.leave_open(square_at(r.position, side), side, r.radius)) {
+      spared_ += kMostLooksOfCover;
+      return nullptr;
+    }
     covers_.push_back(cover_from(r.position, r.radius, side, walls_, looks_left_));
     return covers_.back().is_whole ? &covers_.back() : nullptr;
   }
@@ -285,21 +310,31 @@ class Proofs {
   Walls walls_;
   std::deque<Cover> covers_;
   std::size_t looks_left_ = kMostLooks, pairs_left_ = kMostPairs;
+  bool spares_;
+  std::size_t spared_ = 0;  ///< looks, at most
 };
+
+/// Nothing where sparing could change what is found.
+std::optional<std::vector<NoPassing>> without_passing(const Scenario& scenario, bool spares) {
+  Proofs proofs(scenario, spares);
+  const auto is_sure = [&] { return !spares || proofs.is_sure(); };
+  std::vector<std::size_t> asked;
+  for (std::size_t i = 0; i < scenario.robots.size() && is_sure(); ++i)
+    if (proofs.has_little_room(i)) asked.push_back(i);
+  std::vector<NoPassing> all;
+  for (std::size_t k = 0; k < asked.size() && is_sure(); ++k)
+    for (std::size_t l = k + 1; l < asked.size(); ++l)
+      if (std::optional<NoPassing> proof = proofs.of(asked[k], asked[l])) all.push_back(std::move(*proof));
+  if (!is_sure()) return std::nullopt;
+  return all;
+}
 
 }  // namespace
 
 std::vector<NoPassing> robots_without_passing(const Scenario& scenario) {
-  std::vector<NoPassing> all;
-  if (scenario.formation || scenario.obstacles.empty() || scenario.robots.size() < 2) return all;
-  Proofs proofs(scenario);
-  std::vector<std::size_t> asked;
-  for (std::size_t i = 0; i < scenario.robots.size(); ++i)
-    if (proofs.has_little_room(i)) asked.push_back(i);
-  for (std::size_t k = 0; k < asked.size(); ++k)
-    for (std::size_t l = k + 1; l < asked.size(); ++l)
-      if (std::optional<NoPassing> proof = proofs.of(asked[k], asked[l])) all.push_back(std::move(*proof));
-  return all;
+  if (scenario.formation || scenario.obstacles.empty() || scenario.robots.size() < 2) return {};
+  if (std::optional<std::vector<NoPassing>> all = without_passing(scenario, true)) return std::move(*all);
+  return *without_passing(scenario, false);
 }
 
 std::string words_of(const Scenario& scenario, const NoPassing& proof) {
