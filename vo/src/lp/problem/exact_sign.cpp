@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+
+#include "lp/proof/double_double.h"
 
 namespace exactvo::lp {
 namespace {
@@ -15,6 +18,42 @@ int sign_of_double(double x) {
   return (x > 0.0) - (x < 0.0);
 }
 
+/// Between these the product of two is exact as two doubles (double_double.h).
+constexpr double kLeastFactor = 0x1p-400, kMostFactor = 0x1p400;
+
+bool have_exact_products(std::initializer_list<double> factors) {
+  return std::all_of(factors.begin(), factors.end(),
+                     [](double x) { return x == 0.0 || (std::abs(x) >= kLeastFactor && std::abs(x) <= kMostFactor); });
+}
+
+/// A sum of up to three products, exact: doubles none of which overlaps another, in order of magnitude, without zeros
+/// (Shewchuk, Adaptive precision floating-point arithmetic, 1997: GROW-EXPANSION with zero elimination).
+class ExactSum {
+ public:
+  /// REQUIRES: they have exact products.
+  void add_product(double a, double b) {
+    const DoubleDouble product = exact_product(a, b);
+    add(product.low);
+    add(product.high);
+  }
+  int sign() const { return count_ == 0 ? 0 : sign_of_double(parts_[count_ - 1]); }
+
+ private:
+  void add(double x) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < count_; ++k) {
+      const DoubleDouble sum = exact_sum(x, parts_[k]);
+      x = sum.high;
+      if (sum.low != 0.0) parts_[kept++] = sum.low;
+    }
+    if (x != 0.0) parts_[kept++] = x;
+    count_ = kept;
+  }
+
+  double parts_[6];
+  std::size_t count_ = 0;
+};
+
 }  // namespace
 
 int sign_of_violation(const HalfPlane& h, Vec2 v) {
@@ -23,6 +62,13 @@ int sign_of_violation(const HalfPlane& h, Vec2 v) {
   const double rounded = h.offset - (px + py);
   const double error = kSignError * (std::abs(px) + std::abs(py) + std::abs(h.offset)) + kSignUnderflow;
   if (std::abs(rounded) > error) return sign_of_double(rounded);
+  if (have_exact_products({h.offset, h.normal.x, h.normal.y, v.x, v.y})) {
+    ExactSum sum;
+    sum.add_product(h.offset, 1.0);
+    sum.add_product(-h.normal.x, v.x);
+    sum.add_product(-h.normal.y, v.y);
+    return sum.sign();
+  }
   return static_cast<int>(
       CGAL::sign(Exact(h.offset) - Exact(h.normal.x) * Exact(v.x) - Exact(h.normal.y) * Exact(v.y)));
 }
@@ -33,6 +79,13 @@ int sign_of_excess_speed(Vec2 v, double radius) {
   const double limit = radius * radius;
   const double error = kSignError * (speed + limit) + kSignUnderflow;
   if (std::abs(speed - limit) > error) return sign_of_double(speed - limit);
+  if (have_exact_products({v.x, v.y, radius})) {
+    ExactSum sum;
+    sum.add_product(v.x, v.x);
+    sum.add_product(v.y, v.y);
+    sum.add_product(-radius, radius);
+    return sum.sign();
+  }
   const Exact x(v.x), y(v.y), r(radius);
   return static_cast<int>(CGAL::sign(x * x + y * y - r * r));
 }

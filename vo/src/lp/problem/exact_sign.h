@@ -2,8 +2,9 @@
 #pragma once
 
 /// \file
-/// Exact signs for doubles taken as the rationals they are: a round-to-nearest filter, then integers of any length.
-/// From them, which constraints a velocity satisfies, and which an answer has to.
+/// Exact signs for doubles taken as the rationals they are: a round-to-nearest filter, then sums of doubles without
+/// rounding, and outside of their range integers of any length. From them, which constraints a velocity satisfies, and
+/// which an answer has to.
 
 #include "exactvo/vo/lp/problem.h"
 #include "exactvo/vo/lp/solution.h"
