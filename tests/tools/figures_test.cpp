@@ -17,7 +17,6 @@
 #include "figures/lyapunov_figure.h"
 #include "figures/paths_figure.h"
 #include "figures/run_figures.h"
-#include "figures/series_figures.h"
 #include "figures/sheet.h"
 #include "figures/template.h"
 

@@ -334,10 +334,9 @@ std::string live_free_velocities(const LiveQuestion& question) {
 std::string live_run(const LiveQuestion& question, const std::function<void()>& goes_on) {
   formation::SimulationOptions options = question.options;
   options.record_all = true;
-  RunOutput output;
-  output.figures = false;
-  output.page = true;
-  output.page_limits.has_scenario = true;
+  PackedRunLimits limits;
+  limits.has_scenario = true;
+  RunOutput output = for_page(limits);
   output.progress = [&](double) { goes_on(); };
   return run(question.scenario, options, provenance(), output).packed;
 }

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "explorer/packed_run.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/waiting.h"
-#include "explorer/deflate.h"
 #include "explorer/packed_columns.h"
 #include "explorer/packed_head.h"
 
@@ -85,12 +87,6 @@ std::uint8_t flags_of(const RecordedConstraint& c) {
   return static_cast<std::uint8_t>((c.certified ? 1 : 0) | (c.hard ? 2 : 0) | (c.active ? 4 : 0));
 }
 
-template <class Value>
-void keep_every_second(std::vector<Value>& all) {
-  for (std::size_t k = 1; 2 * k < all.size(); ++k) all[k] = std::move(all[2 * k]);
-  all.resize((all.size() + 1) / 2);
-}
-
 void add_decisions(const std::vector<Step>& rows, const formation::Scenario& scenario, PackedColumns& columns) {
   std::vector<double> time, moving, state, violation, pressed, line, tau, clearance, multiplier;
   std::vector<std::uint32_t> counts, parts, waits, body, index, piece;
@@ -148,6 +144,18 @@ void add_decisions(const std::vector<Step>& rows, const formation::Scenario& sce
   columns.add("half_plane.tau", tau, 0);
   columns.add("half_plane.clearance", clearance, 0);
   columns.add("half_plane.multiplier", multiplier, 0);
+}
+
+/// In zlib's format (RFC 1950), which ends in a checksum.
+std::string deflated(const std::string& bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string out(size, '\0');
+  const int result =
+      compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                static_cast<uLong>(bytes.size()), Z_DEFAULT_COMPRESSION);
+  if (result != Z_OK) throw std::runtime_error("zlib: compress2 failed with " + std::to_string(result));
+  out.resize(size);
+  return out;
 }
 
 std::string whole(const Json& head, const std::string& columns) {

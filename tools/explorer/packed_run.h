@@ -22,6 +22,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactvo/datasets/recording_file.h"
@@ -38,6 +39,13 @@ struct PackedRunLimits {
   std::size_t routed_vertices = 2000;       ///< the same, of obstacles: planning again must cost little
   bool has_scenario = false;  ///< whether the whole scenario is in it, for a page that asks to compute with it
 };
+
+/// The first, the third and so on.
+template <class Value>
+void keep_every_second(std::vector<Value>& all) {
+  for (std::size_t k = 1; 2 * k < all.size(); ++k) all[k] = std::move(all[2 * k]);
+  all.resize((all.size() + 1) / 2);
+}
 
 /// Takes rows as they are made, in memory bounded by its limits.
 class RunPacker {

@@ -24,6 +24,10 @@ struct PanelLayers {
 
   /// `text` where the panel has a legend of its own.
   std::string key(const std::string& text) const { return detailed ? text : ""; }
+  /// Draws a data set whose first two columns are x and y; `how` is what gnuplot has after them.
+  void draw(int index, const std::string& how, const std::string& title = "") {
+    plot.data(index, origin.using_columns() + " " + how, title);
+  }
   /// Whether it lies no farther beyond the view than gnuplot can bear.
   bool is_drawable(Vec2 p) const;
 

@@ -45,8 +45,7 @@ class RobotLayers {
     if (!to_.run.scenario.formation) return;
     const int index = to_.data.begin("virtual leader", "x [m], y [m]");
     for (const Step& step : to_.run.recording.steps) to_.data.row({step.leader_position.x, step.leader_position.y});
-    to_.plot.data(index, to_.origin.using_columns() + " with lines lw 1.5 dt (2,4) lc rgb 'black'",
-                  to_.key("virtual leader"));
+    to_.draw(index, "with lines lw 1.5 dt (2,4) lc rgb 'black'", to_.key("virtual leader"));
   }
 
   /// Where there is room, after the robots' times; the first and the last have theirs in any case.
@@ -78,10 +77,9 @@ class RobotLayers {
       if (!to_.is_drawable(p)) break;
       to_.data.row({p.x, p.y, step.time});
     }
-    to_.plot.data(way,
-                  fmt::format("{} with lines lw {}{} lc rgb '{}'", to_.origin.using_columns(), to_.detailed ? 2.5 : 1.5,
-                              series_dash(i), series_colour(i)),
-                  to_.key(shortened(robot.id, kLegendName)));
+    to_.draw(way,
+             fmt::format("with lines lw {}{} lc rgb '{}'", to_.detailed ? 2.5 : 1.5, series_dash(i), series_colour(i)),
+             to_.key(shortened(robot.id, kLegendName)));
     add_places(i);
   }
 
@@ -183,10 +181,10 @@ class RobotLayers {
     if (marks.empty()) return;
     const int index = to_.data.begin("collisions: where they were deepest", "x [m], y [m]");
     to_.data.rows(marks);
-    to_.plot.data(index,
-                  fmt::format("{} with points pt 1 ps {} lw {} lc rgb '{}'", to_.origin.using_columns(),
-                              to_.detailed ? 2.5 : 1.2, to_.detailed ? 4 : 2, kCollisionColour),
-                  to_.key("collision"));
+    to_.draw(index,
+             fmt::format("with points pt 1 ps {} lw {} lc rgb '{}'", to_.detailed ? 2.5 : 1.2, to_.detailed ? 4 : 2,
+                         kCollisionColour),
+             to_.key("collision"));
   }
 
   void add_goals() {
@@ -196,8 +194,8 @@ class RobotLayers {
       if (robot.goals.empty()) continue;
       const int index = to_.data.begin("goals of " + robot.id, "x [m], y [m]");
       to_.data.rows(robot.goals);
-      to_.plot.data(index, fmt::format("{} with points pt 2 ps {} lw {} lc rgb '{}'", to_.origin.using_columns(),
-                                       to_.detailed ? 1.3 : 0.8, to_.detailed ? 2.5 : 1.5, series_colour(i)));
+      to_.draw(index, fmt::format("with points pt 2 ps {} lw {} lc rgb '{}'", to_.detailed ? 1.3 : 0.8,
+                                  to_.detailed ? 2.5 : 1.5, series_colour(i)));
       any = true;
     }
     if (any && to_.detailed) to_.plot.item("keyentry with points pt 2 ps 1.3 lw 2.5 lc rgb '#222222'", "goal");

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "exactvo/formation/passing.h"
 #include "figures/panel_layers.h"
-#include "figures/passing_area.h"
 #include "figures/style.h"
 #include "support/routes_of_run.h"
 
@@ -41,11 +42,9 @@ void add_polygons(PanelLayers& to) {
     for (const geometry::Ring& hole : polygon->holes) to.data.ring(hole);
   }
   if (!in_view) return;
-  to.plot.data(inside,
-               fmt::format("{} with filledcurves closed fc rgb '{}' fs solid noborder", to.origin.using_columns(),
-                           kObstacleFill),
-               to.key("obstacle"));
-  to.plot.data(border, fmt::format("{} with lines lw 1 lc rgb '{}'", to.origin.using_columns(), kObstacleLine));
+  to.draw(inside, fmt::format("with filledcurves closed fc rgb '{}' fs solid noborder", kObstacleFill),
+          to.key("obstacle"));
+  to.draw(border, fmt::format("with lines lw 1 lc rgb '{}'", kObstacleLine));
 }
 
 void add_walls(PanelLayers& to) {
@@ -54,10 +53,7 @@ void add_walls(PanelLayers& to) {
     const auto* wall = std::get_if<geometry::Polyline>(&obstacle.shape);
     if (wall != nullptr) to.data.curve(wall->points);
   }
-  to.plot.data(
-      index,
-      fmt::format("{} with lines lw {} lc rgb '{}'", to.origin.using_columns(), to.detailed ? 4 : 2.5, kObstacleLine),
-      to.key("wall"));
+  to.draw(index, fmt::format("with lines lw {} lc rgb '{}'", to.detailed ? 4 : 2.5, kObstacleLine), to.key("wall"));
 }
 
 void add_obstacles(PanelLayers& to) {
@@ -78,11 +74,8 @@ void add_moving_obstacles(PanelLayers& to) {
     for (const Step* mark : marks) to.data.rows({middle_at(obstacle, mark->time)});
     to.data.gap();
   }
-  to.plot.data(index,
-               fmt::format("{} with lines lw 1.5 dt (8,3) lc rgb '{}'", to.origin.using_columns(), kObstacleLine),
-               to.key("moving obstacle"));
-  to.plot.data(ways, fmt::format("{} with linespoints lw 1 pt 7 ps 0.5 dt (2,3) lc rgb '{}'", to.origin.using_columns(),
-                                 kObstacleLine));
+  to.draw(index, fmt::format("with lines lw 1.5 dt (8,3) lc rgb '{}'", kObstacleLine), to.key("moving obstacle"));
+  to.draw(ways, fmt::format("with linespoints lw 1 pt 7 ps 0.5 dt (2,3) lc rgb '{}'", kObstacleLine));
 }
 
 bool add_enclosures_of(PanelLayers& to, std::size_t i) {
@@ -92,8 +85,7 @@ bool add_enclosures_of(PanelLayers& to, std::size_t i) {
   if (rings.empty()) return false;
   const int index = to.data.begin("enclosures seen by " + to.run.scenario.robots[i].id, "x [m], y [m]");
   for (const Points& ring : rings) to.data.ring(ring);
-  to.plot.data(index,
-               fmt::format("{} with lines lw 1.2 dt (6,5) lc rgb '{}'", to.origin.using_columns(), series_colour(i)));
+  to.draw(index, fmt::format("with lines lw 1.2 dt (6,5) lc rgb '{}'", series_colour(i)));
   return true;
 }
 
@@ -111,7 +103,7 @@ bool add_routes_of(PanelLayers& to, std::size_t i, const std::vector<formation::
   for (const formation::PlannedRoute& route : routes)
     if (route.robot == i) to.data.curve(route.points);
   const std::string pale = std::string("#c0") + (series_colour(i) + 1);
-  to.plot.data(index, fmt::format("{} with lines lw 7 lc rgb '{}'", to.origin.using_columns(), pale));
+  to.draw(index, fmt::format("with lines lw 7 lc rgb '{}'", pale));
   return true;
 }
 
@@ -127,10 +119,10 @@ void add_chains(PanelLayers& to, const std::vector<formation::PlannedRoute>& rou
       for (std::size_t k = 0; k < route.chain.size(); ++k)
         if (route.chain[k].gap_follows == across)
           to.data.curve({route.chain[k].point.rounded, route.chain[(k + 1) % route.chain.size()].point.rounded});
-    to.plot.data(index,
-                 fmt::format("{} with lines lw {}{} lc rgb '{}'", to.origin.using_columns(), across ? 2.5 : 3.5,
-                             across ? " dt (4,3)" : "", kSeparatorColour),
-                 across ? "gap, too narrow" : "closed chain");
+    to.draw(
+        index,
+        fmt::format("with lines lw {}{} lc rgb '{}'", across ? 2.5 : 3.5, across ? " dt (4,3)" : "", kSeparatorColour),
+        across ? "gap, too narrow" : "closed chain");
   }
 }
 
@@ -144,15 +136,40 @@ void add_routes(PanelLayers& to) {
   add_chains(to, routes);
 }
 
+bool all_arrived(const RecordingFile& run) {
+  const std::vector<formation::RobotStep>& last = run.recording.steps.back().robots;
+  return std::all_of(last.begin(), last.end(),
+                     [](const formation::RobotStep& r) { return r.mode == formation::Mode::arrived; });
+}
+
+/// Where robots of a run that did not all arrive are proven to have no room to pass each other, proven again from the
+/// scenario: rectangles, m, that cover the places of a robot of the first pair; empty where nothing is proven.
+std::vector<Points> passing_area(const RecordingFile& run) {
+  if (run.recording.steps.empty() || all_arrived(run)) return {};
+  const std::vector<formation::NoPassing> proofs = formation::robots_without_passing(run.scenario);
+  if (proofs.empty()) return {};
+  const double side = proofs[0].side;
+  std::vector<Vec2> corners = proofs[0].squares;
+  std::sort(corners.begin(), corners.end(), [](Vec2 a, Vec2 b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
+  std::vector<Points> rectangles;  // squares side by side are one
+  for (std::size_t from = 0, to = 0; from < corners.size(); from = to) {
+    for (to = from + 1;
+         to < corners.size() && corners[to].y == corners[from].y && corners[to].x == corners[to - 1].x + side;)
+      ++to;
+    const Vec2 low = corners[from], high{corners[to - 1].x + side, low.y + side};
+    rectangles.push_back({low, {high.x, low.y}, high, {low.x, high.y}});
+  }
+  return rectangles;
+}
+
 void add_passing_area(PanelLayers& to) {
   const std::vector<Points> area = passing_area(to.run);
   if (area.empty()) return;
   const int index = to.data.begin("no room to pass: where robots can be that would have to", "x [m], y [m]");
   for (const Points& rectangle : area) to.data.ring(rectangle);
-  to.plot.data(index,
-               fmt::format("{} with filledcurves closed fc rgb '{}' fs transparent solid 0.15 noborder",
-                           to.origin.using_columns(), kSeparatorColour),
-               "no room to pass");
+  to.draw(index,
+          fmt::format("with filledcurves closed fc rgb '{}' fs transparent solid 0.15 noborder", kSeparatorColour),
+          "no room to pass");
 }
 
 }  // namespace

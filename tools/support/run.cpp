@@ -87,6 +87,14 @@ std::string FinishedRun::metrics_json() const {
   return datasets::metrics_json(file.info, metrics);
 }
 
+RunOutput for_page(const PackedRunLimits& limits) {
+  RunOutput output;
+  output.figures = false;
+  output.page = true;
+  output.page_limits = limits;
+  return output;
+}
+
 FinishedRun run(const Scenario& scenario, SimulationOptions options, const datasets::Provenance& provenance,
                 const RunOutput& output) {
   options.progress = [&](double time) {

@@ -37,6 +37,9 @@ struct RunOutput {
   PackedRunLimits page_limits = {};  ///< of what it holds
 };
 
+/// What makes a page and nothing else.
+RunOutput for_page(const PackedRunLimits& limits);
+
 /// Runs the scenario and measures it, and writes recording.jsonl, trajectory.csv, metrics.json and, of a formation,
 /// lyapunov.csv as it goes: memory does not grow with the run. Throws Interrupted where the user stopped it.
 FinishedRun run(const formation::Scenario& scenario, formation::SimulationOptions options,

@@ -28,12 +28,6 @@ Step without_half_planes(const Step& row) {
   return shown;
 }
 
-template <typename T>
-void keep_every_second(std::vector<T>& all) {
-  for (std::size_t k = 1; 2 * k < all.size(); ++k) all[k] = std::move(all[2 * k]);
-  all.resize((all.size() + 1) / 2);
-}
-
 }  // namespace
 
 void ShownRows::add(const Step& row, const LyapunovRow* lyapunov) {

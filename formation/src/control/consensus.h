@@ -19,6 +19,9 @@ struct RelativeState {
   std::vector<Vec2> velocity;  ///< m/s
 };
 
+/// The options of a run's controller: those that the run was given, else the controller's with the scenario's switches.
+Remedies remedies_in_use(const Scenario& scenario, const SimulationOptions& options);
+
 /// Delta_i as the controller uses them: recentred where the scenario and the remedies both say so.
 std::vector<Vec2> offsets_in_use(const FormationSpec& spec, const Remedies& remedies);
 

@@ -14,8 +14,8 @@
 #include "metrics/clearances.h"
 #include "metrics/divergence.h"
 #include "metrics/metrics_accumulator.h"
-#include "metrics/outcome_words.h"
 #include "runs/rows.h"
+#include "scene/number_text.h"
 
 namespace exactvo::formation {
 namespace {
@@ -41,6 +41,48 @@ Recording beginning_of(const Recording& run) {
   known.relative_frame = run.relative_frame;
   known.offsets = run.offsets;
   return known;
+}
+
+/// "R1 overlapped moving obstacle 'cart' by 1.4 m at 2.5 s".
+std::string sentence(const Collision& c) {
+  return c.robot + " overlapped " + name(c.kind) + " '" + c.with + "' by " + detail::number_text(c.depth, 3) +
+         " m at " + detail::number_text(c.deepest_at, 3) + " s";
+}
+
+std::string of_collisions(const Metrics& m) {
+  if (m.collisions.empty()) return "";
+  const auto deepest = std::max_element(m.collisions.begin(), m.collisions.end(),
+                                        [](const Collision& a, const Collision& b) { return a.depth < b.depth; });
+  std::string text = "COLLISION: " + sentence(*deepest);
+  const auto relaxed = static_cast<std::size_t>(
+      std::count_if(m.collisions.begin(), m.collisions.end(), [](const Collision& c) { return c.relaxed; }));
+  const std::size_t all = m.collisions.size();
+  if (all > 1) text += ", the deepest of " + std::to_string(all) + " collisions";
+  if (relaxed > 0) {
+    text += all == 1 ? ", in a relaxed decision" : ", " + std::to_string(relaxed) + " of them in relaxed decisions";
+    text += " (no velocity kept every half-plane)";
+  }
+  return text + "; ";
+}
+
+std::string of_detours(const Metrics& m) {
+  if (!m.formation_course) return "";
+  std::string text;
+  for (const RobotMetrics& r : m.robots) {
+    const double detour = r.detour.value_or(0.0);
+    if (!(detour > 1.0 && detour > kLongDetour * (r.path_length - detour))) continue;
+    text += "; " + r.id + " went a detour of " + detail::number_text(detour, 3) + " m, up to " +
+            detail::number_text(r.largest_slot_error.value_or(0.0), 3) + " m from its slot";
+  }
+  if (!text.empty() && m.formation_course->formed_since)
+    text += "; the formation holds since " + detail::number_text(*m.formation_course->formed_since, 3) + " s";
+  return text;
+}
+
+/// How a run ended, from its measurements and from what the run says: collisions first, so that nothing sounds like
+/// success where it was none; long detours of a formation last.
+std::string outcome_words(const Metrics& m, const std::string& end) {
+  return of_collisions(m) + end + of_detours(m);
 }
 
 }  // namespace
@@ -101,8 +143,8 @@ Evaluation Evaluator::finish(const Recording& run) {
   if (parts_->lyapunov) m.lyapunov = parts_->lyapunov->summary();
   const std::vector<std::size_t> deadlock = parts_->stuck.deadlock();
   for (const std::size_t robot : deadlock) m.deadlock.push_back(parts_->scenario.robots[robot].id);
-  m.outcome = detail::outcome_words(
-      m, run.outcome + (deadlock.empty() ? "" : "; " + deadlock_words(parts_->scenario, deadlock)));
+  m.outcome =
+      outcome_words(m, run.outcome + (deadlock.empty() ? "" : "; " + deadlock_words(parts_->scenario, deadlock)));
   return found;
 }
 
@@ -119,6 +161,11 @@ Evaluation evaluate(const Scenario& scenario, const Recording& recording) {
   Evaluation found = evaluator.finish(recording);
   found.lyapunov = std::move(lyapunov);
   return found;
+}
+
+const char* name(CollisionKind kind) {
+  constexpr const char* kNames[] = {"obstacle", "moving obstacle", "robot"};
+  return kNames[static_cast<int>(kind)];
 }
 
 bool has_diverged(const Recording& recording) {

@@ -19,7 +19,6 @@
 #include "scene/moving.h"
 #include "scene/number_text.h"
 #include "scene/static_field.h"
-#include "steering/remedies.h"
 #include "steering/slot_follower.h"
 #include "steering/steering.h"
 

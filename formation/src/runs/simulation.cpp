@@ -13,7 +13,6 @@
 #include "preflight/reachability.h"
 #include "runs/runs.h"
 #include "steering/guide.h"
-#include "steering/remedies.h"
 
 namespace exactvo::formation {
 namespace {

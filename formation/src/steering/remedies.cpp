@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exactvo/formation/remedies.h"
 
+#include "control/consensus.h"
 #include "exactvo/formation/simulation.h"
-#include "steering/remedies.h"
 
 namespace exactvo::formation {
 namespace {

@@ -5,12 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "control/consensus.h"
 #include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
 #include "exactvo/vo/orca_obstacle.h"
 #include "scene/static_field.h"
-#include "steering/goals.h"
-#include "steering/remedies.h"
 #include "traps/boundary.h"
 #include "traps/concave_vertex.h"
 
@@ -282,6 +281,13 @@ class Examination {
   std::vector<geometry::GrownShape> grown_;
 };
 
+/// What the enclosures of a robot are fitted for at the start: its first goal, or its slot at the leader's end.
+Vec2 first_goal(const Scenario& scenario, const SimulationOptions& options, std::size_t robot) {
+  if (!scenario.formation) return scenario.robots[robot].goals.front();
+  return scenario.formation->leader.path.back() +
+         detail::offsets_in_use(*scenario.formation, detail::remedies_in_use(scenario, options))[robot];
+}
+
 /// The enclosures of one robot with their numbers, and of the method ivo-edge the facades they stand on.
 std::vector<TrapPlace> places_of(const detail::StaticField& field, const detail::Scene& scene, Method method) {
   std::vector<TrapPlace> places;
@@ -329,7 +335,7 @@ std::vector<TrapFinding> trap_test(const Scenario& scenario, const SimulationOpt
   std::vector<TrapFinding> findings;
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const Robot& robot = scenario.robots[i];
-    const Vec2 goal = detail::first_goal(scenario, options, i);
+    const Vec2 goal = first_goal(scenario, options, i);
     const detail::StaticField field(scene, scenario, options, robot.radius, robot.position, goal,
                                     detail::HorizonRule::clamped);
     for (std::size_t k = 0; k < facades.size(); ++k) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "exactvo/datasets/data_error.h"
@@ -16,10 +17,11 @@
 #include "support/unsigned_zero.h"
 #include "support/usage.h"
 #include "verb.h"
-#include "verbs/lp/lines.h"
 
 namespace exactvo::tools {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 struct LpFlags {
   std::string file;
@@ -32,6 +34,40 @@ double thread_nanoseconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+}
+
+Json name_of(const lp::Binding& binding) {
+  return is_speed_bound(binding) ? Json(name(binding.kind)) : Json(binding.index);
+}
+
+Json terms_json(const std::vector<lp::Term>& terms) {
+  Json list = Json::array();
+  for (const lp::Term& term : terms)
+    list.push_back({{"constraint", name_of(term.binding)}, {"multiplier", term.multiplier}});
+  return list;
+}
+
+Json certificate_json(const lp::Certificate& c) {
+  Json out = {{"bound", terms_json(c.bound)}, {"contradiction", terms_json(c.contradiction)}, {"gap", c.gap}};
+  if (c.status != lp::Status::no_interior) return out;
+  out["vertex"] = Json::array();
+  for (const lp::Binding& binding : c.vertex) out["vertex"].push_back(name_of(binding));
+  return out;
+}
+
+/// One result as a line of JSON; numbers read back to the same doubles.
+Json result_line(std::size_t index, const lp::Proven& answer) {
+  const lp::Solution& s = answer.solution;
+  Json out = {{"index", index},
+              {"status", name(s.status)},
+              {"velocity", {unsigned_zero(s.velocity.x), unsigned_zero(s.velocity.y)}},
+              {"violation", s.violation},
+              {"active", Json::array()}};
+  for (std::size_t k = 0; k < s.active_count; ++k) out["active"].push_back(name_of(s.active[k].binding));
+  out["multipliers"] = Json::array();
+  for (std::size_t k = 0; k < s.active_count; ++k) out["multipliers"].push_back(s.active[k].multiplier);
+  out["certificate"] = answer.certificate ? certificate_json(*answer.certificate) : Json();
+  return out;
 }
 
 struct Summary {

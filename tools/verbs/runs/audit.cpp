@@ -54,7 +54,7 @@ std::vector<fs::path> recordings_in(const std::string& path) {
 }
 
 /// What is asked at each point, in words.
-const char* in_words(datasets::AuditPoint point) {
+const char* words_of(datasets::AuditPoint point) {
   constexpr const char* kWords[] = {"the recording is of its scenario",
                                     "bodies contain the obstacles they stand for",
                                     "nothing within reach of a step lacks a half-plane",
@@ -72,7 +72,7 @@ std::string unlisted_lines(const datasets::AuditReport& report) {
     if (report.points[p].unlisted == 0) continue;
     text += fmt::format(
         "  ... and {} more of \"{}\" (of a recording, the first {} refuted and the first {} open ones are listed)\n",
-        report.points[p].unlisted, in_words(static_cast<datasets::AuditPoint>(p)), datasets::kMostAuditFindings,
+        report.points[p].unlisted, words_of(static_cast<datasets::AuditPoint>(p)), datasets::kMostAuditFindings,
         datasets::kMostAuditFindings);
   }
   return text;
@@ -82,7 +82,7 @@ std::string summary(const datasets::AuditReport& report) {
   std::string text;
   for (std::size_t p = 0; p < datasets::kAuditPoints; ++p) {
     const datasets::PointCount& n = report.points[p];
-    text += fmt::format("{}: {} asked, {} proven", in_words(static_cast<datasets::AuditPoint>(p)), n.asked(), n.proven);
+    text += fmt::format("{}: {} asked, {} proven", words_of(static_cast<datasets::AuditPoint>(p)), n.asked(), n.proven);
     if (n.refuted > 0) text += fmt::format(", {} refuted", n.refuted);
     if (n.open > 0) text += fmt::format(", {} left open", n.open);
     text += "\n";
@@ -103,7 +103,7 @@ std::string summary(const datasets::AuditReport& report) {
 
 // --- Recordings of crowds ---
 
-std::string in_words(const datasets::CrowdAuditReport& r) {
+std::string summary(const datasets::CrowdAuditReport& r) {
   std::string text = fmt::format(
       "{} of {}, {} judged: {} too fast\n"
       "pairs that were near, apart at the row before, and both kept: {}, {} overlapped; {} more not kept, nothing is "
@@ -180,10 +180,10 @@ Audited audited(const AuditFlags& flags, const std::vector<fs::path>& files, con
   return all;
 }
 
-std::string in_words(const Audited& all) {
+std::string summary(const Audited& all) {
   std::string text;
   if (all.runs) text += summary(*all.runs);
-  if (all.crowds) text += in_words(*all.crowds);
+  if (all.crowds) text += summary(*all.crowds);
   for (const std::string& file : all.cut_off) text += file + ": the file was cut off after the last row\n";
   return text;
 }
@@ -212,7 +212,7 @@ ExitCode audit_recordings(const AuditFlags& flags) {
   if (crowds == 0 && flags.sample > 0)
     throw UsageError("--sample", std::to_string(flags.sample), "a recording of a crowd, .evr");
   const Audited all = audited(flags, files, scenario ? &*scenario : nullptr);
-  print(flags.json ? to_json(all) : in_words(all));
+  print(flags.json ? to_json(all) : summary(all));
   const bool clean = (!all.runs || all.runs->clean()) && (!all.crowds || all.crowds->clean()) && all.cut_off.empty();
   return clean ? ExitCode::success : ExitCode::negative;
 }

@@ -3,17 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <thread>
 
 #include "paper/campaign.h"
 #include "paper/campaign_tables.h"
 #include "paper/report.h"
 #include "paper/section_five.h"
-#include "support/data_folder.h"
 #include "support/files.h"
 #include "support/parse_errors.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
+#include "support/usage.h"
 #include "verb.h"
 
 namespace exactvo::tools {
@@ -35,6 +37,23 @@ struct PaperFlags {
   const CLI::Option* fields_given = nullptr;
   const CLI::Option* jobs_given = nullptr;
 };
+
+/// PREFIX/bin/exactvo -> PREFIX/share/exactvo/data.
+fs::path installed_data() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path() : program.parent_path().parent_path() / EXACTVO_INSTALLED_DATA;
+}
+
+/// Where the paper's scenarios are: below --data; else in the installed folder beside the program; else in the sources
+/// that it was built from. Throws UsageError where they are in none of them.
+fs::path scenarios_for(const PaperFlags& flags) {
+  std::vector<fs::path> places{flags.data};
+  if (flags.data.empty()) places = {installed_data(), EXACTVO_SOURCE_DATA};
+  for (const fs::path& place : places)
+    if (fs::is_directory(place / "paper")) return place / "paper";
+  throw UsageError("--data", places.back().string(), "a folder that holds a folder 'paper'");
+}
 
 void note_unused(const PaperFlags& flags) {
   if (flags.fields_given->count() > 0 && !flags.ablations)
@@ -62,7 +81,7 @@ void check_earlier_files(const PaperFlags& flags) {
 
 /// What the report says of the campaigns changes with them.
 void renew_report(const PaperFlags& flags) {
-  const ReportData data(flags.out, flags.out, data_folder(flags.data, "paper"));
+  const ReportData data(flags.out, flags.out, scenarios_for(flags));
   if (!data.has_runs()) return;
   write_report(data, flags.out);
   message("renewed " + flags.out + "/report.html and report.md");
@@ -70,8 +89,7 @@ void renew_report(const PaperFlags& flags) {
 
 ExitCode section_five(const PaperFlags& flags) {
   StagedFolder folder(flags.out);
-  const SectionFiveOptions options{data_folder(flags.data, "paper"), command_line(), flags.seed, flags.json,
-                                   flags.no_figures};
+  const SectionFiveOptions options{scenarios_for(flags), command_line(), flags.seed, flags.json, flags.no_figures};
   const std::string summary = run_section_five(options, folder.path());
   if (interrupted()) throw Interrupted();
   // The campaigns' pictures, where an earlier command left some, are found beside those of this one.
@@ -114,7 +132,7 @@ ExitCode campaigns(const PaperFlags& flags) try {
   }
   if (flags.ablations) {
     const CampaignOptions options = campaign_options(flags, "ablations", flags.fields);
-    const CampaignFiles files = ablations(options, data_folder(flags.data, "paper"));
+    const CampaignFiles files = ablations(options, scenarios_for(flags));
     write_campaign(files, fs::path(flags.out) / "ablations", "ablations");
     if (!flags.no_figures) draw_campaign(files, fs::path(flags.out) / "ablations");
     say(flags, files);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -12,13 +13,13 @@
 #include "explorer/page.h"
 #include "support/escape.h"
 #include "support/files.h"
+#include "support/rank_watch.h"
 #include "support/run.h"
 #include "support/simulation_flags.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
-#include "verbs/runs/over_ranks.h"
 #include "verbs/runs/simulate_crowd.h"
 
 namespace exactvo::tools {
@@ -190,6 +191,23 @@ ExitCode simulate(const SimulateFlags& flags, formation::Ranks* ranks) {
       flags.out.empty() ? run_and_print(flags, read, options) : run_into_folder(flags, read, options);
   const bool failed = flags.fail_on_collision && !finished.metrics.collisions.empty();
   return failed ? ExitCode::negative : ExitCode::success;
+}
+
+/// Runs `work` in every rank. What the first that fails throws is thrown there; the others end quietly, with success:
+/// mpirun answers with the status of the one that failed. All but the first rank are quiet.
+ExitCode over_ranks(formation::Ranks& ranks, const std::function<ExitCode()>& work) {
+  if (ranks.rank() > 0) set_quiet(true);
+  try {
+    const RankWatch watch(ranks);
+    const ExitCode code = work();
+    ranks.least(0);  // the others stay until the first has written everything
+    return code;
+  } catch (const formation::AnotherRankFailed&) {
+    return ExitCode::success;
+  } catch (...) {
+    if (!ranks.fail()) return ExitCode::success;
+    throw;
+  }
 }
 
 /// In this process, or over the ranks that mpirun has started.
