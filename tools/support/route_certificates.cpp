@@ -300,11 +300,10 @@ RouteJson rounded_json(const std::vector<ExactPoint>& points) {
 
 RouteJson certificate_json(const RouteQuestion& question, const RouteAnswer& answer,
                            const std::vector<formation::SceneObstacle>* obstacles) {
-  RouteJson json;
-  json["kind"] = status_of(answer);
-  json["radius"] = question.radius;
-  json["start"] = json_of(question.start);
-  json["goal"] = json_of(question.goal);
+  RouteJson json{{"kind", status_of(answer)},
+                 {"radius", question.radius},
+                 {"start", json_of(question.start)},
+                 {"goal", json_of(question.goal)}};
   std::visit(WriteAnswer{json}, answer);
   if (obstacles == nullptr) return json;
   json["obstacles"] = RouteJson::array();

@@ -16,7 +16,7 @@
 
 #include "exactvo/datasets/input_text.h"
 #include "support/parse_errors.h"
-#include "support/robot_limits.h"
+#include "support/robot_numbers.h"
 #include "support/simulation_flags.h"
 #include "support/terminal.h"
 #include "support/usage.h"
@@ -57,15 +57,6 @@ struct BatchFlags {
   std::vector<std::string> positions;
   std::string goal;
 };
-
-Vec2 parse_point(const std::string& option, const std::string& text) {
-  Vec2 v;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_in_range(v)) {
-    throw UsageError(option, text, fmt::format("two numbers within {:g}, X,Y", kLargestNumber));
-  }
-  return v;
-}
 
 datasets::Units units_named(const std::string& text) {
   datasets::Units units{};

@@ -228,6 +228,13 @@ std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const d
   return answers;
 }
 
+ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict) {
+  const auto is_unread = [](const FileAnswer& a) { return a.error.has_value(); };
+  if (std::any_of(answers.begin(), answers.end(), is_unread)) return ExitCode::bad_input;
+  const auto passes = [&](const FileAnswer& a) { return a.is_whole() && (!strict || a.content->findings.empty()); };
+  return std::all_of(answers.begin(), answers.end(), passes) ? ExitCode::success : ExitCode::negative;
+}
+
 std::string verdict_of(const FileAnswer& answer) {
   if (!answer.content) return "unreadable";
   const datasets::ReadCounts& n = answer.content->counts;
@@ -244,17 +251,15 @@ OrderedJson json_of(const datasets::ReadCounts& n) {
 }
 
 OrderedJson json_of(const FileAnswer& answer) {
-  OrderedJson json;
-  json["file"] = answer.file;
-  json["format"] = answer.content ? OrderedJson(answer.content->format) : OrderedJson(nullptr);
-  json["verdict"] = verdict_of(answer);
-  json["code"] = code_of(answer);
-  json["counts"] = answer.content ? json_of(answer.content->counts) : OrderedJson(nullptr);
-  json["problems"] = problems_json(answer);
-  json["unlisted"] = unlisted_json(answer);
-  json["origin"] = origin_json(answer);
-  json["notes"] = notes_json(answer);
-  return json;
+  return {{"file", answer.file},
+          {"format", answer.content ? OrderedJson(answer.content->format) : OrderedJson(nullptr)},
+          {"verdict", verdict_of(answer)},
+          {"code", code_of(answer)},
+          {"counts", answer.content ? json_of(answer.content->counts) : OrderedJson(nullptr)},
+          {"problems", problems_json(answer)},
+          {"unlisted", unlisted_json(answer)},
+          {"origin", origin_json(answer)},
+          {"notes", notes_json(answer)}};
 }
 
 std::string lines_of(const FileAnswer& answer, bool with_repaired) {

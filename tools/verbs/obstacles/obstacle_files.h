@@ -15,6 +15,7 @@
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/datasets/obstacle_write.h"
 #include "exactvo/formation/scenario.h"
+#include "verb.h"
 
 namespace exactvo::tools {
 
@@ -80,6 +81,10 @@ std::string guessed_format(const std::string& file);
 
 /// Reads every file; a DataError of a file becomes its answer. Says which were projected.
 std::vector<FileAnswer> read_each(const std::vector<std::string>& files, const datasets::ReadOptions& options);
+
+/// bad_input where a file could not be read; negative where obstacles were rejected, or with `strict` where anything
+/// was wrong, repaired or not.
+ExitCode exit_code(const std::vector<FileAnswer>& answers, bool strict = false);
 
 /// "valid"; "repaired": every problem was; "invalid": some obstacles can't be used; "unreadable".
 std::string verdict_of(const FileAnswer& answer);

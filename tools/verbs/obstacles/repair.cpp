@@ -80,6 +80,14 @@ bool same_origin(const ObstacleFile& a, const ObstacleFile& b) {
   return a.origin->longitude == b.origin->longitude && a.origin->latitude == b.origin->latitude;
 }
 
+/// The files that have obstacles.
+std::vector<const ObstacleFile*> with_obstacles(const std::vector<FileAnswer>& answers) {
+  std::vector<const ObstacleFile*> files;
+  for (const FileAnswer& answer : answers)
+    if (answer.content && !answer.content->obstacles.empty()) files.push_back(&*answer.content);
+  return files;
+}
+
 std::string words_of_origin(const ObstacleFile& file) {
   if (!file.origin) return file.file + " (metres as they stand)";
   return fmt::format("{} (round {:.9g}, {:.9g} degrees)", file.file, file.origin->longitude, file.origin->latitude);
@@ -87,33 +95,21 @@ std::string words_of_origin(const ObstacleFile& file) {
 
 /// Degrees are projected round the middle of their own file: what lies side by side on earth would lie on one heap.
 void refuse_several_planes(const std::vector<FileAnswer>& answers) {
-  const ObstacleFile* first = nullptr;
-  for (const FileAnswer& answer : answers) {
-    if (!answer.content || answer.content->obstacles.empty()) continue;
-    if (first == nullptr) first = &*answer.content;
-    if (same_origin(*first, *answer.content)) continue;
-    throw UsageError("files", words_of_origin(*first) + " and " + words_of_origin(*answer.content),
-                     "one projection: cannot write one output from files in different projections");
-  }
+  const std::vector<const ObstacleFile*> files = with_obstacles(answers);
+  for (const ObstacleFile* file : files)
+    if (!same_origin(*files.front(), *file))
+      throw UsageError("files", words_of_origin(*files.front()) + " and " + words_of_origin(*file),
+                       "one projection: cannot write one output from files in different projections");
 }
 
 /// That of all files with obstacles; nowhere on earth where they lie on several.
 datasets::LocalPlane common_plane(const std::vector<FileAnswer>& answers) {
-  const ObstacleFile* first = nullptr;
-  for (const FileAnswer& answer : answers) {
-    if (!answer.content || answer.content->obstacles.empty()) continue;
-    if (first == nullptr) first = &*answer.content;
-    const datasets::LocalPlane& plane = answer.content->plane;
-    if (plane.reference_system != first->plane.reference_system || plane.offset != first->plane.offset) return {};
-  }
-  return first == nullptr ? datasets::LocalPlane{} : first->plane;
-}
-
-ExitCode exit_code(const std::vector<FileAnswer>& answers) {
-  const auto is_unread = [](const FileAnswer& a) { return a.error.has_value(); };
-  if (std::any_of(answers.begin(), answers.end(), is_unread)) return ExitCode::bad_input;
-  const auto is_whole = [](const FileAnswer& a) { return a.is_whole(); };
-  return std::all_of(answers.begin(), answers.end(), is_whole) ? ExitCode::success : ExitCode::negative;
+  const std::vector<const ObstacleFile*> files = with_obstacles(answers);
+  if (files.empty()) return {};
+  const datasets::LocalPlane& first = files.front()->plane;
+  for (const ObstacleFile* file : files)
+    if (file->plane.reference_system != first.reference_system || file->plane.offset != first.offset) return {};
+  return first;
 }
 
 // --- The report ---
@@ -130,16 +126,14 @@ OrderedJson json_of(const RepairFacts& facts) {
 OrderedJson json_of(const RepairRecord& r) {
   OrderedJson codes = OrderedJson::array();
   for (const datasets::DataCode code : r.codes) codes.push_back(datasets::code_name(code));
-  OrderedJson json;
-  json["feature"] = r.place;
-  json["id"] = r.id;
-  json["codes"] = codes;
-  json["refused"] = r.refused ? OrderedJson(datasets::code_name(*r.refused)) : OrderedJson(nullptr);
-  json["recombined"] = r.recombined;
-  json["moved"] = json_number(r.moved);
-  json["before"] = json_of(r.before);
-  json["after"] = r.refused ? OrderedJson(nullptr) : json_of(r.after);
-  return json;
+  return {{"feature", r.place},
+          {"id", r.id},
+          {"codes", codes},
+          {"refused", r.refused ? OrderedJson(datasets::code_name(*r.refused)) : OrderedJson(nullptr)},
+          {"recombined", r.recombined},
+          {"moved", json_number(r.moved)},
+          {"before", json_of(r.before)},
+          {"after", r.refused ? OrderedJson(nullptr) : json_of(r.after)}};
 }
 
 std::string to_json(const std::vector<FileAnswer>& answers) {

@@ -146,19 +146,13 @@ class Features {
   }
 
   static OrderedJson head(const TakenApart& t, const char* what) {
-    OrderedJson properties;
-    properties["file"] = t.head.file;
-    properties["id"] = t.head.id;
-    properties["shape"] = what;
-    return properties;
+    return {{"file", t.head.file}, {"id", t.head.id}, {"shape", what}};
   }
 
   void add(OrderedJson properties, const Points& points) {
-    OrderedJson feature;
-    feature["type"] = "Feature";
-    feature["properties"] = std::move(properties);
-    feature["geometry"] = ring_geometry(to_degrees_ ? (*to_degrees_)(points) : points);
-    features_.push_back(std::move(feature));
+    features_.push_back({{"type", "Feature"},
+                         {"properties", std::move(properties)},
+                         {"geometry", ring_geometry(to_degrees_ ? (*to_degrees_)(points) : points)}});
   }
 
   void feature(const TakenApart& t, const char* what, const geometry::Verdict& verdict, const Points& points) {

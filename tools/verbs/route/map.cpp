@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "support/projection.h"
-#include "support/robot_limits.h"
+#include "support/robot_numbers.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 

@@ -12,7 +12,7 @@
 #include "exactvo/geometry/routes.h"
 #include "figures/figure_file.h"
 #include "support/fields.h"
-#include "support/robot_limits.h"
+#include "support/robot_numbers.h"
 #include "support/stop.h"
 #include "support/terminal.h"
 #include "support/usage.h"

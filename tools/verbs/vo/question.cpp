@@ -16,7 +16,7 @@
 #include "exactvo/geometry/pieces.h"
 #include "exactvo/vo/free_velocities.h"
 #include "figures/figure_file.h"
-#include "support/robot_limits.h"
+#include "support/robot_numbers.h"
 #include "support/usage.h"
 
 namespace exactvo::tools {
@@ -29,14 +29,6 @@ namespace {
 using geometry::kInfinity;
 
 constexpr const char* kHorizons = "a time from 2^-100 s to 2^100 s, or infinite, paper or clamped";
-
-Vec2 parse_point(const std::string& option, const std::string& text) {
-  Vec2 v;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf%c", &v.x, &v.y, &rest) != 2 || !is_in_range(v))
-    throw UsageError(option, text, fmt::format("two numbers within {:g}, X,Y", kLargestNumber));
-  return v;
-}
 
 // --- The obstacles ---
 

@@ -17,7 +17,7 @@
 #include "exactvo/geometry/counted.h"
 #include "exactvo/vo/membership.h"
 #include "support/fields.h"
-#include "support/robot_limits.h"
+#include "support/robot_numbers.h"
 #include "support/terminal.h"
 #include "support/unsigned_zero.h"
 
