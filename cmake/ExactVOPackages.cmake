@@ -21,7 +21,7 @@ set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "The program exactvo, its scenarios and 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libexactvo-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 # What the installed CMake package looks for (ExactVOConfig.cmake), component by component.
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libgmp-dev, libmpfr-dev, libtbb-dev, libhwy-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libgmp-dev, libmpfr-dev, libtbb-dev${EXACTVO_HIGHWAY_PACKAGE}")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS
   "libgdal-dev, libsqlite3-dev, libopenmpi-dev, libpugixml-dev, libyaml-cpp-dev, libssl-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "Static libraries and headers; find_package(ExactVO) and pkg-config find them.")
