@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "liveness/distances.h"
+#include "liveness/split_mix.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -19,23 +20,6 @@ using Joint = std::vector<PlaceNumber>;
 /// several steps: sequences of single moves need no chains at all, so that the search stays complete.
 constexpr std::size_t kLongestChain = 256;
 constexpr PlaceNumber kNowhere = static_cast<PlaceNumber>(-1);
-
-/// Steele, Lea and Flood 2014: the same numbers everywhere.
-class SplitMix64 {
- public:
-  explicit SplitMix64(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15u) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return z ^ (z >> 31);
-  }
-  float fraction() { return static_cast<float>(next() >> 40) * 0x1p-24f; }
-  std::size_t below(std::size_t n) { return static_cast<std::size_t>(next() % n); }
-
- private:
-  std::uint64_t state_;
-};
 
 /// Robots by where they are, in square cells.
 class RobotGrid {

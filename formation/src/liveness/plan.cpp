@@ -3,34 +3,33 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
 
 namespace exactvo::formation::detail {
 namespace {
 
-using Moves = std::vector<PlannedMove>;
+using Moves = std::vector<JointMove>;
 
 double wanted_distance(const std::vector<double>& radii, std::size_t i, std::size_t j) {
   return (1.0 + kPlannedGap) * (radii[i] + radii[j]);
 }
 
 /// Whether nobody comes near a place between two moves of its robot, of the moves that are left.
-bool stays_free(const Moves& moves, const std::vector<char>& dropped, std::size_t first, std::size_t last,
-                const std::vector<double>& radii) {
-  const Vec2 place = moves[first].from;
+bool stays_free(const Roadmap& map, const Moves& moves, const std::vector<char>& dropped, std::size_t first,
+                std::size_t last, const std::vector<double>& radii) {
+  const Vec2 place = map.place(moves[first].from);
   const std::size_t robot = moves[first].robot;
   for (std::size_t k = first + 1; k < last; ++k) {
-    const PlannedMove& m = moves[k];
+    const JointMove& m = moves[k];
     if (dropped[k] || m.robot == robot) continue;
     const double wanted = (1.0 - kSweepRounding) * wanted_distance(radii, robot, m.robot);
-    if (squared_distance(place, m.from, m.to) < wanted * wanted) return false;
+    if (squared_distance(place, map.place(m.from), map.place(m.to)) < wanted * wanted) return false;
   }
   return true;
 }
 
 /// Whether any loop was dropped. Looks at loops of a few moves: longer ones are rare and cost more to look for.
-bool drop_loops_once(Moves& moves, const std::vector<double>& radii) {
+bool drop_loops_once(const Roadmap& map, Moves& moves, const std::vector<double>& radii) {
   constexpr std::size_t kLongestLoop = 12;
   std::vector<std::vector<std::size_t>> of_robot(radii.size());
   for (std::size_t k = 0; k < moves.size(); ++k) of_robot[moves[k].robot].push_back(k);
@@ -41,14 +40,14 @@ bool drop_loops_once(Moves& moves, const std::vector<double>& radii) {
       std::size_t back = x;
       for (std::size_t y = x + 1; y < mine.size() && y < x + kLongestLoop; ++y)
         if (moves[mine[y]].to == moves[mine[x]].from) back = y;
-      if (back == x || !stays_free(moves, dropped, mine[x], mine[back], radii)) continue;
+      if (back == x || !stays_free(map, moves, dropped, mine[x], mine[back], radii)) continue;
       for (std::size_t y = x; y <= back; ++y) dropped[mine[y]] = 1;
       any = true;
       x = back;
     }
   Moves left;
   for (std::size_t k = 0; k < moves.size(); ++k)
-    if (!dropped[k]) left.push_back(std::move(moves[k]));
+    if (!dropped[k]) left.push_back(moves[k]);
   moves = std::move(left);
   return any;
 }
@@ -60,7 +59,7 @@ geometry::Box box_of(const PlannedMove& m) {
   return box;
 }
 
-void order(Moves& moves, const std::vector<double>& radii) {
+void order(std::vector<PlannedMove>& moves, const std::vector<double>& radii) {
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   const double largest = *std::max_element(radii.begin(), radii.end());
   const double farthest = 2.0 * (1.0 + kPlannedGap) * largest;
@@ -85,29 +84,17 @@ void order(Moves& moves, const std::vector<double>& radii) {
 
 }  // namespace
 
-std::vector<PlannedMove> plan_of(const Roadmap& map, const std::vector<JointMove>& moves,
-                                 const std::vector<double>& radii) {
+Moves without_loops(const Roadmap& map, Moves moves, const std::vector<double>& radii) {
   constexpr int kRounds = 3;  // a dropped loop may be the last that kept another from being one
-  Moves plan;
-  for (const JointMove& m : moves) plan.push_back({m.robot, map.place(m.from), map.place(m.to)});
-  for (int round = 0; round < kRounds && drop_loops_once(plan, radii);) ++round;
-  order(plan, radii);
-  return plan;
+  for (int round = 0; round < kRounds && drop_loops_once(map, moves, radii);) ++round;
+  return moves;
 }
 
-double critical_length(const std::vector<PlannedMove>& plan) {
-  std::vector<double> end(plan.size(), 0.0);
-  std::unordered_map<std::size_t, std::size_t> last;
-  double most = 0.0;
-  for (std::size_t k = 0; k < plan.size(); ++k) {
-    const PlannedMove& m = plan[k];
-    if (const auto own = last.find(m.robot); own != last.end()) end[k] = end[own->second];
-    for (const std::size_t j : m.after) end[k] = std::max(end[k], end[j]);
-    end[k] += norm(m.to - m.from);
-    last[m.robot] = k;
-    most = std::max(most, end[k]);
-  }
-  return most;
+std::vector<PlannedMove> plan_of(const Roadmap& map, const Moves& moves, const std::vector<double>& radii) {
+  std::vector<PlannedMove> plan;
+  for (const JointMove& m : moves) plan.push_back({m.robot, map.place(m.from), map.place(m.to)});
+  order(plan, radii);
+  return plan;
 }
 
 Following::Following(std::vector<PlannedMove> plan, std::vector<double> radii)

@@ -21,13 +21,14 @@ struct PlannedMove {
   std::vector<std::size_t> after = {};  ///< of each robot the last earlier move that it must keep clear of
 };
 
-/// Moves in sequence, without loops: a robot that came back to a place where nobody came meanwhile has stayed there.
-/// Each knows what it waits for. `radii`: m, of the robots.
+/// The moves without those of robots that came back to a place where nobody came meanwhile: they have stayed there.
+/// `radii`: m, of the robots.
+std::vector<JointMove> without_loops(const Roadmap& map, std::vector<JointMove> moves,
+                                     const std::vector<double>& radii);
+
+/// The same moves; each knows what it waits for.
 std::vector<PlannedMove> plan_of(const Roadmap& map, const std::vector<JointMove>& moves,
                                  const std::vector<double>& radii);
-
-/// m: of the longest chain of moves that wait for each other.
-double critical_length(const std::vector<PlannedMove>& plan);
 
 /// Where robots are on a plan.
 class Following {

@@ -8,6 +8,9 @@
 #include <thread>
 #include <utility>
 
+#include "liveness/shortening.h"
+#include "liveness/timetable.h"
+
 namespace exactvo::formation::detail {
 namespace {
 
@@ -50,9 +53,8 @@ class StopForAll {
 /// One search, within limits that it may turn out to have once those before it are done.
 struct PlanSearch::Attempt {
   SearchBudget budget;
-  JointAnswer answer = {};
-  std::vector<PlannedMove> plan = {};  ///< where one was found
-  double length = 0.0;                 ///< m, of the plan
+  JointAnswer answer = {};  ///< without loops
+  double length = 0.0;      ///< m, that its timetable takes, where one was found
 
   /// Whether the same comes of these limits: they are its own, or it reached neither.
   bool holds_for(const SearchBudget& limits) const {
@@ -87,8 +89,9 @@ std::vector<PlanSearch::Attempt> PlanSearch::searched(JointSearch& joint, const 
       const bool is_enough = a.answer.end == SearchEnd::found && about.radii.size() > kChoosesUpTo;
       if (k == 0 && (a.has_spent_all() || is_enough)) first_ends_all = true;
       if (a.answer.end != SearchEnd::found) continue;
-      a.plan = plan_of(*about.map, a.answer.moves, about.radii);
-      a.length = critical_length(a.plan);
+      a.answer.moves = without_loops(*about.map, std::move(a.answer.moves), about.radii);
+      Ways ways(*about.map, 2.0 * *std::max_element(about.radii.begin(), about.radii.end()));
+      a.length = timetable_of(a.answer.moves, about.radii, ways).last;
     }
   });
   if (first_ends_all) attempts.resize(1);
@@ -101,6 +104,7 @@ PlanFound PlanSearch::best_plan(JointProblem problem, std::size_t calls, bool la
   JointSearch joint(problem, &tasks_);
   const int wanted = problem.radii.size() <= kChoosesUpTo ? kPlansToChooseFrom : 1;
   PlanFound best;
+  std::vector<JointMove> moves;
   double shortest = std::numeric_limits<double>::infinity();
   int found = 0;
   std::vector<Attempt> attempts;
@@ -127,9 +131,13 @@ PlanFound PlanSearch::best_plan(JointProblem problem, std::size_t calls, bool la
     if (found++ == 0) limit = spent + kCallsForABetter;
     if (!(a.length < shortest)) continue;
     shortest = a.length;
-    best.plan = std::move(a.plan);
+    moves = std::move(a.answer.moves);
   }
-  if (found > 0) best.end = PlanEnd::planned;
+  if (found > 0) {
+    best.end = PlanEnd::planned;
+    moves = without_loops(*problem.map, shortened(problem, moves, seed_), problem.radii);
+    best.plan = plan_of(*problem.map, moves, problem.radii);
+  }
   return best;
 }
 

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// A way of one robot to its goal among the moves of all others (liveness, rule R3).
+///
+/// Safe-interval path planning (Phillips and Likhachev, "SIPP: Safe Interval Path Planning for Dynamic Environments",
+/// ICRA 2011), with positions in the sequence of the others' moves instead of times: position k is before their k-th
+/// move. What comes out is a sequence of single moves again, in which the robot keeps (1 + kPlannedGap) times the sum
+/// of the radii from all others, or gets away from them. Heuristic: it takes the way that seems soonest at its goal.
+
+#include <optional>
+#include <vector>
+
+#include "liveness/timetable.h"
+
+namespace exactvo::formation::detail {
+
+/// Between which moves of the others a robot can stand on a place. Intervals of all places are numbered together.
+class SafeIntervals {
+ public:
+  explicit SafeIntervals(const JointProblem& problem);
+
+  void set(std::size_t robot, const Timetable& others, const Ways& ways);
+
+  std::size_t last_position() const { return count_; }
+  std::size_t size() const { return size_; }
+  /// The interval of the place that holds a position.
+  std::size_t at(PlaceNumber place, std::size_t position) const;
+  /// The last position of an interval of the place.
+  std::size_t last(PlaceNumber place, std::size_t interval) const;
+  /// Of the positions the first at which nobody stands near a way, of which these are the places near it.
+  std::optional<std::size_t> first_clear(const std::vector<Ways::NearPlace>& near, std::size_t first,
+                                         std::size_t last) const;
+
+ private:
+  struct Stay {
+    std::size_t first, last;  ///< positions
+    std::size_t robot;
+  };
+  bool is_too_near(float squared, std::size_t other) const;
+
+  const JointProblem& problem_;
+  std::size_t robot_ = 0, count_ = 0, size_ = 0;
+  std::vector<std::vector<std::size_t>> passed_;  ///< by place: the moves that come near it
+  std::vector<std::vector<Stay>> stays_;          ///< by place, in sequence
+  std::vector<std::size_t> first_;                ///< by place: its first interval
+};
+
+class WayAmongOthers {
+ public:
+  /// Keeps references to both.
+  WayAmongOthers(const JointProblem& problem, Ways& ways) : problem_(problem), ways_(ways), safe_(problem) {}
+
+  /// The moves of all, with those of the robot among them; nothing where it finds no way that is over before `bound`,
+  /// m at speed 1. `left`: m, of the robot, from each place to its goal.
+  std::optional<std::vector<JointMove>> moves_with(std::size_t robot, const Timetable& others,
+                                                   const std::vector<float>& left, double bound);
+  /// Counted, of all so far.
+  std::size_t work() const { return work_; }
+
+ private:
+  /// At a place, in one of its intervals.
+  struct Arrival {
+    PlaceNumber place = 0;
+    std::size_t interval = 0;
+    std::size_t position = 0;  ///< of the move that led here
+    double time = 0.0;         ///< m, that a robot goes until then that never waits
+    std::size_t from = 0;      ///< which arrival; itself: the start
+  };
+  struct Robot {
+    std::size_t number;
+    const Timetable* others;
+    const std::vector<float>* left;
+    double bound;
+  };
+
+  void offer(const Robot& robot, const Arrival& arrival);
+  void go_on(const Robot& robot, std::size_t arrival);
+  void go_on_to(const Robot& robot, std::size_t arrival, PlaceNumber to, WayNumber way);
+  std::vector<JointMove> moves_to(const Robot& robot, std::size_t arrival) const;
+
+  const JointProblem& problem_;
+  Ways& ways_;
+  SafeIntervals safe_;
+  std::vector<Arrival> arrivals_;
+  std::vector<std::pair<double, std::size_t>> open_;  ///< heap of arrivals by when they lead to the goal
+  std::vector<double> soonest_;                       ///< by interval
+  std::size_t work_ = 0;
+};
+
+}  // namespace exactvo::formation::detail
