@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "figures/lyapunov_figure.h"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "figures/paths_figure.h"
@@ -139,9 +141,10 @@ std::string lyapunov_csv_head() {
 }
 
 std::string lyapunov_csv_line(const LyapunovRow& r) {
-  std::string text = fmt::format("{}", r.time);
+  std::string text;
+  fmt::format_to(std::back_inserter(text), FMT_COMPILE("{}"), r.time);
   const auto values = [&text](std::initializer_list<double> all) {
-    for (const double x : all) text += fmt::format(",{}", x);
+    for (const double x : all) fmt::format_to(std::back_inserter(text), FMT_COMPILE(",{}"), x);
   };
   // A cell of a derivative that does not exist is empty.
   const auto rates = [&](std::initializer_list<double> all) {

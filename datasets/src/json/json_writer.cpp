@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
 
 #include "json/json_text.h"
 
@@ -19,9 +24,40 @@ const char* word_for_non_finite(double number) {
   return number > 0.0 ? "inf" : "-inf";
 }
 
+bool is_escaped(char c) {
+  return c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20;
+}
+
+/// Texts of doubles that were written lately: a row has the same ones in its place and its anchor, the next row and the
+/// table of rows again, and the shortest text of a double takes some hundred instructions.
+class NumberTexts {
+ public:
+  std::string_view of(double number) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &number, sizeof bits);
+    Entry& entry = entries_[static_cast<std::size_t>(bits * 0x9e3779b97f4a7c15u >> 55)];
+    if (entry.length == 0 || entry.bits != bits) {
+      entry.bits = bits;
+      entry.length = static_cast<std::uint8_t>(
+          std::to_chars(entry.text.data(), entry.text.data() + entry.text.size(), number).ptr - entry.text.data());
+    }
+    return {entry.text.data(), entry.length};
+  }
+
+ private:
+  struct Entry {
+    std::uint64_t bits;
+    std::uint8_t length;  ///< 0: nothing yet
+    std::array<char, 31> text;
+  };
+  std::array<Entry, 512> entries_{};
+};
+
 void append_escaped(std::string& text, std::string_view raw) {
   text += '"';
-  for (const char c : raw) {
+  const std::size_t plain = static_cast<std::size_t>(std::find_if(raw.begin(), raw.end(), is_escaped) - raw.begin());
+  text += raw.substr(0, plain);
+  for (const char c : raw.substr(plain)) {
     switch (c) {
       case '"':
         text += "\\\"";
@@ -55,7 +91,9 @@ void append_number(std::string& text, double number) {
   if (number == 0.0 && std::signbit(number)) {
     text += "-0.0";
   } else {
-    append_chars(text, number);
+    // Not itself in the memory of the thread: a module that is loaded late gets little of that.
+    thread_local const auto texts = std::make_unique<NumberTexts>();
+    text += texts->of(number);
   }
 }
 

@@ -92,7 +92,7 @@ StuckReport to_report(const JsonCursor& at) {
 }  // namespace
 
 void append_lyapunov(JsonWriter& json, const LyapunovRow& row) {
-  std::string open;
+  std::string_view open;
   json.key("lyapunov").begin_object();
   for_each_term(row, [&](const char* group, const char* key, double number) {
     if (!row.has_rates && is_rate(group)) return;

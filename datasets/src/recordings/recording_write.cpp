@@ -103,9 +103,10 @@ struct RecordingWriter::State {
     json.begin_object().key(name);
     append();
     json.end_object();
-    const std::string text = json.text() + "\n";
-    hash.add(text);
-    out.write(text);
+    for (const std::string_view part : {std::string_view(json.text()), std::string_view("\n")}) {
+      hash.add(part);
+      out.write(part);
+    }
   }
 
   void name_body(std::size_t number, const std::vector<vo::Body>& bodies) {

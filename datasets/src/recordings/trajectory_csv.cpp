@@ -25,18 +25,23 @@ void append_pair(std::string& row, geometry::Vec2 v) {
   append_number(row, v.y);
 }
 
-std::string csv_row(const formation::Step& step, const formation::RobotStep& robot, const std::string& id,
-                    bool has_leader) {
-  std::string row;
+void append_csv_row(std::string& row, const formation::Step& step, const formation::RobotStep& robot,
+                    const std::string& id, bool has_leader) {
   append_number(row, step.time);
-  row += "," + csv_text(id);
+  row += ',';
+  row += csv_text(id);
   for (const geometry::Vec2 v : {robot.position, robot.velocity, robot.preferred, robot.chosen}) append_pair(row, v);
-  row += std::string(",") + word_for(robot.status) + "," + word_for(robot.mode) + "," + std::to_string(robot.side);
+  row += ',';
+  row += word_for(robot.status);
+  row += ',';
+  row += word_for(robot.mode);
+  row += ',';
+  row += std::to_string(robot.side);
   if (has_leader) {
     append_pair(row, step.leader_position);
     append_pair(row, step.leader_velocity);
   }
-  return row + "\n";
+  row += '\n';
 }
 
 }  // namespace
@@ -44,10 +49,11 @@ std::string csv_row(const formation::Step& step, const formation::RobotStep& rob
 struct TrajectoryWriter::State {
   AtomicFile out;
   const formation::Scenario& scenario;
+  std::string text;  ///< of a row, in memory that it leaves to the next
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const formation::Scenario& scenario)
-    : state_(new State{AtomicFile(path), scenario}) {
+    : state_(new State{AtomicFile(path), scenario, {}}) {
   state_->out.write(
       "time_s,robot,x_m,y_m,vx_m_s,vy_m_s,preferred_vx_m_s,preferred_vy_m_s,chosen_vx_m_s,chosen_vy_m_s,status,mode,"
       "side");
@@ -57,9 +63,11 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const form
 TrajectoryWriter::~TrajectoryWriter() = default;
 
 void TrajectoryWriter::add(const formation::Step& row) {
+  std::string& text = state_->text;
+  text.clear();
   for (std::size_t i = 0; i < row.robots.size(); ++i)
-    state_->out.write(
-        csv_row(row, row.robots[i], state_->scenario.robots.at(i).id, state_->scenario.formation.has_value()));
+    append_csv_row(text, row, row.robots[i], state_->scenario.robots.at(i).id, state_->scenario.formation.has_value());
+  state_->out.write(text);
 }
 
 void TrajectoryWriter::finish() {
