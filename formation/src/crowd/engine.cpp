@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "crowd/edge_pack.h"
-#include "crowd/nudge.h"
 #include "crowd/one_robot.h"
 #include "crowd/packs.h"
 #include "exactvo/vo/lp/batch.h"

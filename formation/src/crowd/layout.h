@@ -4,10 +4,10 @@
 /// \file
 /// What the units of the crowd engine hand to each other: tables of candidates, ranked neighbours, half-planes.
 
+#include <boost/align/aligned_allocator.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <vector>
 
 namespace exactvo::formation::crowd {
@@ -33,20 +33,9 @@ inline constexpr std::int32_t kLatticeEnd = 1 << 30;
 /// An offset that always holds.
 inline constexpr double kNever = -1e30;
 
+/// Begins with a line of the cache.
 template <class A>
-struct CacheAligned {
-  using value_type = A;
-  CacheAligned() = default;
-  template <class B>
-  CacheAligned(const CacheAligned<B>&) {}
-  A* allocate(std::size_t m) { return static_cast<A*>(::operator new (m * sizeof(A), std::align_val_t{64})); }
-  void deallocate(A* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
-  bool operator==(const CacheAligned&) const { return true; }
-  bool operator!=(const CacheAligned&) const { return false; }
-};
-
-template <class A>
-using Array = std::vector<A, CacheAligned<A>>;
+using Array = std::vector<A, boost::alignment::aligned_allocator<A, 64>>;
 
 /// Robots of some stretches of the sorted order, side by side, in that order.
 struct Candidates {

@@ -3,12 +3,53 @@
 
 #include <limits>
 
-#include "crowd/nudge.h"
 #include "exactvo/vo/lp/batch.h"
 
 namespace exactvo::formation {
 
 using namespace crowd;
+
+namespace {
+
+// Motions near the answer of the linear program that keep half-planes which the nearest one, by rounding, does not.
+
+/// Lattice steps: farther from the optimum no motion is tried.
+constexpr int kNudge = 3;
+
+/// Whether a motion of (mx, my) lattice steps keeps all lines of lane 0. In double, where a line is off by at most
+/// 2^-48 max_speed (m/s).
+template <class T>
+bool keeps(const KindTable<T>& table, const Answers<T>& in, double mx, double my, double max_speed) {
+  const double unit = table.velocity_step, allowed = table.spare - 0x1p-46 * max_speed;
+  for (std::size_t k = 0; k < in.lines; ++k) {
+    const std::size_t at = k * in.stride;
+    const double met = unit * mx * static_cast<double>(in.x[at]) + unit * my * static_cast<double>(in.y[at]);
+    if (static_cast<double>(in.c[at]) - met > allowed) return false;
+  }
+  return true;
+}
+
+/// Makes of (mx, my) the motion nearest to the answer, among those about it, that keeps all lines and is not faster
+/// than max_speed (m/s); false, and no change, where there is none.
+template <class T>
+bool nudge(const KindTable<T>& table, const Answers<T>& in, double max_speed, std::int32_t& mx, std::int32_t& my) {
+  const double unit = table.velocity_step;
+  const double limit = max_speed * max_speed * (1.0 - 0x1p-46);
+  const double x0 = static_cast<double>(in.vx[0]) / unit, y0 = static_cast<double>(in.vy[0]) / unit;
+  double least = std::numeric_limits<double>::infinity();
+  const std::int32_t from_x = mx, from_y = my;
+  for (int j = -kNudge; j <= kNudge; ++j)
+    for (int i = -kNudge; i <= kNudge; ++i) {
+      const double x = from_x + i, y = from_y + j, away = (x - x0) * (x - x0) + (y - y0) * (y - y0);
+      if (!(away < least) || (x * x + y * y) * unit * unit > limit || !keeps(table, in, x, y, max_speed)) continue;
+      least = away;
+      mx = from_x + i;
+      my = from_y + j;
+    }
+  return least < std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
 
 template <class T>
 CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b, CrowdExplanation* words) const {

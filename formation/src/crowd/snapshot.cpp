@@ -6,105 +6,29 @@
 #include <istream>
 #include <optional>
 #include <ostream>
-#include <type_traits>
 
 #include "crowd/body.h"
+#include "crowd/snapshot_bytes.h"
 #include "exactvo/geometry/shape_numbers.h"
 
 namespace exactvo::formation::crowd {
 namespace {
 
 constexpr char kMark[8] = {'E', 'V', 'O', 'C', 'R', 'O', 'W', '3'};
-constexpr std::size_t kAtOnce = 1 << 16;
 
-[[noreturn]] void refuse(const std::string& found) {
-  throw CrowdError(CrowdProblem::bad_snapshot,
-                   "snapshot: found " + found + ", expected what Crowd::snapshot has written");
-}
+constexpr const char* kExpected = "what Crowd::snapshot has written";
 
 void require(bool holds, const char* what) {
-  if (!holds) refuse(std::string(what) + " that no crowd has");
+  if (!holds) refuse_snapshot(std::string(what) + " that no crowd has", kExpected);
 }
 
-/// FNV-1a, a byte at a time.
-class Checksum {
- public:
-  void add(const void* bytes, std::size_t count) {
-    const auto* b = static_cast<const unsigned char*>(bytes);
-    for (std::size_t k = 0; k < count; ++k) hash_ = (hash_ ^ b[k]) * 1099511628211ULL;
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 14695981039346656037ULL;
-};
-
-class Writer {
- public:
-  explicit Writer(std::ostream& to) : to_(to) {}
-
-  template <class A>
-  void put(const A& value) {
-    put_all(&value, 1);
-  }
-  template <class A>
-  void put_all(const A* values, std::size_t count) {
-    static_assert(std::is_arithmetic_v<A>, "structs have padding");
-    sum_.add(values, count * sizeof(A));
-    to_.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(count * sizeof(A)));
-    if (!to_) throw std::ios_base::failure("a snapshot could not be written");
-  }
-  void finish() { put(std::uint64_t{sum_.value()}), to_.flush(); }
-
- private:
-  std::ostream& to_;
-  Checksum sum_;
-};
-
-class Reader {
- public:
-  explicit Reader(std::istream& from) : from_(from) {}
-
-  template <class A>
-  A get() {
-    A value{};
-    get_all(&value, 1);
-    return value;
-  }
-  template <class A>
-  void get_all(A* values, std::size_t count) {
-    static_assert(std::is_arithmetic_v<A>, "structs have padding");
-    from_.read(reinterpret_cast<char*>(values), static_cast<std::streamsize>(count * sizeof(A)));
-    if (!from_) refuse("its end too early");
-    sum_.add(values, count * sizeof(A));
-  }
-  /// In pieces: a count that was changed does not ask for more memory than there is to read.
-  template <class Vector>
-  void get_some(Vector& values, std::size_t count) {
-    values.clear();
-    while (values.size() < count) {
-      const std::size_t had = values.size(), more = std::min(kAtOnce, count - had);
-      values.resize(had + more);
-      get_all(values.data() + had, more);
-    }
-  }
-  void finish() {
-    const std::uint64_t computed = sum_.value();
-    if (get<std::uint64_t>() != computed) refuse("another checksum than its content has");
-  }
-
- private:
-  std::istream& from_;
-  Checksum sum_;
-};
-
-void put(Writer& to, const CrowdKind& k) {
+void put(SnapshotWriter& to, const CrowdKind& k) {
   for (const double field : {k.radius, k.max_speed, k.time_horizon, k.neighbour_distance, k.edge_horizon})
     to.put(field);
   to.put(std::int32_t{k.neighbours});
 }
 
-CrowdKind get_kind(Reader& from) {
+CrowdKind get_kind(SnapshotReader& from) {
   CrowdKind k;
   for (double* field : {&k.radius, &k.max_speed, &k.time_horizon, &k.neighbour_distance, &k.edge_horizon})
     *field = from.get<double>();
@@ -112,7 +36,7 @@ CrowdKind get_kind(Reader& from) {
   return k;
 }
 
-std::vector<geometry::Segment> get_edges(Reader& from) {
+std::vector<geometry::Segment> get_edges(SnapshotReader& from) {
   const auto count = from.get<std::uint32_t>();
   std::vector<double> numbers;
   from.get_some(numbers, 4 * std::size_t{count});
@@ -124,7 +48,7 @@ std::vector<geometry::Segment> get_edges(Reader& from) {
   return edges;
 }
 
-void put(Writer& to, const Body& b) {
+void put(SnapshotWriter& to, const Body& b) {
   to.put(std::uint32_t{b.id});
   to.put(std::uint8_t{b.moves});
   for (const std::int64_t v : {b.x, b.y}) to.put(v);
@@ -135,7 +59,7 @@ void put(Writer& to, const Body& b) {
   to.put_all(numbers.data(), numbers.size());
 }
 
-void get_body(Reader& from, ObstacleId end, const CrowdOptions& options, Bodies& bodies) {
+void get_body(SnapshotReader& from, ObstacleId end, const CrowdOptions& options, Bodies& bodies) {
   const auto id = from.get<std::uint32_t>();
   require(id < end && (bodies.empty() || bodies.all().back().id < id), "a body");
   const auto moves = from.get<std::uint8_t>();
@@ -196,13 +120,13 @@ void write_snapshot(const CrowdBody& body, std::ostream& to) {
   const CrowdCore& core = *body.core;
   const CrowdOptions& o = core.options;
   to.write(kMark, sizeof kMark);
-  Writer head(to);
+  SnapshotWriter head(to);
   head.put(o.time_step);
   head.put(o.position_step);
   head.put(static_cast<std::int32_t>(o.precision));
   head.put(std::int32_t{o.certified});
   head.finish();
-  Writer out(to);
+  SnapshotWriter out(to);
   out.put(static_cast<std::uint32_t>(core.kinds.size()));
   for (const CrowdKind& k : core.kinds) put(out, k);
   const Robots& r = core.robots;
@@ -233,8 +157,8 @@ void write_snapshot(const CrowdBody& body, std::ostream& to) {
 CrowdOptions read_options(std::istream& from) {
   char mark[sizeof kMark] = {};
   from.read(mark, sizeof mark);
-  if (!from || std::memcmp(mark, kMark, sizeof mark) != 0) refuse("another beginning");
-  Reader in(from);
+  if (!from || std::memcmp(mark, kMark, sizeof mark) != 0) refuse_snapshot("another beginning", kExpected);
+  SnapshotReader in(from, kExpected);
   CrowdOptions o;
   o.time_step = in.get<double>();
   o.position_step = in.get<double>();
@@ -248,7 +172,7 @@ CrowdOptions read_options(std::istream& from) {
 
 void read_snapshot(CrowdBody& body, std::istream& from) {
   CrowdCore& core = *body.core;
-  Reader in(from);
+  SnapshotReader in(from, kExpected);
   const auto kinds = in.get<std::uint32_t>();
   require(kinds <= kMostKinds, "a number of kinds");
   for (std::uint32_t k = 0; k < kinds; ++k) {

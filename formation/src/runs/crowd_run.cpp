@@ -8,17 +8,16 @@
 #include <map>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "crowd/snapshot_bytes.h"
 #include "exactvo/formation/recording.h"
 #include "exactvo/formation/simulation.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/require.h"
-#include "runs/crowd_run_state.h"
 #include "scene/number_text.h"
 #include "steering/guide.h"
 
@@ -26,6 +25,9 @@ namespace exactvo::formation {
 namespace {
 
 using namespace detail;
+using crowd::refuse_snapshot;
+using crowd::SnapshotReader;
+using crowd::SnapshotWriter;
 using geometry::norm;
 using Clock = std::chrono::steady_clock;
 
@@ -42,6 +44,9 @@ constexpr double kLongestMotion = 0x1p22;
 
 /// m/s, of a moving obstacle: room below what a crowd takes for what its way is rounded by.
 constexpr double kFastestBody = 0x1p14;
+
+/// Of snapshots.
+constexpr const char* kExpected = "those of a run of this scenario and these options";
 
 /// m: what lies farther out than robots, goals and obstacles is not gone to.
 double extent(const Scenario& s) {
@@ -158,11 +163,13 @@ class CrowdRun {
     count_arrived();
     if (!ranks_) return true;
     require_same_states();
-    StateWriter own;
-    for (std::size_t i = own_begin(); i < own_end(); ++i) put(own, ways_[i]);
-    const std::vector<std::string> all = ranks_->gather(own.bytes());
+    std::ostringstream own;
+    SnapshotWriter to(own);
+    for (std::size_t i = own_begin(); i < own_end(); ++i) put(to, ways_[i]);
+    const std::vector<std::string> all = ranks_->gather(own.str());
     for (std::size_t r = 1; r < all.size(); ++r) {
-      StateReader from(all[r]);
+      std::istringstream bytes(all[r]);
+      SnapshotReader from(bytes, kExpected);
       for (std::size_t i = ends_[r - 1]; i < ends_[r]; ++i) ways_[i] = get_way(from, i);
     }
     count_arrived();
@@ -188,45 +195,40 @@ class CrowdRun {
 
   /// REQUIRES: all ways are here.
   std::string snapshot() const {
-    StateWriter run;
-    run.put(static_cast<std::uint64_t>(ways_.size()));
-    for_each_count(report_, [&](const auto& count) { run.put(count); });
-    for (const Way& way : ways_) put(run, way);
-    std::ostringstream crowd, sink;
+    std::ostringstream run, crowd, sink, whole;
+    SnapshotWriter of_run(run), to(whole);
+    of_run.put(static_cast<std::uint64_t>(ways_.size()));
+    for_each_count(report_, [&](const auto& count) { of_run.put(count); });
+    for (const Way& way : ways_) put(of_run, way);
     crowd_.snapshot(crowd);
     if (sink_) sink_->save(sink);
-    StateWriter whole;
-    for (const std::string& part : {run.bytes(), crowd.str(), sink.str()}) whole.put_all(part);
-    whole.put(hash_of(whole.bytes()));
-    return whole.bytes();
+    for (const std::string& part : {run.str(), crowd.str(), sink.str()}) to.put_list(part);
+    to.finish();
+    return whole.str();
   }
 
-  void restore(std::string_view bytes) {
-    StateReader whole(bytes);
-    const std::string_view parts[] = {whole.get_stretch(), whole.get_stretch(), whole.get_stretch()};
-    const std::size_t size = parts[0].size() + parts[1].size() + parts[2].size() + 3 * sizeof(std::uint64_t);
-    whole.require(whole.get<std::uint64_t>() == hash_of(bytes.substr(0, size)));
-    whole.require_end();
-    StateReader run(parts[0]);
-    run.require(run.get<std::uint64_t>() == ways_.size());
-    for_each_count(report_, [&](auto& count) { count = run.get<std::decay_t<decltype(count)>>(); });
-    for (std::size_t i = 0; i < ways_.size(); ++i) ways_[i] = get_way(run, i);
-    run.require_end();
+  void restore(const std::string& bytes) {
+    std::istringstream whole(bytes);
+    SnapshotReader from(whole, kExpected);
+    std::istringstream run(from.get_list<std::string>()), crowd(from.get_list<std::string>()),
+        sink(from.get_list<std::string>());
+    from.finish();
+    SnapshotReader of_run(run, kExpected);
+    require(is_at_end(whole) && of_run.get<std::uint64_t>() == ways_.size());
+    for_each_count(report_, [&](auto& count) { count = of_run.get<std::decay_t<decltype(count)>>(); });
+    for (std::size_t i = 0; i < ways_.size(); ++i) ways_[i] = get_way(of_run, i);
     const CrowdOptions wanted = crowd_.options();
-    std::istringstream crowd{std::string(parts[1])};
     crowd_ = Crowd::restored(crowd, options_.threads, ranks_);
     const CrowdOptions& found = crowd_.options();
-    run.require(found.time_step == wanted.time_step && found.position_step == wanted.position_step &&
-                found.precision == wanted.precision && crowd_.id_end() == ways_.size());
+    require(is_at_end(run) && found.time_step == wanted.time_step && found.position_step == wanted.position_step &&
+            found.precision == wanted.precision && crowd_.id_end() == ways_.size());
     crowd_.positions(at_);
-    std::istringstream sink{std::string(parts[2])};
     if (sink_) sink_->restore(crowd_, sink);
   }
 
-  static std::uint64_t hash_of(std::string_view bytes) {
-    std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
-    for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-    return hash;
+  static bool is_at_end(std::istream& from) { return from.peek() == std::istream::traits_type::eof(); }
+  static void require(bool holds) {
+    if (!holds) refuse_snapshot("other bytes", kExpected);
   }
 
   /// What adds up from step to step.
@@ -238,45 +240,45 @@ class CrowdRun {
     for (auto* number : {&r.time, &r.path_length}) visit(*number);
   }
 
-  static void put(StateWriter& to, const Way& way) {
+  static void put(SnapshotWriter& to, const Way& way) {
     to.put(static_cast<std::uint64_t>(way.goal));
     to.put(way.heading);
     to.put(way.arrived.has_value());
     to.put(way.arrived.value_or(0.0));
     to.put(way.stays);
-    to.put_all(way.why_not);
+    to.put_list(way.why_not);
     to.put(way.nearest.has_value());
     to.put(way.nearest.value_or(NearestPlace{}));
     to.put(way.course.has_value());
     if (!way.course) return;
-    to.put_all(way.course->points);
-    to.put_all(way.course->keeps);
+    to.put_list(way.course->points);
+    to.put_list(way.course->keeps);
     to.put(way.course->to);
     to.put(static_cast<std::uint64_t>(way.course->next));
   }
 
-  Way get_way(StateReader& from, std::size_t robot) const {
+  Way get_way(SnapshotReader& from, std::size_t robot) const {
     Way way;
     way.goal = static_cast<std::size_t>(from.get<std::uint64_t>());
-    from.require(way.goal < scenario_.robots[robot].goals.size());
+    require(way.goal < scenario_.robots[robot].goals.size());
     way.heading = from.get<Vec2>();
     const bool has_arrived = from.get<bool>();
     const auto arrived = from.get<double>();
     if (has_arrived) way.arrived = arrived;
     way.stays = from.get<bool>();
-    way.why_not = from.get_all<std::string>();
+    way.why_not = from.get_list<std::string>();
     const bool has_nearest = from.get<bool>();
     const auto nearest = from.get<NearestPlace>();
     if (has_nearest) way.nearest = nearest;
     const bool has_course = from.get<bool>();
-    from.require(!has_course || guide_.has_value());
+    require(!has_course || guide_.has_value());
     if (!has_course) return way;
     Course& course = way.course.emplace();
-    course.points = from.get_all<std::vector<Vec2>>();
-    course.keeps = from.get_all<std::vector<double>>();
+    course.points = from.get_list<std::vector<Vec2>>();
+    course.keeps = from.get_list<std::vector<double>>();
     course.to = from.get<Destination>();
     course.next = static_cast<std::size_t>(from.get<std::uint64_t>());
-    from.require(course.next < course.points.size() && course.keeps.size() == course.points.size());
+    require(course.next < course.points.size() && course.keeps.size() == course.points.size());
     return way;
   }
 

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Numbers as bytes behind each other, with a checksum at the end: snapshots of crowds and of their runs.
+
+#include <algorithm>
+#include <cstdint>
+#include <istream>
+#include <ostream>
+#include <string>
+#include <type_traits>
+
+#include "exactvo/formation/crowd.h"
+
+namespace exactvo::formation::crowd {
+
+/// Throws CrowdError: bad_snapshot.
+[[noreturn]] inline void refuse_snapshot(const std::string& found, const std::string& expected) {
+  throw CrowdError(CrowdProblem::bad_snapshot, "snapshot: found " + found + ", expected " + expected);
+}
+
+/// FNV-1a, a byte at a time.
+class Checksum {
+ public:
+  void add(const void* bytes, std::size_t count) {
+    const auto* b = static_cast<const unsigned char*>(bytes);
+    for (std::size_t k = 0; k < count; ++k) hash_ = (hash_ ^ b[k]) * 1099511628211ULL;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ULL;
+};
+
+/// Numbers, and structs of numbers without padding.
+template <class A>
+inline constexpr bool is_plain = std::is_trivially_copyable_v<A> && !std::is_pointer_v<A>;
+
+class SnapshotWriter {
+ public:
+  explicit SnapshotWriter(std::ostream& to) : to_(to) {}
+
+  template <class A>
+  void put(const A& value) {
+    put_all(&value, 1);
+  }
+  template <class A>
+  void put_all(const A* values, std::size_t count) {
+    static_assert(is_plain<A>);
+    sum_.add(values, count * sizeof(A));
+    to_.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(count * sizeof(A)));
+    if (!to_) throw std::ios_base::failure("a snapshot could not be written");
+  }
+  /// A vector or a string: its size, and what it holds.
+  template <class List>
+  void put_list(const List& list) {
+    put(static_cast<std::uint64_t>(list.size()));
+    put_all(list.data(), list.size());
+  }
+  void finish() { put(std::uint64_t{sum_.value()}), to_.flush(); }
+
+ private:
+  std::ostream& to_;
+  Checksum sum_;
+};
+
+/// Refuses what ends too early or has another checksum; `expected` says what it should have been.
+class SnapshotReader {
+ public:
+  SnapshotReader(std::istream& from, std::string expected) : from_(from), expected_(std::move(expected)) {}
+
+  template <class A>
+  A get() {
+    A value{};
+    get_all(&value, 1);
+    return value;
+  }
+  template <class A>
+  void get_all(A* values, std::size_t count) {
+    static_assert(is_plain<A>);
+    from_.read(reinterpret_cast<char*>(values), static_cast<std::streamsize>(count * sizeof(A)));
+    require(!from_.fail(), "its end too early");
+    sum_.add(values, count * sizeof(A));
+  }
+  /// In pieces: a count that was changed does not ask for more memory than there is to read.
+  template <class List>
+  void get_some(List& list, std::size_t count) {
+    constexpr std::size_t kAtOnce = 1 << 16;
+    list.clear();
+    while (list.size() < count) {
+      const std::size_t had = list.size(), more = std::min(kAtOnce, count - had);
+      list.resize(had + more);
+      get_all(list.data() + had, more);
+    }
+  }
+  /// What `put_list` has put.
+  template <class List>
+  List get_list() {
+    List list;
+    get_some(list, get<std::uint64_t>());
+    return list;
+  }
+  void finish() {
+    const std::uint64_t computed = sum_.value();
+    require(get<std::uint64_t>() == computed, "another checksum than its content has");
+  }
+  void require(bool holds, const char* found) const {
+    if (!holds) refuse_snapshot(found, expected_);
+  }
+
+ private:
+  std::istream& from_;
+  std::string expected_;
+  Checksum sum_;
+};
+
+}  // namespace exactvo::formation::crowd
