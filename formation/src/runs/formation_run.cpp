@@ -13,13 +13,13 @@
 #include "motion/leader.h"
 #include "runs/joint_decisions.h"
 #include "runs/rows.h"
-#include "runs/run_clock.h"
+#include "runs/run_schedule.h"
 #include "runs/runs.h"
 #include "runs/slot_plans.h"
 #include "scene/moving.h"
 #include "scene/number_text.h"
 #include "scene/static_field.h"
-#include "steering/slot_follower.h"
+#include "steering/robot_bypass.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {
@@ -32,7 +32,7 @@ struct FormationRobot {
   Vec2 tracked;  ///< w of the step before
   StaticField field;
   SideCommitment side;
-  SlotFollower slot;
+  RobotBypass bypass;
   // With joint plans.
   std::optional<StaticField> pieces = {};  ///< what it sees of obstacles while it goes by plan, made when it first does
   bool sees_pieces = false;                ///< it went by plan when it decided last
@@ -51,12 +51,12 @@ class FormationRun {
         spec_(*scenario_.formation),
         options_(options),
         scene_(scenario_, options),
-        clock_(scenario_, options),
+        schedule_(scenario_, options),
         decider_(scenario_, scene_.bodies()),
         offsets_(offsets_in_use(spec_, remedies_)),
-        joint_(scenario_, options_, scene_, clock_, decider_) {
+        joint_(scenario_, options_, scene_, schedule_, decider_) {
     if (liveness_of(scenario, options) == Liveness::plan) {
-      plans_.emplace(scenario_, offsets_, options.threads, [this] { return clock_.is_stopped(now_); });
+      plans_.emplace(scenario_, offsets_, options.threads, [this] { return schedule_.is_stopped(now_); });
       joint_.gap = plans_->gap();
     }
     const HorizonRule rule = remedies_.tau_clamp ? HorizonRule::clamped : HorizonRule::literal;
@@ -83,12 +83,12 @@ class FormationRun {
     RowFeed rows(scene_.bodies(), outlooks_, plans_ ? &plans_->groups().plans() : nullptr, sink);
     const double first_error = formation_error(state_row(0.0), offsets_);
     std::size_t k = 0;
-    for (; !clock_.ends_at(k) && !out_of_bounds(); ++k) {
-      Step row = decide_all(clock_.time(k));
+    for (; !schedule_.ends_at(k) && !out_of_bounds(); ++k) {
+      Step row = decide_all(schedule_.time(k));
       move(row);
       rows.add(std::move(row));
     }
-    const Step last = state_row(clock_.time(k));
+    const Step last = state_row(schedule_.time(k));
     rows.add(last);
     recording.bodies = scene_.copied_bodies();
     recording.outlooks = std::move(outlooks_);
@@ -151,14 +151,14 @@ class FormationRun {
     if (goes_by_plan(i)) return choose_by_plan(i, time, step, nullptr);
     robots_[i].field.constraints(here, statics_);
     const Vec2 wanted = wanted_velocity(i, leader);
-    const SlotFollower::Situation situation{time,
-                                            norm(relative_.position[i]),
-                                            scenario_.arrival_tolerance,
-                                            spec_.catch_up_speed,
-                                            leader.velocity == Vec2{},
-                                            wanted};
+    const RobotBypass::Situation situation{time,
+                                           norm(relative_.position[i]),
+                                           scenario_.arrival_tolerance,
+                                           spec_.catch_up_speed,
+                                           leader.velocity == Vec2{},
+                                           wanted};
     DecisionInput in{steered(i, situation, statics_, joint_.others[i], step), here, &statics_, &joint_.others[i],
-                     clock_.keeps_all(time)};
+                     schedule_.keeps_all(time)};
     decider_.decide(in, step);
     if (!remedies_.smoothing) return;
     // Math: v_pref <- (v_pref + 4 w_prev) / 5, projected.
@@ -177,7 +177,7 @@ class FormationRun {
     r.sees_pieces = !r.sees_pieces;
     if (r.sees_pieces && !r.pieces) r.pieces = field_of_pieces(i);
     r.side = {};
-    r.slot = {};
+    r.bypass = {};
     outlooks_.push_back({time, i, 0, (r.sees_pieces ? *r.pieces : r.field).shapes()});
   }
 
@@ -198,8 +198,8 @@ class FormationRun {
     if (goes_by_plan(i)) return choose_by_plan(i, time, step, fallen_back);
     const Viewpoint here = viewpoint(i);
     robots_[i].field.constraints(here, statics_);
-    decider_.decide({step.preferred, here, &statics_, &joint_.others[i], clock_.keeps_all(time), nullptr, fallen_back},
-                    step);
+    decider_.decide(
+        {step.preferred, here, &statics_, &joint_.others[i], schedule_.keeps_all(time), nullptr, fallen_back}, step);
   }
 
   /// The preference, with the consensus term in it where the filter comes last.
@@ -210,7 +210,7 @@ class FormationRun {
     return slotwards + consensus_input(spec_, relative_, i, remedies_.signs ? -1.0 : 1.0) / spec_.gains.k3;
   }
 
-  Vec2 steered(std::size_t i, SlotFollower::Situation situation, const std::vector<Constraint>& statics,
+  Vec2 steered(std::size_t i, RobotBypass::Situation situation, const std::vector<Constraint>& statics,
                const std::vector<Constraint>& others, RobotStep& step) {
     const Vec2 wanted = situation.preferred;
     if (!remedies_.side_commitment) return wanted;
@@ -219,15 +219,14 @@ class FormationRun {
     step.side = answer.side;
     if (answer.side != 0) step.mode = Mode::following;
     situation.preferred = answer.preferred;
-    step.note = joined_notes(step.note, answer.note);
+    add_note(step.note, answer.note);
     // Who is blocked by robots stands still then, and a plan is made.
     if (plans_ && plans_->is_active(situation.time)) return answer.preferred;
-    const SlotFollower::Answer round = robots_[i].slot.steer(situation, statics, others);
-    step.note = joined_notes(step.note, round.note);
-    if (round.mode != Mode::following) return answer.preferred;
+    const std::optional<Vec2> round = robots_[i].bypass.steer(situation, statics, others, step.note);
+    if (!round) return answer.preferred;
     step.mode = Mode::following;
-    step.side = round.side;
-    return round.preferred;
+    step.side = RobotBypass::kSide;
+    return *round;
   }
 
   /// What v follows: the filter's answer itself, or, in the paper's order, the sum in which it is one term.
@@ -306,7 +305,7 @@ class FormationRun {
   const FormationSpec& spec_;
   const SimulationOptions& options_;
   Scene scene_;
-  RunClock clock_;
+  RunSchedule schedule_;
   Decider decider_;
   std::vector<Vec2> offsets_;
   std::vector<FormationRobot> robots_;

@@ -25,7 +25,8 @@ void JointDecisions::choose_by_plan(std::size_t i, Vec2 wanted, Viewpoint here, 
   const std::optional<double> share = allowed_share(wanted, statics_, others[i]);
   held_by_all_[i] = !share;
   decider_.decide(
-      {share.value_or(0.0) * wanted, here, &statics_, &others[i], clock_.keeps_all(time), nullptr, fallen_back}, step);
+      {share.value_or(0.0) * wanted, here, &statics_, &others[i], schedule_.keeps_all(time), nullptr, fallen_back},
+      step);
 }
 
 void JointDecisions::settle(Groups& groups, Step& row, const std::function<Viewpoint(std::size_t)>& viewpoint,

@@ -11,19 +11,19 @@
 
 #include "decision/decision.h"
 #include "liveness/groups.h"
-#include "runs/run_clock.h"
+#include "runs/run_schedule.h"
 
 namespace exactvo::formation::detail {
 
 class JointDecisions {
  public:
   /// All must outlive it.
-  JointDecisions(const Scenario& scenario, const SimulationOptions& options, Scene& scene, const RunClock& clock,
+  JointDecisions(const Scenario& scenario, const SimulationOptions& options, Scene& scene, const RunSchedule& schedule,
                  Decider& decider)
       : scenario_(scenario),
         options_(options),
         scene_(scene),
-        clock_(clock),
+        schedule_(schedule),
         decider_(decider),
         held_by_all_(scenario.robots.size(), 0) {}
 
@@ -55,7 +55,7 @@ class JointDecisions {
   const Scenario& scenario_;
   const SimulationOptions& options_;
   Scene& scene_;
-  const RunClock& clock_;
+  const RunSchedule& schedule_;
   Decider& decider_;
   std::vector<char> held_by_all_;    ///< of those who go by plan: no share of what they want is allowed
   std::vector<Constraint> statics_;  ///< of one who goes by plan; memory that is kept

@@ -11,7 +11,7 @@
 #include "runs/joint_decisions.h"
 #include "runs/own_decision.h"
 #include "runs/rows.h"
-#include "runs/run_clock.h"
+#include "runs/run_schedule.h"
 #include "runs/runs.h"
 #include "scene/moving.h"
 #include "scene/static_field.h"
@@ -53,12 +53,12 @@ class KinematicRun {
         guide_(guide),
         liveness_(liveness_of(scenario, options)),
         scene_(scenario, options),
-        clock_(scenario, options),
+        schedule_(scenario, options),
         own_(scenario, options, scene_.bodies()),
-        joint_(scenario, options, scene_, clock_, own_.decider()) {
+        joint_(scenario, options, scene_, schedule_, own_.decider()) {
     if (liveness_ != Liveness::off && scenario.robots.size() > 1)
       groups_.emplace(scenario, guide ? guide->space() : open_space_, liveness_ == Liveness::plan, options.threads,
-                      [this] { return clock_.is_stopped(now_); });
+                      [this] { return schedule_.is_stopped(now_); });
     if (guide && !scenario.moving_obstacles.empty()) standing_.emplace(scenario, guide->most_margin());
     for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
       KinematicRobot& robot = robots_.emplace_back();
@@ -74,12 +74,12 @@ class KinematicRun {
     sink.begin(recording);
     RowFeed rows(scene_.bodies(), outlooks_, groups_ ? &groups_->plans() : nullptr, sink);
     std::size_t k = 0;
-    for (; !clock_.ends_at(k) && !all_arrived() && (k == 0 || !nobody_goes_on()); ++k) {
-      Step row = decide_all(clock_.time(k));
+    for (; !schedule_.ends_at(k) && !all_arrived() && (k == 0 || !nobody_goes_on()); ++k) {
+      Step row = decide_all(schedule_.time(k));
       move(row);
       rows.add(std::move(row));
     }
-    rows.add(final_row(clock_.time(k)));
+    rows.add(final_row(schedule_.time(k)));
     recording.outcome = outcome();
     if (guide_) recording.routes = routes_;
     if (liveness_ == Liveness::plan) recording.liveness = groups_ ? groups_->course() : LivenessCourse{};
@@ -113,10 +113,10 @@ class KinematicRun {
     r.waits_for_room = answer.start_is_blocked;
     routes_.planned += r.course.has_value();
     routes_.nearest += r.nearest.has_value();
-    if (r.nearest) r.note = joined_notes(r.note, r.no_way + "; goes as near as it can, " + words_of(*r.nearest));
+    if (r.nearest) add_note(r.note, r.no_way + "; goes as near as it can, " + words_of(*r.nearest));
     if (r.course && !r.nearest) r.no_way.clear();
     if (r.course) return;
-    r.note = joined_notes(r.note, r.waits_for_room ? "has no room: moves away before its route is planned" : r.no_way);
+    add_note(r.note, r.waits_for_room ? "has no room: moves away before its route is planned" : r.no_way);
   }
 
   std::string name_of_goal(std::size_t i) const {
@@ -189,7 +189,7 @@ class KinematicRun {
     r.detour.reset();
     r.cut_by.reset();
     ++routes_.cut;
-    r.note = joined_notes(r.note, "what it went round has moved: a new route is planned");
+    add_note(r.note, "what it went round has moved: a new route is planned");
   }
 
   /// Where something that stands now cuts its route and there is a way round. Else it waits before it, and looks again.
@@ -208,7 +208,7 @@ class KinematicRun {
     const bool is_way = answer.course && !answer.nearest;
     const std::string words = "moving obstacle '" + scenario_.moving_obstacles[*by].id + "' stands on its route: " +
                               (is_way ? "a new one leads round it" : "none leads round it, waits");
-    if (is_way || !is_known) r.note = joined_notes(r.note, words);
+    if (is_way || !is_known) add_note(r.note, words);
     if (!is_way) return;
     r.course = std::move(answer.course);
     r.detour = std::move(detour);
@@ -260,7 +260,7 @@ class KinematicRun {
     step.position = step.anchor = r.position;
     step.velocity = step.anchor_velocity = r.velocity;
     step.note = std::exchange(r.note, {});
-    if (groups_) step.note = joined_notes(step.note, groups_->note(i));
+    if (groups_) add_note(step.note, groups_->note(i));
     if (goes_by_plan(i)) {
       step.mode = groups_->goes_back(i) ? Mode::going_back : Mode::by_plan;
       choose_by_plan(i, time, step, nullptr);
@@ -281,7 +281,7 @@ class KinematicRun {
   /// REQUIRES: it has looked, and nobody after it.
   void choose(std::size_t i, Vec2 preferred, double time, RobotStep& step,
               const std::vector<std::size_t>* fallen_back = nullptr) {
-    own_.choose(preferred, viewpoint(i), joint_.others[i], clock_.keeps_all(time), fallen_back, step);
+    own_.choose(preferred, viewpoint(i), joint_.others[i], schedule_.keeps_all(time), fallen_back, step);
   }
 
   /// To the right of the way, the more the longer the robot was held up, while others are near (liveness, rule R1).
@@ -330,7 +330,7 @@ class KinematicRun {
     if (to.is_new) {
       ++routes_.pushed_off;
       r.has_new_course = true;
-      step.note = joined_notes(step.note, "pushed out of sight of its route: a new one is planned");
+      add_note(step.note, "pushed out of sight of its route: a new one is planned");
     }
     return straight_for(i, to.place);
   }
@@ -414,7 +414,7 @@ class KinematicRun {
   RoutesCourse routes_;
   Liveness liveness_;
   Scene scene_;
-  RunClock clock_;
+  RunSchedule schedule_;
   double now_ = 0.0;  ///< s, of the present row
   OwnDecision own_;
   std::vector<KinematicRobot> robots_;

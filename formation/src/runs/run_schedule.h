@@ -16,9 +16,9 @@
 
 namespace exactvo::formation::detail {
 
-class RunClock {
+class RunSchedule {
  public:
-  RunClock(const Scenario& scenario, const SimulationOptions& options)
+  RunSchedule(const Scenario& scenario, const SimulationOptions& options)
       : options_(&options),
         dt_(scenario.time_step),
         steps_(static_cast<std::size_t>(std::ceil(scenario.time_limit / scenario.time_step - kSameRow))) {

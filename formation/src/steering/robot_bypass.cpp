@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "steering/slot_follower.h"
+#include "steering/robot_bypass.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -21,7 +21,7 @@ std::vector<Constraint> all_lines(const std::vector<Constraint>& statics, const 
 
 }  // namespace
 
-bool SlotFollower::stalled(const Situation& s) {
+bool RobotBypass::stalled(const Situation& s) {
   if (best_distance_ < 0.0 || s.distance < best_distance_ - kSlotStallProgress * kSlotStallTime * s.pace) {
     best_distance_ = s.distance;
     best_time_ = s.time;
@@ -29,39 +29,28 @@ bool SlotFollower::stalled(const Situation& s) {
   return s.time - best_time_ > kSlotStallTime && s.distance > s.tolerance;
 }
 
-SlotFollower::Answer SlotFollower::steer(const Situation& s, const std::vector<Constraint>& statics,
-                                         const std::vector<Constraint>& others) {
-  Answer answer{s.preferred, Mode::direct, 0, ""};
-  if (!s.target_rests) {
-    *this = SlotFollower{};
-    return answer;
-  }
-  if (!following_ && !stalled(s)) return answer;
+std::optional<Vec2> RobotBypass::steer(const Situation& s, const std::vector<Constraint>& statics,
+                                       const std::vector<Constraint>& others, std::string& note) {
+  if (!s.target_rests) *this = RobotBypass{};
+  if (!s.target_rests || (!goes_round_ && !stalled(s))) return std::nullopt;
   const std::vector<Constraint> lines = all_lines(statics, others);
   const bool free = !blocked(lines, s.preferred);
-  if (following_ && free && s.distance < hit_distance_ - kSlotLeaveGain) {
-    *this = SlotFollower{};
+  if (goes_round_ && free && s.distance < hit_distance_ - kSlotLeaveGain) {
+    *this = RobotBypass{};
     stalled(s);  // progress counts from here
-    answer.note = "past the robots that stood in the way";
-    return answer;
+    add_note(note, "past the robots that stood in the way");
+    return std::nullopt;
   }
-  if (!following_) {
+  if (!goes_round_) {
     // A wall in the way is the side commitment's business.
-    if (free || blocked(statics, s.preferred)) return answer;
-    following_ = true;
-    side_ = 1;
+    if (free || blocked(statics, s.preferred)) return std::nullopt;
+    goes_round_ = true;
     hit_distance_ = s.distance;
-    answer.note = "stalled among robots: goes round, turning left";
+    add_note(note, "stalled among robots: goes round, turning left");
   }
-  for (double speed = norm(s.preferred); speed > kLeastShare * norm(s.preferred); speed *= 0.5) {
-    const std::optional<Sweep> found = sweep(lines, s.preferred, side_, speed);
-    if (!found) continue;
-    answer.preferred = found->velocity;
-    break;
-  }
-  answer.mode = Mode::following;
-  answer.side = side_;
-  return answer;
+  for (double speed = norm(s.preferred); speed > kLeastShare * norm(s.preferred); speed *= 0.5)
+    if (const std::optional<Sweep> found = sweep(lines, s.preferred, kSide, speed)) return found->velocity;
+  return s.preferred;
 }
 
 }  // namespace exactvo::formation::detail

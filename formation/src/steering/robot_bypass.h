@@ -8,12 +8,16 @@
 ///
 /// Heuristic; ties go left. Touches no half-plane: what comes out is a preference.
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "decision/decision.h"
 #include "steering/steering.h"
 
 namespace exactvo::formation::detail {
 
-class SlotFollower {
+class RobotBypass {
  public:
   struct Situation {
     double time = 0.0;          ///< s
@@ -23,21 +27,18 @@ class SlotFollower {
     bool target_rests = false;  ///< a slot that moves away is no stall
     Vec2 preferred;             ///< m/s
   };
-  struct Answer {
-    Vec2 preferred;
-    Mode mode = Mode::direct;
-    int side = 0;
-    std::string note;
-  };
-  /// Mode::following with the turned preference while going round; Mode::direct otherwise.
-  Answer steer(const Situation& s, const std::vector<Constraint>& statics, const std::vector<Constraint>& others);
+  /// The side on which robots are passed, as in RobotStep::side: left.
+  static constexpr int kSide = 1;
+
+  /// m/s, what to prefer while going round; nothing otherwise. Says in `note` when that begins and ends.
+  std::optional<Vec2> steer(const Situation& s, const std::vector<Constraint>& statics,
+                            const std::vector<Constraint>& others, std::string& note);
 
  private:
   bool stalled(const Situation& s);
 
-  bool following_ = false;
-  int side_ = 0;
-  double hit_distance_ = 0.0;    ///< m, to the slot, where following began
+  bool goes_round_ = false;
+  double hit_distance_ = 0.0;    ///< m, to the slot, where going round began
   double best_distance_ = -1.0;  ///< m, least so far
   double best_time_ = 0.0;       ///< s, when that was reached
 };

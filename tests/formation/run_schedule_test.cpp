@@ -7,7 +7,7 @@
 namespace exactvo::formation {
 namespace {
 
-TEST(RunClock, StopsAtTheRowAskedForWhateverItsMultipleRoundsTo) {
+TEST(RunSchedule, StopsAtTheRowAskedForWhateverItsMultipleRoundsTo) {
   const Scenario scene = test::paper_scene("A2");
   // 6 * 0.05 > 0.3 and 3 * 0.05 > 0.15 in doubles.
   for (const int row : {0, 1, 3, 6, 7, 14, 56, 87, 199}) {
@@ -19,14 +19,14 @@ TEST(RunClock, StopsAtTheRowAskedForWhateverItsMultipleRoundsTo) {
   }
 }
 
-TEST(RunClock, ATimeBetweenRowsGivesTheRowBefore) {
+TEST(RunSchedule, ATimeBetweenRowsGivesTheRowBefore) {
   SimulationOptions options;
   options.stop_at = 1.337;
   const Recording recording = simulate(test::paper_scene("A2"), options);
   EXPECT_NEAR(recording.steps[recording.steps.size() - 2].time, 1.3, 1e-12);
 }
 
-TEST(RunClock, TheLastDecisionKeepsEveryHalfPlane) {
+TEST(RunSchedule, TheLastDecisionKeepsEveryHalfPlane) {
   const Scenario scene = test::paper_scene("A2");
   SimulationOptions all;
   all.record_all = true;
