@@ -1,31 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What the page of `exactvo serve` asks, and its answers; http_server.cpp carries both.
 #include "explorer/server.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <poll.h>
-#include <sys/random.h>
-#include <sys/socket.h>
 #include <time.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <deque>
+#include <exception>
 #include <mutex>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <thread>
 #include <utility>
-#include <vector>
 
 #include "exactvo/datasets/data_error.h"
+#include "explorer/http.h"
 #include "explorer/page.h"
+#include "modules/load.h"
 #include "support/terminal.h"
 #include "support/usage.h"
 
@@ -34,251 +26,8 @@ namespace exactvo::tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using httplib::Request;
-using httplib::Response;
-using std::chrono::milliseconds;
-using std::chrono::seconds;
 
-constexpr std::size_t kMostBody = std::size_t{8} << 20;   // bytes of a question
-constexpr std::size_t kMostHead = std::size_t{64} << 10;  // bytes of a request before its body
-constexpr std::size_t kMostWaiting = 128;                 // connections that no thread has taken yet
-constexpr unsigned kThreads = 16;
-constexpr seconds kToAsk{5};         // from the connection to the end of the request
-constexpr seconds kToTake{30};       // for the answer to be taken
-constexpr seconds kToRun{60};        // of a run on from a moment
-constexpr milliseconds kSlice{100};  // how soon an interrupt is noticed
-
-// --- Connections ---
-
-/// When the connection came that this thread works on, and whether it is one too many.
-thread_local Clock::time_point came_at;
-thread_local bool is_refused = false;
-
-/// Threads that take connections in turn. What waits was taken from the system already, so that its time runs.
-class Workers : public httplib::TaskQueue {
- public:
-  Workers() {
-    for (unsigned k = 0; k < kThreads; ++k) threads_.emplace_back([this] { work(); });
-  }
-  void enqueue(std::function<void()> task) override {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (waiting_.size() < kMostWaiting) {
-        waiting_.emplace_back(Clock::now(), std::move(task));
-        task = nullptr;
-      }
-    }
-    if (!task) {
-      came_.notify_one();
-      return;
-    }
-    is_refused = true;
-    task();
-    is_refused = false;
-  }
-  void shutdown() override {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      ends_ = true;
-    }
-    came_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
-  }
-
- private:
-  void work() {
-    for (;;) {
-      std::unique_lock<std::mutex> lock(mutex_);
-      came_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
-      if (waiting_.empty()) return;
-      auto [time, task] = std::move(waiting_.front());
-      waiting_.pop_front();
-      lock.unlock();
-      came_at = time;
-      task();
-    }
-  }
-
-  std::mutex mutex_;
-  std::condition_variable came_;
-  std::deque<std::pair<Clock::time_point, std::function<void()>>> waiting_;
-  std::vector<std::thread> threads_;
-  bool ends_ = false;
-};
-
-/// A connection with so much time and so many bytes for the whole request, however slowly they come.
-class BoundedStream : public httplib::Stream {
- public:
-  BoundedStream(int socket, Clock::time_point read_until) : socket_(socket), until_(read_until) {}
-
-  bool is_readable() const override { return begin_ < end_ || is_ready(POLLIN); }
-  bool is_writable() const override { return is_ready(POLLOUT); }
-
-  ssize_t read(char* to, std::size_t size) override {
-    if (begin_ == end_ && !fill()) return -1;
-    const std::size_t count = std::min(size, end_ - begin_);
-    std::copy_n(buffer_.data() + begin_, count, to);
-    begin_ += count;
-    return static_cast<ssize_t>(count);
-  }
-
-  ssize_t write(const char* from, std::size_t size) override {
-    if (!is_writing_) {
-      is_writing_ = true;
-      until_ = Clock::now() + kToTake;
-    }
-    if (!is_ready(POLLOUT)) return -1;
-    return ::send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
-  }
-
-  void get_remote_ip_and_port(std::string& ip, int& port) const override { ip = "127.0.0.1", port = 0; }
-  void get_local_ip_and_port(std::string& ip, int& port) const override { ip = "127.0.0.1", port = 0; }
-  socket_t socket() const override { return socket_; }
-
-  /// Lets the other side read the answer: a connection that is closed on unread bytes is reset.
-  void end() {
-    ::shutdown(socket_, SHUT_WR);
-    until_ = Clock::now() + seconds(1);
-    left_ = 2 * kMostBody;
-    while (fill()) {
-    }
-  }
-
- private:
-  bool is_ready(short what) const {
-    while (!interrupted()) {
-      const auto left = std::chrono::duration_cast<milliseconds>(until_ - Clock::now());
-      if (left.count() <= 0) return false;
-      pollfd one{socket_, what, 0};
-      const int ready = ::poll(&one, 1, static_cast<int>(std::min(left, kSlice).count()) + 1);
-      if (ready > 0) return true;
-      if (ready < 0 && errno != EINTR) return false;
-    }
-    return false;
-  }
-
-  bool fill() {
-    if (left_ == 0 || !is_ready(POLLIN)) return false;
-    const ssize_t got = ::recv(socket_, buffer_.data(), std::min(left_, buffer_.size()), 0);
-    if (got <= 0) return false;
-    left_ -= static_cast<std::size_t>(got);
-    begin_ = 0;
-    end_ = static_cast<std::size_t>(got);
-    return true;
-  }
-
-  int socket_;
-  Clock::time_point until_;
-  bool is_writing_ = false;
-  std::array<char, 4096> buffer_{};
-  std::size_t begin_ = 0, end_ = 0;
-  std::size_t left_ = kMostHead + kMostBody;
-};
-
-/// A request a connection, in bounded time.
-class Server : public httplib::Server {
- private:
-  bool process_and_close_socket(socket_t socket) override {
-    bool is_answered = false;
-    if (!is_refused) {
-      const int yes = 1;  // the head and the body of an answer are written one after the other
-      ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-      BoundedStream stream(socket, came_at + kToAsk);
-      bool is_closed = false;
-      is_answered = process_request(stream, true, is_closed, nullptr);
-      stream.end();
-    }
-    ::close(socket);
-    return is_answered;
-  }
-};
-
-// --- Requests ---
-
-std::string random_token() {
-  std::array<unsigned char, 16> bytes{};
-  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw std::runtime_error("no random numbers for a token");
-  std::string token;
-  for (const unsigned char b : bytes) token += fmt::format("{:02x}", b);
-  return token;
-}
-
-/// In a time that does not depend on where they differ.
-bool are_equal(const std::string& a, const std::string& b) {
-  if (a.size() != b.size()) return false;
-  unsigned char difference = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) difference |= static_cast<unsigned char>(a[k] ^ b[k]);
-  return difference == 0;
-}
-
-void refuse(Response& response, int status, const std::string& why) {
-  response.status = status;
-  response.set_content(nlohmann::json{{"error", why}}.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace),
-                       "application/json");
-}
-
-/// Which requests are answered at all.
-class Gate {
- public:
-  Gate(int port, std::string token)
-      : hosts_{fmt::format("127.0.0.1:{}", port), fmt::format("localhost:{}", port)}, token_(std::move(token)) {}
-
-  /// Answers those that are not let in.
-  httplib::Server::HandlerResponse operator()(const Request& request, Response& response) const {
-    if (const int status = status_of(request); status != 0) {
-      refuse(response, status, why(status));
-      return httplib::Server::HandlerResponse::Handled;
-    }
-    return httplib::Server::HandlerResponse::Unhandled;
-  }
-
- private:
-  static constexpr int kForbidden = 403, kUnknown = 404, kNoMethod = 405, kTooLarge = 413, kNotJson = 415;
-
-  static const char* why(int status) {
-    switch (status) {
-      case kForbidden:
-        return "this server answers only the page that it gave out";
-      case kUnknown:
-        return "nothing is here: open the address that exactvo serve printed";
-      case kNoMethod:
-        return "GET the page, POST questions";
-      case kTooLarge:
-        return "the question is larger than 8 MiB, or does not say how large it is";
-      default:
-        return "a question is JSON, as it is: neither compressed nor in pieces";
-    }
-  }
-
-  bool is_own(const std::string& host) const { return std::find(hosts_.begin(), hosts_.end(), host) != hosts_.end(); }
-
-  /// 0 where it is let in.
-  int status_of(const Request& request) const {
-    if (request.get_header_value_count("Host") != 1 || !is_own(request.get_header_value("Host"))) return kForbidden;
-    if (request.has_header("Origin")) {
-      const std::string origin = request.get_header_value("Origin"), scheme = "http://";
-      if (origin.rfind(scheme, 0) != 0 || !is_own(origin.substr(scheme.size()))) return kForbidden;
-    }
-    const std::string& path = request.path;
-    const std::size_t end = path.find('/', 1);
-    if (end == std::string::npos || !are_equal(path.substr(1, end - 1), token_)) return kUnknown;
-    if (request.has_header("Range")) return kForbidden;  // many of them would multiply the page
-    if (request.method == "GET") return 0;
-    if (request.method != "POST") return kNoMethod;
-    if (request.get_header_value("Content-Type") != "application/json" || request.has_header("Content-Encoding") ||
-        request.has_header("Transfer-Encoding"))
-      return kNotJson;
-    if (request.get_header_value_count("Content-Length") != 1) return kTooLarge;
-    const std::string length = request.get_header_value("Content-Length");
-    const bool is_number = !length.empty() && length.size() < 10 &&
-                           std::all_of(length.begin(), length.end(), [](char c) { return c >= '0' && c <= '9'; });
-    return is_number && std::stoul(length) <= kMostBody ? 0 : kTooLarge;
-  }
-
-  std::array<std::string, 2> hosts_;
-  std::string token_;
-};
+constexpr std::chrono::seconds kToRun{60};  // of a run on from a moment
 
 /// A run on from a moment gives way to the next one that is asked for.
 struct GivesWay : std::runtime_error {
@@ -316,37 +65,49 @@ double processor_time() {
 
 using AnswerOfPage = std::function<std::string(const LiveQuestion&)>;
 
-/// What is wrong with a question, as JSON for the page.
-void refuse(Response& response, const datasets::DataError& error) {
-  response.status = 400;
-  const nlohmann::json body = {{"error", error.what()},
-                               {"code", code_name(error.code())},
-                               {"place", error.place()},
-                               {"found", error.found()},
-                               {"expected", error.expected()}};
-  response.set_content(body.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), "application/json");
+HttpAnswer refused(int status, const nlohmann::json& body) {
+  return {status, body.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), "application/json", ""};
 }
 
-void answer(const Request& request, Response& response, const OptionsOfRun& options_of, const char* type,
-            const AnswerOfPage& answer_of) {
+HttpAnswer refusal(int status, const std::string& why) {
+  return refused(status, nlohmann::json{{"error", why}});
+}
+
+/// What is wrong with a question, as JSON for the page.
+HttpAnswer refusal(const datasets::DataError& error) {
+  return refused(400, nlohmann::json{{"error", error.what()},
+                                     {"code", code_name(error.code())},
+                                     {"place", error.place()},
+                                     {"found", error.found()},
+                                     {"expected", error.expected()}});
+}
+
+HttpAnswer answer_untimed(const std::string& body, const OptionsOfRun& options_of, const char* type,
+                          const AnswerOfPage& answer_of) {
+  try {
+    return {200, answer_of(parse_live_question(body, options_of)), type, ""};
+  } catch (const datasets::DataError& error) {
+    return refusal(error);
+  } catch (const GivesWay& error) {
+    return refusal(409, error.what());
+  } catch (const Interrupted&) {
+    return refusal(503, "the server was stopped");
+  } catch (const std::bad_alloc&) {
+    return refusal(503, "more memory wanted than there is");
+  } catch (const std::exception& error) {
+    return refusal(500, error.what());
+  }
+}
+
+HttpAnswer answer(const std::string& body, const OptionsOfRun& options_of, const char* type,
+                  const AnswerOfPage& answer_of) {
   const Clock::time_point begin = Clock::now();
   const double processor_begin = processor_time();
-  try {
-    response.set_content(answer_of(parse_live_question(request.body, options_of)), type);
-  } catch (const datasets::DataError& error) {
-    refuse(response, error);
-  } catch (const GivesWay& error) {
-    refuse(response, 409, error.what());
-  } catch (const Interrupted&) {
-    refuse(response, 503, "the server was stopped");
-  } catch (const std::bad_alloc&) {
-    refuse(response, 503, "more memory wanted than there is");
-  } catch (const std::exception& error) {
-    refuse(response, 500, error.what());
-  }
+  HttpAnswer answer = answer_untimed(body, options_of, type, answer_of);
   const std::chrono::duration<double, std::milli> took = Clock::now() - begin;
-  response.set_header("Server-Timing", fmt::format("compute;dur={:.2f}, processor;dur={:.2f}", took.count(),
-                                                   1e3 * (processor_time() - processor_begin)));
+  answer.timing =
+      fmt::format("compute;dur={:.2f}, processor;dur={:.2f}", took.count(), 1e3 * (processor_time() - processor_begin));
+  return answer;
 }
 
 constexpr const char* kConnectNothing = "default-src 'none';";
@@ -359,29 +120,6 @@ std::string policy() {
          "'none'; "
          "form-action 'none'; frame-ancestors 'none'";
 }
-
-/// Stops the server when the user interrupts the program.
-class StopOnInterrupt {
- public:
-  explicit StopOnInterrupt(Server& server)
-      : thread_([this, &server] {
-          for (bool is_stopped = false; !is_over_; std::this_thread::sleep_for(kSlice)) {
-            if (is_stopped || !interrupted() || !server.is_running()) continue;
-            server.stop();
-            is_stopped = true;
-          }
-        }) {}
-  ~StopOnInterrupt() {
-    is_over_ = true;
-    thread_.join();
-  }
-  StopOnInterrupt(const StopOnInterrupt&) = delete;
-  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-
- private:
-  std::atomic<bool> is_over_{false};
-  std::thread thread_;
-};
 
 }  // namespace
 
@@ -399,48 +137,26 @@ std::string page_for_server(std::string page) {
 }
 
 void serve(const ServerOptions& options) {
-  Server server;
-  server.new_task_queue = [] { return new Workers; };
-  server.set_payload_max_length(kMostBody);
-  server.set_socket_options([](socket_t socket) {
-    const int yes = 1;
-    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  });
-  server.set_default_headers({{"Content-Security-Policy", policy()},
-                              {"Cache-Control", "no-store"},
-                              {"Referrer-Policy", "no-referrer"},
-                              {"X-Content-Type-Options", "nosniff"},
-                              {"Cross-Origin-Resource-Policy", "same-origin"},
-                              {"Cross-Origin-Opener-Policy", "same-origin"}});
-  int port = options.port;
-  if (port == 0)
-    port = server.bind_to_any_port("127.0.0.1");
-  else if (!server.bind_to_port("127.0.0.1", port))
-    port = -1;
-  if (port <= 0) throw UsageError("--port", std::to_string(options.port), "a port of 127.0.0.1 that is free [E_PORT]");
-  const std::string token = random_token(), root = "/" + token + "/";
   RunQueue runs;
-  server.set_pre_routing_handler(Gate(port, token));
-  server.Get(root, [&](const Request&, Response& response) {
-    response.set_content(options.page, "text/html; charset=utf-8");
-  });
+  const auto question = [&](const char* path, const char* type, AnswerOfPage answer_of) {
+    return HttpQuestion{path, [&options, type, answer_of = std::move(answer_of)](const std::string& body) {
+                          return answer(body, options.options_of, type, answer_of);
+                        }};
+  };
   const char* const packed = "application/octet-stream";
-  server.Post(root + "decide", [&](const Request& request, Response& response) {
-    answer(request, response, options.options_of, packed, live_decision);
-  });
-  server.Post(root + "free", [&](const Request& request, Response& response) {
-    answer(request, response, options.options_of, "application/json", live_free_velocities);
-  });
-  server.Post(root + "run", [&](const Request& request, Response& response) {
-    answer(request, response, options.options_of, packed,
-           [&](const LiveQuestion& question) { return runs.run(question); });
-  });
-  server.set_error_handler([](const Request&, Response& response) {
-    if (response.body.empty()) refuse(response, response.status, "nothing is here");
-  });
-  options.ready(fmt::format("http://127.0.0.1:{}{}", port, root));
-  const StopOnInterrupt stop(server);
-  server.listen_after_bind();
+  HttpSite site;
+  site.port = options.port;
+  site.page = options.page;
+  site.policy = policy();
+  site.questions = {question("decide", packed, live_decision),
+                    question("free", "application/json", live_free_velocities),
+                    question("run", packed, [&](const LiveQuestion& asked) { return runs.run(asked); })};
+  site.is_interrupted = interrupted;
+  site.ready = options.ready;
+  const auto& library =
+      *static_cast<const HttpLibrary*>(datasets::load_module("http", "the server of the page (cpp-httplib)"));
+  if (!library.serve(site))
+    throw UsageError("--port", std::to_string(options.port), "a port of 127.0.0.1 that is free [E_PORT]");
 }
 
 }  // namespace exactvo::tools

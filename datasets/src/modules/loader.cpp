@@ -12,6 +12,7 @@
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/datasets/input_text.h"
 #include "gdal/vector_library.h"
+#include "modules/load.h"
 #include "modules/module.h"
 #include "mpi/rank_library.h"
 
@@ -65,6 +66,10 @@ const void* load(const std::string& name, const std::string& purpose, int visibi
 }
 
 }  // namespace
+
+const void* load_module(const std::string& name, const std::string& purpose) {
+  return load(name, purpose, RTLD_LOCAL);
+}
 
 #ifdef EXACTVO_LOADS_GDAL
 const VectorLibrary& vector_library() {
