@@ -8,20 +8,21 @@
 #include <string>
 #include <string_view>
 
-struct evp_md_ctx_st;  // OpenSSL's EVP_MD_CTX
+struct SHA256state_st;  // OpenSSL's SHA256_CTX
 
 namespace exactvo::datasets {
 
 class Sha256 {
  public:
   Sha256();
+  ~Sha256();
 
   void add(std::string_view bytes);
   /// Lower-case hexadecimal. The object can't be used afterwards.
   std::string digest();
 
  private:
-  std::unique_ptr<evp_md_ctx_st, void (*)(evp_md_ctx_st*)> context_;
+  std::unique_ptr<SHA256state_st> state_;
 };
 
 }  // namespace exactvo::datasets
