@@ -8,7 +8,7 @@ namespace exactvo::tools {
 
 namespace {
 
-constexpr const char* kBlanks = " \t\r";
+constexpr const char* kBlanks = " \t\r\n";
 
 }  // namespace
 

@@ -7,10 +7,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "exactvo/datasets/obstacle_file.h"
 #include "exactvo/geometry/pi.h"
+#include "support/fields.h"
 #include "support/projection.h"
 #include "support/usage.h"
 
@@ -50,20 +52,15 @@ struct Call {
   }
 };
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\n\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\n\r") - first + 1);
-}
-
 std::string word_before_bracket(const std::string& text) {
-  std::string word = trimmed(text.substr(0, text.find('(')));
+  std::string word(trimmed(std::string_view(text).substr(0, text.find('('))));
   std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::toupper(c); });
   return word;
 }
 
 Call call_in(const std::string& text) {
   Call call{word_before_bracket(text), {}};
-  const std::string whole = trimmed(text);
+  const std::string whole(trimmed(text));
   if (whole.empty() || whole.back() != ')') return call;
   const auto open = whole.find('(');
   const std::string within = whole.substr(open + 1, whole.size() - open - 2);

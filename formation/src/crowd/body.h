@@ -52,9 +52,21 @@ class CrowdBody {
   std::size_t place_of(RobotId robot);
   std::uint64_t digest() const;
 
+  /// Of robots by their place in the order.
+  Vec2 position(std::size_t at) const {
+    const double q = core->options.position_step;
+    return {q * core->robots.x[at], q * core->robots.y[at]};
+  }
   Vec2 velocity(std::size_t at) const {
     const CrowdOptions& o = core->options;
     return {o.position_step * core->robots.mx[at] / o.time_step, o.position_step * core->robots.my[at] / o.time_step};
+  }
+  /// Puts what `value_of` says of each place where its robot's id is; grows the array to `id_end`.
+  template <class Value, class ValueOf>
+  void fill(std::vector<Value>& by_id, const ValueOf& value_of) const {
+    if (by_id.size() < id_end) by_id.resize(id_end);
+    const Robots& r = core->robots;
+    for (std::size_t i = 0; i < r.size(); ++i) by_id[static_cast<std::size_t>(r.id[i])] = value_of(i);
   }
   std::size_t bytes() const {
     return core->bytes() + core->edges.bytes() + core->bodies.bytes() + 4 * (places.capacity() + free_ids.capacity());

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <variant>
@@ -11,6 +10,7 @@
 #include "crowd/body.h"
 #include "exactvo/geometry/shape_numbers.h"
 #include "exactvo/vo/lp/batch.h"
+#include "scene/number_text.h"
 
 namespace exactvo::formation {
 
@@ -31,9 +31,7 @@ constexpr std::size_t kMostCornersRound = 32;
 constexpr double kLongestMotion = 0x1p22;
 
 std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  return text;
+  return detail::number_text(x, 17);
 }
 
 std::string words(const char* field, double found, const std::string& expected) {
@@ -482,28 +480,20 @@ StepReport Crowd::step() {
 }
 
 void Crowd::positions(std::vector<Vec2>& by_id) const {
-  const Robots& r = engine_->core->robots;
-  const double q = options().position_step;
-  if (by_id.size() < id_end()) by_id.resize(id_end());
-  for (std::size_t i = 0; i < r.size(); ++i) by_id[static_cast<std::size_t>(r.id[i])] = {q * r.x[i], q * r.y[i]};
+  engine_->fill(by_id, [&](std::size_t i) { return engine_->position(i); });
 }
 
 void Crowd::velocities(std::vector<Vec2>& by_id) const {
-  const Robots& r = engine_->core->robots;
-  if (by_id.size() < id_end()) by_id.resize(id_end());
-  for (std::size_t i = 0; i < r.size(); ++i) by_id[static_cast<std::size_t>(r.id[i])] = engine_->velocity(i);
+  engine_->fill(by_id, [&](std::size_t i) { return engine_->velocity(i); });
 }
 
 void Crowd::kept(std::vector<std::uint8_t>& by_id) const {
   const Robots& r = engine_->core->robots;
-  if (by_id.size() < id_end()) by_id.resize(id_end());
-  for (std::size_t i = 0; i < r.size(); ++i) by_id[static_cast<std::size_t>(r.id[i])] = (r.tag[i] & Robots::kKept) != 0;
+  engine_->fill(by_id, [&](std::size_t i) { return (r.tag[i] & Robots::kKept) != 0; });
 }
 
 Vec2 Crowd::position(RobotId robot) const {
-  const std::size_t i = engine_->place_of(robot);
-  const double q = options().position_step;
-  return {q * engine_->core->robots.x[i], q * engine_->core->robots.y[i]};
+  return engine_->position(engine_->place_of(robot));
 }
 
 Vec2 Crowd::velocity(RobotId robot) const {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "exactvo/formation/constraint_name.h"
@@ -107,8 +106,8 @@ void warn_of_leader(const Scenario& s, std::vector<std::string>& out) {
     if (!words->empty()) out.push_back(*words);
   const double arrival = leader_arrival(s.formation->leader);
   if (!(arrival > s.time_limit)) return;
-  char when[80];
-  std::snprintf(when, sizeof when, "only after %.6g s, beyond the time limit of %.6g s", arrival, s.time_limit);
+  const std::string when =
+      "only after " + number_text(arrival, 6) + " s, beyond the time limit of " + number_text(s.time_limit, 6) + " s";
   out.push_back(std::string("the leader reaches the end of its path ") + (std::isfinite(arrival) ? when : "never"));
 }
 

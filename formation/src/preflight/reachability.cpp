@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <set>
 #include <variant>
@@ -84,9 +83,7 @@ bool winds_round(const std::vector<Vec2>& chain, Vec2 place) {
 }  // namespace
 
 std::string printed_place(Vec2 place) {
-  char text[80];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g)", place.x, place.y);
-  return text;
+  return "(" + number_text(place.x, 6) + ", " + number_text(place.y, 6) + ")";
 }
 
 std::vector<Vec2> places_about(Vec2 place, double reach) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "exactvo/geometry/box_grid.h"
@@ -12,6 +11,7 @@
 #include "runs/own_decision.h"
 #include "scene/field_problems.h"
 #include "scene/moving.h"
+#include "scene/number_text.h"
 #include "steering/goals.h"
 
 namespace exactvo::formation {
@@ -30,9 +30,12 @@ constexpr std::size_t kMostNeighbours = std::size_t{1} << 20;
 constexpr std::size_t kNoteLength = 512;
 
 std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  return text;
+  return number_text(x, 17);
+}
+
+/// "1, 2".
+std::string number(Vec2 v) {
+  return number(v.x) + ", " + number(v.y);
 }
 
 [[noreturn]] void refuse(Problem problem, const std::string& field, const std::string& found,
@@ -48,10 +51,9 @@ std::string field_of(const char* list, std::size_t k, const char* field) {
 // Words are made for what is wrong only.
 
 void require_vector(Vec2 v, const char* list, std::size_t k, const char* field) {
-  if (!geometry::is_finite(v))
-    refuse(Problem::not_finite, field_of(list, k, field), number(v.x) + ", " + number(v.y), "two finite numbers");
+  if (!geometry::is_finite(v)) refuse(Problem::not_finite, field_of(list, k, field), number(v), "two finite numbers");
   if (!(std::max(std::fabs(v.x), std::fabs(v.y)) < kMost))
-    refuse(Problem::out_of_range, field_of(list, k, field), number(v.x) + ", " + number(v.y), "less than 2^30");
+    refuse(Problem::out_of_range, field_of(list, k, field), number(v), "less than 2^30");
 }
 
 void require_positive(double x, const char* list, std::size_t k, const char* field) {
@@ -279,7 +281,7 @@ class Navigator::Core {
     if (has_decided_ && now.time < now_.time)
       refuse(Problem::time_backwards, "time", number(now.time), "no time before " + number(now_.time));
     if (const SceneObstacle* o = insides_.round(now.position))
-      refuse(Problem::inside_obstacle, "position", number(now.position.x) + ", " + number(now.position.y),
+      refuse(Problem::inside_obstacle, "position", number(now.position),
              "a place that is not inside obstacle '" + o->id + "'");
   }
 
@@ -291,8 +293,8 @@ class Navigator::Core {
       require_positive(n.radius, "neighbour", k, "radius");
       require_positive(n.max_speed, "neighbour", k, "max_speed");
       if (n.position == now.position)
-        refuse(Problem::coincident, field_of("neighbour", k, "position"),
-               number(n.position.x) + ", " + number(n.position.y), "another place than the robot's own");
+        refuse(Problem::coincident, field_of("neighbour", k, "position"), number(n.position),
+               "another place than the robot's own");
     }
   }
 

@@ -16,6 +16,7 @@ namespace exactvo::python {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace py::literals;
 using datasets::ObstacleFile;
 
 datasets::ReadOptions reading(const py::object& format, const std::string& units, py::handle cell_size,
@@ -60,12 +61,9 @@ py::dict as_dict(ObstacleFile file) {
   py::list rejected, findings;
   for (const datasets::DataError& e : file.rejected) rejected.append(as_tuple(e));
   for (const datasets::RingFinding& f : file.findings) findings.append(as_tuple(f));
-  py::dict counts;
-  counts["read"] = file.counts.read;
-  counts["done"] = file.counts.done;
-  counts["repaired"] = file.counts.repaired;
-  counts["passed_over"] = file.counts.passed_over;
-  counts["rejected"] = file.counts.rejected;
+  const datasets::ReadCounts& n = file.counts;
+  const py::dict counts("read"_a = n.read, "done"_a = n.done, "repaired"_a = n.repaired,
+                        "passed_over"_a = n.passed_over, "rejected"_a = n.rejected);
   py::object origin = py::none();
   if (file.origin) origin = py::make_tuple(file.origin->longitude, file.origin->latitude);
   py::dict result;
@@ -105,12 +103,7 @@ py::list write(const fs::path& path, const Obstacles& obstacles, const py::objec
 }
 
 py::dict as_dict(const datasets::RepairFacts& f) {
-  py::dict result;
-  result["polygons"] = f.polygons;
-  result["rings"] = f.rings;
-  result["vertices"] = f.vertices;
-  result["area"] = f.area;
-  return result;
+  return py::dict("polygons"_a = f.polygons, "rings"_a = f.rings, "vertices"_a = f.vertices, "area"_a = f.area);
 }
 
 py::tuple repair(const py::list& rings) {
@@ -134,12 +127,7 @@ py::tuple repair(const py::list& rings) {
 }
 
 py::dict as_dict(const datasets::BatchTally& t) {
-  py::dict result;
-  result["read"] = t.read;
-  result["done"] = t.done;
-  result["repaired"] = t.repaired;
-  result["rejected"] = t.rejected;
-  return result;
+  return py::dict("read"_a = t.read, "done"_a = t.done, "repaired"_a = t.repaired, "rejected"_a = t.rejected);
 }
 
 py::tuple batch(const std::vector<fs::path>& paths, const fs::path& out, const std::vector<std::string>& write,

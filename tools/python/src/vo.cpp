@@ -15,6 +15,7 @@
 namespace exactvo::python {
 
 using geometry::HalfPlane;
+using namespace py::literals;
 
 namespace {
 
@@ -74,15 +75,10 @@ py::object certificate_text(const Cone& cone, const HalfPlane& h) {
 }
 
 py::dict fields_of(const vo::Certificate& c) {
-  py::dict fields;
-  fields["shape"] = as_tuple(c.claim.shape);
-  fields["position"] = as_tuple(c.claim.position);
-  fields["radius"] = c.claim.radius;
-  fields["time_horizon"] = c.claim.time_horizon;
-  fields["obstacle_velocity"] = as_tuple(c.claim.shape_velocity);
-  fields["half_plane"] = as_tuple(c.claim.half_plane);
-  fields["margin"] = c.margin;
-  return fields;
+  const vo::HalfPlaneClaim& claim = c.claim;
+  return py::dict("shape"_a = as_tuple(claim.shape), "position"_a = as_tuple(claim.position), "radius"_a = claim.radius,
+                  "time_horizon"_a = claim.time_horizon, "obstacle_velocity"_a = as_tuple(claim.shape_velocity),
+                  "half_plane"_a = as_tuple(claim.half_plane), "margin"_a = c.margin);
 }
 
 py::tuple leg_tuple(const vo::Leg& leg) {
