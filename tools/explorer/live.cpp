@@ -218,9 +218,6 @@ void keep_what_is_shown(std::size_t robot, formation::Step& row) {
 class MomentRecorder : public formation::RunSink {
  public:
   explicit MomentRecorder(const LiveQuestion& question) : question_(question) {}
-  void begin(const formation::Recording&) override {}
-  void add_body(const vo::Body&) override {}
-  void add_outlook(const formation::Outlook&) override {}
   void add_row(formation::Step row) override {
     const std::size_t changed = question_.preferred_robot;
     if (rows_.empty() && question_.preferred)
@@ -302,10 +299,9 @@ LiveQuestion parse_live_question(const std::string& text, const OptionsOfRun& op
 
 std::string live_decision(const LiveQuestion& question) {
   Moment moment = moment_of(question);
-  const datasets::RunInfo names = datasets::run_info(question.scenario, question.options, {});
   datasets::RecordingFile about;
-  about.info = {names.scenario, names.method,   names.controller, std::nullopt,
-                provenance(),   names.guidance, names.liveness};
+  about.info = datasets::run_info(question.scenario, question.options, provenance());
+  about.info.integrator.reset();  // it moves nothing here
   about.scenario = question.scenario;
   about.recording = std::move(moment.about);
   about.recording.steps = std::move(moment.rows);

@@ -115,7 +115,11 @@ FinishedRun run(const Scenario& scenario, SimulationOptions options, const datas
 }
 
 std::string in_words(const datasets::RunInfo& run) {
-  return run.scenario + ", method " + run.method + (run.controller ? ", controller " + *run.controller : "") +
+  return run.scenario + ", " + method_words(run);
+}
+
+std::string method_words(const datasets::RunInfo& run) {
+  return "method " + run.method + (run.controller ? ", controller " + *run.controller : "") +
          (run.guidance ? ", guidance " + *run.guidance : "") + (run.liveness ? ", liveness " + *run.liveness : "");
 }
 

@@ -45,7 +45,9 @@ RunOutput for_page(const PackedRunLimits& limits);
 FinishedRun run(const formation::Scenario& scenario, formation::SimulationOptions options,
                 const datasets::Provenance& provenance, const RunOutput& output = {});
 
-/// "A2, method ivo, controller default".
+/// "method ivo, controller default".
+std::string method_words(const datasets::RunInfo& run);
+/// The same behind the name of the scenario: "A2, method ivo, controller default".
 std::string in_words(const datasets::RunInfo& run);
 
 /// The run whose metrics.json stands in the folder, if any; its integrator and provenance are not read.

@@ -41,9 +41,6 @@ std::vector<std::string> warnings_with(const Scenario& scenario, const Simulatio
 
 /// All rows: the recording has the rest.
 struct RowsKept : RunSink {
-  void begin(const Recording&) override {}
-  void add_body(const vo::Body&) override {}
-  void add_outlook(const Outlook&) override {}
   void add_row(Step row) override { rows.push_back(std::move(row)); }
 
   std::vector<Step> rows;

@@ -9,6 +9,7 @@
 
 #include "exactvo/datasets/input_files.h"
 #include "exactvo/datasets/recording_file.h"
+#include "exactvo/datasets/run_info.h"
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/stuck.h"
 #include "explain/explanation.h"
@@ -68,15 +69,6 @@ const formation::Step& last_decision(const formation::Recording& recording) {
   return recording.steps[recording.steps.size() - 2];
 }
 
-std::string method_words(const Scenario& scenario, const formation::SimulationOptions& options) {
-  const std::string method = std::string("method ") + name(options.method) +
-                             (scenario.formation ? std::string(", controller ") + name(options.controller) : "");
-  const formation::Guidance guidance = guidance_of(scenario, options);
-  const formation::Liveness liveness = liveness_of(scenario, options);
-  return method + (guidance == formation::Guidance::none ? "" : std::string(", guidance ") + name(guidance)) +
-         (liveness == formation::Liveness::off ? "" : std::string(", liveness ") + name(liveness));
-}
-
 struct Explained {
   Decision decision;
   std::vector<std::string> remarks;                 ///< of the run so far
@@ -121,8 +113,9 @@ Explained decide(const ExplainFlags& flags, const Scenario& scenario) {
   check_time(recording.steps.size(), recording.steps.empty() ? 0.0 : recording.steps.back().time, recording.time_step,
              flags.time);
   const formation::Step& step = last_decision(recording);
-  Explained explained{{scenario, method_words(scenario, options), robot, step.time, step.robots.at(robot)},
-                      remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
+  Explained explained{
+      {scenario, method_words(datasets::run_info(scenario, options, {})), robot, step.time, step.robots.at(robot)},
+      remarks_on(scenario, recording, formation::explain_stuck(scenario, recording), robot)};
   explained.ahead = route_ahead_of(explained.decision, recording, options);
   return explained;
 }
@@ -173,11 +166,7 @@ Explained decision_in(const ExplainFlags& flags, const std::filesystem::path& pa
   const std::size_t robot = find_robot(file.scenario, flags.robot);
   check_time(until.rows(), until.end(), file.recording.time_step, flags.time);
   const formation::Step& step = until.decision();
-  const std::string method = "method " + file.info.method +
-                             (file.info.controller ? ", controller " + *file.info.controller : "") +
-                             (file.info.guidance ? ", guidance " + *file.info.guidance : "") +
-                             (file.info.liveness ? ", liveness " + *file.info.liveness : "");
-  Explained explained{{file.scenario, method, robot, step.time, step.robots.at(robot)},
+  Explained explained{{file.scenario, method_words(file.info), robot, step.time, step.robots.at(robot)},
                       remarks_on(file.scenario, file.recording, until.stuck(file.recording), robot)};
   explained.ahead = route_ahead_of(explained.decision, file.recording, guided_options(file.info));
   if (!file.recording.all_half_planes)

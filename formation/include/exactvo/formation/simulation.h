@@ -107,11 +107,11 @@ class RunSink {
   virtual ~RunSink() = default;
   /// First of all. `run` has what is known before the first row: warnings, motion, time_step, tracking_gain,
   /// relative_frame, remedies, offsets, all_half_planes.
-  virtual void begin(const Recording& run) = 0;
+  virtual void begin(const Recording& /*run*/) {}
   /// Bodies come in the order of their numbers, each before what names it.
-  virtual void add_body(const vo::Body& body) = 0;
+  virtual void add_body(const vo::Body& /*body*/) {}
   /// What a robot sees on its way to a goal, before the first row that goes there.
-  virtual void add_outlook(const Outlook& outlook) = 0;
+  virtual void add_outlook(const Outlook& /*outlook*/) {}
   /// A joint plan, before the row in which it was made.
   virtual void add_plan(const JointPlan& /*plan*/) {}
   /// Rows come in the order of time; the last one is the final state.
