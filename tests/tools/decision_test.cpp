@@ -8,7 +8,6 @@
 
 #include "exactvo/formation/balance.h"
 #include "exactvo/formation/constraint_name.h"
-#include "explain/explanation.h"
 #include "figures/velocity_space.h"
 
 namespace exactvo::tools {

@@ -5,7 +5,7 @@
 /// One robot's choice of a velocity at one moment, in detail: what each half-plane stands for and what it did.
 /// Rounded, for readers; the proofs are elsewhere (geometry/predicates.h).
 ///
-/// Neighbours: explanation.h says it in words, figures/velocity_space.h draws it.
+/// Neighbours: explanation.cpp says it in words, figures/velocity_space.h draws it.
 
 #include <cstddef>
 #include <optional>
@@ -42,5 +42,9 @@ double distance_to(const geometry::GrownShape& s);
 /// When a robot that keeps the velocity v first touches the shape, s; nothing where it never does.
 /// REQUIRES: the origin lies outside.
 std::optional<double> time_to_contact(const geometry::GrownShape& s, Vec2 v);
+
+/// Which constraints bind, and why: several lines, each ended by a newline. Constraints carry the numbers that the
+/// figure shows.
+std::string explanation(const Decision& decision);
 
 }  // namespace exactvo::tools

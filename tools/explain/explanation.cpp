@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "explain/explanation.h"
+#include "explain/decision.h"
 
 #include <fmt/format.h>
 

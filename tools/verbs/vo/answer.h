@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// What `exactvo vo` answers, as JSON and in words.
+/// What `exactvo vo` answers, as JSON, in words and drawn.
 
 #include <optional>
 #include <string>
@@ -11,6 +11,7 @@
 #include "exactvo/vo/certificate.h"
 #include "exactvo/vo/containment.h"
 #include "exactvo/vo/free_velocities.h"
+#include "figures/figure.h"
 #include "verbs/vo/exact_free.h"
 #include "verbs/vo/exact_legs.h"
 #include "verbs/vo/question.h"
@@ -79,5 +80,7 @@ std::string in_words(const AskedObstacle& obstacle);
 
 std::string to_json(const VoAnswer& answer);
 std::string in_words(const VoAnswer& answer);
+/// One cone with its half-plane; or the family side by side; or the free velocities.
+Figure vo_figure(const VoAnswer& answer);
 
 }  // namespace exactvo::tools

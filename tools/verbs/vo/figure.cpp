@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verbs/vo/figure.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "figures/outlines.h"
 #include "figures/sheet.h"
 #include "figures/template.h"
+#include "verbs/vo/answer.h"
 
 namespace exactvo::tools {
 

@@ -4,7 +4,7 @@
 #include "figures/figure_file.h"
 #include "support/terminal.h"
 #include "verb.h"
-#include "verbs/vo/figure.h"
+#include "verbs/vo/answer.h"
 #include "verbs/vo/velocities.h"
 
 namespace exactvo::tools {
