@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -69,14 +71,16 @@ inline Walls two_rooms(double gap) {
   return Walls({{a, b}, {b, c}, {c, d}, {d, a}, {{0, -4}, {0, -0.5 * gap}}, {{0, 0.5 * gap}, {0, 4}}});
 }
 
-/// Discs of two sizes at random free places, and other such places for goals.
+/// Discs of some sizes (m, 0.5 at most) at random free places, and other such places for goals.
 struct Problem {
   Roadmap map;
   JointProblem joint;
 
-  Problem(const Walls& walls, std::size_t count, SeededRandom& random) : map(walls, {{-5.4, -3.4}, {5.4, 3.4}}, 0.5) {
+  Problem(const Walls& walls, std::size_t count, SeededRandom& random,
+          const std::vector<double>& sizes = {0.5, 0.5, 0.4})
+      : map(walls, {{-5.4, -3.4}, {5.4, 3.4}}, 0.5) {
     joint.map = &map;
-    for (std::size_t i = 0; i < count; ++i) joint.radii.push_back(i % 3 == 2 ? 0.4 : 0.5);
+    for (std::size_t i = 0; i < count; ++i) joint.radii.push_back(sizes[i % sizes.size()]);
     joint.starts = places(walls, random);
     joint.goals = places(walls, random);
   }
@@ -119,7 +123,21 @@ inline std::vector<Vec2> positions(const Roadmap& map, const std::vector<PlaceNu
   return all;
 }
 
-/// The same of moves along the map.
+/// All of a problem and its moves without loss, for a message.
+inline std::string described(const Problem& p, const std::vector<JointMove>& moves) {
+  std::ostringstream text;
+  text << std::hexfloat;
+  for (std::size_t i = 0; i < p.joint.radii.size(); ++i) {
+    const Vec2 from = p.map.place(p.joint.starts[i]), to = p.map.place(p.joint.goals[i]);
+    text << "robot " << i << " radius " << p.joint.radii[i] << " from " << from.x << " " << from.y << " to " << to.x
+         << " " << to.y << "\n";
+  }
+  for (const JointMove& m : moves)
+    text << "move " << m.robot << " to " << p.map.place(m.to).x << " " << p.map.place(m.to).y << "\n";
+  return text.str();
+}
+
+/// Moves along the map with the places that they lead to.
 inline std::vector<PlannedMove> on_map(const Roadmap& map, const std::vector<JointMove>& moves) {
   std::vector<PlannedMove> all;
   for (const JointMove& m : moves) all.push_back({m.robot, map.place(m.from), map.place(m.to)});

@@ -10,8 +10,8 @@
 
 #include "joint_problems.h"
 #include "liveness/distances.h"
+#include "liveness/path_among_others.h"
 #include "liveness/timetable.h"
-#include "liveness/way_among_others.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -24,13 +24,13 @@ Words words(const std::vector<JointMove>& moves) {
   return all;
 }
 
-Ways ways_of(const JointProblem& p) {
-  return Ways(*p.map, 2.0 * *std::max_element(p.radii.begin(), p.radii.end()));
+RoadmapEdges edges_of(const JointProblem& p) {
+  return RoadmapEdges(*p.map, 2.0 * *std::max_element(p.radii.begin(), p.radii.end()));
 }
 
 Timetable timetable_of(const JointProblem& p, const std::vector<JointMove>& moves) {
-  Ways ways = ways_of(p);
-  return timetable_of(moves, p.radii, ways);
+  RoadmapEdges edges = edges_of(p);
+  return timetable_of(moves, p.radii, edges);
 }
 
 /// m: the way that a robot goes until all are there that never waits, if they follow the plan in small strides.
@@ -52,26 +52,46 @@ double driven(const Problem& p, const std::vector<JointMove>& moves) {
   return kStride * strides;
 }
 
+double cost_of(const JointProblem& p, const std::vector<JointMove>& moves) {
+  const Timetable t = timetable_of(p, moves);
+  return t.last + 0.2 * t.mean;
+}
+
 TEST(Shortening, Properties1To3_AreKept) {
   SeededRandom random(test::seed_of_run(61));
-  double before = 0.0, after = 0.0;
+  std::size_t found = 0;
   for (int k = 0; k < 24; ++k) {
     const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
-    const Problem p(walls, 2 + random.integer(0, 14), random);
+    const std::vector<double> sizes = k % 4 < 2 ? std::vector{0.5, 0.5, 0.4} : std::vector{0.5, 0.3, 0.15};
+    const Problem p(walls, 2 + random.integer(0, 14), random, sizes);
     const JointAnswer answer = JointSearch(p.joint).run(k, {200000, 3000});
     if (answer.end != SearchEnd::found) continue;
+    ++found;
+    SCOPED_TRACE(described(p, answer.moves));
     const std::vector<JointMove> shorter = shortened(p.joint, answer.moves, k);
     const std::vector<PlannedMove> moves = on_map(p.map, shorter);
     std::vector<Vec2> at = positions(p.map, p.joint.starts);
     expect_apart(at, p.joint.radii, moves, walls);
     for (const PlannedMove& m : moves) at[m.robot] = m.to;
     EXPECT_EQ(at, positions(p.map, p.joint.goals)) << "Property 3";
-    const Timetable given = timetable_of(p.joint, answer.moves), found = timetable_of(p.joint, shorter);
-    EXPECT_LE(found.last + 0.2 * found.mean, (1.0 + 1e-9) * (given.last + 0.2 * given.mean));
-    before += given.last;
-    after += found.last;
+    EXPECT_LE(cost_of(p.joint, shorter), (1.0 + 1e-9) * cost_of(p.joint, answer.moves));
   }
-  EXPECT_LT(after, 0.95 * before);
+  EXPECT_GE(found, 18u);
+}
+
+/// Among many robots a fifth of the time and more is saved.
+TEST(Shortening, ManyRobotsTakeLessTime) {
+  SeededRandom random(test::seed_of_run(65));
+  double before = 0.0, after = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    const Problem p(two_rooms(1.5), 14, random);
+    const JointAnswer answer = JointSearch(p.joint).run(k, {400000, 6000});
+    if (answer.end != SearchEnd::found) continue;
+    before += timetable_of(p.joint, answer.moves).last;
+    after += timetable_of(p.joint, shortened(p.joint, answer.moves, k)).last;
+  }
+  EXPECT_GT(before, 0.0);
+  EXPECT_LT(after, 0.85 * before);
 }
 
 TEST(Shortening, IsDeterministicAndChangesNothingOnceStopped) {
@@ -81,13 +101,50 @@ TEST(Shortening, IsDeterministicAndChangesNothingOnceStopped) {
   ASSERT_EQ(answer.end, SearchEnd::found);
   const std::vector<JointMove> once = shortened(p.joint, answer.moves, 5);
   EXPECT_EQ(words(once), words(shortened(p.joint, answer.moves, 5)));
-  EXPECT_NE(words(once), words(answer.moves));
+  EXPECT_LT(cost_of(p.joint, once), cost_of(p.joint, answer.moves));
   p.joint.is_stopped = [] { return true; };
   Words stopped = words(shortened(p.joint, answer.moves, 5)), given = words(answer.moves);
   std::sort(stopped.begin(), stopped.end());
   std::sort(given.begin(), given.end());
   EXPECT_EQ(stopped, given);
   EXPECT_TRUE(shortened(p.joint, {}, 5).empty());
+}
+
+/// What is near to each other keeps its order, also where a small robot was last on an edge: it hides no large one.
+TEST(Timetable, KeepsTheOrderOfMovesThatComeNear) {
+  const Walls open({});
+  Roadmap map(open, {{0, 0}, {8, 8}}, 0.5);
+  const auto place = [&](double x, double y) { return map.attach({1.06 * x, 1.06 * y}, 0.5); };
+  JointProblem p;
+  p.map = &map;
+  p.radii = {0.5, 0.3, 0.3};
+  const std::vector<JointMove> moves{{0, place(4, 3), place(4, 4)}, {0, place(4, 4), place(5, 5)},
+                                     {0, place(5, 5), place(6, 6)}, {1, place(3, 4), place(4, 4)},
+                                     {1, place(4, 4), place(5, 5)}, {2, place(6, 4), place(5, 4)}};
+  const Timetable t = timetable_of(p, moves);
+  std::size_t large = 0, small = 0;
+  for (std::size_t k = 0; k < t.moves.size(); ++k) {
+    if (t.moves[k].move.robot == 0 && t.moves[k].move.to == place(5, 5)) large = k;
+    if (t.moves[k].move.robot == 2) small = k;
+  }
+  EXPECT_LT(large, small);
+}
+
+TEST(Timetable, IsASequenceOfClearMoves) {
+  SeededRandom random(test::seed_of_run(66));
+  std::size_t found = 0;
+  for (int k = 0; k < 120; ++k) {
+    const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
+    const Problem p(walls, 6 + random.integer(0, 8), random, {0.5, 0.3, 0.15});
+    const JointAnswer answer = JointSearch(p.joint).run(k, {200000, 3000});
+    if (answer.end != SearchEnd::found) continue;
+    ++found;
+    SCOPED_TRACE(described(p, answer.moves));
+    std::vector<JointMove> by_start;
+    for (const TimedMove& m : timetable_of(p.joint, answer.moves).moves) by_start.push_back(m.move);
+    expect_apart(positions(p.map, p.joint.starts), p.joint.radii, on_map(p.map, by_start), walls);
+  }
+  EXPECT_GE(found, 100u);
 }
 
 /// Robots in a row go one behind the other without waiting; who crosses another's way waits for it.
@@ -121,15 +178,18 @@ TEST(Timetable, KnowsWhoWaitsForWhom) {
 /// What a timetable says is about what following the plan takes.
 TEST(Timetable, IsNearToWhatIsDriven) {
   SeededRandom random(test::seed_of_run(63));
+  int found = 0;
   for (int k = 0; k < 12; ++k) {
     const Walls walls = k % 2 == 0 ? two_rooms(1.5) : Walls({});
     const Problem p(walls, 4 + random.integer(0, 8), random);
     const JointAnswer answer = JointSearch(p.joint).run(k, {200000, 3000});
     if (answer.end != SearchEnd::found) continue;
     const double ratio = driven(p, answer.moves) / timetable_of(p.joint, answer.moves).last;
+    ++found;
     EXPECT_GT(ratio, 0.75);
     EXPECT_LT(ratio, 1.35);
   }
+  EXPECT_GE(found, 9);
 }
 
 /// Against every position and place: whether a robot can stand there while the others make their next move, and
@@ -146,10 +206,10 @@ TEST(SafeIntervals, SameAsLookingAtEveryMove) {
     std::vector<JointMove> moves;
     for (const JointMove& m : answer.moves)
       if (m.robot != robot) moves.push_back(m);
-    Ways ways = ways_of(p.joint);
-    const Timetable others = timetable_of(moves, p.joint.radii, ways);
+    RoadmapEdges edges = edges_of(p.joint);
+    const Timetable others = timetable_of(moves, p.joint.radii, edges);
     SafeIntervals safe(p.joint);
-    safe.set(robot, others, ways);
+    safe.set(robot, others, edges);
     const auto reach2 = [&](std::size_t j) {
       const double wanted = (1.0 + kPlannedGap) * (p.joint.radii[robot] + p.joint.radii[j]);
       return wanted * wanted;
@@ -168,7 +228,7 @@ TEST(SafeIntervals, SameAsLookingAtEveryMove) {
             is_clear = is_clear && squared >= keep - 1e-9;
             is_close = is_close || std::fabs(squared - keep) < 1e-5;
           }
-          const auto& near = ways.near_places(ways.number(here, to));
+          const auto& near = edges.near_places(edges.number(here, to));
           if (!is_close) {
             ASSERT_EQ(safe.first_clear(near, position, position).has_value(), is_clear);
           }

@@ -90,8 +90,8 @@ std::vector<PlanSearch::Attempt> PlanSearch::searched(JointSearch& joint, const 
       if (k == 0 && (a.has_spent_all() || is_enough)) first_ends_all = true;
       if (a.answer.end != SearchEnd::found) continue;
       a.answer.moves = without_loops(*about.map, std::move(a.answer.moves), about.radii);
-      Ways ways(*about.map, 2.0 * *std::max_element(about.radii.begin(), about.radii.end()));
-      a.length = timetable_of(a.answer.moves, about.radii, ways).last;
+      RoadmapEdges edges(*about.map, 2.0 * *std::max_element(about.radii.begin(), about.radii.end()));
+      a.length = timetable_of(a.answer.moves, about.radii, edges).last;
     }
   });
   if (first_ends_all) attempts.resize(1);

@@ -5,15 +5,16 @@
 #include <optional>
 
 #include "liveness/distances.h"
+#include "liveness/path_among_others.h"
 #include "liveness/split_mix.h"
 #include "liveness/timetable.h"
-#include "liveness/way_among_others.h"
 
 namespace exactvo::formation::detail {
 namespace {
 
-// Work that is counted: for each move of a timetable, call of the generator, distance from a place.
-constexpr std::size_t kForAMove = 16, kForACall = 30, kForADistance = 16;
+// Work that is counted: for each move of a timetable, edge that is looked at first, call of the generator, distance
+// from a place.
+constexpr std::size_t kForAMove = 20, kForAnEdge = 1000, kForACall = 30, kForADistance = 16;
 
 /// m: mostly of who is there last.
 double cost_of(const Timetable& table) {
@@ -25,22 +26,24 @@ class Shortening {
  public:
   Shortening(const JointProblem& problem, std::uint64_t seed)
       : problem_(problem),
-        ways_(*problem.map, 2.0 * *std::max_element(problem.radii.begin(), problem.radii.end())),
-        among_others_(problem, ways_),
+        edges_(*problem.map, 2.0 * *std::max_element(problem.radii.begin(), problem.radii.end())),
+        among_others_(problem, edges_),
         random_(seed),
-        left_(problem.radii.size()) {}
+        to_goal_(problem.radii.size()) {}
 
   std::vector<JointMove> run(const std::vector<JointMove>& moves, std::size_t most_work) {
-    constexpr int kThenAPart = 10;  // failures in a row
-    constexpr std::size_t kParts = 10;
-    const bool may_search_parts = kParts * kForADistance * problem_.radii.size() * problem_.map->size() <= most_work;
+    constexpr int kPathsInVain = 10;  // then a time window
+    constexpr std::size_t kWindowsAtLeast = 10;
+    const bool may_plan_windows = kWindowsAtLeast * work_of_a_window() <= most_work;
     Timetable best = timetable(moves);
-    for (int failures = 0; work() < most_work && !best.moves.empty() && !is_stopped();) {
-      const bool is_part = failures >= kThenAPart && may_search_parts;
-      const std::optional<std::vector<JointMove>> other = is_part ? with_a_part_anew(best) : with_another_way(best);
-      failures = is_part || other ? 0 : failures + 1;
+    for (int in_vain = 0; work() < most_work && best.last_move != kNoMove && !is_stopped();) {
+      const bool is_window = in_vain >= kPathsInVain && may_plan_windows;
+      const std::optional<std::vector<JointMove>> other =
+          is_window ? with_a_window_anew(best) : with_another_path(best);
+      in_vain = is_window ? 0 : in_vain + 1;
       if (!other) continue;
       Timetable found = timetable(*other);
+      if (cost_of(found) < cost_of(best)) in_vain = 0;
       if (cost_of(found) <= cost_of(best)) best = std::move(found);
     }
     return of_range(best, 0, best.moves.size());
@@ -48,11 +51,12 @@ class Shortening {
 
  private:
   bool is_stopped() const { return problem_.is_stopped && problem_.is_stopped(); }
-  std::size_t work() const { return work_ + among_others_.work(); }
+  std::size_t work() const { return work_ + among_others_.work() + kForAnEdge * edges_.size(); }
+  std::size_t work_of_a_window() const { return kForADistance * problem_.radii.size() * problem_.map->size(); }
 
   Timetable timetable(const std::vector<JointMove>& moves) {
     work_ += kForAMove * moves.size();
-    return timetable_of(moves, problem_.radii, ways_);
+    return timetable_of(moves, problem_.radii, edges_);
   }
 
   static std::vector<JointMove> of_range(const Timetable& table, std::size_t first, std::size_t last) {
@@ -61,51 +65,46 @@ class Shortening {
     return moves;
   }
 
-  /// Mostly one of the chain of moves that takes longest.
+  /// Three times of four a robot of the chain of moves that takes longest.
   std::size_t chosen(const Timetable& table) {
-    constexpr std::size_t kOfTheChain = 3, kOf = 4;
-    if (random_.below(kOf) >= kOfTheChain) return random_.below(problem_.radii.size());
+    if (random_.below(4) == 0) return random_.below(problem_.radii.size());
     std::vector<std::size_t> chain;
     for (std::size_t k = table.last_move; k != kNoMove; k = table.moves[k].waits_for)
       chain.push_back(table.moves[k].move.robot);
     return chain[random_.below(chain.size())];
   }
 
-  const std::vector<float>& left(std::size_t robot) {
-    if (left_[robot].empty())
-      left_[robot] = distances_to(*problem_.map, problem_.goals[robot], problem_.radii[robot],
-                                  [&](PlaceNumber a, PlaceNumber b) { return length_of_way(*problem_.map, a, b); });
-    return left_[robot];
+  const std::vector<float>& to_goal(std::size_t robot) {
+    if (!to_goal_[robot].empty()) return to_goal_[robot];
+    work_ += kForADistance * problem_.map->size();
+    return to_goal_[robot] =
+               distances_to(*problem_.map, problem_.goals[robot], problem_.radii[robot],
+                            [&](PlaceNumber a, PlaceNumber b) { return length_of_way(*problem_.map, a, b); });
   }
 
-  /// The others keep their times, so that there is the way that it had, if no better one.
-  std::optional<std::vector<JointMove>> with_another_way(const Timetable& table) {
+  /// The others keep their times, so that there is the path that it had, if no better one.
+  std::optional<std::vector<JointMove>> with_another_path(const Timetable& table) {
     constexpr double kSlack = 1.1;  // times are estimates
     const std::size_t robot = chosen(table);
     Timetable others;
     for (const TimedMove& t : table.moves)
       if (t.move.robot != robot) others.moves.push_back(t);
-    return among_others_.moves_with(robot, others, left(robot), kSlack * table.last);
+    return among_others_.moves_with(robot, others, to_goal(robot), kSlack * table.last);
   }
 
-  std::optional<std::vector<JointMove>> with_a_part_anew(const Timetable& table) {
+  /// The moves of all robots within a time window are planned again.
+  std::optional<std::vector<JointMove>> with_a_window_anew(const Timetable& table) {
     constexpr double kLeast = 0.1, kMost = 0.5;  // of the time
     constexpr std::size_t kNodes = 200;
     const double share = kLeast + (kMost - kLeast) * random_.fraction();
     const double begin = (1.0 - share) * random_.fraction() * table.last;
-    const auto position_at = [&](double time) {
-      const auto starts_before = [&](const TimedMove& m) { return m.start < time; };
-      return static_cast<std::size_t>(std::partition_point(table.moves.begin(), table.moves.end(), starts_before) -
-                                      table.moves.begin());
-    };
-    const std::size_t first = position_at(begin), last = position_at(begin + share * table.last);
-    JointProblem part = problem_;
-    for (const JointMove& m : of_range(table, 0, first)) part.starts[m.robot] = m.to;
-    part.goals = part.starts;
-    for (const JointMove& m : of_range(table, first, last)) part.goals[m.robot] = m.to;
-    const std::size_t robots = problem_.radii.size();
-    const JointAnswer answer = JointSearch(part).run(random_.next(), {kNodes * robots, kNodes});
-    work_ += kForACall * answer.calls + kForADistance * robots * problem_.map->size();
+    const std::size_t first = position_at(table, begin), last = position_at(table, begin + share * table.last);
+    JointProblem window = problem_;
+    for (const JointMove& m : of_range(table, 0, first)) window.starts[m.robot] = m.to;
+    window.goals = window.starts;
+    for (const JointMove& m : of_range(table, first, last)) window.goals[m.robot] = m.to;
+    const JointAnswer answer = JointSearch(window).run(random_.next(), {kNodes * problem_.radii.size(), kNodes});
+    work_ += kForACall * answer.calls + work_of_a_window();
     if (answer.end != SearchEnd::found) return std::nullopt;
     std::vector<JointMove> moves = of_range(table, 0, first);
     moves.insert(moves.end(), answer.moves.begin(), answer.moves.end());
@@ -115,18 +114,36 @@ class Shortening {
   }
 
   const JointProblem& problem_;
-  Ways ways_;
-  WayAmongOthers among_others_;
+  RoadmapEdges edges_;
+  PathAmongOthers among_others_;
   SplitMix64 random_;
-  std::vector<std::vector<float>> left_;  ///< m: of robots that were chosen, from each place to the goal
+  std::vector<std::vector<float>> to_goal_;  ///< m: from each place, of robots that were chosen
   std::size_t work_ = 0;
 };
+
+/// Property (1) of joint_search.h, move by move.
+bool are_clear(const JointProblem& problem, const std::vector<JointMove>& moves) {
+  std::vector<PlaceNumber> at = problem.starts;
+  for (const JointMove& m : moves) {
+    const Vec2 from = problem.map->place(m.from), to = problem.map->place(m.to);
+    for (std::size_t j = 0; j < at.size(); ++j) {
+      const Vec2 other = problem.map->place(at[j]);
+      const double keep = squared_keep(problem.radii[m.robot] + problem.radii[j], squared_norm(from - other));
+      if (j != m.robot && squared_distance(other, from, to) < keep) return false;
+    }
+    at[m.robot] = m.to;
+  }
+  return true;
+}
 
 }  // namespace
 
 std::vector<JointMove> shortened(const JointProblem& problem, const std::vector<JointMove>& moves, std::uint64_t seed) {
   constexpr std::size_t kForEachMove = 40000, kMost = 30000000;
-  return Shortening(problem, seed).run(moves, std::min(kMost, kForEachMove * moves.size()));
+  constexpr std::size_t kMostMoves = 20000;
+  if (moves.empty() || moves.size() > kMostMoves) return moves;
+  std::vector<JointMove> shorter = Shortening(problem, seed).run(moves, std::min(kMost, kForEachMove * moves.size()));
+  return are_clear(problem, shorter) ? shorter : moves;
 }
 
 }  // namespace exactvo::formation::detail

@@ -2,8 +2,8 @@
 #pragma once
 
 /// \file
-/// Joint plans that take less time (liveness, rule R3): one robot after the other gets another way among the moves of
-/// all others, or what all do within a part of the time is searched for anew; what takes longer is taken back.
+/// Joint plans that take less time (liveness, rule R3): one robot after the other gets another path among the moves of
+/// all others, or the moves of all robots within a time window are planned again. A change that takes longer is undone.
 ///
 /// Large neighbourhood search (Li, Chen, Harabor, Stuckey and Koenig, "Anytime Multi-Agent Path Finding via Large
 /// Neighborhood Search", IJCAI 2021). Heuristic: how long a sequence takes is what its timetable says.
@@ -15,9 +15,9 @@
 
 namespace exactvo::formation::detail {
 
-/// A sequence of moves of the same robots with properties (1) to (3) of joint_search.h, if that given has them.
-/// Deterministic: what is tried is counted, some 0.7 s of one core at most. Where `problem.is_stopped` says so, what
-/// was found until then.
+/// A sequence of moves of the same robots with properties (1) to (3) of joint_search.h, if that given has them; (1) is
+/// checked, else the sequence given comes back, as it does where it has more than 20,000 moves. Deterministic: what is
+/// tried is counted, about a second of one core at most. Where `problem.is_stopped` says so, what was found until then.
 std::vector<JointMove> shortened(const JointProblem& problem, const std::vector<JointMove>& moves, std::uint64_t seed);
 
 }  // namespace exactvo::formation::detail

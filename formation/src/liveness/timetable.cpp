@@ -9,7 +9,7 @@
 namespace exactvo::formation::detail {
 namespace {
 
-constexpr WayNumber kNotAsked = std::numeric_limits<WayNumber>::max();
+constexpr EdgeNumber kNotAsked = std::numeric_limits<EdgeNumber>::max();
 
 geometry::Box box_of(const Segment& s) {
   geometry::Box box;
@@ -20,31 +20,31 @@ geometry::Box box_of(const Segment& s) {
 
 }  // namespace
 
-Ways::Ways(const Roadmap& map, double most_radii)
+RoadmapEdges::RoadmapEdges(const Roadmap& map, double most_radii)
     : map_(map), reach_((1.0 + kPlannedGap) * most_radii), from_(map.size()), cells_(2.0 * reach_) {}
 
-WayNumber Ways::number(PlaceNumber from, PlaceNumber to) {
+EdgeNumber RoadmapEdges::number(PlaceNumber from, PlaceNumber to) {
   const auto [entry, is_new] =
-      numbers_.try_emplace((static_cast<std::uint64_t>(from) << 32) | to, static_cast<WayNumber>(ways_.size()));
+      numbers_.try_emplace((static_cast<std::uint64_t>(from) << 32) | to, static_cast<EdgeNumber>(edges_.size()));
   if (is_new) {
-    ways_.push_back({map_.place(from), map_.place(to)});
+    edges_.push_back({map_.place(from), map_.place(to)});
     near_places_.emplace_back();
-    near_ways_.emplace_back();
-    has_near_ways_.push_back(0);
+    near_edges_.emplace_back();
+    has_near_edges_.push_back(0);
     add_near_places(entry->second);
   }
   return entry->second;
 }
 
-WayNumber Ways::number_of_kth(PlaceNumber from, std::size_t k) {
-  std::vector<WayNumber>& known = from_[from];
+EdgeNumber RoadmapEdges::kth_from(PlaceNumber from, std::size_t k) {
+  std::vector<EdgeNumber>& known = from_[from];
   if (known.empty()) known.assign(map_.ways(from).size(), kNotAsked);
   if (known[k] == kNotAsked) known[k] = number(from, map_.ways(from)[k]);
   return known[k];
 }
 
-void Ways::add_near_places(WayNumber w) {
-  const Segment s = ways_[w];
+void RoadmapEdges::add_near_places(EdgeNumber w) {
+  const Segment s = edges_[w];
   const double radii = reach_ / (1.0 + kPlannedGap);
   map_.for_each_near(0.5 * (s.a + s.b), reach_ + 0.5 * length(w), [&](PlaceNumber p) {
     const double squared = squared_distance(map_.place(p), s.a, s.b);
@@ -52,38 +52,38 @@ void Ways::add_near_places(WayNumber w) {
     if (squared < squared_keep(radii, squared_norm(map_.place(p) - s.a)))
       near_places_[w].push_back({p, static_cast<float>(squared)});
   });
-  // Where the way ends comes first: mostly that is what is taken.
+  // Where the edge ends comes first: mostly that is what is taken.
   std::stable_sort(near_places_[w].begin(), near_places_[w].end(),
                    [](const NearPlace& a, const NearPlace& b) { return a.squared < b.squared; });
 }
 
-const std::vector<Ways::NearWay>& Ways::near_ways(WayNumber w) {
-  if (!has_near_ways_[w]) add_near_ways(w);
-  return near_ways_[w];
+const std::vector<RoadmapEdges::NearEdge>& RoadmapEdges::near_edges(EdgeNumber w) {
+  if (!has_near_edges_[w]) add_near_edges(w);
+  return near_edges_[w];
 }
 
-void Ways::add_near_ways(WayNumber w) {
-  has_near_ways_[w] = 1;
-  const geometry::Box box = box_of(ways_[w]);
+void RoadmapEdges::add_near_edges(EdgeNumber w) {
+  has_near_edges_[w] = 1;
+  const geometry::Box box = box_of(edges_[w]);
   cells_.add(box, w);
   const Vec2 corner{reach_, reach_};
-  std::vector<WayNumber> about;
-  cells_.for_each_in({box.low - corner, box.high + corner}, [&](WayNumber v) { about.push_back(v); });
+  std::vector<EdgeNumber> about;
+  cells_.for_each_in({box.low - corner, box.high + corner}, [&](EdgeNumber v) { about.push_back(v); });
   std::sort(about.begin(), about.end());
   about.erase(std::unique(about.begin(), about.end()), about.end());
-  for (const WayNumber v : about) {
-    const double squared = squared_distance(ways_[v], ways_[w]);
+  for (const EdgeNumber v : about) {
+    const double squared = squared_distance(edges_[v], edges_[w]);
     if (!(squared < kSingleRounding * reach_ * reach_)) continue;
-    near_ways_[w].push_back({v, static_cast<float>(squared), static_cast<float>(lead(v, w))});
-    if (v != w) near_ways_[v].push_back({w, static_cast<float>(squared), static_cast<float>(lead(w, v))});
+    near_edges_[w].push_back({v, static_cast<float>(squared), static_cast<float>(lead(v, w))});
+    if (v != w) near_edges_[v].push_back({w, static_cast<float>(squared), static_cast<float>(lead(w, v))});
   }
 }
 
-/// m: in quarters of the first way. With it the second keeps clear of what the first has still to sweep, at the same
+/// m: in quarters of the first edge. With it the second keeps clear of what the first has still to sweep, at the same
 /// speed.
-double Ways::lead(WayNumber first, WayNumber second) const {
+double RoadmapEdges::lead(EdgeNumber first, EdgeNumber second) const {
   constexpr int kParts = 4;
-  const Segment f = ways_[first], s = ways_[second];
+  const Segment f = edges_[first], s = edges_[second];
   const double whole = length(first), other = length(second);
   const auto is_clear = [&](double ahead, double gone) {
     const double share = std::min(1.0, (ahead + gone) / whole);
@@ -120,26 +120,37 @@ void sort_by_start(Timetable& table) {
 
 }  // namespace
 
-Timetable timetable_of(const std::vector<JointMove>& moves, const std::vector<double>& radii, Ways& ways) {
+std::size_t position_at(const Timetable& table, double time) {
+  const auto starts_before = [&](const TimedMove& m) { return m.start < time; };
+  const auto found = std::partition_point(table.moves.begin(), table.moves.end(), starts_before);
+  return static_cast<std::size_t>(found - table.moves.begin());
+}
+
+Timetable timetable_of(const std::vector<JointMove>& moves, const std::vector<double>& radii, RoadmapEdges& edges) {
   Timetable table;
   table.moves.reserve(moves.size());
   std::vector<double> end(radii.size(), 0.0);
-  std::vector<std::size_t> own(radii.size(), kNoMove), latest_on;
+  std::vector<std::size_t> own(radii.size(), kNoMove);
+  std::vector<std::size_t> latest_on, before_it_on;  // by edge, and by move: the one before it on its edge
   for (const JointMove& m : moves) {
-    TimedMove timed{m, ways.number(m.from, m.to), end[m.robot], own[m.robot]};
-    const std::vector<Ways::NearWay>& near = ways.near_ways(timed.way);
-    latest_on.resize(ways.size(), kNoMove);
-    for (const Ways::NearWay& n : near) {
-      const std::size_t earlier = latest_on[n.way];
+    TimedMove timed{m, edges.number(m.from, m.to), end[m.robot], own[m.robot]};
+    const auto is_near = [&](float squared, const TimedMove& other) {
+      const double wanted = (1.0 + kPlannedGap) * (radii[m.robot] + radii[other.move.robot]);
+      return other.move.robot != m.robot && squared < kSingleRounding * wanted * wanted;
+    };
+    const std::vector<RoadmapEdges::NearEdge>& near = edges.near_edges(timed.edge);
+    latest_on.resize(edges.size(), kNoMove);
+    for (const RoadmapEdges::NearEdge& n : near) {
+      // Of an edge the latest move of a robot that is large enough to be near: those before it started no later.
+      std::size_t earlier = latest_on[n.edge];
+      while (earlier != kNoMove && !is_near(n.squared, table.moves[earlier])) earlier = before_it_on[earlier];
       if (earlier == kNoMove || !(table.moves[earlier].start + n.lead > timed.start)) continue;
-      const std::size_t other = table.moves[earlier].move.robot;
-      const double wanted = (1.0 + kPlannedGap) * (radii[m.robot] + radii[other]);
-      if (other == m.robot || !(n.squared < kSingleRounding * wanted * wanted)) continue;
       timed.start = table.moves[earlier].start + n.lead;
       timed.waits_for = earlier;
     }
-    latest_on[timed.way] = own[m.robot] = table.moves.size();
-    end[m.robot] = timed.start + ways.length(timed.way);
+    before_it_on.push_back(latest_on[timed.edge]);
+    latest_on[timed.edge] = own[m.robot] = table.moves.size();
+    end[m.robot] = timed.start + edges.length(timed.edge);
     table.moves.push_back(timed);
   }
   for (std::size_t i = 0; i < end.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "liveness/way_among_others.h"
+#include "liveness/path_among_others.h"
 
 #include <algorithm>
 #include <functional>
@@ -13,7 +13,7 @@ namespace exactvo::formation::detail {
 SafeIntervals::SafeIntervals(const JointProblem& problem)
     : problem_(problem), passed_(problem.map->size()), stays_(problem.map->size()), first_(problem.map->size()) {}
 
-void SafeIntervals::set(std::size_t robot, const Timetable& others, const Ways& ways) {
+void SafeIntervals::set(std::size_t robot, const Timetable& others, const RoadmapEdges& edges) {
   robot_ = robot;
   count_ = others.moves.size();
   for (auto& list : passed_) list.clear();
@@ -22,7 +22,7 @@ void SafeIntervals::set(std::size_t robot, const Timetable& others, const Ways& 
   std::vector<std::size_t> since(at.size(), 0);
   for (std::size_t k = 0; k < count_; ++k) {
     const JointMove& m = others.moves[k].move;
-    for (const Ways::NearPlace& n : ways.near_places(others.moves[k].way))
+    for (const RoadmapEdges::NearPlace& n : edges.near_places(others.moves[k].edge))
       if (is_too_near(n.squared, m.robot)) passed_[n.place].push_back(k);
     stays_[m.from].push_back({since[m.robot], k, m.robot});
     at[m.robot] = m.to;
@@ -48,11 +48,11 @@ std::size_t SafeIntervals::last(PlaceNumber place, std::size_t interval) const {
   return k < passed_[place].size() ? passed_[place][k] : count_;
 }
 
-std::optional<std::size_t> SafeIntervals::first_clear(const std::vector<Ways::NearPlace>& near, std::size_t first,
-                                                      std::size_t last) const {
+std::optional<std::size_t> SafeIntervals::first_clear(const std::vector<RoadmapEdges::NearPlace>& near,
+                                                      std::size_t first, std::size_t last) const {
   for (bool is_clear = false; !is_clear;) {
     is_clear = true;
-    for (const Ways::NearPlace& n : near) {
+    for (const RoadmapEdges::NearPlace& n : near) {
       const std::vector<Stay>& stays = stays_[n.place];
       const auto stay = std::lower_bound(stays.begin(), stays.end(), first,
                                          [](const Stay& s, std::size_t position) { return s.last < position; });
@@ -70,91 +70,80 @@ bool SafeIntervals::is_too_near(float squared, std::size_t other) const {
   return squared < kSingleRounding * wanted * wanted;
 }
 
-namespace {
-
-/// Before the first move that starts then or later.
-std::size_t position_at(const Timetable& table, double time) {
-  return static_cast<std::size_t>(std::lower_bound(table.moves.begin(), table.moves.end(), time,
-                                                   [](const TimedMove& m, double t) { return m.start < t; }) -
-                                  table.moves.begin());
-}
-
-}  // namespace
-
-std::optional<std::vector<JointMove>> WayAmongOthers::moves_with(std::size_t robot, const Timetable& others,
-                                                                 const std::vector<float>& left, double bound) {
-  const Robot asked{robot, &others, &left, bound};
-  safe_.set(robot, others, ways_);
+std::optional<std::vector<JointMove>> PathAmongOthers::moves_with(std::size_t robot, const Timetable& others,
+                                                                  const std::vector<float>& to_goal, double bound) {
+  const Query query{robot, &others, &to_goal, bound};
+  safe_.set(robot, others, edges_);
   work_ += safe_.size();
   arrivals_.clear();
   open_.clear();
   soonest_.assign(safe_.size(), geometry::kInfinity);
   const PlaceNumber start = problem_.starts[robot], goal = problem_.goals[robot];
-  offer(asked, {start, safe_.at(start, 0)});
+  offer(query, {start, safe_.at(start, 0)});
   while (!open_.empty()) {
     std::pop_heap(open_.begin(), open_.end(), std::greater<>());
     const std::size_t number = open_.back().second;
     open_.pop_back();
     const Arrival& here = arrivals_[number];
     if (here.time > soonest_[here.interval]) continue;
-    if (here.place == goal && safe_.last(goal, here.interval) == safe_.last_position()) return moves_to(asked, number);
-    go_on(asked, number);
+    if (here.place == goal && safe_.last(goal, here.interval) == safe_.last_position()) return moves_to(query, number);
+    expand(query, number);
   }
   return std::nullopt;
 }
 
-void WayAmongOthers::offer(const Robot& robot, const Arrival& arrival) {
-  const double until_goal = arrival.time + (*robot.left)[arrival.place];
-  if (!(arrival.time < soonest_[arrival.interval]) || !(until_goal < robot.bound)) return;
+void PathAmongOthers::offer(const Query& query, const Arrival& arrival) {
+  const double until_goal = arrival.time + (*query.to_goal)[arrival.place];
+  if (!(arrival.time < soonest_[arrival.interval]) || !(until_goal < query.bound)) return;
   soonest_[arrival.interval] = arrival.time;
   open_.emplace_back(until_goal, arrivals_.size());
   std::push_heap(open_.begin(), open_.end(), std::greater<>());
   arrivals_.push_back(arrival);
 }
 
-void WayAmongOthers::go_on(const Robot& robot, std::size_t arrival) {
+void PathAmongOthers::expand(const Query& query, std::size_t arrival) {
   const PlaceNumber from = arrivals_[arrival].place;
   const std::vector<PlaceNumber>& next = problem_.map->ways(from);
   for (std::size_t k = 0; k < next.size(); ++k)
-    if (problem_.map->room(next[k]) >= problem_.radii[robot.number] && (*robot.left)[next[k]] != kFarAway)
-      go_on_to(robot, arrival, next[k], ways_.number_of_kth(from, k));
+    if (problem_.map->room(next[k]) >= problem_.radii[query.robot] && (*query.to_goal)[next[k]] != kFarAway)
+      expand_to(query, arrival, next[k], edges_.kth_from(from, k));
 }
 
 /// In each of the intervals of the next place that can be reached.
-void WayAmongOthers::go_on_to(const Robot& robot, std::size_t arrival, PlaceNumber to, WayNumber way) {
+void PathAmongOthers::expand_to(const Query& query, std::size_t arrival, PlaceNumber to, EdgeNumber edge) {
   const Arrival here = arrivals_[arrival];
-  const std::size_t until = safe_.last(here.place, here.interval), now = position_at(*robot.others, here.time);
+  const std::size_t until = safe_.last(here.place, here.interval), now = position_at(*query.others, here.time);
   // Who waits until a later position than it would be ready for leaves once the move before that is under way.
   const auto arrives = [&](std::size_t position) {
-    const double free = position > now ? robot.others->moves[position - 1].start + problem_.radii[robot.number] : 0.0;
-    return std::max(here.time, free) + ways_.length(way);
+    const double free = position > now ? query.others->moves[position - 1].start + problem_.radii[query.robot] : 0.0;
+    return std::max(here.time, free) + edges_.length(edge);
   };
   std::size_t interval = safe_.at(to, here.position);
   for (std::size_t first = here.position; first <= until; first = safe_.last(to, interval++) + 1) {
     const std::size_t last = std::min(until, safe_.last(to, interval)), wanted = std::clamp(now, first, last);
     const double soonest = arrives(wanted);
-    if (!(soonest + (*robot.left)[to] < robot.bound)) break;
+    if (!(soonest + (*query.to_goal)[to] < query.bound)) break;
     if (!(soonest < soonest_[interval])) continue;
-    const std::vector<Ways::NearPlace>& near = ways_.near_places(way);
+    const std::vector<RoadmapEdges::NearPlace>& near = edges_.near_places(edge);
     std::optional<std::size_t> position = safe_.first_clear(near, wanted, last);
     if (!position) position = safe_.first_clear(near, first, wanted);
     work_ += near.size();
-    if (position) offer(robot, {to, interval, *position, arrives(*position), arrival});
+    if (position) offer(query, {to, interval, *position, arrives(*position), arrival});
   }
 }
 
-std::vector<JointMove> WayAmongOthers::moves_to(const Robot& robot, std::size_t arrival) const {
+std::vector<JointMove> PathAmongOthers::moves_to(const Query& query, std::size_t arrival) const {
   std::vector<const Arrival*> way;
-  for (; arrival != 0; arrival = arrivals_[arrival].from) way.push_back(&arrivals_[arrival]);
+  for (; arrival != 0; arrival = arrivals_[arrival].parent) way.push_back(&arrivals_[arrival]);
   std::reverse(way.begin(), way.end());
-  const std::vector<TimedMove>& others = robot.others->moves;
+  const std::vector<TimedMove>& others = query.others->moves;
   std::vector<JointMove> moves;
   moves.reserve(others.size() + way.size());
-  PlaceNumber at = problem_.starts[robot.number];
+  PlaceNumber at = problem_.starts[query.robot];
   std::size_t k = 0;
   for (const Arrival* next : way) {
     for (; k < next->position; ++k) moves.push_back(others[k].move);
-    moves.push_back({robot.number, at, next->place});
+    moves.push_back({query.robot, at, next->place});
     at = next->place;
   }
   for (; k < others.size(); ++k) moves.push_back(others[k].move);

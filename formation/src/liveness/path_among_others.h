@@ -2,12 +2,13 @@
 #pragma once
 
 /// \file
-/// A way of one robot to its goal among the moves of all others (liveness, rule R3).
+/// A path of one robot to its goal among the moves of all others (liveness, rule R3).
 ///
 /// Safe-interval path planning (Phillips and Likhachev, "SIPP: Safe Interval Path Planning for Dynamic Environments",
 /// ICRA 2011), with positions in the sequence of the others' moves instead of times: position k is before their k-th
 /// move. What comes out is a sequence of single moves again, in which the robot keeps (1 + kPlannedGap) times the sum
-/// of the radii from all others, or gets away from them. Heuristic: it takes the way that seems soonest at its goal.
+/// of the radii from all others, or gets away from them. Heuristic: it takes the path that seems to be at its goal
+/// first.
 
 #include <optional>
 #include <vector>
@@ -21,7 +22,7 @@ class SafeIntervals {
  public:
   explicit SafeIntervals(const JointProblem& problem);
 
-  void set(std::size_t robot, const Timetable& others, const Ways& ways);
+  void set(std::size_t robot, const Timetable& others, const RoadmapEdges& edges);
 
   std::size_t last_position() const { return count_; }
   std::size_t size() const { return size_; }
@@ -29,8 +30,8 @@ class SafeIntervals {
   std::size_t at(PlaceNumber place, std::size_t position) const;
   /// The last position of an interval of the place.
   std::size_t last(PlaceNumber place, std::size_t interval) const;
-  /// Of the positions the first at which nobody stands near a way, of which these are the places near it.
-  std::optional<std::size_t> first_clear(const std::vector<Ways::NearPlace>& near, std::size_t first,
+  /// Of the positions the first at which nobody stands near an edge, of which these are the places near it.
+  std::optional<std::size_t> first_clear(const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first,
                                          std::size_t last) const;
 
  private:
@@ -47,41 +48,42 @@ class SafeIntervals {
   std::vector<std::size_t> first_;                ///< by place: its first interval
 };
 
-class WayAmongOthers {
+class PathAmongOthers {
  public:
   /// Keeps references to both.
-  WayAmongOthers(const JointProblem& problem, Ways& ways) : problem_(problem), ways_(ways), safe_(problem) {}
+  PathAmongOthers(const JointProblem& problem, RoadmapEdges& edges)
+      : problem_(problem), edges_(edges), safe_(problem) {}
 
-  /// The moves of all, with those of the robot among them; nothing where it finds no way that is over before `bound`,
-  /// m at speed 1. `left`: m, of the robot, from each place to its goal.
+  /// The moves of all, with those of the robot among them; nothing where it finds no path that is over before `bound`,
+  /// m at speed 1. `to_goal`: m, from each place to the robot's goal.
   std::optional<std::vector<JointMove>> moves_with(std::size_t robot, const Timetable& others,
-                                                   const std::vector<float>& left, double bound);
+                                                   const std::vector<float>& to_goal, double bound);
   /// Counted, of all so far.
   std::size_t work() const { return work_; }
 
  private:
+  struct Query {
+    std::size_t robot;
+    const Timetable* others;
+    const std::vector<float>* to_goal;
+    double bound;
+  };
   /// At a place, in one of its intervals.
   struct Arrival {
     PlaceNumber place = 0;
     std::size_t interval = 0;
     std::size_t position = 0;  ///< of the move that led here
-    double time = 0.0;         ///< m, that a robot goes until then that never waits
-    std::size_t from = 0;      ///< which arrival; itself: the start
-  };
-  struct Robot {
-    std::size_t number;
-    const Timetable* others;
-    const std::vector<float>* left;
-    double bound;
+    double time = 0.0;         ///< as the distance that is driven in it at full speed, m
+    std::size_t parent = 0;    ///< arrival; the start is its own
   };
 
-  void offer(const Robot& robot, const Arrival& arrival);
-  void go_on(const Robot& robot, std::size_t arrival);
-  void go_on_to(const Robot& robot, std::size_t arrival, PlaceNumber to, WayNumber way);
-  std::vector<JointMove> moves_to(const Robot& robot, std::size_t arrival) const;
+  void offer(const Query& query, const Arrival& arrival);
+  void expand(const Query& query, std::size_t arrival);
+  void expand_to(const Query& query, std::size_t arrival, PlaceNumber to, EdgeNumber edge);
+  std::vector<JointMove> moves_to(const Query& query, std::size_t arrival) const;
 
   const JointProblem& problem_;
-  Ways& ways_;
+  RoadmapEdges& edges_;
   SafeIntervals safe_;
   std::vector<Arrival> arrivals_;
   std::vector<std::pair<double, std::size_t>> open_;  ///< heap of arrivals by when they lead to the goal
