@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Modules of others than this component (module.h), for programs.
+/// For programs: loading a module (module.h) that is not one of this component's own.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GDAL, SQLite and MPI as modules beside the program, loaded when they are first needed: PREFIX/bin/PROGRAM finds them
+// GDAL, SQLite, MPI and the page's server as modules beside the program, loaded when they are first needed: PREFIX/bin/PROGRAM finds them
 // in the library folder of PREFIX, and nowhere else. A library that a foreign program has loaded (the Python extension)
 // finds them in its own folder, or where they are installed or were built.
 #include <dlfcn.h>

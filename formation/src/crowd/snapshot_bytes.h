@@ -5,11 +5,14 @@
 /// Numbers as bytes behind each other, with a checksum at the end: snapshots of crowds and of their runs.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <ios>
 #include <istream>
 #include <ostream>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "exactvo/formation/crowd.h"
 
@@ -33,9 +36,16 @@ class Checksum {
   std::uint64_t hash_ = 14695981039346656037ULL;
 };
 
-/// Numbers, and structs of numbers without padding.
+/// Of a struct that is nothing but doubles, how many. Others are not written whole: bytes between their members would go
+/// into the checksum.
 template <class A>
-inline constexpr bool is_plain = std::is_trivially_copyable_v<A> && !std::is_pointer_v<A>;
+inline constexpr std::size_t doubles_of = 0;
+template <>
+inline constexpr std::size_t doubles_of<geometry::Vec2> = 2;
+
+template <class A>
+inline constexpr bool is_plain =
+    std::is_arithmetic_v<A> || (std::is_trivially_copyable_v<A> && sizeof(A) == doubles_of<A> * sizeof(double));
 
 class SnapshotWriter {
  public:

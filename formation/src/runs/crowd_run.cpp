@@ -22,6 +22,12 @@
 #include "steering/guide.h"
 
 namespace exactvo::formation {
+
+template <>
+inline constexpr std::size_t crowd::doubles_of<detail::Destination> = 3;
+template <>
+inline constexpr std::size_t crowd::doubles_of<detail::NearestPlace> = 4;
+
 namespace {
 
 using namespace detail;

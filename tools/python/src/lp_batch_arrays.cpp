@@ -131,7 +131,7 @@ void take_hard(BatchArrays& b, py::handle hard) {
     b.hard.assign(b.count, static_cast<std::int32_t>(b.lines));
   } else if (PyLong_Check(hard.ptr())) {
     b.hard.assign(b.count,
-                  static_cast<std::int32_t>(std::clamp<long long>(PyLong_AsLongLong(hard.ptr()), -1, 1LL << 31)));
+                  static_cast<std::int32_t>(std::clamp<long long>(PyLong_AsLongLong(hard.ptr()), -1, 1LL << 30)));
     PyErr_Clear();
   } else {
     const auto array = array_of<std::int64_t>(hard, "hard", {static_cast<py::ssize_t>(b.count)},
