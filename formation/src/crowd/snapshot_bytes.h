@@ -36,16 +36,16 @@ class Checksum {
   std::uint64_t hash_ = 14695981039346656037ULL;
 };
 
-/// Of a struct that is nothing but doubles, how many. Others are not written whole: bytes between their members would go
-/// into the checksum.
+/// Of a struct that is nothing but doubles, how many. Others are not written whole: bytes between their members would
+/// go into the checksum.
 template <class A>
 inline constexpr std::size_t doubles_of = 0;
 template <>
 inline constexpr std::size_t doubles_of<geometry::Vec2> = 2;
 
 template <class A>
-inline constexpr bool is_plain =
-    std::is_arithmetic_v<A> || (std::is_trivially_copyable_v<A> && sizeof(A) == doubles_of<A> * sizeof(double));
+inline constexpr bool is_plain = std::is_arithmetic_v<A> ||
+                                 (std::is_trivially_copyable_v<A> && sizeof(A) == doubles_of<A> * sizeof(double));
 
 class SnapshotWriter {
  public:
