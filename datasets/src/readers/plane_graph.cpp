@@ -2,7 +2,8 @@
 #include "readers/plane_graph.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "exactvo/geometry/box.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -56,12 +57,9 @@ class ChainWalker {
 };
 
 double half_perimeter_of_box(const std::vector<Vec2>& points) {
-  Vec2 low = points.front(), high = points.front();
-  for (const Vec2 p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  return (high.x - low.x) + (high.y - low.y);
+  geometry::Box box{points.front(), points.front()};
+  for (const Vec2 p : points) box.add(p);
+  return (box.high.x - box.low.x) + (box.high.y - box.low.y);
 }
 
 void put_largest_first(std::vector<GraphChain>& rings) {

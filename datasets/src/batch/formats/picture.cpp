@@ -8,6 +8,7 @@
 
 #include "batch/formats/features.h"
 #include "exactvo/datasets/markup.h"
+#include "exactvo/geometry/box.h"
 
 namespace exactvo::datasets::batch {
 namespace {
@@ -25,17 +26,11 @@ constexpr std::size_t kMostFacadeEllipses = 60;
 class View {
  public:
   explicit View(const std::vector<Ring>& rings) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    Vec2 low{kInfinity, kInfinity};
-    Vec2 high{-kInfinity, -kInfinity};
-    for (const Ring& ring : rings) {
-      for (const Vec2 p : ring) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-      }
-    }
-    middle_ = 0.5 * low + 0.5 * high;
-    const double extent = std::max(high.x - low.x, high.y - low.y);
+    geometry::Box box;
+    for (const Ring& ring : rings)
+      for (const Vec2 p : ring) box.add(p);
+    middle_ = 0.5 * box.low + 0.5 * box.high;
+    const double extent = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
     scale_ = extent > 0.0 && std::isfinite(extent) ? (kSide - 2.0 * kMargin) / extent : 1.0;
   }
 
