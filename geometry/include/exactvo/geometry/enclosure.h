@@ -30,7 +30,8 @@ Ellipse facade_ellipse(const Segment& facade, const FacadeEllipseOptions& option
 /// Equation (8), corrected: d = robot_radius + the least depth of the facade's points in the ellipse, m. Rounded.
 double clearance_of_equation_8(const Segment& facade, const Ellipse& enclosure, double robot_radius);
 
-/// Why an enclosure is as it is: the rung of the ladder on which the fit stopped.
+/// How good an enclosure is. The fit asks for the best first, with `slack` and `margin` of EnclosureOptions; then for
+/// the same with `least_slack` and `least_margin`; then for containment alone. It stops at the first that holds.
 enum class EnclosureGrade {
   trap_free,       ///< goal outside the evolute with the asked slack and margin
   trap_free_thin,  ///< the same with the least slack and margin
@@ -45,8 +46,8 @@ const char* name(EnclosureGrade grade);
 struct EnclosureOptions {
   double margin = 0.08;         ///< m; points lie in the ellipse of semi-axes a - margin, b - margin
   double slack = 0.5;           ///< sigma: the evolute condition holds with (1 + slack) on its right side
-  double least_margin = 0.02;   ///< m; second rung
-  double least_slack = 0.02;    ///< second rung
+  double least_margin = 0.02;   ///< m; asked for second, in the place of `margin`
+  double least_slack = 0.02;    ///< asked for second, in the place of `slack`
   double clear_of_ends = 0.02;  ///< m; start and goal must be this far outside the grown enclosure
   double most_inflation =
       8.0;  ///< an ellipse may have this many times the area of the obstacle's hull grown by the robot
@@ -55,13 +56,13 @@ struct EnclosureOptions {
 /// An ellipse, and how good it is.
 struct FittedEllipse {
   Ellipse ellipse;                                    ///< certified to contain the points
-  EnclosureGrade grade = EnclosureGrade::containing;  ///< which rung of the fit held
+  EnclosureGrade grade = EnclosureGrade::containing;  ///< the first that held
 };
 
 /// The smallest trap-free ellipse that the search finds round `points`, for a robot of `robot_radius` going from
 /// `start` to `goal`; nothing if even `containing` can't hold (start or goal within the grown ellipse). `grade` says
-/// which rung held. Containment, start and goal outside, and the evolute condition are checked exactly on what is
-/// returned. REQUIRES: at least one point, all finite.
+/// which came first to hold. Containment, start and goal outside, and the evolute condition are checked exactly on what
+/// is returned. REQUIRES: at least one point, all finite.
 std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
                                            const EnclosureOptions& options = {});
 
@@ -78,7 +79,7 @@ ObstacleParts parts_of(const Obstacle& obstacle);
 struct Enclosure {
   ConvexShape shape;                             ///< an Ellipse; where grade is tight, a piece
   std::vector<std::size_t> obstacles;            ///< indices of the obstacles that it stands for, ascending
-  EnclosureGrade grade = EnclosureGrade::tight;  ///< which rung of the fit held
+  EnclosureGrade grade = EnclosureGrade::tight;  ///< the first that held
   /// Whether predicate F certified that a robot heading for the goal can't stall at this enclosure alone.
   bool trap_free() const { return grade == EnclosureGrade::trap_free || grade == EnclosureGrade::trap_free_thin; }
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Everything that this room knows to make of one obstacle, in one call, each shape with a verdict on what it contains:
+/// Everything that geometry/ knows to make of one obstacle, in one call, each shape with a verdict on what it contains:
 /// facades, convex pieces, hull, smallest ellipse, an ellipse round every facade (paper, equation (8)), an ellipse
 /// at which no robot can stall, and figures.
 ///
@@ -66,7 +66,7 @@ enum class TrapFreeAnswer {
 /// An ellipse round the whole obstacle at which no robot stalls, whatever its radius.
 struct TrapFreeEllipse {
   std::optional<Ellipse> ellipse;                ///< where found
-  EnclosureGrade grade = EnclosureGrade::tight;  ///< which rung of the fit held
+  EnclosureGrade grade = EnclosureGrade::tight;  ///< the first that held (enclosure.h)
   /// Certified: no goal outside the ellipse can make a robot stall there. The evolute lies in the ellipse, which for
   /// semi-axes a >= b is a^2 <= 2 b^2. Without it the certificate, if any, is for the goal of `way`.
   bool for_every_goal = false;

@@ -6,6 +6,10 @@
 /// (round to nearest, error bound derived in the .cpp) and, where that is undecided, in exact arithmetic. No answer
 /// depends on rounding; NaN and infinity are a caller's mistake.
 ///
+/// Other files call the predicates by letters: A `sign_of_support`, is a half-plane safe? B1 `locate`, where is a point
+/// of a grown shape? B2 `segment_meets`, does a motion reach it? E `contains`, is a point in an ellipse? F, is
+/// a goal outside the evolute of an ellipse, so that no robot on its way there can stall at it?
+///
 /// Properties (tests quote the numbers):
 ///  (1) growing `radius` never lowers `sign_of_support`;
 ///  (2) scaling n and c by the same power of two does not change it;

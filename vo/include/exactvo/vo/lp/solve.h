@@ -2,7 +2,9 @@
 #pragma once
 
 /// \file
-/// The deterministic incremental solver: double precision, order as given, bounded work on any input.
+/// The scalar solver in double precision: an active-set method, in which the constraint that is violated most enters
+/// and, of equal ones, the first. (Not Seidel's incremental method of 1991, which takes constraints in random order.)
+/// The same input gives the same bits; work is bounded on any input.
 
 #include <cstddef>
 #include <memory>
