@@ -6,7 +6,8 @@
 ///
 ///     F = { v : |v| <= max_speed } minus the union of the obstacles' cones, boundaries included,
 ///
-/// as the pieces that it falls into, each bounded by arcs of the speed's circle, arcs of fronts, offset edges and legs.
+/// as the pieces that it falls into, each bounded by arcs of the speed's circle, arcs and straight edges of
+/// the cut-offs, and legs.
 /// All that is decided (which curves meet, in which order along each, which stretch bounds what is free, how the
 /// stretches join) is decided for algebraic numbers, also where curves touch, coincide or meet three in a point. Only
 /// the numbers that show the answer are rounded, as certified brackets.
@@ -40,7 +41,7 @@ namespace exactvo::vo {
 
 /// Cones and curves beyond these are refused: the curves are compared pair by pair.
 inline constexpr std::size_t kMostCones = 64;
-inline constexpr std::size_t kMostCurves = 512;  ///< legs, arcs and edges of the fronts, of all cones together
+inline constexpr std::size_t kMostCurves = 512;  ///< legs, arcs and edges of cut-offs, of all cones together
 
 /// m, s or m/s: every number of a scene is 0 or of a size from the one to the other. 2^-60 lets pass what rounding
 /// leaves of a 0, 2^30 what maps count in. Near the ends of the doubles' range CORE divides by zero.
@@ -87,7 +88,7 @@ struct FreeArc {
   PointBracket to;                       ///< where it ends
   Vec2 center;                           ///< m/s, rounded; of arcs
   double radius = 0.0;                   ///< m/s, rounded; of arcs
-  /// Of arcs: round the speed's circle counter-clockwise, round a front clockwise. 0 for straight stretches.
+  /// Of arcs: round the speed's circle counter-clockwise, round a cut-off clockwise. 0 for straight stretches.
   int turn = 0;
 };
 
