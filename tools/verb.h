@@ -3,7 +3,7 @@
 
 /// \file
 /// What a verb of the program is: a name, words for --help, and a function that declares its options and returns what
-/// to do once they are parsed. To add one: write verbs/NAME.cpp, and name it in the table of verbs.cpp.
+/// to do once they are parsed. To add one: write verbs/ROOM/NAME.cpp, and declare and list it in verbs.cpp.
 
 #include <CLI/CLI.hpp>
 #include <functional>

@@ -159,7 +159,7 @@ TEST(Region, WhatHasNoAreaIsNothing) {
 }
 
 TEST(Region, NumbersBeyondTheRangeAreTheCallersMistake) {
-  const double nan = std::nan(""), far = 2.0 * kLargestCoordinate;
+  const double nan = std::nan(""), far = 2.0 * kLargestRegionCoordinate;
   for (const double x : {nan, far, std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(Region::hull_of({{0.0, 0.0}, {x, 0.0}, {0.0, 1.0}}), std::logic_error);
     EXPECT_THROW(square().cut({{x, 1.0}, 0.0}), std::logic_error);
@@ -167,7 +167,7 @@ TEST(Region, NumbersBeyondTheRangeAreTheCallersMistake) {
     EXPECT_THROW(Region::cut(kSquare, {{{1.0, 1.0}, x}}), std::logic_error);
     EXPECT_THROW(square().locate({x, 0.0}), std::logic_error);
   }
-  const double most = kLargestCoordinate;
+  const double most = kLargestRegionCoordinate;
   const Region huge = Region::hull_of({{-most, -most}, {most, -most}, {most, most}, {-most, most}});
   expect_area(huge, 4.0 * most * most);
   EXPECT_EQ(huge.locate({most, 0.0}), Place::boundary);

@@ -357,7 +357,7 @@ TEST(FreeVelocities, OptionsOutOfRangeAreMistakes) {
 
 TEST(Region, NumbersOutOfRangeAreMistakes) {
   using geometry::Region;
-  const double most = geometry::kLargestCoordinate, beyond = 2.0 * most;
+  const double most = geometry::kLargestRegionCoordinate, beyond = 2.0 * most;
   const auto triangle = [](double r) { return std::vector<Vec2>{{0.0, 0.0}, {r, 0.0}, {0.0, r}}; };
   EXPECT_EQ(Region::hull_of(triangle(most)).area().high, 0.5 * most * most);
   EXPECT_THROW(Region::hull_of(triangle(beyond)), std::logic_error);

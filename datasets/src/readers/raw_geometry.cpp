@@ -117,7 +117,7 @@ DataError repair_refusal(DataCode code, const std::string& file, const std::stri
     case DataCode::out_of_range:
       return {code, file, place, "rings that cross and have a coordinate beyond 2^100 m", "nearer ones"};
     case DataCode::zero_area:
-      return {code, file, place, "rings that enclose nothing an odd number of times", "some area"};
+      return {code, file, place, "rings that enclose no area by the even-odd rule", "rings that enclose some"};
     case DataCode::rounding:
       return {code, file, place, "crossings that meet again however they are rounded to doubles",
               "rings farther apart"};

@@ -417,9 +417,9 @@ std::string DecisionAudit::misstated(const Seen& s, const Violations& most) cons
     if (r.exact_multipliers && part.multiplier != 0.0) return kBesideExact;
   for (const RecordedConstraint& c : r.constraints) {
     if (r.exact_multipliers && c.multiplier != 0.0) return kBesideExact;
-    if (!c.active && c.multiplier != 0.0) return " is pressed by a half-plane that does not bind";
+    if (!c.active && c.multiplier != 0.0) return " has a multiplier for an inactive half-plane";
     if (c.active && r.status == lp::Status::optimal && violation_at(c.half_plane, chosen) < -near)
-      return " is bound by a half-plane that it does not touch";
+      return " lists a half-plane as active whose boundary it is not on";
   }
   return "";
 }

@@ -37,7 +37,7 @@ std::string obstruction_in(const Step& row) {
   if (!(std::fabs(row.time) <= kLargestCoordinate)) return "a row's time is not finite, or out of range";
   for (const formation::MovedObstacle& moved : row.moving)
     if (!is_in_range(moved.displacement) || !is_in_range(moved.velocity))
-      return "where a moving obstacle is is not finite, or out of range";
+      return "the position or velocity of a moving obstacle is not finite, or out of range";
   for (const RobotStep& robot : row.robots) {
     if (!is_in_range(robot.position)) return "a robot's position is not finite, or out of range";
     if (!is_in_range(robot.velocity)) return "a robot's velocity is not finite, or out of range";

@@ -19,8 +19,8 @@ struct Near {
   bool operator<(const Near& o) const { return squared != o.squared ? squared < o.squared : robot < o.robot; }
 };
 
-/// Into `near`, nearest first: as many as its kind has neighbours, and all that can be met within the step. `last`: the
-/// squared distance (lattice steps) of the last of its kind's number. True where more can be met than that, or as many.
+/// Into `near`, nearest first: the k nearest, k the number of neighbours of the robot's kind, and all that can be met
+/// within the step. `last`: the squared distance (lattice steps) of the k-th. True where k or more can be met.
 bool neighbours_of(const Robots& robots, const ReachTable& table, std::size_t robot, std::vector<Near>& near,
                    float& last);
 

@@ -76,10 +76,10 @@ std::vector<std::size_t> robots_met_by(const Scene& scene, const std::vector<Con
 void fall_back(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene, std::size_t i,
                std::size_t j, std::vector<std::vector<Constraint>>& constraints, double gap = kContactSkin);
 
-/// The same of all pairs of which one goes by a plan, for robots that both yield (liveness, rule R4). `planned`: m/s,
-/// what those who go by a plan want. Two that do have the half-plane nearest to what they want, split there with half
-/// the slack each, so that both keep it where the plan is free of collision (lemma 2). Of one that does and one that
-/// does not the first takes the whole gap, and the other does not come nearer. Pairs that cannot meet within a step
+/// Replaces the half-planes of all pairs of which one robot or both follow a joint plan and both cooperate (liveness,
+/// rule R4). `planned`: m/s, the velocities that plans want. If both follow one: the half-plane nearest to both planned
+/// velocities, each robot with half of its slack, so that both satisfy it where the plan is free of collision (lemma
+/// 2). If one does: it may use the whole gap, and the other may not come nearer. Pairs that cannot meet within a step
 /// have none. REQUIRES: half-planes against robots only.
 void follow_plans(const Scenario& scenario, const std::vector<Anchor>& anchors, const Scene& scene,
                   const std::vector<std::optional<Vec2>>& planned, std::vector<std::vector<Constraint>>& constraints,

@@ -21,8 +21,8 @@
 
 namespace exactvo::formation::detail {
 
-/// Robots with a gap of fewer margins between robots than this may hold each other up: who keeps a wide margin stops
-/// that far away.
+/// Two robots can hold each other up if their gap is less than this many times `margins.robot`: with a wide margin a
+/// robot stops at that distance.
 inline constexpr double kNearMargins = 1.5;
 
 /// A robot at the beginning of a step.

@@ -36,8 +36,8 @@ class JointDecisions {
   /// Half-planes of robots against robots, as they are or as plans have them. `groups`: null without plans.
   void look_at_robots(const Groups* groups);
 
-  /// Along the plan, as fast as all half-planes allow. Those of `field` look a time step ahead: nearer to what is
-  /// wanted than they need not be.
+  /// Along the plan, as fast as all half-planes allow. Those of `field` have one time step as their horizon, so that
+  /// they hold the planned velocity back no more than safety requires.
   void choose_by_plan(std::size_t i, Vec2 wanted, Viewpoint here, const StaticField& field, double time,
                       RobotStep& step, const std::vector<std::size_t>* fallen_back);
 

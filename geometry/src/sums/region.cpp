@@ -28,7 +28,7 @@ std::string show(const HalfPlane& h) {
 }
 
 bool is_in_range(double x) {
-  return std::fabs(x) <= kLargestCoordinate;
+  return std::fabs(x) <= kLargestRegionCoordinate;
 }
 bool is_in_range(Vec2 x) {
   return is_in_range(x.x) && is_in_range(x.y);
@@ -192,7 +192,7 @@ Region Region::cut(const HalfPlane& keep) const {
       const auto box = polygon.outer_boundary().bbox();
       reach = std::max({reach, -box.xmin(), box.xmax(), -box.ymin(), box.ymax()});
     }
-    const double r = std::min(2.0 * reach + 1.0, kLargestCoordinate);
+    const double r = std::min(2.0 * reach + 1.0, kLargestRegionCoordinate);
     return intersection(cut(ConvexPolygon{{{-r, -r}, {r, -r}, {r, r}, {-r, r}}}, {keep}));
   });
 }

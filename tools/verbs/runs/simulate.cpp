@@ -225,8 +225,9 @@ void declare_simulate(CLI::App& app, SimulateFlags& flags) {
               "Folder for recording.jsonl, trajectory.csv, metrics.json, lyapunov.csv (formations), figures/ and "
               "explorer.html; "
               "whole or not at all");
-  app.add_flag("--record-all", flags.record_all,
-               "Keep every half-plane of every decision, so that `audit` verifies the whole run");
+  app.add_flag(
+      "--record-all", flags.record_all,
+      "Record every half-plane, not only the active ones and those of what the robot could reach within a time step");
   app.add_flag("--json", flags.json, "Print the metrics as JSON");
   app.add_flag("--no-figures", flags.no_figures, "Write no figures and no explorer.html");
   app.add_flag("--fail-on-collision", flags.fail_on_collision, "Exit status 1 if a robot overlaps anything");

@@ -186,7 +186,8 @@ void declare_crowd_flags(CLI::App& app, CrowdFlags& flags) {
   app.add_flag("--resume", flags.resume,
                "With --snapshot-every: go on with an interrupted run from its last snapshot. The result is the same");
   app.add_option("--threads", flags.threads,
-                 "Of the crowd, or that search for joint plans; 0 for one per processor. The result is the same")
+                 "Number of threads of the crowd, or of the search for joint plans; 0 for one per processor. The "
+                 "result is the same")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024));
   app.add_option("--precision", flags.precision, "With --engine crowd: float or double, both certified")

@@ -29,8 +29,8 @@ int corners_of_circle(const Window& window) {
 
 // --- The normals at which a cone is touched ---
 
-/// m/s: points farther out are left out, so that what is built of them stays within geometry::kLargestCoordinate.
-constexpr double kFarthest = geometry::kLargestCoordinate / 16.0;
+/// m/s: points farther out are left out, so that what is built of them stays within geometry::kLargestRegionCoordinate.
+constexpr double kFarthest = geometry::kLargestRegionCoordinate / 16.0;
 
 struct Contact {
   double angle;  ///< of the outward normal

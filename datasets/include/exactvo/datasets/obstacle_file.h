@@ -33,8 +33,8 @@
 
 namespace exactvo::datasets {
 
-/// m: so that squares, areas and what ellipses are made of stay far within doubles. It is that of rings that are cut
-/// (geometry/even_odd.h) and of free velocities (vo/free_velocities.h).
+/// Largest coordinate accepted from a file, m: squares, areas and the entries of ellipses stay far from overflow. The
+/// same as of rings that are cut (geometry/even_odd.h) and of the apex of a cone (vo/free_velocities.h).
 inline constexpr double kLargestCoordinate = 0x1p100;
 
 /// What the coordinates of a file are counted in.

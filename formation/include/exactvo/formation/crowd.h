@@ -62,7 +62,7 @@ struct CrowdKind {
   double radius = 0.5;               ///< m, > 0
   double max_speed = 1.5;            ///< m/s, at least 16 lattice steps and at most 2^22 of them a time step
   double time_horizon = 5.0;         ///< s, at least the time step; a pair looks ahead the shorter of its two
-  double neighbour_distance = 15.0;  ///< m, > 0; taken as the distance within which robots can meet if that is more
+  double neighbour_distance = 15.0;  ///< m, > 0; at least the distance within which two robots can meet in a step
   int neighbours = 10;               ///< 1 ... 15: the nearest within the distance, and all that could be met, (5)
   double edge_horizon = 0.0;         ///< s, of edges and bodies at rest: at least the time step; 0: time_horizon
 };

@@ -32,7 +32,7 @@ struct DecisionConstraint {
   double tau = 0.0;        ///< s
   std::size_t body = 0;    ///< of `Recording::bodies`
   double clearance = 0.0;  ///< m, robot's rim to the body; negative in overlap. Rounded
-  /// Of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 where it does not bind. Rounded.
+  /// KKT multiplier: the weight of its normal in chosen - preferred, m/s, >= 0 (solution.h); 0 if inactive. Rounded.
   double multiplier = 0.0;
 };
 

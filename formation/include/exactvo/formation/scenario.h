@@ -60,9 +60,9 @@ enum class Unreachable {
 enum class Liveness {
   off,   ///< nothing: the paper's way. In a crowd half-planes between robots are relaxed where they contradict each
          ///< other
-  bias,  ///< robots in each other's way turn to the right, the more the longer they are held up; and instead of
-         ///< relaxing, the half-planes of a pair give way to those it would have at rest: no robots that cooperate
-         ///< overlap
+  bias,  ///< robots in each other's way turn to the right, the more the longer they are held up. Half-planes of a pair
+         ///< that contradict others are replaced by those of robots at rest instead of being relaxed: robots that
+         ///< cooperate never overlap
   plan   ///< beside that, robots that wait for each other go by a joint plan, from where they are or from where they
          ///< were before
 };

@@ -45,7 +45,8 @@ enum class Integrator {
 /// The remedies that a controller consists of.
 Remedies remedies_of(Controller controller);
 
-/// "ivo-edge" and so on, as on the command line; `parse_*` gives nothing for an unknown name.
+/// The words of the command line, such as "ivo-edge"; `parse` returns false for a word that is none and changes
+/// nothing.
 const char* name(Method m);
 const char* name(Controller c);               ///< "paper-literal", "paper-signs", "corrected", "default"
 const char* name(Integrator i);               ///< "exact", "euler", "rk4", "dopri5", "rosenbrock4"

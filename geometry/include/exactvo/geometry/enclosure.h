@@ -66,7 +66,8 @@ struct FittedEllipse {
 std::optional<FittedEllipse> fit_trap_free(const std::vector<Vec2>& points, double robot_radius, Vec2 start, Vec2 goal,
                                            const EnclosureOptions& options = {});
 
-/// An obstacle in parts: the facades that enclosures are built on, and convex shapes that cover it where none fits.
+/// An obstacle in parts: the facades that enclosures are built on, and what stands for it where none fits: convex
+/// shapes that cover it, of a polygon with holes its edges.
 struct ObstacleParts {
   std::vector<Segment> facades;     ///< m, in the order of divide_into_facades
   std::vector<ConvexShape> pieces;  ///< convex pieces of a polygon without holes, else its facades
@@ -88,7 +89,7 @@ struct Enclosure {
 /// those enclosures meet, and so on. Whatever overlaps once grown by the robot (two such can trap at their concave
 /// vertex) is merged and fitted again, until nothing overlaps or no ellipse
 /// holds both (then they stay as they are). What is not in the way, or can't be enclosed, stands as
-/// its pieces, tight: an ellipse there could only shut a passage. Every obstacle is covered by what is returned.
+/// its pieces, tight: an ellipse there could only shut a passage. Every facade is covered by what is returned.
 /// Deterministic; heuristic but for what `fit_trap_free` checks.
 std::vector<Enclosure> enclose(const std::vector<ObstacleParts>& obstacles, double robot_radius, Vec2 start, Vec2 goal,
                                const EnclosureOptions& options = {});

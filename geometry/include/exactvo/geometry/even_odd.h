@@ -47,9 +47,9 @@ struct EvenOddRegion {
   std::size_t rounds = 0;         ///< roundings that changed something
 };
 
-/// So many contacts may the edges have with others that are not their neighbours, all together. Each costs 5 kB while
-/// the rings are cut, so that a short text can't ask for more than 80 MB and a second or two; rings that run over each
-/// other all along have three a pair of edges.
+/// The most contacts that edges may have in all with edges that are not their neighbours. Each costs 5 kB while the
+/// rings are cut, so that a short text can't ask for more than 80 MB and a second or two. Rings that coincide along
+/// their whole length have three contacts for each pair of edges.
 inline constexpr std::size_t most_crossings(std::size_t edges) {
   return (std::size_t{1} << 14) + 2 * edges;
 }

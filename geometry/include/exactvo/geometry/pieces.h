@@ -2,7 +2,7 @@
 #pragma once
 
 /// \file
-/// Any obstacle as convex shapes whose union it is: what a question that is asked of a convex shape is asked of.
+/// Decomposes any obstacle into convex shapes whose union it is, for functions that take convex shapes only.
 ///
 /// Exact: no point is added and none is lost. Neighbours: hull.h (the partition of a polygon, proved before it is
 /// given), obstacle_shapes.h (the same with facades, enclosures and verdicts), enclosure.h (`parts_of`).

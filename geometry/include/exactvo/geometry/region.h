@@ -26,9 +26,9 @@ struct Bracket {
   double high = 0.0;  ///< at least the number
 };
 
-/// Of what regions are built of, and of what is asked of them: no number is larger, so that the products of five of
-/// them, which CGAL's filters make, are finite.
-inline constexpr double kLargestCoordinate = 0x1p200;
+/// Largest absolute value of any number that a region is built from or asked about. CGAL's filters multiply five such
+/// numbers; the product must not overflow.
+inline constexpr double kLargestRegionCoordinate = 0x1p200;
 
 /// A region of the plane with straight edges. Immutable; copies share.
 class Region {
@@ -36,11 +36,11 @@ class Region {
   /// Empty.
   Region();
 
-  /// The hull of the points. REQUIRES: coordinates within kLargestCoordinate.
+  /// The hull of the points. REQUIRES: coordinates within kLargestRegionCoordinate.
   static Region hull_of(const std::vector<Vec2>& points);
 
-  /// What of this region satisfies normal.x >= offset. REQUIRES: numbers within kLargestCoordinate. A zero normal keeps
-  /// all or nothing.
+  /// What of this region satisfies normal.x >= offset. REQUIRES: numbers within kLargestRegionCoordinate. A zero normal
+  /// keeps all or nothing.
   Region cut(const HalfPlane& keep) const;
 
   /// What of a convex polygon satisfies all of them. Much faster than cutting a region again and again. REQUIRES: the
@@ -56,7 +56,7 @@ class Region {
   bool is_empty() const;
   Bracket area() const;  ///< m^2 or whatever the square of the unit is
 
-  /// Where x lies. Exact. REQUIRES: within kLargestCoordinate.
+  /// Where x lies. Exact. REQUIRES: within kLargestRegionCoordinate.
   Place locate(Vec2 x) const;
 
   /// The connected pieces, largest first. Those that touch in a point count as one where one walk round the outside

@@ -113,7 +113,7 @@ class FreeArrangement {
   /// The refusals that are known before anything is computed; `numbers_apart` is not one.
   static Refusal refusal_of(const std::vector<ShiftedCone>& cones, double max_speed);
 
-  /// Whether no curve of the cone is worse than a circle: not an ellipse, unless it is a disc or a segment.
+  /// Whether the cone is bounded by lines and circular arcs only. False for an ellipse that is no disc and no segment.
   static bool can_hold(const ShiftedCone& cone);
 
   /// How many curves bound the cone, of the kMostCurves. REQUIRES: can_hold(cone), !cone.cone.overlaps().

@@ -36,7 +36,7 @@ namespace exactvo::vo {
 inline constexpr double kLeastMaxSpeed = 0x1p-60;
 /// m/s: the largest.
 inline constexpr double kMostMaxSpeed = 0x1p60;
-/// m/s, each coordinate of a cone's apex: its sums stay within geometry::kLargestCoordinate.
+/// m/s, each coordinate of a cone's apex: its sums stay within geometry::kLargestRegionCoordinate.
 inline constexpr double kMostApex = 0x1p100;
 
 /// Of what size the set is and how closely it is held.
@@ -94,8 +94,8 @@ class FreeVelocities {
   std::size_t least_components() const;
 
   /// What the half-planes' intersection makes of F. `yes` is proven by certificates (each cone has a half-plane that
-  /// excludes it) or by the regions, `no` by the regions. REQUIRES: normals within geometry::kLargestCoordinate, finite
-  /// offsets.
+  /// excludes it) or by the regions, `no` by the regions. REQUIRES: normals within geometry::kLargestRegionCoordinate,
+  /// finite offsets.
   RegionReport compare(const std::vector<HalfPlane>& half_planes) const;
 
   /// As they were given.

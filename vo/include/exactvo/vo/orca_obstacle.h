@@ -38,8 +38,8 @@ struct OrcaHalfPlane {
   bool certified = false;  ///< false only where the robot overlaps the edge
 };
 
-/// Of some edges of the chain, by number, ascending. Those within `d` of the robot decide about half-planes nearer than
-/// d as all do, since none is covered by a farther one.
+/// The half-planes of the edges that are listed, by number, ascending. No edge is covered by a farther one, so that the
+/// edges within d of the robot give the same half-planes nearer than d as all edges would.
 /// REQUIRES: radius >= 0, time_horizon > 0, finite numbers.
 std::vector<OrcaHalfPlane> orca_half_planes(const OrcaChain& chain, const std::vector<std::size_t>& edges,
                                             Vec2 position, Vec2 velocity, double radius, double time_horizon);
