@@ -395,6 +395,27 @@ TEST(Liveness, WhereThereIsNoPlanItIsSaid) {
   EXPECT_NE(m.outcome.find("a deadlock of two"), std::string::npos) << m.outcome;
 }
 
+/// With a sight of half a radius robots saw each other too late and overlapped: whoever can be met in a step is seen.
+TEST(Liveness, WhoCanBeMetIsSeenHoweverShortTheNeighbourDistance) {
+  for (const double distance : {0.1, 0.5, 1.1, 1.2}) {
+    Scenario s = test_scenes::circle(4, 3.0);
+    for (Robot& r : s.robots) r.max_speed = 3.0;
+    s.neighbour_distance = distance;
+    const Metrics m = measure(s, simulate(s));
+    EXPECT_TRUE(m.collisions.empty()) << distance;
+    EXPECT_EQ(m.relaxed_steps, 0u) << distance;
+    EXPECT_TRUE(m.all_arrived) << distance << ": " << m.outcome;
+  }
+}
+
+TEST(Liveness, ARunThatEndsDuringAPlanSaysSo) {
+  Scenario s = test_scenes::street(14, 3.0);
+  s.time_limit = 20.0;
+  const Metrics m = measure(s, simulate(s));
+  EXPECT_FALSE(m.all_arrived);
+  EXPECT_NE(m.outcome.find("14 robots were still going by a joint plan, with "), std::string::npos) << m.outcome;
+}
+
 /// Only the robots of the last plan that was not found were named, and none where another plan was found after it.
 TEST(Liveness, AllThatHaveNoPlanAreNamed) {
   Scenario s;

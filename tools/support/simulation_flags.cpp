@@ -138,6 +138,8 @@ void note(const std::vector<const CLI::Option*>& options, const std::string& why
 void note_unused(const SimulationFlags& flags, const formation::Scenario& scenario) {
   scenario.formation ? note(flags.of_goals, "robots of a formation have no goals")
                      : note(flags.of_formations, "the scenario has no formation");
+  if (scenario.formation && flags.liveness == "bias")
+    message("note: --liveness bias is off in formations, whose robots do not turn to the right");
 }
 
 void note_recorded(const SimulationFlags& flags) {

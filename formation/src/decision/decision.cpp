@@ -7,6 +7,7 @@
 
 #include "exactvo/vo/lp/solve.h"
 #include "exactvo/vo/reciprocal.h"
+#include "scene/moving.h"
 #include "scene/near_pairs.h"
 
 namespace exactvo::formation::detail {
@@ -154,8 +155,15 @@ void robot_constraints(const Scenario& scenario, const SimulationOptions& option
   std::vector<Vec2> places;
   places.reserve(n);
   for (const Anchor& anchor : anchors) places.push_back(anchor.position);
-  for_each_near_pair(places, scenario.neighbour_distance, [&](std::size_t i, std::size_t j) {
-    if (norm(places[i] - places[j]) > scenario.neighbour_distance) return;
+  double radius = 0.0, speed = 0.0;
+  for (const Robot& r : scenario.robots) {
+    radius = std::max(radius, r.radius);
+    speed = std::max(speed, r.max_speed);
+  }
+  for_each_near_pair(places, sight_of(scenario, 2.0 * radius, 2.0 * speed), [&](std::size_t i, std::size_t j) {
+    const Robot &r = scenario.robots[i], &other = scenario.robots[j];
+    if (norm(places[i] - places[j]) > sight_of(scenario, r.radius + other.radius, r.max_speed + other.max_speed))
+      return;
     const Party a = party(scenario, anchors, scene, i, anchors[i].velocity);
     const Party b = party(scenario, anchors, scene, j, anchors[j].velocity);
     const PairConstraints pair = against_each_other(a, b, rule);

@@ -59,7 +59,7 @@ class NearestFirst {
   std::vector<Key> keys_;
 };
 
-/// All half-planes of every robot against every other within `neighbour_distance`, nearest first: entry i belongs to
+/// All half-planes of every robot against every other in sight (`sight_of`), nearest first: entry i belongs to
 /// robot i. Both halves of a pair share their normal bit for bit. A robot that does not cooperate gets none, and who
 /// meets it takes the whole responsibility. Moves the robots' bodies to their anchors.
 void robot_constraints(const Scenario& scenario, const SimulationOptions& options, const std::vector<Anchor>& anchors,

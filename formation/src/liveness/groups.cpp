@@ -512,6 +512,20 @@ std::string Groups::no_plan_words(const Members& robots) const {
   return text;
 }
 
+std::string Groups::still_going_words() const {
+  std::size_t robots = 0, left = 0, all = 0;
+  for (const Group& g : groups_) {
+    if (g.is_over) continue;
+    robots += members_of(g).size();
+    left += g.following.moves_left();
+    all += g.following.plan().size();
+  }
+  if (robots == 0) return "";
+  return std::to_string(robots) + (robots == 1 ? " robot was" : " robots were") +
+         " still going by a joint plan, with " + std::to_string(left) + " of " + std::to_string(all) +
+         " moves to go: more time may be all that is missing";
+}
+
 // --- Following ---
 
 void Groups::advance() {

@@ -67,6 +67,8 @@ class Groups {
   /// "no plan was found on the roadmap for R1 and R2", of those of the given robots; empty where none was missing to
   /// the end.
   std::string no_plan_words(const std::vector<std::size_t>& robots) const;
+  /// "60 robots were still going by a joint plan, with 1200 of 4205 moves to go": of the plans that are not over.
+  std::string still_going_words() const;
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);

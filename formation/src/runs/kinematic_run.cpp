@@ -375,8 +375,10 @@ class KinematicRun {
     for (std::size_t i = 0; i < robots_.size(); ++i)
       if (!at_goal(i)) not_there.push_back(i);
     if (!not_there.empty()) text += no_passing_words();
-    const std::string without_plan = groups_ ? groups_->no_plan_words(not_there) : "";
-    return without_plan.empty() ? text : text + "; " + without_plan;
+    if (!groups_ || not_there.empty()) return text;
+    for (const std::string& words : {groups_->no_plan_words(not_there), groups_->still_going_words()})
+      if (!words.empty()) text += "; " + words;
+    return text;
   }
 
   /// The first pairs that cannot both be where they are to go.

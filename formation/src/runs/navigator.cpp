@@ -318,7 +318,9 @@ class Navigator::Core {
     const Party self{id_, 0, {now_.position, now_.velocity, robot().radius}, robot().max_speed, robot().cooperates};
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
       const Neighbour& n = neighbours[k];
-      if (!self.yields || norm(n.position - now_.position) > scenario_.neighbour_distance) continue;
+      if (!self.yields || norm(n.position - now_.position) >
+                              sight_of(scenario_, robot().radius + n.radius, robot().max_speed + n.max_speed))
+        continue;
       const vo::BodyTable::Number body = slot(robots_, k, vo::BodyKind::robot);
       scene_.bodies().move(body, geometry::Disc{n.position, n.radius}, n.velocity);
       const Party other{n.id, body, {n.position, n.velocity, n.radius}, n.max_speed, n.cooperates};

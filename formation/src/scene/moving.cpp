@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/moving.h"
 
+#include <algorithm>
+
 #include "decision/decision.h"
 #include "exactvo/formation/speed_profile.h"
 #include "exactvo/geometry/hull.h"
@@ -17,12 +19,18 @@ void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::ve
   }
 }
 
+double sight_of(const Scenario& scenario, double radii, double speeds) {
+  constexpr double kOfABox = 1.4143;  // the diagonal of a bound on each coordinate
+  constexpr double kSpare = 1.001;    // roundings, and what is kept at contact
+  return std::max(scenario.neighbour_distance, kSpare * (radii + kOfABox * speeds * scenario.time_step));
+}
+
 void add_moving_constraint(const Scenario& scenario, const Viewpoint& from, vo::BodyTable& bodies,
                            vo::BodyTable::Number body, std::size_t index, std::vector<Constraint>& out) {
   const Vec2 u = bodies[body].velocity;
   geometry::GrownShape& seen = bodies.seen(body, from.position, from.radius);
   const vo::VelocityObstacle::Nearest nearest = vo::clearance_of(seen);
-  if (nearest.distance > scenario.neighbour_distance) return;
+  if (nearest.distance > sight_of(scenario, from.radius, from.max_speed + norm(u))) return;
   vo::ClearancePolicy policy;
   policy.time_horizon = scenario.horizons.robots;
   policy.room = scenario.margins.robot;

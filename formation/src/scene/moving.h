@@ -21,8 +21,12 @@ class Scene;
 /// Brings the bodies of moving obstacles to where they are at `time`, and says where that is.
 void move_obstacles(const Scenario& scenario, double time, Scene& scene, std::vector<MovedObstacle>& moved);
 
-/// Appends the half-plane against body number `body`, moving obstacle number `index`, if that is within
-/// `neighbour_distance`: soft, certified while the obstacle keeps its velocity.
+/// m: `neighbour_distance`, or, if that is more, the distance of centres within which two can meet in a time step whose
+/// radii and greatest speeds add up to these (m, m/s).
+double sight_of(const Scenario& scenario, double radii, double speeds);
+
+/// Appends the half-plane against body number `body`, moving obstacle number `index`, if that is in sight: soft,
+/// certified while the obstacle keeps its velocity.
 void add_moving_constraint(const Scenario& scenario, const Viewpoint& from, vo::BodyTable& bodies,
                            vo::BodyTable::Number body, std::size_t index, std::vector<Constraint>& out);
 

@@ -69,12 +69,16 @@ std::string collision_lines(const std::vector<formation::Collision>& all) {
 
 std::string formation_lines(const formation::Metrics& m) {
   const formation::FormationCourse& course = *m.formation_course;
+  const std::string largest = course.largest_error > 0.0
+                                  ? fmt::format("largest error {:.3g} m, of {} at {:.4g} s", course.largest_error,
+                                                shown(course.largest_error_of), course.largest_error_at)
+                                  : std::string("no error at any time");
   return fmt::format(
       "  formation    position error {}, velocity error {} at the end; leader at the end of its path: {}\n"
-      "  formation    largest error {:.3g} m, of {} at {:.4g} s; first formed at {}, holds since {}\n",
+      "  formation    {}; first formed at {}, holds since {}\n",
       or_dash(m.formation_position_error, "m"), or_dash(m.formation_velocity_error, "m/s"),
-      or_dash(m.leader_arrival_time, "s"), course.largest_error, shown(course.largest_error_of),
-      course.largest_error_at, or_dash(course.first_formed, "s"), or_dash(course.formed_since, "s"));
+      or_dash(m.leader_arrival_time, "s"), largest, or_dash(course.first_formed, "s"),
+      or_dash(course.formed_since, "s"));
 }
 
 std::string course_words(const formation::LyapunovCourse& c) {

@@ -46,7 +46,7 @@ struct NavigatorSetup {
   Margins margins;                                    ///< beside radii and facades
   double time_step = 0.05;                            ///< s, > 0: the longest time from a decision to the next
   double arrival_tolerance = 0.1;                     ///< m: within this of the last goal it has arrived
-  double neighbour_distance = 15.0;  ///< m: neighbours and moving bodies that are farther away are ignored
+  double neighbour_distance = 15.0;  ///< m: who is farther away, and cannot be met within a time step, is ignored
   std::size_t neighbours = 32;       ///< memory is there from the beginning for so many neighbours and moving bodies
 };
 

@@ -149,7 +149,8 @@ struct Scenario {
   double time_step = 0.05;                            ///< s, > 0
   double time_limit = 120.0;                          ///< s, > 0
   double arrival_tolerance = 0.1;                     ///< m: within this of the last goal a robot has arrived
-  double neighbour_distance = 15.0;                   ///< m: robots farther apart ignore each other
+  double neighbour_distance = 15.0;                   ///< m, > 0: robots farther apart ignore each other, but never
+                                                      ///< those that could meet within a time step
   std::vector<MovingObstacle> moving_obstacles;       ///< carried along their paths
 };
 
