@@ -175,7 +175,7 @@ class BoundedStream : public httplib::Stream {
   std::size_t left_ = kMostHead + kMostBody;
 };
 
-/// A request a connection, in bounded time.
+/// One request per connection, in bounded time.
 class Server : public httplib::Server {
  private:
   bool process_and_close_socket(socket_t socket) override {

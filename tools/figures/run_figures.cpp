@@ -25,7 +25,7 @@ namespace {
 
 constexpr Canvas kCanvas{960, 480};
 constexpr Canvas kTallCanvas{960, 700};
-/// With more robots than this, a curve a pair would be a thicket.
+/// With more robots than this, one curve per pair would be too many to tell apart.
 constexpr std::size_t kMostRobotsInPairs = 4;
 
 /// Characters of a legend's entry.
@@ -187,9 +187,10 @@ Figure obstacle_distance_figure(const RecordingFile& run) {
 
 Figure robot_distance_figure(const RecordingFile& run) {
   const bool pairs = run.scenario.robots.size() <= kMostRobotsInPairs;
-  return distance_figure(run, "robot_distance",
-                         pairs ? "distance between the robots' rims" : "distance from each robot's rim to the nearest",
-                         pairs ? pair_distances(run) : nearest_distances(run));
+  return distance_figure(
+      run, "robot_distance",
+      pairs ? "distance between the robots' rims" : "distance from each robot's rim to the nearest other",
+      pairs ? pair_distances(run) : nearest_distances(run));
 }
 
 Figure velocity_figure(const RecordingFile& run) {

@@ -21,8 +21,8 @@ std::vector<Figure> run_figures(const datasets::RecordingFile& run);
 /// `obstacle_distance`: from each robot's rim to the nearest obstacle (paper, Figs. 5(b), 6(b)). REQUIRES obstacles.
 Figure obstacle_distance_figure(const datasets::RecordingFile& run);
 
-/// `robot_distance`: between the rims of each pair of up to four robots; of more, from each to its nearest (paper,
-/// Figs. 6(c), 8(d)). REQUIRES two robots.
+/// `robot_distance`: between the rims of each pair of up to four robots; with more robots, from each to the
+/// nearest other (paper, Figs. 6(c), 8(d)). REQUIRES two robots.
 Figure robot_distance_figure(const datasets::RecordingFile& run);
 
 /// `velocity`: both components of each robot and of the leader (paper, Fig. 8(c)).
