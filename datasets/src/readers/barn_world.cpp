@@ -21,19 +21,12 @@ void add_model(const XmlFile& xml, const pugi::xml_node& model, Collector& out) 
   if (!radius)
     return out.pass_over(xml.place_of(model),
                          std::string("model ") + model.attribute("name").value() + " skipped: no cylinder");
-  RawGeometry raw;
-  raw.id = model.attribute("name").value();
-  raw.place = xml.place_of(model) + ", model " + raw.id;
+  const std::string id = model.attribute("name").value();
   const double r = xml.to_number(radius, radius.child_value());
-  raw.rings.push_back(polygon_round(position_of(xml, model), r));
-  out.add(raw);
+  out.add({RawKind::polygon, id, xml.place_of(model) + ", model " + id, {polygon_round(position_of(xml, model), r)}});
 }
 
 }  // namespace
-
-bool looks_like_barn_world(const FormatProbe& probe) {
-  return first_element_is(probe.beginning, "sdf") && probe.beginning.find("<world") != std::string::npos;
-}
 
 void read_barn_world(const std::filesystem::path& path, Collector& out) {
   const XmlFile xml(path, out.file());

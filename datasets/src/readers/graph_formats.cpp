@@ -107,10 +107,6 @@ std::vector<std::vector<std::string_view>> first_lines(const FormatProbe& probe)
 
 }  // namespace
 
-bool looks_like_graphml(const FormatProbe& probe) {
-  return first_element_is(probe.beginning, "graphml");
-}
-
 void read_graphml(const std::filesystem::path& path, Collector& out) {
   const XmlFile xml(path, out.file());
   for (const pugi::xml_node graph : xml.document().child("graphml").children("graph"))
@@ -126,9 +122,7 @@ bool looks_like_counted_rings(const FormatProbe& probe) {
 void read_counted_rings(const std::filesystem::path& path, Collector& out) {
   const std::string text = read_text_file(path);
   CountedLines lines(text, out.file());
-  RawGeometry raw;
-  raw.id = "0";
-  raw.place = "polygon";
+  RawGeometry raw{RawKind::polygon, "0", "polygon", {}};
   while (lines.next()) {
     geometry::Ring& ring = raw.rings.emplace_back();
     for (std::size_t n = lines.count(0); n > 0; --n) ring.push_back(lines.point());

@@ -18,10 +18,6 @@ void add_argument(const XmlFile& xml, const pugi::xml_node& argument, std::size_
 
 }  // namespace
 
-bool looks_like_jts_xml(const FormatProbe& probe) {
-  return first_element_is(probe.beginning, "run");
-}
-
 void read_jts_xml(const std::filesystem::path& path, Collector& out) {
   const XmlFile xml(path, out.file());
   std::size_t number = 0;

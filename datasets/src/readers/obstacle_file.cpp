@@ -39,6 +39,13 @@ FormatProbe probe_of(const std::filesystem::path& path) {
   return probe;
 }
 
+/// XML, by its first element, and where that is not enough what stands near it.
+auto xml_of(const char* element, const char* besides = "") {
+  return [=](const FormatProbe& probe) {
+    return first_element_is(probe.beginning, element) && probe.beginning.find(besides) != std::string::npos;
+  };
+}
+
 std::string all_names() {
   std::string names;
   for (const Reader& reader : readers()) names += (names.empty() ? "" : ", ") + std::string(reader.name);
@@ -62,7 +69,7 @@ std::string hint_for(const FormatProbe& probe) {
 const Reader& reader_for(const std::filesystem::path& path) {
   const FormatProbe probe = probe_of(path);
   for (const Reader& reader : readers()) {
-    if (reader.matches(probe)) return reader;
+    if (reader.matches && reader.matches(probe)) return reader;
   }
   throw DataError(DataCode::format_unknown, path.string(), "", excerpt(probe.beginning, 0),
                   "a file of obstacles" + hint_for(probe));
@@ -140,19 +147,19 @@ std::vector<std::string> unit_names() {
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> kReaders{
       {"wkt", looks_like_wkt, read_wkt},
-      {"jupedsim-wkt", only_by_name, read_jupedsim_wkt},
+      {"jupedsim-wkt", nullptr, read_jupedsim_wkt},
       {"movingai-map", looks_like_moving_ai_map, read_moving_ai_map},
       {"movingai-scen", looks_like_moving_ai_scen, read_moving_ai_scen},
       {"ros-map", looks_like_ros_map, read_ros_map},
       {"csm-log", looks_like_csm_log, read_csm_log},
       {"carmen-log", looks_like_carmen_log, read_carmen_log},
-      {"menge-xml", looks_like_menge_xml, read_menge_xml},
+      {"menge-xml", xml_of("Experiment"), read_menge_xml},
       {"sumo-poly", looks_like_sumo_poly, read_sumo_poly},
-      {"jupedsim-xml", looks_like_jupedsim_xml, read_jupedsim_xml},
-      {"barn-world", looks_like_barn_world, read_barn_world},
-      {"jts-xml", looks_like_jts_xml, read_jts_xml},
-      {"opentraj-xml", looks_like_opentraj_xml, read_opentraj_xml},
-      {"graphml", looks_like_graphml, read_graphml},
+      {"jupedsim-xml", xml_of("geometry"), read_jupedsim_xml},
+      {"barn-world", xml_of("sdf", "<world"), read_barn_world},
+      {"jts-xml", xml_of("run"), read_jts_xml},
+      {"opentraj-xml", xml_of("Trial", "<obstacles"), read_opentraj_xml},
+      {"graphml", xml_of("graphml"), read_graphml},
       {"counted-rings", looks_like_counted_rings, read_counted_rings},
       {"pslg", looks_like_pslg, read_pslg},
       {"ompl-circles", looks_like_ompl_circles, read_ompl_circles},

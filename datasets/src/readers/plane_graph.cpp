@@ -71,12 +71,8 @@ void put_largest_first(std::vector<GraphChain>& rings) {
 
 void add_walls(std::vector<GraphChain> chains, const std::string& place, Collector& out) {
   for (std::size_t k = 0; k < chains.size(); ++k) {
-    RawGeometry raw;
-    raw.kind = RawKind::polyline;
-    raw.id = std::to_string(k);
-    raw.place = place + ", chain " + std::to_string(k);
-    raw.rings.push_back(std::move(chains[k].points));
-    out.add(raw);
+    const std::string number = std::to_string(k);
+    out.add({RawKind::polyline, number, place + ", chain " + number, {std::move(chains[k].points)}});
   }
 }
 
@@ -98,9 +94,7 @@ void add_graph(const PlaneGraph& graph, const std::string& place, Collector& out
   if (!std::all_of(chains.begin(), chains.end(), [](const GraphChain& c) { return c.closed; }))
     return add_walls(std::move(chains), place, out);
   put_largest_first(chains);
-  RawGeometry raw;
-  raw.id = "0";
-  raw.place = place;
+  RawGeometry raw{RawKind::polygon, "0", place, {}};
   for (GraphChain& chain : chains) raw.rings.push_back(std::move(chain.points));
   out.add(raw);
 }

@@ -63,11 +63,8 @@ void read_ompl_circles(const std::filesystem::path& path, Collector& out) {
     if (words.size() != 4) lines.refuse(DataCode::wrong_count, excerpt(lines.line(), 0), "number x y r");
     const double radius = lines.to_number(words[3]);
     if (!(radius > 0.0)) lines.refuse(DataCode::out_of_range, std::string(words[3]), "a radius > 0");
-    RawGeometry raw;
-    raw.id = std::string(words[0]);
-    raw.place = lines.place();
-    raw.rings.push_back(polygon_round({lines.to_number(words[1]), lines.to_number(words[2])}, radius));
-    out.add(raw);
+    const geometry::Vec2 center{lines.to_number(words[1]), lines.to_number(words[2])};
+    out.add({RawKind::polygon, std::string(words[0]), lines.place(), {polygon_round(center, radius)}});
   }
   out.note("", "circles stand as polygons of 16 corners round them, 1.3 % larger in area");
 }
@@ -89,23 +86,15 @@ void read_ompl_grid(const std::filesystem::path& path, Collector& out) {
   add_grid(grid, {{0.0, 0.0}, size, 0.0, 0, 0}, out);
 }
 
-bool looks_like_opentraj_xml(const FormatProbe& probe) {
-  return first_element_is(probe.beginning, "Trial") && probe.beginning.find("<obstacles") != std::string::npos;
-}
-
 /// <Line x1 y1 x2 y2 thickness/> in metres; the thickness is of the drawing.
 void read_opentraj_xml(const std::filesystem::path& path, Collector& out) {
   const XmlFile xml(path, out.file());
   std::size_t number = 0;
   for (const pugi::xml_node obstacle : xml.document().child("Trial").child("obstacles").children("obstacle")) {
     for (const pugi::xml_node line : obstacle.child("TrialObstacle").child("Lines").children("Line")) {
-      RawGeometry raw;
-      raw.kind = RawKind::polyline;
-      raw.id = std::to_string(number++);
-      raw.place = xml.place_of(line);
-      raw.rings.push_back(
-          {{xml.number(line, "x1"), xml.number(line, "y1")}, {xml.number(line, "x2"), xml.number(line, "y2")}});
-      out.add(raw);
+      const geometry::Vec2 a{xml.number(line, "x1"), xml.number(line, "y1")};
+      const geometry::Vec2 b{xml.number(line, "x2"), xml.number(line, "y2")};
+      xml.add(RawKind::polyline, number++, line, {a, b}, out);
     }
   }
 }

@@ -203,6 +203,13 @@ std::string words_of_place(const RingFinding& finding) {
   return is_vertex ? text : text + ", on an edge at vertex " + named(finding.at_vertex);
 }
 
+RawGeometry part_of_geometry(std::size_t number, RawKind kind, const std::string& id, const std::string& place,
+                             std::vector<geometry::Ring> rings) {
+  if (number == 0) return {kind, id, place, std::move(rings)};
+  const std::string from_one = std::to_string(number + 1);
+  return {kind, id + "." + from_one, place + ", part " + from_one, std::move(rings)};
+}
+
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex) {
   if (ring < raw.ring_pointers.size()) return raw.ring_pointers[ring];
   return raw.place + ", ring " + std::to_string(ring) + ", vertex " + std::to_string(vertex);

@@ -26,13 +26,17 @@ struct AsWritten {
 /// One geometry of a file. A polyline has one ring.
 struct RawGeometry {
   RawKind kind = RawKind::polygon;
-  std::string id;                          ///< becomes the obstacle's
-  std::string place;                       ///< "feature 3", "line 12", "/obstacles/4"
-  std::vector<geometry::Ring> rings;       ///< closed or not, any winding
-  std::vector<std::string> ring_pointers;  ///< JSON pointers of the rings; empty for other formats
-  std::optional<AsWritten> as_written;     ///< none where `rings` stand in the file
-  FeatureProperties properties;            ///< only where `ReadOptions::keep_properties` asks for them
+  std::string id;                            ///< becomes the obstacle's
+  std::string place;                         ///< "feature 3", "line 12", "/obstacles/4"
+  std::vector<geometry::Ring> rings;         ///< closed or not, any winding
+  std::vector<std::string> ring_pointers{};  ///< JSON pointers of the rings; empty for other formats
+  std::optional<AsWritten> as_written{};     ///< none where `rings` stand in the file
+  FeatureProperties properties{};            ///< only where `ReadOptions::keep_properties` asks for them
 };
+
+/// Part `number`, from 0, of a geometry; the second and later ones have it behind their ids and places.
+RawGeometry part_of_geometry(std::size_t number, RawKind kind, const std::string& id, const std::string& place,
+                             std::vector<geometry::Ring> rings);
 
 /// "feature 3, ring 0, vertex 17", or the ring's pointer "/obstacles/4/polygon": the vertex alone is not at fault.
 std::string place_of_vertex(const RawGeometry& raw, std::size_t ring, std::size_t vertex);

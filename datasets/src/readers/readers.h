@@ -5,6 +5,7 @@
 /// The readers of this room, one file each: how each knows its own, and how it hands a file to the collector.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ inline constexpr std::size_t kProbeLength = 4096;
 
 struct Reader {
   const char* name;
-  bool (*matches)(const FormatProbe& probe);
+  std::function<bool(const FormatProbe& probe)> matches;  ///< none where nothing in a file tells
   void (*read)(const std::filesystem::path& path, Collector& out);
 };
 
@@ -38,7 +39,6 @@ void read_wkt(const std::filesystem::path& path, Collector& out);
 /// The polygon is the walkable area: its shell is a wall, its holes are solid. Nothing in the text tells it from plain
 /// WKT.
 void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out);
-bool only_by_name(const FormatProbe& probe);
 /// Well-known text within another file: places and ids begin with those given.
 void read_wkt_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 
@@ -63,7 +63,6 @@ bool looks_like_points_csv(const FormatProbe& probe);
 void read_points_csv(const std::filesystem::path& path, Collector& out);
 
 // graph_formats.cpp
-bool looks_like_graphml(const FormatProbe& probe);
 void read_graphml(const std::filesystem::path& path, Collector& out);
 bool looks_like_counted_rings(const FormatProbe& probe);
 void read_counted_rings(const std::filesystem::path& path, Collector& out);
@@ -75,7 +74,6 @@ bool looks_like_ompl_circles(const FormatProbe& probe);
 void read_ompl_circles(const std::filesystem::path& path, Collector& out);
 bool looks_like_ompl_grid(const FormatProbe& probe);
 void read_ompl_grid(const std::filesystem::path& path, Collector& out);
-bool looks_like_opentraj_xml(const FormatProbe& probe);
 void read_opentraj_xml(const std::filesystem::path& path, Collector& out);
 
 // scenario_obstacles.cpp
@@ -87,21 +85,21 @@ bool is_wkb_text(std::string_view text);
 void read_wkb_text(std::string_view text, const std::string& place, const std::string& id, Collector& out);
 
 // jts_xml.cpp
-bool looks_like_jts_xml(const FormatProbe& probe);
 void read_jts_xml(const std::filesystem::path& path, Collector& out);
 
 // rings_json.cpp, in the style of the earcut test files: [shell, hole, ...]
 bool looks_like_rings_json(const FormatProbe& probe);
 void read_rings_json(const std::filesystem::path& path, Collector& out);
 
+// xml_file.cpp
+/// Whether `element` is the first element of the text, comments and declarations skipped.
+bool first_element_is(const std::string& text, const std::string& element);
+
 // menge_xml.cpp, sumo_poly.cpp, jupedsim_xml.cpp, barn_world.cpp
-bool looks_like_menge_xml(const FormatProbe& probe);
 void read_menge_xml(const std::filesystem::path& path, Collector& out);
 bool looks_like_sumo_poly(const FormatProbe& probe);
 void read_sumo_poly(const std::filesystem::path& path, Collector& out);
-bool looks_like_jupedsim_xml(const FormatProbe& probe);
 void read_jupedsim_xml(const std::filesystem::path& path, Collector& out);
-bool looks_like_barn_world(const FormatProbe& probe);
 void read_barn_world(const std::filesystem::path& path, Collector& out);
 
 // obstacle_file.cpp; gdal_reader.cpp, or gdal_absent.cpp in a build without GDAL, called through vector_library.h

@@ -33,9 +33,7 @@ bool looks_like_rings_json(const FormatProbe& probe) {
 void read_rings_json(const std::filesystem::path& path, Collector& out) {
   const Json tree = parse_json(read_text_file(path), out.file());
   const JsonCursor rings(tree, out.file(), "");
-  RawGeometry raw;
-  raw.id = "0";
-  raw.place = "polygon";
+  RawGeometry raw{RawKind::polygon, "0", "polygon", {}};
   for (std::size_t k = 0; k < rings.size(); ++k) raw.rings.push_back(to_ring(rings.at(k)));
   if (raw.rings.empty()) return out.pass_over(raw.place, "an empty polygon skipped");
   out.add(raw);

@@ -23,14 +23,11 @@ RawGeometry to_raw(const XmlFile& xml, const pugi::xml_node& poly, const std::st
   if (poly.attribute("geo").as_bool(false)) {
     throw DataError(DataCode::projection, file, xml.place_of(poly), "geo=\"1\", degrees", "metres");
   }
-  RawGeometry raw;
-  raw.id = poly.attribute("id").value();
-  raw.place = xml.place_of(poly) + ", poly " + raw.id;
-  raw.rings.push_back(to_ring(xml, poly, file));
-  const geometry::Ring& ring = raw.rings.front();
+  const std::string id = poly.attribute("id").value();
+  const geometry::Ring ring = to_ring(xml, poly, file);
   const bool closed = ring.size() > 2 && ring.front() == ring.back();
-  raw.kind = closed || poly.attribute("fill").as_bool(false) ? RawKind::polygon : RawKind::polyline;
-  return raw;
+  const bool solid = closed || poly.attribute("fill").as_bool(false);
+  return {solid ? RawKind::polygon : RawKind::polyline, id, xml.place_of(poly) + ", poly " + id, {ring}};
 }
 
 }  // namespace

@@ -138,12 +138,7 @@ class WkbReader {
   }
 
   void hand_on(RawKind kind, std::vector<geometry::Ring> rings) {
-    RawGeometry raw;
-    raw.kind = kind;
-    raw.id = id_ + (part_ > 0 ? "." + std::to_string(part_ + 1) : "");
-    raw.place = place_ + (part_ > 0 ? ", part " + std::to_string(part_ + 1) : "");
-    raw.rings = std::move(rings);
-    ++part_;
+    const RawGeometry raw = part_of_geometry(part_++, kind, id_, place_, std::move(rings));
     if (raw.rings.empty() || raw.rings.front().empty()) return out_.pass_over(raw.place, "an empty geometry skipped");
     out_.add(raw);
   }

@@ -183,12 +183,7 @@ class WktReader {
   }
 
   void hand_on(RawKind kind, std::vector<geometry::Ring> rings) {
-    RawGeometry raw;
-    raw.kind = kind;
-    raw.id = id() + (part_ > 0 ? "." + std::to_string(part_ + 1) : "");
-    raw.place = where_ + (part_ > 0 ? ", part " + std::to_string(part_ + 1) : "");
-    raw.rings = std::move(rings);
-    ++part_;
+    const RawGeometry raw = part_of_geometry(part_++, kind, id(), where_, std::move(rings));
     if (raw.rings.empty()) return out_.pass_over(raw.place, "an empty polygon skipped");
     out_.add(raw);
   }
@@ -242,10 +237,6 @@ void read_wkt(const std::filesystem::path& path, Collector& out) {
 
 void read_jupedsim_wkt(const std::filesystem::path& path, Collector& out) {
   read_in_blocks(path, WktReader::Inside::walkable, out);
-}
-
-bool only_by_name(const FormatProbe&) {
-  return false;
 }
 
 ObstacleFile parse_wkt(const std::string& text, const std::string& file_name, const ReadOptions& options) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <utility>
 
 #include "files/text_file.h"
 #include "readers/line_reader.h"
@@ -66,6 +67,18 @@ double XmlFile::to_number(const pugi::xml_node& node, std::string_view text) con
   } catch (const DataError& error) {
     throw DataError(error.code(), file_, place_of(node), error.found(), error.expected());
   }
+}
+
+geometry::Ring XmlFile::points(const pugi::xml_object_range<pugi::xml_named_node_iterator>& nodes, const char* x,
+                               const char* y) const {
+  geometry::Ring ring;
+  for (const pugi::xml_node node : nodes) ring.push_back({number(node, x), number(node, y)});
+  return ring;
+}
+
+void XmlFile::add(RawKind kind, std::size_t number, const pugi::xml_node& node, geometry::Ring points,
+                  Collector& out) const {
+  out.add({kind, std::to_string(number), place_of(node), {std::move(points)}});
 }
 
 bool first_element_is(const std::string& text, const std::string& element) {

@@ -23,6 +23,11 @@ class XmlFile {
   /// The attribute as a number. Throws DataError naming the node's place and the attribute.
   double number(const pugi::xml_node& node, const char* attribute) const;
   double to_number(const pugi::xml_node& node, std::string_view text) const;
+  /// Those of two attributes.
+  geometry::Ring points(const pugi::xml_object_range<pugi::xml_named_node_iterator>& nodes, const char* x,
+                        const char* y) const;
+  /// Hands it on as what stands at `node`, with its number for an id.
+  void add(RawKind kind, std::size_t number, const pugi::xml_node& node, geometry::Ring points, Collector& out) const;
 
  private:
   void refuse_entities() const;
@@ -34,8 +39,5 @@ class XmlFile {
   pugi::xml_document document_;
   mutable std::vector<std::size_t> line_starts_;  ///< made when the first place is asked for
 };
-
-/// Whether `element` is the first element of the text, comments and declarations skipped.
-bool first_element_is(const std::string& text, const std::string& element);
 
 }  // namespace exactvo::datasets

@@ -9,16 +9,10 @@ namespace exactvo::datasets {
 namespace {
 
 RawGeometry to_raw(const formation::SceneObstacle& obstacle) {
-  RawGeometry raw;
-  raw.id = obstacle.id;
-  raw.place = "obstacle " + obstacle.id;
-  if (const auto* line = std::get_if<geometry::Polyline>(&obstacle.shape)) {
-    raw.kind = RawKind::polyline;
-    raw.rings.push_back(line->points);
-  } else {
-    raw.rings = closed_rings_of(std::get<geometry::Polygon>(obstacle.shape));
-  }
-  return raw;
+  const std::string place = "obstacle " + obstacle.id;
+  if (const auto* line = std::get_if<geometry::Polyline>(&obstacle.shape))
+    return {RawKind::polyline, obstacle.id, place, {line->points}};
+  return {RawKind::polygon, obstacle.id, place, closed_rings_of(std::get<geometry::Polygon>(obstacle.shape))};
 }
 
 /// A scenario may name another as an obstacle file; one that names itself, or one that names it, has no end.

@@ -40,12 +40,9 @@ const Json& list_in(const Json& object, const char* key) {
 }
 
 RawGeometry to_raw(const Json& object, const std::string& id, const std::string& pointer) {
-  RawGeometry raw;
-  raw.id = id;
-  raw.place = pointer;
-  raw.kind = object.contains("polyline") ? RawKind::polyline : RawKind::polygon;
-  const char* key = object.contains("polyline") ? "polyline" : "polygon";
-  raw.rings.push_back(to_points(object.at(key)));
+  const bool is_line = object.contains("polyline");
+  const char* key = is_line ? "polyline" : "polygon";
+  RawGeometry raw{is_line ? RawKind::polyline : RawKind::polygon, id, pointer, {to_points(object.at(key))}};
   raw.ring_pointers.push_back(pointer + "/" + key);
   const Json& holes = list_in(object, "holes");
   for (std::size_t h = 0; h < holes.size(); ++h) {
