@@ -5,50 +5,83 @@
 /// The words that stand for enumerators in recordings, the same both ways.
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "exactvo/formation/metrics.h"
 #include "exactvo/formation/recording.h"
+#include "exactvo/geometry/names.h"
 #include "json/json_cursor.h"
 
 namespace exactvo::datasets {
 
-template <class E>
-using Word = std::pair<E, const char*>;
+/// Each with the name that the library has for it.
+template <class E, std::size_t N>
+geometry::Names<E, N> named(const E (&values)[N]) {
+  geometry::Names<E, N> words;
+  for (std::size_t k = 0; k < N; ++k) words[k] = {values[k], name(values[k])};
+  return words;
+}
 
-/// Specialised for the enumerators of a recording.
-template <class E>
-const std::vector<Word<E>>& words();
+// The words of an enumeration, by any of its values.
 
-template <>
-const std::vector<Word<lp::Status>>& words();
-template <>
-const std::vector<Word<lp::BindingKind>>& words();
-template <>
-const std::vector<Word<formation::Mode>>& words();
-template <>
-const std::vector<Word<formation::ConstraintSource>>& words();
-template <>
-const std::vector<Word<formation::MotionLaw>>& words();
-template <>
-const std::vector<Word<formation::CollisionKind>>& words();
+inline const auto& words(lp::Status) {
+  using E = lp::Status;
+  static const auto kWords = named({E::optimal, E::relaxed, E::infeasible, E::no_interior});
+  return kWords;
+}
+
+inline const auto& words(formation::Mode) {
+  using E = formation::Mode;
+  static const auto kWords = named({E::direct, E::guided, E::boost, E::by_plan, E::going_back, E::following,
+                                    E::pushing_out, E::staying, E::arrived});
+  return kWords;
+}
+
+/// Of the parts of the speed bound.
+inline const auto& words(lp::BindingKind) {
+  using E = lp::BindingKind;
+  static constexpr geometry::Names<E, 5> kWords{{{E::disc, "disc"},
+                                                 {E::box_right, "right"},
+                                                 {E::box_left, "left"},
+                                                 {E::box_top, "top"},
+                                                 {E::box_bottom, "bottom"}}};
+  return kWords;
+}
+
+inline const auto& words(formation::ConstraintSource) {
+  using E = formation::ConstraintSource;
+  static constexpr geometry::Names<E, 4> kWords{{{E::enclosure, "enclosure"},
+                                                 {E::obstacle_edge, "obstacle-edge"},
+                                                 {E::robot, "robot"},
+                                                 {E::moving_obstacle, "moving-obstacle"}}};
+  return kWords;
+}
+
+inline const auto& words(formation::MotionLaw) {
+  using E = formation::MotionLaw;
+  static constexpr geometry::Names<E, 3> kWords{
+      {{E::straight, "straight"}, {E::exponential, "exponential"}, {E::hermite, "hermite"}}};
+  return kWords;
+}
+
+inline const auto& words(formation::CollisionKind) {
+  using E = formation::CollisionKind;
+  static constexpr geometry::Names<E, 3> kWords{
+      {{E::obstacle, "obstacle"}, {E::moving_obstacle, "moving-obstacle"}, {E::robot, "robot"}}};
+  return kWords;
+}
 
 template <class E>
 const char* word_for(E value) {
-  for (const auto& [known, word] : words<E>())
-    if (known == value) return word;
-  return "unknown";
+  return geometry::name_in(words(value), value);
 }
 
 /// The enumerator that the text at hand stands for; refuses other words.
 template <class E>
 E enumerator(const JsonCursor& at) {
+  E value{};
+  if (geometry::parse_in(words(value), at.text(), value)) return value;
   std::string options;
-  for (const auto& [known, word] : words<E>()) {
-    if (at.text() == word) return known;
-    options += (options.empty() ? "" : ", ") + std::string(word);
-  }
+  for (const std::string& word : geometry::words_in(words(value))) options += (options.empty() ? "" : ", ") + word;
   at.refuse("one of " + options, DataCode::not_an_option);
 }
 
