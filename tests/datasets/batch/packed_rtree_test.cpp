@@ -175,7 +175,8 @@ class Packages : public TemporaryFolder {
     std::string row(1, '\0');
     batch::append_text<std::uint32_t>(row, geometry);
     for (const batch::Field& field : batch::layers()[0].fields) {
-      const std::size_t bytes = field.type == batch::FieldType::text ? sizeof(std::uint32_t) : sizeof(double);
+      const bool is_text = std::holds_alternative<std::string>(field.value);
+      const std::size_t bytes = is_text ? sizeof(std::uint32_t) : sizeof(double);
       row.append(bytes, '\0');  // an empty text, or a nought
     }
     return row;
@@ -201,14 +202,16 @@ TEST_F(Packages, AFeaturesRowSaysItsExtentAndItsGeometry) {
   feature.layer = 2;  // pieces
   feature.is_polygon = true;
   feature.rings = {{{0, 1}, {4, -2}, {3, 7}}, {{-100, -100}, {100, 0}, {0, 100}}};  // the second one is a hole
-  feature.values = {std::string("in#0"), std::int64_t{7}};
+  feature.fields = {{"key", std::string("in#0")}, {"number", std::int64_t{7}}};
   std::string bytes;
   batch::append_row(bytes, feature);
   std::string_view rest = bytes;
   const batch::Row row = batch::read_row(rest);
   EXPECT_TRUE(rest.empty());
   EXPECT_EQ(row.layer, 2u);
-  EXPECT_EQ(row.values, feature.values);
+  ASSERT_EQ(row.values.size(), 2u);
+  EXPECT_EQ(row.values[0], feature.fields[0].value);
+  EXPECT_EQ(row.values[1], feature.fields[1].value);
   std::string_view geometry = row.geometry;
   const auto head = batch::take_raw<batch::GeometryHead>(geometry);
   EXPECT_EQ(head.min_x, 0.0);

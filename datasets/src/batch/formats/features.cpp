@@ -47,6 +47,53 @@ Feature flat_or_filled(std::size_t layer, Ring ring) {
   return feature;
 }
 
+// --- The fields of each layer ---
+
+std::vector<Field> obstacle_fields(const FeatureHead& head, const ObstacleShapes& shapes) {
+  const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
+  const geometry::ShapeFigures& f = shapes.figures;
+  const bool free = shapes.trap_free.ellipse.has_value();
+  return {{"key", head.key},
+          {"file", head.file},
+          {"id", head.id},
+          {"outcome", head.outcome},
+          {"certified", count(shapes.certified() ? 1 : 0)},
+          {"vertices", count(f.vertices)},
+          {"facades", count(shapes.facades.facades.size())},
+          {"pieces", count(shapes.pieces.size())},
+          {"area", f.area},
+          {"hull_area", f.hull_area},
+          {"ellipse_area", f.ellipse_area},
+          {"trap_free_area", f.trap_free_area},
+          {"trap_free_beyond", f.trap_free_beyond},
+          {"trap_free", std::string(free ? name(shapes.trap_free.grade) : "none")}};
+}
+
+std::vector<Field> facade_fields(const std::string& key, std::int64_t number, const Segment& facade, double clearance) {
+  return {{"key", key}, {"number", number}, {"length", norm(facade.b - facade.a)}, {"clearance", clearance}};
+}
+
+std::vector<Field> piece_fields(const std::string& key, std::int64_t number) {
+  return {{"key", key}, {"number", number}};
+}
+
+std::vector<Field> hull_fields(const std::string& key, double area) {
+  return {{"key", key}, {"area", area}};
+}
+
+std::vector<Field> ellipse_fields(const std::string& key, const char* kind, std::int64_t number, const Ellipse& e) {
+  return {{"key", key},
+          {"kind", std::string(kind)},
+          {"number", number},
+          {"center_x", e.center.x},
+          {"center_y", e.center.y},
+          {"l11", e.l11},
+          {"l21", e.l21},
+          {"l22", e.l22}};
+}
+
+// --- Features ---
+
 Feature obstacle_feature(const FeatureHead& head, const ObstacleShapes& shapes) {
   Feature feature;
   feature.layer = kObstacles;
@@ -57,28 +104,13 @@ Feature obstacle_feature(const FeatureHead& head, const ObstacleShapes& shapes) 
   } else {
     feature.rings.push_back(std::get<geometry::Polyline>(shapes.obstacle).points);
   }
-  const geometry::ShapeFigures& f = shapes.figures;
-  const bool free = shapes.trap_free.ellipse.has_value();
-  feature.values = {head.key,
-                    head.file,
-                    head.id,
-                    head.outcome,
-                    static_cast<std::int64_t>(shapes.certified()),
-                    static_cast<std::int64_t>(f.vertices),
-                    static_cast<std::int64_t>(shapes.facades.facades.size()),
-                    static_cast<std::int64_t>(shapes.pieces.size()),
-                    f.area,
-                    f.hull_area,
-                    f.ellipse_area,
-                    f.trap_free_area,
-                    f.trap_free_beyond,
-                    std::string(free ? name(shapes.trap_free.grade) : "none")};
+  feature.fields = obstacle_fields(head, shapes);
   return feature;
 }
 
 Feature ellipse_feature(const std::string& key, const char* kind, std::int64_t number, const Ellipse& e, int points) {
   Feature feature = flat_or_filled(kEllipses, outline_of(e, points));
-  feature.values = {key, std::string(kind), number, e.center.x, e.center.y, e.l11, e.l21, e.l22};
+  feature.fields = ellipse_fields(key, kind, number, e);
   return feature;
 }
 
@@ -88,9 +120,9 @@ void give_facades(const FeatureHead& head, const ObstacleShapes& shapes, const T
     Feature feature;
     feature.layer = kFacades;
     feature.rings = {{s.a, s.b}};
-    feature.values = {head.key, number, norm(s.b - s.a)};
-    const auto k = static_cast<std::size_t>(number++);
-    feature.values.emplace_back(k < shapes.facade_ellipses.size() ? shapes.facade_ellipses[k].clearance : 0.0);
+    const auto k = static_cast<std::size_t>(number);
+    const double clearance = k < shapes.facade_ellipses.size() ? shapes.facade_ellipses[k].clearance : 0.0;
+    feature.fields = facade_fields(head.key, number++, s, clearance);
     take(feature);
   }
 }
@@ -101,14 +133,14 @@ void give_pieces(const FeatureHead& head, const ObstacleShapes& shapes, const Ta
     const auto* segment = std::get_if<Segment>(&piece);
     Ring ring = segment != nullptr ? Ring{segment->a, segment->b} : std::get<ConvexPolygon>(piece).vertices;
     Feature feature = flat_or_filled(kPieces, std::move(ring));
-    feature.values = {head.key, number++};
+    feature.fields = piece_fields(head.key, number++);
     take(feature);
   }
 }
 
 void give_hull(const FeatureHead& head, const ObstacleShapes& shapes, const TakeFeature& take) {
   Feature feature = flat_or_filled(kHulls, shapes.hull.vertices);
-  feature.values = {head.key, shapes.figures.hull_area};
+  feature.fields = hull_fields(head.key, shapes.figures.hull_area);
   take(feature);
 }
 
@@ -163,14 +195,14 @@ void append_geometry(JsonWriter& json, const Feature& feature, const Place& plac
   json.end_object();
 }
 
-void append_value(JsonWriter& json, const Value& value) {
-  if (const auto* number = std::get_if<std::int64_t>(&value)) {
-    json.value(static_cast<std::uint64_t>(*number));
-  } else if (const auto* real = std::get_if<double>(&value)) {
-    json.value(*real);
-  } else {
-    json.value(std::get<std::string>(value));
-  }
+void append_value(JsonWriter& json, const std::string& text) {
+  json.value(text);
+}
+void append_value(JsonWriter& json, double number) {
+  json.value(number);
+}
+void append_value(JsonWriter& json, std::int64_t number) {
+  json.value(static_cast<std::uint64_t>(number));
 }
 
 // --- Rows ---
@@ -179,6 +211,22 @@ void append_points(std::string& bytes, const Ring& ring, bool closed) {
   append_raw(bytes, static_cast<std::uint32_t>(ring.size() + (closed ? 1 : 0)));
   for (const Vec2 p : ring) append_raw(bytes, p);
   if (closed) append_raw(bytes, ring.front());
+}
+
+void append(std::string& bytes, const std::string& text) {
+  append_text<Length>(bytes, text);
+}
+template <class Number>
+void append(std::string& bytes, Number number) {
+  append_raw(bytes, number);
+}
+
+void take(std::string_view& bytes, std::string& text) {
+  text = take_text<Length>(bytes);
+}
+template <class Number>
+void take(std::string_view& bytes, Number& number) {
+  number = take_raw<Number>(bytes);
 }
 
 /// The head as GeometryHead says, then well-known binary (OGC 06-103r4, 8.2).
@@ -199,36 +247,11 @@ std::string geometry_of(const Feature& feature) {
 }  // namespace
 
 const std::vector<Layer>& layers() {
-  using T = FieldType;
-  static const std::vector<Layer> kLayers{
-      {"obstacles",
-       {{"key", T::text},
-        {"file", T::text},
-        {"id", T::text},
-        {"outcome", T::text},
-        {"certified", T::integer},
-        {"vertices", T::integer},
-        {"facades", T::integer},
-        {"pieces", T::integer},
-        {"area", T::real},
-        {"hull_area", T::real},
-        {"ellipse_area", T::real},
-        {"trap_free_area", T::real},
-        {"trap_free_beyond", T::real},
-        {"trap_free", T::text}}},
-      {"facades", {{"key", T::text}, {"number", T::integer}, {"length", T::real}, {"clearance", T::real}}},
-      {"pieces", {{"key", T::text}, {"number", T::integer}}},
-      {"hulls", {{"key", T::text}, {"area", T::real}}},
-      {"ellipses",
-       {{"key", T::text},
-        {"kind", T::text},
-        {"number", T::integer},
-        {"center_x", T::real},
-        {"center_y", T::real},
-        {"l11", T::real},
-        {"l21", T::real},
-        {"l22", T::real}}},
-  };
+  static const std::vector<Layer> kLayers{{"obstacles", obstacle_fields({}, {})},
+                                          {"facades", facade_fields("", 0, {}, 0.0)},
+                                          {"pieces", piece_fields("", 0)},
+                                          {"hulls", hull_fields("", 0.0)},
+                                          {"ellipses", ellipse_fields("", "", 0, {})}};
   return kLayers;
 }
 
@@ -244,10 +267,9 @@ std::string to_geojson(const Feature& feature, const Place& place) {
   JsonWriter json(JsonWriter::Layout::compact);
   json.begin_object().member("type", "Feature");
   json.key("properties").begin_object();
-  const Layer& layer = layers()[feature.layer];
-  for (std::size_t k = 0; k < layer.fields.size(); ++k) {
-    json.key(layer.fields[k].name);
-    append_value(json, feature.values[k]);
+  for (const Field& field : feature.fields) {
+    json.key(field.name);
+    std::visit([&](const auto& value) { append_value(json, value); }, field.value);
   }
   json.end_object();
   append_geometry(json, feature, place);
@@ -257,15 +279,7 @@ std::string to_geojson(const Feature& feature, const Place& place) {
 void append_row(std::string& bytes, const Feature& feature) {
   append_raw(bytes, static_cast<std::uint8_t>(feature.layer));
   append_text<Length>(bytes, geometry_of(feature));
-  for (const Value& value : feature.values) {
-    if (const auto* number = std::get_if<std::int64_t>(&value)) {
-      append_raw(bytes, *number);
-    } else if (const auto* real = std::get_if<double>(&value)) {
-      append_raw(bytes, *real);
-    } else {
-      append_text<Length>(bytes, std::get<std::string>(value));
-    }
-  }
+  for (const Field& field : feature.fields) std::visit([&](const auto& value) { append(bytes, value); }, field.value);
 }
 
 Row read_row(std::string_view& bytes) {
@@ -273,17 +287,8 @@ Row read_row(std::string_view& bytes) {
   row.layer = take_raw<std::uint8_t>(bytes);
   row.geometry = take_text<Length>(bytes);
   for (const Field& field : layers()[row.layer].fields) {
-    switch (field.type) {
-      case FieldType::text:
-        row.values.emplace_back(std::string(take_text<Length>(bytes)));
-        break;
-      case FieldType::real:
-        row.values.emplace_back(take_raw<double>(bytes));
-        break;
-      case FieldType::integer:
-        row.values.emplace_back(take_raw<std::int64_t>(bytes));
-        break;
-    }
+    row.values.push_back(field.value);
+    std::visit([&](auto& value) { take(bytes, value); }, row.values.back());
   }
   return row;
 }

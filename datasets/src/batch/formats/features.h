@@ -17,29 +17,27 @@
 
 namespace exactvo::datasets::batch {
 
-enum class FieldType { text, real, integer };
+using Value = std::variant<std::string, double, std::int64_t>;
 
 struct Field {
   const char* name;
-  FieldType type;
+  Value value;
 };
 
 struct Layer {
   const char* name;
-  std::vector<Field> fields;
+  std::vector<Field> fields;  ///< those of its features, with any values of their types
 };
 
 /// obstacles, facades, pieces, hulls, ellipses.
 const std::vector<Layer>& layers();
-
-using Value = std::variant<std::string, double, std::int64_t>;
 
 /// A polygon has rings (not closed here), a line has one and is open.
 struct Feature {
   std::size_t layer = 0;
   bool is_polygon = false;
   std::vector<geometry::Ring> rings;
-  std::vector<Value> values;  ///< in the order of the layer's fields
+  std::vector<Field> fields;  ///< the layer's
 };
 
 /// Who the obstacle is.

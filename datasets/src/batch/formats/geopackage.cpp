@@ -35,7 +35,7 @@ std::string insertion_into(const Layer& layer) {
 
 std::int32_t reference_of(SqliteFile& file, const Layer& layer) {
   SqliteStatement find(file, "SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = ?");
-  const bool is_there = find.bind_text(0, layer.name).step();
+  const bool is_there = find.bind(0, layer.name).step();
   EXACTVO_REQUIRE(is_there, std::string("no geometries of ") + layer.name + " in the schema");
   return static_cast<std::int32_t>(find.integer(0));
 }
@@ -61,7 +61,8 @@ class LayerTable {
     append_raw(geometry_, head);
     geometry_ += rest;
     insert_.bind(0, ++rows_).bind_bytes(1, geometry_);
-    for (std::size_t k = 0; k < row.values.size(); ++k) bind(static_cast<int>(k) + 2, row.values[k]);
+    int column = 2;
+    for (const Value& value : row.values) std::visit([&](const auto& v) { insert_.bind(column++, v); }, value);
     insert_.run();
     index_.add(rows_,
                {rounded_down(head.min_x), rounded_up(head.max_x), rounded_down(head.min_y), rounded_up(head.max_y)});
@@ -71,25 +72,15 @@ class LayerTable {
   void finish(SqliteFile& file) {
     index_.finish();
     SqliteStatement count(file, "UPDATE gpkg_ogr_contents SET feature_count = ? WHERE table_name = ?");
-    count.bind(0, rows_).bind_text(1, name_).run();
+    count.bind(0, rows_).bind(1, name_).run();
     if (rows_ == 0) return;
     SqliteStatement place(file,
                           "UPDATE gpkg_contents SET min_x = ?, max_x = ?, min_y = ?, max_y = ? WHERE table_name = ?");
     place.bind(0, extent_.min_x).bind(1, extent_.max_x).bind(2, extent_.min_y).bind(3, extent_.max_y);
-    place.bind_text(4, name_).run();
+    place.bind(4, name_).run();
   }
 
  private:
-  void bind(int column, const Value& value) {
-    if (const auto* number = std::get_if<std::int64_t>(&value)) {
-      insert_.bind(column, *number);
-    } else if (const auto* real = std::get_if<double>(&value)) {
-      insert_.bind(column, *real);
-    } else {
-      insert_.bind_text(column, std::get<std::string>(value));
-    }
-  }
-
   std::string name_;
   SqliteStatement insert_;
   PackedRtree index_;

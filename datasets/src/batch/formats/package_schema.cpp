@@ -13,17 +13,8 @@
 namespace exactvo::datasets::batch {
 namespace {
 
-OGRFieldType type_of(FieldType type) {
-  switch (type) {
-    case FieldType::text:
-      return OFTString;
-    case FieldType::real:
-      return OFTReal;
-    case FieldType::integer:
-      return OFTInteger64;
-  }
-  return OFTString;
-}
+/// By the kind of `Value`.
+constexpr OGRFieldType kTypes[] = {OFTString, OFTReal, OFTInteger64};
 
 class Schema {
  public:
@@ -46,7 +37,7 @@ class Schema {
     OGRLayer* made = data_->CreateLayer(layer.name, &metres, wkbUnknown, const_cast<char**>(options));
     need(made != nullptr);
     for (const Field& field : layer.fields) {
-      OGRFieldDefn definition(field.name, type_of(field.type));
+      OGRFieldDefn definition(field.name, kTypes[field.value.index()]);
       need(made->CreateField(&definition) == OGRERR_NONE);
     }
   }

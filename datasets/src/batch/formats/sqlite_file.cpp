@@ -68,7 +68,7 @@ SqliteStatement& SqliteStatement::bind(int value, double number) {
   return *this;
 }
 
-SqliteStatement& SqliteStatement::bind_text(int value, std::string_view text) {
+SqliteStatement& SqliteStatement::bind(int value, std::string_view text) {
   file_->need(sqlite3_bind_text64(statement_.get(), value + 1, text.data(), text.size(), SQLITE_STATIC, SQLITE_UTF8) ==
               SQLITE_OK);
   return *this;

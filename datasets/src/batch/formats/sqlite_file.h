@@ -48,7 +48,7 @@ class SqliteStatement {
 
   SqliteStatement& bind(int value, std::int64_t number);
   SqliteStatement& bind(int value, double number);
-  SqliteStatement& bind_text(int value, std::string_view text);
+  SqliteStatement& bind(int value, std::string_view text);
   SqliteStatement& bind_bytes(int value, std::string_view bytes);
 
   /// Whether there is a next row of the answer; after the last one the statement may be run anew.
