@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "gdal/properties.h"
-#include "json/json_if_any.h"
 #include "readers/readers.h"
 
 namespace exactvo::datasets {

@@ -30,6 +30,10 @@ Json parse_json(std::string_view text, const std::string& file_name);
 /// Throws DataError (E_JSON_SYNTAX, E_NUMBER) as `parse_json` does, and keeps nothing of the text.
 void check_json_syntax(std::string_view text, const std::string& file_name);
 
+/// For text that another parser has accepted: a discarded value where it is no JSON; repeated keys are no error, the
+/// last one counts. A signal ends a long parse (the wait hook is called).
+Json parse_json_if_any(std::string_view text);
+
 /// `parse_json` of line `number` of a file of lines, each of which is JSON: places name that line.
 Json parse_json_line(std::string_view line, const std::string& file_name, std::size_t number);
 

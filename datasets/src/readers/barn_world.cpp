@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // BARN worlds (Perille et al. 2020): Gazebo SDF with upright cylinders. Each stands in the world and again in its
 // recorded <state>; the first counts.
-#include "readers/discs.h"
 #include "readers/line_reader.h"
 #include "readers/xml_file.h"
 

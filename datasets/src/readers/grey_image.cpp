@@ -2,13 +2,16 @@
 #include "readers/grey_image.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
 
 #include "exactvo/datasets/data_error.h"
 #include "files/text_file.h"
 #include "gdal/vector_library.h"
 #include "readers/grid.h"
-#include "readers/png_chunks.h"
 
 namespace exactvo::datasets {
 namespace {
@@ -70,6 +73,46 @@ bool fits(const GreyImage& image, std::size_t bytes, std::size_t bytes_a_pixel) 
 
 bool is_pgm(const std::string& bytes) {
   return bytes.size() > 2 && bytes[0] == 'P' && (bytes[1] == '2' || bytes[1] == '5');
+}
+
+// ISO/IEC 15948, 5.2 and 5.3: a signature, then chunks of length, type, data and checksum.
+constexpr char kPngSignature[] = "\x89PNG\r\n\x1a\n";
+constexpr std::uintmax_t kPngSignatureSize = sizeof(kPngSignature) - 1;
+constexpr std::uintmax_t kPngHeaderSize = 8;
+constexpr std::uintmax_t kChecksumSize = 4;
+
+using PngHeader = std::array<char, kPngHeaderSize>;
+
+std::uintmax_t claimed_by(const PngHeader& header) {
+  std::uintmax_t length = 0;
+  for (std::size_t i = 0; i < 4; ++i) length = length << 8U | static_cast<unsigned char>(header[i]);
+  return length;
+}
+
+bool is_png(std::istream& in) {
+  PngHeader signature{};
+  return in.read(signature.data(), signature.size()) &&
+         std::memcmp(signature.data(), kPngSignature, kPngSignatureSize) == 0;
+}
+
+/// Refuses a PNG file one of whose chunks claims more bytes than the file has left (DataCode::size): decoders make room
+/// for what is claimed before they read it. What is no PNG, or is cut between chunks, is left to the decoder.
+void require_whole_png_chunks(const std::filesystem::path& path) {
+  const std::uintmax_t size = std::filesystem::file_size(path);
+  std::ifstream in(path, std::ios::binary);
+  if (!is_png(in)) return;
+  std::uintmax_t at = kPngSignatureSize;
+  for (PngHeader header{}; in.read(header.data(), header.size());) {
+    const std::uintmax_t left = size - at - kPngHeaderSize;
+    const std::uintmax_t claimed = claimed_by(header) + kChecksumSize;
+    if (claimed > left) {
+      throw DataError(DataCode::size, path.string(), "byte " + std::to_string(at),
+                      "a chunk of " + std::to_string(claimed) + " bytes",
+                      "at most the " + std::to_string(left) + " left");
+    }
+    at += kPngHeaderSize + claimed;
+    in.seekg(static_cast<std::streamoff>(at));
+  }
 }
 
 }  // namespace

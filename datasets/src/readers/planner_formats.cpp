@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes of motion planners and trajectory collections: OMPL's circles and grids, OpenTraj's line segments.
+#include <cmath>
+
 #include "exactvo/geometry/counted.h"
+#include "exactvo/geometry/pi.h"
 #include "files/text_file.h"
-#include "readers/discs.h"
 #include "readers/grid.h"
 #include "readers/line_reader.h"
 #include "readers/xml_file.h"
 
 namespace exactvo::datasets {
 namespace {
+
+using geometry::kPi;
+constexpr int kCorners = 16;
+/// The corners' radius is rounded up by this part, far more than the few roundings of each corner (1e-15 or so).
+constexpr double kOutward = 1e-12;
 
 bool is_blank(std::string_view line) {
   return trimmed(line).empty();
@@ -47,6 +54,16 @@ std::vector<std::vector<std::uint8_t>> read_rows(LineReader& lines) {
 }
 
 }  // namespace
+
+geometry::Ring polygon_round(geometry::Vec2 center, double radius) {
+  geometry::Ring ring;
+  const double reach = radius / std::cos(kPi / kCorners) * (1.0 + kOutward);
+  for (int k = 0; k <= kCorners; ++k) {
+    const double angle = 2.0 * kPi * (k % kCorners) / kCorners;
+    ring.push_back(center + reach * geometry::Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return ring;
+}
 
 bool looks_like_ompl_circles(const FormatProbe& probe) {
   return begins_with(probe.beginning, "units:") && probe.extension == ".txt";

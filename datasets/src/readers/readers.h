@@ -75,6 +75,8 @@ void read_ompl_circles(const std::filesystem::path& path, Collector& out);
 bool looks_like_ompl_grid(const FormatProbe& probe);
 void read_ompl_grid(const std::filesystem::path& path, Collector& out);
 void read_opentraj_xml(const std::filesystem::path& path, Collector& out);
+/// 16 corners round the disc, tan(pi/16) / (pi/16) = 1.013 times its area; closed. The disc lies inside.
+geometry::Ring polygon_round(geometry::Vec2 center, double radius);
 
 // scenario_obstacles.cpp
 bool looks_like_scenario(const FormatProbe& probe);

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "json/json_text.h"
-#include "recordings/recording_extras.h"
+#include "recordings/codec.h"
 
 namespace exactvo::datasets {
 namespace {

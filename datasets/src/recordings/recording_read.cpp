@@ -10,7 +10,6 @@
 #include "exactvo/geometry/counted.h"
 #include "json/json_cursor.h"
 #include "recordings/codec.h"
-#include "recordings/recording_extras.h"
 #include "recordings/recording_lines.h"
 #include "recordings/recording_names.h"
 

@@ -6,7 +6,6 @@
 #include "exactvo/geometry/require.h"
 #include "files/sha256.h"
 #include "recordings/codec.h"
-#include "recordings/recording_extras.h"
 #include "recordings/recording_names.h"
 #include "scenarios/scenario_json.h"
 

@@ -11,7 +11,6 @@
 
 #include "exactvo/vo/lp/instances.h"
 #include "files/text_file.h"
-#include "json/json_if_any.h"
 #include "json/json_text.h"
 #include "scenarios/schema_check.h"
 

@@ -15,7 +15,6 @@
 #include "files/text_file.h"
 #include "json/json_text.h"
 #include "readers/raw_geometry.h"
-#include "scenarios/scenario_robots.h"
 #include "scenarios/scenario_values.h"
 #include "scenarios/schema_check.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scenarios/scenario_robots.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -5,6 +5,7 @@
 /// Values of a scenario out of JSON that has been held against the schema: types and required keys are as they should
 /// be.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -43,5 +44,24 @@ void plan_leader_of(const Json& object, formation::Scenario& scenario, const std
 /// A member `profile` of something that follows `path`; `pointer` is its place, for messages.
 std::vector<formation::SpeedKnot> to_profile(const Json& object, const std::vector<geometry::Vec2>& path,
                                              const std::string& file, const std::string& pointer);
+
+// scenario_robots.cpp: robots one by one, by generators and from tables
+
+/// Where in the text a robot comes from.
+struct RobotOrigin {
+  std::size_t entry = 0;
+  bool is_one_of_many = false;
+};
+
+struct RobotList {
+  std::vector<formation::Robot> robots;
+  std::vector<RobotOrigin> origins;           ///< of each robot
+  std::vector<std::filesystem::path> tables;  ///< files that were read
+};
+
+/// `list` has been held against the schema. Tables are looked up in `base_dir`; `file` is the scenario's name in
+/// messages. Throws DataError: a table that is missing or wrong, a box without room.
+RobotList read_robots(const Json& list, const std::vector<formation::SceneObstacle>& obstacles, const std::string& file,
+                      const std::filesystem::path& base_dir);
 
 }  // namespace exactvo::datasets

@@ -17,7 +17,4 @@ namespace exactvo::datasets {
 /// Throws DataError for the first misfit in the order of the text.
 void check_against_schema(const Json& value, const Json& schema, const std::string& file_name);
 
-/// The known word nearest to `word` by edit distance, or "" where none is near.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
-
 }  // namespace exactvo::datasets

@@ -8,7 +8,6 @@
 
 #include "batch/formats/features.h"
 #include "batch/formats/picture.h"
-#include "batch/merge/pages.h"
 #include "batch/plan/input_record.h"
 #include "exactvo/datasets/provenance.h"
 
@@ -30,6 +29,26 @@ bool is_output(const std::string& name) {
   }
   const std::size_t number = std::strtoull(name.c_str() + std::min<std::size_t>(name.size(), 5), nullptr, 10);
   return number > 1 && name == page_name(number - 1);
+}
+
+/// Writes index.html and the pages after it, small pictures of every input's first obstacles, to
+/// `journal.final_folder()`, from the parts on disk. `facts` are those of every input, `words` stand at the head of
+/// each page. Throws DataError (E_FILE_UNWRITABLE; E_FORMAT_SYNTAX for a part that is none).
+void write_pages(const Journal& journal, const Identity& identity, const std::vector<InputFacts>& facts,
+                 const std::string& words, const std::string& provenance) {
+  const std::size_t pages = std::max<std::size_t>(1, (facts.size() + kInputsOfPage - 1) / kInputsOfPage);
+  for (std::size_t page = 0; page < pages; ++page) {
+    const std::unique_ptr<AtomicFile> file = output_file(journal.final_folder() / page_name(page));
+    file->write(page_head(page, pages, words));
+    const std::size_t end = std::min(facts.size(), (page + 1) * kInputsOfPage);
+    for (std::size_t input = page * kInputsOfPage; input < end; ++input) {
+      file->write(input_head(identity.inputs[input].name, words_of(facts[input])));
+      if (facts[input].chunks > 0) file->write(read_pictures(journal, input));
+      file->write(input_foot());
+    }
+    file->write(page_foot(provenance));
+    file->commit();
+  }
 }
 
 }  // namespace

@@ -9,16 +9,73 @@
 
 #include "batch/formats/bytes.h"
 #include "batch/formats/picture.h"
-#include "batch/work/half_planes.h"
+#include "exactvo/geometry/predicates.h"
 #include "exactvo/geometry/require.h"
+#include "exactvo/vo/velocity_obstacle.h"
 #include "json/json_text.h"
 #include "obstacles/obstacle_record_json.h"
 
 namespace exactvo::datasets::batch {
 namespace {
 
+using geometry::ConvexShape;
+using geometry::Vec2;
+
 /// A feature as a line of GeoJSON.
 using ToGeoJson = std::function<std::string(const Feature& feature)>;
+
+// --- Half-planes of the batch's robot ---
+
+/// Whether there is one.
+bool append_half_plane(JsonWriter& json, const ConvexShape& shape, Vec2 position, const BatchRobot& robot) {
+  const geometry::GrownShape grown{shape, position, robot.radius};
+  const auto half_plane = vo::half_plane(grown, robot.time_horizon, robot.velocity);
+  if (!half_plane) {
+    json.null();
+    return false;
+  }
+  json.begin_object().member("normal", half_plane->normal).member("offset", half_plane->offset);
+  json.member("certified", half_plane_is_safe(grown, robot.time_horizon, *half_plane)).end_object();
+  return true;
+}
+
+bool overlaps(const ConvexShape& shape, Vec2 position, double radius) {
+  return geometry::locate({shape, position, radius}, {0.0, 0.0}) != geometry::Place::outside;
+}
+
+ConvexShape hull_shape(const geometry::ConvexPolygon& hull) {
+  if (hull.vertices.size() > 2) return hull;
+  return geometry::Segment{hull.vertices.front(), hull.vertices.back()};
+}
+
+std::uint64_t append_position(JsonWriter& json, const geometry::ObstacleShapes& shapes, Vec2 position,
+                              const BatchRobot& robot) {
+  const ConvexShape hull = hull_shape(shapes.hull);
+  const bool within_hull = overlaps(hull, position, robot.radius);
+  json.begin_object().member("position", position).member("of", within_hull ? "pieces" : "hull");
+  json.key("half_planes").begin_array();
+  std::uint64_t missing = 0;
+  if (!within_hull) {
+    missing += append_half_plane(json, hull, position, robot) ? 0 : 1;
+  } else {
+    for (const ConvexShape& piece : shapes.pieces) missing += append_half_plane(json, piece, position, robot) ? 0 : 1;
+  }
+  json.end_array().end_object();
+  return missing;
+}
+
+/// The member "half_planes": for each position the half-plane of the obstacle's hull nearest to the robot's velocity;
+/// where the robot stands within the hull, of each convex piece instead. "certified" says that the pair of doubles
+/// excludes the velocity obstacle (predicate A, exact). In bare contact it is the half-plane away from the nearest
+/// point, where that can be proven; null stands where the robot overlaps the shape, and within a few ulps of contact
+/// where nothing could be proven. Returns how many are null.
+std::uint64_t append_half_planes(JsonWriter& json, const geometry::ObstacleShapes& shapes, const BatchRobot& robot) {
+  json.key("half_planes").begin_array();
+  std::uint64_t missing = 0;
+  for (const Vec2 position : robot.positions) missing += append_position(json, shapes, position, robot);
+  json.end_array();
+  return missing;
+}
 
 // --- Making ---
 
