@@ -343,10 +343,8 @@ void Collector::set_plane(const LocalPlane& plane) {
 
 void Collector::extend(const geometry::Obstacle& shape) {
   for (const geometry::Vec2 p : geometry::vertices_of(shape)) {
-    if (!result_.extent) result_.extent = Extent{p, p};
-    Extent& e = *result_.extent;
-    e.low = {std::min(e.low.x, p.x), std::min(e.low.y, p.y)};
-    e.high = {std::max(e.high.x, p.x), std::max(e.high.y, p.y)};
+    if (!result_.extent) result_.extent.emplace();
+    result_.extent->add(p);
   }
 }
 

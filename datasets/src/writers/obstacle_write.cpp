@@ -109,16 +109,11 @@ int decimals_of(const Obstacles& obstacles) {
 /// One without a place on earth is moved near (0, 0), which is laid where the equator meets the first meridian.
 LocalPlane plane_for(const Obstacles& obstacles, const LocalPlane& given) {
   if (given.is_placed()) return given;
-  std::optional<Extent> extent;
-  for (const formation::SceneObstacle& obstacle : obstacles) {
-    for (const geometry::Vec2 p : geometry::vertices_of(obstacle.shape)) {
-      if (!extent) extent = Extent{p, p};
-      extent->low = {std::min(extent->low.x, p.x), std::min(extent->low.y, p.y)};
-      extent->high = {std::max(extent->high.x, p.x), std::max(extent->high.y, p.y)};
-    }
-  }
+  Extent extent;
+  for (const formation::SceneObstacle& obstacle : obstacles)
+    for (const geometry::Vec2 p : geometry::vertices_of(obstacle.shape)) extent.add(p);
   LocalPlane plane;
-  if (extent) plane.offset = offset_for(extent->low, extent->high);
+  if (!extent.is_empty()) plane.offset = offset_for(extent.low, extent.high);
   return plane;
 }
 

@@ -30,6 +30,7 @@
 #include "exactvo/datasets/local_plane.h"
 #include "exactvo/datasets/repair.h"
 #include "exactvo/formation/scenario.h"
+#include "exactvo/geometry/box.h"
 
 namespace exactvo::datasets {
 
@@ -120,10 +121,7 @@ struct FeatureProperties {
 };
 
 /// The box of all vertices of the obstacles that were taken, m.
-struct Extent {
-  geometry::Vec2 low;   ///< least coordinates
-  geometry::Vec2 high;  ///< greatest coordinates
-};
+using Extent = geometry::Box;
 
 /// An input counts as `read`; each ends as an obstacle (`done` or `repaired`), skipped or in `rejected`.
 struct ReadCounts {
