@@ -13,16 +13,12 @@ namespace exactvo::datasets {
 namespace {
 
 using formation::Scenario;
+using geometry::Disc;
 using geometry::Vec2;
 
 using geometry::kPi;
 
 using Draws = CounterRandom;
-
-struct Circle {
-  Vec2 centre;
-  double radius;
-};
 
 /// How circumcircles lie: drawn until `most` are placed or the tries are used up.
 struct Layout {
@@ -33,20 +29,20 @@ struct Layout {
   std::vector<Vec2> ends;                ///< where robots start and end
 };
 
-bool fits(const Circle& c, const std::vector<Circle>& placed, const Layout& layout) {
-  for (const Circle& other : placed)
-    if (norm(c.centre - other.centre) < c.radius + other.radius + layout.apart) return false;
+bool fits(const Disc& c, const std::vector<Disc>& placed, const Layout& layout) {
+  for (const Disc& other : placed)
+    if (norm(c.center - other.center) < c.radius + other.radius + layout.apart) return false;
   for (Vec2 end : layout.ends)
-    if (norm(c.centre - end) < c.radius + layout.clear_of_ends) return false;
+    if (norm(c.center - end) < c.radius + layout.clear_of_ends) return false;
   return true;
 }
 
 template <typename DrawCentre>
-std::vector<Circle> placed_circles(Draws& draws, const Layout& layout, const DrawCentre& draw_centre) {
+std::vector<Disc> placed_circles(Draws& draws, const Layout& layout, const DrawCentre& draw_centre) {
   constexpr int kTries = 200;
-  std::vector<Circle> placed;
+  std::vector<Disc> placed;
   for (int attempt = 0; attempt < kTries && placed.size() < layout.most; ++attempt) {
-    const Circle c{draw_centre(), draws.uniform(layout.least_radius, layout.greatest_radius)};
+    const Disc c{draw_centre(), draws.uniform(layout.least_radius, layout.greatest_radius)};
     if (fits(c, placed, layout)) placed.push_back(c);
   }
   return placed;
@@ -58,12 +54,12 @@ Vec2 on_grid(Vec2 v) {
 }
 
 /// The point of the circle at `turn` revolutions.
-Vec2 on_circle(const Circle& c, double turn) {
+Vec2 on_circle(const Disc& c, double turn) {
   const double angle = 2.0 * kPi * turn;
-  return on_grid(c.centre + c.radius * Vec2{std::cos(angle), std::sin(angle)});
+  return on_grid(c.center + c.radius * Vec2{std::cos(angle), std::sin(angle)});
 }
 
-geometry::Obstacle regular_polygon(Draws& draws, const Circle& c) {
+geometry::Obstacle regular_polygon(Draws& draws, const Disc& c) {
   const int corners = draws.integer(3, 6);
   const double first = draws.uniform(0.0, 1.0);
   geometry::Polygon polygon;
@@ -72,7 +68,7 @@ geometry::Obstacle regular_polygon(Draws& draws, const Circle& c) {
 }
 
 /// A diameter, an L of two sides or a U of three sides of the inscribed square.
-geometry::Obstacle open_wall(Draws& draws, const Circle& c) {
+geometry::Obstacle open_wall(Draws& draws, const Disc& c) {
   const int sides = draws.integer(1, 3);
   const double first = draws.uniform(0.0, 1.0);
   if (sides == 1) return geometry::Polyline{{on_circle(c, first), on_circle(c, first + 0.5)}};
@@ -81,10 +77,10 @@ geometry::Obstacle open_wall(Draws& draws, const Circle& c) {
   return wall;
 }
 
-using MakeObstacle = geometry::Obstacle (*)(Draws&, const Circle&);
+using MakeObstacle = geometry::Obstacle (*)(Draws&, const Disc&);
 
-void add_obstacles(Draws& draws, const std::vector<Circle>& circles, MakeObstacle make, Scenario& scenario) {
-  for (const Circle& c : circles)
+void add_obstacles(Draws& draws, const std::vector<Disc>& circles, MakeObstacle make, Scenario& scenario) {
+  for (const Disc& c : circles)
     scenario.obstacles.push_back({"O" + std::to_string(scenario.obstacles.size() + 1), make(draws, c)});
 }
 

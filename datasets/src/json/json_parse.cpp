@@ -45,10 +45,7 @@ class CountingIterator {
 
 /// What stood where the parser stopped, by what it says it wanted: its words are for those who know its grammar.
 std::string expected_instead(const std::string& message) {
-  struct Meaning {
-    const char* said;
-    const char* expected;
-  };
+  using Meaning = std::pair<const char*, const char*>;  // what is said, and what was expected
   static constexpr Meaning kOfTexts[] = {
       {"missing closing quote", "a closing double quote"},
       {"must be escaped", "text without line breaks and control characters (\\n and \\u000a stand for a line break)"},
@@ -65,11 +62,11 @@ std::string expected_instead(const std::string& message) {
                                           {"expected '}'", "a comma or \"}\""}};
   // What was read last is the file's, and may hold anything.
   const std::string reason = message.substr(0, message.find("last read: "));
-  for (const Meaning& m : kOfTexts)
-    if (reason.find(m.said) != std::string::npos) return m.expected;
+  for (const auto& [said, expected] : kOfTexts)
+    if (reason.find(said) != std::string::npos) return expected;
   const std::size_t last = message.rfind("; expected ");
-  for (const Meaning& m : kOfTokens)
-    if (last != std::string::npos && message.compare(last + 2, std::string::npos, m.said) == 0) return m.expected;
+  for (const auto& [said, expected] : kOfTokens)
+    if (last != std::string::npos && message.compare(last + 2, std::string::npos, said) == 0) return expected;
   return "a JSON value: an object, a list, a number, text in double quotes, true, false or null";
 }
 

@@ -30,14 +30,11 @@ class WktBlocks {
   double share_read() const;
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   bool read_more();
   std::size_t place_to_cut();
 
   std::filesystem::path path_;
-  std::unique_ptr<std::FILE, Close> file_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_{nullptr, &std::fclose};
   std::size_t block_;
   std::uint64_t size_ = 0;
   std::uint64_t read_ = 0;
