@@ -37,28 +37,30 @@ std::vector<formation::SceneObstacle> walls_of(const std::vector<geometry::Segme
   return walls;
 }
 
-/// A body as a polygon, for the picture.
-struct OutlineOf {
-  std::vector<Vec2> operator()(const geometry::Disc& s) const { return round(s.center, s.radius, 0.0, s.radius); }
-  std::vector<Vec2> operator()(const geometry::Segment& s) const { return {s.a, s.b}; }
-  std::vector<Vec2> operator()(const geometry::ConvexPolygon& s) const { return s.vertices; }
-  std::vector<Vec2> operator()(const geometry::Ellipse& s) const { return round(s.center, s.l11, s.l21, s.l22); }
-
-  static std::vector<Vec2> round(Vec2 centre, double l11, double l21, double l22) {
-    constexpr int kCorners = 48;
-    std::vector<Vec2> outline;
-    for (int k = 0; k < kCorners; ++k) {
-      const double angle = 2.0 * geometry::kPi * k / kCorners, x = std::cos(angle), y = std::sin(angle);
-      outline.push_back(centre + Vec2{l11 * x, l21 * x + l22 * y});
-    }
-    return outline;
+/// The image of the unit circle, for the picture.
+std::vector<Vec2> corners_of(const geometry::Ellipse& e) {
+  constexpr int kCorners = 48;
+  std::vector<Vec2> outline;
+  for (int k = 0; k < kCorners; ++k) {
+    const double angle = 2.0 * geometry::kPi * k / kCorners, x = std::cos(angle), y = std::sin(angle);
+    outline.push_back(e.center + Vec2{e.l11 * x, e.l21 * x + e.l22 * y});
   }
-};
+  return outline;
+}
+std::vector<Vec2> corners_of(const geometry::Disc& d) {
+  return corners_of(geometry::Ellipse{d.center, d.radius, 0.0, d.radius});
+}
+std::vector<Vec2> corners_of(const geometry::Segment& s) {
+  return {s.a, s.b};
+}
+std::vector<Vec2> corners_of(const geometry::ConvexPolygon& polygon) {
+  return polygon.vertices;
+}
 
 geometry::Obstacle outline_of(const geometry::ConvexShape& shape) {
-  const std::vector<Vec2> outline = std::visit(OutlineOf{}, shape);
-  if (outline.size() < 3) return geometry::Polyline{{outline.front(), outline.back()}};
-  return geometry::Polygon{outline, {}};
+  const std::vector<Vec2> points = std::visit([](const auto& s) { return corners_of(s); }, shape);
+  if (points.size() < 3) return geometry::Polyline{{points.front(), points.back()}};
+  return geometry::Polygon{points, {}};
 }
 
 void add_bodies(const CrowdRecordingHead& head, formation::Scenario& scenario) {

@@ -29,14 +29,18 @@ Json flat(const std::vector<Vec2>& points) {
   return all;
 }
 
-struct ShapeToJson {
-  Json operator()(const geometry::Disc& d) const { return {{"disc", {d.center.x, d.center.y, d.radius}}}; }
-  Json operator()(const geometry::Segment& s) const { return {{"segment", {s.a.x, s.a.y, s.b.x, s.b.y}}}; }
-  Json operator()(const geometry::ConvexPolygon& p) const { return {{"polygon", flat(p.vertices)}}; }
-  Json operator()(const geometry::Ellipse& e) const {
-    return {{"ellipse", {e.center.x, e.center.y, e.l11, e.l21, e.l22}}};
-  }
-};
+Json to_json(const geometry::Disc& d) {
+  return {{"disc", {d.center.x, d.center.y, d.radius}}};
+}
+Json to_json(const geometry::Segment& s) {
+  return {{"segment", {s.a.x, s.a.y, s.b.x, s.b.y}}};
+}
+Json to_json(const geometry::ConvexPolygon& p) {
+  return {{"polygon", flat(p.vertices)}};
+}
+Json to_json(const geometry::Ellipse& e) {
+  return {{"ellipse", {e.center.x, e.center.y, e.l11, e.l21, e.l22}}};
+}
 
 Json to_json(const std::string& id, const geometry::Obstacle& shape) {
   Json rings = Json::array();
@@ -67,7 +71,7 @@ const char* name(vo::BodyKind kind) {
 Json to_json(const vo::Body& body) {
   Json json = {{"kind", name(body.kind)}, {"owners", body.owners}};
   const bool is_placed = body.kind == vo::BodyKind::enclosure || body.kind == vo::BodyKind::obstacle_edge;
-  if (is_placed) json["shape"] = std::visit(ShapeToJson{}, body.shape);
+  if (is_placed) json["shape"] = std::visit([](const auto& shape) { return to_json(shape); }, body.shape);
   return json;
 }
 

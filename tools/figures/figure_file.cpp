@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "support/escape.h"
@@ -19,9 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// One file of a figure: what it is called where it is drawn, and what in the end.
-struct FigureFile {
-  std::string drawn, asked;
-};
+using FigureFile = std::pair<std::string, std::string>;
 
 constexpr const char* kFreeName =
     "a name whose .svg, .png, .pdf, .dat and .gp the command neither reads nor writes besides";
@@ -54,8 +53,8 @@ void check_figure_name(const std::string& option, const std::string& name, const
   if (name.empty()) return;
   if (has_control_characters(name)) throw UsageError(option, name, "a name without control characters");
   if (!is_picture(name)) throw UsageError(option, name, "a name that ends in .svg, .png or .pdf");
-  for (const FigureFile& file : files_of(name)) {
-    const fs::path path = fs::path(name).parent_path() / file.asked;
+  for (const auto& [drawn, asked] : files_of(name)) {
+    const fs::path path = fs::path(name).parent_path() / asked;
     if (fs::is_directory(path)) throw UsageError(option, path.string() + ", a folder", "names that are free or files");
     for (const fs::path& other : others)
       if (is_same_file(path, other))
@@ -70,11 +69,11 @@ void write_figure(Figure figure, const fs::path& out) {
   StagedFolder folder(parent / "exactvo-figure", out);
   draw({write_sources(figure, folder.path())});
   const bool is_redrawn = fs::exists(parent / (figure.name + ".gp"));
-  for (const FigureFile& file : files_of(out)) {
-    if (fs::exists(folder.path() / file.drawn)) {
-      fs::rename(folder.path() / file.drawn, parent / file.asked);
+  for (const auto& [drawn, asked] : files_of(out)) {
+    if (fs::exists(folder.path() / drawn)) {
+      fs::rename(folder.path() / drawn, parent / asked);
     } else if (is_redrawn) {
-      fs::remove(parent / file.asked);  // an earlier one would show something else than its neighbours
+      fs::remove(parent / asked);  // an earlier one would show something else than its neighbours
     }
   }
   const fs::path script = out.parent_path() / (figure.name + ".gp");

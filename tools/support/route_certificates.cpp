@@ -61,35 +61,26 @@ RouteJson json_of(const formation::SceneObstacle& obstacle) {
   return json;
 }
 
-struct WriteAnswer {
-  RouteJson& json;
+void add(const Route& route, RouteJson& json) {
+  json["length"] = route.length;
+  json["lower_bound"] = route.lower_bound;
+  json["points"] = RouteJson::array();
+  for (const ExactPoint& p : route.points) json["points"].push_back(json_of(p));
+}
 
-  void operator()(const Route& route) const {
-    json["length"] = route.length;
-    json["lower_bound"] = route.lower_bound;
-    json["points"] = RouteJson::array();
-    for (const ExactPoint& p : route.points) json["points"].push_back(json_of(p));
-  }
-  void operator()(const Separated& separated) const {
-    json["chain"] = RouteJson::array();
-    for (const ChainPoint& p : separated.chain) {
-      RouteJson point{{"point", json_of(p.point)}};
-      add(p.on, point);
-      point["gap"] = p.gap_follows;
-      json["chain"].push_back(std::move(point));
-    }
-  }
-  void operator()(const Blocked& blocked) const {
-    json["end"] = blocked.end == Blocked::End::start ? "start" : "goal";
-    json["inside"] = blocked.inside;
-    json["obstacle"] = blocked.by.obstacle;
-    if (!blocked.inside) json["edge"] = blocked.by.edge;
-  }
-  static void add(const EdgeName& name, RouteJson& to) {
-    to["obstacle"] = name.obstacle;
-    to["edge"] = name.edge;
-  }
-};
+void add(const Separated& separated, RouteJson& json) {
+  json["chain"] = RouteJson::array();
+  for (const ChainPoint& p : separated.chain)
+    json["chain"].push_back(
+        {{"point", json_of(p.point)}, {"obstacle", p.on.obstacle}, {"edge", p.on.edge}, {"gap", p.gap_follows}});
+}
+
+void add(const Blocked& blocked, RouteJson& json) {
+  json["end"] = blocked.end == Blocked::End::start ? "start" : "goal";
+  json["inside"] = blocked.inside;
+  json["obstacle"] = blocked.by.obstacle;
+  if (!blocked.inside) json["edge"] = blocked.by.edge;
+}
 
 // --- Reading: nothing where a member is missing or of another type ---
 
@@ -304,7 +295,7 @@ RouteJson certificate_json(const RouteQuestion& question, const RouteAnswer& ans
                  {"radius", question.radius},
                  {"start", json_of(question.start)},
                  {"goal", json_of(question.goal)}};
-  std::visit(WriteAnswer{json}, answer);
+  std::visit([&](const auto& kind) { add(kind, json); }, answer);
   if (obstacles == nullptr) return json;
   json["obstacles"] = RouteJson::array();
   for (const formation::SceneObstacle& obstacle : *obstacles) json["obstacles"].push_back(json_of(obstacle));
