@@ -11,7 +11,7 @@ function(exactvo_embed_templates out)
     string(APPEND entries "      {\"${name}\", R\"template(${text})template\"},\n")
   endforeach()
   set(source "// Made by cmake/EmbedTemplates.cmake of tools/figures/templates.
-#include \"figures/template.h\"
+#include \"figures/figure.h\"
 
 namespace exactvo::tools {
 

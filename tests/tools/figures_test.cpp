@@ -18,7 +18,6 @@
 #include "figures/paths_figure.h"
 #include "figures/run_figures.h"
 #include "figures/sheet.h"
-#include "figures/template.h"
 
 namespace exactvo::tools {
 namespace {

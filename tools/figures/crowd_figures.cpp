@@ -11,7 +11,6 @@
 
 #include "exactvo/geometry/counted.h"
 #include "figures/outlines.h"
-#include "figures/template.h"
 
 namespace exactvo::tools {
 namespace {

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include "exactvo/datasets/provenance.h"
 #include "exactvo/geometry/require.h"
-#include "figures/template.h"
 #include "support/escape.h"
 #include "support/files.h"
 
@@ -183,6 +183,30 @@ std::string shortened(const std::string& text, std::size_t most) {
 std::size_t characters_in(double pixels) {
   const double widest = 8.4;  // px: the mean of DejaVu Sans at 13 px is 7.8
   return static_cast<std::size_t>(std::max(pixels / widest, 8.0));
+}
+
+std::string filled_text(const std::string& text, const Filling& filling) {
+  std::string result;
+  std::set<std::string> used;
+  std::size_t from = 0;
+  for (std::size_t at = text.find('@'); at != std::string::npos; at = text.find('@', from)) {
+    const std::size_t end = text.find('@', at + 1);
+    EXACTVO_REQUIRE(end != std::string::npos, std::string("a place of a template ends with @"));
+    const std::string place = text.substr(at + 1, end - at - 1);
+    const auto value = filling.find(place);
+    EXACTVO_REQUIRE(value != filling.end(), "a template's place is filled: " + place);
+    result += text.substr(from, at - from) + value->second;
+    used.insert(place);
+    from = end + 1;
+  }
+  EXACTVO_REQUIRE(used.size() == filling.size(), std::string("a template has every place that is filled"));
+  return result + text.substr(from);
+}
+
+std::string filled(const std::string& name, const Filling& filling) {
+  const auto found = embedded_templates().find(name);
+  EXACTVO_REQUIRE(found != embedded_templates().end(), "there is a template " + name);
+  return filled_text(found->second, filling);
 }
 
 }  // namespace exactvo::tools

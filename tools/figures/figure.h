@@ -9,12 +9,16 @@
 /// gnuplot runs what stands in the name of a file behind `<` or `|`. So a script names plain files only (`plain_name`),
 /// and whoever was asked for another name renames the pictures once they are drawn (figures/figure_file.h).
 ///
-/// Neighbours: template.h has the scripts as files to edit; gnuplot.h runs them; style.h has the colours; run_figures.h
+/// The scripts are files to edit: tools/figures/templates/NAME.gp, embedded in the program when it is built. `@place@`
+/// in them stands for what the program fills in.
+///
+/// Neighbours: gnuplot.h runs the scripts; style.h has the colours; run_figures.h
 /// and velocity_space.h make figures.
 
 #include <cstddef>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -112,5 +116,18 @@ std::string shortened(const std::string& text, std::size_t most);
 
 /// How many characters of a title go into so many pixels of the SVG.
 std::size_t characters_in(double pixels);
+
+/// Texts by place.
+using Filling = std::map<std::string, std::string>;
+
+/// The text of every template by its name, without ".gp".
+const std::map<std::string, std::string>& embedded_templates();
+
+/// `text` with every `@place@` replaced once: what is filled in is not searched for places.
+/// Throws std::logic_error where a place is not filled, or nothing has that place.
+std::string filled_text(const std::string& text, const Filling& filling);
+
+/// The same of the template `name`.
+std::string filled(const std::string& name, const Filling& filling);
 
 }  // namespace exactvo::tools

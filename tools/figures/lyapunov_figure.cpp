@@ -11,7 +11,6 @@
 
 #include "figures/paths_figure.h"
 #include "figures/style.h"
-#include "figures/template.h"
 
 namespace exactvo::tools {
 

@@ -11,7 +11,6 @@
 #include "exactvo/geometry/require.h"
 #include "figures/panel_layers.h"
 #include "figures/sheet.h"
-#include "figures/template.h"
 
 namespace exactvo::tools {
 

@@ -14,7 +14,6 @@
 #include "figures/lyapunov_figure.h"
 #include "figures/paths_figure.h"
 #include "figures/style.h"
-#include "figures/template.h"
 
 namespace exactvo::tools {
 

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "exactvo/geometry/require.h"
-#include "figures/template.h"
 
 namespace exactvo::tools {
 

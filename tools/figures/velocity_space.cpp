@@ -9,7 +9,6 @@
 #include <iterator>
 
 #include "figures/outlines.h"
-#include "figures/template.h"
 
 namespace exactvo::tools {
 

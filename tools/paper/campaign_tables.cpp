@@ -14,7 +14,6 @@
 #include "exactvo/datasets/scenario_file.h"
 #include "exactvo/formation/remedies.h"
 #include "figures/style.h"
-#include "figures/template.h"
 #include "paper/parts.h"
 #include "paper/report_data.h"
 #include "support/files.h"
@@ -210,9 +209,7 @@ void write_campaign(const CampaignFiles& files, const fs::path& folder, const st
 }
 
 void draw_campaign(const CampaignFiles& files, const fs::path& folder) {
-  std::vector<fs::path> scripts;
-  for (const Figure& figure : files.figures) scripts.push_back(write_sources(figure, folder));
-  draw(scripts);
+  draw(write_figures(files.figures, folder));
 }
 
 }  // namespace exactvo::tools

@@ -12,7 +12,6 @@
 #include "explorer/page.h"
 #include "figures/paths_figure.h"
 #include "figures/style.h"
-#include "figures/template.h"
 #include "support/files.h"
 #include "support/run.h"
 #include "support/terminal.h"

@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// Obstacles as a map, and over it what was made of them: facades, convex pieces, hulls and ellipses.
+/// Obstacles as a map, and over it what was made of them: facades, convex pieces, hulls and ellipses. A map is layers
+/// of curves and labels, drawn in the order in which they are added.
 
 #include <string>
 #include <vector>
@@ -10,8 +11,46 @@
 #include "exactvo/formation/scenario.h"
 #include "exactvo/geometry/obstacle_shapes.h"
 #include "figures/figure.h"
+#include "figures/outlines.h"
+#include "figures/style.h"
 
 namespace exactvo::tools {
+
+class MapLayers {
+ public:
+  /// A layer without curves is left out. Every point drawn belongs to the view. `style` is gnuplot's.
+  void curves(const std::string& title, const std::vector<Points>& curves, const std::string& style, bool closed,
+              bool in_key = true);
+
+  struct Label {
+    Vec2 place;
+    std::string text;  ///< of the program's own: gnuplot's markup works in it
+  };
+  void labels(const std::string& title, const std::vector<Label>& labels, const std::string& style);
+
+  Figure figure(const std::string& title) const;
+
+ private:
+  struct Layer {
+    std::string title;
+    std::vector<Points> curves;
+    std::vector<Label> labels;
+    std::string style;
+    bool closed, in_key;
+  };
+
+  Box axes() const;
+  static int write(const Layer& layer, DataFile& data);
+
+  std::vector<Layer> layers_;
+  Box view_;
+};
+
+/// "with lines ..." for MapLayers::curves.
+std::string line_style(double width, const std::string& colour, const std::string& dash = "");
+
+/// Solid grey with holes left free, and walls as lines.
+void add_obstacles(const std::vector<geometry::Obstacle>& obstacles, bool with_edges, MapLayers& map);
 
 /// Solid grey with holes left free, and walls as lines.
 Figure map_figure(const std::vector<formation::SceneObstacle>& obstacles, const std::string& title);

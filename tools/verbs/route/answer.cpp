@@ -43,7 +43,7 @@ std::string line_string(const Route& route) {
   return "LINESTRING (" + text + ")";
 }
 
-std::string words(const Route& route, bool in_full) {
+std::string words_of(const Route& route, bool in_full) {
   const std::size_t corners = route.points.size() < 2 ? 0 : route.points.size() - 2;
   const std::string text = fmt::format("route: {:.6g} m, no route is shorter than {:.6g} m, {} corner{}", route.length,
                                        route.lower_bound, corners, corners == 1 ? "" : "s");
@@ -91,8 +91,8 @@ const char* enclosed_end(const Separated& separated, const geometry::RouteQuesti
   return start ? "start" : "goal";
 }
 
-std::string words(const Separated& separated, const AskedMap& map, const geometry::RouteQuestion& question,
-                  bool in_full) {
+std::string words_of(const Separated& separated, const AskedMap& map, const geometry::RouteQuestion& question,
+                     bool in_full) {
   const std::vector<Gap> gaps = gaps_of(separated);
   const char* const enclosed = enclosed_end(separated, question);
   const std::string begin = enclosed ? fmt::format("separated, the {} is enclosed: ", enclosed) : "separated: ";
@@ -119,7 +119,7 @@ const char* end_name(const Blocked& blocked) {
   return blocked.end == Blocked::End::start ? "start" : "goal";
 }
 
-std::string words(const Blocked& blocked, const AskedMap& map, const geometry::RouteQuestion& question) {
+std::string words_of(const Blocked& blocked, const AskedMap& map, const geometry::RouteQuestion& question) {
   const std::string by = map.name_of(blocked.by.obstacle);
   if (blocked.inside) return fmt::format("blocked: the {} is inside {}", end_name(blocked), by);
   const double distance = distance_to(blocked, map, end_of(blocked, question));
@@ -130,7 +130,7 @@ std::string words(const Blocked& blocked, const AskedMap& map, const geometry::R
 
 // --- JSON ---
 
-OrderedJson pair_json(Vec2 p) {
+OrderedJson xy_json(Vec2 p) {
   return OrderedJson::array({p.x, p.y});
 }
 
@@ -139,8 +139,8 @@ OrderedJson gaps_json(const Separated& separated, const AskedMap& map) {
   OrderedJson list = OrderedJson::array();
   for (const Gap& gap : gaps_of(separated))
     list.push_back({{"width", gap.width},
-                    {"from", pair_json(gap.from)},
-                    {"to", pair_json(gap.to)},
+                    {"from", xy_json(gap.from)},
+                    {"to", xy_json(gap.to)},
                     {"between", {map.obstacles[gap.from_obstacle].id, map.obstacles[gap.to_obstacle].id}}});
   return list;
 }
@@ -168,7 +168,7 @@ void add_answer(const AnsweredRoute& answered, const AskedMap& map, bool with_ob
   }
   if (const auto* blocked = std::get_if<Blocked>(&answer))
     json["blocked"] = blocked_json(*blocked, map, answered.question);
-  json["certificate"] = certificate_json(answered.question, answer, with_obstacles ? &map.obstacles : nullptr);
+  json["certificate"] = tools::certificate_json(answered.question, answer, with_obstacles ? &map.obstacles : nullptr);
 }
 
 }  // namespace
@@ -201,10 +201,11 @@ std::pair<std::string, std::string> widths_told_apart(double width, double neede
 std::string words_of(const AnsweredRoute& answered, const AskedMap& map, bool in_full) {
   std::string text;
   if (answered.answer) {
-    if (const auto* route = std::get_if<Route>(&*answered.answer)) text = words(*route, in_full);
+    if (const auto* route = std::get_if<Route>(&*answered.answer)) text = words_of(*route, in_full);
     if (const auto* separated = std::get_if<Separated>(&*answered.answer))
-      text = words(*separated, map, answered.question, in_full);
-    if (const auto* blocked = std::get_if<Blocked>(&*answered.answer)) text = words(*blocked, map, answered.question);
+      text = words_of(*separated, map, answered.question, in_full);
+    if (const auto* blocked = std::get_if<Blocked>(&*answered.answer))
+      text = words_of(*blocked, map, answered.question);
     text = shown_lines(text);
   }
   if (answered.widest) {
@@ -223,8 +224,8 @@ std::string json_of(const AnsweredRoute& answered, const AskedMap& map, bool wit
     json["status"] = status_of(*answered.answer);
     json["radius"] = answered.question.radius;
   }
-  json["start"] = pair_json(answered.question.start);
-  json["goal"] = pair_json(answered.question.goal);
+  json["start"] = xy_json(answered.question.start);
+  json["goal"] = xy_json(answered.question.goal);
   if (answered.widest) json["widest_radius"] = *answered.widest;
   if (answered.is_widest_of_map) json["widest_radius_is_bound_of_map"] = true;
   if (answered.answer) add_answer(answered, map, with_obstacles, json);

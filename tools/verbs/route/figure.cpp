@@ -6,7 +6,7 @@
 
 #include "exactvo/geometry/pi.h"
 #include "exactvo/geometry/require.h"
-#include "verbs/obstacles/map_layers.h"
+#include "verbs/obstacles/map_figure.h"
 #include "verbs/route/answer.h"
 
 namespace exactvo::tools {

@@ -27,7 +27,7 @@
 #include "support/terminal.h"
 #include "support/usage.h"
 #include "verb.h"
-#include "verbs/obstacles/map_layers.h"
+#include "verbs/obstacles/map_figure.h"
 
 namespace exactvo::tools {
 

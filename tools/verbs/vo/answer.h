@@ -12,8 +12,7 @@
 #include "exactvo/vo/containment.h"
 #include "exactvo/vo/free_velocities.h"
 #include "figures/figure.h"
-#include "verbs/vo/exact_free.h"
-#include "verbs/vo/exact_legs.h"
+#include "verbs/vo/exact_answer.h"
 #include "verbs/vo/question.h"
 
 namespace exactvo::tools {

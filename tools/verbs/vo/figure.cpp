@@ -6,7 +6,6 @@
 
 #include "figures/outlines.h"
 #include "figures/sheet.h"
-#include "figures/template.h"
 #include "verbs/vo/answer.h"
 
 namespace exactvo::tools {

@@ -2,13 +2,15 @@
 #pragma once
 
 /// \file
-/// The unrounded free velocities of `exactvo vo --free`, as JSON and in words; and why there are none to show where an
-/// ellipse takes part, where the curves are too many, and in contact.
+/// The unrounded answers of `exactvo vo`, as JSON and in words: free velocities (--free), and why there are none to
+/// show where an ellipse takes part, where the curves are too many, and in contact; the algebraic legs (--exact-legs).
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "exactvo/vo/algebraic_direction.h"
 #include "exactvo/vo/free_arrangement.h"
 #include "verbs/vo/question.h"
 
@@ -29,5 +31,20 @@ std::string exact_free_json(const ExactFree& exact, const VoQuestion& question);
 
 /// One line or two.
 std::string exact_free_words(const ExactFree& exact);
+
+struct LegsOfCone {
+  std::size_t obstacle = 0;
+  std::size_t cone = 0;  ///< of the obstacle
+  const vo::ExactLegs* legs = nullptr;
+};
+
+/// Two objects with `side`, `polynomial`, `slope`, `quarter_turns`, `direction`.
+std::string exact_legs_json(const vo::ExactLegs& legs);
+
+/// All of them counter-clockwise from just after (-1, 0) on, which is itself the last; groups of equal ones: which
+/// cones share a leg.
+std::string legs_by_angle_json(const std::vector<LegsOfCone>& legs);
+
+std::string exact_legs_words(const vo::ExactLegs& legs);
 
 }  // namespace exactvo::tools
