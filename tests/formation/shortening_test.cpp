@@ -192,6 +192,67 @@ TEST(Timetable, IsNearToWhatIsDriven) {
   EXPECT_GE(found, 9);
 }
 
+/// Against every position, with few radii exactly, with many never earlier.
+TEST(StandingRobots, SameAsLookingAtEveryStay) {
+  SeededRandom random(test::seed_of_run(65));
+  const Walls walls({});
+  std::size_t found = 0, later = 0;
+  for (const int kinds : {1, 3, 12}) {
+    Problem p(walls, 12, random);
+    for (std::size_t i = 0; i < p.joint.radii.size(); ++i)
+      p.joint.radii[i] = 0.3 + 0.01 * static_cast<double>(i % static_cast<std::size_t>(kinds));
+    constexpr int kLast = 300;
+    struct Stay {
+      std::size_t robot;
+      PlaceNumber place;
+      int first, last;
+    };
+    std::vector<Stay> stays;
+    StandingRobots standing(p.joint);
+    standing.clear(kLast);
+    for (std::size_t i = 0; i < p.joint.radii.size(); ++i)
+      for (int first = 0; first <= kLast;) {
+        const int last = std::min(kLast, first + random.integer(0, i % 2 == 0 ? 200 : 20));
+        stays.push_back({i, static_cast<PlaceNumber>(random.integer(0, 5)), first, last});
+        standing.add(i, stays.back().place, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
+        first = last + 1 + random.integer(0, 70);
+      }
+    for (int k = 0; k < 500; ++k) {
+      const double radius = random.uniform(0.1, 0.6);
+      std::vector<RoadmapEdges::NearPlace> near;
+      for (PlaceNumber place = 0; place < 6; ++place)
+        if (random.integer(0, 2) > 0) near.push_back({place, static_cast<float>(random.uniform(0.0, 1.2))});
+      std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.squared < b.squared; });
+      const int first = random.integer(0, kLast), last = random.integer(first, kLast);
+      const auto is_clear = [&](int position) {
+        return std::none_of(stays.begin(), stays.end(), [&](const Stay& s) {
+          const double wanted = (1.0 + kPlannedGap) * (radius + p.joint.radii[s.robot]);
+          return s.first <= position && position <= s.last && std::any_of(near.begin(), near.end(), [&](const auto& n) {
+                   return n.place == s.place && n.squared < kSingleRounding * wanted * wanted;
+                 });
+        });
+      };
+      int expected = first;
+      while (expected <= last && !is_clear(expected)) ++expected;
+      const std::size_t position =
+          standing.first_clear(radius, near, static_cast<std::size_t>(first), static_cast<std::size_t>(last));
+      const bool is_found = position <= static_cast<std::size_t>(last);
+      if (kinds <= 4) {
+        ASSERT_EQ(is_found, expected <= last);
+      }
+      if (!is_found) continue;
+      ++found;
+      if (kinds <= 4) {
+        ASSERT_EQ(position, static_cast<std::size_t>(expected));
+      }
+      ASSERT_TRUE(is_clear(static_cast<int>(position)));
+      later += position > static_cast<std::size_t>(first);
+    }
+  }
+  EXPECT_GT(found, 300u);
+  EXPECT_GT(later, 100u);
+}
+
 /// Against every position and place: whether a robot can stand there while the others make their next move, and
 /// whether somebody stands near a way.
 TEST(SafeIntervals, SameAsLookingAtEveryMove) {
@@ -230,7 +291,7 @@ TEST(SafeIntervals, SameAsLookingAtEveryMove) {
           }
           const auto& near = edges.near_places(edges.number(here, to));
           if (!is_close) {
-            ASSERT_EQ(safe.first_clear(near, position, position).has_value(), is_clear);
+            ASSERT_EQ(safe.first_clear(near, position, position) == position, is_clear);
           }
         }
         if (position == others.moves.size()) continue;

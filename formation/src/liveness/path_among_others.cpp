@@ -9,27 +9,99 @@
 #include "liveness/distances.h"
 
 namespace exactvo::formation::detail {
+namespace {
+
+constexpr std::size_t kBits = 64;
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+/// Squared, m2: what is nearer is too near for robots with that sum of radii.
+double squared_reach(double radii) {
+  const double wanted = (1.0 + kPlannedGap) * radii;
+  return kSingleRounding * wanted * wanted;
+}
+
+}  // namespace
+
+StandingRobots::StandingRobots(const JointProblem& problem) : problem_(problem) {
+  constexpr std::size_t kMostLayers = 4;
+  std::vector<double> radii = problem.radii;
+  std::sort(radii.begin(), radii.end());
+  radii.erase(std::unique(radii.begin(), radii.end()), radii.end());
+  const std::size_t count = std::min(radii.size(), kMostLayers);
+  for (std::size_t k = 1; k <= count; ++k) layers_.push_back({radii[k * radii.size() / count - 1], {}, {}});
+  for (const double radius : problem.radii) {
+    const auto found = std::find_if(layers_.begin(), layers_.end(), [&](const Layer& l) { return l.radius >= radius; });
+    layer_of_.push_back(static_cast<std::size_t>(found - layers_.begin()));
+  }
+}
+
+void StandingRobots::clear(std::size_t count) {
+  for (Layer& layer : layers_) {
+    layer.taken.assign((count / kBits + 1) * problem_.map->size(), 0);
+    layer.until.assign(layer.taken.size(), 0);
+  }
+}
+
+void StandingRobots::add(std::size_t robot, PlaceNumber place, std::size_t first, std::size_t last) {
+  Layer& layer = layers_[layer_of_[robot]];
+  for (std::size_t w = first / kBits; w <= last / kBits; ++w) {
+    const std::uint64_t from = w == first / kBits ? kAll << first % kBits : kAll;
+    const std::uint64_t to = w == last / kBits ? kAll >> (kBits - 1 - last % kBits) : kAll;
+    const std::size_t word = w * problem_.map->size() + place;
+    layer.taken[word] |= from & to;
+    layer.until[word] = std::max(layer.until[word], static_cast<std::uint32_t>(last + 1));
+  }
+}
+
+std::size_t StandingRobots::first_clear(double radius, const std::vector<RoadmapEdges::NearPlace>& near,
+                                        std::size_t first, std::size_t last) const {
+  while (first <= last) {
+    std::uint64_t taken = (std::uint64_t{1} << first % kBits) - 1;
+    const std::size_t next = add_taken(radius, near, first / kBits, taken);
+    if (taken != kAll) return first / kBits * kBits + static_cast<std::size_t>(__builtin_ctzll(~taken));
+    first = next;
+  }
+  return first;
+}
+
+std::size_t StandingRobots::add_taken(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t word,
+                                      std::uint64_t& taken) const {
+  for (const Layer& layer : layers_) {
+    const std::size_t begin = word * problem_.map->size();
+    const double reach = squared_reach(radius + layer.radius);
+    for (const RoadmapEdges::NearPlace& n : near) {  // the nearest first
+      if (!(n.squared < reach)) break;
+      const std::uint64_t here = layer.taken[begin + n.place];
+      taken |= here;
+      if (taken == kAll) return here == kAll ? layer.until[begin + n.place] : (word + 1) * kBits;
+    }
+  }
+  return (word + 1) * kBits;
+}
 
 SafeIntervals::SafeIntervals(const JointProblem& problem)
-    : problem_(problem), passed_(problem.map->size()), stays_(problem.map->size()), first_(problem.map->size()) {}
+    : problem_(problem), standing_(problem), passed_(problem.map->size()), first_(problem.map->size()) {}
 
 void SafeIntervals::set(std::size_t robot, const Timetable& others, const RoadmapEdges& edges) {
   robot_ = robot;
   count_ = others.moves.size();
   for (auto& list : passed_) list.clear();
-  for (auto& list : stays_) list.clear();
+  standing_.clear(count_);
   std::vector<PlaceNumber> at = problem_.starts;
   std::vector<std::size_t> since(at.size(), 0);
   for (std::size_t k = 0; k < count_; ++k) {
     const JointMove& m = others.moves[k].move;
-    for (const RoadmapEdges::NearPlace& n : edges.near_places(others.moves[k].edge))
-      if (is_too_near(n.squared, m.robot)) passed_[n.place].push_back(k);
-    stays_[m.from].push_back({since[m.robot], k, m.robot});
+    const double reach = squared_reach(problem_.radii[robot] + problem_.radii[m.robot]);
+    for (const RoadmapEdges::NearPlace& n : edges.near_places(others.moves[k].edge)) {
+      if (!(n.squared < reach)) break;
+      passed_[n.place].push_back(static_cast<std::uint32_t>(k));
+    }
+    standing_.add(m.robot, m.from, since[m.robot], k);
     at[m.robot] = m.to;
     since[m.robot] = k + 1;
   }
   for (std::size_t i = 0; i < at.size(); ++i)
-    if (i != robot) stays_[at[i]].push_back({since[i], count_, i});
+    if (i != robot) standing_.add(i, at[i], since[i], count_);
   size_ = 0;
   for (PlaceNumber p = 0; p < passed_.size(); ++p) {
     first_[p] = size_;
@@ -38,7 +110,7 @@ void SafeIntervals::set(std::size_t robot, const Timetable& others, const Roadma
 }
 
 std::size_t SafeIntervals::at(PlaceNumber place, std::size_t position) const {
-  const std::vector<std::size_t>& passed = passed_[place];
+  const std::vector<std::uint32_t>& passed = passed_[place];
   return first_[place] +
          static_cast<std::size_t>(std::lower_bound(passed.begin(), passed.end(), position) - passed.begin());
 }
@@ -48,33 +120,11 @@ std::size_t SafeIntervals::last(PlaceNumber place, std::size_t interval) const {
   return k < passed_[place].size() ? passed_[place][k] : count_;
 }
 
-std::optional<std::size_t> SafeIntervals::first_clear(const std::vector<RoadmapEdges::NearPlace>& near,
-                                                      std::size_t first, std::size_t last) const {
-  for (bool is_clear = false; !is_clear;) {
-    is_clear = true;
-    for (const RoadmapEdges::NearPlace& n : near) {
-      const std::vector<Stay>& stays = stays_[n.place];
-      const auto stay = std::lower_bound(stays.begin(), stays.end(), first,
-                                         [](const Stay& s, std::size_t position) { return s.last < position; });
-      if (stay == stays.end() || stay->first > first || !is_too_near(n.squared, stay->robot)) continue;
-      first = stay->last + 1;
-      if (first > last) return std::nullopt;
-      is_clear = false;
-    }
-  }
-  return first;
-}
-
-bool SafeIntervals::is_too_near(float squared, std::size_t other) const {
-  const double wanted = (1.0 + kPlannedGap) * (problem_.radii[robot_] + problem_.radii[other]);
-  return squared < kSingleRounding * wanted * wanted;
-}
-
 std::optional<std::vector<JointMove>> PathAmongOthers::moves_with(std::size_t robot, const Timetable& others,
                                                                   const std::vector<float>& to_goal, double bound) {
   const Query query{robot, &others, &to_goal, bound};
   safe_.set(robot, others, edges_);
-  work_ += safe_.size();
+  work_ += safe_.size() + safe_.words() / 8;
   arrivals_.clear();
   open_.clear();
   soonest_.assign(safe_.size(), geometry::kInfinity);
@@ -103,16 +153,18 @@ void PathAmongOthers::offer(const Query& query, const Arrival& arrival) {
 
 void PathAmongOthers::expand(const Query& query, std::size_t arrival) {
   const PlaceNumber from = arrivals_[arrival].place;
+  const std::size_t now = position_at(*query.others, arrivals_[arrival].time);
   const std::vector<PlaceNumber>& next = problem_.map->ways(from);
   for (std::size_t k = 0; k < next.size(); ++k)
     if (problem_.map->room(next[k]) >= problem_.radii[query.robot] && (*query.to_goal)[next[k]] != kFarAway)
-      expand_to(query, arrival, next[k], edges_.kth_from(from, k));
+      expand_to(query, arrival, now, next[k], edges_.kth_from(from, k));
 }
 
 /// In each of the intervals of the next place that can be reached.
-void PathAmongOthers::expand_to(const Query& query, std::size_t arrival, PlaceNumber to, EdgeNumber edge) {
+void PathAmongOthers::expand_to(const Query& query, std::size_t arrival, std::size_t now, PlaceNumber to,
+                                EdgeNumber edge) {
   const Arrival here = arrivals_[arrival];
-  const std::size_t until = safe_.last(here.place, here.interval), now = position_at(*query.others, here.time);
+  const std::size_t until = safe_.last(here.place, here.interval);
   // Who waits until a later position than it would be ready for leaves once the move before that is under way.
   const auto arrives = [&](std::size_t position) {
     const double free = position > now ? query.others->moves[position - 1].start + problem_.radii[query.robot] : 0.0;
@@ -125,10 +177,10 @@ void PathAmongOthers::expand_to(const Query& query, std::size_t arrival, PlaceNu
     if (!(soonest + (*query.to_goal)[to] < query.bound)) break;
     if (!(soonest < soonest_[interval])) continue;
     const std::vector<RoadmapEdges::NearPlace>& near = edges_.near_places(edge);
-    std::optional<std::size_t> position = safe_.first_clear(near, wanted, last);
-    if (!position) position = safe_.first_clear(near, first, wanted);
+    std::size_t position = safe_.first_clear(near, wanted, last);
+    if (position > last && first < wanted) position = safe_.first_clear(near, first, last);
     work_ += near.size();
-    if (position) offer(query, {to, interval, *position, arrives(*position), arrival});
+    if (position <= last) offer(query, {to, interval, position, arrives(position), arrival});
   }
 }
 

@@ -10,12 +10,47 @@
 /// of the radii from all others, or gets away from them. Heuristic: it takes the path that seems to be at its goal
 /// first.
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "liveness/timetable.h"
 
 namespace exactvo::formation::detail {
+
+/// Who stands where before which move of the others: bits by place and position, for each of up to four radii. Where
+/// there are more, some robots count as larger than they are, so that a clear position may be missed, never made up.
+class StandingRobots {
+ public:
+  explicit StandingRobots(const JointProblem& problem);
+
+  /// Forgets all; there are `count` + 1 positions.
+  void clear(std::size_t count);
+  /// One that stands there from position `first` to `last`.
+  void add(std::size_t robot, PlaceNumber place, std::size_t first, std::size_t last);
+  /// Of the positions the first at which nobody stands too near for one with that radius, m, on an edge of which these
+  /// are the places near it. A later one than `last` if there is none until then.
+  std::size_t first_clear(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first,
+                          std::size_t last) const;
+  /// Of 64 bits each.
+  std::size_t words() const { return layers_.size() * layers_.front().taken.size(); }
+
+ private:
+  /// By 64 positions and place.
+  struct Layer {
+    double radius;  ///< m, that its robots count as
+    std::vector<std::uint64_t> taken;
+    std::vector<std::uint32_t> until;  ///< the position after the last stay that meets them
+  };
+
+  /// Adds those of the 64 positions that are taken, if not all are. Where to go on if they are.
+  std::size_t add_taken(double radius, const std::vector<RoadmapEdges::NearPlace>& near, std::size_t word,
+                        std::uint64_t& taken) const;
+
+  const JointProblem& problem_;
+  std::vector<Layer> layers_;
+  std::vector<std::size_t> layer_of_;  ///< by robot
+};
 
 /// Between which moves of the others a robot can stand on a place. Intervals of all places are numbered together.
 class SafeIntervals {
@@ -26,26 +61,23 @@ class SafeIntervals {
 
   std::size_t last_position() const { return count_; }
   std::size_t size() const { return size_; }
+  std::size_t words() const { return standing_.words(); }
   /// The interval of the place that holds a position.
   std::size_t at(PlaceNumber place, std::size_t position) const;
   /// The last position of an interval of the place.
   std::size_t last(PlaceNumber place, std::size_t interval) const;
   /// Of the positions the first at which nobody stands near an edge, of which these are the places near it.
-  std::optional<std::size_t> first_clear(const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first,
-                                         std::size_t last) const;
+  /// A later one than `last` if there is none until then.
+  std::size_t first_clear(const std::vector<RoadmapEdges::NearPlace>& near, std::size_t first, std::size_t last) const {
+    return standing_.first_clear(problem_.radii[robot_], near, first, last);
+  }
 
  private:
-  struct Stay {
-    std::size_t first, last;  ///< positions
-    std::size_t robot;
-  };
-  bool is_too_near(float squared, std::size_t other) const;
-
   const JointProblem& problem_;
+  StandingRobots standing_;
   std::size_t robot_ = 0, count_ = 0, size_ = 0;
-  std::vector<std::vector<std::size_t>> passed_;  ///< by place: the moves that come near it
-  std::vector<std::vector<Stay>> stays_;          ///< by place, in sequence
-  std::vector<std::size_t> first_;                ///< by place: its first interval
+  std::vector<std::vector<std::uint32_t>> passed_;  ///< by place: the moves that come near it
+  std::vector<std::size_t> first_;                  ///< by place: its first interval
 };
 
 class PathAmongOthers {
@@ -79,7 +111,7 @@ class PathAmongOthers {
 
   void offer(const Query& query, const Arrival& arrival);
   void expand(const Query& query, std::size_t arrival);
-  void expand_to(const Query& query, std::size_t arrival, PlaceNumber to, EdgeNumber edge);
+  void expand_to(const Query& query, std::size_t arrival, std::size_t now, PlaceNumber to, EdgeNumber edge);
   std::vector<JointMove> moves_to(const Query& query, std::size_t arrival) const;
 
   const JointProblem& problem_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "exactvo/geometry/infinity.h"
 #include "liveness/distances.h"
 #include "liveness/path_among_others.h"
 #include "liveness/split_mix.h"
@@ -32,19 +33,15 @@ class Shortening {
         to_goal_(problem.radii.size()) {}
 
   std::vector<JointMove> run(const std::vector<JointMove>& moves, std::size_t most_work) {
-    constexpr int kPathsInVain = 10;  // then a time window
+    constexpr std::size_t kStage = 30000000;  // of work; another one follows where it was worth it
+    constexpr double kWorthIt = 0.98;
     constexpr std::size_t kWindowsAtLeast = 10;
-    const bool may_plan_windows = kWindowsAtLeast * work_of_a_window() <= most_work;
+    may_plan_windows_ = kWindowsAtLeast * work_of_a_window() <= most_work;
     Timetable best = timetable(moves);
-    for (int in_vain = 0; work() < most_work && best.last_move != kNoMove && !is_stopped();) {
-      const bool is_window = in_vain >= kPathsInVain && may_plan_windows;
-      const std::optional<std::vector<JointMove>> other =
-          is_window ? with_a_window_anew(best) : with_another_path(best);
-      in_vain = is_window ? 0 : in_vain + 1;
-      if (!other) continue;
-      Timetable found = timetable(*other);
-      if (cost_of(found) < cost_of(best)) in_vain = 0;
-      if (cost_of(found) <= cost_of(best)) best = std::move(found);
+    double before = geometry::kInfinity;
+    while (work() < most_work && cost_of(best) < kWorthIt * before) {
+      before = cost_of(best);
+      improve(best, std::min(most_work, work() + kStage));
     }
     return of_range(best, 0, best.moves.size());
   }
@@ -53,6 +50,20 @@ class Shortening {
   bool is_stopped() const { return problem_.is_stopped && problem_.is_stopped(); }
   std::size_t work() const { return work_ + among_others_.work() + kForAnEdge * edges_.size(); }
   std::size_t work_of_a_window() const { return kForADistance * problem_.radii.size() * problem_.map->size(); }
+
+  void improve(Timetable& best, std::size_t until_work) {
+    constexpr int kPathsInVain = 10;  // then a time window
+    while (work() < until_work && best.last_move != kNoMove && !is_stopped()) {
+      const bool is_window = in_vain_ >= kPathsInVain && may_plan_windows_;
+      const std::optional<std::vector<JointMove>> other =
+          is_window ? with_a_window_anew(best) : with_another_path(best);
+      in_vain_ = is_window ? 0 : in_vain_ + 1;
+      if (!other) continue;
+      Timetable found = timetable(*other);
+      if (cost_of(found) < cost_of(best)) in_vain_ = 0;
+      if (cost_of(found) <= cost_of(best)) best = std::move(found);
+    }
+  }
 
   Timetable timetable(const std::vector<JointMove>& moves) {
     work_ += kForAMove * moves.size();
@@ -119,6 +130,8 @@ class Shortening {
   SplitMix64 random_;
   std::vector<std::vector<float>> to_goal_;  ///< m: from each place, of robots that were chosen
   std::size_t work_ = 0;
+  int in_vain_ = 0;
+  bool may_plan_windows_ = false;
 };
 
 /// Property (1) of joint_search.h, move by move.
@@ -139,7 +152,7 @@ bool are_clear(const JointProblem& problem, const std::vector<JointMove>& moves)
 }  // namespace
 
 std::vector<JointMove> shortened(const JointProblem& problem, const std::vector<JointMove>& moves, std::uint64_t seed) {
-  constexpr std::size_t kForEachMove = 40000, kMost = 30000000;
+  constexpr std::size_t kForEachMove = 40000, kMost = 120000000;
   constexpr std::size_t kMostMoves = 20000;
   if (moves.empty() || moves.size() > kMostMoves) return moves;
   std::vector<JointMove> shorter = Shortening(problem, seed).run(moves, std::min(kMost, kForEachMove * moves.size()));

@@ -17,7 +17,8 @@ namespace exactvo::formation::detail {
 
 /// A sequence of moves of the same robots with properties (1) to (3) of joint_search.h, if that given has them; (1) is
 /// checked, else the sequence given comes back, as it does where it has more than 20,000 moves. Deterministic: what is
-/// tried is counted, about a second of one core at most. Where `problem.is_stopped` says so, what was found until then.
+/// tried is counted, about two seconds of one core at most. Where `problem.is_stopped` says so, what was found until
+/// then.
 std::vector<JointMove> shortened(const JointProblem& problem, const std::vector<JointMove>& moves, std::uint64_t seed);
 
 }  // namespace exactvo::formation::detail

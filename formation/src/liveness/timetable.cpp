@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "exactvo/geometry/box.h"
+#include "exactvo/geometry/infinity.h"
 
 namespace exactvo::formation::detail {
 namespace {
@@ -28,6 +29,7 @@ EdgeNumber RoadmapEdges::number(PlaceNumber from, PlaceNumber to) {
       numbers_.try_emplace((static_cast<std::uint64_t>(from) << 32) | to, static_cast<EdgeNumber>(edges_.size()));
   if (is_new) {
     edges_.push_back({map_.place(from), map_.place(to)});
+    lengths_.push_back(norm(edges_.back().b - edges_.back().a));
     near_places_.emplace_back();
     near_edges_.emplace_back();
     has_near_edges_.push_back(0);
@@ -131,6 +133,7 @@ Timetable timetable_of(const std::vector<JointMove>& moves, const std::vector<do
   table.moves.reserve(moves.size());
   std::vector<double> end(radii.size(), 0.0);
   std::vector<std::size_t> own(radii.size(), kNoMove);
+  std::vector<double> latest_start;                  // by edge
   std::vector<std::size_t> latest_on, before_it_on;  // by edge, and by move: the one before it on its edge
   for (const JointMove& m : moves) {
     TimedMove timed{m, edges.number(m.from, m.to), end[m.robot], own[m.robot]};
@@ -140,8 +143,10 @@ Timetable timetable_of(const std::vector<JointMove>& moves, const std::vector<do
     };
     const std::vector<RoadmapEdges::NearEdge>& near = edges.near_edges(timed.edge);
     latest_on.resize(edges.size(), kNoMove);
+    latest_start.resize(edges.size(), -geometry::kInfinity);
     for (const RoadmapEdges::NearEdge& n : near) {
       // Of an edge the latest move of a robot that is large enough to be near: those before it started no later.
+      if (!(latest_start[n.edge] + n.lead > timed.start)) continue;
       std::size_t earlier = latest_on[n.edge];
       while (earlier != kNoMove && !is_near(n.squared, table.moves[earlier])) earlier = before_it_on[earlier];
       if (earlier == kNoMove || !(table.moves[earlier].start + n.lead > timed.start)) continue;
@@ -150,6 +155,7 @@ Timetable timetable_of(const std::vector<JointMove>& moves, const std::vector<do
     }
     before_it_on.push_back(latest_on[timed.edge]);
     latest_on[timed.edge] = own[m.robot] = table.moves.size();
+    latest_start[timed.edge] = timed.start;
     end[m.robot] = timed.start + edges.length(timed.edge);
     table.moves.push_back(timed);
   }

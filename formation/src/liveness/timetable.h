@@ -41,7 +41,7 @@ class RoadmapEdges {
   /// Number of the edge that leads from a place to its k-th neighbour.
   EdgeNumber kth_from(PlaceNumber from, std::size_t k);
   std::size_t size() const { return edges_.size(); }
-  double length(EdgeNumber w) const { return norm(edges_[w].b - edges_[w].a); }  ///< m
+  double length(EdgeNumber w) const { return lengths_[w]; }  ///< m
   /// Places that the edge comes nearer to than its start, and too near for some two robots.
   const std::vector<NearPlace>& near_places(EdgeNumber w) const { return near_places_[w]; }
   /// Of the edges that this was asked of so far, those too near to this one for some two robots.
@@ -55,6 +55,7 @@ class RoadmapEdges {
   const Roadmap& map_;
   double reach_;  ///< m, that the largest keep
   std::vector<Segment> edges_;
+  std::vector<double> lengths_;  ///< m
   std::unordered_map<std::uint64_t, EdgeNumber> numbers_;
   std::vector<std::vector<EdgeNumber>> from_;  ///< by place and neighbour
   std::vector<std::vector<NearPlace>> near_places_;
