@@ -60,7 +60,7 @@ Scenario with_niche(double depth) {
 TEST(Passing, Lemma6_AReversedOrderInANarrowStripIsProvenOutOfReach) {
   test::SeededRandom random(test::seed_of_run(61));
   for (int k = 0; k < 20; ++k) {
-    const double width = random.uniform(1.02, 1.6);
+    const double width = random.uniform(1.02, 1.999);
     Scenario reversed = corridor(10.0, width), kept = reversed;
     const auto across = [&] { return random.uniform(-0.5, 0.5) * (width - 1.01); };
     const Vec2 a{random.uniform(-4.0, -0.6), across()}, b{random.uniform(0.6, 4.0), across()};
@@ -73,9 +73,54 @@ TEST(Passing, Lemma6_AReversedOrderInANarrowStripIsProvenOutOfReach) {
     const std::vector<NoPassing> proofs = robots_without_passing(moved(reversed, angle, by));
     ASSERT_EQ(proofs.size(), 1u) << "width " << width << ", turned by " << angle;
     EXPECT_EQ(std::make_pair(proofs[0].first, proofs[0].second), std::make_pair(std::size_t{0}, std::size_t{1}));
-    EXPECT_GT(proofs[0].pairs, 0u);
+    EXPECT_NEAR(proofs[0].strip, width, 1e-9);
+    EXPECT_GE(proofs[0].strip, width - 1e-12);
     EXPECT_THAT(robots_without_passing(moved(kept, angle, by)), IsEmpty()) << width << " " << angle;
   }
+}
+
+/// Nothing is proven where two fit side by side at one end, where a wall ends before the strip does, or where both have
+/// arrived in the order in which they start.
+TEST(Passing, AStripIsNarrowOverItsWholeLength) {
+  const auto wedge = [](double left, double right) {
+    Scenario s;
+    test_scenes::add_wall(s, {{-5, 0}, {5, 0}, {5, right}, {-5, left}, {-5, 0}});
+    test_scenes::add_robot(s, {-3, 0.6}, {3, 0.6});
+    test_scenes::add_robot(s, {3, 0.6}, {-3, 0.6});
+    return s;
+  };
+  const std::vector<NoPassing> proofs = robots_without_passing(wedge(1.7, 1.98));
+  ASSERT_EQ(proofs.size(), 1u);
+  EXPECT_GT(proofs[0].strip, 1.9);
+  EXPECT_LT(proofs[0].strip, 1.98);
+  EXPECT_THAT(robots_without_passing(wedge(1.7, 2.3)), IsEmpty());
+  EXPECT_THAT(robots_without_passing(wedge(2.01, 2.01)), IsEmpty());
+
+  Scenario of_two_walls = wedge(1.9, 1.9);
+  std::get<geometry::Polyline>(of_two_walls.obstacles[0].shape).points = {{-5, 0},  {1, 0},    {5, 0},
+                                                                          {5, 1.9}, {-5, 1.9}, {-5, 0}};
+  EXPECT_EQ(robots_without_passing(of_two_walls).size(), 0u) << "not looked for along a wall of two edges";
+
+  Scenario to_the_middle = wedge(1.9, 1.9);
+  to_the_middle.robots[0].goals = {{0.5, 0.6}};
+  to_the_middle.robots[1].goals = {{-0.5, 0.6}};
+  EXPECT_EQ(robots_without_passing(to_the_middle).size(), 1u);
+  to_the_middle.arrival_tolerance = 1.5;
+  EXPECT_THAT(robots_without_passing(to_the_middle), IsEmpty());
+}
+
+TEST(Passing, OfDifferentRadii) {
+  const auto with_radii = [](double width, double a, double b) {
+    Scenario s = corridor(10.0, width);
+    test_scenes::add_robot(s, {-3, 0}, {3, 0});
+    test_scenes::add_robot(s, {3, 0}, {-3, 0});
+    s.robots[0].radius = a;
+    s.robots[1].radius = b;
+    return robots_without_passing(s);
+  };
+  EXPECT_EQ(with_radii(1.55, 0.5, 0.3).size(), 1u);
+  EXPECT_EQ(with_radii(1.55, 0.3, 0.5).size(), 1u);
+  EXPECT_THAT(with_radii(1.65, 0.5, 0.3), IsEmpty());
 }
 
 TEST(Passing, OfFourInAStripEachPairWhoseOrderChangesIsProven) {

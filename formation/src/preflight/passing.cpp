@@ -13,6 +13,7 @@
 
 #include "exactvo/geometry/distance.h"
 #include "preflight/open_window.h"
+#include "preflight/strip.h"
 #include "scene/edges_by_place.h"
 #include "steering/goals.h"
 
@@ -91,6 +92,8 @@ struct Cover {
 class Walls {
  public:
   explicit Walls(const std::vector<SceneObstacle>& obstacles) : edges_(obstacles) {}
+
+  const detail::EdgesByPlace& edges() const { return edges_; }
 
   /// Whether some edge is nearer than the radius to every point of the square; false where rounding leaves it open. The
   /// distance to an edge is convex, so that it is largest at a corner.
@@ -253,6 +256,7 @@ class Proofs {
   /// REQUIRES: both have little room.
   std::optional<NoPassing> of(std::size_t i, std::size_t j) {
     if (overlap_at_start(i, j)) return std::nullopt;
+    if (std::optional<NoPassing> proof = in_a_strip(i, j)) return proof;
     const double smaller = std::min(scenario_.robots[i].radius, scenario_.robots[j].radius);
     for (double side = coarsest_side(smaller); side >= kFinestSquare * smaller; side *= 0.5) {
       const Cover* of_i = cover_of(i, side);
@@ -261,7 +265,7 @@ class Proofs {
       const PairSearch found = search(traveller(i, *of_i), traveller(j, *of_j), pairs_left_);
       pairs_left_ -= std::min(pairs_left_, found.pairs);
       if (found.end == PairSearch::End::out_of_budget) return std::nullopt;
-      if (found.end == PairSearch::End::proven) return NoPassing{i, j, side, corners_of(*of_i), found.pairs};
+      if (found.end == PairSearch::End::proven) return NoPassing{i, j, side, corners_of(*of_i), found.pairs, 0.0};
     }
     return std::nullopt;
   }
@@ -273,6 +277,24 @@ class Proofs {
   bool overlap_at_start(std::size_t i, std::size_t j) const {
     const Robot &a = scenario_.robots[i], &b = scenario_.robots[j];
     return norm(a.position - b.position) < a.radius + b.radius;
+  }
+
+  std::optional<NoPassing> in_a_strip(std::size_t i, std::size_t j) {
+    // Wherever the larger one gets to, the smaller one has room too.
+    const auto [smaller, larger] =
+        scenario_.robots[i].radius <= scenario_.robots[j].radius ? std::pair(i, j) : std::pair(j, i);
+    const Cover* cover = cover_of(smaller, coarsest_side(scenario_.robots[smaller].radius));
+    if (!cover || !is_in(*cover, larger)) return std::nullopt;
+    std::vector<Vec2> squares = corners_of(*cover);
+    const std::optional<double> width =
+        detail::strip_that_keeps_order(disc(i), disc(j), squares, cover->side, walls_.edges());
+    if (!width) return std::nullopt;
+    return NoPassing{i, j, cover->side, std::move(squares), 0, *width};
+  }
+
+  detail::Disc disc(std::size_t i) const {
+    const Robot& r = scenario_.robots[i];
+    return {r.position, r.goals[0], detail::reach_of(scenario_, r, 0), r.radius};
   }
 
   bool is_in(const Cover& cover, std::size_t robot) const {
@@ -338,9 +360,13 @@ std::vector<NoPassing> robots_without_passing(const Scenario& scenario) {
 }
 
 std::string words_of(const Scenario& scenario, const NoPassing& proof) {
-  char text[120];
-  std::snprintf(text, sizeof text, " (proven: none of %zu pairs of squares of %g m leads there)", proof.pairs,
-                proof.side);
+  char text[160];
+  if (proof.strip > 0.0)
+    std::snprintf(text, sizeof text, " (proven: they are in a strip %g m wide, and side by side they take %g m)",
+                  proof.strip, 2.0 * (scenario.robots[proof.first].radius + scenario.robots[proof.second].radius));
+  else
+    std::snprintf(text, sizeof text, " (proven: none of %zu pairs of squares of %g m leads there)", proof.pairs,
+                  proof.side);
   return scenario.robots[proof.first].id + " and " + scenario.robots[proof.second].id +
          " cannot both reach their goals: they have no room to pass each other" + text;
 }

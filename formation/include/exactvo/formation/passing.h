@@ -13,9 +13,11 @@
 ///     | a |   |   | b |   ...    that shares a side or a corner with the one before
 ///     +---+---+---+---+
 ///
-/// If no such chain leads from where they start to their goals, no motion does. Certified: rounding only leaves more
-/// squares and pairs in. An answer without a pair says nothing: proofs are looked for only where robots have little
-/// room and overlap nothing at the start, and with a limited number of pairs.
+/// If no such chain leads from where they start to their goals, no motion does. Where the squares lie in a straight
+/// strip between two walls, too narrow for the two side by side, their order along it never changes, and no pair has to
+/// be looked at. Certified: rounding only leaves more squares and pairs in. An answer without a pair says nothing:
+/// proofs are looked for only where robots have little room and overlap nothing at the start, and with a limited number
+/// of pairs.
 
 #include <cstddef>
 #include <string>
@@ -31,7 +33,8 @@ struct NoPassing {
   std::size_t second = 0;     ///< the other one, > first
   double side = 0.0;          ///< m, of the squares
   std::vector<Vec2> squares;  ///< m, lower left corners, of those that cover the places of the first one
-  std::size_t pairs = 0;      ///< of squares, that the two may get to
+  std::size_t pairs = 0;      ///< of squares, that the two may get to; of none where they are in a strip
+  double strip = 0.0;         ///< m, width of the strip, rounded up; 0 without one
 };
 
 /// Pairs of robots that are proven not to be able to be at their goals together, in order; of robots with one goal, by

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+/// \file
+/// Two discs in a straight strip between two walls (docs/guide/liveness.md, lemma 6): where the strip is too narrow for
+/// them side by side, their order along it never changes.
+///
+///     A ---------------------------    along the wall A; at any time both discs are between A and B, so that their
+///        (1)     -->      (2)          middles are less than the width minus both radii apart across it. Level with
+///     B ---------------------------    each other they would overlap if that is less than the sum of the radii.
+///
+/// Certified: nothing is found where rounding leaves it open.
+
+#include <optional>
+#include <vector>
+
+#include "scene/edges_by_place.h"
+
+namespace exactvo::formation::detail {
+
+struct Disc {
+  Vec2 start;           ///< m
+  Vec2 goal;            ///< m
+  double reach = 0.0;   ///< m, of places that count as the goal
+  double radius = 0.0;  ///< m
+};
+
+/// The width, m, rounded up, of a strip in which the order of the discs cannot change and would have to. `squares`:
+/// lower left corners of squares of that side, m, that cover every place that the middle of either disc can get to. Of
+/// each square some point is a radius from every wall. REQUIRES: the side is at most half of the smaller radius.
+std::optional<double> strip_that_keeps_order(const Disc& first, const Disc& second, const std::vector<Vec2>& squares,
+                                             double side, const EdgesByPlace& walls);
+
+}  // namespace exactvo::formation::detail
