@@ -22,7 +22,6 @@
 #include "recorded.h"
 #include "results.h"
 #include "violation.h"
-#include "warm.h"
 
 namespace exactvo::bench {
 namespace {
@@ -36,7 +35,6 @@ struct Flags {
   std::string sets = "C10,C10f,C10i,C50,RF10,RF20,RI10,RI20,RI50";
   std::string instances;        ///< file: the sets "file", "filef", "filei", which are all sets unless some are named
   std::string json;             ///< file for Google Benchmark's compare.py
-  std::string warm;             ///< a recorded set: with and without the lines that bound a step before
   std::string target;           ///< widest SIMD target to run on ("AVX3", "AVX2", "SSE4"), "" for the best
   std::size_t adversarial = 0;  ///< problems a family and perturbation
   bool table = false;           ///< the figures to reach and what was measured, from the sets they need
@@ -317,10 +315,6 @@ int adversarial(const Flags& flags) {
 int arena(const Flags& flags) {
   forced_target = flags.target;
   if (flags.adversarial > 0) return adversarial(flags);
-  if (!flags.warm.empty()) {
-    run_warm(flags.warm, flags.rounds);
-    return 0;
-  }
   Results results;
   nlohmann::json out = {{"context", context(flags)}, {"benchmarks", nlohmann::json::array()}};
   std::printf("%s\n", out["context"].dump().c_str());
@@ -380,7 +374,6 @@ bool read_flags(int argc, char** argv, Flags& flags) {
   options.text("--instances", flags.instances, "A file of problems");
   options.text("--target", flags.target, "The widest SIMD target to run on (AVX3, AVX2, SSE4)");
   options.text("--json", flags.json, "A file for the results");
-  options.text("--warm", flags.warm, "A recorded set: with and without the lines that bound a step before");
   options.whole_number("--adversarial", flags.adversarial, 1, "Problems per family and perturbation; nothing is timed");
   options.whole_number("--seed", flags.seed, 0, "Of the generated sets");
   options.whole_number("--rounds", flags.rounds, 1, "Timed passes over a set");

@@ -162,32 +162,27 @@ bool is_recorded_set(const std::string& name) {
   return lines_of(name) > 0;
 }
 
-std::vector<Decision> record(const std::string& name) {
+std::vector<lp::Problem> record(const std::string& name, std::size_t most) {
   EXACTVO_REQUIRE(is_recorded_set(name), name);
   const int m = lines_of(name);
   Scenario scenario = name[0] == 'C' ? circle() : blocks();
-  std::vector<Decision> recorded;
+  std::vector<lp::Problem> all;
   const int robots = static_cast<int>(scenario.robots.size());
   for (int step = 0; step < scenario.most_steps && !all_arrived(scenario.robots); ++step) {
     std::vector<Vec2> next(scenario.robots.size());
     for (int k = 0; k < robots; ++k) {
       lp::Problem problem = decision(scenario, k, step, m);
       next[k] = lp::solve(problem).velocity;
-      if (static_cast<int>(problem.constraints.size()) == m) recorded.push_back({std::move(problem), k, step});
+      if (static_cast<int>(problem.constraints.size()) == m) all.push_back(std::move(problem));
     }
     for (int k = 0; k < robots; ++k) {
       scenario.robots[k].velocity = next[k];
       scenario.robots[k].position += kStep * next[k];
     }
   }
-  return recorded;
-}
-
-std::vector<lp::Problem> record(const std::string& name, std::size_t most) {
-  std::vector<Decision> all = record(name);
   const std::size_t count = std::min(most, all.size());
   std::vector<lp::Problem> kept;
-  for (std::size_t k = 0; k < count; ++k) kept.push_back(std::move(all[k * all.size() / count].problem));
+  for (std::size_t k = 0; k < count; ++k) kept.push_back(std::move(all[k * all.size() / count]));
   return kept;
 }
 

@@ -17,20 +17,10 @@
 
 namespace exactvo::bench {
 
-/// One decision of one robot; `robot` and `step` say whose and when, so that the decision before can be looked up.
-struct Decision {
-  lp::Problem problem;
-  int robot = 0;
-  int step = 0;
-};
-
 /// Whether `name` is C<m> or B<m> with an m from the list above.
 bool is_recorded_set(const std::string& name);
 
-/// Every decision with exactly m lines, in order of time. REQUIRES: is_recorded_set.
-std::vector<Decision> record(const std::string& name);
-
-/// The same, evenly thinned to at most `most`.
+/// Every decision with exactly m lines, in order of time, evenly thinned to at most `most`. REQUIRES: is_recorded_set.
 std::vector<lp::Problem> record(const std::string& name, std::size_t most);
 
 }  // namespace exactvo::bench

@@ -221,25 +221,6 @@ TEST_P(Kinds, LanesAreProvenInTheSamePass) {
   }
 }
 
-/// Any hint: that of the answer itself, of another problem, nonsense.
-TEST_P(Kinds, HintsChangeNoVerdictAndNoCertificate) {
-  Batch<double> cold(mixture(GetParam()));
-  solve_batch(cold.in(), cold.out(), 0, cold.problems().size());
-  std::vector<std::int32_t> others(cold.active.rbegin(), cold.active.rend());
-  others[3] = 1000000;
-  others[5] = -7;
-  for (const std::vector<std::int32_t>& hint : {cold.active, others}) {
-    Batch<double> warm(mixture(GetParam()));
-    BatchProblems<double> in = warm.in();
-    in.hint = hint.data();
-    in.hint_stride = hint.size() / 3;
-    solve_batch(in, warm.out(), 0, warm.problems().size());
-    EXPECT_EQ(warm.status, cold.status);
-    for (std::size_t i = 0; i < warm.problems().size(); ++i)
-      ASSERT_TRUE(certify(warm.problems()[i], warm.solution(i)).has_value()) << text_of(warm.problems()[i]);
-  }
-}
-
 TEST(Batch, AdversarialVerdictsAreRightWhereProofIsAskedFor) {
   for (const std::string& family : adversarial_families()) {
     for (const char* perturbation : {"1e-6", "1e-9", "1e-12", "1e-15", "1e-17", "0"}) {
@@ -382,90 +363,6 @@ TEST(Batch, AmongWallsNothingViolatesTheSoftLinesLess) {
     ASSERT_NEAR(s.violation, right.violation, 1e-11) << text_of(problem);
   }
   EXPECT_GT(relaxed, 15000u);
-}
-
-/// Two equal lines that bind, of which a walk without hints names the first, and a line between them that holds.
-Problem twice_the_same() {
-  Problem p;
-  p.bound.disc = 2.0;
-  p.preferred = {1.5, 0.25};
-  for (const double offset : {-0.5, -1.75, -0.5}) p.constraints.push_back({{{-1.0, 0.0}, offset}, Priority::soft, -1});
-  return p;
-}
-
-template <class T, class Run>
-void expect_hints_followed(Run run) {
-  Batch<T> batch(std::vector<Problem>(45, twice_the_same()));
-  std::vector<std::int32_t> hints(3 * batch.status.size(), kNoLine);
-  for (std::size_t i = 0; i < 45; i += 2) hints[i] = 2;
-  BatchProblems<T> in = batch.in();
-  in.hint = hints.data();
-  in.hint_stride = batch.status.size();
-  run(in, batch.out());
-  for (std::size_t i = 0; i < 45; ++i) {
-    EXPECT_EQ(batch.active[i], i % 2 == 0 ? 2 : 0) << i;
-    EXPECT_NEAR(static_cast<double>(batch.vx[i]), 0.5, 1e-5);  // 24 u of float and its last digit
-  }
-}
-
-const auto all_at_once = [](const auto& in, const auto& out) { solve_batch(in, out, 0, in.count); };
-const auto on_threads = [](const auto& in, const auto& out) { solve_batch_parallel(in, out); };
-const auto in_pieces = [](const auto& in, const auto& out) {
-  for (std::size_t first = 0; first < in.count; first += 7) solve_batch(in, out, first, std::min(in.count, first + 7));
-};
-
-TEST(Batch, TheWalkBeginsAtTheHint) {
-  for (const char* target : {"", "AVX2", "SSE4", "SSE2"}) {
-    if (!limit_batch_target(target)) continue;
-    expect_hints_followed<double>(all_at_once);
-    expect_hints_followed<double>(on_threads);
-    expect_hints_followed<double>(in_pieces);
-    expect_hints_followed<float>(all_at_once);
-    expect_hints_followed<float>(on_threads);
-    expect_hints_followed<float>(in_pieces);
-  }
-  ASSERT_TRUE(limit_batch_target(""));
-}
-
-TEST_P(Kinds, HintedLanesAreProvenAndTheSameOnEveryWay) {
-  Batch<double> cold(mixture(GetParam()));
-  solve_batch(cold.in(), cold.out(), 0, cold.problems().size());
-  const std::vector<std::int32_t> hints(cold.active.rbegin(), cold.active.rend());
-  const auto solved = [&](auto run) {
-    Batch<double> warm(mixture(GetParam()));
-    std::vector<std::uint8_t> proven(warm.status.size());
-    BatchProblems<double> in = warm.in();
-    in.hint = hints.data();
-    in.hint_stride = hints.size() / 3;
-    BatchAnswers<double> out = warm.out();
-    out.proven = proven.data();
-    run(in, out);
-    EXPECT_EQ(static_cast<std::size_t>(std::count(proven.begin(), proven.end(), 1)), warm.problems().size());
-    EXPECT_EQ(warm.status, cold.status);
-    return warm;
-  };
-  const Batch<double> widest = solved(all_at_once);
-  for (const char* target : {"", "AVX2", "SSE4"}) {
-    if (!limit_batch_target(target)) continue;
-    for (const Batch<double>& other : {solved(all_at_once), solved(on_threads), solved(in_pieces)}) {
-      EXPECT_EQ(other.vx, widest.vx);
-      EXPECT_EQ(other.vy, widest.vy);
-      EXPECT_EQ(other.active, widest.active);
-    }
-  }
-  ASSERT_TRUE(limit_batch_target(""));
-}
-
-TEST(Batch, HintsThatNumbersOf32BitsCannotReachAreRefused) {
-  Batch<double> batch(generate("RF10", 4, 1));
-  const std::vector<std::int32_t> hints(3 * batch.status.size(), kNoLine);
-  BatchProblems<double> in = batch.in();
-  in.hint = hints.data();
-  in.hint_stride = batch.status.size();
-  in.block = std::size_t{1} << 28U;
-  EXPECT_THROW(solve_batch(in, batch.out(), 0, 0), std::logic_error);
-  in.hint = nullptr;
-  EXPECT_NO_THROW(solve_batch(in, batch.out(), 0, 0));
 }
 
 template <class T>

@@ -66,9 +66,6 @@ namespace {
 /// Problems a task: some microseconds of work, a multiple of every lane count.
 constexpr std::size_t kGrain = 1024;
 
-/// Lines of a block that hints may point into.
-constexpr std::size_t kMostHintedBlock = std::size_t{1} << 31U;
-
 template <class T>
 Problem problem_at(const BatchProblems<T>& in, std::size_t i) {
   Problem problem;
@@ -117,12 +114,8 @@ void require_arrays(const BatchProblems<T>& in, const BatchAnswers<T>& out, std:
       first <= last && last <= in.count && (in.block >= in.count || in.block % kMostLanes == 0) && in.block > 0 &&
           in.count <= out.stride,
       "problems " + std::to_string(first) + " to " + std::to_string(last) + " of " + std::to_string(in.count));
-  EXACTVO_REQUIRE(!in.hint || in.lines == 0 || in.block <= kMostHintedBlock / in.lines,
-                  "hints in a block of " + std::to_string(in.block) + " problems of " + std::to_string(in.lines) +
-                      " lines: they are fetched by numbers of 32 bits");
   EXACTVO_REQUIRE(in.disc && in.preferred_x && in.preferred_y && out.velocity_x && out.velocity_y && out.violation &&
-                      out.status && (!in.hint || in.hint_stride >= in.count) &&
-                      (in.lines == 0 || (in.normal_x && in.normal_y && in.offset)),
+                      out.status && (in.lines == 0 || (in.normal_x && in.normal_y && in.offset)),
                   "an array that is null or too short");
 }
 

@@ -107,67 +107,12 @@ class Lockstep {
     for_all(states, packs, [this](PackState& w) { price_all<2>(w); });
   }
 
-  /// The lines that bound last time enter first, unseen.
-  HWY_INLINE void follow_hints(PackStates& states, std::size_t packs) {
-    for_all(states, packs, [this](PackState& w) { follow<0>(w); });
-    for_all(states, packs, [this](PackState& w) { follow<1>(w); });
-    for_all(states, packs, [this](PackState& w) { follow<2>(w); });
-    for_all(states, packs, [this](PackState& w) {
-      w.searching = hn::AndNot(hn::Or(w.gone, w.pack.relaxing), w.lanes);
-      relax(w);
-      price_all<0>(w);
-    });
-  }
-
-  template <int kSlot>
-  HWY_INLINE void follow(PackState& state) {
-    Pack<D>& p = state.pack;
-    const M still = hn::AndNot(hn::Or(state.gone, p.relaxing), state.lanes);
-    p.entering = hinted(state, kSlot);
-    const V by = excess(p.entering, p.vx, p.vy);
-    state.searching = hn::And(hn::And(still, p.exists(p.entering)), hn::Gt(by, hn::Sub(p.noise, p.slack)));
-    p.entering.c = hn::Add(p.entering.c, p.slack);
-    search<kSlot>(state);
-  }
-
-  HWY_INLINE LineV<D> hinted(const PackState& state, std::size_t slot) const {
-    const D d;
-    const hn::Rebind<std::int32_t, D> words;
-    const auto number = hint_numbers(static_cast<std::size_t>(hn::GetLane(state.pack.id)), slot);
-    const auto known = hn::And(hn::Gt(number, hn::Set(words, kNoLine)),
-                               hn::Lt(number, hn::Set(words, static_cast<std::int32_t>(in_.lines))));
-    const auto stride = hn::Set(words, static_cast<std::int32_t>(state.rows.stride));
-    const auto at = hn::Add(hn::Mul(hn::IfThenElseZero(known, number), stride), hn::Iota(words, 0));
-    const V index = from_words(hn::IfThenElse(known, number, hn::Set(words, kNoLine)));
-    const M exists = hn::Ge(index, hn::Zero(d));
-    const V c = gather(state.rows.c, at);
-    return {hn::IfThenElseZero(exists, gather(state.rows.x, at)), hn::IfThenElseZero(exists, gather(state.rows.y, at)),
-            hn::IfThenElse(exists, c, hn::Set(d, T(-1))), index};
-  }
-
-  HWY_INLINE auto hint_numbers(std::size_t first, std::size_t slot) const {
-    const hn::Rebind<std::int32_t, D> words;
-    const std::int32_t* hints = in_.hint + slot * in_.hint_stride;
-    if (first + kLanes <= in_.count) return hn::LoadU(words, hints + first);
-    HWY_ALIGN std::int32_t some[kLanes];
-    for (std::size_t lane = 0; lane < kLanes; ++lane) some[lane] = hints[std::min(first + lane, in_.count - 1)];
-    return hn::LoadU(words, some);
-  }
-
   template <class Words>
   static HWY_INLINE V from_words(Words words) {
     if constexpr (sizeof(T) == 8)
       return hn::PromoteTo(D(), words);
     else
       return hn::ConvertTo(D(), words);
-  }
-
-  template <class Words>
-  static HWY_INLINE V gather(const T* base, Words at) {
-    if constexpr (sizeof(T) == 8)
-      return hn::GatherIndex(D(), base, hn::PromoteTo(hn::RebindToSigned<D>(), at));
-    else
-      return hn::GatherIndex(D(), base, at);
   }
 
   /// Two rounds, with no line and with one in hand, then as many as it takes.
@@ -177,10 +122,7 @@ class Lockstep {
       w.pack.start();
     });
     for_all(states, packs, [this](PackState& w) { turn_away(w); });
-    if (in_.hint)
-      follow_hints(states, packs);
-    else
-      first_rounds(states, packs);
+    first_rounds(states, packs);
     PackState* busy[kPacks];
     std::size_t count = 0;
     for (std::size_t k = 0; k < packs; ++k) {

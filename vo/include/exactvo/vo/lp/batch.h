@@ -36,11 +36,6 @@ struct BatchProblems {
   const T* preferred_y = nullptr;      ///< m/s, [i]
   const T* disc = nullptr;             ///< m/s, [i], finite, > 0
   const std::int32_t* hard = nullptr;  ///< [i]: the first so many lines are hard; null: none
-  /// Where the walk begins, laid out as BatchAnswers::active: the numbers that the lines which bound a moment ago have
-  /// now, kNoLine for those that are gone. It saves rounds, though mostly not time (docs/guide/linear-program.md); the
-  /// answer promises the same, only its last digits may differ. May be null. REQUIRES: block * lines <= 2^31.
-  const std::int32_t* hint = nullptr;
-  std::size_t hint_stride = 0;  ///< as BatchAnswers::stride
 };
 
 /// Index of nothing in `active`.
