@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "exactvo/geometry/box.h"
 #include "exactvo/geometry/distance.h"
+#include "routes/piece_tree.h"
 #include "routes/signs.h"
 
 namespace exactvo::geometry::routing {
@@ -66,77 +66,6 @@ class DiametralDisc {
   const Point& v_;
   const Point& a_;
   const Point& b_;
-};
-
-/// The edges of the graph and its isolated vertices, by place: a binary tree of boxes. A disc that touches a row of
-/// vertices in one of them meets few of its boxes, where a grid or a window would look at the whole row.
-class SiteTree {
- public:
-  explicit SiteTree(const CellMap& map) {
-    const auto add = [&](int a, int b) {
-      Site site{{}, a, b};
-      site.box.add(map.vertex(a).rounded());
-      site.box.add(map.vertex(b).rounded());
-      sites_.push_back(site);
-    };
-    for (const PlanarGraph::Edge& e : map.graph.edges) add(e.a, e.b);
-    for (const int v : map.graph.isolated) add(v, v);
-    split(0, sites_.size());
-  }
-
-  /// Calls f(a, b) for all sites ab that may come within r of m, while it returns true. False where f did.
-  template <typename F>
-  bool for_each_near(Vec2 m, double r, const F& f) const {
-    // More than the roundings of m, r and of vertices.
-    const double reach = r + 0x1p-40 * std::max({std::fabs(m.x), std::fabs(m.y), r});
-    std::vector<std::size_t> pending{0};
-    while (!pending.empty()) {
-      const std::size_t number = pending.back();
-      const Node& node = nodes_[number];
-      pending.pop_back();
-      if (distance_below(node.box, m) > reach) continue;
-      if (node.second != 0) {
-        pending.push_back(node.second);
-        pending.push_back(number + 1);
-        continue;
-      }
-      for (std::size_t k = node.first; k < node.last; ++k)
-        if (distance_below(sites_[k].box, m) <= reach && !f(sites_[k].a, sites_[k].b)) return false;
-    }
-    return true;
-  }
-
- private:
-  struct Site {
-    Box box;
-    int a, b;
-  };
-  struct Node {
-    Box box;
-    std::size_t first, last;  ///< of the sites
-    std::size_t second = 0;   ///< the second child; the first is the next node; 0: a leaf
-  };
-  static constexpr std::size_t kLeaf = 8;
-
-  void split(std::size_t first, std::size_t last) {
-    const std::size_t number = nodes_.size();
-    nodes_.push_back({{}, first, last});
-    for (std::size_t k = first; k < last; ++k) nodes_[number].box.add(sites_[k].box);
-    if (last - first <= kLeaf) return;
-    const Vec2 size = nodes_[number].box.high - nodes_[number].box.low;
-    const auto middle = sites_.begin() + static_cast<std::ptrdiff_t>((first + last) / 2);
-    std::nth_element(sites_.begin() + static_cast<std::ptrdiff_t>(first), middle,
-                     sites_.begin() + static_cast<std::ptrdiff_t>(last), [&](const Site& p, const Site& q) {
-                       return size.x > size.y ? p.box.low.x + p.box.high.x < q.box.low.x + q.box.high.x
-                                              : p.box.low.y + p.box.high.y < q.box.low.y + q.box.high.y;
-                     });
-    split(first, (first + last) / 2);
-    nodes_[number].second = nodes_.size();
-    split((first + last) / 2, last);
-  }
-
-  std::vector<Site> sites_;
-  std::vector<Node> nodes_;
 };
 
 /// Where a wall is to be cut so that fewer sides of triangles lie across the Links that end on it.
@@ -346,11 +275,12 @@ class LinkSearch {
   }
 
   bool is_gabriel_by_place(int a, int b, const DiametralDisc& disc) {
-    if (!sites_) sites_.emplace(map_);
+    if (!pieces_) pieces_.emplace(map_);
     const Vec2 v = point(vertex_).rounded(), p = point(a).rounded(), d = point(b).rounded() - p;
-    const Vec2 to_foot = cross(d, v - p) / squared_norm(d) * Vec2{d.y, -d.x};
-    return sites_->for_each_near(v + 0.5 * to_foot, 0.5 * norm(to_foot), [&](int x, int y) {
+    const Vec2 to_foot = cross(d, v - p) / squared_norm(d) * Vec2{d.y, -d.x}, middle = v + 0.5 * to_foot;
+    return pieces_->for_each_near(middle, middle, 0.5 * norm(to_foot), [&](int piece) {
       ++steps;
+      const auto [x, y] = map_.ends_of(piece);
       return (x == a && y == b) || (x == b && y == a) || !meets(x, y, a, b, disc);
     });
   }
@@ -395,7 +325,7 @@ class LinkSearch {
   std::vector<std::size_t> reached_in_;  ///< of a triangle: the last search that reached it
   std::vector<int> reached_;
   std::size_t searches_ = 0;
-  std::optional<SiteTree> sites_;  ///< made when it is first needed
+  std::optional<PieceTree> pieces_;  ///< made when it is first needed
 };
 
 /// Feet of Links from vertices all over the map, as many as the steps allow. The stride is prime and larger than any

@@ -61,6 +61,8 @@ class PieceTree {
           width(norm(d) * r) {}
     bool meets(const Box& box) const {
       if (box.high.x < low.x || box.low.x > high.x || box.high.y < low.y || box.low.y > high.y) return false;
+      // A disc that touches a row of pieces in one point meets few boxes, its own box all of them.
+      if (d == Vec2{}) return distance_below(box, a) <= reach;
       const Vec2 middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
       constexpr double kRounding = 1.0 + 0x1p-40;  // of each term; that of `middle` is in `reach`
       return std::fabs(cross(d, middle - a)) <= kRounding * (width + std::fabs(d.x) * half.y + std::fabs(d.y) * half.x);
