@@ -55,7 +55,7 @@ struct CornersOf {
 /// A body as a robot sees it.
 class Sight {
  public:
-  Sight(const Body& body, Vec2 from, Vec2 velocity, double time_step, const BodyQuery& query)
+  Sight(const Body& body, Vec2 from, Vec2 velocity, double time_step, const ObstacleQuery& query)
       : body_(body),
         from_(from),
         query_(query),
@@ -74,14 +74,14 @@ class Sight {
 
   bool is_beyond(double range) const { return geometry::norm(nearest({})) - body_.round - error_ > range; }
 
-  BodyLine best_line() {
+  ObstacleLine best_line() {
     const Vec2 way = horizon_ * (query_.velocity - velocity_);
     try_normal(refined(direction(way - nearest(way)), way), 0.0);
     if (is_inside(way))
       for (std::size_t k = 0; k < body_.normals.size(); ++k) try_face(k);
     try_leg(1.0);
     try_leg(-1.0);
-    BodyLine line = rounded(found_);
+    ObstacleLine line = line_with(found_, query_);
     const double support = least_ < kInfinity ? support_above(line.normal) : 1.0;
     if (!(support <= 0.0)) return facing();
     set_offset(line, std::min(0.0, support / horizon_ * kTowardsZero));
@@ -184,14 +184,8 @@ class Sight {
     try_normal(leg, error_);
   }
 
-  BodyLine rounded(Vec2 n) const {
-    BodyLine line;
-    line.normal = query_.float_normals ? rounded_to_floats(n) : n;
-    return line;
-  }
-
   /// n.(v - w) >= relative, as a bound of n.v.
-  void set_offset(BodyLine& line, double relative) const {
+  void set_offset(ObstacleLine& line, double relative) const {
     line.offset = relative;
     if (!body_.moves) return;
     const double x = line.normal.x * velocity_.x, y = line.normal.y * velocity_.y;
@@ -199,7 +193,7 @@ class Sight {
   }
 
   /// Too near for anything else: not nearer to a body at rest; from one that moves away within the step.
-  BodyLine facing() const {
+  ObstacleLine facing() const {
     const Vec2 near = nearest({});
     Vec2 n = refined(direction(-near), {});
     double least = kInfinity;
@@ -210,7 +204,7 @@ class Sight {
         n = refined(body_.normals[k], {});
       }
     if (n == Vec2{}) n = {1.0, 0.0};
-    BodyLine line = rounded(n);
+    ObstacleLine line = line_with(n, query_);
     const double support = support_above(line.normal);
     line.touching = !(support <= 0.0);
     set_offset(line, body_.moves ? std::max(0.0, support) / time_step_ * kAwayFromZero : 0.0);
@@ -219,7 +213,7 @@ class Sight {
 
   const Body& body_;
   Vec2 from_;
-  const BodyQuery& query_;
+  const ObstacleQuery& query_;
   const geometry::Ellipse* ellipse_;
   Vec2 velocity_;
   double time_step_, horizon_;
@@ -315,7 +309,7 @@ std::size_t Bodies::bytes() const {
   return sum + 4 * (still_number_.capacity() + moving_number_.capacity());
 }
 
-void Bodies::add_line(std::uint32_t number, const BodyQuery& query, std::vector<BodyLine>& out) const {
+void Bodies::add_line(std::uint32_t number, const ObstacleQuery& query, std::vector<ObstacleLine>& out) const {
   const Body& body = bodies_[number];
   // Exact: whole steps of the lattice, and a power of two.
   const Vec2 from = position_step_ * Vec2{static_cast<double>(query.x - body.x), static_cast<double>(query.y - body.y)};
@@ -325,16 +319,16 @@ void Bodies::add_line(std::uint32_t number, const BodyQuery& query, std::vector<
   Sight sight(body, from, velocity, time_step_, query);
   if (sight.is_beyond(range)) return;
   out.push_back(sight.best_line());
-  out.back().body = number;
+  out.back().obstacle = number;
 }
 
-std::size_t Bodies::lines(const BodyQuery& query, std::vector<std::uint32_t>& near, std::vector<BodyLine>& out) const {
+std::size_t Bodies::lines(const ObstacleQuery& query, std::vector<std::uint32_t>& near,
+                          std::vector<ObstacleLine>& out) const {
   out.clear();
-  const Vec2 place = position_step_ * Vec2{static_cast<double>(query.x), static_cast<double>(query.y)};
   const auto add = [&](const geometry::BoxGrid& grid, const std::vector<std::uint32_t>& numbers, double reach) {
     if (numbers.empty()) return;
     near.clear();
-    grid.for_each_within(place, reach * kWiden, [&](std::size_t k) { near.push_back(numbers[k]); });
+    grid.for_each_within(query.position, reach * kWiden, [&](std::size_t k) { near.push_back(numbers[k]); });
     std::sort(near.begin(), near.end());
     for (const std::uint32_t number : near) add_line(number, query, out);
   };

@@ -15,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "crowd/edges.h"
 #include "exactvo/formation/crowd.h"
 #include "exactvo/geometry/box_grid.h"
 #include "exactvo/geometry/shapes.h"
@@ -32,24 +33,6 @@ struct Body {
   std::vector<Vec2> normals;    ///< outward, of the edge from corner k to the next; 0 where these are one point
   double round = 0.0;           ///< m, that the hull is grown by: of a disc its radius
   geometry::Box box;            ///< m, round it where it was added
-};
-
-/// What asks for half-planes.
-struct BodyQuery {
-  std::int32_t x = 0, y = 0;   ///< lattice
-  Vec2 velocity;               ///< m/s
-  double radius = 0.0;         ///< m
-  double still_horizon = 0.0;  ///< s, of bodies at rest
-  double horizon = 0.0;        ///< s, of those that move
-  double max_speed = 0.0;      ///< m/s
-  bool float_normals = false;  ///< normals are to be floats
-};
-
-struct BodyLine {
-  Vec2 normal;             ///< of the precision asked for
-  double offset = 0.0;     ///< m/s, rounded up; <= 0 against a body at rest
-  std::uint32_t body = 0;  ///< in the order of `Bodies`
-  bool touching = false;   ///< the disc meets the body, or all but
 };
 
 /// By their ids.
@@ -77,10 +60,10 @@ class Bodies {
   /// many are at rest. Certified: a velocity that satisfies one meets the body not within the horizon if they do not
   /// touch. One that touches: not nearer to a body at rest; apart from one that moves at the end of the step.
   /// `near` is scratch.
-  std::size_t lines(const BodyQuery& query, std::vector<std::uint32_t>& near, std::vector<BodyLine>& out) const;
+  std::size_t lines(const ObstacleQuery& query, std::vector<std::uint32_t>& near, std::vector<ObstacleLine>& out) const;
 
  private:
-  void add_line(std::uint32_t number, const BodyQuery& query, std::vector<BodyLine>& out) const;
+  void add_line(std::uint32_t number, const ObstacleQuery& query, std::vector<ObstacleLine>& out) const;
 
   double position_step_, time_step_;
   std::vector<Body> bodies_;  ///< by id

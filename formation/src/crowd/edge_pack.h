@@ -14,7 +14,7 @@ namespace exactvo::formation::crowd {
 /// Edges of a cell that a lane has room for.
 inline constexpr std::size_t kMostPackEdges = 96;
 
-/// Lane by lane what EdgeQuery says of one robot.
+/// Lane by lane what ObstacleQuery says of one robot.
 template <class T>
 struct EdgePackQuery {
   const Segment* edges = nullptr;

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "exactvo/geometry/vec2.h"
+#include "crowd/edges.h"
 
 namespace exactvo::formation::crowd::edge_rounding {
 
@@ -52,6 +52,13 @@ inline geometry::Vec2 direction(geometry::Vec2 a) {
 }
 inline geometry::Vec2 rounded_to_floats(geometry::Vec2 v) {
   return {rounded_to_float(v.x), rounded_to_float(v.y)};
+}
+
+/// With a normal of the precision asked for, and no offset yet.
+inline ObstacleLine line_with(geometry::Vec2 normal, const ObstacleQuery& query) {
+  ObstacleLine line;
+  line.normal = query.float_normals ? rounded_to_floats(normal) : normal;
+  return line;
 }
 
 }  // namespace exactvo::formation::crowd::edge_rounding

@@ -52,7 +52,7 @@ Segment cut(const Segment& s, double far) {
 /// The edge from the robot, and what is asked.
 class Cone {
  public:
-  Cone(const Segment& seen, double range, const EdgeQuery& query)
+  Cone(const Segment& seen, double range, const ObstacleQuery& query)
       : seen_(cut(seen, kCutRanges * range)),
         query_(query),
         size_(magnitude(seen) + query.radius),
@@ -67,16 +67,16 @@ class Cone {
     return std::max(dot(n, seen_.a), dot(n, seen_.b)) + query_.radius * length + error_;
   }
 
-  EdgeLine best_line() {
+  ObstacleLine best_line() {
     // The cut-offs at the ends of the edge.
-    try_normal(direction(query_.horizon * query_.velocity - seen_.a));
-    try_normal(direction(query_.horizon * query_.velocity - seen_.b));
+    try_normal(direction(query_.still_horizon * query_.velocity - seen_.a));
+    try_normal(direction(query_.still_horizon * query_.velocity - seen_.b));
     const Vec2 across = direction(geometry::perp(seen_.b - seen_.a));
     try_normal(across);
     try_normal(-across);
     try_legs(seen_.a);
     try_legs(seen_.b);
-    EdgeLine line = rounded(found_);
+    ObstacleLine line = line_with(found_, query_);
     if (least_ < std::numeric_limits<double>::infinity() && set_offset(line)) return line;
     return facing();
   }
@@ -97,46 +97,40 @@ class Cone {
   void try_normal(Vec2 n, double room = 0.0) {
     const double support = std::max(dot(n, seen_.a), dot(n, seen_.b)) + grown_;
     if (!(support <= room)) return;
-    const double depth = support - query_.horizon * dot(n, query_.velocity);
+    const double depth = support - query_.still_horizon * dot(n, query_.velocity);
     if (!(depth < least_)) return;
     least_ = depth;
     found_ = n;
   }
 
-  EdgeLine rounded(Vec2 n) const {
-    EdgeLine line;
-    line.normal = query_.float_normals ? rounded_to_floats(n) : n;
-    return line;
-  }
-
   /// False where the normal as rounded does not separate robot and edge.
-  bool set_offset(EdgeLine& line) const {
+  bool set_offset(ObstacleLine& line) const {
     const double support = support_above(line.normal);
     if (!(support <= 0.0)) return false;
-    line.offset = std::min(0.0, (support + kSharedVertex * error_) / query_.horizon * kTowardsZero);
+    line.offset = std::min(0.0, (support + kSharedVertex * error_) / query_.still_horizon * kTowardsZero);
     return true;
   }
 
   /// Not nearer to the edge: where it is too near for anything else.
-  EdgeLine facing() const {
+  ObstacleLine facing() const {
     Vec2 n = direction(-nearest_point(seen_));
     if (n == Vec2{}) n = direction(geometry::perp(seen_.b - seen_.a));
     if (n == Vec2{}) n = {1.0, 0.0};
-    EdgeLine line = rounded(n);
+    ObstacleLine line = line_with(n, query_);
     line.touching = !(support_above(line.normal) <= 0.0);
     return line;
   }
 
   Segment seen_;
-  const EdgeQuery& query_;
+  const ObstacleQuery& query_;
   double size_, error_, grown_ = 0.0;
   double least_ = std::numeric_limits<double>::infinity();
   Vec2 found_;
 };
 
 /// Whether an earlier half-plane excludes all that meets this edge.
-bool is_covered(const Cone& cone, const std::vector<EdgeLine>& lines, double horizon) {
-  return std::any_of(lines.begin(), lines.end(), [&](const EdgeLine& line) {
+bool is_covered(const Cone& cone, const std::vector<ObstacleLine>& lines, double horizon) {
+  return std::any_of(lines.begin(), lines.end(), [&](const ObstacleLine& line) {
     const double support = cone.support_above(line.normal);
     return !line.touching && support <= horizon * line.offset * kAwayFromZero;
   });
@@ -209,26 +203,27 @@ std::size_t EdgeGrid::bytes() const {
   return edges_.capacity() * sizeof(Segment) + 4 * (start_.capacity() + items_.capacity());
 }
 
-void edge_lines(const EdgeGrid& grid, const EdgeQuery& query, std::vector<NearEdge>& near, std::vector<EdgeLine>& out) {
+void edge_lines(const EdgeGrid& grid, const ObstacleQuery& query, std::vector<NearEdge>& near,
+                std::vector<ObstacleLine>& out) {
   out.clear();
   near.clear();
-  const double range = (query.horizon * query.max_speed + query.radius) * kWiden;
+  const double range = (query.still_horizon * query.max_speed + query.radius) * kWiden;
   const auto seen = [&](std::uint32_t edge) {
     return Segment{grid.edges()[edge].a - query.position, grid.edges()[edge].b - query.position};
   };
   std::uint32_t place = grid.near(query.position).first;
   grid.for_near(query.position, [&](std::uint32_t edge) {
     const double squared = squared_distance(seen(edge));
-    if (squared <= range * range) near.push_back({squared, place});
+    if (squared <= range * range) near.emplace_back(squared, place);
     ++place;
   });
   std::sort(near.begin(), near.end());
-  for (const NearEdge& n : near) {
-    const std::uint32_t edge = grid.items()[n.place];
+  for (const auto& [squared, at] : near) {
+    const std::uint32_t edge = grid.items()[at];
     Cone cone(seen(edge), range, query);
-    if (is_covered(cone, out, query.horizon)) continue;
+    if (is_covered(cone, out, query.still_horizon)) continue;
     out.push_back(cone.best_line());
-    out.back().edge = edge;
+    out.back().obstacle = edge;
   }
 }
 

@@ -12,6 +12,7 @@
 /// none.
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "exactvo/geometry/shapes.h"
@@ -60,30 +61,31 @@ class EdgeGrid {
   double cell_ = 1.0, per_cell_ = 1.0, columns_ = 0.0, rows_ = 0.0, reach_ = 0.0;
 };
 
-/// What asks for half-planes.
-struct EdgeQuery {
+/// The robot that asks for half-planes against edges and bodies.
+struct ObstacleQuery {
+  std::int32_t x = 0, y = 0;   ///< lattice, of `position`
   Vec2 position, velocity;     ///< m, m/s
   double radius = 0.0;         ///< m
-  double horizon = 0.0;        ///< s
+  double still_horizon = 0.0;  ///< s, of edges and bodies at rest
+  double horizon = 0.0;        ///< s, of bodies that move
   double max_speed = 0.0;      ///< m/s
   bool float_normals = false;  ///< normals are to be floats
 };
 
-struct EdgeLine {
-  Vec2 normal;          ///< of the precision asked for
-  double offset = 0.0;  ///< m/s, <= 0, rounded up
-  std::uint32_t edge = 0;
-  bool touching = false;  ///< the disc meets the edge, or all but: nothing is promised
+/// A half-plane against an edge or a body.
+struct ObstacleLine {
+  Vec2 normal;                 ///< of the precision asked for
+  double offset = 0.0;         ///< m/s, rounded up; <= 0 against what stands still
+  std::uint32_t obstacle = 0;  ///< number of the edge or body
+  bool touching = false;       ///< the disc meets it, or all but: nothing is promised of an edge
 };
 
-struct NearEdge {
-  double squared;
-  std::uint32_t place;  ///< in the grid's items
-  bool operator<(const NearEdge& o) const { return squared != o.squared ? squared < o.squared : place < o.place; }
-};
+/// An edge by its squared distance, m^2, and its place in the grid's items.
+using NearEdge = std::pair<double, std::uint32_t>;
 
 /// Half-planes against all edges that can be met within the horizon, nearest first. Certified: a velocity that
 /// satisfies them all meets no edge within it that is not touching. `near` is scratch.
-void edge_lines(const EdgeGrid& grid, const EdgeQuery& query, std::vector<NearEdge>& near, std::vector<EdgeLine>& out);
+void edge_lines(const EdgeGrid& grid, const ObstacleQuery& query, std::vector<NearEdge>& near,
+                std::vector<ObstacleLine>& out);
 
 }  // namespace exactvo::formation::crowd

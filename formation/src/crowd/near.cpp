@@ -25,7 +25,7 @@ void everybody_near(const Robots& robots, std::size_t robot, double reach, std::
       const auto dx = static_cast<float>(robots.x[j] - robots.x[robot]),
                  dy = static_cast<float>(robots.y[j] - robots.y[robot]);
       const float squared = without_number(dx * dx + dy * dy);
-      if (squared <= farthest) near.push_back({squared, static_cast<std::int32_t>(j)});
+      if (squared <= farthest) near.emplace_back(squared, static_cast<std::int32_t>(j));
     }
   }
   std::sort(near.begin(), near.end());
@@ -41,13 +41,13 @@ bool neighbours_of(const Robots& robots, const ReachTable& table, std::size_t ro
   reach = std::max(reach, std::sqrt(static_cast<double>(table.reach[kind])) * (1.0 + 0x1p-10));
   for (;; reach = std::min(table.window[kind], reach * kWiderReach)) {
     everybody_near(robots, robot, reach, near);
-    const bool full = near.size() >= most && static_cast<double>(near[most - 1].squared) <= reach * reach * kWholeKey;
+    const bool full = near.size() >= most && static_cast<double>(near[most - 1].first) <= reach * reach * kWholeKey;
     if (full || reach >= table.window[kind]) break;
   }
-  last = near.size() >= most ? near[most - 1].squared : table.none[kind];
+  last = near.size() >= most ? near[most - 1].first : table.none[kind];
   std::size_t count = 0;
-  while (count < near.size() && near[count].squared < table.none[kind] &&
-         (count < most || near[count].squared < table.reach[kind]))
+  while (count < near.size() && near[count].first < table.none[kind] &&
+         (count < most || near[count].first < table.reach[kind]))
     ++count;
   near.resize(count);
   return count > most || (count == most && last < table.reach[kind]);

@@ -5,6 +5,7 @@
 /// The neighbours of one robot, however many: by the order that packs have (packs.h).
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "crowd/kinds.h"
@@ -12,12 +13,8 @@
 
 namespace exactvo::formation::crowd {
 
-/// A robot near another, by cut squared distance and place in the sorted order.
-struct Near {
-  float squared;  ///< lattice steps
-  std::int32_t robot;
-  bool operator<(const Near& o) const { return squared != o.squared ? squared < o.squared : robot < o.robot; }
-};
+/// A robot near another, by cut squared distance (lattice steps) and place in the sorted order.
+using Near = std::pair<float, std::int32_t>;
 
 /// Into `near`, nearest first: the k nearest, k the number of neighbours of the robot's kind, and all that can be met
 /// within the step. `last`: the squared distance (lattice steps) of the k-th. True where k or more can be met.

@@ -57,7 +57,7 @@ CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b,
   float last = 0;
   d.widened = neighbours_of(crowd_.robots, table_, robot, b.near, last);
   d.hint = hint_of(table_, last, crowd_.robots.kind(robot));
-  lines_of_edges(robot, b);
+  edge_lines(crowd_.edges, query_of(robot), b.near_edges, b.edge_lines);
   b.body_lines.clear();
   b.still = 0;
   if (!crowd_.bodies.empty()) lines_of_bodies(robot, b);
@@ -74,41 +74,32 @@ CrowdDecision OneRobot<T>::decide(std::size_t robot, Vec2 preferred, Buffers& b,
   return d;
 }
 
-/// Into b.edge_lines.
 template <class T>
-void OneRobot<T>::lines_of_edges(std::size_t robot, Buffers& b) const {
-  const CrowdKind& kind = kind_of(robot);
+ObstacleQuery OneRobot<T>::query_of(std::size_t robot) const {
+  const CrowdKind& kind = crowd_.kinds[crowd_.robots.kind(robot)];
   const Robots& robots = crowd_.robots;
-  EdgeQuery query;
-  query.position = {crowd_.options.position_step * robots.x[robot], crowd_.options.position_step * robots.y[robot]};
-  query.velocity = crowd_.velocity_of(robots.mx[robot], robots.my[robot]);
-  query.radius = kind.radius;
-  query.horizon = edge_horizon(kind);
-  query.max_speed = kind.max_speed;
-  query.float_normals = sizeof(T) == 4;
-  edge_lines(crowd_.edges, query, b.near_edges, b.edge_lines);
-}
-
-template <class T>
-void OneRobot<T>::lines_of_bodies(std::size_t robot, Buffers& b) const {
-  const CrowdKind& kind = kind_of(robot);
-  const Robots& robots = crowd_.robots;
-  BodyQuery query;
+  ObstacleQuery query;
   query.x = robots.x[robot];
   query.y = robots.y[robot];
+  query.position = {crowd_.options.position_step * query.x, crowd_.options.position_step * query.y};
   query.velocity = crowd_.velocity_of(robots.mx[robot], robots.my[robot]);
   query.radius = kind.radius;
   query.still_horizon = edge_horizon(kind);
   query.horizon = kind.time_horizon;
   query.max_speed = kind.max_speed;
   query.float_normals = sizeof(T) == 4;
-  b.still = crowd_.bodies.lines(query, b.near_bodies, b.body_lines);
+  return query;
+}
+
+template <class T>
+void OneRobot<T>::lines_of_bodies(std::size_t robot, Buffers& b) const {
+  b.still = crowd_.bodies.lines(query_of(robot), b.near_bodies, b.body_lines);
 }
 
 /// Returns the half-plane without what covers the rounding to the lattice.
 template <class T>
-template <class Line>
-geometry::HalfPlane OneRobot<T>::put_row(const Line& line, std::size_t robot, std::size_t row, Buffers& b) const {
+geometry::HalfPlane OneRobot<T>::put_row(const ObstacleLine& line, std::size_t robot, std::size_t row,
+                                         Buffers& b) const {
   const std::size_t to = row * kPack;
   put(line, robot, b.row_x[to], b.row_y[to], b.row_c[to]);
   return {line.normal, static_cast<double>(b.row_c[to]) - table_.spare};
@@ -117,15 +108,15 @@ geometry::HalfPlane OneRobot<T>::put_row(const Line& line, std::size_t robot, st
 template <class T>
 void OneRobot<T>::put_obstacles(std::size_t robot, Buffers& b, CrowdExplanation* words) const {
   for (std::size_t k = 0; k < b.edge_lines.size(); ++k) {
-    const EdgeLine& line = b.edge_lines[k];
+    const ObstacleLine& line = b.edge_lines[k];
     const geometry::HalfPlane h = put_row(line, robot, k, b);
-    if (words) words->edges.push_back({crowd_.edges.edges()[line.edge], h, line.touching});
+    if (words) words->edges.push_back({crowd_.edges.edges()[line.obstacle], h, line.touching});
   }
   for (std::size_t k = 0; k < b.body_lines.size(); ++k) {
-    const BodyLine& line = b.body_lines[k];
+    const ObstacleLine& line = b.body_lines[k];
     const std::size_t row = b.edge_lines.size() + k + (k < b.still ? 0 : b.near.size());
     const geometry::HalfPlane h = put_row(line, robot, row, b);
-    if (words) words->bodies.push_back({crowd_.bodies.all()[line.body].id, h, line.touching});
+    if (words) words->bodies.push_back({crowd_.bodies.all()[line.obstacle].id, h, line.touching});
   }
 }
 
@@ -140,7 +131,7 @@ bool OneRobot<T>::put_neighbours(std::size_t robot, std::size_t first, Buffers& 
   alignas(64) float none[kPack];
   Ranked ranked;
   for (std::size_t lane = 0; lane < kPack; ++lane) {
-    const auto j = static_cast<std::size_t>(b.near[first + std::min(lane, count - 1)].robot);
+    const auto j = static_cast<std::size_t>(b.near[first + std::min(lane, count - 1)].second);
     others.x[lane] = robots.x[j];
     others.y[lane] = robots.y[j];
     others.mx[lane] = robots.mx[j];
@@ -158,7 +149,7 @@ bool OneRobot<T>::put_neighbours(std::size_t robot, std::size_t first, Buffers& 
   alignas(64) T x[kPack], y[kPack], c[kPack];
   const LineFlags flags = make_lines(rule_, query, LineRows<T>{x, y, c, kPack});
   for (std::size_t lane = 0; lane < count; ++lane) {
-    const auto other = static_cast<std::size_t>(b.near[first + lane].robot);
+    const auto other = static_cast<std::size_t>(b.near[first + lane].second);
     if (flags.coincident >> lane & 1U) part(robot, other, x[lane], y[lane], c[lane]);
     const std::size_t to = (b.edge_lines.size() + b.still + first + lane) * kPack;
     b.row_x[to] = x[lane];

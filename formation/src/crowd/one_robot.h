@@ -32,9 +32,9 @@ template <class T>
 struct OneRobotBuffers {
   std::vector<crowd::Near> near;
   std::vector<crowd::NearEdge> near_edges;
-  std::vector<crowd::EdgeLine> edge_lines;
+  std::vector<crowd::ObstacleLine> edge_lines;
   std::vector<std::uint32_t> near_bodies;
-  std::vector<crowd::BodyLine> body_lines;
+  std::vector<crowd::ObstacleLine> body_lines;
   std::size_t still = 0;                ///< of body_lines, the first: against bodies at rest
   crowd::Array<T> row_x, row_y, row_c;  ///< half-planes of edges and bodies at rest, of robots, of bodies that move
 };
@@ -59,9 +59,8 @@ class OneRobot {
   CrowdMotion settled(std::size_t robot, const crowd::Answers<T>& in, std::uint8_t status, std::int32_t hard,
                       CrowdMotion m) const;
 
-  /// An EdgeLine or a BodyLine as a row.
-  template <class Line>
-  void put(const Line& line, std::size_t robot, T& x, T& y, T& c) const {
+  /// As a row.
+  void put(const crowd::ObstacleLine& line, std::size_t robot, T& x, T& y, T& c) const {
     x = static_cast<T>(line.normal.x);
     y = static_cast<T>(line.normal.y);
     c = std::max(table_.least_offset[crowd_.robots.kind(robot)],
@@ -70,10 +69,9 @@ class OneRobot {
 
  private:
   const CrowdKind& kind_of(std::size_t robot) const { return crowd_.kinds[crowd_.robots.kind(robot)]; }
-  void lines_of_edges(std::size_t robot, Buffers& b) const;
+  crowd::ObstacleQuery query_of(std::size_t robot) const;
   void put_obstacles(std::size_t robot, Buffers& b, CrowdExplanation* words) const;
-  template <class Line>
-  geometry::HalfPlane put_row(const Line& line, std::size_t robot, std::size_t row, Buffers& b) const;
+  geometry::HalfPlane put_row(const crowd::ObstacleLine& line, std::size_t robot, std::size_t row, Buffers& b) const;
   bool put_neighbours(std::size_t robot, std::size_t first, Buffers& b, CrowdExplanation* words) const;
   void part(std::size_t robot, std::size_t other, T& x, T& y, T& c) const;
   CrowdMotion solve(std::size_t robot, Vec2 preferred, std::size_t lines, std::int32_t hard, const Buffers& b) const;

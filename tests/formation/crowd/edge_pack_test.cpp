@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kRobots = 4000, kRings = 12;
 
 struct Robot {
-  EdgeQuery query;
+  ObstacleQuery query;
 };
 
 struct Setting {
@@ -36,15 +36,15 @@ Setting setting() {
   std::vector<Segment> edges;
   double reach = 0.0;
   for (std::size_t k = 0; k < kRobots; ++k) {
-    EdgeQuery q;
+    ObstacleQuery q;
     q.position = {0x1p-18 * std::floor(0x1p18 * 200.0 * random()), 0x1p-18 * std::floor(0x1p18 * 200.0 * random())};
     const double kind = std::floor(3.0 * random());
     q.radius = 0.25 + 0.25 * kind;
-    q.horizon = 1.0 + 1.5 * kind;
+    q.still_horizon = 1.0 + 1.5 * kind;
     q.max_speed = 1.5;
     const Vec2 velocity = {random() - 0.5, random() - 0.5};
     q.velocity = k % 9 == 0 ? Vec2{} : 1.5 * velocity;
-    reach = std::max(reach, q.horizon * q.max_speed + q.radius);
+    reach = std::max(reach, q.still_horizon * q.max_speed + q.radius);
     s.robots.push_back({q});
   }
   for (std::size_t k = 0; k < 1500; ++k) {
@@ -83,7 +83,7 @@ Setting setting() {
       const Vec2 out = {std::cos(0.26 * j), std::sin(0.26 * j)};
       edges.push_back({centre + 1.5 * out, centre + 1.7 * out});
     }
-    EdgeQuery& q = s.robots[10 * k].query;
+    ObstacleQuery& q = s.robots[10 * k].query;
     q.position = centre + Vec2{0.125 * random(), 0.125 * random()};
     q.velocity = {};
   }
@@ -111,13 +111,13 @@ std::unique_ptr<Pack<T>> lines_of_pack(const Setting& s, std::size_t first, Edge
   query.items = s.grid.items().data();
   query.slack = static_cast<T>(kSlack);
   for (std::size_t lane = 0; lane < kPack; ++lane) {
-    const EdgeQuery& q = s.robots[first + lane].query;
+    const ObstacleQuery& q = s.robots[first + lane].query;
     query.x[lane] = q.position.x;
     query.y[lane] = q.position.y;
     query.vx[lane] = q.velocity.x;
     query.vy[lane] = q.velocity.y;
     query.radius[lane] = q.radius;
-    query.horizon[lane] = q.horizon;
+    query.horizon[lane] = q.still_horizon;
     query.max_speed[lane] = q.max_speed;
     query.least[lane] = static_cast<T>(-1.0);  // binds now and then
     const EdgeGrid::Range near = s.grid.near(q.position);
@@ -135,12 +135,12 @@ void expect_the_same(const std::string& target) {
   const Setting s = setting();
   EdgePackTable table;
   std::vector<NearEdge> near;
-  std::vector<EdgeLine> alone;
+  std::vector<ObstacleLine> alone;
   std::size_t lines = 0, overflows = 0, touching = 0, crowded = 0;
   for (std::size_t first = 0; first < kRobots; first += kPack) {
     const auto pack = lines_of_pack<T>(s, first, table);
     for (std::size_t lane = 0; lane < kPack; ++lane) {
-      EdgeQuery query = s.robots[first + lane].query;
+      ObstacleQuery query = s.robots[first + lane].query;
       query.float_normals = sizeof(T) == 4;
       const EdgeGrid::Range cell = s.grid.near(query.position);
       if (cell.last - cell.first > kMostPackEdges) {
