@@ -7,7 +7,7 @@
 #include "exactvo/geometry/infinity.h"
 #include "exactvo/vo/lp/certificate.h"
 #include "lp/proof/double_double.h"
-#include "lp/proof/exact_number.h"
+#include "lp/proof/exact_points.h"
 #include "lp/proof/rounded_gap.h"
 #include "lp/sets/generated_sets.h"
 #include "problem_text.h"
@@ -53,8 +53,8 @@ TEST(DoubleDouble, SumsAndProductsOfDoublesAreExact) {
   test::SeededRandom random(test::seed_of_run(20262));
   for (int k = 0; k < 100000; ++k) {
     const double a = random_twofold(random).high, b = random_twofold(random).high;
-    ASSERT_EQ(sign_of(exact(exact_sum(a, b)) - Exact(a) - Exact(b)), 0) << std::hexfloat << a << ' ' << b;
-    ASSERT_EQ(sign_of(exact(exact_product(a, b)) - Exact(a) * Exact(b)), 0) << std::hexfloat << a << ' ' << b;
+    ASSERT_EQ(sign_of(exact(two_sum(a, b)) - Exact(a) - Exact(b)), 0) << std::hexfloat << a << ' ' << b;
+    ASSERT_EQ(sign_of(exact(two_product(a, b)) - Exact(a) * Exact(b)), 0) << std::hexfloat << a << ' ' << b;
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `convex_pieces` of hull.h: chooses a method, asks CGAL or triangulation.cpp, and proves every answer
+// `convex_pieces` of hull.h: chooses a method, asks CGAL or merged_triangles.cpp, and proves every answer
 // (partition_certificate.h) before it is given.
 #define CGAL_DEBUG 1  // assertions on whatever the build: see proved_pieces_by_cgal
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "cgal_guard.h"
+#include "division/merged_triangles.h"
 #include "division/partition_certificate.h"
-#include "division/triangulation.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/names.h"
 #include "exactvo/geometry/predicates.h"

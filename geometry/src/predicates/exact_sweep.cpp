@@ -9,7 +9,7 @@ namespace {
 using Point = Vector<Exact>;
 
 int turn(const Point& a, const Point& b, const Point& c) {
-  return static_cast<int>(sign_of(cross_of(minus(b, a), minus(c, a))));
+  return static_cast<int>(sign_of(cross(b - a, c - a)));
 }
 
 bool cross_properly(const Point& a, const Point& b, const Point& c, const Point& d) {
@@ -44,15 +44,15 @@ bool hull_meets(const std::vector<Point>& v, const Exact& r, const Point& end) {
 }  // namespace
 
 Sign distance_sign(const Point& q, const Point& a, const Point& b, const Exact& r) {
-  const Point e = minus(b, a);
-  const Point d = minus(q, a);
-  const Exact along = dot_of(d, e);
-  const Exact length2 = dot_of(e, e);
+  const Point e = b - a;
+  const Point d = q - a;
+  const Exact along = dot(d, e);
+  const Exact length2 = dot(e, e);
   const Exact r2 = r * r;
-  if (sign_of(along) != Sign::positive) return sign_of(dot_of(d, d) - r2);
-  const Point f = minus(q, b);
-  if (!(along < length2)) return sign_of(dot_of(f, f) - r2);
-  return sign_of(squared(cross_of(e, d)) - r2 * length2);
+  if (sign_of(along) != Sign::positive) return sign_of(dot(d, d) - r2);
+  const Point f = q - b;
+  if (!(along < length2)) return sign_of(dot(f, f) - r2);
+  return sign_of(squared(cross(e, d)) - r2 * length2);
 }
 
 bool segment_meets_exactly(const GrownShape& s, const Vector<Exact>& d, const Exact& t) {

@@ -36,7 +36,7 @@ SeparationCubic<T> separation_cubic(const Ellipse& e, const T& radius, const Vec
   const T trace = l11 * l11 + l21 * l21 + l22 * l22;
   const T det = squared(T(l11 * l22));
   const T Q = squared(T(l22 * u.x)) + squared(T(l11 * u.y - l21 * u.x));
-  return {trace + R - dot_of(u, u), det + R * trace - Q, R * det};
+  return {trace + R - dot(u, u), det + R * trace - Q, R * det};
 }
 
 template <typename T>
@@ -52,14 +52,14 @@ Place place_of(Sign distance_minus_radius) {
 Place locate_capsule(const Ellipse& e, const Vector<Exact>& u, const Exact& r) {
   // l22 = 0: { (l11, l21) w }, seen from the point.
   const Vector<Exact> h{Exact(e.l11), Exact(e.l21)};
-  const Vector<Exact> a = minus(u, h);
-  const Exact along = Exact(0) - dot_of(a, h);
-  const Exact length2 = dot_of(h, h);
+  const Vector<Exact> a = u - h;
+  const Exact along = Exact(0) - dot(a, h);
+  const Exact length2 = dot(h, h);
   // The foot of the point lies at a + 2 h along / (2 |h|^2).
-  if (sign_of(along) != Sign::positive) return place_of(sign_of(dot_of(a, a) - r * r));
+  if (sign_of(along) != Sign::positive) return place_of(sign_of(dot(a, a) - r * r));
   const Vector<Exact> b{u.x + h.x, u.y + h.y};
-  if (!(along < Exact(2) * length2)) return place_of(sign_of(dot_of(b, b) - r * r));
-  return place_of(sign_of(squared(cross_of(h, a)) - r * r * length2));
+  if (!(along < Exact(2) * length2)) return place_of(sign_of(dot(b, b) - r * r));
+  return place_of(sign_of(squared(cross(h, a)) - r * r * length2));
 }
 
 /// l11 = 0: the vertical segment of squared half-length m = l21^2 + l22^2, grown by r.
@@ -67,7 +67,7 @@ Place locate_vertical(const Ellipse& e, const Vector<Exact>& u, const Exact& r) 
   const Exact m = squared(Exact(e.l21)) + squared(Exact(e.l22));
   if (!(m < squared(u.y))) return place_of(sign_of(squared(u.x) - r * r));
   // Beyond an end: ux^2 + (|uy| - sqrt m)^2 - r^2 = k - 2 |uy| sqrt m.
-  const Exact k = dot_of(u, u) + m - r * r;
+  const Exact k = dot(u, u) + m - r * r;
   if (sign_of(k) == Sign::negative) return Place::inside;
   return place_of(sign_of(k * k - Exact(4) * squared(u.y) * m));
 }
@@ -135,22 +135,12 @@ bool locate_rounded(const Ellipse& e, Vec2 u, Vec2 size, double r, Place& place)
 }
 
 Place locate_exactly(const Ellipse& e, const GrownShape& s, const Vector<Exact>& q) {
-  return locate_ellipse_exact(e, minus(difference<Exact>(e.center, s.origin), q), Exact(s.radius));
+  return locate_ellipse_exact(e, difference<Exact>(e.center, s.origin) - q, Exact(s.radius));
 }
 
 namespace {
 
 // --- The segment [0, t_max direction] against ellipse (+) disc, exactly ---
-
-/// Sign of A + B sqrt(f), f >= 0.
-Sign sign_with_root(const Exact& a, const Exact& b, const Exact& f) {
-  const Sign sa = sign_of(a);
-  const Sign sb = sign_of(f) == Sign::zero ? Sign::zero : sign_of(b);
-  if (sa == sb || sb == Sign::zero) return sa;
-  if (sa == Sign::zero) return sb;
-  const Sign larger = sign_of(a * a - b * b * f);
-  return larger == Sign::positive ? sa : larger == Sign::negative ? sb : Sign::zero;
-}
 
 /// Where the line through 0 along v meets ellipse (+) disc: the parameter t of one point of the chord, as
 /// t |v|^2 (b + sqrt f) = (p.v)(b + sqrt f) - (N.p)(v.Sigma N), N = perp(v), b = N.Sigma N, f = b r^2 |N|^2.
@@ -167,10 +157,10 @@ ChordPoint chord_point(const Ellipse& e, const GrownShape& s, const Vector<Exact
   const Exact l11(e.l11), l21(e.l21), l22(e.l22);
   const Vector<Exact> ln{l11 * normal.x + l21 * normal.y, l22 * normal.y};
   const Vector<Exact> ld{l11 * d.x + l21 * d.y, l22 * d.y};
-  const Exact b = dot_of(ln, ln);
-  const Exact length2 = dot_of(d, d);
-  const Exact pv = dot_of(p, d);
-  const Exact tilt = dot_of(normal, p) * dot_of(ld, ln);
+  const Exact b = dot(ln, ln);
+  const Exact length2 = dot(d, d);
+  const Exact pv = dot(p, d);
+  const Exact tilt = dot(normal, p) * dot(ld, ln);
   // b = 0: the ellipse is a segment along v (or a point); the chord holds the foot of its centre.
   if (sign_of(b) == Sign::zero) return {pv, Exact(0), length2, Exact(0), Exact(0)};
   return {pv * b - tilt, pv, length2 * b, length2, b * squared(Exact(s.radius)) * length2};
@@ -180,11 +170,11 @@ ChordPoint chord_point(const Ellipse& e, const GrownShape& s, const Vector<Exact
 bool line_meets(const Ellipse& e, const GrownShape& s, const Vector<Exact>& v) {
   const Vector<Exact> p = difference<Exact>(e.center, s.origin);
   const Vector<Exact> n{Exact(0) - v.y, v.x};
-  Exact k = dot_of(n, p);
+  Exact k = dot(n, p);
   if (sign_of(k) == Sign::positive) k = Exact(0) - k;
   const Exact wx = Exact(e.l11) * n.x + Exact(e.l21) * n.y;
   const Exact wy = Exact(e.l22) * n.y;
-  return sign_with_two_roots(k, wx * wx + wy * wy, squared(Exact(s.radius)) * dot_of(n, n)) != Sign::negative;
+  return sign_with_two_roots(k, wx * wx + wy * wy, squared(Exact(s.radius)) * dot(n, n)) != Sign::negative;
 }
 
 // --- The same in doubles ---

@@ -7,6 +7,7 @@
 
 #include "exact/exact_vector.h"
 #include "exactvo/geometry/support.h"
+#include "predicates/exact_sweep.h"
 
 namespace exactvo::geometry::detail {
 namespace {
@@ -58,18 +59,6 @@ Sign rounded_distance(const Seen& q, const Seen& a, const Seen& b, double r, boo
   return filtered(c * c - r2 * length2, kSquares * size_e * size_e * (size_d * size_d + r2) + kUnderflowRoom, known);
 }
 
-Sign exact_distance(const Vector<Exact>& q, const Vector<Exact>& a, const Vector<Exact>& b, const Exact& r) {
-  const Vector<Exact> e = minus(b, a);
-  const Vector<Exact> d = minus(q, a);
-  const Exact dot_de = dot_of(d, e);
-  const Exact length2 = dot_of(e, e);
-  const Exact r2 = r * r;
-  if (sign_of(dot_de) != Sign::positive) return sign_of(dot_of(d, d) - r2);
-  const Vector<Exact> f = minus(q, b);
-  if (!(dot_de < length2)) return sign_of(dot_of(f, f) - r2);
-  return sign_of(squared(cross_of(e, d)) - r2 * length2);
-}
-
 }  // namespace
 
 /// The sign of the turn a -> b -> c.
@@ -81,7 +70,7 @@ Sign GrownPolygon::turn(const Seen& a, const Seen& b, const Seen& c) const {
   if (known) return sign;
   was_exact_ = true;
   const Vector<Exact> p = exactly(a);
-  return sign_of(cross_of(minus(exactly(b), p), minus(exactly(c), p)));
+  return sign_of(cross(exactly(b) - p, exactly(c) - p));
 }
 
 /// The sign of dist(q, [a, b]) - r.
@@ -90,7 +79,7 @@ Sign GrownPolygon::distance_to_segment(const Seen& q, const Seen& a, const Seen&
   const Sign sign = rounded_distance(q, a, b, radius_, known);
   if (known) return sign;
   was_exact_ = true;
-  return exact_distance(exactly(q), exactly(a), exactly(b), Exact(radius_));
+  return distance_sign(exactly(q), exactly(a), exactly(b), Exact(radius_));
 }
 
 /// The nearest point of a convex polygon lies on an edge that q is not strictly left of; where there is none, q is

@@ -39,10 +39,8 @@ namespace {
 
 using detail::count_exact;
 using detail::count_filter;
-using detail::cross_of;
 using detail::decided;
 using detail::difference;
-using detail::dot_of;
 using detail::Exact;
 using detail::FilterAnswer;
 using detail::GrownPolygon;
@@ -89,7 +87,7 @@ struct SupportParts {
 };
 
 Exact exact_offset(Vec2 n, Vec2 x, Vec2 origin) {
-  return dot_of(make<Exact>(n), difference<Exact>(x, origin));
+  return dot(make<Exact>(n), difference<Exact>(x, origin));
 }
 
 Exact farthest(const std::vector<Vec2>& vertices, Vec2 n, Vec2 origin) {
@@ -102,7 +100,7 @@ Exact farthest(const std::vector<Vec2>& vertices, Vec2 n, Vec2 origin) {
 }
 
 Exact exact_squared_norm(Vec2 n) {
-  return dot_of(make<Exact>(n), make<Exact>(n));
+  return dot(make<Exact>(n), make<Exact>(n));
 }
 
 SupportParts parts_of(const GrownShape& s, Vec2 n) {
@@ -149,8 +147,8 @@ struct Locator {
   [[gnu::noinline, gnu::cold]] Sign disc_exactly(const Disc& disc) const {
     count_exact();
     require_valid(s);
-    const Vector<Exact> u = detail::minus(difference<Exact>(disc.center, s.origin), make<Exact>(q));
-    return sign_of(dot_of(u, u) - squared(Exact(disc.radius) + Exact(s.radius)));
+    const Vector<Exact> u = difference<Exact>(disc.center, s.origin) - make<Exact>(q);
+    return sign_of(dot(u, u) - squared(Exact(disc.radius) + Exact(s.radius)));
   }
   /// Sign of |centre - origin - q|^2 - (sum of the radii)^2.
   Sign disc_sign(const Disc& disc) const {
@@ -224,8 +222,8 @@ T evolute_polynomial(const Ellipse& e, Vec2 goal, double factor) {
   // tr^2 - 4 det as a sum of squares.
   const T spread = squared(T(s11 - s22)) + T(4) * squared(s12);
   const T f = T(factor);
-  const T x = dot_of(u, su) - f * spread;
-  return x * x * x + T(27) * f * det * squared(cross_of(u, su));
+  const T x = dot(u, su) - f * spread;
+  return x * x * x + T(27) * f * det * squared(cross(u, su));
 }
 
 [[gnu::noinline, gnu::cold]] Sign sign_of_support_exactly(const GrownShape& s, Vec2 n, double tau, double c) {
@@ -293,7 +291,7 @@ Sign orientation(Vec2 a, Vec2 b, Vec2 c) {
   EXACTVO_REQUIRE(is_finite(a) && is_finite(b) && is_finite(c), show(a));
   return filtered_sign([&](auto number) {
     using T = decltype(number);
-    return T(cross_of(difference<T>(b, a), difference<T>(c, a)));
+    return T(cross(difference<T>(b, a), difference<T>(c, a)));
   });
 }
 

@@ -14,12 +14,9 @@
 namespace exactvo::geometry {
 namespace {
 
-using detail::cross_of;
 using detail::difference;
-using detail::dot_of;
 using detail::Exact;
 using detail::make;
-using detail::minus;
 using detail::sign_of;
 using detail::squared;
 using Point = detail::Vector<Exact>;
@@ -94,16 +91,16 @@ struct Flat {
 };
 
 void add_edges(const std::vector<Point>& v, std::vector<Point>& out) {
-  for (std::size_t i = 0; i < v.size(); ++i) out.push_back(minus(v[(i + 1) % v.size()], v[i]));
+  for (std::size_t i = 0; i < v.size(); ++i) out.push_back(v[(i + 1) % v.size()] - v[i]);
 }
 
 /// Whether all of `a` has a smaller n.x than all of the sweep.
 bool lies_before(const Flat& a, const Sweep& b, const Point& n) {
-  Exact most = dot_of(n, a.vertices.front());
-  for (const Point& v : a.vertices) most = std::max(most, dot_of(n, v));
-  Exact least = dot_of(n, b.start.front());
-  for (const Point& v : b.start) least = std::min(least, dot_of(n, v));
-  const Exact along = dot_of(n, b.step);
+  Exact most = dot(n, a.vertices.front());
+  for (const Point& v : a.vertices) most = std::max(most, dot(n, v));
+  Exact least = dot(n, b.start.front());
+  for (const Point& v : b.start) least = std::min(least, dot(n, v));
+  const Exact along = dot(n, b.step);
   if (sign_of(along) == Sign::negative) least = least + along;
   return detail::sign_with_two_roots(most - least, squared(n.y) * a.tall, Exact(0)) == Sign::negative;
 }
@@ -127,7 +124,7 @@ bool apart(const Flat& a, const Sweep& b) {
 
 /// The plane mapped so that the ellipse becomes a disc of radius |det L| round 0: x -> adj(L) (x - centre).
 Point mapped(const Ellipse& e, const Point& x) {
-  const Point u = minus(x, make<Exact>(e.center));
+  const Point u = x - make<Exact>(e.center);
   return {Exact(e.l22) * u.x, Exact(e.l11) * u.y - Exact(e.l21) * u.x};
 }
 
@@ -148,7 +145,7 @@ bool disc_meets(const Sweep& b, const Exact& radius) {
 bool meets(const Disc& d, Sweep seen) {
   const Point c = make<Exact>(d.center);
   for (auto* corners : {&seen.start, &seen.end})
-    for (Point& p : *corners) p = minus(p, c);
+    for (Point& p : *corners) p = p - c;
   return disc_meets(seen, Exact(d.radius));
 }
 
@@ -157,7 +154,7 @@ bool meets(const Ellipse& e, const Sweep& sweep) {
   Sweep seen;
   for (const Point& p : sweep.start) seen.start.push_back(mapped(e, p));
   for (const Point& p : sweep.end) seen.end.push_back(mapped(e, p));
-  seen.step = minus(seen.end.front(), seen.start.front());
+  seen.step = seen.end.front() - seen.start.front();
   const Exact det = Exact(e.l11) * Exact(e.l22);
   return disc_meets(seen, sign_of(det) == Sign::negative ? Exact(0) - det : det);
 }
@@ -194,7 +191,7 @@ bool segment_meets(const GrownShape& s, const VectorSum& direction, double t_max
   const double extent = extent_of(s.shape) + size_of(s.origin) + s.radius;
   const Vec2 whole = rounded(direction);
   const double t = time_beyond(t_max, whole, extent);
-  if (std::isfinite(t) && is_zero(minus(d, make<Exact>(whole)))) return segment_meets(s, whole, t);
+  if (std::isfinite(t) && is_zero(d - make<Exact>(whole))) return segment_meets(s, whole, t);
   detail::count_exact();
   return detail::segment_meets_exactly(s, d, finite_time(t_max, d, extent));
 }

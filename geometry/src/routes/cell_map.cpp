@@ -14,8 +14,8 @@ namespace {
 template <typename Convert>
 std::pair<NumberOf<Convert>, NumberOf<Convert>> crossing(const CellMap& map, const Link& link, const Point& x,
                                                          const Point& y, Convert to) {
-  const auto d = minus(to(map.vertex(link.b)), to(map.vertex(link.a)));
-  return {dot_of(minus(to(map.vertex(link.vertex)), to(x)), d), dot_of(minus(to(y), to(x)), d)};
+  const auto d = to(map.vertex(link.b)) - to(map.vertex(link.a));
+  return {dot(to(map.vertex(link.vertex)) - to(x), d), dot(to(y) - to(x), d)};
 }
 
 /// Whether one Link crosses the side before another does. Degree 8.
@@ -312,8 +312,8 @@ void CellMap::number_sides() {
 
 Point CellMap::foot(const Link& link) const {
   const Vector<Rational> v = vertex(link.vertex).exact(), a = vertex(link.a).exact(), b = vertex(link.b).exact();
-  const Vector<Rational> d = minus(b, a);
-  const Rational share = dot_of(minus(v, a), d) / dot_of(d, d);
+  const Vector<Rational> d = b - a;
+  const Rational share = dot(v - a, d) / dot(d, d);
   return {Rational(a.x + share * d.x), Rational(a.y + share * d.y)};
 }
 

@@ -22,9 +22,9 @@ class DiametralDisc {
   bool holds(const Point& u) const {
     return sign_of([&](auto to) -> NumberOf<decltype(to)> {
              using N = NumberOf<decltype(to)>;
-             const auto d = minus(to(b_), to(a_)), w = minus(to(v_), to(u));
-             const N h = cross_of(d, minus(to(v_), to(a_)));
-             return dot_of(d, d) * dot_of(w, w) - h * cross_of(d, w);
+             const auto d = to(b_) - to(a_), w = to(v_) - to(u);
+             const N h = cross(d, to(v_) - to(a_));
+             return dot(d, d) * dot(w, w) - h * cross(d, w);
            }) <= 0;
   }
 
@@ -36,9 +36,7 @@ class DiametralDisc {
 
   /// Whether the ray from v to u leads into the disc: (u - v).(foot - v) > 0.
   bool entered_from_v_towards(const Point& u) const {
-    return sign_of([&](auto to) -> NumberOf<decltype(to)> {
-             return cross_of(minus(to(u), to(v_)), minus(to(b_), to(a_)));
-           }) > 0;
+    return sign_of([&](auto to) -> NumberOf<decltype(to)> { return cross(to(u) - to(v_), to(b_) - to(a_)); }) > 0;
   }
 
  private:
@@ -46,20 +44,20 @@ class DiametralDisc {
   int middle_is_beyond(const Point& p, const Point& x, const Point& y) const {
     return sign_of([&](auto to) -> NumberOf<decltype(to)> {
       using N = NumberOf<decltype(to)>;
-      const auto d = minus(to(b_), to(a_)), e = minus(to(y), to(x));
-      const N h = cross_of(d, minus(to(v_), to(a_)));
-      return to(2.0) * dot_of(d, d) * dot_of(minus(to(v_), to(p)), e) - h * cross_of(d, e);
+      const auto d = to(b_) - to(a_), e = to(y) - to(x);
+      const N h = cross(d, to(v_) - to(a_));
+      return to(2.0) * dot(d, d) * dot(to(v_) - to(p), e) - h * cross(d, e);
     });
   }
 
   bool line_meets(const Point& x, const Point& y) const {
     return sign_of([&](auto to) -> NumberOf<decltype(to)> {
              using N = NumberOf<decltype(to)>;
-             const auto d = minus(to(b_), to(a_)), e = minus(to(y), to(x));
-             const N h = cross_of(d, minus(to(v_), to(a_)));
-             const N dd = dot_of(d, d);
-             const N g = to(2.0) * dd * cross_of(e, minus(to(v_), to(x))) - h * dot_of(e, d);
-             return h * h * dd * dot_of(e, e) - g * g;
+             const auto d = to(b_) - to(a_), e = to(y) - to(x);
+             const N h = cross(d, to(v_) - to(a_));
+             const N dd = dot(d, d);
+             const N g = to(2.0) * dd * cross(e, to(v_) - to(x)) - h * dot(e, d);
+             return h * h * dd * dot(e, e) - g * g;
            }) >= 0;
   }
 
@@ -234,10 +232,10 @@ class LinkSearch {
     if (u == wall.a || u == wall.b) return false;
     const auto holds = [&](int top) {
       return sign_of([&](auto to) -> NumberOf<decltype(to)> {
-               const auto origin = to(a), d = minus(to(b), origin), at = to(point(u));
-               const auto width = dot_of(minus(to(point(seen.right)), to(point(seen.left))), d);
-               const auto height = cross_of(d, minus(at, origin));
-               return squared(width) - height * (cross_of(d, minus(to(point(top)), origin)) - height);
+               const auto origin = to(a), d = to(b) - origin, at = to(point(u));
+               const auto width = dot(to(point(seen.right)) - to(point(seen.left)), d);
+               const auto height = cross(d, at - origin);
+               return squared(width) - height * (cross(d, to(point(top)) - origin) - height);
              }) <= 0;
     };
     return holds(x) && holds(y);
@@ -343,7 +341,7 @@ std::vector<Crowd> sampled_crowds(const CellMap& map, std::size_t most_steps) {
 
 /// The point of the wall at a share that has few digits, exactly.
 Point point_at(const Point& a, const Point& b, double share) {
-  const Vector<Rational> p = a.exact(), d = minus(b.exact(), p);
+  const Vector<Rational> p = a.exact(), d = b.exact() - p;
   const Rational s(share);
   return {Rational(p.x + s * d.x), Rational(p.y + s * d.y)};
 }

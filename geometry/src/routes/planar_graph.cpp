@@ -62,8 +62,8 @@ bool is_strictly_between(Vec2 p, const Segment& s) {
 /// Where the lines of two segments that cross properly meet.
 Point crossing_of(const Segment& s, const Segment& t) {
   const Vector<Rational> a = Point(s.a).exact(), b = Point(s.b).exact(), c = Point(t.a).exact(), d = Point(t.b).exact();
-  const Vector<Rational> e = minus(b, a), f = minus(d, c);
-  const Rational share = cross_of(minus(c, a), f) / cross_of(e, f);
+  const Vector<Rational> e = b - a, f = d - c;
+  const Rational share = cross(c - a, f) / cross(e, f);
   return {Rational(a.x + share * e.x), Rational(a.y + share * e.y)};
 }
 

@@ -240,7 +240,7 @@ double length_of(const std::vector<Point>& points) {
     if (p.is_double() && q.is_double()) {
       length += norm(q.rounded() - p.rounded());
     } else {
-      const routing::Vector<routing::Rational> d = routing::minus(q.exact(), p.exact());
+      const routing::Vector<routing::Rational> d = q.exact() - p.exact();
       length += norm(Vec2{d.x.get_d(), d.y.get_d()});
     }
   }

@@ -10,34 +10,31 @@
 
 namespace exactvo::geometry::routing {
 
-using detail::cross_of;
-using detail::dot_of;
-using detail::minus;
 using detail::squared;
 
 /// The turn a -> b -> c: 1 to the left.
 inline int orient(const Point& a, const Point& b, const Point& c) {
-  return sign_of([&](auto to) -> NumberOf<decltype(to)> { return cross_of(minus(to(b), to(a)), minus(to(c), to(a))); });
+  return sign_of([&](auto to) -> NumberOf<decltype(to)> { return cross(to(b) - to(a), to(c) - to(a)); });
 }
 
 /// The sign of (p - q).(b - a): whether p lies beyond q along ab.
 inline int along(const Point& p, const Point& q, const Point& a, const Point& b) {
-  return sign_of([&](auto to) -> NumberOf<decltype(to)> { return dot_of(minus(to(p), to(q)), minus(to(b), to(a))); });
+  return sign_of([&](auto to) -> NumberOf<decltype(to)> { return dot(to(p) - to(q), to(b) - to(a)); });
 }
 
 /// |pq|^2 against k r^2.
 inline int compare_distance(const Point& p, const Point& q, double r, double k = 1.0) {
   return sign_of([&](auto to) -> NumberOf<decltype(to)> {
-    const auto d = minus(to(p), to(q));
-    return dot_of(d, d) - to(k) * squared(to(r));
+    const auto d = to(p) - to(q);
+    return dot(d, d) - to(k) * squared(to(r));
   });
 }
 
 /// The squared distance of p to the line ab against k r^2.
 inline int compare_line_distance(const Point& p, const Point& a, const Point& b, double r, double k = 1.0) {
   return sign_of([&](auto to) -> NumberOf<decltype(to)> {
-    const auto d = minus(to(b), to(a));
-    return squared(cross_of(d, minus(to(p), to(a)))) - to(k) * squared(to(r)) * dot_of(d, d);
+    const auto d = to(b) - to(a);
+    return squared(cross(d, to(p) - to(a))) - to(k) * squared(to(r)) * dot(d, d);
   });
 }
 

@@ -30,16 +30,16 @@ double length_of(const Vector<Rational>& v) {
 bool meets_disc_inside(const Point& p, const Point& q, const Point& a, const Point& b) {
   const auto middle_beyond = [&](const Point& x) {  // twice (middle - x).(b - a)
     return sign_of([&](auto to) -> NumberOf<decltype(to)> {
-      const auto e = minus(to(b), to(a));
-      return dot_of(minus(to(p), to(x)), e) + dot_of(minus(to(q), to(x)), e);
+      const auto e = to(b) - to(a);
+      return dot(to(p) - to(x), e) + dot(to(q) - to(x), e);
     });
   };
   if (middle_beyond(a) <= 0 || middle_beyond(b) >= 0) return false;
   return sign_of([&](auto to) -> NumberOf<decltype(to)> {
            using N = NumberOf<decltype(to)>;
-           const auto e = minus(to(b), to(a)), d = minus(to(q), to(p));
-           const N twice = cross_of(e, minus(to(p), to(a))) + cross_of(e, minus(to(q), to(a)));
-           return squared(twice) - dot_of(d, d) * dot_of(e, e);
+           const auto e = to(b) - to(a), d = to(q) - to(p);
+           const N twice = cross(e, to(p) - to(a)) + cross(e, to(q) - to(a));
+           return squared(twice) - dot(d, d) * dot(e, e);
          }) <= 0;
 }
 
@@ -59,7 +59,7 @@ Gate StraightWays::gate_of(int number, bool from_left) const {
     p = map_.vertex(forward ? side.a : side.b);
     q = map_.vertex(forward ? side.b : side.a);
   }
-  const Vector<Rational> a = p.exact(), b = q.exact(), d = minus(b, a);
+  const Vector<Rational> a = p.exact(), b = q.exact(), d = b - a;
   // Across it to the right of p -> q leads from its left cell to its right one.
   const int sense = from_left ? 1 : -1;
   return {Point(Rational((a.x + b.x) / 2), Rational((a.y + b.y) / 2)),
@@ -78,9 +78,7 @@ bool StraightWays::is_gabriel(int number) const {
     const auto [a, b] = plan_.ends_of(piece);
     for (const int v : {a, b}) {
       const Point& x = map_.vertex(v);
-      const auto to_both = [&](auto to) -> NumberOf<decltype(to)> {
-        return dot_of(minus(to(p), to(x)), minus(to(q), to(x)));
-      };
+      const auto to_both = [&](auto to) -> NumberOf<decltype(to)> { return dot(to(p) - to(x), to(q) - to(x)); };
       if (v != i && v != j && sign_of(to_both) <= 0) return false;
     }
     if (a == i || b == i) return along(map_.vertex(a == i ? b : a), p, p, q) <= 0;  // else it leads into the disc
@@ -107,11 +105,11 @@ std::vector<Vector<Rational>> StraightWays::tangents_at(Vec2 x) const {
     const auto [i, j] = plan_.ends_of(piece);
     const Point &a = map_.vertex(i), &b = map_.vertex(j);
     const bool at_a = along(x, a, a, b) <= 0, at_b = along(x, b, a, b) >= 0;
-    const Vector<Rational> away = minus(Point(x).exact(), (at_a ? a : b).exact());
+    const Vector<Rational> away = Point(x).exact() - (at_a ? a : b).exact();
     const Vector<Rational> tangent =
-        at_a || at_b ? Vector<Rational>{Rational(away.y), Rational(-away.x)} : minus(b.exact(), a.exact());
+        at_a || at_b ? Vector<Rational>{Rational(away.y), Rational(-away.x)} : b.exact() - a.exact();
     const bool known = std::any_of(tangents.begin(), tangents.end(), [&](const Vector<Rational>& t) {
-      const Rational turn = cross_of(t, tangent);
+      const Rational turn = cross(t, tangent);
       return sgn(turn) == 0;
     });
     if (!known) tangents.push_back(tangent);
@@ -149,7 +147,7 @@ void StraightWays::add_straight_on(const Point& x, const Vector<Rational>& step,
     else
       far = middle;
   }
-  const Rational share = dot_of(minus(goal.exact(), x.exact()), step) / dot_of(step, step);
+  const Rational share = dot(goal.exact() - x.exact(), step) / dot(step, step);
   if (share > 0) {
     const Point beside = moved(x, {Rational(share * step.x), Rational(share * step.y)});
     if (plan_.is_clear(x, beside)) found.push_back(beside);

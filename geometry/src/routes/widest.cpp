@@ -19,13 +19,13 @@ std::pair<NumberOf<Convert>, NumberOf<Convert>> squared_width(const CellMap& map
   using N = NumberOf<Convert>;
   if (portal.link < 0) {
     const Side& side = map.sides[portal.side];
-    const auto d = minus(to(map.vertex(side.b)), to(map.vertex(side.a)));
-    return {N(dot_of(d, d)), N(to(1.0))};
+    const auto d = to(map.vertex(side.b)) - to(map.vertex(side.a));
+    return {N(dot(d, d)), N(to(1.0))};
   }
   const Link& link = map.links[portal.link];
-  const auto d = minus(to(map.vertex(link.b)), to(map.vertex(link.a)));
-  const N area = cross_of(d, minus(to(map.vertex(link.vertex)), to(map.vertex(link.a))));
-  return {N(squared(area)), N(dot_of(d, d))};
+  const auto d = to(map.vertex(link.b)) - to(map.vertex(link.a));
+  const N area = cross(d, to(map.vertex(link.vertex)) - to(map.vertex(link.a)));
+  return {N(squared(area)), N(dot(d, d))};
 }
 
 /// A side that ends at a corner of the square is no gate: it holds nothing up.

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 
-#include "exact/exact_number.h"
+#include "exact/exact_vector.h"
 #include "exactvo/geometry/hull.h"
 #include "exactvo/geometry/minkowski.h"
 #include "exactvo/geometry/require.h"
@@ -20,42 +19,11 @@ constexpr double kSafeProduct = 0x1p-960;
 /// make 3 u of each, the subtraction 1 u of their difference. 4 u (|p| + |q|) to first order; 8 u leaves room for more.
 constexpr double kTurnError = 8.0 * kUnitRoundoff;
 
-Sign exact_turn(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  using detail::Exact;
-  const Exact p = (Exact(b.x) - Exact(a.x)) * (Exact(d.y) - Exact(c.y));
-  return detail::sign_of(p - (Exact(b.y) - Exact(a.y)) * (Exact(d.x) - Exact(c.x)));
-}
-
-// Whether b - a is a double (Knuth's two-sum gives what was rounded off).
-bool is_exact_difference(double a, double b) {
-  const double x = b - a;
-  const double a_seen = b - x;
-  const double b_seen = x + a_seen;
-  return (b - b_seen) + (a_seen - a) == 0.0;
-}
-
 struct Edge {
   Vec2 from;
   Vec2 to;
   Vec2 along;  // fl(to - from)
 };
-
-bool is_exact(const Edge& e) {
-  return is_exact_difference(e.from.x, e.to.x) && is_exact_difference(e.from.y, e.to.y);
-}
-
-// Of exact directions: rounding keeps the order of the products p and q, and equal ones are told apart by what was
-// rounded off. Nothing where a product may have underflowed.
-std::optional<Sign> turn_of_exact(const Edge& s, const Edge& t, double p, double q) {
-  const bool p_vanishes = s.along.x == 0.0 || t.along.y == 0.0;
-  const bool q_vanishes = s.along.y == 0.0 || t.along.x == 0.0;
-  if (p_vanishes && q_vanishes) return Sign::zero;
-  if (std::fabs(p) < kSafeProduct || std::fabs(q) < kSafeProduct) return std::nullopt;
-  if (p != q) return p > q ? Sign::positive : Sign::negative;
-  const double rest_p = std::fma(s.along.x, t.along.y, -p);
-  const double rest_q = std::fma(s.along.y, t.along.x, -q);
-  return rest_p > rest_q ? Sign::positive : rest_p < rest_q ? Sign::negative : Sign::zero;
-}
 
 bool is_place(Vec2 p) {
   return std::fabs(p.x) < 0x1p1000 && std::fabs(p.y) < 0x1p1000;
@@ -68,10 +36,8 @@ bool is_between_places(const Edge& e) {
 [[gnu::noinline, gnu::cold]] Sign turn_exact_stage(const Edge& s, const Edge& t) {
   // Summands are merged before they are checked: any answer will do for what will be refused.
   if (!is_between_places(s) || !is_between_places(t)) return Sign::zero;
-  if (is_exact(s) && is_exact(t)) {
-    if (const auto sign = turn_of_exact(s, t, s.along.x * t.along.y, s.along.y * t.along.x)) return *sign;
-  }
-  return exact_turn(s.from, s.to, t.from, t.to);
+  return detail::sign_of(
+      cross(detail::difference<detail::Exact>(s.to, s.from), detail::difference<detail::Exact>(t.to, t.from)));
 }
 
 // s x t in doubles, and what it may be off by.

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "exact/algebraic_root.h"
-#include "exact/vector_over.h"
+#include "exact/exact_vector.h"
 #include "exactvo/vo/algebraic_direction.h"
 
 namespace exactvo::vo::detail {
 
-using RationalVector = VectorOver<Rational>;
+using RationalVector = geometry::detail::Vector<Rational>;
 
 struct AlgebraicValue {
   Root slope;             ///< -1 < t <= 1

@@ -8,13 +8,10 @@ namespace {
 
 using geometry::Disc;
 using geometry::Ellipse;
+using geometry::detail::squared;
 
 RationalVector exact(Vec2 v) {
   return {Rational(v.x), Rational(v.y)};
-}
-
-Rational square(const Rational& x) {
-  return x * x;
 }
 
 ExactSum sum_of(const geometry::ConvexShape& shape) {
@@ -25,7 +22,7 @@ ExactSum sum_of(const geometry::ConvexShape& shape) {
     const Rational l11(e->l11), l21(e->l21), l22(e->l22);
     if (sgn(l22) == 0) return {{{c.x - l11, c.y - l21}, {c.x + l11, c.y + l21}}, {}};
     if (sgn(l21) == 0 && abs(l11) == abs(l22)) return {{c}, disc(e->l11)};
-    return {{c}, {square(l11), l11 * l21, square(l21) + square(l22), 0}};
+    return {{c}, {squared(l11), l11 * l21, squared(l21) + squared(l22), 0}};
   }
   ExactSum out;
   for (const Vec2 v : corners_of(shape)) out.centres.push_back(exact(v));
@@ -61,7 +58,7 @@ class Tangency {
   Tangency(const RationalVector& centre, const Body& body, int quarter_turns)
       : p_(turned(centre, -quarter_turns)),
         b_{body.s22, Rational(-2 * body.s12), body.s11},
-        d_{square(body.radius), 0, square(body.radius)} {
+        d_{squared(body.radius), 0, squared(body.radius)} {
     if (quarter_turns % 2 != 0) b_ = {body.s11, Rational(2 * body.s12), body.s22};
   }
 
@@ -127,14 +124,6 @@ ExactLegs legs_of_points(const std::vector<RationalVector>& points) {
 }
 
 }  // namespace
-
-// For k < 0, |k| is compared with the sum of the roots by squaring twice.
-int sign_with_roots(const Rational& k, const Rational& b, const Rational& d) {
-  if (sgn(k) >= 0) return sgn(k) > 0 || sgn(b) > 0 || sgn(d) > 0 ? 1 : 0;
-  const Rational rest = square(k) - b - d;
-  if (sgn(rest) < 0) return 1;
-  return sgn(Rational(4 * b * d - square(rest)));
-}
 
 UnroundedInput unrounded_input(const VelocityObstacle& obstacle) {
   const geometry::GrownShape& s = obstacle.grown_;

@@ -41,7 +41,9 @@ UnroundedInput unrounded_input(const VelocityObstacle& obstacle);
 ExactSum exact_sum(const VelocityObstacle& obstacle);
 
 /// The sign of k + sqrt(b) + sqrt(d), b, d >= 0.
-int sign_with_roots(const Rational& k, const Rational& b, const Rational& d);
+inline int sign_with_roots(const Rational& k, const Rational& b, const Rational& d) {
+  return static_cast<int>(geometry::detail::sign_with_two_roots(k, b, d));
+}
 
 /// Both legs. REQUIRES: 0 is not in S.
 ExactLegs legs_of(const ExactSum& s);

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "exact/exact_sum.h"
-#include "exact/vector_over.h"
+#include "exact/exact_vector.h"
 #include "exactvo/vo/free_arrangement.h"
 #include "free/number.h"
 
 namespace exactvo::vo::detail {
 
-using Point = VectorOver<Number>;
+using Point = geometry::detail::Vector<Number>;
 
 Point point(const RationalVector& v);
 

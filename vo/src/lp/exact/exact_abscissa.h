@@ -8,7 +8,7 @@
 ///          |   ---------+---------->    the ends at the disc are +-sqrt(radius^2 |n|^2 - c^2)
 ///
 
-#include "lp/proof/exact_number.h"
+#include "lp/proof/exact_points.h"
 
 namespace exactvo::lp {
 

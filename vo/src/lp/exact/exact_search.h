@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "exactvo/vo/lp/solution.h"
-#include "lp/proof/exact_number.h"
+#include "lp/proof/exact_points.h"
 
 namespace exactvo::lp {
 

@@ -32,7 +32,7 @@ class ExactSum {
  public:
   /// REQUIRES: they have exact products.
   void add_product(double a, double b) {
-    const DoubleDouble product = exact_product(a, b);
+    const DoubleDouble product = two_product(a, b);
     add(product.low);
     add(product.high);
   }
@@ -42,7 +42,7 @@ class ExactSum {
   void add(double x) {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < count_; ++k) {
-      const DoubleDouble sum = exact_sum(x, parts_[k]);
+      const DoubleDouble sum = two_sum(x, parts_[k]);
       x = sum.high;
       if (sum.low != 0.0) parts_[kept++] = sum.low;
     }

@@ -22,22 +22,22 @@ constexpr DoubleDouble sum_of_ordered(double a, double b) {
   return {sum, b - (sum - a)};
 }
 
-/// a + b, exact (Knuth).
-constexpr DoubleDouble exact_sum(double a, double b) {
+/// a + b, exact (Knuth's TwoSum).
+constexpr DoubleDouble two_sum(double a, double b) {
   const double sum = a + b, second = sum - a;
   return {sum, (a - (sum - second)) + (b - second)};
 }
 
 /// The leading 26 bits of a, and the rest (Veltkamp).
-constexpr DoubleDouble halves(double a) {
+constexpr DoubleDouble veltkamp_split(double a) {
   const double scaled = 0x1p27 * a + a, leading = scaled - (scaled - a);
   return {leading, a - leading};
 }
 
-/// a b, exact (Dekker).
-constexpr DoubleDouble exact_product(double a, double b) {
+/// a b, exact (Dekker's TwoProduct).
+constexpr DoubleDouble two_product(double a, double b) {
   const double product = a * b;
-  const DoubleDouble p = halves(a), q = halves(b);
+  const DoubleDouble p = veltkamp_split(a), q = veltkamp_split(b);
   return {product, ((p.high * q.high - product) + p.high * q.low + p.low * q.high) + p.low * q.low};
 }
 
@@ -46,7 +46,7 @@ constexpr DoubleDouble operator-(DoubleDouble a) {
 }
 
 constexpr DoubleDouble operator+(DoubleDouble a, DoubleDouble b) {
-  const DoubleDouble high = exact_sum(a.high, b.high), low = exact_sum(a.low, b.low);
+  const DoubleDouble high = two_sum(a.high, b.high), low = two_sum(a.low, b.low);
   const DoubleDouble sum = sum_of_ordered(high.high, high.low + low.high);
   return sum_of_ordered(sum.high, low.low + sum.low);
 }
@@ -56,7 +56,7 @@ constexpr DoubleDouble operator-(DoubleDouble a, DoubleDouble b) {
 }
 
 constexpr DoubleDouble operator*(DoubleDouble a, DoubleDouble b) {
-  const DoubleDouble product = exact_product(a.high, b.high);
+  const DoubleDouble product = two_product(a.high, b.high);
   return sum_of_ordered(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 

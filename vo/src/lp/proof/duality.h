@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "exactvo/vo/lp/certificate.h"
-#include "lp/proof/exact_number.h"
+#include "lp/proof/exact_points.h"
 
 namespace exactvo::lp {
 

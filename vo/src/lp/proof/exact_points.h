@@ -5,14 +5,12 @@
 /// The numbers of the exact stage: dyadic rationals of any length, and alpha + beta sqrt(D) over them. No divisions:
 /// points are homogeneous. Internal; CGAL's number type goes no further than the units that include this.
 
-#include <CGAL/Mpzf.h>
-
-#include "exact/vector_over.h"
+#include "exact/exact_vector.h"
 #include "exactvo/vo/lp/problem.h"
 
 namespace exactvo::lp {
 
-using Exact = CGAL::Mpzf;
+using geometry::detail::Exact;
 
 inline int sign_of(const Exact& x) {
   return static_cast<int>(CGAL::sign(x));
@@ -20,17 +18,13 @@ inline int sign_of(const Exact& x) {
 
 /// The sign of alpha + beta sqrt(d), d >= 0.
 inline int sign_of_root(const Exact& alpha, const Exact& beta, const Exact& d) {
-  const int a = sign_of(alpha);
-  const int b = sign_of(d) == 0 ? 0 : sign_of(beta);
-  if (a == b || b == 0) return a;
-  if (a == 0) return b;
-  return a * sign_of(alpha * alpha - beta * beta * d);
+  return static_cast<int>(geometry::detail::sign_with_root(alpha, beta, d));
 }
 
-using ExactVector = vo::detail::VectorOver<Exact>;
+using ExactVector = geometry::detail::Vector<Exact>;
 
 inline ExactVector exact(Vec2 v) {
-  return {Exact(v.x), Exact(v.y)};
+  return geometry::detail::make<Exact>(v);
 }
 
 /// normal . v >= offset.
