@@ -336,7 +336,7 @@ TEST(Groups, OnALargeRingPlansAreMadeForAsManyAsFit) {
     c.index = (i + 1) % kCount;
     c.half_plane = {{-1.0, 0.0}, 0.0};
   }
-  const OpenSpace open;
+  const ObstacleSpace open({});
   int asked = 0;
   Groups groups(s, open, true, 1, [&] { return ++asked > 300; });  // a few plans are enough
   const auto way_left = [](std::size_t) { return 3.0; };

@@ -26,7 +26,7 @@ Proven certified(const Problem& problem, const Solution& solution) {
   Proven answer;
   answer.solution = solution;
   const std::optional<ProofInDoubles> proof = proven_with_multipliers(problem, answer.solution);
-  if (!proof) return solve_exactly(problem, active_bindings(answer.solution));
+  if (!proof) return solve_exactly(problem);
   answer.certificate = certificate_of(*proof, answer.solution.status);
   return answer;
 }
@@ -38,7 +38,7 @@ bool is_proven_by_multipliers(const Problem& problem, Solution& solution) {
 
 Proven solve_exact(const Problem& problem) {
   require_well_formed(problem);
-  return solve_exactly(problem, {});
+  return solve_exactly(problem);
 }
 
 }  // namespace exactvo::lp

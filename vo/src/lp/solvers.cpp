@@ -177,7 +177,7 @@ void prove(const Problem& problem, Proven& answer) {
   if (answer.certificate) return;
   answer.certificate = certify(problem, answer.solution);
   if (!answer.certificate)
-    answer = solve_exactly(problem, active_bindings(answer.solution));
+    answer = solve_exactly(problem);
   else if (!has_multipliers_of(problem, *answer.certificate, answer.solution))
     set_multipliers(problem, *answer.certificate, answer.solution);
 }

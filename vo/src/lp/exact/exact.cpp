@@ -20,13 +20,6 @@ std::vector<Binding> bindings_of(const ExactRegion& region, const ExactOptimum& 
   return bindings;
 }
 
-std::vector<std::size_t> positions_of(const ExactRegion& region, const std::vector<Binding>& bindings) {
-  std::vector<std::size_t> positions;
-  for (std::size_t k = 0; k < region.lines.size(); ++k)
-    if (std::find(bindings.begin(), bindings.end(), region.lines[k].binding) != bindings.end()) positions.push_back(k);
-  return positions;
-}
-
 /// The first of `bindings` that fit: two where optimal, else three.
 void name_active(const std::vector<Binding>& bindings, Solution& s) {
   const std::size_t most = s.status == Status::optimal ? 2 : 3;
@@ -63,7 +56,7 @@ Proven no_interior(const Problem& problem, const ExactRegion& mandatory, const E
   answer.solution.status = Status::no_interior;
   for (const auto& member : mandatory.lines)
     answer.solution.violation = std::max(answer.solution.violation, geometry::violation(member.half_plane, velocity));
-  const ExactOptimum nearest_zero = exact_best(mandatory, {}, {});
+  const ExactOptimum nearest_zero = exact_best(mandatory, {});
   Certificate c{Status::no_interior, velocity, answer.solution.violation, contradiction, {}, 0.0, {}};
   const std::vector<std::size_t>& tight = nearest_zero.tight;
   const auto accepted = [&](std::vector<Binding> vertex) {
@@ -101,22 +94,22 @@ Proven rounded_inward(const Problem& problem, Status status, const ExactRegion& 
 
 }  // namespace
 
-Proven solve_exactly(const Problem& problem, const std::vector<Binding>& guess) {
+Proven solve_exactly(const Problem& problem) {
   const ExactRegion region = exact_region(problem);
   const Aim aim = aim_of(problem);
-  const ExactOptimum best = exact_best(region, aim, positions_of(region, guess));
+  const ExactOptimum best = exact_best(region, aim);
   if (best.feasible) return rounded_inward(problem, Status::optimal, region, region, best, {});
 
   const ExactRegion hard = hard_part(region);
-  const ExactOptimum kept = exact_best(hard, {}, positions_of(hard, guess));
+  const ExactOptimum kept = exact_best(hard, {});
   if (kept.feasible) {
     const std::vector<Term> contradiction = contradiction_of(problem, bindings_of(region, best));
-    const ExactOptimum least = exact_least_violation(region, aim, positions_of(region, guess));
+    const ExactOptimum least = exact_least_violation(region, aim);
     return rounded_inward(problem, Status::relaxed, region, hard, least, contradiction);
   }
   const std::vector<Term> contradiction = contradiction_of(problem, bindings_of(hard, kept));
   const ExactRegion soft = softened(hard);
-  const ExactOptimum least = exact_least_violation(soft, aim, positions_of(soft, guess));
+  const ExactOptimum least = exact_least_violation(soft, aim);
   return rounded_inward(problem, Status::infeasible, soft, soft, least, contradiction);
 }
 

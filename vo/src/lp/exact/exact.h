@@ -4,13 +4,11 @@
 /// \file
 /// The exact solver: the optimum as an algebraic point, rounded inward.
 
-#include <vector>
-
 #include "exactvo/vo/lp/certificate.h"
 
 namespace exactvo::lp {
 
-/// The exact answer, rounded, with its certificate; `guess` names constraints that may bind (changes the cost only).
-Proven solve_exactly(const Problem& problem, const std::vector<Binding>& guess);
+/// The exact answer, rounded, with its certificate.
+Proven solve_exactly(const Problem& problem);
 
 }  // namespace exactvo::lp

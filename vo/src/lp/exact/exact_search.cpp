@@ -145,14 +145,10 @@ class Entering {
   std::size_t worst_ = kNone;
 };
 
-/// Those of `among` (every line where empty) that enter next.
-std::size_t entering(const Scan& scan, const std::vector<std::size_t>* among) {
+/// The line that enters next.
+std::size_t entering(const Scan& scan) {
   Entering search(scan);
-  if (among) {
-    for (const std::size_t k : *among) search.look_at(k);
-  } else {
-    for (std::size_t k = 0; k < scan.region.lines.size(); ++k) search.look_at(k);
-  }
+  for (std::size_t k = 0; k < scan.region.lines.size(); ++k) search.look_at(k);
   return search.line();
 }
 
@@ -261,35 +257,21 @@ ExactOptimum relaxing_step(const ExactRegion& region, const Aim& aim, const Exac
   return next;
 }
 
-ExactOptimum walk(const ExactRegion& region, const Aim& aim, ExactOptimum o, bool relaxing,
-                  const std::vector<std::size_t>* among) {
+ExactOptimum walk(const ExactRegion& region, const Aim& aim, ExactOptimum o, bool relaxing) {
   while (o.feasible) {
-    const std::size_t enters = entering({region, o, relaxing}, among);
+    const std::size_t enters = entering({region, o, relaxing});
     if (enters == kNone) break;
     o = relaxing ? relaxing_step(region, aim, o, enters) : best_step(region, aim, o, enters);
   }
   return o;
 }
 
-ExactOptimum walk_twice(const ExactRegion& region, const Aim& aim, ExactOptimum o, bool relaxing,
-                        const std::vector<std::size_t>& guess) {
-  if (!guess.empty()) o = walk(region, aim, std::move(o), relaxing, &guess);
-  return walk(region, aim, std::move(o), relaxing, nullptr);
-}
-
-std::size_t first_soft(const ExactRegion& region, const std::vector<std::size_t>& guess) {
-  for (const std::size_t k : guess)
-    if (region.lines[k].soft) return k;
-  std::size_t k = 0;
-  while (!region.lines[k].soft) ++k;
-  return k;
-}
-
-ExactOptimum least_violation_in_disc(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& guess) {
-  const std::size_t top = first_soft(region, guess);
+ExactOptimum least_violation_in_disc(const ExactRegion& region, const Aim& aim) {
+  std::size_t top = 0;
+  while (!region.lines[top].soft) ++top;
   ExactOptimum o = lowest_on_plane(region, aim, {}, top);
   o.tight = {top};
-  return walk_twice(region, aim, std::move(o), true, guess);
+  return walk(region, aim, std::move(o), true);
 }
 
 /// Radii of discs that stand for no bound at all. Vertices of lines of doubles lie within 2^4300 (quotients of sums of
@@ -322,17 +304,17 @@ ExactOptimum without_disc(ExactOptimum o) {
 
 }  // namespace
 
-ExactOptimum exact_best(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& guess) {
-  if (region.has_disc || aim.directions.empty()) return walk_twice(region, aim, start_of(region, aim), false, guess);
+ExactOptimum exact_best(const ExactRegion& region, const Aim& aim) {
+  if (region.has_disc || aim.directions.empty()) return walk(region, aim, start_of(region, aim), false);
   const ExactRegion bounded = bounded_by(region, around_box(region) + Exact(1));
-  return without_disc(walk_twice(bounded, aim, start_of(bounded, aim), false, guess));
+  return without_disc(walk(bounded, aim, start_of(bounded, aim), false));
 }
 
-ExactOptimum exact_least_violation(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& guess) {
-  if (region.has_disc) return least_violation_in_disc(region, aim, guess);
-  const ExactOptimum near = least_violation_in_disc(bounded_by(region, far_away(false)), aim, guess);
+ExactOptimum exact_least_violation(const ExactRegion& region, const Aim& aim) {
+  if (region.has_disc) return least_violation_in_disc(region, aim);
+  const ExactOptimum near = least_violation_in_disc(bounded_by(region, far_away(false)), aim);
   if (near.feasible && !near.on_disc) return near;
-  return without_disc(least_violation_in_disc(bounded_by(region, far_away(true)), aim, guess));
+  return without_disc(least_violation_in_disc(bounded_by(region, far_away(true)), aim));
 }
 
 }  // namespace exactvo::lp

@@ -51,10 +51,10 @@ ExactRegion hard_part(const ExactRegion& region);
 ExactRegion softened(ExactRegion region);
 Aim aim_of(const Problem& problem);
 
-/// The optimum over every line. `guess`: positions of lines to look at first (they change the cost, never the answer).
-ExactOptimum exact_best(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& guess);
+/// The optimum over every line.
+ExactOptimum exact_best(const ExactRegion& region, const Aim& aim);
 
 /// The least violation of the soft lines within the hard ones. REQUIRES: the hard lines do not contradict each other.
-ExactOptimum exact_least_violation(const ExactRegion& region, const Aim& aim, const std::vector<std::size_t>& guess);
+ExactOptimum exact_least_violation(const ExactRegion& region, const Aim& aim);
 
 }  // namespace exactvo::lp

@@ -333,12 +333,6 @@ bool is_tight(const Problem& problem, const Certificate& c) {
   return c.gap <= (scope == Scope::all_must_hold ? kWidestOfOptimum : kWidestGap) * unit;
 }
 
-std::vector<Binding> active_bindings(const Solution& solution) {
-  std::vector<Binding> bindings;
-  for (std::size_t k = 0; k < solution.active_count; ++k) bindings.push_back(solution.active[k].binding);
-  return bindings;
-}
-
 Certificate claim_of(const Problem& problem, const Solution& solution) {
   require_well_formed(problem);
   Certificate claim;

@@ -39,9 +39,6 @@ std::optional<Certificate> certificate_for(const Problem& problem, const Solutio
                                            const std::vector<Binding>& candidates,
                                            const std::vector<Term>& contradiction);
 
-/// What the solution says binds.
-std::vector<Binding> active_bindings(const Solution& solution);
-
 /// The exact multipliers of a contradiction among at most three constraints or two and the disc, up to a common factor
 /// that keeps them in the range of double. Empty where these do not contradict.
 std::vector<Term> contradiction_of(const Problem& problem, const std::vector<Binding>& bindings);
