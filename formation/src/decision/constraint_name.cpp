@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "exactvo/geometry/predicates.h"
 
@@ -82,10 +83,10 @@ std::string ends_of(const Segment& s) {
   return text;
 }
 
-/// "enclosure" and "4" of "obstacle U".
+/// "enclosures", "4" and "5" of "obstacle U".
 struct Named {
   std::string kind, kinds;  ///< one of them, several
-  std::string which;
+  std::vector<std::string> which;
   std::string owner;  ///< empty where there is none
 };
 
@@ -116,46 +117,35 @@ std::string id_at(const Items& items, std::size_t index) {
 }
 
 Named named(const RecordedConstraint& c, const Scenario& scenario) {
-  if (c.source == ConstraintSource::robot) return {"robot", "robots", id_at(scenario.robots, c.index), ""};
+  if (c.source == ConstraintSource::robot) return {"robot", "robots", {id_at(scenario.robots, c.index)}, ""};
   if (c.source == ConstraintSource::moving_obstacle)
-    return {"moving obstacle", "moving obstacles", id_at(scenario.moving_obstacles, c.index), ""};
+    return {"moving obstacle", "moving obstacles", {id_at(scenario.moving_obstacles, c.index)}, ""};
   const std::string owner = owner_of(c.shape, scenario);
   if (c.source == ConstraintSource::enclosure) {
     const std::string piece = c.piece > 0 ? ", piece " + std::to_string(c.piece) + "," : "";
-    return {"enclosure", "enclosures", std::to_string(c.index) + piece, owner};
+    return {"enclosure", "enclosures", {std::to_string(c.index) + piece}, owner};
   }
   const auto* edge = std::get_if<Segment>(&c.shape);
-  return {"the edge", "the edges", edge ? ends_of(*edge) : std::to_string(c.index), owner};
-}
-
-/// Items of one kind and owner.
-struct Group {
-  Named first;
-  std::vector<std::string> which;
-};
-
-std::string words_of(const Group& g) {
-  const std::string text = (g.which.size() > 1 ? g.first.kinds : g.first.kind) + " " + enumerated(g.which);
-  return g.first.owner.empty() ? text : text + " of " + g.first.owner;
+  return {"the edge", "the edges", {edge ? ends_of(*edge) : std::to_string(c.index)}, owner};
 }
 
 }  // namespace
 
 std::string name_of(const std::vector<RecordedConstraint>& constraints, const Scenario& scenario) {
-  std::vector<Group> groups;
+  std::vector<Named> groups;  // of one kind and owner each
   for (const RecordedConstraint& c : constraints) {
-    const Named item = named(c, scenario);
-    const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
-      return g.first.kind == item.kind && g.first.owner == item.owner;
-    });
-    if (same == groups.end()) {
-      groups.push_back({item, {item.which}});
-    } else {
-      same->which.push_back(item.which);
-    }
+    Named item = named(c, scenario);
+    const auto same = std::find_if(groups.begin(), groups.end(),
+                                   [&](const Named& g) { return g.kind == item.kind && g.owner == item.owner; });
+    if (same == groups.end())
+      groups.push_back(std::move(item));
+    else
+      same->which.push_back(item.which.front());
   }
   std::vector<std::string> words;
-  for (const Group& g : groups) words.push_back(words_of(g));
+  for (const Named& g : groups)
+    words.push_back((g.which.size() > 1 ? g.kinds : g.kind) + " " + enumerated(g.which) +
+                    (g.owner.empty() ? "" : " of " + g.owner));
   return enumerated(words);
 }
 

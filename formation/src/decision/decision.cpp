@@ -120,25 +120,22 @@ PairConstraints against_each_other(const Party& a, const Party& b, vo::Reciproca
 
 void NearestFirst::sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines) {
   keys_.clear();
-  for (const Constraint& c : lines) {
-    const double distance = norm(std::get<geometry::Disc>(bodies[c.body].shape).center - from);
-    keys_.push_back({distance, c.index, keys_.size()});
-  }
-  std::sort(keys_.begin(), keys_.end(), [](const Key& x, const Key& y) {
-    return std::tie(x.distance, x.index, x.at) < std::tie(y.distance, y.index, y.at);
-  });
+  for (const Constraint& c : lines)
+    keys_.emplace_back(norm(std::get<geometry::Disc>(bodies[c.body].shape).center - from), c.index, keys_.size());
+  std::sort(keys_.begin(), keys_.end());
   // Half-planes are large: each moves once, round the cycles of the permutation.
+  const auto came_from = [&](std::size_t k) -> std::size_t& { return std::get<2>(keys_[k]); };
   for (std::size_t first = 0; first < lines.size(); ++first) {
-    if (keys_[first].at == first) continue;
+    if (came_from(first) == first) continue;
     const Constraint kept = lines[first];
     std::size_t to = first;
-    for (std::size_t next = keys_[to].at; next != first; next = keys_[to].at) {
+    for (std::size_t next = came_from(to); next != first; next = came_from(to)) {
       lines[to] = lines[next];
-      keys_[to].at = to;
+      came_from(to) = to;
       to = next;
     }
     lines[to] = kept;
-    keys_[to].at = to;
+    came_from(to) = to;
   }
 }
 

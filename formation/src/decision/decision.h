@@ -5,6 +5,7 @@
 /// Equation (12)/(13): from half-planes and a preferred velocity to the chosen one, with the record of why.
 
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -51,12 +52,8 @@ class NearestFirst {
   void sort(const vo::BodyTable& bodies, Vec2 from, std::vector<Constraint>& lines);
 
  private:
-  struct Key {
-    double distance = 0.0;  ///< m
-    std::size_t index = 0;
-    std::size_t at = 0;  ///< where the half-plane stood
-  };
-  std::vector<Key> keys_;
+  /// Distance, m; number; where the half-plane stood.
+  std::vector<std::tuple<double, std::size_t, std::size_t>> keys_;
 };
 
 /// All half-planes of every robot against every other in sight (`sight_of`), nearest first: entry i belongs to

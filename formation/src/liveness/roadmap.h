@@ -61,9 +61,6 @@ class Roadmap {
     });
   }
 
-  /// m: as long as a way may be.
-  double longest_way() const { return longest_; }
-
  private:
   struct FreePoint {
     double clearance;

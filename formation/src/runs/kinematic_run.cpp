@@ -420,7 +420,7 @@ class KinematicRun {
   double now_ = 0.0;  ///< s, of the present row
   OwnDecision own_;
   std::vector<KinematicRobot> robots_;
-  OpenSpace open_space_;
+  ObstacleSpace open_space_{{}};
   std::optional<Groups> groups_;  ///< of several robots, but with Liveness::off
   JointDecisions joint_;
   std::vector<Outlook> outlooks_;

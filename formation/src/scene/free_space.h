@@ -24,15 +24,7 @@ class FreeSpace {
   virtual bool is_clear(geometry::Vec2 from, geometry::Vec2 to, double least) const = 0;
 };
 
-/// Nothing stands anywhere.
-class OpenSpace : public FreeSpace {
- public:
-  bool is_open() const override { return true; }
-  double clearance(geometry::Vec2, double enough) const override { return enough; }
-  bool is_clear(geometry::Vec2, geometry::Vec2, double) const override { return true; }
-};
-
-/// Among the static obstacles of a scene, which are looked up by place.
+/// Among the static obstacles of a scene, which are looked up by place. Without obstacles it is open.
 class ObstacleSpace : public FreeSpace {
  public:
   explicit ObstacleSpace(const std::vector<SceneObstacle>& obstacles);

@@ -11,6 +11,7 @@
 #include "exactvo/geometry/distance.h"
 #include "exactvo/geometry/too_many_contacts.h"
 #include "rings/ring_contacts.h"
+#include "shapes/edge_crossing.h"
 
 namespace exactvo::geometry::detail {
 namespace {
@@ -118,14 +119,11 @@ class PointLocator {
   // By the even-odd rule. Exact.
   Place locate(Vec2 p) const {
     if (!slabs_.empty() && (p.y < box_.low.y || p.y > box_.high.y)) return Place::outside;
-    bool odd = false;
-    bool on_edge = false;
+    bool odd = false, on_edge = false;
     for_each_candidate(p.y, [&](std::size_t i) {
-      const Segment edge = {ring_[i], ring_[(i + 1) % ring_.size()]};
-      on_edge = on_edge || lies_on(edge, p);
-      if ((edge.a.y <= p.y) == (edge.b.y <= p.y)) return;
-      const Sign side = orientation(edge.a, edge.b, p);
-      odd = odd != (side == (edge.a.y < edge.b.y ? Sign::positive : Sign::negative));
+      const Crossing c = crossing({ring_[i], ring_[(i + 1) % ring_.size()]}, p);
+      on_edge = on_edge || c == Crossing::on_edge;
+      odd = odd != (c == Crossing::right);
     });
     if (on_edge) return Place::boundary;
     return odd ? Place::inside : Place::outside;
@@ -154,32 +152,17 @@ class PointLocator {
   std::vector<std::vector<std::size_t>> slabs_;
 };
 
-// The ring's vertices from the lexicographically least one on, which no two equal rings of one winding differ in.
-class FromLeast {
- public:
-  explicit FromLeast(const Ring& ring) : ring_(&ring) {
-    const auto least = std::min_element(ring.begin(), ring.end(), lexicographically_less);
-    start_ = static_cast<std::size_t>(least - ring.begin());
-  }
-  std::size_t start() const { return start_; }
-  bool operator<(const FromLeast& other) const { return compare(other) < 0; }
-  bool operator==(const FromLeast& other) const { return compare(other) == 0; }
+// The number of the lexicographically least vertex.
+std::size_t start_of(const Ring& ring) {
+  return static_cast<std::size_t>(std::min_element(ring.begin(), ring.end(), lexicographically_less) - ring.begin());
+}
 
- private:
-  int compare(const FromLeast& other) const {
-    const std::size_t n = ring_->size();
-    if (n != other.ring_->size()) return n < other.ring_->size() ? -1 : 1;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vec2 a = (*ring_)[(start_ + i) % n];
-      const Vec2 b = (*other.ring_)[(other.start_ + i) % n];
-      if (a != b) return lexicographically_less(a, b) ? -1 : 1;
-    }
-    return 0;
-  }
-
-  const Ring* ring_;
-  std::size_t start_ = 0;
-};
+// From the least vertex on two equal rings of one winding have the same vertices.
+Ring from_least(const Ring& ring) {
+  Ring turned = ring;
+  std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(start_of(ring)), turned.end());
+  return turned;
+}
 
 class Search {
  public:
@@ -208,20 +191,22 @@ class Search {
 
   // Each lies within the other. One of them, the first, stays among the rings that are `different_`.
   void report_equal_holes() {
-    std::vector<std::pair<FromLeast, std::size_t>> holes;
-    for (std::size_t i = 1; i < rings_.size(); ++i) holes.emplace_back(FromLeast(*rings_[i]), i);
-    std::sort(holes.begin(), holes.end());
+    std::vector<std::pair<Ring, std::size_t>> holes;
+    for (std::size_t i = 1; i < rings_.size(); ++i) holes.emplace_back(from_least(*rings_[i]), i);
+    std::sort(holes.begin(), holes.end(), [](const auto& a, const auto& b) {
+      if (a.first == b.first) return a.second < b.second;
+      return std::lexicographical_compare(a.first.begin(), a.first.end(), b.first.begin(), b.first.end(),
+                                          lexicographically_less);
+    });
     different_.push_back(0);
     for (std::size_t k = 0; k < holes.size(); ++k) {
       const bool is_repeated = k > 0 && holes[k].first == holes[k - 1].first;
-      if (!is_repeated) different_.push_back(holes[k].second);
-      if (is_repeated || (k + 1 < holes.size() && holes[k].first == holes[k + 1].first)) report_at_start(holes[k]);
+      const std::size_t ring = holes[k].second;
+      if (!is_repeated) different_.push_back(ring);
+      if (is_repeated || (k + 1 < holes.size() && holes[k].first == holes[k + 1].first))
+        report(ring, start_of(*rings_[ring]), holes[k].first.front());
     }
     std::sort(different_.begin(), different_.end());
-  }
-
-  void report_at_start(const std::pair<FromLeast, std::size_t>& hole) {
-    report(hole.second, hole.first.start(), (*rings_[hole.second])[hole.first.start()]);
   }
 
   // The sweep answers the common case (no two rings touch) alone. Of each ring the first crossing is reported, by ring
