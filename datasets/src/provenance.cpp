@@ -15,7 +15,6 @@
 #include "files/sha256.h"
 #include "files/system_error.h"
 #include "files/text_file.h"
-#include "gdal/gdal_facts.h"
 #include "json/json_text.h"
 
 namespace exactvo::datasets {
@@ -43,6 +42,10 @@ std::string gmp_release() {
 
 }  // namespace
 
+bool built_with_gdal() {
+  return std::string_view(EXACTVO_GDAL_RELEASE) != "none";
+}
+
 std::string sha256_of(std::string_view bytes) {
   Sha256 hash;
   hash.add(bytes);
@@ -69,7 +72,7 @@ Provenance make_provenance(std::vector<std::string> command_line, std::uint64_t 
   facts.build_type = EXACTVO_BUILD_TYPE;
   facts.cgal = EXACTVO_CGAL_VERSION;
   facts.gmp = gmp_release();
-  facts.gdal = gdal_release();
+  facts.gdal = EXACTVO_GDAL_RELEASE;  // known without loading GDAL
   facts.seed = seed;
   facts.command_line = std::move(command_line);
   for (const std::filesystem::path& input : inputs) {

@@ -306,17 +306,22 @@ class VelocitySpace {
 
 }  // namespace
 
+std::string velocity_plane(const std::string& title, const Box& view, const std::string& plot) {
+  return filled("velocity_plane", {{"title", title},
+                                   {"x_low", fmt::format("{:.6g}", view.low.x)},
+                                   {"x_high", fmt::format("{:.6g}", view.high.x)},
+                                   {"y_low", fmt::format("{:.6g}", view.low.y)},
+                                   {"y_high", fmt::format("{:.6g}", view.high.y)},
+                                   {"plot", plot}});
+}
+
 Figure velocity_space_figure(const Decision& decision) {
   const VelocitySpace space(decision);
   const std::string title =
       fmt::format("{}: velocity space of {} at t = {:.2f} s, {}", shortened(decision.scenario.name, kNameLength),
                   shortened(decision.who().id, kNameLength), decision.time, decision.method);
-  const std::string body = filled("velocity_plane", {{"title", quoted(shortened(title, characters_in(kTitleRoom)))},
-                                                     {"x_low", fmt::format("{:.6g}", space.box().low.x)},
-                                                     {"x_high", fmt::format("{:.6g}", space.box().high.x)},
-                                                     {"y_low", fmt::format("{:.6g}", space.box().low.y)},
-                                                     {"y_high", fmt::format("{:.6g}", space.box().high.y)},
-                                                     {"plot", space.plot()}});
+  const std::string body =
+      velocity_plane(quoted(shortened(title, characters_in(kTitleRoom))), space.box(), space.plot());
   return {"velocity_space", space.data(), title + ".", {1060, 740}, body};
 }
 

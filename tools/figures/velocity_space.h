@@ -7,8 +7,12 @@
 
 #include "explain/decision.h"
 #include "figures/figure.h"
+#include "figures/style.h"
 
 namespace exactvo::tools {
+
+/// The plot of a velocity plane as the body of a figure; `title` is a gnuplot string.
+std::string velocity_plane(const std::string& title, const Box& view, const std::string& plot);
 
 Figure velocity_space_figure(const Decision& decision);
 

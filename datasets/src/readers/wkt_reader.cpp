@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "readers/readers.h"
-#include "readers/wkt_blocks.h"
 #include "readers/wkt_scanner.h"
 
 namespace exactvo::datasets {

@@ -6,6 +6,7 @@
 
 #include "figures/outlines.h"
 #include "figures/sheet.h"
+#include "figures/velocity_space.h"
 #include "verbs/vo/answer.h"
 
 namespace exactvo::tools {
@@ -76,12 +77,7 @@ class Panel {
   /// `title` in gnuplot's markup.
   std::string text(const std::string& title) {
     if (hatched_) plot_.item("keyentry with lines lw 1 lc rgb '#555555'", "hatched side: forbidden");
-    return filled("velocity_plane", {{"title", markup(title)},
-                                     {"x_low", fmt::format("{:.6g}", view_.low.x)},
-                                     {"x_high", fmt::format("{:.6g}", view_.high.x)},
-                                     {"y_low", fmt::format("{:.6g}", view_.low.y)},
-                                     {"y_high", fmt::format("{:.6g}", view_.high.y)},
-                                     {"plot", plot_.text()}});
+    return velocity_plane(markup(title), view_, plot_.text());
   }
   /// The same without axes of its own, for a sheet.
   SheetPanel on_sheet(const std::string& title) const {

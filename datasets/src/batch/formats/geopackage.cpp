@@ -2,6 +2,7 @@
 #include "batch/formats/geopackage.h"
 
 #include <fcntl.h>
+#include <ogrsf_frmts.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -13,15 +14,81 @@
 
 #include "batch/formats/bytes.h"
 #include "batch/formats/features.h"
-#include "batch/formats/package_schema.h"
 #include "batch/formats/packed_rtree.h"
 #include "batch/formats/sqlite_file.h"
 #include "exactvo/datasets/data_error.h"
 #include "exactvo/geometry/require.h"
 #include "files/system_error.h"
+#include "gdal/gdal_session.h"
+#include "gdal/memory_file.h"
 
 namespace exactvo::datasets::batch {
 namespace {
+
+// --- The schema ---
+
+/// By the kind of `Value`.
+constexpr OGRFieldType kTypes[] = {OFTString, OFTReal, OFTInteger64};
+
+class Schema {
+ public:
+  Schema(const char* name, const std::filesystem::path& path) : path_(path) {
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+    need(driver != nullptr);
+    data_.reset(driver->Create(name, 0, 0, 0, GDT_Unknown, nullptr));
+    need(data_ != nullptr);
+  }
+
+  void describe(const std::string& provenance) {
+    need(data_->SetMetadataItem("EXACTVO_PROVENANCE", provenance.c_str()) == CE_None);
+  }
+
+  void create_layer(const Layer& layer) {
+    const char* const options[] = {"SPATIAL_INDEX=YES", nullptr};
+    OGRSpatialReference metres;  // without one the format takes numbers for degrees
+    metres.SetLocalCS("local metres");
+    metres.SetLinearUnits("metre", 1.0);
+    OGRLayer* made = data_->CreateLayer(layer.name, &metres, wkbUnknown, const_cast<char**>(options));
+    need(made != nullptr);
+    for (const Field& field : layer.fields) {
+      OGRFieldDefn definition(field.name, kTypes[field.value.index()]);
+      need(made->CreateField(&definition) == OGRERR_NONE);
+    }
+  }
+
+  void close() {
+    data_->FlushCache();
+    data_.reset();
+    need(true);
+  }
+
+ private:
+  void need(bool done) {
+    const std::string words = complaints_.take_failure();
+    if (done && words.empty()) return;
+    throw DataError(DataCode::file_unwritable, path_.string(), "", words.empty() ? "GDAL can't write it" : words,
+                    "a place that can be written");
+  }
+
+  const std::filesystem::path& path_;
+  GdalComplaints complaints_;
+  std::unique_ptr<GDALDataset> data_;
+};
+
+/// The bytes of an empty GeoPackage with the layers of a batch, as GDAL makes it: tables, spatial indices, extensions,
+/// metadata. The same for the same provenance: the times that the format records are those of 1970. `path` is for what
+/// errors say. Throws DataError (E_FILE_UNWRITABLE).
+std::string empty_package(const std::string& provenance, const std::filesystem::path& path) {
+  register_gdal_once();
+  const MemoryFile file(".gpkg", "1970-01-01T00:00:00.000Z");
+  Schema schema(file.name(), path);
+  schema.describe(provenance);
+  for (const Layer& layer : layers()) schema.create_layer(layer);
+  schema.close();
+  return file.bytes();
+}
+
+// --- The rows ---
 
 std::string insertion_into(const Layer& layer) {
   std::string columns = "INSERT INTO " + sql_name(layer.name) + " (fid, geom";
