@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "exactvo/datasets/ordered_work.h"
 #include "exactvo/datasets/part_folder.h"
@@ -16,28 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How far the work has come: on a terminal always, elsewhere a line now and then.
-class PartsProgress {
- public:
-  explicit PartsProgress(std::size_t parts) : parts_(parts), line_(static_cast<double>(parts), "parts") {}
-
-  void show(std::size_t done, const std::string& doing) {
-    constexpr std::chrono::seconds kBetweenMessages{30};
-    line_.show(static_cast<double>(done), doing);
-    const auto now = std::chrono::steady_clock::now();
-    if (line_.enabled() || now - said_ < kBetweenMessages) return;
-    said_ = now;
-    const double elapsed = std::chrono::duration<double>(now - start_).count();
-    message(fmt::format("{} of {} parts, about {:.0f} s left", done, parts_,
-                        elapsed * static_cast<double>(parts_ - done) / static_cast<double>(done)));
-  }
-
- private:
-  std::size_t parts_;
-  ProgressLine line_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::chrono::steady_clock::time_point said_ = start_;
-};
+/// On a terminal's line, or in a message now and then.
+void show(std::size_t done, std::size_t parts, const std::string& doing, ProgressLine& line) {
+  if (!line.is_due()) return;
+  line.show(static_cast<double>(done), doing);
+  if (line.enabled()) return;
+  message(fmt::format("{} of {} parts, about {:.0f} s left", done, parts,
+                      line.elapsed() * static_cast<double>(parts - done) / static_cast<double>(done)));
+}
 
 }  // namespace
 
@@ -55,7 +40,7 @@ std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const fs:
   }
   if (!open.empty() && open.size() < tasks.size())
     message(fmt::format("{} of {} parts are there already", tasks.size() - open.size(), tasks.size()));
-  PartsProgress progress(open.size());
+  ProgressLine line(static_cast<double>(open.size()), "parts");
   std::size_t next = 0;
   std::size_t done = 0;
   datasets::run_in_order(static_cast<int>(jobs), [&]() -> std::optional<datasets::OrderedTask> {
@@ -65,7 +50,7 @@ std::vector<std::string> run_parts(const std::vector<PartTask>& tasks, const fs:
       texts[i] = tasks[i].work();
       if (!interrupted()) folder.write_sealed(file_of(i), key, texts[i]);  // what was cut short is no part
     };
-    return datasets::OrderedTask{work, [&, i] { progress.show(++done, tasks[i].name); }};
+    return datasets::OrderedTask{work, [&, i] { show(++done, open.size(), tasks[i].name, line); }};
   });
   if (interrupted()) throw Interrupted();
   return texts;

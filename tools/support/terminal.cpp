@@ -148,12 +148,24 @@ ProgressLine::ProgressLine(double total, std::string unit)
       unit_(std::move(unit)),
       start_(std::chrono::steady_clock::now()) {}
 
+bool ProgressLine::is_due() {
+  const double now = elapsed(), between = enabled_ ? 0.2 : 30.0;
+  if (due_at_ == 0.0) due_at_ = between;
+  if (now < due_at_) return false;
+  due_at_ = now + between;
+  return true;
+}
+
+double ProgressLine::elapsed() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
 void ProgressLine::show(double done, const std::string& doing) {
   if (!enabled_) return;
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double seconds = elapsed();
   std::string pace;
-  if (done > 0.0 && elapsed > 0.0) {
-    const double rate = done / elapsed;
+  if (done > 0.0 && seconds > 0.0) {
+    const double rate = done / seconds;
     pace = fmt::format(", {:.3g} {}/s, at most {:.0f} s left", rate, unit_, (total_ - done) / rate);
   }
   put(fmt::format("\r\033[K{:.4g} of {:.4g} {}: {}{}", done, total_, unit_, shown(doing), pace));

@@ -72,6 +72,11 @@ class ProgressLine {
   void show(double done, const std::string& doing);
   /// Whether it is seen at all.
   bool enabled() const { return enabled_; }
+  /// Whether it is time to say again how far the run has come: 0.2 s after the last time, or 30 s where the line is not
+  /// seen and messages say it.
+  bool is_due();
+  /// s, since it was made.
+  double elapsed() const;
   /// Takes the line away, to print something else.
   void clear();
 
@@ -81,6 +86,7 @@ class ProgressLine {
   double total_;
   std::string unit_;
   std::chrono::steady_clock::time_point start_;
+  double due_at_ = 0.0;  ///< s
 };
 
 }  // namespace exactvo::tools

@@ -4,9 +4,7 @@
 #include "exactvo/geometry/counted.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -201,41 +199,16 @@ void say_sizes(const BatchConfiguration& c, const BatchProgress& progress, const
                         size_text(static_cast<double>(disk.available))));
 }
 
-/// A line that is written over on a terminal, a line now and then in a log.
-class Reporter {
- public:
-  Reporter() : line_(1.0, "of the input"), last_(std::chrono::steady_clock::now()), start_(last_) {}
-
-  void show(const BatchProgress& progress) {
-    const auto now = std::chrono::steady_clock::now();
-    const bool on_terminal = ::isatty(STDERR_FILENO) != 0;
-    if (seconds(now - last_) < (on_terminal ? 0.2 : kLogEvery)) return;
-    last_ = now;
-    const double elapsed = seconds(now - start_);
-    const double left = progress.share_done > 0.0 ? elapsed * (1.0 / progress.share_done - 1.0) : 0.0;
-    const std::string text = fmt::format("{} of {}, {:.0f} %, {}, {:.0f}/s, {:.0f} s left: {}", progress.inputs_done,
-                                         counted(progress.inputs, "file"), 100.0 * progress.share_done,
-                                         counted(progress.obstacles, "obstacle"),
-                                         static_cast<double>(progress.obstacles) / elapsed, left, progress.doing);
-    if (on_terminal) {
-      line_.show(progress.share_done, text);
-    } else {
-      message(text);
-    }
-  }
-  void clear() { line_.clear(); }
-
- private:
-  static constexpr double kLogEvery = 30.0;  // s
-  template <class Duration>
-  static double seconds(Duration d) {
-    return std::chrono::duration<double>(d).count();
-  }
-
-  ProgressLine line_;
-  std::chrono::steady_clock::time_point last_;
-  std::chrono::steady_clock::time_point start_;
-};
+/// On a terminal's line, or in a message now and then.
+void show(const BatchProgress& progress, ProgressLine& line) {
+  if (!line.is_due()) return;
+  const double left = progress.share_done > 0.0 ? line.elapsed() * (1.0 / progress.share_done - 1.0) : 0.0;
+  const std::string text = fmt::format("{} of {}, {:.0f} %, {}, {:.0f}/s, {:.0f} s left: {}", progress.inputs_done,
+                                       counted(progress.inputs, "file"), 100.0 * progress.share_done,
+                                       counted(progress.obstacles, "obstacle"),
+                                       static_cast<double>(progress.obstacles) / line.elapsed(), left, progress.doing);
+  line.enabled() ? line.show(progress.share_done, text) : message(text);
+}
 
 std::string words_of(const BatchTally& tally, const char* what) {
   std::string text = fmt::format("{}: {} done, {} repaired, {} rejected", counted(tally.read, what), tally.done,
@@ -312,16 +285,16 @@ ExitCode batch(const BatchFlags& flags) {
   const BatchConfiguration configuration = configuration_of(flags);
   const BatchRun run = run_of(flags);
   const bool over_another = goes_over_another(flags);
-  Reporter reporter;
+  ProgressLine line(1.0, "of the input");
   bool has_said_sizes = false;
   const auto watch = [&](const BatchProgress& progress) {
     if (!std::exchange(has_said_sizes, true)) say_sizes(configuration, progress, flags.out);
-    reporter.show(progress);
+    show(progress, line);
     return !interrupted();
   };
   const datasets::BatchResult result = datasets::under_mpi() ? datasets::run_batch_over_ranks(configuration, run, watch)
                                                              : datasets::run_batch(configuration, run, watch);
-  reporter.clear();
+  line.clear();
   note_earlier_batches(result);
   if (result.end == BatchEnd::interrupted) {
     error_message("interrupted; --resume goes on");
